@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+
+#include "hullslam/util/option_table.h"
+
+namespace hullslam {
+
+struct DepthOptions {
+  double units_per_metre = 5000.0;  // of 16-bit depth images
+  double close_baselines = 40.0;    // depths up to this many baselines count as close (well known)
+
+  // Binds ORB-SLAM2's keys `DepthMapFactor` and `ThDepth`.
+  void Bind(OptionTable& options);
+};
+
+// Depth in metres at a raw pixel (nearest pixel), 0 where it is unknown or outside the image.
+// `depth` is CV_16UC1 or CV_32FC1 as in RgbdImage, else CheckError is thrown.
+float SampleDepth(const cv::Mat& depth, const Eigen::Vector2f& raw_pixel, double units_per_metre);
+
+// Right coordinate of the virtual stereo pair, u - bf / depth, in px; -1 for an unknown depth.
+float VirtualRight(float u, float depth, double bf);
+
+}  // namespace hullslam

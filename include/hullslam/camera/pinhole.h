@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "hullslam/util/option_table.h"
+
+namespace hullslam {
+
+// Pinhole camera with Brown distortion (k1 k2 p1 p2 k3, OpenCV's order) and, for RGB-D, the
+// baseline of the virtual stereo pair. All SLAM mathematics is done on undistorted pixels with the
+// same intrinsics; raw pixels appear only where images are read.
+struct PinholeCamera {
+  double fx = 0.0;  // px
+  double fy = 0.0;
+  double cx = 0.0;
+  double cy = 0.0;
+  double k1 = 0.0;
+  double k2 = 0.0;
+  double p1 = 0.0;
+  double p2 = 0.0;
+  double k3 = 0.0;
+  int width = 640;  // px
+  int height = 480;
+  double bf = 40.0;  // baseline (m) times fx (px)
+
+  // Binds ORB-SLAM2's keys `Camera.fx` ... to the fields.
+  void Bind(OptionTable& options);
+
+  bool IsDistorted() const { return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0 || k3 != 0.0; }
+
+  // Undistorted pixel of a point in the camera frame (metres, z forward). The point needs z > 0.
+  Eigen::Vector2d Project(const Eigen::Vector3d& point_in_cam) const {
+    const double inverse_z = 1.0 / point_in_cam.z();
+    return {fx * point_in_cam.x() * inverse_z + cx, fy * point_in_cam.y() * inverse_z + cy};
+  }
+  // Point in the camera frame at `depth` metres along z seen at an undistorted pixel.
+  Eigen::Vector3d Unproject(const Eigen::Vector2d& pixel, double depth) const {
+    return {(pixel.x() - cx) / fx * depth, (pixel.y() - cy) / fy * depth, depth};
+  }
+
+  // Raw pixel of an undistorted one (Brown 1971).
+  Eigen::Vector2d Distort(const Eigen::Vector2d& undistorted) const;
+  // Undistorted pixel of a raw one, by Newton's method on Distort; the residual is below 1e-6 px
+  // inside the image for the cameras of config/. Where the distortion polynomial folds and has no
+  // inverse the best point found is returned.
+  Eigen::Vector2d Undistort(const Eigen::Vector2d& raw) const;
+
+  // Smallest upright box that holds the undistorted image.
+  struct Bounds {
+    double min_x = 0.0;
+    double min_y = 0.0;
+    double max_x = 0.0;
+    double max_y = 0.0;
+    bool Contains(const Eigen::Vector2d& pixel) const {
+      return pixel.x() >= min_x && pixel.x() < max_x && pixel.y() >= min_y && pixel.y() < max_y;
+    }
+  };
+  Bounds UndistortedBounds() const;
+};
+
+}  // namespace hullslam

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+
+namespace hullslam {
+
+// One input frame of an RGB-D camera; depth is registered to the colour image.
+struct RgbdImage {
+  double timestamp = 0.0;  // seconds
+  cv::Mat grey;            // CV_8UC1
+  // CV_16UC1, units of 1 / DepthMapFactor metres, or CV_32FC1, metres; 0 (or not finite) is
+  // unknown.
+  cv::Mat depth;
+};
+
+}  // namespace hullslam

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "hullslam/features/feature_set.h"
+#include "hullslam/util/option_table.h"
+
+namespace hullslam {
+
+// ORB features as in ORB-SLAM2 (Mur-Artal and Tardos 2017).
+struct FeatureOptions {
+  int feature_count = 1000;
+  double scale_factor = 1.2;
+  int level_count = 8;
+  int initial_fast_threshold = 20;  // grey levels
+  int minimum_fast_threshold = 7;   // where a cell has no corner at the initial threshold
+
+  // Binds ORB-SLAM2's keys `ORBextractor.nFeatures` ... to the fields.
+  void Bind(OptionTable& options);
+};
+
+struct ExtractedFeatures {
+  std::vector<Keypoint> keypoints;      // `undistorted` equals `raw`; ordered by level
+  std::vector<Descriptor> descriptors;  // one a keypoint
+};
+
+// Keeps its buffers from image to image; one extractor a thread.
+class FeatureExtractor {
+ public:
+  explicit FeatureExtractor(const FeatureOptions& options);
+  ~FeatureExtractor();
+  FeatureExtractor(FeatureExtractor&&) noexcept;
+  FeatureExtractor& operator=(FeatureExtractor&&) noexcept;
+
+  const ScaleLevels& levels() const;
+
+  // `grey` is CV_8UC1 and not smaller than 64 x 64 px, else CheckError is thrown. About
+  // feature_count features, fewer where the image has not as many corners.
+  ExtractedFeatures Extract(const cv::Mat& grey);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hullslam

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hullslam/features/feature_set.h"
+
+namespace hullslam {
+
+// Keypoints sorted into the cells of an image, to find those near a pixel.
+class FeatureGrid {
+ public:
+  FeatureGrid() = default;
+  // Sorts by `undistorted`; the box is that of the undistorted image, in px. Keypoints outside it
+  // go into the nearest cell.
+  FeatureGrid(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_min,
+              const Eigen::Vector2f& box_max);
+
+  // Appends to `found` the indices of the keypoints with |dx| < radius and |dy| < radius and a
+  // level from min_level to max_level, cell by cell and in order of index within a cell.
+  void FindNear(std::span<const Keypoint> keypoints, const Eigen::Vector2f& center, float radius,
+                int min_level, int max_level, std::vector<uint32_t>& found) const;
+
+ private:
+  static constexpr int kColumns = 64;
+  static constexpr int kRows = 48;
+  Eigen::Vector2f min_ = Eigen::Vector2f::Zero();
+  Eigen::Vector2f cells_per_pixel_ = Eigen::Vector2f::Zero();
+  std::vector<uint32_t> cell_start_;  // kColumns * kRows + 1, into order_
+  std::vector<uint32_t> order_;       // keypoint indices, cell by cell, column-major
+};
+
+}  // namespace hullslam

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace hullslam {
+
+// Rigid transform of points: x_b = rotation * x_a + translation for a Rigid3 named `b_from_a`.
+// Lengths are in metres (in monocular SLAM: in units of the map).
+struct Rigid3 {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  Rigid3() = default;
+  Rigid3(const Eigen::Quaterniond& rotation_in, const Eigen::Vector3d& translation_in)
+      : rotation(rotation_in), translation(translation_in) {}
+
+  Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
+    return rotation * point + translation;
+  }
+  Eigen::Matrix<double, 3, 4> ToMatrix() const;
+};
+
+// c_from_a = c_from_b * b_from_a. The rotation of the product has unit norm.
+Rigid3 operator*(const Rigid3& c_from_b, const Rigid3& b_from_a);
+
+Rigid3 Inverse(const Rigid3& b_from_a);
+
+// Rotation by |omega| radians around omega.
+Eigen::Quaterniond ExpSo3(const Eigen::Vector3d& omega);
+// The rotation vector of `rotation`, of length at most pi.
+Eigen::Vector3d LogSo3(const Eigen::Quaterniond& rotation);
+// The matrix of the cross product: Skew(a) * b = a x b.
+Eigen::Matrix3d Skew(const Eigen::Vector3d& a);
+
+// Small motion applied on the left, after `b_from_a`: x_b is turned by delta[0..2] (radians) and
+// then moved by delta[3..5]. Its derivative at zero is dx_b / ddelta = [-Skew(x_b), I].
+Rigid3 Retract(const Rigid3& b_from_a, const Eigen::Matrix<double, 6, 1>& delta);
+
+// Angle between two rotations in radians, 0 to pi.
+double AngularDistance(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
+
+}  // namespace hullslam

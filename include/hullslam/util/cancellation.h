@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <atomic>
+
+namespace hullslam {
+
+// Asks a long computation on another thread to end early at the next good place.
+class Cancellation {
+ public:
+  void Request() { requested_.store(true, std::memory_order_release); }
+  void Reset() { requested_.store(false, std::memory_order_release); }
+  bool IsRequested() const { return requested_.load(std::memory_order_acquire); }
+
+ private:
+  std::atomic<bool> requested_{false};
+};
+
+}  // namespace hullslam

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+
+// A table from ids to values in chunks that are copied when written. Snapshot() shares every chunk
+// with the table it is taken from and costs one pointer copy a chunk; the first write to a chunk
+// after that clones this chunk alone. Iteration is in the order of the ids. Ids are never used
+// again, so an erased id stays empty; a chunk without values is freed.
+//
+// A table has one writer. Snapshots may be read, or written as tables of their own, by other
+// threads.
+template <typename IdType, typename Value, size_t kChunkSize = 64>
+class CowTable {
+ public:
+  CowTable() = default;
+  CowTable(CowTable&&) noexcept = default;
+  CowTable& operator=(CowTable&&) noexcept = default;
+  CowTable(const CowTable&) = delete;
+  CowTable& operator=(const CowTable&) = delete;
+
+  // A table with the same values. From here on neither of the two writes to a shared chunk.
+  CowTable Snapshot() {
+    owned_.assign(chunks_.size(), false);
+    CowTable copy;
+    copy.chunks_ = chunks_;
+    copy.owned_ = owned_;
+    copy.size_ = size_;
+    copy.next_id_ = next_id_;
+    return copy;
+  }
+
+  // Number of values, without those erased.
+  size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+
+  // The id that the next Insert gives; every id handed out so far is below it.
+  IdType NextId() const { return IdType(next_id_); }
+
+  IdType Insert(Value value) {
+    const uint32_t number = next_id_++;
+    const size_t chunk = number / kChunkSize;
+    if (chunk == chunks_.size()) {
+      chunks_.push_back(nullptr);
+      owned_.push_back(true);
+    }
+    if (chunks_[chunk] == nullptr) {
+      chunks_[chunk] = std::make_shared<Chunk>();
+      owned_[chunk] = true;
+    }
+    Chunk& writable = WritableChunk(chunk);
+    writable.slots[number % kChunkSize].emplace(std::move(value));
+    ++writable.used;
+    ++size_;
+    return IdType(number);
+  }
+
+  // Null where the id was never given or is erased. The pointer is good until the next write.
+  const Value* Find(IdType id) const {
+    const size_t chunk = id.value / kChunkSize;
+    if (chunk >= chunks_.size() || chunks_[chunk] == nullptr) {
+      return nullptr;
+    }
+    const std::optional<Value>& slot = chunks_[chunk]->slots[id.value % kChunkSize];
+    return slot ? &*slot : nullptr;
+  }
+
+  bool Contains(IdType id) const { return Find(id) != nullptr; }
+
+  // Throws CheckError where there is no value.
+  const Value& At(IdType id) const {
+    const Value* value = Find(id);
+    Check(value != nullptr, "no value with this id");
+    return *value;
+  }
+
+  // The value for writing; clones its chunk if a snapshot shares it. Throws as At does.
+  Value& Mutable(IdType id) {
+    Check(Find(id) != nullptr, "no value with this id");
+    return *WritableChunk(id.value / kChunkSize).slots[id.value % kChunkSize];
+  }
+
+  void Erase(IdType id) {
+    Check(Find(id) != nullptr, "no value with this id");
+    const size_t chunk = id.value / kChunkSize;
+    if (chunks_[chunk]->used == 1) {
+      chunks_[chunk] = nullptr;
+    } else {
+      Chunk& writable = WritableChunk(chunk);
+      writable.slots[id.value % kChunkSize].reset();
+      --writable.used;
+    }
+    --size_;
+  }
+
+  // Calls visit(id, const Value&) in the order of the ids.
+  template <typename Visitor>
+  void ForEach(Visitor&& visit) const {
+    for (size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
+      if (chunks_[chunk] == nullptr) {
+        continue;
+      }
+      for (size_t slot = 0; slot < kChunkSize; ++slot) {
+        if (const auto& value = chunks_[chunk]->slots[slot]) {
+          visit(IdType(static_cast<uint32_t>(chunk * kChunkSize + slot)), *value);
+        }
+      }
+    }
+  }
+
+ private:
+  struct Chunk {
+    std::array<std::optional<Value>, kChunkSize> slots;
+    size_t used = 0;
+  };
+
+  Chunk& WritableChunk(size_t chunk) {
+    if (!owned_[chunk]) {
+      chunks_[chunk] = std::make_shared<Chunk>(*chunks_[chunk]);
+      owned_[chunk] = true;
+    }
+    return *chunks_[chunk];
+  }
+
+  std::vector<std::shared_ptr<Chunk>> chunks_;
+  // Chunks made since the last snapshot, which nobody else can see. Asking the shared pointers for
+  // their use count instead would race with readers that let go of a snapshot.
+  std::vector<bool> owned_;
+  size_t size_ = 0;
+  uint32_t next_id_ = 0;
+};
+
+}  // namespace hullslam

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace hullslam {
+
+// A bounded first-in first-out queue between two threads. A full mailbox makes the sender wait
+// (back-pressure), an empty one the receiver; closing it wakes both.
+template <typename Message>
+class Mailbox {
+ public:
+  explicit Mailbox(size_t capacity) : capacity_(capacity) {}
+
+  // False, and the message is dropped, once the mailbox is closed.
+  bool Send(Message message) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return closed_ || messages_.size() < capacity_; });
+    if (closed_) {
+      return false;
+    }
+    messages_.push_back(std::move(message));
+    changed_.notify_all();
+    return true;
+  }
+
+  // The oldest message; nothing once the mailbox is closed and empty.
+  std::optional<Message> Receive() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return closed_ || !messages_.empty(); });
+    if (messages_.empty()) {
+      return std::nullopt;
+    }
+    std::optional<Message> message(std::move(messages_.front()));
+    messages_.pop_front();
+    changed_.notify_all();
+    return message;
+  }
+
+  // Messages already sent can still be received.
+  void Close() {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    changed_.notify_all();
+  }
+
+  size_t size() const {
+    const std::lock_guard lock(mutex_);
+    return messages_.size();
+  }
+
+ private:
+  const size_t capacity_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Message> messages_;
+  bool closed_ = false;
+};
+
+}  // namespace hullslam

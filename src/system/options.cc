@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/system/options.h"
+
+#include <cmath>
+#include <string>
+
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+
+OptionTable SystemOptions::Bind() {
+  OptionTable table;
+  camera.Bind(table);
+  table.Add("Camera.fps", &frames_per_second, Range::Positive(), "frame rate of the camera, 1/s");
+  table.Add("Camera.RGB", &rgb_order, "colour images fed from memory are RGB (else BGR)");
+  depth.Bind(table);
+  features.Bind(table);
+  tracking.Bind(table);
+  mapping.Bind(table);
+  for (const char* name :
+       {"KeyFrameSize", "KeyFrameLineWidth", "GraphLineWidth", "PointSize", "CameraSize",
+        "CameraLineWidth", "ViewpointX", "ViewpointY", "ViewpointZ", "ViewpointF"}) {
+    table.AddIgnored(std::string("Viewer.") + name);
+  }
+  return table;
+}
+
+void SystemOptions::Validate() const {
+  if (camera.fx <= 0.0 || camera.fy <= 0.0) {
+    throw InputError("settings: Camera.fx and Camera.fy are not given, expected numbers > 0");
+  }
+  const double top_scale = std::pow(features.scale_factor, features.level_count - 1);
+  const double smallest_side = std::min(camera.width, camera.height) / top_scale;
+  if (smallest_side < 64.0) {
+    throw InputError("settings: ORBextractor.nLevels is '" + std::to_string(features.level_count) +
+                     "', its smallest image would be " + std::to_string(smallest_side) +
+                     " px, expected at least 64 px");
+  }
+}
+
+}  // namespace hullslam

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/util/option_table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+template <typename Number>
+std::optional<Number> ParseNumber(std::string_view text) {
+  if (text.starts_with('+')) {
+    text.remove_prefix(1);
+  }
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+template <typename Number>
+std::string PrintNumber(Number value) {
+  char buffer[64];
+  const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
+  return std::string(buffer, result.ptr);
+}
+
+std::optional<bool> ParseBool(std::string_view text) {
+  if (text == "1" || text == "true") {
+    return true;
+  }
+  if (text == "0" || text == "false") {
+    return false;
+  }
+  return std::nullopt;
+}
+
+// Levenshtein distance (two-row dynamic programme), to suggest a key for a misspelt one.
+size_t EditDistance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (size_t j = 0; j < b.size(); ++j) {
+      const size_t substitution = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substitution});
+    }
+  }
+  return row.back();
+}
+
+std::string Join(const std::vector<std::string>& words) {
+  std::string joined;
+  for (const std::string& word : words) {
+    joined += (joined.empty() ? "" : ", ") + word;
+  }
+  return joined;
+}
+
+}  // namespace
+
+bool Range::Contains(double value) const {
+  return std::isfinite(value) && (low_open ? value > low : value >= low) && value <= high;
+}
+
+std::string Range::ToString() const {
+  if (std::isinf(low) && std::isinf(high)) {
+    return "of any size";
+  }
+  if (std::isinf(high)) {
+    return (low_open ? "> " : ">= ") + PrintNumber(low);
+  }
+  return (low_open ? "above " : "from ") + PrintNumber(low) + " to " + PrintNumber(high);
+}
+
+void OptionTable::AddOption(std::string key, Option option) {
+  const bool inserted = options_.emplace(std::move(key), std::move(option)).second;
+  Check(inserted, "an option is bound twice");
+}
+
+template <typename Number>
+void OptionTable::AddNumber(std::string key, Number* field, Range range, std::string help) {
+  const char* const kind = std::is_integral_v<Number> ? "an integer " : "a number ";
+  AddOption(std::move(key), {.parse =
+                                 [field, range](const std::string& text) {
+                                   const auto value = ParseNumber<Number>(text);
+                                   const bool good =
+                                       value && range.Contains(static_cast<double>(*value));
+                                   if (good) *field = *value;
+                                   return good;
+                                 },
+                             .print = [field] { return PrintNumber(*field); },
+                             .expected = kind + range.ToString(),
+                             .help = std::move(help)});
+}
+
+void OptionTable::Add(std::string key, double* field, Range range, std::string help) {
+  AddNumber(std::move(key), field, range, std::move(help));
+}
+
+void OptionTable::Add(std::string key, int* field, Range range, std::string help) {
+  AddNumber(std::move(key), field, range, std::move(help));
+}
+
+void OptionTable::Add(std::string key, uint64_t* field, Range range, std::string help) {
+  AddNumber(std::move(key), field, range, std::move(help));
+}
+
+void OptionTable::Add(std::string key, bool* field, std::string help) {
+  AddOption(std::move(key), {.parse =
+                                 [field](const std::string& text) {
+                                   const auto value = ParseBool(text);
+                                   if (value) *field = *value;
+                                   return value.has_value();
+                                 },
+                             .print = [field] { return std::string(*field ? "true" : "false"); },
+                             .expected = "true or false (1 or 0)",
+                             .help = std::move(help)});
+}
+
+void OptionTable::Add(std::string key, std::string* field, std::vector<std::string> choices,
+                      std::string help) {
+  std::string expected = "one of: " + Join(choices);
+  AddOption(std::move(key), {.parse =
+                                 [field, choices = std::move(choices)](const std::string& text) {
+                                   const bool good = std::find(choices.begin(), choices.end(),
+                                                               text) != choices.end();
+                                   if (good) *field = text;
+                                   return good;
+                                 },
+                             .print = [field] { return *field; },
+                             .expected = std::move(expected),
+                             .help = std::move(help)});
+}
+
+void OptionTable::AddIgnored(std::string key) {
+  Option option;
+  option.parse = [](const std::string&) { return true; };
+  option.ignored = true;
+  AddOption(std::move(key), std::move(option));
+}
+
+bool OptionTable::Contains(std::string_view key) const {
+  return options_.find(key) != options_.end();
+}
+
+void OptionTable::Set(const std::string& key, const std::string& value, const std::string& origin) {
+  const auto it = options_.find(key);
+  if (it == options_.end()) {
+    const auto nearest =
+        std::min_element(options_.begin(), options_.end(), [&](const auto& a, const auto& b) {
+          return EditDistance(key, a.first) < EditDistance(key, b.first);
+        });
+    std::string message = origin + ": unknown key '" + key + "'";
+    if (nearest != options_.end()) {
+      message += "; did you mean '" + nearest->first + "'?";
+    }
+    throw InputError(message);
+  }
+  if (!it->second.parse(value)) {
+    throw InputError(origin + ": " + key + " is '" + value + "', expected " + it->second.expected);
+  }
+}
+
+std::vector<OptionTable::Entry> OptionTable::Entries() const {
+  std::vector<Entry> entries;
+  for (const auto& [key, option] : options_) {
+    if (!option.ignored) {
+      entries.push_back({key, option.print(), option.expected, option.help});
+    }
+  }
+  return entries;
+}
+
+}  // namespace hullslam
