@@ -1,0 +1,62 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fails unless the tests mirror the headers.
+
+Every include/hullslam/<module>/<file>.h has tests/<module>/<file>_test.cc, and every
+tests/<module>/<file>_test.cc is named after such a header or after a private one,
+src/<module>/<file>.h, and holds a test. tests/integration, support, consumer and scripts are free.
+"""
+
+import argparse
+import pathlib
+import re
+import sys
+
+FREE = {"integration", "support", "consumer", "scripts"}
+TEST = re.compile(r"^\s*(TYPED_)?TEST(_F|_P)?\s*\(", re.MULTILINE)
+
+
+def untested_headers(root):
+    headers = root / "include" / "hullslam"
+    for header in sorted(headers.rglob("*.h")):
+        test = pathlib.Path("tests") / header.relative_to(headers).with_suffix("")
+        test = test.with_name(test.name + "_test.cc")
+        if not (root / test).exists():
+            yield f"{header.relative_to(root)}: no {test}"
+
+
+def stray_tests(root):
+    tests = root / "tests"
+    for test in sorted(tests.rglob("*_test.cc")):
+        inside = test.relative_to(tests)
+        if inside.parts[0] in FREE:
+            continue
+        header = inside.with_name(inside.name[:-len("_test.cc")] + ".h")
+        public = pathlib.Path("include/hullslam") / header
+        private = pathlib.Path("src") / header
+        if not (root / public).exists() and not (root / private).exists():
+            yield f"{test.relative_to(root)}: neither {public} nor {private} exists"
+        if not TEST.search(test.read_text(encoding="utf-8")):
+            yield f"{test.relative_to(root)}: holds no test"
+
+
+def check_tree(root):
+    """The faults of the tree at `root`, one line each. A tree without headers is one."""
+    root = pathlib.Path(root).resolve()
+    if not any((root / "include" / "hullslam").rglob("*.h")):
+        return [f"{root}: no headers in include/hullslam"]
+    return [*untested_headers(root), *stray_tests(root)]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("root", nargs="?", default=pathlib.Path(__file__).resolve().parent.parent,
+                        help="top of the repository (default: of this script)")
+    faults = check_tree(parser.parse_args().root)
+    for line in faults:
+        print(line, file=sys.stderr)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Sourced by the shell scripts: messages, help and named steps.
+
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+fail() {
+  printf 'error: %s\n' "$1" >&2
+  exit 1
+}
+
+usage_error() {
+  printf 'error: %s; see --help\n' "$1" >&2
+  exit 2
+}
+
+# Prints the comment block below the SPDX line of the script that was called.
+print_help() {
+  awk 'NR > 2 && !/^#/ {exit} NR > 2 {sub(/^# ?/, ""); print}' "$0"
+}
+
+# Announces a step; if the script ends with an error before the next one, this one is named.
+step() {
+  current_step="$1"
+  trap report_failed_step EXIT
+  printf '== %s\n' "$1"
+}
+
+report_failed_step() {
+  local code=$?
+  if [ "$code" -ne 0 ]; then
+    printf 'error: step "%s" failed with exit code %d\n' "$current_step" "$code" >&2
+  fi
+}

@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: scripts/test.sh [--preset NAME]...
+#
+# Sets up, builds and tests. The preset is release if none is given; others are debug, asan, tsan and
+# tidy (which only builds: clang-tidy runs on every file). Several are taken one after the other.
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+cd "$top"
+
+presets=()
+while [ $# -gt 0 ]; do
+  case "$1" in
+    -h | --help)
+      print_help
+      exit 0
+      ;;
+    --preset)
+      case "${2:-}" in
+        release | debug | asan | tsan | tidy) presets+=("$2") ;;
+        *) usage_error "--preset is \"${2:-}\"; expected release, debug, asan, tsan or tidy" ;;
+      esac
+      shift 2
+      ;;
+    *) usage_error "unknown argument \"$1\"" ;;
+  esac
+done
+[ "${#presets[@]}" -gt 0 ] || presets=(release)
+jobs=$(nproc)
+
+step "setup"
+scripts/setup.sh
+for preset in "${presets[@]}"; do
+  step "configure ($preset)"
+  cmake --preset "$preset"
+  step "build ($preset)"
+  cmake --build --preset "$preset" -j "$jobs"
+  if [ "$preset" != tidy ]; then
+    step "test ($preset)"
+    ctest --preset "$preset" -j "$jobs"
+  fi
+done

@@ -1,0 +1,57 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scripts/check_test_mirror.py on small trees, most of them broken."""
+
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+import check_test_mirror  # noqa: E402
+
+HEADER = "include/hullslam/util/id.h"
+TEST = "tests/util/id_test.cc"
+BODY = "TEST(IdTest, Orders) {}\n"
+
+
+def faults_of(files):
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        for name, text in files.items():
+            path = root / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        return check_test_mirror.check_tree(root)
+
+
+class CheckTestMirrorTest(unittest.TestCase):
+    def test_accepts_a_mirror(self):
+        self.assertEqual(faults_of({
+            HEADER: "", TEST: BODY,
+            "src/synthetic/scene.h": "", "tests/synthetic/scene_test.cc": "TEST_F(S, T) {}\n",
+            "src/synthetic/untested.h": "",
+            "tests/integration/run_test.cc": "", "tests/consumer/any_test.cc": ""}), [])
+
+    def test_header_without_test(self):
+        self.assertEqual(faults_of({HEADER: ""}), [f"{HEADER}: no {TEST}"])
+
+    def test_test_in_the_wrong_module(self):
+        faults = faults_of({HEADER: "", "tests/map/id_test.cc": BODY})
+        self.assertEqual(len(faults), 2, faults)
+        self.assertIn("tests/map/id_test.cc: neither", faults[1])
+
+    def test_test_of_nothing(self):
+        faults = faults_of({HEADER: "", TEST: BODY, "tests/util/gone_test.cc": BODY})
+        self.assertEqual(len(faults), 1, faults)
+        self.assertIn("gone_test.cc: neither", faults[0])
+
+    def test_file_without_a_test(self):
+        self.assertEqual(faults_of({HEADER: "", TEST: "// TEST(\n"}), [f"{TEST}: holds no test"])
+
+    def test_empty_tree_fails(self):
+        self.assertEqual(len(faults_of({})), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
