@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -48,21 +49,28 @@ class CowTable {
   IdType NextId() const { return IdType(next_id_); }
 
   IdType Insert(Value value) {
-    const uint32_t number = next_id_++;
-    const size_t chunk = number / kChunkSize;
-    if (chunk == chunks_.size()) {
-      chunks_.push_back(nullptr);
-      owned_.push_back(true);
+    const IdType id = NextId();
+    Put(id, std::move(value));
+    return id;
+  }
+
+  // Gives a value to an id that has none; later ids from Insert are above it.
+  void Put(IdType id, Value value) {
+    Check(id.IsValid() && !Contains(id), "the id is invalid or has a value");
+    const size_t chunk = id.value / kChunkSize;
+    if (chunk >= chunks_.size()) {
+      chunks_.resize(chunk + 1);
+      owned_.resize(chunk + 1, false);
     }
     if (chunks_[chunk] == nullptr) {
       chunks_[chunk] = std::make_shared<Chunk>();
       owned_[chunk] = true;
     }
     Chunk& writable = WritableChunk(chunk);
-    writable.slots[number % kChunkSize].emplace(std::move(value));
+    writable.slots[id.value % kChunkSize].emplace(std::move(value));
     ++writable.used;
     ++size_;
-    return IdType(number);
+    next_id_ = std::max(next_id_, id.value + 1);
   }
 
   // Null where the id was never given or is erased. The pointer is good until the next write.

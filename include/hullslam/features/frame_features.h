@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "hullslam/features/feature_grid.h"
+#include "hullslam/features/feature_set.h"
+
+namespace hullslam {
+
+// All that matching needs to know of one image; the vectors have one entry a keypoint.
+struct FrameFeatures {
+  std::vector<Keypoint> keypoints;
+  std::vector<Descriptor> descriptors;
+  std::vector<float> depth;    // m along the optical axis, 0 where unknown
+  std::vector<float> right_u;  // px in the virtual right image, -1 where the depth is unknown
+  FeatureGrid grid;
+
+  size_t size() const { return keypoints.size(); }
+};
+
+}  // namespace hullslam

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "hullslam/features/frame_features.h"
+#include "hullslam/util/id.h"
+
+namespace hullslam {
+
+// One image after extraction; immutable once built and shared by the stages.
+struct Frame {
+  FrameId id;
+  double timestamp = 0.0;  // seconds
+  FrameFeatures features;
+};
+
+}  // namespace hullslam

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "hullslam/map/keyframe.h"
+#include "hullslam/map/landmark.h"
+#include "hullslam/util/cow_table.h"
+#include "hullslam/util/id.h"
+
+namespace hullslam {
+
+// Keyframes and landmarks by id, with the observations between them. A map is a value: Snapshot()
+// gives one that nobody else writes. The edits here keep both ends of every observation in step;
+// covisibility, spanning tree and appearance have their own files.
+class Map {
+ public:
+  // A map with the same content that shares its memory until one of the two is written.
+  Map Snapshot();
+
+  const CowTable<KeyframeId, Keyframe, 1>& keyframes() const { return keyframes_; }
+  const CowTable<LandmarkId, Landmark>& landmarks() const { return landmarks_; }
+
+  KeyframeId AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& cam_from_world);
+  LandmarkId AddLandmark(const Eigen::Vector3d& position, KeyframeId created_by);
+
+  // False where the keyframe observes the landmark already, or the keypoint another landmark.
+  bool AddObservation(LandmarkId landmark, KeyframeId keyframe, uint32_t keypoint);
+  // Removes the landmark too when too little holds it: support of 2 or less.
+  void RemoveObservation(LandmarkId landmark, KeyframeId keyframe);
+
+  void EraseLandmark(LandmarkId landmark);
+  // Moves the observations of `landmark` to `by` and redirects its id; where a keyframe observes
+  // both only that of `by` stays.
+  void ReplaceLandmark(LandmarkId landmark, LandmarkId by);
+  // The landmark that now stands for `landmark`; invalid when it is erased.
+  LandmarkId Resolve(LandmarkId landmark) const;
+
+  // Takes a keyframe out of the map. It must have a parent: its children go to their best
+  // relatives.
+  void CullKeyframe(KeyframeId keyframe);
+  // Pose of a keyframe, also of a culled one.
+  Rigid3 CamFromWorld(KeyframeId keyframe) const;
+  // The keyframe made of this frame, culled or not.
+  std::optional<KeyframeId> KeyframeOfFrame(FrameId frame) const;
+  // The keyframe itself or, if it is culled, the nearest ancestor that is not.
+  KeyframeId NearestAlive(KeyframeId keyframe) const;
+
+  void SetPose(KeyframeId keyframe, const Rigid3& cam_from_world);
+  void SetPosition(LandmarkId landmark, const Eigen::Vector3d& position);
+  void CountSightings(LandmarkId landmark, int visible, int found);
+
+  // For the files of this module that keep derived data in step.
+  Keyframe& MutableKeyframe(KeyframeId keyframe) { return keyframes_.Mutable(keyframe); }
+  Landmark& MutableLandmark(LandmarkId landmark) { return landmarks_.Mutable(landmark); }
+
+ private:
+  CowTable<KeyframeId, Keyframe, 1> keyframes_;
+  CowTable<LandmarkId, Landmark> landmarks_;
+  CowTable<LandmarkId, LandmarkId> replaced_by_;
+  CowTable<KeyframeId, CulledKeyframe> culled_;
+};
+
+}  // namespace hullslam

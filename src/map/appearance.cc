@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/map/appearance.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "hullslam/util/function_clones.h"
+
+namespace hullslam {
+namespace {
+
+HULLSLAM_FUNCTION_CLONES
+size_t MostTypical(const std::vector<Descriptor>& descriptors) {
+  const size_t n = descriptors.size();
+  std::vector<int> distances(n * n, 0);
+  for (size_t i = 0; i < n; ++i) {
+    for (size_t j = i + 1; j < n; ++j) {
+      const int distance = HammingDistance(descriptors[i], descriptors[j]);
+      distances[i * n + j] = distance;
+      distances[j * n + i] = distance;
+    }
+  }
+  size_t best = 0;
+  int best_median = std::numeric_limits<int>::max();
+  for (size_t i = 0; i < n; ++i) {
+    const auto row = distances.begin() + static_cast<std::ptrdiff_t>(i * n);
+    const auto middle = row + static_cast<std::ptrdiff_t>((n - 1) / 2);
+    std::nth_element(row, middle, row + static_cast<std::ptrdiff_t>(n));
+    if (*middle < best_median) {
+      best_median = *middle;
+      best = i;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+void UpdateDescriptor(Map& map, LandmarkId id) {
+  std::vector<Descriptor> descriptors;
+  for (const Observation& observation : map.landmarks().At(id).observations) {
+    descriptors.push_back(
+        map.keyframes().At(observation.keyframe).frame->features.descriptors[observation.keypoint]);
+  }
+  if (!descriptors.empty()) {
+    map.MutableLandmark(id).descriptor = descriptors[MostTypical(descriptors)];
+  }
+}
+
+void UpdateViewingGeometry(Map& map, LandmarkId id, const ScaleLevels& levels) {
+  Landmark& landmark = map.MutableLandmark(id);
+  if (landmark.observations.empty()) {
+    return;
+  }
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Observation& observation : landmark.observations) {
+    const Rigid3& cam_from_world = map.keyframes().At(observation.keyframe).cam_from_world;
+    const Eigen::Vector3d center = Inverse(cam_from_world).translation;
+    sum += (landmark.position - center).normalized();
+  }
+  landmark.viewing_direction = sum.normalized();
+
+  const auto reference =
+      std::find_if(landmark.observations.begin(), landmark.observations.end(),
+                   [&](const Observation& o) { return o.keyframe == landmark.reference; });
+  const Observation& observation =
+      reference != landmark.observations.end() ? *reference : landmark.observations.front();
+  const Keyframe& keyframe = map.keyframes().At(observation.keyframe);
+  const double distance = (keyframe.cam_from_world * landmark.position).norm();
+  const int level = keyframe.frame->features.keypoints[observation.keypoint].level;
+  landmark.max_distance = distance * static_cast<double>(levels.scale[static_cast<size_t>(level)]);
+  landmark.min_distance = landmark.max_distance / static_cast<double>(levels.scale.back());
+}
+
+}  // namespace hullslam

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/map/invariants.h"
+
+#include <algorithm>
+
+namespace hullslam {
+namespace {
+
+std::string Name(KeyframeId id) { return "keyframe " + std::to_string(id.value); }
+std::string Name(LandmarkId id) { return "landmark " + std::to_string(id.value); }
+
+bool IsFinite(const Rigid3& pose) {
+  return pose.rotation.coeffs().allFinite() && pose.translation.allFinite();
+}
+
+const Covisible* FindEdge(const Keyframe& keyframe, KeyframeId other) {
+  const auto it = std::find_if(keyframe.covisible.begin(), keyframe.covisible.end(),
+                               [&](const Covisible& edge) { return edge.keyframe == other; });
+  return it != keyframe.covisible.end() ? &*it : nullptr;
+}
+
+void CheckLandmark(const Map& map, LandmarkId id, const Landmark& landmark,
+                   std::vector<std::string>& violations) {
+  if (!landmark.position.allFinite()) {
+    violations.push_back(Name(id) + " has no finite position");
+  }
+  int support = 0;
+  for (size_t i = 0; i < landmark.observations.size(); ++i) {
+    const Observation& observation = landmark.observations[i];
+    if (i > 0 && !(landmark.observations[i - 1].keyframe < observation.keyframe)) {
+      violations.push_back(Name(id) + " has observations out of order");
+    }
+    const Keyframe* keyframe = map.keyframes().Find(observation.keyframe);
+    if (keyframe == nullptr || observation.keypoint >= keyframe->landmarks.size() ||
+        keyframe->landmarks[observation.keypoint] != id) {
+      violations.push_back(Name(id) + " is not observed by " + Name(observation.keyframe));
+      continue;
+    }
+    support += keyframe->frame->features.right_u[observation.keypoint] >= 0.0f ? 2 : 1;
+  }
+  if (support != landmark.support) {
+    violations.push_back(Name(id) + " has its support miscounted");
+  }
+}
+
+void CheckObservations(const Map& map, KeyframeId id, const Keyframe& keyframe,
+                       std::vector<std::string>& violations) {
+  if (keyframe.landmarks.size() != keyframe.frame->features.size()) {
+    violations.push_back(Name(id) + " has not one landmark slot a keypoint");
+  }
+  for (uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
+    if (!keyframe.landmarks[i].IsValid()) {
+      continue;
+    }
+    const Landmark* landmark = map.landmarks().Find(keyframe.landmarks[i]);
+    const bool known = landmark != nullptr &&
+                       std::any_of(landmark->observations.begin(), landmark->observations.end(),
+                                   [&](const Observation& observation) {
+                                     return observation.keyframe == id && observation.keypoint == i;
+                                   });
+    if (!known) {
+      violations.push_back(Name(id) + " observes " + Name(keyframe.landmarks[i]) +
+                           ", which does not know");
+    }
+  }
+}
+
+void CheckLinks(const Map& map, KeyframeId id, const Keyframe& keyframe,
+                std::vector<std::string>& violations) {
+  for (const Covisible& edge : keyframe.covisible) {
+    const Keyframe* other = map.keyframes().Find(edge.keyframe);
+    const Covisible* back = other != nullptr ? FindEdge(*other, id) : nullptr;
+    if (back == nullptr || back->shared != edge.shared) {
+      violations.push_back(Name(id) + " has an edge that " + Name(edge.keyframe) + " has not");
+    }
+  }
+  for (const KeyframeId child : keyframe.children) {
+    const Keyframe* other = map.keyframes().Find(child);
+    if (other == nullptr || other->parent != id) {
+      violations.push_back(Name(id) + " has a child that is not: " + Name(child));
+    }
+  }
+  if (keyframe.parent.IsValid()) {
+    const Keyframe* parent = map.keyframes().Find(keyframe.parent);
+    if (parent == nullptr ||
+        !std::binary_search(parent->children.begin(), parent->children.end(), id)) {
+      violations.push_back(Name(id) + " is not a child of its parent");
+    }
+  }
+}
+
+void CheckAncestors(const Map& map, KeyframeId id, std::vector<std::string>& violations) {
+  size_t steps = 0;
+  for (const Keyframe* keyframe = map.keyframes().Find(id);
+       keyframe != nullptr && keyframe->parent.IsValid();
+       keyframe = map.keyframes().Find(keyframe->parent)) {
+    if (++steps > map.keyframes().size()) {
+      violations.push_back(Name(id) + " is its own ancestor");
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> FindViolations(const Map& map) {
+  std::vector<std::string> violations;
+  map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+    CheckLandmark(map, id, landmark, violations);
+  });
+  map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    if (!IsFinite(keyframe.cam_from_world)) {
+      violations.push_back(Name(id) + " has no finite pose");
+    }
+    CheckObservations(map, id, keyframe, violations);
+    CheckLinks(map, id, keyframe, violations);
+    CheckAncestors(map, id, violations);
+  });
+  return violations;
+}
+
+}  // namespace hullslam
