@@ -1,0 +1,174 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scripts/download_tum.sh against a file server of its own that can resume."""
+
+import functools
+import http.server
+import io
+import pathlib
+import random
+import subprocess
+import tarfile
+import tempfile
+import threading
+import unittest
+
+DOWNLOAD = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "download_tum.sh"
+FOLDER = "rgbd_dataset_freiburg1_xyz"
+STAMPS = "# color images\n1.0 rgb/1.0.png\n2.0 rgb/2.0.png\n"
+LISTS = {name: STAMPS for name in ("rgb.txt", "depth.txt", "groundtruth.txt")}
+
+
+class Handler(http.server.SimpleHTTPRequestHandler):
+    """Serves files, and the rest of one where `Range: bytes=N-` asks for it."""
+
+    def log_message(self, format, *args):  # noqa: A002
+        pass
+
+    def do_GET(self):
+        self.server.requests.append((self.path, self.headers.get("Range")))
+        path = pathlib.Path(self.translate_path(self.path))
+        if not self.server.resumes or "Range" not in self.headers or not path.is_file():
+            super().do_GET()
+            return
+        data = path.read_bytes()
+        start = int(self.headers["Range"].removeprefix("bytes=").rstrip("-"))
+        self.send_response(206 if start < len(data) else 416)
+        self.send_header("Content-Range", f"bytes {start}-{len(data) - 1}/{len(data)}")
+        self.send_header("Content-Length", str(max(0, len(data) - start)))
+        self.end_headers()
+        self.wfile.write(data[start:])
+
+
+def archive(files, links=()):
+    """The bytes of a tgz; noise keeps it long enough to be cut."""
+    noise = random.Random(1).randbytes(4000)
+    data = io.BytesIO()
+    with tarfile.open(fileobj=data, mode="w:gz") as tar:
+        for name, text in {**files, f"{FOLDER}/rgb/1.0.png": noise}.items():
+            body = text if isinstance(text, bytes) else text.encode()
+            info = tarfile.TarInfo(name)
+            info.size = len(body)
+            tar.addfile(info, io.BytesIO(body))
+        for name, target in links:
+            info = tarfile.TarInfo(name)
+            info.type = tarfile.SYMTYPE
+            info.linkname = target
+            tar.addfile(info)
+    return data.getvalue()
+
+
+def sequence(**changes):
+    return {f"{FOLDER}/{name}": text for name, text in {**LISTS, **changes}.items()}
+
+
+class DownloadTumTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        self.served = self.root / "served" / "freiburg1"
+        self.served.mkdir(parents=True)
+        self.to = self.root / "to"
+        handler = functools.partial(Handler, directory=self.root / "served")
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
+        self.server.requests = []
+        self.server.resumes = True
+        self.addCleanup(self.server.server_close)
+        self.addCleanup(self.server.shutdown)
+        threading.Thread(target=self.server.serve_forever, args=(0.01,), daemon=True).start()
+
+    def serve(self, data):
+        (self.served / f"{FOLDER}.tgz").write_bytes(data)
+
+    def download(self, name="freiburg1_xyz"):
+        base = f"http://127.0.0.1:{self.server.server_port}/"
+        return subprocess.run([DOWNLOAD, "--to", self.to, "--base", base, name],
+                              capture_output=True, text=True, check=False, timeout=60)
+
+    def assert_whole(self, result):
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("2 colour images", result.stdout)
+        self.assertEqual([path.name for path in self.to.iterdir()], [FOLDER])
+        self.assertEqual((self.to / FOLDER / "rgb.txt").read_text(), STAMPS)
+
+    def assert_refused(self, result, message):
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertIn(message, result.stderr)
+        self.assertFalse((self.to / FOLDER).exists())
+
+    def test_downloads_and_unpacks(self):
+        self.serve(archive(sequence()))
+        self.assert_whole(self.download())
+
+    def test_every_way_to_write_a_name(self):
+        self.serve(archive(sequence()))
+        for name in ("fr1/xyz", "fr1_xyz", FOLDER):
+            with self.subTest(name):
+                self.assertEqual(self.download(name).returncode, 0)
+        self.assertEqual(len(self.server.requests), 1, "what is there is not fetched again")
+
+    def test_goes_on_where_it_stopped(self):
+        data = archive(sequence())
+        self.serve(data)
+        self.to.mkdir()
+        (self.to / f"{FOLDER}.tgz.part").write_bytes(data[:1000])
+        self.assert_whole(self.download())
+        self.assertEqual([span for _, span in self.server.requests], ["bytes=1000-"])
+
+    def test_starts_again_where_the_server_cannot_resume(self):
+        data = archive(sequence())
+        self.serve(data)
+        self.server.resumes = False
+        self.to.mkdir()
+        (self.to / f"{FOLDER}.tgz.part").write_bytes(data[:1000])
+        self.assert_whole(self.download())
+
+    def test_part_that_was_already_whole(self):
+        data = archive(sequence())
+        self.serve(data)
+        self.to.mkdir()
+        (self.to / f"{FOLDER}.tgz.part").write_bytes(data)
+        self.assert_whole(self.download())
+
+    def test_broken_connection_keeps_what_is_there(self):
+        self.to.mkdir()
+        part = self.to / f"{FOLDER}.tgz.part"
+        part.write_bytes(b"half")
+        self.assert_refused(self.download(), "broke off")
+        self.assertEqual(part.read_bytes(), b"half")
+
+    def test_missing_on_the_server(self):
+        self.assert_refused(self.download(), "cannot download http://127.0.0.1")
+
+    def test_damaged_archive_is_deleted(self):
+        self.serve(archive(sequence())[:1500])
+        self.assert_refused(self.download(), "damaged")
+        self.assertEqual(list(self.to.iterdir()), [])
+
+    def test_files_outside_the_folder(self):
+        for name in ("elsewhere/rgb.txt", "/tmp/rgb.txt", f"{FOLDER}/../rgb.txt", f"{FOLDER}x/a"):
+            with self.subTest(name):
+                (self.to / f"{FOLDER}.tgz").unlink(missing_ok=True)
+                self.serve(archive({**sequence(), name: "bad"}))
+                self.assert_refused(self.download(), "not unpacked")
+
+    def test_links(self):
+        self.serve(archive(sequence(), links=[(f"{FOLDER}/link", "/etc")]))
+        self.assert_refused(self.download(), "holds links")
+
+    def test_no_sequence_inside(self):
+        self.serve(archive(sequence(**{"depth.txt": ""})))
+        self.assert_refused(self.download(), f"no {FOLDER}/depth.txt")
+
+    def test_bad_names(self):
+        for name in ("kitti_00", "freiburg9_xyz", "../freiburg1_xyz", "freiburg1_xyz;true", "--x"):
+            with self.subTest(name):
+                result = self.download(name)
+                self.assertEqual(result.returncode, 2)
+                self.assertIn(name, result.stderr)
+        self.assertEqual(self.server.requests, [])
+
+
+if __name__ == "__main__":
+    unittest.main()
