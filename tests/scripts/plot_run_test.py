@@ -1,0 +1,151 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scripts/plot_run.py: its alignment and pairing, a whole made-up run, and broken files."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "plot_run.py"
+sys.path.insert(0, str(SCRIPT.parent))
+import plot_run  # noqa: E402
+
+PLY_HEADER = ("ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\n"
+              "property float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
+              "property uchar blue\nelement face 0\nproperty list uchar int vertex_indices\n"
+              "end_header\n")
+TURN = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])  # 90 degrees around z
+
+
+def trajectory_text(stamps, positions):
+    return "# comment\n\n" + "".join(
+        f"{stamp:.6f} {x:.9f} {y:.9f} {z:.9f} 0 0 0 1\n"
+        for stamp, (x, y, z) in zip(stamps, positions))
+
+
+def ply_bytes(points, colour=(10, 20, 30)):
+    body = b"".join(np.array(p, "<f4").tobytes() + bytes(colour) for p in points)
+    return PLY_HEADER.format(len(points)).encode() + body
+
+
+class AlignTest(unittest.TestCase):
+    def test_recovers_a_motion(self):
+        points = np.random.default_rng(1).normal(size=(20, 3))
+        rotation, translation = plot_run.align(points, points @ TURN.T + [1, 2, 3])
+        np.testing.assert_allclose(rotation, TURN, atol=1e-12)
+        np.testing.assert_allclose(translation, [1, 2, 3], atol=1e-12)
+
+    def test_never_mirrors(self):
+        points = np.random.default_rng(1).normal(size=(20, 3))
+        rotation, _ = plot_run.align(points, points * [1, 1, -1])
+        self.assertAlmostEqual(np.linalg.det(rotation), 1.0)
+
+
+class PairTest(unittest.TestCase):
+    def test_one_to_one_and_smallest_first(self):
+        pairs = plot_run.pair(np.array([1.0, 1.012, 5.0]), np.array([0.5, 1.010, 5.03]))
+        self.assertEqual(pairs.tolist(), [[1, 1]])
+
+    def test_none(self):
+        self.assertEqual(len(plot_run.pair(np.array([1.0]), np.array([2.0]))), 0)
+
+
+class PlotRunTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.dir = pathlib.Path(folder.name)
+        self.truth = self.dir / "groundtruth.txt"
+        stamps = 1000 + np.arange(40) / 30
+        positions = np.stack([np.cos(stamps), np.sin(stamps), 0.1 * np.cos(3 * stamps)], axis=1)
+        self.write("trajectory.txt", trajectory_text(stamps, positions))
+        # Constant shifts in turn along z leave an error that no alignment removes: 10 mm each.
+        shift = np.where(np.arange(40) % 2, 0.01, -0.01)[:, None] * [0, 0, 1]
+        self.write("groundtruth.txt", trajectory_text(stamps + 0.005, positions @ TURN.T + shift))
+
+    def write(self, name, data):
+        data = data if isinstance(data, bytes) else data.encode()
+        (self.dir / name).write_bytes(data)
+
+    def plot(self, *arguments):
+        return subprocess.run([SCRIPT, self.dir, *arguments], capture_output=True, text=True,
+                              check=False, timeout=60)
+
+    def assert_drawn(self, result, path):
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(path.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+    def assert_refused(self, result, *parts):
+        self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        for part in parts:
+            self.assertIn(part, result.stderr)
+
+    def test_whole_run(self):
+        self.write("keyframes.txt", trajectory_text([1000.0], [[1, 0, 0]]))
+        self.write("map.ply", ply_bytes([[1, 2, 3], [4, 5, 6]]))
+        self.write("summary.json", '{"trajectory": {"frames": 40, "tracked": 40, "lost": 0},'
+                   '"timing": {"track_ms": {"median": 9.5, "p95": 12}, "frames_per_second": 31}}')
+        result = self.plot("--groundtruth", self.truth, "--out", self.dir / "a" / "b")
+        self.assert_drawn(result, self.dir / "a" / "b" / "run.png")
+        self.assertIn("0.0100 m (SE3, all frames, 40 pairs)", result.stdout)
+        self.assertIn("9.5 ms median", result.stdout)
+
+    def test_trajectory_alone(self):
+        result = self.plot()
+        self.assert_drawn(result, self.dir / "run.png")
+        self.assertNotIn("ATE", result.stdout)
+
+    def test_summary_with_unknown_values(self):
+        self.write("summary.json", '{"trajectory": {"ate_rmse_m": null}, "timing": {"track_ms":'
+                   '{"median": null, "p95": null}, "stages_ms": null}}')
+        self.assert_drawn(self.plot(), self.dir / "run.png")
+
+    def test_empty_map(self):
+        self.write("map.ply", ply_bytes([]))
+        self.assert_drawn(self.plot(), self.dir / "run.png")
+
+    def test_reads_points_and_colours(self):
+        self.write("map.ply", ply_bytes([[1, 2, 3], [4, 5, 6]]))
+        points, colours = plot_run.read_map(self.dir / "map.ply")
+        np.testing.assert_array_equal(points, [[1, 2, 3], [4, 5, 6]])
+        np.testing.assert_allclose(colours[1], np.array([10, 20, 30]) / 255)
+
+    def test_no_run(self):
+        (self.dir / "trajectory.txt").unlink()
+        self.assert_refused(self.plot(), "trajectory.txt")
+
+    def test_malformed_trajectories(self):
+        for line in ("1 2 3", "1 0 0 0 0 0 0 x", "1 nan 0 0 0 0 0 1", "1 0 0 0 0 0 0 1 9"):
+            with self.subTest(line):
+                self.write("trajectory.txt", f"# stamp\n{line}\n")
+                self.assert_refused(self.plot(), "trajectory.txt:2", "8 numbers")
+        self.write("trajectory.txt", "# nothing\n")
+        self.assert_refused(self.plot(), "no poses")
+
+    def test_ground_truth_of_something_else(self):
+        self.write("groundtruth.txt", trajectory_text([1.0, 2.0], [[0, 0, 0], [1, 0, 0]]))
+        self.assert_refused(self.plot("--groundtruth", self.truth), "groundtruth.txt", "0 poses")
+
+    def test_broken_maps(self):
+        good = ply_bytes([[1, 2, 3], [4, 5, 6]])
+        for data, part in ((good[:-1], "cut short"), (b"", "not a PLY"), (b"\xff\xd8\xff", "PLY"),
+                           (good.replace(b"binary_little_endian", b"ascii"), "binary"),
+                           (good.replace(b"float y", b"list y z"), "not understood")):
+            with self.subTest(part):
+                self.write("map.ply", data)
+                self.assert_refused(self.plot(), "map.ply", part)
+
+    def test_broken_summary(self):
+        for text in ("{", "[]"):
+            with self.subTest(text):
+                self.write("summary.json", text)
+                self.assert_refused(self.plot(), "summary.json")
+
+
+if __name__ == "__main__":
+    unittest.main()
