@@ -5,9 +5,8 @@
 
 namespace hullslam::internal {
 
-void FailCheck(std::string_view what, const std::source_location& where) {
-  throw CheckError(std::string(where.file_name()) + ":" + std::to_string(where.line()) + ": " +
-                   std::string(what));
+void FailCheck(std::string_view what, const char* file, int line) {
+  throw CheckError(std::string(file) + ":" + std::to_string(line) + ": " + std::string(what));
 }
 
 }  // namespace hullslam::internal

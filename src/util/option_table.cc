@@ -90,7 +90,9 @@ void OptionTable::AddOption(std::string key, Option option) {
   Check(inserted, "an option is bound twice");
 }
 
+// Both strings are moved on, which clang-tidy does not see in a template.
 template <typename Number>
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
 void OptionTable::AddNumber(std::string key, Number* field, Range range, std::string help) {
   const char* const kind = std::is_integral_v<Number> ? "an integer " : "a number ";
   AddOption(std::move(key), {.parse =

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <source_location>
 #include <stdexcept>
 #include <string_view>
 
@@ -13,17 +12,16 @@ class CheckError : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
-// Throws CheckError with `what` and the caller's place unless `condition` holds.
-void Check(bool condition, std::string_view what,
-           std::source_location where = std::source_location::current());
-
 namespace internal {
-[[noreturn]] void FailCheck(std::string_view what, const std::source_location& where);
+[[noreturn]] void FailCheck(std::string_view what, const char* file, int line);
 }
 
-inline void Check(bool condition, std::string_view what, std::source_location where) {
+// Throws CheckError with `what` and the caller's place unless `condition` holds. (The place is by
+// the builtins below std::source_location, which the clang-tidy of Debian 12 does not know.)
+inline void Check(bool condition, std::string_view what, const char* file = __builtin_FILE(),
+                  int line = __builtin_LINE()) {
   if (!condition) [[unlikely]] {
-    internal::FailCheck(what, where);
+    internal::FailCheck(what, file, line);
   }
 }
 
