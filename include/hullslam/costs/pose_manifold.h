@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <ceres/manifold.h>
+
+#include <array>
+
+#include "hullslam/geometry/rigid3.h"
+
+namespace hullslam {
+
+// A Rigid3 as a block of parameters: qx qy qz qw tx ty tz.
+using PoseBlock = std::array<double, 7>;
+PoseBlock ToBlock(const Rigid3& pose);
+Rigid3 FromBlock(const double* block);
+
+// Rigid motions of a PoseBlock by Retract (rotation first, three and three).
+//
+// Costs on such a block write their derivative by the six numbers of Retract into the first six
+// columns of the block's Jacobian and zero into the seventh; PlusJacobian is [I; 0] to match. This
+// saves every residual the derivative by a quaternion and the product that would take it back.
+class PoseManifold final : public ceres::Manifold {
+ public:
+  int AmbientSize() const override { return 7; }
+  int TangentSize() const override { return 6; }
+  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override;
+  bool PlusJacobian(const double* x, double* jacobian) const override;
+  bool Minus(const double* y, const double* x, double* y_minus_x) const override;
+  bool MinusJacobian(const double* x, double* jacobian) const override;
+};
+
+}  // namespace hullslam

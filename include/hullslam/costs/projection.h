@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+
+namespace hullslam {
+
+// The part of a pinhole camera that costs need: px, and bf in px m.
+struct Intrinsics {
+  double fx = 0.0;
+  double fy = 0.0;
+  double cx = 0.0;
+  double cy = 0.0;
+  double bf = 0.0;
+};
+
+// Pixel (u, v) and virtual right coordinate u - bf / z of a point (m, camera frame, z > 0).
+inline Eigen::Vector3d ProjectRgbd(const Intrinsics& camera, const Eigen::Vector3d& point) {
+  const double inverse_z = 1.0 / point.z();
+  const double u = camera.fx * point.x() * inverse_z + camera.cx;
+  return {u, camera.fy * point.y() * inverse_z + camera.cy, u - camera.bf * inverse_z};
+}
+
+// Derivative of ProjectRgbd by the point; its first two rows are those of the pixel.
+inline Eigen::Matrix3d ProjectRgbdJacobian(const Intrinsics& camera, const Eigen::Vector3d& point) {
+  const double inverse_z = 1.0 / point.z();
+  const double fx_z = camera.fx * inverse_z;
+  const double fy_z = camera.fy * inverse_z;
+  const double x_z = point.x() * inverse_z;
+  const double y_z = point.y() * inverse_z;
+  Eigen::Matrix3d jacobian;
+  jacobian << fx_z, 0.0, -fx_z * x_z,  //
+      0.0, fy_z, -fy_z * y_z,          //
+      fx_z, 0.0, -fx_z * x_z + camera.bf * inverse_z * inverse_z;
+  return jacobian;
+}
+
+}  // namespace hullslam

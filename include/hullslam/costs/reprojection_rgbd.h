@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <ceres/sized_cost_function.h>
+
+#include <Eigen/Core>
+
+#include "hullslam/costs/projection.h"
+
+namespace hullslam {
+
+// Reprojection error of a landmark seen with depth, as that of a virtual stereo pair (Mur-Artal and
+// Tardos 2017, section III.A), in standard deviations:
+//   r = ((u, v, u - bf / z)(cam_from_world * point) - measured) / sigma
+// Parameters: cam_from_world (PoseBlock, with PoseManifold), point (m, world frame). Not defined
+// for a point that is not in front of the camera: Evaluate is false there.
+class RgbdReprojectionCost final : public ceres::SizedCostFunction<3, 7, 3> {
+ public:
+  RgbdReprojectionCost(const Intrinsics& camera, const Eigen::Vector3d& measured, double sigma)
+      : camera_(camera), measured_(measured), inverse_sigma_(1.0 / sigma) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  Intrinsics camera_;
+  Eigen::Vector3d measured_;
+  double inverse_sigma_;
+};
+
+}  // namespace hullslam

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/costs/reprojection.h"
+
+#include "reprojection_evaluation.h"
+
+namespace hullslam {
+
+bool ReprojectionCost::Evaluate(double const* const* parameters, double* residuals,
+                                double** jacobians) const {
+  return internal::EvaluateReprojection<2>(camera_, pixel_, inverse_sigma_, parameters, residuals,
+                                           jacobians);
+}
+
+}  // namespace hullslam

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/costs/reprojection_rgbd.h"
+
+#include "reprojection_evaluation.h"
+
+namespace hullslam {
+
+bool RgbdReprojectionCost::Evaluate(double const* const* parameters, double* residuals,
+                                    double** jacobians) const {
+  return internal::EvaluateReprojection<3>(camera_, measured_, inverse_sigma_, parameters,
+                                           residuals, jacobians);
+}
+
+}  // namespace hullslam

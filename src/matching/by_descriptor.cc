@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/matching/by_descriptor.h"
+
+#include <limits>
+
+#include "hullslam/util/function_clones.h"
+
+namespace hullslam {
+namespace {
+
+struct TwoBest {
+  int best = std::numeric_limits<int>::max();
+  int second = std::numeric_limits<int>::max();
+  uint32_t keypoint = 0;
+};
+
+HULLSLAM_FUNCTION_CLONES
+TwoBest FindTwoBest(const Descriptor& query, std::span<const Descriptor> descriptors) {
+  TwoBest result;
+  for (uint32_t i = 0; i < descriptors.size(); ++i) {
+    const int distance = HammingDistance(query, descriptors[i]);
+    if (distance < result.best) {
+      result.second = result.best;
+      result.best = distance;
+      result.keypoint = i;
+    } else if (distance < result.second) {
+      result.second = distance;
+    }
+  }
+  return result;
+}
+
+std::vector<float> Angles(const FrameFeatures& features) {
+  std::vector<float> angles;
+  angles.reserve(features.size());
+  for (const Keypoint& keypoint : features.keypoints) {
+    angles.push_back(keypoint.angle);
+  }
+  return angles;
+}
+
+}  // namespace
+
+std::vector<Match> MatchByDescriptor(const FrameFeatures& queries,
+                                     std::span<const uint32_t> indices,
+                                     const FrameFeatures& features,
+                                     const DescriptorSearch& search) {
+  std::vector<Match> matches;
+  for (const uint32_t query : indices) {
+    const TwoBest found = FindTwoBest(queries.descriptors[query], features.descriptors);
+    if (found.best <= search.max_distance && found.best < search.max_ratio * found.second) {
+      matches.push_back({query, found.keypoint, found.best});
+    }
+  }
+  KeepBestPerKeypoint(matches);
+  KeepConsistentRotations(Angles(queries), Angles(features), matches);
+  return matches;
+}
+
+}  // namespace hullslam

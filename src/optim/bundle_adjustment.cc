@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/optim/bundle_adjustment.h"
+
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "hullslam/costs/pose_manifold.h"
+#include "hullslam/costs/reprojection.h"
+#include "hullslam/costs/reprojection_rgbd.h"
+#include "hullslam/map/appearance.h"
+#include "hullslam/optim/intrinsics.h"
+#include "hullslam/optim/robust.h"
+
+namespace hullslam {
+namespace {
+
+struct BundleObservation {
+  LandmarkId landmark;
+  KeyframeId keyframe;
+  size_t point_index = 0;
+  size_t pose_index = 0;
+  double bound = 0.0;  // chi-square
+  std::unique_ptr<ceres::CostFunction> cost;
+  bool is_inlier = true;
+};
+
+class StopOnRequest final : public ceres::IterationCallback {
+ public:
+  explicit StopOnRequest(const Cancellation* cancellation) : cancellation_(cancellation) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    return cancellation_ != nullptr && cancellation_->IsRequested()
+               ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+               : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const Cancellation* cancellation_;
+};
+
+std::unique_ptr<ceres::CostFunction> MakeCost(const Sensor& sensor, const FrameFeatures& features,
+                                              uint32_t keypoint) {
+  const Intrinsics camera = ToIntrinsics(sensor.camera);
+  const Eigen::Vector2d pixel = features.keypoints[keypoint].undistorted.cast<double>();
+  const auto level = static_cast<size_t>(features.keypoints[keypoint].level);
+  const double sigma = static_cast<double>(sensor.levels.scale[level]);
+  const double right_u = static_cast<double>(features.right_u[keypoint]);
+  if (right_u < 0.0) {
+    return std::make_unique<ReprojectionCost>(camera, pixel, sigma);
+  }
+  return std::make_unique<RgbdReprojectionCost>(
+      camera, Eigen::Vector3d(pixel.x(), pixel.y(), right_u), sigma);
+}
+
+// The blocks of parameters and the observations between them.
+class Bundle {
+ public:
+  Bundle(const Map& map, const Sensor& sensor, const BundleWindow& window)
+      : window_(window), keyframes_(window.moving) {
+    keyframes_.insert(keyframes_.end(), window.fixed.begin(), window.fixed.end());
+    for (const KeyframeId id : keyframes_) {
+      poses_.push_back(ToBlock(map.keyframes().At(id).cam_from_world));
+    }
+    for (size_t i = 0; i < window.landmarks.size(); ++i) {
+      points_.push_back(map.landmarks().At(window.landmarks[i]).position);
+      AddObservations(map, sensor, i);
+    }
+  }
+
+  bool Solve(const BundleOptions& options, int iterations, bool robust,
+             const Cancellation* cancellation, BundleResult& result) {
+    ceres::Problem problem(ProblemOptions());
+    ceres::Solver::Options solver;
+    solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    AddResiduals(problem, robust);
+    AddParameters(problem, *solver.linear_solver_ordering);
+    solver.linear_solver_type = ceres::SPARSE_SCHUR;
+    solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+    solver.max_num_iterations = iterations;
+    solver.function_tolerance = options.function_tolerance;
+    solver.num_threads = options.threads;
+    solver.logging_type = ceres::SILENT;
+    StopOnRequest stop(cancellation);
+    solver.callbacks.push_back(&stop);
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    result.residuals = problem.NumResidualBlocks();
+    result.iterations += static_cast<int>(summary.iterations.size());
+    return summary.IsSolutionUsable();
+  }
+
+  // Sets aside what has no residual to start from: points that are not in front of the camera.
+  void ExcludeUndefined() {
+    for (BundleObservation& observation : observations_) {
+      observation.is_inlier = Chi2(observation) < std::numeric_limits<double>::infinity();
+    }
+  }
+
+  // Decides anew which observations are inliers.
+  void Classify() {
+    for (BundleObservation& observation : observations_) {
+      observation.is_inlier = Chi2(observation) <= observation.bound;
+    }
+  }
+
+  void Write(BundleResult& result) const {
+    for (size_t i = 0; i < window_.moving.size(); ++i) {
+      result.poses.emplace_back(window_.moving[i], FromBlock(poses_[i].data()));
+    }
+    for (size_t i = 0; i < points_.size(); ++i) {
+      result.positions.emplace_back(window_.landmarks[i], points_[i]);
+    }
+    for (const BundleObservation& observation : observations_) {
+      if (!observation.is_inlier) {
+        result.outliers.emplace_back(observation.landmark, observation.keyframe);
+      }
+    }
+  }
+
+ private:
+  static ceres::Problem::Options ProblemOptions() {
+    ceres::Problem::Options options;
+    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.disable_all_safety_checks = true;
+    return options;
+  }
+
+  double Chi2(const BundleObservation& observation) const {
+    const double* parameters[] = {poses_[observation.pose_index].data(),
+                                  points_[observation.point_index].data()};
+    Eigen::Vector3d residual = Eigen::Vector3d::Zero();
+    const bool is_defined = observation.cost->Evaluate(parameters, residual.data(), nullptr);
+    return is_defined ? residual.squaredNorm() : std::numeric_limits<double>::infinity();
+  }
+
+  void AddObservations(const Map& map, const Sensor& sensor, size_t point_index) {
+    const LandmarkId landmark = window_.landmarks[point_index];
+    for (const Observation& seen : map.landmarks().At(landmark).observations) {
+      const auto keyframe = std::find(keyframes_.begin(), keyframes_.end(), seen.keyframe);
+      if (keyframe == keyframes_.end()) {
+        continue;
+      }
+      const FrameFeatures& features = map.keyframes().At(seen.keyframe).frame->features;
+      BundleObservation& observation = observations_.emplace_back();
+      observation.landmark = landmark;
+      observation.keyframe = seen.keyframe;
+      observation.point_index = point_index;
+      observation.pose_index = static_cast<size_t>(keyframe - keyframes_.begin());
+      observation.bound = features.right_u[seen.keypoint] >= 0.0f ? kChi2Rgbd : kChi2Mono;
+      observation.cost = MakeCost(sensor, features, seen.keypoint);
+    }
+  }
+
+  void AddResiduals(ceres::Problem& problem, bool robust) {
+    for (BundleObservation& observation : observations_) {
+      if (observation.is_inlier) {
+        ceres::LossFunction* loss = observation.bound == kChi2Rgbd ? &huber_rgbd_ : &huber_mono_;
+        problem.AddResidualBlock(observation.cost.get(), robust ? loss : nullptr,
+                                 poses_[observation.pose_index].data(),
+                                 points_[observation.point_index].data());
+      }
+    }
+  }
+
+  void AddParameters(ceres::Problem& problem, ceres::ParameterBlockOrdering& ordering) {
+    for (Eigen::Vector3d& point : points_) {
+      if (problem.HasParameterBlock(point.data())) {
+        ordering.AddElementToGroup(point.data(), 0);
+      }
+    }
+    for (size_t i = 0; i < poses_.size(); ++i) {
+      double* pose = poses_[i].data();
+      if (!problem.HasParameterBlock(pose)) {
+        continue;
+      }
+      problem.SetManifold(pose, &manifold_);
+      if (i >= window_.moving.size()) {
+        problem.SetParameterBlockConstant(pose);
+      }
+      ordering.AddElementToGroup(pose, 1);
+    }
+  }
+
+  const BundleWindow& window_;
+  std::vector<KeyframeId> keyframes_;  // the moving ones, then the fixed ones
+  std::vector<PoseBlock> poses_;
+  std::vector<Eigen::Vector3d> points_;
+  std::vector<BundleObservation> observations_;
+  PoseManifold manifold_;
+  ceres::HuberLoss huber_mono_{std::sqrt(kChi2Mono)};
+  ceres::HuberLoss huber_rgbd_{std::sqrt(kChi2Rgbd)};
+};
+
+}  // namespace
+
+BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
+                          const BundleOptions& options, const Cancellation* cancellation) {
+  BundleResult result;
+  Bundle bundle(map, sensor, window);
+  bundle.ExcludeUndefined();
+  if (!bundle.Solve(options, options.robust_iterations, true, cancellation, result)) {
+    return result;
+  }
+  bundle.Classify();
+  if (cancellation == nullptr || !cancellation->IsRequested()) {
+    if (!bundle.Solve(options, options.final_iterations, false, cancellation, result)) {
+      return result;
+    }
+    bundle.Classify();
+  }
+  bundle.Write(result);
+  result.is_usable = true;
+  return result;
+}
+
+void ApplyBundle(Map& map, const BundleResult& result, const ScaleLevels& levels) {
+  for (const auto& [landmark, keyframe] : result.outliers) {
+    const Landmark* seen = map.landmarks().Find(landmark);
+    if (seen == nullptr) {
+      continue;
+    }
+    const bool observed = std::any_of(seen->observations.begin(), seen->observations.end(),
+                                      [&](const Observation& o) { return o.keyframe == keyframe; });
+    if (observed) {
+      map.RemoveObservation(landmark, keyframe);
+    }
+  }
+  for (const auto& [keyframe, pose] : result.poses) {
+    if (map.keyframes().Contains(keyframe)) {
+      map.SetPose(keyframe, pose);
+    }
+  }
+  for (const auto& [landmark, position] : result.positions) {
+    if (map.landmarks().Contains(landmark)) {
+      map.SetPosition(landmark, position);
+      UpdateViewingGeometry(map, landmark, levels);
+    }
+  }
+}
+
+}  // namespace hullslam

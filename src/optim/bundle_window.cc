@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "hullslam/map/covisibility.h"
+#include "hullslam/optim/bundle_adjustment.h"
+
+namespace hullslam {
+namespace {
+
+std::vector<LandmarkId> ObservedLandmarks(const Map& map,
+                                          const std::vector<KeyframeId>& observers) {
+  std::vector<LandmarkId> landmarks;
+  for (const KeyframeId id : observers) {
+    for (const LandmarkId landmark : map.keyframes().At(id).landmarks) {
+      if (landmark.IsValid()) {
+        landmarks.push_back(landmark);
+      }
+    }
+  }
+  std::sort(landmarks.begin(), landmarks.end());
+  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  return landmarks;
+}
+
+// Keyframes outside `inside` (sorted) that observe the landmarks, most observations first.
+std::vector<KeyframeId> OuterObservers(const Map& map, const std::vector<LandmarkId>& landmarks,
+                                       const std::vector<KeyframeId>& inside, size_t count) {
+  std::map<KeyframeId, int> shared;
+  for (const LandmarkId landmark : landmarks) {
+    for (const Observation& observation : map.landmarks().At(landmark).observations) {
+      ++shared[observation.keyframe];
+    }
+  }
+  std::vector<Covisible> outer;
+  for (const auto& [id, observations] : shared) {
+    if (!std::binary_search(inside.begin(), inside.end(), id)) {
+      outer.push_back({id, observations});
+    }
+  }
+  std::stable_sort(outer.begin(), outer.end(),
+                   [](const Covisible& a, const Covisible& b) { return a.shared > b.shared; });
+  outer.resize(std::min(outer.size(), count));
+  std::vector<KeyframeId> ids;
+  for (const Covisible& keyframe : outer) {
+    ids.push_back(keyframe.keyframe);
+  }
+  return ids;
+}
+
+}  // namespace
+
+BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, size_t max_fixed) {
+  BundleWindow window;
+  window.moving = BestCovisible(map.keyframes().At(center), std::max<size_t>(max_moving, 1) - 1);
+  window.moving.push_back(center);
+  std::sort(window.moving.begin(), window.moving.end());
+  window.landmarks = ObservedLandmarks(map, window.moving);
+  window.fixed = OuterObservers(map, window.landmarks, window.moving, max_fixed);
+
+  const bool has_root = !map.keyframes().At(window.moving.front()).parent.IsValid();
+  if (has_root || window.fixed.empty()) {
+    window.fixed.push_back(window.moving.front());
+    window.moving.erase(window.moving.begin());
+  }
+  std::sort(window.fixed.begin(), window.fixed.end());
+  return window;
+}
+
+}  // namespace hullslam

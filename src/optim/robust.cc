@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/optim/robust.h"
+
+#include <cmath>
+
+namespace hullslam {
+
+double HuberWeight(double chi2, double bound) {
+  return chi2 <= bound ? 1.0 : std::sqrt(bound / chi2);
+}
+
+}  // namespace hullslam
