@@ -35,10 +35,13 @@ struct ScaleLevels {
   std::vector<float> inverse_sigma2;  // 1 / px^2
   float log_factor = 0.0f;            // ln(factor)
 
+  // At least one level and a factor above 1, else CheckError is thrown.
   static ScaleLevels Create(int levels, double factor);
   int count() const { return static_cast<int>(scale.size()); }
   // The level at which a patch looks as at its own level when seen from `distance`, where
-  // `max_distance` is that from which it is seen at level 0; clamped to the levels there are.
+  // `max_distance` is that from which it is seen at level 0: between two levels the upper one (so
+  // it is seen at this level or the one below), clamped to the levels there are. Distances are
+  // positive, else CheckError is thrown.
   int PredictLevel(double distance, double max_distance) const;
 };
 

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/camera/depth.h"
+
+#include <cmath>
+#include <cstdint>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+
+void DepthOptions::Bind(OptionTable& options) {
+  options.Add("DepthMapFactor", &units_per_metre, Range::Positive(),
+              "units of 16-bit depth images in a metre");
+  options.Add("ThDepth", &close_baselines, Range::Positive(),
+              "depths up to this many baselines count as close");
+}
+
+float SampleDepth(const cv::Mat& depth, const Eigen::Vector2f& raw_pixel, double units_per_metre) {
+  Check(depth.type() == CV_16UC1 || depth.type() == CV_32FC1,
+        "the depth image is neither CV_16UC1 nor CV_32FC1");
+  const float x = std::round(raw_pixel.x());
+  const float y = std::round(raw_pixel.y());
+  // Written so that a pixel that is not a number is outside.
+  const bool inside = x >= 0.0f && y >= 0.0f && x < static_cast<float>(depth.cols) &&
+                      y < static_cast<float>(depth.rows);
+  if (!inside) {
+    return 0.0f;
+  }
+  const int column = static_cast<int>(x);
+  const int row = static_cast<int>(y);
+  if (depth.type() == CV_16UC1) {
+    return static_cast<float>(depth.at<uint16_t>(row, column) / units_per_metre);
+  }
+  const float metres = depth.at<float>(row, column);
+  return std::isfinite(metres) && metres > 0.0f ? metres : 0.0f;
+}
+
+float VirtualRight(float u, float depth, double bf) {
+  return depth > 0.0f ? static_cast<float>(u - bf / depth) : -1.0f;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/features/corners.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+constexpr int kCircle = 16;
+constexpr int kRadius = 3;
+
+// Bresenham's circle of radius 3, clockwise.
+constexpr std::array<int, kCircle> kCircleX = {0, 1,  2,  3,  3,  3,  2,  1,
+                                               0, -1, -2, -3, -3, -3, -2, -1};
+constexpr std::array<int, kCircle> kCircleY = {-3, -3, -2, -1, 0, 1,  2,  3,
+                                               3,  3,  2,  1,  0, -1, -2, -3};
+
+struct Darkest {
+  static uint8_t Inner(uint8_t a, uint8_t b) { return std::min(a, b); }
+  static uint8_t Outer(uint8_t a, uint8_t b) { return std::max(a, b); }
+};
+struct Brightest {
+  static uint8_t Inner(uint8_t a, uint8_t b) { return std::max(a, b); }
+  static uint8_t Outer(uint8_t a, uint8_t b) { return std::min(a, b); }
+};
+
+// Outer over all arcs of 9 neighbours of Inner over the arc. The arcs from i and from i + 1 share
+// eight pixels, so only eight pairs of arcs are looked at.
+template <typename Order>
+inline uint8_t OverArcs(const std::array<uint8_t, kCircle>& p) {
+  std::array<uint8_t, 8> pairs;
+#pragma GCC unroll 8
+  for (int i = 0; i < 8; ++i) {
+    pairs[i] = Order::Inner(p[2 * i + 1], p[(2 * i + 2) % kCircle]);
+  }
+  std::array<uint8_t, 8> fours;
+#pragma GCC unroll 8
+  for (int i = 0; i < 8; ++i) {
+    fours[i] = Order::Inner(pairs[i], pairs[(i + 1) % 8]);
+  }
+  std::array<uint8_t, 8> arcs;
+#pragma GCC unroll 8
+  for (int i = 0; i < 8; ++i) {
+    const uint8_t eight = Order::Inner(fours[i], fours[(i + 2) % 8]);
+    arcs[i] = Order::Inner(eight, Order::Outer(p[2 * i], p[(2 * i + 9) % kCircle]));
+  }
+  uint8_t result = arcs[0];
+#pragma GCC unroll 8
+  for (int i = 1; i < 8; ++i) {
+    result = Order::Outer(result, arcs[i]);
+  }
+  return result;
+}
+
+// Score of each pixel from begin to end: an arc is brighter than the centre by more than t if its
+// darkest pixel is. Without branches, so that the compiler can treat many pixels at once.
+void ScoreRow(const uint8_t* row, ptrdiff_t step, int begin, int end, uint8_t* __restrict scores) {
+  std::array<const uint8_t*, kCircle> circle;
+  for (int i = 0; i < kCircle; ++i) {
+    circle[i] = row + kCircleY[i] * step + kCircleX[i];
+  }
+  for (int x = begin; x < end; ++x) {
+    std::array<uint8_t, kCircle> p;
+#pragma GCC unroll 16
+    for (int i = 0; i < kCircle; ++i) {
+      p[i] = circle[i][x];
+    }
+    const uint8_t center = row[x];
+    const uint8_t bright = std::max(OverArcs<Darkest>(p), center);
+    const uint8_t dark = std::min(OverArcs<Brightest>(p), center);
+    const uint8_t contrast = std::max<uint8_t>(bright - center, center - dark);
+    scores[x] = std::max<uint8_t>(contrast, 1) - 1;
+  }
+}
+
+// Keeps the scores that are at least `threshold`, above those of the neighbours before it in raster
+// order and not below those after it; the others become 0.
+void MaximaOfRow(const uint8_t* above, const uint8_t* row, const uint8_t* below, int begin, int end,
+                 uint8_t threshold, uint8_t* __restrict maxima) {
+  for (int x = begin; x < end; ++x) {
+    const uint8_t before =
+        std::max(std::max(above[x - 1], above[x]), std::max(above[x + 1], row[x - 1]));
+    const uint8_t after =
+        std::max(std::max(below[x - 1], below[x]), std::max(below[x + 1], row[x + 1]));
+    const uint8_t lowest = std::max(after, threshold);
+    const uint8_t score = row[x];
+    maxima[x] = (score > before) & (score >= lowest) ? score : 0;
+  }
+}
+
+// Most pixels are no maxima: whole words of zeros are passed over.
+void CollectRow(const uint8_t* maxima, int begin, int end, int y, std::vector<Corner>& corners) {
+  for (int x = begin; x < end;) {
+    uint64_t word = 0;
+    if (x + 8 <= end) {
+      std::memcpy(&word, maxima + x, sizeof(word));
+      if (word == 0) {
+        x += 8;
+        continue;
+      }
+    }
+    const int stop = std::min(x + 8, end);
+    for (; x < stop; ++x) {
+      if (maxima[x] != 0) {
+        corners.push_back({static_cast<int16_t>(x), static_cast<int16_t>(y), maxima[x]});
+      }
+    }
+  }
+}
+
+// Cells of equal size, about 30 px wide.
+struct Cells {
+  static constexpr int kSize = 30;
+  int columns;
+  int rows;
+  int width;
+  int height;
+
+  explicit Cells(const cv::Mat& image)
+      : columns(std::max(1, image.cols / kSize)),
+        rows(std::max(1, image.rows / kSize)),
+        width((image.cols + columns - 1) / columns),
+        height((image.rows + rows - 1) / rows) {}
+  int count() const { return columns * rows; }
+  int IndexOf(const Corner& corner) const { return corner.y / height * columns + corner.x / width; }
+};
+
+}  // namespace
+
+CornerDetector::CornerDetector(int initial_threshold, int minimum_threshold)
+    : initial_threshold_(initial_threshold), minimum_threshold_(minimum_threshold) {
+  Check(minimum_threshold >= 1 && minimum_threshold <= 255, "the FAST threshold is not 1 to 255");
+}
+
+void CornerDetector::Detect(const cv::Mat& image, int border, std::vector<Corner>& corners) {
+  Check(image.type() == CV_8UC1, "the image is not CV_8UC1");
+  Check(border > kRadius, "the border is not wider than the FAST circle");
+  corners.clear();
+  if (image.cols <= 2 * border || image.rows <= 2 * border) {
+    return;
+  }
+  FindMaxima(image, border, corners);
+  DropWeakInStrongCells(image, corners);
+}
+
+void CornerDetector::FindMaxima(const cv::Mat& image, int border, std::vector<Corner>& corners) {
+  const auto width = static_cast<size_t>(image.cols);
+  score_rows_.assign(3 * width, 0);
+  maxima_.assign(width, 0);
+  const auto ring_row = [&](int y) {
+    return score_rows_.data() + width * static_cast<size_t>(y % 3);
+  };
+  const auto step = static_cast<ptrdiff_t>(image.step);
+  for (int y = border - 1; y <= image.rows - border; ++y) {
+    ScoreRow(image.ptr(y), step, border - 1, image.cols - border + 1, ring_row(y));
+    if (y > border) {
+      MaximaOfRow(ring_row(y - 2), ring_row(y - 1), ring_row(y), border, image.cols - border,
+                  static_cast<uint8_t>(minimum_threshold_), maxima_.data());
+      CollectRow(maxima_.data(), border, image.cols - border, y - 1, corners);
+    }
+  }
+}
+
+void CornerDetector::DropWeakInStrongCells(const cv::Mat& image, std::vector<Corner>& corners) {
+  const Cells cells(image);
+  strong_.assign(static_cast<size_t>(cells.count()), 0);
+  for (const Corner& corner : corners) {
+    if (corner.score >= initial_threshold_) {
+      strong_[static_cast<size_t>(cells.IndexOf(corner))] = 1;
+    }
+  }
+  std::erase_if(corners, [&](const Corner& corner) {
+    return corner.score < initial_threshold_ &&
+           strong_[static_cast<size_t>(cells.IndexOf(corner))] != 0;
+  });
+}
+
+}  // namespace hullslam

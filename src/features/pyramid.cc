@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/features/pyramid.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+
+ImagePyramid::ImagePyramid(const ScaleLevels& levels)
+    : scale_(levels.scale), images_(levels.scale.size()) {}
+
+void ImagePyramid::Build(const cv::Mat& grey) {
+  Check(grey.type() == CV_8UC1, "the image is not CV_8UC1");
+  images_[0] = grey;
+  for (size_t l = 1; l < images_.size(); ++l) {
+    const cv::Size size(cvRound(grey.cols / scale_[l]), cvRound(grey.rows / scale_[l]));
+    Check(size.width > 0 && size.height > 0, "the image is too small for the pyramid");
+    cv::resize(images_[l - 1], images_[l], size, 0.0, 0.0, cv::INTER_LINEAR_EXACT);
+  }
+}
+
+Eigen::Vector2f ImagePyramid::ToLevelZero(const Eigen::Vector2f& pixel, int l) const {
+  const cv::Mat& image = level(l);
+  const float ratio_x = static_cast<float>(images_[0].cols) / static_cast<float>(image.cols);
+  const float ratio_y = static_cast<float>(images_[0].rows) / static_cast<float>(image.rows);
+  return {(pixel.x() + 0.5f) * ratio_x - 0.5f, (pixel.y() + 0.5f) * ratio_y - 0.5f};
+}
+
+}  // namespace hullslam

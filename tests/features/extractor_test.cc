@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/features/extractor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "features/test_images.h"
+#include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+bool SameBits(const ExtractedFeatures& a, const ExtractedFeatures& b) {
+  if (a.keypoints.size() != b.keypoints.size() || a.descriptors != b.descriptors) {
+    return false;
+  }
+  for (size_t i = 0; i < a.keypoints.size(); ++i) {
+    const Keypoint& p = a.keypoints[i];
+    const Keypoint& q = b.keypoints[i];
+    if (p.raw != q.raw || p.undistorted != q.undistorted || p.angle != q.angle ||
+        p.response != q.response || p.level != q.level) {
+      return false;
+    }
+  }
+  return true;
+}
+
+TEST(FeatureExtractor, FindsAboutAsManyAsWanted) {
+  for (const int wanted : {1, 100, 1000}) {
+    FeatureOptions options;
+    options.feature_count = wanted;
+    FeatureExtractor extractor(options);
+    const auto found = static_cast<int>(extractor.Extract(MakeCornerImage()).keypoints.size());
+    EXPECT_GE(found, wanted - wanted / 10);
+    EXPECT_LE(found, wanted + 2 * options.level_count);
+  }
+}
+
+TEST(FeatureExtractor, KeypointsAreSound) {
+  FeatureExtractor extractor(FeatureOptions{});
+  const ExtractedFeatures features = extractor.Extract(MakeCornerImage());
+  ASSERT_EQ(features.keypoints.size(), features.descriptors.size());
+  int last_level = 0;
+  for (const Keypoint& keypoint : features.keypoints) {
+    EXPECT_GE(keypoint.level, last_level);
+    last_level = keypoint.level;
+    const float border = 18.0f * extractor.levels().scale[static_cast<size_t>(keypoint.level)];
+    EXPECT_GT(keypoint.raw.x(), border);
+    EXPECT_LT(keypoint.raw.x(), 640.0f - border);
+    EXPECT_GT(keypoint.raw.y(), border);
+    EXPECT_LT(keypoint.raw.y(), 480.0f - border);
+    EXPECT_EQ(keypoint.raw, keypoint.undistorted);
+    EXPECT_GE(keypoint.angle, 0.0f);
+    EXPECT_LT(keypoint.angle, 2.0f * std::numbers::pi_v<float>);
+    EXPECT_GE(keypoint.response, 7.0f);
+  }
+  EXPECT_EQ(last_level, 7);
+}
+
+TEST(FeatureExtractor, GivesTheSameBitsAgain) {
+  const cv::Mat image = MakeCornerImage();
+  FeatureExtractor extractor(FeatureOptions{});
+  const ExtractedFeatures first = extractor.Extract(image);
+  extractor.Extract(MakeCornerImage(320, 200, 99));  // leaves other sizes in the buffers
+  EXPECT_TRUE(SameBits(first, extractor.Extract(image)));
+  EXPECT_TRUE(SameBits(first, FeatureExtractor(FeatureOptions{}).Extract(image)));
+}
+
+TEST(FeatureExtractor, ReadsPartOfALargerImage) {
+  const cv::Mat large = MakeCornerImage(800, 600);
+  const cv::Mat part = large(cv::Rect(50, 60, 640, 480));
+  FeatureExtractor extractor(FeatureOptions{});
+  const ExtractedFeatures of_copy = extractor.Extract(part.clone());
+  EXPECT_GT(of_copy.keypoints.size(), 500u);
+  cv::Mat isolated = part;
+  EXPECT_EQ(extractor.Extract(isolated).keypoints.size(), of_copy.keypoints.size());
+}
+
+TEST(FeatureExtractor, FindsNothingInAFlatImage) {
+  const cv::Mat flat(480, 640, CV_8UC1, cv::Scalar(77));
+  EXPECT_TRUE(FeatureExtractor(FeatureOptions{}).Extract(flat).keypoints.empty());
+}
+
+TEST(FeatureExtractor, WorksOnTheSmallestImage) {
+  FeatureExtractor extractor(FeatureOptions{});
+  EXPECT_FALSE(extractor.Extract(MakeCornerImage(64, 64)).keypoints.empty());
+}
+
+TEST(FeatureExtractor, FindsWeakCornersWhereThereAreNoOthers) {
+  cv::Mat image(480, 640, CV_8UC1, cv::Scalar(100));
+  cv::rectangle(image, cv::Rect(100, 100, 40, 40), cv::Scalar(110), cv::FILLED);  // contrast 10
+  FeatureOptions options;
+  options.level_count = 1;
+  EXPECT_FALSE(FeatureExtractor(options).Extract(image).keypoints.empty());
+  options.minimum_fast_threshold = 12;
+  EXPECT_TRUE(FeatureExtractor(options).Extract(image).keypoints.empty());
+}
+
+TEST(FeatureExtractor, RejectsImagesItCannotRead) {
+  FeatureExtractor extractor(FeatureOptions{});
+  EXPECT_THROW(extractor.Extract(cv::Mat()), CheckError);
+  EXPECT_THROW(extractor.Extract(cv::Mat(480, 640, CV_8UC3, cv::Scalar())), CheckError);
+  EXPECT_THROW(extractor.Extract(cv::Mat(63, 640, CV_8UC1, cv::Scalar())), CheckError);
+}
+
+TEST(FeatureOptions, BindsTheKeysOfOrbSlam2) {
+  FeatureOptions options;
+  OptionTable table;
+  options.Bind(table);
+  table.Set("ORBextractor.nFeatures", "500", "test");
+  table.Set("ORBextractor.scaleFactor", "1.5", "test");
+  table.Set("ORBextractor.nLevels", "4", "test");
+  table.Set("ORBextractor.iniThFAST", "25", "test");
+  table.Set("ORBextractor.minThFAST", "9", "test");
+  EXPECT_EQ(options.feature_count, 500);
+  EXPECT_EQ(options.scale_factor, 1.5);
+  EXPECT_EQ(options.level_count, 4);
+  EXPECT_EQ(options.initial_fast_threshold, 25);
+  EXPECT_EQ(options.minimum_fast_threshold, 9);
+}
+
+TEST(FeatureOptions, RejectsValuesOutOfRange) {
+  FeatureOptions options;
+  OptionTable table;
+  options.Bind(table);
+  const auto is_refused = [&](const std::string& key, const std::string& value) {
+    try {
+      table.Set("ORBextractor." + key, value, "test.yaml:3");
+    } catch (const InputError& error) {
+      return std::string(error.what()).find(key) != std::string::npos;
+    }
+    return false;
+  };
+  for (const char* value : {"0", "-5", "100001", "1.5", "many"}) {
+    EXPECT_TRUE(is_refused("nFeatures", value)) << value;
+  }
+  for (const char* value : {"1", "0.5", "2.1", "nan"}) {
+    EXPECT_TRUE(is_refused("scaleFactor", value)) << value;
+  }
+  for (const char* value : {"0", "17"}) {
+    EXPECT_TRUE(is_refused("nLevels", value)) << value;
+  }
+  for (const char* value : {"0", "256"}) {
+    EXPECT_TRUE(is_refused("iniThFAST", value)) << value;
+    EXPECT_TRUE(is_refused("minThFAST", value)) << value;
+  }
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+namespace hullslam {
+
+// Random bright and dark boxes and discs with some noise: corners of all strengths and scales.
+inline cv::Mat MakeCornerImage(int width = 640, int height = 480, uint64_t seed = 7) {
+  cv::Mat image(height, width, CV_8UC1, cv::Scalar(120));
+  cv::RNG random(seed);
+  for (int i = 0; i < 260; ++i) {
+    const cv::Point position(random.uniform(0, width), random.uniform(0, height));
+    const cv::Scalar grey(random.uniform(0, 256));
+    if (i % 3 == 0) {
+      cv::circle(image, position, random.uniform(3, 25), grey, cv::FILLED);
+    } else {
+      const cv::Size size(random.uniform(4, 60), random.uniform(4, 60));
+      cv::rectangle(image, cv::Rect(position, size), grey, cv::FILLED);
+    }
+  }
+  cv::Mat noise(image.size(), CV_16SC1);
+  random.fill(noise, cv::RNG::NORMAL, 0.0, 4.0);
+  cv::add(image, noise, image, cv::noArray(), CV_8UC1);
+  return image;
+}
+
+// A grey image of a real sequence, empty where the data set is not on this machine.
+inline cv::Mat LoadRealImage() {
+  const std::string path =
+      std::string(HULLSLAM_SOURCE_DIR) + "/../shared/data/fr1_xyz/rgb/1305031102.175304.jpg";
+  const std::string installed = "/work/shared/data/fr1_xyz/rgb/1305031102.175304.jpg";
+  return cv::imread(std::filesystem::exists(path) ? path : installed, cv::IMREAD_GRAYSCALE);
+}
+
+}  // namespace hullslam
