@@ -4,6 +4,10 @@
 namespace hullslam {
 
 void MappingOptions::Bind(OptionTable& options) {
+  options.Add("mapping.local_keyframes", &local_keyframes, Range::AtLeast(2),
+              "keyframes that local bundle adjustment moves, at most");
+  options.Add("mapping.fixed_keyframes", &fixed_keyframes, Range::AtLeast(1),
+              "keyframes that hold local bundle adjustment, at most");
   options.Add("mapping.cull_keyframes", &cull_keyframes, "remove redundant keyframes");
 }
 

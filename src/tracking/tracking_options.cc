@@ -4,6 +4,12 @@
 namespace hullslam {
 
 void TrackingOptions::Bind(OptionTable& options) {
+  options.Add("tracking.min_initial_points", &min_initial_points, Range::AtLeast(10),
+              "keypoints with depth that the first frame needs");
+  options.Add("tracking.min_inliers", &min_inliers, Range::AtLeast(6),
+              "landmarks that must be found in a frame, else it counts as lost");
+  options.Add("tracking.local_keyframes", &local_keyframes, Range::AtLeast(1),
+              "keyframes against whose landmarks a frame is tracked, at most");
   options.Add("tracking.lost_after_frames", &lost_after_frames, Range::AtLeast(1),
               "frames without a pose after which a run is given up");
 }

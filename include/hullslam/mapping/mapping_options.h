@@ -6,6 +6,8 @@
 namespace hullslam {
 
 struct MappingOptions {
+  int local_keyframes = 20;  // that local bundle adjustment moves, at most
+  int fixed_keyframes = 20;  // that hold it, at most
   bool cull_keyframes = true;
 
   void Bind(OptionTable& options);

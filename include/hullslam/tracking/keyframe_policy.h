@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace hullslam {
+
+// What the decision for a new keyframe rests on.
+struct KeyframeEvidence {
+  uint32_t frames_since_keyframe = 0;
+  int inliers = 0;              // landmarks found in the frame
+  int reference_landmarks = 0;  // of the reference keyframe, held well enough
+  int close_tracked = 0;        // close keypoints (with precise depth) that are landmarks
+  int close_untracked = 0;      // and that are not
+  size_t keyframes = 0;
+  bool mapper_is_idle = true;
+  int requests_waiting = 0;
+};
+
+struct KeyframePolicy {
+  uint32_t max_frames_between = 30;
+  double min_reference_ratio = 0.75;   // of inliers to reference landmarks
+  double young_reference_ratio = 0.4;  // the same while there is a single keyframe
+  double urgent_ratio = 0.25;          // below it also while the mapper is busy
+  int min_inliers = 15;
+  int min_close_tracked = 100;
+  int max_close_untracked = 70;
+  int max_requests_waiting = 3;
+
+  // Mur-Artal and Tardos 2017, section III.E: tracking has weakened against the reference keyframe,
+  // or close points would be lost; and the mapper has time, or it is urgent.
+  bool NeedsKeyframe(const KeyframeEvidence& evidence) const;
+};
+
+}  // namespace hullslam

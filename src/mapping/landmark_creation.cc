@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/mapping/landmark_creation.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <optional>
+
+#include "hullslam/geometry/epipolar.h"
+#include "hullslam/geometry/triangulation.h"
+#include "hullslam/map/appearance.h"
+#include "hullslam/map/covisibility.h"
+#include "hullslam/matching/for_triangulation.h"
+#include "hullslam/optim/robust.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kNeighbours = 10;
+constexpr double kMaxCosParallax = 0.9998;  // about 1.1 degrees, for pairs without depth
+
+// One keypoint of one keyframe, with what triangulation asks of it.
+struct View {
+  const Keyframe* keyframe = nullptr;
+  uint32_t keypoint = 0;
+  Eigen::Vector2d pixel;
+  Eigen::Vector2d normalized;
+  Eigen::Vector3d ray_in_world;  // unit
+  double depth = 0.0;            // m, 0 where unknown
+  double right_u = -1.0;
+  double scale = 1.0;  // of the keypoint's level
+};
+
+View MakeView(const Keyframe& keyframe, uint32_t keypoint, const Sensor& sensor) {
+  const FrameFeatures& features = keyframe.frame->features;
+  View view;
+  view.keyframe = &keyframe;
+  view.keypoint = keypoint;
+  view.pixel = features.keypoints[keypoint].undistorted.cast<double>();
+  const Eigen::Vector3d ray = sensor.camera.Unproject(view.pixel, 1.0);
+  view.normalized = ray.head<2>();
+  view.ray_in_world = keyframe.cam_from_world.rotation.conjugate() * ray.normalized();
+  view.depth = static_cast<double>(features.depth[keypoint]);
+  view.right_u = static_cast<double>(features.right_u[keypoint]);
+  view.scale = static_cast<double>(
+      sensor.levels.scale[static_cast<size_t>(features.keypoints[keypoint].level)]);
+  return view;
+}
+
+// Cosine of the parallax between the two eyes of the virtual stereo pair; above 1 without depth.
+double CosStereoParallax(const View& view, double baseline) {
+  return view.depth > 0.0 ? std::cos(2.0 * std::atan2(0.5 * baseline, view.depth)) : 2.0;
+}
+
+Eigen::Vector3d UnprojectToWorld(const View& view, const Sensor& sensor) {
+  return Inverse(view.keyframe->cam_from_world) * sensor.camera.Unproject(view.pixel, view.depth);
+}
+
+std::optional<Eigen::Vector3d> Locate(const View& a, const View& b, const Sensor& sensor) {
+  const double cos_parallax = a.ray_in_world.dot(b.ray_in_world);
+  const double cos_a = CosStereoParallax(a, sensor.baseline());
+  const double cos_b = CosStereoParallax(b, sensor.baseline());
+  const bool has_depth = a.depth > 0.0 || b.depth > 0.0;
+  if (cos_parallax > 0.0 && cos_parallax < std::min(cos_a, cos_b) &&
+      (has_depth || cos_parallax < kMaxCosParallax)) {
+    return TriangulatePoint(a.keyframe->cam_from_world, a.normalized, b.keyframe->cam_from_world,
+                            b.normalized);
+  }
+  if (!has_depth) {
+    return std::nullopt;
+  }
+  return UnprojectToWorld(cos_a < cos_b ? a : b, sensor);
+}
+
+bool Reprojects(const View& view, const Eigen::Vector3d& point, const Sensor& sensor) {
+  const Eigen::Vector3d point_in_cam = view.keyframe->cam_from_world * point;
+  if (point_in_cam.z() <= 0.0) {
+    return false;
+  }
+  const Eigen::Vector2d pixel = sensor.camera.Project(point_in_cam);
+  double squared_error = (pixel - view.pixel).squaredNorm();
+  double bound = kChi2Mono;
+  if (view.right_u >= 0.0) {
+    const double right_error = pixel.x() - sensor.camera.bf / point_in_cam.z() - view.right_u;
+    squared_error += right_error * right_error;
+    bound = kChi2Rgbd;
+  }
+  return squared_error <= bound * view.scale * view.scale;
+}
+
+// The ratio of the distances must be that of the pyramid's levels.
+bool HasConsistentScale(const View& a, const View& b, const Eigen::Vector3d& point,
+                        const Sensor& sensor) {
+  const double distance_a = (a.keyframe->cam_from_world * point).norm();
+  const double distance_b = (b.keyframe->cam_from_world * point).norm();
+  if (distance_a == 0.0 || distance_b == 0.0) {
+    return false;
+  }
+  const double tolerance = 1.5 * std::exp(static_cast<double>(sensor.levels.log_factor));
+  const double ratio = (distance_b / distance_a) / (b.scale / a.scale);
+  return ratio < tolerance && ratio > 1.0 / tolerance;
+}
+
+std::vector<uint32_t> FreeKeypoints(const Keyframe& keyframe) {
+  std::vector<uint32_t> free;
+  for (uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
+    if (!keyframe.landmarks[i].IsValid()) {
+      free.push_back(i);
+    }
+  }
+  return free;
+}
+
+std::vector<Match> FindPairs(const Keyframe& a, const Keyframe& b, const Sensor& sensor) {
+  const Rigid3 b_from_a = b.cam_from_world * Inverse(a.cam_from_world);
+  if (b_from_a.translation.norm() < sensor.baseline()) {
+    return {};  // the depth camera does better
+  }
+  Eigen::Matrix3d calibration = Eigen::Matrix3d::Identity();
+  calibration(0, 0) = sensor.camera.fx;
+  calibration(1, 1) = sensor.camera.fy;
+  calibration(0, 2) = sensor.camera.cx;
+  calibration(1, 2) = sensor.camera.cy;
+  const Eigen::Vector2d epipole = b_from_a.translation.z() > 0.0
+                                      ? sensor.camera.Project(b_from_a.translation)
+                                      : Eigen::Vector2d::Constant(-1e6);
+  return MatchForTriangulation(
+      a.frame->features, FreeKeypoints(a), b.frame->features, FreeKeypoints(b),
+      FundamentalFromPose(b_from_a, calibration, calibration), epipole, sensor.levels, {});
+}
+
+std::optional<Eigen::Vector3d> LocateAndVerify(const View& a, const View& b, const Sensor& sensor) {
+  const std::optional<Eigen::Vector3d> point = Locate(a, b, sensor);
+  const bool is_good = point && Reprojects(a, *point, sensor) && Reprojects(b, *point, sensor) &&
+                       HasConsistentScale(a, b, *point, sensor);
+  return is_good ? point : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId id, const Sensor& sensor) {
+  std::vector<LandmarkId> created;
+  for (const KeyframeId neighbour : BestCovisible(map.keyframes().At(id), kNeighbours)) {
+    const std::vector<Match> pairs =
+        FindPairs(map.keyframes().At(id), map.keyframes().At(neighbour), sensor);
+    for (const Match& pair : pairs) {
+      const View a = MakeView(map.keyframes().At(id), pair.query, sensor);
+      const View b = MakeView(map.keyframes().At(neighbour), pair.keypoint, sensor);
+      const std::optional<Eigen::Vector3d> point = LocateAndVerify(a, b, sensor);
+      if (!point) {
+        continue;
+      }
+      const LandmarkId landmark = map.AddLandmark(*point, id);
+      map.AddObservation(landmark, id, pair.query);
+      map.AddObservation(landmark, neighbour, pair.keypoint);
+      UpdateDescriptor(map, landmark);
+      UpdateViewingGeometry(map, landmark, sensor.levels);
+      created.push_back(landmark);
+    }
+  }
+  return created;
+}
+
+}  // namespace hullslam

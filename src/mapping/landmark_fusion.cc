@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/mapping/landmark_fusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "hullslam/map/appearance.h"
+#include "hullslam/map/covisibility.h"
+#include "hullslam/map/landmark_projection.h"
+#include "hullslam/matching/by_projection.h"
+#include "hullslam/optim/robust.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kNeighbours = 10;
+constexpr size_t kSecondNeighbours = 5;
+constexpr float kRadius = 3.0f;   // px at level 0
+constexpr int kMaxDistance = 50;  // Hamming
+
+std::vector<KeyframeId> Neighbourhood(const Map& map, KeyframeId id) {
+  std::vector<KeyframeId> targets = BestCovisible(map.keyframes().At(id), kNeighbours);
+  const std::vector<KeyframeId> first = targets;
+  for (const KeyframeId neighbour : first) {
+    const auto second = BestCovisible(map.keyframes().At(neighbour), kSecondNeighbours);
+    targets.insert(targets.end(), second.begin(), second.end());
+  }
+  std::sort(targets.begin(), targets.end());
+  targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
+  std::erase(targets, id);
+  return targets;
+}
+
+std::vector<LandmarkId> LandmarksOf(const Map& map, const std::vector<KeyframeId>& keyframes) {
+  std::vector<LandmarkId> landmarks;
+  for (const KeyframeId id : keyframes) {
+    for (const LandmarkId landmark : map.keyframes().At(id).landmarks) {
+      if (landmark.IsValid()) {
+        landmarks.push_back(landmark);
+      }
+    }
+  }
+  std::sort(landmarks.begin(), landmarks.end());
+  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  return landmarks;
+}
+
+bool Agrees(const FrameFeatures& features, uint32_t keypoint, const Projection& projection,
+            const ScaleLevels& levels) {
+  const Keypoint& seen = features.keypoints[keypoint];
+  const double inverse_sigma2 =
+      static_cast<double>(levels.inverse_sigma2[static_cast<size_t>(seen.level)]);
+  const double pixel_error =
+      static_cast<double>((seen.undistorted - projection.pixel).squaredNorm());
+  if (features.right_u[keypoint] < 0.0f) {
+    return pixel_error * inverse_sigma2 <= kChi2Mono;
+  }
+  const double right_error = static_cast<double>(features.right_u[keypoint] - projection.right_u);
+  return (pixel_error + right_error * right_error) * inverse_sigma2 <= kChi2Rgbd;
+}
+
+void Join(Map& map, LandmarkId landmark, LandmarkId other, const ScaleLevels& levels) {
+  if (landmark == other) {
+    return;
+  }
+  const bool keep = map.landmarks().At(landmark).support >= map.landmarks().At(other).support;
+  const LandmarkId kept = keep ? landmark : other;
+  map.ReplaceLandmark(keep ? other : landmark, kept);
+  UpdateDescriptor(map, kept);
+  UpdateViewingGeometry(map, kept, levels);
+}
+
+// Searches the landmarks in one keyframe and joins what is found.
+void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landmarks,
+              const Sensor& sensor) {
+  const std::shared_ptr<const Frame> frame = map.keyframes().At(target).frame;
+  const std::vector<LandmarkId> known = LandmarksOf(map, {target});
+  std::vector<Projection> projections;
+  std::vector<LandmarkId> ids;
+  for (const LandmarkId id : landmarks) {
+    const Landmark* landmark = map.landmarks().Find(id);
+    if (landmark == nullptr || std::binary_search(known.begin(), known.end(), id)) {
+      continue;
+    }
+    const auto view = ViewLandmark(sensor, map.keyframes().At(target).cam_from_world, *landmark);
+    if (!view) {
+      continue;
+    }
+    Projection& projection = projections.emplace_back();
+    projection.pixel = view->pixel.cast<float>();
+    projection.right_u = static_cast<float>(view->right_u);
+    projection.radius = kRadius * sensor.levels.scale[static_cast<size_t>(view->level)];
+    projection.min_level = view->level - 1;
+    projection.max_level = view->level;
+    projection.descriptor = landmark->descriptor;
+    ids.push_back(id);
+  }
+  const std::vector<Match> matches =
+      MatchByProjection(frame->features, projections, {}, {.max_distance = kMaxDistance});
+  for (const Match& match : matches) {
+    const LandmarkId landmark = map.Resolve(ids[match.query]);
+    if (!landmark.IsValid() ||
+        !Agrees(frame->features, match.keypoint, projections[match.query], sensor.levels)) {
+      continue;
+    }
+    const LandmarkId other = map.keyframes().At(target).landmarks[match.keypoint];
+    if (other.IsValid()) {
+      Join(map, landmark, other, sensor.levels);
+    } else if (map.AddObservation(landmark, target, match.keypoint)) {
+      UpdateDescriptor(map, landmark);
+      UpdateViewingGeometry(map, landmark, sensor.levels);
+    }
+  }
+}
+
+}  // namespace
+
+void FuseLandmarks(Map& map, KeyframeId id, const Sensor& sensor) {
+  const std::vector<KeyframeId> targets = Neighbourhood(map, id);
+  for (const KeyframeId target : targets) {
+    FuseInto(map, target, LandmarksOf(map, {id}), sensor);
+  }
+  FuseInto(map, id, LandmarksOf(map, targets), sensor);
+  UpdateCovisibility(map, id);
+}
+
+}  // namespace hullslam

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/tracking/keyframe_policy.h"
+
+namespace hullslam {
+
+bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
+  if (evidence.inliers <= min_inliers || evidence.requests_waiting >= max_requests_waiting) {
+    return false;
+  }
+  const bool lacks_close_points =
+      evidence.close_tracked < min_close_tracked && evidence.close_untracked > max_close_untracked;
+  const double ratio = evidence.keyframes < 2 ? young_reference_ratio : min_reference_ratio;
+  const bool is_weak =
+      lacks_close_points || evidence.inliers < ratio * evidence.reference_landmarks;
+  const bool is_urgent =
+      lacks_close_points || evidence.inliers < urgent_ratio * evidence.reference_landmarks;
+  const bool is_overdue = evidence.frames_since_keyframe >= max_frames_between;
+  return is_weak && (is_overdue || evidence.mapper_is_idle || is_urgent);
+}
+
+}  // namespace hullslam

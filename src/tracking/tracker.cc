@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/tracking/tracker.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "hullslam/map/landmark_projection.h"
+#include "hullslam/matching/by_descriptor.h"
+#include "hullslam/matching/by_projection.h"
+#include "hullslam/optim/pose_optimization.h"
+#include "hullslam/tracking/local_map.h"
+
+namespace hullslam {
+namespace {
+
+// Search windows in px at level 0 and bounds on matches: Mur-Artal and Tardos 2017.
+constexpr double kMotionRadius = 15.0;
+constexpr size_t kMinMotionMatches = 20;
+constexpr int kMinMotionInliers = 10;
+constexpr size_t kMinReferenceMatches = 15;
+constexpr double kLocalRadius = 4.0;
+constexpr double kLocalRadiusFrontal = 2.5;
+constexpr double kCosFrontal = 0.998;
+constexpr double kDepthRadiusFactor = 3.0;  // depth makes start poses and landmarks less sure
+
+struct LevelRange {
+  int min = 0;
+  int max = 0;
+};
+
+// Moving forward patches grow, so that they are found at higher levels; backward at lower ones.
+LevelRange LevelsAfterMotion(int level, double forward, double baseline, int level_count) {
+  if (forward > baseline) {
+    return {level, level_count - 1};
+  }
+  if (-forward > baseline) {
+    return {0, level};
+  }
+  return {level - 1, level + 1};
+}
+
+size_t CountCloseKeypoints(const Frame& frame, const Sensor& sensor,
+                           const std::vector<LandmarkId>& landmarks, bool tracked) {
+  size_t count = 0;
+  for (size_t i = 0; i < landmarks.size(); ++i) {
+    const double depth = static_cast<double>(frame.features.depth[i]);
+    const bool is_close = depth > 0.0 && depth < sensor.close_depth;
+    count += is_close && landmarks[i].IsValid() == tracked ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace
+
+Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options)
+    : sensor_(sensor), options_(options) {
+  policy_.max_frames_between = static_cast<uint32_t>(std::max(1.0, sensor.frames_per_second));
+}
+
+Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
+                                 const MapperStatus& mapper) {
+  frame_ = std::move(frame);
+  map_ = std::move(map);
+  if (map_ == nullptr || map_->keyframes().empty()) {
+    return Initialize();
+  }
+  FollowMap();
+  std::optional<Estimate> estimate = TrackWithMotionModel();
+  if (!estimate) {
+    estimate = TrackReferenceKeyframe();
+  }
+  if (estimate) {
+    estimate = TrackLocalMap(std::move(*estimate));
+  }
+  if (!estimate) {
+    return {Lose(), std::nullopt};
+  }
+  Result result;
+  if (NeedsKeyframe(*estimate, mapper)) {
+    result.request = MakeRequest(*estimate);
+  }
+  result.frame = Remember(*estimate);
+  return result;
+}
+
+Tracker::Result Tracker::Initialize() {
+  Result result;
+  result.frame.frame = frame_->id;
+  result.frame.timestamp = frame_->timestamp;
+  const auto with_depth = std::count_if(
+      frame_->features.depth.begin(), frame_->features.depth.end(), [](float z) { return z > 0; });
+  if (with_depth < options_.min_initial_points) {
+    return result;
+  }
+  KeyframeRequest request;
+  request.frame = frame_;
+  request.landmarks.resize(frame_->features.size());
+  result.request = std::move(request);
+  result.frame.state = TrackingState::kTracked;
+  result.frame.reference = KeyframeId(0);
+  result.frame.inliers = static_cast<int>(with_depth);
+  last_ = {frame_, std::vector<LandmarkId>(frame_->features.size()), KeyframeId(0), Rigid3()};
+  last_keyframe_ = frame_->id;
+  reference_ = KeyframeId(0);
+  velocity_.reset();
+  return result;
+}
+
+// Brings what is remembered of the last frame up to date with the map of now.
+void Tracker::FollowMap() {
+  reference_ = map_->NearestAlive(reference_);
+  if (const std::optional<KeyframeId> keyframe = map_->KeyframeOfFrame(last_.frame->id);
+      keyframe && map_->keyframes().Contains(*keyframe)) {
+    last_.landmarks = map_->keyframes().At(*keyframe).landmarks;
+    last_.reference = *keyframe;
+    last_.cam_from_reference = Rigid3();
+    reference_ = *keyframe;
+  }
+  for (LandmarkId& landmark : last_.landmarks) {
+    landmark = map_->Resolve(landmark);
+  }
+  last_from_world_ = last_.cam_from_reference * map_->CamFromWorld(last_.reference);
+}
+
+std::optional<Tracker::Estimate> Tracker::TrackWithMotionModel() const {
+  if (!velocity_) {
+    return std::nullopt;
+  }
+  Estimate estimate;
+  estimate.cam_from_world = *velocity_ * last_from_world_;
+  const double forward = Inverse(*velocity_).translation.z();
+  std::vector<Projection> projections;
+  std::vector<LandmarkId> ids;
+  for (size_t i = 0; i < last_.landmarks.size(); ++i) {
+    const Landmark* landmark = map_->landmarks().Find(last_.landmarks[i]);
+    if (landmark == nullptr) {
+      continue;
+    }
+    const Eigen::Vector3d point = estimate.cam_from_world * landmark->position;
+    if (point.z() <= 0.0) {
+      continue;
+    }
+    const Eigen::Vector2d pixel = sensor_.camera.Project(point);
+    if (!sensor_.bounds.Contains(pixel)) {
+      continue;
+    }
+    const Keypoint& seen = last_.frame->features.keypoints[i];
+    const LevelRange levels =
+        LevelsAfterMotion(seen.level, forward, sensor_.baseline(), sensor_.levels.count());
+    Projection& projection = projections.emplace_back();
+    projection.pixel = pixel.cast<float>();
+    projection.right_u = static_cast<float>(pixel.x() - sensor_.camera.bf / point.z());
+    projection.radius =
+        static_cast<float>(kMotionRadius) * sensor_.levels.scale[static_cast<size_t>(seen.level)];
+    projection.min_level = levels.min;
+    projection.max_level = levels.max;
+    projection.descriptor = landmark->descriptor;
+    projection.angle = seen.angle;
+    ids.push_back(last_.landmarks[i]);
+  }
+  const ProjectionSearch search{.max_distance = 100, .compare_rotation = true};
+  std::vector<Match> matches = MatchByProjection(frame_->features, projections, {}, search);
+  if (matches.size() < kMinMotionMatches) {
+    for (Projection& projection : projections) {
+      projection.radius *= 2.0f;
+    }
+    matches = MatchByProjection(frame_->features, projections, {}, search);
+  }
+  if (matches.size() < kMinMotionMatches) {
+    return std::nullopt;
+  }
+  estimate.landmarks.resize(frame_->features.size());
+  for (const Match& match : matches) {
+    estimate.landmarks[match.keypoint] = ids[match.query];
+  }
+  OptimizePose(estimate);
+  return estimate.inliers >= kMinMotionInliers ? std::optional(std::move(estimate)) : std::nullopt;
+}
+
+std::optional<Tracker::Estimate> Tracker::TrackReferenceKeyframe() const {
+  const Keyframe& reference = map_->keyframes().At(reference_);
+  std::vector<uint32_t> indices;
+  for (uint32_t i = 0; i < reference.landmarks.size(); ++i) {
+    if (reference.landmarks[i].IsValid()) {
+      indices.push_back(i);
+    }
+  }
+  const std::vector<Match> matches =
+      MatchByDescriptor(reference.frame->features, indices, frame_->features, {});
+  if (matches.size() < kMinReferenceMatches) {
+    return std::nullopt;
+  }
+  Estimate estimate;
+  estimate.cam_from_world = last_from_world_;
+  estimate.landmarks.resize(frame_->features.size());
+  for (const Match& match : matches) {
+    estimate.landmarks[match.keypoint] = reference.landmarks[match.query];
+  }
+  OptimizePose(estimate);
+  return estimate.inliers >= kMinMotionInliers ? std::optional(std::move(estimate)) : std::nullopt;
+}
+
+std::optional<Tracker::Estimate> Tracker::TrackLocalMap(Estimate estimate) {
+  const LocalMap local =
+      SelectLocalMap(*map_, estimate.landmarks, static_cast<size_t>(options_.local_keyframes));
+  if (local.reference.IsValid()) {
+    reference_ = local.reference;
+  }
+  SearchLocalLandmarks(local.landmarks, estimate);
+  OptimizePose(estimate);
+  for (const LandmarkId landmark : estimate.landmarks) {
+    if (landmark.IsValid()) {
+      sightings_.CountFound(landmark);
+    }
+  }
+  return estimate.inliers >= options_.min_inliers ? std::optional(std::move(estimate))
+                                                  : std::nullopt;
+}
+
+void Tracker::SearchLocalLandmarks(const std::vector<LandmarkId>& local, Estimate& estimate) {
+  std::vector<uint8_t> taken(frame_->features.size(), 0);
+  std::vector<LandmarkId> matched;
+  for (size_t i = 0; i < taken.size(); ++i) {
+    if (estimate.landmarks[i].IsValid()) {
+      taken[i] = 1;
+      matched.push_back(estimate.landmarks[i]);
+      sightings_.CountVisible(estimate.landmarks[i]);
+    }
+  }
+  std::sort(matched.begin(), matched.end());
+  std::vector<Projection> projections;
+  std::vector<LandmarkId> ids;
+  for (const LandmarkId id : local) {
+    if (std::binary_search(matched.begin(), matched.end(), id)) {
+      continue;
+    }
+    const Landmark& landmark = map_->landmarks().At(id);
+    const std::optional<LandmarkView> view =
+        ViewLandmark(sensor_, estimate.cam_from_world, landmark);
+    if (!view) {
+      continue;
+    }
+    sightings_.CountVisible(id);
+    const double radius =
+        kDepthRadiusFactor * (view->cos_view > kCosFrontal ? kLocalRadiusFrontal : kLocalRadius);
+    Projection& projection = projections.emplace_back();
+    projection.pixel = view->pixel.cast<float>();
+    projection.right_u = static_cast<float>(view->right_u);
+    projection.radius =
+        static_cast<float>(radius) * sensor_.levels.scale[static_cast<size_t>(view->level)];
+    projection.min_level = view->level - 1;
+    projection.max_level = view->level;
+    projection.descriptor = landmark.descriptor;
+    ids.push_back(id);
+  }
+  const std::vector<Match> matches = MatchByProjection(frame_->features, projections, taken,
+                                                       {.max_distance = 100, .max_ratio = 0.8});
+  for (const Match& match : matches) {
+    estimate.landmarks[match.keypoint] = ids[match.query];
+  }
+}
+
+void Tracker::OptimizePose(Estimate& estimate) const {
+  const FrameFeatures& features = frame_->features;
+  std::vector<PoseObservation> observations;
+  std::vector<size_t> keypoints;
+  for (size_t i = 0; i < estimate.landmarks.size(); ++i) {
+    if (!estimate.landmarks[i].IsValid()) {
+      continue;
+    }
+    const Keypoint& keypoint = features.keypoints[i];
+    PoseObservation& observation = observations.emplace_back();
+    observation.point = map_->landmarks().At(estimate.landmarks[i]).position;
+    observation.measured << keypoint.undistorted.cast<double>(),
+        static_cast<double>(features.right_u[i]);
+    observation.has_depth = features.right_u[i] >= 0.0f;
+    observation.inverse_sigma2 =
+        static_cast<double>(sensor_.levels.inverse_sigma2[static_cast<size_t>(keypoint.level)]);
+    keypoints.push_back(i);
+  }
+  const PoseOptimizationResult result =
+      hullslam::OptimizePose(sensor_.camera, estimate.cam_from_world, observations);
+  estimate.cam_from_world = result.cam_from_world;
+  estimate.inliers = result.inlier_count;
+  for (size_t k = 0; k < keypoints.size(); ++k) {
+    if (result.is_inlier[k] == 0) {
+      estimate.landmarks[keypoints[k]] = LandmarkId();
+    }
+  }
+}
+
+bool Tracker::NeedsKeyframe(const Estimate& estimate, const MapperStatus& mapper) const {
+  KeyframeEvidence evidence;
+  evidence.frames_since_keyframe = frame_->id.value - last_keyframe_.value;
+  evidence.inliers = estimate.inliers;
+  evidence.keyframes = map_->keyframes().size();
+  evidence.mapper_is_idle = mapper.is_idle;
+  evidence.requests_waiting = mapper.requests_waiting;
+  const int min_support = evidence.keyframes <= 2 ? 2 : 3;
+  for (const LandmarkId id : map_->keyframes().At(reference_).landmarks) {
+    if (id.IsValid() && map_->landmarks().At(id).support >= min_support) {
+      ++evidence.reference_landmarks;
+    }
+  }
+  evidence.close_tracked =
+      static_cast<int>(CountCloseKeypoints(*frame_, sensor_, estimate.landmarks, true));
+  evidence.close_untracked =
+      static_cast<int>(CountCloseKeypoints(*frame_, sensor_, estimate.landmarks, false));
+  return policy_.NeedsKeyframe(evidence);
+}
+
+KeyframeRequest Tracker::MakeRequest(const Estimate& estimate) {
+  KeyframeRequest request;
+  request.frame = frame_;
+  request.reference = reference_;
+  request.cam_from_reference = estimate.cam_from_world * Inverse(map_->CamFromWorld(reference_));
+  request.landmarks = estimate.landmarks;
+  request.sightings = sightings_.Take();
+  last_keyframe_ = frame_->id;
+  return request;
+}
+
+TrackedFrame Tracker::Remember(const Estimate& estimate) {
+  const Rigid3 cam_from_reference =
+      estimate.cam_from_world * Inverse(map_->CamFromWorld(reference_));
+  // After lost frames the motion since the last tracked one is not that of a single step.
+  const bool is_next = frame_->id.value == last_.frame->id.value + 1;
+  velocity_ =
+      is_next ? std::optional(estimate.cam_from_world * Inverse(last_from_world_)) : std::nullopt;
+  last_ = {frame_, estimate.landmarks, reference_, cam_from_reference};
+  return {.frame = frame_->id,
+          .timestamp = frame_->timestamp,
+          .state = TrackingState::kTracked,
+          .reference = reference_,
+          .cam_from_reference = cam_from_reference,
+          .cam_from_world = estimate.cam_from_world,
+          .inliers = estimate.inliers};
+}
+
+TrackedFrame Tracker::Lose() {
+  velocity_.reset();
+  TrackedFrame lost;
+  lost.frame = frame_->id;
+  lost.timestamp = frame_->timestamp;
+  lost.state = TrackingState::kLost;
+  return lost;
+}
+
+}  // namespace hullslam
