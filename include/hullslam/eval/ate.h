@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "hullslam/eval/association.h"
+#include "hullslam/eval/error_statistics.h"
+#include "hullslam/geometry/alignment.h"
+#include "hullslam/system/trajectory.h"
+
+namespace hullslam {
+
+struct AteOptions {
+  AlignmentKind alignment = AlignmentKind::kSe3;
+  PairingRule pairing = PairingRule::kTum;
+  std::optional<double> max_difference =
+      std::nullopt;  // s; the pairing's default where it is not given
+};
+
+// Absolute trajectory error (Sturm et al. 2012): distances between the translations of paired poses
+// after the estimate was aligned to the reference.
+struct AteReport {
+  std::string failure;     // empty, or why there is no error: too few pairs
+  ErrorStatistics errors;  // m
+  PointAlignment reference_from_estimate;
+  size_t pairs = 0;
+  size_t estimate_poses = 0;
+  size_t reference_poses = 0;
+  double coverage = 0.0;     // share of the estimate's poses that have a partner, 0 to 1
+  double paired_span = 0.0;  // s from the first pair to the last
+
+  bool ok() const { return failure.empty(); }
+};
+
+AteReport EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
+                      const AteOptions& options = {});
+
+const char* ToString(AlignmentKind kind);
+
+}  // namespace hullslam

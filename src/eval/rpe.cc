@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/eval/rpe.h"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "hullslam/geometry/rigid3.h"
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+// Position of the end of the motion that starts at `start`.
+std::optional<size_t> FindEnd(const std::vector<double>& stamps, size_t start,
+                              const RpeOptions& options) {
+  if (options.unit == RpeOptions::Unit::kFrames) {
+    const size_t end = start + static_cast<size_t>(options.delta);
+    return end < stamps.size() ? std::optional(end) : std::nullopt;
+  }
+  constexpr double kTolerance = 0.1;
+  const double wanted = stamps[start] + options.delta;
+  const size_t end = NearestStamp(stamps, wanted);
+  const bool near = std::abs(stamps[end] - wanted) <= kTolerance * options.delta;
+  return near && end > start ? std::optional(end) : std::nullopt;
+}
+
+Rigid3 Motion(const Trajectory& trajectory, size_t start, size_t end) {
+  return Inverse(trajectory[start].world_from_cam) * trajectory[end].world_from_cam;
+}
+
+}  // namespace
+
+RpeReport EvaluateRpe(const Trajectory& reference, const Trajectory& estimate,
+                      const RpeOptions& options) {
+  Check(options.delta > 0.0, "motions need a length");
+  Check(options.unit == RpeOptions::Unit::kSeconds || options.delta >= 1.0,
+        "motions have at least one frame");
+  const std::vector<IndexPair> pairs =
+      PairPoses(reference, estimate, options.pairing,
+                options.max_difference.value_or(DefaultMaxDifference(options.pairing)));
+  std::vector<double> stamps;
+  for (const IndexPair& pair : pairs) {
+    stamps.push_back(estimate[pair.second].timestamp);
+  }
+  std::vector<double> translations;
+  std::vector<double> rotations;
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    if (const std::optional<size_t> j = FindEnd(stamps, i, options)) {
+      Rigid3 motion = Motion(estimate, pairs[i].second, pairs[*j].second);
+      motion.translation *= options.scale;
+      const Rigid3 error = Inverse(Motion(reference, pairs[i].first, pairs[*j].first)) * motion;
+      translations.push_back(error.translation.norm());
+      rotations.push_back(LogSo3(error.rotation).norm() * 180.0 / std::numbers::pi);
+    }
+  }
+  RpeReport report;
+  report.motions = translations.size();
+  if (translations.empty()) {
+    report.failure = "no two paired poses are far enough apart in time";
+    return report;
+  }
+  report.translation = SummarizeErrors(std::move(translations));
+  report.rotation = SummarizeErrors(std::move(rotations));
+  return report;
+}
+
+}  // namespace hullslam

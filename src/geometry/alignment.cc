@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/geometry/alignment.h"
+
+#include <Eigen/Dense>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+using Points = Eigen::Matrix3Xd;
+
+Points ToMatrix(std::span<const Eigen::Vector3d> points) {
+  Points matrix(3, points.size());
+  for (size_t i = 0; i < points.size(); ++i) {
+    matrix.col(i) = points[i];
+  }
+  return matrix;
+}
+
+bool HasSpread(const Points& points) {
+  const double extent =
+      (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cwiseAbs().maxCoeff();
+  const double magnitude = points.cwiseAbs().maxCoeff();
+  return extent > 1e-12 * magnitude;
+}
+
+}  // namespace
+
+PointAlignment AlignPoints(std::span<const Eigen::Vector3d> source,
+                           std::span<const Eigen::Vector3d> target, AlignmentKind kind) {
+  Check(source.size() == target.size(), "points are aligned in pairs");
+  PointAlignment alignment;
+  if (kind == AlignmentKind::kNone) {
+    return alignment;
+  }
+  if (source.size() < 3) {
+    alignment.failure =
+        "an alignment needs at least 3 pairs, there are " + std::to_string(source.size());
+    return alignment;
+  }
+  const Points sources = ToMatrix(source);
+  const Points targets = ToMatrix(target);
+  const bool with_scale = kind == AlignmentKind::kSim3;
+  if (with_scale && (!HasSpread(sources) || !HasSpread(targets))) {
+    alignment.failure = "the scale is not fixed by points that all coincide";
+    return alignment;
+  }
+  const Eigen::Matrix4d matrix = Eigen::umeyama(sources, targets, with_scale);
+  const Eigen::Matrix3d scaled_rotation = matrix.topLeftCorner<3, 3>();
+  alignment.scale = with_scale ? scaled_rotation.col(0).norm() : 1.0;
+  alignment.target_from_source.rotation =
+      Eigen::Quaterniond(Eigen::Matrix3d(scaled_rotation / alignment.scale)).normalized();
+  alignment.target_from_source.translation = matrix.topRightCorner<3, 1>();
+  return alignment;
+}
+
+}  // namespace hullslam

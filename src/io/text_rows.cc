@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/io/text_rows.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <system_error>
+
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+constexpr std::string_view kSeparators = " \t\r,\v\f";
+
+void SplitColumns(std::string_view line, std::vector<std::string_view>& columns) {
+  columns.clear();
+  for (size_t begin = line.find_first_not_of(kSeparators); begin != std::string_view::npos;) {
+    const size_t end = std::min(line.find_first_of(kSeparators, begin), line.size());
+    columns.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(kSeparators, end);
+  }
+}
+
+// What a message can show of a text that may be long or binary.
+std::string Printable(std::string_view text) {
+  constexpr size_t kLongest = 40;
+  std::string shown(text.substr(0, kLongest));
+  std::replace_if(
+      shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text.size() > kLongest ? shown + "..." : shown;
+}
+
+}  // namespace
+
+std::string ReadFile(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw InputError(path.string() + ": is a folder, expected a file");
+  }
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    throw InputError(path.string() + ": " + std::generic_category().message(errno));
+  }
+  std::string bytes;
+  const uintmax_t size = std::filesystem::file_size(path, error);
+  bytes.resize(error ? 0 : size);
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(file.gcount());
+  if (file.bad()) {
+    throw InputError(path.string() + ": cannot be read");
+  }
+  return bytes;
+}
+
+bool ParseFinite(std::string_view text, double& value) {
+  if (text.starts_with('+')) {
+    text.remove_prefix(1);
+  }
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+}
+
+void TextRow::Fail(const std::string& what) const {
+  throw InputError(path.string() + ':' + std::to_string(line) + ": " + what);
+}
+
+double TextRow::Number(size_t column, std::string_view name) const {
+  double value = 0.0;
+  if (!ParseFinite(columns.at(column), value)) {
+    Fail(std::string(name) + " is '" + Printable(columns[column]) + "', expected a finite number");
+  }
+  return value;
+}
+
+void ForEachRow(const std::filesystem::path& path,
+                const std::function<void(const TextRow& row)>& visit) {
+  const std::string text = ReadFile(path);
+  TextRow row{.path = path, .line = 0, .columns = {}};
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    ++row.line;
+    SplitColumns(std::string_view(text).substr(begin, end - begin), row.columns);
+    if (!row.columns.empty() && !row.columns[0].starts_with('#')) {
+      visit(row);
+    }
+    begin = end + 1;
+  }
+}
+
+}  // namespace hullslam

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/io/trajectory_file.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "hullslam/io/atomic_file.h"
+#include "hullslam/io/text_rows.h"
+#include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+StampedPose ParsePose(const TextRow& row) {
+  constexpr size_t kColumns = 8;
+  if (row.columns.size() != kColumns) {
+    row.Fail(
+        fmt::format("{} columns, expected 8: timestamp tx ty tz qx qy qz qw", row.columns.size()));
+  }
+  StampedPose pose;
+  pose.timestamp = row.Number(0, "timestamp");
+  Rigid3& world_from_cam = pose.world_from_cam;
+  world_from_cam.translation = {row.Number(1, "tx"), row.Number(2, "ty"), row.Number(3, "tz")};
+  world_from_cam.rotation.coeffs() << row.Number(4, "qx"), row.Number(5, "qy"), row.Number(6, "qz"),
+      row.Number(7, "qw");
+  constexpr double kShortest = 1e-6;
+  if (!(world_from_cam.rotation.norm() > kShortest)) {
+    row.Fail("the quaternion has length zero, expected a rotation");
+  }
+  world_from_cam.rotation.normalize();
+  return pose;
+}
+
+}  // namespace
+
+Trajectory ReadTrajectory(const std::filesystem::path& path) {
+  Trajectory trajectory;
+  ForEachRow(path, [&](const TextRow& row) {
+    const StampedPose pose = ParsePose(row);
+    if (trajectory.empty() || pose.timestamp > trajectory.back().timestamp) {
+      trajectory.push_back(pose);
+    } else if (pose.timestamp == trajectory.back().timestamp) {
+      trajectory.back() = pose;
+    } else {
+      row.Fail(fmt::format("time stamp {:.6f} is before the one of the line above, {:.6f}",
+                           pose.timestamp, trajectory.back().timestamp));
+    }
+  });
+  if (trajectory.empty()) {
+    throw InputError(path.string() + ": holds no poses");
+  }
+  return trajectory;
+}
+
+std::string FormatTrajectory(const Trajectory& trajectory) {
+  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
+  for (const StampedPose& pose : trajectory) {
+    const Eigen::Vector3d& t = pose.world_from_cam.translation;
+    Eigen::Vector4d q = pose.world_from_cam.rotation.normalized().coeffs();
+    Check(t.allFinite() && q.allFinite(), "a pose to be written is not finite");
+    if (q.w() < 0.0) {
+      q = -q;
+    }
+    fmt::format_to(std::back_inserter(text),
+                   "{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", pose.timestamp,
+                   t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+  }
+  return text;
+}
+
+void WriteTrajectory(const std::filesystem::path& path, const Trajectory& trajectory) {
+  WriteFileAtomically(path, FormatTrajectory(trajectory));
+}
+
+}  // namespace hullslam

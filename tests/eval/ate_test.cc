@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/eval/ate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "hullslam/io/trajectory_file.h"
+#include "support/test_data.h"
+
+namespace hullslam {
+namespace {
+
+Trajectory Helix(int count) {
+  Trajectory trajectory;
+  for (int i = 0; i < count; ++i) {
+    const double t = 0.1 * i;
+    trajectory.push_back({t, Rigid3(ExpSo3({0.0, 0.0, t}), {std::cos(t), std::sin(t), 0.2 * t})});
+  }
+  return trajectory;
+}
+
+Trajectory Moved(const Trajectory& trajectory, const Rigid3& motion, double scale) {
+  Trajectory moved = trajectory;
+  for (StampedPose& pose : moved) {
+    pose.world_from_cam.translation *= scale;
+    pose.world_from_cam = motion * pose.world_from_cam;
+  }
+  return moved;
+}
+
+TEST(Ate, IsInvariantUnderWhatTheAlignmentTakesAway) {
+  const Trajectory reference = Helix(50);
+  const Rigid3 motion(ExpSo3({1.0, -0.5, 2.0}), {3.0, 4.0, -5.0});
+  const AteReport rigid = EvaluateAte(reference, Moved(reference, motion, 1.0));
+  ASSERT_TRUE(rigid.ok()) << rigid.failure;
+  EXPECT_LT(rigid.errors.max, 1e-9);
+  const Trajectory scaled = Moved(reference, motion, 0.5);
+  EXPECT_GT(EvaluateAte(reference, scaled).errors.rmse, 0.1);
+  const AteReport similar = EvaluateAte(reference, scaled, {.alignment = AlignmentKind::kSim3});
+  EXPECT_LT(similar.errors.max, 1e-9);
+  EXPECT_NEAR(similar.reference_from_estimate.scale, 2.0, 1e-9);
+}
+
+TEST(Ate, WithoutAlignmentIsThePlainDistance) {
+  const Trajectory reference = Helix(10);
+  const Trajectory shifted = Moved(reference, Rigid3({1, 0, 0, 0}, {0.0, 3.0, 4.0}), 1.0);
+  const AteReport report = EvaluateAte(reference, shifted, {.alignment = AlignmentKind::kNone});
+  EXPECT_NEAR(report.errors.rmse, 5.0, 1e-12);
+  EXPECT_NEAR(report.errors.median, 5.0, 1e-12);
+}
+
+TEST(Ate, ReportsPairsAndCoverage) {
+  const Trajectory reference = Helix(50);
+  Trajectory estimate(reference.begin() + 10, reference.begin() + 30);
+  for (int i = 0; i < 5; ++i) {
+    estimate.push_back({100.0 + i, Rigid3()});
+  }
+  const AteReport report = EvaluateAte(reference, estimate);
+  EXPECT_EQ(report.pairs, 20U);
+  EXPECT_EQ(report.reference_poses, 50U);
+  EXPECT_EQ(report.estimate_poses, 25U);
+  EXPECT_DOUBLE_EQ(report.coverage, 0.8);
+  EXPECT_NEAR(report.paired_span, 1.9, 1e-9);
+}
+
+TEST(Ate, SaysWhyThereIsNoError) {
+  Trajectory late = Helix(10);
+  for (StampedPose& pose : late) {
+    pose.timestamp += 100.0;
+  }
+  EXPECT_NE(EvaluateAte(Helix(10), late).failure.find("within 0.02 s"), std::string::npos);
+  EXPECT_NE(EvaluateAte(Helix(10), Helix(2)).failure.find("at least 3 pairs"), std::string::npos);
+  EXPECT_FALSE(EvaluateAte({}, {}).ok());
+}
+
+struct Golden {
+  const char* reference;
+  const char* estimate;
+  PairingRule pairing;
+  size_t pairs;
+  double scale;
+  double rmse_se3;
+  double rmse_sim3;
+};
+
+class GoldenAte : public ::testing::TestWithParam<Golden> {};
+
+TEST_P(GoldenAte, IsReproduced) {
+  const Golden& golden = GetParam();
+  const auto reference_path = FindTestData(golden.reference);
+  const auto estimate_path = FindTestData(golden.estimate);
+  if (!reference_path || !estimate_path) {
+    GTEST_SKIP() << "the golden trajectories are not on this machine; set HULLSLAM_DATA";
+  }
+  const Trajectory reference = ReadTrajectory(*reference_path);
+  const Trajectory estimate = ReadTrajectory(*estimate_path);
+  const AteReport rigid = EvaluateAte(reference, estimate, {.pairing = golden.pairing});
+  const AteReport similar = EvaluateAte(
+      reference, estimate, {.alignment = AlignmentKind::kSim3, .pairing = golden.pairing});
+  EXPECT_EQ(rigid.pairs, golden.pairs);
+  EXPECT_NEAR(rigid.errors.rmse, golden.rmse_se3, 1e-6);
+  EXPECT_NEAR(similar.errors.rmse, golden.rmse_sim3, 1e-6);
+  EXPECT_NEAR(similar.reference_from_estimate.scale, golden.scale, 1e-6);
+}
+
+constexpr const char* kDesk = "golden/fr2_desk_groundtruth.txt";
+constexpr const char* kXyz = "fr1_xyz/groundtruth.txt";
+constexpr const char* kDeskAll = "golden/fr2_desk_ORB.txt";
+constexpr const char* kDeskMono = "golden/fr2_desk_ORB_kf_mono.txt";
+constexpr const char* kXyzMono = "golden/freiburg1_xyz-ORB_kf_mono.txt";
+constexpr const char* kXyzSlam = "golden/freiburg1_xyz-rgbdslam.txt";
+constexpr PairingRule kTum = PairingRule::kTum;
+constexpr PairingRule kEvo = PairingRule::kEvo;
+
+INSTANTIATE_TEST_SUITE_P(
+    Trajectories, GoldenAte,
+    ::testing::Values(Golden{kDesk, kDeskAll, kTum, 2223, 0.997002, 0.008144, 0.006186},
+                      Golden{kDesk, kDeskAll, kEvo, 2174, 0.996970, 0.008119, 0.006123},
+                      Golden{kDesk, kDeskMono, kTum, 122, 2.228344, 0.948813, 0.007900},
+                      Golden{kDesk, kDeskMono, kEvo, 118, 2.228022, 0.939049, 0.007729},
+                      Golden{kXyz, kXyzMono, kTum, 32, 1.105622, 0.024302, 0.009755},
+                      Golden{kXyz, kXyzMono, kEvo, 32, 1.105622, 0.024302, 0.009755},
+                      Golden{kXyz, kXyzSlam, kTum, 786, 1.007924, 0.013473, 0.013394},
+                      Golden{kXyz, kXyzSlam, kEvo, 785, 1.008001, 0.013470, 0.013389}));
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/eval/rpe.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+// Ten poses a second, straight ahead at `speed` m/s, turning about z at `turn` rad/s.
+Trajectory Drive(int count, double speed, double turn = 0.0) {
+  Trajectory trajectory;
+  for (int i = 0; i < count; ++i) {
+    const double t = 0.1 * i;
+    trajectory.push_back({t, Rigid3(ExpSo3({0.0, 0.0, turn * t}), {speed * t, 0.0, 0.0})});
+  }
+  return trajectory;
+}
+
+TEST(Rpe, OfDriftInTranslation) {
+  const RpeReport report = EvaluateRpe(Drive(31, 1.0), Drive(31, 1.1));
+  ASSERT_TRUE(report.ok()) << report.failure;
+  EXPECT_EQ(report.motions, 21U);
+  EXPECT_NEAR(report.translation.rmse, 0.1, 1e-9);
+  EXPECT_NEAR(report.translation.max, 0.1, 1e-9);
+  EXPECT_NEAR(report.rotation.max, 0.0, 1e-6);
+}
+
+TEST(Rpe, OfDriftInRotationIsInDegrees) {
+  const double turn = std::numbers::pi / 180.0;
+  const RpeReport report = EvaluateRpe(Drive(31, 0.0), Drive(31, 0.0, turn));
+  EXPECT_NEAR(report.rotation.rmse, 1.0, 1e-6);
+  EXPECT_NEAR(report.translation.rmse, 0.0, 1e-12);
+}
+
+TEST(Rpe, IsInvariantUnderTheChoiceOfWorlds) {
+  const Trajectory reference = Drive(31, 1.0, 0.5);
+  Trajectory estimate = Drive(31, 1.2, 0.4);
+  const RpeReport before = EvaluateRpe(reference, estimate);
+  const Rigid3 motion(ExpSo3({1.0, 2.0, 3.0}), {10.0, -20.0, 5.0});
+  for (StampedPose& pose : estimate) {
+    pose.world_from_cam = motion * pose.world_from_cam;
+  }
+  const RpeReport after = EvaluateRpe(reference, estimate);
+  EXPECT_GT(before.translation.rmse, 0.1);
+  EXPECT_NEAR(before.translation.rmse, after.translation.rmse, 1e-9);
+  EXPECT_NEAR(before.rotation.rmse, after.rotation.rmse, 1e-6);
+}
+
+TEST(Rpe, ByFramesComparesNeighbours) {
+  const RpeReport report = EvaluateRpe(Drive(31, 1.0), Drive(31, 2.0),
+                                       {.unit = RpeOptions::Unit::kFrames, .delta = 1.0});
+  EXPECT_EQ(report.motions, 30U);
+  EXPECT_NEAR(report.translation.mean, 0.1, 1e-9);
+}
+
+TEST(Rpe, TheScaleMultipliesTheEstimate) {
+  const RpeReport report = EvaluateRpe(Drive(31, 1.0), Drive(31, 0.5), {.scale = 2.0});
+  EXPECT_NEAR(report.translation.max, 0.0, 1e-9);
+}
+
+TEST(Rpe, MotionsAcrossAGapAreLeftOut) {
+  Trajectory estimate = Drive(31, 1.0);
+  estimate.erase(estimate.begin() + 8, estimate.begin() + 23);  // 0.8 s to 2.2 s are missing
+  const RpeReport report = EvaluateRpe(Drive(31, 1.0), estimate);
+  EXPECT_FALSE(report.ok());
+  EXPECT_EQ(report.motions, 0U);
+}
+
+TEST(Rpe, OptionsAreChecked) {
+  EXPECT_THROW(EvaluateRpe({}, {}, {.delta = 0.0}), CheckError);
+  EXPECT_THROW(EvaluateRpe({}, {}, {.unit = RpeOptions::Unit::kFrames, .delta = 0.5}), CheckError);
+  EXPECT_FALSE(EvaluateRpe({}, {}).ok());
+}
+
+}  // namespace
+}  // namespace hullslam

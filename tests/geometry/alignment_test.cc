@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/geometry/alignment.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+Points RandomPoints(int count, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> normal;
+  Points points(count);
+  for (Eigen::Vector3d& point : points) {
+    point = {normal(generator), normal(generator), normal(generator)};
+  }
+  return points;
+}
+
+double SquaredError(const PointAlignment& alignment, const Points& source, const Points& target) {
+  double sum = 0.0;
+  for (size_t i = 0; i < source.size(); ++i) {
+    sum += (alignment * source[i] - target[i]).squaredNorm();
+  }
+  return sum;
+}
+
+PointAlignment Similarity(double scale, const Eigen::Vector3d& turn, const Eigen::Vector3d& shift) {
+  PointAlignment alignment;
+  alignment.scale = scale;
+  alignment.target_from_source = {ExpSo3(turn), shift};
+  return alignment;
+}
+
+Points Apply(const PointAlignment& alignment, const Points& points) {
+  Points moved;
+  for (const Eigen::Vector3d& point : points) {
+    moved.push_back(alignment * point);
+  }
+  return moved;
+}
+
+TEST(Alignment, RecoversARigidMotion) {
+  const PointAlignment truth = Similarity(1.0, {0.3, -2.0, 1.0}, {5.0, -1.0, 100.0});
+  const Points source = RandomPoints(20, 1);
+  for (const AlignmentKind kind : {AlignmentKind::kSe3, AlignmentKind::kSim3}) {
+    const PointAlignment found = AlignPoints(source, Apply(truth, source), kind);
+    ASSERT_TRUE(found.ok()) << found.failure;
+    EXPECT_NEAR(found.scale, 1.0, 1e-12);
+    EXPECT_LT(AngularDistance(found.target_from_source.rotation, truth.target_from_source.rotation),
+              1e-7);
+    EXPECT_LT(SquaredError(found, source, Apply(truth, source)), 1e-20);
+  }
+}
+
+TEST(Alignment, RecoversTheScaleOnlyWhenAsked) {
+  const PointAlignment truth = Similarity(2.5, {0.1, 0.2, -0.3}, {1.0, 2.0, 3.0});
+  const Points source = RandomPoints(20, 2);
+  const Points target = Apply(truth, source);
+  EXPECT_NEAR(AlignPoints(source, target, AlignmentKind::kSim3).scale, 2.5, 1e-12);
+  EXPECT_EQ(AlignPoints(source, target, AlignmentKind::kSe3).scale, 1.0);
+}
+
+TEST(Alignment, NeverMirrors) {
+  const Points source = RandomPoints(10, 3);
+  Points mirrored = source;
+  for (Eigen::Vector3d& point : mirrored) {
+    point.x() = -point.x();
+  }
+  const PointAlignment found = AlignPoints(source, mirrored, AlignmentKind::kSe3);
+  ASSERT_TRUE(found.ok());
+  EXPECT_NEAR(found.target_from_source.rotation.toRotationMatrix().determinant(), 1.0, 1e-12);
+  EXPECT_GT(SquaredError(found, source, mirrored), 0.1);
+}
+
+TEST(Alignment, NoSmallChangeIsBetter) {
+  const Points source = RandomPoints(30, 4);
+  const Points target = RandomPoints(30, 5);
+  const PointAlignment best = AlignPoints(source, target, AlignmentKind::kSim3);
+  const double least = SquaredError(best, source, target);
+  for (int i = 0; i < 6; ++i) {
+    for (const double step : {-1e-3, 1e-3}) {
+      PointAlignment changed = best;
+      changed.target_from_source =
+          Retract(best.target_from_source, step * Eigen::Matrix<double, 6, 1>::Unit(i));
+      EXPECT_GT(SquaredError(changed, source, target), least) << i;
+      changed = best;
+      changed.scale += step;
+      EXPECT_GT(SquaredError(changed, source, target), least);
+    }
+  }
+}
+
+TEST(Alignment, NoneLeavesThePointsWhereTheyAre) {
+  const Points source = RandomPoints(1, 6);
+  const PointAlignment found = AlignPoints(source, source, AlignmentKind::kNone);
+  EXPECT_TRUE(found.ok());
+  EXPECT_EQ(found * source[0], source[0]);
+}
+
+TEST(Alignment, PointsOnALineAreAlignedWithoutError) {
+  const Points source = {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {4, 0, 0}};
+  const Points target = {{5, 0, 0}, {5, 1, 0}, {5, 3, 0}, {5, 4, 0}};
+  const PointAlignment found = AlignPoints(source, target, AlignmentKind::kSim3);
+  ASSERT_TRUE(found.ok());
+  EXPECT_LT(SquaredError(found, source, target), 1e-20);
+}
+
+TEST(Alignment, FailsWithAReason) {
+  const Points two = RandomPoints(2, 7);
+  const PointAlignment few = AlignPoints(two, two, AlignmentKind::kSe3);
+  EXPECT_FALSE(few.ok());
+  EXPECT_NE(few.failure.find("at least 3 pairs, there are 2"), std::string::npos);
+  const Points same(5, Eigen::Vector3d(1.0, 2.0, 3.0));
+  const Points spread = RandomPoints(5, 8);
+  EXPECT_FALSE(AlignPoints(same, spread, AlignmentKind::kSim3).ok());
+  EXPECT_FALSE(AlignPoints(spread, same, AlignmentKind::kSim3).ok());
+  EXPECT_TRUE(AlignPoints(same, spread, AlignmentKind::kSe3).ok());
+  EXPECT_THROW(AlignPoints(two, spread, AlignmentKind::kSe3), CheckError);
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/io/atomic_file.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <string>
+
+#include "hullslam/io/text_rows.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+// Stands in for a full disk: writes beyond `bytes` of a file fail while it lives.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : former_handler_(::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &former_);
+    rlimit limit = former_;
+    limit.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &former_);
+    ::signal(SIGXFSZ, former_handler_);
+  }
+
+ private:
+  sighandler_t former_handler_;
+  rlimit former_{};
+};
+
+long CountFiles(const std::filesystem::path& folder) {
+  return std::distance(std::filesystem::directory_iterator(folder), {});
+}
+
+TEST(AtomicFile, WritesAndReplacesWholeFiles) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "out.txt";
+  WriteFileAtomically(path, "first, and longer than the second");
+  const std::string second("second\0\n", 8);
+  WriteFileAtomically(path, second);
+  EXPECT_EQ(ReadFile(path), second);
+  EXPECT_EQ(CountFiles(folder.path()), 1);
+}
+
+TEST(AtomicFile, ADiskThatIsFullLeavesTheGoodFile) {
+  const TemporaryFolder folder;
+  const auto path = folder.Write("out.txt", "good");
+  {
+    const FileSizeLimit limit(4096);
+    ExpectInputError([&] { WriteFileAtomically(path, std::string(100000, 'x')); },
+                     {path.string(), "cannot be written", "File too large"});
+  }
+  EXPECT_EQ(ReadFile(path), "good");
+  EXPECT_EQ(CountFiles(folder.path()), 1);
+}
+
+TEST(AtomicFile, FoldersThatTakeNoFileAreTold) {
+  const TemporaryFolder folder;
+  const auto file = folder.Write("file", "x");
+  ExpectInputError([&] { WriteFileAtomically(file / "out.txt", "y"); },
+                   {"file/out.txt", "Not a directory"});
+  ExpectInputError([&] { WriteFileAtomically(folder.path() / "none" / "out.txt", "y"); },
+                   {"none/out.txt", "No such file or directory"});
+  EXPECT_EQ(ReadFile(file), "x");
+}
+
+TEST(AtomicFile, OnlyRegularFilesAreReplaced) {
+  const TemporaryFolder folder;
+  ExpectInputError([&] { WriteFileAtomically(folder.path(), "y"); }, {"not a regular file"});
+  ExpectInputError([&] { WriteFileAtomically("/dev/full", "y"); }, {"not a regular file"});
+}
+
+}  // namespace
+}  // namespace hullslam
