@@ -59,6 +59,7 @@ Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options)
 
 Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
                                  const MapperStatus& mapper) {
+  const ScopedTimer timer(times_, "pose");
   frame_ = std::move(frame);
   map_ = std::move(map);
   if (map_ == nullptr || map_->keyframes().empty()) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "hullslam/geometry/rigid3.h"
+#include "hullslam/map/map.h"
+#include "hullslam/map/messages.h"
 
 namespace hullslam {
 
@@ -14,5 +17,12 @@ struct StampedPose {
 
 // In order of time, one pose a time stamp.
 using Trajectory = std::vector<StampedPose>;
+
+// Poses of all tracked frames in the map as it is: each hangs on its reference keyframe, that of a
+// keyframe is its own. Frames without a pose are left out.
+Trajectory ComposeTrajectory(const Map& map, std::span<const TrackedFrame> frames);
+
+// Poses of the keyframes.
+Trajectory KeyframeTrajectory(const Map& map);
 
 }  // namespace hullslam

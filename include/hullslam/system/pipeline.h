@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "hullslam/map/map.h"
+#include "hullslam/map/messages.h"
+#include "hullslam/util/stage_timer.h"
+
+namespace hullslam {
+
+// Runs the stages: frames in, poses out. Made by MakeSequentialPipeline and MakeThreadedPipeline.
+class Pipeline {
+ public:
+  virtual ~Pipeline() = default;
+
+  // Frames come in order of time. Throws what a stage throws.
+  virtual TrackedFrame Track(std::shared_ptr<const Frame> frame) = 0;
+  // Waits until everything that was begun is in the map. No Track after it.
+  virtual void Finish() = 0;
+  // The newest snapshot; null before the first keyframe.
+  virtual std::shared_ptr<const Map> map() const = 0;
+  // Durations of the stages; complete after Finish.
+  virtual StageTimes times() const = 0;
+};
+
+}  // namespace hullslam

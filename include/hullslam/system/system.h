@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "hullslam/camera/rgbd_image.h"
+#include "hullslam/map/map.h"
+#include "hullslam/map/messages.h"
+#include "hullslam/map/sensor.h"
+#include "hullslam/system/options.h"
+#include "hullslam/system/trajectory.h"
+#include "hullslam/util/stage_timer.h"
+
+namespace hullslam {
+
+class FrameBuilder;
+class Pipeline;
+
+enum class PipelineKind {
+  kSequential,  // reproducible to the bit
+  kThreaded,    // mapping in a thread of its own
+};
+
+// RGB-D SLAM as one object: images in, poses and map out.
+//
+//   System system(options, PipelineKind::kSequential);
+//   for each frame: TrackedFrame tracked = system.Track(timestamp, image, depth);
+//   system.Finish();
+//   Trajectory trajectory = system.trajectory();
+class System {
+ public:
+  // Throws InputError where the options do not fit together.
+  System(const SystemOptions& options, PipelineKind kind);
+  ~System();
+
+  // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order that Camera.RGB says; `depth` as in
+  // RgbdImage. Time stamps (s) must increase. Throws CheckError otherwise.
+  TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& depth);
+  TrackedFrame Track(const RgbdImage& image);
+
+  // Waits for the mapping that is under way. No Track after it.
+  void Finish();
+
+  // The newest snapshot; null before the first keyframe.
+  std::shared_ptr<const Map> map() const;
+  // One entry a call of Track.
+  const std::vector<TrackedFrame>& frames() const { return frames_; }
+  // All tracked frames, in the map as it is now.
+  Trajectory trajectory() const;
+  // Durations of the stages; "track" is the whole of Track but mapping. Complete after Finish.
+  StageTimes times() const;
+
+ private:
+  const SystemOptions options_;
+  const Sensor sensor_;
+  std::unique_ptr<FrameBuilder> frame_builder_;
+  std::unique_ptr<Pipeline> pipeline_;
+  std::vector<TrackedFrame> frames_;
+  StageTimes times_;
+};
+
+}  // namespace hullslam

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/system/sequential_pipeline.h"
+
+#include <utility>
+
+#include "hullslam/mapping/mapper.h"
+#include "hullslam/tracking/tracker.h"
+
+namespace hullslam {
+namespace {
+
+class SequentialPipeline final : public Pipeline {
+ public:
+  SequentialPipeline(const Sensor& sensor, const SystemOptions& options)
+      : tracker_(sensor, options.tracking),
+        mapper_(sensor, options.mapping,
+                [this](std::shared_ptr<const Map> map) { map_ = std::move(map); }) {}
+
+  TrackedFrame Track(std::shared_ptr<const Frame> frame) override {
+    const Tracker::Result result = tracker_.Process(std::move(frame), map_, MapperStatus());
+    if (result.request) {
+      mapper_.Process(*result.request, nullptr);
+    }
+    return result.frame;
+  }
+
+  void Finish() override {}
+
+  std::shared_ptr<const Map> map() const override { return map_; }
+
+  StageTimes times() const override {
+    StageTimes times = tracker_.times();
+    times.Merge(mapper_.times());
+    return times;
+  }
+
+ private:
+  std::shared_ptr<const Map> map_;
+  Tracker tracker_;
+  Mapper mapper_;
+};
+
+}  // namespace
+
+std::unique_ptr<Pipeline> MakeSequentialPipeline(const Sensor& sensor,
+                                                 const SystemOptions& options) {
+  return std::make_unique<SequentialPipeline>(sensor, options);
+}
+
+}  // namespace hullslam

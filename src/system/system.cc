@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/system/system.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include "hullslam/system/pipeline.h"
+#include "hullslam/system/sequential_pipeline.h"
+#include "hullslam/system/threaded_pipeline.h"
+#include "hullslam/tracking/frame_builder.h"
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+const SystemOptions& Validated(const SystemOptions& options) {
+  options.Validate();
+  return options;
+}
+
+Sensor MakeSensor(const SystemOptions& options) {
+  Sensor sensor;
+  sensor.camera = options.camera;
+  sensor.bounds = options.camera.UndistortedBounds();
+  sensor.levels = ScaleLevels::Create(options.features.level_count, options.features.scale_factor);
+  sensor.close_depth = options.depth.close_baselines * sensor.baseline();
+  sensor.frames_per_second = options.frames_per_second;
+  return sensor;
+}
+
+cv::Mat ToGrey(const cv::Mat& image, bool rgb_order) {
+  cv::Mat grey;
+  switch (image.type()) {
+    case CV_8UC1:
+      return image;
+    case CV_8UC3:
+      cv::cvtColor(image, grey, rgb_order ? cv::COLOR_RGB2GRAY : cv::COLOR_BGR2GRAY);
+      return grey;
+    case CV_8UC4:
+      cv::cvtColor(image, grey, rgb_order ? cv::COLOR_RGBA2GRAY : cv::COLOR_BGRA2GRAY);
+      return grey;
+    default:
+      throw CheckError("the image has not 8 bits in 1, 3 or 4 channels");
+  }
+}
+
+}  // namespace
+
+System::System(const SystemOptions& options, PipelineKind kind)
+    : options_(Validated(options)),
+      sensor_(MakeSensor(options_)),
+      frame_builder_(std::make_unique<FrameBuilder>(sensor_, options_.depth, options_.features)),
+      pipeline_(kind == PipelineKind::kThreaded ? MakeThreadedPipeline(sensor_, options_)
+                                                : MakeSequentialPipeline(sensor_, options_)) {}
+
+System::~System() = default;
+
+TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat& depth) {
+  return Track(RgbdImage{timestamp, ToGrey(image, options_.rgb_order), depth});
+}
+
+TrackedFrame System::Track(const RgbdImage& image) {
+  Check(frames_.empty() || image.timestamp > frames_.back().timestamp,
+        "time stamps do not increase");
+  const FrameId id(static_cast<uint32_t>(frames_.size()));
+  std::shared_ptr<const Frame> frame;
+  {
+    const ScopedTimer timer(times_, "frame");
+    frame = frame_builder_->Build(image, id);
+  }
+  frames_.push_back(pipeline_->Track(std::move(frame)));
+  return frames_.back();
+}
+
+void System::Finish() { pipeline_->Finish(); }
+
+std::shared_ptr<const Map> System::map() const { return pipeline_->map(); }
+
+Trajectory System::trajectory() const {
+  const std::shared_ptr<const Map> map = pipeline_->map();
+  return map != nullptr ? ComposeTrajectory(*map, frames_) : Trajectory();
+}
+
+StageTimes System::times() const {
+  StageTimes times = times_;
+  times.Merge(pipeline_->times());
+  const auto& samples = times.samples();
+  const auto frame = samples.find("frame");
+  const auto pose = samples.find("pose");
+  StageTimes all = times;
+  if (frame != samples.end() && pose != samples.end()) {
+    for (size_t i = 0; i < std::min(frame->second.size(), pose->second.size()); ++i) {
+      all.Add("track", frame->second[i] + pose->second[i]);
+    }
+  }
+  return all;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/system/threaded_pipeline.h"
+
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "hullslam/mapping/mapper.h"
+#include "hullslam/tracking/tracker.h"
+#include "hullslam/util/cancellation.h"
+#include "hullslam/util/mailbox.h"
+#include "hullslam/util/published.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kMailboxCapacity = 8;  // more than the keyframe policy lets wait
+
+class ThreadedPipeline final : public Pipeline {
+ public:
+  ThreadedPipeline(const Sensor& sensor, const SystemOptions& options)
+      : tracker_(sensor, options.tracking),
+        mapper_(sensor, options.mapping,
+                [this](std::shared_ptr<const Map> map) { map_.Publish(std::move(map)); }),
+        requests_(kMailboxCapacity),
+        mapping_thread_([this] { RunMapping(); }) {}
+
+  ~ThreadedPipeline() override { Stop(); }
+
+  TrackedFrame Track(std::shared_ptr<const Frame> frame) override {
+    RethrowFailure();
+    Tracker::Result result = tracker_.Process(std::move(frame), map_.Get(), Status());
+    if (result.request) {
+      const bool is_first = !result.request->reference.IsValid();
+      Post(std::move(*result.request));
+      if (is_first) {
+        WaitUntilIdle();  // there is nothing to track against before
+      }
+    }
+    return result.frame;
+  }
+
+  void Finish() override {
+    Stop();
+    RethrowFailure();
+  }
+
+  std::shared_ptr<const Map> map() const override { return map_.Get(); }
+
+  StageTimes times() const override {
+    StageTimes times = tracker_.times();
+    times.Merge(mapper_.times());
+    return times;
+  }
+
+ private:
+  MapperStatus Status() {
+    const std::lock_guard lock(mutex_);
+    return {.is_idle = !is_busy_ && waiting_ == 0, .requests_waiting = waiting_};
+  }
+
+  void Post(KeyframeRequest request) {
+    {
+      const std::lock_guard lock(mutex_);
+      ++waiting_;
+      if (is_busy_) {
+        hurry_.Request();
+      }
+    }
+    requests_.Send(std::move(request));
+  }
+
+  void WaitUntilIdle() {
+    std::unique_lock lock(mutex_);
+    became_idle_.wait(lock, [this] { return (!is_busy_ && waiting_ == 0) || failure_; });
+  }
+
+  void RunMapping() {
+    while (const std::optional<KeyframeRequest> request = requests_.Receive()) {
+      SetBusy(true);
+      try {
+        mapper_.Process(*request, &hurry_);
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        failure_ = std::current_exception();
+      }
+      SetBusy(false);
+    }
+  }
+
+  void SetBusy(bool is_busy) {
+    const std::lock_guard lock(mutex_);
+    is_busy_ = is_busy;
+    if (is_busy) {
+      --waiting_;
+    }
+    if (waiting_ == 0) {
+      hurry_.Reset();
+    }
+    became_idle_.notify_all();
+  }
+
+  void Stop() {
+    requests_.Close();
+    if (mapping_thread_.joinable()) {
+      mapping_thread_.join();
+    }
+  }
+
+  void RethrowFailure() {
+    const std::lock_guard lock(mutex_);
+    if (failure_) {
+      std::rethrow_exception(std::exchange(failure_, nullptr));
+    }
+  }
+
+  Published<Map> map_;
+  Tracker tracker_;
+  Mapper mapper_;
+  Mailbox<KeyframeRequest> requests_;
+  Cancellation hurry_;
+
+  std::mutex mutex_;  // guards the four below
+  std::condition_variable became_idle_;
+  bool is_busy_ = false;
+  int waiting_ = 0;
+  std::exception_ptr failure_;
+
+  std::thread mapping_thread_;  // last: it uses the others
+};
+
+}  // namespace
+
+std::unique_ptr<Pipeline> MakeThreadedPipeline(const Sensor& sensor, const SystemOptions& options) {
+  return std::make_unique<ThreadedPipeline>(sensor, options);
+}
+
+}  // namespace hullslam
