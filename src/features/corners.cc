@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "hullslam/util/check.h"
+#include "hullslam/util/function_clones.h"
 
 namespace hullslam {
 namespace {
@@ -58,6 +59,7 @@ inline uint8_t OverArcs(const std::array<uint8_t, kCircle>& p) {
 
 // Score of each pixel from begin to end: an arc is brighter than the centre by more than t if its
 // darkest pixel is. Without branches, so that the compiler can treat many pixels at once.
+HULLSLAM_FUNCTION_CLONES
 void ScoreRow(const uint8_t* row, ptrdiff_t step, int begin, int end, uint8_t* __restrict scores) {
   std::array<const uint8_t*, kCircle> circle;
   for (int i = 0; i < kCircle; ++i) {
@@ -79,6 +81,7 @@ void ScoreRow(const uint8_t* row, ptrdiff_t step, int begin, int end, uint8_t* _
 
 // Keeps the scores that are at least `threshold`, above those of the neighbours before it in raster
 // order and not below those after it; the others become 0.
+HULLSLAM_FUNCTION_CLONES
 void MaximaOfRow(const uint8_t* above, const uint8_t* row, const uint8_t* below, int begin, int end,
                  uint8_t threshold, uint8_t* __restrict maxima) {
   for (int x = begin; x < end; ++x) {

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "hullslam/util/function_clones.h"
 #include "orb_pattern.h"
 
 namespace hullslam {
@@ -50,6 +51,7 @@ struct Moments {
   int y = 0;
 };
 
+HULLSLAM_FUNCTION_CLONES
 Moments DiscMoments(const uint8_t* center, ptrdiff_t step) {
   Moments moments;
   for (int v = -kDiscRadius; v <= kDiscRadius; ++v) {
@@ -99,7 +101,9 @@ inline int32_t RoundSmall(float value) {
 
 using Offsets = std::array<int32_t, 2 * kTests>;
 
-// Where the rotated points are in memory, from the centre.
+// Where the rotated points are in memory, from the centre. AVX2 does not bring fused multiply-add,
+// so both clones round alike.
+HULLSLAM_FUNCTION_CLONES
 void RotatePattern(const Orientation& orientation, int32_t step, Offsets& offsets) {
   const float cosine = orientation.cosine;
   const float sine = orientation.sine;
