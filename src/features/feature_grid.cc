@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/features/feature_grid.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "hullslam/util/check.h"
@@ -9,10 +8,13 @@
 namespace hullslam {
 namespace {
 
-// Cell number of a distance from the box's edge in cells, clamped to those there are. Clamping
-// first keeps far and infinite values from overflowing the integer.
+// Cell number of a distance from the box's edge in cells, clamped to those there are. Compared
+// before the conversion, so that far, infinite and undefined values do not overflow the integer.
 int ClampedCell(float cells, int count) {
-  return static_cast<int>(std::clamp(cells, 0.0f, static_cast<float>(count - 1)));
+  if (!(cells > 0.0f)) {
+    return 0;
+  }
+  return cells < static_cast<float>(count) ? static_cast<int>(cells) : count - 1;
 }
 
 }  // namespace

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/features/corners.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <opencv2/features2d.hpp>
+#include <tuple>
+#include <utility>
+
+#include "features/test_images.h"
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+constexpr int kBorder = 19;
+
+std::vector<Corner> Detect(const cv::Mat& image, int initial_threshold, int minimum_threshold) {
+  std::vector<Corner> corners;
+  CornerDetector(initial_threshold, minimum_threshold).Detect(image, kBorder, corners);
+  return corners;
+}
+
+// Position and score of OpenCV's corners, without suppression: it finds every FAST corner.
+std::map<std::pair<int, int>, int> OpenCvScores(const cv::Mat& image, int threshold) {
+  std::vector<cv::KeyPoint> keypoints;
+  cv::FAST(image, keypoints, threshold, false);
+  std::map<std::pair<int, int>, int> scores;
+  for (const cv::KeyPoint& keypoint : keypoints) {
+    scores[{static_cast<int>(keypoint.pt.x), static_cast<int>(keypoint.pt.y)}] = 0;
+  }
+  cv::FAST(image, keypoints, threshold, true);
+  for (const cv::KeyPoint& keypoint : keypoints) {
+    scores[{static_cast<int>(keypoint.pt.x), static_cast<int>(keypoint.pt.y)}] =
+        static_cast<int>(keypoint.response);
+  }
+  return scores;
+}
+
+// OpenCV drops both of two neighbours with one score, we keep the first: ours has all of OpenCV's
+// maxima with the same scores, and beside them FAST corners only.
+TEST(CornerDetector, AgreesWithOpenCvsFast) {
+  const cv::Mat image = MakeCornerImage();
+  constexpr int kThreshold = 10;
+  const auto theirs = OpenCvScores(image, kThreshold);
+  std::map<std::pair<int, int>, int> ours;
+  for (const Corner& corner : Detect(image, kThreshold, kThreshold)) {
+    ours[{corner.x, corner.y}] = corner.score;
+    EXPECT_TRUE(theirs.contains({corner.x, corner.y})) << corner.x << " " << corner.y;
+  }
+  EXPECT_GT(ours.size(), 500u);
+  for (const auto& [position, score] : theirs) {
+    const auto [x, y] = position;
+    const bool inside = x >= kBorder && y >= kBorder && x < 640 - kBorder && y < 480 - kBorder;
+    if (score > 0 && inside) {
+      const auto found = ours.find(position);
+      ASSERT_NE(found, ours.end()) << x << " " << y;
+      EXPECT_EQ(found->second, score);
+    }
+  }
+}
+
+// A dot that is brighter by 50 than all of its circle: a corner for every threshold below 50.
+TEST(CornerDetector, ScoreIsTheLargestThreshold) {
+  for (const int sign : {-1, 1}) {
+    cv::Mat image(64, 64, CV_8UC1, cv::Scalar(100));
+    image.at<uint8_t>(30, 33) = static_cast<uint8_t>(100 + sign * 50);
+    const std::vector<Corner> corners = Detect(image, 49, 49);
+    ASSERT_EQ(corners.size(), 1u);
+    EXPECT_EQ(corners[0].x, 33);
+    EXPECT_EQ(corners[0].y, 30);
+    EXPECT_EQ(corners[0].score, 49);
+    EXPECT_TRUE(Detect(image, 50, 50).empty());
+  }
+}
+
+TEST(CornerDetector, NeedsNineNeighboursInARow) {
+  constexpr int kCircle[16][2] = {{0, -3}, {1, -3},  {2, -2},  {3, -1}, {3, 0},  {3, 1},
+                                  {2, 2},  {1, 3},   {0, 3},   {-1, 3}, {-2, 2}, {-3, 1},
+                                  {-3, 0}, {-3, -1}, {-2, -2}, {-1, -3}};
+  for (int start = 0; start < 16; ++start) {
+    for (const int length : {8, 9}) {
+      cv::Mat image(41, 41, CV_8UC1, cv::Scalar(100));
+      for (int i = start; i < start + length; ++i) {
+        image.at<uint8_t>(20 + kCircle[i % 16][1], 20 + kCircle[i % 16][0]) = 180;
+      }
+      bool found = false;
+      for (const Corner& corner : Detect(image, 20, 20)) {
+        found = found || (corner.x == 20 && corner.y == 20);
+      }
+      EXPECT_EQ(found, length == 9) << "from " << start;
+    }
+  }
+}
+
+TEST(CornerDetector, KeepsTheFirstOfEqualNeighbours) {
+  cv::Mat image(64, 64, CV_8UC1, cv::Scalar(100));
+  image(cv::Rect(30, 30, 2, 2)).setTo(160);
+  const std::vector<Corner> corners = Detect(image, 20, 20);
+  ASSERT_EQ(corners.size(), 1u);
+  EXPECT_EQ(corners[0].x, 30);
+  EXPECT_EQ(corners[0].y, 30);
+}
+
+TEST(CornerDetector, FindsExtremesOfTheGreyRange) {
+  cv::Mat image(64, 64, CV_8UC1, cv::Scalar(0));
+  image.at<uint8_t>(32, 32) = 255;
+  const std::vector<Corner> corners = Detect(image, 20, 7);
+  ASSERT_EQ(corners.size(), 1u);
+  EXPECT_EQ(corners[0].score, 254);
+  EXPECT_TRUE(Detect(cv::Mat(64, 64, CV_8UC1, cv::Scalar(255)), 1, 1).empty());
+}
+
+// A weak dot is dropped beside a strong one and kept in a cell of its own.
+TEST(CornerDetector, FallsBackToTheMinimumThresholdByCell) {
+  cv::Mat image(128, 128, CV_8UC1, cv::Scalar(100));
+  image.at<uint8_t>(40, 40) = 150;
+  image.at<uint8_t>(40, 50) = 112;
+  image.at<uint8_t>(90, 90) = 112;
+  const std::vector<Corner> corners = Detect(image, 20, 7);
+  ASSERT_EQ(corners.size(), 2u);
+  EXPECT_EQ(corners[0].score, 49);
+  EXPECT_EQ(corners[1].x, 90);
+  EXPECT_EQ(corners[1].score, 11);
+}
+
+TEST(CornerDetector, KeepsTheBorderAndTheOrder) {
+  const cv::Mat image = MakeCornerImage(101, 83);
+  const std::vector<Corner> corners = Detect(image, 5, 5);
+  ASSERT_GT(corners.size(), 20u);
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const Corner& corner = corners[i];
+    EXPECT_GE(corner.x, kBorder);
+    EXPECT_LT(corner.x, 101 - kBorder);
+    EXPECT_GE(corner.y, kBorder);
+    EXPECT_LT(corner.y, 83 - kBorder);
+    if (i > 0) {
+      EXPECT_LT(std::tuple(corners[i - 1].y, corners[i - 1].x), std::tuple(corner.y, corner.x));
+    }
+  }
+  cv::Mat edge(64, 64, CV_8UC1, cv::Scalar(100));
+  for (const int place : {18, 19, 44, 45}) {
+    edge.setTo(100);
+    edge.at<uint8_t>(place, place) = 200;
+    EXPECT_EQ(Detect(edge, 20, 20).size(), place == 19 || place == 44 ? 1u : 0u) << place;
+  }
+}
+
+TEST(CornerDetector, TakesImagesThatAreAllBorder) {
+  EXPECT_TRUE(Detect(MakeCornerImage(38, 100), 20, 7).empty());
+}
+
+TEST(CornerDetector, RejectsWhatItCannotUse) {
+  std::vector<Corner> corners;
+  EXPECT_THROW(CornerDetector(20, 0), CheckError);
+  EXPECT_THROW(CornerDetector(20, 256), CheckError);
+  CornerDetector detector(20, 7);
+  const cv::Mat colour(64, 64, CV_8UC3, cv::Scalar());
+  EXPECT_THROW(detector.Detect(colour, kBorder, corners), CheckError);
+  EXPECT_THROW(detector.Detect(MakeCornerImage(64, 64), 3, corners), CheckError);
+}
+
+}  // namespace
+}  // namespace hullslam

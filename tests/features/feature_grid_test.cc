@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/features/feature_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+// In the undistorted image of a camera like TUM1, some of them outside its box.
+std::vector<Keypoint> MakeKeypoints(size_t count) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> x(-40.0f, 680.0f);
+  std::uniform_real_distribution<float> y(-40.0f, 520.0f);
+  std::vector<Keypoint> keypoints(count);
+  for (Keypoint& keypoint : keypoints) {
+    keypoint.undistorted = {x(random), y(random)};
+    keypoint.raw = {0.0f, 0.0f};
+    keypoint.level = static_cast<int>(random() % 8);
+  }
+  return keypoints;
+}
+
+FeatureGrid MakeGrid(const std::vector<Keypoint>& keypoints) {
+  return FeatureGrid(keypoints, {-20.5f, -18.0f}, {655.0f, 500.0f});
+}
+
+std::vector<uint32_t> FindBySearchingAll(const std::vector<Keypoint>& keypoints,
+                                         const Eigen::Vector2f& center, float radius, int min_level,
+                                         int max_level) {
+  std::vector<uint32_t> found;
+  for (uint32_t i = 0; i < keypoints.size(); ++i) {
+    const Keypoint& keypoint = keypoints[i];
+    const Eigen::Vector2f offset = keypoint.undistorted - center;
+    if (std::abs(offset.x()) < radius && std::abs(offset.y()) < radius &&
+        keypoint.level >= min_level && keypoint.level <= max_level) {
+      found.push_back(i);
+    }
+  }
+  return found;
+}
+
+TEST(FeatureGrid, FindsWhatASearchOfAllFinds) {
+  const std::vector<Keypoint> keypoints = MakeKeypoints(1000);
+  const FeatureGrid grid = MakeGrid(keypoints);
+  size_t total = 0;
+  for (const float radius : {0.5f, 7.0f, 40.0f, 1000.0f}) {
+    for (float y = -60.0f; y < 540.0f; y += 37.0f) {
+      for (float x = -60.0f; x < 700.0f; x += 41.0f) {
+        std::vector<uint32_t> found;
+        grid.FindNear(keypoints, {x, y}, radius, 2, 5, found);
+        std::sort(found.begin(), found.end());
+        EXPECT_EQ(found, FindBySearchingAll(keypoints, {x, y}, radius, 2, 5));
+        total += found.size();
+      }
+    }
+  }
+  EXPECT_GT(total, 10000u);
+}
+
+TEST(FeatureGrid, FindsEveryKeypointAtItsPlace) {
+  const std::vector<Keypoint> keypoints = MakeKeypoints(500);
+  const FeatureGrid grid = MakeGrid(keypoints);
+  for (uint32_t i = 0; i < keypoints.size(); ++i) {
+    const Keypoint& keypoint = keypoints[i];
+    std::vector<uint32_t> found;
+    grid.FindNear(keypoints, keypoint.undistorted, 0.01f, keypoint.level, keypoint.level, found);
+    EXPECT_NE(std::find(found.begin(), found.end(), i), found.end());
+  }
+}
+
+TEST(FeatureGrid, AppendsInOrderOfIndexWithinACell) {
+  std::vector<Keypoint> keypoints(4);
+  for (Keypoint& keypoint : keypoints) {
+    keypoint.undistorted = {100.0f, 100.0f};
+  }
+  keypoints[1].undistorted = {300.0f, 300.0f};
+  const FeatureGrid grid(keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});
+  std::vector<uint32_t> found = {77};
+  grid.FindNear(keypoints, {100.0f, 100.0f}, 5.0f, 0, 7, found);
+  EXPECT_EQ(found, (std::vector<uint32_t>{77, 0, 2, 3}));
+}
+
+TEST(FeatureGrid, RadiusIsExclusive) {
+  std::vector<Keypoint> keypoints(1);
+  keypoints[0].undistorted = {100.0f, 100.0f};
+  const FeatureGrid grid(keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});
+  std::vector<uint32_t> found;
+  grid.FindNear(keypoints, {105.0f, 100.0f}, 5.0f, 0, 7, found);
+  grid.FindNear(keypoints, {100.0f, 95.0f}, 5.0f, 0, 7, found);
+  EXPECT_TRUE(found.empty());
+  grid.FindNear(keypoints, {104.99f, 95.01f}, 5.0f, 0, 7, found);
+  EXPECT_EQ(found.size(), 1u);
+}
+
+TEST(FeatureGrid, FindsNothingInNothing) {
+  std::vector<uint32_t> found;
+  FeatureGrid().FindNear({}, {1.0f, 1.0f}, 100.0f, 0, 7, found);
+  FeatureGrid({}, {0.0f, 0.0f}, {640.0f, 480.0f}).FindNear({}, {1.0f, 1.0f}, 9.0f, 0, 7, found);
+  EXPECT_TRUE(found.empty());
+}
+
+// A point just in front of the camera can project anywhere.
+TEST(FeatureGrid, TakesCentersFarAwayOrNotFinite) {
+  const std::vector<Keypoint> keypoints = MakeKeypoints(100);
+  const FeatureGrid grid = MakeGrid(keypoints);
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  std::vector<uint32_t> found;
+  for (const float far : {1e30f, -1e30f, kInfinity, -kInfinity, kNan}) {
+    grid.FindNear(keypoints, {far, 100.0f}, 20.0f, 0, 7, found);
+    grid.FindNear(keypoints, {100.0f, far}, 20.0f, 0, 7, found);
+  }
+  EXPECT_TRUE(found.empty());
+}
+
+TEST(FeatureGrid, RejectsAnEmptyBox) {
+  EXPECT_THROW(FeatureGrid({}, {0.0f, 0.0f}, {0.0f, 480.0f}), CheckError);
+}
+
+}  // namespace
+}  // namespace hullslam

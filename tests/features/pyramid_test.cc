@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/features/pyramid.h"
+
+#include <gtest/gtest.h>
+
+#include "features/test_images.h"
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+TEST(ImagePyramid, HasTheSizesOfOpenCvsOrb) {
+  ImagePyramid pyramid(ScaleLevels::Create(8, 1.2));
+  const cv::Mat image = MakeCornerImage();
+  pyramid.Build(image);
+  const cv::Size expected[] = {{640, 480}, {533, 400}, {444, 333}, {370, 278},
+                               {309, 231}, {257, 193}, {214, 161}, {179, 134}};
+  for (int l = 0; l < 8; ++l) {
+    EXPECT_EQ(pyramid.level(l).size(), expected[l]) << l;
+  }
+  EXPECT_EQ(pyramid.level(0).data, image.data);
+}
+
+TEST(ImagePyramid, MapsTheCornersOfTheImage) {
+  ImagePyramid pyramid(ScaleLevels::Create(8, 1.2));
+  pyramid.Build(MakeCornerImage());
+  for (int l = 0; l < 8; ++l) {
+    const cv::Mat& image = pyramid.level(l);
+    const Eigen::Vector2f far(static_cast<float>(image.cols) - 0.5f,
+                              static_cast<float>(image.rows) - 0.5f);
+    EXPECT_LT((pyramid.ToLevelZero({-0.5f, -0.5f}, l) - Eigen::Vector2f(-0.5f, -0.5f)).norm(),
+              1e-4f);
+    EXPECT_LT((pyramid.ToLevelZero(far, l) - Eigen::Vector2f(639.5f, 479.5f)).norm(), 1e-3f);
+  }
+  EXPECT_EQ(pyramid.ToLevelZero({17.0f, 23.0f}, 0), Eigen::Vector2f(17.0f, 23.0f));
+}
+
+// The centre of gravity of a smooth spot is at the same place on all levels.
+TEST(ImagePyramid, MapsThePlaceOfASpot) {
+  cv::Mat image(480, 640, CV_8UC1, cv::Scalar(0));
+  const Eigen::Vector2f center(560.0f, 400.0f);
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) {
+      const float r2 =
+          (Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) - center).squaredNorm();
+      image.at<uint8_t>(y, x) = static_cast<uint8_t>(250.0f * std::exp(-r2 / 450.0f));
+    }
+  }
+  ImagePyramid pyramid(ScaleLevels::Create(8, 1.2));
+  pyramid.Build(image);
+  for (int l = 0; l < 8; ++l) {
+    const cv::Moments moments = cv::moments(pyramid.level(l));
+    const Eigen::Vector2f spot(static_cast<float>(moments.m10 / moments.m00),
+                               static_cast<float>(moments.m01 / moments.m00));
+    EXPECT_LT((pyramid.ToLevelZero(spot, l) - center).norm(), 0.1f) << l;
+  }
+}
+
+TEST(ImagePyramid, RejectsImagesItCannotRead) {
+  ImagePyramid pyramid(ScaleLevels::Create(8, 1.2));
+  EXPECT_THROW(pyramid.Build(cv::Mat(64, 64, CV_16UC1, cv::Scalar(0))), CheckError);
+  EXPECT_THROW(pyramid.Build(cv::Mat(1, 1, CV_8UC1, cv::Scalar(0))), CheckError);
+}
+
+}  // namespace
+}  // namespace hullslam
