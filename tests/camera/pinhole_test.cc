@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/camera/pinhole.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+// TUM freiburg1, the strongest distortion of the settings that ORB-SLAM2 ships.
+PinholeCamera Tum1() {
+  return {.fx = 517.306408,
+          .fy = 516.469215,
+          .cx = 318.643040,
+          .cy = 255.313989,
+          .k1 = 0.262383,
+          .k2 = -0.953104,
+          .p1 = -0.005358,
+          .p2 = 0.002628,
+          .k3 = 1.163314};
+}
+
+cv::Matx33d Intrinsics(const PinholeCamera& camera) {
+  return {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
+}
+
+cv::Vec<double, 5> Coefficients(const PinholeCamera& camera) {
+  return {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
+}
+
+std::vector<Eigen::Vector2d> PixelsOf(const PinholeCamera& camera) {
+  std::vector<Eigen::Vector2d> pixels;
+  for (int y = 0; y <= camera.height; y += 16) {
+    for (int x = 0; x <= camera.width; x += 16) {
+      pixels.emplace_back(x, y);
+    }
+  }
+  return pixels;
+}
+
+TEST(PinholeCamera, ProjectsByHand) {
+  const PinholeCamera camera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0};
+  EXPECT_EQ(camera.Project({1.0, -0.5, 2.0}), Eigen::Vector2d(570.0, 140.0));
+  EXPECT_EQ(camera.Project({0.0, 0.0, 7.0}), Eigen::Vector2d(320.0, 240.0));
+  EXPECT_EQ(camera.Unproject({570.0, 140.0}, 2.0), Eigen::Vector3d(1.0, -0.5, 2.0));
+}
+
+TEST(PinholeCamera, UnprojectInvertsProject) {
+  const PinholeCamera camera = Tum1();
+  for (const Eigen::Vector2d& pixel : PixelsOf(camera)) {
+    const Eigen::Vector3d point = camera.Unproject(pixel, 1.7);
+    EXPECT_DOUBLE_EQ(point.z(), 1.7);
+    EXPECT_LT((camera.Project(point) - pixel).norm(), 1e-10);
+  }
+}
+
+TEST(PinholeCamera, UndistortInvertsDistort) {
+  const PinholeCamera camera = Tum1();
+  for (const Eigen::Vector2d& raw : PixelsOf(camera)) {
+    EXPECT_LT((camera.Distort(camera.Undistort(raw)) - raw).norm(), 1e-6) << raw.transpose();
+  }
+}
+
+TEST(PinholeCamera, DistortIsThatOfOpenCv) {
+  const PinholeCamera camera = Tum1();
+  for (const Eigen::Vector2d& pixel : PixelsOf(camera)) {
+    const Eigen::Vector3d point = camera.Unproject(pixel, 1.0);
+    const std::vector<cv::Point3d> points = {{point.x(), point.y(), point.z()}};
+    std::vector<cv::Point2d> projected;
+    cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), Intrinsics(camera), Coefficients(camera),
+                      projected);
+    const Eigen::Vector2d expected(projected[0].x, projected[0].y);
+    EXPECT_LT((camera.Distort(pixel) - expected).norm(), 1e-9);
+  }
+}
+
+TEST(PinholeCamera, UndistortIsThatOfOpenCv) {
+  const PinholeCamera camera = Tum1();
+  for (const Eigen::Vector2d& raw : PixelsOf(camera)) {
+    const std::vector<cv::Point2d> points = {{raw.x(), raw.y()}};
+    std::vector<cv::Point2d> undistorted;
+    cv::undistortPoints(
+        points, undistorted, Intrinsics(camera), Coefficients(camera), cv::noArray(),
+        Intrinsics(camera),
+        cv::TermCriteria(cv::TermCriteria::MAX_ITER + cv::TermCriteria::EPS, 200, 1e-10));
+    const Eigen::Vector2d expected(undistorted[0].x, undistorted[0].y);
+    EXPECT_LT((camera.Undistort(raw) - expected).norm(), 1e-6) << raw.transpose();
+  }
+}
+
+TEST(PinholeCamera, PrincipalPointStays) {
+  const PinholeCamera camera = Tum1();
+  const Eigen::Vector2d center(camera.cx, camera.cy);
+  EXPECT_LT((camera.Distort(center) - center).norm(), 1e-12);
+  EXPECT_LT((camera.Undistort(center) - center).norm(), 1e-12);
+}
+
+TEST(PinholeCamera, WithoutDistortionNothingMoves) {
+  PinholeCamera camera = Tum1();
+  camera.k1 = camera.k2 = camera.p1 = camera.p2 = camera.k3 = 0.0;
+  EXPECT_FALSE(camera.IsDistorted());
+  EXPECT_EQ(camera.Undistort({17.25, 400.5}), Eigen::Vector2d(17.25, 400.5));
+  const PinholeCamera::Bounds bounds = camera.UndistortedBounds();
+  EXPECT_EQ(bounds.min_x, 0.0);
+  EXPECT_EQ(bounds.min_y, 0.0);
+  EXPECT_EQ(bounds.max_x, 640.0);
+  EXPECT_EQ(bounds.max_y, 480.0);
+}
+
+// r (1 - r^2) has its maximum 0.385 at r = 0.577: no undistorted point lies beyond.
+TEST(PinholeCamera, UndistortStopsAtAFold) {
+  const PinholeCamera camera{.fx = 100.0, .fy = 100.0, .cx = 0.0, .cy = 0.0, .k1 = -1.0};
+  const Eigen::Vector2d inside = camera.Undistort({38.0, 0.0});
+  EXPECT_LT((camera.Distort(inside) - Eigen::Vector2d(38.0, 0.0)).norm(), 1e-6);
+  EXPECT_LT(inside.x(), 57.8);
+  for (const double x : {38.6, 60.0, 300.0, 1e6}) {
+    const Eigen::Vector2d beyond = camera.Undistort({x, 0.5 * x});
+    EXPECT_TRUE(beyond.allFinite()) << x;
+  }
+}
+
+TEST(PinholeCamera, BoundsHoldTheImage) {
+  const PinholeCamera camera = Tum1();
+  const PinholeCamera::Bounds bounds = camera.UndistortedBounds();
+  for (const Eigen::Vector2d& raw : PixelsOf(camera)) {
+    const Eigen::Vector2d pixel = camera.Undistort(raw);
+    EXPECT_GE(pixel.x(), bounds.min_x - 0.5) << raw.transpose();
+    EXPECT_LE(pixel.x(), bounds.max_x + 0.5) << raw.transpose();
+    EXPECT_GE(pixel.y(), bounds.min_y - 0.5) << raw.transpose();
+    EXPECT_LE(pixel.y(), bounds.max_y + 0.5) << raw.transpose();
+  }
+}
+
+TEST(PinholeCamera, BoundsContainHalfOpen) {
+  const PinholeCamera::Bounds bounds{.min_x = 0.0, .min_y = -2.0, .max_x = 10.0, .max_y = 5.0};
+  EXPECT_TRUE(bounds.Contains({0.0, -2.0}));
+  EXPECT_TRUE(bounds.Contains({9.999, 4.999}));
+  EXPECT_FALSE(bounds.Contains({10.0, 0.0}));
+  EXPECT_FALSE(bounds.Contains({5.0, 5.0}));
+  EXPECT_FALSE(bounds.Contains({-0.001, 0.0}));
+}
+
+TEST(PinholeCamera, BindsTheKeysOfOrbSlam2) {
+  PinholeCamera camera;
+  OptionTable table;
+  camera.Bind(table);
+  table.Set("Camera.fx", "535.4", "test");
+  table.Set("Camera.k3", "-0.25", "test");
+  table.Set("Camera.width", "320", "test");
+  table.Set("Camera.bf", "42.5", "test");
+  EXPECT_EQ(camera.fx, 535.4);
+  EXPECT_EQ(camera.k3, -0.25);
+  EXPECT_EQ(camera.width, 320);
+  EXPECT_EQ(camera.bf, 42.5);
+  for (const char* value : {"0", "-1", "nan", "", "1e999"}) {
+    EXPECT_THROW(table.Set("Camera.fx", value, "test"), InputError) << value;
+    EXPECT_THROW(table.Set("Camera.fy", value, "test"), InputError) << value;
+  }
+  EXPECT_THROW(table.Set("Camera.width", "640.5", "test"), InputError);
+  EXPECT_THROW(table.Set("Camera.height", "0", "test"), InputError);
+}
+
+}  // namespace
+}  // namespace hullslam
