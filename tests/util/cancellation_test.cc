@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/util/cancellation.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace hullslam {
+namespace {
+
+TEST(Cancellation, HoldsUntilReset) {
+  Cancellation cancellation;
+  EXPECT_FALSE(cancellation.IsRequested());
+  cancellation.Request();
+  cancellation.Request();
+  EXPECT_TRUE(cancellation.IsRequested());
+  EXPECT_TRUE(cancellation.IsRequested());
+  cancellation.Reset();
+  EXPECT_FALSE(cancellation.IsRequested());
+}
+
+// What was written before the request is seen after it; ThreadSanitizer watches.
+TEST(Cancellation, EndsALoopOnAnotherThread) {
+  Cancellation cancellation;
+  int reason = 0;
+  std::thread worker([&] {
+    while (!cancellation.IsRequested()) {
+      std::this_thread::yield();
+    }
+    EXPECT_EQ(reason, 42);
+  });
+  reason = 42;
+  cancellation.Request();
+  worker.join();
+}
+
+}  // namespace
+}  // namespace hullslam

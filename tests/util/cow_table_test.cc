@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/util/cow_table.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "hullslam/util/id.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kChunk = 4;
+using Table = CowTable<LandmarkId, std::string, kChunk>;
+
+Table MakeTable(uint32_t count) {
+  Table table;
+  for (uint32_t i = 0; i < count; ++i) {
+    table.Insert(std::to_string(i));
+  }
+  return table;
+}
+
+std::map<uint32_t, std::string> Content(const Table& table) {
+  std::map<uint32_t, std::string> content;
+  table.ForEach([&](LandmarkId id, const std::string& value) { content[id.value] = value; });
+  return content;
+}
+
+TEST(CowTable, GivesIdsInOrderAndNeverAgain) {
+  Table table = MakeTable(10);
+  EXPECT_EQ(table.size(), 10u);
+  table.Erase(LandmarkId(9));
+  EXPECT_EQ(table.NextId(), LandmarkId(10));
+  EXPECT_EQ(table.Insert("next"), LandmarkId(10));
+  EXPECT_FALSE(table.Contains(LandmarkId(9)));
+  EXPECT_EQ(table.At(LandmarkId(10)), "next");
+}
+
+TEST(CowTable, VisitsInOrderOfIds) {
+  Table table = MakeTable(23);
+  for (const uint32_t erased : {0u, 5u, 8u, 9u, 10u, 11u, 22u}) {
+    table.Erase(LandmarkId(erased));
+  }
+  std::vector<uint32_t> visited;
+  table.ForEach([&](LandmarkId id, const std::string& value) {
+    EXPECT_EQ(value, std::to_string(id.value));
+    visited.push_back(id.value);
+  });
+  EXPECT_EQ(visited,
+            (std::vector<uint32_t>{1, 2, 3, 4, 6, 7, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21}));
+  EXPECT_EQ(table.size(), visited.size());
+}
+
+TEST(CowTable, PutGivesAnIdItsValue) {
+  Table table;
+  table.Put(LandmarkId(9), "nine");
+  table.Put(LandmarkId(2), "two");
+  EXPECT_EQ(table.NextId(), LandmarkId(10));
+  EXPECT_EQ(Content(table), (std::map<uint32_t, std::string>{{2, "two"}, {9, "nine"}}));
+  EXPECT_THROW(table.Put(LandmarkId(9), "again"), CheckError);
+  EXPECT_THROW(table.Put(LandmarkId(), "invalid"), CheckError);
+}
+
+TEST(CowTable, RefusesIdsWithoutValue) {
+  Table table = MakeTable(3);
+  table.Erase(LandmarkId(1));
+  for (const LandmarkId id : {LandmarkId(1), LandmarkId(3), LandmarkId(999), LandmarkId()}) {
+    EXPECT_EQ(table.Find(id), nullptr);
+    EXPECT_FALSE(table.Contains(id));
+    EXPECT_THROW(table.At(id), CheckError);
+    EXPECT_THROW(table.Mutable(id), CheckError);
+    EXPECT_THROW(table.Erase(id), CheckError);
+  }
+}
+
+// Every kind of write, on either side of a snapshot, leaves the other side as it was.
+TEST(CowTable, SnapshotAndTableDoNotSeeEachOthersWrites) {
+  Table table = MakeTable(10);
+  const auto before = Content(table);
+  Table snapshot = table.Snapshot();
+  table.Mutable(LandmarkId(2)) = "changed";
+  table.Erase(LandmarkId(5));
+  table.Insert("new");
+  EXPECT_EQ(Content(snapshot), before);
+  EXPECT_EQ(snapshot.size(), 10u);
+  EXPECT_EQ(snapshot.NextId(), LandmarkId(10));
+  const auto after = Content(table);
+  snapshot.Mutable(LandmarkId(0)) = "other";
+  snapshot.Erase(LandmarkId(9));
+  snapshot.Insert("theirs");
+  EXPECT_EQ(Content(table), after);
+}
+
+TEST(CowTable, SnapshotsOfAllAgesKeepTheirContent) {
+  std::mt19937 random(2);
+  Table table;
+  std::map<uint32_t, std::string> model;
+  std::vector<std::pair<Table, std::map<uint32_t, std::string>>> history;
+  for (int step = 0; step < 2000; ++step) {
+    const LandmarkId any(
+        table.NextId().value == 0 ? 0 : static_cast<uint32_t>(random()) % table.NextId().value);
+    const std::string value = std::to_string(step);
+    if (random() % 3 == 0 || !table.Contains(any)) {
+      model[table.Insert(value).value] = value;
+    } else if (random() % 2 == 0) {
+      table.Mutable(any) = value;
+      model[any.value] = value;
+    } else {
+      table.Erase(any);
+      model.erase(any.value);
+    }
+    if (step % 100 == 0) {
+      history.emplace_back(table.Snapshot(), model);
+    }
+  }
+  EXPECT_EQ(Content(table), model);
+  for (const auto& [snapshot, expected] : history) {
+    EXPECT_EQ(Content(snapshot), expected);
+    EXPECT_EQ(snapshot.size(), expected.size());
+  }
+}
+
+TEST(CowTable, ClonesOnlyTheChunkThatIsWritten) {
+  Table table = MakeTable(3 * kChunk);
+  const Table snapshot = table.Snapshot();
+  table.Mutable(LandmarkId(kChunk)) = "changed";
+  EXPECT_EQ(table.Find(LandmarkId(0)), snapshot.Find(LandmarkId(0)));
+  EXPECT_NE(table.Find(LandmarkId(kChunk + 1)), snapshot.Find(LandmarkId(kChunk + 1)));
+  EXPECT_EQ(table.Find(LandmarkId(2 * kChunk)), snapshot.Find(LandmarkId(2 * kChunk)));
+  const std::string* written = table.Find(LandmarkId(kChunk));
+  table.Mutable(LandmarkId(kChunk)) = "again";
+  EXPECT_EQ(table.Find(LandmarkId(kChunk)), written) << "a chunk is cloned once";
+}
+
+TEST(CowTable, FreesAChunkWithoutValues) {
+  CowTable<LandmarkId, std::shared_ptr<int>, kChunk> table;
+  std::vector<std::weak_ptr<int>> watched;
+  for (int i = 0; i < 8; ++i) {
+    const auto value = std::make_shared<int>(i);
+    watched.push_back(value);
+    table.Insert(value);
+  }
+  {
+    const auto snapshot = table.Snapshot();
+    for (uint32_t i = 0; i < kChunk; ++i) {
+      table.Erase(LandmarkId(i));
+    }
+    EXPECT_EQ(*snapshot.At(LandmarkId(3)), 3) << "the snapshot still holds it";
+    EXPECT_FALSE(watched[3].expired());
+  }
+  for (uint32_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(watched[i].expired(), i < kChunk) << i;
+  }
+  table.Put(LandmarkId(1), std::make_shared<int>(11));
+  EXPECT_EQ(*table.At(LandmarkId(1)), 11);
+}
+
+TEST(CowTable, MovesLeaveTheValuesInPlace) {
+  Table table = MakeTable(5);
+  const std::string* value = table.Find(LandmarkId(4));
+  const Table moved = std::move(table);
+  EXPECT_EQ(moved.Find(LandmarkId(4)), value);
+  EXPECT_EQ(moved.size(), 5u);
+}
+
+// The writer goes on while readers look at a snapshot and let go of it; ThreadSanitizer watches.
+TEST(CowTable, SnapshotsAreReadWhileTheTableIsWritten) {
+  Table table = MakeTable(100);
+  for (int round = 0; round < 20; ++round) {
+    const auto expected = Content(table);
+    auto snapshot = std::make_unique<Table>(table.Snapshot());
+    std::thread reader([&] {
+      EXPECT_EQ(Content(*snapshot), expected);
+      snapshot.reset();
+    });
+    for (uint32_t i = 0; i < 100; ++i) {
+      table.Mutable(LandmarkId(i)) = std::to_string(round);
+    }
+    reader.join();
+  }
+}
+
+}  // namespace
+}  // namespace hullslam

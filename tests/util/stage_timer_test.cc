@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/util/stage_timer.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace hullslam {
+namespace {
+
+TEST(StageTimes, GathersByName) {
+  StageTimes times;
+  times.Add("track", 3.0);
+  times.Add("map", 7.0);
+  times.Add("track", 4.0);
+  ASSERT_EQ(times.samples().size(), 2u);
+  EXPECT_EQ(times.samples().find("track")->second, (std::vector<double>{3.0, 4.0}));
+  EXPECT_EQ(times.samples().find("map")->second, (std::vector<double>{7.0}));
+}
+
+TEST(StageTimes, MergeAppends) {
+  StageTimes first;
+  StageTimes second;
+  first.Add("track", 1.0);
+  second.Add("track", 2.0);
+  second.Add("loop", 3.0);
+  first.Merge(second);
+  EXPECT_EQ(first.samples().find("track")->second, (std::vector<double>{1.0, 2.0}));
+  EXPECT_EQ(first.samples().find("loop")->second, (std::vector<double>{3.0}));
+  EXPECT_EQ(second.samples().size(), 2u);
+}
+
+TEST(ScopedTimer, AddsOneSampleAtItsEnd) {
+  StageTimes times;
+  {
+    const ScopedTimer timer(times, "stage");
+    EXPECT_TRUE(times.samples().empty());
+  }
+  ASSERT_EQ(times.samples().count("stage"), 1u);
+  ASSERT_EQ(times.samples().find("stage")->second.size(), 1u);
+  EXPECT_GE(times.samples().find("stage")->second[0], 0.0);
+}
+
+TEST(Summarize, GivesZerosForNothing) {
+  const TimeStatistics none = Summarize({});
+  EXPECT_EQ(none.median, 0.0);
+  EXPECT_EQ(none.mean, 0.0);
+  EXPECT_EQ(none.p95, 0.0);
+  EXPECT_EQ(none.max, 0.0);
+}
+
+TEST(Summarize, OfAnySingleSampleIsTheSample) {
+  const TimeStatistics one = Summarize({2.5});
+  EXPECT_EQ(one.median, 2.5);
+  EXPECT_EQ(one.mean, 2.5);
+  EXPECT_EQ(one.p95, 2.5);
+  EXPECT_EQ(one.max, 2.5);
+}
+
+TEST(Summarize, ByHand) {
+  const TimeStatistics odd = Summarize({9.0, 1.0, 2.0});
+  EXPECT_EQ(odd.median, 2.0);
+  EXPECT_EQ(odd.mean, 4.0);
+  EXPECT_EQ(odd.max, 9.0);
+  const TimeStatistics even = Summarize({4.0, 1.0, 2.0, 9.0});
+  EXPECT_EQ(even.median, 3.0);
+  std::vector<double> hundred(100);
+  std::iota(hundred.rbegin(), hundred.rend(), 1.0);
+  EXPECT_EQ(Summarize(hundred).p95, 95.0);
+  EXPECT_EQ(Summarize({1.0, 2.0}).p95, 2.0);
+}
+
+}  // namespace
+}  // namespace hullslam
