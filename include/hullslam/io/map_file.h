@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace hullslam {
+
+// A binary little-endian PLY of points `float x y z, uchar red green blue` in metres of the world:
+// landmarks in grey, then the centres of the keyframes in orange.
+std::string FormatPly(std::span<const Eigen::Vector3d> landmarks,
+                      std::span<const Eigen::Vector3d> keyframes);
+
+// Writes FormatPly() by WriteFileAtomically().
+void WritePly(const std::filesystem::path& path, std::span<const Eigen::Vector3d> landmarks,
+              std::span<const Eigen::Vector3d> keyframes);
+
+}  // namespace hullslam

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/io/image_file.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <string_view>
+
+#include "hullslam/io/text_rows.h"
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+using std::string_view_literals::operator""sv;
+
+constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n"sv;
+constexpr std::string_view kJpegSignature = "\xff\xd8\xff"sv;
+
+struct ImageSize {
+  uint64_t width = 0;
+  uint64_t height = 0;
+};
+
+uint64_t BigEndian(std::string_view bytes, size_t at, size_t count) {
+  uint64_t value = 0;
+  for (size_t i = 0; i < count; ++i) {
+    value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+  }
+  return value;
+}
+
+// Chunks are length, type, data and checksum; libpng would hand out the upper part of an image
+// whose lower part is missing, so the last chunk must be there.
+bool IsWholePng(std::string_view bytes) {
+  constexpr size_t kFrame = 12;  // bytes of a chunk beside its data
+  size_t at = kPngSignature.size();
+  while (at + kFrame <= bytes.size()) {
+    const bool is_last = bytes.substr(at + 4, 4) == "IEND";
+    at += kFrame + BigEndian(bytes, at, 4);
+    if (is_last) {
+      return at <= bytes.size();
+    }
+  }
+  return false;
+}
+
+ImageSize PngSize(std::string_view bytes) {
+  constexpr size_t kWidth = 16;  // signature, length and type of the header chunk come before
+  return {BigEndian(bytes, kWidth, 4), BigEndian(bytes, kWidth + 4, 4)};
+}
+
+// The marker for the end may have padding behind it.
+bool IsWholeJpeg(std::string_view bytes) {
+  constexpr size_t kMostPadding = 4096;
+  const size_t tail = bytes.size() > kMostPadding ? bytes.size() - kMostPadding : 0;
+  return bytes.find("\xff\xd9"sv, tail) != std::string_view::npos;
+}
+
+// Of the frame header (SOF0 to SOF15 without the tables DHT, JPG and DAC); zeros without one.
+ImageSize JpegSize(std::string_view bytes) {
+  for (size_t at = 2; at + 9 <= bytes.size();) {
+    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
+    const bool is_table = marker == 0xc4 || marker == 0xc8 || marker == 0xcc;
+    if (marker >= 0xc0 && marker <= 0xcf && !is_table) {
+      return {BigEndian(bytes, at + 7, 2), BigEndian(bytes, at + 5, 2)};
+    }
+    at += 2 + BigEndian(bytes, at + 2, 2);
+  }
+  return {};
+}
+
+[[noreturn]] void Fail(const std::filesystem::path& path, const std::string& reason) {
+  throw InputError(path.string() + ": " + reason);
+}
+
+void CheckBytes(const std::filesystem::path& path, std::string_view bytes) {
+  if (bytes.empty()) {
+    Fail(path, "is empty, expected a PNG or JPEG image");
+  }
+  const bool is_png = bytes.starts_with(kPngSignature);
+  if (!is_png && !bytes.starts_with(kJpegSignature)) {
+    Fail(path, "is neither a PNG nor a JPEG image");
+  }
+  if (is_png ? !IsWholePng(bytes) : !IsWholeJpeg(bytes)) {
+    Fail(path, "is cut off, the end of the image is missing");
+  }
+  constexpr uint64_t kMostPixels = 64'000'000;
+  const ImageSize size = is_png ? PngSize(bytes) : JpegSize(bytes);
+  if (size.width == 0 || size.height == 0 || size.width > kMostPixels ||
+      size.width * size.height > kMostPixels) {
+    Fail(path, fmt::format("has a size of {}x{} px, expected up to {} million px", size.width,
+                           size.height, kMostPixels / 1'000'000));
+  }
+}
+
+cv::Mat Decode(const std::filesystem::path& path, int flags) {
+  std::string bytes = ReadFile(path);
+  CheckBytes(path, bytes);
+  const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data());
+  cv::Mat image;
+  try {
+    image = cv::imdecode(buffer, flags);
+  } catch (const cv::Exception& error) {
+    Fail(path, "cannot be decoded: " + error.err);
+  }
+  if (image.empty()) {
+    Fail(path, "is broken and cannot be decoded");
+  }
+  return image;
+}
+
+}  // namespace
+
+cv::Mat ReadGreyImage(const std::filesystem::path& path) {
+  return Decode(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+}
+
+cv::Mat ReadDepthImage(const std::filesystem::path& path) {
+  cv::Mat depth = Decode(path, cv::IMREAD_UNCHANGED);
+  if (depth.type() != CV_16UC1) {
+    Fail(path, fmt::format("has {} channel(s) of {} bits, expected a depth image with one channel "
+                           "of 16 bits",
+                           depth.channels(), 8 * depth.elemSize1()));
+  }
+  return depth;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/io/settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <opencv2/core.hpp>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "hullslam/io/text_rows.h"
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kIntrinsics = {"Camera.fx", "Camera.fy", "Camera.cx", "Camera.cy"};
+constexpr std::string_view kBlanks = " \t\r";
+
+// A `key: value` line as it is written. OpenCV's nodes know neither their line, nor that a key was
+// there before, nor integers beyond 32 bits.
+struct WrittenValue {
+  int line = 0;
+  std::string text;
+};
+using WrittenValues = std::map<std::string, WrittenValue, std::less<>>;
+
+std::string Place(const fs::path& file, int line) {
+  return fmt::format("{}:{}", file.string(), line);
+}
+
+std::string_view Trim(std::string_view text) {
+  const size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) {
+    return {};
+  }
+  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+bool HoldsKey(std::string_view line) {
+  return !line.empty() && kBlanks.find(line[0]) == std::string_view::npos && line[0] != '#' &&
+         line[0] != '%' && line.find(':') != std::string_view::npos;
+}
+
+WrittenValues ScanLines(const fs::path& file, std::string_view text) {
+  WrittenValues values;
+  int number = 0;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    begin = end + 1;
+    ++number;
+    if (!HoldsKey(line)) {
+      continue;
+    }
+    const size_t colon = line.find(':');
+    const std::string key(Trim(line.substr(0, colon)));
+    const std::string_view value = line.substr(colon + 1);
+    const auto [it, is_new] = values.try_emplace(
+        key, WrittenValue{number, std::string(Trim(value.substr(0, value.find('#'))))});
+    if (!is_new) {
+      throw InputError(fmt::format("{}: key '{}' was given before, in line {}", Place(file, number),
+                                   key, it->second.line));
+    }
+  }
+  return values;
+}
+
+// A byte order mark, as editors on Windows put it, is no error.
+std::string ReadYamlText(const fs::path& file) {
+  constexpr size_t kLargest = 1 << 20;
+  std::string text = ReadFile(file);
+  if (text.starts_with("\xEF\xBB\xBF")) {
+    text.erase(0, 3);
+  }
+  if (!text.starts_with("%YAML")) {
+    throw InputError(Place(file, 1) + ": expected a settings file with '%YAML:1.0' as first line");
+  }
+  if (text.size() > kLargest || text.find('\0') != std::string::npos) {
+    throw InputError(file.string() + ": is no text file of settings");
+  }
+  return text;
+}
+
+// OpenCV's parser puts "(line): message" into the field for the function's name.
+[[noreturn]] void FailParsing(const fs::path& file, const cv::Exception& error) {
+  int line = 0;
+  char reason[200] = "is not valid YAML";
+  if (std::sscanf(error.func.c_str(), "(%d): %199[^\n]", &line, reason) >= 1) {
+    throw InputError(Place(file, line) + ": " + reason);
+  }
+  throw InputError(file.string() + ": is not valid YAML");
+}
+
+cv::FileStorage ParseYaml(const fs::path& file, const std::string& text) {
+  try {
+    return cv::FileStorage(
+        text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
+  } catch (const cv::Exception& error) {
+    FailParsing(file, error);
+  }
+}
+
+// The text for OptionTable::Set(). A number in quotes keeps them, so that it is not taken for one.
+std::string ScalarText(const cv::FileNode& node, const WrittenValue& written,
+                       const std::string& place) {
+  if (node.isInt() || node.isReal()) {
+    double value = 0.0;
+    const bool is_plain = ParseFinite(written.text, value);
+    const bool is_whole = is_plain && std::abs(value) < 1e15 && value == std::trunc(value);
+    const bool has_exponent_or_point = written.text.find_first_of(".eE") != std::string::npos;
+    // Files written by OpenCV have "1000." for a whole number.
+    return is_whole && has_exponent_or_point ? fmt::format("{:.0f}", value) : written.text;
+  }
+  if (node.isString()) {
+    double value = 0.0;
+    const std::string text = node.string();
+    return ParseFinite(text, value) ? '"' + text + '"' : text;
+  }
+  throw InputError(fmt::format("{}: {} is {}, expected a single value", place, node.name(),
+                               node.isMap()   ? "a map"
+                               : node.isSeq() ? "a list"
+                                              : "empty"));
+}
+
+void ApplyNodes(const fs::path& file, const cv::FileNode& root, const WrittenValues& written,
+                OptionTable& table, std::set<std::string>& given) {
+  for (const cv::FileNode& node : root) {
+    const std::string key = node.name();
+    const auto it = written.find(key);
+    if (it == written.end()) {
+      throw InputError(fmt::format("{}: '{}' is not on a line of its own, expected 'key: value'",
+                                   file.string(), key));
+    }
+    const std::string place = Place(file, it->second.line);
+    if (!table.Contains(key)) {
+      table.Set(key, "", place);  // throws, with the nearest known key
+    }
+    table.Set(key, ScalarText(node, it->second, place), place);
+    given.insert(key);
+  }
+}
+
+void ApplyFile(const fs::path& file, OptionTable& table, std::set<std::string>& given) {
+  const std::string text = ReadYamlText(file);
+  const cv::FileStorage storage = ParseYaml(file, text);
+  try {
+    const cv::FileNode root = storage.root();
+    if (!root.isMap()) {
+      throw InputError(file.string() + ": holds no settings, expected lines of 'key: value'");
+    }
+    ApplyNodes(file, root, ScanLines(file, text), table, given);
+  } catch (const cv::Exception& error) {
+    FailParsing(file, error);
+  }
+}
+
+void ApplyOverrides(std::span<const std::string> overrides, OptionTable& table,
+                    std::set<std::string>& given) {
+  for (const std::string& assignment : overrides) {
+    const size_t equals = assignment.find('=');
+    if (equals == std::string::npos) {
+      throw InputError("--set: '" + assignment + "', expected key=value");
+    }
+    const std::string key(Trim(std::string_view(assignment).substr(0, equals)));
+    table.Set(key, std::string(Trim(std::string_view(assignment).substr(equals + 1))), "--set");
+    given.insert(key);
+  }
+}
+
+// The number of the TUM camera that a name tells, "rgbd_dataset_freiburg1_xyz" or "fr1_desk"; 0 for
+// none.
+int TumCamera(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const std::string_view mark : {"freiburg", "fr"}) {
+    const size_t at = name.find(mark);
+    const size_t digit = at + mark.size();
+    const bool begins_word = at == 0 || (at != std::string::npos && !std::isalnum(name[at - 1]));
+    const bool is_camera =
+        begins_word && digit < name.size() && name[digit] >= '1' && name[digit] <= '3';
+    if (is_camera && (digit + 1 == name.size() || !std::isdigit(name[digit + 1]))) {
+      return name[digit] - '0';
+    }
+  }
+  return 0;
+}
+
+std::string FolderName(const fs::path& folder) {
+  std::error_code error;
+  const fs::path absolute = fs::weakly_canonical(folder, error);
+  const fs::path& path = error ? folder : absolute;
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+}  // namespace
+
+SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> overrides) {
+  SystemOptions options;
+  OptionTable table = options.Bind();
+  std::set<std::string> given;
+  ApplyFile(file, table, given);
+  ApplyOverrides(overrides, table, given);
+  for (const char* const key : kIntrinsics) {
+    if (!given.contains(key)) {
+      throw InputError(file.string() + ": " + key +
+                       " is not given, expected the intrinsics of the camera in px");
+    }
+  }
+  options.Validate();
+  return options;
+}
+
+fs::path FindDefaultSettings(const fs::path& sequence, const fs::path& config_folder) {
+  std::error_code error;
+  const fs::path own = sequence / "camera.yaml";
+  if (fs::exists(own, error)) {
+    return own;
+  }
+  const std::string name = FolderName(sequence);
+  const int camera = TumCamera(name);
+  if (camera == 0) {
+    throw InputError(
+        fmt::format("{}: the name '{}' does not tell the camera and there is no "
+                    "camera.yaml in the folder, expected --settings FILE",
+                    sequence.string(), name));
+  }
+  return config_folder / fmt::format("TUM{}.yaml", camera);
+}
+
+fs::path FindConfigFolder() {
+  std::error_code error;
+  // Nobody in this library sets the environment, so reading it is safe.
+  // NOLINTNEXTLINE(concurrency-mt-unsafe)
+  if (const char* const chosen = std::getenv("HULLSLAM_CONFIG")) {
+    if (!fs::is_directory(chosen, error)) {
+      throw InputError(std::string("HULLSLAM_CONFIG: '") + chosen + "' is no folder");
+    }
+    return chosen;
+  }
+  for (const char* const folder : {HULLSLAM_INSTALLED_CONFIG, HULLSLAM_SOURCE_CONFIG}) {
+    if (fs::is_directory(folder, error)) {
+      return folder;
+    }
+  }
+  throw InputError(
+      fmt::format("neither {} nor {} is a folder, expected the settings of known "
+                  "cameras there; set HULLSLAM_CONFIG or give --settings FILE",
+                  HULLSLAM_INSTALLED_CONFIG, HULLSLAM_SOURCE_CONFIG));
+}
+
+std::string FormatSettings(SystemOptions options) {
+  std::string text = "%YAML:1.0\n";
+  for (const OptionTable::Entry& entry : options.Bind().Entries()) {
+    text += entry.key + ": " + entry.value + '\n';
+  }
+  return text;
+}
+
+std::string HashSettings(const SystemOptions& options) {
+  uint64_t hash = 0xcbf29ce484222325;
+  for (const unsigned char byte : FormatSettings(options)) {
+    hash = (hash ^ byte) * 0x100000001b3;
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+}  // namespace hullslam

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/io/summary.h"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "hullslam/io/atomic_file.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename Value>
+Json OrNull(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json ToJson(const TrajectorySummary& summary) {
+  return {{"ate_rmse_m", OrNull(summary.ate_rmse_m)},
+          {"alignment", summary.alignment},
+          {"scale", OrNull(summary.scale)},
+          {"pairs", summary.pairs},
+          {"frames", summary.frames},
+          {"tracked", summary.tracked},
+          {"lost", summary.lost},
+          {"poses", summary.poses},
+          {"pairing", summary.pairing},
+          {"coverage", OrNull(summary.coverage)},
+          {"rpe_rmse_m", OrNull(summary.rpe_rmse_m)},
+          {"rpe_rmse_deg", OrNull(summary.rpe_rmse_deg)},
+          {"skipped", summary.skipped},
+          {"unpaired", summary.unpaired}};
+}
+
+Json ToJson(const TimeStatistics& times) {
+  return {{"median", times.median}, {"mean", times.mean}, {"p95", times.p95}, {"max", times.max}};
+}
+
+Json ToJson(const TimingSummary& summary) {
+  Json stages = Json::object();
+  for (const auto& [stage, times] : summary.stages_ms) {
+    stages[stage] = ToJson(times);
+  }
+  return {{"track_ms", ToJson(summary.track_ms)},
+          {"stages_ms", stages},
+          {"total_s", summary.total_s},
+          {"frames_per_second", summary.frames_per_second}};
+}
+
+Json ToJson(const MapSummary& summary) {
+  return {
+      {"keyframes", summary.keyframes}, {"landmarks", summary.landmarks}, {"loops", summary.loops}};
+}
+
+Json ToJson(const ProvenanceSummary& summary) {
+  return {{"version", OrNull(summary.version)},
+          {"git", OrNull(summary.git)},
+          {"settings_hash", OrNull(summary.settings_hash)},
+          {"preset", OrNull(summary.preset)},
+          {"seed", summary.seed},
+          {"pipeline", summary.pipeline},
+          {"masks_format", OrNull(summary.masks_format)},
+          {"sequence", OrNull(summary.sequence)}};
+}
+
+}  // namespace
+
+std::string FormatSummary(const RunSummary& summary) {
+  const Json json = {{"trajectory", ToJson(summary.trajectory)},
+                     {"timing", ToJson(summary.timing)},
+                     {"memory", {{"peak_mb", summary.peak_memory_mb}}},
+                     {"map", ToJson(summary.map)},
+                     {"provenance", ToJson(summary.provenance)}};
+  constexpr int kIndent = 2;
+  // A folder's name may hold any bytes; those that are not UTF-8 are replaced.
+  return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+void WriteSummary(const std::filesystem::path& path, const RunSummary& summary) {
+  WriteFileAtomically(path, FormatSummary(summary));
+}
+
+std::map<std::string, TimeStatistics> SummarizeStages(const StageTimes& times) {
+  std::map<std::string, TimeStatistics> stages;
+  for (const auto& [stage, samples] : times.samples()) {
+    stages[stage] = Summarize(samples);
+  }
+  return stages;
+}
+
+double PeakMemoryMb() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024.0 / 1e6;  // Linux counts in KiB
+}
+
+}  // namespace hullslam

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/io/image_file.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+std::string Encode(const char* extension, const cv::Mat& image) {
+  std::vector<uchar> bytes;
+  cv::imencode(extension, image, bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
+cv::Mat Ramp(int type) {
+  cv::Mat image(48, 64, type);
+  for (int y = 0; y < image.rows; ++y) {
+    image.row(y).setTo(cv::Scalar::all(5 * y));
+  }
+  return image;
+}
+
+TEST(ImageFile, DepthIsReadToTheBit) {
+  const TemporaryFolder folder;
+  cv::Mat depth = Ramp(CV_16UC1);
+  depth.at<uint16_t>(3, 4) = 65535;
+  const cv::Mat read = ReadDepthImage(folder.Write("d.png", Encode(".png", depth)));
+  ASSERT_EQ(read.type(), CV_16UC1);
+  EXPECT_EQ(cv::norm(read, depth, cv::NORM_INF), 0.0);
+}
+
+TEST(ImageFile, ColourBecomesLuma) {
+  const TemporaryFolder folder;
+  const cv::Mat green(48, 64, CV_8UC3, cv::Scalar(0, 255, 0));
+  for (const char* const extension : {".png", ".jpg"}) {
+    const cv::Mat grey =
+        ReadGreyImage(folder.Write(std::string("g") + extension, Encode(extension, green)));
+    ASSERT_EQ(grey.type(), CV_8UC1);
+    EXPECT_NEAR(grey.at<uint8_t>(20, 20), 0.587 * 255.0, 2.0) << extension;
+  }
+}
+
+TEST(ImageFile, OnlySixteenBitDepthIsTaken) {
+  const TemporaryFolder folder;
+  const auto eight = folder.Write("8.png", Encode(".png", Ramp(CV_8UC1)));
+  ExpectInputError([&] { ReadDepthImage(eight); },
+                   {"8.png", "1 channel(s) of 8 bits", "one channel of 16 bits"});
+  const auto colour = folder.Write("c.png", Encode(".png", Ramp(CV_16UC3)));
+  ExpectInputError([&] { ReadDepthImage(colour); }, {"c.png", "3 channel(s) of 16 bits"});
+}
+
+TEST(ImageFile, EveryCutIsFound) {
+  const TemporaryFolder folder;
+  const cv::Mat noise(48, 64, CV_8UC1);
+  cv::randu(noise, 0, 255);
+  for (const char* const extension : {".png", ".jpg"}) {
+    const std::string whole = Encode(extension, noise);
+    for (size_t size = 4; size < whole.size(); size += 97) {
+      const auto path = folder.Write("cut", std::string_view(whole).substr(0, size));
+      EXPECT_THROW(ReadGreyImage(path), InputError) << extension << ' ' << size;
+    }
+    const auto path = folder.Write("cut", std::string_view(whole).substr(0, whole.size() - 1));
+    ExpectInputError([&] { ReadGreyImage(path); }, {"cut: is cut off"});
+  }
+}
+
+TEST(ImageFile, BrokenFilesAreNamed) {
+  const TemporaryFolder folder;
+  ExpectInputError([&] { ReadGreyImage(folder.Write("empty.png", "")); },
+                   {"empty.png", "is empty"});
+  ExpectInputError([&] { ReadGreyImage(folder.Write("text.png", "hello")); },
+                   {"text.png", "neither a PNG nor a JPEG"});
+  ExpectInputError([&] { ReadDepthImage(folder.path() / "none.png"); }, {"none.png", "No such"});
+  std::string flipped = Encode(".png", Ramp(CV_16UC1));
+  flipped[flipped.size() / 2] = static_cast<char>(~flipped[flipped.size() / 2]);
+  ExpectInputError([&] { ReadDepthImage(folder.Write("flipped.png", flipped)); },
+                   {"flipped.png", "cannot be decoded"});
+}
+
+TEST(ImageFile, AHugeSizeIsRefusedBeforeMemoryIsTaken) {
+  const TemporaryFolder folder;
+  std::string png = Encode(".png", Ramp(CV_8UC1));
+  png[16] = 0x7f;  // the highest byte of the width
+  ExpectInputError([&] { ReadGreyImage(folder.Write("huge.png", png)); },
+                   {"huge.png", "million px"});
+  std::string jpeg = Encode(".jpg", Ramp(CV_8UC1));
+  const size_t frame = jpeg.find("\xff\xc0");
+  ASSERT_NE(frame, std::string::npos);
+  jpeg.replace(frame + 5, 4, "\xff\xff\xff\xff");
+  ExpectInputError([&] { ReadGreyImage(folder.Write("huge.jpg", jpeg)); },
+                   {"huge.jpg", "65535x65535 px"});
+}
+
+}  // namespace
+}  // namespace hullslam

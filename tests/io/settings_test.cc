@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/io/settings.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <string>
+#include <vector>
+
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+// As ORB-SLAM2's own files are laid out, with sections, comments and keys for its viewer.
+constexpr const char* kOrbSlam2 = R"(%YAML:1.0
+
+#--------------------------------------------------------------------------------------------
+# Camera Parameters. Adjust them!
+#--------------------------------------------------------------------------------------------
+
+# Camera calibration and distortion parameters (OpenCV)
+Camera.fx: 517.306408
+Camera.fy: 516.469215
+Camera.cx: 318.643040
+Camera.cy: 255.313989
+
+Camera.k1: 0.262383
+Camera.k2: -0.953104
+Camera.p1: -0.005358
+Camera.p2: 0.002628
+Camera.k3: 1.163314
+
+Camera.width: 640
+Camera.height: 480
+
+# Camera frames per second
+Camera.fps: 30.0
+Camera.bf: 40.0
+Camera.RGB: 1
+ThDepth: 40.0
+DepthMapFactor: 5000.0
+
+ORBextractor.nFeatures: 1000
+ORBextractor.scaleFactor: 1.2
+ORBextractor.nLevels: 8
+ORBextractor.iniThFAST: 20
+ORBextractor.minThFAST: 7
+
+Viewer.KeyFrameSize: 0.05
+Viewer.KeyFrameLineWidth: 1
+Viewer.GraphLineWidth: 0.9
+Viewer.PointSize:2
+Viewer.CameraSize: 0.08
+Viewer.CameraLineWidth: 3
+Viewer.ViewpointX: 0
+Viewer.ViewpointY: -0.7
+Viewer.ViewpointZ: -1.8
+Viewer.ViewpointF: 500
+)";
+
+constexpr const char* kMinimal =
+    "%YAML:1.0\nCamera.fx: 500.\nCamera.fy: 500.0\nCamera.cx: 320\nCamera.cy: 240\n";
+
+class Settings : public ::testing::Test {
+ protected:
+  SystemOptions Read(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    return ReadSettings(folder_.Write("camera.yaml", text), overrides);
+  }
+  void ExpectError(const std::string& text, const std::vector<std::string>& parts,
+                   const std::vector<std::string>& overrides = {}) {
+    ExpectInputError([&] { Read(text, overrides); }, parts);
+  }
+  void ExpectLineError(const std::string& line, std::vector<std::string> parts) {
+    parts.emplace_back("camera.yaml:6: ");
+    ExpectError(kMinimal + line + "\n", parts);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Settings, FilesOfOrbSlam2WorkUnchanged) {
+  const SystemOptions options = Read(kOrbSlam2);
+  EXPECT_EQ(options.camera.fx, 517.306408);
+  EXPECT_EQ(options.camera.fy, 516.469215);
+  EXPECT_EQ(options.camera.cx, 318.643040);
+  EXPECT_EQ(options.camera.cy, 255.313989);
+  EXPECT_EQ(options.camera.k2, -0.953104);
+  EXPECT_EQ(options.camera.k3, 1.163314);
+  EXPECT_EQ(options.camera.width, 640);
+  EXPECT_EQ(options.camera.bf, 40.0);
+  EXPECT_TRUE(options.rgb_order);
+  EXPECT_EQ(options.frames_per_second, 30.0);
+  EXPECT_EQ(options.depth.units_per_metre, 5000.0);
+  EXPECT_EQ(options.features.feature_count, 1000);
+  EXPECT_EQ(options.features.scale_factor, 1.2);
+}
+
+TEST_F(Settings, CarriageReturnsAndAByteOrderMarkAreFine) {
+  std::string text = "\xEF\xBB\xBF" + std::string(kMinimal);
+  for (size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) {
+    text.replace(at, 1, "\r\n");
+  }
+  EXPECT_EQ(Read(text).camera.fx, 500.0);
+}
+
+TEST_F(Settings, WholeNumbersMayBeWrittenWithAPoint) {
+  EXPECT_EQ(Read(std::string(kMinimal) + "ORBextractor.nFeatures: 1500.\n").features.feature_count,
+            1500);
+  ExpectLineError("ORBextractor.nFeatures: 1000.5",
+                  {"ORBextractor.nFeatures is '1000.5'", "an integer"});
+}
+
+TEST_F(Settings, OverridesCount) {
+  EXPECT_EQ(Read(kMinimal, {"ORBextractor.nFeatures=700", "Camera.fx = 400"}).camera.fx, 400.0);
+  ExpectError(kMinimal, {"--set", "ORBextractor.nFeatures is '-1'", "expected an integer"},
+              {"ORBextractor.nFeatures=-1"});
+  ExpectError(kMinimal, {"--set", "unknown key 'ORBextractor.nFeature'", "ORBextractor.nFeatures"},
+              {"ORBextractor.nFeature=5"});
+  ExpectError(kMinimal, {"--set", "'Camera.fx'", "key=value"}, {"Camera.fx"});
+}
+
+TEST_F(Settings, OverridesCanGiveMissingIntrinsics) {
+  const std::string text = "%YAML:1.0\nCamera.fx: 5\nCamera.fy: 5\nCamera.cx: 5\n";
+  EXPECT_EQ(Read(text, {"Camera.cy=7"}).camera.cy, 7.0);
+  ExpectError(text, {"camera.yaml", "Camera.cy is not given"});
+}
+
+TEST_F(Settings, BrokenValuesAreNamedWithLineKeyAndExpectation) {
+  ExpectLineError("ORBextractor.nFeatures: -5", {"ORBextractor.nFeatures is '-5'", "an integer"});
+  ExpectLineError("Camera.width: 99999999999", {"Camera.width is '99999999999'", "an integer"});
+  ExpectLineError("DepthMapFactor: 0", {"DepthMapFactor is '0'", "> 0"});
+  ExpectLineError("DepthMapFactor: lots", {"DepthMapFactor is 'lots'", "a number"});
+  ExpectLineError("DepthMapFactor: \"5000\"", {"DepthMapFactor is '\"5000\"'", "a number"});
+  ExpectLineError("DepthMapFactor: .nan", {"DepthMapFactor is '.nan'"});
+  ExpectLineError("DepthMapFactor: .Inf", {"DepthMapFactor is '.Inf'"});
+  ExpectLineError("DepthMapFactor: [1, 2]", {"DepthMapFactor is a list", "a single value"});
+  ExpectLineError("DepthMapFactor: {a: 1}", {"DepthMapFactor is a map", "a single value"});
+  ExpectLineError("Camera.RGB: maybe", {"Camera.RGB is 'maybe'", "true or false"});
+  ExpectLineError("Camera.fxx: 5", {"unknown key 'Camera.fxx'", "did you mean 'Camera.fx'"});
+  ExpectLineError("Camera.fy: 5", {"'Camera.fy' was given before, in line 3"});
+}
+
+TEST_F(Settings, AZeroFocalLengthIsRefused) {
+  ExpectError("%YAML:1.0\nCamera.fx: 0.0\n", {"camera.yaml:2: ", "Camera.fx is '0'", "> 0"});
+}
+
+TEST_F(Settings, FilesThatAreNoYamlAreRefused) {
+  ExpectError("", {"camera.yaml:1: ", "%YAML:1.0"});
+  ExpectError("Camera.fx: 500\n", {"camera.yaml:1: ", "%YAML:1.0"});
+  ExpectError(std::string("\x7f"
+                          "ELF\x02\0\0",
+                          7),
+              {"camera.yaml:1: ", "%YAML:1.0"});
+  ExpectError(std::string("%YAML:1.0\na\0b: 1\n", 17), {"camera.yaml", "no text file"});
+  ExpectError("%YAML:1.0\n", {"camera.yaml", "holds no settings"});
+  ExpectError("%YAML:1.0\n- 1\n- 2\n", {"camera.yaml", "holds no settings"});
+  ExpectError("%YAML:1.0\n---\nCamera.fx 500\nb: 2\n", {"camera.yaml:3: "});
+  ExpectError("%YAML:1.0\nCamera.fx: \"500\n", {"camera.yaml:2: "});
+  ExpectError("%YAML:1.0\n\tCamera.fx: 500\n", {"camera.yaml:2: ", "Tabs"});
+  ExpectError("%YAML:1.0\n\"Camera.fx\": 500\n", {"camera.yaml:2: "});
+  ExpectInputError([&] { ReadSettings(folder_.path() / "none.yaml"); }, {"none.yaml", "No such"});
+  ExpectInputError([&] { ReadSettings(folder_.path()); }, {"is a folder"});
+}
+
+TEST_F(Settings, NoFileOfRandomBytesGetsFurtherThanAnInputError) {
+  uint32_t state = 1;
+  for (int i = 0; i < 300; ++i) {
+    std::string text = kOrbSlam2;
+    for (int k = 0; k < 4; ++k) {
+      state = state * 1664525 + 1013904223;
+      text[10 + (state >> 8) % (text.size() - 10)] = static_cast<char>(state >> 24);
+    }
+    try {
+      Read(text);
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()), "");
+    }
+  }
+}
+
+TEST_F(Settings, WhatIsWrittenReadsBackTheSame) {
+  const SystemOptions options = Read(kOrbSlam2, {"ORBextractor.nFeatures=1234"});
+  const std::string text = FormatSettings(options);
+  EXPECT_NE(text.find("\nORBextractor.nFeatures: 1234\n"), std::string::npos);
+  EXPECT_EQ(FormatSettings(Read(text)), text);
+}
+
+TEST_F(Settings, TheHashTellsSettingsApart) {
+  const std::string hash = HashSettings(Read(kOrbSlam2));
+  EXPECT_EQ(hash.size(), 16U);
+  EXPECT_EQ(HashSettings(Read(FormatSettings(Read(kOrbSlam2)))), hash);
+  EXPECT_NE(HashSettings(Read(kOrbSlam2, {"Camera.fx=517.306409"})), hash);
+}
+
+TEST_F(Settings, TheDefaultFileFollowsTheNameOfTheSequence) {
+  const auto expect = [](const char* sequence, const char* file) {
+    EXPECT_EQ(FindDefaultSettings(sequence, "/config"), std::filesystem::path("/config") / file);
+  };
+  expect("/data/rgbd_dataset_freiburg1_xyz", "TUM1.yaml");
+  expect("/data/rgbd_dataset_freiburg2_desk/", "TUM2.yaml");
+  expect("fr3_long_office_household", "TUM3.yaml");
+  expect("Freiburg3", "TUM3.yaml");
+  for (const char* name : {"/data/my_room", "/fr1/other", "fr10_x", "afr1", "fr4", "fr"}) {
+    ExpectInputError([&] { FindDefaultSettings(name, "/config"); }, {name, "--settings"});
+  }
+}
+
+TEST_F(Settings, ASequencesOwnFileComesFirst) {
+  const auto own = folder_.Write("fr1_like/camera.yaml", kMinimal);
+  EXPECT_EQ(FindDefaultSettings(own.parent_path(), "/config"), own);
+}
+
+TEST_F(Settings, TheSettingsOfKnownCamerasAreFoundAndRead) {
+  ::setenv("HULLSLAM_CONFIG", HULLSLAM_SOURCE_DIR "/config", 1);
+  const std::filesystem::path folder = FindConfigFolder();
+  EXPECT_EQ(folder, HULLSLAM_SOURCE_DIR "/config");
+  for (const char* const name : {"fr1_xyz", "fr2_desk", "fr3_office"}) {
+    EXPECT_GT(ReadSettings(FindDefaultSettings(name, folder)).camera.fx, 500.0);
+  }
+  ::setenv("HULLSLAM_CONFIG", "/no/such/folder", 1);
+  ExpectInputError([] { FindConfigFolder(); }, {"HULLSLAM_CONFIG", "/no/such/folder"});
+  ::unsetenv("HULLSLAM_CONFIG");
+  EXPECT_TRUE(std::filesystem::exists(FindConfigFolder() / "TUM1.yaml"));
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/io/summary.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "hullslam/io/text_rows.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> Keys(const Json& json) {
+  std::vector<std::string> keys;
+  for (const auto& item : json.items()) {
+    keys.push_back(item.key());
+  }
+  return keys;
+}
+
+TEST(Summary, HasTheKeysOfTheFormatInOrder) {
+  const Json json = Json::parse(FormatSummary({}));
+  EXPECT_EQ(Keys(json),
+            (std::vector<std::string>{"trajectory", "timing", "memory", "map", "provenance"}));
+  EXPECT_EQ(Keys(json["trajectory"]),
+            (std::vector<std::string>{"ate_rmse_m", "alignment", "scale", "pairs", "frames",
+                                      "tracked", "lost", "poses", "pairing", "coverage",
+                                      "rpe_rmse_m", "rpe_rmse_deg", "skipped", "unpaired"}));
+  EXPECT_EQ(Keys(json["timing"]),
+            (std::vector<std::string>{"track_ms", "stages_ms", "total_s", "frames_per_second"}));
+  EXPECT_EQ(Keys(json["timing"]["track_ms"]),
+            (std::vector<std::string>{"median", "mean", "p95", "max"}));
+  EXPECT_EQ(Keys(json["memory"]), (std::vector<std::string>{"peak_mb"}));
+  EXPECT_EQ(Keys(json["map"]), (std::vector<std::string>{"keyframes", "landmarks", "loops"}));
+  EXPECT_EQ(Keys(json["provenance"]),
+            (std::vector<std::string>{"version", "git", "settings_hash", "preset", "seed",
+                                      "pipeline", "masks_format", "sequence"}));
+}
+
+TEST(Summary, WhatIsUnknownIsNull) {
+  const Json json = Json::parse(FormatSummary({}));
+  EXPECT_TRUE(json["trajectory"]["ate_rmse_m"].is_null());
+  EXPECT_TRUE(json["trajectory"]["scale"].is_null());
+  EXPECT_TRUE(json["provenance"]["git"].is_null());
+  EXPECT_TRUE(json["timing"]["stages_ms"].is_object());
+}
+
+TEST(Summary, ValuesArriveInTheFile) {
+  StageTimes times;
+  times.Add("extract", 2.0);
+  times.Add("extract", 4.0);
+  RunSummary summary;
+  summary.trajectory.ate_rmse_m = 0.0095;
+  summary.trajectory.skipped = 3;
+  summary.timing.stages_ms = SummarizeStages(times);
+  summary.map.landmarks = 1234;
+  summary.provenance.seed = 18446744073709551615U;
+  summary.provenance.sequence = "fr1 \"xyz\" \xff";
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "summary.json";
+  WriteSummary(path, summary);
+  const Json json = Json::parse(ReadFile(path));
+  EXPECT_EQ(json["trajectory"]["ate_rmse_m"], 0.0095);
+  EXPECT_EQ(json["trajectory"]["skipped"], 3);
+  EXPECT_EQ(json["timing"]["stages_ms"]["extract"]["mean"], 3.0);
+  EXPECT_EQ(json["timing"]["stages_ms"]["extract"]["max"], 4.0);
+  EXPECT_EQ(json["map"]["landmarks"], 1234);
+  EXPECT_EQ(json["provenance"]["seed"], 18446744073709551615U);
+  EXPECT_TRUE(json["provenance"]["sequence"].get<std::string>().starts_with("fr1 \"xyz\" "));
+}
+
+TEST(Summary, PeakMemoryCountsWhatIsTouched) {
+  const double before = PeakMemoryMb();
+  EXPECT_GT(before, 1.0);
+  const std::vector<char> block(static_cast<size_t>(200e6), 'x');
+  EXPECT_GT(PeakMemoryMb(), 200.0) << block.back();
+  EXPECT_GE(PeakMemoryMb(), before);
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/io/tum_sequence.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+#include "support/test_data.h"
+
+namespace hullslam {
+namespace {
+
+class TumSequenceTest : public ::testing::Test {
+ protected:
+  TumSequenceTest() {
+    for (const char* const name : {"a.png", "b.png", "c.png", "d.png"}) {
+      folder_.Write(std::string("rgb/") + name, "");
+      folder_.Write(std::string("depth/") + name, "");
+    }
+    WriteRgb("1.00 rgb/a.png\n1.03 rgb/b.png\n1.06 rgb/c.png\n1.09 rgb/d.png\n");
+    WriteDepth("0.99 depth/a.png\n1.05 depth/b.png\n1.095 depth/c.png\n");
+  }
+
+  void WriteRgb(const std::string& lines) { folder_.Write("rgb.txt", "# head\r\n" + lines); }
+  void WriteDepth(const std::string& lines) { folder_.Write("depth.txt", lines); }
+  TumSequence Open(const TumSequenceOptions& options = {}) {
+    return OpenTumSequence(folder_.path(), options);
+  }
+  void ExpectError(const std::vector<std::string>& parts, const TumSequenceOptions& options = {}) {
+    ExpectInputError([&] { Open(options); }, parts);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(TumSequenceTest, PairsTheImagesAndCountsTheRest) {
+  const TumSequence sequence = Open();
+  ASSERT_EQ(sequence.frames.size(), 3U);
+  EXPECT_EQ(sequence.unpaired, 1U);  // 1.03: its neighbour belongs to 1.06, which is closer
+  EXPECT_EQ(sequence.frames[1].timestamp, 1.06);
+  EXPECT_EQ(sequence.frames[1].rgb, folder_.path() / "rgb/c.png");
+  EXPECT_EQ(sequence.frames[1].depth, folder_.path() / "depth/b.png");
+  EXPECT_FALSE(sequence.groundtruth.has_value());
+  folder_.Write("groundtruth.txt", "");
+  EXPECT_EQ(Open().groundtruth, folder_.path() / "groundtruth.txt");
+}
+
+TEST_F(TumSequenceTest, SelectsFrames) {
+  const auto stamps = [&](const FrameSelection& selection) {
+    std::vector<double> result;
+    for (const RgbdFramePaths& frame : Open({.associations = {}, .selection = selection}).frames) {
+      result.push_back(frame.timestamp);
+    }
+    return result;
+  };
+  EXPECT_EQ(stamps({}), (std::vector<double>{1.00, 1.06, 1.09}));
+  EXPECT_EQ(stamps({.first = 1}), (std::vector<double>{1.06, 1.09}));
+  EXPECT_EQ(stamps({.last = 1}), (std::vector<double>{1.00, 1.06}));
+  EXPECT_EQ(stamps({.stride = 2}), (std::vector<double>{1.00, 1.09}));
+  EXPECT_EQ(stamps({.stride = 5}), (std::vector<double>{1.00}));
+  const auto expect = [&](const FrameSelection& selection, const std::vector<std::string>& parts) {
+    ExpectError(parts, {.associations = {}, .selection = selection});
+  };
+  expect({.first = 3}, {"--first is '3'", "less than the 3 frames"});
+  expect({.first = 2, .last = 1}, {"--first is '2'", "--last, '1'"});
+  expect({.stride = 0}, {"--stride is '0'"});
+}
+
+TEST_F(TumSequenceTest, AnAssociationFileReplacesThePairing) {
+  const auto path = folder_.Write(
+      "assoc.txt", "# head\n1.0 rgb/a.png 7.5 depth/d.png\n1.5 rgb/b.png 1.5 depth/b.png\n");
+  const TumSequence sequence = Open({.associations = path, .selection = {}});
+  ASSERT_EQ(sequence.frames.size(), 2U);
+  EXPECT_EQ(sequence.frames[0].depth, folder_.path() / "depth/d.png");
+  EXPECT_EQ(sequence.unpaired, 0U);
+}
+
+TEST_F(TumSequenceTest, BrokenAssociationsAreNamed) {
+  const auto expect = [&](const std::string& lines, const std::vector<std::string>& parts) {
+    ExpectError(parts, {.associations = folder_.Write("assoc.txt", lines), .selection = {}});
+  };
+  const std::string good = "1.0 rgb/a.png 1.0 depth/a.png\n";
+  expect(good + "1.5 rgb/b.png 1.5\n", {"assoc.txt:2: ", "3 column(s), expected 4"});
+  expect(good + "1.0 rgb/b.png 1.0 depth/b.png\n", {"assoc.txt:2: ", "does not come after"});
+  expect(good + "1.5 rgb/b.png x depth/b.png\n", {"assoc.txt:2: ", "timestamp of depth is 'x'"});
+  expect(good + "1.5 rgb/x.png 1.5 depth/b.png\n", {"rgb/x.png: the image is missing"});
+  expect("", {"assoc.txt", "holds no images"});
+  ExpectError({"none.txt", "No such file"},
+              {.associations = folder_.path() / "none.txt", .selection = {}});
+}
+
+TEST_F(TumSequenceTest, BrokenListsAreNamed) {
+  const auto expect = [&](const std::string& line, const std::vector<std::string>& parts) {
+    WriteRgb("1.00 rgb/a.png\n" + line + "\n");
+    ExpectError(parts);
+  };
+  expect("1.00 rgb/b.png", {"rgb.txt:3: ", "1.000000 does not come after"});
+  expect("0.50 rgb/b.png", {"rgb.txt:3: ", "0.500000 does not come after"});
+  expect("nan rgb/b.png", {"rgb.txt:3: ", "timestamp is 'nan'"});
+  expect("stamp rgb/b.png", {"rgb.txt:3: ", "timestamp is 'stamp'"});
+  expect("1.01", {"rgb.txt:3: ", "1 column(s), expected 2"});
+  expect("1.05 rgb/x.png", {"rgb/x.png: the image is missing"});
+  WriteRgb("");
+  ExpectError({"rgb.txt", "holds no images"});
+}
+
+TEST_F(TumSequenceTest, WithoutPairsTheSmallestGapIsTold) {
+  WriteDepth("0.95 depth/a.png\n1.75 depth/b.png\n");
+  ExpectError({"within 0.02 s", "smallest gap is 0.050000 s"});
+}
+
+TEST_F(TumSequenceTest, MissingFilesAreNamed) {
+  std::filesystem::remove(folder_.path() / "depth" / "b.png");
+  ExpectError({"depth/b.png: the image is missing"});
+  // Images that are not asked for need not be there.
+  EXPECT_EQ(Open({.associations = {}, .selection = {.last = 0}}).frames.size(), 1U);
+  std::filesystem::remove(folder_.path() / "depth.txt");
+  ExpectError({"depth.txt", "No such file"});
+  ExpectInputError([] { OpenTumSequence("/no/such"); }, {"/no/such", "no such folder"});
+}
+
+class LoadRgbdTest : public ::testing::Test {
+ protected:
+  LoadRgbdTest() {
+    camera_.width = 64;
+    camera_.height = 48;
+  }
+  RgbdImage Load(const cv::Size& rgb, const cv::Size& depth) {
+    const RgbdFramePaths paths{1.5, folder_.path() / "rgb.png", folder_.path() / "depth.png"};
+    cv::imwrite(paths.rgb.string(), cv::Mat(rgb, CV_8UC3, cv::Scalar::all(9)));
+    cv::imwrite(paths.depth.string(), cv::Mat(depth, CV_16UC1, cv::Scalar::all(999)));
+    return LoadRgbd(paths, camera_);
+  }
+
+  TemporaryFolder folder_;
+  PinholeCamera camera_;
+};
+
+TEST_F(LoadRgbdTest, DecodesBothImages) {
+  const RgbdImage image = Load({64, 48}, {64, 48});
+  EXPECT_EQ(image.timestamp, 1.5);
+  ASSERT_EQ(image.grey.type(), CV_8UC1);
+  ASSERT_EQ(image.depth.type(), CV_16UC1);
+  EXPECT_EQ(image.grey.at<uint8_t>(1, 2), 9);
+  EXPECT_EQ(image.depth.at<uint16_t>(1, 2), 999);
+}
+
+TEST_F(LoadRgbdTest, SizesMustBeThoseOfTheCamera) {
+  ExpectInputError(
+      [&] {
+        Load({64, 48}, {32, 24});
+      },
+      {"depth.png: 32x24 px", "colour image rgb.png, 64x48"});
+  ExpectInputError(
+      [&] {
+        Load({32, 24}, {32, 24});
+      },
+      {"rgb.png: 32x24 px", "Camera.width x Camera.height, 64x48"});
+}
+
+TEST(TumSequenceData, RealSequencesAreRead) {
+  const auto folder = FindTestData("fr1_xyz");
+  if (!folder) {
+    GTEST_SKIP() << "fr1_xyz is not on this machine; set HULLSLAM_DATA";
+  }
+  const TumSequence sequence = OpenTumSequence(*folder);
+  EXPECT_EQ(sequence.frames.size() + sequence.unpaired, 798U);
+  const TumSequence given =
+      OpenTumSequence(*folder, {.associations = *folder / "associations.txt", .selection = {}});
+  EXPECT_EQ(given.frames.size(), 792U);
+  EXPECT_EQ(sequence.frames.size(), given.frames.size());
+  EXPECT_EQ(LoadRgbd(sequence.frames[0], PinholeCamera()).depth.cols, 640);
+}
+
+}  // namespace
+}  // namespace hullslam

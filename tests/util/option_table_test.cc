@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/util/option_table.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "hullslam/util/check.h"
+#include "support/expect_error.h"
+
+namespace hullslam {
+namespace {
+
+struct Fields {
+  double length = 1.5;
+  int count = 3;
+  uint64_t seed = 7;
+  bool flag = false;
+  std::string mode = "fast";
+
+  OptionTable Bind() {
+    OptionTable table;
+    table.Add("b.length", &length, Range::Positive(), "length, m");
+    table.Add("b.count", &count, Range::Between(1, 10), "how many");
+    table.Add("a.seed", &seed, Range::AtLeast(0), "seed");
+    table.Add("flag", &flag, "whether");
+    table.Add("mode", &mode, {"fast", "exact"}, "how");
+    table.AddIgnored("Viewer.Size");
+    return table;
+  }
+};
+
+TEST(Range, ContainsItsClosedEndsAndNothingInfinite) {
+  EXPECT_TRUE(Range::Between(1.0, 2.0).Contains(1.0));
+  EXPECT_TRUE(Range::Between(1.0, 2.0).Contains(2.0));
+  EXPECT_FALSE(Range::Between(1.0, 2.0).Contains(2.1));
+  EXPECT_FALSE(Range::Positive().Contains(0.0));
+  EXPECT_TRUE(Range::AtLeast(0.0).Contains(0.0));
+  EXPECT_FALSE(Range::Any().Contains(std::numeric_limits<double>::infinity()));
+  EXPECT_FALSE(Range::Any().Contains(std::numeric_limits<double>::quiet_NaN()));
+}
+
+TEST(Range, IsToldInWords) {
+  EXPECT_EQ(Range::Positive().ToString(), "> 0");
+  EXPECT_EQ(Range::AtLeast(1).ToString(), ">= 1");
+  EXPECT_EQ(Range::Between(0, 1).ToString(), "from 0 to 1");
+  EXPECT_EQ(Range::Any().ToString(), "of any size");
+}
+
+TEST(OptionTable, SetsTheBoundFields) {
+  Fields fields;
+  OptionTable table = fields.Bind();
+  table.Set("b.length", "+2.25", "test");
+  table.Set("b.count", "10", "test");
+  table.Set("a.seed", "18446744073709551615", "test");
+  table.Set("flag", "1", "test");
+  table.Set("mode", "exact", "test");
+  table.Set("Viewer.Size", "anything", "test");
+  EXPECT_EQ(fields.length, 2.25);
+  EXPECT_EQ(fields.count, 10);
+  EXPECT_EQ(fields.seed, std::numeric_limits<uint64_t>::max());
+  EXPECT_TRUE(fields.flag);
+  EXPECT_EQ(fields.mode, "exact");
+}
+
+TEST(OptionTable, RefusedValuesChangeNothing) {
+  Fields fields;
+  OptionTable table = fields.Bind();
+  const auto expect = [&](const char* key, const char* value, const char* expected) {
+    ExpectInputError([&] { table.Set(key, value, "file.yaml:3"); },
+                     {"file.yaml:3: ", key, std::string("'") + value + "'", expected});
+  };
+  expect("b.length", "0", "a number > 0");
+  expect("b.length", "nan", "a number > 0");
+  expect("b.length", "1.5m", "a number > 0");
+  expect("b.length", "", "a number > 0");
+  expect("b.count", "0", "an integer from 1 to 10");
+  expect("b.count", "2.5", "an integer from 1 to 10");
+  expect("b.count", "99999999999", "an integer from 1 to 10");
+  expect("a.seed", "-1", "an integer >= 0");
+  expect("flag", "yes", "true or false");
+  expect("mode", "slow", "one of: fast, exact");
+  EXPECT_EQ(fields.length, 1.5);
+  EXPECT_EQ(fields.count, 3);
+  EXPECT_EQ(fields.seed, 7U);
+  EXPECT_EQ(fields.mode, "fast");
+}
+
+TEST(OptionTable, AnUnknownKeyIsToldWithTheNearestOne) {
+  Fields fields;
+  OptionTable table = fields.Bind();
+  ExpectInputError([&] { table.Set("b.lenght", "1", "--set"); },
+                   {"--set: ", "unknown key 'b.lenght'", "did you mean 'b.length'"});
+  EXPECT_TRUE(table.Contains("b.length"));
+  EXPECT_TRUE(table.Contains("Viewer.Size"));
+  EXPECT_FALSE(table.Contains("b.lenght"));
+}
+
+TEST(OptionTable, EntriesAreSortedAndTellTheValuesInUse) {
+  Fields fields;
+  OptionTable table = fields.Bind();
+  table.Set("b.count", "5", "test");
+  const auto entries = table.Entries();
+  ASSERT_EQ(entries.size(), 5U);
+  EXPECT_EQ(entries[0].key, "a.seed");
+  EXPECT_EQ(entries[1].key, "b.count");
+  EXPECT_EQ(entries[1].value, "5");
+  EXPECT_EQ(entries[1].expected, "an integer from 1 to 10");
+  EXPECT_EQ(entries[1].help, "how many");
+  EXPECT_EQ(entries[4].value, "fast");
+}
+
+TEST(OptionTable, AKeyIsBoundOnce) {
+  Fields fields;
+  OptionTable table = fields.Bind();
+  EXPECT_THROW(table.Add("flag", &fields.flag, "again"), CheckError);
+}
+
+}  // namespace
+}  // namespace hullslam
