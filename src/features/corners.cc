@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 
 #include "hullslam/util/check.h"
@@ -12,7 +13,6 @@ namespace hullslam {
 namespace {
 
 constexpr int kCircle = 16;
-constexpr int kRadius = 3;
 
 // Bresenham's circle of radius 3, clockwise.
 constexpr std::array<int, kCircle> kCircleX = {0, 1,  2,  3,  3,  3,  2,  1,
@@ -57,15 +57,24 @@ inline uint8_t OverArcs(const std::array<uint8_t, kCircle>& p) {
   return result;
 }
 
-// Score of each pixel from begin to end: an arc is brighter than the centre by more than t if its
-// darkest pixel is. Without branches, so that the compiler can treat many pixels at once.
+// Rows are treated in whole blocks, without a slow remainder: up to kBlock - 1 results after the
+// last pixel wanted are made of the following rows and never used. With the smallest border there
+// are always rows enough below, so nothing outside the image is read.
+constexpr int kBlock = 32;
+constexpr int kSmallestBorder = 8;
+
+int BlockCount(int pixels) { return (pixels + kBlock - 1) / kBlock; }
+
+// Score of each pixel of `blocks` blocks from `row` on: an arc is brighter than the centre by more
+// than t if its darkest pixel is. Without branches, so that the compiler can treat many pixels at
+// once.
 HULLSLAM_FUNCTION_CLONES
-void ScoreRow(const uint8_t* row, ptrdiff_t step, int begin, int end, uint8_t* __restrict scores) {
+void ScoreRow(const uint8_t* row, ptrdiff_t step, int blocks, uint8_t* __restrict scores) {
   std::array<const uint8_t*, kCircle> circle;
   for (int i = 0; i < kCircle; ++i) {
     circle[i] = row + kCircleY[i] * step + kCircleX[i];
   }
-  for (int x = begin; x < end; ++x) {
+  for (int x = 0; x < blocks * kBlock; ++x) {
     std::array<uint8_t, kCircle> p;
 #pragma GCC unroll 16
     for (int i = 0; i < kCircle; ++i) {
@@ -82,9 +91,9 @@ void ScoreRow(const uint8_t* row, ptrdiff_t step, int begin, int end, uint8_t* _
 // Keeps the scores that are at least `threshold`, above those of the neighbours before it in raster
 // order and not below those after it; the others become 0.
 HULLSLAM_FUNCTION_CLONES
-void MaximaOfRow(const uint8_t* above, const uint8_t* row, const uint8_t* below, int begin, int end,
+void MaximaOfRow(const uint8_t* above, const uint8_t* row, const uint8_t* below, int blocks,
                  uint8_t threshold, uint8_t* __restrict maxima) {
-  for (int x = begin; x < end; ++x) {
+  for (int x = 0; x < blocks * kBlock; ++x) {
     const uint8_t before =
         std::max(std::max(above[x - 1], above[x]), std::max(above[x + 1], row[x - 1]));
     const uint8_t after =
@@ -97,20 +106,19 @@ void MaximaOfRow(const uint8_t* above, const uint8_t* row, const uint8_t* below,
 
 // Most pixels are no maxima: whole words of zeros are passed over.
 void CollectRow(const uint8_t* maxima, int begin, int end, int y, std::vector<Corner>& corners) {
-  for (int x = begin; x < end;) {
+  for (int x = begin; x < end; x += 8) {
     uint64_t word = 0;
-    if (x + 8 <= end) {
-      std::memcpy(&word, maxima + x, sizeof(word));
-      if (word == 0) {
-        x += 8;
-        continue;
-      }
+    std::memcpy(&word, maxima + x, sizeof(word));
+    if constexpr (std::endian::native == std::endian::big) {
+      word = __builtin_bswap64(word);
     }
-    const int stop = std::min(x + 8, end);
-    for (; x < stop; ++x) {
-      if (maxima[x] != 0) {
-        corners.push_back({static_cast<int16_t>(x), static_cast<int16_t>(y), maxima[x]});
+    while (word != 0) {
+      const int byte = std::countr_zero(word) / 8;
+      if (x + byte < end) {
+        corners.push_back({static_cast<int16_t>(x + byte), static_cast<int16_t>(y),
+                           static_cast<int16_t>(word >> (8 * byte) & 0xff)});
       }
+      word &= ~(uint64_t{0xff} << (8 * byte));
     }
   }
 }
@@ -141,7 +149,7 @@ CornerDetector::CornerDetector(int initial_threshold, int minimum_threshold)
 
 void CornerDetector::Detect(const cv::Mat& image, int border, std::vector<Corner>& corners) {
   Check(image.type() == CV_8UC1, "the image is not CV_8UC1");
-  Check(border > kRadius, "the border is not wider than the FAST circle");
+  Check(border >= kSmallestBorder, "the border is narrower than 8 px");
   corners.clear();
   if (image.cols <= 2 * border || image.rows <= 2 * border) {
     return;
@@ -151,18 +159,21 @@ void CornerDetector::Detect(const cv::Mat& image, int border, std::vector<Corner
 }
 
 void CornerDetector::FindMaxima(const cv::Mat& image, int border, std::vector<Corner>& corners) {
-  const auto width = static_cast<size_t>(image.cols);
+  const auto width = static_cast<size_t>(image.cols + 2 * kBlock);
   score_rows_.assign(3 * width, 0);
   maxima_.assign(width, 0);
   const auto ring_row = [&](int y) {
-    return score_rows_.data() + width * static_cast<size_t>(y % 3);
+    return score_rows_.data() + width * static_cast<size_t>(y % 3) + border;
   };
   const auto step = static_cast<ptrdiff_t>(image.step);
+  const int blocks = BlockCount(image.cols - 2 * border);
+  // One pixel more on each side than corners are wanted, to compare with.
+  const int score_blocks = BlockCount(image.cols - 2 * border + 2);
   for (int y = border - 1; y <= image.rows - border; ++y) {
-    ScoreRow(image.ptr(y), step, border - 1, image.cols - border + 1, ring_row(y));
+    ScoreRow(image.ptr(y) + border - 1, step, score_blocks, ring_row(y) - 1);
     if (y > border) {
-      MaximaOfRow(ring_row(y - 2), ring_row(y - 1), ring_row(y), border, image.cols - border,
-                  static_cast<uint8_t>(minimum_threshold_), maxima_.data());
+      MaximaOfRow(ring_row(y - 2), ring_row(y - 1), ring_row(y), blocks,
+                  static_cast<uint8_t>(minimum_threshold_), maxima_.data() + border);
       CollectRow(maxima_.data(), border, image.cols - border, y - 1, corners);
     }
   }
@@ -171,15 +182,20 @@ void CornerDetector::FindMaxima(const cv::Mat& image, int border, std::vector<Co
 void CornerDetector::DropWeakInStrongCells(const cv::Mat& image, std::vector<Corner>& corners) {
   const Cells cells(image);
   strong_.assign(static_cast<size_t>(cells.count()), 0);
-  for (const Corner& corner : corners) {
-    if (corner.score >= initial_threshold_) {
-      strong_[static_cast<size_t>(cells.IndexOf(corner))] = 1;
-    }
+  cell_of_corner_.resize(corners.size());
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const auto cell = static_cast<uint32_t>(cells.IndexOf(corners[i]));
+    cell_of_corner_[i] = cell;
+    strong_[cell] |= static_cast<uint8_t>(corners[i].score >= initial_threshold_);
   }
-  std::erase_if(corners, [&](const Corner& corner) {
-    return corner.score < initial_threshold_ &&
-           strong_[static_cast<size_t>(cells.IndexOf(corner))] != 0;
-  });
+  size_t kept = 0;
+  for (size_t i = 0; i < corners.size(); ++i) {
+    // Written always and counted where it is kept: which corners are cannot be foreseen.
+    const bool keep = corners[i].score >= initial_threshold_ || strong_[cell_of_corner_[i]] == 0;
+    corners[kept] = corners[i];
+    kept += keep ? 1 : 0;
+  }
+  corners.resize(kept);
 }
 
 }  // namespace hullslam

@@ -151,6 +151,20 @@ TEST(CornerDetector, TakesImagesThatAreAllBorder) {
   EXPECT_TRUE(Detect(MakeCornerImage(38, 100), 20, 7).empty());
 }
 
+// Sizes just above twice the border; AddressSanitizer watches the reads.
+TEST(CornerDetector, StaysInsideTheSmallestImages) {
+  for (const int border : {8, 19}) {
+    for (int extra = 1; extra < 40; extra += 3) {
+      const int size = 2 * border + extra;
+      cv::Mat image(size, size, CV_8UC1, cv::Scalar(100));
+      image.at<uint8_t>(border, size - border - 1) = 200;
+      std::vector<Corner> corners;
+      CornerDetector(20, 7).Detect(image, border, corners);
+      EXPECT_EQ(corners.size(), 1u) << size;
+    }
+  }
+}
+
 TEST(CornerDetector, RejectsWhatItCannotUse) {
   std::vector<Corner> corners;
   EXPECT_THROW(CornerDetector(20, 0), CheckError);
@@ -158,7 +172,7 @@ TEST(CornerDetector, RejectsWhatItCannotUse) {
   CornerDetector detector(20, 7);
   const cv::Mat colour(64, 64, CV_8UC3, cv::Scalar());
   EXPECT_THROW(detector.Detect(colour, kBorder, corners), CheckError);
-  EXPECT_THROW(detector.Detect(MakeCornerImage(64, 64), 3, corners), CheckError);
+  EXPECT_THROW(detector.Detect(MakeCornerImage(64, 64), 7, corners), CheckError);
 }
 
 }  // namespace

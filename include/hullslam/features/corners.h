@@ -22,7 +22,7 @@ class CornerDetector {
   // `minimum_threshold` (grey levels, at least 1) are taken.
   CornerDetector(int initial_threshold, int minimum_threshold);
 
-  // Corners at least `border` px (4 or more) away from the outermost pixels of `image` (CV_8UC1),
+  // Corners at least `border` px (8 or more) away from the outermost pixels of `image` (CV_8UC1),
   // in raster order; `corners` is overwritten.
   void Detect(const cv::Mat& image, int border, std::vector<Corner>& corners);
 
@@ -35,6 +35,7 @@ class CornerDetector {
   std::vector<uint8_t> score_rows_;  // of three image rows, as a ring
   std::vector<uint8_t> maxima_;      // of one row: the score where it is a maximum, else 0
   std::vector<uint8_t> strong_;      // of a cell: has a corner of the initial threshold
+  std::vector<uint32_t> cell_of_corner_;
 };
 
 }  // namespace hullslam
