@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+
+struct ProgramResult {
+  int exit_code = -1;  // -1 where a signal ended it
+  std::string output;  // of stdout
+  std::string errors;  // of stderr
+};
+
+// Runs a program of this build with arguments and waits for it.
+inline ProgramResult RunProgram(const std::string& name,
+                                const std::vector<std::string>& arguments) {
+  const TemporaryFolder folder;
+  const auto read = [&](const char* file) {
+    std::ifstream stream(folder.path() / file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  std::string command = '\'' + (std::filesystem::path(HULLSLAM_BIN_DIR) / name).string() + '\'';
+  for (const std::string& argument : arguments) {
+    command += " '" + argument + '\'';
+  }
+  command +=
+      " >'" + (folder.path() / "out").string() + "' 2>'" + (folder.path() / "err").string() + '\'';
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out"), read("err")};
+}
+
+}  // namespace hullslam
