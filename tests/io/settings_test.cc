@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hullslam/io/text_rows.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -223,6 +224,18 @@ TEST_F(Settings, TheSettingsOfKnownCamerasAreFoundAndRead) {
   ExpectInputError([] { FindConfigFolder(); }, {"HULLSLAM_CONFIG", "/no/such/folder"});
   ::unsetenv("HULLSLAM_CONFIG");
   EXPECT_TRUE(std::filesystem::exists(FindConfigFolder() / "TUM1.yaml"));
+}
+
+// docs/settings.md must tell every key with what is expected of it.
+TEST_F(Settings, EveryKeyIsDocumented) {
+  const std::string docs = ReadFile(HULLSLAM_SOURCE_DIR "/docs/settings.md");
+  SystemOptions options;
+  for (const OptionTable::Entry& entry : options.Bind().Entries()) {
+    const size_t begin = docs.find("| `" + entry.key + "` |");
+    ASSERT_NE(begin, std::string::npos) << entry.key;
+    const std::string line = docs.substr(begin, docs.find('\n', begin) - begin);
+    EXPECT_NE(line.find(" | " + entry.expected + " | "), std::string::npos) << line;
+  }
 }
 
 }  // namespace
