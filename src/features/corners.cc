@@ -29,6 +29,8 @@ struct Brightest {
   static uint8_t Outer(uint8_t a, uint8_t b) { return std::min(a, b); }
 };
 
+// NOLINTBEGIN(cppcoreguidelines-pro-type-member-init): arrays of the hottest loop, filled at once.
+
 // Outer over all arcs of 9 neighbours of Inner over the arc. The arcs from i and from i + 1 share
 // eight pixels, so only eight pairs of arcs are looked at.
 template <typename Order>
@@ -87,6 +89,8 @@ void ScoreRow(const uint8_t* row, ptrdiff_t step, int blocks, uint8_t* __restric
     scores[x] = std::max<uint8_t>(contrast, 1) - 1;
   }
 }
+
+// NOLINTEND(cppcoreguidelines-pro-type-member-init)
 
 // Keeps the scores that are at least `threshold`, above those of the neighbours before it in raster
 // order and not below those after it; the others become 0.

@@ -226,8 +226,9 @@ void ApplyBundle(Map& map, const BundleResult& result, const ScaleLevels& levels
     if (seen == nullptr) {
       continue;
     }
-    const bool observed = std::any_of(seen->observations.begin(), seen->observations.end(),
-                                      [&](const Observation& o) { return o.keyframe == keyframe; });
+    const bool observed =
+        std::any_of(seen->observations.begin(), seen->observations.end(),
+                    [id = keyframe](const Observation& o) { return o.keyframe == id; });
     if (observed) {
       map.RemoveObservation(landmark, keyframe);
     }

@@ -43,6 +43,7 @@ std::vector<KeyframeId> OuterObservers(const Map& map, const std::vector<Landmar
                    [](const Covisible& a, const Covisible& b) { return a.shared > b.shared; });
   outer.resize(std::min(outer.size(), count));
   std::vector<KeyframeId> ids;
+  ids.reserve(outer.size());
   for (const Covisible& keyframe : outer) {
     ids.push_back(keyframe.keyframe);
   }
