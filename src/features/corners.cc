@@ -108,8 +108,26 @@ void MaximaOfRow(const uint8_t* above, const uint8_t* row, const uint8_t* below,
   }
 }
 
+// The scores of three rows, by x of the image.
+struct ScoreRows {
+  const uint8_t* above;
+  const uint8_t* row;
+  const uint8_t* below;
+
+  Corner CornerAt(int x, int y) const {
+    return {static_cast<int16_t>(x),
+            static_cast<int16_t>(y),
+            row[x],
+            row[x - 1],
+            row[x + 1],
+            above[x],
+            below[x]};
+  }
+};
+
 // Most pixels are no maxima: whole words of zeros are passed over.
-void CollectRow(const uint8_t* maxima, int begin, int end, int y, std::vector<Corner>& corners) {
+void CollectRow(const uint8_t* maxima, const ScoreRows& scores, int begin, int end, int y,
+                std::vector<Corner>& corners) {
   for (int x = begin; x < end; x += 8) {
     uint64_t word = 0;
     std::memcpy(&word, maxima + x, sizeof(word));
@@ -119,12 +137,18 @@ void CollectRow(const uint8_t* maxima, int begin, int end, int y, std::vector<Co
     while (word != 0) {
       const int byte = std::countr_zero(word) / 8;
       if (x + byte < end) {
-        corners.push_back({static_cast<int16_t>(x + byte), static_cast<int16_t>(y),
-                           static_cast<int16_t>(word >> (8 * byte) & 0xff)});
+        corners.push_back(scores.CornerAt(x + byte, y));
       }
       word &= ~(uint64_t{0xff} << (8 * byte));
     }
   }
+}
+
+// Top of the parabola through (-1, before), (0, top) and (1, after), where top is the largest.
+float ParabolaTop(int before, int top, int after) {
+  const int curvature = 2 * top - before - after;
+  return curvature > 0 ? 0.5f * static_cast<float>(after - before) / static_cast<float>(curvature)
+                       : 0.0f;
 }
 
 // Cells of equal size, about 30 px wide.
@@ -145,6 +169,11 @@ struct Cells {
 };
 
 }  // namespace
+
+Eigen::Vector2f SubpixelOffset(const Corner& corner) {
+  return {ParabolaTop(corner.left, corner.score, corner.right),
+          ParabolaTop(corner.above, corner.score, corner.below)};
+}
 
 CornerDetector::CornerDetector(int initial_threshold, int minimum_threshold)
     : initial_threshold_(initial_threshold), minimum_threshold_(minimum_threshold) {
@@ -167,18 +196,19 @@ void CornerDetector::FindMaxima(const cv::Mat& image, int border, std::vector<Co
   score_rows_.assign(3 * width, 0);
   maxima_.assign(width, 0);
   const auto ring_row = [&](int y) {
-    return score_rows_.data() + width * static_cast<size_t>(y % 3) + border;
+    return score_rows_.data() + width * static_cast<size_t>(y % 3);
   };
   const auto step = static_cast<ptrdiff_t>(image.step);
   const int blocks = BlockCount(image.cols - 2 * border);
   // One pixel more on each side than corners are wanted, to compare with.
   const int score_blocks = BlockCount(image.cols - 2 * border + 2);
   for (int y = border - 1; y <= image.rows - border; ++y) {
-    ScoreRow(image.ptr(y) + border - 1, step, score_blocks, ring_row(y) - 1);
+    ScoreRow(image.ptr(y) + border - 1, step, score_blocks, ring_row(y) + border - 1);
     if (y > border) {
-      MaximaOfRow(ring_row(y - 2), ring_row(y - 1), ring_row(y), blocks,
+      const ScoreRows scores{ring_row(y - 2), ring_row(y - 1), ring_row(y)};
+      MaximaOfRow(scores.above + border, scores.row + border, scores.below + border, blocks,
                   static_cast<uint8_t>(minimum_threshold_), maxima_.data() + border);
-      CollectRow(maxima_.data(), border, image.cols - border, y - 1, corners);
+      CollectRow(maxima_.data(), scores, border, image.cols - border, y - 1, corners);
     }
   }
 }

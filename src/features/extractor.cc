@@ -48,6 +48,8 @@ void FeatureOptions::Bind(OptionTable& options) {
               "FAST threshold, grey levels");
   options.Add("ORBextractor.minThFAST", &minimum_fast_threshold, Range::Between(1, 255),
               "FAST threshold where there are no corners otherwise, grey levels");
+  options.Add("ORBextractor.subpixel", &subpixel,
+              "refine the positions of features within a pixel of their level");
 }
 
 struct FeatureExtractor::Impl {
@@ -55,7 +57,8 @@ struct FeatureExtractor::Impl {
       : levels(ScaleLevels::Create(options.level_count, options.scale_factor)),
         quotas(LevelQuotas(options)),
         pyramid(levels),
-        detector(options.initial_fast_threshold, options.minimum_fast_threshold) {}
+        detector(options.initial_fast_threshold, options.minimum_fast_threshold),
+        subpixel(options.subpixel) {}
 
   // Appends the features of level l.
   void ExtractLevel(int l, ExtractedFeatures& features);
@@ -65,6 +68,7 @@ struct FeatureExtractor::Impl {
   std::vector<size_t> quotas;
   ImagePyramid pyramid;
   CornerDetector detector;
+  bool subpixel;
   QuadtreeSelection selection;
   std::vector<Corner> corners;
   std::vector<Corner> selected;
@@ -89,7 +93,11 @@ void FeatureExtractor::Impl::Describe(const Corner& corner, int l,
   const cv::Point center(corner.x, corner.y);
   const Orientation orientation = ComputeOrientation(pyramid.level(l), center);
   Keypoint keypoint;
-  keypoint.raw = pyramid.ToLevelZero({corner.x, corner.y}, l);
+  Eigen::Vector2f position(corner.x, corner.y);
+  if (subpixel) {
+    position += SubpixelOffset(corner);
+  }
+  keypoint.raw = pyramid.ToLevelZero(position, l);
   keypoint.undistorted = keypoint.raw;
   keypoint.angle = orientation.Angle();
   keypoint.response = corner.score;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <opencv2/features2d.hpp>
 #include <tuple>
@@ -149,6 +150,42 @@ TEST(CornerDetector, KeepsTheBorderAndTheOrder) {
 
 TEST(CornerDetector, TakesImagesThatAreAllBorder) {
   EXPECT_TRUE(Detect(MakeCornerImage(38, 100), 20, 7).empty());
+}
+
+TEST(CornerDetector, TellsTheScoresOfTheNeighbours) {
+  const cv::Mat image = MakeCornerImage(200, 150);
+  std::map<std::pair<int, int>, int> scores;
+  for (const auto& [position, score] : OpenCvScores(image, 1)) {
+    scores[position] = score;  // 0 where OpenCV suppressed it
+  }
+  const std::vector<Corner> corners = Detect(image, 7, 7);
+  ASSERT_GT(corners.size(), 20u);
+  for (const Corner& corner : corners) {
+    const int highest = std::max({corner.left, corner.right, corner.above, corner.below});
+    EXPECT_LE(highest, corner.score);
+    // A neighbour that is a FAST corner at threshold 1 has a score of 1 or more, another has 0.
+    const auto is_corner = [&](int dx, int dy) {
+      return scores.contains({corner.x + dx, corner.y + dy});
+    };
+    EXPECT_EQ(corner.left > 0, is_corner(-1, 0));
+    EXPECT_EQ(corner.right > 0, is_corner(1, 0));
+    EXPECT_EQ(corner.above > 0, is_corner(0, -1));
+    EXPECT_EQ(corner.below > 0, is_corner(0, 1));
+  }
+}
+
+TEST(SubpixelOffset, IsTheTopOfTheParabola) {
+  // 60 - 20 (t - 1/4)^2, scaled to whole numbers at t = -1, 0, 1: 115, 235, 195 (times 1/4).
+  const Corner corner{.score = 235, .left = 115, .right = 195, .above = 195, .below = 115};
+  EXPECT_FLOAT_EQ(SubpixelOffset(corner).x(), 0.25f);
+  EXPECT_FLOAT_EQ(SubpixelOffset(corner).y(), -0.25f);
+}
+
+TEST(SubpixelOffset, IsHalfAPixelAtMost) {
+  const Corner plateau{.score = 50, .left = 0, .right = 50, .above = 50, .below = 0};
+  EXPECT_EQ(SubpixelOffset(plateau), Eigen::Vector2f(0.5f, -0.5f));
+  const Corner flat{.score = 50, .left = 50, .right = 50, .above = 50, .below = 50};
+  EXPECT_EQ(SubpixelOffset(flat), Eigen::Vector2f(0.0f, 0.0f));
 }
 
 // Sizes just above twice the border; AddressSanitizer watches the reads.

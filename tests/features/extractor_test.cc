@@ -100,6 +100,65 @@ TEST(FeatureExtractor, FindsWeakCornersWhereThereAreNoOthers) {
   EXPECT_TRUE(FeatureExtractor(options).Extract(image).keypoints.empty());
 }
 
+TEST(FeatureExtractor, SubpixelMovesPositionsOnly) {
+  const cv::Mat image = MakeCornerImage();
+  FeatureOptions options;
+  const ExtractedFeatures whole = FeatureExtractor(options).Extract(image);
+  options.subpixel = true;
+  FeatureExtractor extractor(options);
+  const ExtractedFeatures refined = extractor.Extract(image);
+  ASSERT_EQ(whole.keypoints.size(), refined.keypoints.size());
+  EXPECT_EQ(whole.descriptors, refined.descriptors);
+  size_t moved = 0;
+  for (size_t i = 0; i < whole.keypoints.size(); ++i) {
+    const Keypoint& keypoint = refined.keypoints[i];
+    const float scale = extractor.levels().scale[static_cast<size_t>(keypoint.level)];
+    const Eigen::Vector2f offset = keypoint.raw - whole.keypoints[i].raw;
+    EXPECT_LE(offset.cwiseAbs().maxCoeff(), 0.51f * scale);
+    moved += offset.norm() > 0.0f ? 1 : 0;
+  }
+  EXPECT_GT(moved, whole.keypoints.size() / 2);
+}
+
+// Small against the FAST circle: a wider one reaches it, and then the score is highest beside its
+// centre.
+cv::Mat MakeDot(const Eigen::Vector2f& place) {
+  cv::Mat image(128, 128, CV_8UC1);
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) {
+      const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
+      const float r2 = (pixel - place).squaredNorm();
+      image.at<uint8_t>(y, x) = static_cast<uint8_t>(30.5f + 200.0f * std::exp(-r2 / 2.0f));
+    }
+  }
+  return image;
+}
+
+// Mean distance of the only feature to its dot, over places all over a pixel.
+float MeanErrorOfDots(bool subpixel) {
+  FeatureOptions options;
+  options.level_count = 1;
+  options.subpixel = subpixel;
+  FeatureExtractor extractor(options);
+  float sum = 0.0f;
+  constexpr int kSteps = 10;
+  for (int i = 0; i < kSteps * kSteps; ++i) {
+    const Eigen::Vector2f place(60.0f + static_cast<float>(i % kSteps) / kSteps,
+                                70.0f + static_cast<float>(i / kSteps) / kSteps);
+    const ExtractedFeatures features = extractor.Extract(MakeDot(place));
+    EXPECT_EQ(features.keypoints.size(), 1u);
+    sum += features.keypoints.empty() ? 1.0f : (features.keypoints[0].raw - place).norm();
+  }
+  return sum / (kSteps * kSteps);
+}
+
+// Whole pixels are off by 0.38 px in the mean; the score is no parabola, so some error stays.
+TEST(FeatureExtractor, SubpixelHalvesTheErrorOfDots) {
+  const float whole = MeanErrorOfDots(false);
+  EXPECT_NEAR(whole, 0.38f, 0.02f);
+  EXPECT_LT(MeanErrorOfDots(true), 0.5f * whole);
+}
+
 TEST(FeatureExtractor, RejectsImagesItCannotRead) {
   FeatureExtractor extractor(FeatureOptions{});
   EXPECT_THROW(extractor.Extract(cv::Mat()), CheckError);
@@ -116,6 +175,8 @@ TEST(FeatureOptions, BindsTheKeysOfOrbSlam2) {
   table.Set("ORBextractor.nLevels", "4", "test");
   table.Set("ORBextractor.iniThFAST", "25", "test");
   table.Set("ORBextractor.minThFAST", "9", "test");
+  table.Set("ORBextractor.subpixel", "true", "test");
+  EXPECT_TRUE(options.subpixel);
   EXPECT_EQ(options.feature_count, 500);
   EXPECT_EQ(options.scale_factor, 1.5);
   EXPECT_EQ(options.level_count, 4);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <filesystem>
+#include <cstdlib>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -29,12 +29,13 @@ inline cv::Mat MakeCornerImage(int width = 640, int height = 480, uint64_t seed 
   return image;
 }
 
-// A grey image of a real sequence, empty where the data set is not on this machine.
+// A grey image of TUM freiburg1_xyz from the folder of data sets (HULLSLAM_DATA, by default beside
+// the source tree); empty where it is not on this machine.
 inline cv::Mat LoadRealImage() {
-  const std::string path =
-      std::string(HULLSLAM_SOURCE_DIR) + "/../shared/data/fr1_xyz/rgb/1305031102.175304.jpg";
-  const std::string installed = "/work/shared/data/fr1_xyz/rgb/1305031102.175304.jpg";
-  return cv::imread(std::filesystem::exists(path) ? path : installed, cv::IMREAD_GRAYSCALE);
+  const char* const folder = std::getenv("HULLSLAM_DATA");
+  const std::string data =
+      folder != nullptr ? folder : std::string(HULLSLAM_SOURCE_DIR) + "/../shared/data";
+  return cv::imread(data + "/fr1_xyz/rgb/1305031102.175304.jpg", cv::IMREAD_GRAYSCALE);
 }
 
 }  // namespace hullslam

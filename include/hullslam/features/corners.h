@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <vector>
@@ -12,7 +13,16 @@ struct Corner {
   int16_t y = 0;
   // Largest threshold (grey levels) with which the pixel is a FAST corner.
   int16_t score = 0;
+  // Scores of the neighbours, for a refined position.
+  uint8_t left = 0;
+  uint8_t right = 0;
+  uint8_t above = 0;
+  uint8_t below = 0;
 };
+
+// From the pixel of a corner to the top of the parabolas through its score and those of its
+// neighbours, at most half a pixel in x and in y.
+Eigen::Vector2f SubpixelOffset(const Corner& corner);
 
 // FAST-9/16 corners (Rosten and Drummond 2006) that are maxima of their 3 x 3 neighbourhood. Of
 // equal neighbours the first in raster order is one. Keeps its buffers from image to image.

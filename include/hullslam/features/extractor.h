@@ -18,7 +18,9 @@ struct FeatureOptions {
   int initial_fast_threshold = 20;  // grey levels
   int minimum_fast_threshold = 7;   // where a cell has no corner at the initial threshold
 
-  // Binds ORB-SLAM2's keys `ORBextractor.nFeatures` ... to the fields.
+  bool subpixel = false;  // refine positions within the pixel of their level
+
+  // Binds ORB-SLAM2's keys `ORBextractor.nFeatures` ... and `ORBextractor.subpixel` to the fields.
   void Bind(OptionTable& options);
 };
 
