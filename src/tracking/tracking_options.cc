@@ -10,8 +10,6 @@ void TrackingOptions::Bind(OptionTable& options) {
               "landmarks that must be found in a frame, else it counts as lost");
   options.Add("tracking.local_keyframes", &local_keyframes, Range::AtLeast(1),
               "keyframes against whose landmarks a frame is tracked, at most");
-  options.Add("tracking.lost_after_frames", &lost_after_frames, Range::AtLeast(1),
-              "frames without a pose after which a run is given up");
 }
 
 }  // namespace hullslam

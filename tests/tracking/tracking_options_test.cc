@@ -24,10 +24,10 @@ TEST(TrackingOptions, AreSetByName) {
   TrackingOptions options;
   OptionTable table;
   options.Bind(table);
-  table.Set("tracking.lost_after_frames", "12", "test");
-  EXPECT_EQ(options.lost_after_frames, 12);
-  ExpectInputError([&] { table.Set("tracking.lost_after_frames", "0", "test"); },
-                   {"tracking.lost_after_frames", "'0'", "expected"});
+  table.Set("tracking.min_inliers", "12", "test");
+  EXPECT_EQ(options.min_inliers, 12);
+  ExpectInputError([&] { table.Set("tracking.min_inliers", "0", "test"); },
+                   {"tracking.min_inliers", "'0'", "expected"});
 }
 
 }  // namespace

@@ -9,7 +9,6 @@ struct TrackingOptions {
   int min_initial_points = 50;  // keypoints with depth in the first frame
   int min_inliers = 30;         // landmarks found, else a frame counts as lost
   int local_keyframes = 80;     // against whose landmarks a frame is tracked
-  int lost_after_frames = 30;   // a run without relocalisation is given up after that many
 
   void Bind(OptionTable& options);
 };

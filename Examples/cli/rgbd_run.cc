@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/rgbd_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include "cli/interrupt.h"
+#include "cli/program.h"
+#include "cli/progress.h"
+#include "hullslam/eval/ate.h"
+#include "hullslam/eval/rpe.h"
+#include "hullslam/io/map_file.h"
+#include "hullslam/io/output_folder.h"
+#include "hullslam/io/settings.h"
+#include "hullslam/io/summary.h"
+#include "hullslam/io/trajectory_file.h"
+#include "hullslam/system/prefetcher.h"
+#include "hullslam/system/system.h"
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kImagesAhead = 4;
+constexpr size_t kLostForGood = 30;  // a run that ends with so many lost frames in a row has failed
+
+using Clock = std::chrono::steady_clock;
+
+// An image, or why there is none.
+struct LoadedFrame {
+  std::optional<RgbdImage> image;
+  std::string error;
+};
+
+struct RunResult {
+  size_t given = 0;    // frames the run came to
+  size_t skipped = 0;  // of these with a broken image
+  double seconds = 0.0;
+  bool was_interrupted = false;
+};
+
+SystemOptions LoadOptions(const RunArguments& arguments) {
+  const std::filesystem::path settings =
+      arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
+                                 : arguments.settings;
+  return ReadSettings(settings, arguments.overrides);
+}
+
+Prefetcher<LoadedFrame> StartLoading(const TumSequence& sequence, const PinholeCamera& camera) {
+  return Prefetcher<LoadedFrame>(
+      [&sequence, &camera, next = size_t{0}]() mutable -> std::optional<LoadedFrame> {
+        if (next == sequence.frames.size()) {
+          return std::nullopt;
+        }
+        LoadedFrame loaded;
+        try {
+          loaded.image = LoadRgbd(sequence.frames[next++], camera);
+        } catch (const InputError& error) {
+          loaded.error = error.what();
+        }
+        return loaded;
+      },
+      kImagesAhead);
+}
+
+// Waits until the frame is due when played at the pace of its stamps.
+void WaitForStamp(const TumSequence& sequence, double stamp, Clock::time_point start) {
+  const std::chrono::duration<double> due(stamp - sequence.frames.front().timestamp);
+  std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(due));
+}
+
+RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
+                   const PinholeCamera& camera, System& system) {
+  RunResult result;
+  Progress progress(sequence.frames.size(), arguments.quiet);
+  const Clock::time_point start = Clock::now();
+  Prefetcher<LoadedFrame> images = StartLoading(sequence, camera);
+  while (!IsInterrupted()) {
+    const std::optional<LoadedFrame> loaded = images.Next();
+    if (!loaded) {
+      break;
+    }
+    ++result.given;
+    if (!loaded->image) {
+      if (arguments.strict) {
+        throw InputError(loaded->error);
+      }
+      progress.Clear();
+      fmt::print(stderr, "warning: {}; the frame is skipped\n", loaded->error);
+      ++result.skipped;
+      continue;
+    }
+    if (arguments.realtime) {
+      WaitForStamp(sequence, loaded->image->timestamp, start);
+    }
+    const TrackedFrame frame = system.Track(*loaded->image);
+    progress.Show(result.given, frame, system);
+  }
+  system.Finish();
+  progress.Clear();
+  result.was_interrupted = IsInterrupted();
+  result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return result;
+}
+
+void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory,
+              TrajectorySummary& summary) {
+  const AteReport ate = EvaluateAte(groundtruth, trajectory);
+  if (!ate.ok()) {
+    fmt::print(stderr, "warning: no trajectory error: {}\n", ate.failure);
+    return;
+  }
+  summary.ate_rmse_m = ate.errors.rmse;
+  summary.scale = ate.reference_from_estimate.scale;
+  summary.pairs = ate.pairs;
+  summary.coverage = ate.coverage;
+  const RpeReport rpe = EvaluateRpe(groundtruth, trajectory);
+  if (rpe.ok()) {
+    summary.rpe_rmse_m = rpe.translation.rmse;
+    summary.rpe_rmse_deg = rpe.rotation.rmse;
+  }
+}
+
+size_t CountLost(const System& system) {
+  return static_cast<size_t>(std::count_if(
+      system.frames().begin(), system.frames().end(),
+      [](const TrackedFrame& frame) { return frame.state != TrackingState::kTracked; }));
+}
+
+RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options,
+                     const TumSequence& sequence, const RunResult& result, const System& system) {
+  RunSummary summary;
+  summary.trajectory.frames = result.given;
+  summary.trajectory.skipped = result.skipped;
+  summary.trajectory.unpaired = sequence.unpaired;
+  summary.trajectory.lost = CountLost(system);
+  summary.trajectory.tracked = system.frames().size() - summary.trajectory.lost;
+
+  summary.timing.stages_ms = SummarizeStages(system.times());
+  summary.timing.track_ms = summary.timing.stages_ms["track"];
+  summary.timing.stages_ms.erase("track");
+  summary.timing.total_s = result.seconds;
+  summary.timing.frames_per_second =
+      static_cast<double>(result.given) / std::max(result.seconds, 1e-9);
+  summary.peak_memory_mb = PeakMemoryMb();
+  if (const auto map = system.map()) {
+    summary.map.keyframes = map->keyframes().size();
+    summary.map.landmarks = map->landmarks().size();
+  }
+  summary.provenance.version = HULLSLAM_VERSION;
+  summary.provenance.git = HULLSLAM_GIT;
+  summary.provenance.settings_hash = HashSettings(options);
+  summary.provenance.seed = arguments.seed;
+  summary.provenance.pipeline = arguments.threaded ? "threaded" : "sequential";
+  summary.provenance.sequence = arguments.sequence.string();
+  return summary;
+}
+
+void WriteMap(const std::filesystem::path& path, const Map& map, const Trajectory& keyframes) {
+  std::vector<Eigen::Vector3d> landmarks;
+  map.landmarks().ForEach(
+      [&](LandmarkId, const Landmark& landmark) { landmarks.push_back(landmark.position); });
+  std::vector<Eigen::Vector3d> centers;
+  for (const StampedPose& pose : keyframes) {
+    centers.push_back(pose.world_from_cam.translation);
+  }
+  WritePly(path, landmarks, centers);
+}
+
+void WriteOutputs(const std::filesystem::path& folder, const System& system,
+                  const Trajectory& trajectory, const RunSummary& summary) {
+  const std::shared_ptr<const Map> map =
+      system.map() != nullptr ? system.map() : std::make_shared<const Map>();
+  const Trajectory keyframes = KeyframeTrajectory(*map);
+  WriteTrajectory(folder / "trajectory.txt", trajectory);
+  WriteTrajectory(folder / "keyframes.txt", keyframes);
+  WriteMap(folder / "map.ply", *map, keyframes);
+  WriteSummary(folder / "summary.json", summary);
+}
+
+void PrintReport(const RunArguments& arguments, const RunSummary& summary) {
+  const TrajectorySummary& trajectory = summary.trajectory;
+  fmt::print("{} frames: {} tracked, {} lost, {} skipped; {} images without depth\n",
+             trajectory.frames, trajectory.tracked, trajectory.lost, trajectory.skipped,
+             trajectory.unpaired);
+  if (trajectory.ate_rmse_m) {
+    fmt::print("ATE RMSE {:.4f} m ({}, {} pairs of all frames, {:.1f} % covered)\n",
+               *trajectory.ate_rmse_m, trajectory.alignment, trajectory.pairs,
+               100.0 * trajectory.coverage.value_or(0.0));
+  }
+  if (trajectory.rpe_rmse_m && trajectory.rpe_rmse_deg) {
+    fmt::print("RPE RMSE {:.4f} m, {:.3f} degrees over 1 s\n", *trajectory.rpe_rmse_m,
+               *trajectory.rpe_rmse_deg);
+  }
+  fmt::print("{} keyframes, {} landmarks\n", summary.map.keyframes, summary.map.landmarks);
+  fmt::print(
+      "tracking {:.1f} ms a frame (median; mean {:.1f}, p95 {:.1f}); {:.1f} frames/s in all; "
+      "{:.0f} MB at most\n",
+      summary.timing.track_ms.median, summary.timing.track_ms.mean, summary.timing.track_ms.p95,
+      summary.timing.frames_per_second, summary.peak_memory_mb);
+  fmt::print("results are in {}\n", arguments.output.string());
+}
+
+bool IsLostForGood(const System& system) {
+  const std::vector<TrackedFrame>& frames = system.frames();
+  const auto last_tracked = std::find_if(
+      frames.rbegin(), frames.rend(),
+      [](const TrackedFrame& frame) { return frame.state == TrackingState::kTracked; });
+  return last_tracked == frames.rend() ||
+         static_cast<size_t>(last_tracked - frames.rbegin()) >= kLostForGood;
+}
+
+}  // namespace
+
+int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
+  const SystemOptions options = LoadOptions(arguments);
+  LoadRgbd(sequence.frames.front(), options.camera);  // wrong types and sizes show here
+  const std::optional<Trajectory> groundtruth =
+      sequence.groundtruth ? std::optional(ReadTrajectory(*sequence.groundtruth)) : std::nullopt;
+  PrepareOutputFolder(arguments.output);
+  if (!arguments.vocabulary.empty()) {
+    fmt::print(stderr, "warning: {}: this version uses no vocabulary\n",
+               arguments.vocabulary.string());
+  }
+  CatchInterrupts();
+  System system(options, arguments.threaded ? PipelineKind::kThreaded : PipelineKind::kSequential);
+  const RunResult result = TrackAll(arguments, sequence, options.camera, system);
+
+  RunSummary summary = Summarize(arguments, options, sequence, result, system);
+  const Trajectory trajectory = system.trajectory();
+  if (groundtruth) {
+    Evaluate(*groundtruth, trajectory, summary.trajectory);
+  }
+  WriteOutputs(arguments.output, system, trajectory, summary);
+  if (result.was_interrupted) {
+    fmt::print(stderr, "warning: interrupted after {} of {} frames\n", result.given,
+               sequence.frames.size());
+  }
+  if (!arguments.quiet) {
+    PrintReport(arguments, summary);
+  }
+  if (!result.was_interrupted && IsLostForGood(system)) {
+    fmt::print(stderr, "error: tracking is lost for good: {} of {} frames have a pose\n",
+               summary.trajectory.tracked, summary.trajectory.frames);
+    return kFailed;
+  }
+  return kDone;
+}
+
+}  // namespace hullslam
