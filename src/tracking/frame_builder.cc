@@ -36,6 +36,8 @@ std::shared_ptr<const Frame> FrameBuilder::Build(const RgbdImage& image, FrameId
   Check(image.grey.type() == CV_8UC1 && image.grey.size() == size,
         "the grey image is not CV_8UC1 of the camera's size");
   Check(image.depth.size() == size, "the depth image is not of the camera's size");
+  Check(image.depth.type() == CV_16UC1 || image.depth.type() == CV_32FC1,
+        "the depth image is neither CV_16UC1 nor CV_32FC1");
   auto frame = std::make_shared<Frame>();
   frame->id = id;
   frame->timestamp = image.timestamp;

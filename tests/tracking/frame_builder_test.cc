@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/tracking/frame_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core.hpp>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 240;
+
+// The camera of TUM freiburg1 at half the size: strong distortion.
+Sensor DistortedSensor() {
+  Sensor sensor;
+  sensor.camera = {.fx = 258.653204,
+                   .fy = 258.234607,
+                   .cx = 159.321520,
+                   .cy = 127.656994,
+                   .k1 = 0.262383,
+                   .k2 = -0.953104,
+                   .p1 = -0.005358,
+                   .p2 = 0.002628,
+                   .k3 = 1.163314,
+                   .width = kWidth,
+                   .height = kHeight,
+                   .bf = 20.0};
+  sensor.bounds = sensor.camera.UndistortedBounds();
+  sensor.levels = ScaleLevels::Create(4, 1.2);
+  return sensor;
+}
+
+FeatureOptions FewFeatures() {
+  FeatureOptions options;
+  options.feature_count = 300;
+  options.level_count = 4;
+  return options;
+}
+
+// Bright and dark rectangles, and depths that change from pixel to pixel with holes.
+RgbdImage MakeImage() {
+  RgbdImage image;
+  image.timestamp = 12.5;
+  image.grey = cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(90));
+  cv::RNG random(7);
+  for (int i = 0; i < 120; ++i) {
+    const cv::Rect box(random.uniform(0, kWidth - 24), random.uniform(0, kHeight - 24),
+                       random.uniform(6, 24), random.uniform(6, 24));
+    image.grey(box).setTo(random.uniform(0, 256));
+  }
+  image.depth = cv::Mat(kHeight, kWidth, CV_16UC1);
+  random.fill(image.depth, cv::RNG::UNIFORM, 5000, 20000);
+  image.depth(cv::Rect(0, 0, kWidth / 2, kHeight / 2)).setTo(0);
+  return image;
+}
+
+class FrameBuilderTest : public testing::Test {
+ protected:
+  std::shared_ptr<const Frame> Build(const RgbdImage& image) {
+    return FrameBuilder(sensor_, DepthOptions(), FewFeatures()).Build(image, FrameId(3));
+  }
+
+  const Sensor sensor_ = DistortedSensor();
+};
+
+TEST_F(FrameBuilderTest, HasOneEntryAKeypointAndItsStamp) {
+  const auto frame = Build(MakeImage());
+  EXPECT_EQ(frame->id, FrameId(3));
+  EXPECT_EQ(frame->timestamp, 12.5);
+  const FrameFeatures& features = frame->features;
+  ASSERT_GT(features.size(), 100u);
+  EXPECT_EQ(features.descriptors.size(), features.size());
+  EXPECT_EQ(features.depth.size(), features.size());
+  EXPECT_EQ(features.right_u.size(), features.size());
+}
+
+TEST_F(FrameBuilderTest, KeypointsAreUndistorted) {
+  const auto frame = Build(MakeImage());
+  float farthest = 0.0f;
+  for (const Keypoint& keypoint : frame->features.keypoints) {
+    const Eigen::Vector2d back = sensor_.camera.Distort(keypoint.undistorted.cast<double>());
+    EXPECT_LT((back - keypoint.raw.cast<double>()).norm(), 1e-3);
+    farthest = std::max(farthest, (keypoint.undistorted - keypoint.raw).norm());
+  }
+  EXPECT_GT(farthest, 1.0f) << "the camera distorts by more than a pixel";
+}
+
+TEST_F(FrameBuilderTest, DepthIsThatOfTheRawPixel) {
+  const RgbdImage image = MakeImage();
+  const auto frame = Build(image);
+  const FrameFeatures& features = frame->features;
+  int unknown = 0;
+  for (size_t i = 0; i < features.size(); ++i) {
+    const Eigen::Vector2f raw = features.keypoints[i].raw;
+    const auto units = image.depth.at<uint16_t>(static_cast<int>(std::round(raw.y())),
+                                                static_cast<int>(std::round(raw.x())));
+    EXPECT_FLOAT_EQ(features.depth[i], static_cast<float>(units) / 5000.0f);
+    if (units == 0) {
+      ++unknown;
+      EXPECT_EQ(features.right_u[i], -1.0f);
+    } else {
+      EXPECT_NEAR(features.right_u[i], features.keypoints[i].undistorted.x() - 100000.0f / units,
+                  1e-3f);
+    }
+  }
+  EXPECT_GT(unknown, 0);
+  EXPECT_LT(unknown, static_cast<int>(features.size()));
+}
+
+TEST_F(FrameBuilderTest, TheGridFindsEveryKeypointWhereItIsUndistorted) {
+  const auto frame = Build(MakeImage());
+  const FrameFeatures& features = frame->features;
+  for (uint32_t i = 0; i < features.size(); ++i) {
+    const Keypoint& keypoint = features.keypoints[i];
+    std::vector<uint32_t> found;
+    features.grid.FindNear(features.keypoints, keypoint.undistorted, 0.5f, keypoint.level,
+                           keypoint.level, found);
+    EXPECT_NE(std::find(found.begin(), found.end(), i), found.end()) << i;
+  }
+}
+
+TEST_F(FrameBuilderTest, MetresInFloatGiveTheSameDepth) {
+  RgbdImage image = MakeImage();
+  const auto units = Build(image);
+  image.depth.convertTo(image.depth, CV_32FC1, 1.0 / 5000.0);
+  const auto metres = Build(image);
+  ASSERT_EQ(units->features.size(), metres->features.size());
+  for (size_t i = 0; i < units->features.size(); ++i) {
+    EXPECT_FLOAT_EQ(units->features.depth[i], metres->features.depth[i]);
+  }
+}
+
+TEST_F(FrameBuilderTest, AnImageWithoutCornersGivesAFrameWithoutKeypoints) {
+  RgbdImage image = MakeImage();
+  image.grey.setTo(128);
+  EXPECT_EQ(Build(image)->features.size(), 0u);
+}
+
+TEST_F(FrameBuilderTest, ImagesOfAnotherSizeAreRefused) {
+  RgbdImage image = MakeImage();
+  image.grey = image.grey(cv::Rect(0, 0, kWidth - 1, kHeight));
+  EXPECT_THROW(Build(image), CheckError);
+  image = MakeImage();
+  image.depth = image.depth(cv::Rect(0, 0, kWidth, kHeight - 1));
+  EXPECT_THROW(Build(image), CheckError);
+  image.depth = cv::Mat();
+  EXPECT_THROW(Build(image), CheckError);
+}
+
+TEST_F(FrameBuilderTest, ImagesOfAnotherTypeAreRefusedWhateverTheyShow) {
+  RgbdImage image = MakeImage();
+  image.grey.convertTo(image.grey, CV_16UC1);
+  EXPECT_THROW(Build(image), CheckError);
+  image = MakeImage();
+  image.grey.setTo(128);  // without keypoints no depth is ever asked for
+  image.depth.convertTo(image.depth, CV_8UC1);
+  EXPECT_THROW(Build(image), CheckError);
+}
+
+}  // namespace
+}  // namespace hullslam

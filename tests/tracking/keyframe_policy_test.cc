@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/tracking/keyframe_policy.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace hullslam {
+namespace {
+
+// Healthy tracking in a grown map: no reason for a keyframe.
+KeyframeEvidence Healthy() {
+  return {.frames_since_keyframe = 5,
+          .inliers = 180,
+          .reference_landmarks = 200,
+          .close_tracked = 150,
+          .close_untracked = 20,
+          .keyframes = 5,
+          .mapper_is_idle = true,
+          .requests_waiting = 0};
+}
+
+struct Case {
+  std::string what;
+  KeyframeEvidence evidence;
+  bool expected = false;
+};
+
+template <typename Change>
+KeyframeEvidence With(const Change& change) {
+  KeyframeEvidence evidence = Healthy();
+  change(evidence);
+  return evidence;
+}
+
+void ExpectDecisions(const std::vector<Case>& cases) {
+  for (const Case& c : cases) {
+    EXPECT_EQ(KeyframePolicy().NeedsKeyframe(c.evidence), c.expected) << c.what;
+  }
+}
+
+TEST(KeyframePolicy, AsksWhenTrackingHasWeakenedAgainstTheReference) {
+  ExpectDecisions({
+      {"90 % of the reference", Healthy(), false},
+      {"exactly 75 %", With([](auto& e) { e.inliers = 150; }), false},
+      {"just below 75 %", With([](auto& e) { e.inliers = 149; }), true},
+      {"a reference without landmarks", With([](auto& e) { e.reference_landmarks = 0; }), false},
+  });
+}
+
+TEST(KeyframePolicy, WaitsLongerWhileThereIsASingleKeyframe) {
+  ExpectDecisions({
+      {"exactly 40 %", With([](auto& e) { e.keyframes = 1, e.inliers = 80; }), false},
+      {"just below 40 %", With([](auto& e) { e.keyframes = 1, e.inliers = 79; }), true},
+      {"two keyframes, 40 %", With([](auto& e) { e.keyframes = 2, e.inliers = 80; }), true},
+  });
+}
+
+TEST(KeyframePolicy, AsksWhenClosePointsWouldBeLost) {
+  const auto close = [](int tracked, int untracked) {
+    return With([=](auto& e) { e.close_tracked = tracked, e.close_untracked = untracked; });
+  };
+  ExpectDecisions({
+      {"few tracked, many not", close(99, 71), true},
+      {"enough tracked", close(100, 71), false},
+      {"few not tracked", close(99, 70), false},
+  });
+}
+
+TEST(KeyframePolicy, TimeAloneIsNoReason) {
+  ExpectDecisions({
+      {"overdue but healthy", With([](auto& e) { e.frames_since_keyframe = 1000; }), false},
+  });
+}
+
+TEST(KeyframePolicy, ABusyMapperIsAskedOnlyWhenOverdueOrUrgent) {
+  const auto busy = [](int inliers, uint32_t frames) {
+    return With([=](auto& e) {
+      e.mapper_is_idle = false;
+      e.inliers = inliers;
+      e.frames_since_keyframe = frames;
+    });
+  };
+  ExpectDecisions({
+      {"weak", busy(100, 29), false},
+      {"weak and overdue", busy(100, 30), true},
+      {"at 25 %", busy(50, 5), false},
+      {"below 25 %", busy(49, 5), true},
+      {"close points would be lost", With([](auto& e) {
+         e.mapper_is_idle = false;
+         e.close_tracked = 99;
+         e.close_untracked = 71;
+       }),
+       true},
+  });
+}
+
+TEST(KeyframePolicy, NeverAsksWithTooFewInliersOrTooManyRequests) {
+  ExpectDecisions({
+      {"15 inliers", With([](auto& e) { e.inliers = 15; }), false},
+      {"16 inliers", With([](auto& e) { e.inliers = 16; }), true},
+      {"no inliers, all else urgent", With([](auto& e) {
+         e.inliers = 0;
+         e.close_tracked = 0;
+         e.close_untracked = 500;
+         e.frames_since_keyframe = 100;
+       }),
+       false},
+      {"two requests wait", With([](auto& e) { e.inliers = 20, e.requests_waiting = 2; }), true},
+      {"three requests wait", With([](auto& e) { e.inliers = 20, e.requests_waiting = 3; }), false},
+  });
+}
+
+TEST(KeyframePolicy, BoundsAreThoseOfTheFields) {
+  KeyframePolicy policy;
+  policy.min_inliers = 170;
+  EXPECT_FALSE(policy.NeedsKeyframe(With([](auto& e) { e.inliers = 149; })));
+  policy = KeyframePolicy();
+  policy.min_reference_ratio = 0.95;
+  EXPECT_TRUE(policy.NeedsKeyframe(Healthy()));
+}
+
+}  // namespace
+}  // namespace hullslam
