@@ -25,6 +25,7 @@ PairedPoints Translations(const Trajectory& reference, const Trajectory& estimat
 
 double CountDistinctEstimates(const std::vector<IndexPair>& pairs) {
   std::vector<size_t> estimates;
+  estimates.reserve(pairs.size());
   for (const IndexPair& pair : pairs) {
     estimates.push_back(pair.second);
   }

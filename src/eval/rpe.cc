@@ -40,6 +40,7 @@ RpeReport EvaluateRpe(const Trajectory& reference, const Trajectory& estimate,
       PairPoses(reference, estimate, options.pairing,
                 options.max_difference.value_or(DefaultMaxDifference(options.pairing)));
   std::vector<double> stamps;
+  stamps.reserve(pairs.size());
   for (const IndexPair& pair : pairs) {
     stamps.push_back(estimate[pair.second].timestamp);
   }

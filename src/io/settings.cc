@@ -168,13 +168,13 @@ void ApplyFile(const fs::path& file, OptionTable& table, std::set<std::string>& 
 
 void ApplyOverrides(std::span<const std::string> overrides, OptionTable& table,
                     std::set<std::string>& given) {
-  for (const std::string& assignment : overrides) {
+  for (const std::string_view assignment : overrides) {
     const size_t equals = assignment.find('=');
     if (equals == std::string::npos) {
-      throw InputError("--set: '" + assignment + "', expected key=value");
+      throw InputError(fmt::format("--set: '{}', expected key=value", assignment));
     }
-    const std::string key(Trim(std::string_view(assignment).substr(0, equals)));
-    table.Set(key, std::string(Trim(std::string_view(assignment).substr(equals + 1))), "--set");
+    const std::string key(Trim(assignment.substr(0, equals)));
+    table.Set(key, std::string(Trim(assignment.substr(equals + 1))), "--set");
     given.insert(key);
   }
 }
@@ -224,7 +224,7 @@ SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> ov
 
 fs::path FindDefaultSettings(const fs::path& sequence, const fs::path& config_folder) {
   std::error_code error;
-  const fs::path own = sequence / "camera.yaml";
+  fs::path own = sequence / "camera.yaml";
   if (fs::exists(own, error)) {
     return own;
   }

@@ -78,12 +78,13 @@ double TextRow::Number(size_t column, std::string_view name) const {
 
 void ForEachRow(const std::filesystem::path& path,
                 const std::function<void(const TextRow& row)>& visit) {
-  const std::string text = ReadFile(path);
+  const std::string bytes = ReadFile(path);
+  const std::string_view text = bytes;
   TextRow row{.path = path, .line = 0, .columns = {}};
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = std::min(text.find('\n', begin), text.size());
     ++row.line;
-    SplitColumns(std::string_view(text).substr(begin, end - begin), row.columns);
+    SplitColumns(text.substr(begin, end - begin), row.columns);
     if (!row.columns.empty() && !row.columns[0].starts_with('#')) {
       visit(row);
     }

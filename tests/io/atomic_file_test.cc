@@ -2,10 +2,10 @@
 #include "hullslam/io/atomic_file.h"
 
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <sys/resource.h>
 
-#include <algorithm>
+#include <csignal>
+#include <iterator>
 #include <string>
 
 #include "hullslam/io/text_rows.h"

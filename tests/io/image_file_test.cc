@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <string_view>
 
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
@@ -61,12 +62,13 @@ TEST(ImageFile, EveryCutIsFound) {
   const cv::Mat noise(48, 64, CV_8UC1);
   cv::randu(noise, 0, 255);
   for (const char* const extension : {".png", ".jpg"}) {
-    const std::string whole = Encode(extension, noise);
+    const std::string bytes = Encode(extension, noise);
+    const std::string_view whole = bytes;
     for (size_t size = 4; size < whole.size(); size += 97) {
-      const auto path = folder.Write("cut", std::string_view(whole).substr(0, size));
+      const auto path = folder.Write("cut", whole.substr(0, size));
       EXPECT_THROW(ReadGreyImage(path), InputError) << extension << ' ' << size;
     }
-    const auto path = folder.Write("cut", std::string_view(whole).substr(0, whole.size() - 1));
+    const auto path = folder.Write("cut", whole.substr(0, whole.size() - 1));
     ExpectInputError([&] { ReadGreyImage(path); }, {"cut: is cut off"});
   }
 }

@@ -2,8 +2,8 @@
 #include "hullslam/io/settings.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -214,6 +214,7 @@ TEST_F(Settings, ASequencesOwnFileComesFirst) {
 }
 
 TEST_F(Settings, TheSettingsOfKnownCamerasAreFoundAndRead) {
+  // NOLINTBEGIN(concurrency-mt-unsafe): this test has one thread
   ::setenv("HULLSLAM_CONFIG", HULLSLAM_SOURCE_DIR "/config", 1);
   const std::filesystem::path folder = FindConfigFolder();
   EXPECT_EQ(folder, HULLSLAM_SOURCE_DIR "/config");
@@ -223,6 +224,7 @@ TEST_F(Settings, TheSettingsOfKnownCamerasAreFoundAndRead) {
   ::setenv("HULLSLAM_CONFIG", "/no/such/folder", 1);
   ExpectInputError([] { FindConfigFolder(); }, {"HULLSLAM_CONFIG", "/no/such/folder"});
   ::unsetenv("HULLSLAM_CONFIG");
+  // NOLINTEND(concurrency-mt-unsafe)
   EXPECT_TRUE(std::filesystem::exists(FindConfigFolder() / "TUM1.yaml"));
 }
 

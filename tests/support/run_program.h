@@ -34,6 +34,7 @@ inline ProgramResult RunProgram(const std::string& name,
   }
   command +=
       " >'" + (folder.path() / "out").string() + "' 2>'" + (folder.path() / "err").string() + '\'';
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): tests run programs one after the other
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out"), read("err")};
 }

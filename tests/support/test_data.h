@@ -12,6 +12,7 @@ namespace hullslam {
 // one of the parents of the source tree; nothing where this machine has neither.
 inline std::optional<std::filesystem::path> FindTestData(const std::string& relative) {
   namespace fs = std::filesystem;
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody sets the environment meanwhile
   if (const char* const folder = std::getenv("HULLSLAM_DATA")) {
     const fs::path path = fs::path(folder) / relative;
     return fs::exists(path) ? std::optional(path) : std::nullopt;
