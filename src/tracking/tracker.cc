@@ -50,6 +50,23 @@ size_t CountCloseKeypoints(const Frame& frame, const Sensor& sensor,
   return count;
 }
 
+// Puts the landmarks of now in place of those replaced. Where two have become one the first
+// keypoint keeps it: a frame observes a landmark once.
+void ResolveAll(const Map& map, std::vector<LandmarkId>& landmarks) {
+  std::vector<bool> is_taken(map.landmarks().NextId().value, false);
+  for (LandmarkId& landmark : landmarks) {
+    landmark = map.Resolve(landmark);
+    if (!landmark.IsValid()) {
+      continue;
+    }
+    if (is_taken[landmark.value]) {
+      landmark = LandmarkId();
+    } else {
+      is_taken[landmark.value] = true;
+    }
+  }
+}
+
 }  // namespace
 
 Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options)
@@ -117,9 +134,7 @@ void Tracker::FollowMap() {
     last_.cam_from_reference = Rigid3();
     reference_ = *keyframe;
   }
-  for (LandmarkId& landmark : last_.landmarks) {
-    landmark = map_->Resolve(landmark);
-  }
+  ResolveAll(*map_, last_.landmarks);
   last_from_world_ = last_.cam_from_reference * map_->CamFromWorld(last_.reference);
 }
 
