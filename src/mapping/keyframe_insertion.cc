@@ -5,6 +5,7 @@
 
 #include "hullslam/map/appearance.h"
 #include "hullslam/map/covisibility.h"
+#include "hullslam/map/spanning_tree.h"
 
 namespace hullslam {
 namespace {
@@ -80,6 +81,10 @@ KeyframeId InsertKeyframe(Map& map, const KeyframeRequest& request, const Sensor
   ApplySightings(map, request.sightings);
   AddKnownLandmarks(map, id, request.landmarks, sensor.levels);
   UpdateCovisibility(map, id);
+  if (!is_first && !map.keyframes().At(id).parent.IsValid()) {
+    // All it knew is gone meanwhile; it still must not become a second root.
+    SetParent(map, id, map.NearestAlive(request.reference));
+  }
   AddDepthLandmarks(map, id, sensor, is_first, created);
   return id;
 }

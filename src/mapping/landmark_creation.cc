@@ -87,7 +87,8 @@ bool Reprojects(const View& view, const Eigen::Vector3d& point, const Sensor& se
   return squared_error <= bound * view.scale * view.scale;
 }
 
-// The ratio of the distances must be that of the pyramid's levels.
+// A patch is found at a finer level the farther away it is seen from: the product of distance and
+// scale stays the same.
 bool HasConsistentScale(const View& a, const View& b, const Eigen::Vector3d& point,
                         const Sensor& sensor) {
   const double distance_a = (a.keyframe->cam_from_world * point).norm();
@@ -96,7 +97,7 @@ bool HasConsistentScale(const View& a, const View& b, const Eigen::Vector3d& poi
     return false;
   }
   const double tolerance = 1.5 * std::exp(static_cast<double>(sensor.levels.log_factor));
-  const double ratio = (distance_b / distance_a) / (b.scale / a.scale);
+  const double ratio = (distance_b * b.scale) / (distance_a * a.scale);
   return ratio < tolerance && ratio > 1.0 / tolerance;
 }
 
