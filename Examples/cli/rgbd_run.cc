@@ -50,6 +50,13 @@ SystemOptions LoadOptions(const RunArguments& arguments) {
   return ReadSettings(settings, arguments.overrides);
 }
 
+PipelineKind ChoosePipeline(const RunArguments& arguments) {
+  if (!arguments.threaded) {
+    return PipelineKind::kSequential;
+  }
+  return arguments.realtime ? PipelineKind::kRealtime : PipelineKind::kThreaded;
+}
+
 Prefetcher<LoadedFrame> StartLoading(const TumSequence& sequence, const PinholeCamera& camera) {
   return Prefetcher<LoadedFrame>(
       [&sequence, &camera, next = size_t{0}]() mutable -> std::optional<LoadedFrame> {
@@ -227,7 +234,7 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
                arguments.vocabulary.string());
   }
   CatchInterrupts();
-  System system(options, arguments.threaded ? PipelineKind::kThreaded : PipelineKind::kSequential);
+  System system(options, ChoosePipeline(arguments));
   const RunResult result = TrackAll(arguments, sequence, options.camera, system);
 
   RunSummary summary = Summarize(arguments, options, sequence, result, system);

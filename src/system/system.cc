@@ -43,14 +43,25 @@ cv::Mat ToGrey(const cv::Mat& image, bool rgb_order) {
   }
 }
 
+std::unique_ptr<Pipeline> MakePipeline(PipelineKind kind, const Sensor& sensor,
+                                       const SystemOptions& options) {
+  switch (kind) {
+    case PipelineKind::kThreaded:
+      return MakeThreadedPipeline(sensor, options, Pace::kWaitForMapper);
+    case PipelineKind::kRealtime:
+      return MakeThreadedPipeline(sensor, options, Pace::kNeverWait);
+    default:
+      return MakeSequentialPipeline(sensor, options);
+  }
+}
+
 }  // namespace
 
 System::System(const SystemOptions& options, PipelineKind kind)
     : options_(Validated(options)),
       sensor_(MakeSensor(options_)),
       frame_builder_(std::make_unique<FrameBuilder>(sensor_, options_.depth, options_.features)),
-      pipeline_(kind == PipelineKind::kThreaded ? MakeThreadedPipeline(sensor_, options_)
-                                                : MakeSequentialPipeline(sensor_, options_)) {}
+      pipeline_(MakePipeline(kind, sensor_, options_)) {}
 
 System::~System() = default;
 

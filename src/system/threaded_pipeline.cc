@@ -20,10 +20,11 @@ constexpr size_t kMailboxCapacity = 8;  // more than the keyframe policy lets wa
 
 class ThreadedPipeline final : public Pipeline {
  public:
-  ThreadedPipeline(const Sensor& sensor, const SystemOptions& options)
-      : tracker_(sensor, options.tracking),
+  ThreadedPipeline(const Sensor& sensor, const SystemOptions& options, Pace pace)
+      : pace_(pace),
+        tracker_(sensor, options.tracking),
         mapper_(sensor, options.mapping,
-                [this](std::shared_ptr<const Map> map) { map_.Publish(std::move(map)); }),
+                [this](std::shared_ptr<const Map> map) { Publish(std::move(map)); }),
         requests_(kMailboxCapacity),
         mapping_thread_([this] { RunMapping(); }) {}
 
@@ -31,12 +32,14 @@ class ThreadedPipeline final : public Pipeline {
 
   TrackedFrame Track(std::shared_ptr<const Frame> frame) override {
     RethrowFailure();
-    Tracker::Result result = tracker_.Process(std::move(frame), map_.Get(), Status());
+    const MapperStatus status = pace_ == Pace::kWaitForMapper ? MapperStatus() : Status();
+    Tracker::Result result = tracker_.Process(std::move(frame), map_.Get(), status);
     if (result.request) {
       const bool is_first = !result.request->reference.IsValid();
-      Post(std::move(*result.request));
-      if (is_first) {
-        WaitUntilIdle();  // there is nothing to track against before
+      if (is_first || pace_ == Pace::kWaitForMapper) {
+        PostAndWait(std::move(*result.request));
+      } else {
+        Post(std::move(*result.request));
       }
     }
     return result.frame;
@@ -72,9 +75,22 @@ class ThreadedPipeline final : public Pipeline {
     requests_.Send(std::move(request));
   }
 
-  void WaitUntilIdle() {
+  // Posts once the mapper is done with all before, and returns when the keyframe is in the map.
+  void PostAndWait(KeyframeRequest request) {
     std::unique_lock lock(mutex_);
-    became_idle_.wait(lock, [this] { return (!is_busy_ && waiting_ == 0) || failure_; });
+    changed_.wait(lock, [this] { return (!is_busy_ && waiting_ == 0) || failure_; });
+    const int before = published_;
+    lock.unlock();
+    Post(std::move(request));
+    lock.lock();
+    changed_.wait(lock, [&] { return published_ != before || failure_; });
+  }
+
+  void Publish(std::shared_ptr<const Map> map) {
+    map_.Publish(std::move(map));
+    const std::lock_guard lock(mutex_);
+    ++published_;
+    changed_.notify_all();
   }
 
   void RunMapping() {
@@ -85,6 +101,7 @@ class ThreadedPipeline final : public Pipeline {
       } catch (...) {
         const std::lock_guard lock(mutex_);
         failure_ = std::current_exception();
+        changed_.notify_all();
       }
       SetBusy(false);
     }
@@ -99,7 +116,7 @@ class ThreadedPipeline final : public Pipeline {
     if (waiting_ == 0) {
       hurry_.Reset();
     }
-    became_idle_.notify_all();
+    changed_.notify_all();
   }
 
   void Stop() {
@@ -116,16 +133,18 @@ class ThreadedPipeline final : public Pipeline {
     }
   }
 
+  const Pace pace_;
   Published<Map> map_;
   Tracker tracker_;
   Mapper mapper_;
   Mailbox<KeyframeRequest> requests_;
   Cancellation hurry_;
 
-  std::mutex mutex_;  // guards the four below
-  std::condition_variable became_idle_;
+  std::mutex mutex_;  // guards the members below
+  std::condition_variable changed_;
   bool is_busy_ = false;
   int waiting_ = 0;
+  int published_ = 0;
   std::exception_ptr failure_;
 
   std::thread mapping_thread_;  // last: it uses the others
@@ -133,8 +152,9 @@ class ThreadedPipeline final : public Pipeline {
 
 }  // namespace
 
-std::unique_ptr<Pipeline> MakeThreadedPipeline(const Sensor& sensor, const SystemOptions& options) {
-  return std::make_unique<ThreadedPipeline>(sensor, options);
+std::unique_ptr<Pipeline> MakeThreadedPipeline(const Sensor& sensor, const SystemOptions& options,
+                                               Pace pace) {
+  return std::make_unique<ThreadedPipeline>(sensor, options, pace);
 }
 
 }  // namespace hullslam

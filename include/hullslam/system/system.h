@@ -20,7 +20,8 @@ class Pipeline;
 
 enum class PipelineKind {
   kSequential,  // reproducible to the bit
-  kThreaded,    // mapping in a thread of its own
+  kThreaded,    // mapping in a thread of its own; waits for it rather than leave out keyframes
+  kRealtime,    // the same, but never waits: for live cameras
 };
 
 // RGB-D SLAM as one object: images in, poses and map out.
