@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "support/synthetic_world.h"
+
 namespace hullslam {
 namespace {
 
@@ -26,6 +28,43 @@ TEST(FrameFeatures, GridIsGoodAfterAMove) {
   std::vector<uint32_t> found;
   moved.grid.FindNear(moved.keypoints, {501.0f, 299.0f}, 5.0f, 0, 7, found);
   EXPECT_EQ(found, std::vector<uint32_t>{1});
+}
+
+// The made-up frames that other tests build on are what they say.
+TEST(FrameFeatures, OfTheSyntheticWorldAreProjectionsOfItsPoints) {
+  const SyntheticWorld world({.depth_share = 0.5});
+  for (const uint32_t index : {0u, 30u, 130u}) {
+    const SyntheticView view = world.Observe(index);
+    const FrameFeatures& features = view.frame->features;
+    ASSERT_EQ(features.size(), view.points.size());
+    ASSERT_GT(features.size(), 200u);
+    int with_depth = 0;
+    for (size_t i = 0; i < features.size(); ++i) {
+      const Eigen::Vector3d point =
+          SyntheticWorld::CamFromWorld(index) * world.points()[view.points[i]];
+      const Eigen::Vector2d pixel = world.sensor().camera.Project(point);
+      EXPECT_LT((features.keypoints[i].undistorted.cast<double>() - pixel).norm(), 1e-4);
+      EXPECT_EQ(features.descriptors[i], world.descriptor(view.points[i]));
+      if (features.depth[i] > 0.0f) {
+        ++with_depth;
+        EXPECT_NEAR(features.depth[i], point.z(), 1e-5);
+        EXPECT_NEAR(features.right_u[i], pixel.x() - 40.0 / point.z(), 1e-4);
+      } else {
+        EXPECT_EQ(features.right_u[i], -1.0f);
+      }
+    }
+    EXPECT_NEAR(with_depth, 0.5 * static_cast<double>(features.size()),
+                0.1 * static_cast<double>(features.size()));
+  }
+}
+
+TEST(FrameFeatures, OfTheSyntheticWorldAreTheSameEveryTime) {
+  const SyntheticWorldOptions options{.pixel_noise = 1.0, .flipped_bits = 5, .seed = 3};
+  const SyntheticView first = SyntheticWorld(options).Observe(7);
+  const SyntheticView second = SyntheticWorld(options).Observe(7);
+  ASSERT_EQ(first.points, second.points);
+  EXPECT_EQ(first.frame->features.descriptors, second.frame->features.descriptors);
+  EXPECT_EQ(first.frame->features.right_u, second.frame->features.right_u);
 }
 
 }  // namespace

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numbers>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "hullslam/geometry/rigid3.h"
+#include "hullslam/map/appearance.h"
+#include "hullslam/map/covisibility.h"
+#include "hullslam/map/frame.h"
+#include "hullslam/map/map.h"
+#include "hullslam/map/sensor.h"
+#include "hullslam/util/random_seed.h"
+
+namespace hullslam {
+
+// A camera without distortion, 640 x 480 px, with a baseline of 0.08 m and close depths up to 3.2
+// m.
+inline Sensor SyntheticSensor() {
+  Sensor sensor;
+  sensor.camera = {.fx = 500.0, .fy = 500.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
+  sensor.bounds = sensor.camera.UndistortedBounds();
+  sensor.levels = ScaleLevels::Create(8, 1.2);
+  sensor.close_depth = 3.2;
+  return sensor;
+}
+
+struct SyntheticWorldOptions {
+  int points = 600;
+  double pixel_noise = 0.0;  // px at level 0, standard deviation of u, v and right u
+  double depth_share = 1.0;  // of the points whose depth is known wherever they are seen
+  int flipped_bits = 0;      // of the descriptor, other ones in every frame
+  uint64_t seed = 1;
+};
+
+// One image of the made-up world.
+struct SyntheticView {
+  std::shared_ptr<const Frame> frame;
+  std::vector<uint32_t> points;  // index into SyntheticWorld::points(), one a keypoint
+};
+
+// Random points in a box of 5 x 3.6 x 4 m, 2 to 6 m in front of the origin, and frames of them made
+// without images: keypoints are exact projections (rounded to float) plus noise, descriptors are
+// random and far apart, levels follow the distance. Nothing hides anything. Same options, same
+// bits.
+class SyntheticWorld {
+ public:
+  explicit SyntheticWorld(const SyntheticWorldOptions& options = {})
+      : options_(options), sensor_(SyntheticSensor()) {
+    std::mt19937_64 random(HashSeed(options.seed, 0, "points"));
+    const auto number = [&random](double low, double high) {
+      return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    for (int i = 0; i < options.points; ++i) {
+      points_.emplace_back(number(-2.5, 2.5), number(-1.8, 1.8), number(2.0, 6.0));
+      Patch& patch = patches_.emplace_back();
+      patch.descriptor = {random(), random(), random(), random()};
+      patch.angle = static_cast<float>(number(0.0, 2.0 * std::numbers::pi));
+      patch.max_distance = number(5.0, 15.0);
+      patch.has_depth = number(0.0, 1.0) < options.depth_share;
+    }
+  }
+
+  const Sensor& sensor() const { return sensor_; }
+  const std::vector<Eigen::Vector3d>& points() const { return points_; }  // m, world frame
+  const Descriptor& descriptor(uint32_t point) const { return patches_[point].descriptor; }
+  bool has_depth(uint32_t point) const { return patches_[point].has_depth; }
+
+  // Pose of frame `index` on a smooth path of about 2 cm a frame, looking at the middle of the
+  // points. The world is the camera frame of index 0; after 200 frames the path is closed.
+  static Rigid3 CamFromWorld(double index) {
+    const double phase = 2.0 * std::numbers::pi * index / 200.0;
+    const Eigen::Vector3d center(0.6 * std::sin(phase), 0.25 * std::sin(2.0 * phase),
+                                 0.4 * (1.0 - std::cos(phase)));
+    return LookAt(center, {0.0, 0.0, 4.0});
+  }
+
+  // Pose of a camera at `center` that looks at `target`, upright (the world's y points down).
+  static Rigid3 LookAt(const Eigen::Vector3d& center, const Eigen::Vector3d& target) {
+    const Eigen::Vector3d z = (target - center).normalized();
+    const Eigen::Vector3d x = Eigen::Vector3d::UnitY().cross(z).normalized();
+    Eigen::Matrix3d rotation;
+    rotation << x.transpose(), z.cross(x).transpose(), z.transpose();
+    return {Eigen::Quaterniond(rotation), -(rotation * center)};
+  }
+
+  // The image taken from a pose. Noise and flipped bits depend on the id alone.
+  SyntheticView Observe(FrameId id, const Rigid3& cam_from_world) const {
+    std::mt19937_64 random(HashSeed(options_.seed, id.value, "noise"));
+    auto frame = std::make_shared<Frame>();
+    frame->id = id;
+    frame->timestamp = id.value / sensor_.frames_per_second;
+    std::vector<uint32_t> points;
+    for (uint32_t i = 0; i < points_.size(); ++i) {
+      const Eigen::Vector3d point_in_cam = cam_from_world * points_[i];
+      if (point_in_cam.z() > 0.1 && sensor_.bounds.Contains(sensor_.camera.Project(point_in_cam))) {
+        AddKeypoint(patches_[i], point_in_cam, random, frame->features);
+        points.push_back(i);
+      }
+    }
+    const PinholeCamera::Bounds& bounds = sensor_.bounds;
+    frame->features.grid = FeatureGrid(frame->features.keypoints,
+                                       Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
+                                       Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
+    return {std::move(frame), std::move(points)};
+  }
+  // The image of frame `index` of the path.
+  SyntheticView Observe(uint32_t index) const {
+    return Observe(FrameId(index), CamFromWorld(index));
+  }
+
+ private:
+  struct Patch {
+    Descriptor descriptor{};
+    float angle = 0.0f;
+    double max_distance = 0.0;  // m, from where it is seen at level 0
+    bool has_depth = true;
+  };
+
+  void AddKeypoint(const Patch& patch, const Eigen::Vector3d& point_in_cam, std::mt19937_64& random,
+                   FrameFeatures& features) const {
+    const int level = sensor_.levels.PredictLevel(point_in_cam.norm(), patch.max_distance);
+    std::normal_distribution<double> normal;
+    const double sigma = options_.pixel_noise *
+                         static_cast<double>(sensor_.levels.scale[static_cast<size_t>(level)]);
+    Eigen::Vector2d pixel = sensor_.camera.Project(point_in_cam);
+    double right_u = pixel.x() - sensor_.camera.bf / point_in_cam.z();
+    pixel.x() += sigma * normal(random);
+    pixel.y() += sigma * normal(random);
+    right_u += sigma * normal(random);
+    Keypoint& keypoint = features.keypoints.emplace_back();
+    keypoint.raw = pixel.cast<float>();
+    keypoint.undistorted = keypoint.raw;
+    keypoint.angle = patch.angle;
+    keypoint.response = 50.0f;
+    keypoint.level = level;
+    Descriptor& descriptor = features.descriptors.emplace_back(patch.descriptor);
+    for (int i = 0; i < options_.flipped_bits; ++i) {
+      const uint64_t bit = random() % 256;
+      descriptor[bit / 64] ^= uint64_t{1} << (bit % 64);
+    }
+    const bool has_depth = patch.has_depth && right_u >= 0.0 && right_u < pixel.x();
+    features.right_u.push_back(has_depth ? static_cast<float>(right_u) : -1.0f);
+    features.depth.push_back(
+        has_depth ? static_cast<float>(sensor_.camera.bf / (pixel.x() - right_u)) : 0.0f);
+  }
+
+  SyntheticWorldOptions options_;
+  Sensor sensor_;
+  std::vector<Eigen::Vector3d> points_;
+  std::vector<Patch> patches_;
+};
+
+// A map of the made-up world with every point where it is, and what belongs to what.
+struct SyntheticMap {
+  Map map;
+  std::vector<SyntheticView> views;   // one a keyframe
+  std::vector<LandmarkId> landmarks;  // one a point of the world; invalid where none is
+};
+
+// The keyframes are the path's frames `indices`, in this order; the landmarks are the points that
+// at least two of them see. Covisibility, spanning tree and appearance are up to date.
+inline SyntheticMap MakeSyntheticMap(const SyntheticWorld& world,
+                                     const std::vector<uint32_t>& indices) {
+  SyntheticMap made;
+  std::vector<std::vector<std::pair<KeyframeId, uint32_t>>> seen(world.points().size());
+  for (const uint32_t index : indices) {
+    const SyntheticView& view = made.views.emplace_back(world.Observe(index));
+    const KeyframeId id = made.map.AddKeyframe(view.frame, SyntheticWorld::CamFromWorld(index));
+    for (uint32_t keypoint = 0; keypoint < view.points.size(); ++keypoint) {
+      seen[view.points[keypoint]].emplace_back(id, keypoint);
+    }
+  }
+  made.landmarks.resize(world.points().size());
+  for (uint32_t point = 0; point < seen.size(); ++point) {
+    if (seen[point].size() < 2) {
+      continue;
+    }
+    const LandmarkId landmark =
+        made.map.AddLandmark(world.points()[point], seen[point].front().first);
+    for (const auto& [keyframe, keypoint] : seen[point]) {
+      made.map.AddObservation(landmark, keyframe, keypoint);
+    }
+    UpdateDescriptor(made.map, landmark);
+    UpdateViewingGeometry(made.map, landmark, world.sensor().levels);
+    made.landmarks[point] = landmark;
+  }
+  for (uint32_t i = 0; i < indices.size(); ++i) {
+    UpdateCovisibility(made.map, KeyframeId(i));
+  }
+  return made;
+}
+
+}  // namespace hullslam
