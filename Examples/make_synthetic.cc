@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Renders a synthetic RGB-D sequence with exact ground truth of camera and objects.
+#include <signal.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "hullslam/util/error.h"
+#include "synthetic/sequence_writer.h"
+
+namespace {
+
+using hullslam::InputError;
+using hullslam::SequenceOptions;
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kBadInput = 2;
+
+struct Arguments {
+  std::string folder;
+  std::string scene = "desk";
+  std::optional<int> frames;
+  SequenceOptions options;
+  bool quiet = false;
+};
+
+void AddOptions(CLI::App& app, Arguments& arguments) {
+  app.add_option("OUT", arguments.folder, "Folder to write: a TUM sequence with ground truth")
+      ->required();
+  app.add_option("--scene", arguments.scene, "desk, room, lowtexture or dynamic")
+      ->check(CLI::IsMember({"desk", "room", "lowtexture", "dynamic"}))
+      ->capture_default_str();
+  app.add_option("--frames", arguments.frames, "Number of frames (default: 300; room: 600)")
+      ->check(CLI::Range(1, 100000));
+  app.add_option("--seed", arguments.options.seed, "Seed of textures, hand motion and noise")
+      ->capture_default_str();
+  app.add_option("--threads", arguments.options.threads, "Threads, 0 for all; same bytes with any")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
+  app.add_flag("--force", arguments.options.force, "Replace a former synthetic sequence in OUT");
+  app.add_flag("--quiet", arguments.quiet, "No progress");
+}
+
+// SIGINT and SIGTERM stay pending instead of ending the program, and are asked for after each
+// frame, so that nothing half written is left behind.
+void HoldSignals() {
+  sigset_t held;
+  sigemptyset(&held);
+  sigaddset(&held, SIGINT);
+  sigaddset(&held, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &held, nullptr);
+}
+
+bool SignalIsPending() {
+  sigset_t pending;
+  sigemptyset(&pending);
+  sigpending(&pending);
+  return sigismember(&pending, SIGINT) == 1 || sigismember(&pending, SIGTERM) == 1;
+}
+
+int Run(Arguments& arguments) {
+  SequenceOptions& options = arguments.options;
+  options.scene = hullslam::ParseSceneKind(arguments.scene);
+  options.frames = arguments.frames.value_or(hullslam::DefaultFrames(options.scene));
+  const bool terminal = isatty(STDERR_FILENO) == 1;
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  const auto progress = [&](int done) {
+    if (!arguments.quiet && (terminal || done % 50 == 0 || done == options.frames)) {
+      std::fprintf(stderr, "%s%d/%d frames, %.1f frames/s%s", terminal ? "\r" : "", done,
+                   options.frames, done / seconds(), terminal ? "" : "\n");
+    }
+    return !SignalIsPending();
+  };
+  const bool finished = hullslam::WriteSequence(arguments.folder, options, progress);
+  if (!arguments.quiet && terminal) {
+    std::fputc('\n', stderr);
+  }
+  if (!finished) {
+    std::fprintf(stderr, "error: interrupted; nothing was written\n");
+    return kFailed;
+  }
+  if (!arguments.quiet) {
+    std::printf("%s: %d frames of scene %s, seed %llu, in %.1f s\n", arguments.folder.c_str(),
+                options.frames, arguments.scene.c_str(),
+                static_cast<unsigned long long>(options.seed), seconds());
+  }
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Renders a synthetic RGB-D sequence with exact ground truth of camera and objects.");
+  AddOptions(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kBadInput;
+  }
+  try {
+    HoldSignals();
+    return Run(arguments);
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return kFailed;
+  }
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/geometry/rigid3.h"
+#include "synthetic/ray_caster.h"
+#include "synthetic/scene.h"
+
+namespace hullslam {
+
+// What an ideal camera sees, all of the same size; the centre of a pixel has integer coordinates.
+struct RenderedFrame {
+  cv::Mat colour;    // CV_32FC3, BGR, 0 to 255, edges smoothed by four rays a pixel
+  cv::Mat depth;     // CV_32FC1, metres along z at the centre of the pixel
+  cv::Mat instance;  // CV_16SC1, index in Scene::objects, -1 for the background
+  cv::Mat cosine;    // CV_32FC1, of the angle between surface normal and ray
+};
+
+// Renders frames of a scene. Rendering is const and may run in several threads at once; a frame has
+// the same bits whatever else runs.
+class Renderer {
+ public:
+  // Keeps a reference to `scene`. The camera has no distortion.
+  Renderer(const Scene& scene, const PinholeCamera& camera);
+
+  RenderedFrame Render(double time) const;
+
+ private:
+  struct View;      // poses at one time
+  struct Fragment;  // what one ray found
+  Fragment Shade(const View& view, int part, float distance, const Eigen::Vector3f& direction,
+                 int max_samples) const;
+  View MakeView(double time) const;
+  void RenderCentres(const View& view, RenderedFrame& frame, cv::Mat& facet) const;
+  void SmoothEdges(const View& view, const cv::Mat& facet, RenderedFrame& frame) const;
+  // Colour of `material` at a point, given in the part's frame with its normal and the ray's
+  // direction; up to `max_samples` samples of the texture on slanted surfaces.
+  Eigen::Vector3f TextureColour(const Material& material, const Eigen::Vector3f& point,
+                                const Eigen::Vector3f& normal, const Eigen::Vector3f& direction,
+                                float distance, int max_samples) const;
+
+  const Scene& scene_;
+  PinholeCamera camera_;
+  RayCaster caster_;
+};
+
+}  // namespace hullslam

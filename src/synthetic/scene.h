@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hullslam/geometry/rigid3.h"
+#include "synthetic/shape.h"
+#include "synthetic/texture.h"
+
+namespace hullslam {
+
+// How a surface looks. The texture lies on the three coordinate planes of the part's frame and is
+// taken from the one that the normal is nearest to; on sides it stands upright along z.
+struct Material {
+  int texture = 0;                                   // index in Scene::textures
+  Eigen::Vector3f tile = Eigen::Vector3f::Ones();    // metres per repeat along the axes
+  Eigen::Vector3f offset = Eigen::Vector3f::Zero();  // metres
+  Eigen::Vector3f tint = Eigen::Vector3f::Ones();    // factor on B, G, R
+};
+
+// One primitive solid, in the frame of its owner: an object, or the world for the background.
+struct Part {
+  Shape shape;
+  Material material;
+  Rigid3 owner_from_part;
+};
+
+// One thing that a segmentation network would find.
+struct SceneObject {
+  std::string class_name;  // of COCO
+  int class_id = 0;        // of COCO, from 0
+  std::string shape;       // "ellipsoid", "box", "superquadric" or "compound"
+  std::vector<Part> parts;
+  Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();  // tight, in the object's frame, metres
+  Rigid3 world_from_object;                                // at time 0
+  // Pose at a time in seconds, of a thing that moves; empty for a static one.
+  std::function<Rigid3(double)> motion;
+
+  bool IsDynamic() const { return static_cast<bool>(motion); }
+  Rigid3 WorldFromObject(double time) const { return motion ? motion(time) : world_from_object; }
+};
+
+struct PointLight {
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();
+  float strength = 1.0F;  // at the distance of a metre from a surface that faces the light
+};
+
+// A closed room (every ray hits something) with objects, and the path of the camera in it. World
+// frame: z up, metres.
+struct Scene {
+  std::vector<Texture> textures;
+  std::vector<Part> background;
+  std::vector<SceneObject> objects;
+  std::vector<PointLight> lights;
+  float ambient = 0.5F;
+  std::function<Rigid3(double)> world_from_cam;  // of the time in seconds
+};
+
+}  // namespace hullslam

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "synthetic/scenes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "hullslam/util/error.h"
+#include "hullslam/util/random_seed.h"
+#include "synthetic/camera_path.h"
+#include "synthetic/scene_builder.h"
+
+namespace hullslam {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr std::array<std::pair<std::string_view, SceneKind>, 4> kSceneNames = {
+    {{"desk", SceneKind::kDesk},
+     {"room", SceneKind::kRoom},
+     {"lowtexture", SceneKind::kLowTexture},
+     {"dynamic", SceneKind::kDynamic}}};
+constexpr double kFramesPerSecond = 30.0;
+constexpr double kTableHeight = 0.75;
+constexpr double kPi = std::numbers::pi;
+
+// Tints, blue green red.
+Vector3f Red() { return {0.35F, 0.35F, 1.1F}; }
+Vector3f Green() { return {0.45F, 0.95F, 0.45F}; }
+Vector3f Blue() { return {1.1F, 0.65F, 0.4F}; }
+Vector3f Yellow() { return {0.35F, 1.0F, 1.15F}; }
+Vector3f Dark() { return {0.28F, 0.28F, 0.28F}; }
+Vector3f White() { return {1.3F, 1.3F, 1.3F}; }
+
+Vector3d OnTable(double x, double y) { return {x, y, kTableHeight}; }
+
+void AddBook(SceneBuilder& builder, const Palette& palette, size_t page, const Vector3f& tint,
+             const Vector3d& base, double yaw) {
+  const Vector3d half(0.085, 0.12, 0.014 + 0.004 * static_cast<double>(page % 3));
+  Material cover = builder.Fit(palette.pages[page % palette.pages.size()], half);
+  cover.tint = tint;
+  builder.AddObject(MakeSolid("book", Shape::Box(half), cover).Build(base, yaw));
+}
+
+void AddComputer(SceneBuilder& builder, const Palette& palette) {
+  const Material body = builder.Repeat(palette.speckle, 0.5, Dark());
+  const Material screen = builder.Fit(palette.screens.front(), {0.25, 0.004, 0.15});
+  builder.AddObject(MakeMonitor(screen, body).Build(OnTable(0.02, 0.2), 0.05));
+  const Material lid = builder.Fit(palette.screens.back(), {0.155, 0.002, 0.1});
+  const Material laptop_keys = builder.Fit(palette.keys, {0.15, 0.06, 0.001});
+  const Material metal = builder.Repeat(palette.speckle, 0.5, Vector3f::Constant(0.8F));
+  builder.AddObject(MakeLaptop(lid, laptop_keys, metal).Build(OnTable(-0.5, 0.06), 0.4));
+  const Vector3d keyboard(0.21, 0.07, 0.012);
+  builder.AddObject(MakeSolid("keyboard", Shape::Box(keyboard), builder.Fit(palette.keys, keyboard))
+                        .Build(OnTable(-0.02, -0.13), -0.08));
+  builder.AddObject(MakeSolid("mouse", Shape::Ellipsoid({0.032, 0.055, 0.02}),
+                              builder.Repeat(palette.speckle, 0.2, Dark()))
+                        .Build(OnTable(0.28, -0.12), 0.2));
+  const Vector3d phone(0.037, 0.075, 0.005);
+  builder.AddObject(
+      MakeSolid("cell phone", Shape::Box(phone), builder.Fit(palette.screens.back(), phone))
+          .Build(OnTable(0.42, -0.3), 0.6));
+}
+
+void AddTableware(SceneBuilder& builder, const Palette& palette) {
+  builder.AddObject(
+      MakeMug(builder.Repeat(palette.speckle, 0.22, Red())).Build(OnTable(0.36, 0.06), -0.7));
+  builder.AddObject(MakeMug(builder.Repeat(palette.checker, 0.2, Vector3f::Ones()))
+                        .Build(OnTable(-0.3, -0.31), 2.4));
+  const Material glass = builder.Repeat(palette.speckle, 0.3, Green());
+  builder.AddObject(
+      MakeBottle(glass, builder.Repeat(palette.pages.back(), 0.18)).Build(OnTable(0.42, 0.3), 0.3));
+  builder.AddObject(MakeSolid("apple", Shape::Ellipsoid({0.038, 0.038, 0.036}),
+                              builder.Repeat(palette.fur, 0.15, Red()))
+                        .Build(OnTable(-0.04, -0.34), 0.0));
+  builder.AddObject(MakeSolid("orange", Shape::Ellipsoid({0.041, 0.041, 0.04}),
+                              builder.Repeat(palette.fur, 0.15, {0.5F, 1.1F, 1.6F}))
+                        .Build(OnTable(0.12, -0.31), 0.4));
+  builder.AddObject(MakeSolid("bowl", Shape::Superquadric({0.1, 0.1, 0.035}, 0.6, 1.0),
+                              builder.Repeat(palette.checker, 0.3, White()))
+                        .Build(OnTable(0.66, -0.33), 0.0));
+  builder.AddObject(MakeSolid("vase", Shape::Superquadric({0.06, 0.06, 0.13}, 0.8, 0.6),
+                              builder.Repeat(palette.speckle, 0.25, Blue()))
+                        .Build(OnTable(-0.33, 0.33), 0.3));
+}
+
+void AddToys(SceneBuilder& builder, const Palette& palette) {
+  AddBook(builder, palette, 0, Blue(), OnTable(0.62, -0.06), 0.5);
+  AddBook(builder, palette, 1, Yellow(), OnTable(0.62, -0.06) + Vector3d(0.0, 0.0, 0.028), 0.2);
+  AddBook(builder, palette, 2, White(), OnTable(-0.5, -0.3), -0.5);
+  builder.AddObject(MakeTeddyBear(0.34, builder.Repeat(palette.fur, 0.3),
+                                  builder.Repeat(palette.speckle, 0.3, {0.8F, 0.95F, 1.1F}))
+                        .Build(OnTable(0.66, 0.22), -0.35));
+  builder.AddObject(MakeSolid("sports ball", Shape::Ellipsoid({0.11, 0.11, 0.11}),
+                              builder.Repeat(palette.checker, 0.35, Yellow()))
+                        .Build(OnTable(-0.68, 0.32), 0.0));
+  builder.AddObject(MakePottedPlant(0.36, builder.Repeat(palette.speckle, 0.3, Red()),
+                                    builder.Repeat(palette.fur, 0.2, {0.5F, 1.1F, 0.35F}))
+                        .Build(OnTable(-0.7, -0.3), 0.0));
+}
+
+void AddClockAndLuggage(SceneBuilder& builder, const Palette& palette, const RoomSize& room) {
+  builder.AddObject(MakeSolid("clock", Shape::Ellipsoid({0.17, 0.03, 0.17}),
+                              builder.Repeat(palette.checker, 0.34, White()))
+                        .Build({0.35, room.half_y - 0.03, 2.05}, 0.0));
+  builder.AddObject(MakeSolid("suitcase", Shape::Superquadric({0.24, 0.13, 0.33}, 0.3, 0.3),
+                              builder.Repeat(palette.fabric, 0.6, Blue()))
+                        .Build({1.75, 1.3, 0.0}, 0.4));
+  builder.AddObject(MakePottedPlant(1.1, builder.Repeat(palette.speckle, 0.5, White()),
+                                    builder.Repeat(palette.fur, 0.4, {0.45F, 1.0F, 0.4F}))
+                        .Build({-room.half_x + 0.6, room.half_y - 0.6, 0.0}, 0.0));
+}
+
+void AddChairs(SceneBuilder& builder, const Palette& palette) {
+  const auto chair = [&](const Vector3f& tint) {
+    return MakeChair(builder.Repeat(palette.wood, 0.5), builder.Repeat(palette.fabric, 0.5, tint));
+  };
+  builder.AddObject(chair(Red()).Build({0.45, 0.75, 0.0}, -0.15));
+  builder.AddObject(chair(Blue()).Build({-0.3, 0.78, 0.0}, 0.2));
+}
+
+void AddDeskLights(SceneBuilder& builder) {
+  builder.scene().ambient = 0.55F;
+  builder.scene().lights = {{.position = {-1.2F, -1.0F, 2.5F}, .strength = 1.9F},
+                            {.position = {1.8F, 1.2F, 2.4F}, .strength = 1.4F}};
+}
+
+void FurnishDesk(SceneBuilder& builder, const Palette& palette, const RoomSize& room) {
+  builder.AddRoom(room, palette);
+  builder.AddTable({0.0, 0.0}, {0.82, 0.46}, kTableHeight, palette);
+  AddComputer(builder, palette);
+  AddTableware(builder, palette);
+  AddToys(builder, palette);
+  AddChairs(builder, palette);
+  AddClockAndLuggage(builder, palette, room);
+  AddDeskLights(builder);
+}
+
+void SetOrbit(SceneBuilder& builder, const OrbitPath& orbit, uint64_t seed) {
+  const HandMotion hand(HashSeed(seed, 0, "hand"));
+  builder.scene().world_from_cam = [orbit, hand](double time) {
+    return hand.Apply(orbit.WorldFromCam(time), time);
+  };
+}
+
+Scene BuildDesk(uint64_t seed) {
+  SceneBuilder builder(HashSeed(seed, 0, "desk"));
+  const Palette palette = builder.AddRichPalette();
+  const RoomSize room{.half_x = 2.9, .half_y = 2.6, .height = 2.6};
+  FurnishDesk(builder, palette, room);
+  builder.AddPosters(palette);
+  builder.AddShelf(Wall::kBack, -1.1, palette);
+  SetOrbit(builder, {.target = {0.0, 0.0, kTableHeight + 0.12}}, seed);
+  return builder.Finish();
+}
+
+// Gives all surfaces nearly the same brightness by day's flat light, so that things differ in hue
+// and edges are too weak for most corner detectors to fire along them.
+void EvenOutBrightness(Scene& scene, RandomStream& random) {
+  const auto even_out = [&](Part& part) {
+    const Texture& texture = scene.textures[static_cast<size_t>(part.material.texture)];
+    const Vector3f mean = texture.Sample({0.5F, 0.5F}, texture.LevelOfDetail(1.0F));
+    const Vector3f colour = mean.cwiseProduct(part.material.tint);
+    const float grey = colour.dot(Vector3f(0.114F, 0.587F, 0.299F));
+    const Vector3f hue = 0.5F * colour / grey + Vector3f::Constant(0.5F);
+    const auto brightness = static_cast<float>(random.Uniform(142.0, 166.0));
+    part.material.tint = brightness * hue.cwiseQuotient(mean);
+  };
+  std::for_each(scene.background.begin(), scene.background.end(), even_out);
+  for (SceneObject& object : scene.objects) {
+    std::for_each(object.parts.begin(), object.parts.end(), even_out);
+  }
+  scene.ambient = 0.8F;
+  for (PointLight& light : scene.lights) {
+    light.strength *= 0.35F;
+  }
+}
+
+Scene BuildLowTexture(uint64_t seed) {
+  SceneBuilder builder(HashSeed(seed, 0, "lowtexture"));
+  const Palette palette = builder.AddBarePalette();
+  const RoomSize room{.half_x = 2.9, .half_y = 2.6, .height = 2.6};
+  FurnishDesk(builder, palette, room);
+  EvenOutBrightness(builder.scene(), builder.random());
+  SetOrbit(builder, {.target = {0.0, 0.0, kTableHeight + 0.12}}, seed);
+  return builder.Finish();
+}
+
+// Walks to and fro between the camera's circle and the table, always facing along the path.
+Rigid3 WalkerPose(const OrbitPath& orbit, double half_height, double time) {
+  constexpr double kSwing = 0.95;   // radians to either side of where the camera is
+  constexpr double kPeriod = 11.0;  // seconds
+  const double phase = 2.0 * kPi * time / kPeriod + 0.5 * kPi;
+  const double angle = orbit.start_angle + orbit.angular_speed * time + kSwing * std::sin(phase);
+  const double bob = 0.012 * (1.0 - std::cos(2.0 * kPi * 1.8 * time));
+  return TurnAboutZ(angle + 0.5 * kPi,
+                    {1.12 * std::cos(angle), 1.12 * std::sin(angle), half_height + bob});
+}
+
+Scene BuildDynamic(uint64_t seed) {
+  SceneBuilder builder(HashSeed(seed, 0, "dynamic"));
+  const Palette palette = builder.AddRichPalette();
+  const RoomSize room{.half_x = 3.4, .half_y = 3.2, .height = 2.6};
+  FurnishDesk(builder, palette, room);
+  builder.AddPosters(palette);
+  builder.AddShelf(Wall::kBack, -1.1, palette);
+  const OrbitPath orbit{
+      .radius = 2.0, .height = 1.4, .angular_speed = 0.12, .target = {0.0, 0.0, 0.95}};
+  const Vector3d half(0.25, 0.15, 0.87);
+  SceneObject walker = MakeSolid("person", Shape::Box(half),
+                                 builder.Repeat(palette.fabric, 0.55, {0.9F, 0.8F, 1.2F}))
+                           .Build(Vector3d::Zero(), 0.0);
+  walker.motion = [orbit, half](double time) { return WalkerPose(orbit, half.z(), time); };
+  walker.world_from_object = walker.motion(0.0);
+  builder.AddObject(std::move(walker));
+  SetOrbit(builder, orbit, seed);
+  return builder.Finish();
+}
+
+void FurnishBackWall(SceneBuilder& builder, const Palette& palette) {
+  builder.AddObject(MakeCouch(builder.Repeat(palette.fabric, 0.8, Red()),
+                              builder.Repeat(palette.fabric, 0.7, {0.7F, 0.8F, 0.8F}))
+                        .Build({-1.3, 1.95, 0.0}, 0.0));
+  builder.AddObject(
+      MakeTeddyBear(0.4, builder.Repeat(palette.fur, 0.3), builder.Repeat(palette.speckle, 0.3))
+          .Build({-1.7, 1.85, 0.42}, 0.2));
+  builder.AddObject(MakePottedPlant(1.2, builder.Repeat(palette.speckle, 0.5, Blue()),
+                                    builder.Repeat(palette.fur, 0.4, {0.45F, 1.0F, 0.4F}))
+                        .Build({0.2, 2.0, 0.0}, 0.0));
+  builder.AddShelf(Wall::kBack, 1.6, palette);
+}
+
+void FurnishRightWall(SceneBuilder& builder, const Palette& palette) {
+  builder.AddTable({2.5, 0.0}, {0.4, 0.75}, kTableHeight, palette);
+  const Material lid = builder.Fit(palette.screens.back(), {0.155, 0.002, 0.1});
+  const Material keys = builder.Fit(palette.keys, {0.15, 0.06, 0.001});
+  builder.AddObject(MakeLaptop(lid, keys, builder.Repeat(palette.speckle, 0.5))
+                        .Build({2.45, 0.1, kTableHeight}, -0.5 * kPi));
+  builder.AddObject(
+      MakeMug(builder.Repeat(palette.speckle, 0.22, Red())).Build({2.3, 0.45, kTableHeight}, 0.5));
+  builder.AddObject(MakeBottle(builder.Repeat(palette.speckle, 0.3, Green()),
+                               builder.Repeat(palette.pages.back(), 0.18))
+                        .Build({2.6, -0.35, kTableHeight}, 0.0));
+  AddBook(builder, palette, 1, Yellow(), {2.4, -0.55, kTableHeight}, 0.3);
+  builder.AddObject(
+      MakeChair(builder.Repeat(palette.wood, 0.5), builder.Repeat(palette.fabric, 0.5, Blue()))
+          .Build({1.75, 0.25, 0.0}, 0.4 * kPi));
+}
+
+void FurnishFrontWall(SceneBuilder& builder, const Palette& palette) {
+  builder.AddTable({-1.0, -2.1}, {0.6, 0.3}, 0.55, palette);
+  builder.AddObject(MakeMonitor(builder.Fit(palette.screens.front(), {0.25, 0.004, 0.15}),
+                                builder.Repeat(palette.speckle, 0.5, Dark()))
+                        .Build({-1.1, -2.1, 0.55}, kPi));
+  builder.AddObject(MakeSolid("vase", Shape::Superquadric({0.08, 0.08, 0.17}, 0.8, 0.6),
+                              builder.Repeat(palette.speckle, 0.25, Yellow()))
+                        .Build({-0.6, -2.1, 0.55}, 0.0));
+  builder.AddObject(MakeSolid("bed", Shape::Superquadric({0.95, 0.5, 0.25}, 0.2, 0.2),
+                              builder.Repeat(palette.fabric, 0.9, {1.2F, 1.1F, 1.0F}))
+                        .Build({1.3, -1.9, 0.0}, 0.0));
+  builder.AddObject(MakeSolid("clock", Shape::Ellipsoid({0.17, 0.03, 0.17}),
+                              builder.Repeat(palette.checker, 0.34, White()))
+                        .Build({0.3, -2.47, 1.8}, kPi));
+}
+
+void FurnishLeftWall(SceneBuilder& builder, const Palette& palette) {
+  builder.AddObject(MakeSolid("refrigerator", Shape::Box({0.3, 0.3, 0.85}),
+                              builder.Repeat(palette.speckle, 0.9, White()))
+                        .Build({-2.65, 1.0, 0.0}, 0.0));
+  builder.AddTable({-2.6, -0.3}, {0.35, 0.6}, kTableHeight, palette);
+  const Vector3d oven(0.16, 0.22, 0.14);
+  builder.AddObject(MakeSolid("microwave", Shape::Box(oven),
+                              builder.Repeat(palette.speckle, 0.5, Vector3f::Constant(0.75F)))
+                        .Build({-2.65, -0.55, kTableHeight}, 0.0));
+  builder.AddObject(MakeSolid("bowl", Shape::Superquadric({0.12, 0.12, 0.05}, 0.6, 1.0),
+                              builder.Repeat(palette.checker, 0.3, White()))
+                        .Build({-2.5, -0.1, kTableHeight}, 0.0));
+  builder.AddObject(MakeSolid("suitcase", Shape::Superquadric({0.24, 0.13, 0.33}, 0.3, 0.3),
+                              builder.Repeat(palette.fabric, 0.6, Blue()))
+                        .Build({-2.5, -1.5, 0.0}, 0.8));
+  builder.AddObject(MakeSolid("sports ball", Shape::Ellipsoid({0.12, 0.12, 0.12}),
+                              builder.Repeat(palette.checker, 0.35, Yellow()))
+                        .Build({-1.9, 0.6, 0.0}, 0.0));
+}
+
+Scene BuildRoom(int frames, uint64_t seed) {
+  SceneBuilder builder(HashSeed(seed, 0, "room"));
+  const Palette palette = builder.AddRichPalette();
+  builder.AddRoom({.half_x = 3.0, .half_y = 2.5, .height = 2.6}, palette);
+  builder.AddPosters(palette);
+  FurnishBackWall(builder, palette);
+  FurnishRightWall(builder, palette);
+  FurnishFrontWall(builder, palette);
+  FurnishLeftWall(builder, palette);
+  builder.scene().lights = {{.position = {-1.0F, -0.5F, 2.5F}, .strength = 1.9F},
+                            {.position = {1.2F, 0.6F, 2.5F}, .strength = 1.7F}};
+  // Below 300 frames the loop is cut short rather than run faster than a hand can turn.
+  const LoopPath loop{.duration = std::max(frames - 1, 299) / kFramesPerSecond};
+  const HandMotion hand(HashSeed(seed, 0, "hand"));
+  builder.scene().world_from_cam = [loop, hand](double time) {
+    return hand.Apply(loop.WorldFromCam(time), time);
+  };
+  return builder.Finish();
+}
+
+}  // namespace
+
+SceneKind ParseSceneKind(std::string_view name) {
+  for (const auto& [known, kind] : kSceneNames) {
+    if (known == name) {
+      return kind;
+    }
+  }
+  throw InputError("unknown scene '" + std::string(name) +
+                   "': expected desk, room, lowtexture or dynamic");
+}
+
+std::string_view SceneName(SceneKind kind) { return kSceneNames[static_cast<size_t>(kind)].first; }
+
+int DefaultFrames(SceneKind kind) { return kind == SceneKind::kRoom ? 600 : 300; }
+
+Scene BuildScene(SceneKind kind, int frames, uint64_t seed) {
+  switch (kind) {
+    case SceneKind::kDesk:
+      return BuildDesk(seed);
+    case SceneKind::kRoom:
+      return BuildRoom(frames, seed);
+    case SceneKind::kLowTexture:
+      return BuildLowTexture(seed);
+    case SceneKind::kDynamic:
+      return BuildDynamic(seed);
+  }
+  throw InputError("unknown scene");
+}
+
+}  // namespace hullslam

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "synthetic/sensor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "hullslam/util/random_seed.h"
+
+namespace hullslam {
+namespace {
+
+// Focal length (px) times distance from camera to projector (m).
+constexpr float kProjectorBaseline = 535.0F * 0.075F;
+
+// True for pixels whose surface the projector does not see. The projector is to the right: a
+// surface at column x has column x - b/z there, and along a row, from the right, what falls behind
+// the leftmost column reached so far is in the shadow of something nearer.
+std::vector<uint8_t> ShadowOfRow(const float* depth, int width) {
+  std::vector<uint8_t> shadow(static_cast<size_t>(width), 0);
+  float reached = std::numeric_limits<float>::infinity();
+  for (int x = width - 1; x >= 0; --x) {
+    const float column = static_cast<float>(x) - kProjectorBaseline / depth[x];
+    // Half a pixel: neighbours on a slanted surface are no shadow.
+    shadow[static_cast<size_t>(x)] = column > reached + 0.5F ? 1 : 0;
+    reached = std::min(reached, column);
+  }
+  return shadow;
+}
+
+// Normal numbers on a coarse grid, interpolated: an error that neighbouring pixels share.
+class SmoothNoise {
+ public:
+  SmoothNoise(const NormalTable& normal, uint64_t seed, const cv::Size& size)
+      : columns_(size.width / kCell + 2) {
+    const int rows = size.height / kCell + 2;
+    for (int i = 0; i < rows * columns_; ++i) {
+      lattice_.push_back(normal(CounterHash(seed, static_cast<uint64_t>(i)) >> 20));
+    }
+  }
+  float operator()(int x, int y) const {
+    const float fx = static_cast<float>(x % kCell) / kCell;
+    const float fy = static_cast<float>(y % kCell) / kCell;
+    const auto at = [&](int column, int row) {
+      return lattice_[static_cast<size_t>(row * columns_ + column)];
+    };
+    const int column = x / kCell;
+    const int row = y / kCell;
+    const float top = at(column, row) + fx * (at(column + 1, row) - at(column, row));
+    const float bottom = at(column, row + 1) + fx * (at(column + 1, row + 1) - at(column, row + 1));
+    return top + fy * (bottom - top);
+  }
+
+ private:
+  static constexpr int kCell = 5;  // px, about half of a matching block
+  int columns_;
+  std::vector<float> lattice_;
+};
+
+// Whether inverse depth jumps between the pixel and one of its four neighbours.
+bool AtDepthEdge(const cv::Mat& depth, int x, int y) {
+  constexpr float kJump = 0.03F;  // 1/m
+  const float here = 1.0F / depth.at<float>(y, x);
+  const auto jumps = [&](int u, int v) {
+    const bool inside = u >= 0 && v >= 0 && u < depth.cols && v < depth.rows;
+    return inside && std::abs(1.0F / depth.at<float>(v, u) - here) > kJump;
+  };
+  return jumps(x - 1, y) || jumps(x + 1, y) || jumps(x, y - 1) || jumps(x, y + 1);
+}
+
+bool LostAtGrazingAngle(float cosine, uint64_t word) {
+  constexpr float kNever = 0.22F;
+  constexpr float kAlways = 0.10F;
+  const auto chance = static_cast<float>(UnitInterval(word << 32));
+  return cosine < kAlways + (kNever - kAlways) * chance;
+}
+
+uint16_t ToUnits(double metres, double units_per_metre) {
+  const double units = std::round(metres * units_per_metre);
+  return units > 65535.0 ? uint16_t{0} : static_cast<uint16_t>(units);
+}
+
+}  // namespace
+
+cv::Mat Sensor::Colour(const RenderedFrame& frame, uint32_t number) const {
+  const cv::Size size = frame.colour.size();
+  cv::Mat image(size, CV_8UC3);
+  const uint64_t seed = HashSeed(seed_, number, "colour");
+  const float gain =
+      options_.noise ? 1.0F + 0.02F * std::sin(0.045F * static_cast<float>(number)) : 1.0F;
+  const float reach =
+      0.25F * static_cast<float>(size.width * size.width + size.height * size.height);
+  for (int y = 0; y < size.height; ++y) {
+    const float dy = static_cast<float>(y) - 0.5F * static_cast<float>(size.height);
+    for (int x = 0; x < size.width; ++x) {
+      const float dx = static_cast<float>(x) - 0.5F * static_cast<float>(size.width);
+      const float light =
+          gain * (options_.noise ? 1.0F - 0.16F * (dx * dx + dy * dy) / reach : 1.0F);
+      const uint64_t word = CounterHash(seed, static_cast<uint64_t>(y * size.width + x));
+      const cv::Vec3f& exact = frame.colour.at<cv::Vec3f>(y, x);
+      for (int c = 0; c < 3; ++c) {
+        float value = light * exact[c];
+        if (options_.noise) {
+          value += std::sqrt(0.9F + 0.009F * std::max(0.0F, value)) *
+                   normal_(word >> (NormalTable::kBits * c));
+        }
+        image.at<cv::Vec3b>(y, x)[c] = cv::saturate_cast<uint8_t>(value);
+      }
+    }
+  }
+  return image;
+}
+
+cv::Mat Sensor::Depth(const RenderedFrame& frame, uint32_t number) const {
+  const cv::Size size = frame.depth.size();
+  cv::Mat image(size, CV_16UC1, cv::Scalar(0));
+  const uint64_t seed = HashSeed(seed_, number, "depth");
+  const SmoothNoise smooth(normal_, HashSeed(seed_, number, "depth blocks"), size);
+  const auto in_range = [&](double z) {
+    return z >= options_.min_depth && z <= options_.max_depth;
+  };
+  for (int y = 0; y < size.height; ++y) {
+    const std::vector<uint8_t> shadow = ShadowOfRow(frame.depth.ptr<float>(y), size.width);
+    for (int x = 0; x < size.width; ++x) {
+      if (!options_.noise) {
+        const double z = frame.depth.at<float>(y, x);
+        image.at<uint16_t>(y, x) = in_range(z) ? ToUnits(z, options_.units_per_metre) : 0;
+        continue;
+      }
+      const uint64_t word = CounterHash(seed, static_cast<uint64_t>(y * size.width + x));
+      const bool edge = AtDepthEdge(frame.depth, x, y);
+      if (shadow[static_cast<size_t>(x)] != 0 || (edge && (word & 0x3U) != 0) ||
+          LostAtGrazingAngle(frame.cosine.at<float>(y, x), word)) {
+        continue;
+      }
+      const int source =
+          std::clamp(edge ? x + static_cast<int>((word >> 2) % 3) - 1 : x, 0, size.width - 1);
+      const float error = 0.55F * smooth(x, y) + 0.3F * normal_(word >> 8);
+      const double steps = 1.0 / (frame.depth.at<float>(y, source) * options_.disparity_step);
+      const double z = 1.0 / (std::round(steps + error) * options_.disparity_step);
+      image.at<uint16_t>(y, x) = in_range(z) ? ToUnits(z, options_.units_per_metre) : 0;
+    }
+  }
+  return image;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "synthetic/shape.h"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kMaxError = 4e-5;  // metres
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+
+// |x|^(2/east) + |y|^(2/east), raised to east/north, + |z|^(2/north): 1 on the surface and
+// homogeneous of degree 2/north.
+double SuperquadricSum(const Shape& shape, const Vector3d& q) {
+  const double around =
+      std::pow(std::abs(q.x()), 2.0 / shape.east) + std::pow(std::abs(q.y()), 2.0 / shape.east);
+  return std::pow(around, shape.east / shape.north) + std::pow(std::abs(q.z()), 2.0 / shape.north);
+}
+
+Vector3d SuperquadricNormal(const Shape& shape, const Vector3d& q) {
+  const double around =
+      std::pow(std::abs(q.x()), 2.0 / shape.east) + std::pow(std::abs(q.y()), 2.0 / shape.east);
+  const double outer = around > 0.0 ? std::pow(around, shape.east / shape.north - 1.0) : 0.0;
+  const auto signed_power = [](double x, double exponent) {
+    return std::copysign(std::pow(std::abs(x), exponent), x);
+  };
+  return {outer * signed_power(q.x(), 2.0 / shape.east - 1.0) / shape.half.x(),
+          outer * signed_power(q.y(), 2.0 / shape.east - 1.0) / shape.half.y(),
+          signed_power(q.z(), 2.0 / shape.north - 1.0) / shape.half.z()};
+}
+
+Vector3d BoxNormal(const Vector3d& q) {
+  Eigen::Index axis = 0;
+  q.cwiseAbs().maxCoeff(&axis);
+  Vector3d normal = Vector3d::Zero();
+  normal[axis] = q[axis] < 0.0 ? -1.0 : 1.0;
+  return normal;
+}
+
+Vector3d CylinderNormal(const Vector3d& q) {
+  if (std::abs(q.z()) > q.head<2>().norm()) {
+    return {0.0, 0.0, q.z() < 0.0 ? -1.0 : 1.0};
+  }
+  return {q.x(), q.y(), 0.0};
+}
+
+Vector3d TorusNormal(const Shape& shape, const Vector3d& point) {
+  const double ring = shape.half.x() - shape.tube;
+  const Vector3d flat(point.x(), 0.0, point.z());
+  return point - ring * flat.normalized();
+}
+
+// Vertices of a closed grid of `rows` x `columns` quads, split into triangles. Neighbouring faces
+// of a cube repeat their common vertices with the same bits, so no ray passes between them.
+void AddGrid(int rows, int columns, const std::function<Vector3d(double, double)>& point,
+             TriangleMesh& mesh) {
+  const auto first = static_cast<uint32_t>(mesh.vertices.size());
+  for (int r = 0; r <= rows; ++r) {
+    for (int c = 0; c <= columns; ++c) {
+      mesh.vertices.push_back(
+          point(static_cast<double>(r) / rows, static_cast<double>(c) / columns));
+    }
+  }
+  const auto index = [&](int r, int c) {
+    return first + static_cast<uint32_t>(r * (columns + 1) + c);
+  };
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c) {
+      mesh.triangles.push_back({index(r, c), index(r, c + 1), index(r + 1, c + 1)});
+      mesh.triangles.push_back({index(r, c), index(r + 1, c + 1), index(r + 1, c)});
+    }
+  }
+}
+
+// Six faces of a cube of `steps` x `steps` quads, each vertex moved by `map`. The grid lines are
+// spread by a tangent, so that they are evenly spaced in angle on a sphere.
+TriangleMesh CubeMesh(int steps, const std::function<Vector3d(const Vector3d&)>& map) {
+  TriangleMesh mesh;
+  const auto spread = [](double fraction) {
+    const double t = 2.0 * fraction - 1.0;  // the ends are exact, for the faces to join
+    return std::abs(t) == 1.0 ? t : std::tan(std::numbers::pi / 4.0 * t);
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      AddGrid(
+          steps, steps,
+          [&](double r, double c) {
+            Vector3d cube;
+            cube[axis] = side;
+            cube[(axis + 1) % 3] = spread(r);
+            cube[(axis + 2) % 3] = spread(c);
+            return map(cube);
+          },
+          mesh);
+    }
+  }
+  return mesh;
+}
+
+// Quads along a quarter of a circle for the chords to stay within `kMaxError` of a radius of `half`
+// metres; even, so that the ends of the axes are vertices.
+int SphereSteps(double half) {
+  const double angle = std::sqrt(8.0 * kMaxError / half);
+  return 2 * static_cast<int>(std::ceil(0.25 * std::numbers::pi / angle));
+}
+
+TriangleMesh CylinderMesh(const Shape& shape) {
+  TriangleMesh mesh;
+  const auto circle = [&](double fraction, double radius, double z) {
+    const double angle = kTwoPi * (fraction < 1.0 ? fraction : 0.0);
+    return Vector3d(radius * shape.half.x() * std::cos(angle),
+                    radius * shape.half.y() * std::sin(angle), z);
+  };
+  constexpr int kSegments = 192;
+  const double h = shape.half.z();
+  AddGrid(
+      1, kSegments, [&](double r, double c) { return circle(c, 1.0, h * (2.0 * r - 1.0)); }, mesh);
+  AddGrid(
+      1, kSegments, [&](double r, double c) { return circle(c, r, -h); }, mesh);
+  AddGrid(
+      1, kSegments, [&](double r, double c) { return circle(c, r, h); }, mesh);
+  return mesh;
+}
+
+TriangleMesh TorusMesh(const Shape& shape) {
+  TriangleMesh mesh;
+  const double ring = shape.half.x() - shape.tube;
+  AddGrid(
+      128, 48,
+      [&](double r, double c) {
+        const double around = kTwoPi * (r < 1.0 ? r : 0.0);
+        const double across = kTwoPi * (c < 1.0 ? c : 0.0);
+        const double radius = ring + shape.tube * std::cos(across);
+        return Vector3d(radius * std::cos(around), shape.tube * std::sin(across),
+                        radius * std::sin(around));
+      },
+      mesh);
+  return mesh;
+}
+
+}  // namespace
+
+Shape Shape::Box(const Vector3d& half) { return {.kind = ShapeKind::kBox, .half = half}; }
+
+Shape Shape::Ellipsoid(const Vector3d& half) {
+  return {.kind = ShapeKind::kEllipsoid, .half = half};
+}
+
+Shape Shape::Superquadric(const Vector3d& half, double north, double east) {
+  return {.kind = ShapeKind::kSuperquadric, .half = half, .north = north, .east = east};
+}
+
+Shape Shape::Cylinder(double radius, double half_height) {
+  return {.kind = ShapeKind::kCylinder, .half = {radius, radius, half_height}};
+}
+
+Shape Shape::Torus(double ring, double tube) {
+  return {.kind = ShapeKind::kTorus, .half = {ring + tube, tube, ring + tube}, .tube = tube};
+}
+
+double Shape::Implicit(const Vector3d& point) const {
+  const Vector3d q = point.cwiseQuotient(half);
+  switch (kind) {
+    case ShapeKind::kBox:
+      return q.lpNorm<Eigen::Infinity>() - 1.0;
+    case ShapeKind::kEllipsoid:
+      return q.norm() - 1.0;
+    case ShapeKind::kSuperquadric:
+      return std::pow(SuperquadricSum(*this, q), north / 2.0) - 1.0;
+    case ShapeKind::kCylinder:
+      return std::max(q.head<2>().norm(), std::abs(q.z())) - 1.0;
+    case ShapeKind::kTorus:
+      return std::hypot(std::hypot(point.x(), point.z()) - (half.x() - tube), point.y()) / tube -
+             1.0;
+  }
+  throw CheckError("unknown kind of shape");
+}
+
+Vector3d Shape::Normal(const Vector3d& point) const {
+  const Vector3d q = point.cwiseQuotient(half);
+  switch (kind) {
+    case ShapeKind::kBox:
+      return BoxNormal(q);
+    case ShapeKind::kEllipsoid:
+      return q.cwiseQuotient(half).normalized();
+    case ShapeKind::kSuperquadric:
+      return SuperquadricNormal(*this, q).normalized();
+    case ShapeKind::kCylinder:
+      return CylinderNormal(q).normalized();
+    case ShapeKind::kTorus:
+      return TorusNormal(*this, point).normalized();
+  }
+  throw CheckError("unknown kind of shape");
+}
+
+TriangleMesh Tessellate(const Shape& shape) {
+  const int steps = SphereSteps(shape.half.maxCoeff());
+  switch (shape.kind) {
+    case ShapeKind::kBox:
+      return CubeMesh(
+          1, [&](const Vector3d& cube) -> Vector3d { return shape.half.cwiseProduct(cube); });
+    case ShapeKind::kEllipsoid:
+      return CubeMesh(steps, [&](const Vector3d& cube) -> Vector3d {
+        return shape.half.cwiseProduct(cube.normalized());
+      });
+    case ShapeKind::kSuperquadric:
+      return CubeMesh(steps, [&](const Vector3d& cube) -> Vector3d {
+        const double radius = std::pow(SuperquadricSum(shape, cube), -shape.north / 2.0);
+        return shape.half.cwiseProduct(radius * cube);
+      });
+    case ShapeKind::kCylinder:
+      return CylinderMesh(shape);
+    case ShapeKind::kTorus:
+      return TorusMesh(shape);
+  }
+  throw CheckError("unknown kind of shape");
+}
+
+}  // namespace hullslam

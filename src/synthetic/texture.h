@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+namespace hullslam {
+
+// A repeating colour image with its mip levels (Williams 1983), so that what is sampled is limited
+// to the band that the pixels can hold and corners do not flicker from frame to frame.
+class Texture {
+ public:
+  // `image`: CV_8UC3, BGR, square, a power of two wide; else CheckError.
+  explicit Texture(const cv::Mat& image);
+
+  int size() const { return levels_.front().size; }
+  // Mip level, with a fraction, for samples that stand for a width of `footprint` image widths.
+  float LevelOfDetail(float footprint) const;
+  // BGR, 0 to 255, at (u, v) where 1 is one image width or height, v downwards.
+  Eigen::Vector3f Sample(const Eigen::Vector2f& uv, float level_of_detail) const;
+
+ private:
+  struct Level {
+    int size = 0;
+    std::vector<uint64_t> texels;  // B, G and R in the lower three 16-bit lanes
+  };
+  std::vector<Level> levels_;
+};
+
+}  // namespace hullslam

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "synthetic/output_swap.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OutputSwapTest : public testing::Test {
+ protected:
+  OutputSwapTest() : root_(fs::path(testing::TempDir()) / "output_swap_test") {
+    fs::remove_all(root_);
+    fs::create_directories(root_);
+  }
+  ~OutputSwapTest() override { fs::remove_all(root_); }
+
+  static void Put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+  static std::string Get(const fs::path& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  void PutFormerSequence(const fs::path& folder) {
+    fs::create_directories(folder);
+    Put(folder / "groundtruth_objects.json", R"({"generator": "make_synthetic"})");
+    Put(folder / "rgb.txt", "old");
+  }
+  int Entries() const {
+    return static_cast<int>(std::distance(fs::directory_iterator(root_), fs::directory_iterator()));
+  }
+
+  fs::path root_;
+};
+
+TEST_F(OutputSwapTest, NothingIsInPlaceBeforeCommit) {
+  {
+    OutputSwap swap(root_ / "a" / "out", false);
+    swap.WriteFile("rgb.txt", "new");
+    EXPECT_FALSE(fs::exists(root_ / "a" / "out"));
+    swap.Commit();
+    EXPECT_EQ(Get(root_ / "a" / "out" / "rgb.txt"), "new");
+  }
+  EXPECT_EQ(Get(root_ / "a" / "out" / "rgb.txt"), "new");
+  EXPECT_EQ(std::distance(fs::directory_iterator(root_ / "a"), fs::directory_iterator()), 1);
+}
+
+TEST_F(OutputSwapTest, GivingUpLeavesNothing) {
+  { OutputSwap(root_ / "out", false).WriteFile("rgb.txt", "new"); }
+  EXPECT_EQ(Entries(), 0);
+}
+
+TEST_F(OutputSwapTest, EmptyFolderIsFilledAlsoWithASlash) {
+  fs::create_directory(root_ / "out");
+  OutputSwap swap(root_ / "out/", false);
+  swap.WriteFile("rgb.txt", "new");
+  swap.Commit();
+  EXPECT_EQ(Get(root_ / "out" / "rgb.txt"), "new");
+}
+
+TEST_F(OutputSwapTest, ForeignFilesAreNeverReplaced) {
+  fs::create_directory(root_ / "out");
+  Put(root_ / "out" / "thesis.txt", "precious");
+  EXPECT_THROW(OutputSwap(root_ / "out", false), InputError);
+  EXPECT_THROW(OutputSwap(root_ / "out", true), InputError);
+  PutFormerSequence(root_ / "out");  // beside the foreign file
+  EXPECT_THROW(OutputSwap(root_ / "out", true), InputError);
+  EXPECT_EQ(Get(root_ / "out" / "thesis.txt"), "precious");
+}
+
+TEST_F(OutputSwapTest, FolderWithoutOurGroundTruthIsNotReplaced) {
+  fs::create_directory(root_ / "out");
+  Put(root_ / "out" / "rgb.txt", "a real sequence");
+  EXPECT_THROW(OutputSwap(root_ / "out", true), InputError);
+  Put(root_ / "out" / "groundtruth_objects.json", "{broken");
+  EXPECT_THROW(OutputSwap(root_ / "out", true), InputError);
+  EXPECT_EQ(Get(root_ / "out" / "rgb.txt"), "a real sequence");
+}
+
+TEST_F(OutputSwapTest, FormerSequenceIsReplacedByForceOnly) {
+  PutFormerSequence(root_ / "out");
+  EXPECT_THROW(OutputSwap(root_ / "out", false), InputError);
+  { OutputSwap(root_ / "out", true).WriteFile("rgb.txt", "given up"); }
+  EXPECT_EQ(Get(root_ / "out" / "rgb.txt"), "old");
+  OutputSwap swap(root_ / "out", true);
+  swap.WriteFile("rgb.txt", "new");
+  swap.Commit();
+  EXPECT_EQ(Get(root_ / "out" / "rgb.txt"), "new");
+  EXPECT_FALSE(fs::exists(root_ / "out" / "groundtruth_objects.json"));
+  EXPECT_EQ(Entries(), 1);
+}
+
+TEST_F(OutputSwapTest, FileInTheWayIsAnError) {
+  Put(root_ / "file", "x");
+  EXPECT_THROW(OutputSwap(root_ / "file", true), InputError);
+  EXPECT_THROW(OutputSwap(root_ / "file" / "below", true), InputError);
+  OutputSwap swap(root_ / "out", false);
+  EXPECT_THROW(swap.WriteFile("no_such_folder/rgb.txt", "x"), InputError);
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "synthetic/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/core.hpp>
+
+#include "synthetic/camera_path.h"
+#include "synthetic/mask_outline.h"
+#include "synthetic/object_models.h"
+#include "synthetic/scene_builder.h"
+#include "synthetic/sequence_writer.h"
+
+namespace hullslam {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Matrix4d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+
+const Vector3d kEye(-1.0, -1.4, 1.3);
+
+// Ellipsoids floating in a bare room, seen from one place.
+Scene EllipsoidScene() {
+  SceneBuilder builder(1);
+  const Palette palette = builder.AddBarePalette();
+  builder.AddRoom({.half_x = 3.0, .half_y = 2.5, .height = 2.5}, palette);
+  const auto add = [&](const Vector3d& half, const Vector3d& base, double yaw) {
+    builder.AddObject(
+        MakeSolid("apple", Shape::Ellipsoid(half), builder.Repeat(palette.speckle, 0.3))
+            .Build(base, yaw));
+  };
+  add({0.20, 0.12, 0.08}, {0.0, 0.0, 0.9}, 0.6);
+  add({0.05, 0.30, 0.20}, {-0.5, 1.0, 0.9}, 0.2);
+  add({0.15, 0.15, 0.15}, {0.9, -0.2, 0.3}, 0.0);
+  builder.scene().world_from_cam = [](double time) {
+    return LookAt(kEye + Vector3d(0.1 * time, 0.0, 0.0), {0.0, 0.0, 0.95});
+  };
+  return builder.Finish();
+}
+
+Matrix3d Calibration(const PinholeCamera& camera) {
+  Matrix3d k;
+  k << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0;
+  return k;
+}
+
+// C* = P Q* P^T of an ellipsoid with its true pose and half extents.
+Matrix3d DualConic(const SceneObject& object, const Rigid3& cam_from_world,
+                   const PinholeCamera& camera) {
+  Matrix4d pose = Matrix4d::Identity();
+  pose.topRows<3>() = object.world_from_object.ToMatrix();
+  Vector4d shape;
+  shape << object.half_extents.cwiseAbs2(), -1.0;
+  const Matrix4d quadric = pose * shape.asDiagonal() * pose.transpose();
+  const Eigen::Matrix<double, 3, 4> projection = Calibration(camera) * cam_from_world.ToMatrix();
+  return projection * quadric * projection.transpose();
+}
+
+// Distance from a pixel to the ellipse to first order (Sampson), with the same sign all outside.
+double DistanceToConic(const Matrix3d& dual_conic, const Vector2d& pixel) {
+  const Matrix3d conic = dual_conic.inverse();
+  const Vector3d x = pixel.homogeneous();
+  return x.dot(conic * x) / (2.0 * (conic * x).head<2>().norm());
+}
+
+TEST(Renderer, MasksAreTheProjectionsOfTheTrueDualQuadrics) {
+  const Scene scene = EllipsoidScene();
+  const PinholeCamera camera = SyntheticCamera();
+  const RenderedFrame frame = Renderer(scene, camera).Render(0.0);
+  const auto outlines = FindOutlines(frame.instance, 100);
+  ASSERT_EQ(outlines.size(), scene.objects.size());
+  for (const InstanceOutline& outline : outlines) {
+    const Matrix3d dual = DualConic(scene.objects[static_cast<size_t>(outline.object)],
+                                    Inverse(scene.world_from_cam(0.0)), camera);
+    double sum = 0.0;
+    for (const Vector2d& vertex : outline.vertices) {
+      const double distance = DistanceToConic(dual, vertex);
+      EXPECT_LT(std::abs(distance), 0.8) << vertex.transpose();
+      sum += distance;
+    }
+    // Not biased to the inside or the outside.
+    EXPECT_NEAR(sum / static_cast<double>(outline.vertices.size()), 0.0, 0.1);
+  }
+}
+
+TEST(Renderer, DepthIsThatOfTheEllipsoidOrTheWall) {
+  const Scene scene = EllipsoidScene();
+  const PinholeCamera camera = SyntheticCamera();
+  const RenderedFrame frame = Renderer(scene, camera).Render(1.0);
+  const Rigid3 world_from_cam = scene.world_from_cam(1.0);
+  int on_objects = 0;
+  for (int y = 0; y < camera.height; y += 3) {
+    for (int x = 0; x < camera.width; x += 3) {
+      const Vector3d point =
+          world_from_cam * camera.Unproject(Vector2d(x, y), frame.depth.at<float>(y, x));
+      const int object = frame.instance.at<int16_t>(y, x);
+      if (object < 0) {
+        const double wall = std::min(
+            {3.0 - std::abs(point.x()), 2.5 - std::abs(point.y()), point.z(), 2.5 - point.z()});
+        EXPECT_LT(std::abs(wall), 0.021);  // skirting boards are 2 cm thick
+        continue;
+      }
+      const SceneObject& hit = scene.objects[static_cast<size_t>(object)];
+      const Vector3d local = Inverse(hit.world_from_object) * point;
+      // Where the view grazes, 4e-5 m across the surface are more along the ray, not off it.
+      EXPECT_NEAR(hit.parts[0].shape.Implicit(local), 0.0, 2e-3);
+      ++on_objects;
+    }
+  }
+  EXPECT_GT(on_objects, 1000);
+}
+
+TEST(Renderer, KnownLandmarkIsSeenWhereTheTruePosePutsIt) {
+  // The centre of each ellipsoid projects into its own mask, and the depth there is nearer by about
+  // the extent along the ray.
+  const Scene scene = EllipsoidScene();
+  const PinholeCamera camera = SyntheticCamera();
+  const Renderer renderer(scene, camera);
+  for (const double time : {0.0, 2.0}) {
+    const RenderedFrame frame = renderer.Render(time);
+    const Rigid3 cam_from_world = Inverse(scene.world_from_cam(time));
+    for (size_t i = 0; i < scene.objects.size(); ++i) {
+      const SceneObject& object = scene.objects[i];
+      const Vector3d centre = cam_from_world * object.world_from_object.translation;
+      const Vector2d pixel = camera.Project(centre);
+      const int x = static_cast<int>(std::lround(pixel.x()));
+      const int y = static_cast<int>(std::lround(pixel.y()));
+      ASSERT_EQ(frame.instance.at<int16_t>(y, x), static_cast<int>(i));
+      // Along the ray through the centre, the surface is 1 / |S^-1 R^T d| before it.
+      const Vector3d ray =
+          object.world_from_object.rotation.conjugate() *
+          (object.world_from_object.translation - scene.world_from_cam(time).translation)
+              .normalized();
+      const double before = 1.0 / ray.cwiseQuotient(object.half_extents).norm();
+      const double expected = centre.z() * (1.0 - before / centre.norm());
+      EXPECT_NEAR(frame.depth.at<float>(y, x), expected, 0.002);
+    }
+  }
+}
+
+TEST(Renderer, SameBitsAgain) {
+  const Scene scene = EllipsoidScene();
+  PinholeCamera camera = SyntheticCamera();
+  camera.width = 163;  // no multiple of a packet
+  camera.height = 121;
+  const Renderer renderer(scene, camera);
+  const RenderedFrame a = renderer.Render(0.4);
+  const RenderedFrame b = renderer.Render(0.4);
+  EXPECT_EQ(cv::norm(a.colour, b.colour, cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(a.depth, b.depth, cv::NORM_INF), 0.0);
+  EXPECT_EQ(a.colour.size(), cv::Size(163, 121));
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "synthetic/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/core.hpp>
+
+#include "hullslam/util/error.h"
+#include "synthetic/renderer.h"
+#include "synthetic/sequence_writer.h"
+
+namespace hullslam {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr SceneKind kAll[] = {SceneKind::kDesk, SceneKind::kRoom, SceneKind::kLowTexture,
+                              SceneKind::kDynamic};
+
+PinholeCamera SmallCamera() {
+  return {.fx = 133.85, .fy = 134.8, .cx = 80.0, .cy = 61.9, .width = 160, .height = 120};
+}
+
+TEST(SceneKind, NamesGoBothWays) {
+  for (const SceneKind kind : kAll) {
+    EXPECT_EQ(ParseSceneKind(SceneName(kind)), kind);
+  }
+  EXPECT_THROW(ParseSceneKind("kitchen"), InputError);
+  EXPECT_THROW(ParseSceneKind(""), InputError);
+}
+
+// Largest motion in px of 640x480 of what is seen at `time` until the next frame.
+double LargestMotion(const Scene& scene, const RenderedFrame& frame, double time) {
+  const PinholeCamera small = SmallCamera();
+  const Rigid3 world_from_cam = scene.world_from_cam(time);
+  const double next = time + 1.0 / 30.0;
+  const Rigid3 next_from_world = Inverse(scene.world_from_cam(next));
+  double largest = 0.0;
+  for (int y = 0; y < small.height; y += 4) {
+    for (int x = 0; x < small.width; x += 4) {
+      const Vector2d pixel(x, y);
+      Vector3d point = world_from_cam * small.Unproject(pixel, frame.depth.at<float>(y, x));
+      const int object = frame.instance.at<int16_t>(y, x);
+      if (object >= 0) {
+        const SceneObject& moving = scene.objects[static_cast<size_t>(object)];
+        point = moving.WorldFromObject(next) * (Inverse(moving.WorldFromObject(time)) * point);
+      }
+      largest = std::max(largest, 4.0 * (small.Project(next_from_world * point) - pixel).norm());
+    }
+  }
+  return largest;
+}
+
+TEST(Scenes, AreClosedFilledAndSlowEnoughToTrack) {
+  for (const SceneKind kind : kAll) {
+    const int frames = DefaultFrames(kind);
+    const Scene scene = BuildScene(kind, frames, 1);
+    const Renderer renderer(scene, SmallCamera());
+    EXPECT_GE(scene.objects.size(), 15U) << SceneName(kind);
+    for (int i = 0; i < frames; i += 20) {
+      const double time = i / 30.0;
+      const RenderedFrame frame = renderer.Render(time);
+      EXPECT_LT(LargestMotion(scene, frame, time), 25.0) << SceneName(kind) << " frame " << i;
+      double nearest = 0.0;
+      cv::minMaxLoc(frame.depth, &nearest, nullptr);
+      EXPECT_GT(nearest, 0.3) << SceneName(kind) << " frame " << i;
+    }
+  }
+}
+
+TEST(Scenes, OtherSeedOtherTexturesSameObjects) {
+  const Scene a = BuildScene(SceneKind::kDesk, 300, 1);
+  const Scene b = BuildScene(SceneKind::kDesk, 300, 2);
+  ASSERT_EQ(a.objects.size(), b.objects.size());
+  const cv::Mat seen_a = Renderer(a, SmallCamera()).Render(0.0).colour;
+  const cv::Mat seen_b = Renderer(b, SmallCamera()).Render(0.0).colour;
+  EXPECT_GT(cv::norm(seen_a, seen_b, cv::NORM_L1) / static_cast<double>(seen_a.total()), 5.0);
+}
+
+TEST(Scenes, PersonCoversMuchOfTheViewInMuchOfDynamic) {
+  const Scene scene = BuildScene(SceneKind::kDynamic, 300, 0);
+  const Renderer renderer(scene, SmallCamera());
+  const int person = static_cast<int>(scene.objects.size()) - 1;
+  ASSERT_EQ(scene.objects.back().class_name, "person");
+  ASSERT_TRUE(scene.objects.back().IsDynamic());
+  int covered = 0;
+  int free_frames = 0;
+  for (int i = 0; i < 300; i += 10) {
+    const cv::Mat mask = renderer.Render(i / 30.0).instance == person;
+    const double share = cv::countNonZero(mask) / static_cast<double>(mask.total());
+    covered += share > 0.25 ? 1 : 0;
+    free_frames += share < 0.02 ? 1 : 0;
+  }
+  EXPECT_GE(covered, 10);
+  EXPECT_GE(free_frames, 3);
+}
+
+TEST(Scenes, RoomLooksAtItsStartAgain) {
+  const Scene scene = BuildScene(SceneKind::kRoom, 600, 0);
+  const Rigid3 start = scene.world_from_cam(0.0);
+  double nearest = 10.0;
+  for (int i = 500; i < 600; ++i) {
+    const Rigid3 motion = Inverse(start) * scene.world_from_cam(i / 30.0);
+    nearest = std::min(nearest, motion.translation.norm() + LogSo3(motion.rotation).norm());
+  }
+  EXPECT_LT(nearest, 0.15);
+}
+
+}  // namespace
+}  // namespace hullslam

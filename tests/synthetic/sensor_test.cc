@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "synthetic/sensor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/core.hpp>
+
+namespace hullslam {
+namespace {
+
+RenderedFrame FlatFrame(float depth, float cosine) {
+  const cv::Size size(320, 240);
+  return {.colour = cv::Mat(size, CV_32FC3, cv::Scalar(60.4, 120.0, 200.0)),
+          .depth = cv::Mat(size, CV_32FC1, cv::Scalar(depth)),
+          .instance = cv::Mat(size, CV_16SC1, cv::Scalar(-1)),
+          .cosine = cv::Mat(size, CV_32FC1, cv::Scalar(cosine))};
+}
+
+// Standard deviation in metres of the depths that are known.
+double DepthError(float z) {
+  const cv::Mat depth = Sensor({}, 1).Depth(FlatFrame(z, 1.0F), 0);
+  double squares = 0.0;
+  int count = 0;
+  for (int i = 0; i < static_cast<int>(depth.total()); ++i) {
+    const uint16_t units = depth.at<uint16_t>(i / depth.cols, i % depth.cols);
+    if (units != 0) {
+      squares += std::pow(units / 5000.0 - z, 2.0);
+      ++count;
+    }
+  }
+  return std::sqrt(squares / count);
+}
+
+TEST(Sensor, WithoutNoiseDepthIsRoundedToUnits) {
+  const Sensor sensor({.noise = false}, 1);
+  const cv::Mat depth = sensor.Depth(FlatFrame(1.23456F, 1.0F), 0);
+  EXPECT_EQ(depth.type(), CV_16UC1);
+  EXPECT_EQ(cv::norm(depth, cv::Mat(depth.size(), CV_16UC1, cv::Scalar(6173)), cv::NORM_INF), 0.0);
+  const cv::Mat colour = sensor.Colour(FlatFrame(1.0F, 1.0F), 0);
+  EXPECT_EQ(colour.at<cv::Vec3b>(7, 9), cv::Vec3b(60, 120, 200));
+}
+
+TEST(Sensor, DepthOutOfRangeOrGrazingIsUnknown) {
+  for (const bool noise : {false, true}) {
+    const Sensor sensor({.noise = noise}, 1);
+    EXPECT_EQ(cv::countNonZero(sensor.Depth(FlatFrame(0.45F, 1.0F), 0)), 0);
+    EXPECT_EQ(cv::countNonZero(sensor.Depth(FlatFrame(8.6F, 1.0F), 0)), 0);
+  }
+  const Sensor sensor({}, 1);
+  EXPECT_EQ(cv::countNonZero(sensor.Depth(FlatFrame(2.0F, 0.09F), 0)), 0);
+  EXPECT_EQ(cv::countNonZero(sensor.Depth(FlatFrame(2.0F, 0.5F), 0)), 320 * 240);
+}
+
+TEST(Sensor, DepthErrorGrowsWithTheSquareOfDepth) {
+  // Half a step of noise and the rounding: 0.5 to 0.75 steps of 2.87e-3 z^2.
+  for (const float z : {1.0F, 2.0F, 4.0F}) {
+    const double steps = DepthError(z) / (2.87e-3 * z * z);
+    EXPECT_GT(steps, 0.4) << z;
+    EXPECT_LT(steps, 0.8) << z;
+  }
+}
+
+TEST(Sensor, NearThingsCastAShadowToTheLeft) {
+  RenderedFrame frame = FlatFrame(3.0F, 1.0F);
+  frame.depth(cv::Rect(150, 100, 60, 60)) = 1.0;
+  const cv::Mat depth = Sensor({}, 1).Depth(frame, 0);
+  // 535 px * 7.5 cm * (1 / 1 m - 1 / 3 m) = 26.8 px
+  EXPECT_EQ(cv::countNonZero(depth(cv::Rect(125, 105, 24, 50))), 0);
+  EXPECT_EQ(cv::countNonZero(depth(cv::Rect(90, 105, 30, 50))), 30 * 50);
+  EXPECT_EQ(cv::countNonZero(depth(cv::Rect(215, 105, 30, 50))), 30 * 50);
+}
+
+TEST(Sensor, ColourNoiseIsUnbiasedAndSmall) {
+  const RenderedFrame frame = FlatFrame(2.0F, 1.0F);
+  const cv::Mat image = Sensor({}, 1).Colour(frame, 0);
+  cv::Scalar mean;
+  cv::Scalar deviation;
+  cv::meanStdDev(image(cv::Rect(150, 110, 20, 20)), mean, deviation);
+  EXPECT_NEAR(mean[1], 120.0, 0.6);
+  EXPECT_NEAR(deviation[1], std::sqrt(0.9 + 0.009 * 120.0), 0.25);
+  EXPECT_GT(deviation[2], deviation[0]);
+  EXPECT_LT(image.at<cv::Vec3b>(2, 2)[1], 115);  // the corners are darker
+}
+
+TEST(Sensor, NoiseDependsOnSeedAndFrameAlone) {
+  const RenderedFrame frame = FlatFrame(2.0F, 1.0F);
+  const Sensor one({}, 1);
+  EXPECT_EQ(cv::norm(one.Colour(frame, 3), Sensor({}, 1).Colour(frame, 3), cv::NORM_INF), 0.0);
+  EXPECT_GT(cv::norm(one.Colour(frame, 3), one.Colour(frame, 4), cv::NORM_INF), 0.0);
+  EXPECT_GT(cv::norm(one.Depth(frame, 3), Sensor({}, 2).Depth(frame, 3), cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(one.Depth(frame, 3), one.Depth(frame, 3), cv::NORM_INF), 0.0);
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "synthetic/sequence_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "hullslam/util/error.h"
+#include "synthetic/object_models.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string Read(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::map<std::string, std::string> AllFiles(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) {
+      files[fs::relative(entry.path(), folder).string()] = Read(entry.path());
+    }
+  }
+  return files;
+}
+
+class SequenceWriterTest : public testing::Test {
+ protected:
+  SequenceWriterTest()
+      : root_(fs::path(testing::TempDir()) /
+              ("sequence_writer_" +
+               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
+    fs::remove_all(root_);
+  }
+  ~SequenceWriterTest() override { fs::remove_all(root_); }
+
+  fs::path Write(const std::string& name, const SequenceOptions& options) const {
+    EXPECT_TRUE(WriteSequence(root_ / name, options, [](int) { return true; }));
+    return root_ / name;
+  }
+
+  fs::path root_;
+};
+
+TEST(FrameStamp, IsThirtyFramesASecondInMicroseconds) {
+  EXPECT_EQ(FrameStamp(0), 1000.0);
+  EXPECT_NEAR(FrameStamp(1), 1000.033333, 1e-9);
+  EXPECT_NEAR(FrameStamp(30), 1001.0, 1e-9);
+}
+
+TEST_F(SequenceWriterTest, SameSeedSameBytesWithAnyNumberOfThreads) {
+  const SequenceOptions options{.frames = 4, .seed = 7, .threads = 1};
+  SequenceOptions two = options;
+  two.threads = 3;
+  SequenceOptions other = options;
+  other.seed = 8;
+  const auto files = AllFiles(Write("one", options));
+  EXPECT_EQ(files.size(), 3U * 4U + 5U);
+  EXPECT_EQ(files, AllFiles(Write("two", two)));
+  const auto other_files = AllFiles(Write("other", other));
+  EXPECT_EQ(files.at("rgb.txt"), other_files.at("rgb.txt"));
+  for (const char* name : {"rgb/1000.000000.png", "depth/1000.000000.png", "groundtruth.txt"}) {
+    EXPECT_NE(files.at(name), other_files.at(name)) << name;
+  }
+}
+
+TEST_F(SequenceWriterTest, ImagesHaveTheRightFormats) {
+  const fs::path folder = Write("out", {.frames = 2});
+  const cv::Mat colour =
+      cv::imread((folder / "rgb/1000.033333.png").string(), cv::IMREAD_UNCHANGED);
+  const cv::Mat depth =
+      cv::imread((folder / "depth/1000.033333.png").string(), cv::IMREAD_UNCHANGED);
+  EXPECT_EQ(colour.type(), CV_8UC3);
+  EXPECT_EQ(depth.type(), CV_16UC1);
+  EXPECT_EQ(colour.size(), cv::Size(640, 480));
+  EXPECT_EQ(depth.size(), cv::Size(640, 480));
+  EXPECT_GT(cv::countNonZero(depth), 640 * 480 * 8 / 10);
+  EXPECT_EQ(Read(folder / "rgb.txt"),
+            "# timestamp filename\n1000.000000 rgb/1000.000000.png\n"
+            "1000.033333 rgb/1000.033333.png\n");
+  EXPECT_EQ(Read(folder / "camera.yaml").substr(0, 9), "%YAML:1.0");
+}
+
+TEST_F(SequenceWriterTest, GroundTruthIsThePathOfTheCamera) {
+  const fs::path folder = Write("out", {.frames = 3, .seed = 4});
+  const Scene scene = BuildScene(SceneKind::kDesk, 3, 4);
+  std::ifstream file(folder / "groundtruth.txt");
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line[0], '#');
+  for (int i = 0; i < 3; ++i) {
+    double stamp = 0.0;
+    Rigid3 pose;
+    Eigen::Vector3d& t = pose.translation;
+    Eigen::Quaterniond& q = pose.rotation;
+    file >> stamp >> t.x() >> t.y() >> t.z() >> q.x() >> q.y() >> q.z() >> q.w();
+    ASSERT_TRUE(file);
+    EXPECT_NEAR(stamp, FrameStamp(i), 1e-9);
+    const Rigid3 error = Inverse(scene.world_from_cam(i / 30.0)) * pose;
+    EXPECT_LT(error.translation.norm(), 1e-8);
+    EXPECT_LT(LogSo3(error.rotation).norm(), 1e-8);
+  }
+}
+
+TEST_F(SequenceWriterTest, MasksAreValidPolygonsOfListedClasses) {
+  const fs::path folder = Write("out", {.scene = SceneKind::kDynamic, .frames = 2});
+  const auto truth = nlohmann::json::parse(Read(folder / "groundtruth_objects.json"));
+  std::set<int> classes;
+  for (const auto& object : truth["objects"]) {
+    classes.insert(object["class_id"].get<int>());
+    EXPECT_EQ(CocoClassId(object["class"].get<std::string>()), object["class_id"].get<int>());
+    EXPECT_EQ(object["world_from_object"].size(), 7U);
+    EXPECT_GT(object["half_extents"][2].get<double>(), 0.0);
+    EXPECT_EQ(object.contains("poses"), object["dynamic"].get<bool>());
+  }
+  EXPECT_EQ(truth["objects"].back()["poses"].size(), 2U);
+  std::ifstream file(folder / "masks/1000.000000.txt");
+  int instances = 0;
+  for (std::string line; std::getline(file, line); ++instances) {
+    std::istringstream stream(line);
+    const std::vector<double> values(std::istream_iterator<double>(stream), {});
+    ASSERT_GE(values.size(), 8U);
+    ASSERT_EQ(values.size() % 2, 0U);  // class, pairs, confidence
+    EXPECT_EQ(classes.count(static_cast<int>(values[0])), 1U);
+    EXPECT_EQ(values.back(), 1.0);
+    for (size_t i = 1; i + 1 < values.size(); ++i) {
+      EXPECT_GE(values[i], 0.0);
+      EXPECT_LE(values[i], 1.0);
+    }
+  }
+  EXPECT_GE(instances, 10);
+}
+
+// Features of OpenCV's ORB in the first frame.
+int OrbFeatures(const fs::path& folder) {
+  const cv::Mat grey = cv::imread((folder / "rgb/1000.000000.png").string(), cv::IMREAD_GRAYSCALE);
+  std::vector<cv::KeyPoint> keypoints;
+  cv::ORB::create(1000, 1.2F, 8, 19, 0, 2, cv::ORB::HARRIS_SCORE, 31, 20)->detect(grey, keypoints);
+  return static_cast<int>(keypoints.size());
+}
+
+TEST_F(SequenceWriterTest, DeskIsRichAndLowTexturePoorInCorners) {
+  EXPECT_EQ(OrbFeatures(Write("desk", {.frames = 1})), 1000);
+  const int poor = OrbFeatures(Write("low", {.scene = SceneKind::kLowTexture, .frames = 1}));
+  EXPECT_GT(poor, 30);
+  EXPECT_LT(poor, 150);
+}
+
+TEST_F(SequenceWriterTest, GivingUpLeavesNothingAndKeepsTheFormer) {
+  const auto give_up = [](int) { return false; };
+  EXPECT_FALSE(WriteSequence(root_ / "out", {.frames = 5}, give_up));
+  EXPECT_TRUE(fs::is_empty(root_));
+  const auto before = AllFiles(Write("out", {.frames = 1}));
+  EXPECT_THROW(WriteSequence(root_ / "out", {.frames = 1}, give_up), InputError);
+  EXPECT_FALSE(WriteSequence(root_ / "out", {.frames = 5, .force = true}, give_up));
+  EXPECT_EQ(AllFiles(root_ / "out"), before);
+}
+
+}  // namespace
+}  // namespace hullslam
