@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/mapping/keyframe_insertion.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "hullslam/map/invariants.h"
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+KeyframeRequest FirstRequest(const SyntheticView& view) {
+  KeyframeRequest request;
+  request.frame = view.frame;
+  request.landmarks.resize(view.frame->features.size());
+  return request;
+}
+
+// The path's frame, seen from keyframe `reference` of the made map, with all landmarks it knows.
+KeyframeRequest Request(const SyntheticMap& made, const SyntheticView& view, uint32_t index,
+                        KeyframeId reference) {
+  KeyframeRequest request;
+  request.frame = view.frame;
+  request.reference = reference;
+  request.cam_from_reference =
+      SyntheticWorld::CamFromWorld(index) * Inverse(made.map.CamFromWorld(reference));
+  for (const uint32_t point : view.points) {
+    request.landmarks.push_back(made.landmarks[point]);
+  }
+  return request;
+}
+
+size_t CountLandmarks(const Keyframe& keyframe) {
+  return static_cast<size_t>(std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
+                                           [](LandmarkId id) { return id.IsValid(); }));
+}
+
+TEST(KeyframeInsertion, TheFirstKeyframeTakesAllItsDepths) {
+  const SyntheticWorld world({.depth_share = 0.7});
+  const SyntheticView view = world.Observe(0);
+  Map map;
+  std::vector<LandmarkId> created;
+  const KeyframeId id = InsertKeyframe(map, FirstRequest(view), world.sensor(), created);
+  EXPECT_EQ(id, KeyframeId(0));
+  EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+  const Keyframe& keyframe = map.keyframes().At(id);
+  EXPECT_FALSE(keyframe.parent.IsValid());
+  EXPECT_EQ(keyframe.cam_from_world.translation, Eigen::Vector3d::Zero());
+  size_t with_depth = 0;
+  for (size_t i = 0; i < view.points.size(); ++i) {
+    const bool has_depth = view.frame->features.depth[i] > 0.0f;
+    with_depth += has_depth ? 1 : 0;
+    ASSERT_EQ(keyframe.landmarks[i].IsValid(), has_depth);
+    if (has_depth) {
+      const Landmark& landmark = map.landmarks().At(keyframe.landmarks[i]);
+      EXPECT_LT((landmark.position - world.points()[view.points[i]]).norm(), 1e-5);
+      EXPECT_EQ(landmark.descriptor, world.descriptor(view.points[i]));
+      EXPECT_EQ(landmark.created_by, id);
+    }
+  }
+  EXPECT_GT(with_depth, 100u);
+  EXPECT_EQ(created.size(), with_depth);
+  EXPECT_EQ(map.landmarks().size(), with_depth);
+}
+
+// Later keyframes: every close depth, else the nearest hundred.
+void ExpectNearestAreTaken(double close_depth, bool more_than_hundred_are_close) {
+  const SyntheticWorld world;
+  Sensor sensor = world.sensor();
+  sensor.close_depth = close_depth;
+  SyntheticMap made = MakeSyntheticMap(world, {0, 5});
+  const SyntheticView view = world.Observe(10);
+  KeyframeRequest request = Request(made, view, 10, KeyframeId(1));
+  request.landmarks.assign(view.points.size(), LandmarkId());
+  std::vector<LandmarkId> created;
+  const KeyframeId id = InsertKeyframe(made.map, request, sensor, created);
+  EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
+  float farthest_taken = 0.0f;
+  float nearest_left = 1e9f;
+  size_t close = 0;
+  const Keyframe& keyframe = made.map.keyframes().At(id);
+  for (size_t i = 0; i < view.points.size(); ++i) {
+    const float depth = view.frame->features.depth[i];
+    close += depth > 0.0f && static_cast<double>(depth) <= close_depth ? 1 : 0;
+    if (keyframe.landmarks[i].IsValid()) {
+      farthest_taken = std::max(farthest_taken, depth);
+    } else if (depth > 0.0f) {
+      nearest_left = std::min(nearest_left, depth);
+    }
+  }
+  EXPECT_EQ(close > 100, more_than_hundred_are_close);
+  EXPECT_EQ(created.size(), std::max<size_t>(close, 100));
+  EXPECT_EQ(CountLandmarks(keyframe), created.size());
+  EXPECT_LT(farthest_taken, nearest_left);
+}
+
+TEST(KeyframeInsertion, LaterOnesTakeAllCloseDepths) { ExpectNearestAreTaken(4.5, true); }
+
+TEST(KeyframeInsertion, LaterOnesTakeTheNearestHundredWhereFewAreClose) {
+  ExpectNearestAreTaken(2.2, false);
+}
+
+TEST(KeyframeInsertion, KnownLandmarksAreObservedNotMadeAgain) {
+  const SyntheticWorld world;
+  SyntheticMap made = MakeSyntheticMap(world, {0, 5});
+  const SyntheticView view = world.Observe(10);
+  std::vector<LandmarkId> created;
+  const KeyframeRequest request = Request(made, view, 10, KeyframeId(0));
+  const KeyframeId id = InsertKeyframe(made.map, request, world.sensor(), created);
+  EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
+  const Keyframe& keyframe = made.map.keyframes().At(id);
+  for (size_t i = 0; i < request.landmarks.size(); ++i) {
+    if (request.landmarks[i].IsValid()) {
+      EXPECT_EQ(keyframe.landmarks[i], request.landmarks[i]);
+    }
+  }
+  for (const LandmarkId landmark : created) {
+    EXPECT_EQ(made.map.landmarks().At(landmark).observations.size(), 1u);
+  }
+  const Rigid3 truth = SyntheticWorld::CamFromWorld(10);
+  EXPECT_LT((keyframe.cam_from_world.translation - truth.translation).norm(), 1e-12);
+  EXPECT_EQ(keyframe.covisible.size(), 2u);
+  EXPECT_EQ(keyframe.parent, KeyframeId(1)) << "it shares more with the nearer one";
+}
+
+TEST(KeyframeInsertion, ThePoseFollowsAReferenceThatMovedOrWasCulledMeanwhile) {
+  const SyntheticWorld world;
+  SyntheticMap made = MakeSyntheticMap(world, {0, 5, 8});
+  const SyntheticView view = world.Observe(10);
+  const KeyframeRequest request = Request(made, view, 10, KeyframeId(1));
+  made.map.CullKeyframe(KeyframeId(1));
+  const Rigid3 old_from_new(ExpSo3({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0});
+  for (const KeyframeId id : {KeyframeId(0), KeyframeId(2)}) {
+    made.map.SetPose(id, made.map.CamFromWorld(id) * old_from_new);
+  }
+  std::vector<LandmarkId> created;
+  const KeyframeId id = InsertKeyframe(made.map, request, world.sensor(), created);
+  EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
+  const Rigid3 expected = SyntheticWorld::CamFromWorld(10) * old_from_new;
+  const Rigid3& actual = made.map.keyframes().At(id).cam_from_world;
+  EXPECT_LT((actual.translation - expected.translation).norm(), 1e-12);
+  EXPECT_LT(AngularDistance(actual.rotation, expected.rotation), 1e-12);
+}
+
+TEST(KeyframeInsertion, LandmarksErasedOrReplacedMeanwhileAreFollowed) {
+  const SyntheticWorld world;
+  SyntheticMap made = MakeSyntheticMap(world, {0, 5});
+  const SyntheticView view = world.Observe(10);
+  KeyframeRequest request = Request(made, view, 10, KeyframeId(1));
+  std::vector<uint32_t> known;
+  for (uint32_t i = 0; i < request.landmarks.size() && known.size() < 3; ++i) {
+    if (request.landmarks[i].IsValid() && view.frame->features.depth[i] < 4.0f) {
+      known.push_back(i);
+    }
+  }
+  const LandmarkId erased = request.landmarks[known[0]];
+  const LandmarkId replaced = request.landmarks[known[1]];
+  const LandmarkId kept = request.landmarks[known[2]];
+  request.sightings = {{erased, 5, 5}, {replaced, 7, 4}, {kept, 10, 9}, {LandmarkId(), 1, 1}};
+  made.map.EraseLandmark(erased);
+  made.map.ReplaceLandmark(replaced, kept);
+  const int visible = made.map.landmarks().At(kept).visible;
+  const int found = made.map.landmarks().At(kept).found;
+  std::vector<LandmarkId> created;
+  const KeyframeId id = InsertKeyframe(made.map, request, world.sensor(), created);
+  EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
+  const std::vector<LandmarkId>& slots = made.map.keyframes().At(id).landmarks;
+  EXPECT_NE(slots[known[0]], erased);
+  EXPECT_EQ(slots[known[1]], kept) << "the first keypoint that resolves to it";
+  EXPECT_NE(slots[known[2]], kept) << "a keyframe observes a landmark once";
+  EXPECT_EQ(made.map.landmarks().At(kept).visible, visible + 17);
+  EXPECT_EQ(made.map.landmarks().At(kept).found, found + 13);
+}
+
+TEST(KeyframeInsertion, WithoutASharedLandmarkItIsAChildOfItsReference) {
+  const SyntheticWorld world;
+  SyntheticMap made = MakeSyntheticMap(world, {0, 5, 8});
+  const SyntheticView view = world.Observe(10);
+  const KeyframeRequest request = Request(made, view, 10, KeyframeId(1));
+  for (const LandmarkId landmark : request.landmarks) {
+    if (landmark.IsValid()) {
+      made.map.EraseLandmark(landmark);
+    }
+  }
+  const KeyframeId expected = made.map.keyframes().At(KeyframeId(1)).parent;
+  made.map.CullKeyframe(KeyframeId(1));
+  std::vector<LandmarkId> created;
+  const KeyframeId id = InsertKeyframe(made.map, request, world.sensor(), created);
+  EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
+  EXPECT_TRUE(made.map.keyframes().At(id).covisible.empty());
+  EXPECT_EQ(made.map.keyframes().At(id).parent, expected)
+      << "one root: a second one could become the child of its own descendant";
+}
+
+}  // namespace
+}  // namespace hullslam

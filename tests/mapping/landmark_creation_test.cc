@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/mapping/landmark_creation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+
+#include "hullslam/map/invariants.h"
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+struct TwoKeyframes {
+  Map map;
+  SyntheticView a;
+  SyntheticView b;
+};
+
+// Two keyframes that share every fourth point they both see as a landmark; the other keypoints are
+// free. `change` may alter the second frame before it is used.
+TwoKeyframes MakePair(const SyntheticWorld& world, const Rigid3& a_from_world,
+                      const Rigid3& b_from_world,
+                      const std::function<void(Frame&)>& change = nullptr) {
+  TwoKeyframes pair;
+  pair.a = world.Observe(FrameId(0), a_from_world);
+  pair.b = world.Observe(FrameId(1), b_from_world);
+  if (change) {
+    auto changed = std::make_shared<Frame>(*pair.b.frame);
+    change(*changed);
+    pair.b.frame = changed;
+  }
+  const KeyframeId a = pair.map.AddKeyframe(pair.a.frame, a_from_world);
+  const KeyframeId b = pair.map.AddKeyframe(pair.b.frame, b_from_world);
+  std::map<uint32_t, uint32_t> keypoint_in_a;
+  for (uint32_t k = 0; k < pair.a.points.size(); ++k) {
+    keypoint_in_a[pair.a.points[k]] = k;
+  }
+  for (uint32_t k = 0; k < pair.b.points.size(); ++k) {
+    const uint32_t point = pair.b.points[k];
+    if (point % 4 == 0 && keypoint_in_a.contains(point)) {
+      const LandmarkId landmark = pair.map.AddLandmark(world.points()[point], a);
+      pair.map.AddObservation(landmark, a, keypoint_in_a[point]);
+      pair.map.AddObservation(landmark, b, k);
+    }
+  }
+  UpdateCovisibility(pair.map, b);
+  return pair;
+}
+
+Rigid3 LookingAhead(const Eigen::Vector3d& center) {
+  return {Eigen::Quaterniond::Identity(), -center};
+}
+
+// The point of the world that the landmark was made from; the descriptor says which.
+uint32_t PointOf(const SyntheticWorld& world, const Landmark& landmark) {
+  for (uint32_t i = 0; i < world.points().size(); ++i) {
+    if (world.descriptor(i) == landmark.descriptor) {
+      return i;
+    }
+  }
+  ADD_FAILURE() << "no such descriptor";
+  return 0;
+}
+
+double ParallaxDegrees(const Eigen::Vector3d& point, const Eigen::Vector3d& center_a,
+                       const Eigen::Vector3d& center_b) {
+  const Eigen::Vector3d a = (point - center_a).normalized();
+  const Eigen::Vector3d b = (point - center_b).normalized();
+  return std::acos(std::min(1.0, a.dot(b))) * 180.0 / std::numbers::pi;
+}
+
+// Counts the free points seen in both images for which `holds`.
+size_t CountFreeShared(const SyntheticWorld& world, const TwoKeyframes& pair,
+                       const std::function<bool(const Eigen::Vector3d&)>& holds) {
+  size_t count = 0;
+  for (const uint32_t point : pair.b.points) {
+    const bool in_both =
+        std::find(pair.a.points.begin(), pair.a.points.end(), point) != pair.a.points.end();
+    count += point % 4 != 0 && in_both && holds(world.points()[point]) ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(LandmarkCreation, KeypointsWithoutDepthAreTriangulated) {
+  const SyntheticWorld world({.depth_share = 0.0});
+  const Eigen::Vector3d center(0.3, 0.0, 0.0);
+  TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead(center));
+  const std::vector<LandmarkId> created = CreateLandmarks(pair.map, KeyframeId(1), world.sensor());
+  EXPECT_EQ(FindViolations(pair.map), std::vector<std::string>());
+  EXPECT_EQ(created.size(), CountFreeShared(world, pair, [](const auto&) { return true; }))
+      << "30 cm aside every point is 2.7 degrees or more apart";
+  for (const LandmarkId id : created) {
+    const Landmark& landmark = pair.map.landmarks().At(id);
+    EXPECT_LT((landmark.position - world.points()[PointOf(world, landmark)]).norm(), 1e-4);
+    EXPECT_EQ(landmark.observations.size(), 2u);
+    EXPECT_EQ(landmark.created_by, KeyframeId(1));
+    EXPECT_GT(landmark.max_distance, 0.0);
+  }
+}
+
+TEST(LandmarkCreation, TooLittleParallaxWithoutDepthGivesNone) {
+  const SyntheticWorld world({.depth_share = 0.0});
+  const Eigen::Vector3d center(0.09, 0.0, 0.0);
+  TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead(center));
+  const std::vector<LandmarkId> created = CreateLandmarks(pair.map, KeyframeId(1), world.sensor());
+  EXPECT_EQ(FindViolations(pair.map), std::vector<std::string>());
+  for (const LandmarkId id : created) {
+    const uint32_t point = PointOf(world, pair.map.landmarks().At(id));
+    EXPECT_GT(ParallaxDegrees(world.points()[point], Eigen::Vector3d::Zero(), center), 1.1);
+  }
+  const auto parallax = [&](const Eigen::Vector3d& point) {
+    return ParallaxDegrees(point, Eigen::Vector3d::Zero(), center);
+  };
+  EXPECT_GE(created.size(), CountFreeShared(world, pair, [&](const Eigen::Vector3d& point) {
+              return parallax(point) > 1.2;
+            }));
+  EXPECT_GT(CountFreeShared(world, pair, [&](const auto& p) { return parallax(p) < 1.1; }), 20u);
+}
+
+TEST(LandmarkCreation, WithinTheVirtualBaselineNothingIsTriangulated) {
+  const SyntheticWorld world;
+  TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead({0.079, 0.0, 0.0}));
+  EXPECT_TRUE(CreateLandmarks(pair.map, KeyframeId(1), world.sensor()).empty());
+}
+
+TEST(LandmarkCreation, DepthStandsInForParallax) {
+  const SyntheticWorld world;
+  TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead({0.0, 0.0, 0.1}));
+  const std::vector<LandmarkId> created = CreateLandmarks(pair.map, KeyframeId(1), world.sensor());
+  EXPECT_EQ(FindViolations(pair.map), std::vector<std::string>());
+  const size_t shared = CountFreeShared(world, pair, [](const auto&) { return true; });
+  EXPECT_GT(shared, 100u);
+  EXPECT_GT(created.size(), shared * 9 / 10);
+  for (const LandmarkId id : created) {
+    const Landmark& landmark = pair.map.landmarks().At(id);
+    EXPECT_LT((landmark.position - world.points()[PointOf(world, landmark)]).norm(), 1e-4);
+  }
+}
+
+// 1.5 m nearer a patch is found up to seven levels of the pyramid higher.
+TEST(LandmarkCreation, LevelsThatChangeAsTheDistancesDoAreConsistent) {
+  const SyntheticWorld world({.depth_share = 0.0});
+  const Eigen::Vector3d center(0.4, 0.0, 1.5);
+  TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead(center));
+  const std::vector<LandmarkId> created = CreateLandmarks(pair.map, KeyframeId(1), world.sensor());
+  const auto has_parallax = [&](const Eigen::Vector3d& point) {
+    return ParallaxDegrees(point, Eigen::Vector3d::Zero(), center) > 3.0;
+  };
+  const size_t shared = CountFreeShared(world, pair, has_parallax);
+  EXPECT_GT(shared, 50u);
+  EXPECT_GT(created.size(), shared * 9 / 10);
+}
+
+TEST(LandmarkCreation, LevelsThatContradictTheDistancesAreRefused) {
+  const SyntheticWorld world({.depth_share = 0.0});
+  const auto raise = [](Frame& frame) {
+    for (Keypoint& keypoint : frame.features.keypoints) {
+      keypoint.level = keypoint.level < 4 ? keypoint.level + 4 : keypoint.level - 4;
+    }
+  };
+  TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead({0.3, 0.0, 0.0}), raise);
+  const size_t shared = CountFreeShared(world, pair, [](const auto&) { return true; });
+  const std::vector<LandmarkId> created = CreateLandmarks(pair.map, KeyframeId(1), world.sensor());
+  EXPECT_LT(created.size(), shared / 10) << "about as far away but four levels apart";
+}
+
+TEST(LandmarkCreation, PointsOffTheEpipolarLineAreRefused) {
+  const SyntheticWorld world({.depth_share = 0.0});
+  const auto shift = [](Frame& frame) {
+    for (Keypoint& keypoint : frame.features.keypoints) {
+      keypoint.undistorted.y() += 10.0f;
+    }
+  };
+  TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead({0.3, 0.0, 0.0}), shift);
+  EXPECT_TRUE(CreateLandmarks(pair.map, KeyframeId(1), world.sensor()).empty());
+}
+
+TEST(LandmarkCreation, AKeyframeWithoutNeighboursMakesNone) {
+  const SyntheticWorld world;
+  Map map;
+  const KeyframeId id = map.AddKeyframe(world.Observe(0).frame, Rigid3());
+  EXPECT_TRUE(CreateLandmarks(map, id, world.sensor()).empty());
+  EXPECT_TRUE(map.landmarks().empty());
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/mapping/landmark_fusion.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "hullslam/map/invariants.h"
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+bool Observes(const Map& map, KeyframeId keyframe, LandmarkId landmark) {
+  const std::vector<LandmarkId>& slots = map.keyframes().At(keyframe).landmarks;
+  return std::find(slots.begin(), slots.end(), landmark) != slots.end();
+}
+
+class LandmarkFusionTest : public testing::Test {
+ protected:
+  // Landmarks that all three keyframes see with depth, every third.
+  std::vector<LandmarkId> Victims() const {
+    std::vector<LandmarkId> victims;
+    made_.map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+      if (landmark.support == 6 && id.value % 3 == 0) {
+        victims.push_back(id);
+      }
+    });
+    EXPECT_GT(victims.size(), 20u);
+    return victims;
+  }
+
+  // Takes the landmark from the keyframe and gives its keypoint a landmark of its own instead.
+  LandmarkId Split(LandmarkId landmark, KeyframeId keyframe, const Eigen::Vector3d& shift) {
+    const uint32_t keypoint = Forget(landmark, keyframe);
+    const LandmarkId twin =
+        made_.map.AddLandmark(made_.map.landmarks().At(landmark).position + shift, keyframe);
+    made_.map.AddObservation(twin, keyframe, keypoint);
+    UpdateDescriptor(made_.map, twin);
+    UpdateViewingGeometry(made_.map, twin, world_.sensor().levels);
+    return twin;
+  }
+  uint32_t Forget(LandmarkId landmark, KeyframeId keyframe) {
+    const std::vector<LandmarkId>& slots = made_.map.keyframes().At(keyframe).landmarks;
+    const auto keypoint = std::find(slots.begin(), slots.end(), landmark) - slots.begin();
+    made_.map.RemoveObservation(landmark, keyframe);
+    return static_cast<uint32_t>(keypoint);
+  }
+  void Fuse(KeyframeId keyframe) {
+    FuseLandmarks(made_.map, keyframe, world_.sensor());
+    EXPECT_EQ(FindViolations(made_.map), std::vector<std::string>());
+  }
+
+  const SyntheticWorld world_;
+  SyntheticMap made_ = MakeSyntheticMap(world_, {0, 5, 10});
+  const KeyframeId newest_{2};
+};
+
+TEST_F(LandmarkFusionTest, ASoundMapStaysAsItIs) {
+  const size_t landmarks = made_.map.landmarks().size();
+  Fuse(newest_);
+  EXPECT_EQ(made_.map.landmarks().size(), landmarks);
+}
+
+TEST_F(LandmarkFusionTest, DuplicatesOfTheKeyframeAreJoined) {
+  const size_t landmarks = made_.map.landmarks().size();
+  std::vector<std::pair<LandmarkId, LandmarkId>> twins;
+  for (const LandmarkId victim : Victims()) {
+    twins.emplace_back(victim, Split(victim, newest_, {0.001, -0.001, 0.002}));
+  }
+  Fuse(newest_);
+  EXPECT_EQ(made_.map.landmarks().size(), landmarks);
+  for (const auto& [victim, twin] : twins) {
+    EXPECT_EQ(made_.map.Resolve(twin), victim) << "the one with more support stays";
+    EXPECT_EQ(made_.map.landmarks().At(victim).observations.size(), 3u);
+    EXPECT_TRUE(Observes(made_.map, newest_, victim));
+  }
+}
+
+TEST_F(LandmarkFusionTest, DuplicatesInANeighbourAreJoinedToo) {
+  std::vector<std::pair<LandmarkId, LandmarkId>> twins;
+  for (const LandmarkId victim : Victims()) {
+    twins.emplace_back(victim, Split(victim, KeyframeId(0), {0.001, -0.001, 0.002}));
+  }
+  Fuse(newest_);
+  for (const auto& [victim, twin] : twins) {
+    EXPECT_EQ(made_.map.Resolve(twin), victim);
+    EXPECT_TRUE(Observes(made_.map, KeyframeId(0), victim));
+  }
+}
+
+TEST_F(LandmarkFusionTest, FreeKeypointsObserveWhatIsSeenThere) {
+  const std::vector<LandmarkId> victims = Victims();
+  for (const LandmarkId victim : victims) {
+    Forget(victim, newest_);
+  }
+  UpdateCovisibility(made_.map, newest_);
+  const int shared_before = made_.map.keyframes().At(newest_).covisible[0].shared;
+  Fuse(newest_);
+  for (const LandmarkId victim : victims) {
+    EXPECT_TRUE(Observes(made_.map, newest_, victim));
+  }
+  EXPECT_EQ(made_.map.keyframes().At(newest_).covisible[0].shared,
+            shared_before + static_cast<int>(victims.size()))
+      << "edges are brought up to date";
+}
+
+TEST_F(LandmarkFusionTest, PointsThatLookDifferentStayApart) {
+  std::vector<std::pair<LandmarkId, LandmarkId>> neighbours;
+  for (const LandmarkId victim : Victims()) {
+    const LandmarkId twin = Split(victim, newest_, Eigen::Vector3d::Zero());
+    Descriptor& descriptor = made_.map.MutableLandmark(twin).descriptor;
+    for (uint64_t& word : descriptor) {
+      word = ~word;
+    }
+    neighbours.emplace_back(victim, twin);
+  }
+  for (const auto& [victim, twin] : neighbours) {
+    Descriptor& descriptor = made_.map.MutableLandmark(victim).descriptor;
+    for (uint64_t& word : descriptor) {
+      word ^= 0x5555555555555555;  // half of all bits
+    }
+  }
+  Fuse(newest_);
+  for (const auto& [victim, twin] : neighbours) {
+    EXPECT_TRUE(made_.map.landmarks().Contains(victim));
+    EXPECT_TRUE(made_.map.landmarks().Contains(twin));
+  }
+}
+
+TEST_F(LandmarkFusionTest, PointsTooFarFromTheKeypointStayApart) {
+  std::vector<LandmarkId> twins;
+  for (const LandmarkId victim : Victims()) {
+    const Landmark& landmark = made_.map.landmarks().At(victim);
+    const double depth = (made_.map.CamFromWorld(newest_) * landmark.position).z();
+    // 50 px from the keypoints, to either side: beyond every window.
+    made_.map.SetPosition(victim, landmark.position + Eigen::Vector3d(0.0, 0.1 * depth, 0.0));
+    twins.push_back(Split(victim, newest_, {0.0, -0.2 * depth, 0.0}));
+  }
+  Fuse(newest_);
+  for (const LandmarkId twin : twins) {
+    EXPECT_TRUE(made_.map.landmarks().Contains(twin));
+  }
+}
+
+}  // namespace
+}  // namespace hullslam

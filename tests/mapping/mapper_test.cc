@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/mapping/mapper.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <ios>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "hullslam/map/invariants.h"
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+// Feeds keyframes of the made-up world to a mapper, as a tracker with the right poses would.
+class MapperTest : public testing::Test {
+ protected:
+  explicit MapperTest(const SyntheticWorldOptions& world = {.points = 400, .pixel_noise = 0.1})
+      : world_(world) {}
+
+  void SetUp() override { Restart({}); }
+
+  void Restart(const MappingOptions& options) {
+    published_.clear();
+    landmark_of_point_.clear();
+    mapper_ = std::make_unique<Mapper>(world_.sensor(), options, [this](auto map) {
+      EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
+      published_.push_back(std::move(map));
+    });
+  }
+
+  const Map& map() const { return *published_.back(); }
+
+  // The request for the path's frame `index` relative to `reference` (invalid: the first).
+  KeyframeRequest Request(uint32_t index, KeyframeId reference) const {
+    const SyntheticView view = world_.Observe(index);
+    KeyframeRequest request;
+    request.frame = view.frame;
+    request.reference = reference;
+    if (reference.IsValid()) {
+      request.cam_from_reference =
+          SyntheticWorld::CamFromWorld(index) * Inverse(map().CamFromWorld(reference));
+    }
+    for (const uint32_t point : view.points) {
+      const auto known = landmark_of_point_.find(point);
+      request.landmarks.push_back(known != landmark_of_point_.end() ? known->second : LandmarkId());
+      if (request.landmarks.back().IsValid()) {
+        request.sightings.push_back({request.landmarks.back(), 1, 1});
+      }
+    }
+    return request;
+  }
+
+  void Process(const KeyframeRequest& request, const Cancellation* hurry = nullptr) {
+    mapper_->Process(request, hurry);
+    Learn();
+  }
+  // The newest keyframe that is there is the reference.
+  void ProcessFrame(uint32_t index, const Cancellation* hurry = nullptr) {
+    KeyframeId newest;
+    if (!published_.empty()) {
+      map().keyframes().ForEach([&](KeyframeId id, const Keyframe&) { newest = id; });
+    }
+    Process(Request(index, newest), hurry);
+  }
+
+  // Which landmark of the newest map stands for which point: the descriptor says.
+  void Learn() {
+    std::map<Descriptor, LandmarkId> by_descriptor;
+    map().landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+      by_descriptor.emplace(landmark.descriptor, id);
+    });
+    landmark_of_point_.clear();
+    for (uint32_t point = 0; point < world_.points().size(); ++point) {
+      const auto landmark = by_descriptor.find(world_.descriptor(point));
+      if (landmark != by_descriptor.end()) {
+        landmark_of_point_[point] = landmark->second;
+      }
+    }
+  }
+
+  double MeanLandmarkError() const {
+    double sum = 0.0;
+    for (const auto& [point, landmark] : landmark_of_point_) {
+      sum += (map().landmarks().At(landmark).position - world_.points()[point]).norm();
+    }
+    return sum / static_cast<double>(landmark_of_point_.size());
+  }
+
+  const SyntheticWorld world_;
+  std::unique_ptr<Mapper> mapper_;
+  std::vector<std::shared_ptr<const Map>> published_;
+  std::map<uint32_t, LandmarkId> landmark_of_point_;
+};
+
+TEST_F(MapperTest, PublishesBeforeAndAfterItsWork) {
+  ProcessFrame(0);
+  ASSERT_EQ(published_.size(), 2u);
+  EXPECT_EQ(published_[0]->keyframes().size(), 1u) << "tracking need not wait for the rest";
+  ProcessFrame(5);
+  EXPECT_EQ(published_.size(), 4u);
+}
+
+TEST_F(MapperTest, BuildsASoundMapNearTheTruth) {
+  for (uint32_t index = 0; index <= 60; index += 5) {
+    ProcessFrame(index);
+  }
+  EXPECT_GT(landmark_of_point_.size(), 250u);
+  EXPECT_LT(MeanLandmarkError(), 0.03);
+  map().keyframes().ForEach([&](KeyframeId, const Keyframe& keyframe) {
+    const Rigid3 truth = SyntheticWorld::CamFromWorld(keyframe.frame->id.value);
+    const Rigid3 error = keyframe.cam_from_world * Inverse(truth);
+    EXPECT_LT(error.translation.norm(), 0.02);
+    EXPECT_LT(AngularDistance(error.rotation, Eigen::Quaterniond::Identity()), 0.01);
+  });
+}
+
+TEST_F(MapperTest, BundleAdjustmentMendsAPoseThatIsOff) {
+  for (uint32_t index = 0; index <= 20; index += 5) {
+    ProcessFrame(index);
+  }
+  KeyframeRequest request = Request(25, KeyframeId(0));
+  request.cam_from_reference.translation += Eigen::Vector3d(0.01, -0.01, 0.01);
+  Process(request);
+  const Keyframe& keyframe = map().keyframes().At(*map().KeyframeOfFrame(FrameId(25)));
+  EXPECT_LT(
+      (keyframe.cam_from_world.translation - SyntheticWorld::CamFromWorld(25).translation).norm(),
+      0.005)
+      << "it was 0.017 m off";
+}
+
+// Everything that a snapshot holds, as text.
+std::string Describe(const Map& map) {
+  std::ostringstream text;
+  text << std::hexfloat;
+  map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    text << "keyframe " << id.value << ' ' << keyframe.cam_from_world.ToMatrix() << ' '
+         << keyframe.parent.value;
+    for (const LandmarkId landmark : keyframe.landmarks) {
+      text << ' ' << landmark.value;
+    }
+    for (const Covisible& edge : keyframe.covisible) {
+      text << ' ' << edge.keyframe.value << ':' << edge.shared;
+    }
+    text << '\n';
+  });
+  map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+    text << "landmark " << id.value << ' ' << landmark.position.transpose() << ' '
+         << landmark.support << ' ' << landmark.visible << ' ' << landmark.found << ' '
+         << landmark.max_distance << ' ' << landmark.viewing_direction.transpose() << '\n';
+  });
+  return text.str();
+}
+
+TEST_F(MapperTest, WhatIsPublishedNeverChanges) {
+  std::vector<std::string> described;
+  for (uint32_t index = 0; index <= 30; index += 3) {
+    ProcessFrame(index);
+    for (size_t i = described.size(); i < published_.size(); ++i) {
+      described.push_back(Describe(*published_[i]));
+    }
+  }
+  EXPECT_NE(described.front(), described.back());
+  for (size_t i = 0; i < published_.size(); ++i) {
+    EXPECT_EQ(Describe(*published_[i]), described[i]) << "snapshot " << i;
+  }
+}
+
+TEST_F(MapperTest, SameRequestsGiveTheSameBits) {
+  const auto run = [&] {
+    Restart({});
+    for (uint32_t index = 0; index <= 30; index += 5) {
+      ProcessFrame(index);
+    }
+    return Describe(map());
+  };
+  const std::string first = run();
+  EXPECT_EQ(first, run());
+}
+
+TEST_F(MapperTest, RedundantKeyframesAreCulledUnlessThatIsOff) {
+  const auto count = [&](bool cull) {
+    MappingOptions options;
+    options.cull_keyframes = cull;
+    Restart(options);
+    for (uint32_t index = 0; index < 10; ++index) {
+      ProcessFrame(index);
+    }
+    EXPECT_TRUE(map().keyframes().Contains(KeyframeId(0))) << "the root stays";
+    return map().keyframes().size();
+  };
+  EXPECT_EQ(count(false), 10u);
+  EXPECT_LT(count(true), 8u);
+}
+
+TEST_F(MapperTest, ARequestMayReferToWhatIsGoneMeanwhile) {
+  for (uint32_t index = 0; index < 8; ++index) {
+    ProcessFrame(index);
+  }
+  // Made from an old snapshot: its reference and many of its landmarks have gone since.
+  KeyframeId culled;
+  for (uint32_t id = 1; id < 8 && !culled.IsValid(); ++id) {
+    culled = map().keyframes().Contains(KeyframeId(id)) ? KeyframeId() : KeyframeId(id);
+  }
+  ASSERT_TRUE(culled.IsValid());
+  KeyframeRequest request = Request(12, culled);
+  size_t gone = 0;
+  published_.front()->landmarks().ForEach([&](LandmarkId id, const Landmark&) {
+    if (!map().landmarks().Contains(id) && gone < request.landmarks.size()) {
+      request.landmarks[gone++] = id;
+      request.sightings.push_back({id, 3, 2});
+    }
+  });
+  request.landmarks[gone] = LandmarkId(1000000);  // was never given
+  Process(request);
+  const std::optional<KeyframeId> keyframe = map().KeyframeOfFrame(FrameId(12));
+  ASSERT_TRUE(keyframe);
+  const Rigid3 error = map().CamFromWorld(*keyframe) * Inverse(SyntheticWorld::CamFromWorld(12));
+  EXPECT_LT(error.translation.norm(), 0.02);
+}
+
+TEST_F(MapperTest, InAHurryWhatCanBeLeftOutIs) {
+  Cancellation hurry;
+  hurry.Request();
+  for (uint32_t index = 0; index <= 30; index += 5) {
+    ProcessFrame(index, &hurry);
+  }
+  EXPECT_EQ(map().keyframes().size(), 7u);
+  EXPECT_FALSE(mapper_->times().samples().contains("local_bundle_adjustment"));
+  ProcessFrame(35);
+  EXPECT_EQ(mapper_->times().samples().at("local_bundle_adjustment").size(), 1u);
+  EXPECT_EQ(mapper_->times().samples().at("map_insert").size(), 8u);
+}
+
+class MapperWithoutMuchDepthTest : public MapperTest {
+ protected:
+  MapperWithoutMuchDepthTest() : MapperTest({.points = 600, .depth_share = 0.3}) {}
+};
+
+TEST_F(MapperWithoutMuchDepthTest, PointsWithoutDepthAreTriangulated) {
+  for (uint32_t index = 0; index <= 50; index += 5) {
+    ProcessFrame(index);
+  }
+  size_t triangulated = 0;
+  for (const auto& [point, landmark] : landmark_of_point_) {
+    if (!world_.has_depth(point)) {
+      ++triangulated;
+      EXPECT_LT((map().landmarks().At(landmark).position - world_.points()[point]).norm(), 0.01);
+    }
+  }
+  EXPECT_GT(triangulated, 200u);
+}
+
+}  // namespace
+}  // namespace hullslam

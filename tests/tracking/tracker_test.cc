@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/tracking/tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "hullslam/map/covisibility.h"
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+constexpr MapperStatus kIdle;
+
+std::shared_ptr<const Map> Publish(Map& map) { return std::make_shared<const Map>(map.Snapshot()); }
+
+// A frame of the given keypoints of another one.
+std::shared_ptr<Frame> Select(const Frame& frame, const std::vector<uint32_t>& keypoints) {
+  auto selected = std::make_shared<Frame>();
+  selected->id = frame.id;
+  selected->timestamp = frame.timestamp;
+  for (const uint32_t i : keypoints) {
+    selected->features.keypoints.push_back(frame.features.keypoints[i]);
+    selected->features.descriptors.push_back(frame.features.descriptors[i]);
+    selected->features.depth.push_back(frame.features.depth[i]);
+    selected->features.right_u.push_back(frame.features.right_u[i]);
+  }
+  return selected;
+}
+
+void RebuildGrid(const Sensor& sensor, Frame& frame) {
+  frame.features.grid =
+      FeatureGrid(frame.features.keypoints,
+                  Eigen::Vector2d(sensor.bounds.min_x, sensor.bounds.min_y).cast<float>(),
+                  Eigen::Vector2d(sensor.bounds.max_x, sensor.bounds.max_y).cast<float>());
+}
+
+// Adds keypoints 1 m away that nobody knows: close points that would be lost, so that the policy
+// asks for a keyframe whenever it may.
+void AddUnknownClosePoints(Frame& frame, int count) {
+  std::mt19937_64 random(99);
+  for (int i = 0; i < count; ++i) {
+    Keypoint& keypoint = frame.features.keypoints.emplace_back();
+    keypoint.raw = {100.0f + 5.0f * static_cast<float>(i), 100.0f};
+    keypoint.undistorted = keypoint.raw;
+    frame.features.descriptors.push_back({random(), random(), random(), random()});
+    frame.features.depth.push_back(1.0f);
+    frame.features.right_u.push_back(keypoint.raw.x() - 40.0f);
+  }
+}
+
+std::vector<uint32_t> AllKeypoints(const Frame& frame) {
+  std::vector<uint32_t> all(frame.features.size());
+  for (uint32_t i = 0; i < all.size(); ++i) {
+    all[i] = i;
+  }
+  return all;
+}
+
+void ExpectNear(const Rigid3& a, const Rigid3& b, double tolerance) {
+  EXPECT_LT((a.translation - b.translation).norm(), tolerance);
+  EXPECT_LT(AngularDistance(a.rotation, b.rotation), tolerance);
+}
+
+// Of the 300 points fewer than 100 are close in a frame, so that one with unknown close points asks
+// for a keyframe.
+class TrackerTest : public testing::Test {
+ protected:
+  TrackerTest() : tracker_(world_.sensor(), options_) {}
+
+  // Initialises on frame 0 and gives the tracker a map in which every point is where it is.
+  void Begin() {
+    ASSERT_EQ(Process(world_.Observe(0).frame).frame.state, TrackingState::kTracked);
+    map_ = Publish(made_.map);
+  }
+  Tracker::Result Process(std::shared_ptr<const Frame> frame) {
+    return tracker_.Process(std::move(frame), map_, kIdle);
+  }
+  void TrackFrames(uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i <= last; ++i) {
+      ASSERT_EQ(Process(world_.Observe(i).frame).frame.state, TrackingState::kTracked) << i;
+    }
+  }
+  // The frame of the path, with unknown close points.
+  std::shared_ptr<const Frame> DemandingFrame(uint32_t index) const {
+    const SyntheticView view = world_.Observe(index);
+    auto frame = Select(*view.frame, AllKeypoints(*view.frame));
+    AddUnknownClosePoints(*frame, 80);
+    RebuildGrid(world_.sensor(), *frame);
+    return frame;
+  }
+  // Frame `index` with `known` keypoints that keyframe 0 observes too, and unknown close points.
+  std::shared_ptr<const Frame> FrameWithKnown(uint32_t index, size_t known) const {
+    const SyntheticView view = world_.Observe(index);
+    std::vector<uint32_t> keypoints;
+    for (uint32_t i = 0; i < view.points.size() && keypoints.size() < known; ++i) {
+      const auto& first = made_.views[0].points;
+      if (std::find(first.begin(), first.end(), view.points[i]) != first.end() &&
+          made_.landmarks[view.points[i]].IsValid()) {
+        keypoints.push_back(i);
+      }
+    }
+    auto frame = Select(*view.frame, keypoints);
+    AddUnknownClosePoints(*frame, 80);
+    RebuildGrid(world_.sensor(), *frame);
+    return frame;
+  }
+
+  const SyntheticWorld world_{{.points = 300}};
+  SyntheticMap made_ = MakeSyntheticMap(world_, {0, 5, 10});
+  TrackingOptions options_;
+  Tracker tracker_;
+  std::shared_ptr<const Map> map_;
+};
+
+TEST_F(TrackerTest, TheFirstFrameWithEnoughDepthBecomesTheWorld) {
+  const auto frame = world_.Observe(0).frame;
+  const Tracker::Result result = Process(frame);
+  EXPECT_EQ(result.frame.state, TrackingState::kTracked);
+  EXPECT_EQ(result.frame.reference, KeyframeId(0));
+  EXPECT_EQ(result.frame.frame, frame->id);
+  EXPECT_EQ(result.frame.timestamp, frame->timestamp);
+  ExpectNear(result.frame.cam_from_world, Rigid3(), 1e-15);
+  ASSERT_TRUE(result.request);
+  EXPECT_EQ(result.request->frame, frame);
+  EXPECT_FALSE(result.request->reference.IsValid());
+  EXPECT_EQ(result.request->landmarks, std::vector<LandmarkId>(frame->features.size()));
+  EXPECT_TRUE(result.request->sightings.empty());
+}
+
+TEST_F(TrackerTest, InitialisesFromExactlyAsManyPointsWithDepthAsAsked) {
+  const auto frame = world_.Observe(0).frame;
+  const auto with_depth = std::count_if(frame->features.depth.begin(), frame->features.depth.end(),
+                                        [](float z) { return z > 0.0f; });
+  options_.min_initial_points = static_cast<int>(with_depth) + 1;
+  Tracker strict(world_.sensor(), options_);
+  const Tracker::Result refused = strict.Process(frame, nullptr, kIdle);
+  EXPECT_EQ(refused.frame.state, TrackingState::kNotInitialized);
+  EXPECT_FALSE(refused.frame.reference.IsValid());
+  EXPECT_FALSE(refused.request);
+  options_.min_initial_points = static_cast<int>(with_depth);
+  Tracker content(world_.sensor(), options_);
+  EXPECT_TRUE(content.Process(frame, nullptr, kIdle).request);
+}
+
+TEST_F(TrackerTest, InitialisesLaterWhenTheFirstFramesHaveNoDepth) {
+  const SyntheticWorld blind({.points = 300, .depth_share = 0.0});
+  for (uint32_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(Process(blind.Observe(i).frame).frame.state, TrackingState::kNotInitialized);
+  }
+  EXPECT_TRUE(Process(world_.Observe(3).frame).request);
+}
+
+TEST_F(TrackerTest, FindsThePoseOfExactFrames) {
+  Begin();
+  for (uint32_t i = 1; i <= 20; ++i) {
+    const Tracker::Result result = Process(world_.Observe(i).frame);
+    ASSERT_EQ(result.frame.state, TrackingState::kTracked) << i;
+    ExpectNear(result.frame.cam_from_world, SyntheticWorld::CamFromWorld(i), 1e-6);
+    ExpectNear(result.frame.cam_from_reference * map_->CamFromWorld(result.frame.reference),
+               result.frame.cam_from_world, 1e-12);
+    EXPECT_GT(result.frame.inliers, 100);
+  }
+}
+
+TEST_F(TrackerTest, FollowsAMapThatMovedAsAWhole) {
+  Begin();
+  TrackFrames(1, 5);
+  const Rigid3 old_from_new(ExpSo3({0.3, 1.0, -0.4}), {10.0, -20.0, 5.0});
+  Map moved = made_.map.Snapshot();
+  map_->keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    moved.SetPose(id, keyframe.cam_from_world * old_from_new);
+  });
+  map_->landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+    moved.SetPosition(id, Inverse(old_from_new) * landmark.position);
+    UpdateViewingGeometry(moved, id, world_.sensor().levels);
+  });
+  map_ = Publish(moved);
+  for (uint32_t i = 6; i <= 8; ++i) {
+    const Tracker::Result result = Process(world_.Observe(i).frame);
+    ASSERT_EQ(result.frame.state, TrackingState::kTracked) << i;
+    ExpectNear(result.frame.cam_from_world, SyntheticWorld::CamFromWorld(i) * old_from_new, 1e-5);
+  }
+}
+
+TEST_F(TrackerTest, GoesOnWhenItsReferenceKeyframeIsCulled) {
+  Begin();
+  TrackFrames(1, 4);
+  const Tracker::Result before = Process(world_.Observe(5).frame);
+  ASSERT_NE(before.frame.reference, KeyframeId(0)) << "the root cannot be culled";
+  made_.map.CullKeyframe(before.frame.reference);
+  map_ = Publish(made_.map);
+  for (uint32_t i = 6; i <= 8; ++i) {
+    const Tracker::Result result = Process(world_.Observe(i).frame);
+    ASSERT_EQ(result.frame.state, TrackingState::kTracked) << i;
+    EXPECT_TRUE(map_->keyframes().Contains(result.frame.reference));
+    ExpectNear(result.frame.cam_from_world, SyntheticWorld::CamFromWorld(i), 1e-6);
+  }
+}
+
+TEST_F(TrackerTest, GoesOnWhenAllItsLandmarksAreReplaced) {
+  Begin();
+  TrackFrames(1, 5);
+  for (const LandmarkId old : made_.landmarks) {
+    if (old.IsValid()) {
+      const Landmark landmark = map_->landmarks().At(old);
+      const LandmarkId twin = made_.map.AddLandmark(landmark.position, landmark.created_by);
+      made_.map.ReplaceLandmark(old, twin);
+      UpdateDescriptor(made_.map, twin);
+      UpdateViewingGeometry(made_.map, twin, world_.sensor().levels);
+    }
+  }
+  map_ = Publish(made_.map);
+  const Tracker::Result result = Process(DemandingFrame(6));
+  ASSERT_EQ(result.frame.state, TrackingState::kTracked);
+  ExpectNear(result.frame.cam_from_world, SyntheticWorld::CamFromWorld(6), 1e-6);
+  ASSERT_TRUE(result.request);
+  for (const LandmarkId landmark : result.request->landmarks) {
+    EXPECT_TRUE(!landmark.IsValid() || map_->landmarks().Contains(landmark));
+  }
+}
+
+// Every corner is found at two levels, four apart, and has a landmark for each.
+class TwinTest : public TrackerTest {
+ protected:
+  // The demanding frame with a twin of each of its known keypoints at the end, in their order.
+  std::shared_ptr<Frame> FrameWithTwins(uint32_t index) const {
+    const auto demanding = DemandingFrame(index);
+    auto frame = Select(*demanding, AllKeypoints(*demanding));
+    FrameFeatures& features = frame->features;
+    const size_t count = world_.Observe(index).points.size();
+    for (size_t i = 0; i < count; ++i) {
+      Keypoint twin = features.keypoints[i];
+      twin.level = twin.level >= 4 ? twin.level - 4 : twin.level + 4;
+      Descriptor descriptor = features.descriptors[i];
+      descriptor[0] ^= 0xffff;
+      features.keypoints.push_back(twin);
+      features.descriptors.push_back(descriptor);
+      features.depth.push_back(features.depth[i]);
+      features.right_u.push_back(features.right_u[i]);
+    }
+    RebuildGrid(world_.sensor(), *frame);
+    return frame;
+  }
+
+  // Makes the frame with twins a keyframe that observes the known landmarks and new twins of them.
+  std::shared_ptr<const Frame> AddKeyframeWithTwins(uint32_t index) {
+    const auto frame = FrameWithTwins(index);
+    const SyntheticView view = world_.Observe(index);
+    const size_t first_twin = frame->features.size() - view.points.size();
+    const KeyframeId id = made_.map.AddKeyframe(frame, SyntheticWorld::CamFromWorld(index));
+    for (uint32_t i = 0; i < view.points.size(); ++i) {
+      const LandmarkId landmark = made_.landmarks[view.points[i]];
+      if (landmark.IsValid()) {
+        const LandmarkId twin = made_.map.AddLandmark(world_.points()[view.points[i]], id);
+        Observe(landmark, id, i);
+        Observe(twin, id, static_cast<uint32_t>(first_twin + i));
+        twins_.emplace_back(landmark, twin);
+      }
+    }
+    UpdateCovisibility(made_.map, id);
+    return frame;
+  }
+
+  void Observe(LandmarkId landmark, KeyframeId keyframe, uint32_t keypoint) {
+    ASSERT_TRUE(made_.map.AddObservation(landmark, keyframe, keypoint));
+    UpdateDescriptor(made_.map, landmark);
+    UpdateViewingGeometry(made_.map, landmark, world_.sensor().levels);
+  }
+
+  std::vector<std::pair<LandmarkId, LandmarkId>> twins_;
+};
+
+std::vector<LandmarkId> FoundLandmarks(const KeyframeRequest& request) {
+  std::vector<LandmarkId> found = request.landmarks;
+  std::erase(found, LandmarkId());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+TEST_F(TwinTest, ALandmarkIsFoundAtOneKeypointOnlyAfterItsTwinWasReplaced) {
+  Begin();
+  TrackFrames(1, 14);
+  const auto keyframe = AddKeyframeWithTwins(15);
+  Process(keyframe);
+  map_ = Publish(made_.map);
+  const Tracker::Result before = Process(FrameWithTwins(16));
+  ASSERT_TRUE(before.request);
+  const size_t found_before = FoundLandmarks(*before.request).size();
+  for (const auto& [landmark, twin] : twins_) {
+    made_.map.ReplaceLandmark(twin, landmark);
+  }
+  map_ = Publish(made_.map);
+  const Tracker::Result after = Process(FrameWithTwins(17));
+  ASSERT_TRUE(after.request);
+  const std::vector<LandmarkId> found = FoundLandmarks(*after.request);
+  EXPECT_GT(found.size(), 50u);
+  EXPECT_GT(found_before, 3 * found.size() / 2) << "the twins were landmarks of their own";
+  EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
+}
+
+TEST_F(TrackerTest, IsLostInAnotherWorldAndRecoversInItsOwn) {
+  Begin();
+  TrackFrames(1, 5);
+  const SyntheticWorld other({.points = 300, .seed = 2});
+  for (uint32_t i = 6; i <= 8; ++i) {
+    const Tracker::Result lost = Process(other.Observe(i).frame);
+    EXPECT_EQ(lost.frame.state, TrackingState::kLost);
+    EXPECT_EQ(lost.frame.frame, FrameId(i));
+    EXPECT_FALSE(lost.frame.reference.IsValid());
+    EXPECT_FALSE(lost.request);
+  }
+  const Tracker::Result found = Process(world_.Observe(9).frame);
+  ASSERT_EQ(found.frame.state, TrackingState::kTracked);
+  ExpectNear(found.frame.cam_from_world, SyntheticWorld::CamFromWorld(9), 1e-6);
+  TrackFrames(10, 12);
+}
+
+TEST_F(TrackerTest, AFrameWithoutKeypointsIsLost) {
+  Begin();
+  auto blank = std::make_shared<Frame>();
+  blank->id = FrameId(1);
+  RebuildGrid(world_.sensor(), *blank);
+  EXPECT_EQ(Process(blank).frame.state, TrackingState::kLost);
+  EXPECT_EQ(Process(world_.Observe(2).frame).frame.state, TrackingState::kTracked);
+}
+
+TEST_F(TrackerTest, TooFewInliersAreLost) {
+  Begin();
+  const size_t enough = static_cast<size_t>(options_.min_inliers);
+  EXPECT_EQ(Process(FrameWithKnown(1, enough - 1)).frame.state, TrackingState::kLost);
+  const Tracker::Result result = Process(FrameWithKnown(2, enough));
+  EXPECT_EQ(result.frame.state, TrackingState::kTracked);
+  EXPECT_EQ(result.frame.inliers, options_.min_inliers);
+}
+
+TEST_F(TrackerTest, NeverAsksForAKeyframeWithTooFewInliers) {
+  options_.min_inliers = 15;
+  Tracker tracker(world_.sensor(), options_);
+  tracker.Process(world_.Observe(0).frame, nullptr, kIdle);
+  const auto map = Publish(made_.map);
+  const Tracker::Result few = tracker.Process(FrameWithKnown(1, 15), map, kIdle);
+  EXPECT_EQ(few.frame.state, TrackingState::kTracked);
+  EXPECT_EQ(few.frame.inliers, 15);
+  EXPECT_FALSE(few.request);
+  const Tracker::Result enough = tracker.Process(FrameWithKnown(2, 16), map, kIdle);
+  EXPECT_EQ(enough.frame.inliers, 16);
+  EXPECT_TRUE(enough.request);
+}
+
+TEST_F(TrackerTest, AsksForNoKeyframeWhileTooManyWait) {
+  Begin();
+  EXPECT_FALSE(
+      tracker_.Process(DemandingFrame(1), map_, {.is_idle = false, .requests_waiting = 3}).request);
+  EXPECT_TRUE(
+      tracker_.Process(DemandingFrame(2), map_, {.is_idle = false, .requests_waiting = 2}).request);
+}
+
+TEST_F(TrackerTest, ARequestHoldsThePoseTheLandmarksAndWhatWasSeenSinceTheLast) {
+  Begin();
+  const Tracker::Result first = Process(world_.Observe(1).frame);
+  ASSERT_FALSE(first.request);
+  const Tracker::Result second = Process(DemandingFrame(2));
+  ASSERT_TRUE(second.request);
+  const KeyframeRequest& request = *second.request;
+  ExpectNear(request.cam_from_reference * map_->CamFromWorld(request.reference),
+             second.frame.cam_from_world, 1e-12);
+  ASSERT_EQ(request.landmarks.size(), request.frame->features.size());
+  const SyntheticView view = world_.Observe(2);
+  int found = 0;
+  for (size_t i = 0; i < request.landmarks.size(); ++i) {
+    if (request.landmarks[i].IsValid()) {
+      ++found;
+      ASSERT_LT(i, view.points.size()) << "the points added are known to nobody";
+      EXPECT_EQ(request.landmarks[i], made_.landmarks[view.points[i]]);
+    }
+  }
+  EXPECT_EQ(found, second.frame.inliers);
+  int sum = 0;
+  for (const Sighting& sighting : request.sightings) {
+    EXPECT_LE(sighting.found, sighting.visible);
+    EXPECT_LE(sighting.visible, 2) << "two frames since the first keyframe";
+    sum += sighting.found;
+  }
+  EXPECT_EQ(sum, first.frame.inliers + second.frame.inliers);
+  const Tracker::Result third = Process(DemandingFrame(3));
+  ASSERT_TRUE(third.request);
+  for (const Sighting& sighting : third.request->sightings) {
+    EXPECT_LE(sighting.visible, 1);
+  }
+}
+
+TEST(Tracker, SameFramesGiveTheSameBits) {
+  const SyntheticWorld world({.points = 400, .pixel_noise = 0.5, .flipped_bits = 10});
+  SyntheticMap made = MakeSyntheticMap(world, {0, 8, 16});
+  const auto map = Publish(made.map);
+  const auto run = [&] {
+    Tracker tracker(world.sensor(), TrackingOptions());
+    std::vector<TrackedFrame> frames;
+    for (uint32_t i = 0; i < 25; ++i) {
+      frames.push_back(
+          tracker.Process(world.Observe(i).frame, i == 0 ? nullptr : map, kIdle).frame);
+    }
+    return frames;
+  };
+  const std::vector<TrackedFrame> a = run();
+  const std::vector<TrackedFrame> b = run();
+  for (size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].state, TrackingState::kTracked);
+    EXPECT_EQ(a[i].reference, b[i].reference);
+    EXPECT_EQ(a[i].inliers, b[i].inliers);
+    EXPECT_EQ(a[i].cam_from_world.rotation.coeffs(), b[i].cam_from_world.rotation.coeffs());
+    EXPECT_EQ(a[i].cam_from_world.translation, b[i].cam_from_world.translation);
+    EXPECT_EQ(a[i].cam_from_reference.translation, b[i].cam_from_reference.translation);
+  }
+}
+
+TEST(Tracker, NoiseMovesThePoseByLittle) {
+  const SyntheticWorld world({.points = 400, .pixel_noise = 0.5, .flipped_bits = 10});
+  SyntheticMap made = MakeSyntheticMap(world, {0, 8, 16});
+  const auto map = Publish(made.map);
+  Tracker tracker(world.sensor(), TrackingOptions());
+  tracker.Process(world.Observe(0).frame, nullptr, kIdle);
+  for (uint32_t i = 1; i < 25; ++i) {
+    const Tracker::Result result = tracker.Process(world.Observe(i).frame, map, kIdle);
+    ASSERT_EQ(result.frame.state, TrackingState::kTracked);
+    ExpectNear(result.frame.cam_from_world, SyntheticWorld::CamFromWorld(i), 5e-3);
+  }
+}
+
+}  // namespace
+}  // namespace hullslam
