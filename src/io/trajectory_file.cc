@@ -23,8 +23,9 @@ StampedPose ParsePose(const TextRow& row) {
   pose.timestamp = row.Number(0, "timestamp");
   Rigid3& world_from_cam = pose.world_from_cam;
   world_from_cam.translation = {row.Number(1, "tx"), row.Number(2, "ty"), row.Number(3, "tz")};
-  world_from_cam.rotation.coeffs() << row.Number(4, "qx"), row.Number(5, "qy"), row.Number(6, "qz"),
-      row.Number(7, "qw");
+  // In Eigen's order w, x, y, z; a comma initialiser would abort where a column throws.
+  world_from_cam.rotation = Eigen::Quaterniond(row.Number(7, "qw"), row.Number(4, "qx"),
+                                               row.Number(5, "qy"), row.Number(6, "qz"));
   constexpr double kShortest = 1e-6;
   if (!(world_from_cam.rotation.norm() > kShortest)) {
     row.Fail("the quaternion has length zero, expected a rotation");
