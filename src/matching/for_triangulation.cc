@@ -28,7 +28,8 @@ void FindSimilar(const Descriptor& query, const std::vector<Descriptor>& descrip
   }
 }
 
-// Squared distance in px^2 from a pixel to a line a x + b y + c = 0.
+// Squared distance in px^2 from a pixel to a line a x + b y + c = 0; not a number where a and b are
+// zero, as they are without a baseline.
 double SquaredLineDistance(const Eigen::Vector3d& line, const Eigen::Vector2d& pixel) {
   const double value = line.head<2>().dot(pixel) + line.z();
   return value * value / line.head<2>().squaredNorm();
@@ -55,8 +56,8 @@ std::vector<Match> MatchForTriangulation(
                                    static_cast<double>(levels.scale[level]);
       if (distance >= best.distance ||
           (!has_depth && (pixel_b - epipole).squaredNorm() < epipole_bound) ||
-          SquaredLineDistance(line, pixel_b) >
-              search.max_epipolar_chi2 * static_cast<double>(levels.sigma2[level])) {
+          !(SquaredLineDistance(line, pixel_b) <=
+            search.max_epipolar_chi2 * static_cast<double>(levels.sigma2[level]))) {
         continue;
       }
       best.keypoint = keypoint;

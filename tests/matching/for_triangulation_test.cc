@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/matching/for_triangulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "hullslam/geometry/epipolar.h"
+#include "matching/made_features.h"
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+const Eigen::Vector2d kFarEpipole(1e6, 1e6);
+
+std::vector<uint32_t> All(const FrameFeatures& features) {
+  std::vector<uint32_t> indices(features.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  return indices;
+}
+
+// Two cameras side by side: the epipolar line of a pixel is its row.
+Eigen::Matrix3d SideBySide() {
+  return EssentialFromPose({Eigen::Quaterniond::Identity(), {-1.0, 0.0, 0.0}});
+}
+
+std::vector<Match> MatchAll(const FrameFeatures& a, const FrameFeatures& b,
+                            const Eigen::Matrix3d& fundamental,
+                            const Eigen::Vector2d& epipole = kFarEpipole,
+                            const TriangulationSearch& search = {}) {
+  return MatchForTriangulation(a, All(a), b, All(b), fundamental, epipole,
+                               ScaleLevels::Create(8, 1.2), search);
+}
+
+// The keypoint of b that the keypoint of a at (300, 100) without set bits finds; -1 where none.
+int Found(const std::vector<MadeKeypoint>& b, const TriangulationSearch& search = {}) {
+  const auto matches = MatchAll(MakeFeatures({{.pixel = {300.0f, 100.0f}}}), MakeFeatures(b),
+                                SideBySide(), kFarEpipole, search);
+  return matches.empty() ? -1 : static_cast<int>(matches[0].keypoint);
+}
+
+TEST(MatchForTriangulation, TakesTheNearestDescriptorOnTheLine) {
+  EXPECT_EQ(Found({{.pixel = {100.0f, 100.0f}, .bits = 20},
+                   {.pixel = {200.0f, 101.0f}, .bits = 10},
+                   {.pixel = {200.0f, 103.0f}, .bits = 0}}),
+            1);
+}
+
+TEST(MatchForTriangulation, DistanceMayReachItsBound) {
+  EXPECT_EQ(Found({{.pixel = {100.0f, 100.0f}, .bits = 50}}), 0);
+  EXPECT_EQ(Found({{.pixel = {100.0f, 100.0f}, .bits = 51}}), -1);
+}
+
+// sqrt(3.84) is 1.96 standard deviations.
+TEST(MatchForTriangulation, DistanceToTheLineIsInSigmasOfTheLevel) {
+  EXPECT_EQ(Found({{.pixel = {100.0f, 101.9f}}}), 0);
+  EXPECT_EQ(Found({{.pixel = {100.0f, 102.0f}}}), -1);
+  EXPECT_EQ(Found({{.pixel = {100.0f, 98.1f}}}), 0);
+  EXPECT_EQ(Found({{.pixel = {100.0f, 102.0f}, .level = 1}}), 0);
+  EXPECT_EQ(Found({{.pixel = {100.0f, 102.4f}, .level = 1}}), -1);
+  EXPECT_EQ(Found({{.pixel = {100.0f, 103.0f}}}, {.max_epipolar_chi2 = 9.1}), 0);
+}
+
+TEST(MatchForTriangulation, LeavesOutTheSurroundingsOfTheEpipoleWithoutDepth) {
+  const Eigen::Vector2d epipole(305.0, 100.0);
+  const auto count = [&](float right_of_a, const MadeKeypoint& b) {
+    const FrameFeatures a = MakeFeatures({{.pixel = {300.0f, 100.0f}, .right_u = right_of_a}});
+    return MatchAll(a, MakeFeatures({b}), SideBySide(), epipole).size();
+  };
+  EXPECT_EQ(count(-1.0f, {.pixel = {296.0f, 100.0f}}), 0u);
+  EXPECT_EQ(count(-1.0f, {.pixel = {294.0f, 100.0f}}), 1u);
+  EXPECT_EQ(count(-1.0f, {.pixel = {296.0f, 100.0f}, .right_u = 280.0f}), 1u);
+  EXPECT_EQ(count(280.0f, {.pixel = {296.0f, 100.0f}}), 1u);
+}
+
+TEST(MatchForTriangulation, OneKeypointServesTheClosestQuery) {
+  const FrameFeatures a = MakeFeatures({{.pixel = {300.0f, 100.0f}, .bits = 8},
+                                        {.pixel = {310.0f, 100.0f}, .bits = 2},
+                                        {.pixel = {320.0f, 100.0f}, .bits = 2}});
+  const auto matches = MatchAll(a, MakeFeatures({{.pixel = {200.0f, 100.0f}}}), SideBySide());
+  ASSERT_EQ(matches.size(), 1u);
+  EXPECT_EQ(matches[0].query, 1u);
+  EXPECT_EQ(matches[0].distance, 2);
+}
+
+TEST(MatchForTriangulation, SearchesOnlyTheIndicesAskedFor) {
+  const FrameFeatures a = MakeFeatures({{.pixel = {300.0f, 100.0f}}, {.pixel = {300.0f, 200.0f}}});
+  const FrameFeatures b = MakeFeatures({{.pixel = {200.0f, 100.0f}, .bits = 0},
+                                        {.pixel = {210.0f, 100.0f}, .bits = 9},
+                                        {.pixel = {200.0f, 200.0f}, .bits = 0}});
+  const std::vector<uint32_t> a_indices = {0};
+  const std::vector<uint32_t> b_indices = {1, 2};
+  const auto matches = MatchForTriangulation(a, a_indices, b, b_indices, SideBySide(), kFarEpipole,
+                                             ScaleLevels::Create(8, 1.2), {});
+  ASSERT_EQ(matches.size(), 1u);
+  EXPECT_EQ(matches[0].query, 0u);
+  EXPECT_EQ(matches[0].keypoint, 1u);
+}
+
+// Without a baseline there is no line, and nothing can be triangulated.
+TEST(MatchForTriangulation, NothingLiesOnALineThatIsNone) {
+  const FrameFeatures features = MakeFeatures({{.pixel = {300.0f, 100.0f}}});
+  EXPECT_TRUE(MatchAll(features, features, Eigen::Matrix3d::Zero()).empty());
+}
+
+TEST(MatchForTriangulation, PairsTwoViewsOfTheWorldAndNothingElse) {
+  const SyntheticWorld world({.depth_share = 0.0, .flipped_bits = 10});
+  const SyntheticView a = world.Observe(0);
+  const SyntheticView b = world.Observe(20);
+  Eigen::Matrix3d k;
+  k << 500.0, 0.0, 320.0, 0.0, 500.0, 240.0, 0.0, 0.0, 1.0;
+  const Rigid3 b_from_a =
+      SyntheticWorld::CamFromWorld(20) * Inverse(SyntheticWorld::CamFromWorld(0));
+  const auto matches =
+      MatchAll(a.frame->features, b.frame->features, FundamentalFromPose(b_from_a, k, k));
+  EXPECT_GT(matches.size(), 200u);
+  for (const Match& match : matches) {
+    EXPECT_EQ(a.points[match.query], b.points[match.keypoint]);
+  }
+}
+
+TEST(MatchForTriangulation, OfNothingIsNothing) {
+  EXPECT_TRUE(MatchAll(MakeFeatures({}), MakeFeatures({}), SideBySide()).empty());
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "hullslam/features/frame_features.h"
+
+namespace hullslam {
+
+// A descriptor with the first `count` bits set: at distance |a - b| from one with other many.
+inline Descriptor FirstBits(int count) {
+  Descriptor descriptor{};
+  for (int i = 0; i < count; ++i) {
+    descriptor[static_cast<size_t>(i / 64)] |= uint64_t{1} << (i % 64);
+  }
+  return descriptor;
+}
+
+struct MadeKeypoint {
+  Eigen::Vector2f pixel = {0.0f, 0.0f};
+  int bits = 0;  // of FirstBits
+  int level = 0;
+  float right_u = -1.0f;
+  float angle = 0.0f;
+};
+
+// Features of a 640 x 480 image made by hand.
+inline FrameFeatures MakeFeatures(const std::vector<MadeKeypoint>& keypoints) {
+  FrameFeatures features;
+  for (const MadeKeypoint& made : keypoints) {
+    Keypoint& keypoint = features.keypoints.emplace_back();
+    keypoint.raw = made.pixel;
+    keypoint.undistorted = made.pixel;
+    keypoint.level = made.level;
+    keypoint.angle = made.angle;
+    features.descriptors.push_back(FirstBits(made.bits));
+    features.right_u.push_back(made.right_u);
+    features.depth.push_back(made.right_u >= 0.0f ? 40.0f / (made.pixel.x() - made.right_u) : 0.0f);
+  }
+  features.grid = FeatureGrid(features.keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});
+  return features;
+}
+
+}  // namespace hullslam
