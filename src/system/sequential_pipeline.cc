@@ -5,6 +5,7 @@
 
 #include "hullslam/mapping/mapper.h"
 #include "hullslam/tracking/tracker.h"
+#include "hullslam/util/check.h"
 
 namespace hullslam {
 namespace {
@@ -17,6 +18,7 @@ class SequentialPipeline final : public Pipeline {
                 [this](std::shared_ptr<const Map> map) { map_ = std::move(map); }) {}
 
   TrackedFrame Track(std::shared_ptr<const Frame> frame) override {
+    Check(!is_finished_, "Track after Finish");
     const Tracker::Result result = tracker_.Process(std::move(frame), map_, MapperStatus());
     if (result.request) {
       mapper_.Process(*result.request, nullptr);
@@ -24,7 +26,7 @@ class SequentialPipeline final : public Pipeline {
     return result.frame;
   }
 
-  void Finish() override {}
+  void Finish() override { is_finished_ = true; }
 
   std::shared_ptr<const Map> map() const override { return map_; }
 
@@ -38,6 +40,7 @@ class SequentialPipeline final : public Pipeline {
   std::shared_ptr<const Map> map_;
   Tracker tracker_;
   Mapper mapper_;
+  bool is_finished_ = false;
 };
 
 }  // namespace

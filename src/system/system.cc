@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/system/system.h"
 
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "hullslam/system/pipeline.h"
@@ -70,6 +71,7 @@ TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat
 }
 
 TrackedFrame System::Track(const RgbdImage& image) {
+  Check(std::isfinite(image.timestamp), "the time stamp is not a number");
   Check(frames_.empty() || image.timestamp > frames_.back().timestamp,
         "time stamps do not increase");
   const FrameId id(static_cast<uint32_t>(frames_.size()));

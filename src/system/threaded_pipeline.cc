@@ -10,6 +10,7 @@
 #include "hullslam/mapping/mapper.h"
 #include "hullslam/tracking/tracker.h"
 #include "hullslam/util/cancellation.h"
+#include "hullslam/util/check.h"
 #include "hullslam/util/mailbox.h"
 #include "hullslam/util/published.h"
 
@@ -31,6 +32,7 @@ class ThreadedPipeline final : public Pipeline {
   ~ThreadedPipeline() override { Stop(); }
 
   TrackedFrame Track(std::shared_ptr<const Frame> frame) override {
+    Check(mapping_thread_.joinable(), "Track after Finish");
     RethrowFailure();
     const MapperStatus status = pace_ == Pace::kWaitForMapper ? MapperStatus() : Status();
     Tracker::Result result = tracker_.Process(std::move(frame), map_.Get(), status);

@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 #include "hullslam/map/covisibility.h"
 #include "support/synthetic_world.h"
+#include "support/unknown_points.h"
 
 namespace hullslam {
 namespace {
@@ -29,27 +29,6 @@ std::shared_ptr<Frame> Select(const Frame& frame, const std::vector<uint32_t>& k
     selected->features.right_u.push_back(frame.features.right_u[i]);
   }
   return selected;
-}
-
-void RebuildGrid(const Sensor& sensor, Frame& frame) {
-  frame.features.grid =
-      FeatureGrid(frame.features.keypoints,
-                  Eigen::Vector2d(sensor.bounds.min_x, sensor.bounds.min_y).cast<float>(),
-                  Eigen::Vector2d(sensor.bounds.max_x, sensor.bounds.max_y).cast<float>());
-}
-
-// Adds keypoints 1 m away that nobody knows: close points that would be lost, so that the policy
-// asks for a keyframe whenever it may.
-void AddUnknownClosePoints(Frame& frame, int count) {
-  std::mt19937_64 random(99);
-  for (int i = 0; i < count; ++i) {
-    Keypoint& keypoint = frame.features.keypoints.emplace_back();
-    keypoint.raw = {100.0f + 5.0f * static_cast<float>(i), 100.0f};
-    keypoint.undistorted = keypoint.raw;
-    frame.features.descriptors.push_back({random(), random(), random(), random()});
-    frame.features.depth.push_back(1.0f);
-    frame.features.right_u.push_back(keypoint.raw.x() - 40.0f);
-  }
 }
 
 std::vector<uint32_t> AllKeypoints(const Frame& frame) {
@@ -88,8 +67,7 @@ class TrackerTest : public testing::Test {
   std::shared_ptr<const Frame> DemandingFrame(uint32_t index) const {
     const SyntheticView view = world_.Observe(index);
     auto frame = Select(*view.frame, AllKeypoints(*view.frame));
-    AddUnknownClosePoints(*frame, 80);
-    RebuildGrid(world_.sensor(), *frame);
+    AddUnknownPoints(world_.sensor(), 80, 0, *frame);
     return frame;
   }
   // Frame `index` with `known` keypoints that keyframe 0 observes too, and unknown close points.
@@ -104,8 +82,7 @@ class TrackerTest : public testing::Test {
       }
     }
     auto frame = Select(*view.frame, keypoints);
-    AddUnknownClosePoints(*frame, 80);
-    RebuildGrid(world_.sensor(), *frame);
+    AddUnknownPoints(world_.sensor(), 80, 0, *frame);
     return frame;
   }
 

@@ -14,9 +14,9 @@ class Pipeline {
  public:
   virtual ~Pipeline() = default;
 
-  // Frames come in order of time. Throws what a stage throws.
+  // Frames come in order of time. Throws what a stage throws, and CheckError after Finish.
   virtual TrackedFrame Track(std::shared_ptr<const Frame> frame) = 0;
-  // Waits until everything that was begun is in the map. No Track after it.
+  // Waits until everything that was begun is in the map.
   virtual void Finish() = 0;
   // The newest snapshot; null before the first keyframe.
   virtual std::shared_ptr<const Map> map() const = 0;

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <random>
+
+#include "hullslam/map/frame.h"
+#include "hullslam/map/sensor.h"
+#include "hullslam/util/random_seed.h"
+
+namespace hullslam {
+
+// Sorts the frame's keypoints into its grid anew.
+inline void RebuildGrid(const Sensor& sensor, Frame& frame) {
+  const PinholeCamera::Bounds& bounds = sensor.bounds;
+  frame.features.grid = FeatureGrid(frame.features.keypoints,
+                                    Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
+                                    Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
+}
+
+// Adds keypoints at a depth of 1 m that no other frame shows. As many as 71 of them are close
+// points about to be lost: where fewer than 100 close ones are known a keyframe is wanted.
+inline void AddUnknownPoints(const Sensor& sensor, int count, int level, Frame& frame) {
+  std::mt19937_64 random(HashSeed(0, frame.id.value, "unknown points"));
+  std::uniform_real_distribution<float> u(100.0f, 600.0f);
+  std::uniform_real_distribution<float> v(50.0f, 430.0f);
+  for (int i = 0; i < count; ++i) {
+    Keypoint& keypoint = frame.features.keypoints.emplace_back();
+    keypoint.raw.x() = u(random);
+    keypoint.raw.y() = v(random);
+    keypoint.undistorted = keypoint.raw;
+    keypoint.level = level;
+    frame.features.descriptors.push_back({random(), random(), random(), random()});
+    frame.features.depth.push_back(1.0f);
+    frame.features.right_u.push_back(keypoint.raw.x() - static_cast<float>(sensor.camera.bf));
+  }
+  RebuildGrid(sensor, frame);
+}
+
+}  // namespace hullslam

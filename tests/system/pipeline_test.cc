@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/system/pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hullslam/map/invariants.h"
+#include "hullslam/system/sequential_pipeline.h"
+#include "hullslam/system/threaded_pipeline.h"
+#include "hullslam/util/check.h"
+#include "system/pipeline_cases.h"
+
+namespace hullslam {
+namespace {
+
+struct Kind {
+  std::string name;
+  std::unique_ptr<Pipeline> (*make)(const Sensor&, const SystemOptions&);
+};
+
+std::unique_ptr<Pipeline> MakePatient(const Sensor& sensor, const SystemOptions& options) {
+  return MakeThreadedPipeline(sensor, options, Pace::kWaitForMapper);
+}
+
+std::unique_ptr<Pipeline> MakeRealtime(const Sensor& sensor, const SystemOptions& options) {
+  return MakeThreadedPipeline(sensor, options, Pace::kNeverWait);
+}
+
+// What every pipeline promises.
+class PipelineTest : public testing::TestWithParam<Kind> {
+ protected:
+  std::unique_ptr<Pipeline> Make() const { return GetParam().make(world_.sensor(), options_); }
+
+  const SyntheticWorld world_ = NoisyWorld();
+  const SystemOptions options_;
+};
+
+TEST_P(PipelineTest, HasNoMapBeforeTheFirstKeyframe) {
+  const auto pipeline = Make();
+  EXPECT_EQ(pipeline->map(), nullptr);
+  const SyntheticWorld blind({.depth_share = 0.0});
+  EXPECT_EQ(pipeline->Track(blind.Observe(0).frame).state, TrackingState::kNotInitialized);
+  EXPECT_EQ(pipeline->map(), nullptr);
+  EXPECT_EQ(pipeline->Track(world_.Observe(1).frame).state, TrackingState::kTracked);
+  ASSERT_NE(pipeline->map(), nullptr);
+  EXPECT_EQ(pipeline->map()->keyframes().size(), 1u);
+}
+
+TEST_P(PipelineTest, TracksEveryFrameWithASmallError) {
+  const auto pipeline = Make();
+  const std::vector<TrackedFrame> frames = TrackPath(*pipeline, world_, 0, 100);
+  pipeline->Finish();
+  for (const TrackedFrame& frame : frames) {
+    EXPECT_EQ(frame.state, TrackingState::kTracked) << frame.frame.value;
+  }
+  const auto map = pipeline->map();
+  EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
+  EXPECT_GT(map->keyframes().NextId().value, 10u) << "as many were made, culled or not";
+  const Trajectory trajectory = ComposeTrajectory(*map, frames);
+  EXPECT_EQ(trajectory.size(), 100u);
+  EXPECT_LT(PathError(trajectory, world_.sensor()), 0.02);
+}
+
+TEST_P(PipelineTest, FindsItsWayBackAfterFramesOfAnotherWorld) {
+  const auto pipeline = Make();
+  TrackPath(*pipeline, world_, 0, 10);
+  const SyntheticWorld other({.points = 500, .seed = 2});
+  for (const TrackedFrame& frame : TrackPath(*pipeline, other, 10, 13)) {
+    EXPECT_EQ(frame.state, TrackingState::kLost);
+  }
+  for (const TrackedFrame& frame : TrackPath(*pipeline, world_, 13, 20)) {
+    EXPECT_EQ(frame.state, TrackingState::kTracked);
+  }
+}
+
+TEST_P(PipelineTest, FinishingTwiceIsFinishingOnce) {
+  const auto pipeline = Make();
+  TrackPath(*pipeline, world_, 0, 30);
+  pipeline->Finish();
+  const auto map = pipeline->map();
+  pipeline->Finish();
+  EXPECT_EQ(pipeline->map(), map);
+}
+
+TEST_P(PipelineTest, TrackAfterFinishIsRefused) {
+  const auto pipeline = Make();
+  TrackPath(*pipeline, world_, 0, 2);
+  pipeline->Finish();
+  EXPECT_THROW(TrackPath(*pipeline, world_, 2, 3), CheckError);
+}
+
+TEST_P(PipelineTest, FinishWithoutAFrameIsFine) {
+  const auto pipeline = Make();
+  EXPECT_NO_THROW(pipeline->Finish());
+  EXPECT_EQ(pipeline->map(), nullptr);
+  EXPECT_TRUE(pipeline->times().samples().empty());
+}
+
+TEST_P(PipelineTest, MayBeLeftAtAnyTime) {
+  for (const uint32_t frames : {0u, 1u, 2u, 25u}) {
+    const auto pipeline = Make();
+    EXPECT_EQ(TrackPath(*pipeline, world_, 0, frames).size(), frames);
+  }
+}
+
+TEST_P(PipelineTest, MapsTakenOutliveThePipeline) {
+  std::shared_ptr<const Map> map;
+  {
+    const auto pipeline = Make();
+    TrackPath(*pipeline, world_, 0, 25);
+    map = pipeline->map();
+  }
+  EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
+}
+
+TEST_P(PipelineTest, AnExceptionInMappingReachesTheCaller) {
+  const FailingMapping failing;
+  const auto pipeline = GetParam().make(failing.sensor, options_);
+  EXPECT_EQ(pipeline->Track(failing.first).state, TrackingState::kTracked);
+  EXPECT_THROW(
+      {
+        pipeline->Track(failing.second);
+        pipeline->Finish();
+      },
+      CheckError);
+}
+
+TEST_P(PipelineTest, AnExceptionThatNobodySeesDoesNoHarm) {
+  const FailingMapping failing;
+  const auto pipeline = GetParam().make(failing.sensor, options_);
+  pipeline->Track(failing.first);
+  try {
+    pipeline->Track(failing.second);
+  } catch (const CheckError&) {  // the sequential pipeline throws at once
+  }
+}
+
+TEST_P(PipelineTest, TimesHaveOneEntryACall) {
+  const auto pipeline = Make();
+  TrackPath(*pipeline, world_, 0, 30);
+  pipeline->Finish();
+  const StageTimes times = pipeline->times();
+  EXPECT_EQ(times.samples().at("pose").size(), 30u);
+  EXPECT_EQ(times.samples().at("map_insert").size(), pipeline->map()->keyframes().NextId().value);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PipelineTest,
+                         testing::Values(Kind{"sequential", MakeSequentialPipeline},
+                                         Kind{"threaded", MakePatient},
+                                         Kind{"realtime", MakeRealtime}),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/system/sequential_pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include "hullslam/util/check.h"
+#include "system/pipeline_cases.h"
+
+namespace hullslam {
+namespace {
+
+struct Outcome {
+  std::vector<TrackedFrame> frames;
+  std::shared_ptr<const Map> map;
+};
+
+Outcome RunOnce(const SyntheticWorld& world) {
+  const SystemOptions options;
+  const auto pipeline = MakeSequentialPipeline(world.sensor(), options);
+  Outcome run;
+  run.frames = TrackPath(*pipeline, world, 0, 60);
+  pipeline->Finish();
+  run.map = pipeline->map();
+  return run;
+}
+
+void ExpectSameBits(const Rigid3& a, const Rigid3& b) {
+  EXPECT_EQ(a.rotation.coeffs(), b.rotation.coeffs());
+  EXPECT_EQ(a.translation, b.translation);
+}
+
+TEST(SequentialPipeline, TwoRunsGiveTheSameFramesToTheBit) {
+  const SyntheticWorld world = NoisyWorld();
+  const Outcome a = RunOnce(world);
+  const Outcome b = RunOnce(world);
+  ASSERT_EQ(a.frames.size(), b.frames.size());
+  for (size_t i = 0; i < a.frames.size(); ++i) {
+    EXPECT_EQ(a.frames[i].state, b.frames[i].state);
+    EXPECT_EQ(a.frames[i].reference, b.frames[i].reference);
+    EXPECT_EQ(a.frames[i].inliers, b.frames[i].inliers);
+    ExpectSameBits(a.frames[i].cam_from_reference, b.frames[i].cam_from_reference);
+    ExpectSameBits(a.frames[i].cam_from_world, b.frames[i].cam_from_world);
+  }
+}
+
+TEST(SequentialPipeline, TwoRunsGiveTheSameMapToTheBit) {
+  const SyntheticWorld world = NoisyWorld();
+  const Outcome a = RunOnce(world);
+  const Outcome b = RunOnce(world);
+  EXPECT_GT(a.map->keyframes().NextId().value, 5u);
+  EXPECT_EQ(a.map->keyframes().size(), b.map->keyframes().size());
+  EXPECT_EQ(a.map->landmarks().size(), b.map->landmarks().size());
+  a.map->keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    const Keyframe& same = b.map->keyframes().At(id);
+    ExpectSameBits(keyframe.cam_from_world, same.cam_from_world);
+    EXPECT_EQ(keyframe.landmarks, same.landmarks);
+    EXPECT_EQ(keyframe.parent, same.parent);
+  });
+  a.map->landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+    const Landmark& same = b.map->landmarks().At(id);
+    EXPECT_EQ(landmark.position, same.position);
+    EXPECT_EQ(landmark.descriptor, same.descriptor);
+    EXPECT_EQ(landmark.viewing_direction, same.viewing_direction);
+    EXPECT_EQ(landmark.visible, same.visible);
+    EXPECT_EQ(landmark.found, same.found);
+  });
+}
+
+TEST(SequentialPipeline, AKeyframeIsInTheMapWhenTrackReturns) {
+  const SyntheticWorld world = NoisyWorld();
+  const SystemOptions options;
+  const auto pipeline = MakeSequentialPipeline(world.sensor(), options);
+  pipeline->Track(world.Observe(0).frame);
+  const auto map = pipeline->map();
+  EXPECT_EQ(map->KeyframeOfFrame(FrameId(0)), KeyframeId(0));
+  EXPECT_GT(map->landmarks().size(), 100u);
+}
+
+TEST(SequentialPipeline, AnExceptionInMappingIsThrownByTheSameCall) {
+  const FailingMapping failing;
+  const SystemOptions options;
+  const auto pipeline = MakeSequentialPipeline(failing.sensor, options);
+  pipeline->Track(failing.first);
+  EXPECT_THROW(pipeline->Track(failing.second), CheckError);
+}
+
+}  // namespace
+}  // namespace hullslam

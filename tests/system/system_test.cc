@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/system/system.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "hullslam/map/invariants.h"
+#include "hullslam/util/check.h"
+#include "support/expect_error.h"
+
+namespace hullslam {
+namespace {
+
+constexpr double kWallDistance = 2.0;    // m in front of the first camera
+constexpr double kTexelsPerMetre = 260;  // about the resolution of the image at the wall
+
+// A wall of random patches, photographed by a moving camera.
+class Wall {
+ public:
+  Wall() : texture_(900, 1200, CV_8UC3) {
+    texture_.setTo(cv::Scalar::all(120));
+    cv::RNG random(3);
+    for (int i = 0; i < 4000; ++i) {
+      const cv::Rect box(random.uniform(0, texture_.cols - 40), random.uniform(0, 860),
+                         random.uniform(5, 40), random.uniform(5, 40));
+      texture_(box).setTo(
+          cv::Scalar(random.uniform(0, 256), random.uniform(0, 256), random.uniform(0, 256)));
+    }
+    cv::GaussianBlur(texture_, texture_, {3, 3}, 0.8);
+  }
+
+  static SystemOptions Options() {
+    SystemOptions options;
+    options.camera = {.fx = 520.0, .fy = 520.0, .cx = 319.5, .cy = 239.5, .bf = 40.0};
+    options.features.feature_count = 600;
+    return options;
+  }
+
+  // 1.5 cm a frame to the right and up, turning a little.
+  static Rigid3 CamFromWorld(int index) {
+    const Eigen::Vector3d center(0.015 * index, -0.006 * index, 0.004 * index);
+    const Eigen::Quaterniond rotation = ExpSo3({0.0, -0.005 * index, 0.002 * index});
+    return {rotation, -(rotation * center)};
+  }
+
+  // Colour image, channels in the order red, green, blue.
+  cv::Mat Photograph(int index) const {
+    const PinholeCamera camera = Options().camera;
+    Eigen::Matrix3d calibration = Eigen::Matrix3d::Identity();
+    calibration.diagonal() << camera.fx, camera.fy, 1.0;
+    calibration.col(2) << camera.cx, camera.cy, 1.0;
+    const Eigen::Matrix<double, 3, 4> pose = CamFromWorld(index).ToMatrix();
+    Eigen::Matrix3d cam_from_wall;  // of (x, y, 1) on the wall
+    cam_from_wall << pose.col(0), pose.col(1), kWallDistance * pose.col(2) + pose.col(3);
+    Eigen::Matrix3d texel_from_wall = Eigen::Matrix3d::Identity();
+    texel_from_wall.diagonal() << kTexelsPerMetre, kTexelsPerMetre, 1.0;
+    texel_from_wall.col(2) << 0.5 * texture_.cols, 0.5 * texture_.rows, 1.0;
+    const Eigen::Matrix3d pixel_from_texel =
+        calibration * cam_from_wall * texel_from_wall.inverse();
+    cv::Matx33d homography;
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        homography(row, column) = pixel_from_texel(row, column);
+      }
+    }
+    cv::Mat image;
+    cv::warpPerspective(texture_, image, homography, {camera.width, camera.height});
+    return image;
+  }
+
+  // Metres, CV_32FC1.
+  static cv::Mat Depth(int index) {
+    const PinholeCamera camera = Options().camera;
+    const Rigid3 world_from_cam = Inverse(CamFromWorld(index));
+    cv::Mat depth(camera.height, camera.width, CV_32FC1);
+    for (int y = 0; y < depth.rows; ++y) {
+      for (int x = 0; x < depth.cols; ++x) {
+        const Eigen::Vector3d ray = world_from_cam.rotation * camera.Unproject({x, y}, 1.0);
+        depth.at<float>(y, x) =
+            static_cast<float>((kWallDistance - world_from_cam.translation.z()) / ray.z());
+      }
+    }
+    return depth;
+  }
+
+ private:
+  cv::Mat texture_;
+};
+
+const Wall& TheWall() {
+  static const Wall wall;
+  return wall;
+}
+
+double Time(int index) { return 100.0 + index / 30.0; }
+
+TrackedFrame TrackFrame(System& system, int index) {
+  return system.Track(Time(index), TheWall().Photograph(index), Wall::Depth(index));
+}
+
+double MaxError(const Trajectory& trajectory) {
+  double error = 0.0;
+  for (const StampedPose& pose : trajectory) {
+    const int index = static_cast<int>(std::lround((pose.timestamp - Time(0)) * 30.0));
+    const Rigid3 truth = Inverse(Wall::CamFromWorld(index));
+    error = std::max(error, (pose.world_from_cam.translation - truth.translation).norm());
+  }
+  return error;
+}
+
+class SystemTest : public testing::TestWithParam<PipelineKind> {};
+
+TEST_P(SystemTest, TracksACameraAlongAWall) {
+  System system(Wall::Options(), GetParam());
+  EXPECT_EQ(system.map(), nullptr);
+  EXPECT_TRUE(system.trajectory().empty());
+  for (int i = 0; i < 15; ++i) {
+    const TrackedFrame frame = TrackFrame(system, i);
+    EXPECT_EQ(frame.state, TrackingState::kTracked) << i;
+    EXPECT_EQ(frame.timestamp, Time(i));
+    EXPECT_EQ(frame.frame, FrameId(static_cast<uint32_t>(i)));
+  }
+  system.Finish();
+  system.Finish();
+  EXPECT_EQ(FindViolations(*system.map()), std::vector<std::string>());
+  EXPECT_EQ(system.frames().size(), 15u);
+  const Trajectory trajectory = system.trajectory();
+  ASSERT_EQ(trajectory.size(), 15u);
+  EXPECT_LT(MaxError(trajectory), 0.01) << "of 0.25 m travelled";
+  EXPECT_EQ(system.times().samples().at("track").size(), 15u);
+  EXPECT_EQ(system.times().samples().at("frame").size(), 15u);
+}
+
+TEST_P(SystemTest, MayBeLeftWithoutFinish) {
+  System system(Wall::Options(), GetParam());
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(TrackFrame(system, i).state, TrackingState::kTracked);
+  }
+}
+
+TEST_P(SystemTest, ABlankFirstImageOnlyDelaysTheStart) {
+  System system(Wall::Options(), GetParam());
+  const cv::Mat blank(480, 640, CV_8UC3, cv::Scalar::all(128));
+  EXPECT_EQ(system.Track(Time(0), blank, Wall::Depth(0)).state, TrackingState::kNotInitialized);
+  EXPECT_EQ(TrackFrame(system, 1).state, TrackingState::kTracked);
+  EXPECT_EQ(TrackFrame(system, 2).state, TrackingState::kTracked);
+  EXPECT_EQ(system.trajectory().size(), 2u);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SystemTest,
+                         testing::Values(PipelineKind::kSequential, PipelineKind::kThreaded,
+                                         PipelineKind::kRealtime));
+
+TEST(System, TheSameImagesGiveTheSameBits) {
+  const auto run = [] {
+    System system(Wall::Options(), PipelineKind::kSequential);
+    for (int i = 0; i < 10; ++i) {
+      TrackFrame(system, i);
+    }
+    return system.trajectory();
+  };
+  const Trajectory a = run();
+  const Trajectory b = run();
+  ASSERT_EQ(a.size(), 10u);
+  ASSERT_EQ(b.size(), 10u);
+  for (size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].timestamp, b[i].timestamp);
+    EXPECT_EQ(a[i].world_from_cam.rotation.coeffs(), b[i].world_from_cam.rotation.coeffs());
+    EXPECT_EQ(a[i].world_from_cam.translation, b[i].world_from_cam.translation);
+  }
+}
+
+TEST(System, OptionsThatDoNotFitTogetherAreRefused) {
+  ExpectInputError([] { System system(SystemOptions(), PipelineKind::kSequential); },
+                   {"Camera.fx"});
+}
+
+TEST(System, TimeStampsThatDoNotIncreaseAreRefused) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  const cv::Mat image = TheWall().Photograph(0);
+  const cv::Mat depth = Wall::Depth(0);
+  EXPECT_THROW(system.Track(std::numeric_limits<double>::quiet_NaN(), image, depth), CheckError);
+  system.Track(10.0, image, depth);
+  for (const double time : {10.0, 9.9, -10.0, std::numeric_limits<double>::quiet_NaN(),
+                            std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(system.Track(time, image, depth), CheckError) << time;
+  }
+  EXPECT_EQ(system.frames().size(), 1u);
+  EXPECT_EQ(system.Track(10.1, image, depth).state, TrackingState::kTracked)
+      << "a refused image changes nothing";
+}
+
+TEST(System, ImagesOfAnotherTypeOrSizeAreRefused) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  const cv::Mat image = TheWall().Photograph(0);
+  const cv::Mat depth = Wall::Depth(0);
+  for (const int type : {CV_8UC2, CV_16UC1, CV_32FC1, CV_32FC3}) {
+    EXPECT_THROW(system.Track(1.0, cv::Mat(480, 640, type, cv::Scalar::all(9)), depth), CheckError)
+        << type;
+  }
+  for (const int type : {CV_8UC1, CV_16SC1, CV_64FC1, CV_16UC3}) {
+    EXPECT_THROW(system.Track(1.0, image, cv::Mat(480, 640, type, cv::Scalar::all(9))), CheckError)
+        << type;
+  }
+  EXPECT_THROW(system.Track(1.0, cv::Mat(), depth), CheckError);
+  EXPECT_THROW(system.Track(1.0, image, cv::Mat()), CheckError);
+  EXPECT_THROW(system.Track(1.0, image(cv::Rect(0, 0, 320, 240)), depth), CheckError);
+  EXPECT_THROW(system.Track(1.0, image, depth(cv::Rect(0, 0, 320, 240))), CheckError);
+  EXPECT_TRUE(system.frames().empty());
+  EXPECT_EQ(system.Track(1.0, image, depth).state, TrackingState::kTracked);
+}
+
+// The features of the first keyframe made of one image.
+FrameFeatures FeaturesOf(const cv::Mat& image, bool rgb_order) {
+  SystemOptions options = Wall::Options();
+  options.rgb_order = rgb_order;
+  System system(options, PipelineKind::kSequential);
+  system.Track(1.0, image, Wall::Depth(0));
+  return system.map()->keyframes().At(KeyframeId(0)).frame->features;
+}
+
+TEST(System, TheOrderOfColoursIsThatOfTheOption) {
+  const cv::Mat rgb = TheWall().Photograph(0);
+  cv::Mat bgr;
+  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  cv::Mat rgba;
+  cv::cvtColor(rgb, rgba, cv::COLOR_RGB2RGBA);
+  cv::Mat bgra;
+  cv::cvtColor(rgb, bgra, cv::COLOR_RGB2BGRA);
+  cv::Mat grey;
+  cv::cvtColor(rgb, grey, cv::COLOR_RGB2GRAY);
+  const std::vector<Descriptor> expected = FeaturesOf(grey, true).descriptors;
+  EXPECT_GT(expected.size(), 300u);
+  EXPECT_EQ(FeaturesOf(rgb, true).descriptors, expected);
+  EXPECT_EQ(FeaturesOf(bgr, false).descriptors, expected);
+  EXPECT_EQ(FeaturesOf(rgba, true).descriptors, expected);
+  EXPECT_EQ(FeaturesOf(bgra, false).descriptors, expected);
+  EXPECT_EQ(FeaturesOf(grey, false).descriptors, expected);
+  EXPECT_NE(FeaturesOf(bgr, true).descriptors, expected);
+}
+
+TEST(System, TrackAfterFinishIsRefused) {
+  System system(Wall::Options(), PipelineKind::kThreaded);
+  TrackFrame(system, 0);
+  system.Finish();
+  EXPECT_THROW(TrackFrame(system, 1), CheckError);
+  EXPECT_EQ(system.trajectory().size(), 1u) << "what there is stays";
+}
+
+TEST(System, SixteenBitDepthIsReadInTheUnitsOfTheOption) {
+  SystemOptions options = Wall::Options();
+  options.depth.units_per_metre = 1000.0;
+  System system(options, PipelineKind::kSequential);
+  cv::Mat millimetres;
+  Wall::Depth(0).convertTo(millimetres, CV_16UC1, 1000.0);
+  system.Track(1.0, TheWall().Photograph(0), millimetres);
+  system.map()->landmarks().ForEach([](LandmarkId, const Landmark& landmark) {
+    EXPECT_NEAR(landmark.position.z(), kWallDistance, 1e-3);
+  });
+}
+
+}  // namespace
+}  // namespace hullslam

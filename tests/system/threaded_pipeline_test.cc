@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/system/threaded_pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <string>
+#include <thread>
+
+#include "hullslam/map/invariants.h"
+#include "hullslam/util/check.h"
+#include "system/pipeline_cases.h"
+
+namespace hullslam {
+namespace {
+
+TEST(ThreadedPipeline, TheFirstKeyframeIsInTheMapWhenTrackReturns) {
+  const SyntheticWorld world = NoisyWorld();
+  const SystemOptions options;
+  for (const Pace pace : {Pace::kWaitForMapper, Pace::kNeverWait}) {
+    const auto pipeline = MakeThreadedPipeline(world.sensor(), options, pace);
+    pipeline->Track(world.Observe(0).frame);
+    ASSERT_NE(pipeline->map(), nullptr) << "there is nothing to track against before";
+    EXPECT_GT(pipeline->map()->landmarks().size(), 100u);
+  }
+}
+
+TEST(ThreadedPipeline, WaitingForTheMapperLeavesOutNoKeyframe) {
+  const SyntheticWorld world = NoisyWorld();
+  const SystemOptions options;
+  const auto pipeline = MakeThreadedPipeline(world.sensor(), options, Pace::kWaitForMapper);
+  for (uint32_t i = 0; i < 60; ++i) {
+    const uint32_t before = i == 0 ? 0 : pipeline->map()->keyframes().NextId().value;
+    pipeline->Track(PathFrame(world, i));
+    const auto map = pipeline->map();
+    if (map->keyframes().NextId().value > before) {
+      EXPECT_EQ(map->KeyframeOfFrame(FrameId(i)), KeyframeId(before))
+          << "a keyframe is in the map when the Track that asked for it returns";
+    }
+  }
+}
+
+TEST(ThreadedPipeline, FinishWaitsForTheKeyframesThatWait) {
+  const SyntheticWorld world = NoisyWorld();
+  const SystemOptions options;
+  const auto pipeline = MakeThreadedPipeline(world.sensor(), options, Pace::kNeverWait);
+  const std::vector<TrackedFrame> frames = TrackPath(*pipeline, world, 0, 60);
+  pipeline->Finish();
+  const auto map = pipeline->map();
+  EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
+  for (const TrackedFrame& frame : frames) {
+    EXPECT_LT(frame.reference.value, map->keyframes().NextId().value);
+  }
+}
+
+TEST(ThreadedPipeline, AFailureOfMappingIsThrownOnce) {
+  const FailingMapping failing;
+  const SystemOptions options;
+  const auto pipeline = MakeThreadedPipeline(failing.sensor, options, Pace::kNeverWait);
+  pipeline->Track(failing.first);
+  pipeline->Track(failing.second);
+  EXPECT_THROW(pipeline->Finish(), CheckError);
+  EXPECT_NO_THROW(pipeline->Finish());
+}
+
+TEST(ThreadedPipeline, AFailureOfMappingIsThrownByTheNextTrack) {
+  const FailingMapping failing;
+  const SystemOptions options;
+  const auto pipeline = MakeThreadedPipeline(failing.sensor, options, Pace::kWaitForMapper);
+  pipeline->Track(failing.first);
+  // The keyframe is published before mapping fails, so the next call may come first.
+  const auto track_on = [&] {
+    for (uint32_t i = 1; i <= 1000; ++i) {
+      auto frame = std::make_shared<Frame>(*failing.second);
+      frame->id = FrameId(i);
+      pipeline->Track(frame);
+    }
+  };
+  EXPECT_THROW(track_on(), CheckError);
+}
+
+TEST(ThreadedPipeline, TheMapMayBeReadByOtherThreadsMeanwhile) {
+  const SyntheticWorld world = NoisyWorld();
+  const SystemOptions options;
+  const auto pipeline = MakeThreadedPipeline(world.sensor(), options, Pace::kNeverWait);
+  pipeline->Track(world.Observe(0).frame);
+  std::atomic<bool> is_over{false};
+  std::vector<std::string> violations;
+  size_t newest = 0;
+  std::thread reader([&] {
+    while (!is_over) {
+      const auto map = pipeline->map();
+      const std::vector<std::string> found = FindViolations(*map);
+      violations.insert(violations.end(), found.begin(), found.end());
+      newest = std::max<size_t>(newest, map->keyframes().NextId().value);
+    }
+  });
+  TrackPath(*pipeline, world, 1, 60);
+  pipeline->Finish();
+  is_over = true;
+  reader.join();
+  EXPECT_EQ(violations, std::vector<std::string>());
+  EXPECT_GE(newest, 1u);
+}
+
+}  // namespace
+}  // namespace hullslam
