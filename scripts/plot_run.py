@@ -238,7 +238,7 @@ def draw_times(plot, run):
     plot.barh(rows, tails, color=ESTIMATE, alpha=0.25)
     plot.barh(rows, medians, color=ESTIMATE)
     for row, median in zip(rows, medians):
-        plot.text(median, row, f" {median:.2g}", va="center", fontsize=8)
+        plot.text(median, row, f" {median:.3g}", va="center", fontsize=8)
     plot.set_yticks(rows, names, fontsize=8)
     plot.invert_yaxis()
     plot.grid(axis="x", alpha=0.25)
