@@ -53,6 +53,7 @@ bool IsMoreShared(const Covisible& a, const Covisible& b) {
 void UpdateCovisibility(Map& map, KeyframeId id) {
   std::vector<Covisible> edges;
   Covisible best;
+  Covisible best_older;
   for (const auto& [other, shared] : CountShared(map, id)) {
     const Covisible edge{other, shared};
     if (shared >= kMinShared) {
@@ -60,6 +61,9 @@ void UpdateCovisibility(Map& map, KeyframeId id) {
     }
     if (!best.keyframe.IsValid() || IsMoreShared(edge, best)) {
       best = edge;
+    }
+    if (other < id && (!best_older.keyframe.IsValid() || IsMoreShared(edge, best_older))) {
+      best_older = edge;
     }
   }
   if (edges.empty() && best.keyframe.IsValid()) {
@@ -71,10 +75,10 @@ void UpdateCovisibility(Map& map, KeyframeId id) {
   }
   map.MutableKeyframe(id).covisible = std::move(edges);
 
-  // Only an older keyframe can be the parent of one that has just come: this keeps the tree a tree.
-  const bool is_root = id == KeyframeId(0);
-  if (!is_root && !map.keyframes().At(id).parent.IsValid() && best.keyframe.IsValid()) {
-    SetParent(map, id, best.keyframe);
+  // A parent is older than its first children, so that the tree stays a tree.
+  const bool has_parent = map.keyframes().At(id).parent.IsValid();
+  if (!has_parent && best_older.keyframe.IsValid()) {
+    SetParent(map, id, best_older.keyframe);
   }
 }
 

@@ -9,7 +9,7 @@ namespace hullslam {
 
 // Recounts the landmarks that `keyframe` shares with others and mends the edges at both ends. Edges
 // need 15 shared landmarks; where no other keyframe has as many, the best one is kept. A keyframe
-// without parent, unless it is the first, becomes the child of the one it shares most with.
+// without parent becomes the child of the older one it shares most with.
 void UpdateCovisibility(Map& map, KeyframeId keyframe);
 
 // Removes all edges of `keyframe`.

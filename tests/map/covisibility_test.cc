@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/map/covisibility.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "map/made_map.h"
+
+namespace hullslam {
+namespace {
+
+using Edges = std::vector<std::pair<uint32_t, int>>;
+
+Edges EdgesOf(const Map& map, KeyframeId id) {
+  Edges edges;
+  for (const Covisible& edge : map.keyframes().At(id).covisible) {
+    edges.emplace_back(edge.keyframe.value, edge.shared);
+  }
+  return edges;
+}
+
+class Covisibility : public ::testing::Test {
+ protected:
+  Covisibility() {
+    for (KeyframeId& id : ids_) {
+      id = AddKeyframe(map_, 100);
+    }
+  }
+  Map map_;
+  std::array<KeyframeId, 4> ids_;
+};
+
+TEST_F(Covisibility, NeedsFifteenSharedLandmarks) {
+  Share(map_, {ids_[3], ids_[0]}, 14);
+  Share(map_, {ids_[3], ids_[1]}, 15);
+  Share(map_, {ids_[3], ids_[2]}, 40);
+  UpdateCovisibility(map_, ids_[3]);
+  EXPECT_EQ(EdgesOf(map_, ids_[3]), (Edges{{1, 15}, {2, 40}}));
+  EXPECT_EQ(EdgesOf(map_, ids_[0]), Edges());
+  EXPECT_EQ(EdgesOf(map_, ids_[1]), (Edges{{3, 15}}));
+  EXPECT_EQ(EdgesOf(map_, ids_[2]), (Edges{{3, 40}}));
+}
+
+TEST_F(Covisibility, KeepsTheBestWhereNoneHasEnough) {
+  Share(map_, {ids_[3], ids_[0]}, 3);
+  Share(map_, {ids_[3], ids_[1]}, 14);
+  UpdateCovisibility(map_, ids_[3]);
+  EXPECT_EQ(EdgesOf(map_, ids_[3]), (Edges{{1, 14}}));
+  EXPECT_EQ(EdgesOf(map_, ids_[1]), (Edges{{3, 14}}));
+  EXPECT_EQ(EdgesOf(map_, ids_[0]), Edges());
+}
+
+TEST_F(Covisibility, OfNothingSharedIsNone) {
+  UpdateCovisibility(map_, ids_[3]);
+  EXPECT_EQ(EdgesOf(map_, ids_[3]), Edges());
+  EXPECT_FALSE(map_.keyframes().At(ids_[3]).parent.IsValid());
+}
+
+TEST_F(Covisibility, FollowsTheObservations) {
+  const std::vector<LandmarkId> shared = Share(map_, {ids_[0], ids_[1], ids_[2]}, 20);
+  UpdateCovisibility(map_, ids_[2]);
+  EXPECT_EQ(EdgesOf(map_, ids_[2]), (Edges{{0, 20}, {1, 20}}));
+  for (int i = 0; i < 10; ++i) {
+    map_.EraseLandmark(shared[static_cast<size_t>(i)]);
+  }
+  Share(map_, {ids_[1], ids_[2]}, 7);
+  UpdateCovisibility(map_, ids_[2]);
+  EXPECT_EQ(EdgesOf(map_, ids_[2]), (Edges{{1, 17}}));
+  EXPECT_EQ(EdgesOf(map_, ids_[0]), Edges());
+  EXPECT_EQ(EdgesOf(map_, ids_[1]), (Edges{{2, 17}}));
+}
+
+TEST_F(Covisibility, GivesAParentOnce) {
+  Share(map_, {ids_[3], ids_[0]}, 20);
+  Share(map_, {ids_[3], ids_[1]}, 30);
+  UpdateCovisibility(map_, ids_[3]);
+  EXPECT_EQ(map_.keyframes().At(ids_[3]).parent, ids_[1]);
+  EXPECT_EQ(map_.keyframes().At(ids_[1]).children, std::vector<KeyframeId>{ids_[3]});
+  Share(map_, {ids_[3], ids_[2]}, 40);
+  UpdateCovisibility(map_, ids_[3]);
+  EXPECT_EQ(map_.keyframes().At(ids_[3]).parent, ids_[1]);
+}
+
+TEST_F(Covisibility, GivesAParentAlsoWhereTheEdgeIsWeak) {
+  Share(map_, {ids_[1], ids_[0]}, 2);
+  UpdateCovisibility(map_, ids_[1]);
+  EXPECT_EQ(map_.keyframes().At(ids_[1]).parent, ids_[0]);
+}
+
+// A younger parent could be a descendant: the tree would become a ring.
+TEST_F(Covisibility, TheParentIsOlderHoweverMuchIsSharedWithAYoungerOne) {
+  Share(map_, {ids_[1], ids_[0]}, 15);
+  Share(map_, {ids_[1], ids_[2]}, 50);
+  UpdateCovisibility(map_, ids_[2]);
+  UpdateCovisibility(map_, ids_[1]);
+  EXPECT_EQ(map_.keyframes().At(ids_[2]).parent, ids_[1]);
+  EXPECT_EQ(map_.keyframes().At(ids_[1]).parent, ids_[0]);
+  UpdateCovisibility(map_, ids_[0]);
+  EXPECT_FALSE(map_.keyframes().At(ids_[0]).parent.IsValid());
+}
+
+TEST_F(Covisibility, DetachingRemovesBothEnds) {
+  Share(map_, {ids_[0], ids_[1], ids_[2]}, 20);
+  UpdateCovisibility(map_, ids_[1]);
+  UpdateCovisibility(map_, ids_[2]);
+  DetachCovisibility(map_, ids_[1]);
+  EXPECT_EQ(EdgesOf(map_, ids_[1]), Edges());
+  EXPECT_EQ(EdgesOf(map_, ids_[0]), (Edges{{2, 20}}));
+  EXPECT_EQ(EdgesOf(map_, ids_[2]), (Edges{{0, 20}}));
+}
+
+TEST(BestCovisible, AreByFallingNumberThenByFallingId) {
+  Keyframe keyframe;
+  keyframe.covisible = {
+      {KeyframeId(1), 20}, {KeyframeId(3), 50}, {KeyframeId(4), 20}, {KeyframeId(8), 15}};
+  const std::vector<KeyframeId> all = {KeyframeId(3), KeyframeId(4), KeyframeId(1), KeyframeId(8)};
+  EXPECT_EQ(BestCovisible(keyframe, 10), all);
+  EXPECT_EQ(BestCovisible(keyframe, 2), std::vector<KeyframeId>(all.begin(), all.begin() + 2));
+  EXPECT_TRUE(BestCovisible(keyframe, 0).empty());
+  EXPECT_TRUE(BestCovisible(Keyframe(), 5).empty());
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/map/invariants.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hullslam/map/covisibility.h"
+#include "hullslam/map/spanning_tree.h"
+#include "map/made_map.h"
+#include "map/random_edits.h"
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+class Invariants : public ::testing::Test {
+ protected:
+  Invariants() {
+    for (int i = 0; i < 3; ++i) {
+      AddKeyframe(map_, 40, 10);
+    }
+    shared_ = Share(map_, {a_, b_, c_}, 20);
+    for (const KeyframeId id : {a_, b_, c_}) {
+      UpdateCovisibility(map_, id);
+    }
+  }
+
+  // Expects faults, and one of them in these words.
+  void ExpectViolation(const std::string& words) {
+    const std::vector<std::string> violations = FindViolations(map_);
+    const bool found =
+        std::any_of(violations.begin(), violations.end(),
+                    [&](const std::string& text) { return text.find(words) != std::string::npos; });
+    EXPECT_TRUE(found) << "not found: " << words << ::testing::PrintToString(violations);
+  }
+
+  Map map_;
+  const KeyframeId a_{0};
+  const KeyframeId b_{1};
+  const KeyframeId c_{2};
+  std::vector<LandmarkId> shared_;
+};
+
+TEST_F(Invariants, HoldAtFirst) {
+  EXPECT_TRUE(FindViolations(Map()).empty());
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+}
+
+TEST_F(Invariants, TellAnObservationThatTheKeyframeDoesNotKnow) {
+  map_.MutableKeyframe(b_).landmarks[3] = LandmarkId();
+  ExpectViolation("landmark 3 is not observed by keyframe 1");
+}
+
+TEST_F(Invariants, TellAnObservationThatTheLandmarkDoesNotKnow) {
+  map_.MutableKeyframe(b_).landmarks[30] = shared_[3];
+  ExpectViolation("keyframe 1 observes landmark 3, which does not know");
+}
+
+TEST_F(Invariants, TellAnObservationOfALandmarkThatIsGone) {
+  map_.MutableKeyframe(b_).landmarks[30] = LandmarkId(999);
+  ExpectViolation("keyframe 1 observes landmark 999, which does not know");
+}
+
+TEST_F(Invariants, TellAnObservationByAKeyframeOrKeypointThatIsNot) {
+  map_.MutableLandmark(shared_[0]).observations[2].keyframe = KeyframeId(99);
+  ExpectViolation("landmark 0 is not observed by keyframe 99");
+  map_.MutableLandmark(shared_[1]).observations[0].keypoint = 99;
+  ExpectViolation("landmark 1 is not observed by keyframe 0");
+}
+
+TEST_F(Invariants, TellObservationsOutOfOrder) {
+  auto& observations = map_.MutableLandmark(shared_[0]).observations;
+  std::swap(observations[0], observations[1]);
+  ExpectViolation("landmark 0 has observations out of order");
+}
+
+TEST_F(Invariants, TellMiscountedSupport) {
+  ++map_.MutableLandmark(shared_[15]).support;
+  ExpectViolation("landmark 15 has its support miscounted");
+}
+
+TEST_F(Invariants, TellMissingSlots) {
+  map_.MutableKeyframe(c_).landmarks.pop_back();
+  ExpectViolation("keyframe 2 has not one landmark slot a keypoint");
+}
+
+TEST_F(Invariants, TellEdgesKnownAtOneEnd) {
+  map_.MutableKeyframe(a_).covisible[0].shared += 1;
+  ExpectViolation("keyframe 0 has an edge that keyframe 1 has not");
+  map_.MutableKeyframe(c_).covisible.clear();
+  ExpectViolation("keyframe 0 has an edge that keyframe 2 has not");
+  map_.MutableKeyframe(b_).covisible.push_back({KeyframeId(99), 20});
+  ExpectViolation("keyframe 1 has an edge that keyframe 99 has not");
+}
+
+TEST_F(Invariants, TellTreeLinksKnownAtOneEnd) {
+  map_.MutableKeyframe(c_).children.push_back(KeyframeId(99));
+  ExpectViolation("keyframe 2 has a child that is not: keyframe 99");
+  map_.MutableKeyframe(a_).children.clear();
+  ExpectViolation("keyframe 1 is not a child of its parent");
+  map_.MutableKeyframe(b_).parent = KeyframeId(99);
+  ExpectViolation("keyframe 1 is not a child of its parent");
+}
+
+TEST_F(Invariants, TellACycleInTheTree) {
+  SetParent(map_, a_, c_);
+  SetParent(map_, c_, b_);
+  SetParent(map_, b_, a_);
+  ExpectViolation("keyframe 0 is its own ancestor");
+}
+
+TEST_F(Invariants, TellValuesThatAreNotFinite) {
+  map_.SetPosition(shared_[7], {0.0, kNan, 0.0});
+  ExpectViolation("landmark 7 has no finite position");
+  Rigid3 pose;
+  pose.rotation.x() = kNan;
+  map_.SetPose(b_, pose);
+  ExpectViolation("keyframe 1 has no finite pose");
+  map_.SetPose(c_, {Eigen::Quaterniond::Identity(), {kNan, 0.0, 0.0}});
+  ExpectViolation("keyframe 2 has no finite pose");
+}
+
+TEST(InvariantsAfterRandomEdits, Hold) {
+  for (uint32_t seed = 0; seed < 30; ++seed) {
+    Map map;
+    RandomEdits edits(seed);
+    for (int i = 0; i < 300; ++i) {
+      edits.Edit(map);
+      ASSERT_EQ(FindViolations(map), std::vector<std::string>()) << "seed " << seed << ", " << i;
+    }
+    EXPECT_GT(map.keyframes().NextId().value, map.keyframes().size()) << "nothing was culled";
+  }
+}
+
+// The order in which mapping does not ask: all observations first, then all covisibilities.
+TEST(InvariantsOfTheSyntheticMap, Hold) {
+  const SyntheticWorld world;
+  const SyntheticMap made = MakeSyntheticMap(world, {0, 5, 10, 15, 20, 25, 30});
+  EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
+  made.map.keyframes().ForEach([](KeyframeId id, const Keyframe& keyframe) {
+    EXPECT_EQ(keyframe.parent.IsValid(), id != KeyframeId(0)) << id.value;
+  });
+}
+
+}  // namespace
+}  // namespace hullslam

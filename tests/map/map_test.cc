@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/map/map.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "hullslam/map/spanning_tree.h"
+#include "hullslam/util/check.h"
+#include "map/made_map.h"
+#include "map/random_edits.h"
+#include "support/random_geometry.h"
+
+namespace hullslam {
+namespace {
+
+double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
+
+TEST(Map, KeyframeHasASlotAKeypoint) {
+  Map map;
+  const KeyframeId id = AddKeyframe(map, 7);
+  EXPECT_EQ(id, KeyframeId(0));
+  EXPECT_EQ(map.keyframes().At(id).landmarks, std::vector<LandmarkId>(7));
+  EXPECT_THROW(map.AddKeyframe(nullptr, {}), CheckError);
+}
+
+TEST(Map, ObservationIsKnownAtBothEnds) {
+  Map map;
+  const KeyframeId a = AddKeyframe(map, 5);
+  const KeyframeId b = AddKeyframe(map, 5, 2);
+  const LandmarkId landmark = map.AddLandmark({1.0, 2.0, 3.0}, b);
+  EXPECT_TRUE(map.AddObservation(landmark, b, 1));  // has a depth
+  EXPECT_TRUE(map.AddObservation(landmark, a, 4));
+  EXPECT_EQ(map.keyframes().At(b).landmarks[1], landmark);
+  EXPECT_EQ(map.keyframes().At(a).landmarks[4], landmark);
+  const Landmark& seen = map.landmarks().At(landmark);
+  ASSERT_EQ(seen.observations.size(), 2u);
+  EXPECT_EQ(seen.observations[0].keyframe, a);  // in order of the ids
+  EXPECT_EQ(seen.observations[0].keypoint, 4u);
+  EXPECT_EQ(seen.observations[1].keyframe, b);
+  EXPECT_EQ(seen.support, 3);
+  EXPECT_EQ(seen.reference, b);
+  EXPECT_EQ(seen.created_by, b);
+}
+
+TEST(Map, AKeyframeObservesALandmarkOnceAndAKeypointIsOneLandmark) {
+  Map map;
+  const KeyframeId keyframe = AddKeyframe(map, 5);
+  const LandmarkId a = map.AddLandmark({}, keyframe);
+  const LandmarkId b = map.AddLandmark({}, keyframe);
+  ASSERT_TRUE(map.AddObservation(a, keyframe, 0));
+  const std::string before = Dump(map);
+  EXPECT_FALSE(map.AddObservation(a, keyframe, 0));
+  EXPECT_FALSE(map.AddObservation(a, keyframe, 1));
+  EXPECT_FALSE(map.AddObservation(b, keyframe, 0));
+  EXPECT_EQ(Dump(map), before);
+}
+
+TEST(Map, RefusesWhatIsNotThere) {
+  Map map;
+  const KeyframeId keyframe = AddKeyframe(map, 5);
+  const LandmarkId landmark = map.AddLandmark({}, keyframe);
+  EXPECT_THROW(map.AddObservation(landmark, keyframe, 5), CheckError);
+  EXPECT_THROW(map.AddObservation(landmark, KeyframeId(9), 0), CheckError);
+  EXPECT_THROW(map.AddObservation(LandmarkId(9), keyframe, 0), CheckError);
+  EXPECT_THROW(map.RemoveObservation(landmark, keyframe), CheckError);
+  EXPECT_THROW(map.EraseLandmark(LandmarkId(9)), CheckError);
+  EXPECT_THROW(map.ReplaceLandmark(landmark, landmark), CheckError);
+  EXPECT_THROW(map.CamFromWorld(KeyframeId(9)), CheckError);
+}
+
+TEST(Map, RemovingAnObservationFreesTheKeypointAndMovesTheReference) {
+  Map map;
+  const std::vector<KeyframeId> ids = {AddKeyframe(map, 5), AddKeyframe(map, 5),
+                                       AddKeyframe(map, 5), AddKeyframe(map, 5)};
+  const LandmarkId landmark = Share(map, ids).front();
+  map.RemoveObservation(landmark, ids[0]);
+  EXPECT_FALSE(map.keyframes().At(ids[0]).landmarks[0].IsValid());
+  EXPECT_EQ(map.landmarks().At(landmark).support, 3);
+  EXPECT_EQ(map.landmarks().At(landmark).reference, ids[1]);
+  EXPECT_TRUE(map.AddObservation(landmark, ids[0], 3));
+  EXPECT_EQ(map.landmarks().At(landmark).reference, ids[1]);
+}
+
+TEST(Map, ALandmarkGoesWhenASupportOfTwoIsLeft) {
+  Map map;
+  const std::vector<KeyframeId> ids = {AddKeyframe(map, 5, 5), AddKeyframe(map, 5),
+                                       AddKeyframe(map, 5)};
+  // One observation with depth and two without: 4. Without one of the latter 3, without both 2.
+  const LandmarkId landmark = Share(map, ids).front();
+  map.RemoveObservation(landmark, ids[1]);
+  EXPECT_TRUE(map.landmarks().Contains(landmark));
+  map.RemoveObservation(landmark, ids[2]);
+  EXPECT_FALSE(map.landmarks().Contains(landmark));
+  EXPECT_FALSE(map.keyframes().At(ids[0]).landmarks[0].IsValid());
+  EXPECT_FALSE(map.Resolve(landmark).IsValid());
+}
+
+TEST(Map, ReplacingMovesObservationsAndSightings) {
+  Map map;
+  const KeyframeId a = AddKeyframe(map, 5);
+  const KeyframeId b = AddKeyframe(map, 5);
+  const KeyframeId c = AddKeyframe(map, 5);
+  const LandmarkId old = Share(map, {a, b}).front();   // keypoints 0 and 0
+  const LandmarkId kept = Share(map, {b, c}).front();  // keypoints 1 and 0
+  map.CountSightings(old, 10, 5);
+  map.ReplaceLandmark(old, kept);
+  EXPECT_FALSE(map.landmarks().Contains(old));
+  EXPECT_EQ(map.Resolve(old), kept);
+  const Landmark& landmark = map.landmarks().At(kept);
+  ASSERT_EQ(landmark.observations.size(), 3u);
+  EXPECT_EQ(landmark.observations[1].keypoint, 1u);  // b's observation of both is that of `kept`
+  EXPECT_EQ(landmark.support, 3);
+  EXPECT_EQ(map.keyframes().At(a).landmarks[0], kept);
+  EXPECT_FALSE(map.keyframes().At(b).landmarks[0].IsValid());
+  EXPECT_EQ(landmark.visible, 12);
+  EXPECT_EQ(landmark.found, 7);
+}
+
+TEST(Map, ResolveFollowsAChainToItsLivingEnd) {
+  Map map;
+  const KeyframeId keyframe = AddKeyframe(map, 5);
+  std::vector<LandmarkId> ids;
+  for (int i = 0; i < 4; ++i) {
+    ids.push_back(map.AddLandmark({}, keyframe));
+  }
+  map.ReplaceLandmark(ids[0], ids[2]);
+  map.ReplaceLandmark(ids[2], ids[1]);
+  map.ReplaceLandmark(ids[1], ids[3]);
+  for (const LandmarkId id : ids) {
+    EXPECT_EQ(map.Resolve(id), ids[3]);
+  }
+  map.EraseLandmark(ids[3]);
+  for (const LandmarkId id : ids) {
+    EXPECT_FALSE(map.Resolve(id).IsValid());
+  }
+  EXPECT_FALSE(map.Resolve(LandmarkId()).IsValid());
+  EXPECT_FALSE(map.Resolve(LandmarkId(99)).IsValid());
+}
+
+// A root and three keyframes below one another, at random poses.
+class CulledKeyframes : public ::testing::Test {
+ protected:
+  CulledKeyframes() {
+    for (int i = 0; i < 4; ++i) {
+      AddKeyframe(map_, 30, 0, random_.Pose(1.0, 2.0));
+      if (i > 0) {
+        SetParent(map_, Id(i), Id(i - 1));
+      }
+    }
+  }
+  static KeyframeId Id(int i) { return KeyframeId(static_cast<uint32_t>(i)); }
+
+  Map map_;
+  RandomGeometry random_{1};
+};
+
+TEST_F(CulledKeyframes, AreOutOfTheMapWithTheirObservations) {
+  const LandmarkId strong = Share(map_, {Id(0), Id(1), Id(2), Id(3)}).front();
+  const LandmarkId weak = Share(map_, {Id(1), Id(2)}).front();
+  map_.CullKeyframe(Id(1));
+  EXPECT_FALSE(map_.keyframes().Contains(Id(1)));
+  EXPECT_EQ(map_.landmarks().At(strong).support, 3);
+  EXPECT_FALSE(map_.landmarks().Contains(weak));
+  EXPECT_EQ(map_.keyframes().At(Id(2)).parent, Id(0));
+  EXPECT_EQ(map_.keyframes().At(Id(0)).children, std::vector<KeyframeId>{Id(2)});
+  EXPECT_EQ(map_.keyframes().NextId(), Id(4));  // its id is never given again
+}
+
+TEST_F(CulledKeyframes, KeepTheirPose) {
+  std::vector<Rigid3> poses;
+  for (int i = 0; i < 4; ++i) {
+    poses.push_back(map_.CamFromWorld(Id(i)));
+    EXPECT_EQ(Distance(poses.back(), map_.keyframes().At(Id(i)).cam_from_world), 0.0);
+  }
+  for (const int culled : {2, 1, 3}) {
+    map_.CullKeyframe(Id(culled));
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_LT(Distance(map_.CamFromWorld(Id(i)), poses[static_cast<size_t>(i)]), 1e-12);
+    }
+  }
+}
+
+TEST_F(CulledKeyframes, MoveWithTheirParent) {
+  const Rigid3 relative = map_.CamFromWorld(Id(2)) * Inverse(map_.CamFromWorld(Id(1)));
+  map_.CullKeyframe(Id(2));
+  map_.SetPose(Id(1), random_.Pose(1.0, 2.0));
+  EXPECT_LT(Distance(map_.CamFromWorld(Id(2)), relative * map_.CamFromWorld(Id(1))), 1e-12);
+  // Also when the parent is culled in its turn and then the root moves.
+  map_.CullKeyframe(Id(1));
+  map_.SetPose(Id(0), random_.Pose(1.0, 2.0));
+  EXPECT_LT(Distance(map_.CamFromWorld(Id(2)), relative * map_.CamFromWorld(Id(1))), 1e-12);
+}
+
+TEST_F(CulledKeyframes, HaveANearestAncestorAlive) {
+  map_.CullKeyframe(Id(2));
+  map_.CullKeyframe(Id(1));
+  EXPECT_EQ(map_.NearestAlive(Id(2)), Id(0));
+  EXPECT_EQ(map_.NearestAlive(Id(1)), Id(0));
+  EXPECT_EQ(map_.NearestAlive(Id(3)), Id(3));
+}
+
+TEST_F(CulledKeyframes, AreNeverTheRoot) {
+  EXPECT_THROW(map_.CullKeyframe(Id(0)), CheckError);
+  EXPECT_TRUE(map_.keyframes().Contains(Id(0)));
+  map_.CullKeyframe(Id(3));
+  EXPECT_THROW(map_.CullKeyframe(Id(3)), CheckError);
+}
+
+TEST_F(CulledKeyframes, AreFoundByTheirFrame) {
+  map_.CullKeyframe(Id(2));
+  for (uint32_t frame = 0; frame < 5 * kFramesPerKeyframe; ++frame) {
+    const auto found = map_.KeyframeOfFrame(FrameId(frame));
+    const bool is_made = frame % kFramesPerKeyframe == 0 && frame < 4 * kFramesPerKeyframe;
+    ASSERT_EQ(found.has_value(), is_made) << frame;
+    if (is_made) {
+      EXPECT_EQ(*found, KeyframeId(frame / kFramesPerKeyframe));
+    }
+  }
+  EXPECT_FALSE(Map().KeyframeOfFrame(FrameId(0)).has_value());
+}
+
+TEST(MapSnapshot, DoesNotChangeWhenTheLiveMapDoes) {
+  Map live;
+  RandomEdits edits(1);
+  for (int round = 0; round < 15; ++round) {
+    const Map snapshot = live.Snapshot();
+    const std::string before = Dump(snapshot);
+    ASSERT_EQ(Dump(live), before);
+    for (int i = 0; i < 30; ++i) {
+      edits.Edit(live);
+    }
+    EXPECT_NE(Dump(live), before);
+    ASSERT_EQ(Dump(snapshot), before);
+  }
+}
+
+TEST(MapSnapshot, CanBeWrittenWithoutChangingTheLiveMap) {
+  Map live;
+  RandomEdits edits(2);
+  for (int i = 0; i < 200; ++i) {
+    edits.Edit(live);
+  }
+  const std::string before = Dump(live);
+  Map snapshot = live.Snapshot();
+  for (int i = 0; i < 200; ++i) {
+    edits.Edit(snapshot);
+  }
+  EXPECT_NE(Dump(snapshot), before);
+  EXPECT_EQ(Dump(live), before);
+}
+
+}  // namespace
+}  // namespace hullslam

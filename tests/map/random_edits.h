@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hullslam/map/covisibility.h"
+#include "hullslam/map/map.h"
+#include "map/made_map.h"
+#include "support/random_geometry.h"
+
+namespace hullslam {
+
+// Edits a map at random through all of its public edits, but for those of derived data.
+class RandomEdits {
+ public:
+  explicit RandomEdits(uint32_t seed) : random_(seed) {}
+
+  void Edit(Map& map) {
+    const uint32_t kind = random_.Index(12);
+    if (map.keyframes().size() < 3 || kind == 0) {
+      Grow(map);
+    } else if (kind <= 3) {
+      AddLandmark(map);
+    } else if (kind <= 5) {
+      map.AddObservation(AnyLandmark(map), AnyKeyframe(map), random_.Index(kKeypoints));
+    } else if (kind == 6) {
+      RemoveObservation(map);
+    } else if (kind == 7) {
+      Replace(map);
+    } else if (kind == 8) {
+      Cull(map);
+    } else if (kind == 9) {
+      UpdateCovisibility(map, AnyKeyframe(map));
+    } else if (kind == 10) {
+      map.SetPose(AnyKeyframe(map), random_.Pose(1.0, 2.0));
+    } else {
+      Move(map);
+    }
+  }
+
+ private:
+  static constexpr uint32_t kKeypoints = 40;
+
+  // Keyframes come with what they share with those before, as in mapping, or with nothing.
+  void Grow(Map& map) {
+    const KeyframeId id = AddKeyframe(map, kKeypoints, kKeypoints / 3, random_.Pose(1.0, 2.0));
+    for (uint32_t i = 0; i < random_.Index(30) && !map.landmarks().empty(); ++i) {
+      map.AddObservation(AnyLandmark(map), id, random_.Index(kKeypoints));
+    }
+    UpdateCovisibility(map, id);
+    AddLandmark(map);
+  }
+
+  void AddLandmark(Map& map) {
+    const LandmarkId landmark = map.AddLandmark(random_.Vector(3.0), AnyKeyframe(map));
+    for (uint32_t i = 0; i < 1 + random_.Index(5); ++i) {
+      map.AddObservation(landmark, AnyKeyframe(map), random_.Index(kKeypoints));
+    }
+  }
+
+  void RemoveObservation(Map& map) {
+    const LandmarkId id = AnyLandmark(map);
+    const std::vector<Observation>& observations = map.landmarks().At(id).observations;
+    if (!observations.empty()) {
+      map.RemoveObservation(id, observations[random_.Index(observations.size())].keyframe);
+    }
+  }
+
+  void Replace(Map& map) {
+    const LandmarkId a = AnyLandmark(map);
+    const LandmarkId b = AnyLandmark(map);
+    if (a != b) {
+      map.ReplaceLandmark(a, b);
+    }
+  }
+
+  void Cull(Map& map) {
+    const KeyframeId id = AnyKeyframe(map);
+    if (map.keyframes().At(id).parent.IsValid()) {
+      map.CullKeyframe(id);
+    }
+  }
+
+  void Move(Map& map) {
+    const LandmarkId id = AnyLandmark(map);
+    map.SetPosition(id, random_.Vector(3.0));
+    map.CountSightings(id, 2, 1);
+    if (random_.Index(3) == 0) {
+      map.EraseLandmark(id);
+    }
+  }
+
+  // One that is in the map; made where there is none.
+  LandmarkId AnyLandmark(Map& map) {
+    if (map.landmarks().empty()) {
+      return map.AddLandmark(random_.Vector(3.0), AnyKeyframe(map));
+    }
+    std::vector<LandmarkId> all;
+    map.landmarks().ForEach([&](LandmarkId id, const Landmark&) { all.push_back(id); });
+    return all[random_.Index(all.size())];
+  }
+  KeyframeId AnyKeyframe(const Map& map) {
+    std::vector<KeyframeId> all;
+    map.keyframes().ForEach([&](KeyframeId id, const Keyframe&) { all.push_back(id); });
+    return all[random_.Index(all.size())];
+  }
+
+  RandomGeometry random_;
+};
+
+}  // namespace hullslam
