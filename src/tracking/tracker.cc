@@ -71,6 +71,7 @@ void ResolveAll(const Map& map, std::vector<LandmarkId>& landmarks) {
 
 Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options)
     : sensor_(sensor), options_(options) {
+  policy_.min_reference_ratio = options.keyframe_ratio;
   policy_.max_frames_between = static_cast<uint32_t>(std::max(1.0, sensor.frames_per_second));
 }
 

@@ -10,6 +10,8 @@ void TrackingOptions::Bind(OptionTable& options) {
               "landmarks that must be found in a frame, else it counts as lost");
   options.Add("tracking.local_keyframes", &local_keyframes, Range::AtLeast(1),
               "keyframes against whose landmarks a frame is tracked, at most");
+  options.Add("tracking.keyframe_ratio", &keyframe_ratio, Range::Between(0.1, 1.0),
+              "share of the reference keyframe's landmarks below which a keyframe is due");
 }
 
 }  // namespace hullslam

@@ -10,6 +10,10 @@ struct TrackingOptions {
   int min_inliers = 30;         // landmarks found, else a frame counts as lost
   int local_keyframes = 80;     // against whose landmarks a frame is tracked
 
+  // A keyframe is due when a frame finds fewer of the reference keyframe's landmarks than this
+  // share.
+  double keyframe_ratio = 0.8;
+
   void Bind(OptionTable& options);
 };
 
