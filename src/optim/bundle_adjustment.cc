@@ -208,8 +208,9 @@ BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWind
   if (!bundle.Solve(options, options.robust_iterations, true, cancellation, result)) {
     return result;
   }
-  bundle.Classify();
+  // Errors that are not minimised yet say nothing about outliers.
   if (cancellation == nullptr || !cancellation->IsRequested()) {
+    bundle.Classify();
     if (!bundle.Solve(options, options.final_iterations, false, cancellation, result)) {
       return result;
     }

@@ -126,6 +126,20 @@ Rigid3 Minimize(const PoseProblem& problem, Rigid3 pose, const PoseOptimizationO
   return pose;
 }
 
+// Chooses as inliers the observations whose squared error at the result's pose is at most what
+// `bound` says of them.
+template <typename BoundFunction>
+void ChooseInliers(const Intrinsics& camera, std::span<const PoseObservation> observations,
+                   const BoundFunction& bound, PoseOptimizationResult& result) {
+  result.inlier_count = 0;
+  for (size_t i = 0; i < observations.size(); ++i) {
+    const bool is_inlier =
+        Chi2(camera, observations[i], result.cam_from_world) <= bound(observations[i]);
+    result.is_inlier[i] = is_inlier ? 1 : 0;
+    result.inlier_count += is_inlier ? 1 : 0;
+  }
+}
+
 }  // namespace
 
 PoseOptimizationResult OptimizePose(const PinholeCamera& camera, const Rigid3& cam_from_world,
@@ -134,23 +148,19 @@ PoseOptimizationResult OptimizePose(const PinholeCamera& camera, const Rigid3& c
   const Intrinsics intrinsics = ToIntrinsics(camera);
   PoseOptimizationResult result;
   result.cam_from_world = cam_from_world;
-  result.is_inlier.assign(observations.size(), 1);
-  result.inlier_count = static_cast<int>(observations.size());
-  for (int round = 0; round < options.rounds; ++round) {
-    if (result.inlier_count < 3) {
-      result.cam_from_world = cam_from_world;
-      break;
-    }
+  result.is_inlier.assign(observations.size(), 0);
+  // At first all but those behind the camera: their error is infinite and would hide that of the
+  // others.
+  const auto any_finite = [](const PoseObservation&) { return std::numeric_limits<double>::max(); };
+  ChooseInliers(intrinsics, observations, any_finite, result);
+  for (int round = 0; round < options.rounds && result.inlier_count >= 3; ++round) {
     const PoseProblem problem(intrinsics, observations, result.is_inlier,
                               round < options.robust_rounds);
     result.cam_from_world = Minimize(problem, result.cam_from_world, options);
-    result.inlier_count = 0;
-    for (size_t i = 0; i < observations.size(); ++i) {
-      const bool is_inlier =
-          Chi2(intrinsics, observations[i], result.cam_from_world) <= Bound(observations[i]);
-      result.is_inlier[i] = is_inlier ? 1 : 0;
-      result.inlier_count += is_inlier ? 1 : 0;
-    }
+    ChooseInliers(intrinsics, observations, Bound, result);
+  }
+  if (result.inlier_count < 3) {
+    result.cam_from_world = cam_from_world;
   }
   return result;
 }

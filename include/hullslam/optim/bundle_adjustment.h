@@ -43,7 +43,8 @@ struct BundleResult {
 
 // Minimises the reprojection errors of the window's landmarks in its keyframes, in Ceres with a
 // Schur complement on the points. Ends early, with what it has, when `cancellation` (may be null)
-// asks.
+// asks; before the first round is done it calls no observation an outlier but those of points that
+// are not in front of the camera.
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& options, const Cancellation* cancellation);
 

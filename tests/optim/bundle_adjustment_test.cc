@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/optim/bundle_adjustment.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hullslam/map/covisibility.h"
+#include "hullslam/map/invariants.h"
+#include "hullslam/map/spanning_tree.h"
+#include "map/made_map.h"
+#include "support/random_geometry.h"
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
+
+std::vector<KeyframeId> Ids(const std::vector<uint32_t>& numbers) {
+  std::vector<KeyframeId> ids;
+  for (const uint32_t number : numbers) {
+    ids.emplace_back(number);
+  }
+  return ids;
+}
+
+// Keyframes in a row, each sharing 20 landmarks with the next and 16 with the one after it.
+Map MakeChain(uint32_t length) {
+  Map map;
+  for (uint32_t i = 0; i < length; ++i) {
+    AddKeyframe(map, 100);
+    if (i >= 1) {
+      Share(map, Ids({i - 1, i}), 20);
+    }
+    if (i >= 2) {
+      Share(map, Ids({i - 2, i}), 16);
+    }
+    UpdateCovisibility(map, KeyframeId(i));
+  }
+  return map;
+}
+
+TEST(LocalWindow, MovesTheNeighboursAndFixesWhoSeesTheSame) {
+  const Map map = MakeChain(10);
+  const BundleWindow window = LocalWindow(map, KeyframeId(9), 20, 40);
+  EXPECT_EQ(window.moving, Ids({7, 8, 9}));
+  EXPECT_EQ(window.fixed, Ids({5, 6}));
+  // 20 + 16 with older ones at each of the three; none is counted twice.
+  EXPECT_EQ(window.landmarks.size(), 3u * 36u);
+  EXPECT_TRUE(std::is_sorted(window.landmarks.begin(), window.landmarks.end()));
+}
+
+TEST(LocalWindow, RootNeverMoves) {
+  const Map map = MakeChain(10);
+  const BundleWindow window = LocalWindow(map, KeyframeId(1), 20, 40);
+  EXPECT_EQ(window.moving, Ids({1, 2, 3}));
+  EXPECT_EQ(window.fixed, Ids({0, 4, 5}));
+  const BundleWindow at_root = LocalWindow(map, KeyframeId(0), 20, 40);
+  EXPECT_EQ(at_root.moving, Ids({1, 2}));
+  EXPECT_EQ(at_root.fixed, Ids({0, 3, 4}));
+}
+
+TEST(LocalWindow, IsCappedAndKeepsTheStrongest) {
+  const Map map = MakeChain(10);
+  const BundleWindow two = LocalWindow(map, KeyframeId(9), 2, 40);
+  EXPECT_EQ(two.moving, Ids({8, 9}));  // 8 shares 20, 7 only 16
+  EXPECT_EQ(two.fixed, Ids({6, 7}));
+  const BundleWindow one_fixed = LocalWindow(map, KeyframeId(9), 2, 1);
+  EXPECT_EQ(one_fixed.fixed, Ids({7}));  // of 36 against 16 observations
+  EXPECT_EQ(LocalWindow(map, KeyframeId(9), 1, 40).moving, Ids({9}));
+}
+
+TEST(LocalWindow, SomethingIsAlwaysFixed) {
+  Map map = MakeChain(1);
+  EXPECT_EQ(LocalWindow(map, KeyframeId(0), 20, 40).fixed, Ids({0}));
+  EXPECT_TRUE(LocalWindow(map, KeyframeId(0), 20, 40).moving.empty());
+  // Two more that see nothing of what the root sees.
+  for (int i = 0; i < 2; ++i) {
+    SetParent(map, AddKeyframe(map, 50), KeyframeId(0));
+  }
+  Share(map, Ids({1, 2}), 20);
+  UpdateCovisibility(map, KeyframeId(2));
+  const BundleWindow window = LocalWindow(map, KeyframeId(2), 20, 40);
+  EXPECT_EQ(window.moving, Ids({2}));
+  EXPECT_EQ(window.fixed, Ids({1}));
+  EXPECT_EQ(LocalWindow(MakeChain(10), KeyframeId(9), 20, 0).fixed, Ids({7}));
+}
+
+// A map of the made-up world with its poses and points pushed off the truth, but for the first two
+// keyframes.
+class BundleAdjustment : public ::testing::Test {
+ protected:
+  static constexpr BundleOptions kPrecise{
+      .robust_iterations = 20, .final_iterations = 20, .function_tolerance = 1e-14};
+
+  void Perturb(double angle, double distance) {
+    for (uint32_t i = 2; i < made_.views.size(); ++i) {
+      const Rigid3& pose = made_.map.keyframes().At(KeyframeId(i)).cam_from_world;
+      made_.map.SetPose(KeyframeId(i), random_.Pose(angle, distance) * pose);
+    }
+    for (const LandmarkId id : made_.landmarks) {
+      if (id.IsValid()) {
+        made_.map.SetPosition(id, made_.map.landmarks().At(id).position + random_.Vector(distance));
+      }
+    }
+  }
+  BundleWindow Window() const {
+    BundleWindow window;
+    window.fixed = Ids({0, 1});
+    window.moving = Ids({2, 3, 4, 5});
+    for (const LandmarkId id : made_.landmarks) {
+      if (id.IsValid()) {
+        window.landmarks.push_back(id);
+      }
+    }
+    return window;
+  }
+  // Lets each of the first `count` landmarks of `keyframe` be observed where another one is.
+  std::set<std::pair<LandmarkId, KeyframeId>> PlantOutliers(KeyframeId keyframe, size_t count) {
+    std::set<std::pair<LandmarkId, KeyframeId>> planted;
+    for (size_t i = 0; i < count; ++i) {
+      const std::vector<LandmarkId> slots = made_.map.keyframes().At(keyframe).landmarks;
+      std::vector<uint32_t> used;
+      for (uint32_t k = 0; k < slots.size(); ++k) {
+        if (slots[k].IsValid() && !planted.contains({slots[k], keyframe}) &&
+            made_.map.landmarks().At(slots[k]).observations.size() > 4) {
+          used.push_back(k);
+        }
+      }
+      const uint32_t a = used.front();
+      const uint32_t b = used[used.size() / 2];
+      made_.map.RemoveObservation(slots[a], keyframe);
+      made_.map.RemoveObservation(slots[b], keyframe);
+      made_.map.AddObservation(slots[a], keyframe, b);
+      made_.map.AddObservation(slots[b], keyframe, a);
+      planted.insert({slots[a], keyframe});
+      planted.insert({slots[b], keyframe});
+    }
+    return planted;
+  }
+  double WorstPoseError(const BundleResult& result) const {
+    double worst = 0.0;
+    for (const auto& [id, pose] : result.poses) {
+      worst = std::max(worst, Distance(pose, SyntheticWorld::CamFromWorld(10.0 * id.value)));
+    }
+    return worst;
+  }
+  double WorstPointError(const BundleResult& result) const {
+    double worst = 0.0;
+    for (const auto& [id, position] : result.positions) {
+      const auto point = std::find(made_.landmarks.begin(), made_.landmarks.end(), id);
+      const auto index = static_cast<size_t>(point - made_.landmarks.begin());
+      worst = std::max(worst, (position - world_.points()[index]).norm());
+    }
+    return worst;
+  }
+
+  RandomGeometry random_{1};
+  const SyntheticWorld world_{{.points = 300, .depth_share = 0.7}};
+  SyntheticMap made_ = MakeSyntheticMap(world_, {0, 10, 20, 30, 40, 50});
+};
+
+TEST_F(BundleAdjustment, RecoversTheTruth) {
+  Perturb(0.01, 0.03);
+  const BundleWindow window = Window();
+  const BundleResult result = AdjustBundle(made_.map, world_.sensor(), window, kPrecise, nullptr);
+  ASSERT_TRUE(result.is_usable);
+  ASSERT_EQ(result.poses.size(), 4u);
+  ASSERT_EQ(result.positions.size(), window.landmarks.size());
+  // What is left is the rounding of the pixels to float.
+  EXPECT_LT(WorstPoseError(result), 1e-5);
+  EXPECT_LT(WorstPointError(result), 1e-4);
+  EXPECT_TRUE(result.outliers.empty());
+  EXPECT_GT(result.residuals, 1000);
+}
+
+TEST_F(BundleAdjustment, DefaultsBringItNear) {
+  Perturb(0.01, 0.03);
+  const BundleResult result = AdjustBundle(made_.map, world_.sensor(), Window(), {}, nullptr);
+  ASSERT_TRUE(result.is_usable);
+  EXPECT_LT(WorstPoseError(result), 1e-3);
+  EXPECT_LE(result.iterations, 5 + 10 + 2);  // Ceres counts the start of each round
+}
+
+TEST_F(BundleAdjustment, AtTheTruthStaysThere) {
+  const BundleResult result = AdjustBundle(made_.map, world_.sensor(), Window(), kPrecise, nullptr);
+  ASSERT_TRUE(result.is_usable);
+  EXPECT_LT(WorstPoseError(result), 1e-5);
+  EXPECT_TRUE(result.outliers.empty());
+}
+
+TEST_F(BundleAdjustment, MarksWhatIsWrongAndNothingElse) {
+  const auto planted = PlantOutliers(KeyframeId(3), 10);
+  ASSERT_EQ(planted.size(), 20u);
+  ASSERT_TRUE(FindViolations(made_.map).empty());
+  Perturb(0.005, 0.02);
+  const BundleResult result = AdjustBundle(made_.map, world_.sensor(), Window(), kPrecise, nullptr);
+  ASSERT_TRUE(result.is_usable);
+  EXPECT_EQ(
+      (std::set<std::pair<LandmarkId, KeyframeId>>(result.outliers.begin(), result.outliers.end())),
+      planted);
+  EXPECT_LT(WorstPoseError(result), 1e-5);
+  EXPECT_LT(WorstPointError(result), 1e-4);
+}
+
+TEST_F(BundleAdjustment, APointBehindACameraIsAnOutlierThere) {
+  const LandmarkId id = Window().landmarks[5];
+  const Landmark& landmark = made_.map.landmarks().At(id);
+  const size_t observations = landmark.observations.size();
+  made_.map.SetPosition(id, {0.0, 0.0, -5.0});
+  const BundleResult result = AdjustBundle(made_.map, world_.sensor(), Window(), kPrecise, nullptr);
+  ASSERT_TRUE(result.is_usable);
+  EXPECT_EQ(result.outliers.size(), observations);
+  for (const auto& [outlier, keyframe] : result.outliers) {
+    EXPECT_EQ(outlier, id);
+  }
+}
+
+TEST_F(BundleAdjustment, MapIsNotTouched) {
+  Perturb(0.01, 0.03);
+  const std::string before = Dump(made_.map);
+  AdjustBundle(made_.map, world_.sensor(), Window(), {}, nullptr);
+  EXPECT_EQ(Dump(made_.map), before);
+}
+
+TEST_F(BundleAdjustment, SameInputGivesTheSameBits) {
+  Perturb(0.01, 0.03);
+  const BundleResult first = AdjustBundle(made_.map, world_.sensor(), Window(), {}, nullptr);
+  const BundleResult second = AdjustBundle(made_.map, world_.sensor(), Window(), {}, nullptr);
+  ASSERT_EQ(first.poses.size(), second.poses.size());
+  for (size_t i = 0; i < first.poses.size(); ++i) {
+    EXPECT_EQ(first.poses[i].second.rotation.coeffs(), second.poses[i].second.rotation.coeffs());
+    EXPECT_EQ(first.poses[i].second.translation, second.poses[i].second.translation);
+  }
+  EXPECT_EQ(first.positions, second.positions);
+  EXPECT_EQ(first.outliers, second.outliers);
+}
+
+// Errors that were not minimised say nothing about outliers.
+TEST_F(BundleAdjustment, AskedToStopAtOnceItGivesTheStartBackWithoutOutliers) {
+  Perturb(0.01, 0.03);
+  Cancellation cancellation;
+  cancellation.Request();
+  const BundleResult result =
+      AdjustBundle(made_.map, world_.sensor(), Window(), kPrecise, &cancellation);
+  ASSERT_TRUE(result.is_usable);
+  EXPECT_EQ(result.iterations, 1);  // the look at the start
+  EXPECT_TRUE(result.outliers.empty());
+  ASSERT_EQ(result.poses.size(), 4u);
+  for (const auto& [id, pose] : result.poses) {
+    EXPECT_LT(Distance(pose, made_.map.keyframes().At(id).cam_from_world), 1e-14);
+  }
+  for (const auto& [id, position] : result.positions) {
+    EXPECT_EQ(position, made_.map.landmarks().At(id).position);
+  }
+}
+
+TEST_F(BundleAdjustment, ACancellationThatNobodyRequestsChangesNothing) {
+  Perturb(0.01, 0.03);
+  const Cancellation cancellation;
+  const BundleResult with = AdjustBundle(made_.map, world_.sensor(), Window(), {}, &cancellation);
+  const BundleResult without = AdjustBundle(made_.map, world_.sensor(), Window(), {}, nullptr);
+  EXPECT_EQ(with.positions, without.positions);
+  EXPECT_EQ(with.iterations, without.iterations);
+}
+
+TEST_F(BundleAdjustment, OfNothingIsNothing) {
+  const BundleResult nothing = AdjustBundle(made_.map, world_.sensor(), {}, {}, nullptr);
+  EXPECT_TRUE(nothing.poses.empty());
+  EXPECT_TRUE(nothing.positions.empty());
+  // Keyframes that see nothing stay where they are.
+  const BundleWindow window{.moving = Ids({3}), .fixed = Ids({0}), .landmarks = {}};
+  const BundleResult idle = AdjustBundle(made_.map, world_.sensor(), window, {}, nullptr);
+  for (const auto& [id, pose] : idle.poses) {
+    EXPECT_LT(Distance(pose, made_.map.keyframes().At(id).cam_from_world), 1e-14);
+  }
+}
+
+TEST_F(BundleAdjustment, ApplyingWritesPosesPositionsAndRemovesOutliers) {
+  const auto planted = PlantOutliers(KeyframeId(3), 5);
+  Perturb(0.005, 0.02);
+  const BundleResult result = AdjustBundle(made_.map, world_.sensor(), Window(), kPrecise, nullptr);
+  ApplyBundle(made_.map, result, world_.sensor().levels);
+  EXPECT_EQ(FindViolations(made_.map), std::vector<std::string>());
+  for (const auto& [id, pose] : result.poses) {
+    EXPECT_EQ(Distance(made_.map.keyframes().At(id).cam_from_world, pose), 0.0);
+  }
+  for (const auto& [id, position] : result.positions) {
+    const Landmark& landmark = made_.map.landmarks().At(id);
+    EXPECT_EQ(landmark.position, position);
+    // Distances are those from where the cameras are now.
+    const Keyframe& reference = made_.map.keyframes().At(landmark.reference);
+    EXPECT_GE(landmark.max_distance, (reference.cam_from_world * position).norm() * (1.0 - 1e-9));
+  }
+  for (const auto& [landmark, keyframe] : planted) {
+    for (const Observation& observation : made_.map.landmarks().At(landmark).observations) {
+      EXPECT_NE(observation.keyframe, keyframe);
+    }
+  }
+}
+
+TEST_F(BundleAdjustment, ApplyingPassesOverWhatIsGoneMeanwhile) {
+  const auto planted = PlantOutliers(KeyframeId(3), 5);
+  Perturb(0.005, 0.02);
+  const BundleResult result = AdjustBundle(made_.map, world_.sensor(), Window(), kPrecise, nullptr);
+  ASSERT_EQ(result.outliers.size(), planted.size());
+  made_.map.CullKeyframe(KeyframeId(4));
+  const auto [first, keyframe] = result.outliers[0];
+  made_.map.EraseLandmark(first);
+  made_.map.RemoveObservation(result.outliers[1].first, keyframe);
+  const LandmarkId newcomer = made_.map.AddLandmark({1.0, 1.0, 3.0}, KeyframeId(5));
+  const Rigid3 culled_from_parent =
+      made_.map.CamFromWorld(KeyframeId(4)) *
+      Inverse(made_.map.CamFromWorld(made_.map.NearestAlive(KeyframeId(4))));
+
+  ApplyBundle(made_.map, result, world_.sensor().levels);
+  EXPECT_EQ(FindViolations(made_.map), std::vector<std::string>());
+  EXPECT_FALSE(made_.map.keyframes().Contains(KeyframeId(4)));
+  EXPECT_FALSE(made_.map.landmarks().Contains(first));
+  EXPECT_EQ(made_.map.landmarks().At(newcomer).position, Eigen::Vector3d(1.0, 1.0, 3.0));
+  // The culled keyframe moves with its parent.
+  EXPECT_LT(
+      Distance(made_.map.CamFromWorld(KeyframeId(4)),
+               culled_from_parent * made_.map.CamFromWorld(made_.map.NearestAlive(KeyframeId(4)))),
+      1e-12);
+  EXPECT_LT(Distance(made_.map.CamFromWorld(KeyframeId(5)), SyntheticWorld::CamFromWorld(50)),
+            1e-5);
+}
+
+}  // namespace
+}  // namespace hullslam

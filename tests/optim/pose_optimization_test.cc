@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/optim/pose_optimization.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "hullslam/costs/projection.h"
+#include "hullslam/optim/intrinsics.h"
+#include "support/random_geometry.h"
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+const PinholeCamera kCamera = SyntheticSensor().camera;
+
+double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
+
+class PoseOptimization : public ::testing::Test {
+ protected:
+  // `count` exact observations of random points in view of `true_pose_`.
+  std::vector<PoseObservation> Observe(int count, bool has_depth) {
+    std::vector<PoseObservation> observations;
+    for (int i = 0; i < count; ++i) {
+      const Eigen::Vector3d in_cam =
+          random_.Vector(1.0).cwiseProduct(Eigen::Vector3d(1.2, 0.9, 2.0)) +
+          Eigen::Vector3d(0.0, 0.0, 4.0);
+      PoseObservation& observation = observations.emplace_back();
+      observation.point = Inverse(true_pose_) * in_cam;
+      observation.measured = ProjectRgbd(ToIntrinsics(kCamera), in_cam);
+      observation.has_depth = has_depth;
+      if (!has_depth) {
+        observation.measured.z() = -1.0;
+      }
+    }
+    return observations;
+  }
+  Rigid3 Start() { return random_.Pose(0.02, 0.05) * true_pose_; }
+
+  RandomGeometry random_{1};
+  const Rigid3 true_pose_ = random_.Pose(1.0, 2.0);
+};
+
+TEST_F(PoseOptimization, RecoversTheTruePoseWithDepth) {
+  for (int i = 0; i < 10; ++i) {
+    const auto observations = Observe(100, true);
+    const PoseOptimizationResult result = OptimizePose(kCamera, Start(), observations);
+    EXPECT_LT(Distance(result.cam_from_world, true_pose_), 1e-9);
+    EXPECT_EQ(result.inlier_count, 100);
+    EXPECT_EQ(result.is_inlier, std::vector<uint8_t>(100, 1));
+  }
+}
+
+TEST_F(PoseOptimization, RecoversTheTruePoseWithoutDepth) {
+  for (int i = 0; i < 10; ++i) {
+    const auto observations = Observe(100, false);
+    const PoseOptimizationResult result = OptimizePose(kCamera, Start(), observations);
+    EXPECT_LT(Distance(result.cam_from_world, true_pose_), 1e-9);
+    EXPECT_EQ(result.inlier_count, 100);
+  }
+}
+
+TEST_F(PoseOptimization, NeedsNoMoreThanThreePointsWithDepth) {
+  const auto observations = Observe(3, true);
+  const PoseOptimizationResult result = OptimizePose(kCamera, Start(), observations);
+  EXPECT_LT(Distance(result.cam_from_world, true_pose_), 1e-7);
+  EXPECT_EQ(result.inlier_count, 3);
+}
+
+TEST_F(PoseOptimization, FlagsThirtyPercentOfOutliers) {
+  for (const bool has_depth : {true, false}) {
+    auto observations = Observe(100, has_depth);
+    for (size_t i = 0; i < 30; ++i) {
+      const double side = i % 2 == 0 ? 1.0 : -1.0;
+      observations[3 * i].measured +=
+          side * Eigen::Vector3d(random_.Number(20, 100), random_.Number(-100, 100), 0.0);
+    }
+    const PoseOptimizationResult result = OptimizePose(kCamera, Start(), observations);
+    EXPECT_LT(Distance(result.cam_from_world, true_pose_), 1e-9);
+    EXPECT_EQ(result.inlier_count, 70);
+    for (size_t i = 0; i < observations.size(); ++i) {
+      EXPECT_EQ(result.is_inlier[i], i % 3 == 0 && i < 90 ? 0 : 1) << i;
+    }
+  }
+}
+
+TEST_F(PoseOptimization, AWrongDepthAloneMakesAnOutlier) {
+  auto observations = Observe(50, true);
+  observations[7].measured.z() -= 10.0;
+  observations[8].measured.z() -= 10.0;
+  observations[8].has_depth = false;  // then it is not looked at
+  const PoseOptimizationResult result = OptimizePose(kCamera, Start(), observations);
+  EXPECT_EQ(result.inlier_count, 49);
+  EXPECT_EQ(result.is_inlier[7], 0);
+}
+
+TEST_F(PoseOptimization, ErrorsCountInSigmas) {
+  auto observations = Observe(100, false);
+  observations[4].measured.x() += 4.0;
+  observations[5].measured.x() += 4.0;
+  observations[5].inverse_sigma2 = 0.25;
+  const PoseOptimizationResult result = OptimizePose(kCamera, true_pose_, observations);
+  EXPECT_EQ(result.is_inlier[4], 0);
+  EXPECT_EQ(result.is_inlier[5], 1);
+}
+
+TEST_F(PoseOptimization, NoiseLeavesAnErrorOfItsSize) {
+  auto observations = Observe(200, true);
+  std::mt19937 generator(2);
+  std::normal_distribution<double> noise;
+  for (PoseObservation& observation : observations) {
+    observation.measured += Eigen::Vector3d(noise(generator), noise(generator), noise(generator));
+  }
+  const PoseOptimizationResult result = OptimizePose(kCamera, Start(), observations);
+  // About sigma / focal length / sqrt(points) times the depth.
+  EXPECT_LT(Distance(result.cam_from_world, true_pose_), 0.005);
+  EXPECT_GT(Distance(result.cam_from_world, true_pose_), 1e-6);
+  EXPECT_GT(result.inlier_count, 175);  // 95 % are expected
+  EXPECT_EQ(result.inlier_count,
+            std::accumulate(result.is_inlier.begin(), result.is_inlier.end(), 0));
+}
+
+TEST_F(PoseOptimization, DoesNotDependOnTheWorldFrame) {
+  const auto observations = Observe(60, true);
+  const Rigid3 start = Start();
+  const Rigid3 new_from_old = random_.Pose(2.0, 5.0);
+  auto moved = observations;
+  for (PoseObservation& observation : moved) {
+    observation.point = new_from_old * observation.point;
+  }
+  const Rigid3 expected = OptimizePose(kCamera, start, observations).cam_from_world;
+  const Rigid3 found =
+      OptimizePose(kCamera, start * Inverse(new_from_old), moved).cam_from_world * new_from_old;
+  EXPECT_LT(Distance(found, expected), 1e-9);
+}
+
+TEST_F(PoseOptimization, GivesTheStartBackForFewerThanThreePoints) {
+  const Rigid3 start = Start();
+  for (const int count : {0, 1, 2}) {
+    const auto observations = Observe(count, true);
+    const PoseOptimizationResult result = OptimizePose(kCamera, start, observations);
+    EXPECT_EQ(Distance(result.cam_from_world, start), 0.0);
+    EXPECT_LT(result.inlier_count, 3);
+    EXPECT_EQ(result.is_inlier.size(), static_cast<size_t>(count));
+  }
+}
+
+// Also where the last round is the one that finds out.
+TEST_F(PoseOptimization, GivesTheStartBackForFewerThanThreeInliers) {
+  auto observations = Observe(8, true);
+  for (PoseObservation& observation : observations) {
+    observation.measured = {random_.Number(0, 640), random_.Number(0, 480), random_.Number(0, 640)};
+  }
+  const Rigid3 start = Start();
+  for (const int rounds : {1, 2, 4}) {
+    const PoseOptimizationResult result =
+        OptimizePose(kCamera, start, observations, {.rounds = rounds});
+    ASSERT_LT(result.inlier_count, 3);
+    EXPECT_EQ(Distance(result.cam_from_world, start), 0.0) << rounds;
+  }
+}
+
+// A wrong match may lie behind the camera, where it has no error to be made less.
+TEST_F(PoseOptimization, APointBehindTheCameraDoesNotStopTheOthers) {
+  auto observations = Observe(50, true);
+  observations[20].point = Inverse(true_pose_) * Eigen::Vector3d(0.1, 0.1, -2.0);
+  // So far off that no observation is an inlier at the start.
+  const Rigid3 start = Rigid3(ExpSo3({0.03, -0.04, 0.02}), {0.05, 0.05, -0.05}) * true_pose_;
+  const PoseOptimizationResult result = OptimizePose(kCamera, start, observations);
+  EXPECT_LT(Distance(result.cam_from_world, true_pose_), 1e-9);
+  EXPECT_EQ(result.inlier_count, 49);
+  EXPECT_EQ(result.is_inlier[20], 0);
+}
+
+TEST_F(PoseOptimization, SameInputGivesTheSameBits) {
+  const auto observations = Observe(100, false);
+  const Rigid3 start = Start();
+  const Rigid3 first = OptimizePose(kCamera, start, observations).cam_from_world;
+  const Rigid3 second = OptimizePose(kCamera, start, observations).cam_from_world;
+  EXPECT_EQ(first.rotation.coeffs(), second.rotation.coeffs());
+  EXPECT_EQ(first.translation, second.translation);
+}
+
+}  // namespace
+}  // namespace hullslam
