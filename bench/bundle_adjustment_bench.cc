@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Local bundle adjustment around the newest keyframe of a made-up map, with the numbers of
+// keyframes that mapping uses by default and with fewer.
+#include <benchmark/benchmark.h>
+
+#include "hullslam/mapping/mapping_options.h"
+#include "hullslam/optim/bundle_adjustment.h"
+#include "made_map.h"
+
+namespace hullslam {
+namespace {
+
+void LocalBundleAdjustment(benchmark::State& state) {
+  const Sensor sensor = BenchSensor();
+  const Map map = MakeBenchMap(60, sensor);
+  const BundleWindow window = LocalWindow(map, KeyframeId(59), static_cast<size_t>(state.range(0)),
+                                          static_cast<size_t>(MappingOptions().fixed_keyframes));
+  BundleResult result;
+  for (auto _ : state) {
+    result = AdjustBundle(map, sensor, window, {}, nullptr);
+  }
+  state.counters["moving"] = static_cast<double>(window.moving.size());
+  state.counters["fixed"] = static_cast<double>(window.fixed.size());
+  state.counters["landmarks"] = static_cast<double>(window.landmarks.size());
+  state.counters["residuals"] = result.residuals;
+  state.counters["iterations"] = result.iterations;
+}
+BENCHMARK(LocalBundleAdjustment)
+    ->ArgName("max_moving")
+    ->Arg(5)
+    ->Arg(MappingOptions().local_keyframes)
+    ->Unit(benchmark::kMillisecond);
+
+void Window(benchmark::State& state) {
+  const Map map = MakeBenchMap(60, BenchSensor());
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(LocalWindow(map, KeyframeId(59),
+                                         static_cast<size_t>(MappingOptions().local_keyframes),
+                                         static_cast<size_t>(MappingOptions().fixed_keyframes)));
+  }
+}
+BENCHMARK(Window)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace hullslam
+
+BENCHMARK_MAIN();

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "hullslam/map/covisibility.h"
+#include "hullslam/map/map.h"
+#include "hullslam/map/sensor.h"
+
+namespace hullslam {
+
+inline Sensor BenchSensor() {
+  Sensor sensor;
+  sensor.camera = {.fx = 500.0, .fy = 500.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
+  sensor.bounds = sensor.camera.UndistortedBounds();
+  sensor.levels = ScaleLevels::Create(8, 1.2);
+  sensor.close_depth = 3.2;
+  return sensor;
+}
+
+// Frame `number` of a camera at `cam_from_world` that sees `points` with 0.5 px of noise. `seen`
+// gets the point of every keypoint.
+inline std::shared_ptr<const Frame> MakeBenchFrame(uint32_t number, const Sensor& sensor,
+                                                   const Rigid3& cam_from_world,
+                                                   const std::vector<Eigen::Vector3d>& points,
+                                                   std::vector<size_t>& seen) {
+  std::mt19937 random(number);
+  std::normal_distribution<double> noise(0.0, 0.5);
+  auto frame = std::make_shared<Frame>();
+  frame->id = FrameId(number);
+  FrameFeatures& features = frame->features;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d in_cam = cam_from_world * points[i];
+    const Eigen::Vector2d pixel = sensor.camera.Project(in_cam);
+    if (!sensor.bounds.Contains(pixel)) {
+      continue;
+    }
+    Keypoint& keypoint = features.keypoints.emplace_back();
+    keypoint.undistorted = (pixel + Eigen::Vector2d(noise(random), noise(random))).cast<float>();
+    keypoint.raw = keypoint.undistorted;
+    features.descriptors.push_back({i, i * i, ~i, 7 * i});
+    features.depth.push_back(static_cast<float>(in_cam.z()));
+    features.right_u.push_back(keypoint.raw.x() -
+                               static_cast<float>(sensor.camera.bf / in_cam.z()));
+    seen.push_back(i);
+  }
+  return frame;
+}
+
+// A camera that moves sideways past a wall of random points, a keyframe every 10 cm. Each sees
+// about 800 points, and each point is seen by about 25 keyframes. The positions of the landmarks
+// are 1 cm off; their ids are in the order of the way, as in mapping.
+inline Map MakeBenchMap(uint32_t keyframes, const Sensor& sensor) {
+  constexpr double kSpacing = 0.1;  // m
+  const double length = kSpacing * keyframes + 3.0;
+  std::mt19937 random(1);
+  const auto number = [&random](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  std::vector<Eigen::Vector3d> points(static_cast<size_t>(400.0 * length));
+  for (Eigen::Vector3d& point : points) {
+    point = {number(-1.5, length - 1.5), number(-0.8, 0.8), number(1.8, 2.2)};
+  }
+  std::sort(points.begin(), points.end(),
+            [](const auto& a, const auto& b) { return a.x() < b.x(); });
+  std::normal_distribution<double> noise(0.0, 0.01);
+  Map map;
+  std::vector<LandmarkId> landmarks;
+  for (const Eigen::Vector3d& point : points) {
+    const Eigen::Vector3d error(noise(random), noise(random), noise(random));
+    landmarks.push_back(map.AddLandmark(point + error, KeyframeId(0)));
+  }
+  for (uint32_t k = 0; k < keyframes; ++k) {
+    const Rigid3 cam_from_world(Eigen::Quaterniond::Identity(), {-kSpacing * k, 0.0, 0.0});
+    std::vector<size_t> seen;
+    const KeyframeId id =
+        map.AddKeyframe(MakeBenchFrame(k, sensor, cam_from_world, points, seen), cam_from_world);
+    for (uint32_t i = 0; i < seen.size(); ++i) {
+      map.AddObservation(landmarks[seen[i]], id, i);
+    }
+    UpdateCovisibility(map, id);
+  }
+  return map;
+}
+
+}  // namespace hullslam
