@@ -49,7 +49,7 @@ class NormalTable {
   float operator()(uint64_t word) const { return quantiles_[word & (quantiles_.size() - 1)]; }
 
  private:
-  std::array<float, size_t{1} << kBits> quantiles_;
+  std::array<float, size_t{1} << kBits> quantiles_{};
 };
 
 }  // namespace hullslam

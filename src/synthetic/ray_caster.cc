@@ -58,8 +58,8 @@ SceneHandle NewScene(RTCDevice device) {
 // Casts the packet's rays, given in the frame of `scene`, and keeps hits nearer than the packet's.
 void CastIn(RTCScene scene, const Eigen::Vector3f& origin,
             const std::array<Eigen::Vector3f, RayPacket::kSize>& direction, RayPacket& packet) {
-  RTCRayHit8 query;
-  alignas(32) std::array<int, RayPacket::kSize> valid;
+  RTCRayHit8 query{};
+  alignas(32) std::array<int, RayPacket::kSize> valid{};
   valid.fill(-1);
   for (size_t i = 0; i < RayPacket::kSize; ++i) {
     query.ray.org_x[i] = origin.x();
@@ -77,7 +77,7 @@ void CastIn(RTCScene scene, const Eigen::Vector3f& origin,
     query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
-  RTCIntersectContext context;
+  RTCIntersectContext context{};
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect8(valid.data(), scene, &context, &query);

@@ -22,8 +22,8 @@ struct PlacedPart {
 struct RayPacket {
   static constexpr int kSize = 8;
   std::array<Eigen::Vector3f, kSize> direction;  // world frame, of any length
-  std::array<float, kSize> distance;             // to the first hit, in lengths of `direction`
-  std::array<int, kSize> part;                   // index in RayCaster::parts(), -1 for no hit
+  std::array<float, kSize> distance{};           // to the first hit, in lengths of `direction`
+  std::array<int, kSize> part{};                 // index in RayCaster::parts(), -1 for no hit
 };
 
 // First hits of rays with a scene, by Embree. All static parts are one acceleration structure;

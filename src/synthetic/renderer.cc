@@ -14,6 +14,10 @@ using Eigen::Matrix3f;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
+// Blocks of four by two pixels are cast together.
+constexpr int kBlockColumns = 4;
+constexpr int kBlockRows = RayPacket::kSize / kBlockColumns;
+
 struct Placement {
   Matrix3f part_from_world;
   Vector3f centre;  // world frame
@@ -177,25 +181,23 @@ Vector3f Renderer::TextureColour(const Material& material, const Vector3f& point
   // `max_samples` samples in that direction keep the detail that the other one has.
   const float across = distance / static_cast<float>(camera_.fx);
   const float cosine = std::max(0.05F, std::abs(normal.dot(direction)));
-  const int samples = std::min(max_samples, static_cast<int>(1.0F / cosine + 0.5F));
+  const int samples = std::min(max_samples, static_cast<int>(1.0F / cosine));
   Vector3f along = direction - normal.dot(direction) * normal;
   along *= across / cosine / std::max(1e-3F, along.norm());
   const float width = std::max(across, across / cosine / static_cast<float>(samples));
   const float tile = axis == 0 ? material.tile.y() : material.tile.x();
   const Texture& texture = scene_.textures[static_cast<size_t>(material.texture)];
   const float level = texture.LevelOfDetail(width / tile);
-  const auto sample_at = [&](float shift) {
-    // The offset is that of the face seen from outside, whichever way the coordinate runs.
-    const Vector3f p = point + shift * along;
-    const Vector2f uv = PlaneCoordinates(axis, side, p.cwiseQuotient(material.tile)) +
-                        Vector2f((axis == 0 ? material.offset.y() : material.offset.x()) / tile,
-                                 axis == 2 ? material.offset.y() / material.tile.y()
-                                           : material.offset.z() / material.tile.z());
-    return texture.Sample(uv, level);
-  };
+  // The offset is that of the face seen from outside, whichever way the coordinate runs.
+  const Vector2f offset((axis == 0 ? material.offset.y() : material.offset.x()) / tile,
+                        axis == 2 ? material.offset.y() / material.tile.y()
+                                  : material.offset.z() / material.tile.z());
+  const Vector2f middle = PlaneCoordinates(axis, side, point.cwiseQuotient(material.tile)) + offset;
+  const Vector2f reach = PlaneCoordinates(axis, side, along.cwiseQuotient(material.tile));
   Vector3f sum = Vector3f::Zero();
   for (int i = 0; i < samples; ++i) {
-    sum += sample_at((static_cast<float>(i) + 0.5F) / static_cast<float>(samples) - 0.5F);
+    const float shift = (static_cast<float>(i) + 0.5F) / static_cast<float>(samples) - 0.5F;
+    sum += texture.Sample(middle + shift * reach, level);
   }
   return (sum / static_cast<float>(samples)).cwiseProduct(material.tint);
 }
@@ -223,33 +225,43 @@ Renderer::Fragment Renderer::Shade(const View& view, int part, float distance,
   return fragment;
 }
 
-void Renderer::RenderCentres(const View& view, RenderedFrame& frame, cv::Mat& facet) const {
-  // Blocks of four by two pixels are the most alike.
-  constexpr int kColumns = 4;
+void Renderer::RenderBlock(const View& view, int x0, int y0, RenderedFrame& frame,
+                           cv::Mat& facet) const {
   RayPacket packet;
-  for (int y0 = 0; y0 < camera_.height; y0 += RayPacket::kSize / kColumns) {
-    for (int x0 = 0; x0 < camera_.width; x0 += kColumns) {
-      for (int i = 0; i < RayPacket::kSize; ++i) {
-        packet.direction[static_cast<size_t>(i)] = view.Direction(
-            camera_, static_cast<float>(x0 + i % kColumns), static_cast<float>(y0 + i / kColumns));
-      }
-      caster_.Cast(view.eye, view.world_from_object, packet);
-      for (int i = 0; i < RayPacket::kSize; ++i) {
-        const int x = x0 + i % kColumns;
-        const int y = y0 + i / kColumns;
-        if (x >= camera_.width || y >= camera_.height) {
-          continue;
+  for (int i = 0; i < RayPacket::kSize; ++i) {
+    const int x = x0 + i % kBlockColumns;
+    const int y = y0 + i / kBlockColumns;
+    packet.direction[static_cast<size_t>(i)] =
+        view.Direction(camera_, static_cast<float>(x), static_cast<float>(y));
+  }
+  caster_.Cast(view.eye, view.world_from_object, packet);
+  for (int i = 0; i < RayPacket::kSize; ++i) {
+    const int x = x0 + i % kBlockColumns;
+    const int y = y0 + i / kBlockColumns;
+    if (x >= camera_.width || y >= camera_.height) {
+      continue;
+    }
+    const auto k = static_cast<size_t>(i);
+    Check(packet.part[k] >= 0, "a ray left the room: the scene is not closed");
+    const Fragment hit = Shade(view, packet.part[k], packet.distance[k], packet.direction[k], 4);
+    frame.colour.at<cv::Vec3f>(y, x) = {hit.colour[0], hit.colour[1], hit.colour[2]};
+    frame.depth.at<float>(y, x) = packet.distance[k];
+    frame.instance.at<int16_t>(y, x) =
+        static_cast<int16_t>(caster_.parts()[static_cast<size_t>(packet.part[k])].object);
+    frame.cosine.at<float>(y, x) = hit.cosine;
+    facet.at<int>(y, x) = hit.facet;
+  }
+}
+
+void Renderer::RenderCentres(const View& view, RenderedFrame& frame, cv::Mat& facet) const {
+  // In tiles, because a whole row of the image goes through too many pages of the textures.
+  constexpr int kTile = 32;
+  for (int top = 0; top < camera_.height; top += kTile) {
+    for (int left = 0; left < camera_.width; left += kTile) {
+      for (int y = top; y < std::min(top + kTile, camera_.height); y += kBlockRows) {
+        for (int x = left; x < std::min(left + kTile, camera_.width); x += kBlockColumns) {
+          RenderBlock(view, x, y, frame, facet);
         }
-        const auto k = static_cast<size_t>(i);
-        Check(packet.part[k] >= 0, "a ray left the room: the scene is not closed");
-        const Fragment hit =
-            Shade(view, packet.part[k], packet.distance[k], packet.direction[k], 4);
-        frame.colour.at<cv::Vec3f>(y, x) = {hit.colour[0], hit.colour[1], hit.colour[2]};
-        frame.depth.at<float>(y, x) = packet.distance[k];
-        frame.instance.at<int16_t>(y, x) =
-            static_cast<int16_t>(caster_.parts()[static_cast<size_t>(packet.part[k])].object);
-        frame.cosine.at<float>(y, x) = hit.cosine;
-        facet.at<int>(y, x) = hit.facet;
       }
     }
   }

@@ -35,6 +35,7 @@ class Renderer {
   Fragment Shade(const View& view, int part, float distance, const Eigen::Vector3f& direction,
                  int max_samples) const;
   View MakeView(double time) const;
+  void RenderBlock(const View& view, int x0, int y0, RenderedFrame& frame, cv::Mat& facet) const;
   void RenderCentres(const View& view, RenderedFrame& frame, cv::Mat& facet) const;
   void SmoothEdges(const View& view, const cv::Mat& facet, RenderedFrame& frame) const;
   // Colour of `material` at a point, given in the part's frame with its normal and the ray's

@@ -160,6 +160,7 @@ bool ForEachFrame(int frames, int threads, const std::function<void(int)>& write
   };
   {
     std::vector<std::jthread> pool;
+    pool.reserve(static_cast<size_t>(threads));
     for (int i = 0; i < threads; ++i) {
       pool.emplace_back(work);
     }

@@ -82,11 +82,11 @@ Eigen::Vector3f Texture::Sample(const Eigen::Vector2f& uv, float level_of_detail
   const auto at_level = [&](size_t index) {
     return Unpack(Bilinear(levels_[index].texels.data(), levels_[index].size, uv.x(), uv.y()));
   };
-  const Eigen::Vector3f fine = at_level(level);
-  if (fraction <= 0.0F) {
-    return fine;
+  Eigen::Vector3f fine = at_level(level);
+  if (fraction > 0.0F) {
+    fine += fraction * (at_level(level + 1) - fine);
   }
-  return fine + fraction * (at_level(level + 1) - fine);
+  return fine;
 }
 
 }  // namespace hullslam
