@@ -35,7 +35,7 @@ class PipelineTest : public testing::TestWithParam<Kind> {
   std::unique_ptr<Pipeline> Make() const { return GetParam().make(world_.sensor(), options_); }
 
   const SyntheticWorld world_ = NoisyWorld();
-  const SystemOptions options_;
+  const SystemOptions options_ = {};
 };
 
 TEST_P(PipelineTest, HasNoMapBeforeTheFirstKeyframe) {
