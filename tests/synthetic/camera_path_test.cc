@@ -21,7 +21,8 @@ TEST(LookAt, PutsTheTargetOnTheAxisAndKeepsTheImageUpright) {
 
 TEST(OrbitPath, KeepsItsDistanceAndSpeed) {
   const OrbitPath orbit{.target = {0.0, 0.0, 0.8}};
-  for (double time = 0.0; time < 20.0; time += 0.1) {
+  for (int i = 0; i < 200; ++i) {
+    const double time = 0.1 * i;
     const Vector3d eye = orbit.WorldFromCam(time).translation;
     EXPECT_NEAR(eye.head<2>().norm(), orbit.radius, 0.09 * orbit.radius);
     const double speed = (orbit.WorldFromCam(time + 0.01).translation - eye).norm() / 0.01;
@@ -33,7 +34,8 @@ TEST(OrbitPath, KeepsItsDistanceAndSpeed) {
 TEST(LoopPath, ComesBackToTheStartAndALittleFurther) {
   const LoopPath loop;
   double nearest = 10.0;
-  for (double time = 0.8 * loop.duration; time <= loop.duration; time += 0.01) {
+  for (int i = 800; i <= 1000; ++i) {
+    const double time = 0.001 * i * loop.duration;
     const Rigid3 motion = Inverse(loop.WorldFromCam(0.0)) * loop.WorldFromCam(time);
     nearest = std::min(nearest, motion.translation.norm() + LogSo3(motion.rotation).norm());
   }
@@ -47,7 +49,8 @@ TEST(HandMotion, IsSmallSmoothAndSeeded) {
   const HandMotion hand(1);
   const HandMotion other(2);
   double difference = 0.0;
-  for (double time = 0.0; time < 10.0; time += 1.0 / 30.0) {
+  for (int i = 0; i < 300; ++i) {
+    const double time = i / 30.0;
     const Rigid3 motion = hand.Apply({}, time);
     EXPECT_LT(motion.translation.norm(), 0.05);
     EXPECT_LT(LogSo3(motion.rotation).norm(), 0.05);

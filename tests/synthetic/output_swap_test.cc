@@ -19,7 +19,7 @@ class OutputSwapTest : public testing::Test {
     fs::remove_all(root_);
     fs::create_directories(root_);
   }
-  ~OutputSwapTest() override { fs::remove_all(root_); }
+  void TearDown() override { fs::remove_all(root_); }
 
   static void Put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
   static std::string Get(const fs::path& path) {

@@ -44,7 +44,7 @@ class SequenceWriterTest : public testing::Test {
                std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
     fs::remove_all(root_);
   }
-  ~SequenceWriterTest() override { fs::remove_all(root_); }
+  void TearDown() override { fs::remove_all(root_); }
 
   fs::path Write(const std::string& name, const SequenceOptions& options) const {
     EXPECT_TRUE(WriteSequence(root_ / name, options, [](int) { return true; }));

@@ -15,7 +15,7 @@ TEST(Texture, RefusesWhatIsNoSquarePowerOfTwoInColour) {
   EXPECT_THROW(Texture(cv::Mat(8, 4, CV_8UC3)), CheckError);
   EXPECT_THROW(Texture(cv::Mat(6, 6, CV_8UC3)), CheckError);
   EXPECT_THROW(Texture(cv::Mat(8, 8, CV_8UC1)), CheckError);
-  EXPECT_THROW(Texture(cv::Mat()), CheckError);
+  EXPECT_THROW(Texture{cv::Mat()}, CheckError);
 }
 
 TEST(Texture, OneColourStaysAtAnyPlaceAndWidth) {
