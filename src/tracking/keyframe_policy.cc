@@ -7,15 +7,18 @@ bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
   if (evidence.inliers <= min_inliers || evidence.requests_waiting >= max_requests_waiting) {
     return false;
   }
+  const bool is_abrupt = evidence.inliers < abrupt_ratio * evidence.reference_landmarks;
+  if (evidence.frames_since_keyframe < min_frames_between && !is_abrupt) {
+    return false;
+  }
   const bool lacks_close_points =
       evidence.close_tracked < min_close_tracked && evidence.close_untracked > max_close_untracked;
   const double ratio = evidence.keyframes < 2 ? young_reference_ratio : min_reference_ratio;
   const bool is_weak =
       lacks_close_points || evidence.inliers < ratio * evidence.reference_landmarks;
-  const bool is_urgent =
-      lacks_close_points || evidence.inliers < urgent_ratio * evidence.reference_landmarks;
   const bool is_overdue = evidence.frames_since_keyframe >= max_frames_between;
-  return is_weak && (is_overdue || evidence.mapper_is_idle || is_urgent);
+  const bool is_urgent = is_overdue || is_abrupt || lacks_close_points;
+  return is_weak && (evidence.mapper_is_idle || is_urgent);
 }
 
 }  // namespace hullslam

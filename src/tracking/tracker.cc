@@ -2,6 +2,7 @@
 #include "hullslam/tracking/tracker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "hullslam/map/landmark_projection.h"
@@ -72,6 +73,8 @@ void ResolveAll(const Map& map, std::vector<LandmarkId>& landmarks) {
 Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options)
     : sensor_(sensor), options_(options) {
   policy_.min_reference_ratio = options.keyframe_ratio;
+  policy_.min_frames_between =
+      static_cast<uint32_t>(std::lround(options.keyframe_interval * sensor.frames_per_second));
   policy_.max_frames_between = static_cast<uint32_t>(std::max(1.0, sensor.frames_per_second));
 }
 

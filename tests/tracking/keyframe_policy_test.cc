@@ -11,7 +11,7 @@ namespace {
 
 // Healthy tracking in a grown map: no reason for a keyframe.
 KeyframeEvidence Healthy() {
-  return {.frames_since_keyframe = 5,
+  return {.frames_since_keyframe = 10,
           .inliers = 180,
           .reference_landmarks = 200,
           .close_tracked = 150,
@@ -43,8 +43,7 @@ void ExpectDecisions(const std::vector<Case>& cases) {
 TEST(KeyframePolicy, AsksWhenTrackingHasWeakenedAgainstTheReference) {
   ExpectDecisions({
       {"90 % of the reference", Healthy(), false},
-      {"exactly 75 %", With([](auto& e) { e.inliers = 150; }), false},
-      {"just below 75 %", With([](auto& e) { e.inliers = 149; }), true},
+      {"just below 90 %", With([](auto& e) { e.inliers = 179; }), true},
       {"a reference without landmarks", With([](auto& e) { e.reference_landmarks = 0; }), false},
   });
 }
@@ -85,14 +84,32 @@ TEST(KeyframePolicy, ABusyMapperIsAskedOnlyWhenOverdueOrUrgent) {
   ExpectDecisions({
       {"weak", busy(100, 29), false},
       {"weak and overdue", busy(100, 30), true},
-      {"at 25 %", busy(50, 5), false},
-      {"below 25 %", busy(49, 5), true},
+      {"at 50 %", busy(100, 10), false},
+      {"below 50 %", busy(99, 10), true},
       {"close points would be lost", With([](auto& e) {
          e.mapper_is_idle = false;
          e.close_tracked = 99;
          e.close_untracked = 71;
        }),
        true},
+  });
+}
+
+TEST(KeyframePolicy, LeavesTimeBetweenKeyframesUnlessTrackingWeakensAbruptly) {
+  const auto after = [](uint32_t frames, int inliers) {
+    return With([=](auto& e) { e.frames_since_keyframe = frames, e.inliers = inliers; });
+  };
+  ExpectDecisions({
+      {"weak, but 5 frames after the last", after(5, 150), false},
+      {"weak, 6 frames after", after(6, 150), true},
+      {"half of the reference, one frame after", after(1, 100), false},
+      {"less than half, one frame after", after(1, 99), true},
+      {"close points would be lost, one frame after", With([](auto& e) {
+         e.frames_since_keyframe = 1;
+         e.close_tracked = 99;
+         e.close_untracked = 71;
+       }),
+       false},
   });
 }
 

@@ -19,17 +19,20 @@ struct KeyframeEvidence {
 };
 
 struct KeyframePolicy {
-  uint32_t max_frames_between = 30;
-  double min_reference_ratio = 0.75;   // of inliers to reference landmarks
+  uint32_t min_frames_between = 6;     // but when tracking has weakened abruptly
+  uint32_t max_frames_between = 30;    // then a busy mapper is no excuse
+  double min_reference_ratio = 0.9;    // of inliers to reference landmarks
   double young_reference_ratio = 0.4;  // the same while there is a single keyframe
-  double urgent_ratio = 0.25;          // below it also while the mapper is busy
+  double abrupt_ratio = 0.5;           // below it at once, whatever was before
   int min_inliers = 15;
   int min_close_tracked = 100;
   int max_close_untracked = 70;
   int max_requests_waiting = 3;
 
-  // Mur-Artal and Tardos 2017, section III.E: tracking has weakened against the reference keyframe,
-  // or close points would be lost; and the mapper has time, or it is urgent.
+  // As in Mur-Artal and Tardos 2017, section III.E: tracking has weakened against the reference
+  // keyframe, or close points would be lost; and the mapper has time, or it is urgent. Unlike there
+  // keyframes are evenly spread in time: fewer landmarks are enough of a reason, but not right
+  // after the last keyframe (docs/decisions.md).
   bool NeedsKeyframe(const KeyframeEvidence& evidence) const;
 };
 

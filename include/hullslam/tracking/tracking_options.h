@@ -12,7 +12,9 @@ struct TrackingOptions {
 
   // A keyframe is due when a frame finds fewer of the reference keyframe's landmarks than this
   // share.
-  double keyframe_ratio = 0.8;
+  double keyframe_ratio = 0.95;
+
+  double keyframe_interval = 0.2;  // s, least time between keyframes unless tracking gets weak fast
 
   void Bind(OptionTable& options);
 };
