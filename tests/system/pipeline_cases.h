@@ -58,6 +58,7 @@ struct FailingMapping {
 
   FailingMapping() {
     const SyntheticWorld world({.points = 300});
+    sensor.frames_per_second = 1.0;  // so slow that the next frame may be a keyframe at once
     sensor.levels.scale[kBrokenLevel] = std::numeric_limits<float>::quiet_NaN();
     first = WithoutUpperLevels(*world.Observe(0).frame);
     auto with_more = WithoutUpperLevels(*world.Observe(1).frame);
