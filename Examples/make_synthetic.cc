@@ -17,7 +17,7 @@
 namespace {
 
 using hullslam::InputError;
-using hullslam::SequenceOptions;
+using hullslam::synthetic::SequenceOptions;
 
 constexpr int kDone = 0;
 constexpr int kFailed = 1;
@@ -67,8 +67,8 @@ bool SignalIsPending() {
 
 int Run(Arguments& arguments) {
   SequenceOptions& options = arguments.options;
-  options.scene = hullslam::ParseSceneKind(arguments.scene);
-  options.frames = arguments.frames.value_or(hullslam::DefaultFrames(options.scene));
+  options.scene = hullslam::synthetic::ParseSceneKind(arguments.scene);
+  options.frames = arguments.frames.value_or(hullslam::synthetic::DefaultFrames(options.scene));
   const bool terminal = isatty(STDERR_FILENO) == 1;
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] {
@@ -81,7 +81,7 @@ int Run(Arguments& arguments) {
     }
     return !SignalIsPending();
   };
-  const bool finished = hullslam::WriteSequence(arguments.folder, options, progress);
+  const bool finished = hullslam::synthetic::WriteSequence(arguments.folder, options, progress);
   if (!arguments.quiet && terminal) {
     std::fputc('\n', stderr);
   }

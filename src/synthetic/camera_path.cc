@@ -8,7 +8,7 @@
 
 #include "synthetic/hash_noise.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -68,4 +68,4 @@ Rigid3 LoopPath::WorldFromCam(double time) const {
   return LookAt(eye, eye + outwards);
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -6,7 +6,7 @@
 
 #include "hullslam/geometry/rigid3.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 // The camera at `eye` with its optical axis through `target` and the image upright (world z up).
 Rigid3 LookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target);
@@ -42,4 +42,4 @@ struct LoopPath {
   Rigid3 WorldFromCam(double time) const;
 };
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

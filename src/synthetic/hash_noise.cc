@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 // Inverse of the normal distribution function by bisection; exact enough for a float.
@@ -27,4 +27,4 @@ NormalTable::NormalTable() {
   }
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 // The `counter`-th random word of the stream `seed` (SplitMix64, Steele 2014). No draw depends on
 // the ones before it, so pixels can be drawn in any order and by any thread.
@@ -52,4 +52,4 @@ class NormalTable {
   std::array<float, size_t{1} << kBits> quantiles_{};
 };
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -7,7 +7,7 @@
 
 #include "hullslam/util/check.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Vector2d;
@@ -112,4 +112,4 @@ std::vector<InstanceOutline> FindOutlines(const cv::Mat& instance, int min_area)
   return outlines;
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

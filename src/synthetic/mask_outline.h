@@ -5,7 +5,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 // The outline of what is seen of one object.
 struct InstanceOutline {
@@ -21,4 +21,4 @@ struct InstanceOutline {
 // a pixel has integer coordinates.
 std::vector<InstanceOutline> FindOutlines(const cv::Mat& instance, int min_area);
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

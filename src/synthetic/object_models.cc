@@ -8,7 +8,7 @@
 
 #include "hullslam/util/check.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -193,4 +193,4 @@ ObjectBuilder MakeSolid(const std::string& class_name, const Shape& shape,
   return solid;
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

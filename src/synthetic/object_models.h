@@ -7,7 +7,7 @@
 
 #include "synthetic/scene.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 // COCO's id (from 0, as in the 80 classes of YOLO) of a class that the scenes use; an unknown name
 // is a CheckError.
@@ -48,4 +48,4 @@ ObjectBuilder MakeCouch(const Material& cushion, const Material& frame);
 ObjectBuilder MakeSolid(const std::string& class_name, const Shape& shape,
                         const Material& material);
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

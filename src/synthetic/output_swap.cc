@@ -13,7 +13,7 @@
 
 #include "hullslam/util/error.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 namespace fs = std::filesystem;
@@ -112,4 +112,4 @@ void OutputSwap::Commit() {
   }
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 // A folder that is filled under a temporary name beside its place and moved there when complete.
 class OutputSwap {
@@ -27,4 +27,4 @@ class OutputSwap {
   std::filesystem::path working_;
 };
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

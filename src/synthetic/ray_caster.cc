@@ -11,7 +11,7 @@
 
 #include "hullslam/util/check.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 struct Release {
@@ -147,4 +147,4 @@ void RayCaster::Cast(const Eigen::Vector3f& origin, std::span<const Rigid3> worl
   }
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -10,7 +10,7 @@
 #include "hullslam/geometry/rigid3.h"
 #include "synthetic/scene.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 // A part with the object it belongs to (index in Scene::objects), -1 for the background.
 struct PlacedPart {
@@ -49,4 +49,4 @@ class RayCaster {
   std::unique_ptr<Device> device_;
 };
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -7,7 +7,7 @@
 
 #include "hullslam/util/check.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Matrix3f;
@@ -310,4 +310,4 @@ RenderedFrame Renderer::Render(double time) const {
   return frame;
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -10,7 +10,7 @@
 #include "synthetic/ray_caster.h"
 #include "synthetic/scene.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 // What an ideal camera sees, all of the same size; the centre of a pixel has integer coordinates.
 struct RenderedFrame {
@@ -49,4 +49,4 @@ class Renderer {
   RayCaster caster_;
 };
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -10,7 +10,7 @@
 #include "synthetic/shape.h"
 #include "synthetic/texture.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 // How a surface looks. The texture lies on the three coordinate planes of the part's frame and is
 // taken from the one that the normal is nearest to; on sides it stands upright along z.
@@ -59,4 +59,4 @@ struct Scene {
   std::function<Rigid3(double)> world_from_cam;  // of the time in seconds
 };
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -6,7 +6,7 @@
 #include "hullslam/util/random_seed.h"
 #include "synthetic/texture_painter.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Vector2d;
@@ -182,4 +182,4 @@ void SceneBuilder::AddTable(const Vector2d& centre, const Vector2d& half, double
   }
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -10,7 +10,7 @@
 #include "synthetic/object_models.h"
 #include "synthetic/scene.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 // The textures of a scene, as indices in Scene::textures.
 struct Palette {
@@ -86,4 +86,4 @@ class SceneBuilder {
   Scene scene_;
 };
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

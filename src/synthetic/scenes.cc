@@ -13,7 +13,7 @@
 #include "synthetic/camera_path.h"
 #include "synthetic/scene_builder.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -337,4 +337,4 @@ Scene BuildScene(SceneKind kind, int frames, uint64_t seed) {
   throw InputError("unknown scene");
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -6,7 +6,7 @@
 
 #include "synthetic/scene.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 enum class SceneKind { kDesk, kRoom, kLowTexture, kDynamic };
 
@@ -21,4 +21,4 @@ int DefaultFrames(SceneKind kind);
 // small changes; textures differ. `frames` sets how fast `room` closes its loop.
 Scene BuildScene(SceneKind kind, int frames, uint64_t seed);
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

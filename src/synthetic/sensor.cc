@@ -8,7 +8,7 @@
 
 #include "hullslam/util/random_seed.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 // Focal length (px) times distance from camera to projector (m).
@@ -145,4 +145,4 @@ cv::Mat Sensor::Depth(const RenderedFrame& frame, uint32_t number) const {
   return image;
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -7,7 +7,7 @@
 #include "synthetic/hash_noise.h"
 #include "synthetic/renderer.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 // An RGB-D camera of the first Kinect's kind that looks at rendered frames. What is random depends
 // on seed, frame number and pixel alone.
@@ -42,4 +42,4 @@ class Sensor {
   NormalTable normal_;
 };
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -21,7 +21,7 @@
 #include "synthetic/renderer.h"
 #include "synthetic/sensor.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 constexpr double kFramesPerSecond = 30.0;
@@ -204,4 +204,4 @@ bool WriteSequence(const std::filesystem::path& folder, const SequenceOptions& o
   return true;
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -8,7 +8,7 @@
 #include "hullslam/camera/pinhole.h"
 #include "synthetic/scenes.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 struct SequenceOptions {
   SceneKind scene = SceneKind::kDesk;
@@ -35,4 +35,4 @@ double FrameStamp(int frame);
 bool WriteSequence(const std::filesystem::path& folder, const SequenceOptions& options,
                    const std::function<bool(int)>& progress);
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -7,7 +7,7 @@
 
 #include "hullslam/util/check.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -222,4 +222,4 @@ TriangleMesh Tessellate(const Shape& shape) {
   throw CheckError("unknown kind of shape");
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

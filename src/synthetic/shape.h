@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 enum class ShapeKind { kBox, kEllipsoid, kSuperquadric, kCylinder, kTorus };
 
@@ -44,4 +44,4 @@ struct TriangleMesh {
 // ellipsoid: 0.04 px at half a metre.
 TriangleMesh Tessellate(const Shape& shape);
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

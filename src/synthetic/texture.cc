@@ -9,7 +9,7 @@
 
 #include "hullslam/util/check.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 // std::floor is a function call for processors without SSE 4.1, and this is the innermost loop.
@@ -89,4 +89,4 @@ Eigen::Vector3f Texture::Sample(const Eigen::Vector2f& uv, float level_of_detail
   return fine;
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -6,7 +6,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 // A repeating colour image with its mip levels (Williams 1983), so that what is sampled is limited
 // to the band that the pixels can hold and corners do not flicker from frame to frame.
@@ -29,4 +29,4 @@ class Texture {
   std::vector<Level> levels_;
 };
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

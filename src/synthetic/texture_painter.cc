@@ -9,7 +9,7 @@
 
 #include "synthetic/hash_noise.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 cv::Scalar RandomColour(RandomStream& random, double low, double high) {
@@ -340,4 +340,4 @@ cv::Mat PaintScreen(uint64_t seed, int size) {
   return image;
 }
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
 
-namespace hullslam {
+namespace hullslam::synthetic {
 
 // Procedural textures: CV_8UC3, BGR, square, `size` (a power of two) wide. Those of surfaces
 // repeat without a seam; posters, pages and screens are single pictures. All have detail over
@@ -36,4 +36,4 @@ cv::Mat PaintKeys(uint64_t seed, int size);
 // A computer's screen: windows with text and pictures.
 cv::Mat PaintScreen(uint64_t seed, int size);
 
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -1,39 +1,39 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
+
+#include "support/run_program.h"
+#include "support/temporary_folder.h"
 
 namespace hullslam {
 namespace {
 
-namespace fs = std::filesystem;
-
-// Exit code of make_synthetic with the given arguments.
-int ExitCode(const std::string& arguments) {
-  const std::string command =
-      std::string(HULLSLAM_BIN_DIR) + "/make_synthetic " + arguments + " > /dev/null 2>&1";
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+TEST(MakeSynthetic, BadUsageIsToldAndWritesNothing) {
+  const TemporaryFolder folder;
+  const std::string out = (folder.path() / "out").string();
+  EXPECT_EQ(RunProgram("make_synthetic", {"--help"}).exit_code, 0);
+  EXPECT_EQ(RunProgram("make_synthetic", {}).exit_code, 2);
+  EXPECT_EQ(RunProgram("make_synthetic", {out, "--frames", "0"}).exit_code, 2);
+  EXPECT_EQ(RunProgram("make_synthetic", {out, "--frames", "many"}).exit_code, 2);
+  EXPECT_EQ(RunProgram("make_synthetic", {out, "--colour"}).exit_code, 2);
+  const ProgramResult result = RunProgram("make_synthetic", {out, "--scene", "kitchen"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.errors.find("lowtexture"), std::string::npos) << result.errors;
+  EXPECT_FALSE(std::filesystem::exists(out));
 }
 
-TEST(MakeSynthetic, ExitCodesTellUsageFromSuccess) {
-  const fs::path out = fs::path(testing::TempDir()) / "make_synthetic_cli";
-  fs::remove_all(out);
-  EXPECT_EQ(ExitCode("--help"), 0);
-  EXPECT_EQ(ExitCode(""), 2);
-  EXPECT_EQ(ExitCode(out.string() + " --scene kitchen"), 2);
-  EXPECT_EQ(ExitCode(out.string() + " --frames 0"), 2);
-  EXPECT_EQ(ExitCode(out.string() + " --frames many"), 2);
-  EXPECT_EQ(ExitCode(out.string() + " --colour"), 2);
-  EXPECT_FALSE(fs::exists(out));
-  EXPECT_EQ(ExitCode(out.string() + " --frames 1"), 0);
-  EXPECT_TRUE(fs::exists(out / "groundtruth_objects.json"));
-  EXPECT_EQ(ExitCode(out.string() + " --frames 1"), 2);
-  EXPECT_EQ(ExitCode(out.string() + " --frames 1 --force --quiet"), 0);
-  fs::remove_all(out);
+TEST(MakeSynthetic, ReplacesItsOwnSequenceByForceOnly) {
+  const TemporaryFolder folder;
+  const std::string out = (folder.path() / "out").string();
+  EXPECT_EQ(RunProgram("make_synthetic", {out, "--frames", "1"}).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / "groundtruth_objects.json"));
+  const ProgramResult again = RunProgram("make_synthetic", {out, "--frames", "1"});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_NE(again.errors.find("--force"), std::string::npos) << again.errors;
+  EXPECT_EQ(RunProgram("make_synthetic", {out, "--frames", "1", "--force", "--quiet"}).exit_code,
+            0);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -63,4 +63,4 @@ TEST(HandMotion, IsSmallSmoothAndSeeded) {
 }
 
 }  // namespace
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 TEST(CounterHash, IsSplitMix64) {
@@ -49,4 +49,4 @@ TEST(NormalTable, HasTheMomentsOfTheNormalDistribution) {
 }
 
 }  // namespace
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

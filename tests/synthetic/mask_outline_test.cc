@@ -8,7 +8,7 @@
 
 #include "hullslam/util/check.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Vector2d;
@@ -93,4 +93,4 @@ TEST(FindOutlines, LeavesOutSmallOnesAndChecksTheType) {
 }
 
 }  // namespace
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

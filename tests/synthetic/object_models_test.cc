@@ -7,7 +7,7 @@
 
 #include "hullslam/util/check.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -64,4 +64,4 @@ TEST(ObjectModels, StandOnTheirBaseAndFillTheirBox) {
 }
 
 }  // namespace
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -8,7 +8,7 @@
 
 #include "hullslam/util/error.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 namespace fs = std::filesystem;
@@ -104,4 +104,4 @@ TEST_F(OutputSwapTest, FileInTheWayIsAnError) {
 }
 
 }  // namespace
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

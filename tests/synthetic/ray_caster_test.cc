@@ -7,7 +7,7 @@
 #include "synthetic/object_models.h"
 #include "synthetic/scene_builder.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -96,4 +96,4 @@ TEST(RayCaster, HandComputedDistances) {
 }
 
 }  // namespace
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -12,7 +12,7 @@
 #include "synthetic/scene_builder.h"
 #include "synthetic/sequence_writer.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Matrix3d;
@@ -156,4 +156,4 @@ TEST(Renderer, SameBitsAgain) {
 }
 
 }  // namespace
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

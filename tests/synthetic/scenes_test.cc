@@ -10,7 +10,7 @@
 #include "synthetic/renderer.h"
 #include "synthetic/sequence_writer.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Vector2d;
@@ -109,4 +109,4 @@ TEST(Scenes, RoomLooksAtItsStartAgain) {
 }
 
 }  // namespace
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 RenderedFrame FlatFrame(float depth, float cosine) {
@@ -93,4 +93,4 @@ TEST(Sensor, NoiseDependsOnSeedAndFrameAlone) {
 }
 
 }  // namespace
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

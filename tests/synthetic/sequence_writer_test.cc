@@ -16,7 +16,7 @@
 #include "hullslam/util/error.h"
 #include "synthetic/object_models.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,4 +169,4 @@ TEST_F(SequenceWriterTest, GivingUpLeavesNothingAndKeepsTheFormer) {
 }
 
 }  // namespace
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -90,4 +90,4 @@ TEST(Tessellate, StaysNearTheEllipsoidBetweenVertices) {
 }
 
 }  // namespace
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 using Painter = std::function<cv::Mat(uint64_t)>;
@@ -70,4 +70,4 @@ TEST(TexturePainter, NoiseHasNoMeanAndStaysSmall) {
 }
 
 }  // namespace
-}  // namespace hullslam
+}  // namespace hullslam::synthetic

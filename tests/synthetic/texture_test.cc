@@ -8,7 +8,7 @@
 #include "hullslam/util/check.h"
 #include "synthetic/texture_painter.h"
 
-namespace hullslam {
+namespace hullslam::synthetic {
 namespace {
 
 TEST(Texture, RefusesWhatIsNoSquarePowerOfTwoInColour) {
@@ -50,4 +50,4 @@ TEST(Texture, LevelOfDetailIsTheLogarithmOfTheTexelsCovered) {
 }
 
 }  // namespace
-}  // namespace hullslam
+}  // namespace hullslam::synthetic
