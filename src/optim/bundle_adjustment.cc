@@ -20,6 +20,10 @@
 namespace hullslam {
 namespace {
 
+// Up to here the poses share so many points that their reduced system is nearly full, and a dense
+// solver is quicker; CHOLMOD would also start threads that take the tracker's core.
+constexpr size_t kMaxDensePoses = 60;
+
 struct BundleObservation {
   LandmarkId landmark;
   KeyframeId keyframe;
@@ -79,7 +83,8 @@ class Bundle {
     solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     AddResiduals(problem, robust);
     AddParameters(problem, *solver.linear_solver_ordering);
-    solver.linear_solver_type = ceres::SPARSE_SCHUR;
+    solver.linear_solver_type =
+        window_.moving.size() <= kMaxDensePoses ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
     solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
     solver.max_num_iterations = iterations;
     solver.function_tolerance = options.function_tolerance;
