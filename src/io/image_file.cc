@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <boost/crc.hpp>
 #include <cstdint>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -32,19 +33,31 @@ uint64_t BigEndian(std::string_view bytes, size_t at, size_t count) {
   return value;
 }
 
-// Chunks are length, type, data and checksum; libpng would hand out the upper part of an image
-// whose lower part is missing, so the last chunk must be there.
-bool IsWholePng(std::string_view bytes) {
+enum class ImageState { kGood, kCutOff, kBroken };
+
+// Chunks are length, type, data and checksum of type and data. libpng would hand out the upper part
+// of an image whose lower part is missing, so the last chunk must be there; and it tells of wrong
+// bytes on stderr, so they are found before.
+ImageState CheckPngChunks(std::string_view bytes) {
   constexpr size_t kFrame = 12;  // bytes of a chunk beside its data
   size_t at = kPngSignature.size();
   while (at + kFrame <= bytes.size()) {
-    const bool is_last = bytes.substr(at + 4, 4) == "IEND";
-    at += kFrame + BigEndian(bytes, at, 4);
-    if (is_last) {
-      return at <= bytes.size();
+    const size_t length = BigEndian(bytes, at, 4);
+    const std::string_view chunk = bytes.substr(at + 4, length + 4);
+    at += kFrame + length;
+    if (at > bytes.size()) {
+      return ImageState::kCutOff;
+    }
+    boost::crc_32_type checksum;
+    checksum.process_bytes(chunk.data(), chunk.size());
+    if (checksum.checksum() != BigEndian(bytes, at - 4, 4)) {
+      return ImageState::kBroken;
+    }
+    if (chunk.starts_with("IEND")) {
+      return ImageState::kGood;
     }
   }
-  return false;
+  return ImageState::kCutOff;
 }
 
 ImageSize PngSize(std::string_view bytes) {
@@ -53,10 +66,11 @@ ImageSize PngSize(std::string_view bytes) {
 }
 
 // The marker for the end may have padding behind it.
-bool IsWholeJpeg(std::string_view bytes) {
+ImageState CheckJpegEnd(std::string_view bytes) {
   constexpr size_t kMostPadding = 4096;
   const size_t tail = bytes.size() > kMostPadding ? bytes.size() - kMostPadding : 0;
-  return bytes.find("\xff\xd9"sv, tail) != std::string_view::npos;
+  const bool has_end = bytes.find("\xff\xd9"sv, tail) != std::string_view::npos;
+  return has_end ? ImageState::kGood : ImageState::kCutOff;
 }
 
 // Of the frame header (SOF0 to SOF15 without the tables DHT, JPG and DAC); zeros without one.
@@ -84,7 +98,8 @@ void CheckBytes(const std::filesystem::path& path, std::string_view bytes) {
   if (!is_png && !bytes.starts_with(kJpegSignature)) {
     Fail(path, "is neither a PNG nor a JPEG image");
   }
-  if (is_png ? !IsWholePng(bytes) : !IsWholeJpeg(bytes)) {
+  const ImageState state = is_png ? CheckPngChunks(bytes) : CheckJpegEnd(bytes);
+  if (state == ImageState::kCutOff) {
     Fail(path, "is cut off, the end of the image is missing");
   }
   constexpr uint64_t kMostPixels = 64'000'000;
@@ -93,6 +108,9 @@ void CheckBytes(const std::filesystem::path& path, std::string_view bytes) {
       size.width * size.height > kMostPixels) {
     Fail(path, fmt::format("has a size of {}x{} px, expected up to {} million px", size.width,
                            size.height, kMostPixels / 1'000'000));
+  }
+  if (state == ImageState::kBroken) {
+    Fail(path, "is broken, a checksum of the PNG is wrong");
   }
 }
 
