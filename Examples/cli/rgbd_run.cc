@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <optional>
 #include <thread>
@@ -13,6 +14,7 @@
 #include "cli/progress.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/eval/rpe.h"
+#include "hullslam/io/atomic_file.h"
 #include "hullslam/io/map_file.h"
 #include "hullslam/io/output_folder.h"
 #include "hullslam/io/settings.h"
@@ -167,7 +169,7 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
   return summary;
 }
 
-void WriteMap(const std::filesystem::path& path, const Map& map, const Trajectory& keyframes) {
+std::string FormatMap(const Map& map, const Trajectory& keyframes) {
   std::vector<Eigen::Vector3d> landmarks;
   map.landmarks().ForEach(
       [&](LandmarkId, const Landmark& landmark) { landmarks.push_back(landmark.position); });
@@ -175,7 +177,7 @@ void WriteMap(const std::filesystem::path& path, const Map& map, const Trajector
   for (const StampedPose& pose : keyframes) {
     centers.push_back(pose.world_from_cam.translation);
   }
-  WritePly(path, landmarks, centers);
+  return FormatPly(landmarks, centers);
 }
 
 void WriteOutputs(const std::filesystem::path& folder, const System& system,
@@ -183,10 +185,11 @@ void WriteOutputs(const std::filesystem::path& folder, const System& system,
   const std::shared_ptr<const Map> map =
       system.map() != nullptr ? system.map() : std::make_shared<const Map>();
   const Trajectory keyframes = KeyframeTrajectory(*map);
-  WriteTrajectory(folder / "trajectory.txt", trajectory);
-  WriteTrajectory(folder / "keyframes.txt", keyframes);
-  WriteMap(folder / "map.ply", *map, keyframes);
-  WriteSummary(folder / "summary.json", summary);
+  WriteFilesAtomically(
+      std::array<FileContent, 4>{{{folder / "trajectory.txt", FormatTrajectory(trajectory)},
+                                  {folder / "keyframes.txt", FormatTrajectory(keyframes)},
+                                  {folder / "map.ply", FormatMap(*map, keyframes)},
+                                  {folder / "summary.json", FormatSummary(summary)}}});
 }
 
 void PrintReport(const RunArguments& arguments, const RunSummary& summary) {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <deque>
 #include <string>
 #include <system_error>
 
@@ -50,14 +51,22 @@ class TemporaryFile {
     }
   }
 
-  void Publish() {
+  // After the last Write.
+  void Finish() {
     // Some disks tell that they are full only when the data must really go there.
     if (::fsync(descriptor_) != 0) {
       FailWriting(target_, errno);
     }
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
-    if (closed != 0 || ::rename(path_.c_str(), target_.c_str()) != 0) {
+    if (closed != 0) {
+      FailWriting(target_, errno);
+    }
+  }
+
+  // After Finish.
+  void Publish() {
+    if (::rename(path_.c_str(), target_.c_str()) != 0) {
       FailWriting(target_, errno);
     }
     renamed_ = true;
@@ -70,18 +79,38 @@ class TemporaryFile {
   bool renamed_ = false;
 };
 
-}  // namespace
-
-void WriteFileAtomically(const std::filesystem::path& path, std::string_view content) {
+void CheckTarget(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     // Renaming would put a file in the place of a device or a pipe.
     throw InputError(path.string() + ": cannot be written: it is not a regular file");
   }
+}
+
+}  // namespace
+
+void WriteFileAtomically(const std::filesystem::path& path, std::string_view content) {
+  CheckTarget(path);
   TemporaryFile file(path);
   file.Write(content);
+  file.Finish();
   file.Publish();
+}
+
+void WriteFilesAtomically(std::span<const FileContent> files) {
+  for (const FileContent& file : files) {
+    CheckTarget(file.path);
+  }
+  std::deque<TemporaryFile> written;
+  for (const FileContent& file : files) {
+    TemporaryFile& temporary = written.emplace_back(file.path);
+    temporary.Write(file.content);
+    temporary.Finish();
+  }
+  for (TemporaryFile& temporary : written) {
+    temporary.Publish();
+  }
 }
 
 }  // namespace hullslam

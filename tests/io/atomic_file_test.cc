@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <array>
 #include <csignal>
 #include <iterator>
 #include <string>
@@ -58,6 +59,26 @@ TEST(AtomicFile, ADiskThatIsFullLeavesTheGoodFile) {
   }
   EXPECT_EQ(ReadFile(path), "good");
   EXPECT_EQ(CountFiles(folder.path()), 1);
+}
+
+TEST(AtomicFile, FilesThatBelongTogetherAreAllNewOrAllAsBefore) {
+  const TemporaryFolder folder;
+  const auto first = folder.Write("first.txt", "good");
+  const auto second = folder.Write("second.txt", "good too");
+  std::array<FileContent, 2> files = {{{first, "new"}, {second, std::string(100000, 'x')}}};
+  {
+    const FileSizeLimit limit(4096);
+    ExpectInputError([&] { WriteFilesAtomically(files); }, {second.string(), "File too large"});
+  }
+  EXPECT_EQ(ReadFile(first), "good");
+  EXPECT_EQ(ReadFile(second), "good too");
+  EXPECT_EQ(CountFiles(folder.path()), 2);
+  WriteFilesAtomically(files);
+  EXPECT_EQ(ReadFile(first), "new");
+  EXPECT_EQ(ReadFile(second), files[1].content);
+  files[1].path = folder.path();
+  ExpectInputError([&] { WriteFilesAtomically(files); }, {"not a regular file"});
+  EXPECT_EQ(CountFiles(folder.path()), 2);
 }
 
 TEST(AtomicFile, FoldersThatTakeNoFileAreTold) {
