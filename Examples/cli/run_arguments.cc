@@ -4,28 +4,45 @@
 #include "hullslam/util/error.h"
 
 namespace hullslam {
+namespace {
+
+// CLI11 alone would take -1 as the largest number there is.
+CLI::Validator WholeNumber() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        const bool is_whole =
+            !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+        return is_whole ? std::string() : "'" + text + "', expected an integer >= 0";
+      },
+      "");
+}
+
+}  // namespace
 
 void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::string>& positional) {
   app.add_option("ARGUMENTS", positional,
                  "SEQUENCE: folder with rgb.txt and depth.txt\n"
-                 "or VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS, as of ORB-SLAM2")
-      ->required();
+                 "or VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS, as of ORB-SLAM2");
   app.add_option("--settings", arguments.settings,
                  "settings file (default: camera.yaml of the sequence, else by its name)");
   app.add_option("--vocabulary", arguments.vocabulary, "vocabulary (not used by this version)");
   app.add_option("--associations", arguments.tum.associations,
                  "file of pairs: stamp rgb stamp depth (default: pairs are formed)");
   app.add_option("--set", arguments.overrides, "key=value: overrides a setting; repeat for more")
-      ->take_all();
+      ->take_all()
+      ->allow_extra_args(false);  // else it would take the positional arguments behind it too
   app.add_option("--output", arguments.output, "folder for the results")->capture_default_str();
   app.add_flag("--threaded", arguments.threaded,
                "map in a thread of its own: faster, not reproducible to the bit");
   app.add_flag("--realtime", arguments.realtime, "play the images at the pace of their stamps");
-  app.add_option("--seed", arguments.seed, "seed of all random choices")->capture_default_str();
-  app.add_option("--first", arguments.tum.selection.first, "first frame, counted from 0");
-  app.add_option("--last", arguments.tum.selection.last, "last frame");
+  app.add_option("--seed", arguments.seed, "seed of all random choices")
+      ->check(WholeNumber())
+      ->capture_default_str();
+  app.add_option("--first", arguments.tum.selection.first, "first frame, counted from 0")
+      ->check(WholeNumber());
+  app.add_option("--last", arguments.tum.selection.last, "last frame")->check(WholeNumber());
   app.add_option("--stride", arguments.tum.selection.stride, "take every n-th frame")
-      ->check(CLI::PositiveNumber);
+      ->check(WholeNumber());
   app.add_flag("--strict", arguments.strict, "stop at a broken image instead of skipping it");
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
   app.set_version_flag("--version", HULLSLAM_VERSION);
