@@ -20,15 +20,17 @@ struct ProgramResult {
   std::string errors;  // of stderr
 };
 
-// Runs a program of this build with arguments and waits for it.
-inline ProgramResult RunProgram(const std::string& name,
-                                const std::vector<std::string>& arguments) {
+// Runs a program of this build with arguments and waits for it; `setup` are commands of the shell
+// before it, such as "ulimit -f 8;".
+inline ProgramResult RunProgram(const std::string& name, const std::vector<std::string>& arguments,
+                                const std::string& setup = "") {
   const TemporaryFolder folder;
   const auto read = [&](const char* file) {
     std::ifstream stream(folder.path() / file, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(stream), {});
   };
-  std::string command = '\'' + (std::filesystem::path(HULLSLAM_BIN_DIR) / name).string() + '\'';
+  std::string command =
+      setup + '\'' + (std::filesystem::path(HULLSLAM_BIN_DIR) / name).string() + '\'';
   for (const std::string& argument : arguments) {
     command += " '" + argument + '\'';
   }

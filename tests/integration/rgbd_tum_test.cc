@@ -1,0 +1,576 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hullslam/io/text_rows.h"
+#include "hullslam/io/trajectory_file.h"
+#include "support/plane_sequence.h"
+#include "support/run_program.h"
+#include "support/temporary_folder.h"
+#include "support/test_data.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Arguments = std::vector<std::string>;
+using Json = nlohmann::json;
+
+// Another content for a file while this lives; the former one comes back.
+class EditedFile {
+ public:
+  EditedFile(fs::path path, const std::string& content)
+      : path_(std::move(path)), former_(ReadFile(path_)) {
+    Write(content);
+  }
+  ~EditedFile() { Write(former_); }
+  EditedFile(const EditedFile&) = delete;
+  EditedFile& operator=(const EditedFile&) = delete;
+
+ private:
+  void Write(const std::string& content) const {
+    std::ofstream(path_, std::ios::binary) << content;
+  }
+
+  fs::path path_;
+  std::string former_;
+};
+
+// Bytes of all files of a folder by name, temporary ones as well.
+std::map<std::string, std::string> ReadFolder(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    files[entry.path().filename()] = ReadFile(entry.path());
+  }
+  return files;
+}
+
+std::string EncodePng(const cv::Mat& image) {
+  std::vector<uchar> bytes;
+  cv::imencode(".png", image, bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
+Arguments operator+(Arguments first, const Arguments& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+bool IsOneLine(const std::string& text) {
+  return !text.empty() && text.find('\n') == text.size() - 1;
+}
+
+void ExpectParts(const std::string& text, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) {
+    EXPECT_NE(text.find(part), std::string::npos) << "no '" << part << "' in: " << text;
+  }
+}
+
+class RgbdTum : public ::testing::Test {
+ protected:
+  // Exit code 0; what the program said.
+  ProgramResult RunWell(const Arguments& arguments) const {
+    ProgramResult result = RunProgram("rgbd_tum", arguments + Arguments{"--output", output_});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return result;
+  }
+
+  Json Summary() const { return Json::parse(ReadFile(output_ / "summary.json")); }
+  Trajectory Poses() const { return ReadTrajectory(output_ / "trajectory.txt"); }
+
+  void ExpectStamps(const std::vector<int>& frames) const {
+    const Trajectory poses = Poses();
+    ASSERT_EQ(poses.size(), frames.size());
+    for (size_t i = 0; i < frames.size(); ++i) {
+      EXPECT_NEAR(poses[i].timestamp, sequence_.Stamp(frames[i]), 1e-6);
+    }
+  }
+
+  TemporaryFolder folder_;
+  fs::path output_ = folder_.path() / "out";
+  PlaneSequence sequence_;
+  std::string path_ = sequence_.path();
+};
+
+// ---- good input
+
+TEST_F(RgbdTum, WritesAllResults) {
+  const ProgramResult result = RunWell({path_});
+  ExpectParts(result.output, {"12 frames: 12 tracked, 0 lost, 0 skipped", "ATE RMSE", "keyframes",
+                              "frames/s", output_.string()});
+  std::vector<std::string> names;
+  for (const auto& [name, bytes] : ReadFolder(output_)) {
+    names.push_back(name);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"keyframes.txt", "map.ply", "summary.json",
+                                             "trajectory.txt"}));
+  ExpectStamps({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});
+  EXPECT_FALSE(ReadTrajectory(output_ / "keyframes.txt").empty());
+  EXPECT_TRUE(ReadFile(output_ / "map.ply").starts_with("ply\n"));
+  const Json trajectory = Summary()["trajectory"];
+  EXPECT_LE(trajectory["ate_rmse_m"].get<double>(), 0.010);
+  EXPECT_EQ(trajectory["pairs"], 12);
+  EXPECT_EQ(trajectory["frames"], 12);
+  EXPECT_EQ(trajectory["tracked"], 12);
+  EXPECT_EQ(trajectory["lost"], 0);
+  EXPECT_EQ(trajectory["skipped"], 0);
+}
+
+TEST_F(RgbdTum, SummaryHasAllKeys) {
+  RunWell({path_, "--seed", "7"});
+  const Json summary = Summary();
+  const std::map<std::string, std::vector<std::string>> keys = {
+      {"trajectory",
+       {"ate_rmse_m", "alignment", "scale", "pairs", "frames", "tracked", "lost", "poses"}},
+      {"timing", {"track_ms", "stages_ms", "total_s", "frames_per_second"}},
+      {"memory", {"peak_mb"}},
+      {"map", {"keyframes", "landmarks", "loops"}},
+      {"provenance",
+       {"version", "git", "settings_hash", "preset", "seed", "pipeline", "masks_format",
+        "sequence"}}};
+  for (const auto& [group, names] : keys) {
+    for (const std::string& name : names) {
+      EXPECT_TRUE(summary[group].contains(name)) << group << '.' << name;
+    }
+  }
+  for (const char* const name : {"median", "mean", "p95", "max"}) {
+    EXPECT_GT(summary["timing"]["track_ms"][name].get<double>(), 0.0) << name;
+  }
+  EXPECT_GT(summary["memory"]["peak_mb"].get<double>(), 0.0);
+  EXPECT_GE(summary["map"]["keyframes"].get<int>(), 1);
+  EXPECT_GE(summary["map"]["landmarks"].get<int>(), 100);
+  EXPECT_EQ(summary["provenance"]["seed"], 7);
+  EXPECT_EQ(summary["provenance"]["pipeline"], "sequential");
+  EXPECT_EQ(summary["provenance"]["sequence"], path_);
+}
+
+TEST_F(RgbdTum, SequentialRunsGiveTheSameBytes) {
+  RunWell({path_});
+  const auto first = ReadFolder(output_);
+  RunWell({path_});
+  const auto second = ReadFolder(output_);
+  for (const char* const name : {"trajectory.txt", "keyframes.txt", "map.ply"}) {
+    EXPECT_TRUE(first.at(name) == second.at(name)) << name;
+  }
+}
+
+TEST_F(RgbdTum, ThreadedRunIsAsGood) {
+  for (const Arguments& more : {Arguments{}, Arguments{"--realtime"}}) {
+    RunWell(Arguments{path_, "--threaded"} + more);
+    EXPECT_EQ(Summary()["trajectory"]["tracked"], 12);
+    EXPECT_LE(Summary()["trajectory"]["ate_rmse_m"].get<double>(), 0.010);
+    EXPECT_EQ(Summary()["provenance"]["pipeline"], "threaded");
+  }
+}
+
+TEST_F(RgbdTum, TakesTheFourArgumentsOfOrbSlam2) {
+  const ProgramResult result = RunWell({folder_.path() / "ORBvoc.txt", path_ + "/camera.yaml",
+                                        path_, path_ + "/associations.txt", "--quiet"});
+  EXPECT_TRUE(result.errors.starts_with("warning: ")) << result.errors;
+  EXPECT_TRUE(IsOneLine(result.errors)) << result.errors;
+  ExpectParts(result.errors, {"ORBvoc.txt"});
+  EXPECT_EQ(Poses().size(), 12U);
+}
+
+TEST_F(RgbdTum, SetOverridesASettingWhereverItStands) {
+  RunWell({path_});
+  const std::string plain = Summary()["provenance"]["settings_hash"];
+  RunWell({path_, "--set", "ORBextractor.nFeatures=500"});
+  const std::string changed = Summary()["provenance"]["settings_hash"];
+  EXPECT_NE(changed, plain);
+  RunWell({"--set", "ORBextractor.nFeatures=500", path_});
+  EXPECT_EQ(Summary()["provenance"]["settings_hash"], changed);
+  RunWell({"--set", "ORBextractor.nFeatures=500", "--set", "ThDepth=30", path_});
+  EXPECT_NE(Summary()["provenance"]["settings_hash"], changed);
+}
+
+TEST_F(RgbdTum, RunsAPartOfTheSequence) {
+  RunWell({path_, "--first", "2", "--last", "9", "--stride", "3"});
+  ExpectStamps({2, 5, 8});
+  RunWell({path_, "--last", "100", "--first", "11"});
+  ExpectStamps({11});
+}
+
+TEST_F(RgbdTum, WithoutGroundTruthThereIsNoError) {
+  fs::remove(sequence_.path() / "groundtruth.txt");
+  const ProgramResult result = RunWell({path_, "--last", "2", "--quiet"});
+  EXPECT_EQ(result.errors, "");
+  EXPECT_TRUE(Summary()["trajectory"]["ate_rmse_m"].is_null());
+}
+
+TEST_F(RgbdTum, QuietPrintsNothing) {
+  const ProgramResult result = RunWell({path_, "--quiet"});
+  EXPECT_EQ(result.output, "");
+  EXPECT_EQ(result.errors, "");
+}
+
+TEST_F(RgbdTum, HelpAndVersionAreNoErrors) {
+  const ProgramResult help = RunProgram("rgbd_tum", {"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  ExpectParts(help.output, {"--settings", "--set", "--output", "--threaded", "--realtime",
+                            "--first", "--stride", "--strict", "--quiet", "Exit codes"});
+  const ProgramResult version = RunProgram("rgbd_tum", {"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_TRUE(IsOneLine(version.output)) << version.output;
+  EXPECT_EQ(help.errors + version.errors, "");
+}
+
+TEST(RgbdTumData, RenderedDeskIsTracked) {
+  const TemporaryFolder folder;
+  const std::string desk = folder.path() / "desk";
+  ASSERT_EQ(RunProgram("make_synthetic", {desk, "--frames", "12", "--quiet"}).exit_code, 0);
+  const fs::path out = folder.path() / "out";
+  const ProgramResult result = RunProgram("rgbd_tum", {desk, "--output", out});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const Json trajectory = Json::parse(ReadFile(out / "summary.json"))["trajectory"];
+  EXPECT_EQ(trajectory["tracked"], 12);
+  EXPECT_LE(trajectory["ate_rmse_m"].get<double>(), 0.010);
+}
+
+TEST(RgbdTumData, RealSequenceIsTrackedToTheEnd) {
+  const auto data = FindTestData("fr1_xyz");
+  if (!data) {
+    GTEST_SKIP() << "fr1_xyz is not on this machine; set HULLSLAM_DATA";
+  }
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      RunProgram("rgbd_tum", {*data, "--output", folder.path(), "--quiet"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const Json trajectory = Json::parse(ReadFile(folder.path() / "summary.json"))["trajectory"];
+  EXPECT_EQ(trajectory["lost"], 0);
+  EXPECT_EQ(trajectory["skipped"], 0);
+  EXPECT_EQ(trajectory["tracked"], trajectory["frames"]);
+  EXPECT_GE(trajectory["frames"].get<int>(), 790);
+  EXPECT_LE(trajectory["ate_rmse_m"].get<double>(), 0.0100);
+}
+
+// ---- bad input
+
+class RgbdTumRefuses : public RgbdTum {
+ protected:
+  RgbdTumRefuses() {
+    RunWell({path_, "--last", "2"});
+    former_ = ReadFolder(output_);
+  }
+
+  // Exit code 2, nothing on stdout, one line on stderr with all `parts`, and the results of the
+  // former run are as they were.
+  void ExpectRefusal(const Arguments& arguments, const std::vector<std::string>& parts,
+                     const std::string& setup = "") const {
+    Expect(arguments + Arguments{"--output", output_}, parts, setup);
+    EXPECT_TRUE(ReadFolder(output_) == former_) << "the former results were changed";
+  }
+
+  static void Expect(const Arguments& arguments, const std::vector<std::string>& parts,
+                     const std::string& setup = "") {
+    const ProgramResult result = RunProgram("rgbd_tum", arguments, setup);
+    EXPECT_EQ(result.exit_code, 2) << result.errors;
+    EXPECT_EQ(result.output, "");
+    EXPECT_TRUE(result.errors.starts_with("error: ")) << result.errors;
+    EXPECT_TRUE(IsOneLine(result.errors)) << result.errors;
+    ExpectParts(result.errors, parts);
+  }
+
+  // The same with another content in a file of the sequence.
+  void ExpectRefusalOf(const std::string& name, const std::string& content,
+                       const std::vector<std::string>& parts) const {
+    const EditedFile edited(sequence_.path() / name, content);
+    ExpectRefusal({path_}, parts);
+  }
+
+  std::map<std::string, std::string> former_;
+};
+
+TEST_F(RgbdTumRefuses, WhatIsMissing) {
+  ExpectRefusal({path_ + "/none"}, {path_ + "/none"});
+  ExpectRefusal({path_, "--settings", path_ + "/none.yaml"}, {path_ + "/none.yaml"});
+  ExpectRefusal({path_, "--associations", path_ + "/none.txt"}, {path_ + "/none.txt"});
+  fs::remove(sequence_.path() / "rgb/07.png");
+  ExpectRefusal({path_}, {path_ + "/rgb/07.png", "missing"});
+  fs::remove(sequence_.path() / "depth.txt");
+  ExpectRefusal({path_}, {path_ + "/depth.txt"});
+}
+
+TEST_F(RgbdTumRefuses, BadSettings) {
+  const std::string good = ReadFile(sequence_.path() / "camera.yaml");
+  const auto refuse = [&](const std::string& line, const std::vector<std::string>& parts) {
+    ExpectRefusalOf("camera.yaml", good + line + '\n', parts);
+  };
+  const std::string place = path_ + "/camera.yaml:13: ";  // the line behind the good ones
+  refuse("Camera.fz: 500.0", {place, "unknown key 'Camera.fz'", "Camera.f"});
+  refuse("Camera.k1: wide", {place, "Camera.k1 is 'wide'", "a number"});
+  refuse("ORBextractor.nLevels: 2.5", {place, "ORBextractor.nLevels is '2.5'", "an integer"});
+  refuse("Camera.fx: 510.0", {place, "Camera.fx"});
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  ExpectRefusalOf("camera.yaml", replace("fx: 500.0", "fx: 0.0"),
+                  {path_ + "/camera.yaml:2: ", "Camera.fx is '0'", "> 0"});
+  ExpectRefusalOf("camera.yaml", replace("nFeatures: 600", "nFeatures: -600"),
+                  {path_ + "/camera.yaml:12: ", "ORBextractor.nFeatures is '-600'"});
+  ExpectRefusalOf("camera.yaml", replace("Camera.fx: 500.0\n", ""),
+                  {path_ + "/camera.yaml", "Camera.fx"});
+  ExpectRefusalOf("camera.yaml", "", {path_ + "/camera.yaml"});
+}
+
+TEST_F(RgbdTumRefuses, BadOverrides) {
+  ExpectRefusal({path_, "--set", "Camera.fz=500"}, {"--set", "unknown key 'Camera.fz'"});
+  ExpectRefusal({path_, "--set", "Camera.fx=wide"}, {"--set", "Camera.fx is 'wide'", "a number"});
+  ExpectRefusal({path_, "--set", "Camera.fx=0"}, {"--set", "Camera.fx is '0'"});
+  ExpectRefusal({path_, "--set", "ORBextractor.nFeatures=-5"},
+                {"--set", "ORBextractor.nFeatures is '-5'", "an integer"});
+  ExpectRefusal({path_, "--set", "Camera.fx"}, {"--set", "'Camera.fx'", "key=value"});
+}
+
+TEST_F(RgbdTumRefuses, BrokenFirstImages) {
+  const std::string depth = path_ + "/depth/00.png";
+  const std::string good = ReadFile(depth);
+  ExpectRefusalOf("depth/00.png", "", {depth, "empty"});
+  ExpectRefusalOf("depth/00.png", "no image", {depth});
+  ExpectRefusalOf("depth/00.png", good.substr(0, good.size() / 2), {depth, "cut off"});
+  std::string broken = good;
+  broken.replace(60, 40, std::string(40, '\x55'));
+  ExpectRefusalOf("depth/00.png", broken, {depth, "broken"});
+  ExpectRefusalOf("depth/00.png", EncodePng(cv::Mat(480, 640, CV_8UC1, cv::Scalar(90))),
+                  {depth, "8 bits", "16 bits"});
+  ExpectRefusalOf("depth/00.png", EncodePng(cv::Mat(240, 320, CV_16UC1, cv::Scalar(5000))),
+                  {depth, "320x240", "640x480"});
+  ExpectRefusalOf("rgb/00.png", "", {path_ + "/rgb/00.png", "empty"});
+}
+
+TEST_F(RgbdTumRefuses, ImagesOfAnotherSizeThanTheSettings) {
+  ExpectRefusal({path_, "--set", "Camera.width=320"},
+                {path_ + "/rgb/00.png", "640x480", "320x480", "Camera.width"});
+}
+
+TEST_F(RgbdTumRefuses, BrokenLists) {
+  ExpectRefusalOf("rgb.txt", "1.0 rgb/00.png\n2.0 rgb/01.png\n1.5 rgb/02.png\n",
+                  {path_ + "/rgb.txt:3: ", "1.5"});
+  ExpectRefusalOf("rgb.txt", "# stamp file\n1.0 rgb/00.png\n1.0 rgb/01.png\n",
+                  {path_ + "/rgb.txt:3: ", "1.0"});
+  ExpectRefusalOf("rgb.txt", "1.0\n", {path_ + "/rgb.txt:1: "});
+  ExpectRefusalOf("rgb.txt", "soon rgb/00.png\n", {path_ + "/rgb.txt:1: ", "'soon'"});
+  ExpectRefusalOf("depth.txt", "", {path_ + "/depth.txt", "no images"});
+  // The colour image nearest in time is that of 1000 s.
+  ExpectRefusalOf("depth.txt", "999.97 depth/00.png\n", {path_, "0.02 s", "smallest gap is 0.03"});
+  ExpectRefusalOf("groundtruth.txt", "1 0 0 0 0 0 0 1\n2 0 nan 0 0 0 0 1\n",
+                  {path_ + "/groundtruth.txt:2: ", "'nan'"});
+  const std::string pairs = path_ + "/associations.txt";
+  const EditedFile edited(pairs, "1.0 rgb/00.png 1.0 depth/00.png\n2.0 rgb/01.png 2.0\n");
+  ExpectRefusal({path_, "--associations", pairs}, {pairs + ":2: ", "expected 4"});
+}
+
+TEST_F(RgbdTumRefuses, BadUsage) {
+  ExpectRefusal({}, {"0 positional arguments", "SEQUENCE"});
+  ExpectRefusal({path_, path_}, {"2 positional arguments", "SEQUENCE"});
+  ExpectRefusal({path_, "--colour"}, {"--colour"});
+  Expect({path_, "--set"}, {"--set"});
+  ExpectRefusal({path_, "--stride", "0"}, {"--stride", "'0'", ">= 1"});
+  ExpectRefusal({path_, "--stride", "-1"}, {"--stride", "'-1'"});
+  ExpectRefusal({path_, "--first", "-1"}, {"--first", "'-1'", ">= 0"});
+  ExpectRefusal({path_, "--first", "many"}, {"--first", "'many'"});
+  ExpectRefusal({path_, "--first", "12"}, {"--first", "'12'", "12 frames"});
+  ExpectRefusal({path_, "--first", "5", "--last", "4"}, {"--first", "--last"});
+  ExpectRefusal({path_, "--seed", "-1"}, {"--seed", "'-1'"});
+}
+
+TEST_F(RgbdTumRefuses, OutputThatCannotBeWritten) {
+  const fs::path file = folder_.Write("file", "precious");
+  Expect({path_, "--output", file / "below"}, {(file / "below").string()});
+  Expect({path_, "--output", file}, {file.string()});
+  EXPECT_EQ(ReadFile(file), "precious");
+}
+
+// trajectory.txt is small enough, map.ply is not; no former file may be replaced.
+TEST_F(RgbdTumRefuses, FilesThatMayNotGrow) {
+  ExpectRefusal({path_, "--quiet"}, {(output_ / "map.ply").string(), "cannot be written"},
+                "trap '' XFSZ; ulimit -f 4; ");
+}
+
+// A disk of its own that can be filled.
+class SmallDisk {
+ public:
+  explicit SmallDisk(fs::path folder) : folder_(std::move(folder)) {
+    fs::create_directory(folder_);
+    is_mounted_ = Shell("mount -t tmpfs -o size=128k none");
+  }
+  ~SmallDisk() {
+    if (is_mounted_) {
+      Shell("umount");
+    }
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+  bool is_mounted() const { return is_mounted_; }
+
+ private:
+  bool Shell(const std::string& command) const {
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): tests run programs one after the other
+    return std::system((command + " '" + folder_.string() + "' 2>/dev/null").c_str()) == 0;
+  }
+
+  fs::path folder_;
+  bool is_mounted_ = false;
+};
+
+TEST_F(RgbdTumRefuses, FullDisk) {
+  const fs::path disk = folder_.path() / "disk";
+  const SmallDisk mounted(disk);
+  if (!mounted.is_mounted()) {
+    GTEST_SKIP() << "a small disk cannot be mounted here; FilesThatMayNotGrow tests the same";
+  }
+  fs::copy(output_, disk / "out");
+  output_ = disk / "out";
+  // Room for one page, so that the test before the run passes and trajectory.txt still fits.
+  std::ofstream filler(disk / "filler", std::ios::binary);
+  while (fs::space(disk).available > 8192 && filler) {
+    filler << std::string(4096, 'x') << std::flush;
+  }
+  ExpectRefusal({path_, "--quiet"}, {disk.string(), "No space left on device"});
+  while (filler) {
+    filler << std::string(4096, 'x') << std::flush;
+  }
+  ExpectRefusal({path_}, {disk.string(), "No space left on device"});
+}
+
+// ---- runs that meet trouble on the way
+
+TEST_F(RgbdTum, BrokenImageInTheMiddleIsSkipped) {
+  const std::string broken = path_ + "/depth/05.png";
+  const EditedFile edited(broken, "");
+  for (const Arguments& more : {Arguments{}, Arguments{"--threaded"}}) {
+    const ProgramResult result = RunWell(Arguments{path_, "--quiet"} + more);
+    EXPECT_TRUE(result.errors.starts_with("warning: " + broken)) << result.errors;
+    EXPECT_TRUE(IsOneLine(result.errors)) << result.errors;
+    ExpectStamps({0, 1, 2, 3, 4, 6, 7, 8, 9, 10, 11});
+    EXPECT_EQ(Summary()["trajectory"]["skipped"], 1);
+    EXPECT_EQ(Summary()["trajectory"]["frames"], 12);
+    EXPECT_EQ(Summary()["trajectory"]["tracked"], 11);
+  }
+}
+
+TEST_F(RgbdTumRefuses, BrokenImageInTheMiddleIfStrict) {
+  const EditedFile edited(sequence_.path() / "rgb/05.png", "no image");
+  for (const Arguments& more : {Arguments{}, Arguments{"--threaded"}}) {
+    ExpectRefusal(Arguments{path_, "--strict", "--quiet"} + more, {path_ + "/rgb/05.png"});
+  }
+}
+
+// Black images from frame `first` on, 40 of them.
+void Blacken(const PlaneSequence& sequence, int first) {
+  cv::imwrite(sequence.path() / "rgb/black.png", cv::Mat(480, 640, CV_8UC1, cv::Scalar(0)));
+  std::string pairs;
+  for (int i = 0; i < first + 40; ++i) {
+    const std::string stamp = fmt::format("{:.6f}", sequence.Stamp(i));
+    const std::string name = i < first ? fmt::format("{:02}", i) : "black";
+    pairs += fmt::format("{} rgb/{}.png {} depth/00.png\n", stamp, name, stamp);
+  }
+  std::ofstream(sequence.path() / "black.txt") << pairs;
+}
+
+TEST_F(RgbdTum, LostForGoodIsAFailure) {
+  for (const int good : {3, 0}) {
+    Blacken(sequence_, good);
+    const ProgramResult result =
+        RunProgram("rgbd_tum",
+                   {path_, "--associations", path_ + "/black.txt", "--quiet", "--output", output_});
+    EXPECT_EQ(result.exit_code, 1);
+    const size_t at = result.errors.find("error: ");
+    ASSERT_NE(at, std::string::npos) << result.errors;
+    ExpectParts(result.errors.substr(at), {"lost", std::to_string(good) + " of"});
+    EXPECT_EQ(Summary()["trajectory"]["tracked"], good);
+    EXPECT_EQ(Summary()["trajectory"]["lost"], 40);
+  }
+}
+
+// A program that runs while the test goes on; its stderr can be read line by line.
+class RunningProgram {
+ public:
+  explicit RunningProgram(Arguments arguments) {
+    std::array<int, 2> pipe{};
+    if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
+      throw std::runtime_error("no pipe can be made");
+    }
+    arguments.insert(arguments.begin(), std::string(HULLSLAM_BIN_DIR) + "/rgbd_tum");
+    std::vector<char*> words;
+    for (std::string& argument : arguments) {
+      words.push_back(argument.data());
+    }
+    words.push_back(nullptr);
+    process_ = ::fork();
+    if (process_ == 0) {
+      ::dup2(pipe[1], STDERR_FILENO);
+      ::dup2(pipe[1], STDOUT_FILENO);
+      ::execv(words[0], words.data());
+      ::_exit(127);
+    }
+    ::close(pipe[1]);
+    errors_ = ::fdopen(pipe[0], "r");
+  }
+  ~RunningProgram() { std::fclose(errors_); }
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+
+  // The next line; empty at the end.
+  std::string ReadLine() {
+    std::array<char, 1000> line{};
+    return std::fgets(line.data(), line.size(), errors_) != nullptr ? line.data() : "";
+  }
+
+  // Sends SIGINT and waits for the end; the exit code, -1 where a signal ended it.
+  int Interrupt() {
+    ::kill(process_, SIGINT);
+    while (!ReadLine().empty()) {
+    }
+    int status = 0;
+    ::waitpid(process_, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  pid_t process_ = -1;
+  std::FILE* errors_ = nullptr;
+};
+
+TEST_F(RgbdTum, AnInterruptWritesWhatThereIs) {
+  const PlaneSequence slow(12, 0.5);
+  for (const Arguments& more : {Arguments{}, Arguments{"--threaded"}}) {
+    RunningProgram program(Arguments{slow.path(), "--realtime", "--output", output_} + more);
+    const std::string line = program.ReadLine();
+    ASSERT_TRUE(line.starts_with("frame ")) << line;
+    EXPECT_EQ(program.Interrupt(), 0);
+    const Trajectory poses = Poses();
+    ASSERT_GE(poses.size(), 1U);
+    EXPECT_LT(poses.size(), 12U);
+    for (size_t i = 0; i < poses.size(); ++i) {
+      EXPECT_NEAR(poses[i].timestamp, slow.Stamp(static_cast<int>(i)), 1e-6);
+      EXPECT_NEAR(poses[i].world_from_cam.translation.x(), 0.01 * static_cast<double>(i), 0.003);
+    }
+    EXPECT_EQ(Summary()["trajectory"]["frames"], poses.size());
+    EXPECT_EQ(ReadFolder(output_).size(), 4U);
+  }
+}
+
+}  // namespace
+}  // namespace hullslam
