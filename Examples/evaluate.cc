@@ -4,12 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
+#include "cli/program.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/eval/rpe.h"
 #include "hullslam/io/trajectory_file.h"
@@ -17,10 +17,6 @@
 
 namespace hullslam {
 namespace {
-
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kBadInput = 2;
 
 struct Arguments {
   std::string groundtruth;
@@ -131,12 +127,8 @@ int Run(int argc, char** argv) {
   CLI::App app("Evaluates finished runs.", "evaluate");
   Arguments arguments;
   AddTrajectoryCommand(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& request) {  // --help
-    return app.exit(request);
-  } catch (const CLI::ParseError& error) {
-    throw InputError(error.what());
+  if (!ParseCommandLine(app, argc, argv)) {
+    return kDone;
   }
   const Evaluation evaluation = Evaluate(arguments);
   if (arguments.json) {
@@ -150,14 +142,4 @@ int Run(int argc, char** argv) {
 }  // namespace
 }  // namespace hullslam
 
-int main(int argc, char** argv) {
-  try {
-    return hullslam::Run(argc, argv);
-  } catch (const hullslam::InputError& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return hullslam::kBadInput;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return hullslam::kFailed;
-  }
-}
+int main(int argc, char** argv) { return hullslam::RunMain(hullslam::Run, argc, argv); }

@@ -6,22 +6,18 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <optional>
 #include <string>
 
-#include "hullslam/util/error.h"
+#include "cli/program.h"
 #include "synthetic/sequence_writer.h"
 
 namespace {
 
-using hullslam::InputError;
+using hullslam::kDone;
+using hullslam::kFailed;
 using hullslam::synthetic::SequenceOptions;
-
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kBadInput = 2;
 
 struct Arguments {
   std::string folder;
@@ -65,7 +61,7 @@ bool SignalIsPending() {
   return sigismember(&pending, SIGINT) == 1 || sigismember(&pending, SIGTERM) == 1;
 }
 
-int Run(Arguments& arguments) {
+int Render(Arguments& arguments) {
   SequenceOptions& options = arguments.options;
   options.scene = hullslam::synthetic::ParseSceneKind(arguments.scene);
   options.frames = arguments.frames.value_or(hullslam::synthetic::DefaultFrames(options.scene));
@@ -97,25 +93,18 @@ int Run(Arguments& arguments) {
   return kDone;
 }
 
+int Run(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Renders a synthetic RGB-D sequence with exact ground truth of camera and objects.",
+               "make_synthetic");
+  AddOptions(app, arguments);
+  if (!hullslam::ParseCommandLine(app, argc, argv)) {
+    return kDone;
+  }
+  HoldSignals();
+  return Render(arguments);
+}
+
 }  // namespace
 
-int main(int argc, char** argv) {
-  Arguments arguments;
-  CLI::App app("Renders a synthetic RGB-D sequence with exact ground truth of camera and objects.");
-  AddOptions(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kBadInput;
-  }
-  try {
-    HoldSignals();
-    return Run(arguments);
-  } catch (const InputError& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return kBadInput;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return kFailed;
-  }
-}
+int main(int argc, char** argv) { return hullslam::RunMain(Run, argc, argv); }

@@ -100,4 +100,18 @@ std::vector<KeyframeId> BestCovisible(const Keyframe& keyframe, size_t count) {
   return best;
 }
 
+std::vector<LandmarkId> ObservedLandmarks(const Map& map, std::span<const KeyframeId> keyframes) {
+  std::vector<LandmarkId> landmarks;
+  for (const KeyframeId id : keyframes) {
+    for (const LandmarkId landmark : map.keyframes().At(id).landmarks) {
+      if (landmark.IsValid()) {
+        landmarks.push_back(landmark);
+      }
+    }
+  }
+  std::sort(landmarks.begin(), landmarks.end());
+  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  return landmarks;
+}
+
 }  // namespace hullslam

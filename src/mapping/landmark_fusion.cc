@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "hullslam/map/appearance.h"
@@ -30,20 +31,6 @@ std::vector<KeyframeId> Neighbourhood(const Map& map, KeyframeId id) {
   targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
   std::erase(targets, id);
   return targets;
-}
-
-std::vector<LandmarkId> LandmarksOf(const Map& map, const std::vector<KeyframeId>& keyframes) {
-  std::vector<LandmarkId> landmarks;
-  for (const KeyframeId id : keyframes) {
-    for (const LandmarkId landmark : map.keyframes().At(id).landmarks) {
-      if (landmark.IsValid()) {
-        landmarks.push_back(landmark);
-      }
-    }
-  }
-  std::sort(landmarks.begin(), landmarks.end());
-  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
-  return landmarks;
 }
 
 bool Agrees(const FrameFeatures& features, uint32_t keypoint, const Projection& projection,
@@ -75,7 +62,7 @@ void Join(Map& map, LandmarkId landmark, LandmarkId other, const ScaleLevels& le
 void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landmarks,
               const Sensor& sensor) {
   const std::shared_ptr<const Frame> frame = map.keyframes().At(target).frame;
-  const std::vector<LandmarkId> known = LandmarksOf(map, {target});
+  const std::vector<LandmarkId> known = ObservedLandmarks(map, std::span(&target, 1));
   std::vector<Projection> projections;
   std::vector<LandmarkId> ids;
   for (const LandmarkId id : landmarks) {
@@ -119,9 +106,9 @@ void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landma
 void FuseLandmarks(Map& map, KeyframeId id, const Sensor& sensor) {
   const std::vector<KeyframeId> targets = Neighbourhood(map, id);
   for (const KeyframeId target : targets) {
-    FuseInto(map, target, LandmarksOf(map, {id}), sensor);
+    FuseInto(map, target, ObservedLandmarks(map, std::span(&id, 1)), sensor);
   }
-  FuseInto(map, id, LandmarksOf(map, targets), sensor);
+  FuseInto(map, id, ObservedLandmarks(map, targets), sensor);
   UpdateCovisibility(map, id);
 }
 

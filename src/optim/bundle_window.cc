@@ -9,21 +9,6 @@
 namespace hullslam {
 namespace {
 
-std::vector<LandmarkId> ObservedLandmarks(const Map& map,
-                                          const std::vector<KeyframeId>& observers) {
-  std::vector<LandmarkId> landmarks;
-  for (const KeyframeId id : observers) {
-    for (const LandmarkId landmark : map.keyframes().At(id).landmarks) {
-      if (landmark.IsValid()) {
-        landmarks.push_back(landmark);
-      }
-    }
-  }
-  std::sort(landmarks.begin(), landmarks.end());
-  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
-  return landmarks;
-}
-
 // Keyframes outside `inside` (sorted) that observe the landmarks, most observations first.
 std::vector<KeyframeId> OuterObservers(const Map& map, const std::vector<LandmarkId>& landmarks,
                                        const std::vector<KeyframeId>& inside, size_t count) {

@@ -74,6 +74,16 @@ TEST_F(Covisibility, FollowsTheObservations) {
   EXPECT_EQ(EdgesOf(map_, ids_[1]), (Edges{{2, 17}}));
 }
 
+TEST_F(Covisibility, ObservedLandmarksAreEachNamedOnceAndInOrder) {
+  const std::vector<LandmarkId> first = Share(map_, {ids_[0], ids_[1]}, 3);
+  const std::vector<LandmarkId> second = Share(map_, {ids_[1], ids_[2]}, 2);
+  std::vector<LandmarkId> all = first;
+  all.insert(all.end(), second.begin(), second.end());
+  EXPECT_EQ(ObservedLandmarks(map_, std::vector{ids_[2], ids_[0]}), all);
+  EXPECT_EQ(ObservedLandmarks(map_, std::vector{ids_[1]}), all);
+  EXPECT_EQ(ObservedLandmarks(map_, std::vector{ids_[3]}), std::vector<LandmarkId>());
+}
+
 TEST_F(Covisibility, GivesAParentOnce) {
   Share(map_, {ids_[3], ids_[0]}, 20);
   Share(map_, {ids_[3], ids_[1]}, 30);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "hullslam/map/map.h"
@@ -17,5 +18,8 @@ void DetachCovisibility(Map& map, KeyframeId keyframe);
 
 // At most `count` neighbours, by falling number of shared landmarks, then by falling id.
 std::vector<KeyframeId> BestCovisible(const Keyframe& keyframe, size_t count);
+
+// The landmarks that any of the keyframes observes, by increasing id.
+std::vector<LandmarkId> ObservedLandmarks(const Map& map, std::span<const KeyframeId> keyframes);
 
 }  // namespace hullslam

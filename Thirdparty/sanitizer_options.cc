@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the sanitizers ask a program for at its start; empty in other builds.
+// What the sanitizers should overlook in the libraries of others. Compiled into every program and
+// test of a sanitizer build: from an archive the linker would not take it.
 
 #ifdef __SANITIZE_THREAD__
 // OpenCV tries GDAL among its decoders. GDAL takes its own two mutexes in one order when it sets
