@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the tracker finds a pose: by the motion model, the reference keyframe, the local map.
+#include <algorithm>
+#include <utility>
+
+#include "hullslam/map/landmark_projection.h"
+#include "hullslam/matching/by_descriptor.h"
+#include "hullslam/matching/by_projection.h"
+#include "hullslam/optim/pose_optimization.h"
+#include "hullslam/tracking/local_map.h"
+#include "hullslam/tracking/tracker.h"
+
+namespace hullslam {
+namespace {
+
+// Search windows in px at level 0 and bounds on matches: Mur-Artal and Tardos 2017.
+constexpr double kMotionRadius = 15.0;
+constexpr size_t kMinMotionMatches = 20;
+constexpr int kMinMotionInliers = 10;
+constexpr size_t kMinReferenceMatches = 15;
+constexpr double kLocalRadius = 4.0;
+constexpr double kLocalRadiusFrontal = 2.5;
+constexpr double kCosFrontal = 0.998;
+constexpr double kDepthRadiusFactor = 3.0;  // depth makes start poses and landmarks less sure
+
+struct LevelRange {
+  int min = 0;
+  int max = 0;
+};
+
+// Moving forward patches grow, so that they are found at higher levels; backward at lower ones.
+LevelRange LevelsAfterMotion(int level, double forward, double baseline, int level_count) {
+  if (forward > baseline) {
+    return {level, level_count - 1};
+  }
+  if (-forward > baseline) {
+    return {0, level};
+  }
+  return {level - 1, level + 1};
+}
+
+}  // namespace
+
+std::optional<Tracker::Estimate> Tracker::TrackWithMotionModel() const {
+  if (!velocity_) {
+    return std::nullopt;
+  }
+  Estimate estimate;
+  estimate.cam_from_world = *velocity_ * last_from_world_;
+  const double forward = Inverse(*velocity_).translation.z();
+  std::vector<Projection> projections;
+  std::vector<LandmarkId> ids;
+  for (size_t i = 0; i < last_.landmarks.size(); ++i) {
+    const Landmark* landmark = map_->landmarks().Find(last_.landmarks[i]);
+    if (landmark == nullptr) {
+      continue;
+    }
+    const Eigen::Vector3d point = estimate.cam_from_world * landmark->position;
+    if (point.z() <= 0.0) {
+      continue;
+    }
+    const Eigen::Vector2d pixel = sensor_.camera.Project(point);
+    if (!sensor_.bounds.Contains(pixel)) {
+      continue;
+    }
+    const Keypoint& seen = last_.frame->features.keypoints[i];
+    const LevelRange levels =
+        LevelsAfterMotion(seen.level, forward, sensor_.baseline(), sensor_.levels.count());
+    Projection& projection = projections.emplace_back();
+    projection.pixel = pixel.cast<float>();
+    projection.right_u = static_cast<float>(pixel.x() - sensor_.camera.bf / point.z());
+    projection.radius =
+        static_cast<float>(kMotionRadius) * sensor_.levels.scale[static_cast<size_t>(seen.level)];
+    projection.min_level = levels.min;
+    projection.max_level = levels.max;
+    projection.descriptor = landmark->descriptor;
+    projection.angle = seen.angle;
+    ids.push_back(last_.landmarks[i]);
+  }
+  const ProjectionSearch search{.max_distance = 100, .compare_rotation = true};
+  std::vector<Match> matches = MatchByProjection(frame_->features, projections, {}, search);
+  if (matches.size() < kMinMotionMatches) {
+    for (Projection& projection : projections) {
+      projection.radius *= 2.0f;
+    }
+    matches = MatchByProjection(frame_->features, projections, {}, search);
+  }
+  if (matches.size() < kMinMotionMatches) {
+    return std::nullopt;
+  }
+  estimate.landmarks.resize(frame_->features.size());
+  for (const Match& match : matches) {
+    estimate.landmarks[match.keypoint] = ids[match.query];
+  }
+  OptimizePose(estimate);
+  return estimate.inliers >= kMinMotionInliers ? std::optional(std::move(estimate)) : std::nullopt;
+}
+
+std::optional<Tracker::Estimate> Tracker::TrackReferenceKeyframe() const {
+  const Keyframe& reference = map_->keyframes().At(reference_);
+  std::vector<uint32_t> indices;
+  for (uint32_t i = 0; i < reference.landmarks.size(); ++i) {
+    if (reference.landmarks[i].IsValid()) {
+      indices.push_back(i);
+    }
+  }
+  const std::vector<Match> matches =
+      MatchByDescriptor(reference.frame->features, indices, frame_->features, {});
+  if (matches.size() < kMinReferenceMatches) {
+    return std::nullopt;
+  }
+  Estimate estimate;
+  estimate.cam_from_world = last_from_world_;
+  estimate.landmarks.resize(frame_->features.size());
+  for (const Match& match : matches) {
+    estimate.landmarks[match.keypoint] = reference.landmarks[match.query];
+  }
+  OptimizePose(estimate);
+  return estimate.inliers >= kMinMotionInliers ? std::optional(std::move(estimate)) : std::nullopt;
+}
+
+std::optional<Tracker::Estimate> Tracker::TrackLocalMap(Estimate estimate) {
+  const LocalMap local =
+      SelectLocalMap(*map_, estimate.landmarks, static_cast<size_t>(options_.local_keyframes));
+  if (local.reference.IsValid()) {
+    reference_ = local.reference;
+  }
+  SearchLocalLandmarks(local.landmarks, estimate);
+  OptimizePose(estimate);
+  for (const LandmarkId landmark : estimate.landmarks) {
+    if (landmark.IsValid()) {
+      sightings_.CountFound(landmark);
+    }
+  }
+  return estimate.inliers >= options_.min_inliers ? std::optional(std::move(estimate))
+                                                  : std::nullopt;
+}
+
+void Tracker::SearchLocalLandmarks(const std::vector<LandmarkId>& local, Estimate& estimate) {
+  std::vector<uint8_t> taken(frame_->features.size(), 0);
+  std::vector<LandmarkId> matched;
+  for (size_t i = 0; i < taken.size(); ++i) {
+    if (estimate.landmarks[i].IsValid()) {
+      taken[i] = 1;
+      matched.push_back(estimate.landmarks[i]);
+      sightings_.CountVisible(estimate.landmarks[i]);
+    }
+  }
+  std::sort(matched.begin(), matched.end());
+  std::vector<Projection> projections;
+  std::vector<LandmarkId> ids;
+  for (const LandmarkId id : local) {
+    if (std::binary_search(matched.begin(), matched.end(), id)) {
+      continue;
+    }
+    const Landmark& landmark = map_->landmarks().At(id);
+    const std::optional<LandmarkView> view =
+        ViewLandmark(sensor_, estimate.cam_from_world, landmark);
+    if (!view) {
+      continue;
+    }
+    sightings_.CountVisible(id);
+    const double radius =
+        kDepthRadiusFactor * (view->cos_view > kCosFrontal ? kLocalRadiusFrontal : kLocalRadius);
+    Projection& projection = projections.emplace_back();
+    projection.pixel = view->pixel.cast<float>();
+    projection.right_u = static_cast<float>(view->right_u);
+    projection.radius =
+        static_cast<float>(radius) * sensor_.levels.scale[static_cast<size_t>(view->level)];
+    projection.min_level = view->level - 1;
+    projection.max_level = view->level;
+    projection.descriptor = landmark.descriptor;
+    ids.push_back(id);
+  }
+  const std::vector<Match> matches = MatchByProjection(frame_->features, projections, taken,
+                                                       {.max_distance = 100, .max_ratio = 0.8});
+  for (const Match& match : matches) {
+    estimate.landmarks[match.keypoint] = ids[match.query];
+  }
+}
+
+void Tracker::OptimizePose(Estimate& estimate) const {
+  const FrameFeatures& features = frame_->features;
+  std::vector<PoseObservation> observations;
+  std::vector<size_t> keypoints;
+  for (size_t i = 0; i < estimate.landmarks.size(); ++i) {
+    if (!estimate.landmarks[i].IsValid()) {
+      continue;
+    }
+    const Keypoint& keypoint = features.keypoints[i];
+    PoseObservation& observation = observations.emplace_back();
+    observation.point = map_->landmarks().At(estimate.landmarks[i]).position;
+    observation.measured << keypoint.undistorted.cast<double>(),
+        static_cast<double>(features.right_u[i]);
+    observation.has_depth = features.right_u[i] >= 0.0f;
+    observation.inverse_sigma2 =
+        static_cast<double>(sensor_.levels.inverse_sigma2[static_cast<size_t>(keypoint.level)]);
+    keypoints.push_back(i);
+  }
+  const PoseOptimizationResult result =
+      hullslam::OptimizePose(sensor_.camera, estimate.cam_from_world, observations);
+  estimate.cam_from_world = result.cam_from_world;
+  estimate.inliers = result.inlier_count;
+  for (size_t k = 0; k < keypoints.size(); ++k) {
+    if (result.is_inlier[k] == 0) {
+      estimate.landmarks[keypoints[k]] = LandmarkId();
+    }
+  }
+}
+
+}  // namespace hullslam
