@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstdlib>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
+
+#include "support/test_data.h"
 
 namespace hullslam {
 
@@ -29,13 +30,10 @@ inline cv::Mat MakeCornerImage(int width = 640, int height = 480, uint64_t seed 
   return image;
 }
 
-// A grey image of TUM freiburg1_xyz from the folder of data sets (HULLSLAM_DATA, by default beside
-// the source tree); empty where it is not on this machine.
+// A grey image of TUM freiburg1_xyz; empty where the data is not on this machine.
 inline cv::Mat LoadRealImage() {
-  const char* const folder = std::getenv("HULLSLAM_DATA");
-  const std::string data =
-      folder != nullptr ? folder : std::string(HULLSLAM_SOURCE_DIR) + "/../shared/data";
-  return cv::imread(data + "/fr1_xyz/rgb/1305031102.175304.jpg", cv::IMREAD_GRAYSCALE);
+  const auto path = FindTestData("fr1_xyz/rgb/1305031102.175304.jpg");
+  return path ? cv::imread(path->string(), cv::IMREAD_GRAYSCALE) : cv::Mat();
 }
 
 }  // namespace hullslam
