@@ -16,10 +16,15 @@ int SupportOf(const Keyframe& keyframe, uint32_t keypoint) {
   return keyframe.frame->features.right_u[keypoint] >= 0.0f ? 2 : 1;
 }
 
-auto FindObservation(auto& observations, KeyframeId keyframe) {
-  const auto it = std::lower_bound(
+// Where the observation by `keyframe` is, or would be.
+auto PlaceOfObservation(auto& observations, KeyframeId keyframe) {
+  return std::lower_bound(
       observations.begin(), observations.end(), keyframe,
-      [](const Observation& observation, KeyframeId id) { return observation.keyframe < id; });
+      [](const auto& observation, KeyframeId id) { return observation.keyframe < id; });
+}
+
+auto FindObservation(auto& observations, KeyframeId keyframe) {
+  const auto it = PlaceOfObservation(observations, keyframe);
   return it != observations.end() && it->keyframe == keyframe ? it : observations.end();
 }
 
@@ -29,7 +34,9 @@ Map Map::Snapshot() {
   Map copy;
   copy.keyframes_ = keyframes_.Snapshot();
   copy.landmarks_ = landmarks_.Snapshot();
+  copy.objects_ = objects_.Snapshot();
   copy.replaced_by_ = replaced_by_.Snapshot();
+  copy.object_replaced_by_ = object_replaced_by_.Snapshot();
   copy.culled_ = culled_.Snapshot();
   return copy;
 }
@@ -38,6 +45,7 @@ KeyframeId Map::AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& ca
   Check(frame != nullptr, "a keyframe needs a frame");
   Keyframe keyframe;
   keyframe.landmarks.resize(frame->features.size());
+  keyframe.objects.resize(frame->detections.size());
   keyframe.frame = std::move(frame);
   keyframe.cam_from_world = cam_from_world;
   return keyframes_.Insert(std::move(keyframe));
@@ -60,10 +68,8 @@ bool Map::AddObservation(LandmarkId landmark, KeyframeId keyframe, uint32_t keyp
     return false;
   }
   Landmark& changed = landmarks_.Mutable(landmark);
-  const auto place = std::upper_bound(
-      changed.observations.begin(), changed.observations.end(), keyframe,
-      [](KeyframeId id, const Observation& observation) { return id < observation.keyframe; });
-  changed.observations.insert(place, {keyframe, keypoint});
+  changed.observations.insert(PlaceOfObservation(changed.observations, keyframe),
+                              {keyframe, keypoint});
   changed.support += SupportOf(observer, keypoint);
   keyframes_.Mutable(keyframe).landmarks[keypoint] = landmark;
   return true;
@@ -110,12 +116,79 @@ LandmarkId Map::Resolve(LandmarkId landmark) const {
   return landmark;
 }
 
+ObjectId Map::AddObject() { return objects_.Insert(ObjectLandmark()); }
+
+bool Map::AddObservation(ObjectId object, KeyframeId keyframe, uint32_t detection) {
+  const Keyframe& observer = keyframes_.At(keyframe);
+  Check(detection < observer.objects.size(), "no detection with this index");
+  const ObjectLandmark& observed = objects_.At(object);
+  if (observer.objects[detection].IsValid() ||
+      FindObservation(observed.observations, keyframe) != observed.observations.end()) {
+    return false;
+  }
+  ObjectLandmark& changed = objects_.Mutable(object);
+  changed.observations.insert(PlaceOfObservation(changed.observations, keyframe),
+                              {keyframe, detection});
+  const Detection& seen = observer.frame->detections[detection];
+  changed.votes[seen.label] += seen.score;
+  keyframes_.Mutable(keyframe).objects[detection] = object;
+  return true;
+}
+
+void Map::RemoveObservation(ObjectId object, KeyframeId keyframe) {
+  ObjectLandmark& changed = objects_.Mutable(object);
+  const auto it = FindObservation(changed.observations, keyframe);
+  Check(it != changed.observations.end(), "the keyframe does not observe the object");
+  Keyframe& observer = keyframes_.Mutable(keyframe);
+  observer.objects[it->detection] = ObjectId();
+  changed.observations.erase(it);
+  // Counted anew: taking the score off would leave a rest by rounding.
+  changed.votes.clear();
+  for (const ObjectObservation& left : changed.observations) {
+    const Detection& seen = keyframes_.At(left.keyframe).frame->detections[left.detection];
+    changed.votes[seen.label] += seen.score;
+  }
+}
+
+void Map::EraseObject(ObjectId object) {
+  for (const ObjectObservation& observation : objects_.At(object).observations) {
+    keyframes_.Mutable(observation.keyframe).objects[observation.detection] = ObjectId();
+  }
+  objects_.Erase(object);
+}
+
+void Map::ReplaceObject(ObjectId object, ObjectId by) {
+  Check(object != by, "an object cannot replace itself");
+  const ObjectLandmark old = objects_.At(object);
+  EraseObject(object);
+  for (const ObjectObservation& observation : old.observations) {
+    AddObservation(by, observation.keyframe, observation.detection);
+  }
+  ObjectLandmark& changed = objects_.Mutable(by);
+  changed.visible += old.visible;
+  changed.found += old.found;
+  object_replaced_by_.Put(object, by);
+}
+
+ObjectId Map::Resolve(ObjectId object) const {
+  while (object.IsValid() && !objects_.Contains(object)) {
+    const ObjectId* next = object_replaced_by_.Find(object);
+    object = next != nullptr ? *next : ObjectId();
+  }
+  return object;
+}
+
 void Map::CullKeyframe(KeyframeId id) {
   const Keyframe keyframe = keyframes_.At(id);
   Check(keyframe.parent.IsValid(), "the root of the spanning tree cannot be culled");
   for (const LandmarkId landmark : keyframe.landmarks) {
     if (landmark.IsValid()) {
       RemoveObservation(landmark, id);
+    }
+  }
+  for (const ObjectId object : keyframe.objects) {
+    if (object.IsValid()) {
+      RemoveObservation(object, id);
     }
   }
   DetachFromTree(*this, id);

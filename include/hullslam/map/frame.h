@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "hullslam/features/frame_features.h"
+#include "hullslam/map/detection.h"
 #include "hullslam/util/id.h"
 
 namespace hullslam {
@@ -11,6 +14,7 @@ struct Frame {
   FrameId id;
   double timestamp = 0.0;  // seconds
   FrameFeatures features;
+  std::vector<Detection> detections;
 };
 
 }  // namespace hullslam

@@ -19,6 +19,7 @@ struct Keyframe {
   std::shared_ptr<const Frame> frame;
   Rigid3 cam_from_world;
   std::vector<LandmarkId> landmarks;  // one a keypoint, invalid where it observes none
+  std::vector<ObjectId> objects;      // one a detection, invalid where it is of none
   std::vector<Covisible> covisible;   // by increasing keyframe id
   KeyframeId parent;                  // in the spanning tree; invalid for its root
   std::vector<KeyframeId> children;   // by increasing id

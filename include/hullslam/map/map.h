@@ -6,12 +6,13 @@
 
 #include "hullslam/map/keyframe.h"
 #include "hullslam/map/landmark.h"
+#include "hullslam/map/object_landmark.h"
 #include "hullslam/util/cow_table.h"
 #include "hullslam/util/id.h"
 
 namespace hullslam {
 
-// Keyframes and landmarks by id, with the observations between them. A map is a value: Snapshot()
+// Keyframes, landmarks and objects by id, with the observations between them. A map is a value: Snapshot()
 // gives one that nobody else writes. The edits here keep both ends of every observation in step;
 // covisibility, spanning tree and appearance have their own files.
 class Map {
@@ -21,6 +22,7 @@ class Map {
 
   const CowTable<KeyframeId, Keyframe, 1>& keyframes() const { return keyframes_; }
   const CowTable<LandmarkId, Landmark>& landmarks() const { return landmarks_; }
+  const CowTable<ObjectId, ObjectLandmark, 4>& objects() const { return objects_; }
 
   KeyframeId AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& cam_from_world);
   LandmarkId AddLandmark(const Eigen::Vector3d& position, KeyframeId created_by);
@@ -36,6 +38,18 @@ class Map {
   void ReplaceLandmark(LandmarkId landmark, LandmarkId by);
   // The landmark that now stands for `landmark`; invalid when it is erased.
   LandmarkId Resolve(LandmarkId landmark) const;
+
+  // A candidate that nobody observes yet.
+  ObjectId AddObject();
+  // Adds the detection's vote for its class too. False where the keyframe observes the object
+  // already, or the detection is that of another object.
+  bool AddObservation(ObjectId object, KeyframeId keyframe, uint32_t detection);
+  // Takes the vote back; the object stays, even without any observation.
+  void RemoveObservation(ObjectId object, KeyframeId keyframe);
+  void EraseObject(ObjectId object);
+  // As ReplaceLandmark; the shape is that of `by`.
+  void ReplaceObject(ObjectId object, ObjectId by);
+  ObjectId Resolve(ObjectId object) const;
 
   // Takes a keyframe out of the map. It must have a parent: its children go to their best
   // relatives.
@@ -54,11 +68,15 @@ class Map {
   // For the files of this module that keep derived data in step.
   Keyframe& MutableKeyframe(KeyframeId keyframe) { return keyframes_.Mutable(keyframe); }
   Landmark& MutableLandmark(LandmarkId landmark) { return landmarks_.Mutable(landmark); }
+  // State, shape, misfit and counts may be written; observations and votes belong to this class.
+  ObjectLandmark& MutableObject(ObjectId object) { return objects_.Mutable(object); }
 
  private:
   CowTable<KeyframeId, Keyframe, 1> keyframes_;
   CowTable<LandmarkId, Landmark> landmarks_;
+  CowTable<ObjectId, ObjectLandmark, 4> objects_;
   CowTable<LandmarkId, LandmarkId> replaced_by_;
+  CowTable<ObjectId, ObjectId, 16> object_replaced_by_;
   CowTable<KeyframeId, CulledKeyframe> culled_;
 };
 

@@ -26,6 +26,7 @@ struct Id {
 using FrameId = Id<struct FrameTag>;
 using KeyframeId = Id<struct KeyframeTag>;
 using LandmarkId = Id<struct LandmarkTag>;
+using ObjectId = Id<struct ObjectTag>;
 
 }  // namespace hullslam
 

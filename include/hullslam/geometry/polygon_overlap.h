@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+namespace hullslam {
+
+// Polygons here are convex, closed and in the order of positive signed area; less than three
+// corners are the empty set.
+
+std::vector<Eigen::Vector2d> ClipToBox(std::span<const Eigen::Vector2d> polygon,
+                                       const Eigen::AlignedBox2d& box);
+double IntersectionArea(std::span<const Eigen::Vector2d> a, std::span<const Eigen::Vector2d> b);
+// Area of the intersection over area of the union, 0 to 1; 0 for two empty sets.
+double IntersectionOverUnion(std::span<const Eigen::Vector2d> a,
+                             std::span<const Eigen::Vector2d> b);
+double IntersectionOverUnion(const Eigen::AlignedBox2d& a, const Eigen::AlignedBox2d& b);
+
+}  // namespace hullslam

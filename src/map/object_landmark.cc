@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/map/object_landmark.h"
+
+#include <algorithm>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+
+const std::string& ObjectLandmark::Label() const {
+  Check(!votes.empty(), "an object that nothing observes has no class");
+  return std::max_element(votes.begin(), votes.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
+}
+
+}  // namespace hullslam
