@@ -2,12 +2,15 @@
 #include "hullslam/map/invariants.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 namespace hullslam {
 namespace {
 
 std::string Name(KeyframeId id) { return "keyframe " + std::to_string(id.value); }
 std::string Name(LandmarkId id) { return "landmark " + std::to_string(id.value); }
+std::string Name(ObjectId id) { return "object " + std::to_string(id.value); }
 
 bool IsFinite(const Rigid3& pose) {
   return pose.rotation.coeffs().allFinite() && pose.translation.allFinite();
@@ -65,6 +68,65 @@ void CheckObservations(const Map& map, KeyframeId id, const Keyframe& keyframe,
   }
 }
 
+void CheckObject(const Map& map, ObjectId id, const ObjectLandmark& object,
+                 std::vector<std::string>& violations) {
+  const Ellipsoid& shape = object.ellipsoid;
+  if (object.has_shape && !(IsFinite(shape.world_from_object) && shape.half_axes.allFinite() &&
+                            shape.half_axes.minCoeff() > 0.0)) {
+    violations.push_back(Name(id) + " has no finite shape");
+  }
+  if (object.state == ObjectState::kMapped && !object.has_shape) {
+    violations.push_back(Name(id) + " is mapped without a shape");
+  }
+  std::map<std::string, double> votes;
+  for (size_t i = 0; i < object.observations.size(); ++i) {
+    const ObjectObservation& observation = object.observations[i];
+    if (i > 0 && !(object.observations[i - 1].keyframe < observation.keyframe)) {
+      violations.push_back(Name(id) + " has observations out of order");
+    }
+    const Keyframe* keyframe = map.keyframes().Find(observation.keyframe);
+    if (keyframe == nullptr || observation.detection >= keyframe->objects.size() ||
+        keyframe->objects[observation.detection] != id) {
+      violations.push_back(Name(id) + " is not observed by " + Name(observation.keyframe));
+      continue;
+    }
+    const Detection& detection = keyframe->frame->detections[observation.detection];
+    votes[detection.label] += detection.score;
+  }
+  const bool same_votes =
+      votes.size() == object.votes.size() &&
+      std::equal(votes.begin(), votes.end(), object.votes.begin(),
+                 [](const auto& a, const auto& b) {
+                   return a.first == b.first && std::abs(a.second - b.second) < 1e-9;
+                 });
+  if (!same_votes) {
+    violations.push_back(Name(id) + " has its votes miscounted");
+  }
+}
+
+void CheckDetections(const Map& map, KeyframeId id, const Keyframe& keyframe,
+                     std::vector<std::string>& violations) {
+  if (keyframe.objects.size() != keyframe.frame->detections.size()) {
+    violations.push_back(Name(id) + " has not one object slot a detection");
+  }
+  for (uint32_t i = 0; i < keyframe.objects.size(); ++i) {
+    if (!keyframe.objects[i].IsValid()) {
+      continue;
+    }
+    const ObjectLandmark* object = map.objects().Find(keyframe.objects[i]);
+    const bool known =
+        object != nullptr && std::any_of(object->observations.begin(), object->observations.end(),
+                                         [&](const ObjectObservation& observation) {
+                                           return observation.keyframe == id &&
+                                                  observation.detection == i;
+                                         });
+    if (!known) {
+      violations.push_back(Name(id) + " observes " + Name(keyframe.objects[i]) +
+                           ", which does not know");
+    }
+  }
+}
+
 void CheckLinks(const Map& map, KeyframeId id, const Keyframe& keyframe,
                 std::vector<std::string>& violations) {
   for (const Covisible& edge : keyframe.covisible) {
@@ -108,11 +170,14 @@ std::vector<std::string> FindViolations(const Map& map) {
   map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
     CheckLandmark(map, id, landmark, violations);
   });
+  map.objects().ForEach(
+      [&](ObjectId id, const ObjectLandmark& object) { CheckObject(map, id, object, violations); });
   map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
     if (!IsFinite(keyframe.cam_from_world)) {
       violations.push_back(Name(id) + " has no finite pose");
     }
     CheckObservations(map, id, keyframe, violations);
+    CheckDetections(map, id, keyframe, violations);
     CheckLinks(map, id, keyframe, violations);
     CheckAncestors(map, id, violations);
   });

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "hullslam/system/pipeline.h"
 #include "hullslam/system/sequential_pipeline.h"
@@ -66,8 +67,9 @@ System::System(const SystemOptions& options, PipelineKind kind)
 
 System::~System() = default;
 
-TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat& depth) {
-  return Track(RgbdImage{timestamp, ToGrey(image, options_.rgb_order), depth});
+TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
+                           std::vector<InstanceMask> masks) {
+  return Track(RgbdImage{timestamp, ToGrey(image, options_.rgb_order), depth, std::move(masks)});
 }
 
 TrackedFrame System::Track(const RgbdImage& image) {

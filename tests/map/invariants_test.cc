@@ -149,5 +149,35 @@ TEST(InvariantsOfTheSyntheticMap, Hold) {
   });
 }
 
+TEST_F(Invariants, TellAnObjectThatTheKeyframeDoesNotKnow) {
+  const ObjectId object = map_.AddObject();
+  ASSERT_TRUE(map_.AddObservation(object, b_, 1));
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+  map_.MutableKeyframe(b_).objects[1] = ObjectId();
+  ExpectViolation("object 0 is not observed by keyframe 1");
+}
+
+TEST_F(Invariants, TellADetectionOfAnObjectThatIsNot) {
+  map_.MutableKeyframe(a_).objects[2] = ObjectId(7);
+  ExpectViolation("keyframe 0 observes object 7, which does not know");
+}
+
+TEST_F(Invariants, TellMiscountedVotes) {
+  const ObjectId object = map_.AddObject();
+  ASSERT_TRUE(map_.AddObservation(object, b_, 1));
+  map_.MutableObject(object).votes["cup"] += 1.0;
+  ExpectViolation("object 0 has its votes miscounted");
+}
+
+TEST_F(Invariants, TellAShapeThatIsNone) {
+  const ObjectId object = map_.AddObject();
+  map_.MutableObject(object).state = ObjectState::kMapped;
+  ExpectViolation("object 0 is mapped without a shape");
+  map_.MutableObject(object).has_shape = true;
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+  map_.MutableObject(object).ellipsoid.half_axes.x() = kNan;
+  ExpectViolation("object 0 has no finite shape");
+}
+
 }  // namespace
 }  // namespace hullslam

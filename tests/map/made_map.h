@@ -16,6 +16,7 @@
 namespace hullslam {
 
 inline constexpr uint32_t kFramesPerKeyframe = 3;
+inline constexpr uint32_t kDetections = 4;  // a frame: cup, book, cup, book, of scores that differ
 
 // A frame of `keypoints` keypoints at level 0, of which the first `with_depth` have a depth of 2 m.
 inline std::shared_ptr<Frame> MakeFrame(uint32_t id, size_t keypoints, size_t with_depth = 0) {
@@ -29,6 +30,11 @@ inline std::shared_ptr<Frame> MakeFrame(uint32_t id, size_t keypoints, size_t wi
     features.keypoints[i].undistorted = {x, 100.0f};
     features.depth.push_back(i < with_depth ? 2.0f : 0.0f);
     features.right_u.push_back(i < with_depth ? x - 20.0f : -1.0f);
+  }
+  frame->detections.resize(kDetections);
+  for (uint32_t i = 0; i < kDetections; ++i) {
+    frame->detections[i].label = i % 2 == 0 ? "cup" : "book";
+    frame->detections[i].score = 0.3 + 0.1 * i;
   }
   return frame;
 }
@@ -72,6 +78,15 @@ inline std::string Dump(const Map& map) {
     }
     for (const LandmarkId landmark : keyframe.landmarks) {
       out << ' ' << landmark.value;
+    }
+  });
+  map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    out << "\nobject " << id.value << ' ' << object.visible << ' ' << object.found;
+    for (const auto& [label, votes] : object.votes) {
+      out << ' ' << label << ':' << votes;
+    }
+    for (const ObjectObservation& observation : object.observations) {
+      out << ' ' << observation.keyframe.value << ':' << observation.detection;
     }
   });
   map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {

@@ -17,7 +17,7 @@ class RandomEdits {
   explicit RandomEdits(uint32_t seed) : random_(seed) {}
 
   void Edit(Map& map) {
-    const uint32_t kind = random_.Index(12);
+    const uint32_t kind = random_.Index(16);
     if (map.keyframes().size() < 3 || kind == 0) {
       Grow(map);
     } else if (kind <= 3) {
@@ -34,8 +34,10 @@ class RandomEdits {
       UpdateCovisibility(map, AnyKeyframe(map));
     } else if (kind == 10) {
       map.SetPose(AnyKeyframe(map), random_.Pose(1.0, 2.0));
-    } else {
+    } else if (kind == 11) {
       Move(map);
+    } else {
+      EditObjects(map);
     }
   }
 
@@ -89,6 +91,33 @@ class RandomEdits {
     if (random_.Index(3) == 0) {
       map.EraseLandmark(id);
     }
+  }
+
+  void EditObjects(Map& map) {
+    const ObjectId object = AnyObject(map);
+    const ObjectId other = AnyObject(map);
+    const uint32_t kind = random_.Index(8);
+    if (kind == 0) {
+      map.AddObject();
+    } else if (kind <= 4) {
+      map.AddObservation(object, AnyKeyframe(map), random_.Index(kDetections));
+    } else if (kind == 5 && !map.objects().At(object).observations.empty()) {
+      const std::vector<ObjectObservation>& seen = map.objects().At(object).observations;
+      map.RemoveObservation(object, seen[random_.Index(seen.size())].keyframe);
+    } else if (kind == 6 && object != other) {
+      map.ReplaceObject(object, other);
+    } else if (kind == 7 && random_.Index(3) == 0) {
+      map.EraseObject(object);
+    }
+  }
+
+  ObjectId AnyObject(Map& map) {
+    if (map.objects().empty()) {
+      return map.AddObject();
+    }
+    std::vector<ObjectId> all;
+    map.objects().ForEach([&](ObjectId id, const ObjectLandmark&) { all.push_back(id); });
+    return all[random_.Index(all.size())];
   }
 
   // One that is in the map; made where there is none.

@@ -15,7 +15,7 @@ struct RgbdImage {
   // CV_16UC1, units of 1 / DepthMapFactor metres, or CV_32FC1, metres; 0 (or not finite) is
   // unknown.
   cv::Mat depth;
-  std::vector<InstanceMask> masks;  // of the objects in it; empty without
+  std::vector<InstanceMask> masks = {};  // of the objects in it; empty without
 };
 
 }  // namespace hullslam

@@ -9,8 +9,8 @@
 namespace hullslam {
 
 // What is wrong with a map, a sentence each: observations known at one end only, support
-// miscounted, edges or tree links known at one end only, a cycle in the tree, values that are not
-// finite. Empty for a sound map.
+// or votes miscounted, edges or tree links known at one end only, a cycle in the tree, values that
+// are not finite. Empty for a sound map.
 std::vector<std::string> FindViolations(const Map& map);
 
 }  // namespace hullslam

@@ -12,9 +12,9 @@
 
 namespace hullslam {
 
-// Keyframes, landmarks and objects by id, with the observations between them. A map is a value: Snapshot()
-// gives one that nobody else writes. The edits here keep both ends of every observation in step;
-// covisibility, spanning tree and appearance have their own files.
+// Keyframes, landmarks and objects by id, with the observations between them. A map is a value:
+// Snapshot() gives one that nobody else writes. The edits here keep both ends of every observation
+// in step; covisibility, spanning tree and appearance have their own files.
 class Map {
  public:
   // A map with the same content that shares its memory until one of the two is written.

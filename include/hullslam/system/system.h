@@ -38,7 +38,9 @@ class System {
 
   // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order that Camera.RGB says; `depth` as in
   // RgbdImage. Time stamps (s) must increase. Throws CheckError otherwise.
-  TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& depth);
+  // `masks` are those of the objects in the image, in its raw pixels.
+  TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
+                     std::vector<InstanceMask> masks = {});
   TrackedFrame Track(const RgbdImage& image);
 
   // Waits for the mapping that is under way. No Track after it.

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/map/object_landmark.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "hullslam/map/map.h"
+#include "hullslam/util/check.h"
+#include "map/made_map.h"
+
+namespace hullslam {
+namespace {
+
+TEST(ObjectLandmark, IsACandidateWithoutShapeAtFirst) {
+  const ObjectLandmark object;
+  EXPECT_EQ(object.state, ObjectState::kCandidate);
+  EXPECT_FALSE(object.has_shape);
+  EXPECT_THROW(object.Label(), CheckError);
+}
+
+TEST(ObjectLandmark, ItsClassIsThatWithMostVotes) {
+  ObjectLandmark object;
+  object.votes = {{"laptop", 0.9}, {"tv", 1.4}};
+  EXPECT_EQ(object.Label(), "tv");
+  object.votes["laptop"] = 1.4;
+  EXPECT_EQ(object.Label(), "laptop");  // the first of equals
+}
+
+TEST(ObjectsOfTheMap, AreObservedAtBothEndsAndVotedFor) {
+  Map map;
+  const KeyframeId a = AddKeyframe(map, 1);
+  const KeyframeId b = AddKeyframe(map, 1);
+  const ObjectId object = map.AddObject();
+  EXPECT_TRUE(map.AddObservation(object, b, 0));
+  EXPECT_TRUE(map.AddObservation(object, a, 3));
+  EXPECT_FALSE(map.AddObservation(object, a, 2));  // once a keyframe
+  EXPECT_FALSE(map.AddObservation(map.AddObject(), a, 3));
+  const ObjectLandmark& seen = map.objects().At(object);
+  ASSERT_EQ(seen.observations.size(), 2u);
+  EXPECT_EQ(seen.observations[0].keyframe, a);
+  EXPECT_EQ(seen.observations[0].detection, 3u);
+  EXPECT_EQ(map.keyframes().At(a).objects[3], object);
+  EXPECT_DOUBLE_EQ(seen.votes.at("cup"), 0.3);
+  EXPECT_DOUBLE_EQ(seen.votes.at("book"), 0.6);
+  map.RemoveObservation(object, a);
+  EXPECT_FALSE(map.keyframes().At(a).objects[3].IsValid());
+  EXPECT_EQ(map.objects().At(object).votes.count("book"), 0u);
+}
+
+TEST(ObjectsOfTheMap, ReplacingMovesObservationsAndResolves) {
+  Map map;
+  const KeyframeId a = AddKeyframe(map, 1);
+  const KeyframeId b = AddKeyframe(map, 1);
+  const ObjectId first = map.AddObject();
+  const ObjectId second = map.AddObject();
+  map.AddObservation(first, a, 0);
+  map.AddObservation(second, b, 2);
+  map.MutableObject(second).visible = 5;
+  map.ReplaceObject(second, first);
+  EXPECT_EQ(map.Resolve(second), first);
+  EXPECT_EQ(map.keyframes().At(b).objects[2], first);
+  EXPECT_EQ(map.objects().At(first).visible, 5);
+  EXPECT_DOUBLE_EQ(map.objects().At(first).votes.at("cup"), 0.3 + 0.5);
+  map.EraseObject(first);
+  EXPECT_FALSE(map.Resolve(second).IsValid());
+  EXPECT_FALSE(map.keyframes().At(a).objects[0].IsValid());
+}
+
+TEST(ObjectsOfTheMap, LoseTheObservationsOfACulledKeyframe) {
+  Map map;
+  AddKeyframe(map, 1);
+  const KeyframeId b = AddKeyframe(map, 1);
+  map.MutableKeyframe(KeyframeId(0)).children.push_back(b);
+  map.MutableKeyframe(b).parent = KeyframeId(0);
+  const ObjectId object = map.AddObject();
+  map.AddObservation(object, b, 1);
+  map.CullKeyframe(b);
+  EXPECT_TRUE(map.objects().At(object).observations.empty());
+}
+
+}  // namespace
+}  // namespace hullslam
