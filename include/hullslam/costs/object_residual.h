@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
 namespace hullslam {
 
 // The residuals that can hold a quadric (docs/objects.md); each has its own file in costs/.
@@ -8,5 +13,20 @@ enum class ObjectResidual { kTangent, kAlgebraicPlane, kAlgebraicPoint, kDistrib
 
 // What of a detection they are computed from.
 enum class ObjectPrimitive { kSupport, kHull, kContour, kBox, kConic };
+
+// Their names in settings: tangent, algebraic_plane, ...; support, hull, contour, bbox, conic.
+std::string_view NameOf(ObjectResidual residual);
+std::string_view NameOf(ObjectPrimitive primitive);
+// Nothing for an unknown name.
+std::optional<ObjectResidual> ObjectResidualByName(std::string_view name);
+std::optional<ObjectPrimitive> ObjectPrimitiveByName(std::string_view name);
+// All names, in the order of the enumerators.
+std::vector<std::string> ObjectResidualNames();
+std::vector<std::string> ObjectPrimitiveNames();
+
+// Whether the residual can be computed from the primitive: tangent and algebraic_plane take lines,
+// which every primitive has (of a conic: tangents), algebraic_point takes the contour,
+// distribution the conic, and overlap any region; support lines bound no region of their own.
+bool IsSupported(ObjectResidual residual, ObjectPrimitive primitive);
 
 }  // namespace hullslam

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/costs/object_residual.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace hullslam {
+namespace {
+
+TEST(ObjectResidual, NamesAreThoseOfTheSettings) {
+  EXPECT_EQ(NameOf(ObjectResidual::kTangent), "tangent");
+  EXPECT_EQ(NameOf(ObjectResidual::kAlgebraicPlane), "algebraic_plane");
+  EXPECT_EQ(NameOf(ObjectResidual::kAlgebraicPoint), "algebraic_point");
+  EXPECT_EQ(NameOf(ObjectResidual::kDistribution), "distribution");
+  EXPECT_EQ(NameOf(ObjectResidual::kOverlap), "overlap");
+  EXPECT_EQ(NameOf(ObjectPrimitive::kSupport), "support");
+  EXPECT_EQ(NameOf(ObjectPrimitive::kHull), "hull");
+  EXPECT_EQ(NameOf(ObjectPrimitive::kContour), "contour");
+  EXPECT_EQ(NameOf(ObjectPrimitive::kBox), "bbox");
+  EXPECT_EQ(NameOf(ObjectPrimitive::kConic), "conic");
+}
+
+TEST(ObjectResidual, EveryNameLeadsBack) {
+  ASSERT_EQ(ObjectResidualNames().size(), 5u);
+  ASSERT_EQ(ObjectPrimitiveNames().size(), 5u);
+  for (const std::string& name : ObjectResidualNames()) {
+    ASSERT_TRUE(ObjectResidualByName(name).has_value()) << name;
+    EXPECT_EQ(NameOf(*ObjectResidualByName(name)), name);
+  }
+  for (const std::string& name : ObjectPrimitiveNames()) {
+    ASSERT_TRUE(ObjectPrimitiveByName(name).has_value()) << name;
+    EXPECT_EQ(NameOf(*ObjectPrimitiveByName(name)), name);
+  }
+}
+
+TEST(ObjectResidual, OtherNamesAreNone) {
+  for (const char* name : {"", "Tangent", "tangent ", "box", "hulls"}) {
+    EXPECT_FALSE(ObjectResidualByName(name).has_value()) << name;
+    EXPECT_FALSE(ObjectPrimitiveByName(name).has_value()) << name;
+  }
+}
+
+TEST(IsSupported, HoldsTheCombinationsThatMakeSense) {
+  std::set<std::string> supported;
+  for (const std::string& residual : ObjectResidualNames()) {
+    for (const std::string& primitive : ObjectPrimitiveNames()) {
+      if (IsSupported(*ObjectResidualByName(residual), *ObjectPrimitiveByName(primitive))) {
+        supported.insert(residual + " " + primitive);
+      }
+    }
+  }
+  const std::set<std::string> expected = {"tangent support",
+                                          "tangent hull",
+                                          "tangent contour",
+                                          "tangent bbox",
+                                          "tangent conic",
+                                          "algebraic_plane support",
+                                          "algebraic_plane hull",
+                                          "algebraic_plane contour",
+                                          "algebraic_plane bbox",
+                                          "algebraic_plane conic",
+                                          "algebraic_point contour",
+                                          "distribution conic",
+                                          "overlap hull",
+                                          "overlap contour",
+                                          "overlap bbox",
+                                          "overlap conic"};
+  EXPECT_EQ(supported, expected);
+}
+
+}  // namespace
+}  // namespace hullslam
