@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/geometry/polygon_overlap.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "hullslam/geometry/conic.h"
+#include "hullslam/geometry/convex_hull.h"
+#include "hullslam/geometry/polyline.h"
+#include "support/random_geometry.h"
+
+namespace hullslam {
+namespace {
+
+using Polygon = std::vector<Eigen::Vector2d>;
+
+Polygon Rectangle(double x, double y, double width, double height) {
+  return {{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}};
+}
+
+Polygon RandomConvex(RandomGeometry& random) {
+  Polygon points;
+  const Eigen::Vector2d center(random.Number(200.0, 260.0), random.Number(200.0, 260.0));
+  for (int i = 0; i < 12; ++i) {
+    points.emplace_back(center + random.Vector(60.0).head<2>());
+  }
+  return ConvexHull(points);
+}
+
+TEST(IntersectionArea, OfRectanglesIsKnown) {
+  const Polygon a = Rectangle(0.0, 0.0, 4.0, 3.0);
+  EXPECT_DOUBLE_EQ(IntersectionArea(a, Rectangle(1.0, 1.0, 10.0, 10.0)), 6.0);
+  EXPECT_DOUBLE_EQ(IntersectionArea(a, Rectangle(1.0, 1.0, 1.0, 0.5)), 0.5);
+  EXPECT_DOUBLE_EQ(IntersectionArea(a, Rectangle(4.0, 0.0, 2.0, 3.0)), 0.0);  // they touch
+  EXPECT_DOUBLE_EQ(IntersectionArea(a, Rectangle(7.0, 0.0, 2.0, 3.0)), 0.0);
+  EXPECT_DOUBLE_EQ(IntersectionOverUnion(a, Rectangle(2.0, 0.0, 4.0, 3.0)), 6.0 / 18.0);
+}
+
+// A square and the same turned by 45 degrees share a regular octagon of area 2 (sqrt(2) - 1)
+// side^2.
+TEST(IntersectionArea, OfASquareAndItsTurnedSelfIsAnOctagon) {
+  const double r = std::numbers::sqrt2;
+  const Polygon square = Rectangle(-1.0, -1.0, 2.0, 2.0);
+  const Polygon turned{{-r, 0.0}, {0.0, -r}, {r, 0.0}, {0.0, r}};
+  EXPECT_NEAR(IntersectionArea(square, turned), 8.0 * (r - 1.0), 1e-12);
+}
+
+TEST(IntersectionOverUnion, OfPolygonsIsSymmetricOneForEqualAndBounded) {
+  RandomGeometry random(1);
+  for (int i = 0; i < 200; ++i) {
+    const Polygon a = RandomConvex(random);
+    const Polygon b = RandomConvex(random);
+    const double iou = IntersectionOverUnion(a, b);
+    EXPECT_NEAR(iou, IntersectionOverUnion(b, a), 1e-12);
+    EXPECT_GE(iou, 0.0);
+    EXPECT_LT(iou, 1.0);
+    EXPECT_EQ(IntersectionOverUnion(a, a), 1.0);
+    EXPECT_LE(IntersectionArea(a, b), std::min(SignedArea(a), SignedArea(b)) + 1e-9);
+  }
+}
+
+TEST(IntersectionOverUnion, OfPolygonsDoesNotChangeWithACommonMotion) {
+  RandomGeometry random(2);
+  for (int i = 0; i < 100; ++i) {
+    Polygon a = RandomConvex(random);
+    Polygon b = RandomConvex(random);
+    const double before = IntersectionOverUnion(a, b);
+    const Eigen::Rotation2Dd turn(random.Number(-3.0, 3.0));
+    const Eigen::Vector2d shift = random.Vector(500.0).head<2>();
+    for (Polygon* const polygon : {&a, &b}) {
+      for (Eigen::Vector2d& p : *polygon) {
+        p = turn * p + shift;
+      }
+    }
+    EXPECT_NEAR(IntersectionOverUnion(a, b), before, 1e-10);
+  }
+}
+
+TEST(IntersectionOverUnion, OfConcentricEllipsesIsTheRatioOfTheirAreas) {
+  const Ellipse outer{{100.0, 50.0}, Eigen::Vector2d(900.0, 400.0).asDiagonal()};
+  const Ellipse inner{outer.center, 0.49 * outer.shape};
+  EXPECT_NEAR(IntersectionOverUnion(outer.Polygon(), inner.Polygon()), 0.49, 1e-9);
+}
+
+TEST(IntersectionOverUnion, OfEmptySetsIsZero) {
+  const Polygon a = Rectangle(0.0, 0.0, 4.0, 3.0);
+  EXPECT_EQ(IntersectionOverUnion(a, Polygon()), 0.0);
+  EXPECT_EQ(IntersectionOverUnion(Polygon(), a), 0.0);
+  EXPECT_EQ(IntersectionOverUnion(Polygon(), Polygon()), 0.0);
+  EXPECT_EQ(IntersectionOverUnion(a, Polygon{{0.0, 0.0}, {4.0, 3.0}}), 0.0);
+  EXPECT_EQ(IntersectionOverUnion(Eigen::AlignedBox2d(), Eigen::AlignedBox2d()), 0.0);
+}
+
+TEST(IntersectionOverUnion, OfBoxesIsThatOfTheirPolygons) {
+  RandomGeometry random(3);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector2d low_a = random.Vector(20.0).head<2>();
+    const Eigen::Vector2d low_b = random.Vector(20.0).head<2>();
+    const Eigen::Vector2d size_a(random.Number(1.0, 30.0), random.Number(1.0, 30.0));
+    const Eigen::Vector2d size_b(random.Number(1.0, 30.0), random.Number(1.0, 30.0));
+    const double of_polygons =
+        IntersectionOverUnion(Rectangle(low_a.x(), low_a.y(), size_a.x(), size_a.y()),
+                              Rectangle(low_b.x(), low_b.y(), size_b.x(), size_b.y()));
+    const double of_boxes = IntersectionOverUnion(Eigen::AlignedBox2d(low_a, low_a + size_a),
+                                                  Eigen::AlignedBox2d(low_b, low_b + size_b));
+    EXPECT_NEAR(of_boxes, of_polygons, 1e-12);
+  }
+}
+
+TEST(ClipToBox, KeepsWhatIsInTheBox) {
+  const Eigen::AlignedBox2d box(Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(640.0, 480.0));
+  const Polygon inside = Rectangle(10.0, 10.0, 5.0, 5.0);
+  EXPECT_EQ(ClipToBox(inside, box), inside);
+  EXPECT_TRUE(ClipToBox(Rectangle(700.0, 10.0, 5.0, 5.0), box).empty());
+  EXPECT_DOUBLE_EQ(SignedArea(ClipToBox(Rectangle(-10.0, -20.0, 30.0, 50.0), box)), 20.0 * 30.0);
+  // The triangle's corner beyond x = 640 is cut off: half the base and height are left outside.
+  const Polygon triangle{{540.0, 100.0}, {740.0, 200.0}, {540.0, 300.0}};
+  EXPECT_NEAR(SignedArea(ClipToBox(triangle, box)), 20000.0 * 0.75, 1e-9);
+  EXPECT_TRUE(ClipToBox(inside, Eigen::AlignedBox2d()).empty());
+}
+
+}  // namespace
+}  // namespace hullslam
