@@ -3,10 +3,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "hullslam/util/check.h"
 
@@ -23,15 +22,54 @@ Eigen::Vector2d Mean(std::span<const Eigen::Vector2d> points) {
   return sum / static_cast<double>(points.size());
 }
 
-// Whether the points lie on a line, or nearly.
-bool IsFlat(std::span<const Eigen::Vector2d> points, const Eigen::Vector2d& mean) {
+// Standard deviations across and along the direction in which the points spread most.
+Eigen::Vector2d Spread(std::span<const Eigen::Vector2d> points, const Eigen::Vector2d& mean) {
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (const Eigen::Vector2d& point : points) {
     scatter += (point - mean) * (point - mean).transpose();
   }
-  const Eigen::Vector2d values =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter, Eigen::EigenvaluesOnly).eigenvalues();
-  return !(values[0] > 1e-8 * values[1]);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(scatter, Eigen::EigenvaluesOnly);
+  const Eigen::Vector2d variances = solver.eigenvalues() / static_cast<double>(points.size());
+  return variances.cwiseMax(0.0).cwiseSqrt();
+}
+
+// The ellipse of the points (point - origin) / scale as a conic p^T C p = 0, by the direct
+// least-squares fit of Fitzgibbon, Pilu and Fisher (1999) in the stable form of Halir and Flusser
+// (1998).
+std::optional<Eigen::Matrix3d> DirectLeastSquares(std::span<const Eigen::Vector2d> points,
+                                                  const Eigen::Vector2d& origin, double scale) {
+  // Sums over (x^2, x y, y^2) and (x, y, 1).
+  Eigen::Matrix3d quadratic = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d mixed = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d linear = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector2d& point : points) {
+    const Eigen::Vector2d p = (point - origin) / scale;
+    const Eigen::Vector3d second(p.x() * p.x(), p.x() * p.y(), p.y() * p.y());
+    const Eigen::Vector3d first = p.homogeneous();
+    quadratic += second * second.transpose();
+    mixed += second * first.transpose();
+    linear += first * first.transpose();
+  }
+  const Eigen::Matrix3d first_from_second = -linear.inverse() * mixed.transpose();
+  const Eigen::Matrix3d reduced = quadratic + mixed * first_from_second;
+  Eigen::Matrix3d problem;  // times the inverse of the constraint 4 a c - b^2 = 1
+  problem << 0.5 * reduced.row(2), -reduced.row(1), 0.5 * reduced.row(0);
+  if (!problem.allFinite()) {
+    return std::nullopt;
+  }
+  const Eigen::Matrix3d vectors =
+      Eigen::EigenSolver<Eigen::Matrix3d>(problem).eigenvectors().real();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Vector3d a = vectors.col(i);
+    if (4.0 * a[0] * a[2] - a[1] * a[1] > 0.0) {  // of an ellipse; the two others are not
+      const Eigen::Vector3d b = first_from_second * a;
+      Eigen::Matrix3d conic;
+      conic << a[0], 0.5 * a[1], 0.5 * b[0], 0.5 * a[1], a[2], 0.5 * b[1], 0.5 * b[0], 0.5 * b[1],
+          b[2];
+      return conic;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -88,24 +126,21 @@ std::optional<Ellipse> FitEllipse(std::span<const Eigen::Vector2d> contour) {
     return std::nullopt;
   }
   const Eigen::Vector2d mean = Mean(contour);
-  if (IsFlat(contour, mean)) {
+  const Eigen::Vector2d spread = Spread(contour, mean);
+  const double scale = spread[1];
+  if (!(spread[0] > 1e-4 * scale)) {
+    return std::nullopt;  // on a line
+  }
+  const auto conic = DirectLeastSquares(contour, mean, scale);
+  if (!conic) {
     return std::nullopt;
   }
-  std::vector<cv::Point2f> points;
-  points.reserve(contour.size());
-  for (const Eigen::Vector2d& point : contour) {
-    const Eigen::Vector2f moved = (point - mean).cast<float>();
-    points.emplace_back(moved.x(), moved.y());
+  auto ellipse = EllipseFromDualConic(conic->inverse());
+  if (ellipse) {
+    ellipse->center = mean + scale * ellipse->center;
+    ellipse->shape *= scale * scale;
   }
-  const cv::RotatedRect box = cv::fitEllipseDirect(points);
-  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(box.angle * kPi / 180.0).toRotationMatrix();
-  const Eigen::Vector2d half(0.5 * box.size.width, 0.5 * box.size.height);
-  Ellipse ellipse;
-  ellipse.center = mean + Eigen::Vector2d(box.center.x, box.center.y);
-  ellipse.shape = turn * half.cwiseAbs2().asDiagonal() * turn.transpose();
-  const bool good = ellipse.center.allFinite() && ellipse.shape.allFinite() &&
-                    half.minCoeff() > 1e-6 * half.maxCoeff();
-  return good ? std::optional(ellipse) : std::nullopt;
+  return ellipse;
 }
 
 }  // namespace hullslam
