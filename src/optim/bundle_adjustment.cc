@@ -14,7 +14,7 @@
 #include "hullslam/costs/reprojection.h"
 #include "hullslam/costs/reprojection_rgbd.h"
 #include "hullslam/map/appearance.h"
-#include "hullslam/optim/intrinsics.h"
+#include "hullslam/map/intrinsics.h"
 #include "hullslam/optim/robust.h"
 
 namespace hullslam {

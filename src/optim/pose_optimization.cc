@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "hullslam/costs/projection.h"
-#include "hullslam/optim/intrinsics.h"
+#include "hullslam/map/intrinsics.h"
 #include "hullslam/optim/robust.h"
 
 namespace hullslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/optim/intrinsics.h"
+#include "hullslam/map/intrinsics.h"
 
 #include <gtest/gtest.h>
 
