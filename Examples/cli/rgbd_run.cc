@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "cli/interrupt.h"
+#include "cli/mask_arguments.h"
 #include "cli/program.h"
 #include "cli/progress.h"
 #include "hullslam/eval/ate.h"
@@ -59,17 +60,24 @@ PipelineKind ChoosePipeline(const RunArguments& arguments) {
   return arguments.realtime ? PipelineKind::kRealtime : PipelineKind::kThreaded;
 }
 
-Prefetcher<LoadedFrame> StartLoading(const TumSequence& sequence, const PinholeCamera& camera) {
+// Broken images are skipped, broken masks end the run: a frame without its masks would look like
+// one without objects.
+Prefetcher<LoadedFrame> StartLoading(const TumSequence& sequence, const PinholeCamera& camera,
+                                     const SequenceMasks& masks) {
   return Prefetcher<LoadedFrame>(
-      [&sequence, &camera, next = size_t{0}]() mutable -> std::optional<LoadedFrame> {
+      [&sequence, &camera, &masks, next = size_t{0}]() mutable -> std::optional<LoadedFrame> {
         if (next == sequence.frames.size()) {
           return std::nullopt;
         }
         LoadedFrame loaded;
+        const size_t frame = next++;
         try {
-          loaded.image = LoadRgbd(sequence.frames[next++], camera);
+          loaded.image = LoadRgbd(sequence.frames[frame], camera);
         } catch (const InputError& error) {
           loaded.error = error.what();
+        }
+        if (loaded.image) {
+          loaded.image->masks = masks.Read(frame);
         }
         return loaded;
       },
@@ -83,11 +91,11 @@ void WaitForStamp(const TumSequence& sequence, double stamp, Clock::time_point s
 }
 
 RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
-                   const PinholeCamera& camera, System& system) {
+                   const PinholeCamera& camera, const SequenceMasks& masks, System& system) {
   RunResult result;
   Progress progress(sequence.frames.size(), arguments.quiet);
   const Clock::time_point start = Clock::now();
-  Prefetcher<LoadedFrame> images = StartLoading(sequence, camera);
+  Prefetcher<LoadedFrame> images = StartLoading(sequence, camera, masks);
   while (!IsInterrupted()) {
     const std::optional<LoadedFrame> loaded = images.Next();
     if (!loaded) {
@@ -231,16 +239,23 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
   LoadRgbd(sequence.frames.front(), options.camera);  // wrong types and sizes show here
   const std::optional<Trajectory> groundtruth =
       sequence.groundtruth ? std::optional(ReadTrajectory(*sequence.groundtruth)) : std::nullopt;
+  const SequenceMasks masks(
+      {arguments.masks, arguments.masks_format, options.camera.width, options.camera.height},
+      MaskFrames(sequence));
   PrepareOutputFolder(arguments.output);
+  if (!arguments.quiet && masks.format()) {
+    fmt::print("{}\n", masks.Describe());
+  }
   if (!arguments.vocabulary.empty()) {
     fmt::print(stderr, "warning: {}: this version uses no vocabulary\n",
                arguments.vocabulary.string());
   }
   CatchInterrupts();
   System system(options, ChoosePipeline(arguments));
-  const RunResult result = TrackAll(arguments, sequence, options.camera, system);
+  const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system);
 
   RunSummary summary = Summarize(arguments, options, sequence, result, system);
+  summary.provenance.masks_format = masks.format();
   const Trajectory trajectory = system.trajectory();
   if (groundtruth) {
     Evaluate(*groundtruth, trajectory, summary.trajectory);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/run_arguments.h"
 
+#include "cli/mask_arguments.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
@@ -28,6 +29,7 @@ void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::st
   app.add_option("--vocabulary", arguments.vocabulary, "vocabulary (not used by this version)");
   app.add_option("--associations", arguments.tum.associations,
                  "file of pairs: stamp rgb stamp depth (default: pairs are formed)");
+  AddMaskArguments(app, arguments.masks, arguments.masks_format);
   app.add_option("--set", arguments.overrides, "key=value: overrides a setting; repeat for more")
       ->take_all()
       ->allow_extra_args(false);  // else it would take the positional arguments behind it too

@@ -17,6 +17,8 @@ struct RunArguments {
   std::filesystem::path settings;    // empty: by the name of the sequence
   std::filesystem::path vocabulary;  // empty: none
   TumSequenceOptions tum;
+  std::filesystem::path masks;         // empty: none
+  std::string masks_format;            // empty: detected
   std::vector<std::string> overrides;  // key=value
   std::filesystem::path output = "out";
   bool threaded = false;

@@ -66,7 +66,8 @@ TumSequence PairLists(const fs::path& folder) {
   TumSequence sequence;
   sequence.unpaired = rgb.stamps.size() - pairs.size();
   for (const auto& [i, j] : pairs) {
-    sequence.frames.push_back({rgb.stamps[i], std::move(rgb.files[i]), std::move(depth.files[j])});
+    sequence.frames.push_back(
+        {rgb.stamps[i], std::move(rgb.files[i]), std::move(depth.files[j]), i});
   }
   return sequence;
 }
@@ -76,7 +77,7 @@ TumSequence ReadAssociations(const fs::path& folder, const fs::path& path) {
   ForEachRow(path, [&](const TextRow& row) {
     CheckColumns(row, 4, "timestamp rgb timestamp depth");
     RgbdFramePaths frame{row.Number(0, "timestamp of rgb"), folder / row.columns[1],
-                         folder / row.columns[3]};
+                         folder / row.columns[3], sequence.frames.size()};
     row.Number(2, "timestamp of depth");
     CheckIncreasing(row, frame.timestamp,
                     sequence.frames.empty() ? nullptr : &sequence.frames.back().timestamp);

@@ -16,6 +16,7 @@ struct RgbdFramePaths {
   double timestamp = 0.0;  // of the colour image, s
   std::filesystem::path rgb;
   std::filesystem::path depth;
+  size_t number = 0;  // among all lines of rgb.txt, or of the association file, from 0
 };
 
 // The frames `first`, `first + stride`, ... up to `last` (inclusive), counted from 0.

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/mask_arguments.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <utility>
+
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+
+void AddMaskFormat(CLI::App& app, std::string& format) {
+  app.add_option("--masks-format", format,
+                 fmt::format("{} (default: detected)", fmt::join(MaskFormatNames(), ", ")))
+      ->check(CLI::IsMember(MaskFormatNames()).description(""));
+}
+
+void AddMaskArguments(CLI::App& app, std::filesystem::path& path, std::string& format) {
+  app.add_option("--masks", path, "masks of the objects: a folder or a JSON file (docs/masks.md)");
+  AddMaskFormat(app, format);
+}
+
+SequenceMasks::SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> frames)
+    : path_(request.path.string()), frames_(std::move(frames)) {
+  if (!request.path.empty()) {
+    source_ = OpenMasks(request, frames_);
+    missing_ = CheckMasks(*source_, frames_);
+  } else if (!request.format.empty()) {
+    throw InputError(fmt::format("--masks-format is '{}' without --masks", request.format));
+  }
+}
+
+std::vector<InstanceMask> SequenceMasks::Read(size_t frame) const {
+  return source_ == nullptr ? std::vector<InstanceMask>() : source_->Read(frames_.at(frame)).masks;
+}
+
+std::optional<std::string> SequenceMasks::format() const {
+  return source_ == nullptr ? std::nullopt : std::optional(source_->format());
+}
+
+std::string SequenceMasks::Describe() const {
+  return source_ == nullptr ? std::string("no masks")
+                            : fmt::format("masks: {} ({}), {} of {} frames without", path_,
+                                          source_->format(), missing_, frames_.size());
+}
+
+}  // namespace hullslam

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/mask_classes.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <system_error>
+
+#include "hullslam/io/text_rows.h"
+#include "hullslam/util/error.h"
+#include "io/mask_checks.h"
+
+namespace hullslam {
+namespace {
+
+// The identifiers from 1 to 90 that COCO's annotations never use.
+constexpr std::array<int64_t, 10> kGaps = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};
+
+std::string Trimmed(std::string_view line) {
+  const size_t begin = line.find_first_not_of(" \t\r");
+  if (begin == std::string_view::npos) {
+    return {};
+  }
+  return std::string(line.substr(begin, line.find_last_not_of(" \t\r") - begin + 1));
+}
+
+std::vector<std::string> SplitLines(std::string_view text) {
+  std::vector<std::string> lines;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(Trimmed(text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return lines;
+}
+
+}  // namespace
+
+const std::vector<std::string>& CocoClasses() {
+  static const std::vector<std::string> names = {"person",        "bicycle",      "car",
+                                                 "motorcycle",    "airplane",     "bus",
+                                                 "train",         "truck",        "boat",
+                                                 "traffic light", "fire hydrant", "stop sign",
+                                                 "parking meter", "bench",        "bird",
+                                                 "cat",           "dog",          "horse",
+                                                 "sheep",         "cow",          "elephant",
+                                                 "bear",          "zebra",        "giraffe",
+                                                 "backpack",      "umbrella",     "handbag",
+                                                 "tie",           "suitcase",     "frisbee",
+                                                 "skis",          "snowboard",    "sports ball",
+                                                 "kite",          "baseball bat", "baseball glove",
+                                                 "skateboard",    "surfboard",    "tennis racket",
+                                                 "bottle",        "wine glass",   "cup",
+                                                 "fork",          "knife",        "spoon",
+                                                 "bowl",          "banana",       "apple",
+                                                 "sandwich",      "orange",       "broccoli",
+                                                 "carrot",        "hot dog",      "pizza",
+                                                 "donut",         "cake",         "chair",
+                                                 "couch",         "potted plant", "bed",
+                                                 "dining table",  "toilet",       "tv",
+                                                 "laptop",        "mouse",        "remote",
+                                                 "keyboard",      "cell phone",   "microwave",
+                                                 "oven",          "toaster",      "sink",
+                                                 "refrigerator",  "book",         "clock",
+                                                 "vase",          "scissors",     "teddy bear",
+                                                 "hair drier",    "toothbrush"};
+  return names;
+}
+
+std::optional<std::string> CocoCategory(int64_t id) {
+  const auto gap = std::lower_bound(kGaps.begin(), kGaps.end(), id);
+  if (id < 1 || id > 90 || (gap != kGaps.end() && *gap == id)) {
+    return std::nullopt;
+  }
+  return CocoClasses()[static_cast<size_t>(id - 1 - (gap - kGaps.begin()))];
+}
+
+std::vector<std::string> ReadClasses(const std::filesystem::path& folder) {
+  constexpr size_t kMostBytes = 1'000'000;
+  const std::filesystem::path path = folder / "classes.txt";
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    return CocoClasses();
+  }
+  CheckFileSize(path, kMostBytes);
+  std::vector<std::string> names = SplitLines(ReadFile(path));
+  while (!names.empty() && names.back().empty()) {
+    names.pop_back();
+  }
+  if (names.empty()) {
+    throw InputError(path.string() + ": holds no names, expected one a line");
+  }
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (names[i].empty()) {
+      throw InputError(path.string() + ':' + std::to_string(i + 1) +
+                       ": is empty, expected the name of class " + std::to_string(i));
+    }
+  }
+  return names;
+}
+
+}  // namespace hullslam

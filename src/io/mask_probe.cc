@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/mask_probe.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+
+#include "hullslam/io/text_rows.h"
+#include "hullslam/util/error.h"
+#include "io/mask_checks.h"
+#include "io/mask_text.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMostColumns = 64;  // enough to tell a format
+
+// False for a file without rows.
+bool ProbeRow(const fs::path& path, MaskProbe& probe) {
+  CheckFileSize(path, kMostFrameFileBytes);
+  ForEachRow(path, [&](const TextRow& row) {
+    if (probe.columns == 0) {
+      probe.columns = row.columns.size();
+      const size_t shown = std::min(row.columns.size(), kMostColumns);
+      probe.row.assign(row.columns.begin(), row.columns.begin() + static_cast<ptrdiff_t>(shown));
+    }
+  });
+  return probe.columns > 0;
+}
+
+void ProbeFolder(MaskProbe& probe) {
+  std::error_code error;
+  probe.has_images = !ListFiles(probe.path, ".png").empty();
+  probe.has_classes_json = fs::exists(probe.path / "classes.json", error);
+  probe.has_paper_folder = fs::is_directory(probe.path / "segmentation_txt", error);
+  for (const std::string& name : ListFiles(probe.path, ".txt")) {
+    if (name != "classes" && ProbeRow(probe.path / (name + ".txt"), probe)) {
+      return;
+    }
+  }
+}
+
+void ProbeFile(MaskProbe& probe) {
+  constexpr std::array<std::string_view, 3> kKeys = {"annotations", "image_id", "detections"};
+  CheckFileSize(probe.path, kMostJsonFileBytes);
+  const std::string text = ReadFile(probe.path);
+  size_t first = std::string::npos;
+  for (const std::string_view key : kKeys) {
+    const size_t at = text.find('"' + std::string(key) + '"');
+    if (at < first) {
+      first = at;
+      probe.json_key = key;
+    }
+  }
+}
+
+}  // namespace
+
+MaskProbe ProbeMasks(const fs::path& path) {
+  MaskProbe probe;
+  probe.path = path;
+  std::error_code error;
+  if (!fs::exists(path, error)) {
+    throw InputError(path.string() + ": no such folder or file, expected masks");
+  }
+  probe.is_folder = fs::is_directory(path, error);
+  if (probe.is_folder) {
+    ProbeFolder(probe);
+  } else {
+    ProbeFile(probe);
+  }
+  return probe;
+}
+
+bool IsNormalized(const MaskProbe& probe, size_t column) {
+  constexpr double kRounding = 0.01;
+  for (; column < probe.row.size(); ++column) {
+    double value = 0.0;
+    if (!ParseFinite(probe.row[column], value) || value < -kRounding || value > 1.0 + kRounding) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/io/mask_source.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
+#include "io/mask_checks.h"
+#include "io/mask_probe.h"
+#include "io/mask_yolo_seg.h"
+
+namespace hullslam {
+namespace {
+
+struct MaskFormat {
+  std::string_view name;
+  bool (*is_meant)(const MaskProbe& probe);
+  std::unique_ptr<MaskSource> (*open)(const MaskRequest& request,
+                                      std::span<const MaskFrame> frames);
+};
+
+constexpr std::array kFormats = {MaskFormat{"yolo-seg", IsYoloSeg, OpenYoloSeg}};
+
+const MaskFormat& FindFormat(const std::string& name) {
+  const auto* const found = std::find_if(kFormats.begin(), kFormats.end(),
+                                         [&](const auto& format) { return format.name == name; });
+  if (found == kFormats.end()) {
+    throw InputError(fmt::format("--masks-format is '{}', expected one of: {}", name,
+                                 fmt::join(MaskFormatNames(), ", ")));
+  }
+  return *found;
+}
+
+const MaskFormat& DetectFormat(const std::filesystem::path& path) {
+  const MaskProbe probe = ProbeMasks(path);
+  std::vector<const MaskFormat*> fitting;
+  std::vector<std::string_view> names;
+  for (const MaskFormat& format : kFormats) {
+    if (format.is_meant(probe)) {
+      fitting.push_back(&format);
+      names.push_back(format.name);
+    }
+  }
+  if (fitting.size() != 1) {
+    throw InputError(fmt::format(
+        "{}: the format of the masks cannot be told, {}; give --masks-format, one of: {}",
+        path.string(),
+        names.empty() ? "none fits" : fmt::format("{} fit", fmt::join(names, " and ")),
+        fmt::join(MaskFormatNames(), ", ")));
+  }
+  return *fitting.front();
+}
+
+void CheckSomeFrameHasMasks(const std::filesystem::path& path, const MaskSource& source,
+                            std::span<const MaskFrame> frames) {
+  const bool found = std::any_of(frames.begin(), frames.end(),
+                                 [&](const MaskFrame& frame) { return source.Contains(frame); });
+  if (!found) {
+    const std::string example = source.Example();
+    throw InputError(fmt::format(
+        "{}: no masks ({}) of any of the {} frames: there is {}, and a frame is '{}'",
+        path.string(), source.format(), frames.size(),
+        example.empty() ? std::string("nothing") : '\'' + example + '\'', frames.front().stem));
+  }
+}
+
+}  // namespace
+
+std::vector<MaskFrame> MaskFrames(const TumSequence& sequence) {
+  std::vector<MaskFrame> frames;
+  for (const RgbdFramePaths& frame : sequence.frames) {
+    frames.push_back({ImageStem(frame.rgb.string()), frame.number});
+  }
+  return frames;
+}
+
+std::vector<std::string> MaskFormatNames() {
+  std::vector<std::string> names;
+  for (const MaskFormat& format : kFormats) {
+    names.emplace_back(format.name);
+  }
+  return names;
+}
+
+std::unique_ptr<const MaskSource> OpenMasks(const MaskRequest& request,
+                                            std::span<const MaskFrame> frames) {
+  Check(!frames.empty() && request.width > 0 && request.height > 0,
+        "masks belong to frames of a known size");
+  const MaskFormat& format =
+      request.format.empty() ? DetectFormat(request.path) : FindFormat(request.format);
+  std::unique_ptr<const MaskSource> source = format.open(request, frames);
+  CheckSomeFrameHasMasks(request.path, *source, frames);
+  return source;
+}
+
+size_t CheckMasks(const MaskSource& source, std::span<const MaskFrame> frames) {
+  size_t missing = 0;
+  for (const MaskFrame& frame : frames) {
+    source.Check(frame);
+    missing += source.Contains(frame) ? 0 : 1;
+  }
+  return missing;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "hullslam/io/mask_source.h"
+#include "io/mask_probe.h"
+
+namespace hullslam {
+
+// yolo-seg: `<stem>.txt` with `class x1 y1 ... xn yn [confidence]` a line, of width and height.
+bool IsYoloSeg(const MaskProbe& probe);
+std::unique_ptr<MaskSource> OpenYoloSeg(const MaskRequest& request,
+                                        std::span<const MaskFrame> frames);
+
+}  // namespace hullslam

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/io/mask_source.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "io/mask_fixture.h"
+
+namespace hullslam {
+namespace {
+
+const char* const kYoloSeg = "41 0.25 0.25 0.5 0.25 0.25 0.75 0.9\n";
+
+// The format is detected.
+class MaskSourceTest : public MaskFixture {
+ protected:
+  MaskSourceTest() : MaskFixture("") {}
+};
+
+TEST(MaskFrames, HaveTheImagesStemsAndNumbers) {
+  TumSequence sequence;
+  sequence.frames = {{1.5, "a/rgb/1.500000.png", "", 3}, {2.5, "/b/rgb/0007.JPG", "", 4}};
+  const std::vector<MaskFrame> frames = MaskFrames(sequence);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0].stem, "1.500000");
+  EXPECT_EQ(frames[0].number, 3U);
+  EXPECT_EQ(frames[1].stem, "0007");
+}
+
+TEST_F(MaskSourceTest, FormatIsToldByTheFirstLineOfAnyFile) {
+  Write("0.5.txt", "");
+  Write("1.5.txt", "# nothing\n\n");
+  Write("3.5.txt", kYoloSeg);
+  EXPECT_EQ(Open()->format(), "yolo-seg");
+}
+
+TEST_F(MaskSourceTest, PathThatIsMissingOrEmptyIsRefused) {
+  ExpectRefusal({Path("none").string(), "no such"}, "none");
+  std::filesystem::create_directories(Path());
+  ExpectRefusal({Path().string(), "cannot be told, none fits", "--masks-format", "yolo-seg"});
+  format_ = "yolo-seg";
+  ExpectRefusal({Path().string(), "there is nothing", "'1.5'"});
+}
+
+TEST_F(MaskSourceTest, UnknownFormatIsRefused) {
+  Write("1.5.txt", kYoloSeg);
+  format_ = "yolo";
+  ExpectRefusal({"--masks-format is 'yolo'", "yolo-seg"});
+}
+
+TEST_F(MaskSourceTest, MasksOfOtherFramesAreRefusedWithOneOfEachSide) {
+  Write("0001.txt", kYoloSeg);
+  Write("0002.txt", kYoloSeg);
+  ExpectRefusal({Path().string(), "any of the 2 frames", "'0001.txt'", "'1.5'"});
+}
+
+}  // namespace
+}  // namespace hullslam
