@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hullslam/costs/projection.h"
-#include "hullslam/optim/intrinsics.h"
+#include "hullslam/map/intrinsics.h"
 #include "hullslam/optim/pose_optimization.h"
 
 namespace hullslam {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -163,6 +165,17 @@ TEST(PinholeCamera, BindsTheKeysOfOrbSlam2) {
   }
   EXPECT_THROW(table.Set("Camera.width", "640.5", "test"), InputError);
   EXPECT_THROW(table.Set("Camera.height", "0", "test"), InputError);
+}
+
+TEST(Pinhole, TheMatrixProjectsAsProjectDoes) {
+  PinholeCamera camera;
+  camera.fx = 520.0;
+  camera.fy = 510.0;
+  camera.cx = 318.0;
+  camera.cy = 255.0;
+  const Eigen::Vector3d point(0.3, -0.2, 1.7);
+  const Eigen::Vector3d pixel = camera.Matrix() * point;
+  EXPECT_LT((pixel.hnormalized() - camera.Project(point)).norm(), 1e-12);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hullslam/costs/projection.h"
-#include "hullslam/optim/intrinsics.h"
+#include "hullslam/map/intrinsics.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
 

@@ -28,6 +28,11 @@ struct PinholeCamera {
   // Binds ORB-SLAM2's keys `Camera.fx` ... to the fields.
   void Bind(OptionTable& options);
 
+  // Calibration matrix: upper triangular, px.
+  Eigen::Matrix3d Matrix() const {
+    return (Eigen::Matrix3d() << fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0).finished();
+  }
+
   bool IsDistorted() const { return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0 || k3 != 0.0; }
 
   // Undistorted pixel of a point in the camera frame (metres, z forward). The point needs z > 0.

@@ -22,6 +22,14 @@ struct ObjectObservation {
   uint32_t detection = 0;  // index into the frame's detections
 };
 
+// By how much the real object reaches beyond its quadric in one direction, as one line of a
+// keyframe's silhouette tells (objects/misfit.h).
+struct SupportSample {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // outwards, object frame, unit
+  double excess = 0.0;                                // m; negative where it is smaller
+  KeyframeId keyframe;
+};
+
 // An object of the world that keyframes observe.
 struct ObjectLandmark {
   ObjectState state = ObjectState::kCandidate;
@@ -31,6 +39,8 @@ struct ObjectLandmark {
   std::map<std::string, double> votes;          // sum of scores by class
   std::vector<ObjectObservation> observations;  // by increasing keyframe id, one a keyframe
   double misfit_px = 0.0;                       // RMS distance of its lines from the outline
+  double compensated_px = 0.0;                  // the same, less what other keyframes predict
+  std::vector<SupportSample> support;           // where its keyframes touch it
   int visible = 0;  // frames in which it should have been seen since it was mapped
   int found = 0;    // frames in which it was
 

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "hullslam/map/map.h"
+
+namespace hullslam {
+
+// Pairs of objects that are one, the one to keep (with more observations) first: their quadrics
+// share most of the smaller one's volume, or the t-test of their centroids holds and each centre
+// lies in the other; and they were never, or hardly ever, seen together. An object is in one pair
+// at most.
+std::vector<std::pair<ObjectId, ObjectId>> FindDuplicates(const Map& map);
+
+// Intersection over union of two ellipsoids' volumes, on a lattice of 16^3 points of each.
+double VolumeOverlap(const Ellipsoid& a, const Ellipsoid& b);
+
+}  // namespace hullslam

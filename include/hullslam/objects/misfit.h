@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/geometry/dual_quadric.h"
+#include "hullslam/geometry/line2.h"
+#include "hullslam/map/object_landmark.h"
+#include "hullslam/objects/object_view.h"
+
+namespace hullslam {
+
+// A line of a silhouette is the trace of a plane through the camera that touches the convex hull of
+// the real object. So what the object's support function (largest n . x over its points, m) has
+// over that of its quadric is a function of the plane's normal n in the object's frame alone: what
+// one view measures holds for every other that touches the object at the same n. That is the
+// systematic part of an ellipsoid's misfit, and it can be learnt.
+
+// The plane of a line: unit normal in the object's frame, distances and pixels at one pose.
+struct TangentPlane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // outwards
+  double excess = 0.0;            // m, support of the plane over that of the quadric
+  double pixels_per_metre = 0.0;  // by which the line moves in the image when the plane is shifted
+};
+
+// Nothing where the quadric is not in front of the camera.
+std::optional<TangentPlane> PlaneOfLine(const PinholeCamera& camera, const Rigid3& cam_from_world,
+                                        const Ellipsoid& ellipsoid, const Line2& line);
+
+// The excess of all two-sided lines of the views.
+std::vector<SupportSample> MeasureMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
+                                         std::span<const ObjectView> views);
+
+// The excess at a normal by samples of keyframes other than `left_out`: a locally linear fit with
+// Gaussian weights (4 degrees). Nothing where too few samples are near.
+std::optional<double> PredictExcess(std::span<const SupportSample> samples,
+                                    const Eigen::Vector3d& normal, KeyframeId left_out);
+
+// The lines of a detection moved to where the quadric would touch them if it were the real object.
+// Lines whose misfit is not known stay; `known` gets one entry a line.
+std::vector<SilhouetteLine> CompensateLines(const PinholeCamera& camera,
+                                            const Rigid3& cam_from_world,
+                                            const ObjectLandmark& object,
+                                            std::span<const SilhouetteLine> lines,
+                                            KeyframeId left_out, std::vector<uint8_t>& known);
+
+// RMS of the tangent distances of the views' two-sided lines, px: as they are, and with the
+// compensation by the samples of the other views.
+struct MisfitSpread {
+  double plain_px = 0.0;
+  double compensated_px = 0.0;
+};
+MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& object,
+                           std::span<const ObjectView> views);
+
+}  // namespace hullslam

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/association.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "hullslam/geometry/assignment.h"
+#include "hullslam/geometry/convex_hull.h"
+#include "hullslam/geometry/polygon_overlap.h"
+#include "hullslam/objects/object_view.h"
+#include "hullslam/objects/point_statistics.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kRecentViews = 5;      // whose points and landmarks tell an object
+constexpr double kMinSimilarity = 0.2;  // below it a detection is rather of no object
+constexpr size_t kCloud = 40;           // points a cloud that the rank-sum test looks at
+
+using Polygon = std::vector<Eigen::Vector2d>;
+
+// What is known of an object, as the camera of now would see it.
+struct Prediction {
+  ObjectId id;
+  const ObjectLandmark* object = nullptr;
+  Polygon outline;                         // of the quadric, clipped to the image; empty without
+  Polygon carried;                         // the last hull, carried over at its depth
+  std::vector<LandmarkId> landmarks;       // seen on it lately, sorted
+  std::vector<Eigen::Vector3d> cloud;      // m, world; of its last view
+  std::vector<Eigen::Vector3d> centroids;  // of its views with depth
+  double size = 0.0;                       // m, extent of its last cloud
+};
+
+// A detection with what is compared.
+struct Seen {
+  const Detection* detection = nullptr;
+  std::vector<LandmarkId> landmarks;  // sorted
+  std::vector<Eigen::Vector3d> cloud;
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // of the cloud
+};
+
+Eigen::Vector3d MeanOf(std::span<const Eigen::Vector3d> points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    sum += point;
+  }
+  return sum / static_cast<double>(std::max<size_t>(1, points.size()));
+}
+
+// Twice the root of the mean squared distance from the mean: about the half diagonal.
+double SizeOf(std::span<const Eigen::Vector3d> points) {
+  const Eigen::Vector3d mean = MeanOf(points);
+  double sum = 0.0;
+  for (const Eigen::Vector3d& point : points) {
+    sum += (point - mean).squaredNorm();
+  }
+  return 2.0 * std::sqrt(sum / static_cast<double>(std::max<size_t>(1, points.size())));
+}
+
+class Associator {
+ public:
+  Associator(const Map& map, const Sensor& sensor, const Frame& frame, const Rigid3& cam_from_world,
+             std::span<const LandmarkId> landmarks, const AssociationOptions& options)
+      : map_(map),
+        sensor_(sensor),
+        frame_(frame),
+        cam_from_world_(cam_from_world),
+        landmarks_(landmarks),
+        options_(options),
+        image_(Eigen::Vector2d(sensor.bounds.min_x, sensor.bounds.min_y),
+               Eigen::Vector2d(sensor.bounds.max_x, sensor.bounds.max_y)) {}
+
+  std::vector<ObjectId> Run() const {
+    std::vector<Prediction> predictions;
+    map_.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+      const bool is_wanted = !options_.mapped_only || object.state == ObjectState::kMapped;
+      if (is_wanted && !object.observations.empty()) {
+        predictions.push_back(Predict(id, object));
+      }
+    });
+    const auto rows = static_cast<Eigen::Index>(frame_.detections.size());
+    Eigen::MatrixXd cost =
+        Eigen::MatrixXd::Ones(rows, static_cast<Eigen::Index>(predictions.size()));
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const Seen seen = Look(frame_.detections[static_cast<size_t>(i)]);
+      for (Eigen::Index j = 0; j < cost.cols(); ++j) {
+        cost(i, j) = 1.0 - Similarity(seen, predictions[static_cast<size_t>(j)]);
+      }
+    }
+    std::vector<ObjectId> objects(frame_.detections.size());
+    const std::vector<int> columns = AssignMinimumCost(cost, 1.0 - kMinSimilarity);
+    for (size_t i = 0; i < columns.size(); ++i) {
+      if (columns[i] >= 0) {
+        objects[i] = predictions[static_cast<size_t>(columns[i])].id;
+      }
+    }
+    return objects;
+  }
+
+ private:
+  Prediction Predict(ObjectId id, const ObjectLandmark& object) const {
+    Prediction prediction;
+    prediction.id = id;
+    prediction.object = &object;
+    if (object.has_shape) {
+      if (const auto ellipse =
+              ProjectEllipsoid(sensor_.camera.Matrix(), cam_from_world_, object.ellipsoid)) {
+        prediction.outline = ClipToBox(ellipse->Polygon(32), image_);
+      }
+    }
+    ObjectLandmark recent = object;
+    if (recent.observations.size() > kRecentViews) {
+      recent.observations.erase(recent.observations.begin(),
+                                recent.observations.end() - kRecentViews);
+    }
+    const std::vector<ObjectView> views = CollectViews(map_, recent);
+    prediction.cloud = CollectPoints({&views.back(), 1}, kCloud);
+    prediction.size = SizeOf(prediction.cloud);
+    prediction.carried = Carry(views.back());
+    for (const ObjectView& view : views) {
+      if (!view.detection->points.empty()) {
+        prediction.centroids.push_back(Centroid(view));
+      }
+      for (const uint32_t keypoint : view.detection->keypoints) {
+        AddLandmark(map_.keyframes().At(view.keyframe).landmarks[keypoint], prediction.landmarks);
+      }
+    }
+    SortUnique(prediction.landmarks);
+    return prediction;
+  }
+
+  // The hull of a former view where its points are in this image: all at the depth of their middle.
+  // Without depth it stays where it was.
+  Polygon Carry(const ObjectView& view) const {
+    const Detection& detection = *view.detection;
+    Polygon carried = detection.hull;
+    if (!detection.points.empty()) {
+      const double depth = MeanOf(detection.points).z();
+      const Rigid3 now_from_then = cam_from_world_ * Inverse(view.cam_from_world);
+      for (Eigen::Vector2d& corner : carried) {
+        const Eigen::Vector3d point = now_from_then * sensor_.camera.Unproject(corner, depth);
+        if (point.z() <= 0.0) {
+          return {};
+        }
+        corner = sensor_.camera.Project(point);
+      }
+      carried = ConvexHull(carried);
+    }
+    return ClipToBox(carried, image_);
+  }
+
+  Seen Look(const Detection& detection) const {
+    Seen seen;
+    seen.detection = &detection;
+    const ObjectView view{KeyframeId(), cam_from_world_, &detection};
+    seen.cloud = CollectPoints({&view, 1}, kCloud);
+    seen.centroid = MeanOf(seen.cloud);
+    for (const uint32_t keypoint : detection.keypoints) {
+      if (keypoint < landmarks_.size()) {
+        AddLandmark(landmarks_[keypoint], seen.landmarks);
+      }
+    }
+    SortUnique(seen.landmarks);
+    return seen;
+  }
+
+  static void AddLandmark(LandmarkId landmark, std::vector<LandmarkId>& landmarks) {
+    if (landmark.IsValid()) {
+      landmarks.push_back(landmark);
+    }
+  }
+  static void SortUnique(std::vector<LandmarkId>& landmarks) {
+    std::sort(landmarks.begin(), landmarks.end());
+    landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  }
+
+  // Whether depth says that these are two things, one beside or behind the other.
+  bool AreApart(const Seen& seen, const Prediction& prediction) const {
+    if (seen.cloud.empty() || prediction.cloud.empty()) {
+      return false;
+    }
+    const double size = std::max(prediction.size, SizeOf(seen.cloud));
+    const double offset = (seen.centroid - MeanOf(prediction.cloud)).norm();
+    return offset > options_.max_offset * size + options_.centroid_noise;
+  }
+
+  // Share of the detection's landmarks that were seen on the object too.
+  double SharedLandmarks(const Seen& seen, const Prediction& prediction) const {
+    std::vector<LandmarkId> shared;
+    std::set_intersection(seen.landmarks.begin(), seen.landmarks.end(),
+                          prediction.landmarks.begin(), prediction.landmarks.end(),
+                          std::back_inserter(shared));
+    if (shared.size() < static_cast<size_t>(options_.min_shared_landmarks)) {
+      return 0.0;
+    }
+    return static_cast<double>(shared.size()) /
+           static_cast<double>(std::min(seen.landmarks.size(), prediction.landmarks.size()));
+  }
+
+  double ClassShare(const std::string& label, const ObjectLandmark& object) const {
+    double total = 0.0;
+    double same = 0.0;
+    for (const auto& [name, votes] : object.votes) {
+      total += votes;
+      same += name == label ? votes : 0.0;
+    }
+    return total > 0.0 ? same / total : 0.0;
+  }
+
+  // 0 (no) to about 1.
+  double Similarity(const Seen& seen, const Prediction& prediction) const {
+    if (AreApart(seen, prediction)) {
+      return 0.0;
+    }
+    const Polygon& hull = seen.detection->hull;
+    const double outline = IntersectionOverUnion(hull, prediction.outline);
+    const double carried = IntersectionOverUnion(hull, prediction.carried);
+    const double shared = SharedLandmarks(seen, prediction);
+    const bool one_cloud = MayBeOneCloud(seen.cloud, prediction.cloud, options_.max_rank_sum,
+                                         static_cast<size_t>(options_.min_cloud));
+    const bool one_centroid =
+        !seen.cloud.empty() &&
+        MayBeTheMean(seen.centroid, prediction.centroids, options_.alpha, options_.centroid_noise);
+    const bool is_match = outline >= options_.min_outline_iou ||
+                          carried >= options_.min_carried_iou ||
+                          shared >= options_.min_shared_ratio ||
+                          ((one_cloud || one_centroid) && std::max(outline, carried) > 0.1);
+    if (!is_match) {
+      return 0.0;
+    }
+    const double clouds = (one_cloud ? 0.1 : 0.0) + (one_centroid ? 0.1 : 0.0);
+    return 0.6 * std::max(outline, carried) + 0.2 * shared + clouds +
+           options_.class_weight * ClassShare(seen.detection->label, *prediction.object);
+  }
+
+  const Map& map_;
+  const Sensor& sensor_;
+  const Frame& frame_;
+  const Rigid3& cam_from_world_;
+  std::span<const LandmarkId> landmarks_;
+  const AssociationOptions& options_;
+  Eigen::AlignedBox2d image_;
+};
+
+}  // namespace
+
+std::vector<ObjectId> AssociateDetections(const Map& map, const Sensor& sensor, const Frame& frame,
+                                          const Rigid3& cam_from_world,
+                                          std::span<const LandmarkId> landmarks,
+                                          const AssociationOptions& options) {
+  return Associator(map, sensor, frame, cam_from_world, landmarks, options).Run();
+}
+
+}  // namespace hullslam

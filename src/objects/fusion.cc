@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/fusion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hullslam/objects/object_view.h"
+#include "hullslam/objects/point_statistics.h"
+
+namespace hullslam {
+namespace {
+
+constexpr double kMinOverlap = 0.25;         // of volumes, for objects never seen together
+constexpr double kMinOverlapTogether = 0.5;  // for those seen together in few keyframes
+constexpr double kMaxSharedKeyframes = 0.2;  // of those of the one seen less
+constexpr double kAlpha = 0.05;
+constexpr double kCentroidNoise = 0.02;  // m
+
+// Whether a world point lies inside.
+bool Contains(const Ellipsoid& ellipsoid, const Eigen::Vector3d& point) {
+  return ellipsoid.RadialDistance(point) <= 0.0;
+}
+
+double Volume(const Ellipsoid& ellipsoid) { return ellipsoid.half_axes.prod(); }
+
+// Share of a's volume that is in b.
+double ShareInside(const Ellipsoid& a, const Ellipsoid& b) {
+  constexpr int kSteps = 16;
+  int total = 0;
+  int inside = 0;
+  for (int i = 0; i < kSteps * kSteps * kSteps; ++i) {
+    const Eigen::Vector3i cell(i % kSteps, i / kSteps % kSteps, i / (kSteps * kSteps));
+    const Eigen::Vector3d unit =
+        (cell.cast<double>().array() + 0.5) * (2.0 / kSteps) - 1.0;  // -1 to 1
+    if (unit.squaredNorm() > 1.0) {
+      continue;
+    }
+    ++total;
+    inside += Contains(b, a.world_from_object * a.half_axes.cwiseProduct(unit).eval()) ? 1 : 0;
+  }
+  return static_cast<double>(inside) / total;
+}
+
+size_t SharedKeyframes(const ObjectLandmark& a, const ObjectLandmark& b) {
+  std::vector<KeyframeId> shared;
+  std::vector<KeyframeId> of_a;
+  std::vector<KeyframeId> of_b;
+  for (const ObjectObservation& observation : a.observations) {
+    of_a.push_back(observation.keyframe);
+  }
+  for (const ObjectObservation& observation : b.observations) {
+    of_b.push_back(observation.keyframe);
+  }
+  std::set_intersection(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
+                        std::back_inserter(shared));
+  return shared.size();
+}
+
+std::vector<Eigen::Vector3d> Centroids(const Map& map, const ObjectLandmark& object) {
+  std::vector<Eigen::Vector3d> centroids;
+  for (const ObjectView& view : CollectViews(map, object)) {
+    if (!view.detection->points.empty()) {
+      centroids.push_back(Centroid(view));
+    }
+  }
+  return centroids;
+}
+
+bool AreOne(const Map& map, const ObjectLandmark& a, const ObjectLandmark& b) {
+  if (!a.has_shape || !b.has_shape) {
+    return false;
+  }
+  const Eigen::Vector3d offset =
+      a.ellipsoid.world_from_object.translation - b.ellipsoid.world_from_object.translation;
+  if (offset.norm() > a.ellipsoid.half_axes.maxCoeff() + b.ellipsoid.half_axes.maxCoeff()) {
+    return false;
+  }
+  const size_t shared = SharedKeyframes(a, b);
+  const size_t fewer = std::min(a.observations.size(), b.observations.size());
+  if (static_cast<double>(shared) > kMaxSharedKeyframes * static_cast<double>(fewer)) {
+    return false;
+  }
+  const double overlap = VolumeOverlap(a.ellipsoid, b.ellipsoid);
+  if (shared > 0) {
+    return overlap >= kMinOverlapTogether;
+  }
+  const bool in_each_other = Contains(a.ellipsoid, b.ellipsoid.world_from_object.translation) &&
+                             Contains(b.ellipsoid, a.ellipsoid.world_from_object.translation);
+  return overlap >= kMinOverlap ||
+         (in_each_other &&
+          MayHaveOneMean(Centroids(map, a), Centroids(map, b), kAlpha, kCentroidNoise));
+}
+
+}  // namespace
+
+double VolumeOverlap(const Ellipsoid& a, const Ellipsoid& b) {
+  const bool a_is_smaller = Volume(a) <= Volume(b);
+  const Ellipsoid& smaller = a_is_smaller ? a : b;
+  const Ellipsoid& larger = a_is_smaller ? b : a;
+  const double shared = ShareInside(smaller, larger) * Volume(smaller);
+  return shared / (Volume(a) + Volume(b) - shared);
+}
+
+std::vector<std::pair<ObjectId, ObjectId>> FindDuplicates(const Map& map) {
+  std::vector<ObjectId> ids;
+  map.objects().ForEach([&](ObjectId id, const ObjectLandmark&) { ids.push_back(id); });
+  std::vector<std::pair<ObjectId, ObjectId>> pairs;
+  std::vector<bool> is_taken(ids.size(), false);
+  for (size_t i = 0; i < ids.size(); ++i) {
+    for (size_t j = i + 1; j < ids.size() && !is_taken[i]; ++j) {
+      const ObjectLandmark& a = map.objects().At(ids[i]);
+      const ObjectLandmark& b = map.objects().At(ids[j]);
+      if (is_taken[j] || !AreOne(map, a, b)) {
+        continue;
+      }
+      is_taken[i] = is_taken[j] = true;
+      const bool keep_first = a.observations.size() >= b.observations.size();
+      pairs.emplace_back(keep_first ? ids[i] : ids[j], keep_first ? ids[j] : ids[i]);
+    }
+  }
+  return pairs;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/initialisation.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "hullslam/geometry/oriented_box.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kMinPoints = 20;
+constexpr double kLowQuantile = 0.03;
+constexpr double kHighQuantile = 0.97;
+constexpr double kMinHalfAxis = 0.01;        // m; flat things have some thickness
+constexpr double kMinRayInformation = 1e-3;  // least eigenvalue a ray, of the point they meet in
+
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+// Between the 3rd and the 97th percentile of the points along a direction.
+Interval InnerInterval(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& direction) {
+  std::vector<double> values;
+  values.reserve(points.size());
+  for (const Eigen::Vector3d& point : points) {
+    values.push_back(direction.dot(point));
+  }
+  std::sort(values.begin(), values.end());
+  const auto last = static_cast<double>(values.size() - 1);
+  return {values[static_cast<size_t>(kLowQuantile * last)],
+          values[static_cast<size_t>(kHighQuantile * last)]};
+}
+
+// The ellipsoid with these axes (columns, right-handed) whose box holds the inner points.
+Ellipsoid FitAlong(std::span<const Eigen::Vector3d> points, const Eigen::Matrix3d& axes,
+                   double inflation) {
+  Ellipsoid ellipsoid;
+  ellipsoid.world_from_object.rotation = Eigen::Quaterniond(axes).normalized();
+  Eigen::Vector3d center;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Interval interval = InnerInterval(points, axes.col(axis));
+    center[axis] = 0.5 * (interval.low + interval.high);
+    ellipsoid.half_axes[axis] =
+        std::max(kMinHalfAxis, inflation * 0.5 * (interval.high - interval.low));
+  }
+  ellipsoid.world_from_object.translation = axes * center;
+  return ellipsoid;
+}
+
+Eigen::Matrix3d PrincipalAxes(std::span<const Eigen::Vector3d> points) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    mean += point;
+  }
+  mean /= static_cast<double>(points.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    covariance += (point - mean) * (point - mean).transpose();
+  }
+  Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors();
+  if (axes.determinant() < 0.0) {
+    axes.col(2) = -axes.col(2);
+  }
+  return axes;
+}
+
+// The points that lie between the percentiles along each of the axes.
+std::vector<Eigen::Vector3d> InnerPoints(std::span<const Eigen::Vector3d> points,
+                                         const Eigen::Matrix3d& axes) {
+  std::vector<Eigen::Vector3d> inner(points.begin(), points.end());
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d direction = axes.col(axis);
+    const Interval interval = InnerInterval(points, direction);
+    std::erase_if(inner, [&](const Eigen::Vector3d& point) {
+      const double value = direction.dot(point);
+      return value < interval.low || value > interval.high;
+    });
+  }
+  return inner;
+}
+
+}  // namespace
+
+std::vector<Ellipsoid> StartsFromPoints(std::span<const Eigen::Vector3d> points, double inflation) {
+  if (points.size() < kMinPoints) {
+    return {};
+  }
+  const Eigen::Matrix3d axes = PrincipalAxes(points);
+  const std::vector<Eigen::Vector3d> inner = InnerPoints(points, axes);
+  if (inner.size() < kMinPoints) {
+    return {};
+  }
+  std::vector<Ellipsoid> starts = {FitAlong(points, PrincipalAxes(inner), inflation)};
+  if (const std::optional<Eigen::Matrix3d> box = OrientedBoxAxes(inner)) {
+    starts.push_back(FitAlong(points, *box, inflation));
+  }
+  return starts;
+}
+
+std::optional<Ellipsoid> StartFromRays(const PinholeCamera& camera,
+                                       std::span<const ObjectView> views) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
+  for (const ObjectView& view : views) {
+    const Rigid3 world_from_cam = Inverse(view.cam_from_world);
+    const Eigen::Vector3d ray =
+        world_from_cam.rotation * camera.Unproject(view.detection->box.center(), 1.0).normalized();
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - ray * ray.transpose();
+    information += across;
+    right_side += across * world_from_cam.translation;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
+  if (eigen.eigenvalues().x() < kMinRayInformation * static_cast<double>(views.size())) {
+    return std::nullopt;
+  }
+  Ellipsoid sphere;
+  sphere.world_from_object.translation = information.ldlt().solve(right_side);
+  double radius = 0.0;
+  for (const ObjectView& view : views) {
+    const double depth = (view.cam_from_world * sphere.world_from_object.translation).z();
+    if (depth <= 0.0) {
+      return std::nullopt;
+    }
+    const Eigen::Vector2d sides = view.detection->box.sizes();
+    radius += 0.25 * (sides.x() / camera.fx + sides.y() / camera.fy) * depth;
+  }
+  sphere.half_axes.setConstant(std::max(kMinHalfAxis, radius / static_cast<double>(views.size())));
+  return sphere;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/misfit.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hullslam {
+namespace {
+
+constexpr double kWidth = 4.0 * std::numbers::pi / 180.0;  // rad, of the Gaussian weights
+constexpr double kReach = 3.0 * kWidth;                    // farther samples are not looked at
+constexpr double kMinWeight = 1.0;  // in all: one sample at the place, or some around it
+constexpr double kMinDepth = 1e-3;  // m
+
+}  // namespace
+
+std::optional<TangentPlane> PlaneOfLine(const PinholeCamera& camera, const Rigid3& cam_from_world,
+                                        const Ellipsoid& ellipsoid, const Line2& line) {
+  const Rigid3 cam_from_object = cam_from_world * ellipsoid.world_from_object;
+  const Eigen::Vector3d back_projected = camera.Matrix().transpose() * line.Homogeneous();
+  const double scale = back_projected.norm();
+  const Eigen::Vector3d normal_in_cam = back_projected / scale;
+  TangentPlane plane;
+  plane.normal = cam_from_object.rotation.conjugate() * normal_in_cam;
+  const Eigen::Vector3d stretched = ellipsoid.half_axes.cwiseProduct(plane.normal);
+  const double support = stretched.norm();
+  plane.excess = -normal_in_cam.dot(cam_from_object.translation) - support;
+  const Eigen::Vector3d contact = ellipsoid.half_axes.cwiseProduct(stretched) / support;
+  const double depth = (cam_from_object * contact).z();
+  if (depth < kMinDepth) {
+    return std::nullopt;
+  }
+  plane.pixels_per_metre = scale / depth;
+  return plane;
+}
+
+std::vector<SupportSample> MeasureMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
+                                         std::span<const ObjectView> views) {
+  std::vector<SupportSample> samples;
+  for (const ObjectView& view : views) {
+    for (const SilhouetteLine& line : view.detection->lines) {
+      if (line.is_one_sided) {
+        continue;
+      }
+      if (const auto plane = PlaneOfLine(camera, view.cam_from_world, ellipsoid, line.line)) {
+        samples.push_back({plane->normal, plane->excess, view.keyframe});
+      }
+    }
+  }
+  return samples;
+}
+
+std::optional<double> PredictExcess(std::span<const SupportSample> samples,
+                                    const Eigen::Vector3d& normal, KeyframeId left_out) {
+  // Axes of the plane that touches the unit sphere at the normal.
+  const Eigen::Vector3d across = normal.unitOrthogonal();
+  const Eigen::Vector3d along = normal.cross(across);
+  const double min_cosine = std::cos(kReach);
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
+  for (const SupportSample& sample : samples) {
+    const double cosine = sample.normal.dot(normal);
+    if (cosine < min_cosine || sample.keyframe == left_out) {
+      continue;
+    }
+    const Eigen::Vector3d basis(1.0, across.dot(sample.normal) / kWidth,
+                                along.dot(sample.normal) / kWidth);
+    const double weight = std::exp(-(1.0 - cosine) / (kWidth * kWidth));
+    information += weight * basis * basis.transpose();
+    right_side += weight * sample.excess * basis;
+  }
+  if (information(0, 0) < kMinWeight) {
+    return std::nullopt;
+  }
+  // A weak prior of no slope: samples on one side alone must not extrapolate.
+  information(1, 1) += 0.3;
+  information(2, 2) += 0.3;
+  return information.ldlt().solve(right_side).x();
+}
+
+std::vector<SilhouetteLine> CompensateLines(const PinholeCamera& camera,
+                                            const Rigid3& cam_from_world,
+                                            const ObjectLandmark& object,
+                                            std::span<const SilhouetteLine> lines,
+                                            KeyframeId left_out, std::vector<uint8_t>& known) {
+  std::vector<SilhouetteLine> moved(lines.begin(), lines.end());
+  known.assign(lines.size(), 0);
+  for (size_t i = 0; i < moved.size(); ++i) {
+    const auto plane = PlaneOfLine(camera, cam_from_world, object.ellipsoid, moved[i].line);
+    const auto excess =
+        plane ? PredictExcess(object.support, plane->normal, left_out) : std::nullopt;
+    if (excess) {
+      moved[i].line.offset += *excess * plane->pixels_per_metre;
+      known[i] = 1;
+    }
+  }
+  return moved;
+}
+
+MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& object,
+                           std::span<const ObjectView> views) {
+  double plain = 0.0;
+  double compensated = 0.0;
+  size_t count = 0;
+  for (const ObjectView& view : views) {
+    for (const SilhouetteLine& line : view.detection->lines) {
+      const auto plane =
+          line.is_one_sided ? std::nullopt
+                            : PlaneOfLine(camera, view.cam_from_world, object.ellipsoid, line.line);
+      if (!plane) {
+        continue;
+      }
+      const double excess = plane->excess * plane->pixels_per_metre;
+      const double predicted =
+          PredictExcess(object.support, plane->normal, view.keyframe).value_or(0.0) *
+          plane->pixels_per_metre;
+      plain += excess * excess;
+      compensated += (excess - predicted) * (excess - predicted);
+      ++count;
+    }
+  }
+  const auto mean = static_cast<double>(std::max<size_t>(1, count));
+  return {std::sqrt(plain / mean), std::sqrt(compensated / mean)};
+}
+
+}  // namespace hullslam

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/object_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+
+std::vector<ObjectView> CollectViews(const Map& map, const ObjectLandmark& object,
+                                     size_t max_views) {
+  const size_t count = object.observations.size();
+  const size_t taken = max_views == 0 ? count : std::min(count, max_views);
+  std::vector<ObjectView> views;
+  views.reserve(taken);
+  for (size_t i = 0; i < taken; ++i) {
+    const size_t index = taken == 1 ? count - 1 : i * (count - 1) / (taken - 1);
+    const ObjectObservation& observation = object.observations[index];
+    const Keyframe& keyframe = map.keyframes().At(observation.keyframe);
+    views.push_back({observation.keyframe, keyframe.cam_from_world,
+                     &keyframe.frame->detections[observation.detection]});
+  }
+  return views;
+}
+
+std::vector<Eigen::Vector3d> CollectPoints(std::span<const ObjectView> views, size_t max_points) {
+  size_t total = 0;
+  for (const ObjectView& view : views) {
+    total += view.detection->points.size();
+  }
+  const size_t step = std::max<size_t>(1, total / std::max<size_t>(1, max_points));
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(total / step + 1);
+  size_t index = 0;
+  for (const ObjectView& view : views) {
+    const Rigid3 world_from_cam = Inverse(view.cam_from_world);
+    for (const Eigen::Vector3d& point : view.detection->points) {
+      if (index++ % step == 0) {
+        points.push_back(world_from_cam * point);
+      }
+    }
+  }
+  return points;
+}
+
+Eigen::Vector3d Centroid(const ObjectView& view) {
+  const std::vector<Eigen::Vector3d>& points = view.detection->points;
+  Check(!points.empty(), "a view without depth has no centroid");
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    sum += point;
+  }
+  return Inverse(view.cam_from_world) * (sum / static_cast<double>(points.size())).eval();
+}
+
+double Parallax(std::span<const ObjectView> views, const Eigen::Vector3d& point) {
+  std::vector<Eigen::Vector3d> rays;
+  rays.reserve(views.size());
+  for (const ObjectView& view : views) {
+    rays.push_back((point - Inverse(view.cam_from_world).translation).normalized());
+  }
+  double min_cosine = 1.0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    for (size_t j = i + 1; j < rays.size(); ++j) {
+      min_cosine = std::min(min_cosine, rays[i].dot(rays[j]));
+    }
+  }
+  return std::acos(std::clamp(min_cosine, -1.0, 1.0)) * 180.0 / std::numbers::pi;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/association.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "objects/made_objects.h"
+
+namespace hullslam {
+namespace {
+
+class Association : public ::testing::Test {
+ protected:
+  // A map in which each of these is an object seen by `keyframes` keyframes.
+  void Build(const std::vector<MadeObject>& objects, int keyframes, bool with_shape) {
+    for (const MadeObject& made : objects) {
+      const ObjectId id = map_.AddObject();
+      map_.MutableObject(id).has_shape = with_shape;
+      map_.MutableObject(id).ellipsoid = made.ellipsoid;
+    }
+    for (int i = 0; i < keyframes; ++i) {
+      const KeyframeId keyframe =
+          AddObserver(map_, sensor_, CameraOnCircle(0.05 * i, 1.5, 0.6), objects);
+      for (uint32_t k = 0; k < objects.size(); ++k) {
+        map_.AddObservation(ObjectId(k), keyframe, k);
+      }
+    }
+  }
+  std::vector<ObjectId> Associate(const std::vector<MadeObject>& seen, double angle,
+                                  AssociationOptions options = {}) {
+    const Rigid3 cam_from_world = CameraOnCircle(angle, 1.5, 0.6);
+    Frame frame;
+    for (const MadeObject& object : seen) {
+      frame.detections.push_back(Detect(object, sensor_, cam_from_world));
+    }
+    return AssociateDetections(map_, sensor_, frame, cam_from_world, {}, options);
+  }
+  Sensor sensor_ = MakeObjectSensor();
+  Map map_;
+};
+
+TEST_F(Association, FindsEveryObjectInAnyOrder) {
+  const auto table = MakeTable();
+  Build(table, 3, true);
+  const auto found = Associate({table[2], table[0], table[1]}, 0.2);
+  EXPECT_EQ(found, (std::vector<ObjectId>{ObjectId(2), ObjectId(0), ObjectId(1)}));
+}
+
+TEST_F(Association, FindsCandidatesBySeeingThemOnce) {
+  const auto table = MakeTable();
+  Build(table, 1, false);
+  const auto found = Associate(table, 0.1);
+  EXPECT_EQ(found, (std::vector<ObjectId>{ObjectId(0), ObjectId(1), ObjectId(2)}));
+  EXPECT_EQ(Associate(table, 0.1, {.mapped_only = true}), std::vector<ObjectId>(3));
+}
+
+TEST_F(Association, ANewThingIsOfNoObject) {
+  const auto table = MakeTable();
+  Build({table[0], table[1]}, 3, true);
+  EXPECT_FALSE(Associate({table[2]}, 0.1)[0].IsValid());
+  EXPECT_TRUE(Associate({}, 0.1).empty());
+}
+
+TEST_F(Association, AnotherClassIsNoWall) {
+  const auto table = MakeTable();
+  Build(table, 3, true);
+  MadeObject laptop = table[1];
+  laptop.label = "laptop";
+  EXPECT_EQ(Associate({laptop}, 0.1)[0], ObjectId(1));
+}
+
+TEST_F(Association, OfTwoCandidatesTheClassDecides) {
+  auto twin = MakeTable();
+  twin.resize(1);
+  MadeObject other = twin[0];
+  other.label = "vase";
+  Build({twin[0], other}, 3, true);
+  EXPECT_EQ(Associate({other}, 0.1)[0], ObjectId(1));
+  EXPECT_EQ(Associate({twin[0]}, 0.1)[0], ObjectId(0));
+}
+
+TEST_F(Association, ThingsOneBehindTheOtherAreTwo) {
+  // The same outline from here, but 60 cm behind.
+  const MadeObject cup = MakeObject("cup", Eigen::Vector3d::Zero(), {0.08, 0.08, 0.08});
+  Build({cup}, 3, true);
+  const Eigen::Vector3d camera = Inverse(CameraOnCircle(0.1, 1.5, 0.6)).translation;
+  MadeObject behind = cup;
+  const double ratio = (camera.norm() + 0.6) / camera.norm();
+  behind.ellipsoid.world_from_object.translation = camera * (1.0 - ratio);
+  behind.ellipsoid.half_axes *= ratio;
+  EXPECT_FALSE(Associate({behind}, 0.1)[0].IsValid());
+}
+
+TEST_F(Association, WithoutDepthTheOutlineTells) {
+  const auto table = MakeTable();
+  Build(table, 3, true);
+  const Rigid3 cam_from_world = CameraOnCircle(0.2, 1.5, 0.6);
+  Frame frame;
+  for (const MadeObject& object : table) {
+    frame.detections.push_back(Detect(object, sensor_, cam_from_world));
+    frame.detections.back().points.clear();
+  }
+  EXPECT_EQ(AssociateDetections(map_, sensor_, frame, cam_from_world, {}, {}),
+            (std::vector<ObjectId>{ObjectId(0), ObjectId(1), ObjectId(2)}));
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/fusion.h"
+
+#include <gtest/gtest.h>
+
+#include "objects/made_objects.h"
+
+namespace hullslam {
+namespace {
+
+Ellipsoid Ball(double x, double radius) {
+  return MakeObject("ball", {x, 0.0, 0.0}, Eigen::Vector3d::Constant(radius)).ellipsoid;
+}
+
+TEST(VolumeOverlap, IsSymmetricAndAsComputedByHand) {
+  EXPECT_NEAR(VolumeOverlap(Ball(0.0, 0.1), Ball(0.0, 0.1)), 1.0, 1e-12);
+  EXPECT_NEAR(VolumeOverlap(Ball(0.0, 0.1), Ball(0.0, 0.2)), 0.125, 1e-12);  // inside
+  EXPECT_EQ(VolumeOverlap(Ball(0.0, 0.1), Ball(0.3, 0.1)), 0.0);
+  // Two unit balls one apart share 5/16 of each: 5 / (32 - 5).
+  EXPECT_NEAR(VolumeOverlap(Ball(0.0, 1.0), Ball(1.0, 1.0)), 5.0 / 27.0, 0.01);
+  EXPECT_NEAR(VolumeOverlap(Ball(0.0, 0.1), Ball(0.05, 0.12)),
+              VolumeOverlap(Ball(0.05, 0.12), Ball(0.0, 0.1)), 1e-12);
+}
+
+class Duplicates : public ::testing::Test {
+ protected:
+  // An object that these keyframes see, as their detection `slot`.
+  ObjectId Add(const MadeObject& made, const std::vector<int>& keyframes, uint32_t slot) {
+    const ObjectId id = map_.AddObject();
+    for (const int keyframe : keyframes) {
+      EXPECT_TRUE(map_.AddObservation(id, KeyframeId(static_cast<uint32_t>(keyframe)), slot));
+    }
+    map_.MutableObject(id).has_shape = true;
+    map_.MutableObject(id).ellipsoid = made.ellipsoid;
+    return id;
+  }
+  void Look(const std::vector<MadeObject>& objects, int count) {
+    for (int i = 0; i < count; ++i) {
+      AddObserver(map_, sensor_, CameraOnCircle(0.1 * i, 1.5, 0.5), objects);
+    }
+  }
+  Sensor sensor_ = MakeObjectSensor();
+  Map map_;
+  MadeObject cup_ = MakeObject("cup", Eigen::Vector3d::Zero(), {0.05, 0.05, 0.08});
+  MadeObject near_ = MakeObject("cup", {0.01, 0.01, 0.0}, {0.06, 0.05, 0.07});
+  MadeObject far_ = MakeObject("cup", {0.2, 0.0, 0.0}, {0.05, 0.05, 0.08});
+};
+
+TEST_F(Duplicates, OfOnePlaceNeverSeenTogetherAreOneAndTheFullerOneStays) {
+  Look({cup_, near_}, 7);
+  const ObjectId a = Add(cup_, {0, 1, 2}, 0);
+  const ObjectId b = Add(near_, {3, 4, 5, 6}, 1);
+  const auto pairs = FindDuplicates(map_);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs[0].first, b);
+  EXPECT_EQ(pairs[0].second, a);
+}
+
+TEST_F(Duplicates, AreNotThoseSeenTogether) {
+  Look({cup_, near_}, 4);
+  Add(cup_, {0, 1, 2, 3}, 0);
+  Add(near_, {0, 1, 2, 3}, 1);
+  EXPECT_TRUE(FindDuplicates(map_).empty());
+}
+
+TEST_F(Duplicates, AreNotThoseBesideOneAnother) {
+  Look({cup_, far_}, 6);
+  Add(cup_, {0, 1, 2}, 0);
+  Add(far_, {3, 4, 5}, 1);
+  EXPECT_TRUE(FindDuplicates(map_).empty());
+}
+
+TEST_F(Duplicates, AnObjectIsInOnePairAtMost) {
+  Look({cup_, near_, cup_}, 9);
+  Add(cup_, {0, 1, 2}, 0);
+  Add(near_, {3, 4, 5}, 1);
+  Add(cup_, {6, 7, 8}, 2);
+  EXPECT_EQ(FindDuplicates(map_).size(), 1u);
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/initialisation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "objects/made_objects.h"
+#include "support/random_geometry.h"
+
+namespace hullslam {
+namespace {
+
+std::vector<Eigen::Vector3d> BoxPoints(const Rigid3& world_from_box, const Eigen::Vector3d& half,
+                                       int count, uint32_t seed) {
+  RandomGeometry random(seed);
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < count; ++i) {
+    points.push_back(world_from_box * half.cwiseProduct(random.Vector(1.0)).eval());
+  }
+  return points;
+}
+
+Eigen::Vector3d Sorted(Eigen::Vector3d axes) {
+  std::sort(axes.begin(), axes.end());
+  return axes;
+}
+
+TEST(StartsFromPoints, AreTheBoxOfThePointsInflated) {
+  const Rigid3 world_from_box(ExpSo3(Eigen::Vector3d(0.4, -0.3, 0.9)),
+                              Eigen::Vector3d(0.5, 0.2, 1.0));
+  const Eigen::Vector3d half(0.05, 0.12, 0.25);
+  const auto starts = StartsFromPoints(BoxPoints(world_from_box, half, 3000, 1), 1.2);
+  ASSERT_EQ(starts.size(), 2u);
+  for (const Ellipsoid& start : starts) {
+    EXPECT_LT((start.world_from_object.translation - world_from_box.translation).norm(), 0.01);
+    // From the 3rd to the 97th percentile of an even distribution is 94 % of it.
+    EXPECT_LT(
+        (Sorted(start.half_axes) - 1.2 * 0.94 * half).cwiseQuotient(half).cwiseAbs().maxCoeff(),
+        0.1);
+    EXPECT_NEAR(start.world_from_object.rotation.norm(), 1.0, 1e-12);
+  }
+}
+
+TEST(StartsFromPoints, OutliersDoNotStretchThem) {
+  auto points = BoxPoints(Rigid3(), {0.1, 0.1, 0.1}, 1000, 2);
+  for (int i = 0; i < 20; ++i) {
+    points.emplace_back(0.0, 0.0, 3.0 + 0.01 * i);
+  }
+  for (const Ellipsoid& start : StartsFromPoints(points, 1.0)) {
+    EXPECT_LT(start.half_axes.maxCoeff(), 0.16);
+  }
+}
+
+TEST(StartsFromPoints, FlatThingsHaveSomeThickness) {
+  auto points = BoxPoints(Rigid3(), {0.2, 0.1, 0.0}, 500, 3);
+  for (const Ellipsoid& start : StartsFromPoints(points, 1.2)) {
+    EXPECT_GE(start.half_axes.minCoeff(), 0.01);
+    EXPECT_TRUE(start.world_from_object.rotation.coeffs().allFinite());
+  }
+}
+
+TEST(StartsFromPoints, NeedPoints) {
+  EXPECT_TRUE(StartsFromPoints(BoxPoints(Rigid3(), {0.2, 0.1, 0.1}, 19, 3), 1.2).empty());
+}
+
+TEST(StartsFromPoints, AreReproducible) {
+  const auto points = BoxPoints(Rigid3(), {0.2, 0.1, 0.1}, 300, 4);
+  const auto a = StartsFromPoints(points, 1.2);
+  const auto b = StartsFromPoints(points, 1.2);
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].half_axes, b[i].half_axes);
+    EXPECT_EQ(a[i].world_from_object.rotation.coeffs(), b[i].world_from_object.rotation.coeffs());
+  }
+}
+
+class Rays : public ::testing::Test {
+ protected:
+  std::optional<Ellipsoid> Start(double step) {
+    Map map;
+    const ObjectId object = map.AddObject();
+    for (int i = 0; i < 4; ++i) {
+      const KeyframeId keyframe =
+          AddObserver(map, sensor_, CameraOnCircle(step * i, 1.5, 0.5), {made_});
+      map.AddObservation(object, keyframe, 0);
+    }
+    return StartFromRays(sensor_.camera, CollectViews(map, map.objects().At(object)));
+  }
+  Sensor sensor_ = MakeObjectSensor();
+  MadeObject made_ = MakeObject("ball", {0.1, 0.05, 0.02}, {0.1, 0.1, 0.1});
+};
+
+TEST_F(Rays, MeetAtTheCentreOfASphere) {
+  const auto sphere = Start(0.3);
+  ASSERT_TRUE(sphere);
+  EXPECT_LT((sphere->world_from_object.translation - made_.ellipsoid.world_from_object.translation)
+                .norm(),
+            0.01);
+  EXPECT_NEAR(sphere->half_axes.x(), 0.1, 0.01);
+}
+
+TEST_F(Rays, ThatAreParallelGiveNothing) { EXPECT_FALSE(Start(0.0)); }
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hullslam/geometry/dual_quadric.h"
+#include "hullslam/map/map.h"
+#include "hullslam/map/sensor.h"
+
+namespace hullslam {
+
+inline Sensor MakeObjectSensor() {
+  Sensor sensor;
+  sensor.camera.fx = 520.0;
+  sensor.camera.fy = 520.0;
+  sensor.camera.cx = 320.0;
+  sensor.camera.cy = 240.0;
+  sensor.bounds = sensor.camera.UndistortedBounds();
+  return sensor;
+}
+
+// A camera on a circle of radius `distance` about the world's origin, `height` above it (z is up),
+// that looks at the origin.
+inline Rigid3 CameraOnCircle(double angle, double distance, double height) {
+  const Eigen::Vector3d center(distance * std::cos(angle), distance * std::sin(angle), height);
+  const Eigen::Vector3d forward = -center.normalized();
+  const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+  Eigen::Matrix3d cam_from_world;
+  cam_from_world << right.transpose(), forward.cross(right).transpose(), forward.transpose();
+  const Eigen::Quaterniond rotation(cam_from_world);
+  return {rotation, rotation * -center};
+}
+
+struct MadeObject {
+  std::string label;
+  Ellipsoid ellipsoid;
+};
+
+// Points of the surface that face the camera, m, camera frame.
+inline std::vector<Eigen::Vector3d> VisibleSurface(const Ellipsoid& ellipsoid,
+                                                   const Rigid3& cam_from_world) {
+  std::vector<Eigen::Vector3d> points;
+  const Rigid3 cam_from_object = cam_from_world * ellipsoid.world_from_object;
+  constexpr int kCount = 300;
+  for (int i = 0; i < kCount; ++i) {  // Fibonacci's lattice on the sphere
+    const double z = 1.0 - (2.0 * i + 1.0) / kCount;
+    const double angle = 2.0 * std::numbers::pi * i / std::numbers::phi;
+    const double radius = std::sqrt(1.0 - z * z);
+    const Eigen::Vector3d unit(radius * std::cos(angle), radius * std::sin(angle), z);
+    const Eigen::Vector3d point = cam_from_object * ellipsoid.half_axes.cwiseProduct(unit).eval();
+    const Eigen::Vector3d normal =
+        cam_from_object.rotation * unit.cwiseQuotient(ellipsoid.half_axes).eval();
+    if (normal.dot(point) < 0.0) {
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
+// The object as an exact mask shows it: 16 tangents, all of them two-sided.
+inline Detection Detect(const MadeObject& object, const Sensor& sensor,
+                        const Rigid3& cam_from_world) {
+  const Ellipse ellipse =
+      ProjectEllipsoid(sensor.camera.Matrix(), cam_from_world, object.ellipsoid).value();
+  Detection detection;
+  detection.label = object.label;
+  detection.hull = ellipse.Polygon(64);
+  detection.contour = detection.hull;
+  for (const Eigen::Vector2d& corner : detection.hull) {
+    detection.box.extend(corner);
+  }
+  for (int i = 0; i < 16; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / 16;
+    SilhouetteLine line;
+    line.line.normal = {std::cos(angle), std::sin(angle)};
+    line.line.offset = -line.line.normal.dot(ellipse.center) - ellipse.HalfExtent(line.line.normal);
+    detection.lines.push_back(line);
+  }
+  detection.points = VisibleSurface(object.ellipsoid, cam_from_world);
+  return detection;
+}
+
+// A keyframe without keypoints that sees these objects.
+inline KeyframeId AddObserver(Map& map, const Sensor& sensor, const Rigid3& cam_from_world,
+                              const std::vector<MadeObject>& objects) {
+  auto frame = std::make_shared<Frame>();
+  frame->id = FrameId(map.keyframes().NextId().value);
+  for (const MadeObject& object : objects) {
+    frame->detections.push_back(Detect(object, sensor, cam_from_world));
+  }
+  return map.AddKeyframe(std::move(frame), cam_from_world);
+}
+
+inline MadeObject MakeObject(const std::string& label, const Eigen::Vector3d& center,
+                             const Eigen::Vector3d& half_axes, double turn = 0.0) {
+  MadeObject object;
+  object.label = label;
+  object.ellipsoid.world_from_object = {ExpSo3(Eigen::Vector3d(0.0, 0.0, turn)), center};
+  object.ellipsoid.half_axes = half_axes;
+  return object;
+}
+
+// Three things on a table, apart from one another.
+inline std::vector<MadeObject> MakeTable() {
+  return {MakeObject("cup", {0.3, 0.1, 0.0}, {0.06, 0.05, 0.08}, 0.3),
+          MakeObject("book", {-0.2, 0.2, 0.0}, {0.15, 0.10, 0.04}, 1.0),
+          MakeObject("bottle", {0.0, -0.3, 0.05}, {0.05, 0.05, 0.14})};
+}
+
+}  // namespace hullslam

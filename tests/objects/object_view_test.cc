@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/object_view.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "hullslam/util/check.h"
+#include "objects/made_objects.h"
+
+namespace hullslam {
+namespace {
+
+class ObjectViews : public ::testing::Test {
+ protected:
+  ObjectViews() {
+    object_ = map_.AddObject();
+    for (int i = 0; i < 7; ++i) {
+      const KeyframeId keyframe =
+          AddObserver(map_, sensor_, CameraOnCircle(0.1 * i, 1.5, 0.5), {made_});
+      map_.AddObservation(object_, keyframe, 0);
+    }
+  }
+  const ObjectLandmark& object() const { return map_.objects().At(object_); }
+
+  Sensor sensor_ = MakeObjectSensor();
+  MadeObject made_ = MakeObject("cup", {0.0, 0.0, 0.0}, {0.05, 0.06, 0.08});
+  Map map_;
+  ObjectId object_;
+};
+
+TEST_F(ObjectViews, AreThoseOfAllKeyframesOrEvenlyChosen) {
+  EXPECT_EQ(CollectViews(map_, object()).size(), 7u);
+  const auto some = CollectViews(map_, object(), 3);
+  ASSERT_EQ(some.size(), 3u);
+  EXPECT_EQ(some[0].keyframe, KeyframeId(0));
+  EXPECT_EQ(some[1].keyframe, KeyframeId(3));
+  EXPECT_EQ(some[2].keyframe, KeyframeId(6));
+  EXPECT_EQ(CollectViews(map_, object(), 1).front().keyframe, KeyframeId(6));
+}
+
+TEST_F(ObjectViews, PointsAreInTheWorld) {
+  const auto points = CollectPoints(CollectViews(map_, object()), 100);
+  EXPECT_GT(points.size(), 80u);
+  EXPECT_LT(points.size(), 200u);
+  for (const Eigen::Vector3d& point : points) {
+    EXPECT_NEAR(made_.ellipsoid.RadialDistance(point), 0.0, 1e-9);
+  }
+}
+
+TEST_F(ObjectViews, TheCentroidLiesOnTheCamerasSide) {
+  const ObjectView view = CollectViews(map_, object()).front();
+  const Eigen::Vector3d camera = Inverse(view.cam_from_world).translation;
+  EXPECT_GT(Centroid(view).dot(camera.normalized()), 0.01);
+  const Detection empty;
+  EXPECT_THROW(Centroid({KeyframeId(), Rigid3(), &empty}), CheckError);
+}
+
+TEST_F(ObjectViews, ParallaxIsTheLargestAngle) {
+  const auto views = CollectViews(map_, object());
+  const Eigen::Vector3d a = Inverse(views.front().cam_from_world).translation;
+  const Eigen::Vector3d b = Inverse(views.back().cam_from_world).translation;
+  const double angle = std::acos(a.normalized().dot(b.normalized())) * 180.0 / std::numbers::pi;
+  EXPECT_NEAR(Parallax(views, Eigen::Vector3d::Zero()), angle, 1e-6);
+  EXPECT_NEAR(Parallax(std::span(views).first(1), Eigen::Vector3d::Zero()), 0.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/point_statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "hullslam/util/check.h"
+#include "support/random_geometry.h"
+
+namespace hullslam {
+namespace {
+
+TEST(RankSum, IsAsComputedByHandForSamplesOfDifferentSizes) {
+  // Ranks of a: 1, 2, 4; sum 7; mean 3 * 8 / 2 = 12; variance 3 * 4 * 8 / 12 = 8.
+  const std::vector<double> a = {0.1, 0.2, 0.4};
+  const std::vector<double> b = {0.3, 0.5, 0.6, 0.7};
+  EXPECT_NEAR(RankSumScore(a, b), (7.0 - 12.0) / std::sqrt(8.0), 1e-12);
+  EXPECT_NEAR(RankSumScore(b, a), -RankSumScore(a, b), 1e-12);
+}
+
+TEST(RankSum, TiesShareRanks) {
+  const std::vector<double> same = {1.0, 1.0, 1.0};
+  EXPECT_DOUBLE_EQ(RankSumScore(same, same), 0.0);
+  EXPECT_THROW(RankSumScore({}, same), CheckError);
+}
+
+TEST(RankSum, StaysWithinItsBoundAsOftenAsItShould) {
+  RandomGeometry random(7);
+  int within = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    std::vector<double> a;
+    std::vector<double> b;
+    for (int i = 0; i < 25; ++i) {
+      a.push_back(random.Number(0.0, 1.0));
+    }
+    for (int i = 0; i < 40; ++i) {
+      b.push_back(random.Number(0.0, 1.0));
+    }
+    within += std::abs(RankSumScore(a, b)) <= 1.282 ? 1 : 0;
+  }
+  EXPECT_NEAR(within, 800, 45);  // 80 % of a normal distribution
+}
+
+std::vector<Eigen::Vector3d> Cloud(RandomGeometry& random, const Eigen::Vector3d& center,
+                                   int count) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < count; ++i) {
+    points.push_back(center + random.Vector(0.1));
+  }
+  return points;
+}
+
+TEST(Clouds, MayBeOneWhereTheyAreAndMayNotWhereTheyAreApart) {
+  RandomGeometry random(3);
+  const auto here = Cloud(random, {1.0, 2.0, 3.0}, 60);
+  const auto there = Cloud(random, {1.0, 2.2, 3.0}, 40);
+  EXPECT_TRUE(MayBeOneCloud(here, here, 1.282, 20));
+  EXPECT_FALSE(MayBeOneCloud(here, there, 1.282, 20));
+  EXPECT_FALSE(MayBeOneCloud(here, here, 1.282, 61));  // too few to say
+}
+
+TEST(Means, AreTestedWithTheNoiseOfTheSensor) {
+  RandomGeometry random(5);
+  const auto samples = Cloud(random, {0.0, 0.0, 1.0}, 8);
+  EXPECT_TRUE(MayBeTheMean({0.0, 0.0, 1.05}, samples, 0.001, 0.02));
+  EXPECT_FALSE(MayBeTheMean({0.0, 1.0, 1.0}, samples, 0.001, 0.02));
+  // Samples that agree by chance to a micrometre do not make the test that sharp.
+  const std::vector<Eigen::Vector3d> equal(5, Eigen::Vector3d(0.0, 0.0, 1.0));
+  EXPECT_TRUE(MayBeTheMean({0.01, 0.0, 1.0}, equal, 0.001, 0.02));
+  EXPECT_FALSE(MayBeTheMean({0.0, 0.0, 1.0}, std::span(equal).first(2), 0.001, 0.02));
+}
+
+TEST(Means, OfTwoSamplesAreOneOrNot) {
+  RandomGeometry random(9);
+  const auto a = Cloud(random, {0.0, 0.0, 1.0}, 10);
+  const auto b = Cloud(random, {0.0, 0.0, 1.0}, 20);
+  const auto c = Cloud(random, {0.3, 0.0, 1.0}, 20);
+  EXPECT_TRUE(MayHaveOneMean(a, b, 0.05, 0.02));
+  EXPECT_FALSE(MayHaveOneMean(a, c, 0.05, 0.02));
+  EXPECT_FALSE(MayHaveOneMean(a, std::span(b).first(2), 0.05, 0.02));
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/validity.h"
+
+#include <gtest/gtest.h>
+
+#include "objects/made_objects.h"
+
+namespace hullslam {
+namespace {
+
+class Validity : public ::testing::Test {
+ protected:
+  Validity() {
+    id_ = map_.AddObject();
+    for (int i = 0; i < 5; ++i) {
+      map_.AddObservation(
+          id_, AddObserver(map_, sensor_, CameraOnCircle(0.1 * i, 1.5, 0.5), {made_}), 0);
+    }
+  }
+  std::optional<ObjectRejection> Reason(const Ellipsoid& ellipsoid) const {
+    const auto objection =
+        FindObjection(ellipsoid, sensor_, CollectViews(map_, map_.objects().At(id_)), {});
+    return objection ? std::optional(objection->reason) : std::nullopt;
+  }
+  Ellipsoid Scaled(double x, double y, double z) const {
+    Ellipsoid ellipsoid = made_.ellipsoid;
+    ellipsoid.half_axes = ellipsoid.half_axes.cwiseProduct(Eigen::Vector3d(x, y, z));
+    return ellipsoid;
+  }
+  Sensor sensor_ = MakeObjectSensor();
+  MadeObject made_ = MakeObject("cup", Eigen::Vector3d::Zero(), {0.10, 0.08, 0.12});
+  Map map_;
+  ObjectId id_;
+};
+
+TEST_F(Validity, TheTrueQuadricIsValid) {
+  EXPECT_EQ(Reason(made_.ellipsoid), std::nullopt);
+  const auto views = CollectViews(map_, map_.objects().At(id_));
+  EXPECT_NEAR(MeanOverlap(made_.ellipsoid, sensor_, views), 1.0, 1e-9);
+}
+
+TEST_F(Validity, NotInFrontOfACamera) {
+  Ellipsoid ellipsoid = made_.ellipsoid;
+  ellipsoid.world_from_object.translation = {3.0, 0.0, 0.5};
+  EXPECT_EQ(Reason(ellipsoid), ObjectRejection::kNotInFront);
+  ellipsoid.world_from_object.translation.x() = std::nan("");
+  EXPECT_EQ(Reason(ellipsoid), ObjectRejection::kNotInFront);
+}
+
+TEST_F(Validity, AxesOutOfRange) {
+  EXPECT_EQ(Reason(Scaled(0.01, 1.0, 1.0)), ObjectRejection::kAxesOutOfRange);
+}
+
+TEST_F(Validity, AnOutlineElsewhere) {
+  Ellipsoid ellipsoid = made_.ellipsoid;
+  ellipsoid.world_from_object.translation = {0.0, 0.0, 0.15};
+  EXPECT_EQ(Reason(ellipsoid), ObjectRejection::kLowOverlap);
+}
+
+// Farther along the view and larger: the outlines are right all the same.
+TEST_F(Validity, ADriftAlongTheViewThatOutlinesDoNotShow) {
+  Map map;
+  const ObjectId id = map.AddObject();
+  for (int i = 0; i < 4; ++i) {
+    map.AddObservation(id, AddObserver(map, sensor_, CameraOnCircle(0.01 * i, 1.5, 0.5), {made_}),
+                       0);
+  }
+  const auto views = CollectViews(map, map.objects().At(id));
+  const Eigen::Vector3d camera = Inverse(views[1].cam_from_world).translation;
+  Ellipsoid drifted = made_.ellipsoid;
+  drifted.world_from_object.translation = -0.35 * camera;
+  drifted.half_axes *= 1.35;
+  EXPECT_GT(MeanOverlap(drifted, sensor_, views), 0.8);
+  const auto objection = FindObjection(drifted, sensor_, views, {});
+  ASSERT_TRUE(objection);
+  EXPECT_EQ(objection->reason, ObjectRejection::kOffPoints);
+  EXPECT_NE(objection->detail.find("expected at least 0.60"), std::string::npos);
+}
+
+TEST_F(Validity, AnAxisAlongTheViewThatNothingHolds) {
+  const Ellipsoid stretched = Scaled(5.0, 1.0, 1.0);
+  const auto reason = Reason(stretched);
+  EXPECT_TRUE(reason == ObjectRejection::kStretched || reason == ObjectRejection::kLowOverlap);
+}
+
+}  // namespace
+}  // namespace hullslam
