@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/costs/pixel_error.h"
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+
+#include "hullslam/costs/ellipse_projection.h"
+#include "hullslam/costs/pose_manifold.h"
+
+namespace hullslam {
+
+std::optional<double> ResidualOfPixelError(ObjectResidual residual, const Intrinsics& camera,
+                                           const Rigid3& cam_from_world, const Ellipsoid& ellipsoid,
+                                           double error_px) {
+  const PoseBlock camera_block = ToBlock(cam_from_world);
+  const PoseBlock object_block = ToBlock(ellipsoid.world_from_object);
+  const Eigen::Vector3d log_axes = ellipsoid.half_axes.array().log();
+  const std::array<const double*, 3> parameters = {camera_block.data(), object_block.data(),
+                                                   log_axes.data()};
+  const QuadricInCamera quadric(parameters.data());
+  if (!quadric.IsInFront()) {
+    return std::nullopt;
+  }
+  const EllipseProjection ellipse(camera, quadric);
+  if (!ellipse.HasArea()) {
+    return std::nullopt;
+  }
+  const double radius = std::pow(ellipse.shape().determinant(), 0.25);
+  const double metres_per_px = quadric.center().z() / std::sqrt(std::abs(camera.fx * camera.fy));
+  switch (residual) {
+    case ObjectResidual::kTangent:
+      return error_px;
+    case ObjectResidual::kAlgebraicPlane:
+      return 2.0 * radius * error_px * metres_per_px * metres_per_px;
+    case ObjectResidual::kAlgebraicPoint:
+      return 2.0 * error_px / radius;
+    case ObjectResidual::kDistribution:
+      return error_px * error_px;
+    case ObjectResidual::kOverlap: {
+      const double ratio = radius / (radius + error_px);
+      return 1.0 - ratio * ratio;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/costs/quadric_algebraic_point.h"
+
+#include <Eigen/LU>
+
+namespace hullslam {
+namespace {
+
+constexpr double kChi2 = 3.841;  // 95 %, one degree of freedom
+
+}  // namespace
+
+AlgebraicPointCost::AlgebraicPointCost(const Intrinsics& camera,
+                                       std::span<const Eigen::Vector2d> contour, double sigma)
+    : ObjectCost(contour.size()),
+      camera_(camera),
+      contour_(contour.begin(), contour.end()),
+      inverse_sigma_(1.0 / sigma) {}
+
+bool AlgebraicPointCost::Evaluate(double const* const* parameters, double* residuals,
+                                  double** jacobians) const {
+  const QuadricInCamera quadric(parameters);
+  if (!quadric.IsInFront()) {
+    return false;
+  }
+  EllipseProjection ellipse(camera_, quadric);
+  if (!ellipse.HasArea()) {
+    return false;
+  }
+  if (jacobians != nullptr) {
+    ellipse.Linearize();
+  }
+  const Eigen::Matrix2d inverse_shape = ellipse.shape().inverse();
+  for (size_t i = 0; i < contour_.size(); ++i) {
+    const Eigen::Vector2d from_center = contour_[i] - ellipse.center();
+    const Eigen::Vector2d y = inverse_shape * from_center;
+    residuals[i] = inverse_sigma_ * (from_center.dot(y) - 1.0);
+    if (jacobians != nullptr) {
+      ByEllipse by_ellipse;
+      by_ellipse << -2.0 * y.transpose(), -y.x() * y.x(), -2.0 * y.x() * y.y(), -y.y() * y.y();
+      ellipse.WriteRow(static_cast<int>(i), inverse_sigma_ * by_ellipse, jacobians);
+    }
+  }
+  return true;
+}
+
+std::vector<Eigen::Vector2d> GateContour(std::span<const Eigen::Vector2d> contour,
+                                         const Ellipse& ellipse, double sigma_px) {
+  std::vector<Eigen::Vector2d> gated;
+  const Eigen::Matrix2d inverse_shape = ellipse.shape.inverse();
+  for (const Eigen::Vector2d& point : contour) {
+    const Eigen::Vector2d from_center = point - ellipse.center;
+    const Eigen::Vector2d y = inverse_shape * from_center;
+    const double error = from_center.dot(y) - 1.0;
+    const double variance = 4.0 * y.squaredNorm() * sigma_px * sigma_px;
+    if (error * error <= kChi2 * variance) {
+      gated.push_back(point);
+    }
+  }
+  return gated;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/costs/robust_rows.h"
+
+#include <Eigen/Core>
+#include <cmath>
+#include <utility>
+
+namespace hullslam {
+namespace {
+
+constexpr double kQuadratic = 1e-16;  // squared residual below which every loss is quadratic
+
+// What `loss` makes of a residual, as factors of it and of its derivative.
+std::pair<double, double> Factors(const ceres::LossFunction* loss, double residual) {
+  const double square = residual * residual;
+  if (loss == nullptr || square < kQuadratic) {
+    return {1.0, 1.0};
+  }
+  double rho[3];
+  loss->Evaluate(square, rho);
+  const double factor = std::sqrt(rho[0] / square);
+  return {factor, rho[1] / factor};
+}
+
+}  // namespace
+
+RobustRowsCost::RobustRowsCost(std::unique_ptr<ceres::CostFunction> cost,
+                               std::unique_ptr<ceres::LossFunction> loss, double weight)
+    : cost_(std::move(cost)), loss_(std::move(loss)), root_weight_(std::sqrt(weight)) {
+  set_num_residuals(cost_->num_residuals());
+  *mutable_parameter_block_sizes() = cost_->parameter_block_sizes();
+}
+
+bool RobustRowsCost::Evaluate(double const* const* parameters, double* residuals,
+                              double** jacobians) const {
+  if (!cost_->Evaluate(parameters, residuals, jacobians)) {
+    return false;
+  }
+  for (int row = 0; row < num_residuals(); ++row) {
+    const auto [factor, slope] = Factors(loss_.get(), residuals[row]);
+    residuals[row] *= root_weight_ * factor;
+    for (size_t block = 0; jacobians != nullptr && block < parameter_block_sizes().size();
+         ++block) {
+      if (jacobians[block] != nullptr) {
+        const int size = parameter_block_sizes()[block];
+        Eigen::Map<Eigen::VectorXd>(jacobians[block] + row * size, size) *= root_weight_ * slope;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace hullslam

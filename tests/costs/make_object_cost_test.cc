@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/costs/make_object_cost.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "costs/object_cost_laws.h"
+
+namespace hullslam {
+namespace {
+
+constexpr std::array kResiduals = {ObjectResidual::kTangent, ObjectResidual::kAlgebraicPlane,
+                                   ObjectResidual::kAlgebraicPoint, ObjectResidual::kDistribution,
+                                   ObjectResidual::kOverlap};
+constexpr std::array kPrimitives = {ObjectPrimitive::kSupport, ObjectPrimitive::kHull,
+                                    ObjectPrimitive::kContour, ObjectPrimitive::kBox,
+                                    ObjectPrimitive::kConic};
+
+class MakeObjectCostTest : public ::testing::Test {
+ protected:
+  MakeObjectCostTest() {
+    for (const Eigen::Vector2d& point : contour_) {
+      measurement_.box.extend(point);
+    }
+    measurement_.lines = lines_;
+    measurement_.contour = contour_;
+    measurement_.hull = contour_;
+    measurement_.ellipse = FitEllipse(contour_);
+  }
+  std::unique_ptr<ceres::CostFunction> Make(ObjectResidual residual,
+                                            ObjectPrimitive primitive) const {
+    return MakeObjectCost(residual, primitive, kObjectCamera, measurement_, 1.0);
+  }
+
+  RandomGeometry random_{1};
+  ObjectState state_ = RandomObjectState(random_);
+  std::vector<SilhouetteLine> lines_ = TangentsOf(state_, 10);
+  std::vector<Eigen::Vector2d> contour_ = ContourOf(state_, 200);
+  ObjectMeasurement measurement_;
+};
+
+TEST_F(MakeObjectCostTest, MakesWhatIsSupportedAndNothingElse) {
+  for (const ObjectResidual residual : kResiduals) {
+    for (const ObjectPrimitive primitive : kPrimitives) {
+      EXPECT_EQ(Make(residual, primitive) != nullptr, IsSupported(residual, primitive))
+          << NameOf(residual) << " " << NameOf(primitive);
+    }
+  }
+}
+
+// What is measured is the outline, so all of them vanish there; the polygons lack a little area.
+TEST_F(MakeObjectCostTest, AllAreSmallAtTheTruth) {
+  for (const ObjectResidual residual : kResiduals) {
+    for (const ObjectPrimitive primitive : kPrimitives) {
+      if (const auto cost = Make(residual, primitive)) {
+        EXPECT_LT(ObjectResidualsOf(*cost, state_).cwiseAbs().maxCoeff(), 5e-3)
+            << NameOf(residual) << " " << NameOf(primitive);
+      }
+    }
+  }
+}
+
+TEST_F(MakeObjectCostTest, OneRowALineOrAPoint) {
+  EXPECT_EQ(Make(ObjectResidual::kTangent, ObjectPrimitive::kSupport)->num_residuals(), 10);
+  EXPECT_EQ(Make(ObjectResidual::kAlgebraicPlane, ObjectPrimitive::kHull)->num_residuals(), 10);
+  EXPECT_EQ(Make(ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour)->num_residuals(), 64);
+  EXPECT_EQ(Make(ObjectResidual::kDistribution, ObjectPrimitive::kConic)->num_residuals(), 1);
+  EXPECT_EQ(Make(ObjectResidual::kOverlap, ObjectPrimitive::kBox)->num_residuals(), 1);
+  measurement_.contour = std::span(contour_).first(10);
+  EXPECT_EQ(Make(ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour)->num_residuals(), 10);
+}
+
+TEST_F(MakeObjectCostTest, SigmaDividesTheResidual) {
+  ObjectState moved = state_;
+  moved.ellipsoid.half_axes *= 1.1;
+  for (const ObjectResidual residual : kResiduals) {
+    for (const ObjectPrimitive primitive : kPrimitives) {
+      if (const auto cost = Make(residual, primitive)) {
+        const auto scaled = MakeObjectCost(residual, primitive, kObjectCamera, measurement_, 4.0);
+        const Eigen::VectorXd residuals = ObjectResidualsOf(*cost, moved);
+        EXPECT_GT(residuals.norm(), 0.0);
+        EXPECT_LT((4.0 * ObjectResidualsOf(*scaled, moved) - residuals).norm(),
+                  1e-12 * residuals.norm());
+      }
+    }
+  }
+}
+
+TEST_F(MakeObjectCostTest, IsNothingWithoutAMeasurement) {
+  measurement_ = {};
+  for (const ObjectResidual residual : kResiduals) {
+    for (const ObjectPrimitive primitive : kPrimitives) {
+      EXPECT_EQ(Make(residual, primitive), nullptr);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <ceres/cost_function.h>
+#include <ceres/gradient_checker.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "hullslam/costs/pose_manifold.h"
+#include "hullslam/costs/projection.h"
+#include "hullslam/geometry/dual_quadric.h"
+#include "hullslam/geometry/line2.h"
+#include "support/random_geometry.h"
+
+namespace hullslam {
+
+constexpr Intrinsics kObjectCamera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
+
+// A camera and an ellipsoid, and their blocks of parameters.
+struct ObjectState {
+  Rigid3 cam_from_world;
+  Ellipsoid ellipsoid;
+};
+
+struct ObjectBlocks {
+  explicit ObjectBlocks(const ObjectState& state)
+      : camera(ToBlock(state.cam_from_world)),
+        object(ToBlock(state.ellipsoid.world_from_object)),
+        log_axes(state.ellipsoid.half_axes.array().log()) {}
+  std::array<const double*, 3> Pointers() const {
+    return {camera.data(), object.data(), log_axes.data()};
+  }
+
+  PoseBlock camera;
+  PoseBlock object;
+  Eigen::Vector3d log_axes;
+};
+
+// The whole ellipsoid is in front of the camera and its centre in the image.
+inline ObjectState RandomObjectState(RandomGeometry& random) {
+  ObjectState state;
+  state.cam_from_world = random.Pose(1.0, 2.0);
+  const Rigid3 cam_from_object(
+      ExpSo3(random.Vector(1.5)),
+      {random.Number(-0.8, 0.8), random.Number(-0.6, 0.6), random.Number(2.0, 5.0)});
+  state.ellipsoid.world_from_object = Inverse(state.cam_from_world) * cam_from_object;
+  state.ellipsoid.half_axes = {random.Number(0.1, 0.6), random.Number(0.1, 0.6),
+                               random.Number(0.1, 0.6)};
+  return state;
+}
+
+// A sphere of radius 0.6 m, 1 m in front of the camera: its outline is an ellipse around (320, 240)
+// with half axes f * 0.6 / sqrt(1 - 0.36) = 375 and 300 px.
+inline ObjectState SphereAhead() {
+  ObjectState state;
+  state.ellipsoid.world_from_object.translation = {0.0, 0.0, 1.0};
+  state.ellipsoid.half_axes.setConstant(0.6);
+  return state;
+}
+
+// A point of the outline and the tangent there, from the rays that touch the ellipsoid: with
+// X = t + A y the camera's centre is o = -A^-1 t among the y, and the ray through X touches where
+// |y| = 1 and y.o = 1; the normal there is along A^-T y.
+struct OutlinePoint {
+  Eigen::Vector2d pixel;
+  Line2 tangent;
+};
+
+inline std::vector<OutlinePoint> OutlineOf(const ObjectState& state, int count) {
+  const Rigid3 cam_from_object = state.cam_from_world * state.ellipsoid.world_from_object;
+  const Eigen::Matrix3d axes =
+      cam_from_object.rotation.toRotationMatrix() * state.ellipsoid.half_axes.asDiagonal();
+  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
+  k << kObjectCamera.fx, 0.0, kObjectCamera.cx, 0.0, kObjectCamera.fy, kObjectCamera.cy, 0.0, 0.0,
+      1.0;
+  const Eigen::Vector3d viewer = -axes.inverse() * cam_from_object.translation;
+  const Eigen::Vector3d e1 = viewer.unitOrthogonal();
+  const Eigen::Vector3d e2 = viewer.normalized().cross(e1);
+  const double radius = std::sqrt(1.0 - 1.0 / viewer.squaredNorm());
+  std::vector<OutlinePoint> outline;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / count;
+    const Eigen::Vector3d y =
+        viewer / viewer.squaredNorm() + radius * (std::cos(angle) * e1 + std::sin(angle) * e2);
+    const Eigen::Vector3d pixel = k * (cam_from_object.translation + axes * y);
+    Eigen::Vector3d line = k.inverse().transpose() * axes.inverse().transpose() * y;
+    line /= line.head<2>().norm();
+    outline.push_back({pixel.hnormalized(), {line.head<2>(), line.z()}});
+  }
+  return outline;
+}
+
+inline std::vector<SilhouetteLine> TangentsOf(const ObjectState& state, int count) {
+  std::vector<SilhouetteLine> lines;
+  for (const OutlinePoint& point : OutlineOf(state, count)) {
+    lines.push_back({point.tangent, false});
+  }
+  return lines;
+}
+
+inline std::vector<Eigen::Vector2d> ContourOf(const ObjectState& state, int count) {
+  std::vector<Eigen::Vector2d> contour;
+  for (const OutlinePoint& point : OutlineOf(state, count)) {
+    contour.push_back(point.pixel);
+  }
+  return contour;
+}
+
+// The residuals at a state; zero where they are not defined, which is a failure.
+inline Eigen::VectorXd ObjectResidualsOf(const ceres::CostFunction& cost,
+                                         const ObjectState& state) {
+  const ObjectBlocks blocks(state);
+  Eigen::VectorXd residuals = Eigen::VectorXd::Zero(cost.num_residuals());
+  EXPECT_TRUE(cost.Evaluate(blocks.Pointers().data(), residuals.data(), nullptr));
+  return residuals;
+}
+
+// A cost whose first blocks are poses and the last one is a vector as one on the six numbers of
+// the manifold at each pose, as ceres::GradientChecker needs it (see AtPose).
+class AtPoses final : public ceres::CostFunction {
+ public:
+  AtPoses(const ceres::CostFunction& cost, std::vector<PoseBlock> poses)
+      : cost_(cost), poses_(std::move(poses)) {
+    set_num_residuals(cost.num_residuals());
+    mutable_parameter_block_sizes()->assign(poses_.size(), 6);
+    mutable_parameter_block_sizes()->push_back(cost.parameter_block_sizes().back());
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    using ByPose = Eigen::Matrix<double, Eigen::Dynamic, 7, Eigen::RowMajor>;
+    std::vector<PoseBlock> moved(poses_.size());
+    std::vector<ByPose> by_pose(poses_.size(), ByPose(num_residuals(), 7));
+    std::vector<const double*> inner;
+    std::vector<double*> inner_jacobians;
+    for (size_t i = 0; i < poses_.size(); ++i) {
+      PoseManifold().Plus(poses_[i].data(), parameters[i], moved[i].data());
+      inner.push_back(moved[i].data());
+      inner_jacobians.push_back(by_pose[i].data());
+    }
+    inner.push_back(parameters[poses_.size()]);
+    if (jacobians == nullptr) {
+      return cost_.Evaluate(inner.data(), residuals, nullptr);
+    }
+    inner_jacobians.push_back(jacobians[poses_.size()]);
+    const bool is_defined = cost_.Evaluate(inner.data(), residuals, inner_jacobians.data());
+    for (size_t i = 0; i < poses_.size(); ++i) {
+      EXPECT_TRUE(by_pose[i].col(6).isZero(0.0));
+      if (jacobians[i] != nullptr) {
+        Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>>(
+            jacobians[i], num_residuals(), 6) = by_pose[i].leftCols<6>();
+      }
+    }
+    return is_defined;
+  }
+
+ private:
+  const ceres::CostFunction& cost_;
+  std::vector<PoseBlock> poses_;
+};
+
+// Every row of every block's Jacobian agrees with numeric differentiation up to `precision` of its
+// largest element. `step` is the first that is tried, and small as the costs have kinks: Ceres'
+// default, a turn by 0.01 around an origin metres away, would move outlines by tens of pixels.
+inline void ExpectTrueGradientAt(const ceres::CostFunction& cost,
+                                 const std::vector<PoseBlock>& poses, const Eigen::Vector3d& last,
+                                 double precision, double step = 1e-4) {
+  const AtPoses at_poses(cost, poses);
+  ceres::NumericDiffOptions options;
+  options.ridders_relative_initial_step_size = step;
+  const ceres::GradientChecker checker(
+      &at_poses, static_cast<std::vector<const ceres::Manifold*>*>(nullptr), options);
+  const std::array<double, 6> delta{};
+  std::vector<const double*> parameters(poses.size(), delta.data());
+  parameters.push_back(last.data());
+  ceres::GradientChecker::ProbeResults results;
+  checker.Probe(parameters.data(), 1.0, &results);
+  ASSERT_TRUE(results.return_value) << results.error_log;
+  for (size_t block = 0; block < parameters.size(); ++block) {
+    const auto& numeric = results.numeric_jacobians[block];
+    const auto error = (results.jacobians[block] - numeric).eval();
+    for (int row = 0; row < cost.num_residuals(); ++row) {
+      EXPECT_LE(error.row(row).cwiseAbs().maxCoeff(),
+                precision * (1e-3 + numeric.row(row).cwiseAbs().maxCoeff()))
+          << "block " << block << ", row " << row << ":\n"
+          << results.jacobians[block].row(row) << "\nand numerically\n"
+          << numeric.row(row);
+    }
+  }
+}
+
+inline void ExpectTrueObjectGradient(const ceres::CostFunction& cost, const ObjectState& state,
+                                     double precision = 1e-6, double step = 1e-4) {
+  const ObjectBlocks blocks(state);
+  ExpectTrueGradientAt(cost, {blocks.camera, blocks.object}, blocks.log_axes, precision, step);
+}
+
+// Moving world, camera and object together changes nothing that the camera sees.
+inline void ExpectObjectRigidInvariance(const ceres::CostFunction& cost, const ObjectState& state,
+                                        const Rigid3& new_from_old_world) {
+  ObjectState moved = state;
+  moved.cam_from_world = state.cam_from_world * Inverse(new_from_old_world);
+  moved.ellipsoid.world_from_object = new_from_old_world * state.ellipsoid.world_from_object;
+  const Eigen::VectorXd before = ObjectResidualsOf(cost, state);
+  EXPECT_LT((ObjectResidualsOf(cost, moved) - before).norm(), 1e-8 * (1.0 + before.norm()));
+}
+
+// An ellipsoid that reaches the camera or lies behind it has no outline.
+inline void ExpectUndefinedUnlessInFront(const ceres::CostFunction& cost) {
+  Eigen::VectorXd residuals(cost.num_residuals());
+  for (const double z : {-2.0, 0.0, 0.3, 0.6}) {
+    ObjectState state = SphereAhead();
+    state.ellipsoid.world_from_object.translation = {0.1, 0.0, z};
+    const ObjectBlocks blocks(state);
+    EXPECT_FALSE(cost.Evaluate(blocks.Pointers().data(), residuals.data(), nullptr)) << z;
+  }
+  ObjectState huge = SphereAhead();
+  huge.ellipsoid.half_axes.setConstant(1e300);
+  const ObjectBlocks blocks(huge);
+  EXPECT_FALSE(cost.Evaluate(blocks.Pointers().data(), residuals.data(), nullptr));
+}
+
+// All of the laws but the values themselves.
+inline void ExpectObjectCostLaws(const ceres::CostFunction& cost, const ObjectState& state,
+                                 RandomGeometry& random) {
+  ExpectTrueObjectGradient(cost, state);
+  ExpectObjectRigidInvariance(cost, state, random.Pose(2.0, 5.0));
+}
+
+}  // namespace hullslam

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/costs/pixel_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "costs/object_cost_laws.h"
+#include "hullslam/costs/make_object_cost.h"
+
+namespace hullslam {
+namespace {
+
+// A small sphere far off, with an outline of radius r = 500 * 0.2 / sqrt(25 - 0.04) px.
+ObjectState SmallSphere() {
+  ObjectState state;
+  state.ellipsoid.world_from_object.translation = {0.0, 0.0, 5.0};
+  state.ellipsoid.half_axes.setConstant(0.2);
+  return state;
+}
+
+constexpr Intrinsics kSquare{.fx = 500.0, .fy = 500.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
+
+double SizeOf(ObjectResidual residual, double error_px) {
+  const ObjectState state = SmallSphere();
+  return ResidualOfPixelError(residual, kSquare, state.cam_from_world, state.ellipsoid, error_px)
+      .value();
+}
+
+TEST(ResidualOfPixelError, ByHand) {
+  const double radius = 100.0 / std::sqrt(25.0 - 0.04);
+  EXPECT_NEAR(SizeOf(ObjectResidual::kTangent, 1.5), 1.5, 1e-12);
+  EXPECT_NEAR(SizeOf(ObjectResidual::kAlgebraicPlane, 1.5), 2.0 * radius * 1.5 * 1e-4, 1e-12);
+  EXPECT_NEAR(SizeOf(ObjectResidual::kAlgebraicPoint, 1.5), 3.0 / radius, 1e-12);
+  EXPECT_NEAR(SizeOf(ObjectResidual::kDistribution, 1.5), 2.25, 1e-12);
+  EXPECT_NEAR(SizeOf(ObjectResidual::kOverlap, 1.5), 1.0 - std::pow(radius / (radius + 1.5), 2),
+              1e-12);
+}
+
+// It is what the residuals themselves say of an outline that much too large.
+TEST(ResidualOfPixelError, IsTheSizeOfTheResiduals) {
+  const double radius = 100.0 / std::sqrt(25.0 - 0.04);
+  const double error_px = 0.2;
+  Ellipse wrong;
+  wrong.center = {320.0, 240.0};
+  wrong.shape = (radius + error_px) * (radius + error_px) * Eigen::Matrix2d::Identity();
+  const std::vector<Eigen::Vector2d> contour = wrong.Polygon(720);
+  const std::vector<SilhouetteLine> lines = {
+      {{{1.0, 0.0}, -320.0 - radius - error_px}, false},
+      {{{0.6, 0.8}, -0.6 * 320.0 - 0.8 * 240.0 - radius - error_px}, false}};
+  const ObjectMeasurement measurement{
+      .lines = lines, .contour = contour, .hull = contour, .ellipse = wrong, .box = {}};
+  for (const auto& [residual, primitive] :
+       {std::pair(ObjectResidual::kTangent, ObjectPrimitive::kSupport),
+        {ObjectResidual::kAlgebraicPlane, ObjectPrimitive::kSupport},
+        {ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour},
+        {ObjectResidual::kOverlap, ObjectPrimitive::kHull}}) {
+    const auto cost = MakeObjectCost(residual, primitive, kSquare, measurement, 1.0);
+    const double size = ObjectResidualsOf(*cost, SmallSphere()).cwiseAbs().mean();
+    EXPECT_NEAR(size / SizeOf(residual, error_px), 1.0, 0.03) << NameOf(residual);
+  }
+  wrong.shape = radius * radius * Eigen::Matrix2d::Identity();
+  wrong.center.x() += error_px;
+  const ObjectMeasurement shifted{
+      .lines = {}, .contour = {}, .hull = {}, .ellipse = wrong, .box = {}};
+  const auto cost =
+      MakeObjectCost(ObjectResidual::kDistribution, ObjectPrimitive::kConic, kSquare, shifted, 1.0);
+  EXPECT_NEAR(
+      ObjectResidualsOf(*cost, SmallSphere())[0] / SizeOf(ObjectResidual::kDistribution, error_px),
+      1.0, 1e-6);
+}
+
+TEST(ResidualOfPixelError, IsNothingUnlessInFront) {
+  ObjectState state = SmallSphere();
+  for (const double z : {-5.0, 0.0, 0.2}) {
+    state.ellipsoid.world_from_object.translation.z() = z;
+    EXPECT_FALSE(ResidualOfPixelError(ObjectResidual::kTangent, kSquare, state.cam_from_world,
+                                      state.ellipsoid, 1.0)
+                     .has_value())
+        << z;
+  }
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/costs/quadric_algebraic_plane.h"
+
+#include <gtest/gtest.h>
+
+#include "costs/object_cost_laws.h"
+
+namespace hullslam {
+namespace {
+
+TEST(AlgebraicPlaneCost, ByHand) {
+  // The line x = 820 is the plane x = z: its distance from the centre (0, 0, 1) is 1 / sqrt(2), so
+  // h^2 - d^2 = 0.36 - 0.5. The line x = 320 goes through the centre.
+  const std::vector<SilhouetteLine> lines = {{{{1.0, 0.0}, -820.0}, false},
+                                             {{{1.0, 0.0}, -320.0}, false}};
+  const AlgebraicPlaneCost cost(kObjectCamera, lines, 0.1);
+  const Eigen::VectorXd residuals = ObjectResidualsOf(cost, SphereAhead());
+  EXPECT_NEAR(residuals[0], -1.4, 1e-9);
+  EXPECT_NEAR(residuals[1], 3.6, 1e-9);
+}
+
+// pi^T Q* pi with pi = P^T l of unit normal, written out.
+TEST(AlgebraicPlaneCost, IsThePapersResidual) {
+  RandomGeometry random(1);
+  const ObjectState state = RandomObjectState(random);
+  const std::vector<SilhouetteLine> lines = TangentsOf(RandomObjectState(random), 8);
+  const AlgebraicPlaneCost cost(kObjectCamera, lines, 1.0);
+  const Eigen::VectorXd residuals = ObjectResidualsOf(cost, state);
+  Eigen::Matrix3d k;
+  k << kObjectCamera.fx, 0.0, kObjectCamera.cx, 0.0, kObjectCamera.fy, kObjectCamera.cy, 0, 0, 1;
+  Eigen::Matrix4d z = Eigen::Matrix4d::Identity();
+  z.topRows<3>() = state.ellipsoid.world_from_object.ToMatrix();
+  Eigen::Vector4d squares(0.0, 0.0, 0.0, -1.0);
+  squares.head<3>() = state.ellipsoid.half_axes.cwiseAbs2();
+  const Eigen::Matrix4d dual = z * squares.asDiagonal() * z.transpose();
+  for (int i = 0; i < 8; ++i) {
+    Eigen::Vector4d plane = (k * state.cam_from_world.ToMatrix()).transpose() *
+                            lines[static_cast<size_t>(i)].line.Homogeneous();
+    plane /= plane.head<3>().norm();
+    EXPECT_NEAR(residuals[i], plane.dot(dual * plane), 1e-9);
+  }
+}
+
+TEST(AlgebraicPlaneCost, IsZeroForEveryTangent) {
+  RandomGeometry random(2);
+  for (int i = 0; i < 20; ++i) {
+    const ObjectState state = RandomObjectState(random);
+    const AlgebraicPlaneCost cost(kObjectCamera, TangentsOf(state, 16), 1.0);
+    EXPECT_LT(ObjectResidualsOf(cost, state).norm(), 1e-9);
+  }
+}
+
+TEST(AlgebraicPlaneCost, KeepsTheLaws) {
+  RandomGeometry random(3);
+  for (int i = 0; i < 20; ++i) {
+    const ObjectState state = RandomObjectState(random);
+    const AlgebraicPlaneCost cost(kObjectCamera, TangentsOf(RandomObjectState(random), 12), 0.3);
+    ExpectObjectCostLaws(cost, state, random);
+  }
+}
+
+TEST(AlgebraicPlaneCost, OneSidedIsZeroWhereTheObjectReachesThePlane) {
+  RandomGeometry random(4);
+  for (int i = 0; i < 10; ++i) {
+    const ObjectState state = RandomObjectState(random);
+    for (const double outwards : {-500.0, -3.0, 3.0}) {  // beyond the object, cutting it, short
+      std::vector<SilhouetteLine> lines = TangentsOf(state, 16);
+      for (SilhouetteLine& line : lines) {
+        line.is_one_sided = true;
+        line.line.offset -= outwards;
+      }
+      const AlgebraicPlaneCost cost(kObjectCamera, lines, 1.0);
+      const Eigen::VectorXd residuals = ObjectResidualsOf(cost, state);
+      EXPECT_EQ(residuals.isZero(0.0), outwards < 0.0) << outwards;
+      EXPECT_TRUE((residuals.array() <= 0.0).all());
+      ExpectTrueObjectGradient(cost, state);
+    }
+  }
+}
+
+TEST(AlgebraicPlaneCost, IsNotDefinedUnlessInFront) {
+  ExpectUndefinedUnlessInFront(
+      AlgebraicPlaneCost(kObjectCamera, TangentsOf(SphereAhead(), 8), 1.0));
+}
+
+}  // namespace
+}  // namespace hullslam

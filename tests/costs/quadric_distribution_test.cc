@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/costs/quadric_distribution.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "costs/object_cost_laws.h"
+
+namespace hullslam {
+namespace {
+
+constexpr std::array kDistances = {DistributionDistance::kWasserstein,
+                                   DistributionDistance::kBhattacharyya};
+
+Ellipse OutlineEllipse(const ObjectState& state) {
+  const ObjectBlocks blocks(state);
+  const QuadricInCamera quadric(blocks.Pointers().data());
+  return ToEllipse(EllipseProjection(kObjectCamera, quadric).numbers());
+}
+
+// Half axes 375 and 300 px around (320, 240) against 370 and 310 px around (317, 244): for parallel
+// axes the Wasserstein distance is the sum of the squared differences.
+TEST(DistributionCost, WassersteinByHand) {
+  Ellipse measured;
+  measured.center = {317.0, 244.0};
+  measured.shape = Eigen::Vector2d(370.0 * 370.0, 310.0 * 310.0).asDiagonal();
+  const DistributionCost cost(kObjectCamera, measured, 10.0);
+  EXPECT_NEAR(ObjectResidualsOf(cost, SphereAhead())[0], (9.0 + 16.0 + 25.0 + 100.0) / 10.0, 1e-7);
+}
+
+TEST(DistributionCost, BhattacharyyaByHand) {
+  Ellipse measured;
+  measured.center = {320.0 + 375.0, 240.0};
+  measured.shape = Eigen::Vector2d(375.0 * 375.0, 300.0 * 300.0).asDiagonal();
+  const DistributionCost shifted(kObjectCamera, measured, 1.0,
+                                 DistributionDistance::kBhattacharyya);
+  EXPECT_NEAR(ObjectResidualsOf(shifted, SphereAhead())[0], 1.0 / 8.0, 1e-9);
+  measured.center = {320.0, 240.0};
+  measured.shape *= 4.0;
+  const DistributionCost larger(kObjectCamera, measured, 1.0, DistributionDistance::kBhattacharyya);
+  EXPECT_NEAR(ObjectResidualsOf(larger, SphereAhead())[0], 0.5 * std::log(2.5 * 2.5 / 4.0), 1e-9);
+}
+
+TEST(DistributionCost, IsZeroForTheOutlineAndPositiveForOthers) {
+  RandomGeometry random(1);
+  for (const DistributionDistance distance : kDistances) {
+    for (int i = 0; i < 20; ++i) {
+      const ObjectState state = RandomObjectState(random);
+      const DistributionCost cost(kObjectCamera, OutlineEllipse(state), 1.0, distance);
+      EXPECT_NEAR(ObjectResidualsOf(cost, state)[0], 0.0, 1e-7);
+      EXPECT_GT(ObjectResidualsOf(cost, RandomObjectState(random))[0], 1e-3);
+    }
+  }
+}
+
+TEST(DistributionCost, KeepsTheLaws) {
+  RandomGeometry random(2);
+  for (const DistributionDistance distance : kDistances) {
+    for (int i = 0; i < 20; ++i) {
+      const Ellipse measured = OutlineEllipse(RandomObjectState(random));
+      const DistributionCost cost(kObjectCamera, measured, 7.0, distance);
+      ExpectObjectCostLaws(cost, RandomObjectState(random), random);
+    }
+  }
+}
+
+TEST(DistributionCost, IsNotDefinedUnlessInFront) {
+  for (const DistributionDistance distance : kDistances) {
+    ExpectUndefinedUnlessInFront(
+        DistributionCost(kObjectCamera, OutlineEllipse(SphereAhead()), 1.0, distance));
+  }
+}
+
+}  // namespace
+}  // namespace hullslam

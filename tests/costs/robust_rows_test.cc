@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/costs/robust_rows.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "costs/object_cost_laws.h"
+#include "hullslam/costs/quadric_tangent.h"
+
+namespace hullslam {
+namespace {
+
+// Three lines that the sphere's outline (x from -55 to 695) misses by 0, 1 and 16 px.
+std::unique_ptr<TangentCost> ThreeLines() {
+  const std::vector<SilhouetteLine> lines = {
+      {{{1.0, 0.0}, -695.0}, false}, {{{1.0, 0.0}, -694.0}, false}, {{{-1.0, 0.0}, -71.0}, false}};
+  return std::make_unique<TangentCost>(kObjectCamera, lines, 1.0);
+}
+
+// Huber's loss at 4 makes of 16^2 2 * 4 * 16 - 4^2 = 112.
+TEST(RobustRowsCost, ByHand) {
+  const RobustRowsCost cost(ThreeLines(), std::make_unique<ceres::HuberLoss>(4.0), 0.25);
+  const Eigen::VectorXd residuals = ObjectResidualsOf(cost, SphereAhead());
+  EXPECT_NEAR(residuals[0], 0.0, 1e-9);
+  EXPECT_NEAR(residuals[1], 0.5, 1e-9);
+  EXPECT_NEAR(residuals[2], -0.5 * std::sqrt(112.0), 1e-9);
+}
+
+TEST(RobustRowsCost, WithoutLossOnlyWeighs) {
+  const RobustRowsCost cost(ThreeLines(), nullptr, 4.0);
+  const Eigen::VectorXd plain = ObjectResidualsOf(cost.plain(), SphereAhead());
+  EXPECT_LT((ObjectResidualsOf(cost, SphereAhead()) - 2.0 * plain).norm(), 1e-12);
+}
+
+TEST(RobustRowsCost, KeepsTheLaws) {
+  RandomGeometry random(1);
+  for (int i = 0; i < 20; ++i) {
+    const ObjectState state = RandomObjectState(random);
+    const RobustRowsCost cost(std::make_unique<TangentCost>(
+                                  kObjectCamera, TangentsOf(RandomObjectState(random), 12), 5.0),
+                              std::make_unique<ceres::CauchyLoss>(2.5), 0.3);
+    ExpectObjectCostLaws(cost, state, random);
+  }
+}
+
+TEST(RobustRowsCost, IsNotDefinedWhereTheCostIsNot) {
+  ExpectUndefinedUnlessInFront(RobustRowsCost(ThreeLines(), nullptr, 1.0));
+}
+
+}  // namespace
+}  // namespace hullslam
