@@ -147,6 +147,26 @@ void OptionTable::Add(std::string key, std::string* field, std::vector<std::stri
                              .help = std::move(help)});
 }
 
+void OptionTable::AddChoice(std::string key, std::vector<std::string> names,
+                            std::function<void(size_t)> set, std::function<size_t()> get,
+                            std::string help) {
+  std::string expected = "one of: " + Join(names);
+  const auto index_of = [names](const std::string& text) {
+    return static_cast<size_t>(std::find(names.begin(), names.end(), text) - names.begin());
+  };
+  AddOption(std::move(key),
+            {.parse =
+                 [index_of, set = std::move(set), count = names.size()](const std::string& text) {
+                   const size_t index = index_of(text);
+                   const bool good = index < count;
+                   if (good) set(index);
+                   return good;
+                 },
+             .print = [names = std::move(names), get = std::move(get)] { return names.at(get()); },
+             .expected = std::move(expected),
+             .help = std::move(help)});
+}
+
 void OptionTable::AddIgnored(std::string key) {
   Option option;
   option.parse = [](const std::string&) { return true; };

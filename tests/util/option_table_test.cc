@@ -48,6 +48,21 @@ TEST(Range, IsToldInWords) {
   EXPECT_EQ(Range::Any().ToString(), "of any size");
 }
 
+TEST(OptionTable, SetsAnEnumByItsNames) {
+  enum class Colour { kRed, kGreen, kBlue };
+  Colour colour = Colour::kGreen;
+  OptionTable table;
+  table.AddEnum("colour", &colour, {"red", "green", "blue"}, "of the wall");
+  EXPECT_EQ(table.Entries()[0].value, "green");
+  EXPECT_EQ(table.Entries()[0].expected, "one of: red, green, blue");
+  table.Set("colour", "blue", "test");
+  EXPECT_EQ(colour, Colour::kBlue);
+  EXPECT_EQ(table.Entries()[0].value, "blue");
+  ExpectInputError([&] { table.Set("colour", "Red", "x.yaml"); },
+                   {"x.yaml", "colour", "'Red'", "one of: red, green, blue"});
+  EXPECT_EQ(colour, Colour::kBlue);
+}
+
 TEST(OptionTable, SetsTheBoundFields) {
   Fields fields;
   OptionTable table = fields.Bind();

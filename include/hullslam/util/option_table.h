@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace hullslam {
@@ -35,6 +37,14 @@ class OptionTable {
   void Add(std::string key, uint64_t* field, Range range, std::string help);
   void Add(std::string key, bool* field, std::string help);  // 0, 1, true, false
   void Add(std::string key, std::string* field, std::vector<std::string> choices, std::string help);
+  // An enum by the names of its enumerators, which count from 0 in the order of `names`.
+  template <typename Enum>
+  void AddEnum(std::string key, Enum* field, std::vector<std::string> names, std::string help) {
+    AddChoice(
+        std::move(key), std::move(names),
+        [field](size_t index) { *field = static_cast<Enum>(index); },
+        [field] { return static_cast<size_t>(*field); }, std::move(help));
+  }
   // A key that other programs' settings files have and that means nothing here: accepted, ignored.
   void AddIgnored(std::string key);
 
@@ -61,6 +71,8 @@ class OptionTable {
     bool ignored = false;
   };
   void AddOption(std::string key, Option option);
+  void AddChoice(std::string key, std::vector<std::string> names, std::function<void(size_t)> set,
+                 std::function<size_t()> get, std::string help);
   template <typename Number>
   void AddNumber(std::string key, Number* field, Range range, std::string help);
 
