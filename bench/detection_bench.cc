@@ -50,7 +50,10 @@ void Build(benchmark::State& state) {
   const DetectionBuilder builder(BenchCamera(), 5000.0, options);
   const std::vector<InstanceMask> masks = BenchMasks();
   const cv::Mat depth(480, 640, CV_16UC1, cv::Scalar(7500));
-  const std::vector<Keypoint> keypoints(1000, Keypoint{.raw = {320.0f, 240.0f}});
+  std::vector<Keypoint> keypoints(1000);
+  for (size_t i = 0; i < keypoints.size(); ++i) {
+    keypoints[i].raw = {static_cast<float>(i % 640), static_cast<float>(i * 37 % 480)};
+  }
   DetectionResult result;
   for (auto _ : state) {
     result = builder.Build(masks, state.range(1) != 0 ? depth : cv::Mat(), keypoints);
