@@ -34,6 +34,24 @@ Json ToJson(const TrajectorySummary& summary) {
           {"unpaired", summary.unpaired}};
 }
 
+Json ToJson(const ObjectsSummary& summary) {
+  Json rejections = Json::object();
+  for (const auto& [reason, count] : summary.rejections) {
+    rejections[reason] = count;
+  }
+  return {{"count", summary.count},
+          {"siou_mean", OrNull(summary.siou_mean)},
+          {"siou_mask_mean", OrNull(summary.siou_mask_mean)},
+          {"mtd_mean_m2", OrNull(summary.mtd_mean_m2)},
+          {"tangent_mean_px", OrNull(summary.tangent_mean_px)},
+          {"observations", summary.observations},
+          {"candidates", summary.candidates},
+          {"detections", summary.detections},
+          {"frames_with_masks", summary.frames_with_masks},
+          {"frames_without_masks", summary.frames_without_masks},
+          {"rejections", rejections}};
+}
+
 Json ToJson(const TimeStatistics& times) {
   return {{"median", times.median}, {"mean", times.mean}, {"p95", times.p95}, {"max", times.max}};
 }
@@ -69,6 +87,7 @@ Json ToJson(const ProvenanceSummary& summary) {
 
 std::string FormatSummary(const RunSummary& summary) {
   const Json json = {{"trajectory", ToJson(summary.trajectory)},
+                     {"objects", summary.objects ? ToJson(*summary.objects) : Json(nullptr)},
                      {"timing", ToJson(summary.timing)},
                      {"memory", {{"peak_mb", summary.peak_memory_mb}}},
                      {"map", ToJson(summary.map)},

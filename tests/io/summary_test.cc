@@ -25,8 +25,8 @@ std::vector<std::string> Keys(const Json& json) {
 
 TEST(Summary, HasTheKeysOfTheFormatInOrder) {
   const Json json = Json::parse(FormatSummary({}));
-  EXPECT_EQ(Keys(json),
-            (std::vector<std::string>{"trajectory", "timing", "memory", "map", "provenance"}));
+  EXPECT_EQ(Keys(json), (std::vector<std::string>{"trajectory", "objects", "timing", "memory",
+                                                  "map", "provenance"}));
   EXPECT_EQ(Keys(json["trajectory"]),
             (std::vector<std::string>{"ate_rmse_m", "alignment", "scale", "pairs", "frames",
                                       "tracked", "lost", "poses", "pairing", "coverage",
@@ -42,10 +42,23 @@ TEST(Summary, HasTheKeysOfTheFormatInOrder) {
                                       "pipeline", "masks_format", "sequence"}));
 }
 
+TEST(Summary, HasTheKeysOfObjectsInOrder) {
+  RunSummary summary;
+  summary.objects = ObjectsSummary();
+  const Json json = Json::parse(FormatSummary(summary));
+  EXPECT_EQ(Keys(json["objects"]),
+            (std::vector<std::string>{"count", "siou_mean", "siou_mask_mean", "mtd_mean_m2",
+                                      "tangent_mean_px", "observations", "candidates", "detections",
+                                      "frames_with_masks", "frames_without_masks", "rejections"}));
+  EXPECT_TRUE(json["objects"]["siou_mean"].is_null());
+  EXPECT_TRUE(json["objects"]["rejections"].is_object());
+}
+
 TEST(Summary, WhatIsUnknownIsNull) {
   const Json json = Json::parse(FormatSummary({}));
   EXPECT_TRUE(json["trajectory"]["ate_rmse_m"].is_null());
   EXPECT_TRUE(json["trajectory"]["scale"].is_null());
+  EXPECT_TRUE(json["objects"].is_null());
   EXPECT_TRUE(json["provenance"]["git"].is_null());
   EXPECT_TRUE(json["timing"]["stages_ms"].is_object());
 }
@@ -57,6 +70,8 @@ TEST(Summary, ValuesArriveInTheFile) {
   RunSummary summary;
   summary.trajectory.ate_rmse_m = 0.0095;
   summary.trajectory.skipped = 3;
+  summary.objects = ObjectsSummary{.count = 6, .siou_mean = 0.8};
+  summary.objects->rejections["too few views"] = 2;
   summary.timing.stages_ms = SummarizeStages(times);
   summary.map.landmarks = 1234;
   summary.provenance.seed = 18446744073709551615U;
@@ -67,6 +82,9 @@ TEST(Summary, ValuesArriveInTheFile) {
   const Json json = Json::parse(ReadFile(path));
   EXPECT_EQ(json["trajectory"]["ate_rmse_m"], 0.0095);
   EXPECT_EQ(json["trajectory"]["skipped"], 3);
+  EXPECT_EQ(json["objects"]["count"], 6);
+  EXPECT_EQ(json["objects"]["siou_mean"], 0.8);
+  EXPECT_EQ(json["objects"]["rejections"]["too few views"], 2);
   EXPECT_EQ(json["timing"]["stages_ms"]["extract"]["mean"], 3.0);
   EXPECT_EQ(json["timing"]["stages_ms"]["extract"]["max"], 4.0);
   EXPECT_EQ(json["map"]["landmarks"], 1234);

@@ -31,6 +31,21 @@ struct TrajectorySummary {
   size_t unpaired = 0;  // colour images without depth
 };
 
+// Of the mapped objects, means over each one's observations and then over the objects.
+struct ObjectsSummary {
+  size_t count = 0;                                     // mapped
+  std::optional<double> siou_mean = std::nullopt;       // with the hull
+  std::optional<double> siou_mask_mean = std::nullopt;  // with the raw mask
+  std::optional<double> mtd_mean_m2 = std::nullopt;
+  std::optional<double> tangent_mean_px = std::nullopt;
+  size_t observations = 0;  // of mapped objects in keyframes
+  size_t candidates = 0;    // objects that were never, or are no longer, mapped
+  size_t detections = 0;    // in all frames, as far as they were fit for use
+  size_t frames_with_masks = 0;
+  size_t frames_without_masks = 0;                // for which there was no file, or an empty one
+  std::map<std::string, size_t> rejections = {};  // how often, by reason
+};
+
 struct TimingSummary {
   TimeStatistics track_ms;
   std::map<std::string, TimeStatistics> stages_ms;
@@ -57,6 +72,7 @@ struct ProvenanceSummary {
 
 struct RunSummary {
   TrajectorySummary trajectory;
+  std::optional<ObjectsSummary> objects = std::nullopt;  // absent for a run without masks
   TimingSummary timing;
   double peak_memory_mb = 0.0;
   MapSummary map;

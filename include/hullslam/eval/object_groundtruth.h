@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hullslam/map/object_report.h"
+#include "hullslam/map/true_object.h"
+
+namespace hullslam {
+
+// A mapped object beside the true one it stands for.
+struct ObjectError {
+  ObjectId object;
+  size_t truth = 0;               // index of the true object
+  double center_m = 0.0;          // distance of the centres
+  double center_share = 0.0;      // of the true object's Size()
+  Eigen::Vector3d axis_ratios;    // mapped over true half axes, paired by length, longest first
+  Eigen::Vector3d extent_ratios;  // mapped over true half extents along the true object's axes
+};
+
+struct GroundtruthComparison {
+  std::vector<ObjectError> errors;      // by true object, the nearest first
+  std::vector<ObjectId> without_truth;  // mapped where no true object is
+  std::vector<size_t> times_mapped;     // of each true object
+};
+
+// Gives every mapped object of the report the true object whose centre is nearest in shares of its
+// size, if it is within half of it; classes don't matter. Moving objects stand for nothing.
+GroundtruthComparison CompareWithTruth(std::span<const TrueObject> truths,
+                                       const ObjectReport& report, const Rigid3& truth_from_map);
+
+// A detection of a frame whose true pose is known.
+struct SeenBox {
+  std::string label;
+  Eigen::AlignedBox2d box;  // undistorted, px
+};
+
+// Adds one to the count of every true object that a detection of the frame shows: the one of its
+// class whose projection's box, cut to the image, overlaps the detection's box most, at least by a
+// fifth (intersection over union).
+void CountSightings(std::span<const TrueObject> truths, const PinholeCamera& camera,
+                    const Rigid3& cam_from_truth, std::span<const SeenBox> seen,
+                    std::vector<size_t>& sightings);
+
+}  // namespace hullslam

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/eval/object_groundtruth.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "hullslam/geometry/dual_quadric.h"
+#include "hullslam/geometry/polygon_overlap.h"
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+Eigen::Vector3d LongestFirst(Eigen::Vector3d axes) {
+  std::sort(axes.begin(), axes.end(), std::greater<>());
+  return axes;
+}
+
+// Half extents of an ellipsoid along the axes of `world_from_frame`.
+Eigen::Vector3d ExtentsAlong(const Ellipsoid& ellipsoid, const Rigid3& world_from_frame) {
+  const Eigen::Matrix3d axes_in_frame =
+      (world_from_frame.rotation.inverse() * ellipsoid.world_from_object.rotation)
+          .toRotationMatrix() *
+      ellipsoid.half_axes.asDiagonal();
+  return axes_in_frame.rowwise().norm();
+}
+
+ObjectError Compare(const TrueObject& truth, const Ellipsoid& mapped) {
+  ObjectError error;
+  error.center_m =
+      (mapped.world_from_object.translation - truth.world_from_object.translation).norm();
+  error.center_share = error.center_m / truth.Size();
+  error.axis_ratios =
+      LongestFirst(mapped.half_axes).cwiseQuotient(LongestFirst(truth.half_extents));
+  error.extent_ratios =
+      ExtentsAlong(mapped, truth.world_from_object).cwiseQuotient(truth.half_extents);
+  return error;
+}
+
+// Against the nearest true object that is near enough.
+std::optional<ObjectError> CompareWithNearest(std::span<const TrueObject> truths,
+                                              const Ellipsoid& mapped) {
+  constexpr double kFarthest = 0.5;
+  std::optional<ObjectError> nearest;
+  for (size_t i = 0; i < truths.size(); ++i) {
+    if (truths[i].is_dynamic) {
+      continue;
+    }
+    ObjectError error = Compare(truths[i], mapped);
+    error.truth = i;
+    if (error.center_share <= kFarthest &&
+        (!nearest || error.center_share < nearest->center_share)) {
+      nearest = error;
+    }
+  }
+  return nearest;
+}
+
+// Where the image shows each object; empty where it does not.
+std::vector<Eigen::AlignedBox2d> ProjectBoxes(std::span<const TrueObject> truths,
+                                              const PinholeCamera& camera,
+                                              const Rigid3& cam_from_truth) {
+  Eigen::Matrix3d k;
+  k << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0;
+  const PinholeCamera::Bounds bounds = camera.UndistortedBounds();
+  const Eigen::AlignedBox2d image(Eigen::Vector2d(bounds.min_x, bounds.min_y),
+                                  Eigen::Vector2d(bounds.max_x, bounds.max_y));
+  std::vector<Eigen::AlignedBox2d> boxes(truths.size());
+  for (size_t i = 0; i < truths.size(); ++i) {
+    const Ellipsoid ellipsoid = {truths[i].world_from_object, truths[i].half_extents};
+    const std::optional<Ellipse> outline = ProjectEllipsoid(k, cam_from_truth, ellipsoid);
+    if (outline && !truths[i].is_dynamic) {
+      boxes[i] = outline->Bounds().intersection(image);
+    }
+  }
+  return boxes;
+}
+
+std::optional<size_t> FindShown(std::span<const TrueObject> truths,
+                                std::span<const Eigen::AlignedBox2d> boxes, const SeenBox& seen) {
+  double best_overlap = 0.2;
+  std::optional<size_t> best;
+  for (size_t i = 0; i < truths.size(); ++i) {
+    const double overlap =
+        truths[i].label == seen.label ? IntersectionOverUnion(boxes[i], seen.box) : 0.0;
+    if (overlap > best_overlap) {
+      best_overlap = overlap;
+      best = i;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+GroundtruthComparison CompareWithTruth(std::span<const TrueObject> truths,
+                                       const ObjectReport& report, const Rigid3& truth_from_map) {
+  GroundtruthComparison comparison;
+  comparison.times_mapped.assign(truths.size(), 0);
+  for (const ReportedObject& object : report.objects) {
+    if (object.state != ObjectState::kMapped) {
+      continue;
+    }
+    std::optional<ObjectError> error =
+        CompareWithNearest(truths, truth_from_map * object.ellipsoid);
+    if (!error) {
+      comparison.without_truth.push_back(object.id);
+      continue;
+    }
+    error->object = object.id;
+    ++comparison.times_mapped[error->truth];
+    comparison.errors.push_back(*error);
+  }
+  std::stable_sort(comparison.errors.begin(), comparison.errors.end(),
+                   [](const ObjectError& a, const ObjectError& b) {
+                     return std::pair(a.truth, a.center_share) < std::pair(b.truth, b.center_share);
+                   });
+  return comparison;
+}
+
+void CountSightings(std::span<const TrueObject> truths, const PinholeCamera& camera,
+                    const Rigid3& cam_from_truth, std::span<const SeenBox> seen,
+                    std::vector<size_t>& sightings) {
+  Check(sightings.size() == truths.size(), "one count a true object");
+  const std::vector<Eigen::AlignedBox2d> boxes = ProjectBoxes(truths, camera, cam_from_truth);
+  std::vector<bool> is_shown(truths.size(), false);
+  for (const SeenBox& detection : seen) {
+    if (const std::optional<size_t> shown = FindShown(truths, boxes, detection)) {
+      is_shown[*shown] = true;
+    }
+  }
+  for (size_t i = 0; i < truths.size(); ++i) {
+    sightings[i] += is_shown[i] ? 1 : 0;
+  }
+}
+
+}  // namespace hullslam

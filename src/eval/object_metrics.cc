@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/eval/object_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hullslam/geometry/polygon_overlap.h"
+#include "hullslam/geometry/polyline.h"
+
+namespace hullslam {
+namespace {
+
+using Polygon = std::vector<Eigen::Vector2d>;
+
+constexpr int kOutlineCorners = 128;
+
+// The mean of the values given to it.
+class Mean {
+ public:
+  void Add(const std::optional<double>& value) {
+    if (value) {
+      sum_ += *value;
+      ++count_;
+    }
+  }
+  std::optional<double> Value() const {
+    return count_ > 0 ? std::optional(sum_ / static_cast<double>(count_)) : std::nullopt;
+  }
+
+ private:
+  double sum_ = 0.0;
+  size_t count_ = 0;
+};
+
+// The means of fits and the sums of their counts.
+class FitMean {
+ public:
+  void Add(const ObjectFit& fit) {
+    siou_.Add(fit.siou);
+    siou_mask_.Add(fit.siou_mask);
+    mtd_.Add(fit.mtd_m2);
+    tangent_.Add(fit.tangent_px);
+    observations_ += fit.observations;
+    lines_ += fit.lines;
+  }
+  ObjectFit Value() const {
+    return {siou_.Value(),    siou_mask_.Value(), mtd_.Value(),
+            tangent_.Value(), observations_,      lines_};
+  }
+
+ private:
+  Mean siou_;
+  Mean siou_mask_;
+  Mean mtd_;
+  Mean tangent_;
+  size_t observations_ = 0;
+  size_t lines_ = 0;
+};
+
+Eigen::Matrix3d Intrinsics(const PinholeCamera& camera) {
+  Eigen::Matrix3d k;
+  k << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0;
+  return k;
+}
+
+// What of a camera outlines depend on.
+struct ImagePlane {
+  Eigen::Matrix3d k;
+  Eigen::AlignedBox2d bounds;
+
+  explicit ImagePlane(const PinholeCamera& camera) : k(Intrinsics(camera)) {
+    const PinholeCamera::Bounds box = camera.UndistortedBounds();
+    bounds.extend(Eigen::Vector2d(box.min_x, box.min_y));
+    bounds.extend(Eigen::Vector2d(box.max_x, box.max_y));
+  }
+};
+
+Eigen::AlignedBox2d BoxOf(const Polygon& polygon) {
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& corner : polygon) {
+    box.extend(corner);
+  }
+  return box;
+}
+
+// Segmenters give contours either way round.
+Polygon WithPositiveArea(Polygon polygon) {
+  if (SignedArea(polygon) < 0.0) {
+    std::reverse(polygon.begin(), polygon.end());
+  }
+  return polygon;
+}
+
+double OverlapWithHull(const Polygon& outline, const ObjectView& view,
+                       const Eigen::AlignedBox2d& image) {
+  const Polygon hull = ClipToBox(view.hull, image);
+  return view.is_box ? IntersectionOverUnion(BoxOf(outline), BoxOf(hull))
+                     : IntersectionOverUnion(outline, hull);
+}
+
+double OverlapWithMask(const Polygon& outline, const ObjectView& view,
+                       const Eigen::AlignedBox2d& image) {
+  return IntersectionOverUnion(ClipToBox(WithPositiveArea(view.contour), image), outline);
+}
+
+void MeasureLines(const Ellipsoid& ellipsoid, const Ellipse& outline, const ObjectView& view,
+                  const Eigen::Matrix3d& k, ObjectFit& fit) {
+  const Eigen::Matrix4d quadric = (view.cam_from_world * ellipsoid).DualQuadric();
+  Mean mtd;
+  Mean tangent;
+  for (const auto& [line, is_one_sided] : view.lines) {
+    if (is_one_sided) {
+      continue;
+    }
+    ++fit.lines;
+    // The plane through the camera's centre and the line, in the camera's frame.
+    const Eigen::Vector3d normal = (k.transpose() * line.Homogeneous()).normalized();
+    const Eigen::Vector4d plane(normal.x(), normal.y(), normal.z(), 0.0);
+    mtd.Add(std::abs(plane.dot(quadric * plane)));
+    tangent.Add(std::abs(line.SignedDistance(outline.center) + outline.HalfExtent(line.normal)));
+  }
+  fit.mtd_m2 = mtd.Value();
+  fit.tangent_px = tangent.Value();
+}
+
+ObjectFit MeasureIn(const ImagePlane& image, const Ellipsoid& ellipsoid, const ObjectView& view) {
+  const bool has_mask = !view.is_box && view.contour.size() >= 3;
+  ObjectFit fit;
+  fit.observations = 1;
+  fit.siou = 0.0;
+  fit.siou_mask = has_mask ? std::optional(0.0) : std::nullopt;
+  const std::optional<Ellipse> ellipse = ProjectEllipsoid(image.k, view.cam_from_world, ellipsoid);
+  if (!ellipse) {
+    return fit;
+  }
+  const Polygon outline = ClipToBox(ellipse->Polygon(kOutlineCorners), image.bounds);
+  fit.siou = OverlapWithHull(outline, view, image.bounds);
+  if (has_mask) {
+    fit.siou_mask = OverlapWithMask(outline, view, image.bounds);
+  }
+  MeasureLines(ellipsoid, *ellipse, view, image.k, fit);
+  return fit;
+}
+
+}  // namespace
+
+ObjectFit MeasureView(const Ellipsoid& ellipsoid, const ObjectView& view,
+                      const PinholeCamera& camera) {
+  return MeasureIn(ImagePlane(camera), ellipsoid, view);
+}
+
+ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ObjectView> views,
+                        const PinholeCamera& camera) {
+  const ImagePlane image(camera);
+  FitMean mean;
+  for (const ObjectView& view : views) {
+    mean.Add(MeasureIn(image, ellipsoid, view));
+  }
+  return mean.Value();
+}
+
+void MeasureObjects(ObjectReport& report) {
+  for (ReportedObject& object : report.objects) {
+    object.fit = MeasureObject(object.ellipsoid, object.views, report.camera);
+  }
+}
+
+MapFit SummarizeFits(const ObjectReport& report) {
+  MapFit summary;
+  FitMean mean;
+  for (const ReportedObject& object : report.objects) {
+    if (object.state == ObjectState::kMapped) {
+      ++summary.objects;
+      mean.Add(object.fit);
+    }
+  }
+  summary.mean = mean.Value();
+  return summary;
+}
+
+}  // namespace hullslam

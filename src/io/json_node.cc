@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "json_node.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hullslam/io/text_rows.h"
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::json;
+
+bool IsFiniteNumber(const Json& value) {
+  return value.is_number() && std::isfinite(value.get<double>());
+}
+
+bool AreNumbers(const Json& value, size_t count) {
+  return value.is_array() && value.size() == count &&
+         std::all_of(value.begin(), value.end(), IsFiniteNumber);
+}
+
+}  // namespace
+
+Json ReadJson(const std::filesystem::path& path) {
+  const std::string text = ReadFile(path);
+  try {
+    return Json::parse(text);
+  } catch (const Json::exception& error) {
+    std::string reason = error.what();
+    reason = reason.substr(0, reason.find('\n'));
+    throw InputError(fmt::format("{}: not JSON: {}", path.string(), reason));
+  }
+}
+
+JsonNode JsonNode::At(const std::string& key) const {
+  if (!value_->is_object()) {
+    Fail("an object");
+  }
+  const auto found = value_->find(key);
+  if (found == value_->end()) {
+    throw InputError(fmt::format("{}: {}{}\"{}\" is missing", file_->string(), place_,
+                                 place_.empty() ? "" : ": ", key));
+  }
+  return {*this, *found, place_.empty() ? key : place_ + '.' + key};
+}
+
+bool JsonNode::Has(const std::string& key) const {
+  return value_->is_object() && value_->contains(key) && !value_->at(key).is_null();
+}
+
+std::vector<std::pair<std::string, JsonNode>> JsonNode::Members() const {
+  if (!value_->is_object()) {
+    Fail("an object");
+  }
+  std::vector<std::pair<std::string, JsonNode>> members;
+  for (const auto& member : value_->items()) {
+    members.emplace_back(member.key(), At(member.key()));
+  }
+  return members;
+}
+
+std::vector<JsonNode> JsonNode::Elements() const {
+  if (!value_->is_array()) {
+    Fail("an array");
+  }
+  std::vector<JsonNode> elements;
+  elements.reserve(value_->size());
+  for (const Json& element : *value_) {
+    elements.push_back({*this, element, fmt::format("{}[{}]", place_, elements.size())});
+  }
+  return elements;
+}
+
+std::string JsonNode::Text() const {
+  if (!value_->is_string()) {
+    Fail("a text");
+  }
+  return value_->get<std::string>();
+}
+
+bool JsonNode::Flag() const {
+  if (!value_->is_boolean()) {
+    Fail("true or false");
+  }
+  return value_->get<bool>();
+}
+
+double JsonNode::Number() const {
+  if (!IsFiniteNumber(*value_)) {
+    Fail("a finite number");
+  }
+  return value_->get<double>();
+}
+
+double JsonNode::PositiveNumber() const {
+  if (!IsFiniteNumber(*value_) || !(value_->get<double>() > 0.0)) {
+    Fail("a finite number > 0");
+  }
+  return value_->get<double>();
+}
+
+uint32_t JsonNode::Count() const {
+  if (!value_->is_number_unsigned() ||
+      value_->get<uint64_t>() >= std::numeric_limits<uint32_t>::max()) {
+    Fail("an integer from 0 to 4294967294");
+  }
+  return value_->get<uint32_t>();
+}
+
+std::vector<double> JsonNode::Numbers(size_t count) const {
+  if (!AreNumbers(*value_, count)) {
+    Fail(fmt::format("{} finite numbers", count));
+  }
+  return value_->get<std::vector<double>>();
+}
+
+std::vector<Eigen::Vector2d> JsonNode::Points() const {
+  const bool good =
+      value_->is_array() && std::all_of(value_->begin(), value_->end(),
+                                        [](const Json& point) { return AreNumbers(point, 2); });
+  if (!good) {
+    Fail("points [x, y] of finite numbers");
+  }
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(value_->size());
+  for (const Json& point : *value_) {
+    points.emplace_back(point[0].get<double>(), point[1].get<double>());
+  }
+  return points;
+}
+
+Rigid3 JsonNode::Pose() const {
+  constexpr size_t kNumbers = 7;
+  constexpr double kShortest = 1e-6;
+  if (!AreNumbers(*value_, kNumbers)) {
+    Fail("tx, ty, tz, qx, qy, qz, qw");
+  }
+  const std::vector<double> v = Numbers(kNumbers);
+  Rigid3 pose(Eigen::Quaterniond(v[6], v[3], v[4], v[5]), {v[0], v[1], v[2]});
+  if (!(pose.rotation.norm() > kShortest)) {
+    Fail("a quaternion that is not of length zero");
+  }
+  pose.rotation.normalize();
+  return pose;
+}
+
+void JsonNode::Fail(std::string_view expected) const {
+  constexpr size_t kShown = 60;
+  std::string value = value_->dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (value.size() > kShown) {
+    value = value.substr(0, kShown) + "...";
+  }
+  throw InputError(fmt::format("{}: {} is {}, expected {}", file_->string(),
+                               place_.empty() ? "the top" : place_, value, expected));
+}
+
+}  // namespace hullslam

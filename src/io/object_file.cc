@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/io/object_file.h"
+
+#include <cmath>
+
+#include "hullslam/geometry/polyline.h"
+#include "hullslam/util/check.h"
+#include "json_node.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr uint32_t kVersion = 1;
+constexpr double kPixel = 1e-2;
+constexpr double kMetre = 1e-9;
+
+// `value` with the decimals of `unit` (1 over a power of ten); never -0.
+double Rounded(double value, double unit) {
+  Check(std::isfinite(value), "an object to be written is not finite");
+  const double units = std::round(1.0 / unit);
+  return std::round(value * units) / units + 0.0;
+}
+
+// null for what is not known.
+Json OrNull(const std::optional<double>& value) {
+  return value ? Json(Rounded(*value, kMetre)) : Json(nullptr);
+}
+
+Json PoseJson(const Rigid3& pose) {
+  Json json = Json::array();
+  for (const double value : pose.translation) {
+    json.push_back(Rounded(value, kMetre));
+  }
+  for (const double value : pose.rotation.coeffs()) {
+    json.push_back(Rounded(value, kMetre));
+  }
+  return json;
+}
+
+Json PointsJson(const std::vector<Eigen::Vector2d>& points) {
+  Json json = Json::array();
+  for (const Eigen::Vector2d& point : points) {
+    json.push_back({Rounded(point.x(), kPixel), Rounded(point.y(), kPixel)});
+  }
+  return json;
+}
+
+Json LinesJson(const std::vector<SilhouetteLine>& lines) {
+  // Across an image of 1000 px the rounded normal turns the line by 0.001 px.
+  constexpr double kNormal = 1e-6;
+  constexpr double kOffset = 1e-3;
+  Json json = Json::array();
+  for (const auto& [line, is_one_sided] : lines) {
+    json.push_back({Rounded(line.normal.x(), kNormal), Rounded(line.normal.y(), kNormal),
+                    Rounded(line.offset, kOffset), is_one_sided ? 1 : 0});
+  }
+  return json;
+}
+
+Json QuadricJson(const Ellipsoid& ellipsoid) {
+  Json rows = Json::array();
+  const Eigen::Matrix4d quadric = ellipsoid.DualQuadric();
+  for (const auto& row : quadric.rowwise()) {
+    Json values = Json::array();
+    for (const double value : row) {
+      values.push_back(Rounded(value, kMetre));
+    }
+    rows.push_back(values);
+  }
+  return rows;
+}
+
+Json ToJson(const PinholeCamera& camera) {
+  return {{"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx},       {"cy", camera.cy},
+          {"k1", camera.k1}, {"k2", camera.k2}, {"p1", camera.p1},       {"p2", camera.p2},
+          {"k3", camera.k3}, {"bf", camera.bf}, {"width", camera.width}, {"height", camera.height}};
+}
+
+Json ToJson(const ObjectView& view) {
+  return {{"keyframe", view.keyframe.value},
+          {"timestamp", Rounded(view.timestamp, kMetre)},
+          {"cam_from_world", PoseJson(view.cam_from_world)},
+          {"class", view.label},
+          {"score", Rounded(view.score, kMetre)},
+          {"cut", view.is_cut},
+          {"box", view.is_box},
+          {"hull", PointsJson(view.hull)},
+          {"contour", PointsJson(view.contour)},
+          {"lines", LinesJson(view.lines)}};
+}
+
+// All of an object but its views.
+Json ToJson(const ReportedObject& object) {
+  Json votes = Json::object();
+  for (const auto& [label, score] : object.votes) {
+    votes[label] = Rounded(score, kMetre);
+  }
+  const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
+  return {{"id", object.id.value},
+          {"class", object.label},
+          {"votes", votes},
+          {"state", object.state == ObjectState::kMapped ? "mapped" : "candidate"},
+          {"world_from_object", PoseJson(object.ellipsoid.world_from_object)},
+          {"half_axes",
+           {Rounded(axes.x(), kMetre), Rounded(axes.y(), kMetre), Rounded(axes.z(), kMetre)}},
+          {"dual_quadric", QuadricJson(object.ellipsoid)},
+          {"siou", OrNull(object.fit.siou)},
+          {"siou_mask", OrNull(object.fit.siou_mask)},
+          {"mtd_m2", OrNull(object.fit.mtd_m2)},
+          {"tangent_px", OrNull(object.fit.tangent_px)},
+          {"misfit_px", Rounded(object.misfit_px, kMetre)}};
+}
+
+// Labels come from files of others and may hold any bytes.
+std::string Dump(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// The texts on a line each, with commas between them.
+std::string Join(const std::vector<std::string>& texts, const char* indent) {
+  std::string joined;
+  for (const std::string& text : texts) {
+    joined += (joined.empty() ? "\n" : ",\n") + (indent + text);
+  }
+  return joined;
+}
+
+std::string FormatObject(const ReportedObject& object) {
+  std::vector<std::string> views;
+  for (const ObjectView& view : object.views) {
+    views.push_back(Dump(ToJson(view)));
+  }
+  std::string text = Dump(ToJson(object));
+  text.pop_back();
+  return text + ",\"observations\":[" + Join(views, "  ") + "\n ]}";
+}
+
+PinholeCamera ReadCamera(const JsonNode& node) {
+  PinholeCamera camera;
+  camera.fx = node.At("fx").PositiveNumber();
+  camera.fy = node.At("fy").PositiveNumber();
+  camera.cx = node.At("cx").Number();
+  camera.cy = node.At("cy").Number();
+  camera.k1 = node.At("k1").Number();
+  camera.k2 = node.At("k2").Number();
+  camera.p1 = node.At("p1").Number();
+  camera.p2 = node.At("p2").Number();
+  camera.k3 = node.At("k3").Number();
+  camera.bf = node.At("bf").Number();
+  constexpr uint32_t kLargest = 16384;
+  const auto size = [&](const char* key) {
+    const uint32_t value = node.At(key).Count();
+    if (value == 0 || value > kLargest) {
+      node.At(key).Fail("an integer from 1 to 16384");
+    }
+    return static_cast<int>(value);
+  };
+  camera.width = size("width");
+  camera.height = size("height");
+  return camera;
+}
+
+std::vector<SilhouetteLine> ReadLines(const JsonNode& node) {
+  constexpr double kTolerance = 1e-3;
+  std::vector<SilhouetteLine> lines;
+  for (const JsonNode& entry : node.Elements()) {
+    const std::vector<double> values = entry.Numbers(4);
+    const Eigen::Vector2d normal(values[0], values[1]);
+    if (std::abs(normal.norm() - 1.0) > kTolerance) {
+      entry.Fail("nx, ny of unit length, then c and 1 or 0");
+    }
+    lines.push_back({{normal.normalized(), values[2]}, values[3] != 0.0});
+  }
+  return lines;
+}
+
+ObjectView ReadView(const JsonNode& node) {
+  ObjectView view;
+  view.keyframe = KeyframeId(node.At("keyframe").Count());
+  view.timestamp = node.At("timestamp").Number();
+  view.cam_from_world = node.At("cam_from_world").Pose();
+  view.label = node.At("class").Text();
+  view.score = node.At("score").Number();
+  view.is_cut = node.At("cut").Flag();
+  view.is_box = node.At("box").Flag();
+  view.hull = node.At("hull").Points();
+  if (view.hull.size() < 3 || !(SignedArea(view.hull) > 0.0)) {
+    node.At("hull").Fail("three corners or more in the order of positive area");
+  }
+  view.contour = node.At("contour").Points();
+  view.lines = ReadLines(node.At("lines"));
+  return view;
+}
+
+ObjectState ReadState(const JsonNode& node) {
+  const std::string state = node.Text();
+  if (state != "mapped" && state != "candidate") {
+    node.Fail("\"mapped\" or \"candidate\"");
+  }
+  return state == "mapped" ? ObjectState::kMapped : ObjectState::kCandidate;
+}
+
+std::map<std::string, double> ReadVotes(const JsonNode& node) {
+  std::map<std::string, double> votes;
+  for (const auto& [label, score] : node.Members()) {
+    votes[label] = score.Number();
+  }
+  return votes;
+}
+
+std::optional<double> ReadOptional(const JsonNode& node, const char* key) {
+  return node.Has(key) ? std::optional(node.At(key).Number()) : std::nullopt;
+}
+
+ReportedObject ReadObject(const JsonNode& node) {
+  ReportedObject object;
+  object.id = ObjectId(node.At("id").Count());
+  object.state = ReadState(node.At("state"));
+  object.label = node.At("class").Text();
+  object.votes = ReadVotes(node.At("votes"));
+  object.ellipsoid.world_from_object = node.At("world_from_object").Pose();
+  const std::vector<double> axes = node.At("half_axes").Numbers(3);
+  object.ellipsoid.half_axes = {axes[0], axes[1], axes[2]};
+  if (!(object.ellipsoid.half_axes.minCoeff() > 0.0)) {
+    node.At("half_axes").Fail("three numbers > 0");
+  }
+  object.misfit_px = node.At("misfit_px").Number();
+  for (const JsonNode& view : node.At("observations").Elements()) {
+    object.views.push_back(ReadView(view));
+  }
+  object.fit.siou = ReadOptional(node, "siou");
+  object.fit.siou_mask = ReadOptional(node, "siou_mask");
+  object.fit.mtd_m2 = ReadOptional(node, "mtd_m2");
+  object.fit.tangent_px = ReadOptional(node, "tangent_px");
+  return object;
+}
+
+}  // namespace
+
+std::string FormatObjects(const ObjectReport& report) {
+  const Json head = {{"version", kVersion},
+                     {"sequence", report.sequence},
+                     {"camera", ToJson(report.camera)},
+                     {"candidates", report.candidates}};
+  std::vector<std::string> objects;
+  for (const ReportedObject& object : report.objects) {
+    objects.push_back(FormatObject(object));
+  }
+  std::string text = Dump(head);
+  text.pop_back();
+  return text + ",\"objects\":[" + Join(objects, " ") + "\n]}\n";
+}
+
+ObjectReport ReadObjects(const std::filesystem::path& path) {
+  const nlohmann::json json = ReadJson(path);
+  const JsonNode top(path, json);
+  if (top.At("version").Count() != kVersion) {
+    top.At("version").Fail("1");
+  }
+  ObjectReport report;
+  report.sequence = top.At("sequence").Text();
+  report.camera = ReadCamera(top.At("camera"));
+  report.candidates = top.At("candidates").Count();
+  for (const JsonNode& object : top.At("objects").Elements()) {
+    report.objects.push_back(ReadObject(object));
+  }
+  return report;
+}
+
+}  // namespace hullslam

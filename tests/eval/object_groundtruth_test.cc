@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/eval/object_groundtruth.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "hullslam/util/check.h"
+#include "support/random_geometry.h"
+
+namespace hullslam {
+namespace {
+
+TrueObject MakeTruth(const Eigen::Vector3d& center, const std::string& label = "cup") {
+  TrueObject truth;
+  truth.label = label;
+  truth.world_from_object = Rigid3(ExpSo3({0.2, 0.1, 0.5}), center);
+  truth.half_extents = {0.1, 0.2, 0.3};  // size 0.4
+  return truth;
+}
+
+ReportedObject MakeObject(uint32_t id, const Ellipsoid& ellipsoid) {
+  ReportedObject object;
+  object.id = ObjectId(id);
+  object.state = ObjectState::kMapped;
+  object.ellipsoid = ellipsoid;
+  return object;
+}
+
+// The true object as it would be mapped, moved by `shift` in the world.
+Ellipsoid MappedAs(const TrueObject& truth, const Eigen::Vector3d& shift = {0, 0, 0}) {
+  Ellipsoid ellipsoid = {truth.world_from_object, truth.half_extents};
+  ellipsoid.world_from_object.translation += shift;
+  return ellipsoid;
+}
+
+TEST(ObjectGroundtruth, ATrueObjectHasNoErrorInAnyWorld) {
+  RandomGeometry random(5);
+  const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0}), MakeTruth({1, 0, 0})};
+  const Rigid3 truth_from_map = random.Pose(2.0, 10.0);
+  ObjectReport report;
+  report.objects = {MakeObject(4, Inverse(truth_from_map) * MappedAs(truths[1]))};
+  const GroundtruthComparison comparison = CompareWithTruth(truths, report, truth_from_map);
+  ASSERT_EQ(comparison.errors.size(), 1U);
+  const ObjectError& error = comparison.errors[0];
+  EXPECT_EQ(error.object, ObjectId(4));
+  EXPECT_EQ(error.truth, 1U);
+  EXPECT_LT(error.center_m, 1e-12);
+  EXPECT_LT((error.axis_ratios - Eigen::Vector3d::Ones()).norm(), 1e-12);
+  EXPECT_LT((error.extent_ratios - Eigen::Vector3d::Ones()).norm(), 1e-9);
+  EXPECT_EQ(comparison.times_mapped, (std::vector<size_t>{0, 1}));
+  EXPECT_TRUE(comparison.without_truth.empty());
+}
+
+TEST(ObjectGroundtruth, ErrorsAreTheHandComputedOnes) {
+  const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0})};
+  ObjectReport report;
+  Ellipsoid mapped = MappedAs(truths[0], {0.0, 0.02, 0.0});
+  mapped.half_axes = {0.11, 0.2, 0.27};
+  report.objects = {MakeObject(0, mapped)};
+  const ObjectError error = CompareWithTruth(truths, report, {}).errors.at(0);
+  EXPECT_NEAR(error.center_m, 0.02, 1e-12);
+  EXPECT_NEAR(error.center_share, 0.05, 1e-12);
+  EXPECT_LT((error.axis_ratios - Eigen::Vector3d(0.9, 1.0, 1.1)).norm(), 1e-12);
+  EXPECT_LT((error.extent_ratios - Eigen::Vector3d(1.1, 1.0, 0.9)).norm(), 1e-9);
+}
+
+// The same ellipsoid with its axes called otherwise; turned by a right angle it is another one,
+// with the same axes.
+TEST(ObjectGroundtruth, TheOrderOfTheAxesDoesNotMatterButTheirDirectionsDo) {
+  const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0})};
+  ObjectReport report;
+  Ellipsoid mapped = MappedAs(truths[0]);
+  const double quarter = 0.5 * std::numbers::pi;
+  const Rigid3 turn(ExpSo3({0.0, 0.0, quarter}), Eigen::Vector3d::Zero());
+  mapped.world_from_object = mapped.world_from_object * turn;
+  std::swap(mapped.half_axes.x(), mapped.half_axes.y());
+  report.objects = {MakeObject(0, mapped)};
+  ObjectError error = CompareWithTruth(truths, report, {}).errors.at(0);
+  EXPECT_LT((error.axis_ratios - Eigen::Vector3d::Ones()).norm(), 1e-12);
+  EXPECT_LT((error.extent_ratios - Eigen::Vector3d::Ones()).norm(), 1e-9);
+  std::swap(report.objects[0].ellipsoid.half_axes.x(), report.objects[0].ellipsoid.half_axes.y());
+  error = CompareWithTruth(truths, report, {}).errors.at(0);
+  EXPECT_LT((error.axis_ratios - Eigen::Vector3d::Ones()).norm(), 1e-12);
+  EXPECT_LT((error.extent_ratios - Eigen::Vector3d(2.0, 0.5, 1.0)).norm(), 1e-9);
+}
+
+TEST(ObjectGroundtruth, CountsTwiceMappedMissedAndInvented) {
+  TrueObject walker = MakeTruth({3, 0, 0}, "person");
+  walker.is_dynamic = true;
+  const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0}), MakeTruth({1, 0, 0}), walker};
+  ObjectReport report;
+  report.objects = {
+      MakeObject(0, MappedAs(truths[0], {0.1, 0.0, 0.0})),   // farther
+      MakeObject(1, MappedAs(truths[0], {0.0, 0.05, 0.0})),  // nearer
+      MakeObject(2, MappedAs(truths[0], {0.0, 0.0, 0.21})),  // over half the size away
+      MakeObject(3, MappedAs(walker)),
+      MakeObject(4, MappedAs(truths[1])),
+  };
+  report.objects[4].state = ObjectState::kCandidate;
+  const GroundtruthComparison comparison = CompareWithTruth(truths, report, {});
+  ASSERT_EQ(comparison.errors.size(), 2U);
+  EXPECT_EQ(comparison.errors[0].object, ObjectId(1));
+  EXPECT_EQ(comparison.errors[1].object, ObjectId(0));
+  EXPECT_EQ(comparison.times_mapped, (std::vector<size_t>{2, 0, 0}));
+  EXPECT_EQ(comparison.without_truth, (std::vector<ObjectId>{ObjectId(2), ObjectId(3)}));
+}
+
+TEST(ObjectGroundtruth, ASightingIsOfTheClassAndWhereTheObjectIs) {
+  PinholeCamera camera;
+  camera.fx = camera.fy = 500.0;
+  camera.cx = 320.0;
+  camera.cy = 240.0;
+  const std::vector<TrueObject> truths = {MakeTruth({0, 0, 2}), MakeTruth({0.1, 0, 2}, "bowl"),
+                                          MakeTruth({0, 0, -2}), MakeTruth({0.8, 0, 2})};
+  const auto around = [](double x) {
+    return Eigen::AlignedBox2d(Eigen::Vector2d(x - 50, 190), Eigen::Vector2d(x + 50, 290));
+  };
+  std::vector<size_t> sightings(4, 0);
+  CountSightings(truths, camera, {}, std::vector<SeenBox>{{"cup", around(320)}}, sightings);
+  EXPECT_EQ(sightings, (std::vector<size_t>{1, 0, 0, 0}));
+  const std::vector<SeenBox> both = {
+      {"bowl", around(340)}, {"cup", around(330)}, {"cup", around(310)}, {"vase", around(330)}};
+  CountSightings(truths, camera, {}, both, sightings);
+  EXPECT_EQ(sightings, (std::vector<size_t>{2, 1, 0, 0}));  // twice in one frame counts once
+  CountSightings(truths, camera, {}, std::vector<SeenBox>{{"cup", around(100)}}, sightings);
+  EXPECT_EQ(sightings, (std::vector<size_t>{2, 1, 0, 0}));
+  CountSightings(truths, camera, {}, std::vector<SeenBox>{{"cup", around(525)}}, sightings);
+  EXPECT_EQ(sightings, (std::vector<size_t>{2, 1, 0, 1}));
+}
+
+TEST(ObjectGroundtruth, OneCountATrueObject) {
+  std::vector<size_t> none;
+  EXPECT_THROW(CountSightings(std::vector<TrueObject>(1), PinholeCamera(), {}, {}, none),
+               CheckError);
+}
+
+}  // namespace
+}  // namespace hullslam

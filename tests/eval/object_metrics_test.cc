@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/eval/object_metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "hullslam/geometry/polygon_overlap.h"
+#include "support/random_geometry.h"
+
+namespace hullslam {
+namespace {
+
+PinholeCamera Camera() {
+  PinholeCamera camera;
+  camera.fx = 500.0;
+  camera.fy = 500.0;
+  camera.cx = 320.0;
+  camera.cy = 240.0;
+  return camera;
+}
+
+Eigen::Matrix3d CameraMatrix() {
+  return (Eigen::Matrix3d() << 500.0, 0.0, 320.0, 0.0, 500.0, 240.0, 0.0, 0.0, 1.0).finished();
+}
+
+Ellipsoid Sphere(double depth, double radius) {
+  return {Rigid3(Eigen::Quaterniond::Identity(), {0.0, 0.0, depth}),
+          Eigen::Vector3d::Constant(radius)};
+}
+
+// The lines at `gap` px outside the outline, in `count` directions.
+std::vector<SilhouetteLine> LinesAround(const Ellipse& outline, int count, double gap) {
+  std::vector<SilhouetteLine> lines;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / count;
+    const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
+    const double reach = outline.HalfExtent(normal) + gap;
+    lines.push_back({{normal, -normal.dot(outline.center) - reach}, false});
+  }
+  return lines;
+}
+
+// What a perfect segmenter sees of the ellipsoid.
+ObjectView PerfectView(const Ellipsoid& ellipsoid, const Rigid3& cam_from_world = {}) {
+  const Ellipse outline = ProjectEllipsoid(CameraMatrix(), cam_from_world, ellipsoid).value();
+  ObjectView view;
+  view.cam_from_world = cam_from_world;
+  view.hull = outline.Polygon(200);
+  view.contour = view.hull;
+  view.lines = LinesAround(outline, 9, 0.0);
+  return view;
+}
+
+TEST(ObjectMetrics, APerfectViewFitsPerfectly) {
+  const Ellipsoid ellipsoid = {Rigid3(ExpSo3({0.3, 0.5, -0.2}), {0.1, -0.1, 2.0}), {0.1, 0.2, 0.3}};
+  const ObjectFit fit = MeasureView(ellipsoid, PerfectView(ellipsoid), Camera());
+  EXPECT_GT(fit.siou.value(), 0.999);
+  EXPECT_GT(fit.siou_mask.value(), 0.999);
+  EXPECT_LT(fit.mtd_m2.value(), 1e-12);
+  EXPECT_LT(fit.tangent_px.value(), 1e-9);
+  EXPECT_EQ(fit.observations, 1U);
+  EXPECT_EQ(fit.lines, 9U);
+}
+
+TEST(ObjectMetrics, TangentDistanceIsInPixelsOnBothSides) {
+  const Ellipsoid sphere = Sphere(2.0, 0.3);
+  const Ellipse outline = ProjectEllipsoid(CameraMatrix(), {}, sphere).value();
+  ObjectView view = PerfectView(sphere);
+  view.lines = LinesAround(outline, 4, 3.0);
+  EXPECT_NEAR(MeasureView(sphere, view, Camera()).tangent_px.value(), 3.0, 1e-9);
+  view.lines = LinesAround(outline, 4, -5.0);
+  EXPECT_NEAR(MeasureView(sphere, view, Camera()).tangent_px.value(), 5.0, 1e-9);
+}
+
+// A plane through the centre of a sphere of radius r has pi^T Q* pi = r^2; one at distance d from
+// it r^2 - d^2.
+TEST(ObjectMetrics, MtdIsTheHandComputedOneInSquareMetres) {
+  const Ellipsoid sphere = Sphere(2.0, 0.3);
+  ObjectView view = PerfectView(sphere);
+  view.lines = {{{Eigen::Vector2d::UnitX(), -320.0}, false}};  // x = cx: the plane x = 0
+  EXPECT_NEAR(MeasureView(sphere, view, Camera()).mtd_m2.value(), 0.09, 1e-12);
+  // x = cx + fx: the plane x = z, sqrt(2) from the centre.
+  view.lines = {{{Eigen::Vector2d::UnitX(), -820.0}, false}};
+  EXPECT_NEAR(MeasureView(sphere, view, Camera()).mtd_m2.value(), 2.0 - 0.09, 1e-12);
+}
+
+TEST(ObjectMetrics, OneSidedLinesAreNotCounted) {
+  const Ellipsoid sphere = Sphere(2.0, 0.3);
+  ObjectView view = PerfectView(sphere);
+  view.lines.push_back({{Eigen::Vector2d::UnitX(), 1000.0}, true});
+  EXPECT_LT(MeasureView(sphere, view, Camera()).tangent_px.value(), 1e-9);
+  EXPECT_EQ(MeasureView(sphere, view, Camera()).lines, 9U);
+  view.lines = {view.lines.back()};
+  EXPECT_FALSE(MeasureView(sphere, view, Camera()).tangent_px);
+  EXPECT_FALSE(MeasureView(sphere, view, Camera()).mtd_m2);
+}
+
+TEST(ObjectMetrics, ACommonMotionOfWorldAndCameraChangesNothing) {
+  RandomGeometry random(3);
+  const Ellipsoid ellipsoid = {random.Pose(1.0, 0.2), {0.1, 0.2, 0.3}};
+  const Rigid3 cam_from_world(ExpSo3({0.1, 0.2, 0.3}), {0.0, 0.1, 2.0});
+  ObjectView view = PerfectView(ellipsoid, cam_from_world);
+  const Ellipsoid larger = {ellipsoid.world_from_object, 1.2 * ellipsoid.half_axes};
+  const ObjectFit before = MeasureView(larger, view, Camera());
+  const Rigid3 motion = random.Pose(2.0, 5.0);
+  view.cam_from_world = cam_from_world * Inverse(motion);
+  const ObjectFit after = MeasureView(motion * larger, view, Camera());
+  EXPECT_LT(before.siou.value(), 0.8);
+  EXPECT_NEAR(after.siou.value(), before.siou.value(), 1e-9);
+  EXPECT_NEAR(after.siou_mask.value(), before.siou_mask.value(), 1e-9);
+  EXPECT_NEAR(after.mtd_m2.value(), before.mtd_m2.value(), 1e-9);
+  EXPECT_NEAR(after.tangent_px.value(), before.tangent_px.value(), 1e-6);
+}
+
+TEST(ObjectMetrics, OnlyWhatTheImageShowsIsCompared) {
+  Ellipsoid sphere = Sphere(2.0, 0.3);
+  sphere.world_from_object.translation.x() = 1.28;  // at the right border, x = 640
+  const ObjectView whole = PerfectView(sphere);
+  EXPECT_GT(MeasureView(sphere, whole, Camera()).siou.value(), 0.999);
+  ObjectView cut = whole;
+  cut.hull = ClipToBox(whole.hull, {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(639.5, 479.5)});
+  cut.contour = cut.hull;
+  EXPECT_GT(MeasureView(sphere, cut, Camera()).siou.value(), 0.99);
+  EXPECT_GT(MeasureView(sphere, cut, Camera()).siou_mask.value(), 0.99);
+}
+
+TEST(ObjectMetrics, AContourMayBeHollowedAndGoEitherWayRound) {
+  const Ellipsoid all_over = Sphere(2.0, 1.9);  // its outline holds the whole image
+  ObjectView view;
+  view.hull = {{100, 100}, {300, 100}, {300, 300}, {100, 300}};
+  // The lower left quarter of the square is cut out.
+  view.contour = {{100, 100}, {300, 100}, {300, 300}, {200, 300}, {200, 200}, {100, 200}};
+  const PinholeCamera::Bounds image = Camera().UndistortedBounds();
+  const double pixels = (image.max_x - image.min_x) * (image.max_y - image.min_y);
+  EXPECT_NEAR(MeasureView(all_over, view, Camera()).siou.value(), 40000.0 / pixels, 1e-6);
+  EXPECT_NEAR(MeasureView(all_over, view, Camera()).siou_mask.value(), 30000.0 / pixels, 1e-6);
+  std::reverse(view.contour.begin(), view.contour.end());
+  EXPECT_NEAR(MeasureView(all_over, view, Camera()).siou_mask.value(), 30000.0 / pixels, 1e-6);
+}
+
+TEST(ObjectMetrics, ABoxIsComparedWithTheBoxOfTheOutline) {
+  const Ellipsoid sphere = Sphere(2.0, 0.3);
+  ObjectView view = PerfectView(sphere);
+  const Eigen::AlignedBox2d box = ProjectEllipsoid(CameraMatrix(), {}, sphere).value().Bounds();
+  view.hull = {
+      box.min(), {box.max().x(), box.min().y()}, box.max(), {box.min().x(), box.max().y()}};
+  view.contour = view.hull;
+  EXPECT_NEAR(MeasureView(sphere, view, Camera()).siou.value(), std::numbers::pi / 4.0, 0.01);
+  view.is_box = true;
+  EXPECT_GT(MeasureView(sphere, view, Camera()).siou.value(), 0.99);
+  EXPECT_FALSE(MeasureView(sphere, view, Camera()).siou_mask);
+}
+
+TEST(ObjectMetrics, WhatIsNotInFrontHasNoOverlapAndNoDistance) {
+  const ObjectView view = PerfectView(Sphere(2.0, 0.3));
+  for (const double depth : {-2.0, 0.1}) {
+    const ObjectFit fit = MeasureView(Sphere(depth, 0.3), view, Camera());
+    EXPECT_EQ(fit.siou.value(), 0.0);
+    EXPECT_EQ(fit.siou_mask.value(), 0.0);
+    EXPECT_FALSE(fit.mtd_m2);
+    EXPECT_FALSE(fit.tangent_px);
+  }
+}
+
+TEST(ObjectMetrics, MeansAreOverViewsAndThenOverMappedObjects) {
+  const Ellipsoid sphere = Sphere(2.0, 0.3);
+  const ObjectView good = PerfectView(sphere);
+  ObjectView missed = good;
+  missed.hull = {{0, 0}, {20, 0}, {20, 20}};
+  missed.lines.clear();
+  ObjectReport report;
+  report.camera = Camera();
+  report.objects.resize(3);
+  for (ReportedObject& object : report.objects) {
+    object.state = ObjectState::kMapped;
+    object.ellipsoid = sphere;
+  }
+  report.objects[0].views = {good, missed};      // mean 1/2
+  report.objects[1].views = {good, good, good};  // 1
+  report.objects[2].state = ObjectState::kCandidate;
+  report.objects[2].views = {missed};
+  MeasureObjects(report);
+  EXPECT_NEAR(report.objects[0].fit.siou.value(), 0.5, 1e-3);
+  EXPECT_EQ(report.objects[0].fit.lines, 9U);
+  EXPECT_LT(report.objects[0].fit.tangent_px.value(), 1e-9);
+  const MapFit summary = SummarizeFits(report);
+  EXPECT_EQ(summary.objects, 2U);
+  EXPECT_EQ(summary.mean.observations, 5U);
+  EXPECT_EQ(summary.mean.lines, 36U);
+  EXPECT_NEAR(summary.mean.siou.value(), 0.75, 1e-3);
+}
+
+TEST(ObjectMetrics, NothingHasNoMean) {
+  const MapFit summary = SummarizeFits(ObjectReport());
+  EXPECT_EQ(summary.objects, 0U);
+  EXPECT_FALSE(summary.mean.siou);
+  EXPECT_FALSE(MeasureObject(Sphere(2.0, 0.3), {}, Camera()).tangent_px);
+}
+
+}  // namespace
+}  // namespace hullslam
