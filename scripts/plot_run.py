@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws a finished run: DIR/run.png with the trajectory (and the map) from above and from the side,
 and below it the error over time and what each stage took; prints the figures of the run.
+With --overlay N also DIR/overlays.png: N keyframes with the outlines of the mapped objects (solid
+where the keyframe observes them, else dashed) and the hulls of their masks (dotted).
 
 RUN_DIR is what `rgbd_tum --output` wrote: trajectory.txt, and if they are there map.ply,
-keyframes.txt and summary.json. With --groundtruth the run is aligned to it (SE3, Umeyama 1991,
+keyframes.txt, objects.json and summary.json. With --groundtruth the run is aligned to it (SE3, Umeyama 1991,
 pairs within 0.02 s); without it, the picture is in the frame of the first camera.
 """
 
@@ -18,15 +20,14 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
+import run_objects  # noqa: E402
+from run_objects import InputError  # noqa: E402
+
 MAX_DIFFERENCE = 0.02  # s, between an estimated pose and its ground truth
 MAX_POINTS = 30000  # of the map that are drawn
 ESTIMATE, TRUTH, MAP, MARK = "#0072b2", "#000000", "#b0b0b0", "#d55e00"
 PLY_TYPES = {"float": "<f4", "float32": "<f4", "double": "<f8", "uchar": "u1", "uint8": "u1",
              "int": "<i4", "uint": "<u4", "short": "<i2", "ushort": "<u2", "char": "i1"}
-
-
-class InputError(Exception):
-    """Something that the user can mend; the message names the file."""
 
 
 def read_trajectory(path):
@@ -128,6 +129,7 @@ class Run:
         if (run_dir / "map.ply").exists():
             self.points, self.colours = read_map(run_dir / "map.ply")
         self.summary = read_summary(run_dir / "summary.json")
+        self.camera, self.objects = run_objects.read_objects(run_dir / "objects.json")
         self.truth = self.error_stamps = self.errors = None
         if groundtruth:
             self._align_to(groundtruth)
@@ -152,6 +154,8 @@ class Run:
     def _move(self, rotation, translation):
         for name in ("positions", "keyframes", "points"):
             setattr(self, name, getattr(self, name) @ rotation.T + translation)
+        for item in self.objects:
+            item.move(rotation, translation)
 
     def ate(self):
         return float(np.sqrt(np.mean(self.errors**2)))
@@ -175,7 +179,9 @@ def drawn_part(run, axes):
     if len(run.points):
         low, high = np.percentile(run.points, [3, 97], axis=0)
         parts.append(np.stack([low, high]))
-    corners = np.concatenate(parts)[:, axes]
+    corners = [part[:, axes] for part in parts]
+    corners += [item.seen_along(axes) for item in run.objects if item.is_mapped]
+    corners = np.concatenate(corners)
     low, high = corners.min(axis=0), corners.max(axis=0)
     margin = 0.06 * max((high - low).max(), 0.1)
     return low - margin, high + margin
@@ -190,6 +196,7 @@ def draw_view(plot, run, axes, names, title):
     plot.plot(*run.positions[:, axes].T, color=ESTIMATE, linewidth=1.2, label="HullSLAM")
     if len(run.keyframes):
         plot.plot(*run.keyframes[:, axes].T, "o", color=MARK, markersize=3, label="keyframes")
+    run_objects.draw_from_afar(plot, run.objects, axes)
     low, high = drawn_part(run, axes)
     plot.set_xlim(low[0], high[0])
     plot.set_ylim(low[1], high[1])
@@ -256,6 +263,8 @@ def draw(run, path, name):
     title = f"{name}: {len(run.positions)} poses"
     if len(run.keyframes):
         title += f", {len(run.keyframes)} keyframes"
+    if run.objects:
+        title += f", {sum(item.is_mapped for item in run.objects)} objects"
     if run.errors is not None:
         title += f", ATE RMSE {run.ate():.4f} m (SE3, {len(run.errors)} pairs)"
     figure.suptitle(title)
@@ -275,23 +284,57 @@ def print_figures(run):
         print(f"whole run        {timing['frames_per_second']:.1f} frames/s")
 
 
-def main():
+def print_objects(run):
+    objects = run.summary.get("objects") or {}
+    if objects.get("count") is None:
+        return
+    figures = [("SIoU", "siou_mean", ".3f", ""), ("MTD", "mtd_mean_m2", ".2e", " m2"),
+               ("tangents", "tangent_mean_px", ".2f", " px")]
+    text = "".join(f", {name} {objects[key]:{form}}{unit}" for name, key, form, unit in figures
+                   if objects.get(key) is not None)
+    print(f"objects          {objects['count']}{text}")
+
+
+def find_sequence(run, chosen):
+    """The folder of the run's images: the one given, else the one of the summary."""
+    folder = chosen or (run.summary.get("provenance") or {}).get("sequence")
+    if not folder:
+        raise InputError("summary.json names no sequence for the overlays; give --sequence")
+    return folder
+
+
+def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run_dir", type=pathlib.Path, metavar="RUN_DIR")
     parser.add_argument("--groundtruth", type=pathlib.Path, metavar="FILE", help="in TUM's format")
     parser.add_argument("--out", type=pathlib.Path, metavar="DIR", help="default: RUN_DIR")
-    arguments = parser.parse_args()
+    parser.add_argument("--overlay", type=int, default=0, metavar="N",
+                        help="draw objects on N keyframes")
+    parser.add_argument("--sequence", type=pathlib.Path, metavar="DIR",
+                        help="folder of the images (default: the one summary.json names)")
+    arguments = parser.parse_args(words)
     out = arguments.out or arguments.run_dir
     try:
+        if arguments.overlay < 0:
+            raise InputError(f"--overlay is {arguments.overlay}, expected a number of keyframes")
         run = Run(arguments.run_dir, arguments.groundtruth)
         out.mkdir(parents=True, exist_ok=True)
+        overlays = 0
+        if arguments.overlay:
+            camera, objects = run_objects.read_objects(arguments.run_dir / "objects.json")
+            overlays = run_objects.draw_overlays(
+                out / "overlays.png", find_sequence(run, arguments.sequence), camera, objects,
+                arguments.overlay)
         draw(run, out / "run.png", arguments.run_dir.resolve().name)
     except (InputError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
     print_figures(run)
+    print_objects(run)
     print(f"picture          {out / 'run.png'}")
+    if arguments.overlay:
+        print(f"overlays         {out / 'overlays.png' if overlays else 'none: no objects'}")
     return 0
 
 

@@ -62,15 +62,14 @@ std::optional<ObjectError> CompareWithNearest(std::span<const TrueObject> truths
 std::vector<Eigen::AlignedBox2d> ProjectBoxes(std::span<const TrueObject> truths,
                                               const PinholeCamera& camera,
                                               const Rigid3& cam_from_truth) {
-  Eigen::Matrix3d k;
-  k << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0;
   const PinholeCamera::Bounds bounds = camera.UndistortedBounds();
   const Eigen::AlignedBox2d image(Eigen::Vector2d(bounds.min_x, bounds.min_y),
                                   Eigen::Vector2d(bounds.max_x, bounds.max_y));
   std::vector<Eigen::AlignedBox2d> boxes(truths.size());
   for (size_t i = 0; i < truths.size(); ++i) {
     const Ellipsoid ellipsoid = {truths[i].world_from_object, truths[i].half_extents};
-    const std::optional<Ellipse> outline = ProjectEllipsoid(k, cam_from_truth, ellipsoid);
+    const std::optional<Ellipse> outline =
+        ProjectEllipsoid(camera.Matrix(), cam_from_truth, ellipsoid);
     if (outline && !truths[i].is_dynamic) {
       boxes[i] = outline->Bounds().intersection(image);
     }
@@ -118,6 +117,46 @@ GroundtruthComparison CompareWithTruth(std::span<const TrueObject> truths,
                      return std::pair(a.truth, a.center_share) < std::pair(b.truth, b.center_share);
                    });
   return comparison;
+}
+
+TruthCounts CountMapped(std::span<const TrueObject> truths, const GroundtruthComparison& comparison,
+                        std::span<const size_t> sightings, size_t min_sightings) {
+  TruthCounts counts;
+  for (size_t i = 0; i < truths.size(); ++i) {
+    if (truths[i].is_dynamic || (!sightings.empty() && sightings[i] < min_sightings)) {
+      continue;
+    }
+    ++counts.visible;
+    const size_t times = comparison.times_mapped[i];
+    counts.never += times == 0 ? 1 : 0;
+    counts.once += times == 1 ? 1 : 0;
+    counts.more += times > 1 ? 1 : 0;
+  }
+  return counts;
+}
+
+std::map<std::string, ShapeErrors> SummarizeByShape(std::span<const TrueObject> truths,
+                                                    const GroundtruthComparison& comparison) {
+  std::map<std::string, ShapeErrors> shapes;
+  std::optional<size_t> last;
+  for (const ObjectError& error : comparison.errors) {
+    if (last == error.truth) {
+      continue;  // mapped twice; the nearer one came first
+    }
+    last = error.truth;
+    ShapeErrors& shape = shapes[truths[error.truth].shape];
+    ++shape.objects;
+    shape.center_share_mean += error.center_share;
+    shape.center_share_max = std::max(shape.center_share_max, error.center_share);
+    shape.axis_ratio_mean += error.axis_ratios.mean();
+    shape.axis_ratio_deviation =
+        std::max(shape.axis_ratio_deviation, (error.axis_ratios.array() - 1.0).abs().maxCoeff());
+  }
+  for (auto& [name, shape] : shapes) {
+    shape.center_share_mean /= static_cast<double>(shape.objects);
+    shape.axis_ratio_mean /= static_cast<double>(shape.objects);
+  }
+  return shapes;
 }
 
 void CountSightings(std::span<const TrueObject> truths, const PinholeCamera& camera,

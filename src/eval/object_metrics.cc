@@ -57,18 +57,12 @@ class FitMean {
   size_t lines_ = 0;
 };
 
-Eigen::Matrix3d Intrinsics(const PinholeCamera& camera) {
-  Eigen::Matrix3d k;
-  k << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0;
-  return k;
-}
-
 // What of a camera outlines depend on.
 struct ImagePlane {
   Eigen::Matrix3d k;
   Eigen::AlignedBox2d bounds;
 
-  explicit ImagePlane(const PinholeCamera& camera) : k(Intrinsics(camera)) {
+  explicit ImagePlane(const PinholeCamera& camera) : k(camera.Matrix()) {
     const PinholeCamera::Bounds box = camera.UndistortedBounds();
     bounds.extend(Eigen::Vector2d(box.min_x, box.min_y));
     bounds.extend(Eigen::Vector2d(box.max_x, box.max_y));
@@ -91,19 +85,19 @@ Polygon WithPositiveArea(Polygon polygon) {
   return polygon;
 }
 
-double OverlapWithHull(const Polygon& outline, const ObjectView& view,
+double OverlapWithHull(const Polygon& outline, const ReportedView& view,
                        const Eigen::AlignedBox2d& image) {
   const Polygon hull = ClipToBox(view.hull, image);
   return view.is_box ? IntersectionOverUnion(BoxOf(outline), BoxOf(hull))
                      : IntersectionOverUnion(outline, hull);
 }
 
-double OverlapWithMask(const Polygon& outline, const ObjectView& view,
+double OverlapWithMask(const Polygon& outline, const ReportedView& view,
                        const Eigen::AlignedBox2d& image) {
   return IntersectionOverUnion(ClipToBox(WithPositiveArea(view.contour), image), outline);
 }
 
-void MeasureLines(const Ellipsoid& ellipsoid, const Ellipse& outline, const ObjectView& view,
+void MeasureLines(const Ellipsoid& ellipsoid, const Ellipse& outline, const ReportedView& view,
                   const Eigen::Matrix3d& k, ObjectFit& fit) {
   const Eigen::Matrix4d quadric = (view.cam_from_world * ellipsoid).DualQuadric();
   Mean mtd;
@@ -123,7 +117,7 @@ void MeasureLines(const Ellipsoid& ellipsoid, const Ellipse& outline, const Obje
   fit.tangent_px = tangent.Value();
 }
 
-ObjectFit MeasureIn(const ImagePlane& image, const Ellipsoid& ellipsoid, const ObjectView& view) {
+ObjectFit MeasureIn(const ImagePlane& image, const Ellipsoid& ellipsoid, const ReportedView& view) {
   const bool has_mask = !view.is_box && view.contour.size() >= 3;
   ObjectFit fit;
   fit.observations = 1;
@@ -144,16 +138,16 @@ ObjectFit MeasureIn(const ImagePlane& image, const Ellipsoid& ellipsoid, const O
 
 }  // namespace
 
-ObjectFit MeasureView(const Ellipsoid& ellipsoid, const ObjectView& view,
+ObjectFit MeasureView(const Ellipsoid& ellipsoid, const ReportedView& view,
                       const PinholeCamera& camera) {
   return MeasureIn(ImagePlane(camera), ellipsoid, view);
 }
 
-ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ObjectView> views,
+ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ReportedView> views,
                         const PinholeCamera& camera) {
   const ImagePlane image(camera);
   FitMean mean;
-  for (const ObjectView& view : views) {
+  for (const ReportedView& view : views) {
     mean.Add(MeasureIn(image, ellipsoid, view));
   }
   return mean.Value();

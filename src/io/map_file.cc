@@ -90,7 +90,7 @@ Colour ColourOf(std::string_view label) {
   for (const char letter : label) {
     hash = (hash ^ static_cast<uint8_t>(letter)) * 16777619U;
   }
-  const double hue = 6.0 * (hash % 360) / 360.0;
+  const double hue = 6.0 * ((hash >> 16) % 360) / 360.0;
   Colour colour{};
   for (size_t channel = 0; channel < 3; ++channel) {
     // Each channel is a hat of width 4 about its own hue, 0, 2 or 4 of 6.

@@ -78,7 +78,7 @@ Json ToJson(const PinholeCamera& camera) {
           {"k3", camera.k3}, {"bf", camera.bf}, {"width", camera.width}, {"height", camera.height}};
 }
 
-Json ToJson(const ObjectView& view) {
+Json ToJson(const ReportedView& view) {
   return {{"keyframe", view.keyframe.value},
           {"timestamp", Rounded(view.timestamp, kMetre)},
           {"cam_from_world", PoseJson(view.cam_from_world)},
@@ -129,7 +129,7 @@ std::string Join(const std::vector<std::string>& texts, const char* indent) {
 
 std::string FormatObject(const ReportedObject& object) {
   std::vector<std::string> views;
-  for (const ObjectView& view : object.views) {
+  for (const ReportedView& view : object.views) {
     views.push_back(Dump(ToJson(view)));
   }
   std::string text = Dump(ToJson(object));
@@ -176,8 +176,8 @@ std::vector<SilhouetteLine> ReadLines(const JsonNode& node) {
   return lines;
 }
 
-ObjectView ReadView(const JsonNode& node) {
-  ObjectView view;
+ReportedView ReadView(const JsonNode& node) {
+  ReportedView view;
   view.keyframe = KeyframeId(node.At("keyframe").Count());
   view.timestamp = node.At("timestamp").Number();
   view.cam_from_world = node.At("cam_from_world").Pose();

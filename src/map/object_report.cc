@@ -6,10 +6,10 @@
 namespace hullslam {
 namespace {
 
-ObjectView MakeView(const Map& map, const ObjectObservation& observation) {
+ReportedView MakeView(const Map& map, const ObjectObservation& observation) {
   const Keyframe& keyframe = map.keyframes().At(observation.keyframe);
   const Detection& seen = keyframe.frame->detections.at(observation.detection);
-  ObjectView view;
+  ReportedView view;
   view.keyframe = observation.keyframe;
   view.timestamp = keyframe.frame->timestamp;
   view.cam_from_world = keyframe.cam_from_world;

@@ -106,6 +106,44 @@ TEST(ObjectGroundtruth, CountsTwiceMappedMissedAndInvented) {
   EXPECT_EQ(comparison.without_truth, (std::vector<ObjectId>{ObjectId(2), ObjectId(3)}));
 }
 
+TEST(ObjectGroundtruth, OnlyWhatIsSeenOftenEnoughCanBeMissed) {
+  TrueObject walker = MakeTruth({3, 0, 0}, "person");
+  walker.is_dynamic = true;
+  const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0}), MakeTruth({1, 0, 0}),
+                                          MakeTruth({2, 0, 0}), MakeTruth({4, 0, 0}), walker};
+  GroundtruthComparison comparison;
+  comparison.times_mapped = {1, 2, 0, 0, 0};
+  const TruthCounts all = CountMapped(truths, comparison, {}, 30);
+  EXPECT_EQ(all.visible, 4U);
+  EXPECT_EQ(all.once, 1U);
+  EXPECT_EQ(all.more, 1U);
+  EXPECT_EQ(all.never, 2U);
+  const TruthCounts seen =
+      CountMapped(truths, comparison, std::vector<size_t>{30, 40, 50, 29, 99}, 30);
+  EXPECT_EQ(seen.visible, 3U);
+  EXPECT_EQ(seen.never, 1U);
+}
+
+TEST(ObjectGroundtruth, ErrorsAreSummarizedByShapeOverTheNearest) {
+  std::vector<TrueObject> truths = {MakeTruth({0, 0, 0}), MakeTruth({1, 0, 0}),
+                                    MakeTruth({2, 0, 0})};
+  truths[0].shape = truths[1].shape = "ellipsoid";
+  truths[2].shape = "box";
+  ObjectReport report;
+  Ellipsoid larger = MappedAs(truths[1], {0.04, 0.0, 0.0});
+  larger.half_axes *= 1.2;
+  report.objects = {MakeObject(0, MappedAs(truths[0])),
+                    MakeObject(1, MappedAs(truths[0], {0.1, 0.0, 0.0})), MakeObject(2, larger)};
+  const auto shapes = SummarizeByShape(truths, CompareWithTruth(truths, report, {}));
+  ASSERT_EQ(shapes.size(), 1U);
+  const ShapeErrors& ellipsoids = shapes.at("ellipsoid");
+  EXPECT_EQ(ellipsoids.objects, 2U);
+  EXPECT_NEAR(ellipsoids.center_share_mean, 0.05, 1e-12);
+  EXPECT_NEAR(ellipsoids.center_share_max, 0.1, 1e-12);
+  EXPECT_NEAR(ellipsoids.axis_ratio_mean, 1.1, 1e-12);
+  EXPECT_NEAR(ellipsoids.axis_ratio_deviation, 0.2, 1e-12);
+}
+
 TEST(ObjectGroundtruth, ASightingIsOfTheClassAndWhereTheObjectIs) {
   PinholeCamera camera;
   camera.fx = camera.fy = 500.0;

@@ -22,10 +22,6 @@ PinholeCamera Camera() {
   return camera;
 }
 
-Eigen::Matrix3d CameraMatrix() {
-  return (Eigen::Matrix3d() << 500.0, 0.0, 320.0, 0.0, 500.0, 240.0, 0.0, 0.0, 1.0).finished();
-}
-
 Ellipsoid Sphere(double depth, double radius) {
   return {Rigid3(Eigen::Quaterniond::Identity(), {0.0, 0.0, depth}),
           Eigen::Vector3d::Constant(radius)};
@@ -44,9 +40,9 @@ std::vector<SilhouetteLine> LinesAround(const Ellipse& outline, int count, doubl
 }
 
 // What a perfect segmenter sees of the ellipsoid.
-ObjectView PerfectView(const Ellipsoid& ellipsoid, const Rigid3& cam_from_world = {}) {
-  const Ellipse outline = ProjectEllipsoid(CameraMatrix(), cam_from_world, ellipsoid).value();
-  ObjectView view;
+ReportedView PerfectView(const Ellipsoid& ellipsoid, const Rigid3& cam_from_world = {}) {
+  const Ellipse outline = ProjectEllipsoid(Camera().Matrix(), cam_from_world, ellipsoid).value();
+  ReportedView view;
   view.cam_from_world = cam_from_world;
   view.hull = outline.Polygon(200);
   view.contour = view.hull;
@@ -67,8 +63,8 @@ TEST(ObjectMetrics, APerfectViewFitsPerfectly) {
 
 TEST(ObjectMetrics, TangentDistanceIsInPixelsOnBothSides) {
   const Ellipsoid sphere = Sphere(2.0, 0.3);
-  const Ellipse outline = ProjectEllipsoid(CameraMatrix(), {}, sphere).value();
-  ObjectView view = PerfectView(sphere);
+  const Ellipse outline = ProjectEllipsoid(Camera().Matrix(), {}, sphere).value();
+  ReportedView view = PerfectView(sphere);
   view.lines = LinesAround(outline, 4, 3.0);
   EXPECT_NEAR(MeasureView(sphere, view, Camera()).tangent_px.value(), 3.0, 1e-9);
   view.lines = LinesAround(outline, 4, -5.0);
@@ -79,7 +75,7 @@ TEST(ObjectMetrics, TangentDistanceIsInPixelsOnBothSides) {
 // it r^2 - d^2.
 TEST(ObjectMetrics, MtdIsTheHandComputedOneInSquareMetres) {
   const Ellipsoid sphere = Sphere(2.0, 0.3);
-  ObjectView view = PerfectView(sphere);
+  ReportedView view = PerfectView(sphere);
   view.lines = {{{Eigen::Vector2d::UnitX(), -320.0}, false}};  // x = cx: the plane x = 0
   EXPECT_NEAR(MeasureView(sphere, view, Camera()).mtd_m2.value(), 0.09, 1e-12);
   // x = cx + fx: the plane x = z, sqrt(2) from the centre.
@@ -89,7 +85,7 @@ TEST(ObjectMetrics, MtdIsTheHandComputedOneInSquareMetres) {
 
 TEST(ObjectMetrics, OneSidedLinesAreNotCounted) {
   const Ellipsoid sphere = Sphere(2.0, 0.3);
-  ObjectView view = PerfectView(sphere);
+  ReportedView view = PerfectView(sphere);
   view.lines.push_back({{Eigen::Vector2d::UnitX(), 1000.0}, true});
   EXPECT_LT(MeasureView(sphere, view, Camera()).tangent_px.value(), 1e-9);
   EXPECT_EQ(MeasureView(sphere, view, Camera()).lines, 9U);
@@ -102,7 +98,7 @@ TEST(ObjectMetrics, ACommonMotionOfWorldAndCameraChangesNothing) {
   RandomGeometry random(3);
   const Ellipsoid ellipsoid = {random.Pose(1.0, 0.2), {0.1, 0.2, 0.3}};
   const Rigid3 cam_from_world(ExpSo3({0.1, 0.2, 0.3}), {0.0, 0.1, 2.0});
-  ObjectView view = PerfectView(ellipsoid, cam_from_world);
+  ReportedView view = PerfectView(ellipsoid, cam_from_world);
   const Ellipsoid larger = {ellipsoid.world_from_object, 1.2 * ellipsoid.half_axes};
   const ObjectFit before = MeasureView(larger, view, Camera());
   const Rigid3 motion = random.Pose(2.0, 5.0);
@@ -118,9 +114,9 @@ TEST(ObjectMetrics, ACommonMotionOfWorldAndCameraChangesNothing) {
 TEST(ObjectMetrics, OnlyWhatTheImageShowsIsCompared) {
   Ellipsoid sphere = Sphere(2.0, 0.3);
   sphere.world_from_object.translation.x() = 1.28;  // at the right border, x = 640
-  const ObjectView whole = PerfectView(sphere);
+  const ReportedView whole = PerfectView(sphere);
   EXPECT_GT(MeasureView(sphere, whole, Camera()).siou.value(), 0.999);
-  ObjectView cut = whole;
+  ReportedView cut = whole;
   cut.hull = ClipToBox(whole.hull, {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(639.5, 479.5)});
   cut.contour = cut.hull;
   EXPECT_GT(MeasureView(sphere, cut, Camera()).siou.value(), 0.99);
@@ -129,7 +125,7 @@ TEST(ObjectMetrics, OnlyWhatTheImageShowsIsCompared) {
 
 TEST(ObjectMetrics, AContourMayBeHollowedAndGoEitherWayRound) {
   const Ellipsoid all_over = Sphere(2.0, 1.9);  // its outline holds the whole image
-  ObjectView view;
+  ReportedView view;
   view.hull = {{100, 100}, {300, 100}, {300, 300}, {100, 300}};
   // The lower left quarter of the square is cut out.
   view.contour = {{100, 100}, {300, 100}, {300, 300}, {200, 300}, {200, 200}, {100, 200}};
@@ -143,8 +139,8 @@ TEST(ObjectMetrics, AContourMayBeHollowedAndGoEitherWayRound) {
 
 TEST(ObjectMetrics, ABoxIsComparedWithTheBoxOfTheOutline) {
   const Ellipsoid sphere = Sphere(2.0, 0.3);
-  ObjectView view = PerfectView(sphere);
-  const Eigen::AlignedBox2d box = ProjectEllipsoid(CameraMatrix(), {}, sphere).value().Bounds();
+  ReportedView view = PerfectView(sphere);
+  const Eigen::AlignedBox2d box = ProjectEllipsoid(Camera().Matrix(), {}, sphere).value().Bounds();
   view.hull = {
       box.min(), {box.max().x(), box.min().y()}, box.max(), {box.min().x(), box.max().y()}};
   view.contour = view.hull;
@@ -155,7 +151,7 @@ TEST(ObjectMetrics, ABoxIsComparedWithTheBoxOfTheOutline) {
 }
 
 TEST(ObjectMetrics, WhatIsNotInFrontHasNoOverlapAndNoDistance) {
-  const ObjectView view = PerfectView(Sphere(2.0, 0.3));
+  const ReportedView view = PerfectView(Sphere(2.0, 0.3));
   for (const double depth : {-2.0, 0.1}) {
     const ObjectFit fit = MeasureView(Sphere(depth, 0.3), view, Camera());
     EXPECT_EQ(fit.siou.value(), 0.0);
@@ -167,8 +163,8 @@ TEST(ObjectMetrics, WhatIsNotInFrontHasNoOverlapAndNoDistance) {
 
 TEST(ObjectMetrics, MeansAreOverViewsAndThenOverMappedObjects) {
   const Ellipsoid sphere = Sphere(2.0, 0.3);
-  const ObjectView good = PerfectView(sphere);
-  ObjectView missed = good;
+  const ReportedView good = PerfectView(sphere);
+  ReportedView missed = good;
   missed.hull = {{0, 0}, {20, 0}, {20, 20}};
   missed.lines.clear();
   ObjectReport report;

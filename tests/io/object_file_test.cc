@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-ObjectView MakeView(uint32_t keyframe) {
-  ObjectView view;
+ReportedView MakeView(uint32_t keyframe) {
+  ReportedView view;
   view.keyframe = KeyframeId(keyframe);
   view.timestamp = 1305031102.175304 + keyframe;
   view.cam_from_world = Rigid3(ExpSo3({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0});
@@ -105,8 +105,8 @@ TEST(ObjectFile, WhatWasWrittenReadsBackAndWritesTheSameBytes) {
   EXPECT_EQ(read.objects[1].state, ObjectState::kCandidate);
   EXPECT_EQ(read.objects[0].fit.siou, 0.8);
   EXPECT_FALSE(read.objects[0].fit.siou_mask);
-  const ObjectView expected = MakeView(5);
-  const ObjectView& view = read.objects[0].views.at(1);
+  const ReportedView expected = MakeView(5);
+  const ReportedView& view = read.objects[0].views.at(1);
   EXPECT_EQ(view.keyframe, expected.keyframe);
   EXPECT_NEAR(view.timestamp, expected.timestamp, 1e-6);
   EXPECT_LT(AngularDistance(view.cam_from_world.rotation, expected.cam_from_world.rotation), 1e-7);

@@ -52,7 +52,7 @@ TEST(ObjectReport, HoldsWhatTheMapKnowsOfAnObject) {
   EXPECT_EQ(object.misfit_px, 3.0);
   EXPECT_EQ(object.ellipsoid.half_axes.z(), 0.3);
   ASSERT_EQ(object.views.size(), 3U);
-  const ObjectView& view = object.views[1];
+  const ReportedView& view = object.views[1];
   EXPECT_EQ(view.keyframe, KeyframeId(1));
   EXPECT_EQ(view.timestamp, 0.1 * 7);
   EXPECT_EQ(view.cam_from_world.translation.x(), 7.0);

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +34,30 @@ struct GroundtruthComparison {
 // size, if it is within half of it; classes don't matter. Moving objects stand for nothing.
 GroundtruthComparison CompareWithTruth(std::span<const TrueObject> truths,
                                        const ObjectReport& report, const Rigid3& truth_from_map);
+
+// How many true objects that can be asked for are mapped how often.
+struct TruthCounts {
+  size_t visible = 0;  // seen often enough, and at rest
+  size_t once = 0;     // of these mapped as one object
+  size_t more = 0;     // as several
+  size_t never = 0;
+};
+
+// Of the objects with `min_sightings` or more; without counts of sightings all are visible.
+TruthCounts CountMapped(std::span<const TrueObject> truths, const GroundtruthComparison& comparison,
+                        std::span<const size_t> sightings, size_t min_sightings);
+
+// The errors of the true objects of one shape, of each the nearest mapped one.
+struct ShapeErrors {
+  size_t objects = 0;
+  double center_share_mean = 0.0;
+  double center_share_max = 0.0;
+  double axis_ratio_mean = 0.0;       // over all axes: the bias of their lengths
+  double axis_ratio_deviation = 0.0;  // largest |ratio - 1|
+};
+
+std::map<std::string, ShapeErrors> SummarizeByShape(std::span<const TrueObject> truths,
+                                                    const GroundtruthComparison& comparison);
 
 // A detection of a frame whose true pose is known.
 struct SeenBox {

@@ -19,11 +19,11 @@ namespace hullslam {
 //   tangent_px  mean distance of these lines from the outline's parallel tangents
 // Where the ellipsoid is not wholly in front of the camera it has no outline: the overlaps are 0
 // and the distances absent.
-ObjectFit MeasureView(const Ellipsoid& ellipsoid, const ObjectView& view,
+ObjectFit MeasureView(const Ellipsoid& ellipsoid, const ReportedView& view,
                       const PinholeCamera& camera);
 
 // Means over the views; no value at all without views.
-ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ObjectView> views,
+ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ReportedView> views,
                         const PinholeCamera& camera);
 
 // Fills in the fit of every object.

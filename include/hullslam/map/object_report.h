@@ -15,7 +15,7 @@
 namespace hullslam {
 
 // One view of an object, with all that its shape can be judged by; undistorted pixels.
-struct ObjectView {
+struct ReportedView {
   KeyframeId keyframe;
   double timestamp = 0.0;  // seconds
   Rigid3 cam_from_world;
@@ -46,7 +46,7 @@ struct ReportedObject {
   std::map<std::string, double> votes;  // sum of scores by class
   Ellipsoid ellipsoid;                  // world frame
   double misfit_px = 0.0;
-  std::vector<ObjectView> views;  // by increasing keyframe id
+  std::vector<ReportedView> views;  // by increasing keyframe id
   ObjectFit fit;
 };
 

@@ -1,0 +1,231 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+r"""Runs SLAM with several settings, several times each, and tables what comes out: OUT/ablation.md
+and OUT/ablation.json with trajectory error, overlap of the objects and time of every variant.
+
+    scripts/ablation.py --sequence SEQUENCE --out OUT --seeds 5 --common "--masks MASKS" \
+        --variant off:objects.enabled=false --variant default: \
+        --variant plane:objects.residual=algebraic_plane,objects.primitive=hull
+
+A variant is NAME:KEY=VALUE,KEY=VALUE...; each key becomes --set KEY=VALUE, and an item that begins
+with a dash is given as it is (NAME:--preset=paper); "\," is a comma within a value. Runs are kept
+in OUT/SEQUENCE/NAME/seed-N; one that is there, complete and of the same command and program is not
+run again. A run that fails is told, counted and tried again the next time.
+"""
+
+import argparse
+import hashlib
+import json
+import pathlib
+import re
+import shlex
+import statistics
+import subprocess
+import sys
+
+RECORD = "ablation_run.json"  # beside a run's outputs: what they were made by
+COLUMNS = [  # heading, place in summary.json, format
+    ("ATE m", ("trajectory", "ate_rmse_m"), ".4f"),
+    ("tracked", ("trajectory", "tracked"), ".0f"),
+    ("objects", ("objects", "count"), ".1f"),
+    ("SIoU", ("objects", "siou_mean"), ".3f"),
+    ("SIoU mask", ("objects", "siou_mask_mean"), ".3f"),
+    ("MTD m2", ("objects", "mtd_mean_m2"), ".2e"),
+    ("tangent px", ("objects", "tangent_mean_px"), ".2f"),
+    ("median ms", ("timing", "track_ms", "median"), ".1f"),
+]
+
+
+class InputError(Exception):
+    """Something that the user can mend."""
+
+
+def parse_variant(text):
+    """(name, arguments) of NAME:KEY=VALUE,..."""
+    name, colon, settings = text.partition(":")
+    if not colon or not re.fullmatch(r"[\w.+-]+", name):
+        raise InputError(f"--variant is '{text}', expected NAME:KEY=VALUE,... with a name of "
+                         "letters, digits and . _ + -")
+    arguments = []
+    for item in filter(None, re.split(r"(?<!\\),", settings)):
+        item = item.replace("\\,", ",")
+        if item.startswith("-"):
+            arguments.append(item)
+        elif "=" in item.strip("="):
+            arguments += ["--set", item]
+        else:
+            raise InputError(f"--variant {name}: '{item}', expected KEY=VALUE")
+    return name, arguments
+
+
+def fingerprint(command):
+    """Of the command and the program's bytes: what a finished run is good for."""
+    program = pathlib.Path(command[0])
+    content = program.read_bytes() if program.is_file() else b""
+    return hashlib.sha256(content + json.dumps(command).encode()).hexdigest()
+
+
+def read_json(path):
+    """The object in a file, or None where there is none that can be read."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return content if isinstance(content, dict) else None
+
+
+def run_once(command, folder, seconds):
+    """The summary of a run in `folder`, old or new, and what went wrong (empty: nothing)."""
+    mark = fingerprint(command)
+    record, summary = read_json(folder / RECORD), read_json(folder / "summary.json")
+    if record and record.get("fingerprint") == mark and summary is not None:
+        return summary, ""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / RECORD).unlink(missing_ok=True)
+    (folder / "summary.json").unlink(missing_ok=True)
+    with (folder / "log.txt").open("w", encoding="utf-8") as log:
+        log.write(shlex.join(command) + "\n")
+        log.flush()
+        try:
+            code = subprocess.run(command, stdout=log, stderr=subprocess.STDOUT, check=False,
+                                  timeout=seconds).returncode
+        except subprocess.TimeoutExpired:
+            return None, f"not done after {seconds:.0f} s"
+        except OSError as error:
+            raise InputError(f"{command[0]}: {error.strerror}") from error
+    summary = read_json(folder / "summary.json")
+    if code == 2:  # bad usage or input: no other run would fare better
+        last = (folder / "log.txt").read_text(encoding="utf-8", errors="replace").splitlines()[-1]
+        raise InputError(f"{shlex.join(command)}: {last}")
+    if code != 0 or summary is None:
+        return None, f"exit code {code}" if code else "no summary.json"
+    (folder / RECORD).write_text(json.dumps({"fingerprint": mark, "command": command}) + "\n",
+                                 encoding="utf-8")
+    return summary, ""
+
+
+def value_at(summary, place):
+    """The number at a place of the summary, or None."""
+    for key in place:
+        summary = summary.get(key) if isinstance(summary, dict) else None
+    is_number = isinstance(summary, (int, float)) and not isinstance(summary, bool)
+    return float(summary) if is_number else None
+
+
+def collect(summaries):
+    """For every column mean, standard deviation (of the sample; 0 for one run) and values."""
+    row = {}
+    for heading, place, _ in COLUMNS:
+        values = [value for value in (value_at(summary, place) for summary in summaries)
+                  if value is not None]
+        row[heading] = {"mean": statistics.fmean(values) if values else None,
+                        "sd": statistics.stdev(values) if len(values) > 1 else 0.0,
+                        "values": values}
+    return row
+
+
+def cell(entry, form, with_deviation):
+    if entry["mean"] is None:
+        return "-"
+    text = format(entry["mean"], form)
+    if with_deviation and len(entry["values"]) > 1:
+        text += f" ± {format(entry['sd'], form)}"
+    return text
+
+
+def table(results):
+    """Markdown: a row a sequence and variant, ATE with its deviation and against the first one."""
+    lines = ["| sequence | variant | runs | " + " | ".join(c[0] for c in COLUMNS) + " | ATE change |",
+             "|---|---|---|" + "---|" * (len(COLUMNS) + 1)]
+    first = {}
+    for result in results:
+        row, ate = result["figures"], result["figures"]["ATE m"]["mean"]
+        base = first.setdefault(result["sequence"], ate)
+        change = f"{100 * (ate / base - 1):+.1f} %" if ate is not None and base else "-"
+        runs = str(result["runs"]) + (f" ({result['failed']} failed)" if result["failed"] else "")
+        cells = [cell(row[heading], form, heading == "ATE m") for heading, _, form in COLUMNS]
+        lines.append(f"| {result['sequence']} | {result['variant']} | {runs} | "
+                     + " | ".join(cells) + f" | {change} |")
+    return "\n".join(lines) + "\n"
+
+
+def write(path, text):
+    """Whole or not at all."""
+    temporary = path.with_name(path.name + ".tmp")
+    temporary.write_text(text, encoding="utf-8")
+    temporary.replace(path)
+
+
+def run_variant(arguments, sequence, name, settings):
+    """The result of all repetitions of a variant on a sequence."""
+    summaries, failures = [], []
+    for seed in range(arguments.first_seed, arguments.first_seed + arguments.seeds):
+        folder = arguments.out / sequence.resolve().name / name / f"seed-{seed}"
+        command = [str(arguments.program), str(sequence), *shlex.split(arguments.common), *settings,
+                   "--seed", str(seed), "--quiet", "--output", str(folder)]
+        summary, failure = run_once(command, folder, arguments.timeout)
+        if failure:
+            failures.append(f"seed {seed}: {failure}")
+            print(f"{sequence.name} {name} seed {seed}: {failure}; see {folder / 'log.txt'}",
+                  file=sys.stderr)
+        else:
+            summaries.append(summary)
+            ate = value_at(summary, ("trajectory", "ate_rmse_m"))
+            print(f"{sequence.name} {name} seed {seed}: ATE "
+                  f"{'unknown' if ate is None else f'{ate:.4f} m'}", flush=True)
+    return {"sequence": sequence.resolve().name, "variant": name, "arguments": settings,
+            "runs": len(summaries), "failed": len(failures), "failures": failures,
+            "figures": collect(summaries)}
+
+
+def find_program(given):
+    top = pathlib.Path(__file__).resolve().parent.parent
+    program = given or top / "build" / "release" / "bin" / "rgbd_tum"
+    if not program.is_file():
+        raise InputError(f"{program}: no such program; build it or give --program")
+    return program
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--sequence", type=pathlib.Path, action="append", required=True,
+                        help="folder of a sequence; repeat for more")
+    parser.add_argument("--variant", action="append", required=True,
+                        help="NAME:KEY=VALUE,...; repeat for more, the first is compared with")
+    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder of runs and tables")
+    parser.add_argument("--seeds", type=int, default=5, help="repetitions (default 5)")
+    parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument("--common", default="", help="arguments of all runs, in one text")
+    parser.add_argument("--program", type=pathlib.Path, help="default: rgbd_tum of build/release")
+    parser.add_argument("--timeout", type=float, default=3600.0, help="of a run, s (default 3600)")
+    arguments = parser.parse_args()
+    if arguments.seeds < 1 or arguments.first_seed < 0:
+        parser.error("--seeds must be 1 or more, --first-seed 0 or more")
+    return arguments
+
+
+def main():
+    arguments = parse_arguments()
+    try:
+        arguments.program = find_program(arguments.program)
+        variants = [parse_variant(text) for text in arguments.variant]
+        names = [name for name, _ in variants]
+        if len(set(names)) != len(names):
+            raise InputError(f"two variants have the same name: {', '.join(names)}")
+        results = []
+        for sequence in arguments.sequence:
+            for name, settings in variants:
+                results.append(run_variant(arguments, sequence, name, settings))
+                # After each, so that a look at the table needs not wait for the last.
+                write(arguments.out / "ablation.md", table(results))
+                write(arguments.out / "ablation.json", json.dumps(results, indent=1) + "\n")
+    except (InputError, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    print(table(results), end="")
+    return 1 if any(result["failed"] for result in results) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
