@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <utility>
 
 #include "hullslam/util/check.h"
 
@@ -16,12 +17,26 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Points = std::vector<Kernel::Point_2>;
 
-// CGAL 5.5 keeps some collinear corners: of equally distant points it takes any to split at.
-Points WithoutCollinear(const Points& corners) {
+// The kernel with a fast choice of the point farthest from a line, which decides nothing but where
+// QuickHull splits: the kernel's own takes interval arithmetic and most of the time of a hull.
+struct Traits : Kernel {
+  struct Less_signed_distance_to_line_2 {  // NOLINT(readability-identifier-naming): CGAL's name
+    bool operator()(const Point_2& from, const Point_2& to, const Point_2& a,
+                    const Point_2& b) const {
+      return Side(from, to, a) < Side(from, to, b);
+    }
+    static double Side(const Point_2& from, const Point_2& to, const Point_2& p) {
+      return (to.x() - from.x()) * (p.y() - from.y()) - (to.y() - from.y()) * (p.x() - from.x());
+    }
+  };
+  // NOLINTNEXTLINE(readability-identifier-naming): CGAL's name
+  Less_signed_distance_to_line_2 less_signed_distance_to_line_2_object() const { return {}; }
+};
+
+// Of equally distant points any may have been split at: some corners are on the line between their
+// neighbours, or by rounding behind it.
+Points WithoutFlatCorners(const Points& corners) {
   const size_t size = corners.size();
-  if (size < 3) {
-    return corners;
-  }
   Points strict;
   strict.reserve(size);
   for (size_t i = 0; i < size; ++i) {
@@ -31,6 +46,17 @@ Points WithoutCollinear(const Points& corners) {
     }
   }
   return strict;
+}
+
+// All corners as left turns, by exact predicates. A corner of the hull is one whatever its
+// neighbours are, so none is lost.
+Points StrictlyConvex(Points corners) {
+  size_t before = 0;
+  while (corners.size() >= 3 && corners.size() != before) {
+    before = corners.size();
+    corners = WithoutFlatCorners(corners);
+  }
+  return corners;
 }
 
 }  // namespace
@@ -43,8 +69,8 @@ std::vector<Eigen::Vector2d> ConvexHull(std::span<const Eigen::Vector2d> points)
     input.emplace_back(point.x(), point.y());
   }
   Points corners;
-  CGAL::ch_bykat(input.begin(), input.end(), std::back_inserter(corners), Kernel());
-  corners = WithoutCollinear(corners);
+  CGAL::ch_bykat(input.begin(), input.end(), std::back_inserter(corners), Traits());
+  corners = StrictlyConvex(std::move(corners));
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
   std::vector<Eigen::Vector2d> hull;
   hull.reserve(corners.size());

@@ -153,6 +153,7 @@ void RejectDuplicates(double duplicate_iou, std::vector<Candidate>& candidates,
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.mask->score > b.mask->score; });
   std::vector<Candidate> kept;
+  kept.reserve(candidates.size());
   for (Candidate& candidate : candidates) {
     const bool is_known = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
       return AreOneObject(candidate, other, duplicate_iou);
@@ -228,6 +229,7 @@ DetectionResult DetectionBuilder::Build(std::span<const InstanceMask> masks, con
       .keypoints = keypoints};
   DetectionResult result;
   std::vector<Candidate> candidates;
+  candidates.reserve(masks.size());
   for (size_t i = 0; i < masks.size(); ++i) {
     result.rejections.push_back(Prepare(masks[i], i, frame, candidates));
   }

@@ -22,7 +22,7 @@ enum class Beyond { kUnknown, kNothingNearer, kNearer };
 
 Beyond Look(const Eigen::Vector2d& place, const Eigen::Vector2d& outwards, const DepthView& view,
             double object_depth, std::span<const Occluder> others) {
-  const double inside = view.At(place - kInside * outwards);
+  const double inside = view.AtRaw(view.camera.Distort(place - kInside * outwards));
   const double own = inside > 0.0 ? inside : object_depth;
   if (own <= 0.0) {
     return Beyond::kUnknown;
@@ -30,9 +30,8 @@ Beyond Look(const Eigen::Vector2d& place, const Eigen::Vector2d& outwards, const
   const double limit = own - Step(own);
   Beyond result = Beyond::kUnknown;
   for (const double distance : kBeyond) {
-    const Eigen::Vector2d outside = place + distance * outwards;
-    const double depth = view.At(outside);
-    const Eigen::Vector2d raw = view.camera.Distort(outside);
+    const Eigen::Vector2d raw = view.camera.Distort(place + distance * outwards);
+    const double depth = view.AtRaw(raw);
     const bool in_nearer_mask =
         std::any_of(others.begin(), others.end(), [&](const Occluder& other) {
           return other.depth > 0.0 && other.depth < limit && other.region->Contains(raw);
@@ -49,8 +48,8 @@ Beyond Look(const Eigen::Vector2d& place, const Eigen::Vector2d& outwards, const
 
 }  // namespace
 
-double DepthView::At(const Eigen::Vector2d& undistorted) const {
-  return SampleDepth(image, camera.Distort(undistorted).cast<float>(), units_per_metre);
+double DepthView::AtRaw(const Eigen::Vector2d& raw) const {
+  return SampleDepth(image, raw.cast<float>(), units_per_metre);
 }
 
 std::vector<Eigen::Vector3d> DepthPoints(const DepthView& view, const MaskRegion& region,
@@ -67,7 +66,7 @@ std::vector<Eigen::Vector3d> DepthPoints(const DepthView& view, const MaskRegion
       if (!region.ContainsAround(raw, margin)) {
         continue;
       }
-      const double depth = SampleDepth(view.image, raw.cast<float>(), view.units_per_metre);
+      const double depth = view.AtRaw(raw);
       if (depth > 0.0) {
         points.push_back(view.camera.Unproject(view.camera.Undistort(raw), depth));
       }

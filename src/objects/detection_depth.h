@@ -12,14 +12,14 @@
 
 namespace hullslam {
 
-// A depth image with the camera that took it; depths by undistorted pixels.
+// A depth image with the camera that took it.
 struct DepthView {
   const PinholeCamera& camera;
   const cv::Mat& image;  // as in RgbdImage, or empty
   double units_per_metre;
 
   // m, 0 where unknown.
-  double At(const Eigen::Vector2d& undistorted) const;
+  double AtRaw(const Eigen::Vector2d& raw) const;
 };
 
 // An object of the frame as what may hide others.

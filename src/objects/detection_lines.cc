@@ -14,7 +14,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kTouch = 1.0;  // px: a corner this near to a line carries it
 constexpr double kNear = 3.0;   // px: about the error of a mask's border
-constexpr size_t kMaxNear = 9;
+constexpr size_t kMaxPlaces = 9;
 constexpr int kTangents = 16;            // of an ellipse
 constexpr double kSameDirection = 0.09;  // radians, about 5 degrees
 
@@ -28,33 +28,34 @@ double Reach(const Polygon2& points, const Eigen::Vector2d& direction) {
   return reach;
 }
 
-// The points that reach farthest along a direction, but for `slack` px.
-Polygon2 Foremost(const Polygon2& points, const Eigen::Vector2d& direction, double slack) {
-  const double least = Reach(points, direction) - slack;
-  Polygon2 foremost;
-  for (const Eigen::Vector2d& p : points) {
-    if (direction.dot(p) >= least) {
-      foremost.push_back(p);
+// At most `count` of the points whose distance from the foremost one along a direction (`reaches`)
+// is below `slack` px, evenly chosen.
+Polygon2 Foremost(const Polygon2& points, const Eigen::RowVectorXd& reaches, double slack,
+                  size_t count) {
+  const double least = reaches.maxCoeff() - slack;
+  std::vector<size_t> foremost;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (reaches[static_cast<Eigen::Index>(i)] >= least) {
+      foremost.push_back(i);
     }
   }
-  return foremost;
-}
-
-Polygon2 EvenlyChosen(const Polygon2& points, size_t count) {
-  if (points.size() <= count) {
-    return points;
-  }
   Polygon2 chosen;
-  for (size_t i = 0; i < count; ++i) {
-    chosen.push_back(points[i * (points.size() - 1) / (count - 1)]);
+  chosen.reserve(count);
+  const size_t used = std::min(count, foremost.size());
+  for (size_t i = 0; i < used; ++i) {
+    chosen.push_back(points[foremost[used == 1 ? 0 : i * (foremost.size() - 1) / (used - 1)]]);
   }
   return chosen;
 }
 
 LineOnOutline LineAlong(const Outline& outline, const Line2& line) {
+  // The points as the columns of a matrix: this runs for each line of each mask.
+  const Eigen::Map<const Eigen::Matrix2Xd> points(
+      outline.boundary[0].data(), 2, static_cast<Eigen::Index>(outline.boundary.size()));
+  const Eigen::RowVectorXd reaches = line.normal.transpose() * points;
   return {.line = line,
-          .touching = Foremost(outline.boundary, line.normal, kTouch),
-          .near = EvenlyChosen(Foremost(outline.boundary, line.normal, kNear), kMaxNear)};
+          .touching = Foremost(outline.boundary, reaches, kTouch, kMaxPlaces),
+          .near = Foremost(outline.boundary, reaches, kNear, kMaxPlaces)};
 }
 
 LineOnOutline SupportLine(const Outline& outline, const Eigen::Vector2d& direction) {
