@@ -3,11 +3,14 @@
 // as far off as a motion model is.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
 #include "hullslam/costs/projection.h"
 #include "hullslam/map/intrinsics.h"
+#include "hullslam/optim/joint_pose_optimization.h"
 #include "hullslam/optim/pose_optimization.h"
 
 namespace hullslam {
@@ -46,6 +49,41 @@ void PoseOptimization(benchmark::State& state) {
 }
 BENCHMARK(PoseOptimization)
     ->ArgName("points")
+    ->Arg(50)
+    ->Arg(300)
+    ->Arg(1000)
+    ->Unit(benchmark::kMillisecond);
+
+// With the outlines of eight objects besides, 16 lines each.
+void JointPoseOptimization(benchmark::State& state) {
+  const auto observations = MakeObservations(static_cast<size_t>(state.range(0)));
+  std::vector<std::vector<SilhouetteLine>> lines(8);
+  std::vector<PoseObject> objects(lines.size());
+  for (size_t i = 0; i < objects.size(); ++i) {
+    const double x = static_cast<double>(i % 4) - 1.5;
+    objects[i].ellipsoid = {{Eigen::Quaterniond::Identity(), {0.6 * x, i < 4 ? -0.4 : 0.4, 3.0}},
+                            {0.2, 0.15, 0.1}};
+    const Ellipse ellipse =
+        ProjectEllipsoid(kCamera.Matrix(), Rigid3(), objects[i].ellipsoid).value();
+    for (int k = 0; k < 16; ++k) {
+      const double angle = k * std::numbers::pi / 8.0;
+      const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
+      lines[i].push_back(
+          {{normal, -normal.dot(ellipse.center) - ellipse.HalfExtent(normal)}, false});
+    }
+    objects[i].measurement.lines = lines[i];
+    objects[i].sigma_px = 4.0;
+  }
+  const Rigid3 start(ExpSo3({0.01, -0.02, 0.01}), {0.02, 0.01, -0.02});
+  int used = 0;
+  for (auto _ : state) {
+    used = OptimizeJointPose(kCamera, start, observations, objects).used_objects;
+  }
+  state.counters["objects"] = used;
+}
+BENCHMARK(JointPoseOptimization)
+    ->ArgName("points")
+    ->Arg(0)
     ->Arg(50)
     ->Arg(300)
     ->Arg(1000)

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/optim/joint_pose_optimization.h"
+
+#include "hullslam/map/intrinsics.h"
+#include "object_terms.h"
+#include "pose_problem.h"
+
+namespace hullslam {
+namespace {
+
+using internal::Matrix6d;
+using internal::Vector6d;
+
+class JointProblem {
+ public:
+  JointProblem(const internal::PointTerms& points, const internal::ObjectTerms& objects,
+               const Rigid3& start, const JointPoseOptions& options)
+      : points_(points), objects_(objects), world_from_start_(Inverse(start)) {
+    information_ << Eigen::Vector3d::Constant(1.0 / options.prior_rotation),
+        Eigen::Vector3d::Constant(1.0 / options.prior_translation);
+    information_ = information_.cwiseAbs2().eval();
+  }
+
+  double Cost(const Rigid3& pose) const {
+    const Vector6d motion = Motion(pose);
+    return points_.Cost(pose) + objects_.Cost(pose) + motion.dot(information_.cwiseProduct(motion));
+  }
+
+  void Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& gradient) const {
+    points_.Linearize(pose, hessian, gradient);
+    objects_.Linearize(pose, hessian, gradient);
+    hessian.diagonal() += information_;
+    gradient += information_.cwiseProduct(Motion(pose));
+  }
+
+ private:
+  // From the start, in the camera frame; its derivative by Retract is the identity to first order
+  // in the motion, which is enough for a weak prior.
+  Vector6d Motion(const Rigid3& pose) const {
+    const Rigid3 moved_from_start = pose * world_from_start_;
+    Vector6d motion;
+    motion << LogSo3(moved_from_start.rotation), moved_from_start.translation;
+    return motion;
+  }
+
+  const internal::PointTerms& points_;
+  const internal::ObjectTerms& objects_;
+  Rigid3 world_from_start_;
+  Vector6d information_;
+};
+
+bool IsHeld(const JointPoseResult& result, const JointPoseOptions& options) {
+  return result.points.inlier_count >= 3 || result.used_objects >= options.min_objects;
+}
+
+}  // namespace
+
+JointPoseResult OptimizeJointPose(const PinholeCamera& camera, const Rigid3& cam_from_world,
+                                  std::span<const PoseObservation> observations,
+                                  std::span<const PoseObject> objects,
+                                  const JointPoseOptions& options) {
+  JointPoseResult result;
+  const Intrinsics intrinsics = ToIntrinsics(camera);
+  internal::ObjectTerms terms(intrinsics, cam_from_world, objects, options);
+  terms.Write(result);
+  if (result.used_objects == 0) {
+    result.points = OptimizePose(camera, cam_from_world, observations, options.points);
+    return result;
+  }
+  Rigid3& pose = result.points.cam_from_world;
+  pose = cam_from_world;
+  result.points.is_inlier.assign(observations.size(), 0);
+  internal::ChooseInliers(intrinsics, observations, internal::InlierRule::kInFront, result.points);
+  for (int round = 0; round < options.points.rounds && IsHeld(result, options); ++round) {
+    const internal::PointTerms points(intrinsics, observations, result.points.is_inlier,
+                                      round < options.points.robust_rounds);
+    const JointProblem problem(points, terms, cam_from_world, options);
+    pose = internal::Minimize(problem, pose, options.points);
+    internal::ChooseInliers(intrinsics, observations, internal::InlierRule::kBelowBound,
+                            result.points);
+    terms.Choose(pose);
+    terms.Write(result);
+  }
+  if (!IsHeld(result, options)) {
+    pose = cam_from_world;
+  }
+  return result;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/optim/joint_pose_optimization.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "hullslam/map/intrinsics.h"
+#include "hullslam/map/object_measurement.h"
+#include "objects/made_objects.h"
+#include "support/random_geometry.h"
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
+Eigen::Vector3d Center(const Rigid3& cam_from_world) { return Inverse(cam_from_world).translation; }
+
+// Moves the outline by (dx, dy) px.
+void Shift(Detection& detection, double dx, double dy) {
+  for (SilhouetteLine& line : detection.lines) {
+    line.line.offset -= line.line.normal.dot(Eigen::Vector2d(dx, dy));
+  }
+}
+
+// A frame with points and objects in front of it, and how they are seen from the true pose.
+class JointPose : public ::testing::Test {
+ protected:
+  void MakeScene(uint32_t seed) {
+    random_ = RandomGeometry(seed);
+    generator_.seed(seed);
+    true_pose_ = random_.Pose(1.0, 2.0);
+    ellipsoids_.clear();
+    detections_.clear();
+    observations_.clear();
+  }
+  // Objects on both sides of the image and in its middle, 2 to 4 m away.
+  void AddObjects(int count, double line_noise = 0.0) {
+    for (int i = 0; i < count; ++i) {
+      MadeObject object;
+      const Rigid3 cam_from_object(ExpSo3(random_.Vector(1.0)),
+                                   {0.9 * (i % 3 - 1) + random_.Number(-0.2, 0.2),
+                                    random_.Number(-0.7, 0.7), random_.Number(2.0, 4.0)});
+      object.ellipsoid.world_from_object = Inverse(true_pose_) * cam_from_object;
+      object.ellipsoid.half_axes = {random_.Number(0.1, 0.3), random_.Number(0.1, 0.3),
+                                    random_.Number(0.1, 0.3)};
+      Detection detection = Detect(object, sensor_, true_pose_);
+      for (SilhouetteLine& line : detection.lines) {
+        line.line.offset += line_noise * normal_(generator_);
+      }
+      ellipsoids_.push_back(object.ellipsoid);
+      detections_.push_back(std::move(detection));
+    }
+  }
+  // Points within `reach` (m) of a place in the camera frame, seen with `noise` px.
+  void AddPoints(int count, const Eigen::Vector3d& place, const Eigen::Vector3d& reach,
+                 double noise) {
+    for (int i = 0; i < count; ++i) {
+      const Eigen::Vector3d in_cam = place + random_.Vector(1.0).cwiseProduct(reach);
+      PoseObservation& observation = observations_.emplace_back();
+      observation.point = Inverse(true_pose_) * in_cam;
+      observation.measured = ProjectRgbd(ToIntrinsics(sensor_.camera), in_cam);
+      observation.has_depth = true;
+      for (int k = 0; k < 3; ++k) {
+        observation.measured[k] += noise * normal_(generator_);
+      }
+    }
+  }
+  void AddSpreadPoints(int count, double noise) {
+    AddPoints(count, {0.0, 0.0, 4.0}, {1.2, 0.9, 2.0}, noise);
+  }
+  std::vector<PoseObject> Objects(double sigma_px) const {
+    std::vector<PoseObject> objects;
+    for (size_t i = 0; i < detections_.size(); ++i) {
+      objects.push_back({ellipsoids_[i], ToMeasurement(detections_[i]), sigma_px});
+    }
+    return objects;
+  }
+  JointPoseResult Optimize(const Rigid3& start, double sigma_px,
+                           const JointPoseOptions& options = {}) const {
+    return OptimizeJointPose(sensor_.camera, start, observations_, Objects(sigma_px), options);
+  }
+  Rigid3 Start(double angle = 0.01, double distance = 0.02) {
+    return random_.Pose(angle, distance) * true_pose_;
+  }
+
+  const Sensor sensor_ = SyntheticSensor();
+  RandomGeometry random_{1};
+  std::mt19937 generator_;
+  mutable std::normal_distribution<double> normal_;
+  Rigid3 true_pose_;
+  std::vector<Ellipsoid> ellipsoids_;
+  std::vector<Detection> detections_;
+  std::vector<PoseObservation> observations_;
+};
+
+TEST_F(JointPose, ExactTangentsRecoverThePose) {
+  for (uint32_t seed = 1; seed <= 10; ++seed) {
+    MakeScene(seed);
+    AddObjects(3);
+    AddSpreadPoints(20, 0.0);
+    const JointPoseResult result = Optimize(Start(), 1.5);
+    // What is left is the pull of the prior.
+    EXPECT_LT(Distance(result.points.cam_from_world, true_pose_), 2e-4);
+    EXPECT_EQ(result.points.inlier_count, 20);
+    EXPECT_EQ(result.used_objects, 3);
+    EXPECT_EQ(result.object_used, std::vector<uint8_t>(3, 1));
+  }
+}
+
+// What is left is the pull of the prior along what four outlines hold least.
+TEST_F(JointPose, ObjectsAloneRecoverThePose) {
+  double sum = 0.0;
+  double start_sum = 0.0;
+  for (uint32_t seed = 1; seed <= 20; ++seed) {
+    MakeScene(seed);
+    AddObjects(4);
+    const Rigid3 start = Start();
+    const JointPoseResult result = Optimize(start, 1.5);
+    EXPECT_EQ(result.used_objects, 4);
+    sum += Distance(result.points.cam_from_world, true_pose_);
+    start_sum += Distance(start, true_pose_);
+    EXPECT_LT(Distance(result.points.cam_from_world, true_pose_), Distance(start, true_pose_));
+  }
+  EXPECT_LT(sum, 0.2 * start_sum);
+}
+
+TEST_F(JointPose, OtherResidualsRecoverThePoseToo) {
+  for (const auto& [residual, primitive] :
+       {std::pair(ObjectResidual::kAlgebraicPlane, ObjectPrimitive::kHull),
+        {ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour},
+        {ObjectResidual::kOverlap, ObjectPrimitive::kBox}}) {
+    JointPoseOptions options;
+    options.residual = residual;
+    options.primitive = primitive;
+    double sum = 0.0;
+    double start_sum = 0.0;
+    for (uint32_t seed = 1; seed <= 10; ++seed) {
+      MakeScene(seed);
+      AddObjects(4);
+      const Rigid3 start = Start();
+      sum += Distance(Optimize(start, 1.5, options).points.cam_from_world, true_pose_);
+      start_sum += Distance(start, true_pose_);
+    }
+    EXPECT_LT(sum, 0.5 * start_sum) << NameOf(residual);
+  }
+}
+
+TEST_F(JointPose, WithoutObjectsItIsOptimizePoseToTheLastBit) {
+  MakeScene(1);
+  AddSpreadPoints(60, 1.0);
+  const Rigid3 start = Start();
+  const PoseOptimizationResult expected = OptimizePose(sensor_.camera, start, observations_);
+  const JointPoseResult result = Optimize(start, 1.5);
+  EXPECT_EQ(result.points.cam_from_world.rotation.coeffs(),
+            expected.cam_from_world.rotation.coeffs());
+  EXPECT_EQ(result.points.cam_from_world.translation, expected.cam_from_world.translation);
+  EXPECT_EQ(result.points.is_inlier, expected.is_inlier);
+  EXPECT_EQ(result.used_objects, 0);
+}
+
+// The outlines of all objects lie 40 px beside them, in another direction each.
+TEST_F(JointPose, WrongDetectionsDoNotHarmAHundredPoints) {
+  double with = 0.0;
+  double without = 0.0;
+  int dropped = 0;
+  for (uint32_t seed = 1; seed <= 20; ++seed) {
+    MakeScene(seed);
+    AddSpreadPoints(100, 1.0);
+    const Rigid3 start = Start();
+    without += Distance(Optimize(start, 3.0).points.cam_from_world, true_pose_);
+    AddObjects(4);
+    for (Detection& detection : detections_) {
+      const double angle = random_.Number(0.0, 6.28);
+      Shift(detection, 40.0 * std::cos(angle), 40.0 * std::sin(angle));
+    }
+    const JointPoseResult result = Optimize(start, 3.0);
+    with += Distance(result.points.cam_from_world, true_pose_);
+    dropped += result.dropped_objects;
+  }
+  EXPECT_LT(with, 1.03 * without);
+  EXPECT_EQ(dropped, 4 * 20);
+}
+
+// The points lie within 30 cm, so that a turn of the camera and a shift look alike. It is not the
+// prior that helps: objects of which next to nothing is known bring it in too.
+TEST_F(JointPose, ObjectsHelpWhereFewPointsAreBunched) {
+  double with = 0.0;
+  double without = 0.0;
+  double with_prior = 0.0;
+  const auto error = [this](const Rigid3& start, double sigma_px) {
+    return (Center(Optimize(start, sigma_px).points.cam_from_world) - Center(true_pose_)).norm();
+  };
+  for (uint32_t seed = 1; seed <= 50; ++seed) {
+    MakeScene(seed);
+    AddPoints(9, {0.8, 0.5, 3.0}, {0.15, 0.15, 0.15}, 1.0);
+    const Rigid3 start = Start();
+    without += error(start, 3.0);
+    AddObjects(3, 3.0);
+    with += error(start, 3.0);
+    with_prior += error(start, 1e5);
+  }
+  EXPECT_LT(with, 0.6 * without);
+  EXPECT_LT(with, 0.8 * with_prior);
+}
+
+TEST_F(JointPose, ADroppedObjectIsToldAndHoldsNothing) {
+  MakeScene(3);
+  AddSpreadPoints(50, 1.0);
+  AddObjects(3);
+  Shift(detections_[1], 60.0, 0.0);
+  const JointPoseResult result = Optimize(Start(), 2.0);
+  EXPECT_EQ(result.object_used, (std::vector<uint8_t>{1, 0, 1}));
+  EXPECT_EQ(result.used_objects, 2);
+  EXPECT_EQ(result.dropped_objects, 1);
+}
+
+TEST_F(JointPose, ObjectsWithoutOutlineAreNeitherUsedNorDropped) {
+  MakeScene(4);
+  AddSpreadPoints(50, 1.0);
+  AddObjects(3);
+  ellipsoids_[0].world_from_object.translation =
+      Inverse(true_pose_) * Eigen::Vector3d(0.0, 0.0, -2.0);
+  detections_[1].lines.clear();
+  const JointPoseResult result = Optimize(Start(), 2.0);
+  EXPECT_EQ(result.object_used, (std::vector<uint8_t>{0, 0, 1}));
+  EXPECT_EQ(result.dropped_objects, 0);
+  EXPECT_LT(Distance(result.points.cam_from_world, true_pose_), 0.02);
+}
+
+TEST_F(JointPose, OneObjectHoldsNoPoseAlone) {
+  MakeScene(5);
+  AddObjects(1);
+  const Rigid3 start = Start();
+  EXPECT_EQ(Distance(Optimize(start, 1.5).points.cam_from_world, start), 0.0);
+  EXPECT_GT(Distance(Optimize(start, 1.5, {.min_objects = 1}).points.cam_from_world, start), 0.0);
+}
+
+// Whatever the outlines are, the pose stays near its start: here they belong to nothing.
+TEST_F(JointPose, NeverRunsAwayWithoutPoints) {
+  for (uint32_t seed = 1; seed <= 50; ++seed) {
+    MakeScene(seed);
+    AddObjects(2 + static_cast<int>(seed % 3));
+    for (Detection& detection : detections_) {
+      Shift(detection, random_.Number(-100.0, 100.0), random_.Number(-100.0, 100.0));
+      for (SilhouetteLine& line : detection.lines) {
+        line.line.offset += random_.Number(-30.0, 30.0);
+      }
+    }
+    const Rigid3 start = Start();
+    const JointPoseResult result = Optimize(start, 1.5);
+    ASSERT_TRUE(result.points.cam_from_world.ToMatrix().allFinite());
+    EXPECT_LT((Center(result.points.cam_from_world) - Center(start)).norm(), 0.2) << seed;
+  }
+}
+
+// Two objects one behind the other leave the turn around the line of sight nearly free.
+TEST_F(JointPose, WhatOutlinesLeaveFreeStaysAtTheStart) {
+  MakeScene(6);
+  AddObjects(2);
+  for (size_t i = 0; i < 2; ++i) {  // spheres: no outline tells a turn around their centres
+    MadeObject sphere;
+    sphere.ellipsoid.world_from_object =
+        Inverse(true_pose_) * Rigid3(Eigen::Quaterniond::Identity(), {0.0, 0.0, 2.0 + 1.0 * i});
+    sphere.ellipsoid.half_axes.setConstant(0.2);
+    ellipsoids_[i] = sphere.ellipsoid;
+    detections_[i] = Detect(sphere, sensor_, true_pose_);
+  }
+  const Rigid3 start = Rigid3(ExpSo3({0.0, 0.0, 0.05}), {0.0, 0.01, 0.0}) * true_pose_;
+  const JointPoseResult result = Optimize(start, 1.5);
+  EXPECT_EQ(result.used_objects, 2);
+  const Eigen::Vector3d turn =
+      LogSo3(result.points.cam_from_world.rotation * true_pose_.rotation.conjugate());
+  EXPECT_NEAR(turn.z(), 0.05, 0.005);
+  const Eigen::Vector3d seen =
+      result.points.cam_from_world * ellipsoids_[0].world_from_object.translation;
+  EXPECT_LT(std::hypot(seen.x(), seen.y()), 0.005);
+}
+
+TEST_F(JointPose, OneDetectionWeighsAsOneLineAtMost) {
+  MakeScene(7);
+  AddSpreadPoints(10, 1.0);
+  AddObjects(2, 3.0);
+  const Rigid3 start = Start();
+  const Rigid3 few = Optimize(start, 3.0).points.cam_from_world;
+  // Every line twice: nothing new.
+  for (Detection& detection : detections_) {
+    const std::vector<SilhouetteLine> lines = detection.lines;
+    detection.lines.insert(detection.lines.end(), lines.begin(), lines.end());
+  }
+  EXPECT_LT(Distance(Optimize(start, 3.0).points.cam_from_world, few), 1e-6);
+  EXPECT_GT(Distance(Optimize(start, 3.0, {.max_effective_lines = 8.0}).points.cam_from_world, few),
+            1e-5);
+}
+
+TEST_F(JointPose, DoesNotDependOnTheWorldFrame) {
+  MakeScene(8);
+  AddSpreadPoints(12, 1.0);
+  AddObjects(3, 2.0);
+  const Rigid3 start = Start();
+  const Rigid3 expected = Optimize(start, 2.0).points.cam_from_world;
+  const Rigid3 new_from_old = random_.Pose(2.0, 5.0);
+  for (PoseObservation& observation : observations_) {
+    observation.point = new_from_old * observation.point;
+  }
+  for (Ellipsoid& ellipsoid : ellipsoids_) {
+    ellipsoid = new_from_old * ellipsoid;
+  }
+  const Rigid3 found =
+      Optimize(start * Inverse(new_from_old), 2.0).points.cam_from_world * new_from_old;
+  EXPECT_LT(Distance(found, expected), 1e-8);
+}
+
+TEST_F(JointPose, SameInputGivesTheSameBits) {
+  MakeScene(9);
+  AddSpreadPoints(12, 1.0);
+  AddObjects(3, 2.0);
+  const Rigid3 start = Start();
+  const Rigid3 first = Optimize(start, 2.0).points.cam_from_world;
+  const Rigid3 second = Optimize(start, 2.0).points.cam_from_world;
+  EXPECT_EQ(first.rotation.coeffs(), second.rotation.coeffs());
+  EXPECT_EQ(first.translation, second.translation);
+}
+
+}  // namespace
+}  // namespace hullslam
