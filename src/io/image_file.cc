@@ -130,20 +130,24 @@ cv::Mat Decode(const std::filesystem::path& path, int flags) {
   return image;
 }
 
+cv::Mat Read16Bit(const std::filesystem::path& path, const char* kind) {
+  cv::Mat image = Decode(path, cv::IMREAD_UNCHANGED);
+  if (image.type() != CV_16UC1) {
+    Fail(path, fmt::format("has {} channel(s) of {} bits, expected a {} image with one channel of "
+                           "16 bits",
+                           image.channels(), 8 * image.elemSize1(), kind));
+  }
+  return image;
+}
+
 }  // namespace
 
 cv::Mat ReadGreyImage(const std::filesystem::path& path) {
   return Decode(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
 }
 
-cv::Mat ReadDepthImage(const std::filesystem::path& path) {
-  cv::Mat depth = Decode(path, cv::IMREAD_UNCHANGED);
-  if (depth.type() != CV_16UC1) {
-    Fail(path, fmt::format("has {} channel(s) of {} bits, expected a depth image with one channel "
-                           "of 16 bits",
-                           depth.channels(), 8 * depth.elemSize1()));
-  }
-  return depth;
-}
+cv::Mat ReadDepthImage(const std::filesystem::path& path) { return Read16Bit(path, "depth"); }
+
+cv::Mat ReadLabelImage(const std::filesystem::path& path) { return Read16Bit(path, "label"); }
 
 }  // namespace hullslam

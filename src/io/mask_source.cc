@@ -10,7 +10,12 @@
 
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
+#include "io/mask_boxes.h"
 #include "io/mask_checks.h"
+#include "io/mask_coco.h"
+#include "io/mask_label_png.h"
+#include "io/mask_oa_slam.h"
+#include "io/mask_paper.h"
 #include "io/mask_probe.h"
 #include "io/mask_yolo_seg.h"
 
@@ -20,11 +25,15 @@ namespace {
 struct MaskFormat {
   std::string_view name;
   bool (*is_meant)(const MaskProbe& probe);
-  std::unique_ptr<MaskSource> (*open)(const MaskRequest& request,
-                                      std::span<const MaskFrame> frames);
+  std::unique_ptr<MaskSource> (*open)(const MaskRequest& request);
 };
 
-constexpr std::array kFormats = {MaskFormat{"yolo-seg", IsYoloSeg, OpenYoloSeg}};
+constexpr std::array<MaskFormat, 6> kFormats = {{{"yolo-seg", IsYoloSeg, OpenYoloSeg},
+                                                 {"coco", IsCoco, OpenCoco},
+                                                 {"label-png", IsLabelPng, OpenLabelPng},
+                                                 {"paper", IsPaper, OpenPaper},
+                                                 {"oa-slam", IsOaSlam, OpenOaSlam},
+                                                 {"boxes", IsBoxes, OpenBoxes}}};
 
 const MaskFormat& FindFormat(const std::string& name) {
   const auto* const found = std::find_if(kFormats.begin(), kFormats.end(),
@@ -93,7 +102,7 @@ std::unique_ptr<const MaskSource> OpenMasks(const MaskRequest& request,
         "masks belong to frames of a known size");
   const MaskFormat& format =
       request.format.empty() ? DetectFormat(request.path) : FindFormat(request.format);
-  std::unique_ptr<const MaskSource> source = format.open(request, frames);
+  std::unique_ptr<const MaskSource> source = format.open(request);
   CheckSomeFrameHasMasks(request.path, *source, frames);
   return source;
 }

@@ -59,8 +59,7 @@ class YoloSegMasks : public TextMasks {
 
 bool IsYoloSeg(const MaskProbe& probe) { return probe.columns >= 7 && IsNormalized(probe, 1); }
 
-std::unique_ptr<MaskSource> OpenYoloSeg(const MaskRequest& request,
-                                        std::span<const MaskFrame> /*frames*/) {
+std::unique_ptr<MaskSource> OpenYoloSeg(const MaskRequest& request) {
   return std::make_unique<YoloSegMasks>(request);
 }
 

@@ -10,7 +10,6 @@ namespace hullslam {
 
 // yolo-seg: `<stem>.txt` with `class x1 y1 ... xn yn [confidence]` a line, of width and height.
 bool IsYoloSeg(const MaskProbe& probe);
-std::unique_ptr<MaskSource> OpenYoloSeg(const MaskRequest& request,
-                                        std::span<const MaskFrame> frames);
+std::unique_ptr<MaskSource> OpenYoloSeg(const MaskRequest& request);
 
 }  // namespace hullslam

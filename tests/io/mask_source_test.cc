@@ -43,6 +43,42 @@ TEST_F(MaskSourceTest, PathThatIsMissingOrEmptyIsRefused) {
   ExpectRefusal({Path().string(), "there is nothing", "'1.5'"});
 }
 
+TEST_F(MaskSourceTest, SeveralFormatsInOneFolderAreRefused) {
+  Write("1.5.txt", kYoloSeg);
+  Write("1.5.png", "");
+  Write("classes.json", "{}");
+  ExpectRefusal({"cannot be told, yolo-seg and label-png fit", "--masks-format"});
+}
+
+TEST_F(MaskSourceTest, FileOfAnotherKindIsRefused) {
+  folder_.Write("masks/file", "some text");
+  ExpectRefusal({Path("file").string(), "none fits"}, "file");
+}
+
+TEST_F(MaskSourceTest, EveryFormatIsNamed) {
+  EXPECT_EQ(MaskFormatNames(), (std::vector<std::string>{"yolo-seg", "coco", "label-png", "paper",
+                                                         "oa-slam", "boxes"}));
+  Write("1.5.txt", "");
+  for (const char* const name : {"yolo-seg", "paper", "boxes"}) {
+    format_ = name;
+    frames_ = {{name == std::string("paper") ? "x" : "1.5", 0}};
+    Write("000000.txt", "");
+    EXPECT_EQ(Open()->format(), name);
+  }
+}
+
+TEST_F(MaskSourceTest, FolderFormatsOfAFileAndFileFormatsOfAFolderAreRefused) {
+  folder_.Write("masks/file", "[]");
+  for (const char* const name : {"yolo-seg", "paper", "boxes", "label-png"}) {
+    format_ = name;
+    ExpectRefusal({Path("file").string()}, "file");
+  }
+  for (const char* const name : {"coco", "oa-slam"}) {
+    format_ = name;
+    ExpectRefusal({Path().string()});
+  }
+}
+
 TEST_F(MaskSourceTest, UnknownFormatIsRefused) {
   Write("1.5.txt", kYoloSeg);
   format_ = "yolo";

@@ -45,7 +45,7 @@ class MaskSource {
   virtual std::string Example() const = 0;
   // Throws InputError that names the file, and the line or entry, of what is malformed.
   virtual FrameMasks Read(const MaskFrame& frame) const = 0;
-  // Throws what Read() would, as far as that can be told in well under a millisecond a frame.
+  // Throws what Read() would, in less time where there is a way.
   virtual void Check(const MaskFrame& frame) const { Read(frame); }
 };
 

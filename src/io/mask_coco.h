@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "hullslam/io/mask_source.h"
+#include "io/mask_probe.h"
+
+namespace hullslam {
+
+// coco: a JSON file of results or of instances in the format of COCO (cocodataset.org), with
+// polygons or run lengths, else boxes; also with what SAM and Ultralytics write.
+bool IsCoco(const MaskProbe& probe);
+std::unique_ptr<MaskSource> OpenCoco(const MaskRequest& request);
+
+}  // namespace hullslam

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/mask_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "hullslam/io/text_rows.h"
+#include "hullslam/util/error.h"
+#include "io/mask_checks.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr size_t kMostValues = 2'000'000;
+constexpr size_t kMostRecords = 1'000'000;
+constexpr int kMostDepth = 16;
+constexpr size_t kLongestShown = 120;
+
+std::string Shorten(std::string text) {
+  if (text.size() > kLongestShown) {
+    text.resize(kLongestShown);
+    text += "...";
+  }
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text;
+}
+
+// nlohmann's message begins with its own name for the error.
+[[noreturn]] void FailParsing(const std::filesystem::path& path, std::string_view message) {
+  const size_t begin = message.find("] ");
+  message.remove_prefix(begin == std::string_view::npos ? 0 : begin + 2);
+  throw InputError(path.string() + ": is no valid JSON, " + Shorten(std::string(message)));
+}
+
+Json Parse(const std::filesystem::path& path, size_t most_bytes,
+           const Json::parser_callback_t& callback) {
+  CheckFileSize(path, most_bytes);
+  const std::string text = ReadFile(path);
+  try {
+    return Json::parse(text, callback);
+  } catch (const Json::exception& error) {
+    FailParsing(path, error.what());
+  }
+}
+
+// Takes the objects out of the document as soon as they are complete.
+class RecordTaker {
+ public:
+  RecordTaker(const std::filesystem::path& path,
+              const std::function<void(const JsonRecord& record)>& visit)
+      : path_(path), visit_(visit) {}
+
+  // False where the value is not to be kept.
+  bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
+    Count(depth);
+    if (depth == 0 && event == Json::parse_event_t::object_start) {
+      records_depth_ = 2;
+    } else if (depth == 1 && event == Json::parse_event_t::key) {
+      section_ = parsed.get<std::string>();
+    } else if (depth == records_depth_ && event == Json::parse_event_t::object_end) {
+      if (++records_ > kMostRecords) {
+        throw InputError(fmt::format("{}: more than {} records", path_.string(), kMostRecords));
+      }
+      visit_({path_, section_, indices_[section_]++, std::move(parsed)});
+      values_ = 0;
+      return false;
+    }
+    return true;
+  }
+
+ private:
+  void Count(int depth) {
+    if (++values_ > kMostValues) {
+      throw InputError(fmt::format("{}: more than {} values in one record or outside of records",
+                                   path_.string(), kMostValues));
+    }
+    if (depth > kMostDepth) {
+      throw InputError(
+          fmt::format("{}: lists in lists more than {} deep", path_.string(), kMostDepth));
+    }
+  }
+
+  const std::filesystem::path& path_;
+  const std::function<void(const JsonRecord& record)>& visit_;
+  int records_depth_ = 1;  // of objects in a list; 2 in a list in an object
+  std::string section_;
+  std::map<std::string, size_t> indices_;
+  size_t values_ = 0;
+  size_t records_ = 0;
+};
+
+}  // namespace
+
+void JsonRecord::Fail(const std::string& what) const {
+  throw InputError(fmt::format("{}: {}[{}]: {}", path.string(), section, index, what));
+}
+
+void ForEachJsonRecord(const std::filesystem::path& path,
+                       const std::function<void(const JsonRecord& record)>& visit) {
+  RecordTaker taker(path, visit);
+  Parse(path, kMostJsonFileBytes, std::ref(taker));
+}
+
+Json ReadJson(const std::filesystem::path& path, size_t most_bytes) {
+  return Parse(path, most_bytes, nullptr);
+}
+
+std::string ShowJson(const Json& value) {
+  return Shorten(value.dump(-1, ' ', true, Json::error_handler_t::replace));
+}
+
+const Json& Member(const JsonRecord& record, const Json& object, const char* name) {
+  const auto found = object.find(name);  // the end of what is no object
+  if (found == object.end()) {
+    record.Fail(fmt::format("has no '{}'", name));
+  }
+  return *found;
+}
+
+std::vector<double> Numbers(const JsonRecord& record, const Json& list, const char* name) {
+  const bool is_list =
+      list.is_array() &&
+      std::all_of(list.begin(), list.end(), [](const Json& number) { return number.is_number(); });
+  if (!is_list) {
+    record.Fail(fmt::format("{} is {}, expected a list of numbers", name, ShowJson(list)));
+  }
+  return list.get<std::vector<double>>();
+}
+
+double ScoreOf(const JsonRecord& record, const Json& object, const char* name) {
+  const auto found = object.find(name);
+  if (found == object.end()) {
+    return 1.0;
+  }
+  const double score = found->is_number() ? found->get<double>() : -1.0;
+  if (!(score >= 0.0 && score <= 1.0)) {
+    record.Fail(fmt::format("{} is {}, expected from 0 to 1", name, ShowJson(*found)));
+  }
+  return score;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/mask_boxes.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "io/mask_fixture.h"
+#include "support/test_data.h"
+
+namespace hullslam {
+namespace {
+
+class BoxesTest : public MaskFixture {
+ protected:
+  BoxesTest() : MaskFixture("boxes") {}
+
+  void ExpectRefusedLine(const std::string& line, const std::vector<std::string>& parts) const {
+    Write("1.5.txt", line + '\n');
+    std::vector<std::string> all = {Path("1.5.txt").string() + ":1: "};
+    all.insert(all.end(), parts.begin(), parts.end());
+    ExpectRefusal(all);
+  }
+};
+
+TEST_F(BoxesTest, BoxesAreThePixelsFromXOn) {
+  Write("1.5.txt", "73 173 138 46 70 0.5789\n56 16 256 220 215 1\n");
+  const FrameMasks frame = ReadFrame(0);
+  ASSERT_EQ(frame.masks.size(), 2U);
+  const InstanceMask& book = frame.masks[0];
+  EXPECT_EQ(book.label, "book");
+  EXPECT_EQ(book.score, 0.5789);
+  EXPECT_EQ(book.shape, MaskShape::kBox);
+  // 46 x 70 pixels, from that of centre (173, 138) to that of (218, 207).
+  EXPECT_EQ(book.outlines, (std::vector<std::vector<Eigen::Vector2d>>{
+                               {{172.5, 137.5}, {218.5, 137.5}, {218.5, 207.5}, {172.5, 207.5}}}));
+}
+
+TEST_F(BoxesTest, BoxesEndAtTheBorder) {
+  Write("1.5.txt", "0 -20 -20 1000 1000 0.5\n");
+  const auto outline = ReadFrame(0).masks.at(0).outlines.at(0);
+  EXPECT_EQ(outline[0], Eigen::Vector2d(-0.5, -0.5));
+  EXPECT_EQ(outline[2], Eigen::Vector2d(639.5, 479.5));
+}
+
+TEST_F(BoxesTest, BoxesWithoutAreaInTheImageAreLeftOutAndCounted) {
+  Write("1.5.txt", "0 10 10 0 50 0.5\n0 700 10 50 50 0.5\n0 10 10 5 5 0.5\n");
+  EXPECT_EQ(ReadFrame(0).masks.size(), 1U);
+  EXPECT_EQ(ReadFrame(0).without_area, 2U);
+}
+
+TEST_F(BoxesTest, MalformedLinesAreRefused) {
+  ExpectRefusedLine("73 173 138 46 70", {"5 column(s)", "expected 6"});
+  ExpectRefusedLine("73 173 138 46 70 0.5 1", {"7 column(s)"});
+  ExpectRefusedLine("80 173 138 46 70 0.5", {"class is '80'"});
+  ExpectRefusedLine("73 nan 138 46 70 0.5", {"x is 'nan'"});
+  ExpectRefusedLine("73 173 138 -46 70 0.5", {"width is '-46'", ">= 0"});
+  ExpectRefusedLine("73 173 138 46 -1 0.5", {"height is '-1'", ">= 0"});
+  ExpectRefusedLine("73 173 138 46 70 50", {"confidence is '50'", "from 0 to 1"});
+}
+
+TEST_F(BoxesTest, AreToldFromSharesOfTheImage) {
+  format_ = "";
+  Write("1.5.txt", "73 173 138 46 70 0.5789\n");
+  EXPECT_EQ(Open()->format(), "boxes");
+  Write("1.5.txt", "73 0.5 0.5 0.1 0.1 0.5789\n");
+  ExpectRefusal({"none fits"});
+}
+
+TEST(BoxesData, RealBoxesAreRead) {
+  const auto data = FindTestData("fr3_office_boxes");
+  if (!data) {
+    GTEST_SKIP() << "fr3_office_boxes is not on this machine; set HULLSLAM_DATA";
+  }
+  const std::vector<MaskFrame> frames = {{"1341847980.722988", 0}};
+  const auto source =
+      OpenMasks({.path = *data / "boxes", .format = {}, .width = 640, .height = 480}, frames);
+  EXPECT_EQ(source->format(), "boxes");
+  EXPECT_EQ(source->Read(frames[0]).masks.at(0).label, "book");
+}
+
+}  // namespace
+}  // namespace hullslam
