@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hullslam/io/object_file.h"
 #include "hullslam/io/trajectory_file.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
@@ -90,6 +91,142 @@ TEST_F(Evaluate, BadUsageIsRefusedWithOneLine) {
   ExpectRefusal({"trajectory", truth_, half_, "--align", "affine"}, "affine");
   ExpectRefusal({"trajectory", truth_, half_, "--max-diff", "0"}, "--max-diff");
   ExpectRefusal({"trajectory", truth_, half_, "--no-such"}, "--no-such");
+}
+
+// A run on a made-up sequence of 40 frames along a curve: a sphere that is mapped 1 % too large,
+// with a perfect mask, and one that is not mapped.
+class EvaluateObjects : public Evaluate {
+ protected:
+  EvaluateObjects() {
+    report_.camera.fx = 500.0;
+    report_.camera.fy = 500.0;
+    report_.camera.cx = 320.0;
+    report_.camera.cy = 240.0;
+    report_.candidates = 2;
+    const Ellipsoid truth = {Rigid3(Eigen::Quaterniond::Identity(), {0.0, 0.0, 2.0}),
+                             Eigen::Vector3d::Constant(0.1)};
+    const Ellipse outline = ProjectEllipsoid(report_.camera.Matrix(), {}, truth).value();
+    ReportedObject object;
+    object.id = ObjectId(3);
+    object.state = ObjectState::kMapped;
+    object.label = "cup";
+    object.ellipsoid = {truth.world_from_object, 1.01 * truth.half_axes};
+    ReportedView view;
+    view.keyframe = KeyframeId(0);
+    view.hull = view.contour = outline.Polygon(100);
+    view.lines = {{{Eigen::Vector2d::UnitX(), -outline.Bounds().max().x()}, false}};
+    object.views = {view};
+    report_.objects = {object};
+    WriteRun();
+    WriteSequence();
+  }
+
+  void WriteRun() { folder_.Write("run/objects.json", FormatObjects(report_)); }
+
+  // The run's world is moved against the true one.
+  void WriteSequence() {
+    const Rigid3 truth_from_map(ExpSo3({0.0, 0.0, 0.3}), {1.0, 2.0, 3.0});
+    Trajectory truth;
+    Trajectory run;
+    std::string images;
+    for (int i = 0; i < 40; ++i) {
+      const double t = 0.1 * i;
+      const Rigid3 pose(Eigen::Quaterniond::Identity(),
+                        {0.1 * std::sin(t), 0.1 * std::cos(t), 0.02 * t});
+      run.push_back({t, pose});
+      truth.push_back({t, truth_from_map * pose});
+      const std::string number = std::to_string(i);
+      images += std::to_string(t) + " images/" + number + ".png\n";
+      folder_.Write("images/" + number + ".png", "");
+      // 60 px about the middle, where the sphere is.
+      folder_.Write("masks/" + number + ".txt",
+                    "41 0.453 0.438 0.547 0.438 0.547 0.562 0.453 0.562 1\n");
+    }
+    folder_.Write("rgb.txt", images);
+    folder_.Write("depth.txt", images);
+    WriteTrajectory(folder_.path() / "groundtruth.txt", truth);
+    WriteTrajectory(folder_.path() / "run" / "trajectory.txt", run);
+    const Eigen::Vector3d center = truth_from_map * Eigen::Vector3d(0.0, 0.0, 2.0);
+    const auto entry = [](int id, const Eigen::Vector3d& at) {
+      return nlohmann::json{{"id", id},
+                            {"class", "cup"},
+                            {"shape", "ellipsoid"},
+                            {"dynamic", false},
+                            {"world_from_object", {at.x(), at.y(), at.z(), 0, 0, 0, 1}},
+                            {"half_extents", {0.1, 0.1, 0.1}}};
+    };
+    const nlohmann::json objects = {entry(0, center), entry(1, {9.0, 9.0, 9.0})};
+    truth_file_ =
+        folder_.Write("groundtruth_objects.json", nlohmann::json{{"objects", objects}}.dump());
+  }
+
+  ObjectReport report_;
+  std::string run_ = folder_.path() / "run";
+  std::string truth_file_;
+};
+
+TEST_F(EvaluateObjects, MeasuresTheFinishedRunAgain) {
+  const ProgramResult result = RunProgram("evaluate", {"objects", run_, "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto json = nlohmann::json::parse(result.output);
+  EXPECT_EQ(json["count"], 1);
+  EXPECT_EQ(json["candidates"], 2);
+  EXPECT_EQ(json["observations"], 1);
+  EXPECT_EQ(json["lines"], 1);
+  EXPECT_NEAR(json["siou_mean"].get<double>(), 1.0 / (1.01 * 1.01), 1e-3);
+  EXPECT_NEAR(json["siou_mask_mean"].get<double>(), 1.0 / (1.01 * 1.01), 1e-3);
+  EXPECT_NEAR(json["tangent_mean_px"].get<double>(), 0.01 * 500.0 * 0.1 / 2.0, 0.01);
+  // (1.01 r)^2 - r^2.
+  EXPECT_NEAR(json["mtd_mean_m2"].get<double>(), 2.01e-4, 2e-6);
+  EXPECT_EQ(json["each"][0]["id"], 3);
+  EXPECT_TRUE(json["groundtruth"].is_null());
+}
+
+TEST_F(EvaluateObjects, ComparesWithTheTruth) {
+  const ProgramResult result =
+      RunProgram("evaluate", {"objects", run_, "--groundtruth", truth_file_, "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto truth = nlohmann::json::parse(result.output)["groundtruth"];
+  EXPECT_EQ(truth["visible"], 1);
+  EXPECT_EQ(truth["once"], 1);
+  EXPECT_EQ(truth["never"], 0);
+  EXPECT_EQ(truth["each"][0]["masks"], 40);
+  EXPECT_EQ(truth["each"][1]["masks"], 0);
+  EXPECT_LT(truth["each"][0]["mapped"][0]["center_share"].get<double>(), 1e-6);
+  EXPECT_NEAR(truth["shapes"]["ellipsoid"]["axis_ratio_mean"].get<double>(), 1.01, 1e-9);
+  EXPECT_EQ(truth["without_truth"].size(), 0U);
+}
+
+TEST_F(EvaluateObjects, PrintsTables) {
+  const ProgramResult result =
+      RunProgram("evaluate", {"objects", run_, "--groundtruth", truth_file_, "--min-masks", "41"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  for (const char* const part :
+       {"1 mapped, 2 candidates; 1 observations and 1 lines", "mean SIoU 0.98",
+        "0 visible (in 41 masks or more)", "ellipsoid    1 mapped: centre off by 0.0 %"}) {
+    EXPECT_NE(result.output.find(part), std::string::npos) << part << " in\n" << result.output;
+  }
+}
+
+TEST_F(EvaluateObjects, ARunWithoutObjectsHasNoMeans) {
+  report_.objects.clear();
+  WriteRun();
+  const ProgramResult result = RunProgram("evaluate", {"objects", run_});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("mean SIoU -, with the mask -"), std::string::npos) << result.output;
+}
+
+TEST_F(EvaluateObjects, BadInputIsRefusedWithOneLine) {
+  ExpectRefusal({"objects"}, "RUN_DIR");
+  ExpectRefusal({"objects", folder_.path() / "none"}, "objects.json: No such file");
+  ExpectRefusal({"objects", run_, "--min-masks", "-1"}, "--min-masks");
+  ExpectRefusal({"objects", run_, "--groundtruth", folder_.path() / "none.json"}, "none.json");
+  folder_.Write("masks/7.txt", "41 0.4 nan 0.5 0.4 0.5 0.5 1\n");
+  ExpectRefusal({"objects", run_, "--groundtruth", truth_file_}, "7.txt:1");
+  folder_.Write("run/trajectory.txt", "900 0 0 0 0 0 0 1\n");
+  ExpectRefusal({"objects", run_, "--groundtruth", truth_file_}, "run/trajectory.txt: no pose");
+  folder_.Write("run/objects.json", "{\"version\": 1}");
+  ExpectRefusal({"objects", run_}, "objects.json: \"sequence\" is missing");
 }
 
 TEST_F(Evaluate, HelpIsNoError) {

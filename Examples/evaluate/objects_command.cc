@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evaluate/objects_command.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "evaluate/objects_truth.h"
+#include "hullslam/eval/object_metrics.h"
+#include "hullslam/io/object_file.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+std::string OrDash(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
+}
+
+const char* ToString(ObjectState state) {
+  return state == ObjectState::kMapped ? "mapped" : "candidate";
+}
+
+Json ToJson(const ReportedObject& object) {
+  return {{"id", object.id.value},
+          {"class", object.label},
+          {"state", ToString(object.state)},
+          {"observations", object.fit.observations},
+          {"lines", object.fit.lines},
+          {"siou", OrNull(object.fit.siou)},
+          {"siou_mask", OrNull(object.fit.siou_mask)},
+          {"mtd_m2", OrNull(object.fit.mtd_m2)},
+          {"tangent_px", OrNull(object.fit.tangent_px)},
+          {"misfit_px", object.misfit_px}};
+}
+
+void PrintJson(const ObjectReport& report, const std::optional<TruthEvaluation>& truth) {
+  const MapFit fit = SummarizeFits(report);
+  Json each = Json::array();
+  for (const ReportedObject& object : report.objects) {
+    each.push_back(ToJson(object));
+  }
+  const Json json = {{"count", fit.objects},
+                     {"siou_mean", OrNull(fit.mean.siou)},
+                     {"siou_mask_mean", OrNull(fit.mean.siou_mask)},
+                     {"mtd_mean_m2", OrNull(fit.mean.mtd_m2)},
+                     {"tangent_mean_px", OrNull(fit.mean.tangent_px)},
+                     {"observations", fit.mean.observations},
+                     {"lines", fit.mean.lines},
+                     {"candidates", report.candidates},
+                     {"each", each},
+                     {"groundtruth", truth ? ToJson(*truth) : Json(nullptr)}};
+  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+void PrintObject(const ReportedObject& object) {
+  const ObjectFit& fit = object.fit;
+  const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
+  fmt::print(
+      "{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7.1f}  {:.3f} {:.3f} {:.3f}\n",
+      object.id.value, object.label, ToString(object.state), fit.observations, fit.lines,
+      OrDash(fit.siou, 3), OrDash(fit.siou_mask, 3), OrDash(fit.mtd_m2, 6),
+      OrDash(fit.tangent_px, 2), object.misfit_px, axes.x(), axes.y(), axes.z());
+}
+
+void PrintText(const ObjectReport& report) {
+  fmt::print("{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7}  {}\n", "id", "class",
+             "state", "views", "lines", "SIoU", "mask", "MTD m2", "tang. px", "misfit",
+             "half axes m");
+  for (const ReportedObject& object : report.objects) {
+    PrintObject(object);
+  }
+  const MapFit fit = SummarizeFits(report);
+  fmt::print("\n{} mapped, {} candidates; {} observations and {} lines of the mapped\n",
+             fit.objects, report.candidates, fit.mean.observations, fit.mean.lines);
+  fmt::print("mean SIoU {}, with the mask {}; MTD {} m2; tangents off by {} px\n",
+             OrDash(fit.mean.siou, 4), OrDash(fit.mean.siou_mask, 4), OrDash(fit.mean.mtd_m2, 6),
+             OrDash(fit.mean.tangent_px, 2));
+}
+
+}  // namespace
+
+CLI::App* AddObjectsCommand(CLI::App& app, ObjectsArguments& arguments) {
+  CLI::App* const command =
+      app.add_subcommand("objects", "SIoU, MTD and tangent distance of a run's objects");
+  command->add_option("RUN_DIR", arguments.run, "output folder of the run")->required();
+  command->add_option("--groundtruth", arguments.groundtruth,
+                      "groundtruth_objects.json of a sequence of make_synthetic");
+  command
+      ->add_option("--min-masks", arguments.min_masks,
+                   "masks in which a true object must show to count as visible")
+      ->check(CLI::Range(0, 1000000).description(""))
+      ->capture_default_str();
+  command->add_flag("--json", arguments.json, "print the report as JSON");
+  return command;
+}
+
+void RunObjectsCommand(const ObjectsArguments& arguments) {
+  ObjectReport report = ReadObjects(arguments.run / "objects.json");
+  MeasureObjects(report);
+  std::optional<TruthEvaluation> truth;
+  if (!arguments.groundtruth.empty()) {
+    truth = EvaluateTruth(arguments, report);
+  }
+  if (arguments.json) {
+    PrintJson(report, truth);
+    return;
+  }
+  PrintText(report);
+  if (truth) {
+    PrintTruth(*truth);
+  }
+}
+
+}  // namespace hullslam

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <filesystem>
+
+namespace hullslam {
+
+struct ObjectsArguments {
+  std::filesystem::path run;
+  std::filesystem::path groundtruth;  // groundtruth_objects.json; empty: none
+  size_t min_masks = 30;              // in which a true object shows to count as visible
+  bool json = false;
+};
+
+// `arguments` must outlive the app.
+CLI::App* AddObjectsCommand(CLI::App& app, ObjectsArguments& arguments);
+
+// Prints how well the objects of a run fit what was seen, and how near they are to the true ones.
+// Throws InputError for bad files.
+void RunObjectsCommand(const ObjectsArguments& arguments);
+
+}  // namespace hullslam

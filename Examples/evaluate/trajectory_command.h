@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "hullslam/eval/ate.h"
+
+namespace hullslam {
+
+struct TrajectoryArguments {
+  std::string groundtruth;
+  std::string estimate;
+  AteOptions ate;
+  bool json = false;
+};
+
+// `arguments` must outlive the app.
+CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments);
+
+// Prints the errors of a trajectory. Throws InputError for bad files and for trajectories without
+// common poses.
+void RunTrajectoryCommand(const TrajectoryArguments& arguments);
+
+}  // namespace hullslam
