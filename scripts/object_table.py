@@ -1,0 +1,77 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Prints the mapped objects of finished runs as a Markdown table: class, observations, the largest
+angle between two views of the object, half axes by length, SIoU and tangent distance.
+
+RUN_DIR is an output folder of rgbd_tum or map_objects; of each objects.json is read.
+"""
+
+import argparse
+import json
+import pathlib
+import sys
+
+import numpy as np
+
+from run_objects import InputError, rotation
+
+HEADER = ("| run | id | class | views | angle ° | half axes m | SIoU | SIoU mask | tangent px |\n"
+          "|---|---|---|---|---|---|---|---|---|")
+
+
+def largest_angle(entry):
+    """Largest angle at the object's centre between two of its cameras, degrees."""
+    centre = np.array(entry["world_from_object"][:3], dtype=float)
+    rays = []
+    for view in entry["observations"]:
+        pose = np.array(view["cam_from_world"], dtype=float)
+        camera = -rotation(pose[3:]).T @ pose[:3]
+        rays.append((camera - centre) / np.linalg.norm(camera - centre))
+    if not rays:
+        return 0.0
+    cosines = np.array(rays) @ np.array(rays).T
+    return float(np.degrees(np.arccos(np.clip(cosines.min(), -1.0, 1.0))))
+
+
+def number(value, form):
+    return "-" if value is None else format(float(value), form)
+
+
+def row(name, entry):
+    axes = " ".join(f"{axis:.3f}" for axis in sorted(map(float, entry["half_axes"]), reverse=True))
+    return (f"| {name} | {entry['id']} | {entry['class']} | {len(entry['observations'])} | "
+            f"{largest_angle(entry):.0f} | {axes} | {number(entry['siou'], '.3f')} | "
+            f"{number(entry['siou_mask'], '.3f')} | {number(entry['tangent_px'], '.2f')} |")
+
+
+def rows(run_dir, min_angle):
+    """The rows of the objects that are seen from `min_angle` degrees or more."""
+    path = run_dir / "objects.json"
+    try:
+        entries = json.loads(path.read_text(encoding="utf-8"))["objects"]
+        return [row(run_dir.resolve().name, entry) for entry in entries
+                if entry["state"] == "mapped" and largest_angle(entry) >= min_angle]
+    except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
+        reason = f"no {error}" if isinstance(error, KeyError) else error
+        raise InputError(f"{path}: not readable as objects.json: {reason}") from error
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run_dirs", type=pathlib.Path, metavar="RUN_DIR", nargs="+")
+    parser.add_argument("--min-angle", type=float, default=0.0, metavar="DEGREES",
+                        help="leave out objects seen from less")
+    arguments = parser.parse_args()
+    try:
+        lines = [line for run_dir in arguments.run_dirs
+                 for line in rows(run_dir, arguments.min_angle)]
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    print("\n".join([HEADER, *lines]))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,65 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scripts/object_table.py: its angle, a made-up run, and broken files."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "object_table.py"
+sys.path.insert(0, str(SCRIPT.parent))
+import object_table  # noqa: E402
+
+
+def make_object(**changes):
+    """Seen from 2 m ahead and, a quarter turn about y further, from 2 m to its right."""
+    half = 0.5**0.5
+    # Cameras at (0, 0, 0) and (2, 0, 2): cam_from_world of the second is R with t = -R c.
+    views = [{"cam_from_world": [0, 0, 0, 0, 0, 0, 1]},
+             {"cam_from_world": [-2, 0, 2, 0, half, 0, half]}]
+    return {"id": 4, "class": "cup", "state": "mapped", "world_from_object": [0, 0, 2, 0, 0, 0, 1],
+            "half_axes": [0.04, 0.06, 0.05], "siou": 0.8125, "siou_mask": None, "tangent_px": 2.5,
+            "observations": views, **changes}
+
+
+class ObjectTableTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.dir = pathlib.Path(folder.name) / "desk"
+        self.dir.mkdir()
+
+    def run_script(self, *objects, arguments=()):
+        (self.dir / "objects.json").write_text(json.dumps({"objects": objects}))
+        return subprocess.run([SCRIPT, self.dir, *arguments], capture_output=True, text=True,
+                              check=False, timeout=60)
+
+    def test_angle_between_the_views(self):
+        self.assertAlmostEqual(object_table.largest_angle(make_object()), 90.0)
+        self.assertEqual(object_table.largest_angle(make_object(observations=[])), 0.0)
+
+    def test_a_row_an_object(self):
+        result = self.run_script(make_object(), make_object(id=5, state="candidate"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stdout.splitlines()[2:],
+                         ["| desk | 4 | cup | 2 | 90 | 0.060 0.050 0.040 | 0.812 | - | 2.50 |"])
+
+    def test_objects_seen_from_little_are_left_out(self):
+        result = self.run_script(make_object(), arguments=["--min-angle", "91"])
+        self.assertEqual(len(result.stdout.splitlines()), 2)
+
+    def test_broken_files(self):
+        for entry in ({"state": "mapped"}, make_object(half_axes=["a"]), make_object(siou="x"),
+                      make_object(observations=[{"cam_from_world": [1, 2]}]), 3):
+            with self.subTest(entry):
+                result = self.run_script(entry)
+                self.assertEqual(result.returncode, 2)
+                self.assertTrue(result.stderr.startswith("error: "), result.stderr)
+                self.assertIn("objects.json", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
