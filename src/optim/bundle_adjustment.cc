@@ -16,6 +16,7 @@
 #include "hullslam/map/appearance.h"
 #include "hullslam/map/intrinsics.h"
 #include "hullslam/optim/robust.h"
+#include "object_bundle.h"
 
 namespace hullslam {
 namespace {
@@ -64,8 +65,11 @@ std::unique_ptr<ceres::CostFunction> MakeCost(const Sensor& sensor, const FrameF
 // The blocks of parameters and the observations between them.
 class Bundle {
  public:
-  Bundle(const Map& map, const Sensor& sensor, const BundleWindow& window)
-      : window_(window), keyframes_(window.moving) {
+  Bundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
+         const ObjectBundleOptions& options)
+      : window_(window),
+        keyframes_(window.moving),
+        objects_(map, ToIntrinsics(sensor.camera), window, options) {
     keyframes_.insert(keyframes_.end(), window.fixed.begin(), window.fixed.end());
     for (const KeyframeId id : keyframes_) {
       poses_.push_back(ToBlock(map.keyframes().At(id).cam_from_world));
@@ -82,7 +86,9 @@ class Bundle {
     ceres::Solver::Options solver;
     solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     AddResiduals(problem, robust);
+    objects_.AddResiduals(problem, poses_);
     AddParameters(problem, *solver.linear_solver_ordering);
+    objects_.AddParameters(problem, manifold_, *solver.linear_solver_ordering);
     solver.linear_solver_type =
         window_.moving.size() <= kMaxDensePoses ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
     solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
@@ -125,6 +131,7 @@ class Bundle {
         result.outliers.emplace_back(observation.landmark, observation.keyframe);
       }
     }
+    objects_.Write(result);
   }
 
  private:
@@ -198,17 +205,16 @@ class Bundle {
   std::vector<PoseBlock> poses_;
   std::vector<Eigen::Vector3d> points_;
   std::vector<BundleObservation> observations_;
+  internal::ObjectBundle objects_;
   PoseManifold manifold_;
   ceres::HuberLoss huber_mono_{std::sqrt(kChi2Mono)};
   ceres::HuberLoss huber_rgbd_{std::sqrt(kChi2Rgbd)};
 };
 
-}  // namespace
-
-BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
-                          const BundleOptions& options, const Cancellation* cancellation) {
+BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& window,
+                    const BundleOptions& options, const Cancellation* cancellation) {
   BundleResult result;
-  Bundle bundle(map, sensor, window);
+  Bundle bundle(map, sensor, window, options.objects);
   bundle.ExcludeUndefined();
   if (!bundle.Solve(options, options.robust_iterations, true, cancellation, result)) {
     return result;
@@ -223,6 +229,21 @@ BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWind
   }
   bundle.Write(result);
   result.is_usable = true;
+  return result;
+}
+
+}  // namespace
+
+BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
+                          const BundleOptions& options, const Cancellation* cancellation) {
+  BundleResult result = Adjust(map, sensor, window, options, cancellation);
+  if (result.is_usable || window.objects.empty()) {
+    return result;
+  }
+  BundleWindow points_only = window;
+  points_only.objects.clear();
+  result = Adjust(map, sensor, points_only, options, cancellation);
+  result.failed_objects = window.objects;
   return result;
 }
 
@@ -248,6 +269,11 @@ void ApplyBundle(Map& map, const BundleResult& result, const ScaleLevels& levels
     if (map.landmarks().Contains(landmark)) {
       map.SetPosition(landmark, position);
       UpdateViewingGeometry(map, landmark, levels);
+    }
+  }
+  for (const auto& [object, ellipsoid] : result.ellipsoids) {
+    if (map.objects().Contains(object)) {
+      map.MutableObject(object).ellipsoid = ellipsoid;
     }
   }
 }

@@ -35,9 +35,26 @@ std::vector<KeyframeId> OuterObservers(const Map& map, const std::vector<Landmar
   return ids;
 }
 
+bool HoldsPoses(const ObjectLandmark& object) {
+  return object.state == ObjectState::kMapped && object.has_shape;
+}
+
+std::vector<ObjectId> ObservedObjects(const Map& map, const std::vector<KeyframeId>& keyframes) {
+  std::set<ObjectId> objects;
+  for (const KeyframeId keyframe : keyframes) {
+    for (const ObjectId object : map.keyframes().At(keyframe).objects) {
+      if (object.IsValid() && HoldsPoses(map.objects().At(object))) {
+        objects.insert(object);
+      }
+    }
+  }
+  return {objects.begin(), objects.end()};
+}
+
 }  // namespace
 
-BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, size_t max_fixed) {
+BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, size_t max_fixed,
+                         WindowObjects objects) {
   BundleWindow window;
   window.moving = BestCovisible(map.keyframes().At(center), std::max<size_t>(max_moving, 1) - 1);
   window.moving.push_back(center);
@@ -51,6 +68,21 @@ BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, s
     window.moving.erase(window.moving.begin());
   }
   std::sort(window.fixed.begin(), window.fixed.end());
+  if (objects == WindowObjects::kMapped) {
+    window.objects = ObservedObjects(map, window.moving);
+  }
+  return window;
+}
+
+BundleWindow GlobalWindow(const Map& map, WindowObjects objects) {
+  BundleWindow window;
+  map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    (keyframe.parent.IsValid() ? window.moving : window.fixed).push_back(id);
+  });
+  map.landmarks().ForEach([&](LandmarkId id, const Landmark&) { window.landmarks.push_back(id); });
+  if (objects == WindowObjects::kMapped) {
+    window.objects = ObservedObjects(map, window.moving);
+  }
   return window;
 }
 

@@ -92,6 +92,16 @@ TEST(LocalWindow, SomethingIsAlwaysFixed) {
   EXPECT_EQ(LocalWindow(MakeChain(10), KeyframeId(9), 20, 0).fixed, Ids({7}));
 }
 
+TEST(GlobalWindow, MovesAllButTheRoot) {
+  const Map map = MakeChain(5);
+  const BundleWindow window = GlobalWindow(map);
+  EXPECT_EQ(window.moving, Ids({1, 2, 3, 4}));
+  EXPECT_EQ(window.fixed, Ids({0}));
+  EXPECT_EQ(window.landmarks.size(), 4u * 20u + 3u * 16u);
+  EXPECT_TRUE(std::is_sorted(window.landmarks.begin(), window.landmarks.end()));
+  EXPECT_TRUE(window.objects.empty());
+}
+
 // A map of the made-up world with its poses and points pushed off the truth, but for the first two
 // keyframes.
 class BundleAdjustment : public ::testing::Test {
@@ -275,7 +285,7 @@ TEST_F(BundleAdjustment, OfNothingIsNothing) {
   EXPECT_TRUE(nothing.poses.empty());
   EXPECT_TRUE(nothing.positions.empty());
   // Keyframes that see nothing stay where they are.
-  const BundleWindow window{.moving = Ids({3}), .fixed = Ids({0}), .landmarks = {}};
+  const BundleWindow window{.moving = Ids({3}), .fixed = Ids({0}), .landmarks = {}, .objects = {}};
   const BundleResult idle = AdjustBundle(made_.map, world_.sensor(), window, {}, nullptr);
   for (const auto& [id, pose] : idle.poses) {
     EXPECT_LT(Distance(pose, made_.map.keyframes().At(id).cam_from_world), 1e-14);

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -165,14 +166,23 @@ struct SyntheticMap {
   std::vector<LandmarkId> landmarks;  // one a point of the world; invalid where none is
 };
 
+// Adds to a frame what is seen from a pose besides the points.
+using FrameDecoration = std::function<void(Frame& frame, const Rigid3& cam_from_world)>;
+
 // The keyframes are the path's frames `indices`, in this order; the landmarks are the points that
 // at least two of them see. Covisibility, spanning tree and appearance are up to date.
 inline SyntheticMap MakeSyntheticMap(const SyntheticWorld& world,
-                                     const std::vector<uint32_t>& indices) {
+                                     const std::vector<uint32_t>& indices,
+                                     const FrameDecoration& decorate = {}) {
   SyntheticMap made;
   std::vector<std::vector<std::pair<KeyframeId, uint32_t>>> seen(world.points().size());
   for (const uint32_t index : indices) {
-    const SyntheticView& view = made.views.emplace_back(world.Observe(index));
+    SyntheticView& view = made.views.emplace_back(world.Observe(index));
+    if (decorate) {
+      auto frame = std::make_shared<Frame>(*view.frame);
+      decorate(*frame, SyntheticWorld::CamFromWorld(index));
+      view.frame = std::move(frame);
+    }
     const KeyframeId id = made.map.AddKeyframe(view.frame, SyntheticWorld::CamFromWorld(index));
     for (uint32_t keypoint = 0; keypoint < view.points.size(); ++keypoint) {
       seen[view.points[keypoint]].emplace_back(id, keypoint);

@@ -5,6 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "hullslam/costs/object_residual.h"
+#include "hullslam/costs/quadric_prior.h"
+#include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/geometry/rigid3.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/sensor.h"
@@ -17,12 +20,35 @@ struct BundleWindow {
   std::vector<KeyframeId> moving;
   std::vector<KeyframeId> fixed;  // observe the landmarks too
   std::vector<LandmarkId> landmarks;
+  std::vector<ObjectId> objects;  // their quadrics move too; all of them have a shape
 };
 
 // The keyframe and those it shares most landmarks with (at most `max_moving` in all), their
 // landmarks, and the keyframes that observe most of these besides (at most `max_fixed`). The root
-// of the spanning tree never moves; where nothing would be fixed, the oldest keyframe is.
-BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, size_t max_fixed);
+// of the spanning tree never moves; where nothing would be fixed, the oldest keyframe is. With
+// WindowObjects::kMapped also the mapped objects that the moving keyframes observe.
+enum class WindowObjects { kNone, kMapped };
+BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, size_t max_fixed,
+                         WindowObjects objects = WindowObjects::kNone);
+// Every keyframe, landmark and (if asked for) mapped object; the root of the spanning tree is
+// fixed.
+BundleWindow GlobalWindow(const Map& map, WindowObjects objects = WindowObjects::kNone);
+
+// How the objects of a window are held. Every detection of an object counts, also those in
+// keyframes outside of the window: their poses are fixed, and without them what a few new views
+// leave free of a quadric would be lost.
+struct ObjectBundleOptions {
+  ObjectResidual residual = ObjectResidual::kTangent;
+  ObjectPrimitive primitive = ObjectPrimitive::kSupport;
+  double sigma_px = 1.5;             // of a line, beside the object's misfit: hypot(both)
+  double max_effective_lines = 1.0;  // the lines of one detection weigh as so many at most
+  double cauchy = 2.5;               // sigmas, but at least 5 px: where a line's loss turns
+  size_t max_outer_views = 10;       // detections outside of the window, evenly chosen
+  double depth_sigma = 0.10;         // m, of depth points about the surface
+  size_t max_depth_points = 12;      // of one detection
+  double max_effective_points = 1.0;
+  QuadricPriorSigmas prior = {};  // about what the object started as
+};
 
 // How the problem is solved.
 struct BundleOptions {
@@ -30,21 +56,30 @@ struct BundleOptions {
   int final_iterations = 10;  // without it, inliers only
   double function_tolerance = 1e-4;
   int threads = 1;  // more than one: results differ in the last bits from run to run
+  ObjectBundleOptions objects = {};
 };
 
 struct BundleResult {
   std::vector<std::pair<KeyframeId, Rigid3>> poses;
   std::vector<std::pair<LandmarkId, Eigen::Vector3d>> positions;
   std::vector<std::pair<LandmarkId, KeyframeId>> outliers;  // observations to be removed
+  std::vector<std::pair<ObjectId, Ellipsoid>> ellipsoids;
+  // Objects that came out not finite or with a half axis more than three times larger or smaller:
+  // they are left as they were and should be checked.
+  std::vector<ObjectId> failed_objects;
   bool is_usable = false;  // false where the solver failed: the other fields are empty
   int residuals = 0;
   int iterations = 0;
 };
 
 // Minimises the reprojection errors of the window's landmarks in its keyframes, in Ceres with a
-// Schur complement on the points. Ends early, with what it has, when `cancellation` (may be null)
-// asks; before the first round is done it calls no observation an outlier but those of points that
-// are not in front of the camera.
+// Schur complement on the points; and with them, for each object of the window,
+//   sum over its detections min(1, max_effective_lines / n) sum over n residuals rho(r / sigma)
+//   + the same over depth points (DepthAnchorCost) + QuadricPriorCost
+// with Cauchy's loss rho and sigma = ResidualOfPixelError(hypot(sigma_px, misfit)). Where that
+// fails it is done again without the objects, which are then all among the failed ones. Ends early,
+// with what it has, when `cancellation` (may be null) asks; before the first round is done it calls
+// no observation an outlier but those of points that are not in front of the camera.
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& options, const Cancellation* cancellation);
 

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hullslam/map/invariants.h"
+#include "hullslam/optim/bundle_adjustment.h"
+#include "map/made_map.h"
+#include "objects/made_objects.h"
+#include "support/random_geometry.h"
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
+
+// Distance of the centres and difference of the half extents along many directions, relative to the
+// size: says nothing of how the axes are called.
+double ShapeError(const Ellipsoid& a, const Ellipsoid& b) {
+  const auto extent = [](const Ellipsoid& ellipsoid, const Eigen::Vector3d& direction) {
+    return (ellipsoid.world_from_object.rotation.conjugate() * direction)
+        .cwiseProduct(ellipsoid.half_axes)
+        .norm();
+  };
+  RandomGeometry random(7);
+  double worst = (a.world_from_object.translation - b.world_from_object.translation).norm();
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d direction = random.Vector(1.0).normalized();
+    worst = std::max(worst, std::abs(extent(a, direction) - extent(b, direction)));
+  }
+  return worst / std::cbrt(b.half_axes.prod());
+}
+
+// A map of the made-up world with three objects in it that all keyframes see. The first two
+// keyframes are fixed.
+class ObjectBundle : public ::testing::Test {
+ protected:
+  static constexpr BundleOptions kPrecise{
+      .robust_iterations = 20, .final_iterations = 20, .function_tolerance = 1e-14};
+
+  ObjectBundle() { Make({.points = 300, .depth_share = 0.7}); }
+
+  void Make(const SyntheticWorldOptions& options) {
+    world_.emplace(options);
+    objects_ = {MakeObject("cup", {-0.6, 0.2, 3.0}, {0.25, 0.15, 0.2}, 0.3),
+                MakeObject("book", {0.5, -0.4, 3.5}, {0.3, 0.2, 0.12}, 1.0),
+                MakeObject("bottle", {0.3, 0.5, 2.5}, {0.1, 0.25, 0.1})};
+    made_ = MakeSyntheticMap(
+        *world_, {0, 10, 20, 30, 40, 50}, [this](Frame& frame, const Rigid3& cam_from_world) {
+          for (const MadeObject& object : objects_) {
+            frame.detections.push_back(Detect(object, world_->sensor(), cam_from_world));
+            Disturb(frame, frame.detections.back());
+          }
+        });
+    ids_.clear();
+    for (uint32_t i = 0; i < objects_.size(); ++i) {
+      ids_.push_back(made_.map.AddObject());
+      for (uint32_t k = 0; k < made_.views.size(); ++k) {
+        made_.map.AddObservation(ids_.back(), KeyframeId(k), i);
+      }
+      ObjectLandmark& object = made_.map.MutableObject(ids_.back());
+      object.state = ObjectState::kMapped;
+      object.has_shape = true;
+      object.ellipsoid = objects_[i].ellipsoid;
+      object.start = object.ellipsoid;
+    }
+  }
+  // Shifts what the keyframe shifted_keyframe_ sees, and adds noise to all lines.
+  void Disturb(const Frame& frame, Detection& detection) {
+    const double shift = static_cast<int>(frame.id.value) == shifted_frame_ ? 40.0 : 0.0;
+    for (SilhouetteLine& line : detection.lines) {
+      line.line.offset -= shift * line.line.normal.x();
+      line.line.offset += random_.Number(-line_noise_, line_noise_);
+    }
+  }
+  void PerturbPoses(double angle, double distance) {
+    for (uint32_t i = 2; i < made_.views.size(); ++i) {
+      const Rigid3& pose = made_.map.keyframes().At(KeyframeId(i)).cam_from_world;
+      made_.map.SetPose(KeyframeId(i), random_.Pose(angle, distance) * pose);
+    }
+  }
+  void PerturbObjects(double relative) {
+    for (const ObjectId id : ids_) {
+      ObjectLandmark& object = made_.map.MutableObject(id);
+      object.ellipsoid.world_from_object.translation += random_.Vector(0.1 * relative);
+      object.ellipsoid.half_axes.array() *= 1.0 + random_.Vector(relative).array();
+      object.start = object.ellipsoid;
+    }
+  }
+  BundleWindow Window() const {
+    BundleWindow window;
+    window.fixed = {KeyframeId(0), KeyframeId(1)};
+    for (uint32_t i = 2; i < made_.views.size(); ++i) {
+      window.moving.push_back(KeyframeId(i));
+    }
+    for (const LandmarkId id : made_.landmarks) {
+      if (id.IsValid()) {
+        window.landmarks.push_back(id);
+      }
+    }
+    window.objects = ids_;
+    return window;
+  }
+  BundleWindow PointsOnly() const {
+    BundleWindow window = Window();
+    window.objects.clear();
+    return window;
+  }
+  BundleResult Adjust(const BundleWindow& window, const BundleOptions& options = kPrecise) const {
+    return AdjustBundle(made_.map, world_->sensor(), window, options, nullptr);
+  }
+  static double MeanPoseError(const BundleResult& result) {
+    double sum = 0.0;
+    for (const auto& [id, pose] : result.poses) {
+      sum += Distance(pose, SyntheticWorld::CamFromWorld(10.0 * id.value));
+    }
+    return sum / static_cast<double>(result.poses.size());
+  }
+  double MeanShapeError(const BundleResult& result) const {
+    double sum = 0.0;
+    for (size_t i = 0; i < result.ellipsoids.size(); ++i) {
+      sum += ShapeError(result.ellipsoids[i].second, objects_[i].ellipsoid);
+    }
+    return sum / static_cast<double>(result.ellipsoids.size());
+  }
+  double MeanShapeErrorBefore() const {
+    double sum = 0.0;
+    for (size_t i = 0; i < ids_.size(); ++i) {
+      sum += ShapeError(made_.map.objects().At(ids_[i]).ellipsoid, objects_[i].ellipsoid);
+    }
+    return sum / static_cast<double>(ids_.size());
+  }
+
+  RandomGeometry random_{1};
+  int shifted_frame_ = -1;
+  double line_noise_ = 0.0;  // px
+  std::optional<SyntheticWorld> world_;
+  std::vector<MadeObject> objects_;
+  SyntheticMap made_;
+  std::vector<ObjectId> ids_;
+};
+
+TEST_F(ObjectBundle, WindowsHoldTheMappedObjects) {
+  made_.map.MutableObject(ids_[1]).state = ObjectState::kCandidate;
+  const std::vector<ObjectId> mapped = {ids_[0], ids_[2]};
+  const KeyframeId last(5);
+  EXPECT_EQ(LocalWindow(made_.map, last, 20, 40, WindowObjects::kMapped).objects, mapped);
+  EXPECT_EQ(GlobalWindow(made_.map, WindowObjects::kMapped).objects, mapped);
+  EXPECT_TRUE(LocalWindow(made_.map, last, 20, 40).objects.empty());
+  for (uint32_t k = 0; k < 6; ++k) {
+    made_.map.RemoveObservation(ids_[0], KeyframeId(k));
+  }
+  EXPECT_EQ(LocalWindow(made_.map, last, 20, 40, WindowObjects::kMapped).objects,
+            std::vector<ObjectId>{ids_[2]});
+}
+
+TEST_F(ObjectBundle, RecoversPosesAndShapes) {
+  PerturbPoses(0.01, 0.02);
+  PerturbObjects(0.2);
+  const double before = MeanShapeErrorBefore();
+  const BundleResult result = Adjust(Window());
+  ASSERT_TRUE(result.is_usable);
+  ASSERT_EQ(result.ellipsoids.size(), 3u);
+  EXPECT_TRUE(result.failed_objects.empty());
+  EXPECT_LT(MeanPoseError(result), 1e-3);
+  // What is left is the pull of the prior, whose start is wrong, and of the surface points' half.
+  EXPECT_GT(before, 0.15);
+  EXPECT_LT(MeanShapeError(result), 0.15 * before);
+}
+
+TEST_F(ObjectBundle, AtTheTruthStaysThere) {
+  const BundleResult result = Adjust(Window());
+  ASSERT_TRUE(result.is_usable);
+  EXPECT_LT(MeanPoseError(result), 1e-5);
+  EXPECT_LT(MeanShapeError(result), 1e-4);
+  EXPECT_TRUE(result.outliers.empty());
+}
+
+TEST_F(ObjectBundle, OtherResidualsImproveShapesToo) {
+  PerturbObjects(0.2);
+  const double before = MeanShapeErrorBefore();
+  for (const auto& [residual, primitive] :
+       {std::pair(ObjectResidual::kAlgebraicPlane, ObjectPrimitive::kSupport),
+        {ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour},
+        {ObjectResidual::kOverlap, ObjectPrimitive::kHull}}) {
+    BundleOptions options = kPrecise;
+    options.objects.residual = residual;
+    options.objects.primitive = primitive;
+    const BundleResult result = Adjust(Window(), options);
+    ASSERT_TRUE(result.is_usable);
+    EXPECT_LT(MeanShapeError(result), 0.5 * before) << NameOf(residual);
+    EXPECT_LT(MeanPoseError(result), 0.01) << NameOf(residual);
+  }
+}
+
+// Detections that the window does not count change no bit.
+TEST_F(ObjectBundle, WithoutObjectsItIsThatOfThePoints) {
+  PerturbPoses(0.01, 0.02);
+  const BundleResult result = Adjust(PointsOnly());
+  for (const ObjectId id : ids_) {
+    made_.map.EraseObject(id);
+  }
+  const BundleResult expected = Adjust(PointsOnly());
+  EXPECT_EQ(result.positions, expected.positions);
+  EXPECT_EQ(result.residuals, expected.residuals);
+  EXPECT_TRUE(result.ellipsoids.empty());
+}
+
+TEST_F(ObjectBundle, SameInputGivesTheSameBits) {
+  PerturbPoses(0.01, 0.02);
+  PerturbObjects(0.2);
+  const BundleResult first = Adjust(Window(), {});
+  const BundleResult second = Adjust(Window(), {});
+  EXPECT_EQ(first.positions, second.positions);
+  ASSERT_EQ(first.ellipsoids.size(), second.ellipsoids.size());
+  for (size_t i = 0; i < first.ellipsoids.size(); ++i) {
+    EXPECT_EQ(first.ellipsoids[i].second.half_axes, second.ellipsoids[i].second.half_axes);
+    EXPECT_EQ(first.ellipsoids[i].second.world_from_object.translation,
+              second.ellipsoids[i].second.world_from_object.translation);
+  }
+}
+
+// A dozen points with noise, and outlines.
+TEST_F(ObjectBundle, ObjectsHelpWherePointsAreFew) {
+  double with = 0.0;
+  double without = 0.0;
+  line_noise_ = 3.0;
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    Make({.points = 12, .pixel_noise = 1.0, .seed = seed});
+    PerturbPoses(0.005, 0.01);
+    with += MeanPoseError(Adjust(Window()));
+    without += MeanPoseError(Adjust(PointsOnly()));
+  }
+  EXPECT_LT(with, 0.9 * without);
+}
+
+// One keyframe sees all objects 40 px beside where they are.
+TEST_F(ObjectBundle, AWrongFrameDoesNotHarmManyPoints) {
+  double with = 0.0;
+  double without = 0.0;
+  shifted_frame_ = 30;
+  for (uint64_t seed = 1; seed <= 5; ++seed) {
+    Make({.points = 300, .pixel_noise = 1.0, .seed = seed});
+    const BundleResult result = Adjust(Window());
+    EXPECT_LT(MeanShapeError(result), 0.1);
+    with += MeanPoseError(result);
+    without += MeanPoseError(Adjust(PointsOnly()));
+  }
+  EXPECT_LT(with, 1.05 * without);
+}
+
+// Keyframes outside of the window hold the objects, though they do not move.
+TEST_F(ObjectBundle, OuterViewsCount) {
+  BundleWindow window = Window();
+  window.moving = {KeyframeId(5)};
+  window.fixed = {KeyframeId(4)};
+  BundleOptions options = kPrecise;
+  options.objects.max_outer_views = 0;
+  const BundleResult none = Adjust(window, options);
+  options.objects.max_outer_views = 2;
+  const BundleResult two = Adjust(window, options);
+  options.objects.max_outer_views = 10;
+  const BundleResult all = Adjust(window, options);
+  EXPECT_EQ(two.residuals - none.residuals, 3 * 2 * 2);  // an outline and depth points each
+  EXPECT_EQ(all.residuals - none.residuals, 3 * 4 * 2);
+  EXPECT_EQ(all.poses.size(), 1u);
+}
+
+// The start, which the prior pulls at, is far off, and nothing else holds the object.
+TEST_F(ObjectBundle, AShapeThatRunsAwayIsNotWritten) {
+  ObjectLandmark& object = made_.map.MutableObject(ids_[1]);
+  object.ellipsoid.world_from_object.translation = {0.0, 0.0, -50.0};
+  object.start = object.ellipsoid;
+  object.start.half_axes *= 10.0;
+  for (const double depth_sigma : {1e9}) {
+    BundleOptions options = kPrecise;
+    options.objects.depth_sigma = depth_sigma;
+    const BundleResult result = Adjust(Window(), options);
+    ASSERT_TRUE(result.is_usable);
+    EXPECT_EQ(result.failed_objects, std::vector<ObjectId>{ids_[1]});
+    ASSERT_EQ(result.ellipsoids.size(), 2u);
+    EXPECT_LT(MeanPoseError(result), 1e-5);
+    ApplyBundle(made_.map, result, world_->sensor().levels);
+    EXPECT_EQ(made_.map.objects().At(ids_[1]).ellipsoid.half_axes, objects_[1].ellipsoid.half_axes);
+  }
+}
+
+// Ceres gives up at a value that is not finite: the points are adjusted nevertheless.
+TEST_F(ObjectBundle, AnObjectThatIsNotFiniteDoesNotStopThePoints) {
+  PerturbPoses(0.01, 0.02);
+  const BundleResult expected = Adjust(PointsOnly());
+  made_.map.MutableObject(ids_[0]).start.half_axes.x() = std::numeric_limits<double>::quiet_NaN();
+  const BundleResult result = Adjust(Window());
+  ASSERT_TRUE(result.is_usable);
+  EXPECT_EQ(result.failed_objects, ids_);
+  EXPECT_TRUE(result.ellipsoids.empty());
+  EXPECT_EQ(result.positions, expected.positions);
+}
+
+TEST_F(ObjectBundle, AskedToStopAtOnceItGivesTheShapesBack) {
+  PerturbObjects(0.2);
+  Cancellation cancellation;
+  cancellation.Request();
+  const BundleResult result =
+      AdjustBundle(made_.map, world_->sensor(), Window(), kPrecise, &cancellation);
+  ASSERT_EQ(result.ellipsoids.size(), 3u);
+  for (const auto& [id, ellipsoid] : result.ellipsoids) {
+    EXPECT_LT(ShapeError(ellipsoid, made_.map.objects().At(id).ellipsoid), 1e-12);
+  }
+}
+
+TEST_F(ObjectBundle, ApplyingWritesShapesAndPassesOverWhatIsGone) {
+  PerturbObjects(0.2);
+  const BundleResult result = Adjust(Window());
+  const std::string before = Dump(made_.map);
+  made_.map.EraseObject(ids_[2]);
+  ApplyBundle(made_.map, result, world_->sensor().levels);
+  EXPECT_EQ(FindViolations(made_.map), std::vector<std::string>());
+  for (size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(made_.map.objects().At(ids_[i]).ellipsoid.half_axes,
+              result.ellipsoids[i].second.half_axes);
+  }
+  EXPECT_FALSE(made_.map.objects().Contains(ids_[2]));
+}
+
+}  // namespace
+}  // namespace hullslam
