@@ -31,6 +31,29 @@ BENCHMARK(LocalBundleAdjustment)
     ->Arg(MappingOptions().local_keyframes)
     ->Unit(benchmark::kMillisecond);
 
+// The same with the quadrics of objects, about range(0) in each image.
+void ObjectBundleAdjustment(benchmark::State& state) {
+  const Sensor sensor = BenchSensor();
+  const double spacing = 2.0 / static_cast<double>(state.range(0));
+  const Map map = MakeBenchMap(60, sensor, BenchObjects(60, spacing));
+  const MappingOptions options;
+  const BundleWindow window =
+      LocalWindow(map, KeyframeId(59), static_cast<size_t>(options.local_keyframes),
+                  static_cast<size_t>(options.fixed_keyframes), WindowObjects::kMapped);
+  BundleResult result;
+  for (auto _ : state) {
+    result = AdjustBundle(map, sensor, window, {}, nullptr);
+  }
+  state.counters["objects"] = static_cast<double>(window.objects.size());
+  state.counters["residuals"] = result.residuals;
+  state.counters["iterations"] = result.iterations;
+}
+BENCHMARK(ObjectBundleAdjustment)
+    ->ArgName("in_view")
+    ->Arg(4)
+    ->Arg(10)
+    ->Unit(benchmark::kMillisecond);
+
 void Window(benchmark::State& state) {
   const Map map = MakeBenchMap(60, BenchSensor());
   for (auto _ : state) {

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
+#include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/map/covisibility.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/sensor.h"
@@ -52,10 +56,49 @@ inline std::shared_ptr<const Frame> MakeBenchFrame(uint32_t number, const Sensor
   return frame;
 }
 
+// The objects in front of the wall of MakeBenchMap, `spacing` m apart.
+inline std::vector<Ellipsoid> BenchObjects(uint32_t keyframes, double spacing) {
+  std::vector<Ellipsoid> ellipsoids;
+  for (double x = -1.0; x < 0.1 * keyframes + 1.0; x += spacing) {
+    ellipsoids.push_back(
+        {{ExpSo3({0.3, x, 0.1}), {x, 0.4 * std::sin(5.0 * x), 1.6}}, {0.1, 0.08, 0.12}});
+  }
+  return ellipsoids;
+}
+
+// What of the objects a camera sees, 16 tangents and 100 depth points each; `seen` gets the object
+// of every detection.
+inline std::vector<Detection> DetectBenchObjects(const Sensor& sensor, const Rigid3& cam_from_world,
+                                                 const std::vector<Ellipsoid>& objects,
+                                                 std::vector<size_t>& seen) {
+  std::vector<Detection> detections;
+  for (size_t i = 0; i < objects.size(); ++i) {
+    const auto ellipse = ProjectEllipsoid(sensor.camera.Matrix(), cam_from_world, objects[i]);
+    if (!ellipse.has_value() || !sensor.bounds.Contains(ellipse->center)) {
+      continue;
+    }
+    Detection& detection = detections.emplace_back();
+    for (int k = 0; k < 16; ++k) {
+      const double angle = k * std::numbers::pi / 8.0;
+      const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
+      detection.lines.push_back(
+          {{normal, -normal.dot(ellipse->center) - ellipse->HalfExtent(normal)}, false});
+    }
+    const Eigen::Vector3d center = cam_from_world * objects[i].world_from_object.translation;
+    for (int k = 0; k < 100; ++k) {
+      detection.points.push_back(center +
+                                 Eigen::Vector3d(0.05 * std::cos(k), 0.05 * std::sin(k), -0.1));
+    }
+    seen.push_back(i);
+  }
+  return detections;
+}
+
 // A camera that moves sideways past a wall of random points, a keyframe every 10 cm. Each sees
 // about 800 points, and each point is seen by about 25 keyframes. The positions of the landmarks
 // are 1 cm off; their ids are in the order of the way, as in mapping.
-inline Map MakeBenchMap(uint32_t keyframes, const Sensor& sensor) {
+inline Map MakeBenchMap(uint32_t keyframes, const Sensor& sensor,
+                        const std::vector<Ellipsoid>& objects = {}) {
   constexpr double kSpacing = 0.1;  // m
   const double length = kSpacing * keyframes + 3.0;
   std::mt19937 random(1);
@@ -75,11 +118,24 @@ inline Map MakeBenchMap(uint32_t keyframes, const Sensor& sensor) {
     const Eigen::Vector3d error(noise(random), noise(random), noise(random));
     landmarks.push_back(map.AddLandmark(point + error, KeyframeId(0)));
   }
+  for (const Ellipsoid& ellipsoid : objects) {
+    ObjectLandmark& object = map.MutableObject(map.AddObject());
+    object.state = ObjectState::kMapped;
+    object.has_shape = true;
+    object.ellipsoid = ellipsoid;
+    object.start = ellipsoid;
+    object.misfit_px = 4.0;
+  }
   for (uint32_t k = 0; k < keyframes; ++k) {
     const Rigid3 cam_from_world(Eigen::Quaterniond::Identity(), {-kSpacing * k, 0.0, 0.0});
     std::vector<size_t> seen;
-    const KeyframeId id =
-        map.AddKeyframe(MakeBenchFrame(k, sensor, cam_from_world, points, seen), cam_from_world);
+    std::vector<size_t> seen_objects;
+    auto frame = std::make_shared<Frame>(*MakeBenchFrame(k, sensor, cam_from_world, points, seen));
+    frame->detections = DetectBenchObjects(sensor, cam_from_world, objects, seen_objects);
+    const KeyframeId id = map.AddKeyframe(std::move(frame), cam_from_world);
+    for (uint32_t i = 0; i < seen_objects.size(); ++i) {
+      map.AddObservation(ObjectId(static_cast<uint32_t>(seen_objects[i])), id, i);
+    }
     for (uint32_t i = 0; i < seen.size(); ++i) {
       map.AddObservation(landmarks[seen[i]], id, i);
     }

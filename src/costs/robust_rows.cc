@@ -8,7 +8,9 @@
 namespace hullslam {
 namespace {
 
-constexpr double kQuadratic = 1e-16;  // squared residual below which every loss is quadratic
+// Squared residual below which every loss is quadratic. Ceres' losses keep few digits there, as
+// ln(1 + x), and none below 1e-16, where the slope would be 1 / 0.
+constexpr double kQuadratic = 1e-8;
 
 // What `loss` makes of a residual, as factors of it and of its derivative.
 std::pair<double, double> Factors(const ceres::LossFunction* loss, double residual) {

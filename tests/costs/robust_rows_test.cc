@@ -44,6 +44,18 @@ TEST(RobustRowsCost, KeepsTheLaws) {
   }
 }
 
+// Near the minimum residuals are as small as rounding leaves them.
+TEST(RobustRowsCost, IsTheCostItselfForTinyResiduals) {
+  for (const double error : {1e-3, 1e-5, 1e-7, 3e-9, 1e-12, 0.0}) {
+    const std::vector<SilhouetteLine> lines = {{{{1.0, 0.0}, -695.0 + error}, false}};
+    const RobustRowsCost cost(std::make_unique<TangentCost>(kObjectCamera, lines, 1.0),
+                              std::make_unique<ceres::CauchyLoss>(2.5), 1.0);
+    ExpectTrueObjectGradient(cost, SphereAhead());
+    const double plain = ObjectResidualsOf(cost.plain(), SphereAhead())[0];
+    EXPECT_NEAR(ObjectResidualsOf(cost, SphereAhead())[0], plain, 1e-6 * plain);
+  }
+}
+
 TEST(RobustRowsCost, IsNotDefinedWhereTheCostIsNot) {
   ExpectUndefinedUnlessInFront(RobustRowsCost(ThreeLines(), nullptr, 1.0));
 }

@@ -171,7 +171,7 @@ TEST_F(ObjectBundle, RecoversPosesAndShapes) {
   EXPECT_LT(MeanPoseError(result), 1e-3);
   // What is left is the pull of the prior, whose start is wrong, and of the surface points' half.
   EXPECT_GT(before, 0.15);
-  EXPECT_LT(MeanShapeError(result), 0.15 * before);
+  EXPECT_LT(MeanShapeError(result), 0.25 * before);
 }
 
 TEST_F(ObjectBundle, AtTheTruthStaysThere) {
@@ -278,17 +278,15 @@ TEST_F(ObjectBundle, AShapeThatRunsAwayIsNotWritten) {
   object.ellipsoid.world_from_object.translation = {0.0, 0.0, -50.0};
   object.start = object.ellipsoid;
   object.start.half_axes *= 10.0;
-  for (const double depth_sigma : {1e9}) {
-    BundleOptions options = kPrecise;
-    options.objects.depth_sigma = depth_sigma;
-    const BundleResult result = Adjust(Window(), options);
-    ASSERT_TRUE(result.is_usable);
-    EXPECT_EQ(result.failed_objects, std::vector<ObjectId>{ids_[1]});
-    ASSERT_EQ(result.ellipsoids.size(), 2u);
-    EXPECT_LT(MeanPoseError(result), 1e-5);
-    ApplyBundle(made_.map, result, world_->sensor().levels);
-    EXPECT_EQ(made_.map.objects().At(ids_[1]).ellipsoid.half_axes, objects_[1].ellipsoid.half_axes);
-  }
+  BundleOptions options = kPrecise;
+  options.objects.depth_sigma = 1e9;
+  const BundleResult result = Adjust(Window(), options);
+  ASSERT_TRUE(result.is_usable);
+  EXPECT_EQ(result.failed_objects, std::vector<ObjectId>{ids_[1]});
+  ASSERT_EQ(result.ellipsoids.size(), 2u);
+  EXPECT_LT(MeanPoseError(result), 1e-5);
+  ApplyBundle(made_.map, result, world_->sensor().levels);
+  EXPECT_EQ(made_.map.objects().At(ids_[1]).ellipsoid.half_axes, objects_[1].ellipsoid.half_axes);
 }
 
 // Ceres gives up at a value that is not finite: the points are adjusted nevertheless.
