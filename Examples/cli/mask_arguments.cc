@@ -10,15 +10,15 @@
 
 namespace hullslam {
 
-void AddMaskFormat(CLI::App& app, std::string& format) {
-  app.add_option("--masks-format", format,
+void AddMaskFormat(CLI::App& app, std::string& format, const std::string& names) {
+  app.add_option(names, format,
                  fmt::format("{} (default: detected)", fmt::join(MaskFormatNames(), ", ")))
       ->check(CLI::IsMember(MaskFormatNames()).description(""));
 }
 
 void AddMaskArguments(CLI::App& app, std::filesystem::path& path, std::string& format) {
   app.add_option("--masks", path, "masks of the objects: a folder or a JSON file (docs/masks.md)");
-  AddMaskFormat(app, format);
+  AddMaskFormat(app, format, "--masks-format");
 }
 
 SequenceMasks::SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> frames)

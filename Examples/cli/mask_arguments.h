@@ -15,8 +15,8 @@ namespace hullslam {
 
 // Adds --masks and --masks-format, which write to these two; they must outlive the app.
 void AddMaskArguments(CLI::App& app, std::filesystem::path& path, std::string& format);
-// --masks-format alone, for programs whose masks are an argument.
-void AddMaskFormat(CLI::App& app, std::string& format);
+// The format alone, by the option's names, for programs whose masks are an argument.
+void AddMaskFormat(CLI::App& app, std::string& format, const std::string& names);
 
 // The masks of a sequence, all checked before the first is asked for; none for an empty path.
 class SequenceMasks {

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Checks the masks of a sequence, counts what they become, and draws it.
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/mask_arguments.h"
+#include "cli/mask_overlay.h"
+#include "cli/program.h"
+#include "hullslam/io/atomic_file.h"
+#include "hullslam/io/image_file.h"
+#include "hullslam/io/mask_source.h"
+#include "hullslam/io/output_folder.h"
+#include "hullslam/io/settings.h"
+#include "hullslam/io/tum_sequence.h"
+#include "hullslam/objects/detection_builder.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMostFaultsShown = 20;
+
+struct Arguments {
+  fs::path sequence;
+  fs::path masks;
+  std::string format;
+  fs::path settings;
+  TumSequenceOptions tum;
+  std::vector<std::string> overrides;
+  fs::path output;  // empty: no pictures
+  size_t every = 50;
+};
+
+// What became of the instances of a class.
+struct ClassCount {
+  size_t instances = 0;
+  size_t kept = 0;
+  double score_sum = 0.0;
+};
+
+struct Counts {
+  size_t frames = 0;
+  size_t missing = 0;
+  size_t instances = 0;
+  size_t crowds = 0;
+  size_t without_area = 0;
+  std::array<size_t, kDetectionRejectionCount> rejections{};
+  size_t detections = 0;
+  size_t cut = 0;
+  size_t lines = 0;
+  size_t one_sided = 0;
+  std::map<std::string, ClassCount> classes;
+  std::vector<std::string> faults;
+  size_t pictures = 0;
+};
+
+void AddOptions(CLI::App& app, Arguments& arguments) {
+  app.add_option("SEQUENCE", arguments.sequence, "folder with rgb.txt and depth.txt")->required();
+  app.add_option("MASKS", arguments.masks, "folder or JSON file (docs/masks.md)")->required();
+  AddMaskFormat(app, arguments.format, "--format,--masks-format");
+  app.add_option("--settings", arguments.settings,
+                 "settings file (default: camera.yaml of the sequence, else by its name)");
+  app.add_option("--associations", arguments.tum.associations,
+                 "file of pairs: stamp rgb stamp depth (default: pairs are formed)");
+  app.add_option("--set", arguments.overrides, "key=value: overrides a setting; repeat for more")
+      ->take_all()
+      ->allow_extra_args(false);
+  app.add_option("--output", arguments.output, "folder for pictures (default: none are drawn)");
+  app.add_option("--every", arguments.every, "draw every n-th frame, and the first")
+      ->check(CLI::Range(size_t{1}, size_t{1'000'000'000}).description(""))
+      ->capture_default_str();
+  app.footer("Exit codes: 0 all masks can be read, 2 some are malformed or bad usage.");
+}
+
+void CountDetections(const FrameMasks& frame, const DetectionResult& result, Counts& counts) {
+  for (size_t i = 0; i < frame.masks.size(); ++i) {
+    ClassCount& of_class = counts.classes[frame.masks[i].label];
+    ++of_class.instances;
+    of_class.score_sum += frame.masks[i].score;
+    if (const auto& rejection = result.rejections.at(i)) {
+      ++counts.rejections.at(static_cast<size_t>(*rejection));
+    } else {
+      ++of_class.kept;
+    }
+  }
+  counts.detections += result.detections.size();
+  for (const Detection& detection : result.detections) {
+    counts.cut += detection.is_cut ? 1 : 0;
+    counts.lines += detection.lines.size();
+    for (const SilhouetteLine& line : detection.lines) {
+      counts.one_sided += line.is_one_sided ? 1 : 0;
+    }
+  }
+}
+
+void DrawFrame(const fs::path& path, const cv::Mat& grey, const PinholeCamera& camera,
+               const FrameMasks& frame, const DetectionResult& result) {
+  std::vector<uchar> bytes;
+  cv::imencode(".png", DrawMasks(grey, camera, frame.masks, result), bytes);
+  WriteFileAtomically(path, std::string(bytes.begin(), bytes.end()));
+}
+
+// A frame whose masks or images cannot be read is a fault.
+void CheckFrame(const Arguments& arguments, const SystemOptions& options, const MaskSource& source,
+                const RgbdFramePaths& paths, const MaskFrame& names, Counts& counts) {
+  const bool is_drawn = !arguments.output.empty() && counts.frames % arguments.every == 0;
+  ++counts.frames;
+  try {
+    const FrameMasks frame = source.Read(names);
+    counts.missing += frame.is_missing ? 1 : 0;
+    counts.instances += frame.masks.size() + frame.without_area + frame.crowds;
+    counts.without_area += frame.without_area;
+    counts.crowds += frame.crowds;
+    const cv::Mat depth = ReadDepthImage(paths.depth);
+    const DetectionBuilder builder(options.camera, options.depth.units_per_metre,
+                                   DetectionOptions());
+    const DetectionResult result = builder.Build(frame.masks, depth, {});
+    CountDetections(frame, result, counts);
+    if (is_drawn) {
+      DrawFrame(arguments.output / (names.stem + ".png"), ReadGreyImage(paths.rgb), options.camera,
+                frame, result);
+      ++counts.pictures;
+    }
+  } catch (const InputError& error) {
+    counts.faults.emplace_back(error.what());
+  }
+}
+
+void PrintClasses(const Counts& counts) {
+  fmt::print("\n{:<20}{:>10}{:>10}{:>12}\n", "class", "instances", "kept", "mean score");
+  for (const auto& [label, of_class] : counts.classes) {
+    fmt::print("{:<20}{:>10}{:>10}{:>12.2f}\n", label, of_class.instances, of_class.kept,
+               of_class.score_sum / static_cast<double>(of_class.instances));
+  }
+}
+
+void PrintCounts(const Arguments& arguments, const MaskSource& source, const Counts& counts) {
+  const auto print = [](const std::string& name, size_t count) {
+    fmt::print("{:<20}{:>10}\n", name, count);
+  };
+  fmt::print("{} ({})\n", arguments.masks.string(), source.format());
+  print("frames", counts.frames);
+  print("without file", counts.missing);
+  print("malformed", counts.faults.size());
+  print("instances", counts.instances);
+  print("kept", counts.detections);
+  print("  cut by the border", counts.cut);
+  print("rejected: crowd", counts.crowds);
+  print("rejected: no area", counts.without_area);
+  for (size_t i = 0; i < counts.rejections.size(); ++i) {
+    print("rejected: " + ToString(static_cast<DetectionRejection>(i)), counts.rejections[i]);
+  }
+  print("lines", counts.lines);
+  print("  one-sided", counts.one_sided);
+  if (!arguments.output.empty()) {
+    fmt::print("{} pictures are in {}\n", counts.pictures, arguments.output.string());
+  }
+  PrintClasses(counts);
+}
+
+void PrintFaults(const std::vector<std::string>& faults) {
+  for (size_t i = 0; i < faults.size() && i < kMostFaultsShown; ++i) {
+    fmt::print(stderr, "error: {}\n", faults[i]);
+  }
+  if (faults.size() > kMostFaultsShown) {
+    fmt::print(stderr, "error: and {} more\n", faults.size() - kMostFaultsShown);
+  }
+}
+
+int Run(int argc, char** argv) {
+  CLI::App app("Checks the masks of a sequence, counts what they become, and draws it.",
+               "check_masks");
+  Arguments arguments;
+  AddOptions(app, arguments);
+  if (!ParseCommandLine(app, argc, argv)) {
+    return kDone;
+  }
+  const fs::path settings = arguments.settings.empty()
+                                ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
+                                : arguments.settings;
+  const SystemOptions options = ReadSettings(settings, arguments.overrides);
+  const TumSequence sequence = OpenTumSequence(arguments.sequence, arguments.tum);
+  const std::vector<MaskFrame> frames = MaskFrames(sequence);
+  const auto source = OpenMasks(
+      {arguments.masks, arguments.format, options.camera.width, options.camera.height}, frames);
+  if (!arguments.output.empty()) {
+    PrepareOutputFolder(arguments.output);
+  }
+  Counts counts;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    CheckFrame(arguments, options, *source, sequence.frames[i], frames[i], counts);
+  }
+  PrintCounts(arguments, *source, counts);
+  PrintFaults(counts.faults);
+  return counts.faults.empty() ? kDone : kBadInput;
+}
+
+}  // namespace
+}  // namespace hullslam
+
+int main(int argc, char** argv) { return hullslam::RunMain(hullslam::Run, argc, argv); }

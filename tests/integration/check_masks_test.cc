@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hullslam/io/text_rows.h"
+#include "support/plane_sequence.h"
+#include "support/run_program.h"
+#include "support/temporary_folder.h"
+#include "support/test_data.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kCup = "41 0.25 0.25 0.5 0.25 0.5 0.5 0.25 0.5 0.9\n";
+
+// A sequence of four frames of which two have masks.
+class CheckMasks : public ::testing::Test {
+ protected:
+  CheckMasks() {
+    folder_.Write("masks/00.txt", std::string(kCup) + "0 0.6 0.6 0.8 0.6 0.7 0.9 0.8\n");
+    folder_.Write("masks/02.txt", std::string(kCup) + "62 0.1 0.1 0.2 0.2 0.3 0.3 0.5\n");
+  }
+
+  ProgramResult Run(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {sequence_.path(), folder_.path() / "masks"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunProgram("check_masks", arguments);
+  }
+
+  // The number behind a name at the begin of a line.
+  static std::string Count(const ProgramResult& result, const std::string& name) {
+    const size_t at = result.output.find('\n' + name + ' ');
+    if (at == std::string::npos) {
+      return "no " + name;
+    }
+    const size_t number = result.output.find_first_not_of(' ', at + 1 + name.size());
+    return result.output.substr(number, result.output.find_first_of(" \n", number) - number);
+  }
+
+  TemporaryFolder folder_;
+  PlaneSequence sequence_ = PlaneSequence(4);
+};
+
+TEST_F(CheckMasks, CountsFramesInstancesAndClasses) {
+  const ProgramResult result = Run();
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(result.errors, "");
+  EXPECT_NE(result.output.find("(yolo-seg)"), std::string::npos) << result.output;
+  EXPECT_EQ(Count(result, "frames"), "4");
+  EXPECT_EQ(Count(result, "without file"), "2");
+  EXPECT_EQ(Count(result, "malformed"), "0");
+  EXPECT_EQ(Count(result, "instances"), "4");
+  EXPECT_EQ(Count(result, "kept"), "3");
+  EXPECT_EQ(Count(result, "rejected: no area"), "1");
+  EXPECT_EQ(Count(result, "cup"), "2");
+  EXPECT_EQ(Count(result, "person"), "1");
+}
+
+TEST_F(CheckMasks, DrawsThePicturesAskedFor) {
+  const fs::path out = folder_.path() / "pictures";
+  const ProgramResult result = Run({"--output", out, "--every", "2"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  std::set<std::string> names;
+  for (const fs::directory_entry& file : fs::directory_iterator(out)) {
+    names.insert(file.path().filename());
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"00.png", "02.png"}));
+  const cv::Mat picture = cv::imread(out / "00.png", cv::IMREAD_COLOR);
+  ASSERT_EQ(picture.size(), cv::Size(1280, 960));
+  // The cup's left side, at x = 160 and y = 120 to 240 of the image, holds: it is drawn green.
+  cv::Mat is_green;
+  cv::inRange(picture(cv::Rect(316, 230, 10, 260)), cv::Scalar(60, 220, 60),
+              cv::Scalar(60, 220, 60), is_green);
+  EXPECT_GT(cv::countNonZero(is_green), 50);
+}
+
+TEST_F(CheckMasks, ListsAllMalformedFiles) {
+  folder_.Write("masks/01.txt", "41 0.1 0.1 0.2\n");
+  folder_.Write("masks/03.txt", std::string(kCup) + "41 0.1 nan 0.2 0.2 0.3 0.1\n");
+  const ProgramResult result = Run();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.errors.find("01.txt:1: 4 column(s)"), std::string::npos) << result.errors;
+  EXPECT_NE(result.errors.find("03.txt:2: y is 'nan'"), std::string::npos) << result.errors;
+  EXPECT_EQ(Count(result, "malformed"), "2");
+  EXPECT_EQ(Count(result, "kept"), "3");  // of the others
+}
+
+TEST_F(CheckMasks, RefusesBadArguments) {
+  const auto refuse = [](const ProgramResult& result, const std::string& part) {
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.output, "");
+    EXPECT_TRUE(result.errors.starts_with("error: ")) << result.errors;
+    EXPECT_EQ(result.errors.find('\n'), result.errors.size() - 1) << result.errors;
+    EXPECT_NE(result.errors.find(part), std::string::npos) << result.errors;
+  };
+  refuse(Run({"--format", "yolo"}), "yolo-seg");
+  refuse(Run({"--every", "0"}), "--every");
+  refuse(Run({"--set", "Camera.fz=1"}), "Camera.fz");
+  refuse(Run({"--settings", "none.yaml"}), "none.yaml");
+  refuse(Run({"--output", "/proc/none"}), "/proc/none");
+  refuse(RunProgram("check_masks", {sequence_.path()}), "MASKS");
+  refuse(RunProgram("check_masks", {sequence_.path(), folder_.path() / "none"}), "none");
+  refuse(RunProgram("check_masks", {folder_.path() / "none", folder_.path()}), "none");
+  folder_.Write("others/1.5.txt", kCup);
+  refuse(RunProgram("check_masks", {sequence_.path(), folder_.path() / "others"}), "'1.5.txt'");
+}
+
+TEST(CheckMasksData, RealMasksAreAllWell) {
+  const auto data = FindTestData("fr1_xyz");
+  if (!data) {
+    GTEST_SKIP() << "fr1_xyz is not on this machine; set HULLSLAM_DATA";
+  }
+  const ProgramResult result = RunProgram("check_masks", {*data, *data / "masks-yolo8n-seg"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("malformed                    0"), std::string::npos)
+      << result.output;
+}
+
+// ---- --masks of the programs that run SLAM
+
+TEST_F(CheckMasks, RunsTellTheFormatAndTheFramesWithout) {
+  const fs::path out = folder_.path() / "out";
+  const std::vector<std::string> arguments = {sequence_.path(), "--output", out, "--masks",
+                                              folder_.path() / "masks"};
+  const ProgramResult result = RunProgram("rgbd_tum", arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("(yolo-seg), 2 of 4 frames without"), std::string::npos)
+      << result.output;
+  EXPECT_NE(ReadFile(out / "summary.json").find("\"masks_format\": \"yolo-seg\""),
+            std::string::npos);
+}
+
+TEST_F(CheckMasks, RunsRefuseBrokenMasksBeforeTheFirstFrame) {
+  const fs::path out = folder_.path() / "out";
+  const auto refuse = [&](const std::vector<std::string>& more, const std::string& part) {
+    std::vector<std::string> arguments = {sequence_.path(), "--output", out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = RunProgram("rgbd_tum", arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(result.errors.find(part), std::string::npos) << result.errors;
+    EXPECT_FALSE(fs::exists(out));
+  };
+  const std::string masks = folder_.path() / "masks";
+  refuse({"--masks", masks, "--masks-format", "yolo"}, "yolo-seg");
+  refuse({"--masks", masks, "--masks-format", "boxes"}, "00.txt:1: 10 column(s)");
+  refuse({"--masks", masks + "/none"}, masks + "/none");
+  refuse({"--masks-format", "coco"}, "without --masks");
+  folder_.Write("masks/03.txt", "41 0.1 0.1 2.0 0.1 0.1 0.2\n");
+  refuse({"--masks", masks}, "03.txt:1: x is '2'");
+}
+
+}  // namespace
+}  // namespace hullslam
