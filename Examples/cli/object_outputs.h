@@ -1,19 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/io/atomic_file.h"
 #include "hullslam/io/summary.h"
 #include "hullslam/map/object_report.h"
+#include "hullslam/system/system.h"
 
 namespace hullslam {
 
-// The map's objects and how well they fit, for objects.json and objects.ply.
-ObjectReport MeasuredReport(const Map& map, const PinholeCamera& camera,
-                            const std::string& sequence);
+// The objects of a map with their fits.
+ObjectReport CollectObjects(const Map& map, const PinholeCamera& camera,
+                            const std::filesystem::path& sequence);
 
-// What summary.json says of them. The counts of detections, frames and rejections, which the map
-// does not know, are left at 0.
-ObjectsSummary SummarizeObjects(const ObjectReport& report);
+ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& counts);
+
+// objects.json and objects.ply, to be written with the other files of a run.
+std::vector<FileContent> ObjectFiles(const std::filesystem::path& folder,
+                                     const ObjectReport& report);
+
+// "7 objects, 3 candidates; mean SIoU 0.81 ..."
+std::string DescribeObjects(const ObjectsSummary& summary);
 
 }  // namespace hullslam

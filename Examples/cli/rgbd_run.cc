@@ -4,13 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
+#include <iterator>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "cli/interrupt.h"
 #include "cli/mask_arguments.h"
+#include "cli/object_outputs.h"
 #include "cli/program.h"
 #include "cli/progress.h"
 #include "hullslam/eval/ate.h"
@@ -188,16 +190,18 @@ std::string FormatMap(const Map& map, const Trajectory& keyframes) {
   return FormatPly(landmarks, centers);
 }
 
-void WriteOutputs(const std::filesystem::path& folder, const System& system,
-                  const Trajectory& trajectory, const RunSummary& summary) {
-  const std::shared_ptr<const Map> map =
-      system.map() != nullptr ? system.map() : std::make_shared<const Map>();
-  const Trajectory keyframes = KeyframeTrajectory(*map);
-  WriteFilesAtomically(
-      std::array<FileContent, 4>{{{folder / "trajectory.txt", FormatTrajectory(trajectory)},
-                                  {folder / "keyframes.txt", FormatTrajectory(keyframes)},
-                                  {folder / "map.ply", FormatMap(*map, keyframes)},
-                                  {folder / "summary.json", FormatSummary(summary)}}});
+// Files of objects are written for a run with masks only.
+void WriteOutputs(const std::filesystem::path& folder, const Map& map, const Trajectory& trajectory,
+                  const RunSummary& summary, const ObjectReport& objects) {
+  const Trajectory keyframes = KeyframeTrajectory(map);
+  std::vector<FileContent> files = {{folder / "trajectory.txt", FormatTrajectory(trajectory)},
+                                    {folder / "keyframes.txt", FormatTrajectory(keyframes)},
+                                    {folder / "map.ply", FormatMap(map, keyframes)},
+                                    {folder / "summary.json", FormatSummary(summary)}};
+  if (summary.objects) {
+    std::ranges::move(ObjectFiles(folder, objects), std::back_inserter(files));
+  }
+  WriteFilesAtomically(files);
 }
 
 void PrintReport(const RunArguments& arguments, const RunSummary& summary) {
@@ -215,6 +219,9 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary) {
                *trajectory.rpe_rmse_deg);
   }
   fmt::print("{} keyframes, {} landmarks\n", summary.map.keyframes, summary.map.landmarks);
+  if (summary.objects) {
+    fmt::print("{}\n", DescribeObjects(*summary.objects));
+  }
   fmt::print(
       "tracking {:.1f} ms a frame (median; mean {:.1f}, p95 {:.1f}); {:.1f} frames/s in all; "
       "{:.0f} MB at most\n",
@@ -260,7 +267,13 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
   if (groundtruth) {
     Evaluate(*groundtruth, trajectory, summary.trajectory);
   }
-  WriteOutputs(arguments.output, system, trajectory, summary);
+  const std::shared_ptr<const Map> map =
+      system.map() != nullptr ? system.map() : std::make_shared<const Map>();
+  const ObjectReport objects = CollectObjects(*map, options.camera, arguments.sequence);
+  if (masks.format()) {
+    summary.objects = SummarizeObjects(objects, system.object_counts());
+  }
+  WriteOutputs(arguments.output, *map, trajectory, summary, objects);
   if (result.was_interrupted) {
     fmt::print(stderr, "warning: interrupted after {} of {} frames\n", result.given,
                sequence.frames.size());

@@ -54,7 +54,22 @@ ImageList ReadImageList(const fs::path& folder, const char* name) {
   return list;
 }
 
-TumSequence PairLists(const fs::path& folder) {
+// Frames of the colour images alone.
+TumSequence ReadColourList(const fs::path& folder) {
+  const ImageList rgb = ReadImageList(folder, "rgb.txt");
+  TumSequence sequence;
+  sequence.unpaired = rgb.stamps.size();
+  for (size_t i = 0; i < rgb.stamps.size(); ++i) {
+    sequence.frames.push_back({rgb.stamps[i], rgb.files[i], fs::path(), i});
+  }
+  return sequence;
+}
+
+TumSequence PairLists(const fs::path& folder, bool need_depth) {
+  std::error_code error;
+  if (!need_depth && !fs::exists(folder / "depth.txt", error)) {
+    return ReadColourList(folder);
+  }
   ImageList rgb = ReadImageList(folder, "rgb.txt");
   ImageList depth = ReadImageList(folder, "depth.txt");
   const auto pairs = PairStampsGreedily(rgb.stamps, depth.stamps, kMaxDifference);
@@ -123,6 +138,15 @@ void CheckImagesExist(const std::vector<RgbdFramePaths>& frames) {
   }
 }
 
+void DropMissingDepth(std::vector<RgbdFramePaths>& frames) {
+  std::error_code error;
+  for (RgbdFramePaths& frame : frames) {
+    if (!fs::is_regular_file(frame.depth, error)) {
+      frame.depth.clear();
+    }
+  }
+}
+
 void CheckSize(const fs::path& path, const cv::Mat& image, const PinholeCamera& camera) {
   if (image.cols != camera.width || image.rows != camera.height) {
     throw InputError(fmt::format("{}: {}x{} px, expected Camera.width x Camera.height, {}x{}",
@@ -139,10 +163,14 @@ TumSequence OpenTumSequence(const fs::path& folder, const TumSequenceOptions& op
     throw InputError(folder.string() + ": no such folder, expected a sequence in TUM's format");
   }
   TumSequence sequence = options.associations.empty()
-                             ? PairLists(folder)
+                             ? PairLists(folder, options.need_images)
                              : ReadAssociations(folder, options.associations);
   sequence.frames = Select(folder, std::move(sequence.frames), options.selection);
-  CheckImagesExist(sequence.frames);
+  if (options.need_images) {
+    CheckImagesExist(sequence.frames);
+  } else {
+    DropMissingDepth(sequence.frames);
+  }
   const fs::path groundtruth = folder / "groundtruth.txt";
   if (fs::exists(groundtruth, error)) {
     sequence.groundtruth = groundtruth;

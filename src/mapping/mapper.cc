@@ -10,9 +10,28 @@
 #include "hullslam/optim/bundle_adjustment.h"
 
 namespace hullslam {
+namespace {
 
-Mapper::Mapper(const Sensor& sensor, const MappingOptions& options, Publish publish)
-    : sensor_(sensor), options_(options), publish_(std::move(publish)) {}
+BundleOptions MakeBundleOptions(const ObjectOptions& objects) {
+  BundleOptions options;
+  options.objects.residual = objects.residual;
+  options.objects.primitive = objects.detection.primitive;
+  options.objects.sigma_px = objects.sigma;
+  options.objects.max_effective_lines = objects.max_effective_lines;
+  options.objects.depth_sigma = objects.depth_sigma;
+  options.objects.prior.log_axes = objects.prior_sigma;
+  return options;
+}
+
+}  // namespace
+
+Mapper::Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
+               Publish publish)
+    : sensor_(sensor),
+      options_(options),
+      object_options_(objects),
+      publish_(std::move(publish)),
+      object_mapper_(sensor, objects) {}
 
 void Mapper::Process(const KeyframeRequest& request, const Cancellation* hurry) {
   const auto must_hurry = [&] { return hurry != nullptr && hurry->IsRequested(); };
@@ -31,6 +50,7 @@ void Mapper::Process(const KeyframeRequest& request, const Cancellation* hurry) 
       FuseLandmarks(map_, keyframe, sensor_);
     }
   }
+  MapObjects(keyframe);
   if (!must_hurry() && map_.keyframes().size() > 2) {
     AdjustNeighbourhood(keyframe, hurry);
     if (options_.cull_keyframes) {
@@ -41,16 +61,29 @@ void Mapper::Process(const KeyframeRequest& request, const Cancellation* hurry) 
   PublishSnapshot();
 }
 
+void Mapper::MapObjects(KeyframeId keyframe) {
+  const bool has_objects =
+      !map_.objects().empty() || !map_.keyframes().At(keyframe).frame->detections.empty();
+  if (object_options_.enabled && has_objects) {
+    const ScopedTimer timer(times_, "map_objects");
+    object_mapper_.Process(map_, keyframe);
+  }
+}
+
 void Mapper::PublishSnapshot() { publish_(std::make_shared<const Map>(map_.Snapshot())); }
 
 void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry) {
   const ScopedTimer timer(times_, "local_bundle_adjustment");
+  const bool with_objects = object_options_.enabled && object_options_.bundle_adjustment;
   const BundleWindow window =
       LocalWindow(map_, keyframe, static_cast<size_t>(options_.local_keyframes),
-                  static_cast<size_t>(options_.fixed_keyframes));
-  const BundleResult result = AdjustBundle(map_, sensor_, window, {}, hurry);
+                  static_cast<size_t>(options_.fixed_keyframes),
+                  with_objects ? WindowObjects::kMapped : WindowObjects::kNone);
+  const BundleResult result =
+      AdjustBundle(map_, sensor_, window, MakeBundleOptions(object_options_), hurry);
   if (result.is_usable) {
     ApplyBundle(map_, result, sensor_.levels);
+    object_mapper_.Recheck(map_, window.objects);
   }
 }
 

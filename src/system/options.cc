@@ -17,6 +17,7 @@ OptionTable SystemOptions::Bind() {
   features.Bind(table);
   tracking.Bind(table);
   mapping.Bind(table);
+  objects.Bind(table);
   for (const char* name :
        {"KeyFrameSize", "KeyFrameLineWidth", "GraphLineWidth", "PointSize", "CameraSize",
         "CameraLineWidth", "ViewpointX", "ViewpointY", "ViewpointZ", "ViewpointF"}) {
@@ -35,6 +36,11 @@ void SystemOptions::Validate() const {
     throw InputError("settings: ORBextractor.nLevels is '" + std::to_string(features.level_count) +
                      "', its smallest image would be " + std::to_string(smallest_side) +
                      " px, expected at least 64 px");
+  }
+  if (!IsSupported(objects.residual, objects.detection.primitive)) {
+    throw InputError("settings: objects.residual '" + std::string(NameOf(objects.residual)) +
+                     "' cannot be computed from objects.primitive '" +
+                     std::string(NameOf(objects.detection.primitive)) + "'");
   }
 }
 

@@ -13,8 +13,8 @@ namespace {
 class SequentialPipeline final : public Pipeline {
  public:
   SequentialPipeline(const Sensor& sensor, const SystemOptions& options)
-      : tracker_(sensor, options.tracking),
-        mapper_(sensor, options.mapping,
+      : tracker_(sensor, options.tracking, options.objects),
+        mapper_(sensor, options.mapping, options.objects,
                 [this](std::shared_ptr<const Map> map) { map_ = std::move(map); }) {}
 
   TrackedFrame Track(std::shared_ptr<const Frame> frame) override {
@@ -34,6 +34,10 @@ class SequentialPipeline final : public Pipeline {
     StageTimes times = tracker_.times();
     times.Merge(mapper_.times());
     return times;
+  }
+
+  std::map<ObjectRejection, size_t> object_rejections() const override {
+    return mapper_.object_rejections();
   }
 
  private:

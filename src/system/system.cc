@@ -8,6 +8,7 @@
 #include "hullslam/system/pipeline.h"
 #include "hullslam/system/sequential_pipeline.h"
 #include "hullslam/system/threaded_pipeline.h"
+#include "hullslam/tracking/dynamic_mask.h"
 #include "hullslam/tracking/frame_builder.h"
 #include "hullslam/util/check.h"
 
@@ -62,7 +63,9 @@ std::unique_ptr<Pipeline> MakePipeline(PipelineKind kind, const Sensor& sensor,
 System::System(const SystemOptions& options, PipelineKind kind)
     : options_(Validated(options)),
       sensor_(MakeSensor(options_)),
-      frame_builder_(std::make_unique<FrameBuilder>(sensor_, options_.depth, options_.features)),
+      frame_builder_(std::make_unique<FrameBuilder>(sensor_, options_.depth, options_.features,
+                                                    options_.objects,
+                                                    SplitNames(options_.tracking.dynamic_classes))),
       pipeline_(MakePipeline(kind, sensor_, options_)) {}
 
 System::~System() = default;
@@ -108,6 +111,20 @@ StageTimes System::times() const {
     }
   }
   return all;
+}
+
+ObjectCounts System::object_counts() const {
+  ObjectCounts counts;
+  counts.detections = frame_builder_->counts().detections;
+  counts.frames_with_masks = frame_builder_->counts().frames_with_masks;
+  counts.frames_without_masks = frames_.size() - counts.frames_with_masks;
+  for (const auto& [reason, count] : frame_builder_->counts().rejections) {
+    counts.rejections["mask_" + ToString(reason)] = count;
+  }
+  for (const auto& [reason, count] : pipeline_->object_rejections()) {
+    counts.rejections[ToString(reason)] = count;
+  }
+  return counts;
 }
 
 }  // namespace hullslam

@@ -23,8 +23,8 @@ class ThreadedPipeline final : public Pipeline {
  public:
   ThreadedPipeline(const Sensor& sensor, const SystemOptions& options, Pace pace)
       : pace_(pace),
-        tracker_(sensor, options.tracking),
-        mapper_(sensor, options.mapping,
+        tracker_(sensor, options.tracking, options.objects),
+        mapper_(sensor, options.mapping, options.objects,
                 [this](std::shared_ptr<const Map> map) { Publish(std::move(map)); }),
         requests_(kMailboxCapacity),
         mapping_thread_([this] { RunMapping(); }) {}
@@ -58,6 +58,10 @@ class ThreadedPipeline final : public Pipeline {
     StageTimes times = tracker_.times();
     times.Merge(mapper_.times());
     return times;
+  }
+
+  std::map<ObjectRejection, size_t> object_rejections() const override {
+    return mapper_.object_rejections();
   }
 
  private:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/system/trajectory.h"
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 
 namespace hullslam {
@@ -18,6 +20,32 @@ Trajectory ComposeTrajectory(const Map& map, std::span<const TrackedFrame> frame
     trajectory.push_back({frame.timestamp, Inverse(cam_from_world)});
   }
   return trajectory;
+}
+
+std::optional<Rigid3> InterpolatePose(const Trajectory& trajectory, double timestamp,
+                                      double max_gap) {
+  const auto after = std::lower_bound(
+      trajectory.begin(), trajectory.end(), timestamp,
+      [](const StampedPose& pose, double stamp) { return pose.timestamp < stamp; });
+  if (after == trajectory.end()) {
+    return std::nullopt;
+  }
+  if (after->timestamp == timestamp) {
+    return after->world_from_cam;
+  }
+  if (after == trajectory.begin()) {
+    return std::nullopt;
+  }
+  const StampedPose& before = *std::prev(after);
+  const double gap = after->timestamp - before.timestamp;
+  if (gap > max_gap) {
+    return std::nullopt;
+  }
+  const double share = (timestamp - before.timestamp) / gap;
+  const Rigid3& a = before.world_from_cam;
+  const Rigid3& b = after->world_from_cam;
+  return Rigid3(a.rotation.slerp(share, b.rotation),
+                (1.0 - share) * a.translation + share * b.translation);
 }
 
 Trajectory KeyframeTrajectory(const Map& map) {

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "hullslam/tracking/dynamic_mask.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {
@@ -28,8 +29,14 @@ void AddDepth(const Sensor& sensor, const cv::Mat& depth, double units_per_metre
 }  // namespace
 
 FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
-                           const FeatureOptions& features)
-    : sensor_(sensor), depth_(depth), extractor_(features) {}
+                           const FeatureOptions& features, const ObjectOptions& objects,
+                           std::set<std::string> dynamic_classes)
+    : sensor_(sensor),
+      depth_(depth),
+      extractor_(features),
+      detection_builder_(sensor.camera, depth.units_per_metre, objects.detection),
+      objects_enabled_(objects.enabled),
+      dynamic_classes_(std::move(dynamic_classes)) {}
 
 std::shared_ptr<const Frame> FrameBuilder::Build(const RgbdImage& image, FrameId id) {
   const cv::Size size(sensor_.camera.width, sensor_.camera.height);
@@ -45,13 +52,35 @@ std::shared_ptr<const Frame> FrameBuilder::Build(const RgbdImage& image, FrameId
   FrameFeatures& features = frame->features;
   features.keypoints = std::move(extracted.keypoints);
   features.descriptors = std::move(extracted.descriptors);
+  if (const cv::Mat mask = DynamicMask(image.masks, dynamic_classes_, size); !mask.empty()) {
+    RemoveMasked(mask, features.keypoints, features.descriptors);
+  }
   Undistort(sensor_.camera, features.keypoints);
   AddDepth(sensor_, image.depth, depth_.units_per_metre, features);
   const PinholeCamera::Bounds& bounds = sensor_.bounds;
   features.grid =
       FeatureGrid(features.keypoints, Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
                   Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
+  counts_.frames_with_masks += image.masks.empty() ? 0 : 1;
+  if (objects_enabled_ && !image.masks.empty()) {
+    frame->detections = Detect(image, features.keypoints);
+  }
   return frame;
+}
+
+std::vector<Detection> FrameBuilder::Detect(const RgbdImage& image,
+                                            const std::vector<Keypoint>& keypoints) {
+  std::vector<InstanceMask> masks = image.masks;
+  std::erase_if(masks,
+                [&](const InstanceMask& mask) { return dynamic_classes_.contains(mask.label); });
+  DetectionResult result = detection_builder_.Build(masks, image.depth, keypoints);
+  for (const std::optional<DetectionRejection>& rejection : result.rejections) {
+    if (rejection) {
+      ++counts_.rejections[*rejection];
+    }
+  }
+  counts_.detections += result.detections.size();
+  return std::move(result.detections);
 }
 
 }  // namespace hullslam

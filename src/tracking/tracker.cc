@@ -38,8 +38,8 @@ void ResolveAll(const Map& map, std::vector<LandmarkId>& landmarks) {
 
 }  // namespace
 
-Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options)
-    : sensor_(sensor), options_(options) {
+Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects)
+    : sensor_(sensor), options_(options), object_options_(objects) {
   policy_.min_reference_ratio = options.keyframe_ratio;
   policy_.min_frames_between =
       static_cast<uint32_t>(std::lround(options.keyframe_interval * sensor.frames_per_second));

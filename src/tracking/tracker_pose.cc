@@ -6,7 +6,7 @@
 #include "hullslam/map/landmark_projection.h"
 #include "hullslam/matching/by_descriptor.h"
 #include "hullslam/matching/by_projection.h"
-#include "hullslam/optim/pose_optimization.h"
+#include "hullslam/optim/joint_pose_optimization.h"
 #include "hullslam/tracking/local_map.h"
 #include "hullslam/tracking/tracker.h"
 
@@ -21,6 +21,7 @@ constexpr size_t kMinReferenceMatches = 15;
 constexpr double kLocalRadius = 4.0;
 constexpr double kLocalRadiusFrontal = 2.5;
 constexpr double kCosFrontal = 0.998;
+constexpr int kObjectSupport = 5;  // landmarks that an object stands for when a frame is judged
 constexpr double kDepthRadiusFactor = 3.0;  // depth makes start poses and landmarks less sure
 
 struct LevelRange {
@@ -126,14 +127,23 @@ std::optional<Tracker::Estimate> Tracker::TrackLocalMap(Estimate estimate) {
     reference_ = local.reference;
   }
   SearchLocalLandmarks(local.landmarks, estimate);
-  OptimizePose(estimate);
+  const PoseObjects found = FindObjects(estimate);
+  OptimizePose(estimate, found.objects);
   for (const LandmarkId landmark : estimate.landmarks) {
     if (landmark.IsValid()) {
       sightings_.CountFound(landmark);
     }
   }
-  return estimate.inliers >= options_.min_inliers ? std::optional(std::move(estimate))
-                                                  : std::nullopt;
+  const int support = estimate.inliers + kObjectSupport * estimate.objects;
+  return support >= options_.min_inliers ? std::optional(std::move(estimate)) : std::nullopt;
+}
+
+PoseObjects Tracker::FindObjects(const Estimate& estimate) const {
+  const bool may_hold = object_options_.enabled && object_options_.joint_pose &&
+                        !frame_->detections.empty() && !map_->objects().empty();
+  return may_hold ? FindPoseObjects(*map_, sensor_, *frame_, estimate.cam_from_world,
+                                    estimate.landmarks, object_options_)
+                  : PoseObjects();
 }
 
 void Tracker::SearchLocalLandmarks(const std::vector<LandmarkId>& local, Estimate& estimate) {
@@ -179,7 +189,7 @@ void Tracker::SearchLocalLandmarks(const std::vector<LandmarkId>& local, Estimat
   }
 }
 
-void Tracker::OptimizePose(Estimate& estimate) const {
+void Tracker::OptimizePose(Estimate& estimate, std::span<const PoseObject> objects) const {
   const FrameFeatures& features = frame_->features;
   std::vector<PoseObservation> observations;
   std::vector<size_t> keypoints;
@@ -197,10 +207,16 @@ void Tracker::OptimizePose(Estimate& estimate) const {
         static_cast<double>(sensor_.levels.inverse_sigma2[static_cast<size_t>(keypoint.level)]);
     keypoints.push_back(i);
   }
-  const PoseOptimizationResult result =
-      hullslam::OptimizePose(sensor_.camera, estimate.cam_from_world, observations);
+  JointPoseOptions options;
+  options.residual = object_options_.residual;
+  options.primitive = object_options_.detection.primitive;
+  options.max_effective_lines = object_options_.max_effective_lines;
+  const JointPoseResult joint =
+      OptimizeJointPose(sensor_.camera, estimate.cam_from_world, observations, objects, options);
+  const PoseOptimizationResult& result = joint.points;
   estimate.cam_from_world = result.cam_from_world;
   estimate.inliers = result.inlier_count;
+  estimate.objects = joint.used_objects;
   for (size_t k = 0; k < keypoints.size(); ++k) {
     if (result.is_inlier[k] == 0) {
       estimate.landmarks[keypoints[k]] = LandmarkId();

@@ -12,6 +12,8 @@ void TrackingOptions::Bind(OptionTable& options) {
               "keyframes against whose landmarks a frame is tracked, at most");
   options.Add("tracking.keyframe_ratio", &keyframe_ratio, Range::Between(0.1, 1.0),
               "share of the reference keyframe's landmarks below which a keyframe is due");
+  options.AddText("tracking.dynamic_classes", &dynamic_classes,
+                  "classes of masks to take keypoints out, separated by commas");
   options.Add("tracking.keyframe_interval", &keyframe_interval, Range::Between(0.0, 60.0),
               "least time between keyframes unless tracking weakens abruptly, s");
 }

@@ -167,6 +167,17 @@ void OptionTable::AddChoice(std::string key, std::vector<std::string> names,
              .help = std::move(help)});
 }
 
+void OptionTable::AddText(std::string key, std::string* field, std::string help) {
+  AddOption(std::move(key), {.parse =
+                                 [field](const std::string& text) {
+                                   *field = text;
+                                   return true;
+                                 },
+                             .print = [field] { return *field; },
+                             .expected = "text",
+                             .help = std::move(help)});
+}
+
 void OptionTable::AddIgnored(std::string key) {
   Option option;
   option.parse = [](const std::string&) { return true; };

@@ -6,11 +6,10 @@
 namespace hullslam {
 namespace {
 
-// What a source does not say must not make a mask look worse or other than it is.
-TEST(InstanceMask, IsASureContourUnlessSaidOtherwise) {
+TEST(InstanceMask, IsACertainContourUnlessSaidOtherwise) {
   const InstanceMask mask;
-  EXPECT_EQ(mask.score, 1.0);
   EXPECT_EQ(mask.shape, MaskShape::kContour);
+  EXPECT_EQ(mask.score, 1.0);
   EXPECT_TRUE(mask.outlines.empty());
 }
 

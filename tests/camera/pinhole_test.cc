@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <vector>

@@ -49,6 +49,21 @@ TEST_F(TumSequenceTest, PairsTheImagesAndCountsTheRest) {
   EXPECT_EQ(Open().groundtruth, folder_.path() / "groundtruth.txt");
 }
 
+TEST_F(TumSequenceTest, WithoutImagesGivesStampsAndTheDepthThereIs) {
+  std::filesystem::remove(folder_.path() / "rgb/c.png");
+  std::filesystem::remove(folder_.path() / "depth/b.png");
+  ExpectError({"the image is missing"});
+  const TumSequence some = Open({.need_images = false});
+  ASSERT_EQ(some.frames.size(), 3U);
+  EXPECT_EQ(some.frames[0].depth, folder_.path() / "depth/a.png");
+  EXPECT_TRUE(some.frames[1].depth.empty());
+  std::filesystem::remove(folder_.path() / "depth.txt");
+  const TumSequence none = Open({.need_images = false});
+  ASSERT_EQ(none.frames.size(), 4U);
+  EXPECT_TRUE(none.frames[0].depth.empty());
+  EXPECT_EQ(none.frames[3].timestamp, 1.09);
+}
+
 TEST_F(TumSequenceTest, SelectsFrames) {
   const auto stamps = [&](const FrameSelection& selection) {
     std::vector<double> result;

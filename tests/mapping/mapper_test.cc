@@ -28,7 +28,7 @@ class MapperTest : public testing::Test {
   void Restart(const MappingOptions& options) {
     published_.clear();
     landmark_of_point_.clear();
-    mapper_ = std::make_unique<Mapper>(world_.sensor(), options, [this](auto map) {
+    mapper_ = std::make_unique<Mapper>(world_.sensor(), options, ObjectOptions(), [this](auto map) {
       EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
       published_.push_back(std::move(map));
     });

@@ -132,5 +132,15 @@ TEST(OptionTable, AKeyIsBoundOnce) {
   EXPECT_THROW(table.Add("flag", &fields.flag, "again"), CheckError);
 }
 
+TEST(OptionTable, TextIsTakenAsItIs) {
+  std::string field = "person";
+  OptionTable table;
+  table.AddText("classes", &field, "names");
+  table.Set("classes", "person, potted plant", "test");
+  EXPECT_EQ(field, "person, potted plant");
+  table.Set("classes", "", "test");
+  EXPECT_EQ(table.Entries().front().value, "");
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -15,7 +15,8 @@ struct Ellipsoid {
   Rigid3 world_from_object;
   Eigen::Vector3d half_axes = Eigen::Vector3d::Ones();  // m, each > 0
 
-  // Q* = Z diag(a^2, b^2, c^2, -1) Z^T, Z = world_from_object: pi^T Q* pi = 0 for tangent planes pi.
+  // Q* = Z diag(a^2, b^2, c^2, -1) Z^T, Z = world_from_object: pi^T Q* pi = 0 for tangent planes
+  // pi.
   Eigen::Matrix4d DualQuadric() const;
   // Distance of a world point from the surface along the ray to the centre, m; negative inside.
   double RadialDistance(const Eigen::Vector3d& point_in_world) const;

@@ -27,8 +27,11 @@ struct FrameSelection {
 };
 
 struct TumSequenceOptions {
-  std::filesystem::path associations;  // empty: pairs are formed here
-  FrameSelection selection;
+  std::filesystem::path associations = {};  // empty: pairs are formed here
+  // False for programs that work with masks and poses: images may be missing, and so may depth.txt;
+  // frames without a depth image have an empty path then.
+  bool need_images = true;
+  FrameSelection selection = {};
 };
 
 struct TumSequence {

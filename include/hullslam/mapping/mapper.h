@@ -9,12 +9,13 @@
 #include "hullslam/map/messages.h"
 #include "hullslam/map/sensor.h"
 #include "hullslam/mapping/mapping_options.h"
+#include "hullslam/objects/object_mapper.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
 
 namespace hullslam {
 
-// Owns the live map: makes keyframes, creates, fuses and culls landmarks, adjusts the
+// Owns the live map: makes keyframes, creates, fuses and culls landmarks, maps objects, adjusts the
 // neighbourhood.
 class Mapper {
  public:
@@ -22,21 +23,28 @@ class Mapper {
 
   // `sensor` must outlive the mapper. `publish` is called in Process with every snapshot that
   // others should see.
-  Mapper(const Sensor& sensor, const MappingOptions& options, Publish publish);
+  Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
+         Publish publish);
 
   // `hurry` (may be null) is asked when another keyframe waits: then what can be left out is.
   void Process(const KeyframeRequest& request, const Cancellation* hurry);
 
   const StageTimes& times() const { return times_; }
+  const std::map<ObjectRejection, size_t>& object_rejections() const {
+    return object_mapper_.rejections();
+  }
 
  private:
   void PublishSnapshot();
+  void MapObjects(KeyframeId keyframe);
   void AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry);
 
   const Sensor& sensor_;
   MappingOptions options_;
+  ObjectOptions object_options_;
   Publish publish_;
   StageTimes times_;
+  ObjectMapper object_mapper_;
   Map map_;
   std::vector<LandmarkId> recent_;  // landmarks that have yet to prove themselves
 };

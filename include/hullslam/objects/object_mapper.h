@@ -27,7 +27,7 @@ class ObjectMapper {
   void Recheck(Map& map, std::span<const ObjectId> objects);
 
   // How often an object was not mapped, or mapped no longer, for each reason.
-  const std::map<ObjectRejection, int>& rejections() const { return rejections_; }
+  const std::map<ObjectRejection, size_t>& rejections() const { return rejections_; }
 
  private:
   void Observe(Map& map, KeyframeId keyframe);
@@ -36,13 +36,14 @@ class ObjectMapper {
   void Start(Map& map, ObjectId id, std::span<const ObjectView> views);
   void Refine(Map& map, ObjectId id, std::span<const ObjectView> views);
   void Accept(Map& map, ObjectId id, std::span<const ObjectView> views) const;
+  double LineSigma(const ObjectLandmark& object) const;
   void FuseDuplicates(Map& map);
   void CullSeldomSeen(Map& map, KeyframeId keyframe);
   void Reject(Map& map, ObjectId id, const Objection& objection);
 
   const Sensor& sensor_;
   ObjectOptions options_;
-  std::map<ObjectRejection, int> rejections_;
+  std::map<ObjectRejection, size_t> rejections_;
 };
 
 }  // namespace hullslam

@@ -17,9 +17,11 @@ struct Refinement {
 };
 
 // The ellipsoid that best explains the views, from `ellipsoid`; poses are fixed. Besides the
-// residuals of the outlines (ObjectOptions::residual) depth points pull at the surface and a prior
-// at `start`: silhouettes over a small angle leave the extent along the view free.
+// residuals of the outlines (ObjectOptions::residual, with `sigma_px` a line) depth points pull at
+// the surface and a prior at `start`: silhouettes over a small angle leave the extent along the
+// view free.
 Refinement RefineEllipsoid(const Ellipsoid& ellipsoid, const Ellipsoid& start, const Sensor& sensor,
-                           std::span<const ObjectView> views, const ObjectOptions& options);
+                           std::span<const ObjectView> views, double sigma_px,
+                           const ObjectOptions& options);
 
 }  // namespace hullslam

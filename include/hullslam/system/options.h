@@ -7,6 +7,7 @@
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/features/extractor.h"
 #include "hullslam/mapping/mapping_options.h"
+#include "hullslam/objects/object_options.h"
 #include "hullslam/tracking/tracking_options.h"
 #include "hullslam/util/option_table.h"
 
@@ -21,6 +22,7 @@ struct SystemOptions {
   FeatureOptions features;
   TrackingOptions tracking;
   MappingOptions mapping;
+  ObjectOptions objects;
 
   // Names every option once; the struct must outlive the table. `Viewer.*` keys of ORB-SLAM2 are
   // accepted and ignored.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
 #include <memory>
 
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
+#include "hullslam/objects/rejection.h"
 #include "hullslam/util/stage_timer.h"
 
 namespace hullslam {
@@ -22,6 +24,8 @@ class Pipeline {
   virtual std::shared_ptr<const Map> map() const = 0;
   // Durations of the stages; complete after Finish.
   virtual StageTimes times() const = 0;
+  // How often an object was not mapped, by reason; complete after Finish.
+  virtual std::map<ObjectRejection, size_t> object_rejections() const = 0;
 };
 
 }  // namespace hullslam

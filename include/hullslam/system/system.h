@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <string>
 #include <vector>
 
 #include "hullslam/camera/rgbd_image.h"
@@ -22,6 +24,16 @@ enum class PipelineKind {
   kSequential,  // reproducible to the bit
   kThreaded,    // mapping in a thread of its own; waits for it rather than leave out keyframes
   kRealtime,    // the same, but never waits: for live cameras
+};
+
+// What became of the masks of a run.
+struct ObjectCounts {
+  size_t detections = 0;
+  size_t frames_with_masks = 0;
+  size_t frames_without_masks = 0;
+  // How often a mask gave no detection ("mask_too_small") or an object was not mapped
+  // ("low_overlap").
+  std::map<std::string, size_t> rejections;
 };
 
 // RGB-D SLAM as one object: images in, poses and map out.
@@ -54,6 +66,8 @@ class System {
   Trajectory trajectory() const;
   // Durations of the stages; "track" is the whole of Track but mapping. Complete after Finish.
   StageTimes times() const;
+  // What became of the masks. Complete after Finish.
+  ObjectCounts object_counts() const;
 
  private:
   const SystemOptions options_;

@@ -3,12 +3,15 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
 #include "hullslam/map/sensor.h"
+#include "hullslam/objects/object_options.h"
 #include "hullslam/tracking/keyframe_policy.h"
+#include "hullslam/tracking/pose_objects.h"
 #include "hullslam/tracking/sighting_counter.h"
 #include "hullslam/tracking/tracking_options.h"
 #include "hullslam/util/stage_timer.h"
@@ -26,7 +29,7 @@ struct MapperStatus {
 class Tracker {
  public:
   // `sensor` must outlive the tracker.
-  Tracker(const Sensor& sensor, const TrackingOptions& options);
+  Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects = {});
 
   struct Result {
     TrackedFrame frame;
@@ -45,6 +48,7 @@ class Tracker {
     Rigid3 cam_from_world;
     std::vector<LandmarkId> landmarks;  // one a keypoint
     int inliers = 0;
+    int objects = 0;  // that held the pose
   };
   // The frame tracked last, with its pose relative to a keyframe.
   struct LastFrame {
@@ -60,7 +64,8 @@ class Tracker {
   std::optional<Estimate> TrackReferenceKeyframe() const;
   std::optional<Estimate> TrackLocalMap(Estimate estimate);
   void SearchLocalLandmarks(const std::vector<LandmarkId>& local, Estimate& estimate);
-  void OptimizePose(Estimate& estimate) const;
+  void OptimizePose(Estimate& estimate, std::span<const PoseObject> objects = {}) const;
+  PoseObjects FindObjects(const Estimate& estimate) const;
   bool NeedsKeyframe(const Estimate& estimate, const MapperStatus& mapper) const;
   KeyframeRequest MakeRequest(const Estimate& estimate);
   TrackedFrame Remember(const Estimate& estimate);
@@ -68,6 +73,7 @@ class Tracker {
 
   const Sensor& sensor_;
   TrackingOptions options_;
+  ObjectOptions object_options_;
   KeyframePolicy policy_;
   StageTimes times_;
 

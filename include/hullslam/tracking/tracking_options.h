@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
+
 #include "hullslam/util/option_table.h"
 
 namespace hullslam {
@@ -15,6 +17,9 @@ struct TrackingOptions {
   double keyframe_ratio = 0.95;
 
   double keyframe_interval = 0.2;  // s, least time between keyframes unless tracking gets weak fast
+
+  // Classes, separated by commas, whose masks hide keypoints and are no objects.
+  std::string dynamic_classes = "person";
 
   void Bind(OptionTable& options);
 };

@@ -45,6 +45,8 @@ class OptionTable {
         [field](size_t index) { *field = static_cast<Enum>(index); },
         [field] { return static_cast<size_t>(*field); }, std::move(help));
   }
+  // Any text.
+  void AddText(std::string key, std::string* field, std::string help);
   // A key that other programs' settings files have and that means nothing here: accepted, ignored.
   void AddIgnored(std::string key);
 

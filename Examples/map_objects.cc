@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Maps objects from masks and known camera poses; needs no images.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/mask_arguments.h"
+#include "cli/object_outputs.h"
+#include "cli/program.h"
+#include "hullslam/io/image_file.h"
+#include "hullslam/io/output_folder.h"
+#include "hullslam/io/settings.h"
+#include "hullslam/io/trajectory_file.h"
+#include "hullslam/objects/detection_builder.h"
+#include "hullslam/objects/object_mapper.h"
+#include "hullslam/objects/object_view.h"
+#include "hullslam/tracking/dynamic_mask.h"
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+constexpr double kMaxPoseGap = 0.1;  // s, between the poses that one is interpolated from
+
+struct Arguments {
+  std::filesystem::path sequence;
+  std::filesystem::path poses;
+  std::filesystem::path masks;
+  std::string masks_format;
+  std::filesystem::path settings;
+  std::vector<std::string> overrides;
+  std::filesystem::path output = "out";
+  double min_distance = 0.05;  // m
+  double min_angle = 5.0;      // degrees
+  bool without_depth = false;
+  bool quiet = false;
+};
+
+void AddArguments(CLI::App& app, Arguments& arguments) {
+  app.add_option(
+         "SEQUENCE", arguments.sequence,
+         "folder with rgb.txt (stamps and names; the images may be missing) and, for depth, "
+         "depth.txt")
+      ->required();
+  app.add_option("--poses", arguments.poses, "trajectory of the camera in TUM's format")
+      ->required();
+  AddMaskArguments(app, arguments.masks, arguments.masks_format);
+  app.get_option("--masks")->required();
+  app.add_option("--settings", arguments.settings,
+                 "settings file (default: camera.yaml of the sequence, else by its name)");
+  app.add_option("--set", arguments.overrides, "key=value: overrides a setting; repeat for more")
+      ->take_all()
+      ->allow_extra_args(false);
+  app.add_option("--output", arguments.output, "folder for the results")->capture_default_str();
+  app.add_option("--min-distance", arguments.min_distance,
+                 "motion after which a frame is used as a view, m")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--min-angle", arguments.min_angle, "or rotation, degrees")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_flag("--without-depth", arguments.without_depth, "leave depth images out");
+  app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
+  app.set_version_flag("--version", HULLSLAM_VERSION);
+}
+
+SystemOptions LoadOptions(const Arguments& arguments) {
+  const std::filesystem::path settings =
+      arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
+                                 : arguments.settings;
+  return ReadSettings(settings, arguments.overrides);
+}
+
+Sensor MakeSensor(const SystemOptions& options) {
+  Sensor sensor;
+  sensor.camera = options.camera;
+  sensor.bounds = options.camera.UndistortedBounds();
+  return sensor;
+}
+
+// Chooses the frames to be views and maps the objects in them.
+class ObjectRun {
+ public:
+  ObjectRun(const Arguments& arguments, const SystemOptions& options)
+      : arguments_(arguments),
+        sensor_(MakeSensor(options)),
+        dynamic_classes_(SplitNames(options.tracking.dynamic_classes)),
+        builder_(options.camera, options.depth.units_per_metre, options.objects.detection),
+        mapper_(sensor_, options.objects) {}
+
+  // Whether the camera has moved enough since the last view.
+  bool IsDue(const Rigid3& world_from_cam) const {
+    if (!last_) {
+      return true;
+    }
+    const double angle = AngularDistance(last_->rotation, world_from_cam.rotation);
+    return (world_from_cam.translation - last_->translation).norm() >= arguments_.min_distance ||
+           angle * 180.0 / std::numbers::pi >= arguments_.min_angle;
+  }
+
+  void AddView(double timestamp, const Rigid3& world_from_cam, std::vector<InstanceMask> masks,
+               const cv::Mat& depth) {
+    last_ = world_from_cam;
+    auto frame = std::make_shared<Frame>();
+    frame->id = FrameId(map_.keyframes().NextId().value);
+    frame->timestamp = timestamp;
+    counts_.frames_with_masks += masks.empty() ? 0 : 1;
+    counts_.frames_without_masks += masks.empty() ? 1 : 0;
+    std::erase_if(masks,
+                  [&](const InstanceMask& mask) { return dynamic_classes_.contains(mask.label); });
+    DetectionResult result = builder_.Build(masks, depth, {});
+    for (const auto& rejection : result.rejections) {
+      if (rejection) {
+        ++counts_.rejections["mask_" + ToString(*rejection)];
+      }
+    }
+    counts_.detections += result.detections.size();
+    frame->detections = std::move(result.detections);
+    mapper_.Process(map_, map_.AddKeyframe(std::move(frame), Inverse(world_from_cam)));
+  }
+
+  const Map& map() const { return map_; }
+  ObjectCounts counts() const {
+    ObjectCounts counts = counts_;
+    for (const auto& [reason, count] : mapper_.rejections()) {
+      counts.rejections[ToString(reason)] = count;
+    }
+    return counts;
+  }
+
+ private:
+  const Arguments& arguments_;
+  Sensor sensor_;
+  std::set<std::string> dynamic_classes_;
+  DetectionBuilder builder_;
+  ObjectMapper mapper_;
+  Map map_;
+  std::optional<Rigid3> last_;
+  ObjectCounts counts_;
+};
+
+void PrintTable(const ObjectRun& run, const ObjectReport& report) {
+  fmt::print("{:>4} {:<14} {:>5} {:>8} {:>20} {:>6} {:>6} {:>7}\n", "id", "class", "views",
+             "parallax", "half axes (m)", "SIoU", "mask", "misfit");
+  for (const ReportedObject& object : report.objects) {
+    if (object.state != ObjectState::kMapped) {
+      continue;
+    }
+    const ObjectLandmark& landmark = run.map().objects().At(object.id);
+    const double parallax =
+        Parallax(CollectViews(run.map(), landmark), object.ellipsoid.world_from_object.translation);
+    const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
+    fmt::print(
+        "{:>4} {:<14} {:>5} {:>7.0f}° {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>5.1f}px\n",
+        object.id.value, object.label, object.views.size(), parallax, axes.x(), axes.y(), axes.z(),
+        object.fit.siou.value_or(0.0), object.fit.siou_mask.value_or(0.0), object.misfit_px);
+  }
+}
+
+int Run(int argc, char** argv) {
+  CLI::App app("Maps objects from masks and known camera poses; needs no images.", "map_objects");
+  Arguments arguments;
+  AddArguments(app, arguments);
+  if (!ParseCommandLine(app, argc, argv)) {
+    return kDone;
+  }
+  const SystemOptions options = LoadOptions(arguments);
+  const TumSequence sequence = OpenTumSequence(arguments.sequence, {.need_images = false});
+  const Trajectory poses = ReadTrajectory(arguments.poses);
+  const SequenceMasks masks(
+      {arguments.masks, arguments.masks_format, options.camera.width, options.camera.height},
+      MaskFrames(sequence));
+  PrepareOutputFolder(arguments.output);
+  if (!arguments.quiet) {
+    fmt::print("{}\n", masks.Describe());
+  }
+
+  const auto start = std::chrono::steady_clock::now();
+  ObjectRun run(arguments, options);
+  size_t without_pose = 0;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    const RgbdFramePaths& frame = sequence.frames[i];
+    const auto pose = InterpolatePose(poses, frame.timestamp, kMaxPoseGap);
+    without_pose += pose ? 0 : 1;
+    if (pose && run.IsDue(*pose)) {
+      const bool has_depth = !arguments.without_depth && !frame.depth.empty();
+      run.AddView(frame.timestamp, *pose, masks.Read(i),
+                  has_depth ? ReadDepthImage(frame.depth) : cv::Mat());
+    }
+  }
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  if (run.map().keyframes().empty()) {
+    throw InputError(fmt::format("{}: no frame of {} has a pose within {} s of others",
+                                 arguments.poses.string(), arguments.sequence.string(),
+                                 kMaxPoseGap));
+  }
+
+  const ObjectReport report = CollectObjects(run.map(), options.camera, arguments.sequence);
+  RunSummary summary;
+  summary.trajectory.frames = sequence.frames.size();
+  summary.trajectory.tracked = sequence.frames.size() - without_pose;
+  summary.trajectory.lost = without_pose;
+  summary.trajectory.alignment = "none";
+  summary.objects = SummarizeObjects(report, run.counts());
+  summary.timing.total_s = seconds.count();
+  summary.peak_memory_mb = PeakMemoryMb();
+  summary.map.keyframes = run.map().keyframes().size();
+  summary.provenance.version = HULLSLAM_VERSION;
+  summary.provenance.settings_hash = HashSettings(options);
+  summary.provenance.pipeline = "objects";
+  summary.provenance.masks_format = masks.format();
+  summary.provenance.sequence = arguments.sequence.string();
+  std::vector<FileContent> files = ObjectFiles(arguments.output, report);
+  files.push_back(
+      {arguments.output / "keyframes.txt", FormatTrajectory(KeyframeTrajectory(run.map()))});
+  files.push_back({arguments.output / "summary.json", FormatSummary(summary)});
+  WriteFilesAtomically(files);
+  if (!arguments.quiet) {
+    PrintTable(run, report);
+    fmt::print("{} views of {} frames ({} without a pose) in {:.1f} s\n{}\nresults are in {}\n",
+               summary.map.keyframes, summary.trajectory.frames, without_pose, seconds.count(),
+               DescribeObjects(*summary.objects), arguments.output.string());
+  }
+  return kDone;
+}
+
+}  // namespace
+}  // namespace hullslam
+
+int main(int argc, char** argv) { return hullslam::RunMain(hullslam::Run, argc, argv); }

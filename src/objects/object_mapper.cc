@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/object_mapper.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "hullslam/objects/association.h"
+#include "hullslam/objects/fusion.h"
+#include "hullslam/objects/initialisation.h"
+#include "hullslam/objects/misfit.h"
+#include "hullslam/objects/refinement.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kRefinementViews = 20;
+constexpr size_t kMisfitViews = 40;    // the latest
+constexpr double kMinLineSigma = 1.0;  // px
+constexpr size_t kStartPoints = 2000;
+constexpr size_t kMinPoints = 20;             // with fewer an object is treated as without depth
+constexpr uint32_t kCandidateKeyframes = 20;  // a candidate not seen for so long is culled
+constexpr int kMinVisible = 10;               // before a mapped object is judged by its ratio
+constexpr double kMinFoundRatio = 0.25;
+
+bool HasDepth(std::span<const ObjectView> views) {
+  size_t points = 0;
+  for (const ObjectView& view : views) {
+    points += view.detection->points.size();
+  }
+  return points >= kMinPoints;
+}
+
+// The last `count` views.
+std::vector<ObjectView> LatestViews(const Map& map, const ObjectLandmark& object, size_t count) {
+  std::vector<ObjectView> views = CollectViews(map, object);
+  if (views.size() > count) {
+    views.erase(views.begin(), views.end() - static_cast<std::ptrdiff_t>(count));
+  }
+  return views;
+}
+
+}  // namespace
+
+ObjectMapper::ObjectMapper(const Sensor& sensor, const ObjectOptions& options)
+    : sensor_(sensor), options_(options) {}
+
+void ObjectMapper::Process(Map& map, KeyframeId keyframe) {
+  Observe(map, keyframe);
+  CountVisible(map, keyframe);
+  const std::vector<ObjectId> observed = map.keyframes().At(keyframe).objects;
+  for (const ObjectId id : observed) {
+    if (id.IsValid()) {
+      Update(map, id);
+    }
+  }
+  FuseDuplicates(map);
+  CullSeldomSeen(map, keyframe);
+}
+
+// Gives each detection of the keyframe its object; a new one where there is none yet.
+void ObjectMapper::Observe(Map& map, KeyframeId keyframe) {
+  const Keyframe& observer = map.keyframes().At(keyframe);
+  std::vector<ObjectId> objects = AssociateDetections(
+      map, sensor_, *observer.frame, observer.cam_from_world, observer.landmarks, {});
+  for (uint32_t i = 0; i < objects.size(); ++i) {
+    if (!objects[i].IsValid()) {
+      objects[i] = map.AddObject();
+    }
+    map.AddObservation(objects[i], keyframe, i);
+  }
+}
+
+// Counts for the mapped objects whether they are seen where they should be: whole in the image.
+void ObjectMapper::CountVisible(Map& map, KeyframeId keyframe) const {
+  const Keyframe& observer = map.keyframes().At(keyframe);
+  std::vector<ObjectId> visible;
+  map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    if (object.state != ObjectState::kMapped) {
+      return;
+    }
+    const auto ellipse =
+        ProjectEllipsoid(sensor_.camera.Matrix(), observer.cam_from_world, object.ellipsoid);
+    const bool is_inside = ellipse && sensor_.bounds.Contains(ellipse->Bounds().min()) &&
+                           sensor_.bounds.Contains(ellipse->Bounds().max());
+    if (is_inside) {
+      visible.push_back(id);
+    }
+  });
+  for (const ObjectId id : visible) {
+    const bool is_found =
+        std::find(observer.objects.begin(), observer.objects.end(), id) != observer.objects.end();
+    ObjectLandmark& object = map.MutableObject(id);
+    ++object.visible;
+    object.found += is_found ? 1 : 0;
+  }
+}
+
+void ObjectMapper::Update(Map& map, ObjectId id) {
+  const ObjectLandmark& object = map.objects().At(id);
+  if (object.observations.size() < static_cast<size_t>(options_.min_views)) {
+    ++rejections_[ObjectRejection::kFewViews];
+    return;
+  }
+  const std::vector<ObjectView> views = CollectViews(map, object, kRefinementViews);
+  if (object.state == ObjectState::kMapped) {
+    Refine(map, id, views);
+  } else {
+    Start(map, id, views);
+  }
+}
+
+// Finds a candidate's shape: the best of several starts, refined.
+void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> views) {
+  const bool has_depth = HasDepth(views);
+  std::vector<Ellipsoid> starts;
+  if (has_depth) {
+    starts = StartsFromPoints(CollectPoints(views, kStartPoints), options_.initial_inflation);
+  } else if (const auto sphere = StartFromRays(sensor_.camera, views)) {
+    starts.push_back(*sphere);
+  }
+  if (starts.empty()) {
+    Reject(map, id, {ObjectRejection::kNoStart, "no points or rays to begin with"});
+    return;
+  }
+  const double parallax = Parallax(views, starts.front().world_from_object.translation);
+  const double min_parallax = has_depth ? options_.min_parallax : options_.min_parallax_blind;
+  if (parallax < min_parallax) {
+    Reject(map, id,
+           {ObjectRejection::kLittleParallax,
+            fmt::format("{:.1f} degrees, expected at least {:.1f}", parallax, min_parallax)});
+    return;
+  }
+  Refinement best;
+  best.cost = std::numeric_limits<double>::infinity();
+  Ellipsoid best_start;
+  for (const Ellipsoid& start : starts) {
+    const Refinement refined =
+        RefineEllipsoid(start, start, sensor_, views, options_.refinement_sigma, options_);
+    if (refined.is_usable && refined.cost < best.cost) {
+      best = refined;
+      best_start = start;
+    }
+  }
+  if (!best.is_usable) {
+    Reject(map, id, {ObjectRejection::kNotRefined, "the solver failed"});
+    return;
+  }
+  ObjectLandmark& object = map.MutableObject(id);
+  object.has_shape = true;
+  object.ellipsoid = best.ellipsoid;
+  object.start = best_start;
+  if (const auto objection = FindObjection(best.ellipsoid, sensor_, views, options_)) {
+    Reject(map, id, *objection);
+    return;
+  }
+  object.state = ObjectState::kMapped;
+  Accept(map, id, views);
+  spdlog::debug("object {} ({}): mapped from {} keyframes, {:.1f} degrees", id.value,
+                object.Label(), object.observations.size(), parallax);
+}
+
+void ObjectMapper::Refine(Map& map, ObjectId id, std::span<const ObjectView> views) {
+  const ObjectLandmark& object = map.objects().At(id);
+  const Refinement refined =
+      RefineEllipsoid(object.ellipsoid, object.start, sensor_, views, LineSigma(object), options_);
+  if (!refined.is_usable) {
+    Reject(map, id, {ObjectRejection::kNotRefined, "the solver failed"});
+    return;
+  }
+  if (const auto objection = FindObjection(refined.ellipsoid, sensor_, views, options_)) {
+    Reject(map, id, *objection);
+    return;
+  }
+  map.MutableObject(id).ellipsoid = refined.ellipsoid;
+  Accept(map, id, views);
+}
+
+// Measures the misfit of a quadric that is valid.
+void ObjectMapper::Accept(Map& map, ObjectId id, std::span<const ObjectView> views) const {
+  const std::vector<ObjectView> latest = LatestViews(map, map.objects().At(id), kMisfitViews);
+  ObjectLandmark& object = map.MutableObject(id);
+  object.support = MeasureMisfit(sensor_.camera, object.ellipsoid, latest);
+  const MisfitSpread spread = MeasureSpread(sensor_.camera, object, views);
+  object.misfit_px = spread.plain_px;
+  object.compensated_px = spread.compensated_px;
+}
+
+// What an outline says of a thing that really is an ellipsoid is sharper than of others; its misfit
+// tells.
+double ObjectMapper::LineSigma(const ObjectLandmark& object) const {
+  return std::clamp(object.misfit_px, std::min(kMinLineSigma, options_.refinement_sigma),
+                    options_.refinement_sigma);
+}
+
+void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
+  for (const ObjectId id : objects) {
+    const ObjectLandmark* object = map.objects().Find(id);
+    if (object == nullptr || object->state != ObjectState::kMapped) {
+      continue;
+    }
+    const std::vector<ObjectView> views = CollectViews(map, *object, kRefinementViews);
+    if (const auto objection = FindObjection(object->ellipsoid, sensor_, views, options_)) {
+      Reject(map, id, *objection);
+    } else {
+      Accept(map, id, views);
+    }
+  }
+}
+
+void ObjectMapper::FuseDuplicates(Map& map) {
+  for (const auto& [kept, duplicate] : FindDuplicates(map)) {
+    spdlog::debug("object {} is object {}: fused", duplicate.value, kept.value);
+    ++rejections_[ObjectRejection::kFused];
+    map.ReplaceObject(duplicate, kept);
+    if (!map.objects().At(kept).observations.empty()) {
+      Update(map, kept);
+    }
+  }
+}
+
+void ObjectMapper::CullSeldomSeen(Map& map, KeyframeId keyframe) {
+  std::vector<std::pair<ObjectId, std::string>> culled;
+  map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    if (object.observations.empty()) {
+      culled.emplace_back(id, "no keyframe observes it any more");
+    } else if (object.state == ObjectState::kCandidate &&
+               object.observations.back().keyframe.value + kCandidateKeyframes < keyframe.value) {
+      culled.emplace_back(
+          id, fmt::format("a candidate not seen for {} keyframes", kCandidateKeyframes));
+    } else if (object.visible >= kMinVisible && object.found < kMinFoundRatio * object.visible) {
+      culled.emplace_back(id,
+                          fmt::format("seen in {} of {} keyframes", object.found, object.visible));
+    }
+  });
+  for (const auto& [id, why] : culled) {
+    spdlog::debug("object {}: {}: {}", id.value, ToString(ObjectRejection::kSeldomSeen), why);
+    ++rejections_[ObjectRejection::kSeldomSeen];
+    map.EraseObject(id);
+  }
+}
+
+void ObjectMapper::Reject(Map& map, ObjectId id, const Objection& objection) {
+  ++rejections_[objection.reason];
+  ObjectLandmark& object = map.MutableObject(id);
+  object.state = ObjectState::kCandidate;
+  spdlog::debug("object {} ({}): {}: {}", id.value, object.Label(), ToString(objection.reason),
+                objection.detail);
+}
+
+}  // namespace hullslam

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/object_mapper.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "hullslam/map/invariants.h"
+#include "hullslam/objects/fusion.h"
+#include "objects/made_objects.h"
+
+namespace hullslam {
+namespace {
+
+class Mapping : public ::testing::Test {
+ protected:
+  void See(const std::vector<MadeObject>& objects, double angle) {
+    mapper_.Process(map_, AddObserver(map_, sensor_, CameraOnCircle(angle, 1.5, 0.6), objects));
+    ASSERT_EQ(FindViolations(map_), std::vector<std::string>());
+  }
+  std::vector<ObjectLandmark> Mapped() const {
+    std::vector<ObjectLandmark> mapped;
+    map_.objects().ForEach([&](ObjectId, const ObjectLandmark& object) {
+      if (object.state == ObjectState::kMapped) {
+        mapped.push_back(object);
+      }
+    });
+    return mapped;
+  }
+  Sensor sensor_ = MakeObjectSensor();
+  ObjectMapper mapper_{sensor_, ObjectOptions()};
+  Map map_;
+};
+
+TEST_F(Mapping, MapsATableOnceAndExactly) {
+  const auto table = MakeTable();
+  for (int i = 0; i < 12; ++i) {
+    See(table, 0.1 * i);
+  }
+  const auto mapped = Mapped();
+  ASSERT_EQ(mapped.size(), table.size());
+  for (const MadeObject& made : table) {
+    const auto best = std::max_element(mapped.begin(), mapped.end(), [&](auto& a, auto& b) {
+      return VolumeOverlap(a.ellipsoid, made.ellipsoid) <
+             VolumeOverlap(b.ellipsoid, made.ellipsoid);
+    });
+    EXPECT_GT(VolumeOverlap(best->ellipsoid, made.ellipsoid), 0.8) << made.label;
+    EXPECT_EQ(best->Label(), made.label);
+    EXPECT_EQ(best->observations.size(), 12u);
+  }
+}
+
+TEST_F(Mapping, AnObjectIsACandidateUntilItIsSeenFromEnoughSides) {
+  const auto table = MakeTable();
+  See(table, 0.0);
+  See(table, 0.001);
+  EXPECT_EQ(map_.objects().size(), 3u);
+  EXPECT_EQ(mapper_.rejections().at(ObjectRejection::kFewViews), 6u);
+  See(table, 0.002);
+  See(table, 0.003);
+  EXPECT_TRUE(Mapped().empty());
+  EXPECT_EQ(mapper_.rejections().at(ObjectRejection::kLittleParallax), 6u);
+  See(table, 0.2);
+  EXPECT_EQ(Mapped().size(), 3u);
+}
+
+TEST_F(Mapping, ACandidateThatIsNotSeenAgainIsCulled) {
+  const auto table = MakeTable();
+  See(table, 0.0);
+  for (int i = 0; i < 25; ++i) {
+    See({table[0]}, 0.02 * i);
+  }
+  EXPECT_EQ(map_.objects().size(), 1u);
+  EXPECT_EQ(mapper_.rejections().at(ObjectRejection::kSeldomSeen), 2u);
+}
+
+TEST_F(Mapping, AMappedObjectThatIsNeverFoundAgainIsCulled) {
+  const auto table = MakeTable();
+  for (int i = 0; i < 5; ++i) {
+    See(table, 0.1 * i);
+  }
+  ASSERT_EQ(Mapped().size(), 3u);
+  for (int i = 0; i < 30; ++i) {
+    See({table[0]}, 0.02 * i);
+  }
+  EXPECT_EQ(Mapped().size(), 1u);
+}
+
+TEST_F(Mapping, AnObjectThatTurnsBadIsACandidateAgain) {
+  const auto table = MakeTable();
+  for (int i = 0; i < 5; ++i) {
+    See(table, 0.1 * i);
+  }
+  ASSERT_EQ(Mapped().size(), 3u);
+  map_.MutableObject(ObjectId(1)).ellipsoid.half_axes *= 4.0;
+  const std::vector<ObjectId> all = {ObjectId(0), ObjectId(1), ObjectId(2), ObjectId(7)};
+  mapper_.Recheck(map_, all);
+  EXPECT_EQ(Mapped().size(), 2u);
+  EXPECT_EQ(map_.objects().At(ObjectId(1)).state, ObjectState::kCandidate);
+  See(table, 0.5);  // and is found anew
+  EXPECT_EQ(Mapped().size(), 3u);
+}
+
+TEST_F(Mapping, TwoRunsGiveTheSameBits) {
+  const auto table = MakeTable();
+  for (int i = 0; i < 8; ++i) {
+    See(table, 0.1 * i);
+  }
+  Map map;
+  ObjectMapper mapper(sensor_, ObjectOptions());
+  for (int i = 0; i < 8; ++i) {
+    mapper.Process(map, AddObserver(map, sensor_, CameraOnCircle(0.1 * i, 1.5, 0.6), table));
+  }
+  map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    EXPECT_EQ(object.ellipsoid.half_axes, map_.objects().At(id).ellipsoid.half_axes);
+  });
+}
+
+}  // namespace
+}  // namespace hullslam

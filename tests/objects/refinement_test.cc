@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/refinement.h"
+
+#include <gtest/gtest.h>
+
+#include "hullslam/objects/validity.h"
+#include "objects/made_objects.h"
+
+namespace hullslam {
+namespace {
+
+class RefinementTest : public ::testing::Test {
+ protected:
+  void Look(double step, int count) {
+    id_ = map_.AddObject();
+    for (int i = 0; i < count; ++i) {
+      map_.AddObservation(
+          id_, AddObserver(map_, sensor_, CameraOnCircle(step * i, 1.5, 0.5), {made_}), 0);
+    }
+  }
+  std::vector<ObjectView> Views() const { return CollectViews(map_, map_.objects().At(id_)); }
+  Ellipsoid Start() const {
+    Ellipsoid start = made_.ellipsoid;
+    start.world_from_object = {
+        start.world_from_object.rotation * ExpSo3(Eigen::Vector3d(0.1, 0.05, -0.2)),
+        start.world_from_object.translation + Eigen::Vector3d(0.02, -0.01, 0.015)};
+    start.half_axes = start.half_axes.cwiseProduct(Eigen::Vector3d(1.2, 0.9, 1.15));
+    return start;
+  }
+  Sensor sensor_ = MakeObjectSensor();
+  MadeObject made_ = MakeObject("cup", {0.05, -0.1, 0.0}, {0.12, 0.08, 0.05}, 0.6);
+  Map map_;
+  ObjectId id_;
+};
+
+double AxisError(const Ellipsoid& a, const Ellipsoid& b) {
+  return (a.half_axes - b.half_axes).cwiseQuotient(b.half_axes).cwiseAbs().maxCoeff();
+}
+
+TEST_F(RefinementTest, FindsTheTruthFromManySides) {
+  Look(0.3, 12);
+  for (const ObjectResidual residual :
+       {ObjectResidual::kTangent, ObjectResidual::kAlgebraicPlane}) {
+    ObjectOptions options;
+    options.residual = residual;
+    options.prior_sigma = 10.0;
+    const Refinement refined = RefineEllipsoid(Start(), Start(), sensor_, Views(), 5.0, options);
+    ASSERT_TRUE(refined.is_usable);
+    EXPECT_LT(AxisError(refined.ellipsoid, made_.ellipsoid), 0.02) << NameOf(residual);
+    EXPECT_LT((refined.ellipsoid.world_from_object.translation -
+               made_.ellipsoid.world_from_object.translation)
+                  .norm(),
+              0.002)
+        << NameOf(residual);
+  }
+}
+
+TEST_F(RefinementTest, TheTruthStays) {
+  Look(0.3, 8);
+  const Refinement refined =
+      RefineEllipsoid(made_.ellipsoid, made_.ellipsoid, sensor_, Views(), 5.0, {});
+  ASSERT_TRUE(refined.is_usable);
+  EXPECT_LT(AxisError(refined.ellipsoid, made_.ellipsoid), 1e-4);
+  EXPECT_NEAR(refined.cost, 0.0, 1e-6);
+}
+
+TEST_F(RefinementTest, OverASmallAngleDepthAndPriorHoldWhatOutlinesLeaveFree) {
+  Look(0.02, 4);
+  const Refinement refined = RefineEllipsoid(Start(), Start(), sensor_, Views(), 5.0, {});
+  ASSERT_TRUE(refined.is_usable);
+  EXPECT_LT(AxisError(refined.ellipsoid, made_.ellipsoid), 0.5);
+  EXPECT_GT(MeanOverlap(refined.ellipsoid, sensor_, Views()), 0.95);
+}
+
+TEST_F(RefinementTest, OneBadMaskAmongManyDoesLittle) {
+  Look(0.3, 12);
+  auto bad = std::make_shared<Frame>(*map_.keyframes().At(KeyframeId(4)).frame);
+  for (SilhouetteLine& line : bad->detections[0].lines) {
+    line.line.offset -= 60.0 * std::max(0.0, line.line.normal.x());
+  }
+  std::vector<ObjectView> views = Views();
+  views[4].detection = &bad->detections[0];
+  const Refinement refined = RefineEllipsoid(Start(), made_.ellipsoid, sensor_, views, 5.0, {});
+  ASSERT_TRUE(refined.is_usable);
+  EXPECT_LT(AxisError(refined.ellipsoid, made_.ellipsoid), 0.1);
+}
+
+TEST_F(RefinementTest, BehindAllCamerasNothingIsMoved) {
+  Look(0.05, 3);
+  Ellipsoid behind = made_.ellipsoid;
+  behind.world_from_object.translation = {5.0, 0.0, 0.5};
+  const Refinement refined = RefineEllipsoid(behind, behind, sensor_, Views(), 5.0, {});
+  EXPECT_LT((refined.ellipsoid.world_from_object.translation - behind.world_from_object.translation)
+                .norm(),
+            1.0);
+  EXPECT_TRUE(refined.ellipsoid.half_axes.allFinite());
+}
+
+}  // namespace
+}  // namespace hullslam
