@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: scripts/demo.sh
 #
-# From a fresh clone to a picture: sets up, builds, renders the synthetic sequence build/demo/desk
-# (once), runs RGB-D SLAM on it, prints how exact and how quick it was, and draws build/demo/run/run.png.
+# From a fresh clone to pictures: sets up, builds, renders the synthetic sequence build/demo/desk
+# (once), runs RGB-D SLAM with its object masks, prints how exact and how quick it was and which
+# objects it mapped, and draws build/demo/run/run.png and overlays.png.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$top"
@@ -26,7 +27,7 @@ scripts/setup.sh
 
 step "build"
 cmake --preset release
-cmake --build --preset release -j "$(nproc)" --target rgbd_tum make_synthetic
+cmake --build --preset release -j "$(nproc)" --target rgbd_tum evaluate make_synthetic
 
 step "render $sequence"
 if [ -d "$sequence" ]; then
@@ -40,7 +41,11 @@ else
 fi
 
 step "run"
-"$bin/rgbd_tum" "$sequence" --output "$run"
+"$bin/rgbd_tum" "$sequence" --masks "$sequence/masks" --output "$run"
+
+step "objects, against the truth"
+"$bin/evaluate" objects "$run" --groundtruth "$sequence/groundtruth_objects.json"
 
 step "draw"
-scripts/plot_run.py "$run" --groundtruth "$sequence/groundtruth.txt"
+scripts/plot_run.py "$run" --groundtruth "$sequence/groundtruth.txt" --overlay 6 \
+  --sequence "$sequence"

@@ -22,7 +22,7 @@ class StepsTest(unittest.TestCase):
         for name in ("common.sh", "demo.sh", "test.sh"):
             shutil.copy(SCRIPTS / name, self.top / "scripts")
         for name in ("scripts/setup.sh", "scripts/plot_run.py", "path/cmake", "path/ctest",
-                     "build/release/bin/rgbd_tum"):
+                     "build/release/bin/rgbd_tum", "build/release/bin/evaluate"):
             self.stand_in(name)
         self.stand_in("build/release/bin/make_synthetic", 'mkdir "$1" && touch "$1/rgb.txt"')
 
@@ -43,10 +43,17 @@ class StepsTest(unittest.TestCase):
         result, calls = self.run_script("demo.sh")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual([call.split()[0] for call in calls],
-                         ["setup.sh", "cmake", "cmake", "make_synthetic", "rgbd_tum", "plot_run.py"])
-        self.assertEqual(calls[-2], "rgbd_tum build/demo/desk --output build/demo/run")
+                         ["setup.sh", "cmake", "cmake", "make_synthetic", "rgbd_tum", "evaluate",
+                          "plot_run.py"])
+        built = set(calls[2].split("--target ")[1].split())
+        self.assertEqual(built, {"rgbd_tum", "evaluate", "make_synthetic"})
+        self.assertEqual(calls[-3], "rgbd_tum build/demo/desk --masks build/demo/desk/masks "
+                                    "--output build/demo/run")
+        self.assertEqual(calls[-2], "evaluate objects build/demo/run --groundtruth "
+                                    "build/demo/desk/groundtruth_objects.json")
         self.assertEqual(calls[-1], "plot_run.py build/demo/run --groundtruth "
-                                    "build/demo/desk/groundtruth.txt")
+                                    "build/demo/desk/groundtruth.txt --overlay 6 "
+                                    "--sequence build/demo/desk")
 
     def test_demo_renders_once(self):
         self.run_script("demo.sh")
