@@ -25,62 +25,65 @@ std::vector<Eigen::Vector2d> Thin(std::span<const Eigen::Vector2d> contour) {
   return thinned;
 }
 
-std::unique_ptr<ceres::CostFunction> OverlapWithRegion(const Intrinsics& camera,
-                                                       std::span<const Eigen::Vector2d> region,
-                                                       double sigma) {
-  return region.size() < 3 ? nullptr : std::make_unique<OverlapCost>(camera, region, sigma);
+using CostPointer = std::unique_ptr<ceres::CostFunction>;
+
+CostPointer OverlapWithRegion(const Intrinsics& camera, std::span<const Eigen::Vector2d> region,
+                              double sigma) {
+  if (region.size() < 3) {
+    return nullptr;
+  }
+  return std::make_unique<OverlapCost>(camera, region, sigma);
 }
 
-std::unique_ptr<ceres::CostFunction> MakeOverlap(ObjectPrimitive primitive,
-                                                 const Intrinsics& camera,
-                                                 const ObjectMeasurement& measurement,
-                                                 double sigma) {
-  switch (primitive) {
-    case ObjectPrimitive::kHull:
-      return OverlapWithRegion(camera, measurement.hull, sigma);
-    case ObjectPrimitive::kContour:
-      return OverlapWithRegion(camera, measurement.contour, sigma);
-    case ObjectPrimitive::kConic:
-      return measurement.ellipse.has_value()
-                 ? OverlapWithRegion(camera, measurement.ellipse->Polygon(kConicVertices), sigma)
-                 : nullptr;
-    case ObjectPrimitive::kBox:
-      return measurement.box.isEmpty()
-                 ? nullptr
-                 : std::make_unique<OverlapCost>(camera, measurement.box, sigma);
-    case ObjectPrimitive::kSupport:
-      break;
+CostPointer MakeOverlap(ObjectPrimitive primitive, const Intrinsics& camera,
+                        const ObjectMeasurement& measurement, double sigma) {
+  if (primitive == ObjectPrimitive::kHull) {
+    return OverlapWithRegion(camera, measurement.hull, sigma);
+  }
+  if (primitive == ObjectPrimitive::kContour) {
+    return OverlapWithRegion(camera, measurement.contour, sigma);
+  }
+  if (primitive == ObjectPrimitive::kConic && measurement.ellipse.has_value()) {
+    return OverlapWithRegion(camera, measurement.ellipse->Polygon(kConicVertices), sigma);
+  }
+  if (primitive == ObjectPrimitive::kBox && !measurement.box.isEmpty()) {
+    return std::make_unique<OverlapCost>(camera, measurement.box, sigma);
   }
   return nullptr;
 }
 
+bool HasInput(ObjectResidual residual, const ObjectMeasurement& measurement) {
+  switch (residual) {
+    case ObjectResidual::kTangent:
+    case ObjectResidual::kAlgebraicPlane:
+      return !measurement.lines.empty();
+    case ObjectResidual::kAlgebraicPoint:
+      return measurement.contour.size() >= 3;
+    case ObjectResidual::kDistribution:
+      return measurement.ellipse.has_value();
+    case ObjectResidual::kOverlap:  // depends on the primitive
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
-std::unique_ptr<ceres::CostFunction> MakeObjectCost(ObjectResidual residual,
-                                                    ObjectPrimitive primitive,
-                                                    const Intrinsics& camera,
-                                                    const ObjectMeasurement& measurement,
-                                                    double sigma) {
-  if (!IsSupported(residual, primitive)) {
+CostPointer MakeObjectCost(ObjectResidual residual, ObjectPrimitive primitive,
+                           const Intrinsics& camera, const ObjectMeasurement& measurement,
+                           double sigma) {
+  if (!IsSupported(residual, primitive) || !HasInput(residual, measurement)) {
     return nullptr;
   }
   switch (residual) {
     case ObjectResidual::kTangent:
-      return measurement.lines.empty()
-                 ? nullptr
-                 : std::make_unique<TangentCost>(camera, measurement.lines, sigma);
+      return std::make_unique<TangentCost>(camera, measurement.lines, sigma);
     case ObjectResidual::kAlgebraicPlane:
-      return measurement.lines.empty()
-                 ? nullptr
-                 : std::make_unique<AlgebraicPlaneCost>(camera, measurement.lines, sigma);
+      return std::make_unique<AlgebraicPlaneCost>(camera, measurement.lines, sigma);
     case ObjectResidual::kAlgebraicPoint:
-      return measurement.contour.size() < 3
-                 ? nullptr
-                 : std::make_unique<AlgebraicPointCost>(camera, Thin(measurement.contour), sigma);
+      return std::make_unique<AlgebraicPointCost>(camera, Thin(measurement.contour), sigma);
     case ObjectResidual::kDistribution:
-      return measurement.ellipse.has_value()
-                 ? std::make_unique<DistributionCost>(camera, *measurement.ellipse, sigma)
-                 : nullptr;
+      return std::make_unique<DistributionCost>(camera, measurement.ellipse.value(), sigma);
     case ObjectResidual::kOverlap:
       return MakeOverlap(primitive, camera, measurement, sigma);
   }
