@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <opencv2/core.hpp>
+#include <string>
+#include <vector>
 
 #include "hullslam/util/check.h"
 
@@ -57,6 +60,27 @@ RgbdImage MakeImage() {
   random.fill(image.depth, cv::RNG::UNIFORM, 5000, 20000);
   image.depth(cv::Rect(0, 0, kWidth / 2, kHeight / 2)).setTo(0);
   return image;
+}
+
+InstanceMask Square(const std::string& label, double left, double top, double side) {
+  InstanceMask mask;
+  mask.label = label;
+  mask.outlines = {
+      {{left, top}, {left + side, top}, {left + side, top + side}, {left, top + side}}};
+  return mask;
+}
+
+// Keypoints whose raw position is in a square, by index.
+std::vector<uint32_t> KeypointsInside(const Frame& frame, double left, double top, double side) {
+  const Eigen::AlignedBox2d square(Eigen::Vector2d(left, top),
+                                   Eigen::Vector2d(left + side, top + side));
+  std::vector<uint32_t> inside;
+  for (uint32_t i = 0; i < frame.features.size(); ++i) {
+    if (square.contains(frame.features.keypoints[i].raw.cast<double>())) {
+      inside.push_back(i);
+    }
+  }
+  return inside;
 }
 
 class FrameBuilderTest : public testing::Test {
@@ -139,6 +163,71 @@ TEST_F(FrameBuilderTest, AnImageWithoutCornersGivesAFrameWithoutKeypoints) {
   RgbdImage image = MakeImage();
   image.grey.setTo(128);
   EXPECT_EQ(Build(image)->features.size(), 0u);
+}
+
+TEST_F(FrameBuilderTest, MasksGiveDetectionsInUndistortedPixels) {
+  RgbdImage image = MakeImage();
+  image.masks = {Square("cup", 20, 160, 50), Square("book", 200, 60, 80)};
+  const auto frame = Build(image);
+  ASSERT_EQ(frame->detections.size(), 2u);
+  const Detection& book = frame->detections[1];
+  EXPECT_EQ(frame->detections[0].label, "cup");
+  EXPECT_EQ(book.label, "book");
+  const Eigen::Vector2d corner = sensor_.camera.Undistort({280.0, 140.0});
+  EXPECT_GT((corner - Eigen::Vector2d(280.0, 140.0)).norm(), 0.5);
+  EXPECT_LT(book.box.exteriorDistance(corner), 0.1);
+  EXPECT_EQ(book.keypoints, KeypointsInside(*frame, 200.0, 60.0, 80.0));
+  EXPECT_FALSE(book.keypoints.empty());
+}
+
+TEST_F(FrameBuilderTest, MasksOfStaticThingsLeaveTheKeypointsAsTheyAre) {
+  RgbdImage image = MakeImage();
+  const auto without = Build(image);
+  EXPECT_TRUE(without->detections.empty());
+  image.masks = {Square("cup", 20, 160, 50)};
+  const auto with = Build(image);
+  EXPECT_EQ(with->features.descriptors, without->features.descriptors);
+}
+
+TEST_F(FrameBuilderTest, DynamicThingsHideTheirKeypointsAndAreNoDetections) {
+  RgbdImage image = MakeImage();
+  const auto all = Build(image);
+  ASSERT_FALSE(KeypointsInside(*all, 200.0, 60.0, 80.0).empty());
+  image.masks = {Square("person", 200, 60, 80), Square("cup", 20, 160, 50)};
+  const auto frame =
+      FrameBuilder(sensor_, DepthOptions(), FewFeatures(), {}, {"person"}).Build(image, FrameId(3));
+  EXPECT_TRUE(KeypointsInside(*frame, 200.0, 60.0, 80.0).empty());
+  EXPECT_GT(frame->features.size(), all->features.size() / 2);
+  EXPECT_EQ(frame->features.descriptors.size(), frame->features.size());
+  EXPECT_EQ(frame->features.depth.size(), frame->features.size());
+  ASSERT_EQ(frame->detections.size(), 1u);
+  EXPECT_EQ(frame->detections[0].label, "cup");
+}
+
+TEST_F(FrameBuilderTest, WithoutObjectsThereAreNoDetectionsButDynamicThingsStillHide) {
+  RgbdImage image = MakeImage();
+  image.masks = {Square("person", 200, 60, 80), Square("cup", 20, 160, 50)};
+  ObjectOptions objects;
+  objects.enabled = false;
+  FrameBuilder builder(sensor_, DepthOptions(), FewFeatures(), objects, {"person"});
+  const auto frame = builder.Build(image, FrameId(3));
+  EXPECT_TRUE(frame->detections.empty());
+  EXPECT_TRUE(KeypointsInside(*frame, 200.0, 60.0, 80.0).empty());
+  EXPECT_EQ(builder.counts().detections, 0u);
+}
+
+TEST_F(FrameBuilderTest, CountsAreOfAllFrames) {
+  FrameBuilder builder(sensor_, DepthOptions(), FewFeatures(), {}, {"person"});
+  RgbdImage image = MakeImage();
+  builder.Build(image, FrameId(0));
+  image.masks = {Square("cup", 20, 160, 50), Square("mouse", 100, 100, 4)};
+  builder.Build(image, FrameId(1));
+  image.masks.push_back(Square("person", 200, 60, 80));
+  builder.Build(image, FrameId(2));
+  EXPECT_EQ(builder.counts().frames_with_masks, 2u);
+  EXPECT_EQ(builder.counts().detections, 2u);
+  EXPECT_EQ(builder.counts().rejections,
+            (std::map<DetectionRejection, size_t>{{DetectionRejection::kTooSmall, 2u}}));
 }
 
 TEST_F(FrameBuilderTest, ImagesOfAnotherSizeAreRefused) {
