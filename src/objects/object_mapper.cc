@@ -28,12 +28,29 @@ constexpr uint32_t kCandidateKeyframes = 20;  // a candidate not seen for so lon
 constexpr int kMinVisible = 10;               // before a mapped object is judged by its ratio
 constexpr double kMinFoundRatio = 0.25;
 
+// A new view changes the less the more there are, so the shape is sought again when there are an
+// eighth more. (Bundle adjustment moves it with every keyframe.)
+bool IsDue(const ObjectLandmark& object) {
+  const size_t views = object.observations.size();
+  return views < object.shaped_views || views > object.shaped_views + object.shaped_views / 8;
+}
+
 bool HasDepth(std::span<const ObjectView> views) {
   size_t points = 0;
   for (const ObjectView& view : views) {
     points += view.detection->points.size();
   }
   return points >= kMinPoints;
+}
+
+// Of depth points of the views; needs some.
+Eigen::Vector3d MeanPoint(std::span<const ObjectView> views) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  const std::vector<Eigen::Vector3d> points = CollectPoints(views, kMinPoints);
+  for (const Eigen::Vector3d& point : points) {
+    sum += point;
+  }
+  return sum / static_cast<double>(points.size());
 }
 
 // The last `count` views.
@@ -107,6 +124,10 @@ void ObjectMapper::Update(Map& map, ObjectId id) {
     ++rejections_[ObjectRejection::kFewViews];
     return;
   }
+  if (!IsDue(object)) {
+    return;
+  }
+  map.MutableObject(id).shaped_views = object.observations.size();
   const std::vector<ObjectView> views = CollectViews(map, object, kRefinementViews);
   if (object.state == ObjectState::kMapped) {
     Refine(map, id, views);
@@ -118,22 +139,26 @@ void ObjectMapper::Update(Map& map, ObjectId id) {
 // Finds a candidate's shape: the best of several starts, refined.
 void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> views) {
   const bool has_depth = HasDepth(views);
-  std::vector<Ellipsoid> starts;
-  if (has_depth) {
-    starts = StartsFromPoints(CollectPoints(views, kStartPoints), options_.initial_inflation);
-  } else if (const auto sphere = StartFromRays(sensor_.camera, views)) {
-    starts.push_back(*sphere);
-  }
-  if (starts.empty()) {
-    Reject(map, id, {ObjectRejection::kNoStart, "no points or rays to begin with"});
+  const std::optional<Ellipsoid> sphere =
+      has_depth ? std::nullopt : StartFromRays(sensor_.camera, views);
+  if (!has_depth && !sphere) {
+    Reject(map, id, {ObjectRejection::kNoStart, "the rays to it do not meet"});
     return;
   }
-  const double parallax = Parallax(views, starts.front().world_from_object.translation);
+  const double parallax = Parallax(views, sphere ? sphere->world_from_object.translation
+                                                 : MeanPoint(views));
   const double min_parallax = has_depth ? options_.min_parallax : options_.min_parallax_blind;
   if (parallax < min_parallax) {
     Reject(map, id,
            {ObjectRejection::kLittleParallax,
             fmt::format("{:.1f} degrees, expected at least {:.1f}", parallax, min_parallax)});
+    return;
+  }
+  const std::vector<Ellipsoid> starts =
+      has_depth ? StartsFromPoints(CollectPoints(views, kStartPoints), options_.initial_inflation)
+                : std::vector<Ellipsoid>{*sphere};
+  if (starts.empty()) {
+    Reject(map, id, {ObjectRejection::kNoStart, "too few depth points to begin with"});
     return;
   }
   Refinement best;
@@ -207,6 +232,7 @@ void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
     const std::vector<ObjectView> views = CollectViews(map, *object, kRefinementViews);
     if (const auto objection = FindObjection(object->ellipsoid, sensor_, views, options_)) {
       Reject(map, id, *objection);
+      map.MutableObject(id).shaped_views = 0;  // to be sought anew with the next view
     } else {
       Accept(map, id, views);
     }

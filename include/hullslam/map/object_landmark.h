@@ -38,6 +38,7 @@ struct ObjectLandmark {
   Ellipsoid start;         // what it was initialised as; holds what silhouettes leave free
   std::map<std::string, double> votes;          // sum of scores by class
   std::vector<ObjectObservation> observations;  // by increasing keyframe id, one a keyframe
+  size_t shaped_views = 0;                      // when its shape was last sought or refined
   double misfit_px = 0.0;                       // RMS distance of its lines from the outline
   double compensated_px = 0.0;                  // the same, less what other keyframes predict
   std::vector<SupportSample> support;           // where its keyframes touch it
