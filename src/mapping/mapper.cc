@@ -73,16 +73,21 @@ void Mapper::MapObjects(KeyframeId keyframe) {
 void Mapper::PublishSnapshot() { publish_(std::make_shared<const Map>(map_.Snapshot())); }
 
 void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry) {
-  const ScopedTimer timer(times_, "local_bundle_adjustment");
   const bool with_objects = object_options_.enabled && object_options_.bundle_adjustment;
-  const BundleWindow window =
-      LocalWindow(map_, keyframe, static_cast<size_t>(options_.local_keyframes),
-                  static_cast<size_t>(options_.fixed_keyframes),
-                  with_objects ? WindowObjects::kMapped : WindowObjects::kNone);
-  const BundleResult result =
-      AdjustBundle(map_, sensor_, window, MakeBundleOptions(object_options_), hurry);
-  if (result.is_usable) {
-    ApplyBundle(map_, result, sensor_.levels);
+  BundleWindow window;
+  {
+    const ScopedTimer timer(times_, "local_bundle_adjustment");
+    window = LocalWindow(map_, keyframe, static_cast<size_t>(options_.local_keyframes),
+                         static_cast<size_t>(options_.fixed_keyframes),
+                         with_objects ? WindowObjects::kMapped : WindowObjects::kNone);
+    const BundleResult result =
+        AdjustBundle(map_, sensor_, window, MakeBundleOptions(object_options_), hurry);
+    if (result.is_usable) {
+      ApplyBundle(map_, result, sensor_.levels);
+    }
+  }
+  if (!window.objects.empty()) {
+    const ScopedTimer timer(times_, "check_objects");
     object_mapper_.Recheck(map_, window.objects);
   }
 }

@@ -145,8 +145,8 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
     Reject(map, id, {ObjectRejection::kNoStart, "the rays to it do not meet"});
     return;
   }
-  const double parallax = Parallax(views, sphere ? sphere->world_from_object.translation
-                                                 : MeanPoint(views));
+  const double parallax =
+      Parallax(views, sphere ? sphere->world_from_object.translation : MeanPoint(views));
   const double min_parallax = has_depth ? options_.min_parallax : options_.min_parallax_blind;
   if (parallax < min_parallax) {
     Reject(map, id,

@@ -43,9 +43,9 @@ struct ObjectBundleOptions {
   double sigma_px = 1.5;             // of a line, beside the object's misfit: hypot(both)
   double max_effective_lines = 1.0;  // the lines of one detection weigh as so many at most
   double cauchy = 2.5;               // sigmas, but at least 5 px: where a line's loss turns
-  size_t max_outer_views = 10;       // detections outside of the window, evenly chosen
+  size_t max_outer_views = 5;        // detections outside of the window, evenly chosen
   double depth_sigma = 0.10;         // m, of depth points about the surface
-  size_t max_depth_points = 12;      // of one detection
+  size_t max_depth_points = 6;       // of one detection
   double max_effective_points = 1.0;
   QuadricPriorSigmas prior = {};  // about what the object started as
 };
