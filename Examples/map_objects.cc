@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/logging.h"
 #include "cli/mask_arguments.h"
 #include "cli/object_outputs.h"
 #include "cli/program.h"
@@ -69,6 +70,7 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_flag("--without-depth", arguments.without_depth, "leave depth images out");
+  AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
   app.set_version_flag("--version", HULLSLAM_VERSION);
 }
@@ -159,11 +161,75 @@ void PrintTable(const ObjectRun& run, const ObjectReport& report) {
     const double parallax =
         Parallax(CollectViews(run.map(), landmark), object.ellipsoid.world_from_object.translation);
     const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
-    fmt::print(
-        "{:>4} {:<14} {:>5} {:>7.0f}° {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>5.1f}px\n",
-        object.id.value, object.label, object.views.size(), parallax, axes.x(), axes.y(), axes.z(),
-        object.fit.siou.value_or(0.0), object.fit.siou_mask.value_or(0.0), object.misfit_px);
+    fmt::print("{:>4} {:<14} {:>5} {:>7.0f}° {:>6.3f} {:>6.3f} {:>6.3f} {:>6} {:>6} {:>5.1f}px\n",
+               object.id.value, object.label, object.views.size(), parallax, axes.x(), axes.y(),
+               axes.z(), FormatFigure(object.fit.siou, 3), FormatFigure(object.fit.siou_mask, 3),
+               object.misfit_px);
   }
+}
+
+struct Inputs {
+  SystemOptions options;
+  TumSequence sequence;
+  Trajectory poses;
+};
+
+Inputs OpenInputs(const Arguments& arguments) {
+  Inputs inputs;
+  inputs.options = LoadOptions(arguments);
+  inputs.sequence = OpenTumSequence(arguments.sequence, {.need_images = false});
+  inputs.poses = ReadTrajectory(arguments.poses);
+  return inputs;
+}
+
+// Returns how many frames have no pose.
+size_t MapAll(const Arguments& arguments, const Inputs& inputs, const SequenceMasks& masks,
+              ObjectRun& run) {
+  size_t without_pose = 0;
+  for (size_t i = 0; i < inputs.sequence.frames.size(); ++i) {
+    const RgbdFramePaths& frame = inputs.sequence.frames[i];
+    const auto pose = InterpolatePose(inputs.poses, frame.timestamp, kMaxPoseGap);
+    without_pose += pose ? 0 : 1;
+    if (pose && run.IsDue(*pose)) {
+      const bool has_depth = !arguments.without_depth && !frame.depth.empty();
+      run.AddView(frame.timestamp, *pose, masks.Read(i),
+                  has_depth ? ReadDepthImage(frame.depth) : cv::Mat());
+    }
+  }
+  if (run.map().keyframes().empty()) {
+    throw InputError(fmt::format("{}: no frame of {} has a pose within {} s of others",
+                                 arguments.poses.string(), arguments.sequence.string(),
+                                 kMaxPoseGap));
+  }
+  return without_pose;
+}
+
+RunSummary Summarize(const Arguments& arguments, const Inputs& inputs, const SequenceMasks& masks,
+                     const ObjectRun& run, size_t without_pose) {
+  RunSummary summary;
+  summary.trajectory.frames = inputs.sequence.frames.size();
+  summary.trajectory.tracked = inputs.sequence.frames.size() - without_pose;
+  summary.trajectory.lost = without_pose;
+  summary.trajectory.alignment = "none";
+  summary.peak_memory_mb = PeakMemoryMb();
+  summary.map.keyframes = run.map().keyframes().size();
+  summary.provenance.version = HULLSLAM_VERSION;
+  summary.provenance.settings_hash = HashSettings(inputs.options);
+  summary.provenance.pipeline = "objects";
+  summary.provenance.masks_format = masks.format();
+  summary.provenance.sequence = arguments.sequence.string();
+  return summary;
+}
+
+void WriteOutputs(const Arguments& arguments, const ObjectRun& run, const ObjectReport& report,
+                  const RunSummary& summary) {
+  std::vector<FileContent> files = ObjectFiles(arguments.output, report);
+  // The poses of the views: what evaluate and plot_run look for in the folder of any run.
+  const std::string poses = FormatTrajectory(KeyframeTrajectory(run.map()));
+  files.push_back({arguments.output / "trajectory.txt", poses});
+  files.push_back({arguments.output / "keyframes.txt", poses});
+  files.push_back({arguments.output / "summary.json", FormatSummary(summary)});
+  WriteFilesAtomically(files);
 }
 
 int Run(int argc, char** argv) {
@@ -173,57 +239,24 @@ int Run(int argc, char** argv) {
   if (!ParseCommandLine(app, argc, argv)) {
     return kDone;
   }
-  const SystemOptions options = LoadOptions(arguments);
-  const TumSequence sequence = OpenTumSequence(arguments.sequence, {.need_images = false});
-  const Trajectory poses = ReadTrajectory(arguments.poses);
-  const SequenceMasks masks(
-      {arguments.masks, arguments.masks_format, options.camera.width, options.camera.height},
-      MaskFrames(sequence));
+  const Inputs inputs = OpenInputs(arguments);
+  const PinholeCamera& camera = inputs.options.camera;
+  const SequenceMasks masks({arguments.masks, arguments.masks_format, camera.width, camera.height},
+                            MaskFrames(inputs.sequence));
   PrepareOutputFolder(arguments.output);
   if (!arguments.quiet) {
     fmt::print("{}\n", masks.Describe());
   }
-
   const auto start = std::chrono::steady_clock::now();
-  ObjectRun run(arguments, options);
-  size_t without_pose = 0;
-  for (size_t i = 0; i < sequence.frames.size(); ++i) {
-    const RgbdFramePaths& frame = sequence.frames[i];
-    const auto pose = InterpolatePose(poses, frame.timestamp, kMaxPoseGap);
-    without_pose += pose ? 0 : 1;
-    if (pose && run.IsDue(*pose)) {
-      const bool has_depth = !arguments.without_depth && !frame.depth.empty();
-      run.AddView(frame.timestamp, *pose, masks.Read(i),
-                  has_depth ? ReadDepthImage(frame.depth) : cv::Mat());
-    }
-  }
+  ObjectRun run(arguments, inputs.options);
+  const size_t without_pose = MapAll(arguments, inputs, masks, run);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  if (run.map().keyframes().empty()) {
-    throw InputError(fmt::format("{}: no frame of {} has a pose within {} s of others",
-                                 arguments.poses.string(), arguments.sequence.string(),
-                                 kMaxPoseGap));
-  }
 
-  const ObjectReport report = CollectObjects(run.map(), options.camera, arguments.sequence);
-  RunSummary summary;
-  summary.trajectory.frames = sequence.frames.size();
-  summary.trajectory.tracked = sequence.frames.size() - without_pose;
-  summary.trajectory.lost = without_pose;
-  summary.trajectory.alignment = "none";
+  const ObjectReport report = CollectObjects(run.map(), camera, arguments.sequence);
+  RunSummary summary = Summarize(arguments, inputs, masks, run, without_pose);
   summary.objects = SummarizeObjects(report, run.counts());
   summary.timing.total_s = seconds.count();
-  summary.peak_memory_mb = PeakMemoryMb();
-  summary.map.keyframes = run.map().keyframes().size();
-  summary.provenance.version = HULLSLAM_VERSION;
-  summary.provenance.settings_hash = HashSettings(options);
-  summary.provenance.pipeline = "objects";
-  summary.provenance.masks_format = masks.format();
-  summary.provenance.sequence = arguments.sequence.string();
-  std::vector<FileContent> files = ObjectFiles(arguments.output, report);
-  files.push_back(
-      {arguments.output / "keyframes.txt", FormatTrajectory(KeyframeTrajectory(run.map()))});
-  files.push_back({arguments.output / "summary.json", FormatSummary(summary)});
-  WriteFilesAtomically(files);
+  WriteOutputs(arguments, run, report, summary);
   if (!arguments.quiet) {
     PrintTable(run, report);
     fmt::print("{} views of {} frames ({} without a pose) in {:.1f} s\n{}\nresults are in {}\n",

@@ -40,14 +40,18 @@ std::vector<FileContent> ObjectFiles(const std::filesystem::path& folder,
           {folder / "objects.ply", FormatObjectsPly(report.objects)}};
 }
 
+std::string FormatFigure(const std::optional<double>& figure, int decimals) {
+  return figure ? fmt::format("{:.{}f}", *figure, decimals) : std::string("-");
+}
+
 std::string DescribeObjects(const ObjectsSummary& summary) {
   return fmt::format(
-      "{} objects, {} candidates; mean SIoU {:.3f} with hulls, {:.3f} with masks, tangents {:.1f} "
-      "px "
-      "off, MTD {:.2e} m^2 ({} observations)",
-      summary.count, summary.candidates, summary.siou_mean.value_or(0.0),
-      summary.siou_mask_mean.value_or(0.0), summary.tangent_mean_px.value_or(0.0),
-      summary.mtd_mean_m2.value_or(0.0), summary.observations);
+      "{} objects, {} candidates; mean SIoU {} with hulls, {} with masks, tangents {} px off, MTD "
+      "{} "
+      "m^2 ({} observations)",
+      summary.count, summary.candidates, FormatFigure(summary.siou_mean, 3),
+      FormatFigure(summary.siou_mask_mean, 3), FormatFigure(summary.tangent_mean_px, 1),
+      FormatFigure(summary.mtd_mean_m2, 5), summary.observations);
 }
 
 }  // namespace hullslam

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& 
 // objects.json and objects.ply, to be written with the other files of a run.
 std::vector<FileContent> ObjectFiles(const std::filesystem::path& folder,
                                      const ObjectReport& report);
+
+// With so many decimals, "-" for none.
+std::string FormatFigure(const std::optional<double>& figure, int decimals);
 
 // "7 objects, 3 candidates; mean SIoU 0.81 ..."
 std::string DescribeObjects(const ObjectsSummary& summary);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/run_arguments.h"
 
+#include "cli/logging.h"
 #include "cli/mask_arguments.h"
 #include "hullslam/util/error.h"
 
@@ -46,6 +47,7 @@ void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::st
   app.add_option("--stride", arguments.tum.selection.stride, "take every n-th frame")
       ->check(WholeNumber());
   app.add_flag("--strict", arguments.strict, "stop at a broken image instead of skipping it");
+  AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
   app.set_version_flag("--version", HULLSLAM_VERSION);
   app.footer(

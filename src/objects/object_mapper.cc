@@ -118,10 +118,15 @@ void ObjectMapper::CountVisible(Map& map, KeyframeId keyframe) const {
   }
 }
 
+Objection ObjectMapper::FewViews(const ObjectLandmark& object) const {
+  return {ObjectRejection::kFewViews, fmt::format("{} keyframes, expected at least {}",
+                                                  object.observations.size(), options_.min_views)};
+}
+
 void ObjectMapper::Update(Map& map, ObjectId id) {
   const ObjectLandmark& object = map.objects().At(id);
   if (object.observations.size() < static_cast<size_t>(options_.min_views)) {
-    ++rejections_[ObjectRejection::kFewViews];
+    Reject(map, id, FewViews(object));
     return;
   }
   if (!IsDue(object)) {
@@ -227,6 +232,10 @@ void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
   for (const ObjectId id : objects) {
     const ObjectLandmark* object = map.objects().Find(id);
     if (object == nullptr || object->state != ObjectState::kMapped) {
+      continue;
+    }
+    if (object->observations.size() < static_cast<size_t>(options_.min_views)) {
+      Reject(map, id, FewViews(*object));  // the keyframes that saw it have been culled
       continue;
     }
     const std::vector<ObjectView> views = CollectViews(map, *object, kRefinementViews);

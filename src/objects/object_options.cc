@@ -17,7 +17,7 @@ void ObjectOptions::Bind(OptionTable& options) {
   options.Add("objects.refinement_sigma", &refinement_sigma, Range::Between(0.1, 100.0),
               "error of an outline when a quadric is refined, px");
   options.Add("objects.refinement_huber", &refinement_huber, Range::Between(0.1, 1000.0),
-              "from here on errors of outlines count linearly in refinement, px");
+              "from here on errors count linearly in refinement, px at objects.refinement_sigma");
   options.Add("objects.refinement_lines", &refinement_lines, Range::Between(0.1, 1000.0),
               "lines that one outline counts as in refinement, at most");
   options.Add("objects.depth_sigma", &depth_sigma, Range::Between(0.001, 100.0),

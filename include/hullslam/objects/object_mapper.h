@@ -36,6 +36,7 @@ class ObjectMapper {
   void Start(Map& map, ObjectId id, std::span<const ObjectView> views);
   void Refine(Map& map, ObjectId id, std::span<const ObjectView> views);
   void Accept(Map& map, ObjectId id, std::span<const ObjectView> views) const;
+  Objection FewViews(const ObjectLandmark& object) const;
   double LineSigma(const ObjectLandmark& object) const;
   void FuseDuplicates(Map& map);
   void CullSeldomSeen(Map& map, KeyframeId keyframe);
