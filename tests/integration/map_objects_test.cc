@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hullslam/io/text_rows.h"
+#include "support/plane_sequence.h"
+#include "support/run_program.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Json = nlohmann::json;
+
+// What `evaluate objects` says of a map made with the true poses.
+Json CompareWithTruth(const fs::path& sequence, const fs::path& run) {
+  // The poses of the run are the true ones; map_objects estimates none.
+  fs::copy_file(sequence / "groundtruth.txt", run / "trajectory.txt");
+  const ProgramResult result = RunProgram(
+      "evaluate",
+      {"objects", run, "--groundtruth", sequence / "groundtruth_objects.json", "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  return Json::parse(result.output);
+}
+
+TEST(MapObjects, EllipsoidsAreWhereAndAsLargeAsTheyAre) {
+  const TemporaryFolder folder;
+  const fs::path desk = folder.path() / "desk";
+  // All 300 frames: after 150 the objects were seen from one side only, and their height is free.
+  ASSERT_EQ(RunProgram("make_synthetic", {desk, "--quiet"}).exit_code, 0);
+  const fs::path run = folder.path() / "run";
+  const ProgramResult result =
+      RunProgram("map_objects", {desk, "--poses", desk / "groundtruth.txt", "--masks",
+                                 desk / "masks", "--output", run, "--quiet"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+
+  const Json truth = CompareWithTruth(desk, run)["groundtruth"];
+  std::set<std::string> found;
+  for (const Json& object : truth["each"]) {
+    if (object["shape"] != "ellipsoid" || object["mapped"].empty()) {
+      continue;
+    }
+    SCOPED_TRACE(object["class"].get<std::string>());
+    EXPECT_EQ(object["mapped"].size(), 1U) << "mapped twice";
+    EXPECT_LE(object["mapped"][0]["center_share"], 0.03);
+    for (const Json& ratio : object["mapped"][0]["axis_ratios"]) {
+      EXPECT_NEAR(ratio.get<double>(), 1.0, 0.05);
+    }
+    found.insert(object["class"]);
+  }
+  EXPECT_EQ(found, (std::set<std::string>{"apple", "mouse", "orange"}));
+  EXPECT_NEAR(truth["shapes"]["ellipsoid"]["axis_ratio_mean"].get<double>(), 1.0, 0.01);
+}
+
+// A sequence of four frames, its masks and, made up, the poses.
+class MapObjectsRefuses : public ::testing::Test {
+ protected:
+  MapObjectsRefuses() {
+    folder_.Write("masks/00.txt", "41 0.25 0.25 0.5 0.25 0.5 0.5 0.25 0.5 0.9\n");
+  }
+
+  void Expect(const fs::path& poses, const std::vector<std::string>& more,
+              const std::vector<std::string>& parts) const {
+    std::vector<std::string> arguments = {sequence_.path(), "--output", folder_.path() / "out",
+                                          "--poses", poses};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = RunProgram("map_objects", arguments);
+    EXPECT_EQ(result.exit_code, 2) << result.errors;
+    EXPECT_TRUE(result.errors.starts_with("error: ")) << result.errors;
+    EXPECT_EQ(result.errors.find('\n'), result.errors.size() - 1) << result.errors;
+    for (const std::string& part : parts) {
+      EXPECT_NE(result.errors.find(part), std::string::npos)
+          << "no '" << part << "' in: " << result.errors;
+    }
+    EXPECT_FALSE(fs::exists(folder_.path() / "out/objects.json"));
+  }
+
+  TemporaryFolder folder_;
+  PlaneSequence sequence_ = PlaneSequence(4);
+  fs::path poses_ = sequence_.path() / "groundtruth.txt";
+  std::string masks_ = folder_.path() / "masks";
+};
+
+TEST_F(MapObjectsRefuses, PosesThatAreMissingBrokenOrOfAnotherTime) {
+  Expect(folder_.path() / "none.txt", {"--masks", masks_}, {"none.txt", "No such file"});
+  Expect(folder_.Write("broken.txt", "1 0 0 0 0 0 0 1\n2 0 nan 0 0 0 0 1\n"), {"--masks", masks_},
+         {"broken.txt:2: ", "'nan'"});
+  const fs::path early = folder_.Write("early.txt", "1 0 0 0 0 0 0 1\n1.05 0 0 0 0 0 0 1\n");
+  Expect(early, {"--masks", masks_}, {early, sequence_.path(), "no frame"});
+}
+
+TEST_F(MapObjectsRefuses, MasksThatAreMissingOrOfOtherFrames) {
+  Expect(poses_, {}, {"--masks"});
+  Expect(poses_, {"--masks", masks_ + "/none"}, {masks_ + "/none"});
+  folder_.Write("others/1.5.txt", "41 0.25 0.25 0.5 0.25 0.5 0.5 0.25 0.5 0.9\n");
+  // One stem of each side shows what is wrong.
+  Expect(poses_, {"--masks", folder_.path() / "others"}, {"'1.5.txt'", "00"});
+}
+
+TEST_F(MapObjectsRefuses, BadSettings) {
+  Expect(poses_, {"--masks", masks_, "--set", "objects.epsilon=3"},
+         {"--set", "unknown key 'objects.epsilon'"});
+  Expect(poses_, {"--masks", masks_, "--min-distance", "-1"}, {"--min-distance"});
+}
+
+}  // namespace
+}  // namespace hullslam

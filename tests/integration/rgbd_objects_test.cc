@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// rgbd_tum with masks: what it writes, and what a run without objects has in common with it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "hullslam/io/text_rows.h"
+#include "support/run_program.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Json = nlohmann::json;
+
+class RgbdObjects : public ::testing::Test {
+ protected:
+  // Renders the begin of a scene.
+  void Render(const std::string& scene, int frames) const {
+    const ProgramResult result =
+        RunProgram("make_synthetic",
+                   {sequence_, "--scene", scene, "--frames", std::to_string(frames), "--quiet"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+  }
+
+  // Exit code 0; the folder with the results.
+  fs::path Run(const std::string& name, const std::vector<std::string>& more) const {
+    const fs::path output = folder_.path() / name;
+    std::vector<std::string> arguments = {sequence_, "--quiet", "--output", output};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = RunProgram("rgbd_tum", arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return output;
+  }
+
+  static Json Summary(const fs::path& output) {
+    return Json::parse(ReadFile(output / "summary.json"));
+  }
+  static void ExpectSameBytes(const fs::path& first, const fs::path& second,
+                              const std::vector<std::string>& files) {
+    for (const std::string& file : files) {
+      EXPECT_TRUE(ReadFile(first / file) == ReadFile(second / file)) << file;
+    }
+  }
+
+  TemporaryFolder folder_;
+  fs::path sequence_ = folder_.path() / "sequence";
+  std::string masks_ = sequence_ / "masks";
+};
+
+TEST_F(RgbdObjects, AreWrittenWithTheSameBytesInEveryRun) {
+  Render("desk", 60);
+  const fs::path first = Run("first", {"--masks", masks_});
+  EXPECT_TRUE(ReadFile(first / "objects.ply").starts_with("ply\n"));
+  const Json summary = Summary(first);
+  EXPECT_EQ(summary["trajectory"]["tracked"], 60);
+  EXPECT_EQ(summary["objects"]["frames_with_masks"], 60);
+  EXPECT_GE(summary["objects"]["count"], 5);
+  EXPECT_GT(summary["objects"]["siou_mean"], 0.5);
+  size_t mapped = 0;
+  for (const Json& object : Json::parse(ReadFile(first / "objects.json"))["objects"]) {
+    mapped += object["state"] == "mapped" ? 1 : 0;
+  }
+  EXPECT_EQ(summary["objects"]["count"], mapped);
+
+  const fs::path second = Run("second", {"--masks", masks_});
+  ExpectSameBytes(first, second, {"trajectory.txt", "objects.json", "objects.ply", "map.ply"});
+}
+
+TEST_F(RgbdObjects, SwitchedOffLeaveNoTrace) {
+  Render("desk", 40);
+  const fs::path without = Run("without", {});
+  EXPECT_FALSE(fs::exists(without / "objects.json"));
+  const fs::path off = Run("off", {"--masks", masks_, "--set", "objects.enabled=0"});
+  ExpectSameBytes(without, off, {"trajectory.txt", "keyframes.txt", "map.ply"});
+}
+
+TEST_F(RgbdObjects, AreMappedByThreads) {
+  Render("desk", 60);
+  const Json summary = Summary(Run("threaded", {"--masks", masks_, "--threaded"}));
+  EXPECT_EQ(summary["provenance"]["pipeline"], "threaded");
+  EXPECT_EQ(summary["trajectory"]["tracked"], 60);
+  EXPECT_LE(summary["trajectory"]["ate_rmse_m"], 0.010);
+  EXPECT_GE(summary["objects"]["count"], 3);
+}
+
+}  // namespace
+}  // namespace hullslam
