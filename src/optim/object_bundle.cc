@@ -150,15 +150,18 @@ void ObjectBundle::AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>&
 
 void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold,
                                  ceres::ParameterBlockOrdering& ordering) {
+  // Ceres sorts a group by address. A group holds the blocks of one vector only, so that their
+  // order is that of the vector, not of where two vectors happen to lie: else no two runs are
+  // alike.
   for (Object& object : objects_) {
     problem.SetManifold(object.pose.data(), &manifold);
-    ordering.AddElementToGroup(object.pose.data(), 1);
-    ordering.AddElementToGroup(object.log_axes.data(), 1);
+    ordering.AddElementToGroup(object.pose.data(), 2);
+    ordering.AddElementToGroup(object.log_axes.data(), 2);
   }
   for (PoseBlock& pose : outer_poses_) {
     if (problem.HasParameterBlock(pose.data())) {
       problem.SetParameterBlockConstant(pose.data());
-      ordering.AddElementToGroup(pose.data(), 1);
+      ordering.AddElementToGroup(pose.data(), 3);
     }
   }
 }

@@ -25,7 +25,7 @@ class ObjectBundle {
   // `poses` are those of the window's keyframes, the moving ones before the fixed ones. They and
   // this must outlive the problem.
   void AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>& poses);
-  // Puts the objects into group 1 of the ordering.
+  // Puts the objects into group 2 of the ordering, poses outside of the window into group 3.
   void AddParameters(ceres::Problem& problem, PoseManifold& manifold,
                      ceres::ParameterBlockOrdering& ordering);
   void Write(BundleResult& result) const;

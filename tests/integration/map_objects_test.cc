@@ -21,8 +21,6 @@ using Json = nlohmann::json;
 
 // What `evaluate objects` says of a map made with the true poses.
 Json CompareWithTruth(const fs::path& sequence, const fs::path& run) {
-  // The poses of the run are the true ones; map_objects estimates none.
-  fs::copy_file(sequence / "groundtruth.txt", run / "trajectory.txt");
   const ProgramResult result = RunProgram(
       "evaluate",
       {"objects", run, "--groundtruth", sequence / "groundtruth_objects.json", "--json"});

@@ -63,7 +63,8 @@ TEST_F(RgbdObjects, AreWrittenWithTheSameBytesInEveryRun) {
   EXPECT_GE(summary["objects"]["count"], 5);
   EXPECT_GT(summary["objects"]["siou_mean"], 0.5);
   size_t mapped = 0;
-  for (const Json& object : Json::parse(ReadFile(first / "objects.json"))["objects"]) {
+  const Json objects = Json::parse(ReadFile(first / "objects.json"));
+  for (const Json& object : objects["objects"]) {
     mapped += object["state"] == "mapped" ? 1 : 0;
   }
   EXPECT_EQ(summary["objects"]["count"], mapped);
