@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "hullslam/util/error.h"
+#include "support/temporary_folder.h"
 
 namespace hullslam::synthetic {
 namespace {
@@ -15,12 +16,6 @@ namespace fs = std::filesystem;
 
 class OutputSwapTest : public testing::Test {
  protected:
-  OutputSwapTest() : root_(fs::path(testing::TempDir()) / "output_swap_test") {
-    fs::remove_all(root_);
-    fs::create_directories(root_);
-  }
-  void TearDown() override { fs::remove_all(root_); }
-
   static void Put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
   static std::string Get(const fs::path& path) {
     std::ifstream file(path);
@@ -35,7 +30,8 @@ class OutputSwapTest : public testing::Test {
     return static_cast<int>(std::distance(fs::directory_iterator(root_), fs::directory_iterator()));
   }
 
-  fs::path root_;
+  const TemporaryFolder folder_;
+  const fs::path& root_ = folder_.path();
 };
 
 TEST_F(OutputSwapTest, NothingIsInPlaceBeforeCommit) {

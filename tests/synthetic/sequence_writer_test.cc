@@ -14,6 +14,7 @@
 #include <string>
 
 #include "hullslam/util/error.h"
+#include "support/temporary_folder.h"
 #include "synthetic/object_models.h"
 
 namespace hullslam::synthetic {
@@ -38,20 +39,13 @@ std::map<std::string, std::string> AllFiles(const fs::path& folder) {
 
 class SequenceWriterTest : public testing::Test {
  protected:
-  SequenceWriterTest()
-      : root_(fs::path(testing::TempDir()) /
-              ("sequence_writer_" +
-               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-    fs::remove_all(root_);
-  }
-  void TearDown() override { fs::remove_all(root_); }
-
   fs::path Write(const std::string& name, const SequenceOptions& options) const {
     EXPECT_TRUE(WriteSequence(root_ / name, options, [](int) { return true; }));
     return root_ / name;
   }
 
-  fs::path root_;
+  const TemporaryFolder folder_;
+  const fs::path& root_ = folder_.path();
 };
 
 TEST(FrameStamp, IsThirtyFramesASecondInMicroseconds) {
