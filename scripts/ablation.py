@@ -7,6 +7,11 @@ and OUT/ablation.json with trajectory error, overlap of the objects and time of 
         --variant off:objects.enabled=false --variant default: \
         --variant plane:objects.residual=algebraic_plane,objects.primitive=hull
 
+In every argument of a run {seed} is replaced by its seed and {sequence} by the sequence's folder.
+As nothing in a sequential run is random, this is how repetitions get to differ: by sequences that
+make_synthetic has rendered with several seeds (--sequence "desk-{seed}" --common "--masks
+{sequence}/masks"), or by the frame that a real one begins with (--common "--first {seed}").
+
 A variant is NAME:KEY=VALUE,KEY=VALUE...; each key becomes --set KEY=VALUE, and an item that begins
 with a dash is given as it is (NAME:--preset=paper); "\," is a comma within a value. Runs are kept
 in OUT/SEQUENCE/NAME/seed-N; one that is there, complete and of the same command and program is not
@@ -159,21 +164,25 @@ def write(path, text):
 def run_variant(arguments, sequence, name, settings):
     """The result of all repetitions of a variant on a sequence."""
     summaries, failures = [], []
+    title = sequence.resolve().name.replace("-{seed}", "").replace("{seed}", "") or "sequence"
     for seed in range(arguments.first_seed, arguments.first_seed + arguments.seeds):
-        folder = arguments.out / sequence.resolve().name / name / f"seed-{seed}"
-        command = [str(arguments.program), str(sequence), *shlex.split(arguments.common), *settings,
-                   "--seed", str(seed), "--quiet", "--output", str(folder)]
+        folder = arguments.out / title / name / f"seed-{seed}"
+        path = str(sequence).replace("{seed}", str(seed))
+        given = [item.replace("{seed}", str(seed)).replace("{sequence}", path)
+                 for item in [*shlex.split(arguments.common), *settings]]
+        command = [str(arguments.program), path, *given, "--seed", str(seed), "--quiet",
+                   "--output", str(folder)]
         summary, failure = run_once(command, folder, arguments.timeout)
         if failure:
             failures.append(f"seed {seed}: {failure}")
-            print(f"{sequence.name} {name} seed {seed}: {failure}; see {folder / 'log.txt'}",
+            print(f"{title} {name} seed {seed}: {failure}; see {folder / 'log.txt'}",
                   file=sys.stderr)
         else:
             summaries.append(summary)
             ate = value_at(summary, ("trajectory", "ate_rmse_m"))
-            print(f"{sequence.name} {name} seed {seed}: ATE "
+            print(f"{title} {name} seed {seed}: ATE "
                   f"{'unknown' if ate is None else f'{ate:.4f} m'}", flush=True)
-    return {"sequence": sequence.resolve().name, "variant": name, "arguments": settings,
+    return {"sequence": title, "variant": name, "arguments": settings,
             "runs": len(summaries), "failed": len(failures), "failures": failures,
             "figures": collect(summaries)}
 
@@ -190,7 +199,7 @@ def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--sequence", type=pathlib.Path, action="append", required=True,
-                        help="folder of a sequence; repeat for more")
+                        help="folder of a sequence, may have {seed} in it; repeat for more")
     parser.add_argument("--variant", action="append", required=True,
                         help="NAME:KEY=VALUE,...; repeat for more, the first is compared with")
     parser.add_argument("--out", type=pathlib.Path, required=True, help="folder of runs and tables")

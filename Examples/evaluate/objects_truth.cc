@@ -71,7 +71,8 @@ Json ToJson(const ShapeErrors& errors) {
           {"center_share_mean", errors.center_share_mean},
           {"center_share_max", errors.center_share_max},
           {"axis_ratio_mean", errors.axis_ratio_mean},
-          {"axis_ratio_deviation", errors.axis_ratio_deviation}};
+          {"axis_ratio_deviation", errors.axis_ratio_deviation},
+          {"siou_mean", errors.siou_mean ? Json(*errors.siou_mean) : Json(nullptr)}};
 }
 
 Json ToJson(const ObjectError& error) {
@@ -142,9 +143,10 @@ void PrintTruth(const TruthEvaluation& evaluation) {
   for (const auto& [shape, errors] : SummarizeByShape(evaluation.truths, evaluation.comparison)) {
     fmt::print(
         "{:<12} {} mapped: centre off by {:.1f} % of the size (at most {:.1f}), axes {:.3f} of "
-        "the true ones (at most {:.1f} % off)\n",
+        "the true ones (at most {:.1f} % off), SIoU {}\n",
         shape, errors.objects, 100.0 * errors.center_share_mean, 100.0 * errors.center_share_max,
-        errors.axis_ratio_mean, 100.0 * errors.axis_ratio_deviation);
+        errors.axis_ratio_mean, 100.0 * errors.axis_ratio_deviation,
+        errors.siou_mean ? fmt::format("{:.3f}", *errors.siou_mean) : "-");
   }
 }
 

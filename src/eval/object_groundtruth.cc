@@ -109,6 +109,7 @@ GroundtruthComparison CompareWithTruth(std::span<const TrueObject> truths,
       continue;
     }
     error->object = object.id;
+    error->siou = object.fit.siou;
     ++comparison.times_mapped[error->truth];
     comparison.errors.push_back(*error);
   }
@@ -138,6 +139,7 @@ TruthCounts CountMapped(std::span<const TrueObject> truths, const GroundtruthCom
 std::map<std::string, ShapeErrors> SummarizeByShape(std::span<const TrueObject> truths,
                                                     const GroundtruthComparison& comparison) {
   std::map<std::string, ShapeErrors> shapes;
+  std::map<std::string, size_t> with_siou;
   std::optional<size_t> last;
   for (const ObjectError& error : comparison.errors) {
     if (last == error.truth) {
@@ -151,10 +153,17 @@ std::map<std::string, ShapeErrors> SummarizeByShape(std::span<const TrueObject> 
     shape.axis_ratio_mean += error.axis_ratios.mean();
     shape.axis_ratio_deviation =
         std::max(shape.axis_ratio_deviation, (error.axis_ratios.array() - 1.0).abs().maxCoeff());
+    if (error.siou) {
+      shape.siou_mean = shape.siou_mean.value_or(0.0) + *error.siou;
+      ++with_siou[truths[error.truth].shape];
+    }
   }
   for (auto& [name, shape] : shapes) {
     shape.center_share_mean /= static_cast<double>(shape.objects);
     shape.axis_ratio_mean /= static_cast<double>(shape.objects);
+    if (shape.siou_mean) {
+      *shape.siou_mean /= static_cast<double>(with_siou[name]);
+    }
   }
   return shapes;
 }

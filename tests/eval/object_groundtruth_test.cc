@@ -134,6 +134,9 @@ TEST(ObjectGroundtruth, ErrorsAreSummarizedByShapeOverTheNearest) {
   larger.half_axes *= 1.2;
   report.objects = {MakeObject(0, MappedAs(truths[0])),
                     MakeObject(1, MappedAs(truths[0], {0.1, 0.0, 0.0})), MakeObject(2, larger)};
+  report.objects[0].fit.siou = 0.9;
+  report.objects[1].fit.siou = 0.1;
+  report.objects[2].fit.siou = 0.8;
   const auto shapes = SummarizeByShape(truths, CompareWithTruth(truths, report, {}));
   ASSERT_EQ(shapes.size(), 1U);
   const ShapeErrors& ellipsoids = shapes.at("ellipsoid");
@@ -142,6 +145,8 @@ TEST(ObjectGroundtruth, ErrorsAreSummarizedByShapeOverTheNearest) {
   EXPECT_NEAR(ellipsoids.center_share_max, 0.1, 1e-12);
   EXPECT_NEAR(ellipsoids.axis_ratio_mean, 1.1, 1e-12);
   EXPECT_NEAR(ellipsoids.axis_ratio_deviation, 0.2, 1e-12);
+  ASSERT_TRUE(ellipsoids.siou_mean.has_value());
+  EXPECT_NEAR(*ellipsoids.siou_mean, 0.85, 1e-12);
 }
 
 TEST(ObjectGroundtruth, ASightingIsOfTheClassAndWhereTheObjectIs) {

@@ -194,6 +194,7 @@ TEST_F(EvaluateObjects, ComparesWithTheTruth) {
   EXPECT_EQ(truth["each"][1]["masks"], 0);
   EXPECT_LT(truth["each"][0]["mapped"][0]["center_share"].get<double>(), 1e-6);
   EXPECT_NEAR(truth["shapes"]["ellipsoid"]["axis_ratio_mean"].get<double>(), 1.01, 1e-9);
+  EXPECT_NEAR(truth["shapes"]["ellipsoid"]["siou_mean"].get<double>(), 1.0 / (1.01 * 1.01), 1e-3);
   EXPECT_EQ(truth["without_truth"].size(), 0U);
 }
 

@@ -36,8 +36,11 @@ TEST(MapObjects, EllipsoidsAreWhereAndAsLargeAsTheyAre) {
   const fs::path run = folder.path() / "run";
   const ProgramResult result =
       RunProgram("map_objects", {desk, "--poses", desk / "groundtruth.txt", "--masks",
-                                 desk / "masks", "--output", run, "--quiet"});
+                                 desk / "masks", "--output", run, "--quiet", "--debug"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.errors.find("debug: object 8 (apple): mapped from 3 keyframes"),
+            std::string::npos)
+      << result.errors.substr(0, 1000);
 
   const Json truth = CompareWithTruth(desk, run)["groundtruth"];
   std::set<std::string> found;

@@ -110,6 +110,17 @@ class AblationTest(unittest.TestCase):
         self.assertEqual(results[1]["arguments"], ["--set", "objects.residual=bad"])
         self.assertEqual(len(results[1]["figures"]["ATE m"]["values"]), 3)
 
+    def test_seed_and_sequence_are_replaced(self):
+        result = self.run_script("--sequence", self.dir / "room-{seed}", "--seeds", "2", "--common",
+                                 "--masks {sequence}/masks --first {seed}", "--variant", "v:")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(f"{self.dir}/desk --masks {self.dir}/desk/masks --first 1 --seed 1",
+                      self.calls()[1])
+        self.assertIn(f"{self.dir}/room-1 --masks {self.dir}/room-1/masks --first 1 --seed 1",
+                      self.calls()[3])
+        self.assertIn("| room | v | 2 |", result.stdout)
+        self.assertTrue((self.dir / "out" / "room" / "v" / "seed-1" / "summary.json").exists())
+
     def test_runs_without_masks(self):
         result = self.run_script("--seeds", "1", "--variant", "none:--no-masks")
         self.assertEqual(result.returncode, 0, result.stderr)

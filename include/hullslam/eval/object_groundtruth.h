@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct ObjectError {
   double center_share = 0.0;      // of the true object's Size()
   Eigen::Vector3d axis_ratios;    // mapped over true half axes, paired by length, longest first
   Eigen::Vector3d extent_ratios;  // mapped over true half extents along the true object's axes
+  std::optional<double> siou;     // of the mapped object (ObjectFit)
 };
 
 struct GroundtruthComparison {
@@ -54,6 +56,7 @@ struct ShapeErrors {
   double center_share_max = 0.0;
   double axis_ratio_mean = 0.0;       // over all axes: the bias of their lengths
   double axis_ratio_deviation = 0.0;  // largest |ratio - 1|
+  std::optional<double> siou_mean;    // over the objects that have one
 };
 
 std::map<std::string, ShapeErrors> SummarizeByShape(std::span<const TrueObject> truths,
