@@ -89,29 +89,56 @@ Sensor MakeSensor(const SystemOptions& options) {
   return sensor;
 }
 
-// Chooses the frames to be views and maps the objects in them.
+// A frame whose objects are mapped.
+struct View {
+  size_t frame = 0;  // index in the sequence
+  Rigid3 world_from_cam;
+};
+
+struct Views {
+  std::vector<View> views;
+  size_t without_pose = 0;  // frames
+};
+
+bool HasMoved(const Arguments& arguments, const Rigid3& last, const Rigid3& pose) {
+  const double angle = AngularDistance(last.rotation, pose.rotation);
+  return (pose.translation - last.translation).norm() >= arguments.min_distance ||
+         angle * 180.0 / std::numbers::pi >= arguments.min_angle;
+}
+
+// The frames at which the camera has moved enough since the last of them. Throws InputError where
+// no frame has a pose.
+Views ChooseViews(const Arguments& arguments, const std::vector<RgbdFramePaths>& frames,
+                  const Trajectory& poses) {
+  Views chosen;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const auto pose = InterpolatePose(poses, frames[i].timestamp, kMaxPoseGap);
+    if (!pose) {
+      ++chosen.without_pose;
+    } else if (chosen.views.empty() ||
+               HasMoved(arguments, chosen.views.back().world_from_cam, *pose)) {
+      chosen.views.push_back({i, *pose});
+    }
+  }
+  if (chosen.views.empty()) {
+    throw InputError(fmt::format("{}: no frame of {} has a pose within {} s of others",
+                                 arguments.poses.string(), arguments.sequence.string(),
+                                 kMaxPoseGap));
+  }
+  return chosen;
+}
+
+// Maps the objects in the views.
 class ObjectRun {
  public:
-  ObjectRun(const Arguments& arguments, const SystemOptions& options)
-      : arguments_(arguments),
-        sensor_(MakeSensor(options)),
+  explicit ObjectRun(const SystemOptions& options)
+      : sensor_(MakeSensor(options)),
         dynamic_classes_(SplitNames(options.tracking.dynamic_classes)),
         builder_(options.camera, options.depth.units_per_metre, options.objects.detection),
         mapper_(sensor_, options.objects) {}
 
-  // Whether the camera has moved enough since the last view.
-  bool IsDue(const Rigid3& world_from_cam) const {
-    if (!last_) {
-      return true;
-    }
-    const double angle = AngularDistance(last_->rotation, world_from_cam.rotation);
-    return (world_from_cam.translation - last_->translation).norm() >= arguments_.min_distance ||
-           angle * 180.0 / std::numbers::pi >= arguments_.min_angle;
-  }
-
   void AddView(double timestamp, const Rigid3& world_from_cam, std::vector<InstanceMask> masks,
                const cv::Mat& depth) {
-    last_ = world_from_cam;
     auto frame = std::make_shared<Frame>();
     frame->id = FrameId(map_.keyframes().NextId().value);
     frame->timestamp = timestamp;
@@ -140,13 +167,11 @@ class ObjectRun {
   }
 
  private:
-  const Arguments& arguments_;
   Sensor sensor_;
   std::set<std::string> dynamic_classes_;
   DetectionBuilder builder_;
   ObjectMapper mapper_;
   Map map_;
-  std::optional<Rigid3> last_;
   ObjectCounts counts_;
 };
 
@@ -182,26 +207,14 @@ Inputs OpenInputs(const Arguments& arguments) {
   return inputs;
 }
 
-// Returns how many frames have no pose.
-size_t MapAll(const Arguments& arguments, const Inputs& inputs, const SequenceMasks& masks,
-              ObjectRun& run) {
-  size_t without_pose = 0;
-  for (size_t i = 0; i < inputs.sequence.frames.size(); ++i) {
-    const RgbdFramePaths& frame = inputs.sequence.frames[i];
-    const auto pose = InterpolatePose(inputs.poses, frame.timestamp, kMaxPoseGap);
-    without_pose += pose ? 0 : 1;
-    if (pose && run.IsDue(*pose)) {
-      const bool has_depth = !arguments.without_depth && !frame.depth.empty();
-      run.AddView(frame.timestamp, *pose, masks.Read(i),
-                  has_depth ? ReadDepthImage(frame.depth) : cv::Mat());
-    }
+void MapAll(const Arguments& arguments, const std::vector<RgbdFramePaths>& frames,
+            const std::vector<View>& views, const SequenceMasks& masks, ObjectRun& run) {
+  for (const View& view : views) {
+    const RgbdFramePaths& frame = frames[view.frame];
+    const bool has_depth = !arguments.without_depth && !frame.depth.empty();
+    run.AddView(frame.timestamp, view.world_from_cam, masks.Read(view.frame),
+                has_depth ? ReadDepthImage(frame.depth) : cv::Mat());
   }
-  if (run.map().keyframes().empty()) {
-    throw InputError(fmt::format("{}: no frame of {} has a pose within {} s of others",
-                                 arguments.poses.string(), arguments.sequence.string(),
-                                 kMaxPoseGap));
-  }
-  return without_pose;
 }
 
 RunSummary Summarize(const Arguments& arguments, const Inputs& inputs, const SequenceMasks& masks,
@@ -243,13 +256,15 @@ int Run(int argc, char** argv) {
   const PinholeCamera& camera = inputs.options.camera;
   const SequenceMasks masks({arguments.masks, arguments.masks_format, camera.width, camera.height},
                             MaskFrames(inputs.sequence));
+  const auto& frames = inputs.sequence.frames;
+  const auto [views, without_pose] = ChooseViews(arguments, frames, inputs.poses);
   PrepareOutputFolder(arguments.output);
   if (!arguments.quiet) {
     fmt::print("{}\n", masks.Describe());
   }
   const auto start = std::chrono::steady_clock::now();
-  ObjectRun run(arguments, inputs.options);
-  const size_t without_pose = MapAll(arguments, inputs, masks, run);
+  ObjectRun run(inputs.options);
+  MapAll(arguments, frames, views, masks, run);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
 
   const ObjectReport report = CollectObjects(run.map(), camera, arguments.sequence);

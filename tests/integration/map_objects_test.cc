@@ -80,7 +80,7 @@ class MapObjectsRefuses : public ::testing::Test {
       EXPECT_NE(result.errors.find(part), std::string::npos)
           << "no '" << part << "' in: " << result.errors;
     }
-    EXPECT_FALSE(fs::exists(folder_.path() / "out/objects.json"));
+    EXPECT_FALSE(fs::exists(folder_.path() / "out")) << "nothing was written, not even a folder";
   }
 
   TemporaryFolder folder_;
