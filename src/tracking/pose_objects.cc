@@ -34,13 +34,17 @@ std::vector<SilhouetteLine> KnownLines(const Sensor& sensor, const Rigid3& cam_f
 
 }  // namespace
 
-PoseObjects FindPoseObjects(const Map& map, const Sensor& sensor, const Frame& frame,
-                            const Rigid3& cam_from_world, std::span<const LandmarkId> landmarks,
-                            const ObjectOptions& options) {
+std::vector<ObjectId> FindMappedObjects(const Map& map, const Sensor& sensor, const Frame& frame,
+                                        const Rigid3& cam_from_world,
+                                        std::span<const LandmarkId> landmarks) {
   AssociationOptions association;
   association.mapped_only = true;
-  const std::vector<ObjectId> ids =
-      AssociateDetections(map, sensor, frame, cam_from_world, landmarks, association);
+  return AssociateDetections(map, sensor, frame, cam_from_world, landmarks, association);
+}
+
+PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& frame,
+                            const Rigid3& cam_from_world, std::span<const ObjectId> ids,
+                            const ObjectOptions& options) {
   PoseObjects found;
   for (size_t i = 0; i < ids.size(); ++i) {
     if (!ids[i].IsValid()) {

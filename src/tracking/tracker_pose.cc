@@ -8,6 +8,7 @@
 #include "hullslam/matching/by_projection.h"
 #include "hullslam/optim/joint_pose_optimization.h"
 #include "hullslam/tracking/local_map.h"
+#include "hullslam/tracking/object_guide.h"
 #include "hullslam/tracking/tracker.h"
 
 namespace hullslam {
@@ -38,6 +39,26 @@ LevelRange LevelsAfterMotion(int level, double forward, double baseline, int lev
     return {0, level};
   }
   return {level - 1, level + 1};
+}
+
+// Where a landmark of the local map is searched; nothing where it cannot be recognised.
+std::optional<Projection> ExpectLandmark(const Sensor& sensor, const Rigid3& cam_from_world,
+                                         const Landmark& landmark) {
+  const std::optional<LandmarkView> view = ViewLandmark(sensor, cam_from_world, landmark);
+  if (!view) {
+    return std::nullopt;
+  }
+  const double radius =
+      kDepthRadiusFactor * (view->cos_view > kCosFrontal ? kLocalRadiusFrontal : kLocalRadius);
+  Projection projection;
+  projection.pixel = view->pixel.cast<float>();
+  projection.right_u = static_cast<float>(view->right_u);
+  projection.radius =
+      static_cast<float>(radius) * sensor.levels.scale[static_cast<size_t>(view->level)];
+  projection.min_level = view->level - 1;
+  projection.max_level = view->level;
+  projection.descriptor = landmark.descriptor;
+  return projection;
 }
 
 }  // namespace
@@ -126,8 +147,23 @@ std::optional<Tracker::Estimate> Tracker::TrackLocalMap(Estimate estimate) {
   if (local.reference.IsValid()) {
     reference_ = local.reference;
   }
-  SearchLocalLandmarks(local.landmarks, estimate);
-  const PoseObjects found = FindObjects(estimate);
+  std::vector<bool> is_known = CountTracked(estimate);
+  std::vector<ObjectId> objects;
+  if (object_options_.guided_matching) {
+    objects = FindObjects(estimate);
+    for (const ObjectGuide& guide : GuideByObjects(*map_, *frame_, objects)) {
+      SearchLandmarks(guide.landmarks, guide.is_outside, is_known, estimate);
+    }
+  }
+  SearchLandmarks(local.landmarks, {}, is_known, estimate);
+  PoseObjects found;
+  if (object_options_.joint_pose) {
+    if (!object_options_.guided_matching) {
+      objects = FindObjects(estimate);
+    }
+    found =
+        MakePoseObjects(*map_, sensor_, *frame_, estimate.cam_from_world, objects, object_options_);
+  }
   OptimizePose(estimate, found.objects);
   for (const LandmarkId landmark : estimate.landmarks) {
     if (landmark.IsValid()) {
@@ -138,49 +174,49 @@ std::optional<Tracker::Estimate> Tracker::TrackLocalMap(Estimate estimate) {
   return support >= options_.min_inliers ? std::optional(std::move(estimate)) : std::nullopt;
 }
 
-PoseObjects Tracker::FindObjects(const Estimate& estimate) const {
-  const bool may_hold = object_options_.enabled && object_options_.joint_pose &&
-                        !frame_->detections.empty() && !map_->objects().empty();
-  return may_hold ? FindPoseObjects(*map_, sensor_, *frame_, estimate.cam_from_world,
-                                    estimate.landmarks, object_options_)
-                  : PoseObjects();
+std::vector<ObjectId> Tracker::FindObjects(const Estimate& estimate) const {
+  const bool may_show =
+      object_options_.enabled && !frame_->detections.empty() && !map_->objects().empty();
+  return may_show ? FindMappedObjects(*map_, sensor_, *frame_, estimate.cam_from_world,
+                                      estimate.landmarks)
+                  : std::vector<ObjectId>();
 }
 
-void Tracker::SearchLocalLandmarks(const std::vector<LandmarkId>& local, Estimate& estimate) {
-  std::vector<uint8_t> taken(frame_->features.size(), 0);
-  std::vector<LandmarkId> matched;
-  for (size_t i = 0; i < taken.size(); ++i) {
-    if (estimate.landmarks[i].IsValid()) {
-      taken[i] = 1;
-      matched.push_back(estimate.landmarks[i]);
-      sightings_.CountVisible(estimate.landmarks[i]);
+// Marks the landmarks found so far, by their ids.
+std::vector<bool> Tracker::CountTracked(const Estimate& estimate) {
+  std::vector<bool> is_known(map_->landmarks().NextId().value, false);
+  for (const LandmarkId id : estimate.landmarks) {
+    if (id.IsValid()) {
+      is_known[id.value] = true;
+      sightings_.CountVisible(id);
     }
   }
-  std::sort(matched.begin(), matched.end());
+  return is_known;
+}
+
+// Looks for the landmarks that are not known yet, at the keypoints that are free and not excluded
+// (one entry a keypoint, or none). They are known afterwards, found or not.
+void Tracker::SearchLandmarks(std::span<const LandmarkId> landmarks,
+                              std::span<const uint8_t> is_excluded, std::vector<bool>& is_known,
+                              Estimate& estimate) {
   std::vector<Projection> projections;
   std::vector<LandmarkId> ids;
-  for (const LandmarkId id : local) {
-    if (std::binary_search(matched.begin(), matched.end(), id)) {
+  for (const LandmarkId id : landmarks) {
+    if (is_known[id.value]) {
       continue;
     }
-    const Landmark& landmark = map_->landmarks().At(id);
-    const std::optional<LandmarkView> view =
-        ViewLandmark(sensor_, estimate.cam_from_world, landmark);
-    if (!view) {
-      continue;
+    if (const auto projection =
+            ExpectLandmark(sensor_, estimate.cam_from_world, map_->landmarks().At(id))) {
+      is_known[id.value] = true;
+      sightings_.CountVisible(id);
+      projections.push_back(*projection);
+      ids.push_back(id);
     }
-    sightings_.CountVisible(id);
-    const double radius =
-        kDepthRadiusFactor * (view->cos_view > kCosFrontal ? kLocalRadiusFrontal : kLocalRadius);
-    Projection& projection = projections.emplace_back();
-    projection.pixel = view->pixel.cast<float>();
-    projection.right_u = static_cast<float>(view->right_u);
-    projection.radius =
-        static_cast<float>(radius) * sensor_.levels.scale[static_cast<size_t>(view->level)];
-    projection.min_level = view->level - 1;
-    projection.max_level = view->level;
-    projection.descriptor = landmark.descriptor;
-    ids.push_back(id);
+  }
+  std::vector<uint8_t> taken(frame_->features.size(), 0);
+  for (size_t i = 0; i < taken.size(); ++i) {
+    const bool is_excluded_here = !is_excluded.empty() && is_excluded[i] != 0;
+    taken[i] = is_excluded_here || estimate.landmarks[i].IsValid() ? 1 : 0;
   }
   const std::vector<Match> matches = MatchByProjection(frame_->features, projections, taken,
                                                        {.max_distance = 100, .max_ratio = 0.8});

@@ -43,7 +43,8 @@ class PoseObjectsTest : public ::testing::Test {
     ObjectOptions options;
     options.misfit_compensation = compensate;
     options.residual = residual;
-    return FindPoseObjects(map_, sensor_, frame_, camera_, {}, options);
+    const std::vector<ObjectId> ids = FindMappedObjects(map_, sensor_, frame_, camera_, {});
+    return MakePoseObjects(map_, sensor_, frame_, camera_, ids, options);
   }
   // Largest distance of a line from the tangent of the mapped quadric, px.
   double WorstLine(const PoseObjects& found) const {

@@ -14,6 +14,7 @@ struct ObjectOptions {
   bool joint_pose = true;         // lines of mapped objects hold the pose of each frame
   bool bundle_adjustment = true;  // quadrics are moved together with poses and points
   bool misfit_compensation = true;
+  bool guided_matching = false;  // landmarks on objects are searched within their detections
   ObjectResidual residual = ObjectResidual::kTangent;
   DetectionOptions detection;
 

@@ -19,11 +19,18 @@ struct PoseObjects {
   std::deque<std::vector<SilhouetteLine>> lines;  // that the measurements refer to
 };
 
-// Associates the detections of a frame with mapped objects. With misfit compensation the lines are
-// moved by what keyframes tell of the object there; lines of which they tell nothing are left out,
-// unless less than half of a detection's would remain: then it is taken as it is.
-PoseObjects FindPoseObjects(const Map& map, const Sensor& sensor, const Frame& frame,
-                            const Rigid3& cam_from_world, std::span<const LandmarkId> landmarks,
+// For each detection of a frame the mapped object that it shows, invalid for none; see
+// AssociateDetections. `landmarks` has one entry a keypoint (or is empty).
+std::vector<ObjectId> FindMappedObjects(const Map& map, const Sensor& sensor, const Frame& frame,
+                                        const Rigid3& cam_from_world,
+                                        std::span<const LandmarkId> landmarks);
+
+// Detections of a frame with the objects they show (`ids`: one a detection). With misfit
+// compensation the lines are moved by what keyframes tell of the object there; lines of which they
+// tell nothing are left out, unless less than half of a detection's would remain: then it is taken
+// as it is.
+PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& frame,
+                            const Rigid3& cam_from_world, std::span<const ObjectId> ids,
                             const ObjectOptions& options);
 
 }  // namespace hullslam

@@ -63,9 +63,11 @@ class Tracker {
   std::optional<Estimate> TrackWithMotionModel() const;
   std::optional<Estimate> TrackReferenceKeyframe() const;
   std::optional<Estimate> TrackLocalMap(Estimate estimate);
-  void SearchLocalLandmarks(const std::vector<LandmarkId>& local, Estimate& estimate);
+  std::vector<bool> CountTracked(const Estimate& estimate);
+  void SearchLandmarks(std::span<const LandmarkId> landmarks, std::span<const uint8_t> is_excluded,
+                       std::vector<bool>& is_known, Estimate& estimate);
   void OptimizePose(Estimate& estimate, std::span<const PoseObject> objects = {}) const;
-  PoseObjects FindObjects(const Estimate& estimate) const;
+  std::vector<ObjectId> FindObjects(const Estimate& estimate) const;
   bool NeedsKeyframe(const Estimate& estimate, const MapperStatus& mapper) const;
   KeyframeRequest MakeRequest(const Estimate& estimate);
   TrackedFrame Remember(const Estimate& estimate);

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/tracking/object_guide.h"
+
+#include <algorithm>
+
+#include "hullslam/objects/object_view.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kMaxViews = 20;
+// Corners at a silhouette are half background, and masks tend to be small.
+constexpr double kMaskMargin = 7.0;  // px
+// A landmark as far outside as this is still on the object, as in its validity.
+constexpr double kNearSurface = 0.03;      // m
+constexpr double kNearSurfaceShare = 0.2;  // of the mean half axis
+
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+// Whether a point is in a convex polygon of positive signed area, or within `margin` (px) of all
+// the lines that bound it.
+bool IsInOrNear(std::span<const Eigen::Vector2d> hull, const Eigen::Vector2d& point,
+                double margin) {
+  for (size_t i = 0; i < hull.size(); ++i) {
+    const Eigen::Vector2d edge = hull[(i + 1) % hull.size()] - hull[i];
+    if (Cross(edge, point - hull[i]) < -margin * edge.norm()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::vector<uint8_t> KeypointsOutside(const Frame& frame, const Detection& detection) {
+  const std::vector<Keypoint>& keypoints = frame.features.keypoints;
+  std::vector<uint8_t> is_outside(keypoints.size(), 1);
+  for (size_t i = 0; i < keypoints.size(); ++i) {
+    const Eigen::Vector2d pixel = keypoints[i].undistorted.cast<double>();
+    if (detection.box.squaredExteriorDistance(pixel) <= kMaskMargin * kMaskMargin &&
+        IsInOrNear(detection.hull, pixel, kMaskMargin)) {
+      is_outside[i] = 0;
+    }
+  }
+  return is_outside;
+}
+
+}  // namespace
+
+std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object) {
+  std::vector<LandmarkId> landmarks;
+  for (const ObjectView& view : CollectViews(map, object, kMaxViews)) {
+    const Keyframe& keyframe = map.keyframes().At(view.keyframe);
+    for (const uint32_t keypoint : view.detection->keypoints) {
+      if (keyframe.landmarks[keypoint].IsValid()) {
+        landmarks.push_back(keyframe.landmarks[keypoint]);
+      }
+    }
+  }
+  std::sort(landmarks.begin(), landmarks.end());
+  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  const Ellipsoid& ellipsoid = object.ellipsoid;
+  const double margin = std::max(kNearSurface, kNearSurfaceShare * ellipsoid.half_axes.mean());
+  std::erase_if(landmarks, [&](LandmarkId id) {
+    return ellipsoid.RadialDistance(map.landmarks().At(id).position) > margin;
+  });
+  return landmarks;
+}
+
+std::vector<ObjectGuide> GuideByObjects(const Map& map, const Frame& frame,
+                                        std::span<const ObjectId> objects) {
+  std::vector<ObjectGuide> guides;
+  for (size_t i = 0; i < objects.size(); ++i) {
+    if (objects[i].IsValid()) {
+      guides.push_back({LandmarksOn(map, map.objects().At(objects[i])),
+                        KeypointsOutside(frame, frame.detections[i])});
+    }
+  }
+  return guides;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/tracking/object_guide.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "hullslam/tracking/pose_objects.h"
+#include "hullslam/tracking/tracker.h"
+#include "objects/made_objects.h"
+#include "support/synthetic_world.h"
+#include "support/unknown_points.h"
+
+namespace hullslam {
+namespace {
+
+// The made-up world with a ball among its points, which keyframes and frames detect. Other points
+// are before, behind and beside it; nothing hides anything.
+class ObjectGuideTest : public testing::Test {
+ protected:
+  ObjectGuideTest() {
+    const ObjectId id = made_.map.AddObject();
+    made_.map.keyframes().ForEach(
+        [&](KeyframeId keyframe, const Keyframe&) { made_.map.AddObservation(id, keyframe, 0); });
+    ObjectLandmark& object = made_.map.MutableObject(id);
+    object.state = ObjectState::kMapped;
+    object.has_shape = true;
+    object.ellipsoid = ball_.ellipsoid;
+    object.misfit_px = 1.0;
+  }
+
+  double DistanceFromBall(uint32_t point) const {  // m, of its surface; negative inside
+    return ball_.ellipsoid.RadialDistance(world_.points()[point]);
+  }
+  void AddDetection(Frame& frame, const Rigid3& cam_from_world) const {
+    Detection& detection =
+        frame.detections.emplace_back(Detect(ball_, world_.sensor(), cam_from_world));
+    const Ellipse outline = Outline(cam_from_world);
+    for (uint32_t i = 0; i < frame.features.size(); ++i) {
+      const Eigen::Vector2d offset =
+          frame.features.keypoints[i].undistorted.cast<double>() - outline.center;
+      if (offset.dot(outline.shape.inverse() * offset) < 1.0) {
+        detection.keypoints.push_back(i);
+      }
+    }
+  }
+  Ellipse Outline(const Rigid3& cam_from_world) const {
+    return ProjectEllipsoid(world_.sensor().camera.Matrix(), cam_from_world, ball_.ellipsoid)
+        .value();
+  }
+  const ObjectLandmark& object() const { return made_.map.objects().At(ObjectId(0)); }
+
+  // The frame of the path without the points on the ball, and without a detection of it.
+  std::shared_ptr<const Frame> FrameWithoutBall(uint32_t index) const {
+    const SyntheticView view = world_.Observe(index);
+    auto frame = std::make_shared<Frame>();
+    frame->id = view.frame->id;
+    frame->timestamp = view.frame->timestamp;
+    for (uint32_t i = 0; i < view.points.size(); ++i) {
+      if (DistanceFromBall(view.points[i]) > 0.2) {
+        CopyKeypoint(*view.frame, i, *frame);
+      }
+    }
+    RebuildGrid(world_.sensor(), *frame);
+    return frame;
+  }
+  static void CopyKeypoint(const Frame& from, uint32_t i, Frame& to) {
+    to.features.keypoints.push_back(from.features.keypoints[i]);
+    to.features.descriptors.push_back(from.features.descriptors[i]);
+    to.features.depth.push_back(from.features.depth[i]);
+    to.features.right_u.push_back(from.features.right_u[i]);
+  }
+
+  void Forget(LandmarkId landmark, KeyframeId keyframe) {
+    const std::vector<LandmarkId>& seen = made_.map.keyframes().At(keyframe).landmarks;
+    if (std::find(seen.begin(), seen.end(), landmark) != seen.end()) {
+      made_.map.RemoveObservation(landmark, keyframe);
+    }
+  }
+
+  // Landmarks found in `last`, a frame 19, when the two frames before it do not show the ball.
+  int Track(std::shared_ptr<const Frame> last, bool guided, int local_keyframes = 80) {
+    ObjectOptions objects;
+    objects.guided_matching = guided;
+    objects.joint_pose = false;
+    TrackingOptions options;
+    options.local_keyframes = local_keyframes;
+    Tracker tracker(world_.sensor(), options, objects);
+    const auto snapshot = std::make_shared<const Map>(made_.map.Snapshot());
+    tracker.Process(world_.Observe(0).frame, nullptr, {});
+    tracker.Process(FrameWithoutBall(17), snapshot, {});
+    tracker.Process(FrameWithoutBall(18), snapshot, {});
+    const TrackedFrame tracked = tracker.Process(std::move(last), snapshot, {}).frame;
+    EXPECT_EQ(tracked.state, TrackingState::kTracked);
+    const Rigid3 truth = SyntheticWorld::CamFromWorld(19);
+    EXPECT_LT((tracked.cam_from_world.translation - truth.translation).norm(), 1e-5);
+    return tracked.inliers;
+  }
+
+  const SyntheticWorld world_{{.points = 4000, .flipped_bits = 8}};
+  const MadeObject ball_ = MakeObject("ball", {0.0, 0.0, 3.5}, {0.6, 0.6, 0.6});
+  SyntheticMap made_ = MakeSyntheticMap(
+      world_, {0, 4, 8, 12, 16},
+      [this](Frame& frame, const Rigid3& cam_from_world) { AddDetection(frame, cam_from_world); });
+};
+
+TEST_F(ObjectGuideTest, LandmarksOnAnObjectAreThoseInItNotThoseBehindIt) {
+  const std::vector<LandmarkId> found = LandmarksOn(made_.map, object());
+  EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
+  int inside = 0;
+  for (uint32_t point = 0; point < made_.landmarks.size(); ++point) {
+    const LandmarkId id = made_.landmarks[point];
+    if (id.IsValid() && DistanceFromBall(point) < -0.05) {
+      ++inside;
+      EXPECT_TRUE(std::binary_search(found.begin(), found.end(), id));
+    } else if (id.IsValid() && DistanceFromBall(point) > 0.13) {  // the margin is 0.12 m
+      EXPECT_FALSE(std::binary_search(found.begin(), found.end(), id));
+    }
+  }
+  EXPECT_GT(inside, 10);
+}
+
+TEST_F(ObjectGuideTest, AGuideLeavesOutTheKeypointsBesideTheMask) {
+  const Rigid3 camera = SyntheticWorld::CamFromWorld(19);
+  Frame frame = *world_.Observe(19).frame;
+  AddDetection(frame, camera);
+  const std::vector<ObjectGuide> guides =
+      GuideByObjects(made_.map, frame, std::vector<ObjectId>{ObjectId(0)});
+  ASSERT_EQ(guides.size(), 1u);
+  EXPECT_EQ(guides[0].landmarks, LandmarksOn(made_.map, object()));
+  ASSERT_EQ(guides[0].is_outside.size(), frame.features.size());
+  const Ellipse outline = Outline(camera);
+  const double radius = std::sqrt(outline.Area() / std::numbers::pi);  // it is nearly a circle
+  for (size_t i = 0; i < frame.features.size(); ++i) {
+    const double distance =
+        (frame.features.keypoints[i].undistorted.cast<double>() - outline.center).norm() - radius;
+    if (distance < 3.0 || distance > 11.0) {
+      EXPECT_EQ(guides[0].is_outside[i], distance > 7.0 ? 1 : 0) << distance;
+    }
+  }
+}
+
+TEST_F(ObjectGuideTest, DetectionsOfNoObjectGuideNothing) {
+  Frame frame = *world_.Observe(19).frame;
+  AddDetection(frame, SyntheticWorld::CamFromWorld(19));
+  EXPECT_TRUE(GuideByObjects(made_.map, frame, std::vector<ObjectId>{ObjectId()}).empty());
+  EXPECT_TRUE(GuideByObjects(made_.map, frame, {}).empty());
+}
+
+// Things beside the ball that look like spots on it: without the mask nobody can tell which is
+// which, and neither is taken.
+TEST_F(ObjectGuideTest, TellsSpotsOnAnObjectFromTheSameBesideIt) {
+  const Rigid3 camera = SyntheticWorld::CamFromWorld(19);
+  const SyntheticView view = world_.Observe(19);
+  auto frame = std::make_shared<Frame>(*view.frame);
+  AddDetection(*frame, camera);
+  const Ellipse outline = Outline(camera);
+  int doubles = 0;
+  for (const uint32_t i : frame->detections[0].keypoints) {
+    const Eigen::Vector2f center = outline.center.cast<float>();
+    const Keypoint spot = frame->features.keypoints[i];
+    const Eigen::Vector2f offset = spot.undistorted - center;
+    const float to_rim =
+        static_cast<float>(std::sqrt(outline.Area() / std::numbers::pi)) - offset.norm();
+    if (DistanceFromBall(view.points[i]) > 0.0 ||
+        to_rim + 8.0f > 7.0f * std::pow(1.2f, spot.level)) {
+      continue;
+    }
+    ++doubles;
+    CopyKeypoint(*view.frame, i, *frame);
+    const float shift_u = (to_rim + 8.0f) * offset.x() / offset.norm();
+    frame->features.keypoints.back().undistorted += (to_rim + 8.0f) * offset.normalized();
+    frame->features.right_u.back() += frame->features.right_u.back() >= 0.0f ? shift_u : 0.0f;
+  }
+  RebuildGrid(world_.sensor(), *frame);
+  ASSERT_GE(doubles, 3);
+  EXPECT_GE(Track(frame, true), Track(frame, false) + doubles);
+}
+
+TEST_F(ObjectGuideTest, BringsInLandmarksThatTheLocalMapForgot) {
+  // Frames are tracked by keyframe 0; only the last two found the landmarks on the ball.
+  for (const LandmarkId id : LandmarksOn(made_.map, object())) {
+    for (uint32_t k = 0; k < 3; ++k) {
+      Forget(id, KeyframeId(k));
+    }
+  }
+  for (uint32_t k = 0; k < 5; ++k) {
+    UpdateCovisibility(made_.map, KeyframeId(k));
+  }
+  auto frame = std::make_shared<Frame>(*world_.Observe(19).frame);
+  AddDetection(*frame, SyntheticWorld::CamFromWorld(19));
+  const int forgotten = static_cast<int>(LandmarksOn(made_.map, object()).size());
+  ASSERT_GT(forgotten, 20);
+  EXPECT_GE(Track(frame, true, 1), Track(frame, false, 1) + forgotten / 2);
+}
+
+TEST_F(ObjectGuideTest, WithoutMappedObjectsNothingChanges) {
+  made_.map.MutableObject(ObjectId(0)).state = ObjectState::kCandidate;
+  auto frame = std::make_shared<Frame>(*world_.Observe(19).frame);
+  AddDetection(*frame, SyntheticWorld::CamFromWorld(19));
+  EXPECT_EQ(Track(frame, true), Track(frame, false));
+}
+
+}  // namespace
+}  // namespace hullslam
