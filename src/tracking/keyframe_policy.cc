@@ -4,7 +4,7 @@
 namespace hullslam {
 
 bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
-  if (evidence.inliers <= min_inliers || evidence.requests_waiting >= max_requests_waiting) {
+  if (evidence.requests_waiting >= max_requests_waiting) {
     return false;
   }
   const bool is_abrupt = evidence.inliers < abrupt_ratio * evidence.reference_landmarks;

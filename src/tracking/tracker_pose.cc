@@ -16,13 +16,9 @@ namespace {
 
 // Search windows in px at level 0 and bounds on matches: Mur-Artal and Tardos 2017.
 constexpr double kMotionRadius = 15.0;
-constexpr size_t kMinMotionMatches = 20;
-constexpr int kMinMotionInliers = 10;
-constexpr size_t kMinReferenceMatches = 15;
 constexpr double kLocalRadius = 4.0;
 constexpr double kLocalRadiusFrontal = 2.5;
 constexpr double kCosFrontal = 0.998;
-constexpr int kObjectSupport = 5;  // landmarks that an object stands for when a frame is judged
 constexpr double kDepthRadiusFactor = 3.0;  // depth makes start poses and landmarks less sure
 
 struct LevelRange {
@@ -101,21 +97,28 @@ std::optional<Tracker::Estimate> Tracker::TrackWithMotionModel() const {
   }
   const ProjectionSearch search{.max_distance = 100, .compare_rotation = true};
   std::vector<Match> matches = MatchByProjection(frame_->features, projections, {}, search);
-  if (matches.size() < kMinMotionMatches) {
+  if (matches.size() < MinMotionMatches()) {
     for (Projection& projection : projections) {
       projection.radius *= 2.0f;
     }
     matches = MatchByProjection(frame_->features, projections, {}, search);
   }
-  if (matches.size() < kMinMotionMatches) {
-    return std::nullopt;
-  }
   estimate.landmarks.resize(frame_->features.size());
   for (const Match& match : matches) {
     estimate.landmarks[match.keypoint] = ids[match.query];
   }
-  OptimizePose(estimate);
-  return estimate.inliers >= kMinMotionInliers ? std::optional(std::move(estimate)) : std::nullopt;
+  // Objects are looked for here only where landmarks are too few without them.
+  const PoseObjects found =
+      matches.size() < MinMotionMatches() ? FindObjects(estimate) : PoseObjects();
+  if (matches.size() + kObjectSupport * found.objects.size() < MinMotionMatches()) {
+    return std::nullopt;
+  }
+  OptimizePose(estimate, found.objects);
+  return Support(estimate) >= MinStartInliers() ? std::optional(std::move(estimate)) : std::nullopt;
+}
+
+int Tracker::Support(const Estimate& estimate) {
+  return estimate.inliers + static_cast<int>(kObjectSupport) * estimate.objects;
 }
 
 std::optional<Tracker::Estimate> Tracker::TrackReferenceKeyframe() const {
@@ -128,7 +131,7 @@ std::optional<Tracker::Estimate> Tracker::TrackReferenceKeyframe() const {
   }
   const std::vector<Match> matches =
       MatchByDescriptor(reference.frame->features, indices, frame_->features, {});
-  if (matches.size() < kMinReferenceMatches) {
+  if (matches.size() < MinReferenceMatches()) {
     return std::nullopt;
   }
   Estimate estimate;
@@ -138,7 +141,7 @@ std::optional<Tracker::Estimate> Tracker::TrackReferenceKeyframe() const {
     estimate.landmarks[match.keypoint] = reference.landmarks[match.query];
   }
   OptimizePose(estimate);
-  return estimate.inliers >= kMinMotionInliers ? std::optional(std::move(estimate)) : std::nullopt;
+  return estimate.inliers >= MinStartInliers() ? std::optional(std::move(estimate)) : std::nullopt;
 }
 
 std::optional<Tracker::Estimate> Tracker::TrackLocalMap(Estimate estimate) {
@@ -170,8 +173,8 @@ std::optional<Tracker::Estimate> Tracker::TrackLocalMap(Estimate estimate) {
       sightings_.CountFound(landmark);
     }
   }
-  const int support = estimate.inliers + kObjectSupport * estimate.objects;
-  return support >= options_.min_inliers ? std::optional(std::move(estimate)) : std::nullopt;
+  return Support(estimate) >= options_.min_inliers ? std::optional(std::move(estimate))
+                                                   : std::nullopt;
 }
 
 std::vector<ObjectId> Tracker::FindObjects(const Estimate& estimate) const {

@@ -113,17 +113,8 @@ TEST(KeyframePolicy, LeavesTimeBetweenKeyframesUnlessTrackingWeakensAbruptly) {
   });
 }
 
-TEST(KeyframePolicy, NeverAsksWithTooFewInliersOrTooManyRequests) {
+TEST(KeyframePolicy, NeverAsksWhileTooManyRequestsWait) {
   ExpectDecisions({
-      {"15 inliers", With([](auto& e) { e.inliers = 15; }), false},
-      {"16 inliers", With([](auto& e) { e.inliers = 16; }), true},
-      {"no inliers, all else urgent", With([](auto& e) {
-         e.inliers = 0;
-         e.close_tracked = 0;
-         e.close_untracked = 500;
-         e.frames_since_keyframe = 100;
-       }),
-       false},
       {"two requests wait", With([](auto& e) { e.inliers = 20, e.requests_waiting = 2; }), true},
       {"three requests wait", With([](auto& e) { e.inliers = 20, e.requests_waiting = 3; }), false},
   });
@@ -131,7 +122,7 @@ TEST(KeyframePolicy, NeverAsksWithTooFewInliersOrTooManyRequests) {
 
 TEST(KeyframePolicy, BoundsAreThoseOfTheFields) {
   KeyframePolicy policy;
-  policy.min_inliers = 170;
+  policy.min_frames_between = 11;
   EXPECT_FALSE(policy.NeedsKeyframe(With([](auto& e) { e.inliers = 149; })));
   policy = KeyframePolicy();
   policy.min_reference_ratio = 0.95;

@@ -24,7 +24,6 @@ struct KeyframePolicy {
   double min_reference_ratio = 0.9;    // of inliers to reference landmarks
   double young_reference_ratio = 0.4;  // the same while there is a single keyframe
   double abrupt_ratio = 0.5;           // below it at once, whatever was before
-  int min_inliers = 15;
   int min_close_tracked = 100;
   int max_close_untracked = 70;
   int max_requests_waiting = 3;

@@ -50,6 +50,12 @@ class Tracker {
     int inliers = 0;
     int objects = 0;  // that held the pose
   };
+  static constexpr size_t kObjectSupport = 5;  // landmarks that an object stands for
+  static int Support(const Estimate& estimate);
+  // With the default of 30 inliers: 20 and 15 matches, 10 inliers (Mur-Artal and Tardos 2017).
+  size_t MinMotionMatches() const { return static_cast<size_t>(options_.min_inliers) * 2 / 3; }
+  size_t MinReferenceMatches() const { return static_cast<size_t>(options_.min_inliers) / 2; }
+  int MinStartInliers() const { return options_.min_inliers / 3; }
   // The frame tracked last, with its pose relative to a keyframe.
   struct LastFrame {
     std::shared_ptr<const Frame> frame;
