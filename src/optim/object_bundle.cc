@@ -66,7 +66,7 @@ void ObjectBundle::AddObject(const Map& map, ObjectId id,
   object.before = landmark.ellipsoid;
   object.pose = ToBlock(landmark.ellipsoid.world_from_object);
   object.log_axes = landmark.ellipsoid.half_axes.array().log();
-  object.prior = std::make_unique<QuadricPriorCost>(landmark.start, options_.prior);
+  object.prior = std::make_unique<QuadricPriorCost>(landmark.ellipsoid, options_.prior);
   std::vector<ObjectObservation> outer;
   for (const ObjectObservation& seen : landmark.observations) {
     const auto place = std::find(keyframes.begin(), keyframes.end(), seen.keyframe);

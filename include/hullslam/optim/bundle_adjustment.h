@@ -47,7 +47,9 @@ struct ObjectBundleOptions {
   double depth_sigma = 0.10;         // m, of depth points about the surface
   size_t max_depth_points = 6;       // of one detection
   double max_effective_points = 1.0;
-  QuadricPriorSigmas prior = {};  // about what the object started as
+  // About what the quadric is when the adjustment begins: it damps what the views leave free. About
+  // what the object started as, the side that was seen first, it would pull the cameras along.
+  QuadricPriorSigmas prior = {};
 };
 
 // How the problem is solved.
