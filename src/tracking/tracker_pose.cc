@@ -108,8 +108,10 @@ std::optional<Tracker::Estimate> Tracker::TrackWithMotionModel() const {
     estimate.landmarks[match.keypoint] = ids[match.query];
   }
   // Objects are looked for here only where landmarks are too few without them.
-  const PoseObjects found =
-      matches.size() < MinMotionMatches() ? FindObjects(estimate) : PoseObjects();
+  PoseObjects found;
+  if (matches.size() < MinMotionMatches() && object_options_.joint_pose) {
+    found = TakePoseObjects(estimate, FindObjects(estimate));
+  }
   if (matches.size() + kObjectSupport * found.objects.size() < MinMotionMatches()) {
     return std::nullopt;
   }
@@ -164,8 +166,7 @@ std::optional<Tracker::Estimate> Tracker::TrackLocalMap(Estimate estimate) {
     if (!object_options_.guided_matching) {
       objects = FindObjects(estimate);
     }
-    found =
-        MakePoseObjects(*map_, sensor_, *frame_, estimate.cam_from_world, objects, object_options_);
+    found = TakePoseObjects(estimate, objects);
   }
   OptimizePose(estimate, found.objects);
   for (const LandmarkId landmark : estimate.landmarks) {
@@ -183,6 +184,12 @@ std::vector<ObjectId> Tracker::FindObjects(const Estimate& estimate) const {
   return may_show ? FindMappedObjects(*map_, sensor_, *frame_, estimate.cam_from_world,
                                       estimate.landmarks)
                   : std::vector<ObjectId>();
+}
+
+PoseObjects Tracker::TakePoseObjects(const Estimate& estimate,
+                                     std::span<const ObjectId> objects) const {
+  return MakePoseObjects(*map_, sensor_, *frame_, estimate.cam_from_world, objects,
+                         object_options_);
 }
 
 // Marks the landmarks found so far, by their ids.

@@ -74,6 +74,7 @@ class Tracker {
                        std::vector<bool>& is_known, Estimate& estimate);
   void OptimizePose(Estimate& estimate, std::span<const PoseObject> objects = {}) const;
   std::vector<ObjectId> FindObjects(const Estimate& estimate) const;
+  PoseObjects TakePoseObjects(const Estimate& estimate, std::span<const ObjectId> objects) const;
   bool NeedsKeyframe(const Estimate& estimate, const MapperStatus& mapper) const;
   KeyframeRequest MakeRequest(const Estimate& estimate);
   TrackedFrame Remember(const Estimate& estimate);
