@@ -20,6 +20,7 @@ BundleOptions MakeBundleOptions(const ObjectOptions& objects) {
   options.objects.max_effective_lines = objects.max_effective_lines;
   options.objects.depth_sigma = objects.depth_sigma;
   options.objects.prior.log_axes = objects.prior_sigma;
+  options.objects.prior_blind.log_axes = objects.prior_sigma_blind;
   return options;
 }
 

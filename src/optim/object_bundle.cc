@@ -66,7 +66,6 @@ void ObjectBundle::AddObject(const Map& map, ObjectId id,
   object.before = landmark.ellipsoid;
   object.pose = ToBlock(landmark.ellipsoid.world_from_object);
   object.log_axes = landmark.ellipsoid.half_axes.array().log();
-  object.prior = std::make_unique<QuadricPriorCost>(landmark.ellipsoid, options_.prior);
   std::vector<ObjectObservation> outer;
   for (const ObjectObservation& seen : landmark.observations) {
     const auto place = std::find(keyframes.begin(), keyframes.end(), seen.keyframe);
@@ -84,12 +83,15 @@ void ObjectBundle::AddObject(const Map& map, ObjectId id,
     AddView(keyframe, keyframe.frame->detections[seen.detection], landmark.misfit_px,
             window_poses_ + outer_poses_.size() - 1);
   }
+  object.prior = std::make_unique<QuadricPriorCost>(
+      landmark.ellipsoid, object.has_depth ? options_.prior : options_.prior_blind);
 }
 
 void ObjectBundle::AddView(const Keyframe& keyframe, const Detection& detection, double misfit_px,
                            size_t pose) {
   AddTerm(keyframe.cam_from_world, pose, MakeOutline(keyframe, detection, misfit_px));
   AddTerm(keyframe.cam_from_world, pose, MakeDepth(detection));
+  objects_.back().has_depth |= !detection.points.empty();
 }
 
 std::unique_ptr<ceres::CostFunction> ObjectBundle::MakeOutline(const Keyframe& keyframe,

@@ -36,6 +36,7 @@ class ObjectBundle {
     Ellipsoid before;
     PoseBlock pose{};  // world_from_object
     Eigen::Vector3d log_axes = Eigen::Vector3d::Zero();
+    bool has_depth = false;  // whether depth points hold it
     std::unique_ptr<ceres::CostFunction> prior;
   };
   // One term of a detection: its outline or its depth points.

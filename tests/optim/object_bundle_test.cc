@@ -53,9 +53,12 @@ class ObjectBundle : public ::testing::Test {
                 MakeObject("bottle", {0.3, 0.5, 2.5}, {0.1, 0.25, 0.1})};
     made_ = MakeSyntheticMap(
         *world_, {0, 10, 20, 30, 40, 50}, [this](Frame& frame, const Rigid3& cam_from_world) {
-          for (const MadeObject& object : objects_) {
-            frame.detections.push_back(Detect(object, world_->sensor(), cam_from_world));
+          for (size_t i = 0; i < objects_.size(); ++i) {
+            frame.detections.push_back(Detect(objects_[i], world_->sensor(), cam_from_world));
             Disturb(frame, frame.detections.back());
+            if (static_cast<int>(i) == blind_object_) {
+              frame.detections.back().points.clear();
+            }
           }
         });
     ids_.clear();
@@ -140,6 +143,7 @@ class ObjectBundle : public ::testing::Test {
   RandomGeometry random_{1};
   int shifted_frame_ = -1;
   double line_noise_ = 0.0;  // px
+  int blind_object_ = -1;    // has no depth points
   std::optional<SyntheticWorld> world_;
   std::vector<MadeObject> objects_;
   SyntheticMap made_;
@@ -254,6 +258,25 @@ TEST_F(ObjectBundle, AWrongFrameDoesNotHarmManyPoints) {
     without += MeanPoseError(Adjust(PointsOnly()));
   }
   EXPECT_LT(with, 1.05 * without);
+}
+
+// What silhouettes leave free is held by its own prior where there is no depth.
+TEST_F(ObjectBundle, AnObjectWithoutDepthHasAPriorOfItsOwn) {
+  blind_object_ = 1;
+  Make({.points = 300, .depth_share = 0.7});
+  PerturbObjects(0.2);
+  BundleOptions options = kPrecise;
+  options.objects.prior_blind = {.log_axes = 1e-4, .center = 1e-4, .rotation = 1e-4};
+  const BundleResult result = Adjust(Window(), options);
+  ASSERT_EQ(result.ellipsoids.size(), 3u);
+  for (const auto& [id, ellipsoid] : result.ellipsoids) {
+    const double moved = ShapeError(ellipsoid, made_.map.objects().At(id).start);
+    if (id == ids_[1]) {
+      EXPECT_LT(moved, 0.01);
+    } else {
+      EXPECT_GT(moved, 0.05);
+    }
+  }
 }
 
 // Keyframes outside of the window hold the objects, though they do not move.

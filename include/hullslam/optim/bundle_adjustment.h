@@ -50,6 +50,7 @@ struct ObjectBundleOptions {
   // About what the quadric is when the adjustment begins: it damps what the views leave free. About
   // what the object started as, the side that was seen first, it would pull the cameras along.
   QuadricPriorSigmas prior = {};
+  QuadricPriorSigmas prior_blind = {.log_axes = 0.15};  // the same of one without depth points
 };
 
 // How the problem is solved.
