@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/interrupt.h"
 
+#include <atomic>
 #include <csignal>
 
 namespace hullslam {
 namespace {
 
-// A signal handler can reach nothing but a variable of this kind.
-volatile std::sig_atomic_t interrupted = 0;
+// A signal handler can reach nothing but a lock-free variable.
+static_assert(std::atomic<bool>::is_always_lock_free);
+Cancellation interruption;
 
 }  // namespace
 
 void CatchInterrupts() {
   struct sigaction action = {};
-  action.sa_handler = [](int) { interrupted = 1; };
+  action.sa_handler = [](int) { interruption.Request(); };
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
 
-bool IsInterrupted() { return interrupted != 0; }
+const Cancellation& Interruption() { return interruption; }
+
+bool IsInterrupted() { return interruption.IsRequested(); }
 
 }  // namespace hullslam

@@ -119,7 +119,7 @@ RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
     const TrackedFrame frame = system.Track(*loaded->image);
     progress.Show(result.given, frame, system);
   }
-  system.Finish();
+  system.Finish(&Interruption());
   progress.Clear();
   result.was_interrupted = IsInterrupted();
   result.seconds = std::chrono::duration<double>(Clock::now() - start).count();

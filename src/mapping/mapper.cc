@@ -7,7 +7,6 @@
 #include "hullslam/mapping/keyframe_insertion.h"
 #include "hullslam/mapping/landmark_creation.h"
 #include "hullslam/mapping/landmark_fusion.h"
-#include "hullslam/optim/bundle_adjustment.h"
 
 namespace hullslam {
 namespace {
@@ -21,6 +20,16 @@ BundleOptions MakeBundleOptions(const ObjectOptions& objects) {
   options.objects.depth_sigma = objects.depth_sigma;
   options.objects.prior.log_axes = objects.prior_sigma;
   options.objects.prior_blind.log_axes = objects.prior_sigma_blind;
+  return options;
+}
+
+// A step that changes the cost by less than the tolerance is not taken. In the whole map what bends
+// it is a small part of the cost.
+BundleOptions MakeGlobalBundleOptions(const ObjectOptions& objects) {
+  BundleOptions options = MakeBundleOptions(objects);
+  options.robust_iterations = 10;
+  options.final_iterations = 20;
+  options.function_tolerance = 1e-6;
   return options;
 }
 
@@ -74,23 +83,49 @@ void Mapper::MapObjects(KeyframeId keyframe) {
 void Mapper::PublishSnapshot() { publish_(std::make_shared<const Map>(map_.Snapshot())); }
 
 void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry) {
-  const bool with_objects = object_options_.enabled && object_options_.bundle_adjustment;
   BundleWindow window;
   {
     const ScopedTimer timer(times_, "local_bundle_adjustment");
     window = LocalWindow(map_, keyframe, static_cast<size_t>(options_.local_keyframes),
-                         static_cast<size_t>(options_.fixed_keyframes),
-                         with_objects ? WindowObjects::kMapped : WindowObjects::kNone);
-    const BundleResult result =
-        AdjustBundle(map_, sensor_, window, MakeBundleOptions(object_options_), hurry);
-    if (result.is_usable) {
-      ApplyBundle(map_, result, sensor_.levels);
-    }
+                         static_cast<size_t>(options_.fixed_keyframes), ObjectsToAdjust());
+    Adjust(window, MakeBundleOptions(object_options_), hurry);
   }
-  if (!window.objects.empty()) {
+  RecheckObjects(window.objects);
+}
+
+void Mapper::Finish(const Cancellation* cancellation) {
+  const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
+  if (!options_.final_bundle_adjustment || is_cancelled || map_.keyframes().size() < 2) {
+    return;
+  }
+  BundleWindow window;
+  {
+    const ScopedTimer timer(times_, "global_bundle_adjustment");
+    window = GlobalWindow(map_, ObjectsToAdjust());
+    Adjust(window, MakeGlobalBundleOptions(object_options_), cancellation);
+  }
+  RecheckObjects(window.objects);
+  PublishSnapshot();
+}
+
+void Mapper::Adjust(const BundleWindow& window, const BundleOptions& options,
+                    const Cancellation* cancellation) {
+  const BundleResult result = AdjustBundle(map_, sensor_, window, options, cancellation);
+  if (result.is_usable) {
+    ApplyBundle(map_, result, sensor_.levels);
+  }
+}
+
+void Mapper::RecheckObjects(const std::vector<ObjectId>& objects) {
+  if (!objects.empty()) {
     const ScopedTimer timer(times_, "check_objects");
-    object_mapper_.Recheck(map_, window.objects);
+    object_mapper_.Recheck(map_, objects);
   }
+}
+
+WindowObjects Mapper::ObjectsToAdjust() const {
+  return object_options_.enabled && object_options_.bundle_adjustment ? WindowObjects::kMapped
+                                                                      : WindowObjects::kNone;
 }
 
 }  // namespace hullslam

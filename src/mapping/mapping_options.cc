@@ -9,6 +9,8 @@ void MappingOptions::Bind(OptionTable& options) {
   options.Add("mapping.fixed_keyframes", &fixed_keyframes, Range::AtLeast(1),
               "keyframes that hold local bundle adjustment, at most");
   options.Add("mapping.cull_keyframes", &cull_keyframes, "remove redundant keyframes");
+  options.Add("mapping.final_bundle_adjustment", &final_bundle_adjustment,
+              "adjust the whole map once at the end of the run");
 }
 
 }  // namespace hullslam

@@ -26,7 +26,11 @@ class SequentialPipeline final : public Pipeline {
     return result.frame;
   }
 
-  void Finish() override { is_finished_ = true; }
+  void Finish(const Cancellation* cancellation) override {
+    if (!std::exchange(is_finished_, true)) {
+      mapper_.Finish(cancellation);
+    }
+  }
 
   std::shared_ptr<const Map> map() const override { return map_; }
 

@@ -89,7 +89,7 @@ TrackedFrame System::Track(const RgbdImage& image) {
   return frames_.back();
 }
 
-void System::Finish() { pipeline_->Finish(); }
+void System::Finish(const Cancellation* cancellation) { pipeline_->Finish(cancellation); }
 
 std::shared_ptr<const Map> System::map() const { return pipeline_->map(); }
 

@@ -47,9 +47,13 @@ class ThreadedPipeline final : public Pipeline {
     return result.frame;
   }
 
-  void Finish() override {
+  void Finish(const Cancellation* cancellation) override {
+    const bool is_first = mapping_thread_.joinable();
     Stop();
     RethrowFailure();
+    if (is_first) {
+      mapper_.Finish(cancellation);  // its thread has ended
+    }
   }
 
   std::shared_ptr<const Map> map() const override { return map_.Get(); }

@@ -237,6 +237,43 @@ TEST_F(MapperTest, InAHurryWhatCanBeLeftOutIs) {
   EXPECT_EQ(mapper_->times().samples().at("map_insert").size(), 8u);
 }
 
+TEST_F(MapperTest, FinishAdjustsTheWholeMapIfThatIsWanted) {
+  const auto map_path = [&](bool wanted) {
+    MappingOptions options;
+    options.local_keyframes = 2;
+    options.fixed_keyframes = 1;
+    options.final_bundle_adjustment = wanted;
+    Restart(options);
+    for (uint32_t index = 0; index <= 60; index += 5) {
+      ProcessFrame(index);
+    }
+    const size_t published = published_.size();
+    mapper_->Finish(nullptr);
+    EXPECT_EQ(published_.size(), published + (wanted ? 1 : 0));
+    EXPECT_EQ(mapper_->times().samples().contains("global_bundle_adjustment"), wanted);
+    Learn();
+    return MeanLandmarkError();
+  };
+  const double without = map_path(false);
+  EXPECT_LT(map_path(true), 0.9 * without);
+}
+
+TEST_F(MapperTest, FinishOfNoOrOneKeyframeOrCancelledDoesNothing) {
+  MappingOptions options;
+  options.final_bundle_adjustment = true;
+  Restart(options);
+  mapper_->Finish(nullptr);
+  EXPECT_TRUE(published_.empty());
+  ProcessFrame(0);
+  mapper_->Finish(nullptr);
+  ProcessFrame(5);
+  Cancellation cancellation;
+  cancellation.Request();
+  mapper_->Finish(&cancellation);
+  EXPECT_EQ(published_.size(), 4u);
+  EXPECT_FALSE(mapper_->times().samples().contains("global_bundle_adjustment"));
+}
+
 class MapperWithoutMuchDepthTest : public MapperTest {
  protected:
   MapperWithoutMuchDepthTest() : MapperTest({.points = 600, .depth_share = 0.3}) {}

@@ -179,6 +179,20 @@ TEST_F(ObjectBundle, RecoversPosesAndShapes) {
   EXPECT_LT(MeanShapeError(result), 0.25 * before);
 }
 
+// The whole map: only the root is fixed.
+TEST_F(ObjectBundle, OfTheWholeMapImprovesPosesAndShapes) {
+  PerturbPoses(0.01, 0.02);
+  PerturbObjects(0.2);
+  const double before = MeanShapeErrorBefore();
+  const BundleWindow window = GlobalWindow(made_.map, WindowObjects::kMapped);
+  ASSERT_EQ(window.moving.size(), 5u);
+  const BundleResult result = Adjust(window);
+  ASSERT_TRUE(result.is_usable);
+  ASSERT_EQ(result.ellipsoids.size(), 3u);
+  EXPECT_LT(MeanPoseError(result), 1e-3);
+  EXPECT_LT(MeanShapeError(result), 0.25 * before);
+}
+
 TEST_F(ObjectBundle, AtTheTruthStaysThere) {
   const BundleResult result = Adjust(Window());
   ASSERT_TRUE(result.is_usable);

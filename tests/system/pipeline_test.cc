@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "hullslam/map/invariants.h"
@@ -35,7 +36,7 @@ class PipelineTest : public testing::TestWithParam<Kind> {
   std::unique_ptr<Pipeline> Make() const { return GetParam().make(world_.sensor(), options_); }
 
   const SyntheticWorld world_ = NoisyWorld();
-  const SystemOptions options_ = {};
+  SystemOptions options_ = {};
 };
 
 TEST_P(PipelineTest, HasNoMapBeforeTheFirstKeyframe) {
@@ -83,6 +84,46 @@ TEST_P(PipelineTest, FinishingTwiceIsFinishingOnce) {
   const auto map = pipeline->map();
   pipeline->Finish();
   EXPECT_EQ(pipeline->map(), map);
+}
+
+TEST_P(PipelineTest, FinishAdjustsTheWholeMapOnceIfThatIsWanted) {
+  options_.mapping.final_bundle_adjustment = true;
+  options_.mapping.local_keyframes = 2;
+  options_.mapping.fixed_keyframes = 1;
+  const auto pipeline = Make();
+  const std::vector<TrackedFrame> frames = TrackPath(*pipeline, world_, 0, 60);
+  pipeline->Finish();
+  const auto map = pipeline->map();
+  EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
+  EXPECT_EQ(pipeline->times().samples().at("global_bundle_adjustment").size(), 1u);
+  const Trajectory trajectory = ComposeTrajectory(*map, frames);
+  ASSERT_EQ(trajectory.size(), frames.size());
+  EXPECT_LT(PathError(trajectory, world_.sensor()), 0.01);
+  pipeline->Finish();
+  EXPECT_EQ(pipeline->map(), map);
+}
+
+TEST_P(PipelineTest, FinishCancelledIsFinishWithoutAdjustment) {
+  options_.mapping.final_bundle_adjustment = true;
+  const auto pipeline = Make();
+  TrackPath(*pipeline, world_, 0, 30);
+  Cancellation cancellation;
+  cancellation.Request();
+  pipeline->Finish(&cancellation);
+  EXPECT_FALSE(pipeline->times().samples().contains("global_bundle_adjustment"));
+  EXPECT_EQ(FindViolations(*pipeline->map()), std::vector<std::string>());
+}
+
+TEST_P(PipelineTest, FinishMayBeCancelledMeanwhile) {
+  options_.mapping.final_bundle_adjustment = true;
+  const auto pipeline = Make();
+  const std::vector<TrackedFrame> frames = TrackPath(*pipeline, world_, 0, 60);
+  Cancellation cancellation;
+  std::thread other([&] { cancellation.Request(); });
+  pipeline->Finish(&cancellation);
+  other.join();
+  EXPECT_EQ(FindViolations(*pipeline->map()), std::vector<std::string>());
+  EXPECT_LT(PathError(ComposeTrajectory(*pipeline->map(), frames), world_.sensor()), 0.02);
 }
 
 TEST_P(PipelineTest, TrackAfterFinishIsRefused) {

@@ -14,8 +14,7 @@ struct Outcome {
   std::shared_ptr<const Map> map;
 };
 
-Outcome RunOnce(const SyntheticWorld& world) {
-  const SystemOptions options;
+Outcome RunOnce(const SyntheticWorld& world, const SystemOptions& options = {}) {
   const auto pipeline = MakeSequentialPipeline(world.sensor(), options);
   Outcome run;
   run.frames = TrackPath(*pipeline, world, 0, 60);
@@ -64,6 +63,35 @@ TEST(SequentialPipeline, TwoRunsGiveTheSameMapToTheBit) {
     EXPECT_EQ(landmark.visible, same.visible);
     EXPECT_EQ(landmark.found, same.found);
   });
+}
+
+// All frames hang on keyframes, and these have moved, but for the root.
+TEST(SequentialPipeline, FramesFollowTheKeyframesThatFinishAdjusts) {
+  const SyntheticWorld world = NoisyWorld();
+  SystemOptions options;
+  options.mapping.local_keyframes = 2;
+  options.mapping.fixed_keyframes = 1;
+  const Outcome before = RunOnce(world, options);
+  options.mapping.final_bundle_adjustment = true;
+  const Outcome after = RunOnce(world, options);
+  const Trajectory a = ComposeTrajectory(*before.map, before.frames);
+  const Trajectory b = ComposeTrajectory(*after.map, after.frames);
+  ASSERT_EQ(a.size(), 60u);
+  ASSERT_EQ(b.size(), 60u);
+  size_t followed = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    const TrackedFrame& frame = after.frames[i];
+    const KeyframeId own = after.map->KeyframeOfFrame(frame.frame).value_or(frame.reference);
+    const double moved = (a[i].world_from_cam.translation - b[i].world_from_cam.translation).norm();
+    if (after.map->NearestAlive(own) == KeyframeId(0)) {
+      EXPECT_EQ(moved, 0.0) << i;
+    } else {
+      EXPECT_GT(moved, 1e-9) << i;
+      ++followed;
+    }
+  }
+  EXPECT_GT(followed, after.map->keyframes().size());
+  EXPECT_LT(PathError(b, world.sensor()), PathError(a, world.sensor()));
 }
 
 TEST(SequentialPipeline, AKeyframeIsInTheMapWhenTrackReturns) {

@@ -136,6 +136,26 @@ TEST_P(SystemTest, TracksACameraAlongAWall) {
   EXPECT_EQ(system.times().samples().at("frame").size(), 15u);
 }
 
+TEST_P(SystemTest, FinishAdjustsTheWholeMapUnlessCancelled) {
+  SystemOptions options = Wall::Options();
+  options.mapping.final_bundle_adjustment = true;
+  for (const bool is_cancelled : {false, true}) {
+    System system(options, GetParam());
+    for (int i = 0; i < 15; ++i) {
+      TrackFrame(system, i);
+    }
+    Cancellation cancellation;
+    if (is_cancelled) {
+      cancellation.Request();
+    }
+    system.Finish(&cancellation);
+    EXPECT_EQ(system.times().samples().contains("global_bundle_adjustment"),
+              !is_cancelled && system.map()->keyframes().size() > 1);
+    ASSERT_EQ(system.trajectory().size(), 15u);
+    EXPECT_LT(MaxError(system.trajectory()), 0.01);
+  }
+}
+
 TEST_P(SystemTest, MayBeLeftWithoutFinish) {
   System system(Wall::Options(), GetParam());
   for (int i = 0; i < 3; ++i) {

@@ -10,6 +10,7 @@
 #include "hullslam/map/sensor.h"
 #include "hullslam/mapping/mapping_options.h"
 #include "hullslam/objects/object_mapper.h"
+#include "hullslam/optim/bundle_adjustment.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
 
@@ -29,6 +30,10 @@ class Mapper {
   // `hurry` (may be null) is asked when another keyframe waits: then what can be left out is.
   void Process(const KeyframeRequest& request, const Cancellation* hurry);
 
+  // To be called once, at the end: adjusts the whole map where that is wanted, and publishes it.
+  // Ends early, with what it has, when `cancellation` (may be null) asks.
+  void Finish(const Cancellation* cancellation);
+
   const StageTimes& times() const { return times_; }
   const std::map<ObjectRejection, size_t>& object_rejections() const {
     return object_mapper_.rejections();
@@ -38,6 +43,10 @@ class Mapper {
   void PublishSnapshot();
   void MapObjects(KeyframeId keyframe);
   void AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry);
+  void Adjust(const BundleWindow& window, const BundleOptions& options,
+              const Cancellation* cancellation);
+  void RecheckObjects(const std::vector<ObjectId>& objects);
+  WindowObjects ObjectsToAdjust() const;
 
   const Sensor& sensor_;
   MappingOptions options_;

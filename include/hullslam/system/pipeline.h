@@ -7,6 +7,7 @@
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
 #include "hullslam/objects/rejection.h"
+#include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
 
 namespace hullslam {
@@ -18,8 +19,10 @@ class Pipeline {
 
   // Frames come in order of time. Throws what a stage throws, and CheckError after Finish.
   virtual TrackedFrame Track(std::shared_ptr<const Frame> frame) = 0;
-  // Waits until everything that was begun is in the map.
-  virtual void Finish() = 0;
+  // Waits until everything that was begun is in the map, and does what is to be done once at the
+  // end (mapping.final_bundle_adjustment), which ends early when `cancellation` (may be null) asks.
+  virtual void Finish(const Cancellation* cancellation) = 0;
+  void Finish() { Finish(nullptr); }
   // The newest snapshot; null before the first keyframe.
   virtual std::shared_ptr<const Map> map() const = 0;
   // Durations of the stages; complete after Finish.

@@ -13,6 +13,7 @@
 #include "hullslam/map/sensor.h"
 #include "hullslam/system/options.h"
 #include "hullslam/system/trajectory.h"
+#include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
 
 namespace hullslam {
@@ -55,8 +56,10 @@ class System {
                      std::vector<InstanceMask> masks = {});
   TrackedFrame Track(const RgbdImage& image);
 
-  // Waits for the mapping that is under way. No Track after it.
-  void Finish();
+  // Waits for the mapping that is under way, then adjusts the whole map if
+  // mapping.final_bundle_adjustment says so; that ends early, with what it has, when `cancellation`
+  // (may be null) asks. No Track after it.
+  void Finish(const Cancellation* cancellation = nullptr);
 
   // The newest snapshot; null before the first keyframe.
   std::shared_ptr<const Map> map() const;
