@@ -14,6 +14,7 @@
 #include "cli/mask_arguments.h"
 #include "cli/mask_overlay.h"
 #include "cli/program.h"
+#include "cli/progress.h"
 #include "hullslam/io/atomic_file.h"
 #include "hullslam/io/image_file.h"
 #include "hullslam/io/mask_source.h"
@@ -38,6 +39,7 @@ struct Arguments {
   std::vector<std::string> overrides;
   fs::path output;  // empty: no pictures
   size_t every = 50;
+  bool quiet = false;
 };
 
 // What became of the instances of a class.
@@ -78,6 +80,7 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--every", arguments.every, "draw every n-th frame, and the first")
       ->check(CLI::Range(size_t{1}, size_t{1'000'000'000}).description(""))
       ->capture_default_str();
+  app.add_flag("--quiet", arguments.quiet, "do not show how far it is");
   app.footer("Exit codes: 0 all masks can be read, 2 some are malformed or bad usage.");
 }
 
@@ -122,7 +125,7 @@ void CheckFrame(const Arguments& arguments, const SystemOptions& options, const 
     counts.crowds += frame.crowds;
     const cv::Mat depth = ReadDepthImage(paths.depth);
     const DetectionBuilder builder(options.camera, options.depth.units_per_metre,
-                                   DetectionOptions());
+                                   options.objects.detection);
     const DetectionResult result = builder.Build(frame.masks, depth, {});
     CountDetections(frame, result, counts);
     if (is_drawn) {
@@ -187,7 +190,8 @@ int Run(int argc, char** argv) {
   const fs::path settings = arguments.settings.empty()
                                 ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
                                 : arguments.settings;
-  const SystemOptions options = ReadSettings(settings, arguments.overrides);
+  SystemOptions options = ReadSettings(settings, arguments.overrides);
+  options.objects.detection.min_keypoints = 0;  // none are extracted here
   const TumSequence sequence = OpenTumSequence(arguments.sequence, arguments.tum);
   const std::vector<MaskFrame> frames = MaskFrames(sequence);
   const auto source = OpenMasks(
@@ -196,9 +200,12 @@ int Run(int argc, char** argv) {
     PrepareOutputFolder(arguments.output);
   }
   Counts counts;
+  Progress progress(frames.size(), arguments.quiet);
   for (size_t i = 0; i < frames.size(); ++i) {
     CheckFrame(arguments, options, *source, sequence.frames[i], frames[i], counts);
+    progress.Show(i + 1);
   }
+  progress.Clear();
   PrintCounts(arguments, *source, counts);
   PrintFaults(counts.faults);
   return counts.faults.empty() ? kDone : kBadInput;

@@ -17,6 +17,7 @@
 #include "cli/mask_arguments.h"
 #include "cli/object_outputs.h"
 #include "cli/program.h"
+#include "cli/progress.h"
 #include "hullslam/io/image_file.h"
 #include "hullslam/io/output_folder.h"
 #include "hullslam/io/settings.h"
@@ -209,12 +210,15 @@ Inputs OpenInputs(const Arguments& arguments) {
 
 void MapAll(const Arguments& arguments, const std::vector<RgbdFramePaths>& frames,
             const std::vector<View>& views, const SequenceMasks& masks, ObjectRun& run) {
+  Progress progress(frames.size(), arguments.quiet);
   for (const View& view : views) {
     const RgbdFramePaths& frame = frames[view.frame];
     const bool has_depth = !arguments.without_depth && !frame.depth.empty();
     run.AddView(frame.timestamp, view.world_from_cam, masks.Read(view.frame),
                 has_depth ? ReadDepthImage(frame.depth) : cv::Mat());
+    progress.Show(view.frame + 1);
   }
+  progress.Clear();
 }
 
 RunSummary Summarize(const Arguments& arguments, const Inputs& inputs, const SequenceMasks& masks,

@@ -6,24 +6,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <string>
 
 namespace hullslam {
 namespace {
 
 constexpr std::chrono::milliseconds kRedraw(100);
 constexpr size_t kBarWidth = 24;
-
-const char* Name(TrackingState state) {
-  switch (state) {
-    case TrackingState::kTracked:
-      return "tracked";
-    case TrackingState::kLost:
-      return "LOST";
-    default:
-      return "initialising";
-  }
-}
 
 std::string Bar(size_t done, size_t frames) {
   const size_t filled = done * kBarWidth / frames;
@@ -37,7 +25,7 @@ Progress::Progress(size_t frames, bool quiet)
       quiet_(quiet),
       is_terminal_(isatty(STDERR_FILENO) != 0) {}
 
-void Progress::Show(size_t done, const TrackedFrame& frame, const System& system) {
+void Progress::Show(size_t done, const std::function<std::string()>& state) {
   const Clock::time_point now = Clock::now();
   const bool is_tenth = done * 10 / frames_ != (done - 1) * 10 / frames_;
   const bool is_due = is_terminal_ ? now - shown_ >= kRedraw || done == frames_ : is_tenth;
@@ -47,11 +35,9 @@ void Progress::Show(size_t done, const TrackedFrame& frame, const System& system
   shown_ = now;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const double rate = static_cast<double>(done) / std::max(elapsed, 1e-3);
-  const auto map = system.map();
-  const std::string facts = fmt::format(
-      "frame {}/{}  {:.1f} frames/s  {:.0f} s left  {}  {} keyframes  {} landmarks", done, frames_,
-      rate, static_cast<double>(frames_ - done) / rate, Name(frame.state),
-      map != nullptr ? map->keyframes().size() : 0, map != nullptr ? map->landmarks().size() : 0);
+  const std::string facts =
+      fmt::format("frame {}/{}  {:.1f} frames/s  {:.0f} s left{}", done, frames_, rate,
+                  static_cast<double>(frames_ - done) / rate, state ? "  " + state() : "");
   if (is_terminal_) {
     fmt::print(stderr, "\r[{}] {}\033[K", Bar(done, frames_), facts);
     is_line_open_ = true;

@@ -3,8 +3,8 @@
 
 #include <chrono>
 #include <cstddef>
-
-#include "hullslam/system/system.h"
+#include <functional>
+#include <string>
 
 namespace hullslam {
 
@@ -14,7 +14,8 @@ class Progress {
  public:
   Progress(size_t frames, bool quiet);
 
-  void Show(size_t done, const TrackedFrame& frame, const System& system);
+  // `done` counts from 1; `state` is asked for what to say besides where something is shown.
+  void Show(size_t done, const std::function<std::string()>& state = {});
   // Ends the line of the bar, so that something else can be printed.
   void Clear();
 

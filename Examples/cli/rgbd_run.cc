@@ -92,6 +92,24 @@ void WaitForStamp(const TumSequence& sequence, double stamp, Clock::time_point s
   std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(due));
 }
 
+const char* Name(TrackingState state) {
+  switch (state) {
+    case TrackingState::kTracked:
+      return "tracked";
+    case TrackingState::kLost:
+      return "LOST";
+    default:
+      return "initialising";
+  }
+}
+
+std::string DescribeState(TrackingState state, const System& system) {
+  const auto map = system.map();
+  return fmt::format("{}  {} keyframes  {} landmarks", Name(state),
+                     map != nullptr ? map->keyframes().size() : 0,
+                     map != nullptr ? map->landmarks().size() : 0);
+}
+
 RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
                    const PinholeCamera& camera, const SequenceMasks& masks, System& system) {
   RunResult result;
@@ -117,7 +135,7 @@ RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
       WaitForStamp(sequence, loaded->image->timestamp, start);
     }
     const TrackedFrame frame = system.Track(*loaded->image);
-    progress.Show(result.given, frame, system);
+    progress.Show(result.given, [&] { return DescribeState(frame.state, system); });
   }
   system.Finish(&Interruption());
   progress.Clear();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <numbers>
 
 #include "hullslam/geometry/polyline.h"
@@ -28,24 +29,16 @@ double Reach(const Polygon2& points, const Eigen::Vector2d& direction) {
   return reach;
 }
 
-// At most `count` of the points whose distance from the foremost one along a direction (`reaches`)
-// is below `slack` px, evenly chosen.
-Polygon2 Foremost(const Polygon2& points, const Eigen::RowVectorXd& reaches, double slack,
-                  size_t count) {
-  const double least = reaches.maxCoeff() - slack;
-  std::vector<size_t> foremost;
-  for (size_t i = 0; i < points.size(); ++i) {
-    if (reaches[static_cast<Eigen::Index>(i)] >= least) {
-      foremost.push_back(i);
-    }
-  }
-  Polygon2 chosen;
-  chosen.reserve(count);
-  const size_t used = std::min(count, foremost.size());
+// At most kMaxPlaces of the points with these indices, evenly chosen.
+Polygon2 Places(const Polygon2& points, const std::vector<Eigen::Index>& indices) {
+  Polygon2 places;
+  const size_t used = std::min(kMaxPlaces, indices.size());
+  places.reserve(used);
   for (size_t i = 0; i < used; ++i) {
-    chosen.push_back(points[foremost[used == 1 ? 0 : i * (foremost.size() - 1) / (used - 1)]]);
+    const Eigen::Index index = indices[used == 1 ? 0 : i * (indices.size() - 1) / (used - 1)];
+    places.push_back(points[static_cast<size_t>(index)]);
   }
-  return chosen;
+  return places;
 }
 
 LineOnOutline LineAlong(const Outline& outline, const Line2& line) {
@@ -53,9 +46,19 @@ LineOnOutline LineAlong(const Outline& outline, const Line2& line) {
   const Eigen::Map<const Eigen::Matrix2Xd> points(
       outline.boundary[0].data(), 2, static_cast<Eigen::Index>(outline.boundary.size()));
   const Eigen::RowVectorXd reaches = line.normal.transpose() * points;
+  const double most = reaches.maxCoeff();
+  std::vector<Eigen::Index> near;
+  for (Eigen::Index i = 0; i < reaches.size(); ++i) {
+    if (reaches[i] >= most - kNear) {
+      near.push_back(i);
+    }
+  }
+  std::vector<Eigen::Index> touching;
+  std::copy_if(near.begin(), near.end(), std::back_inserter(touching),
+               [&](Eigen::Index i) { return reaches[i] >= most - kTouch; });
   return {.line = line,
-          .touching = Foremost(outline.boundary, reaches, kTouch, kMaxPlaces),
-          .near = Foremost(outline.boundary, reaches, kNear, kMaxPlaces)};
+          .touching = Places(outline.boundary, touching),
+          .near = Places(outline.boundary, near)};
 }
 
 LineOnOutline SupportLine(const Outline& outline, const Eigen::Vector2d& direction) {

@@ -29,6 +29,7 @@ std::set<std::string> SplitNames(std::string_view names) {
 cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::string>& classes,
                     cv::Size size) {
   cv::Mat region;
+  cv::Rect box;  // of all that is filled
   for (const InstanceMask& mask : masks) {
     if (!classes.contains(mask.label)) {
       continue;
@@ -43,10 +44,18 @@ cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::str
         polygon.emplace_back(cvRound(point.x()), cvRound(point.y()));
       }
       cv::fillPoly(region, std::vector{polygon}, cv::Scalar(255));
+      box |= cv::boundingRect(polygon);
     }
   }
-  if (!region.empty()) {
-    cv::dilate(region, region,
+  if (region.empty()) {
+    return region;
+  }
+  // Only around what is filled: the rest of the image stays zero.
+  const cv::Rect grown(box.x - kMargin, box.y - kMargin, box.width + 2 * kMargin,
+                       box.height + 2 * kMargin);
+  cv::Mat part = region(grown & cv::Rect({}, size));
+  if (!part.empty()) {
+    cv::dilate(part, part,
                cv::getStructuringElement(cv::MORPH_RECT, {2 * kMargin + 1, 2 * kMargin + 1}));
   }
   return region;

@@ -50,7 +50,7 @@ class CheckMasks : public ::testing::Test {
 };
 
 TEST_F(CheckMasks, CountsFramesInstancesAndClasses) {
-  const ProgramResult result = Run();
+  const ProgramResult result = Run({"--quiet"});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_EQ(result.errors, "");
   EXPECT_NE(result.output.find("(yolo-seg)"), std::string::npos) << result.output;
@@ -62,6 +62,18 @@ TEST_F(CheckMasks, CountsFramesInstancesAndClasses) {
   EXPECT_EQ(Count(result, "rejected: no area"), "1");
   EXPECT_EQ(Count(result, "cup"), "2");
   EXPECT_EQ(Count(result, "person"), "1");
+}
+
+TEST_F(CheckMasks, ShowsHowFarItIs) {
+  EXPECT_NE(Run().errors.find("frame 2/4  "), std::string::npos);
+}
+
+TEST_F(CheckMasks, GoesByTheSettings) {
+  const ProgramResult result = Run({"--set", "objects.min_score=0.85"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(Count(result, "kept"), "2");
+  EXPECT_EQ(Count(result, "rejected: low_score"), "1");
+  EXPECT_EQ(Count(Run({"--set", "objects.min_keypoints=5"}), "kept"), "3");
 }
 
 TEST_F(CheckMasks, DrawsThePicturesAskedFor) {
