@@ -11,11 +11,11 @@ namespace hullslam::internal {
 inline constexpr double kMinDepth = 1e-3;  // m; nearer the projection has no meaning
 
 // Residual and Jacobians of a reprojection error with its first kRows rows: 2 for the pixel, 3 with
-// the virtual right coordinate.
+// the disparity.
 template <int kRows>
 bool EvaluateReprojection(const Intrinsics& camera, const Eigen::Matrix<double, kRows, 1>& measured,
-                          double inverse_sigma, double const* const* parameters, double* residuals,
-                          double** jacobians) {
+                          const Eigen::Matrix<double, kRows, 1>& inverse_sigma,
+                          double const* const* parameters, double* residuals, double** jacobians) {
   const Eigen::Map<const Eigen::Quaterniond> rotation(parameters[0]);
   const Eigen::Map<const Eigen::Vector3d> translation(parameters[0] + 4);
   const Eigen::Map<const Eigen::Vector3d> point(parameters[1]);
@@ -25,12 +25,14 @@ bool EvaluateReprojection(const Intrinsics& camera, const Eigen::Matrix<double, 
     return false;
   }
   Eigen::Map<Eigen::Matrix<double, kRows, 1>> residual(residuals);
-  residual = inverse_sigma * (ProjectRgbd(camera, point_in_cam).template head<kRows>() - measured);
+  residual = inverse_sigma.cwiseProduct(ProjectRgbd(camera, point_in_cam).template head<kRows>() -
+                                        measured);
   if (jacobians == nullptr) {
     return true;
   }
   const Eigen::Matrix<double, kRows, 3> by_point_in_cam =
-      inverse_sigma * ProjectRgbdJacobian(camera, point_in_cam).template topRows<kRows>();
+      inverse_sigma.asDiagonal() *
+      ProjectRgbdJacobian(camera, point_in_cam).template topRows<kRows>();
   if (jacobians[0] != nullptr) {
     Eigen::Map<Eigen::Matrix<double, kRows, 7, Eigen::RowMajor>> by_pose(jacobians[0]);
     by_pose.template leftCols<3>() = -by_point_in_cam * Skew(point_in_cam);

@@ -59,7 +59,7 @@ std::unique_ptr<ceres::CostFunction> MakeCost(const Sensor& sensor, const FrameF
     return std::make_unique<ReprojectionCost>(camera, pixel, sigma);
   }
   return std::make_unique<RgbdReprojectionCost>(
-      camera, Eigen::Vector3d(pixel.x(), pixel.y(), right_u), sigma);
+      camera, Eigen::Vector3d(pixel.x(), pixel.y(), pixel.x() - right_u), sigma);
 }
 
 // The blocks of parameters and the observations between them.

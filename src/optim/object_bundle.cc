@@ -16,7 +16,8 @@
 namespace hullslam::internal {
 namespace {
 
-constexpr double kMinLossPx = 5.0;      // a loss that turns earlier spoils the shape
+constexpr double kMinTukeyPx = 15.0;    // a loss that lets go earlier spoils the shape
+constexpr double kSystematic = 2.0;     // what an ellipsoid misses it misses in all similar views
 constexpr double kMaxAxisChange = 3.0;  // more is no adjustment of the quadric that was there
 
 // Half axes may only be so different from before.
@@ -38,11 +39,11 @@ std::vector<T> Thin(const std::vector<T>& all, size_t count) {
   return thinned;
 }
 
-std::unique_ptr<ceres::CostFunction> Weigh(std::unique_ptr<ceres::CostFunction> cost, double cauchy,
+std::unique_ptr<ceres::CostFunction> Weigh(std::unique_ptr<ceres::CostFunction> cost,
+                                           std::unique_ptr<ceres::LossFunction> loss,
                                            double max_effective_rows) {
   const double weight = std::min(1.0, max_effective_rows / cost->num_residuals());
-  return std::make_unique<RobustRowsCost>(std::move(cost),
-                                          std::make_unique<ceres::CauchyLoss>(cauchy), weight);
+  return std::make_unique<RobustRowsCost>(std::move(cost), std::move(loss), weight);
 }
 
 }  // namespace
@@ -97,7 +98,7 @@ void ObjectBundle::AddView(const Keyframe& keyframe, const Detection& detection,
 std::unique_ptr<ceres::CostFunction> ObjectBundle::MakeOutline(const Keyframe& keyframe,
                                                                const Detection& detection,
                                                                double misfit_px) const {
-  const double sigma_px = std::hypot(options_.sigma_px, misfit_px);
+  const double sigma_px = std::hypot(options_.sigma_px, kSystematic * misfit_px);
   const auto sigma = ResidualOfPixelError(options_.residual, camera_, keyframe.cam_from_world,
                                           objects_.back().before, sigma_px);
   if (!sigma.has_value()) {
@@ -108,8 +109,9 @@ std::unique_ptr<ceres::CostFunction> ObjectBundle::MakeOutline(const Keyframe& k
   if (cost == nullptr) {
     return nullptr;
   }
-  const double cauchy = std::max(options_.cauchy, kMinLossPx / sigma_px);
-  return Weigh(std::move(cost), cauchy, options_.max_effective_lines);
+  const double tukey = std::max(options_.tukey, kMinTukeyPx / sigma_px);
+  return Weigh(std::move(cost), std::make_unique<ceres::TukeyLoss>(tukey),
+               options_.max_effective_lines);
 }
 
 std::unique_ptr<ceres::CostFunction> ObjectBundle::MakeDepth(const Detection& detection) const {
@@ -117,8 +119,8 @@ std::unique_ptr<ceres::CostFunction> ObjectBundle::MakeDepth(const Detection& de
   if (points.empty()) {
     return nullptr;
   }
-  return Weigh(std::make_unique<DepthAnchorCost>(points, options_.depth_sigma), options_.cauchy,
-               options_.max_effective_points);
+  return Weigh(std::make_unique<DepthAnchorCost>(points, options_.depth_sigma),
+               std::make_unique<ceres::CauchyLoss>(options_.cauchy), options_.max_effective_points);
 }
 
 // Passes over a term that is null or not defined at the start, where the solver would fail.

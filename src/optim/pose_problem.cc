@@ -11,12 +11,11 @@ namespace {
 
 constexpr double kMinDepth = 1e-3;  // m
 
+// In u, v and the virtual right coordinate, u less the disparity.
 Eigen::Vector3d Residual(const Intrinsics& camera, const PoseObservation& observation,
                          const Eigen::Vector3d& point_in_cam) {
   Eigen::Vector3d residual = ProjectRgbd(camera, point_in_cam) - observation.measured;
-  if (!observation.has_depth) {
-    residual.z() = 0.0;
-  }
+  residual.z() = observation.has_depth ? residual.x() - residual.z() : 0.0;
   return residual;
 }
 
@@ -63,9 +62,8 @@ void PointTerms::Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& grad
     }
     const Eigen::Vector3d residual = Residual(camera_, observation, point_in_cam);
     Eigen::Matrix3d by_point = ProjectRgbdJacobian(camera_, point_in_cam);
-    if (!observation.has_depth) {
-      by_point.row(2).setZero();
-    }
+    by_point.row(2) = observation.has_depth ? by_point.row(0) - by_point.row(2)
+                                            : Eigen::RowVector3d::Zero().eval();
     double weight = observation.inverse_sigma2;
     if (robust_) {
       weight *= HuberWeight(weight * residual.squaredNorm(), Bound(observation));

@@ -247,7 +247,7 @@ void Tracker::OptimizePose(Estimate& estimate, std::span<const PoseObject> objec
     PoseObservation& observation = observations.emplace_back();
     observation.point = map_->landmarks().At(estimate.landmarks[i]).position;
     observation.measured << keypoint.undistorted.cast<double>(),
-        static_cast<double>(features.right_u[i]);
+        static_cast<double>(keypoint.undistorted.x() - features.right_u[i]);
     observation.has_depth = features.right_u[i] >= 0.0f;
     observation.inverse_sigma2 =
         static_cast<double>(sensor_.levels.inverse_sigma2[static_cast<size_t>(keypoint.level)]);

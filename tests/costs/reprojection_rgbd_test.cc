@@ -13,11 +13,12 @@ namespace {
 constexpr Intrinsics kCamera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
 
 TEST(RgbdReprojectionCost, ByHand) {
-  // (1, -0.5, 2) in the camera is pixel (570, 140) and 40 / 2 px further left in the right image.
+  // (1, -0.5, 2) in the camera is pixel (570, 140) and has a disparity of 40 / 2 px. What a pixel's
+  // sigma is does not matter to the disparity.
   const Rigid3 cam_from_world(Eigen::Quaterniond::Identity(), {0.0, 0.0, -1.0});
-  const RgbdReprojectionCost cost(kCamera, {569.0, 142.0, 544.0}, 2.0);
+  const RgbdReprojectionCost cost(kCamera, {569.0, 142.0, 17.0}, 2.0);
   const Eigen::Vector3d residual = ResidualOf<3>(cost, cam_from_world, {1.0, -0.5, 3.0});
-  EXPECT_LT((residual - Eigen::Vector3d(0.5, -1.0, 3.0)).norm(), 1e-12);
+  EXPECT_LT((residual - Eigen::Vector3d(0.5, -1.0, 3.0 / kDisparitySigma)).norm(), 1e-12);
 }
 
 TEST(RgbdReprojectionCost, GradientIsTrue) {
@@ -26,7 +27,7 @@ TEST(RgbdReprojectionCost, GradientIsTrue) {
     const Rigid3 cam_from_world = random.Pose(1.0, 1.0);
     const Eigen::Vector3d in_cam = random.Vector(1.0) + Eigen::Vector3d(0.0, 0.0, 3.0);
     const Eigen::Vector3d measured(random.Number(0, 640), random.Number(0, 480),
-                                   random.Number(0, 640));
+                                   random.Number(5, 40));
     const RgbdReprojectionCost cost(kCamera, measured, 1.44);
     ExpectTrueGradient<3>(cost, cam_from_world, Inverse(cam_from_world) * in_cam);
   }
@@ -34,7 +35,7 @@ TEST(RgbdReprojectionCost, GradientIsTrue) {
 
 TEST(RgbdReprojectionCost, DoesNotDependOnTheWorldFrame) {
   RandomGeometry random(2);
-  const RgbdReprojectionCost cost(kCamera, {100.0, 200.0, 90.0}, 1.2);
+  const RgbdReprojectionCost cost(kCamera, {100.0, 200.0, 10.0}, 1.2);
   for (int i = 0; i < 30; ++i) {
     const Rigid3 cam_from_world = random.Pose(1.0, 1.0);
     const Eigen::Vector3d in_cam = random.Vector(1.0) + Eigen::Vector3d(0.0, 0.0, 3.0);
@@ -59,14 +60,14 @@ TEST(RgbdReprojectionCost, FirstTwoRowsAreThoseWithoutDepth) {
 
 // Along the ray only the third row changes: this is what fixes the depth.
 TEST(RgbdReprojectionCost, ThirdRowFeelsTheDepth) {
-  const RgbdReprojectionCost cost(kCamera, {320.0, 240.0, 300.0}, 1.0);
+  const RgbdReprojectionCost cost(kCamera, {320.0, 240.0, 20.0}, 1.0);
   EXPECT_LT(ResidualOf<3>(cost, Rigid3(), {0.0, 0.0, 2.0}).norm(), 1e-12);
   const Eigen::Vector3d farther = ResidualOf<3>(cost, Rigid3(), {0.0, 0.0, 4.0});
-  EXPECT_LT((farther - Eigen::Vector3d(0.0, 0.0, 10.0)).norm(), 1e-12);
+  EXPECT_LT((farther - Eigen::Vector3d(0.0, 0.0, -10.0 / kDisparitySigma)).norm(), 1e-12);
 }
 
 TEST(RgbdReprojectionCost, IsNotDefinedBehindTheCamera) {
-  const RgbdReprojectionCost cost(kCamera, {320.0, 240.0, 300.0}, 1.0);
+  const RgbdReprojectionCost cost(kCamera, {320.0, 240.0, 20.0}, 1.0);
   const PoseBlock pose = ToBlock(Rigid3());
   Eigen::Vector3d residual;
   for (const double z : {-2.0, 0.0, 1e-6}) {

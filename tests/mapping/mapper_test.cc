@@ -255,7 +255,7 @@ TEST_F(MapperTest, FinishAdjustsTheWholeMapIfThatIsWanted) {
     return MeanLandmarkError();
   };
   const double without = map_path(false);
-  EXPECT_LT(map_path(true), 0.9 * without);
+  EXPECT_LT(map_path(true), 0.95 * without);
 }
 
 TEST_F(MapperTest, FinishOfNoOrOneKeyframeOrCancelledDoesNothing) {

@@ -74,7 +74,7 @@ TEST_F(Validity, ADriftAlongTheViewThatOutlinesDoNotShow) {
   const auto objection = FindObjection(drifted, sensor_, views, {});
   ASSERT_TRUE(objection);
   EXPECT_EQ(objection->reason, ObjectRejection::kOffPoints);
-  EXPECT_NE(objection->detail.find("expected at least 0.60"), std::string::npos);
+  EXPECT_NE(objection->detail.find("expected at least 0.40"), std::string::npos);
 }
 
 TEST_F(Validity, AnAxisAlongTheViewThatNothingHolds) {

@@ -330,7 +330,7 @@ TEST_F(ObjectBundle, AShapeThatRunsAwayIsNotWritten) {
   const Eigen::Vector3d before = 5.0 * objects_[1].ellipsoid.half_axes;
   made_.map.MutableObject(ids_[1]).ellipsoid.half_axes = before;
   BundleOptions options = kPrecise;
-  options.objects.cauchy = 1e3;  // outlines far off are not taken for outliers
+  options.objects.tukey = 1e3;  // outlines far off are not taken for outliers
   options.objects.prior.log_axes = 1e3;
   const BundleResult result = Adjust(Window(), options);
   ASSERT_TRUE(result.is_usable);

@@ -113,7 +113,8 @@ TEST_F(PoseOptimization, NoiseLeavesAnErrorOfItsSize) {
   std::mt19937 generator(2);
   std::normal_distribution<double> noise;
   for (PoseObservation& observation : observations) {
-    observation.measured += Eigen::Vector3d(noise(generator), noise(generator), noise(generator));
+    observation.measured +=
+        Eigen::Vector3d(noise(generator), noise(generator), 0.3 * noise(generator));
   }
   const PoseOptimizationResult result = OptimizePose(kCamera, Start(), observations);
   // About sigma / focal length / sqrt(points) times the depth.

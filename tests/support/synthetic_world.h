@@ -35,7 +35,8 @@ inline Sensor SyntheticSensor() {
 
 struct SyntheticWorldOptions {
   int points = 600;
-  double pixel_noise = 0.0;  // px at level 0, standard deviation of u, v and right u
+  // px, standard deviation of u and v at level 0, and of the disparity at any level.
+  double pixel_noise = 0.0;
   double depth_share = 1.0;  // of the points whose depth is known wherever they are seen
   int flipped_bits = 0;      // of the descriptor, other ones in every frame
   uint64_t seed = 1;
@@ -132,10 +133,10 @@ class SyntheticWorld {
     const double sigma = options_.pixel_noise *
                          static_cast<double>(sensor_.levels.scale[static_cast<size_t>(level)]);
     Eigen::Vector2d pixel = sensor_.camera.Project(point_in_cam);
-    double right_u = pixel.x() - sensor_.camera.bf / point_in_cam.z();
     pixel.x() += sigma * normal(random);
     pixel.y() += sigma * normal(random);
-    right_u += sigma * normal(random);
+    const double right_u =
+        pixel.x() - sensor_.camera.bf / point_in_cam.z() + options_.pixel_noise * normal(random);
     Keypoint& keypoint = features.keypoints.emplace_back();
     keypoint.raw = pixel.cast<float>();
     keypoint.undistorted = keypoint.raw;

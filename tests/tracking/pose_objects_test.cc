@@ -82,7 +82,7 @@ TEST_F(PoseObjectsTest, CompensationTakesTheMisfitOffTheLinesAndOffTheirSigma) {
   EXPECT_LT(WorstLine(compensated), 0.25 * WorstLine(plain));
   for (size_t i = 0; i < plain.objects.size(); ++i) {
     EXPECT_LT(compensated.objects[i].sigma_px, plain.objects[i].sigma_px);
-    EXPECT_GE(compensated.objects[i].sigma_px, 1.5);
+    EXPECT_GE(compensated.objects[i].sigma_px, ObjectOptions().sigma);
   }
 }
 

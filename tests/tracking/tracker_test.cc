@@ -404,7 +404,7 @@ TEST(Tracker, NoiseMovesThePoseByLittle) {
   for (uint32_t i = 1; i < 25; ++i) {
     const Tracker::Result result = tracker.Process(world.Observe(i).frame, map, kIdle);
     ASSERT_EQ(result.frame.state, TrackingState::kTracked);
-    ExpectNear(result.frame.cam_from_world, SyntheticWorld::CamFromWorld(i), 5e-3);
+    ExpectNear(result.frame.cam_from_world, SyntheticWorld::CamFromWorld(i), 1e-2);
   }
 }
 

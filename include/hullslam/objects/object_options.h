@@ -31,12 +31,12 @@ struct ObjectOptions {
   int min_views = 3;                 // keyframes
   double min_parallax = 3.0;         // degrees between viewing rays, with depth
   double min_parallax_blind = 15.0;  // without
-  double min_overlap = 0.4;          // mean IoU of outline and hull
-  double min_points_near = 0.6;      // share of depth points in the quadric or near its surface
+  double min_overlap = 0.6;          // mean IoU of outline and hull
+  double min_points_near = 0.4;      // share of depth points in the quadric or near its surface
 
   // Weight of objects in poses and in bundle adjustment.
-  double sigma = 1.5;                // px, of a line, beside the object's misfit
-  double max_effective_lines = 1.0;  // of one detection
+  double sigma = 0.5;                // px, of a line, beside the object's misfit
+  double max_effective_lines = 8.0;  // of one detection
 
   void Bind(OptionTable& options);
 };

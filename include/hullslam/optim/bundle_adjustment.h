@@ -40,9 +40,10 @@ BundleWindow GlobalWindow(const Map& map, WindowObjects objects = WindowObjects:
 struct ObjectBundleOptions {
   ObjectResidual residual = ObjectResidual::kTangent;
   ObjectPrimitive primitive = ObjectPrimitive::kSupport;
-  double sigma_px = 1.5;             // of a line, beside the object's misfit: hypot(both)
-  double max_effective_lines = 1.0;  // the lines of one detection weigh as so many at most
-  double cauchy = 2.5;               // sigmas, but at least 5 px: where a line's loss turns
+  double sigma_px = 0.5;             // of a line, beside twice the object's misfit: hypot(both)
+  double max_effective_lines = 8.0;  // the lines of one detection weigh as so many at most
+  double tukey = 6.0;                // sigmas, but at least 15 px: beyond a line counts nothing
+  double cauchy = 2.5;               // sigmas: where the loss of a depth point turns
   size_t max_outer_views = 5;        // detections outside of the window, evenly chosen
   double depth_sigma = 0.10;         // m, of depth points about the surface
   size_t max_depth_points = 6;       // of one detection
@@ -79,7 +80,7 @@ struct BundleResult {
 // Schur complement on the points; and with them, for each object of the window,
 //   sum over its detections min(1, max_effective_lines / n) sum over n residuals rho(r / sigma)
 //   + the same over depth points (DepthAnchorCost) + QuadricPriorCost
-// with Cauchy's loss rho and sigma = ResidualOfPixelError(hypot(sigma_px, misfit)). Where that
+// with Cauchy's loss rho and sigma = ResidualOfPixelError(hypot(sigma_px, 2 misfit)). Where that
 // fails it is done again without the objects, which are then all among the failed ones. Ends early,
 // with what it has, when `cancellation` (may be null) asks; before the first round is done it calls
 // no observation an outlier but those of points that are not in front of the camera.

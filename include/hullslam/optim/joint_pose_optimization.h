@@ -16,7 +16,7 @@ struct PoseObject {
   Ellipsoid ellipsoid;            // world frame
   ObjectMeasurement measurement;  // its spans must outlive the call
   // Standard deviation of a line, px: hypot(that of the outline, the object's misfit).
-  double sigma_px = 1.5;
+  double sigma_px = 0.5;
 };
 
 struct JointPoseOptions {
@@ -24,7 +24,7 @@ struct JointPoseOptions {
   ObjectResidual residual = ObjectResidual::kTangent;
   ObjectPrimitive primitive = ObjectPrimitive::kSupport;
   // The lines of one detection weigh as so many at most: their errors are strongly correlated.
-  double max_effective_lines = 1.0;
+  double max_effective_lines = 8.0;
   double cauchy = 2.5;  // sigmas; where the loss of a line turns, and above which it is an outlier
   // Sigmas of a prior at the start, only where there are objects. Weak beside the pull of one
   // object or a few points, it holds what silhouettes leave free: a distance that all outlines

@@ -14,9 +14,9 @@ namespace hullslam {
 // A landmark found in the image.
 struct PoseObservation {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();     // m, world frame
-  Eigen::Vector3d measured = Eigen::Vector3d::Zero();  // u, v, virtual right u; px, undistorted
+  Eigen::Vector3d measured = Eigen::Vector3d::Zero();  // u, v, disparity; px, undistorted
   bool has_depth = false;                              // else measured[2] is not used
-  double inverse_sigma2 = 1.0;                         // 1 / px^2
+  double inverse_sigma2 = 1.0;                         // 1 / px^2, of u and v
 };
 
 struct PoseOptimizationOptions {
