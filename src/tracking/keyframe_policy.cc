@@ -16,9 +16,11 @@ bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
   const double ratio = evidence.keyframes < 2 ? young_reference_ratio : min_reference_ratio;
   const bool is_weak =
       lacks_close_points || evidence.inliers < ratio * evidence.reference_landmarks;
+  const bool lacks_objects =
+      evidence.unknown_objects > 0 && evidence.frames_since_keyframe >= frames_for_objects;
   const bool is_overdue = evidence.frames_since_keyframe >= max_frames_between;
   const bool is_urgent = is_overdue || is_abrupt || lacks_close_points;
-  return is_weak && (evidence.mapper_is_idle || is_urgent);
+  return (is_weak || lacks_objects) && (evidence.mapper_is_idle || is_urgent);
 }
 
 }  // namespace hullslam

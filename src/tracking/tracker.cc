@@ -43,6 +43,7 @@ Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const Obj
   policy_.min_reference_ratio = options.keyframe_ratio;
   policy_.min_frames_between =
       static_cast<uint32_t>(std::lround(options.keyframe_interval * sensor.frames_per_second));
+  policy_.frames_for_objects = static_cast<uint32_t>(std::max(1.0, sensor.frames_per_second / 3.0));
   policy_.max_frames_between = static_cast<uint32_t>(std::max(1.0, sensor.frames_per_second));
 }
 
@@ -114,6 +115,7 @@ bool Tracker::NeedsKeyframe(const Estimate& estimate, const MapperStatus& mapper
   KeyframeEvidence evidence;
   evidence.frames_since_keyframe = frame_->id.value - last_keyframe_.value;
   evidence.inliers = estimate.inliers;
+  evidence.unknown_objects = estimate.unknown_objects;
   evidence.keyframes = map_->keyframes().size();
   evidence.mapper_is_idle = mapper.is_idle;
   evidence.requests_waiting = mapper.requests_waiting;

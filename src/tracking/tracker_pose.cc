@@ -167,6 +167,7 @@ std::optional<Tracker::Estimate> Tracker::TrackLocalMap(Estimate estimate) {
       objects = FindObjects(estimate);
     }
     found = TakePoseObjects(estimate, objects);
+    estimate.unknown_objects = static_cast<int>(frame_->detections.size() - found.objects.size());
   }
   OptimizePose(estimate, found.objects);
   for (const LandmarkId landmark : estimate.landmarks) {

@@ -113,6 +113,22 @@ TEST(KeyframePolicy, LeavesTimeBetweenKeyframesUnlessTrackingWeakensAbruptly) {
   });
 }
 
+TEST(KeyframePolicy, AsksForObjectsThatAreNotMappedYet) {
+  const auto after = [](uint32_t frames, bool is_idle) {
+    return With([=](auto& e) {
+      e.unknown_objects = 1;
+      e.frames_since_keyframe = frames;
+      e.mapper_is_idle = is_idle;
+    });
+  };
+  ExpectDecisions({
+      {"9 frames after the last keyframe", after(9, true), false},
+      {"10 frames after", after(10, true), true},
+      {"10 frames after, the mapper is busy", after(10, false), false},
+      {"long after, the mapper is busy", after(30, false), true},
+  });
+}
+
 TEST(KeyframePolicy, NeverAsksWhileTooManyRequestsWait) {
   ExpectDecisions({
       {"two requests wait", With([](auto& e) { e.inliers = 20, e.requests_waiting = 2; }), true},

@@ -13,6 +13,7 @@ struct KeyframeEvidence {
   int reference_landmarks = 0;  // of the reference keyframe, held well enough
   int close_tracked = 0;        // close keypoints (with precise depth) that are landmarks
   int close_untracked = 0;      // and that are not
+  int unknown_objects = 0;      // detections that show no mapped object
   size_t keyframes = 0;
   bool mapper_is_idle = true;
   int requests_waiting = 0;
@@ -21,6 +22,7 @@ struct KeyframeEvidence {
 struct KeyframePolicy {
   uint32_t min_frames_between = 6;     // but when tracking has weakened abruptly
   uint32_t max_frames_between = 30;    // then a busy mapper is no excuse
+  uint32_t frames_for_objects = 10;    // after so many an object that is not mapped is a reason
   double min_reference_ratio = 0.9;    // of inliers to reference landmarks
   double young_reference_ratio = 0.4;  // the same while there is a single keyframe
   double abrupt_ratio = 0.5;           // below it at once, whatever was before
@@ -31,7 +33,8 @@ struct KeyframePolicy {
   // As in Mur-Artal and Tardos 2017, section III.E: tracking has weakened against the reference
   // keyframe, or close points would be lost; and the mapper has time, or it is urgent. Unlike there
   // keyframes are evenly spread in time: fewer landmarks are enough of a reason, but not right
-  // after the last keyframe (docs/decisions.md).
+  // after the last keyframe (docs/decisions.md). Objects are mapped from keyframes: those that are
+  // not yet are another reason, less urgent.
   bool NeedsKeyframe(const KeyframeEvidence& evidence) const;
 };
 

@@ -48,7 +48,8 @@ class Tracker {
     Rigid3 cam_from_world;
     std::vector<LandmarkId> landmarks;  // one a keypoint
     int inliers = 0;
-    int objects = 0;  // that held the pose
+    int objects = 0;          // that held the pose
+    int unknown_objects = 0;  // detections that show no mapped object, where objects hold poses
   };
   static constexpr size_t kObjectSupport = 5;  // landmarks that an object stands for
   static int Support(const Estimate& estimate);
