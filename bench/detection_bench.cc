@@ -32,7 +32,8 @@ std::vector<InstanceMask> BenchMasks() {
   std::vector<InstanceMask> masks;
   for (int i = 0; i < 10; ++i) {
     InstanceMask mask{.label = "thing" + std::to_string(i), .score = 0.5, .outlines = {{}}};
-    const Eigen::Vector2d center(70.0 + 125.0 * (i % 5), 130.0 + 220.0 * (i / 5));
+    const int row = i / 5;
+    const Eigen::Vector2d center(70.0 + 125.0 * (i % 5), 130.0 + 220.0 * row);
     for (int k = 0; k < 170; ++k) {
       const double angle = 2.0 * std::numbers::pi * k / 170.0;
       const double ragged = 1.0 + 0.04 * std::sin(23.0 * angle) + 0.1 * std::sin(3.0 * angle);

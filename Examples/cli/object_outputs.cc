@@ -47,8 +47,7 @@ std::string FormatFigure(const std::optional<double>& figure, int decimals) {
 std::string DescribeObjects(const ObjectsSummary& summary) {
   return fmt::format(
       "{} objects, {} candidates; mean SIoU {} with hulls, {} with masks, tangents {} px off, MTD "
-      "{} "
-      "m^2 ({} observations)",
+      "{} m^2 ({} observations)",
       summary.count, summary.candidates, FormatFigure(summary.siou_mean, 3),
       FormatFigure(summary.siou_mask_mean, 3), FormatFigure(summary.tangent_mean_px, 1),
       FormatFigure(summary.mtd_mean_m2, 5), summary.observations);

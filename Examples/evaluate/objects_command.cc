@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/object_outputs.h"
 #include "evaluate/objects_truth.h"
 #include "hullslam/eval/object_metrics.h"
 #include "hullslam/io/object_file.h"
@@ -17,10 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
-std::string OrDash(const std::optional<double>& value, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
-}
 
 const char* ToString(ObjectState state) {
   return state == ObjectState::kMapped ? "mapped" : "candidate";
@@ -64,8 +61,8 @@ void PrintObject(const ReportedObject& object) {
   fmt::print(
       "{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7.1f}  {:.3f} {:.3f} {:.3f}\n",
       object.id.value, object.label, ToString(object.state), fit.observations, fit.lines,
-      OrDash(fit.siou, 3), OrDash(fit.siou_mask, 3), OrDash(fit.mtd_m2, 6),
-      OrDash(fit.tangent_px, 2), object.misfit_px, axes.x(), axes.y(), axes.z());
+      FormatFigure(fit.siou, 3), FormatFigure(fit.siou_mask, 3), FormatFigure(fit.mtd_m2, 6),
+      FormatFigure(fit.tangent_px, 2), object.misfit_px, axes.x(), axes.y(), axes.z());
 }
 
 void PrintText(const ObjectReport& report) {
@@ -79,8 +76,8 @@ void PrintText(const ObjectReport& report) {
   fmt::print("\n{} mapped, {} candidates; {} observations and {} lines of the mapped\n",
              fit.objects, report.candidates, fit.mean.observations, fit.mean.lines);
   fmt::print("mean SIoU {}, with the mask {}; MTD {} m2; tangents off by {} px\n",
-             OrDash(fit.mean.siou, 4), OrDash(fit.mean.siou_mask, 4), OrDash(fit.mean.mtd_m2, 6),
-             OrDash(fit.mean.tangent_px, 2));
+             FormatFigure(fit.mean.siou, 4), FormatFigure(fit.mean.siou_mask, 4),
+             FormatFigure(fit.mean.mtd_m2, 6), FormatFigure(fit.mean.tangent_px, 2));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "cli/object_outputs.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/io/mask_source.h"
 #include "hullslam/io/trajectory_file.h"
@@ -146,7 +147,7 @@ void PrintTruth(const TruthEvaluation& evaluation) {
         "the true ones (at most {:.1f} % off), SIoU {}\n",
         shape, errors.objects, 100.0 * errors.center_share_mean, 100.0 * errors.center_share_max,
         errors.axis_ratio_mean, 100.0 * errors.axis_ratio_deviation,
-        errors.siou_mean ? fmt::format("{:.3f}", *errors.siou_mean) : "-");
+        FormatFigure(errors.siou_mean, 3));
   }
 }
 

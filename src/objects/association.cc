@@ -40,14 +40,6 @@ struct Seen {
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // of the cloud
 };
 
-Eigen::Vector3d MeanOf(std::span<const Eigen::Vector3d> points) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points) {
-    sum += point;
-  }
-  return sum / static_cast<double>(std::max<size_t>(1, points.size()));
-}
-
 // Twice the root of the mean squared distance from the mean: about the half diagonal.
 double SizeOf(std::span<const Eigen::Vector3d> points) {
   const Eigen::Vector3d mean = MeanOf(points);

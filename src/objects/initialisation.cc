@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "hullslam/geometry/oriented_box.h"
+#include "hullslam/objects/point_statistics.h"
 
 namespace hullslam {
 namespace {
@@ -51,11 +52,7 @@ Ellipsoid FitAlong(std::span<const Eigen::Vector3d> points, const Eigen::Matrix3
 }
 
 Eigen::Matrix3d PrincipalAxes(std::span<const Eigen::Vector3d> points) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points) {
-    mean += point;
-  }
-  mean /= static_cast<double>(points.size());
+  const Eigen::Vector3d mean = MeanOf(points);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& point : points) {
     covariance += (point - mean) * (point - mean).transpose();

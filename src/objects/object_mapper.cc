@@ -14,6 +14,7 @@
 #include "hullslam/objects/fusion.h"
 #include "hullslam/objects/initialisation.h"
 #include "hullslam/objects/misfit.h"
+#include "hullslam/objects/point_statistics.h"
 #include "hullslam/objects/refinement.h"
 
 namespace hullslam {
@@ -41,16 +42,6 @@ bool HasDepth(std::span<const ObjectView> views) {
     points += view.detection->points.size();
   }
   return points >= kMinPoints;
-}
-
-// Of depth points of the views; needs some.
-Eigen::Vector3d MeanPoint(std::span<const ObjectView> views) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  const std::vector<Eigen::Vector3d> points = CollectPoints(views, kMinPoints);
-  for (const Eigen::Vector3d& point : points) {
-    sum += point;
-  }
-  return sum / static_cast<double>(points.size());
 }
 
 // The last `count` views.
@@ -150,8 +141,8 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
     Reject(map, id, {ObjectRejection::kNoStart, "the rays to it do not meet"});
     return;
   }
-  const double parallax =
-      Parallax(views, sphere ? sphere->world_from_object.translation : MeanPoint(views));
+  const double parallax = Parallax(views, sphere ? sphere->world_from_object.translation
+                                                 : MeanOf(CollectPoints(views, kMinPoints)));
   const double min_parallax = has_depth ? options_.min_parallax : options_.min_parallax_blind;
   if (parallax < min_parallax) {
     Reject(map, id,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "hullslam/objects/point_statistics.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {
@@ -48,11 +49,7 @@ std::vector<Eigen::Vector3d> CollectPoints(std::span<const ObjectView> views, si
 Eigen::Vector3d Centroid(const ObjectView& view) {
   const std::vector<Eigen::Vector3d>& points = view.detection->points;
   Check(!points.empty(), "a view without depth has no centroid");
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points) {
-    sum += point;
-  }
-  return Inverse(view.cam_from_world) * (sum / static_cast<double>(points.size())).eval();
+  return Inverse(view.cam_from_world) * MeanOf(points);
 }
 
 double Parallax(std::span<const ObjectView> views, const Eigen::Vector3d& point) {

@@ -28,10 +28,8 @@ struct Moments {
 
 Moments MomentsOf(std::span<const Eigen::Vector3d> samples) {
   Moments moments;
+  moments.mean = MeanOf(samples);
   const auto count = static_cast<double>(samples.size());
-  for (const Eigen::Vector3d& sample : samples) {
-    moments.mean += sample / count;
-  }
   for (const Eigen::Vector3d& sample : samples) {
     moments.variance += (sample - moments.mean).cwiseAbs2() / (count - 1.0);
   }
@@ -44,6 +42,14 @@ bool IsPlausible(double t, double degrees_of_freedom, double alpha) {
 }
 
 }  // namespace
+
+Eigen::Vector3d MeanOf(std::span<const Eigen::Vector3d> points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    sum += point;
+  }
+  return sum / static_cast<double>(std::max<size_t>(1, points.size()));
+}
 
 double RankSumScore(std::span<const double> a, std::span<const double> b) {
   Check(!a.empty() && !b.empty(), "the rank-sum test needs two samples");

@@ -12,6 +12,12 @@
 namespace hullslam {
 namespace {
 
+TEST(PointStatistics, MeanByHandAndOfNothing) {
+  const std::vector<Eigen::Vector3d> points = {{1.0, 2.0, 3.0}, {3.0, 2.0, -6.0}};
+  EXPECT_EQ(MeanOf(points), Eigen::Vector3d(2.0, 2.0, -1.5));
+  EXPECT_EQ(MeanOf({}), Eigen::Vector3d::Zero());
+}
+
 TEST(RankSum, IsAsComputedByHandForSamplesOfDifferentSizes) {
   // Ranks of a: 1, 2, 4; sum 7; mean 3 * 8 / 2 = 12; variance 3 * 4 * 8 / 12 = 8.
   const std::vector<double> a = {0.1, 0.2, 0.4};

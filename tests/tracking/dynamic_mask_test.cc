@@ -5,16 +5,10 @@
 
 #include <opencv2/core.hpp>
 
+#include "support/square_mask.h"
+
 namespace hullslam {
 namespace {
-
-InstanceMask Square(const std::string& label, double left, double top, double side) {
-  InstanceMask mask;
-  mask.label = label;
-  mask.outlines = {
-      {{left, top}, {left + side, top}, {left + side, top + side}, {left, top + side}}};
-  return mask;
-}
 
 TEST(SplitNames, TakesBlanksOffAndLeavesEmptyOnesOut) {
   EXPECT_EQ(SplitNames("person"), std::set<std::string>{"person"});

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hullslam/util/check.h"
+#include "support/square_mask.h"
 
 namespace hullslam {
 namespace {
@@ -60,14 +61,6 @@ RgbdImage MakeImage() {
   random.fill(image.depth, cv::RNG::UNIFORM, 5000, 20000);
   image.depth(cv::Rect(0, 0, kWidth / 2, kHeight / 2)).setTo(0);
   return image;
-}
-
-InstanceMask Square(const std::string& label, double left, double top, double side) {
-  InstanceMask mask;
-  mask.label = label;
-  mask.outlines = {
-      {{left, top}, {left + side, top}, {left + side, top + side}, {left, top + side}}};
-  return mask;
 }
 
 // Keypoints whose raw position is in a square, by index.

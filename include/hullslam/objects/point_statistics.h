@@ -6,6 +6,9 @@
 
 namespace hullslam {
 
+// Zero for no points.
+Eigen::Vector3d MeanOf(std::span<const Eigen::Vector3d> points);
+
 // Standard score of Wilcoxon's rank sum of `a` among `a` and `b` (Mann and Whitney 1947; normal
 // approximation with the variance mn(m+n+1)/12 for samples of different sizes; ties share ranks).
 // Near 0 where both may come from one distribution.

@@ -80,10 +80,11 @@ struct BundleResult {
 // Schur complement on the points; and with them, for each object of the window,
 //   sum over its detections min(1, max_effective_lines / n) sum over n residuals rho(r / sigma)
 //   + the same over depth points (DepthAnchorCost) + QuadricPriorCost
-// with Cauchy's loss rho and sigma = ResidualOfPixelError(hypot(sigma_px, 2 misfit)). Where that
-// fails it is done again without the objects, which are then all among the failed ones. Ends early,
-// with what it has, when `cancellation` (may be null) asks; before the first round is done it calls
-// no observation an outlier but those of points that are not in front of the camera.
+// with Tukey's loss rho (Cauchy's for depth) and sigma = ResidualOfPixelError(hypot(sigma_px, 2
+// misfit)). Where that fails it is done again without the objects, which are then all among the
+// failed ones. Ends early, with what it has, when `cancellation` (may be null) asks; before the
+// first round is done it calls no observation an outlier but those of points that are not in front
+// of the camera.
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& options, const Cancellation* cancellation);
 

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "hullslam/camera/instance_mask.h"
+
+namespace hullslam {
+
+// The mask of a square, raw pixels.
+inline InstanceMask Square(const std::string& label, double left, double top, double side) {
+  InstanceMask mask;
+  mask.label = label;
+  mask.outlines = {
+      {{left, top}, {left + side, top}, {left + side, top + side}, {left, top + side}}};
+  return mask;
+}
+
+}  // namespace hullslam
