@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "hullslam/geometry/polyline.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
@@ -17,21 +18,10 @@ namespace {
 
 using Outline = std::vector<Eigen::Vector2d>;
 
-// Shoelace formula, px^2.
-double Area(const Outline& outline) {
-  double twice = 0.0;
-  for (size_t i = 0; i < outline.size(); ++i) {
-    const Eigen::Vector2d& a = outline[i];
-    const Eigen::Vector2d& b = outline[i + 1 < outline.size() ? i + 1 : 0];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return 0.5 * std::abs(twice);
-}
-
 void SortByArea(std::vector<Outline>& outlines) {
   std::vector<std::pair<double, size_t>> areas;
   for (size_t i = 0; i < outlines.size(); ++i) {
-    areas.emplace_back(-Area(outlines[i]), i);  // the largest first, then in order
+    areas.emplace_back(-std::abs(SignedArea(outlines[i])), i);  // the largest first, then in order
   }
   std::sort(areas.begin(), areas.end());
   std::vector<Outline> sorted;

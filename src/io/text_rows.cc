@@ -13,14 +13,18 @@
 namespace hullslam {
 namespace {
 
-constexpr std::string_view kSeparators = " \t\r,\v\f";
+// Not find_first_of(), which calls memchr() for each character: a tenth of a frame's masks.
+bool IsSeparator(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == ',' || c == '\v' || c == '\f';
+}
 
 void SplitColumns(std::string_view line, std::vector<std::string_view>& columns) {
   columns.clear();
-  for (size_t begin = line.find_first_not_of(kSeparators); begin != std::string_view::npos;) {
-    const size_t end = std::min(line.find_first_of(kSeparators, begin), line.size());
-    columns.push_back(line.substr(begin, end - begin));
-    begin = line.find_first_not_of(kSeparators, end);
+  const auto* begin = std::find_if_not(line.begin(), line.end(), IsSeparator);
+  while (begin != line.end()) {
+    const auto* end = std::find_if(begin, line.end(), IsSeparator);
+    columns.emplace_back(begin, end);
+    begin = std::find_if_not(end, line.end(), IsSeparator);
   }
 }
 
