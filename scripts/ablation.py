@@ -30,7 +30,7 @@ import sys
 
 RECORD = "ablation_run.json"  # beside a run's outputs: what they were made by
 COLUMNS = [  # heading, place in summary.json, format
-    ("ATE m", ("trajectory", "ate_rmse_m"), ".4f"),
+    ("ATE m", ("trajectory", "ate_rmse_m"), ".5f"),
     ("tracked", ("trajectory", "tracked"), ".0f"),
     ("objects", ("objects", "count"), ".1f"),
     ("SIoU", ("objects", "siou_mean"), ".3f"),

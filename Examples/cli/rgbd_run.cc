@@ -137,8 +137,11 @@ RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
     const TrackedFrame frame = system.Track(*loaded->image);
     progress.Show(result.given, [&] { return DescribeState(frame.state, system); });
   }
-  system.Finish(&Interruption());
   progress.Clear();
+  if (!arguments.quiet && !IsInterrupted()) {
+    fmt::print(stderr, "finishing the map\n");  // bundle adjustment of all of it takes a while
+  }
+  system.Finish(&Interruption());
   result.was_interrupted = IsInterrupted();
   result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return result;

@@ -103,7 +103,7 @@ class AblationTest(unittest.TestCase):
         self.assertIn("--masks a b --set objects.residual=bad --seed 2 --quiet", self.calls()[5])
         table = (self.dir / "out" / "ablation.md").read_text()
         self.assertTrue(result.stdout.endswith(table))
-        self.assertIn("| desk | good | 3 | 0.0110 ± 0.0010 | 798 | 6.0 | 0.800 | - | 1.00e-03 |",
+        self.assertIn("| desk | good | 3 | 0.01100 ± 0.00100 | 798 | 6.0 | 0.800 | - | 1.00e-03 |",
                       table)
         self.assertIn("| 9.5 | +100.0 % |", table)
         results = json.loads((self.dir / "out" / "ablation.json").read_text())
@@ -124,7 +124,7 @@ class AblationTest(unittest.TestCase):
     def test_runs_without_masks(self):
         result = self.run_script("--seeds", "1", "--variant", "none:--no-masks")
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("| desk | none | 1 | 0.0100 | 798 | - | - |", result.stdout)
+        self.assertIn("| desk | none | 1 | 0.01000 | 798 | - | - |", result.stdout)
 
     def test_finished_runs_are_not_repeated(self):
         once = ["--seeds", "2", "--variant", "v:"]

@@ -71,6 +71,7 @@ TEST(SequentialPipeline, FramesFollowTheKeyframesThatFinishAdjusts) {
   SystemOptions options;
   options.mapping.local_keyframes = 2;
   options.mapping.fixed_keyframes = 1;
+  options.mapping.final_bundle_adjustment = false;
   const Outcome before = RunOnce(world, options);
   options.mapping.final_bundle_adjustment = true;
   const Outcome after = RunOnce(world, options);

@@ -9,7 +9,7 @@ struct MappingOptions {
   int local_keyframes = 20;  // that local bundle adjustment moves, at most
   int fixed_keyframes = 20;  // that hold it, at most
   bool cull_keyframes = true;
-  bool final_bundle_adjustment = false;  // of the whole map, at the end
+  bool final_bundle_adjustment = true;  // of the whole map, at the end
 
   void Bind(OptionTable& options);
 };
