@@ -69,14 +69,6 @@ struct ImagePlane {
   }
 };
 
-Eigen::AlignedBox2d BoxOf(const Polygon& polygon) {
-  Eigen::AlignedBox2d box;
-  for (const Eigen::Vector2d& corner : polygon) {
-    box.extend(corner);
-  }
-  return box;
-}
-
 // Segmenters give contours either way round.
 Polygon WithPositiveArea(Polygon polygon) {
   if (SignedArea(polygon) < 0.0) {
@@ -88,7 +80,7 @@ Polygon WithPositiveArea(Polygon polygon) {
 double OverlapWithHull(const Polygon& outline, const ReportedView& view,
                        const Eigen::AlignedBox2d& image) {
   const Polygon hull = ClipToBox(view.hull, image);
-  return view.is_box ? IntersectionOverUnion(BoxOf(outline), BoxOf(hull))
+  return view.is_box ? IntersectionOverUnion(BoundingBox(outline), BoundingBox(hull))
                      : IntersectionOverUnion(outline, hull);
 }
 

@@ -95,4 +95,12 @@ double SignedArea(std::span<const Eigen::Vector2d> polygon) {
   return 0.5 * twice;
 }
 
+Eigen::AlignedBox2d BoundingBox(std::span<const Eigen::Vector2d> points) {
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& point : points) {
+    box.extend(point);
+  }
+  return box;
+}
+
 }  // namespace hullslam

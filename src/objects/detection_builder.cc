@@ -54,11 +54,7 @@ std::optional<DetectionRejection> CheckOutline(const Outline& outline, const Fra
   if (outline.hull.size() < 3) {
     return DetectionRejection::kDegenerate;
   }
-  Eigen::AlignedBox2d box;
-  for (const Eigen::Vector2d& corner : outline.hull) {
-    box.extend(corner);
-  }
-  if (box.sizes().minCoeff() < frame.options.min_side_px) {
+  if (BoundingBox(outline.hull).sizes().minCoeff() < frame.options.min_side_px) {
     return DetectionRejection::kTooSmall;
   }
   const double image = static_cast<double>(frame.depth.camera.width) * frame.depth.camera.height;
@@ -85,9 +81,7 @@ Detection DetectionOf(const InstanceMask& mask, const Outline& outline, const Fr
   detection.score = mask.score;
   detection.contour = outline.contour;
   detection.hull = outline.hull;
-  for (const Eigen::Vector2d& corner : outline.hull) {
-    detection.box.extend(corner);
-  }
+  detection.box = BoundingBox(outline.hull);
   detection.is_box = mask.shape == MaskShape::kBox;
   detection.is_cut = std::any_of(outline.hull.begin(), outline.hull.end(), [&](const auto& corner) {
     return IsAtBorder(corner, frame.depth.camera, frame.options.border_px);

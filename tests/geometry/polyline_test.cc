@@ -108,5 +108,13 @@ TEST(SignedArea, IsKnownAndChangesSignWithTheOrder) {
   EXPECT_EQ(SignedArea(Polygon{{1.0, 2.0}, {3.0, 4.0}}), 0.0);
 }
 
+TEST(BoundingBox, HoldsThePoints) {
+  const std::vector<Eigen::Vector2d> points{{1.0, 5.0}, {-2.0, 3.0}, {0.0, 7.0}};
+  const Eigen::AlignedBox2d box = BoundingBox(points);
+  EXPECT_EQ(box.min(), Eigen::Vector2d(-2.0, 3.0));
+  EXPECT_EQ(box.max(), Eigen::Vector2d(1.0, 7.0));
+  EXPECT_TRUE(BoundingBox({}).isEmpty());
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hullslam/geometry/dual_quadric.h"
+#include "hullslam/geometry/polyline.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/sensor.h"
 
@@ -72,9 +73,7 @@ inline Detection Detect(const MadeObject& object, const Sensor& sensor,
   detection.label = object.label;
   detection.hull = ellipse.Polygon(64);
   detection.contour = detection.hull;
-  for (const Eigen::Vector2d& corner : detection.hull) {
-    detection.box.extend(corner);
-  }
+  detection.box = BoundingBox(detection.hull);
   for (int i = 0; i < 16; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / 16;
     SilhouetteLine line;

@@ -57,6 +57,22 @@ TEST_F(Validity, AnOutlineElsewhere) {
   EXPECT_EQ(Reason(ellipsoid), ObjectRejection::kLowOverlap);
 }
 
+// A box holds more than the outline that touches its four sides: they are compared as boxes.
+TEST_F(Validity, ABoxIsComparedWithTheBoxOfTheOutline) {
+  std::vector<Detection> detections;
+  std::vector<ObjectView> views = CollectViews(map_, map_.objects().At(id_));
+  detections.reserve(views.size());
+  for (ObjectView& view : views) {
+    Detection& seen = detections.emplace_back(*view.detection);
+    seen.is_box = true;
+    const Eigen::Vector2d& low = seen.box.min();
+    const Eigen::Vector2d& high = seen.box.max();
+    seen.hull = {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
+    view.detection = &seen;
+  }
+  EXPECT_NEAR(MeanOverlap(made_.ellipsoid, sensor_, views), 1.0, 1e-9);
+}
+
 // Farther along the view and larger: the outlines are right all the same.
 TEST_F(Validity, ADriftAlongTheViewThatOutlinesDoNotShow) {
   Map map;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <span>
 #include <vector>
 
@@ -14,5 +15,8 @@ std::vector<Eigen::Vector2d> SimplifyPolygon(std::span<const Eigen::Vector2d> po
 
 // Signed area by the shoelace formula, px^2.
 double SignedArea(std::span<const Eigen::Vector2d> polygon);
+
+// The least box that holds the points, with sides along the axes; empty for none.
+Eigen::AlignedBox2d BoundingBox(std::span<const Eigen::Vector2d> points);
 
 }  // namespace hullslam

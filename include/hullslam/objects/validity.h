@@ -26,8 +26,8 @@ std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor&
                                        std::span<const ObjectView> views,
                                        const ObjectOptions& options);
 
-// Mean over the views of the IoU of the outline, clipped to the image, with the hull; 0 where the
-// ellipsoid is not in front of a camera.
+// Mean over the views of the IoU of the outline, clipped to the image, with the hull, or of their
+// boxes where the mask is a box; 0 where the ellipsoid is not in front of a camera.
 double MeanOverlap(const Ellipsoid& ellipsoid, const Sensor& sensor,
                    std::span<const ObjectView> views);
 
