@@ -1,0 +1,97 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws the trajectory error of an ablation over a number: of variants named NAME-NUMBER (with-1000,
+with-300, without-1000, ...) each NAME becomes a curve over NUMBER, with a panel for each sequence.
+
+OUT is a folder of scripts/ablation.py; of each ablation.json is read. Points are means over the
+runs, bars the standard deviation. Where runs failed or tracked fewer frames than others of the
+sequence did, the point is hollow: its error is that of an easier part.
+"""
+
+import argparse
+import json
+import pathlib
+import re
+import sys
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+from run_objects import InputError  # noqa: E402
+
+COMPLETE = 0.99  # share of the frames of the best variant: fewer are fewer
+
+
+def read_points(folder):
+    """{sequence: {curve: [(number, ATE mm, deviation mm, is complete), ...]}} of an ablation."""
+    path = folder / "ablation.json"
+    curves, most = {}, {}
+    try:
+        results = json.loads(path.read_text(encoding="utf-8"))
+        for result in results:
+            tracked = result["figures"]["tracked"]["mean"] or 0.0
+            most[result["sequence"]] = max(most.get(result["sequence"], 0.0), tracked)
+        for result in results:
+            name = re.fullmatch(r"(.+)-(\d+(?:\.\d+)?)", result["variant"])
+            ate = result["figures"]["ATE m"]
+            if name is None or ate["mean"] is None:
+                continue
+            tracked = result["figures"]["tracked"]["mean"] or 0.0
+            is_complete = not result["failed"] and tracked >= COMPLETE * most[result["sequence"]]
+            curves.setdefault(result["sequence"], {}).setdefault(name[1], []).append(
+                (float(name[2]), 1000.0 * ate["mean"], 1000.0 * ate["sd"], is_complete))
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        reason = f"no {error}" if isinstance(error, KeyError) else error
+        raise InputError(f"{path}: not readable as ablation.json: {reason}") from error
+    if not curves:
+        raise InputError(f"{path}: no variant with a trajectory error is named NAME-NUMBER")
+    return {sequence: {name: sorted(points) for name, points in named.items()}
+            for sequence, named in curves.items()}
+
+
+def draw_panel(axes, sequence, curves, x_label):
+    for name, points in curves.items():
+        numbers, errors, deviations, complete = zip(*points)
+        line = axes.errorbar(numbers, errors, yerr=deviations, capsize=3, label=name)
+        colour = line[0].get_color()
+        for number, error, is_complete in zip(numbers, errors, complete):
+            axes.plot(number, error, "o", color=colour, ms=6,
+                      mfc=colour if is_complete else "white")
+    ticks = sorted({point[0] for points in curves.values() for point in points})
+    axes.set_xscale("log")
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.minorticks_off()
+    axes.invert_xaxis()
+    axes.set_ylim(bottom=0.0)
+    axes.set_title(sequence)
+    axes.set_xlabel(x_label)
+    axes.set_ylabel("ATE RMSE, mm")
+    axes.grid(alpha=0.3)
+    axes.legend(frameon=False)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folders", type=pathlib.Path, metavar="OUT", nargs="+")
+    parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("ablation.png"),
+                        help="picture (default ablation.png)")
+    parser.add_argument("--x", default="number", help="what the numbers are")
+    arguments = parser.parse_args()
+    try:
+        panels = [panel for folder in arguments.folders for panel in read_points(folder).items()]
+        figure, axes = plt.subplots(1, len(panels), figsize=(5.5 * len(panels), 4.0), squeeze=False,
+                                    layout="constrained")
+        for panel, (sequence, curves) in zip(axes[0], panels):
+            draw_panel(panel, sequence, curves, arguments.x)
+        figure.savefig(arguments.output, dpi=90)
+    except (InputError, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    print(arguments.output)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
