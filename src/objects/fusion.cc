@@ -66,13 +66,26 @@ std::vector<Eigen::Vector3d> Centroids(const Map& map, const ObjectLandmark& obj
   return centroids;
 }
 
-bool AreOne(const Map& map, const ObjectLandmark& a, const ObjectLandmark& b) {
-  if (!a.has_shape || !b.has_shape) {
-    return false;
+// Whether their centres are not farther apart than their largest half axes together.
+bool AreNear(const Ellipsoid& a, const Ellipsoid& b) {
+  const Eigen::Vector3d offset = a.world_from_object.translation - b.world_from_object.translation;
+  return offset.norm() <= a.half_axes.maxCoeff() + b.half_axes.maxCoeff();
+}
+
+// Whether the image of most of the keyframes that see `seen` holds the centre of `other`.
+bool ShouldBeSeenWith(const Map& map, const Sensor& sensor, const ObjectLandmark& seen,
+                      const ObjectLandmark& other) {
+  size_t inside = 0;
+  for (const ObjectObservation& observation : seen.observations) {
+    const Eigen::Vector3d center = map.keyframes().At(observation.keyframe).cam_from_world *
+                                   other.ellipsoid.world_from_object.translation;
+    inside += center.z() > 0.0 && sensor.bounds.Contains(sensor.camera.Project(center)) ? 1 : 0;
   }
-  const Eigen::Vector3d offset =
-      a.ellipsoid.world_from_object.translation - b.ellipsoid.world_from_object.translation;
-  if (offset.norm() > a.ellipsoid.half_axes.maxCoeff() + b.ellipsoid.half_axes.maxCoeff()) {
+  return 2 * inside > seen.observations.size();
+}
+
+bool AreOne(const Map& map, const ObjectLandmark& a, const ObjectLandmark& b) {
+  if (!a.has_shape || !b.has_shape || !AreNear(a.ellipsoid, b.ellipsoid)) {
     return false;
   }
   const size_t shared = SharedKeyframes(a, b);
@@ -92,6 +105,19 @@ bool AreOne(const Map& map, const ObjectLandmark& a, const ObjectLandmark& b) {
 }
 
 }  // namespace
+
+std::optional<ObjectId> FindWhole(const Map& map, const Sensor& sensor, ObjectId candidate) {
+  const ObjectLandmark& part = map.objects().At(candidate);
+  std::optional<ObjectId> whole;
+  map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    if (!whole && id != candidate && object.state == ObjectState::kMapped &&
+        object.Label() == part.Label() && AreNear(part.ellipsoid, object.ellipsoid) &&
+        SharedKeyframes(part, object) == 0 && ShouldBeSeenWith(map, sensor, part, object)) {
+      whole = id;
+    }
+  });
+  return whole;
+}
 
 double VolumeOverlap(const Ellipsoid& a, const Ellipsoid& b) {
   const bool a_is_smaller = Volume(a) <= Volume(b);

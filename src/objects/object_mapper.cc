@@ -180,6 +180,12 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
     Reject(map, id, *objection);
     return;
   }
+  if (const auto whole = FindWhole(map, sensor_, id)) {
+    Reject(map, id,
+           {ObjectRejection::kPart,
+            fmt::format("never seen together with object {} beside it", whole->value)});
+    return;
+  }
   object.state = ObjectState::kMapped;
   Accept(map, id, views);
   spdlog::debug("object {} ({}): mapped from {} keyframes, {:.1f} degrees", id.value,

@@ -12,7 +12,7 @@ void ObjectOptions::Bind(OptionTable& options) {
   options.Add("objects.misfit_compensation", &misfit_compensation,
               "correct outlines by what other keyframes tell of the object's true shape");
   options.Add("objects.guided_matching", &guided_matching,
-              "search landmarks on mapped objects within their masks");
+              "search landmarks on mapped objects that the local map lacks, within their masks");
   options.AddEnum("objects.residual", &residual, ObjectResidualNames(),
                   "what is minimised between a quadric and an outline");
   detection.Bind(options);

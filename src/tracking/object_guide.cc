@@ -2,6 +2,7 @@
 #include "hullslam/tracking/object_guide.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "hullslam/objects/object_view.h"
 
@@ -47,13 +48,15 @@ std::vector<uint8_t> KeypointsOutside(const Frame& frame, const Detection& detec
 
 }  // namespace
 
-std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object) {
+std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object,
+                                    const std::vector<bool>& is_known) {
   std::vector<LandmarkId> landmarks;
   for (const ObjectView& view : CollectViews(map, object, kMaxViews)) {
     const Keyframe& keyframe = map.keyframes().At(view.keyframe);
     for (const uint32_t keypoint : view.detection->keypoints) {
-      if (keyframe.landmarks[keypoint].IsValid()) {
-        landmarks.push_back(keyframe.landmarks[keypoint]);
+      const LandmarkId landmark = keyframe.landmarks[keypoint];
+      if (landmark.IsValid() && !is_known[landmark.value]) {
+        landmarks.push_back(landmark);
       }
     }
   }
@@ -68,12 +71,16 @@ std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object
 }
 
 std::vector<ObjectGuide> GuideByObjects(const Map& map, const Frame& frame,
-                                        std::span<const ObjectId> objects) {
+                                        std::span<const ObjectId> objects,
+                                        const std::vector<bool>& is_known) {
   std::vector<ObjectGuide> guides;
   for (size_t i = 0; i < objects.size(); ++i) {
-    if (objects[i].IsValid()) {
-      guides.push_back({LandmarksOn(map, map.objects().At(objects[i])),
-                        KeypointsOutside(frame, frame.detections[i])});
+    if (!objects[i].IsValid()) {
+      continue;
+    }
+    std::vector<LandmarkId> landmarks = LandmarksOn(map, map.objects().At(objects[i]), is_known);
+    if (!landmarks.empty()) {
+      guides.push_back({std::move(landmarks), KeypointsOutside(frame, frame.detections[i])});
     }
   }
   return guides;

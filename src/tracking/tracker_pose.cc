@@ -153,19 +153,16 @@ std::optional<Tracker::Estimate> Tracker::TrackLocalMap(Estimate estimate) {
     reference_ = local.reference;
   }
   std::vector<bool> is_known = CountTracked(estimate);
-  std::vector<ObjectId> objects;
+  SearchLandmarks(local.landmarks, {}, is_known, estimate);
+  const std::vector<ObjectId> objects = FindObjects(estimate);
   if (object_options_.guided_matching) {
-    objects = FindObjects(estimate);
-    for (const ObjectGuide& guide : GuideByObjects(*map_, *frame_, objects)) {
+    // What the local map has is known by now: these are landmarks that it does not reach.
+    for (const ObjectGuide& guide : GuideByObjects(*map_, *frame_, objects, is_known)) {
       SearchLandmarks(guide.landmarks, guide.is_outside, is_known, estimate);
     }
   }
-  SearchLandmarks(local.landmarks, {}, is_known, estimate);
   PoseObjects found;
   if (object_options_.joint_pose) {
-    if (!object_options_.guided_matching) {
-      objects = FindObjects(estimate);
-    }
     found = TakePoseObjects(estimate, objects);
     estimate.unknown_objects = static_cast<int>(frame_->detections.size() - found.objects.size());
   }
@@ -180,8 +177,9 @@ std::optional<Tracker::Estimate> Tracker::TrackLocalMap(Estimate estimate) {
 }
 
 std::vector<ObjectId> Tracker::FindObjects(const Estimate& estimate) const {
-  const bool may_show =
-      object_options_.enabled && !frame_->detections.empty() && !map_->objects().empty();
+  const bool is_wanted = object_options_.joint_pose || object_options_.guided_matching;
+  const bool may_show = object_options_.enabled && is_wanted && !frame_->detections.empty() &&
+                        !map_->objects().empty();
   return may_show ? FindMappedObjects(*map_, sensor_, *frame_, estimate.cam_from_world,
                                       estimate.landmarks)
                   : std::vector<ObjectId>();

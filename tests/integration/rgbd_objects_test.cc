@@ -118,7 +118,8 @@ TEST_F(RgbdObjects, ThatAreOnlyMappedLeavePosesAlone) {
     return Run(name, arguments);
   };
   const fs::path off = run("off", {"objects.enabled=0"});
-  const fs::path mapped = run("mapped", {"objects.joint_pose=0", "objects.bundle_adjustment=0"});
+  const fs::path mapped = run("mapped", {"objects.joint_pose=0", "objects.bundle_adjustment=0",
+                                         "objects.guided_matching=0"});
   ExpectSameBytes(off, mapped, {"trajectory.txt", "keyframes.txt", "map.ply"});
   EXPECT_GE(Summary(mapped)["objects"]["count"], 3);
 }

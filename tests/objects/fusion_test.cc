@@ -78,5 +78,49 @@ TEST_F(Duplicates, AnObjectIsInOnePairAtMost) {
   EXPECT_EQ(FindDuplicates(map_).size(), 1u);
 }
 
+// A book under another one: first its left end is seen, then its right end.
+class Parts : public Duplicates {
+ protected:
+  Parts() { Look({left_, right_}, 8); }
+  ObjectId AddMapped(const MadeObject& made, const std::vector<int>& keyframes, uint32_t slot) {
+    const ObjectId id = Add(made, keyframes, slot);
+    map_.MutableObject(id).state = ObjectState::kMapped;
+    return id;
+  }
+  MadeObject left_ = MakeObject("book", {-0.06, 0.0, 0.0}, {0.02, 0.10, 0.02});
+  MadeObject right_ = MakeObject("book", {0.06, 0.0, 0.0}, {0.02, 0.10, 0.02});
+};
+
+TEST_F(Parts, OfAClassInOneViewButNeverSeenTogetherAreOfOneObject) {
+  const ObjectId left = AddMapped(left_, {0, 1, 2, 3, 4}, 0);
+  const ObjectId right = Add(right_, {5, 6, 7}, 1);
+  EXPECT_TRUE(FindDuplicates(map_).empty());
+  EXPECT_EQ(FindWhole(map_, sensor_, right), left);
+  EXPECT_FALSE(FindWhole(map_, sensor_, left).has_value());  // the other one is not mapped
+}
+
+TEST_F(Parts, AreNotThoseSeenTogether) {
+  AddMapped(left_, {0, 1, 2, 3, 4, 5}, 0);
+  EXPECT_FALSE(FindWhole(map_, sensor_, Add(right_, {5, 6, 7}, 1)).has_value());
+}
+
+TEST_F(Parts, AreNotThingsOfTwoClasses) {
+  const ObjectId left = AddMapped(left_, {0, 1, 2, 3, 4}, 0);
+  map_.MutableObject(left).votes = {{"keyboard", 4.0}, {"book", 1.0}};
+  EXPECT_FALSE(FindWhole(map_, sensor_, Add(right_, {5, 6, 7}, 1)).has_value());
+}
+
+TEST_F(Parts, AreNotFarFromOneAnother) {
+  const ObjectId left = AddMapped(left_, {0, 1, 2, 3, 4}, 0);
+  map_.MutableObject(left).ellipsoid.world_from_object.translation.x() = -0.3;
+  EXPECT_FALSE(FindWhole(map_, sensor_, Add(right_, {5, 6, 7}, 1)).has_value());
+}
+
+TEST_F(Parts, AreNotThoseThatNoImageCouldShowTogether) {
+  sensor_.bounds.max_x = 10.0;
+  AddMapped(left_, {0, 1, 2, 3, 4}, 0);
+  EXPECT_FALSE(FindWhole(map_, sensor_, Add(right_, {5, 6, 7}, 1)).has_value());
+}
+
 }  // namespace
 }  // namespace hullslam

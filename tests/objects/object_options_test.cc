@@ -13,12 +13,12 @@ TEST(ObjectOptions, AreBoundByTheirNames) {
   OptionTable table;
   options.Bind(table);
   table.Set("objects.enabled", "0", "test");
-  table.Set("objects.guided_matching", "1", "test");
+  table.Set("objects.guided_matching", "0", "test");
   table.Set("objects.residual", "algebraic_plane", "test");
   table.Set("objects.primitive", "hull", "test");
   table.Set("objects.sigma", "2.5", "test");
   EXPECT_FALSE(options.enabled);
-  EXPECT_TRUE(options.guided_matching);
+  EXPECT_FALSE(options.guided_matching);
   EXPECT_EQ(options.residual, ObjectResidual::kAlgebraicPlane);
   EXPECT_EQ(options.detection.primitive, ObjectPrimitive::kHull);
   EXPECT_EQ(options.sigma, 2.5);

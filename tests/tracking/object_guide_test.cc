@@ -104,10 +104,11 @@ class ObjectGuideTest : public testing::Test {
   SyntheticMap made_ = MakeSyntheticMap(
       world_, {0, 4, 8, 12, 16},
       [this](Frame& frame, const Rigid3& cam_from_world) { AddDetection(frame, cam_from_world); });
+  std::vector<bool> known_ = std::vector<bool>(made_.map.landmarks().NextId().value, false);
 };
 
 TEST_F(ObjectGuideTest, LandmarksOnAnObjectAreThoseInItNotThoseBehindIt) {
-  const std::vector<LandmarkId> found = LandmarksOn(made_.map, object());
+  const std::vector<LandmarkId> found = LandmarksOn(made_.map, object(), known_);
   EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
   int inside = 0;
   for (uint32_t point = 0; point < made_.landmarks.size(); ++point) {
@@ -127,9 +128,9 @@ TEST_F(ObjectGuideTest, AGuideLeavesOutTheKeypointsBesideTheMask) {
   Frame frame = *world_.Observe(19).frame;
   AddDetection(frame, camera);
   const std::vector<ObjectGuide> guides =
-      GuideByObjects(made_.map, frame, std::vector<ObjectId>{ObjectId(0)});
+      GuideByObjects(made_.map, frame, std::vector<ObjectId>{ObjectId(0)}, known_);
   ASSERT_EQ(guides.size(), 1u);
-  EXPECT_EQ(guides[0].landmarks, LandmarksOn(made_.map, object()));
+  EXPECT_EQ(guides[0].landmarks, LandmarksOn(made_.map, object(), known_));
   ASSERT_EQ(guides[0].is_outside.size(), frame.features.size());
   const Ellipse outline = Outline(camera);
   const double radius = std::sqrt(outline.Area() / std::numbers::pi);  // it is nearly a circle
@@ -145,43 +146,31 @@ TEST_F(ObjectGuideTest, AGuideLeavesOutTheKeypointsBesideTheMask) {
 TEST_F(ObjectGuideTest, DetectionsOfNoObjectGuideNothing) {
   Frame frame = *world_.Observe(19).frame;
   AddDetection(frame, SyntheticWorld::CamFromWorld(19));
-  EXPECT_TRUE(GuideByObjects(made_.map, frame, std::vector<ObjectId>{ObjectId()}).empty());
-  EXPECT_TRUE(GuideByObjects(made_.map, frame, {}).empty());
+  EXPECT_TRUE(GuideByObjects(made_.map, frame, std::vector<ObjectId>{ObjectId()}, known_).empty());
+  EXPECT_TRUE(GuideByObjects(made_.map, frame, {}, known_).empty());
 }
 
-// Things beside the ball that look like spots on it: without the mask nobody can tell which is
-// which, and neither is taken.
-TEST_F(ObjectGuideTest, TellsSpotsOnAnObjectFromTheSameBesideIt) {
-  const Rigid3 camera = SyntheticWorld::CamFromWorld(19);
-  const SyntheticView view = world_.Observe(19);
-  auto frame = std::make_shared<Frame>(*view.frame);
-  AddDetection(*frame, camera);
-  const Ellipse outline = Outline(camera);
-  int doubles = 0;
-  for (const uint32_t i : frame->detections[0].keypoints) {
-    const Eigen::Vector2f center = outline.center.cast<float>();
-    const Keypoint spot = frame->features.keypoints[i];
-    const Eigen::Vector2f offset = spot.undistorted - center;
-    const float to_rim =
-        static_cast<float>(std::sqrt(outline.Area() / std::numbers::pi)) - offset.norm();
-    if (DistanceFromBall(view.points[i]) > 0.0 ||
-        to_rim + 8.0f > 7.0f * std::pow(1.2f, spot.level)) {
-      continue;
-    }
-    ++doubles;
-    CopyKeypoint(*view.frame, i, *frame);
-    const float shift_u = (to_rim + 8.0f) * offset.x() / offset.norm();
-    frame->features.keypoints.back().undistorted += (to_rim + 8.0f) * offset.normalized();
-    frame->features.right_u.back() += frame->features.right_u.back() >= 0.0f ? shift_u : 0.0f;
-  }
-  RebuildGrid(world_.sensor(), *frame);
-  ASSERT_GE(doubles, 3);
-  EXPECT_GE(Track(frame, true), Track(frame, false) + doubles);
+TEST_F(ObjectGuideTest, LeavesOutTheLandmarksThatAreKnown) {
+  Frame frame = *world_.Observe(19).frame;
+  AddDetection(frame, SyntheticWorld::CamFromWorld(19));
+  const std::vector<ObjectId> objects{ObjectId(0)};
+  std::vector<LandmarkId> on_ball = LandmarksOn(made_.map, object(), known_);
+  known_[on_ball.front().value] = true;
+  on_ball.erase(on_ball.begin());
+  EXPECT_EQ(GuideByObjects(made_.map, frame, objects, known_).at(0).landmarks, on_ball);
+  known_.assign(known_.size(), true);
+  EXPECT_TRUE(GuideByObjects(made_.map, frame, objects, known_).empty());
+}
+
+TEST_F(ObjectGuideTest, WhatTheLocalMapHasIsSearchedAsEver) {
+  auto frame = std::make_shared<Frame>(*world_.Observe(19).frame);
+  AddDetection(*frame, SyntheticWorld::CamFromWorld(19));
+  EXPECT_EQ(Track(frame, true), Track(frame, false));
 }
 
 TEST_F(ObjectGuideTest, BringsInLandmarksThatTheLocalMapForgot) {
   // Frames are tracked by keyframe 0; only the last two found the landmarks on the ball.
-  for (const LandmarkId id : LandmarksOn(made_.map, object())) {
+  for (const LandmarkId id : LandmarksOn(made_.map, object(), known_)) {
     for (uint32_t k = 0; k < 3; ++k) {
       Forget(id, KeyframeId(k));
     }
@@ -191,7 +180,7 @@ TEST_F(ObjectGuideTest, BringsInLandmarksThatTheLocalMapForgot) {
   }
   auto frame = std::make_shared<Frame>(*world_.Observe(19).frame);
   AddDetection(*frame, SyntheticWorld::CamFromWorld(19));
-  const int forgotten = static_cast<int>(LandmarksOn(made_.map, object()).size());
+  const int forgotten = static_cast<int>(LandmarksOn(made_.map, object(), known_).size());
   ASSERT_GT(forgotten, 20);
   EXPECT_GE(Track(frame, true, 1), Track(frame, false, 1) + forgotten / 2);
 }

@@ -14,7 +14,7 @@ struct ObjectOptions {
   bool joint_pose = true;         // lines of mapped objects hold the pose of each frame
   bool bundle_adjustment = true;  // quadrics are moved together with poses and points
   bool misfit_compensation = true;
-  bool guided_matching = false;  // landmarks on objects are searched within their detections
+  bool guided_matching = true;  // landmarks on objects that the local map lacks are searched
   ObjectResidual residual = ObjectResidual::kTangent;
   DetectionOptions detection;
 

@@ -16,10 +16,11 @@ enum class ObjectRejection {
   kLowOverlap,  // of outline and hulls
   kOffPoints,   // depth points are neither in it nor near its surface
   kStretched,   // it reaches far beyond its points
+  kPart,        // of a mapped object
   kSeldomSeen,  // culled
   kFused,       // it was one with another object
 };
-inline constexpr int kObjectRejectionCount = 11;
+inline constexpr int kObjectRejectionCount = 12;
 
 // As in summary.json: "few_views".
 std::string ToString(ObjectRejection reason);

@@ -39,11 +39,11 @@ class OptionTable {
   void Add(std::string key, std::string* field, std::vector<std::string> choices, std::string help);
   // An enum by the names of its enumerators, which count from 0 in the order of `names`.
   template <typename Enum>
-  void AddEnum(std::string key, Enum* field, const std::vector<std::string>& names,
-               std::string help) {
+  void AddEnum(const std::string& key, Enum* field, const std::vector<std::string>& names,
+               const std::string& help) {
     AddChoice(
-        std::move(key), names, [field](size_t index) { *field = static_cast<Enum>(index); },
-        [field] { return static_cast<size_t>(*field); }, std::move(help));
+        key, names, [field](size_t index) { *field = static_cast<Enum>(index); },
+        [field] { return static_cast<size_t>(*field); }, help);
   }
   // Any text.
   void AddText(std::string key, std::string* field, std::string help);
