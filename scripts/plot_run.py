@@ -245,7 +245,10 @@ def draw_times(plot, run):
     plot.barh(rows, tails, color=ESTIMATE, alpha=0.25)
     plot.barh(rows, medians, color=ESTIMATE)
     for row, median in zip(rows, medians):
-        plot.text(median, row, f" {median:.3g}", va="center", fontsize=8)
+        figures = f"{median:.0f}" if median >= 100.0 else f"{median:.3g}"
+        plot.text(max(median, 0.1), row, f" {figures}", va="center", fontsize=8)
+    plot.set_xscale("log")  # a pose takes milliseconds, adjusting the whole map a second
+    plot.set_xlim(left=0.1, right=3.0 * max(1.0, *tails))
     plot.set_yticks(rows, names, fontsize=8)
     plot.invert_yaxis()
     plot.grid(axis="x", alpha=0.25)
