@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the trajectory error of an ablation over a number: of variants named NAME-NUMBER (with-1000,
-with-300, without-1000, ...) each NAME becomes a curve over NUMBER, with a panel for each sequence.
+"""Draws the trajectory error of an ablation over a number: of variants named NAME-NUMBER
+(with-1000, with-300, without-1000, ...) each NAME becomes a curve over NUMBER, with a panel for
+each sequence.
 
 OUT is a folder of scripts/ablation.py; of each ablation.json is read. Points are means over the
 runs, bars the standard deviation. Where runs failed or tracked fewer frames than others of the

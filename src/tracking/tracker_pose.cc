@@ -156,7 +156,7 @@ std::optional<Tracker::Estimate> Tracker::TrackLocalMap(Estimate estimate) {
   SearchLandmarks(local.landmarks, {}, is_known, estimate);
   const std::vector<ObjectId> objects = FindObjects(estimate);
   if (object_options_.guided_matching) {
-    // What the local map has is known by now: these are landmarks that it does not reach.
+    // What the local map has in sight is known by now: these are landmarks beyond it.
     for (const ObjectGuide& guide : GuideByObjects(*map_, *frame_, objects, is_known)) {
       SearchLandmarks(guide.landmarks, guide.is_outside, is_known, estimate);
     }

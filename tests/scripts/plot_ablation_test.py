@@ -42,7 +42,8 @@ class PlotAblationTest(unittest.TestCase):
             "off": [(30.0, 6.0, 1.0, True)]}})
 
     def test_points_of_fewer_frames_or_failed_runs_are_not_complete(self):
-        self.write([result("a-1", 0.1), result("a-2", 0.1, tracked=290.0), result("a-3", 0.1, failed=1),
+        self.write([result("a-1", 0.1), result("a-2", 0.1, tracked=290.0),
+                    result("a-3", 0.1, failed=1),
                     result("a-1", 0.1, tracked=80.0, sequence="short")])
         points = plot_ablation.read_points(self.dir)
         self.assertEqual([point[3] for point in points["desk"]["a"]], [True, False, False])
