@@ -15,13 +15,13 @@
 #include "cli/mask_overlay.h"
 #include "cli/program.h"
 #include "cli/progress.h"
+#include "hullslam/frame/detection_builder.h"
 #include "hullslam/io/atomic_file.h"
 #include "hullslam/io/image_file.h"
 #include "hullslam/io/mask_source.h"
 #include "hullslam/io/output_folder.h"
 #include "hullslam/io/settings.h"
 #include "hullslam/io/tum_sequence.h"
-#include "hullslam/objects/detection_builder.h"
 
 namespace hullslam {
 namespace {

@@ -18,14 +18,15 @@
 #include "cli/object_outputs.h"
 #include "cli/program.h"
 #include "cli/progress.h"
+#include "hullslam/frame/detection_builder.h"
+#include "hullslam/frame/dynamic_mask.h"
 #include "hullslam/io/image_file.h"
 #include "hullslam/io/output_folder.h"
 #include "hullslam/io/settings.h"
 #include "hullslam/io/trajectory_file.h"
-#include "hullslam/objects/detection_builder.h"
 #include "hullslam/objects/object_mapper.h"
 #include "hullslam/objects/object_view.h"
-#include "hullslam/tracking/dynamic_mask.h"
+#include "hullslam/system/compose_trajectory.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

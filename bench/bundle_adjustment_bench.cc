@@ -4,8 +4,8 @@
 #include <benchmark/benchmark.h>
 
 #include "hullslam/mapping/mapping_options.h"
-#include "hullslam/optim/bundle_adjustment.h"
 #include "made_map.h"
+#include "optim/bundle_adjustment.h"
 
 namespace hullslam {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/objects/detection_builder.h"
+#include "hullslam/frame/detection_builder.h"
 
 namespace hullslam {
 namespace {

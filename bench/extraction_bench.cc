@@ -9,12 +9,12 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "hullslam/features/corners.h"
+#include "features/corners.h"
+#include "features/orb_descriptor.h"
+#include "features/pyramid.h"
+#include "features/quadtree_selection.h"
 #include "hullslam/features/extractor.h"
 #include "hullslam/features/feature_grid.h"
-#include "hullslam/features/orb_descriptor.h"
-#include "hullslam/features/pyramid.h"
-#include "hullslam/features/quadtree_selection.h"
 
 namespace hullslam {
 namespace {

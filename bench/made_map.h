@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/dual_quadric.h"
-#include "hullslam/map/covisibility.h"
 #include "hullslam/map/map.h"
-#include "hullslam/map/sensor.h"
+#include "map/covisibility.h"
 
 namespace hullslam {
 

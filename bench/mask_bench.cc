@@ -12,8 +12,8 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "hullslam/frame/detection_builder.h"
 #include "hullslam/io/mask_source.h"
-#include "hullslam/objects/detection_builder.h"
 
 namespace hullslam {
 namespace {

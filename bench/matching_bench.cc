@@ -7,10 +7,10 @@
 #include <random>
 #include <vector>
 
-#include "hullslam/geometry/epipolar.h"
-#include "hullslam/matching/by_descriptor.h"
-#include "hullslam/matching/by_projection.h"
-#include "hullslam/matching/for_triangulation.h"
+#include "geometry/epipolar.h"
+#include "matching/by_descriptor.h"
+#include "matching/by_projection.h"
+#include "matching/for_triangulation.h"
 
 namespace hullslam {
 namespace {

@@ -8,10 +8,9 @@
 #include <random>
 #include <vector>
 
-#include "hullslam/costs/projection.h"
-#include "hullslam/map/intrinsics.h"
-#include "hullslam/optim/joint_pose_optimization.h"
-#include "hullslam/optim/pose_optimization.h"
+#include "camera/rgbd_projection.h"
+#include "optim/joint_pose_optimization.h"
+#include "optim/pose_optimization.h"
 
 namespace hullslam {
 namespace {
@@ -28,7 +27,7 @@ std::vector<PoseObservation> MakeObservations(size_t count) {
   for (size_t i = 0; i < count; ++i) {
     PoseObservation& observation = observations[i];
     observation.point = {number(-1.0, 1.0), number(-0.8, 0.8), number(2.0, 5.0)};
-    observation.measured = ProjectRgbd(ToIntrinsics(kCamera), observation.point) +
+    observation.measured = ProjectRgbd(kCamera, observation.point) +
                            Eigen::Vector3d(noise(random), noise(random), noise(random));
     observation.has_depth = i % 4 != 0;
     if (i % 10 == 0) {

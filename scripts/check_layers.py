@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fails on an #include that goes up or sideways between the modules of HullSLAM.
 
-A module includes only headers of its own and of modules of strictly lower levels. Public headers
-include nothing of CGAL, SuiteSparse or Embree, so that users of the library need none of them.
+A module includes only headers of its own and of modules of strictly lower levels, and of these only
+the ones that its CMakeLists.txt names in LINKS. Public headers include no private headers, and
+nothing of CGAL, SuiteSparse or Embree, so that users of the library need none of them.
 """
 
 import argparse
@@ -14,15 +15,20 @@ import sys
 LEVELS = {
     "util": 0,
     "geometry": 1,
-    "camera": 2, "features": 2, "estimators": 2, "costs": 2,
+    "camera": 2, "features": 2, "estimators": 2,
     "bow": 3,
-    "matching": 4, "map": 4,
-    "objects": 5, "optim": 5,
-    "tracking": 6, "mapping": 6, "loop": 6,
-    "system": 7,
-    "io": 8, "eval": 8,
-    # A library of the programs, not of libhullslam: it sees all, and no module sees it.
-    "synthetic": 9,
+    "frame": 4,
+    "costs": 5, "matching": 5,
+    "map": 6,
+    "objects": 7,
+    "optim": 8,
+    "tracking": 9, "mapping": 9, "loop": 9,
+    "system": 10,
+    "report": 11,
+    "eval": 12,
+    "io": 13,
+    # A library of the programs, not of libhullslam: it sees all modules, and no module sees it.
+    "synthetic": 14,
 }
 PROGRAM_SIDE = {"synthetic"}
 
@@ -30,6 +36,7 @@ KEPT_PRIVATE = re.compile(
     r"CGAL/|embree\d?/|suitesparse/|Eigen/(Cholmod|SPQR|UmfPack|KLU)Support$"
     r"|(cholmod|amd|colamd|camd|ccolamd|cs|umfpack|klu|SuiteSparse)\w*\.(h|hpp)$",
     re.IGNORECASE)
+MODULE_CALL = re.compile(r"hullslam_module\(\s*\w+(?:\s+LINKS([\s\w]*?))?\s*(?=PUBLIC|PRIVATE|\))")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -47,7 +54,7 @@ def target_module(included, quoted, path, root):
     parts = included.split("/")
     if parts[0] == "hullslam":
         return parts[1] if len(parts) > 2 else ""
-    if parts[0] in PROGRAM_SIDE:
+    if quoted and len(parts) > 1 and parts[0] in LEVELS:
         return parts[0]
     if quoted:
         beside = (path.parent / included).resolve()
@@ -57,20 +64,33 @@ def target_module(included, quoted, path, root):
     return None
 
 
-def fault(module, target):
+def declared_links(root):
+    """The modules that each module names in LINKS, by module; without those that declare none."""
+    links = {}
+    for module in LEVELS:
+        file = root / "src" / module / "CMakeLists.txt"
+        call = MODULE_CALL.search(file.read_text(encoding="utf-8")) if file.exists() else None
+        if call:
+            links[module] = set((call[1] or "").split())
+    return links
+
+
+def fault(module, target, links):
     """Why `module` may not include a header of `target`, or None."""
     if target == module:
         return None
     if target not in LEVELS:
         return f'unknown module "{target}"'
     if LEVELS[target] < LEVELS[module]:
-        return None
+        if target in links.get(module, LEVELS):
+            return None
+        return f"{module} includes {target}, which src/{module}/CMakeLists.txt does not name in LINKS"
     way = "sideways" if LEVELS[target] == LEVELS[module] else "up"
     return (f"{module} (level {LEVELS[module]}) includes {way}: "
             f"{target} (level {LEVELS[target]})")
 
 
-def check_file(path, module, public, root):
+def check_file(path, module, public, root, links):
     where = path.relative_to(root)
     if module not in LEVELS:
         return [f'{where}: unknown module "{module}"; add it to LEVELS in check_layers.py']
@@ -84,8 +104,10 @@ def check_file(path, module, public, root):
         quoted, included = match[1] == '"', match[2]
         if public and KEPT_PRIVATE.match(included):
             faults.append(f"{where}:{number}: {included} in a public header")
+        if public and quoted and included.split("/")[0] in LEVELS:
+            faults.append(f"{where}:{number}: private header {included} in a public one")
         target = target_module(included, quoted, path, root)
-        reason = None if target is None else fault(module, target)
+        reason = None if target is None else fault(module, target, links)
         if reason:
             faults.append(f"{where}:{number}: {reason} ({included})")
     return faults
@@ -97,8 +119,9 @@ def check_tree(root):
     files = list(source_files(root))
     if not files:
         return [f"{root}: no C++ files in include/hullslam or src"]
+    links = declared_links(root)
     return [line for path, module, public in files
-            for line in check_file(path, module, public, root)]
+            for line in check_file(path, module, public, root, links)]
 
 
 def main():

@@ -5,9 +5,9 @@
 #include <span>
 #include <string>
 
-#include "hullslam/camera/instance_mask.h"
 #include "hullslam/camera/pinhole.h"
-#include "hullslam/objects/detection_builder.h"
+#include "hullslam/frame/detection_builder.h"
+#include "hullslam/frame/instance_mask.h"
 
 namespace hullslam {
 

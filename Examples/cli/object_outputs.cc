@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "hullslam/eval/object_metrics.h"
-#include "hullslam/io/map_file.h"
 #include "hullslam/io/object_file.h"
+#include "hullslam/io/ply_file.h"
 
 namespace hullslam {
 

@@ -9,7 +9,7 @@
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/io/atomic_file.h"
 #include "hullslam/io/summary.h"
-#include "hullslam/map/object_report.h"
+#include "hullslam/report/object_report.h"
 #include "hullslam/system/system.h"
 
 namespace hullslam {

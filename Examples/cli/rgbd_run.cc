@@ -18,11 +18,12 @@
 #include "hullslam/eval/ate.h"
 #include "hullslam/eval/rpe.h"
 #include "hullslam/io/atomic_file.h"
-#include "hullslam/io/map_file.h"
 #include "hullslam/io/output_folder.h"
+#include "hullslam/io/ply_file.h"
 #include "hullslam/io/settings.h"
 #include "hullslam/io/summary.h"
 #include "hullslam/io/trajectory_file.h"
+#include "hullslam/system/compose_trajectory.h"
 #include "hullslam/system/prefetcher.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"
@@ -37,7 +38,7 @@ using Clock = std::chrono::steady_clock;
 
 // An image, or why there is none.
 struct LoadedFrame {
-  std::optional<RgbdImage> image;
+  std::optional<ImageInput> image;
   std::string error;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/ellipse_projection.h"
+#include "costs/ellipse_projection.h"
 
 #include "hullslam/geometry/rigid3.h"
 
@@ -18,7 +18,7 @@ Ellipse ToEllipse(const EllipseNumbers& numbers) {
   return ellipse;
 }
 
-EllipseProjection::EllipseProjection(const Intrinsics& camera, const QuadricInCamera& quadric)
+EllipseProjection::EllipseProjection(const PinholeCamera& camera, const QuadricInCamera& quadric)
     : camera_(camera), quadric_(quadric) {
   conic_ = quadric.square() - quadric.center() * quadric.center().transpose();
   depth2_ = -conic_(2, 2);

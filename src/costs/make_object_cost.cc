@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/make_object_cost.h"
+#include "costs/make_object_cost.h"
 
 #include <vector>
 
-#include "hullslam/costs/quadric_algebraic_plane.h"
-#include "hullslam/costs/quadric_algebraic_point.h"
-#include "hullslam/costs/quadric_distribution.h"
-#include "hullslam/costs/quadric_overlap.h"
-#include "hullslam/costs/quadric_tangent.h"
+#include "costs/quadric_algebraic_plane.h"
+#include "costs/quadric_algebraic_point.h"
+#include "costs/quadric_distribution.h"
+#include "costs/quadric_overlap.h"
+#include "costs/quadric_tangent.h"
 
 namespace hullslam {
 namespace {
@@ -27,7 +27,7 @@ std::vector<Eigen::Vector2d> Thin(std::span<const Eigen::Vector2d> contour) {
 
 using CostPointer = std::unique_ptr<ceres::CostFunction>;
 
-CostPointer OverlapWithRegion(const Intrinsics& camera, std::span<const Eigen::Vector2d> region,
+CostPointer OverlapWithRegion(const PinholeCamera& camera, std::span<const Eigen::Vector2d> region,
                               double sigma) {
   if (region.size() < 3) {
     return nullptr;
@@ -35,7 +35,7 @@ CostPointer OverlapWithRegion(const Intrinsics& camera, std::span<const Eigen::V
   return std::make_unique<OverlapCost>(camera, region, sigma);
 }
 
-CostPointer MakeOverlap(ObjectPrimitive primitive, const Intrinsics& camera,
+CostPointer MakeOverlap(ObjectPrimitive primitive, const PinholeCamera& camera,
                         const ObjectMeasurement& measurement, double sigma) {
   if (primitive == ObjectPrimitive::kHull) {
     return OverlapWithRegion(camera, measurement.hull, sigma);
@@ -70,7 +70,7 @@ bool HasInput(ObjectResidual residual, const ObjectMeasurement& measurement) {
 }  // namespace
 
 CostPointer MakeObjectCost(ObjectResidual residual, ObjectPrimitive primitive,
-                           const Intrinsics& camera, const ObjectMeasurement& measurement,
+                           const PinholeCamera& camera, const ObjectMeasurement& measurement,
                            double sigma) {
   if (!IsSupported(residual, primitive) || !HasInput(residual, measurement)) {
     return nullptr;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/pixel_error.h"
+#include "costs/pixel_error.h"
 
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
 
-#include "hullslam/costs/ellipse_projection.h"
-#include "hullslam/costs/pose_manifold.h"
+#include "costs/ellipse_projection.h"
+#include "costs/pose_manifold.h"
 
 namespace hullslam {
 
-std::optional<double> ResidualOfPixelError(ObjectResidual residual, const Intrinsics& camera,
+std::optional<double> ResidualOfPixelError(ObjectResidual residual, const PinholeCamera& camera,
                                            const Rigid3& cam_from_world, const Ellipsoid& ellipsoid,
                                            double error_px) {
   const PoseBlock camera_block = ToBlock(cam_from_world);

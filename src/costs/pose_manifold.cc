@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/pose_manifold.h"
+#include "costs/pose_manifold.h"
 
 #include <Eigen/Core>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/quadric_algebraic_plane.h"
+#include "costs/quadric_algebraic_plane.h"
 
 #include <Eigen/Geometry>
 
 namespace hullslam {
 namespace {
 
-Eigen::Vector3d PlaneNormal(const Intrinsics& camera, const Line2& line) {
+Eigen::Vector3d PlaneNormal(const PinholeCamera& camera, const Line2& line) {
   const Eigen::Vector2d& n = line.normal;
   return Eigen::Vector3d(camera.fx * n.x(), camera.fy * n.y(),
                          camera.cx * n.x() + camera.cy * n.y() + line.offset)
@@ -15,7 +15,7 @@ Eigen::Vector3d PlaneNormal(const Intrinsics& camera, const Line2& line) {
 
 }  // namespace
 
-AlgebraicPlaneCost::AlgebraicPlaneCost(const Intrinsics& camera,
+AlgebraicPlaneCost::AlgebraicPlaneCost(const PinholeCamera& camera,
                                        std::span<const SilhouetteLine> lines, double sigma)
     : ObjectCost(lines.size()), inverse_sigma_(1.0 / sigma) {
   planes_.reserve(lines.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/quadric_algebraic_point.h"
+#include "costs/quadric_algebraic_point.h"
 
 #include <Eigen/LU>
 
@@ -10,7 +10,7 @@ constexpr double kChi2 = 3.841;  // 95 %, one degree of freedom
 
 }  // namespace
 
-AlgebraicPointCost::AlgebraicPointCost(const Intrinsics& camera,
+AlgebraicPointCost::AlgebraicPointCost(const PinholeCamera& camera,
                                        std::span<const Eigen::Vector2d> contour, double sigma)
     : ObjectCost(contour.size()),
       camera_(camera),

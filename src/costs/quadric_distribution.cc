@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/quadric_distribution.h"
+#include "costs/quadric_distribution.h"
 
 #include <Eigen/LU>
 #include <cmath>
@@ -41,8 +41,8 @@ double Bhattacharyya(const Ellipse& a, const Ellipse& b, ByEllipse& by_a) {
 
 }  // namespace
 
-DistributionCost::DistributionCost(const Intrinsics& camera, const Ellipse& measured, double sigma,
-                                   DistributionDistance distance)
+DistributionCost::DistributionCost(const PinholeCamera& camera, const Ellipse& measured,
+                                   double sigma, DistributionDistance distance)
     : ObjectCost(1),
       camera_(camera),
       measured_(measured),

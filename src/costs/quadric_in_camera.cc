@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/quadric_in_camera.h"
+#include "costs/quadric_in_camera.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "hullslam/costs/pose_manifold.h"
+#include "costs/pose_manifold.h"
 
 namespace hullslam {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/quadric_overlap.h"
+#include "costs/quadric_overlap.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "hullslam/geometry/polyline.h"
+#include "geometry/polyline.h"
 
 namespace hullslam {
 namespace {
@@ -148,7 +148,7 @@ Overlap BoxOverlap(const EllipseNumbers& ellipse, const Eigen::AlignedBox2d& box
                         box.volume());
 }
 
-OverlapCost::OverlapCost(const Intrinsics& camera, std::span<const Eigen::Vector2d> region,
+OverlapCost::OverlapCost(const PinholeCamera& camera, std::span<const Eigen::Vector2d> region,
                          double sigma)
     : ObjectCost(1),
       camera_(camera),
@@ -159,7 +159,7 @@ OverlapCost::OverlapCost(const Intrinsics& camera, std::span<const Eigen::Vector
   }
 }
 
-OverlapCost::OverlapCost(const Intrinsics& camera, const Eigen::AlignedBox2d& box, double sigma)
+OverlapCost::OverlapCost(const PinholeCamera& camera, const Eigen::AlignedBox2d& box, double sigma)
     : ObjectCost(1), camera_(camera), box_(box), inverse_sigma_(1.0 / sigma) {}
 
 bool OverlapCost::Evaluate(double const* const* parameters, double* residuals,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/quadric_prior.h"
+#include "costs/quadric_prior.h"
 
 #include <cmath>
 
-#include "hullslam/costs/pose_manifold.h"
+#include "costs/pose_manifold.h"
 
 namespace hullslam {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/quadric_tangent.h"
+#include "costs/quadric_tangent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ double TangentDistance(const SilhouetteLine& line, const EllipseNumbers& ellipse
   return Distance(line, ellipse, HalfExtent(line.line.normal, ellipse));
 }
 
-TangentCost::TangentCost(const Intrinsics& camera, std::span<const SilhouetteLine> lines,
+TangentCost::TangentCost(const PinholeCamera& camera, std::span<const SilhouetteLine> lines,
                          double sigma)
     : ObjectCost(lines.size()),
       camera_(camera),

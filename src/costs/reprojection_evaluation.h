@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
-#include "hullslam/costs/pose_manifold.h"
-#include "hullslam/costs/projection.h"
+#include "camera/rgbd_projection.h"
+#include "costs/pose_manifold.h"
 
 namespace hullslam::internal {
 
@@ -13,7 +13,8 @@ inline constexpr double kMinDepth = 1e-3;  // m; nearer the projection has no me
 // Residual and Jacobians of a reprojection error with its first kRows rows: 2 for the pixel, 3 with
 // the disparity.
 template <int kRows>
-bool EvaluateReprojection(const Intrinsics& camera, const Eigen::Matrix<double, kRows, 1>& measured,
+bool EvaluateReprojection(const PinholeCamera& camera,
+                          const Eigen::Matrix<double, kRows, 1>& measured,
                           const Eigen::Matrix<double, kRows, 1>& inverse_sigma,
                           double const* const* parameters, double* residuals, double** jacobians) {
   const Eigen::Map<const Eigen::Quaterniond> rotation(parameters[0]);

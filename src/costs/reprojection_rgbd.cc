@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/reprojection_rgbd.h"
+#include "costs/reprojection_rgbd.h"
 
-#include "reprojection_evaluation.h"
+#include "costs/reprojection_evaluation.h"
 
 namespace hullslam {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/robust_rows.h"
+#include "costs/robust_rows.h"
 
 #include <Eigen/Core>
 #include <cmath>

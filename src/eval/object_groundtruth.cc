@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/polygon_overlap.h"
 #include "hullslam/geometry/dual_quadric.h"
-#include "hullslam/geometry/polygon_overlap.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hullslam/geometry/polygon_overlap.h"
-#include "hullslam/geometry/polyline.h"
+#include "geometry/polygon_overlap.h"
+#include "geometry/polyline.h"
 
 namespace hullslam {
 namespace {

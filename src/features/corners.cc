@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/features/corners.h"
+#include "features/corners.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "hullslam/util/check.h"
-#include "hullslam/util/function_clones.h"
+#include "util/function_clones.h"
 
 namespace hullslam {
 namespace {

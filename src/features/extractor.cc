@@ -5,10 +5,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "hullslam/features/corners.h"
-#include "hullslam/features/orb_descriptor.h"
-#include "hullslam/features/pyramid.h"
-#include "hullslam/features/quadtree_selection.h"
+#include "features/corners.h"
+#include "features/orb_descriptor.h"
+#include "features/pyramid.h"
+#include "features/quadtree_selection.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/features/orb_descriptor.h"
+#include "features/orb_descriptor.h"
 
 #include <array>
 #include <bit>
@@ -9,8 +9,8 @@
 #include <cstring>
 #include <numbers>
 
-#include "hullslam/util/function_clones.h"
-#include "orb_pattern.h"
+#include "features/orb_pattern.h"
+#include "util/function_clones.h"
 
 namespace hullslam {
 namespace {

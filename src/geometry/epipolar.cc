@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/geometry/epipolar.h"
+#include "geometry/epipolar.h"
 
 #include <Eigen/LU>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/geometry/polygon_overlap.h"
+#include "geometry/polygon_overlap.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "hullslam/geometry/polyline.h"
+#include "geometry/polyline.h"
 
 namespace hullslam {
 namespace {

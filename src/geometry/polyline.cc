@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/geometry/polyline.h"
+#include "geometry/polyline.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "hullslam/io/text_rows.h"
 #include "hullslam/util/error.h"
+#include "io/text_rows.h"
 
 namespace hullslam {
 namespace {

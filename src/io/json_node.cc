@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "json_node.h"
+#include "io/json_node.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "hullslam/io/text_rows.h"
 #include "hullslam/util/error.h"
+#include "io/text_rows.h"
 
 namespace hullslam {
 namespace {

@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include "hullslam/geometry/polyline.h"
+#include "geometry/polyline.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <utility>
 
-#include "hullslam/io/text_rows.h"
 #include "hullslam/util/error.h"
 #include "io/mask_checks.h"
+#include "io/text_rows.h"
 
 namespace hullslam {
 namespace {

@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "hullslam/io/image_file.h"
-#include "hullslam/io/text_rows.h"
 #include "hullslam/util/error.h"
 #include "io/mask_checks.h"
 #include "io/mask_json.h"
 #include "io/mask_outline.h"
 #include "io/mask_text.h"
+#include "io/text_rows.h"
 
 namespace hullslam {
 namespace {

@@ -7,10 +7,10 @@
 #include <string_view>
 #include <system_error>
 
-#include "hullslam/io/text_rows.h"
 #include "hullslam/util/error.h"
 #include "io/mask_checks.h"
 #include "io/mask_text.h"
+#include "io/text_rows.h"
 
 namespace hullslam {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hullslam/io/mask_source.h"
-#include "hullslam/io/text_rows.h"
+#include "io/text_rows.h"
 
 namespace hullslam {
 

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "hullslam/geometry/polyline.h"
+#include "geometry/polyline.h"
 #include "hullslam/util/check.h"
-#include "json_node.h"
+#include "io/json_node.h"
 
 namespace hullslam {
 namespace {

@@ -17,8 +17,8 @@
 #include <system_error>
 #include <vector>
 
-#include "hullslam/io/text_rows.h"
 #include "hullslam/util/error.h"
+#include "io/text_rows.h"
 
 namespace hullslam {
 namespace {

@@ -6,9 +6,9 @@
 #include <iterator>
 
 #include "hullslam/io/atomic_file.h"
-#include "hullslam/io/text_rows.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
+#include "io/text_rows.h"
 
 namespace hullslam {
 namespace {

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "hullslam/io/image_file.h"
-#include "hullslam/io/text_rows.h"
 #include "hullslam/util/error.h"
 #include "hullslam/util/stamp_pairing.h"
+#include "io/text_rows.h"
 
 namespace hullslam {
 namespace {
@@ -178,8 +178,8 @@ TumSequence OpenTumSequence(const fs::path& folder, const TumSequenceOptions& op
   return sequence;
 }
 
-RgbdImage LoadRgbd(const RgbdFramePaths& paths, const PinholeCamera& camera) {
-  RgbdImage image{paths.timestamp, ReadGreyImage(paths.rgb), ReadDepthImage(paths.depth)};
+ImageInput LoadRgbd(const RgbdFramePaths& paths, const PinholeCamera& camera) {
+  ImageInput image{paths.timestamp, ReadGreyImage(paths.rgb), ReadDepthImage(paths.depth)};
   if (image.grey.size() != image.depth.size()) {
     throw InputError(fmt::format("{}: {}x{} px, expected the size of its colour image {}, {}x{}",
                                  paths.depth.string(), image.depth.cols, image.depth.rows,

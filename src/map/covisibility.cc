@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/map/covisibility.h"
+#include "map/covisibility.h"
 
 #include <algorithm>
 #include <map>
 
-#include "hullslam/map/spanning_tree.h"
+#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/map/landmark_projection.h"
+#include "map/landmark_projection.h"
 
 namespace hullslam {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "hullslam/map/covisibility.h"
-#include "hullslam/map/spanning_tree.h"
 #include "hullslam/util/check.h"
+#include "map/covisibility.h"
+#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/map/spanning_tree.h"
+#include "map/spanning_tree.h"
 
 #include <algorithm>
 

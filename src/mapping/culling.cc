@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/mapping/culling.h"
+#include "mapping/culling.h"
 
 #include <algorithm>
 

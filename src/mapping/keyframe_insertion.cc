@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/mapping/keyframe_insertion.h"
+#include "mapping/keyframe_insertion.h"
 
 #include <algorithm>
 
-#include "hullslam/map/appearance.h"
-#include "hullslam/map/covisibility.h"
-#include "hullslam/map/spanning_tree.h"
+#include "map/covisibility.h"
+#include "map/landmark_edits.h"
+#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {

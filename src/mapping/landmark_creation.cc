@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/mapping/landmark_creation.h"
+#include "mapping/landmark_creation.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <optional>
 
-#include "hullslam/geometry/epipolar.h"
-#include "hullslam/geometry/triangulation.h"
-#include "hullslam/map/appearance.h"
-#include "hullslam/map/covisibility.h"
-#include "hullslam/matching/for_triangulation.h"
-#include "hullslam/optim/robust.h"
+#include "geometry/epipolar.h"
+#include "geometry/triangulation.h"
+#include "map/covisibility.h"
+#include "map/landmark_edits.h"
+#include "matching/for_triangulation.h"
+#include "optim/robust.h"
 
 namespace hullslam {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/mapping/landmark_fusion.h"
+#include "mapping/landmark_fusion.h"
 
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
 
-#include "hullslam/map/appearance.h"
-#include "hullslam/map/covisibility.h"
-#include "hullslam/map/landmark_projection.h"
-#include "hullslam/matching/by_projection.h"
-#include "hullslam/optim/robust.h"
+#include "map/covisibility.h"
+#include "map/landmark_edits.h"
+#include "map/landmark_projection.h"
+#include "matching/by_projection.h"
+#include "optim/robust.h"
 
 namespace hullslam {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/mapping/mapper.h"
+#include "mapping/mapper.h"
 
 #include <utility>
 
-#include "hullslam/mapping/culling.h"
-#include "hullslam/mapping/keyframe_insertion.h"
-#include "hullslam/mapping/landmark_creation.h"
-#include "hullslam/mapping/landmark_fusion.h"
+#include "mapping/culling.h"
+#include "mapping/keyframe_insertion.h"
+#include "mapping/landmark_creation.h"
+#include "mapping/landmark_fusion.h"
 
 namespace hullslam {
 namespace {

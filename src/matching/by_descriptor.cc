@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/matching/by_descriptor.h"
+#include "matching/by_descriptor.h"
 
 #include <limits>
 
-#include "hullslam/util/function_clones.h"
+#include "util/function_clones.h"
 
 namespace hullslam {
 namespace {

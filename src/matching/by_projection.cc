@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/matching/by_projection.h"
+#include "matching/by_projection.h"
 
 #include <cmath>
 #include <limits>
 
 #include "hullslam/util/check.h"
-#include "hullslam/util/function_clones.h"
+#include "util/function_clones.h"
 
 namespace hullslam {
 namespace {

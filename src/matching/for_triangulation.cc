@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/matching/for_triangulation.h"
+#include "matching/for_triangulation.h"
 
 #include <Eigen/Geometry>
 #include <limits>
 
-#include "hullslam/util/function_clones.h"
+#include "util/function_clones.h"
 
 namespace hullslam {
 namespace {

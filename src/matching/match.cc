@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/matching/match.h"
+#include "matching/match.h"
 
 #include <algorithm>
 #include <array>

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/objects/association.h"
+#include "objects/association.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "hullslam/geometry/assignment.h"
-#include "hullslam/geometry/convex_hull.h"
-#include "hullslam/geometry/polygon_overlap.h"
+#include "geometry/assignment.h"
+#include "geometry/convex_hull.h"
+#include "geometry/polygon_overlap.h"
 #include "hullslam/objects/object_view.h"
-#include "hullslam/objects/point_statistics.h"
+#include "objects/point_statistics.h"
 
 namespace hullslam {
 namespace {

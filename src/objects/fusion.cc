@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/objects/fusion.h"
+#include "objects/fusion.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "hullslam/objects/object_view.h"
-#include "hullslam/objects/point_statistics.h"
+#include "objects/point_statistics.h"
 
 namespace hullslam {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/objects/initialisation.h"
+#include "objects/initialisation.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-#include "hullslam/geometry/oriented_box.h"
-#include "hullslam/objects/point_statistics.h"
+#include "geometry/oriented_box.h"
+#include "objects/point_statistics.h"
 
 namespace hullslam {
 namespace {

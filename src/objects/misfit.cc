@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/objects/misfit.h"
+#include "objects/misfit.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>

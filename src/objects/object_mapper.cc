@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/objects/association.h"
-#include "hullslam/objects/fusion.h"
-#include "hullslam/objects/initialisation.h"
-#include "hullslam/objects/misfit.h"
-#include "hullslam/objects/point_statistics.h"
-#include "hullslam/objects/refinement.h"
+#include "objects/association.h"
+#include "objects/fusion.h"
+#include "objects/initialisation.h"
+#include "objects/misfit.h"
+#include "objects/point_statistics.h"
+#include "objects/refinement.h"
 
 namespace hullslam {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "hullslam/objects/point_statistics.h"
 #include "hullslam/util/check.h"
+#include "objects/point_statistics.h"
 
 namespace hullslam {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/objects/refinement.h"
+#include "objects/refinement.h"
 
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
@@ -10,14 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/costs/depth_anchor.h"
-#include "hullslam/costs/make_object_cost.h"
-#include "hullslam/costs/pixel_error.h"
-#include "hullslam/costs/pose_manifold.h"
-#include "hullslam/costs/quadric_prior.h"
-#include "hullslam/costs/robust_rows.h"
-#include "hullslam/map/intrinsics.h"
-#include "hullslam/map/object_measurement.h"
+#include "costs/depth_anchor.h"
+#include "costs/make_object_cost.h"
+#include "costs/object_measurement.h"
+#include "costs/pixel_error.h"
+#include "costs/pose_manifold.h"
+#include "costs/quadric_prior.h"
+#include "costs/robust_rows.h"
 
 namespace hullslam {
 namespace {
@@ -46,7 +45,7 @@ class RefinementProblem {
                     const ObjectOptions& options)
       : options_(options),
         sigma_px_(sigma_px),
-        camera_(ToIntrinsics(sensor.camera)),
+        camera_(sensor.camera),
         object_(ToBlock(ellipsoid.world_from_object)),
         log_axes_(ellipsoid.half_axes.array().log()) {
     poses_.reserve(views.size());
@@ -128,7 +127,7 @@ class RefinementProblem {
 
   const ObjectOptions& options_;
   double sigma_px_;
-  Intrinsics camera_;
+  PinholeCamera camera_;
   PoseBlock object_;
   Eigen::Vector3d log_axes_;
   std::vector<PoseBlock> poses_;

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "hullslam/geometry/polygon_overlap.h"
-#include "hullslam/geometry/polyline.h"
+#include "geometry/polygon_overlap.h"
+#include "geometry/polyline.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/optim/bundle_adjustment.h"
+#include "optim/bundle_adjustment.h"
 
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
@@ -10,13 +10,12 @@
 #include <limits>
 #include <memory>
 
-#include "hullslam/costs/pose_manifold.h"
-#include "hullslam/costs/reprojection.h"
-#include "hullslam/costs/reprojection_rgbd.h"
-#include "hullslam/map/appearance.h"
-#include "hullslam/map/intrinsics.h"
-#include "hullslam/optim/robust.h"
-#include "object_bundle.h"
+#include "costs/pose_manifold.h"
+#include "costs/reprojection.h"
+#include "costs/reprojection_rgbd.h"
+#include "map/landmark_edits.h"
+#include "optim/object_bundle.h"
+#include "optim/robust.h"
 
 namespace hullslam {
 namespace {
@@ -50,7 +49,7 @@ class StopOnRequest final : public ceres::IterationCallback {
 
 std::unique_ptr<ceres::CostFunction> MakeCost(const Sensor& sensor, const FrameFeatures& features,
                                               uint32_t keypoint) {
-  const Intrinsics camera = ToIntrinsics(sensor.camera);
+  const PinholeCamera& camera = sensor.camera;
   const Eigen::Vector2d pixel = features.keypoints[keypoint].undistorted.cast<double>();
   const auto level = static_cast<size_t>(features.keypoints[keypoint].level);
   const double sigma = static_cast<double>(sensor.levels.scale[level]);
@@ -67,9 +66,7 @@ class Bundle {
  public:
   Bundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
          const ObjectBundleOptions& options)
-      : window_(window),
-        keyframes_(window.moving),
-        objects_(map, ToIntrinsics(sensor.camera), window, options) {
+      : window_(window), keyframes_(window.moving), objects_(map, sensor.camera, window, options) {
     keyframes_.insert(keyframes_.end(), window.fixed.begin(), window.fixed.end());
     for (const KeyframeId id : keyframes_) {
       poses_.push_back(ToBlock(map.keyframes().At(id).cam_from_world));

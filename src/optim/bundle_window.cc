@@ -3,8 +3,8 @@
 #include <map>
 #include <set>
 
-#include "hullslam/map/covisibility.h"
-#include "hullslam/optim/bundle_adjustment.h"
+#include "map/covisibility.h"
+#include "optim/bundle_adjustment.h"
 
 namespace hullslam {
 namespace {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/optim/joint_pose_optimization.h"
+#include "optim/joint_pose_optimization.h"
 
-#include "hullslam/map/intrinsics.h"
-#include "object_terms.h"
-#include "pose_problem.h"
+#include "optim/object_terms.h"
+#include "optim/pose_problem.h"
 
 namespace hullslam {
 namespace {
@@ -60,8 +59,7 @@ JointPoseResult OptimizeJointPose(const PinholeCamera& camera, const Rigid3& cam
                                   std::span<const PoseObject> objects,
                                   const JointPoseOptions& options) {
   JointPoseResult result;
-  const Intrinsics intrinsics = ToIntrinsics(camera);
-  internal::ObjectTerms terms(intrinsics, cam_from_world, objects, options);
+  internal::ObjectTerms terms(camera, cam_from_world, objects, options);
   terms.Write(result);
   if (result.used_objects == 0) {
     result.points = OptimizePose(camera, cam_from_world, observations, options.points);
@@ -70,14 +68,13 @@ JointPoseResult OptimizeJointPose(const PinholeCamera& camera, const Rigid3& cam
   Rigid3& pose = result.points.cam_from_world;
   pose = cam_from_world;
   result.points.is_inlier.assign(observations.size(), 0);
-  internal::ChooseInliers(intrinsics, observations, internal::InlierRule::kInFront, result.points);
+  internal::ChooseInliers(camera, observations, internal::InlierRule::kInFront, result.points);
   for (int round = 0; round < options.points.rounds && IsHeld(result, options); ++round) {
-    const internal::PointTerms points(intrinsics, observations, result.points.is_inlier,
+    const internal::PointTerms points(camera, observations, result.points.is_inlier,
                                       round < options.points.robust_rounds);
     const JointProblem problem(points, terms, cam_from_world, options);
     pose = internal::Minimize(problem, pose, options.points);
-    internal::ChooseInliers(intrinsics, observations, internal::InlierRule::kBelowBound,
-                            result.points);
+    internal::ChooseInliers(camera, observations, internal::InlierRule::kBelowBound, result.points);
     terms.Choose(pose);
     terms.Write(result);
   }

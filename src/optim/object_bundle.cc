@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "object_bundle.h"
+#include "optim/object_bundle.h"
 
 #include <ceres/loss_function.h>
 
@@ -7,11 +7,11 @@
 #include <cmath>
 #include <utility>
 
-#include "hullslam/costs/depth_anchor.h"
-#include "hullslam/costs/make_object_cost.h"
-#include "hullslam/costs/pixel_error.h"
-#include "hullslam/costs/robust_rows.h"
-#include "hullslam/map/object_measurement.h"
+#include "costs/depth_anchor.h"
+#include "costs/make_object_cost.h"
+#include "costs/object_measurement.h"
+#include "costs/pixel_error.h"
+#include "costs/robust_rows.h"
 
 namespace hullslam::internal {
 namespace {
@@ -48,7 +48,7 @@ std::unique_ptr<ceres::CostFunction> Weigh(std::unique_ptr<ceres::CostFunction> 
 
 }  // namespace
 
-ObjectBundle::ObjectBundle(const Map& map, const Intrinsics& camera, const BundleWindow& window,
+ObjectBundle::ObjectBundle(const Map& map, const PinholeCamera& camera, const BundleWindow& window,
                            const ObjectBundleOptions& options)
     : camera_(camera), options_(options) {
   std::vector<KeyframeId> keyframes = window.moving;

@@ -8,10 +8,10 @@
 #include <memory>
 #include <vector>
 
-#include "hullslam/costs/pose_manifold.h"
-#include "hullslam/costs/projection.h"
+#include "camera/rgbd_projection.h"
+#include "costs/pose_manifold.h"
 #include "hullslam/map/map.h"
-#include "hullslam/optim/bundle_adjustment.h"
+#include "optim/bundle_adjustment.h"
 
 namespace hullslam::internal {
 
@@ -19,7 +19,7 @@ namespace hullslam::internal {
 // detections say of them and of the poses.
 class ObjectBundle {
  public:
-  ObjectBundle(const Map& map, const Intrinsics& camera, const BundleWindow& window,
+  ObjectBundle(const Map& map, const PinholeCamera& camera, const BundleWindow& window,
                const ObjectBundleOptions& options);
 
   // `poses` are those of the window's keyframes, the moving ones before the fixed ones. They and
@@ -55,7 +55,7 @@ class ObjectBundle {
   void AddTerm(const Rigid3& cam_from_world, size_t pose,
                std::unique_ptr<ceres::CostFunction> cost);
 
-  Intrinsics camera_;
+  PinholeCamera camera_;
   ObjectBundleOptions options_;
   std::vector<Object> objects_;
   std::vector<Term> terms_;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "object_terms.h"
+#include "optim/object_terms.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "hullslam/costs/pixel_error.h"
+#include "costs/pixel_error.h"
 
 namespace hullslam::internal {
 
-ObjectTerms::ObjectTerms(const Intrinsics& camera, const Rigid3& start,
+ObjectTerms::ObjectTerms(const PinholeCamera& camera, const Rigid3& start,
                          std::span<const PoseObject> objects, const JointPoseOptions& options)
     : terms_(objects.size()), cauchy2_(options.cauchy * options.cauchy) {
   int most_rows = 0;

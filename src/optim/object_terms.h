@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "hullslam/costs/pose_manifold.h"
-#include "hullslam/optim/joint_pose_optimization.h"
-#include "pose_problem.h"
+#include "costs/pose_manifold.h"
+#include "optim/joint_pose_optimization.h"
+#include "optim/pose_problem.h"
 
 namespace hullslam::internal {
 
@@ -17,7 +17,7 @@ namespace hullslam::internal {
 class ObjectTerms {
  public:
   // Objects that have no residual at `start` are not used.
-  ObjectTerms(const Intrinsics& camera, const Rigid3& start, std::span<const PoseObject> objects,
+  ObjectTerms(const PinholeCamera& camera, const Rigid3& start, std::span<const PoseObject> objects,
               const JointPoseOptions& options);
 
   // Of the objects in use; infinite where one is not in front of the camera.

@@ -1,26 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/optim/pose_optimization.h"
+#include "optim/pose_optimization.h"
 
-#include "hullslam/map/intrinsics.h"
-#include "pose_problem.h"
+#include "optim/pose_problem.h"
 
 namespace hullslam {
 
 PoseOptimizationResult OptimizePose(const PinholeCamera& camera, const Rigid3& cam_from_world,
                                     std::span<const PoseObservation> observations,
                                     const PoseOptimizationOptions& options) {
-  const Intrinsics intrinsics = ToIntrinsics(camera);
   PoseOptimizationResult result;
   result.cam_from_world = cam_from_world;
   result.is_inlier.assign(observations.size(), 0);
   // At first all but those behind the camera: their error is infinite and would hide that of the
   // others.
-  internal::ChooseInliers(intrinsics, observations, internal::InlierRule::kInFront, result);
+  internal::ChooseInliers(camera, observations, internal::InlierRule::kInFront, result);
   for (int round = 0; round < options.rounds && result.inlier_count >= 3; ++round) {
-    const internal::PointTerms problem(intrinsics, observations, result.is_inlier,
+    const internal::PointTerms problem(camera, observations, result.is_inlier,
                                        round < options.robust_rounds);
     result.cam_from_world = internal::Minimize(problem, result.cam_from_world, options);
-    internal::ChooseInliers(intrinsics, observations, internal::InlierRule::kBelowBound, result);
+    internal::ChooseInliers(camera, observations, internal::InlierRule::kBelowBound, result);
   }
   if (result.inlier_count < 3) {
     result.cam_from_world = cam_from_world;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pose_problem.h"
+#include "optim/pose_problem.h"
 
 #include <cmath>
 #include <limits>
 
-#include "hullslam/optim/robust.h"
+#include "optim/robust.h"
 
 namespace hullslam::internal {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 constexpr double kMinDepth = 1e-3;  // m
 
 // In u, v and the virtual right coordinate, u less the disparity.
-Eigen::Vector3d Residual(const Intrinsics& camera, const PoseObservation& observation,
+Eigen::Vector3d Residual(const PinholeCamera& camera, const PoseObservation& observation,
                          const Eigen::Vector3d& point_in_cam) {
   Eigen::Vector3d residual = ProjectRgbd(camera, point_in_cam) - observation.measured;
   residual.z() = observation.has_depth ? residual.x() - residual.z() : 0.0;
@@ -20,7 +20,7 @@ Eigen::Vector3d Residual(const Intrinsics& camera, const PoseObservation& observ
 }
 
 // Squared error in sigmas; infinite behind the camera.
-double Chi2(const Intrinsics& camera, const PoseObservation& observation,
+double Chi2(const PinholeCamera& camera, const PoseObservation& observation,
             const Rigid3& cam_from_world) {
   const Eigen::Vector3d point_in_cam = cam_from_world * observation.point;
   if (point_in_cam.z() < kMinDepth) {
@@ -76,7 +76,7 @@ void PointTerms::Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& grad
   }
 }
 
-void ChooseInliers(const Intrinsics& camera, std::span<const PoseObservation> observations,
+void ChooseInliers(const PinholeCamera& camera, std::span<const PoseObservation> observations,
                    InlierRule rule, PoseOptimizationResult& result) {
   result.inlier_count = 0;
   for (size_t i = 0; i < observations.size(); ++i) {

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "hullslam/costs/projection.h"
+#include "camera/rgbd_projection.h"
 #include "hullslam/geometry/rigid3.h"
-#include "hullslam/optim/pose_optimization.h"
+#include "optim/pose_optimization.h"
 
 namespace hullslam::internal {
 
@@ -23,7 +23,7 @@ double Bound(const PoseObservation& observation);
 // The robust squared errors of the inliers among the observations.
 class PointTerms {
  public:
-  PointTerms(const Intrinsics& camera, std::span<const PoseObservation> observations,
+  PointTerms(const PinholeCamera& camera, std::span<const PoseObservation> observations,
              const std::vector<uint8_t>& is_inlier, bool robust)
       : camera_(camera), observations_(observations), is_inlier_(is_inlier), robust_(robust) {}
 
@@ -33,7 +33,7 @@ class PointTerms {
   void Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& gradient) const;
 
  private:
-  const Intrinsics& camera_;
+  const PinholeCamera& camera_;
   std::span<const PoseObservation> observations_;
   const std::vector<uint8_t>& is_inlier_;
   bool robust_;
@@ -42,7 +42,7 @@ class PointTerms {
 // Chooses as inliers the observations whose squared error at the result's pose is at most Bound, or
 // all but those behind the camera.
 enum class InlierRule { kBelowBound, kInFront };
-void ChooseInliers(const Intrinsics& camera, std::span<const PoseObservation> observations,
+void ChooseInliers(const PinholeCamera& camera, std::span<const PoseObservation> observations,
                    InlierRule rule, PoseOptimizationResult& result);
 
 // Levenberg-Marquardt on the six numbers of Retract. A Problem has Cost and Linearize as

@@ -3,8 +3,8 @@
 
 #include <numbers>
 
-#include "hullslam/util/random_seed.h"
 #include "synthetic/texture_painter.h"
+#include "util/random_seed.h"
 
 namespace hullslam::synthetic {
 namespace {

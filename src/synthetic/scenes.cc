@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
-#include "hullslam/util/random_seed.h"
 #include "synthetic/camera_path.h"
 #include "synthetic/scene_builder.h"
+#include "util/random_seed.h"
 
 namespace hullslam::synthetic {
 namespace {

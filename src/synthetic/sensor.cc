@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "hullslam/util/random_seed.h"
+#include "util/random_seed.h"
 
 namespace hullslam::synthetic {
 namespace {

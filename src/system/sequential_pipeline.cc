@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/system/sequential_pipeline.h"
+#include "system/sequential_pipeline.h"
 
 #include <utility>
 
-#include "hullslam/mapping/mapper.h"
-#include "hullslam/tracking/tracker.h"
 #include "hullslam/util/check.h"
+#include "mapping/mapper.h"
+#include "tracking/tracker.h"
 
 namespace hullslam {
 namespace {

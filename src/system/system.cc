@@ -5,12 +5,13 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "hullslam/system/pipeline.h"
-#include "hullslam/system/sequential_pipeline.h"
-#include "hullslam/system/threaded_pipeline.h"
-#include "hullslam/tracking/dynamic_mask.h"
-#include "hullslam/tracking/frame_builder.h"
+#include "frame/frame_builder.h"
+#include "hullslam/frame/dynamic_mask.h"
+#include "hullslam/system/compose_trajectory.h"
 #include "hullslam/util/check.h"
+#include "system/pipeline.h"
+#include "system/sequential_pipeline.h"
+#include "system/threaded_pipeline.h"
 
 namespace hullslam {
 namespace {
@@ -58,24 +59,30 @@ std::unique_ptr<Pipeline> MakePipeline(PipelineKind kind, const Sensor& sensor,
   }
 }
 
+std::unique_ptr<FrameBuilder> MakeFrameBuilder(const Sensor& sensor, const SystemOptions& options) {
+  const ObjectOptions& objects = options.objects;
+  return std::make_unique<FrameBuilder>(
+      sensor, options.depth, options.features,
+      objects.enabled ? std::optional(objects.detection) : std::nullopt,
+      SplitNames(options.tracking.dynamic_classes));
+}
+
 }  // namespace
 
 System::System(const SystemOptions& options, PipelineKind kind)
     : options_(Validated(options)),
       sensor_(MakeSensor(options_)),
-      frame_builder_(std::make_unique<FrameBuilder>(sensor_, options_.depth, options_.features,
-                                                    options_.objects,
-                                                    SplitNames(options_.tracking.dynamic_classes))),
+      frame_builder_(MakeFrameBuilder(sensor_, options_)),
       pipeline_(MakePipeline(kind, sensor_, options_)) {}
 
 System::~System() = default;
 
 TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
                            std::vector<InstanceMask> masks) {
-  return Track(RgbdImage{timestamp, ToGrey(image, options_.rgb_order), depth, std::move(masks)});
+  return Track(ImageInput{timestamp, ToGrey(image, options_.rgb_order), depth, std::move(masks)});
 }
 
-TrackedFrame System::Track(const RgbdImage& image) {
+TrackedFrame System::Track(const ImageInput& image) {
   Check(std::isfinite(image.timestamp), "the time stamp is not a number");
   Check(frames_.empty() || image.timestamp > frames_.back().timestamp,
         "time stamps do not increase");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/system/threaded_pipeline.h"
+#include "system/threaded_pipeline.h"
 
 #include <condition_variable>
 #include <exception>
@@ -7,12 +7,12 @@
 #include <thread>
 #include <utility>
 
-#include "hullslam/mapping/mapper.h"
-#include "hullslam/tracking/tracker.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/mailbox.h"
-#include "hullslam/util/published.h"
+#include "mapping/mapper.h"
+#include "tracking/tracker.h"
+#include "util/published.h"
 
 namespace hullslam {
 namespace {

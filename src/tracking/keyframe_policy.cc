@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/tracking/keyframe_policy.h"
+#include "tracking/keyframe_policy.h"
 
 namespace hullslam {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/tracking/local_map.h"
+#include "tracking/local_map.h"
 
 #include <algorithm>
 
-#include "hullslam/map/covisibility.h"
+#include "map/covisibility.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/tracking/object_guide.h"
+#include "tracking/object_guide.h"
 
 #include <algorithm>
 #include <utility>

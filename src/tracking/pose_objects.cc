@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/tracking/pose_objects.h"
+#include "tracking/pose_objects.h"
 
 #include <cmath>
 #include <utility>
 
-#include "hullslam/map/object_measurement.h"
-#include "hullslam/objects/association.h"
-#include "hullslam/objects/misfit.h"
+#include "costs/object_measurement.h"
+#include "objects/association.h"
+#include "objects/misfit.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/tracking/tracker.h"
+#include "tracking/tracker.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "hullslam/map/landmark_projection.h"
-#include "hullslam/matching/by_descriptor.h"
-#include "hullslam/matching/by_projection.h"
-#include "hullslam/optim/joint_pose_optimization.h"
-#include "hullslam/tracking/local_map.h"
-#include "hullslam/tracking/object_guide.h"
-#include "hullslam/tracking/tracker.h"
+#include "map/landmark_projection.h"
+#include "matching/by_descriptor.h"
+#include "matching/by_projection.h"
+#include "optim/joint_pose_optimization.h"
+#include "tracking/local_map.h"
+#include "tracking/object_guide.h"
+#include "tracking/tracker.h"
 
 namespace hullslam {
 namespace {

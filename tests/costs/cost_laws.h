@@ -10,7 +10,7 @@
 #include <array>
 #include <vector>
 
-#include "hullslam/costs/pose_manifold.h"
+#include "costs/pose_manifold.h"
 #include "hullslam/geometry/rigid3.h"
 
 namespace hullslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/depth_anchor.h"
+#include "costs/depth_anchor.h"
 
 #include <gtest/gtest.h>
 

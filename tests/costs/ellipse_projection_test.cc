@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/ellipse_projection.h"
+#include "costs/ellipse_projection.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/make_object_cost.h"
+#include "costs/make_object_cost.h"
 
 #include <gtest/gtest.h>
 

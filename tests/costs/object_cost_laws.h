@@ -12,15 +12,16 @@
 #include <numbers>
 #include <vector>
 
-#include "hullslam/costs/pose_manifold.h"
-#include "hullslam/costs/projection.h"
+#include "camera/rgbd_projection.h"
+#include "costs/pose_manifold.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/geometry/line2.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {
 
-constexpr Intrinsics kObjectCamera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
+constexpr PinholeCamera kObjectCamera{
+    .fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
 
 // A camera and an ellipsoid, and their blocks of parameters.
 struct ObjectState {

@@ -14,30 +14,19 @@ TEST(ObjectResidual, NamesAreThoseOfTheSettings) {
   EXPECT_EQ(NameOf(ObjectResidual::kAlgebraicPoint), "algebraic_point");
   EXPECT_EQ(NameOf(ObjectResidual::kDistribution), "distribution");
   EXPECT_EQ(NameOf(ObjectResidual::kOverlap), "overlap");
-  EXPECT_EQ(NameOf(ObjectPrimitive::kSupport), "support");
-  EXPECT_EQ(NameOf(ObjectPrimitive::kHull), "hull");
-  EXPECT_EQ(NameOf(ObjectPrimitive::kContour), "contour");
-  EXPECT_EQ(NameOf(ObjectPrimitive::kBox), "bbox");
-  EXPECT_EQ(NameOf(ObjectPrimitive::kConic), "conic");
 }
 
 TEST(ObjectResidual, EveryNameLeadsBack) {
   ASSERT_EQ(ObjectResidualNames().size(), 5u);
-  ASSERT_EQ(ObjectPrimitiveNames().size(), 5u);
   for (const std::string& name : ObjectResidualNames()) {
     ASSERT_TRUE(ObjectResidualByName(name).has_value()) << name;
     EXPECT_EQ(NameOf(*ObjectResidualByName(name)), name);
   }
-  for (const std::string& name : ObjectPrimitiveNames()) {
-    ASSERT_TRUE(ObjectPrimitiveByName(name).has_value()) << name;
-    EXPECT_EQ(NameOf(*ObjectPrimitiveByName(name)), name);
-  }
 }
 
 TEST(ObjectResidual, OtherNamesAreNone) {
-  for (const char* name : {"", "Tangent", "tangent ", "box", "hulls"}) {
+  for (const char* name : {"", "Tangent", "tangent ", "support"}) {
     EXPECT_FALSE(ObjectResidualByName(name).has_value()) << name;
-    EXPECT_FALSE(ObjectPrimitiveByName(name).has_value()) << name;
   }
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/pixel_error.h"
+#include "costs/pixel_error.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "costs/make_object_cost.h"
 #include "costs/object_cost_laws.h"
-#include "hullslam/costs/make_object_cost.h"
 
 namespace hullslam {
 namespace {
@@ -19,7 +19,7 @@ ObjectState SmallSphere() {
   return state;
 }
 
-constexpr Intrinsics kSquare{.fx = 500.0, .fy = 500.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
+constexpr PinholeCamera kSquare{.fx = 500.0, .fy = 500.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
 
 double SizeOf(ObjectResidual residual, double error_px) {
   const ObjectState state = SmallSphere();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/quadric_overlap.h"
+#include "costs/quadric_overlap.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "costs/object_cost_laws.h"
-#include "hullslam/geometry/polygon_overlap.h"
-#include "hullslam/geometry/polyline.h"
+#include "geometry/polygon_overlap.h"
+#include "geometry/polyline.h"
 
 namespace hullslam {
 namespace {

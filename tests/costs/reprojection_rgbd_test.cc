@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/reprojection_rgbd.h"
+#include "costs/reprojection_rgbd.h"
 
 #include <gtest/gtest.h>
 
 #include "costs/cost_laws.h"
-#include "hullslam/costs/reprojection.h"
+#include "costs/reprojection.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {
 namespace {
 
-constexpr Intrinsics kCamera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
+constexpr PinholeCamera kCamera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
 
 TEST(RgbdReprojectionCost, ByHand) {
   // (1, -0.5, 2) in the camera is pixel (570, 140) and has a disparity of 40 / 2 px. What a pixel's

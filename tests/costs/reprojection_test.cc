@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/reprojection.h"
+#include "costs/reprojection.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace hullslam {
 namespace {
 
-constexpr Intrinsics kCamera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
+constexpr PinholeCamera kCamera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
 
 TEST(ReprojectionCost, ByHand) {
   // The world is turned by a quarter turn around z and moved: (0.5, 0, 1) lies at (1, -0.5, 2) in

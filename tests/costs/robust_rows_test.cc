@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/costs/robust_rows.h"
+#include "costs/robust_rows.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "costs/object_cost_laws.h"
-#include "hullslam/costs/quadric_tangent.h"
+#include "costs/quadric_tangent.h"
 
 namespace hullslam {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "hullslam/geometry/polygon_overlap.h"
+#include "geometry/polygon_overlap.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

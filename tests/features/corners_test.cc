@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/features/corners.h"
+#include "features/corners.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/features/orb_descriptor.h"
+#include "features/orb_descriptor.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <opencv2/features2d.hpp>
 #include <vector>
 
+#include "features/pyramid.h"
 #include "features/test_images.h"
 #include "hullslam/features/extractor.h"
-#include "hullslam/features/pyramid.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/features/quadtree_selection.h"
+#include "features/quadtree_selection.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/geometry/assignment.h"
+#include "geometry/assignment.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "hullslam/geometry/polyline.h"
+#include "geometry/polyline.h"
 #include "hullslam/util/check.h"
 #include "support/random_geometry.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/geometry/convex_hull.h"
+#include "geometry/convex_hull.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hullslam/geometry/polyline.h"
+#include "geometry/polyline.h"
 #include "hullslam/util/check.h"
 #include "support/random_geometry.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/geometry/oriented_box.h"
+#include "geometry/oriented_box.h"
 
 #include <gtest/gtest.h>
 

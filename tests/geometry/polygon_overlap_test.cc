@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/geometry/polygon_overlap.h"
+#include "geometry/polygon_overlap.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "geometry/convex_hull.h"
+#include "geometry/polyline.h"
 #include "hullslam/geometry/conic.h"
-#include "hullslam/geometry/convex_hull.h"
-#include "hullslam/geometry/polyline.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

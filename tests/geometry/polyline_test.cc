@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/geometry/polyline.h"
+#include "geometry/polyline.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "hullslam/geometry/convex_hull.h"
+#include "geometry/convex_hull.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/geometry/triangulation.h"
+#include "geometry/triangulation.h"
 
 #include <gtest/gtest.h>
 

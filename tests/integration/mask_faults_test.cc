@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/io/text_rows.h"
+#include "io/text_rows.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
 #include "support/test_data.h"

@@ -20,8 +20,8 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/io/text_rows.h"
 #include "hullslam/io/trajectory_file.h"
+#include "io/text_rows.h"
 #include "support/plane_sequence.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"

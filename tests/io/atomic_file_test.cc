@@ -9,7 +9,7 @@
 #include <iterator>
 #include <string>
 
-#include "hullslam/io/text_rows.h"
+#include "io/text_rows.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 

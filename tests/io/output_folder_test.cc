@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hullslam/io/text_rows.h"
+#include "io/text_rows.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/io/text_rows.h"
+#include "io/text_rows.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
-#include "hullslam/io/text_rows.h"
 #include "hullslam/util/check.h"
+#include "io/text_rows.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 

@@ -144,7 +144,7 @@ class LoadRgbdTest : public ::testing::Test {
     camera_.width = 64;
     camera_.height = 48;
   }
-  RgbdImage Load(const cv::Size& rgb, const cv::Size& depth) {
+  ImageInput Load(const cv::Size& rgb, const cv::Size& depth) {
     const RgbdFramePaths paths{1.5, folder_.path() / "rgb.png", folder_.path() / "depth.png"};
     cv::imwrite(paths.rgb.string(), cv::Mat(rgb, CV_8UC3, cv::Scalar::all(9)));
     cv::imwrite(paths.depth.string(), cv::Mat(depth, CV_16UC1, cv::Scalar::all(999)));
@@ -156,7 +156,7 @@ class LoadRgbdTest : public ::testing::Test {
 };
 
 TEST_F(LoadRgbdTest, DecodesBothImages) {
-  const RgbdImage image = Load({64, 48}, {64, 48});
+  const ImageInput image = Load({64, 48}, {64, 48});
   EXPECT_EQ(image.timestamp, 1.5);
   ASSERT_EQ(image.grey.type(), CV_8UC1);
   ASSERT_EQ(image.depth.type(), CV_16UC1);

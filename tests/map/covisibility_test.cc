@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/map/covisibility.h"
+#include "map/covisibility.h"
 
 #include <gtest/gtest.h>
 

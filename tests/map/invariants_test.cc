@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/map/invariants.h"
+#include "map/invariants.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/map/covisibility.h"
-#include "hullslam/map/spanning_tree.h"
+#include "map/covisibility.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
+#include "map/spanning_tree.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {

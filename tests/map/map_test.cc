@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/map/spanning_tree.h"
 #include "hullslam/util/check.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
+#include "map/spanning_tree.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

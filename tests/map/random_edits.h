@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "hullslam/map/covisibility.h"
 #include "hullslam/map/map.h"
+#include "map/covisibility.h"
 #include "map/made_map.h"
 #include "support/random_geometry.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/map/spanning_tree.h"
+#include "map/spanning_tree.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <vector>
 
-#include "hullslam/map/covisibility.h"
+#include "map/covisibility.h"
 #include "map/made_map.h"
 
 namespace hullslam {

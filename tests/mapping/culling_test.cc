@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/mapping/culling.h"
+#include "mapping/culling.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
 
-#include "hullslam/map/invariants.h"
+#include "map/invariants.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {

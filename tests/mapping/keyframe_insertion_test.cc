@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/mapping/keyframe_insertion.h"
+#include "mapping/keyframe_insertion.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "hullslam/map/invariants.h"
+#include "map/invariants.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {

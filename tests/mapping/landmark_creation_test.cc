@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/mapping/landmark_creation.h"
+#include "mapping/landmark_creation.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <map>
 #include <numbers>
 
-#include "hullslam/map/invariants.h"
+#include "map/invariants.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {

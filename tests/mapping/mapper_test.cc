@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/mapping/mapper.h"
+#include "mapping/mapper.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "hullslam/map/invariants.h"
+#include "map/invariants.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/matching/by_descriptor.h"
+#include "matching/by_descriptor.h"
 
 #include <gtest/gtest.h>
 

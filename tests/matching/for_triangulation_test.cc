@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/matching/for_triangulation.h"
+#include "matching/for_triangulation.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "hullslam/geometry/epipolar.h"
+#include "geometry/epipolar.h"
 #include "matching/made_features.h"
 #include "support/synthetic_world.h"
 

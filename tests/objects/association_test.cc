@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/objects/association.h"
+#include "objects/association.h"
 
 #include <gtest/gtest.h>
 

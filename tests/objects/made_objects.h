@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/polyline.h"
+#include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/dual_quadric.h"
-#include "hullslam/geometry/polyline.h"
 #include "hullslam/map/map.h"
-#include "hullslam/map/sensor.h"
 
 namespace hullslam {
 

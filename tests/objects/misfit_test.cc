@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/objects/misfit.h"
+#include "objects/misfit.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "hullslam/geometry/convex_hull.h"
+#include "geometry/convex_hull.h"
 #include "objects/made_objects.h"
 #include "support/random_geometry.h"
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "hullslam/map/invariants.h"
-#include "hullslam/objects/fusion.h"
+#include "map/invariants.h"
+#include "objects/fusion.h"
 #include "objects/made_objects.h"
 
 namespace hullslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/objects/refinement.h"
+#include "objects/refinement.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/optim/bundle_adjustment.h"
+#include "optim/bundle_adjustment.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/map/covisibility.h"
-#include "hullslam/map/invariants.h"
-#include "hullslam/map/spanning_tree.h"
+#include "map/covisibility.h"
+#include "map/invariants.h"
 #include "map/made_map.h"
+#include "map/spanning_tree.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
 

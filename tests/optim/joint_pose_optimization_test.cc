@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/optim/joint_pose_optimization.h"
+#include "optim/joint_pose_optimization.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "hullslam/map/intrinsics.h"
-#include "hullslam/map/object_measurement.h"
+#include "costs/object_measurement.h"
 #include "objects/made_objects.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
@@ -62,7 +61,7 @@ class JointPose : public ::testing::Test {
       const Eigen::Vector3d in_cam = place + random_.Vector(1.0).cwiseProduct(reach);
       PoseObservation& observation = observations_.emplace_back();
       observation.point = Inverse(true_pose_) * in_cam;
-      observation.measured = ProjectRgbd(ToIntrinsics(sensor_.camera), in_cam);
+      observation.measured = ProjectRgbd(sensor_.camera, in_cam);
       observation.has_depth = true;
       for (int k = 0; k < 3; ++k) {
         observation.measured[k] += noise * normal_(generator_);

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/map/invariants.h"
-#include "hullslam/optim/bundle_adjustment.h"
+#include "map/invariants.h"
 #include "map/made_map.h"
 #include "objects/made_objects.h"
+#include "optim/bundle_adjustment.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/optim/pose_optimization.h"
+#include "optim/pose_optimization.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "hullslam/costs/projection.h"
-#include "hullslam/map/intrinsics.h"
+#include "camera/rgbd_projection.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
 
@@ -31,7 +30,7 @@ class PoseOptimization : public ::testing::Test {
           Eigen::Vector3d(0.0, 0.0, 4.0);
       PoseObservation& observation = observations.emplace_back();
       observation.point = Inverse(true_pose_) * in_cam;
-      observation.measured = ProjectRgbd(ToIntrinsics(kCamera), in_cam);
+      observation.measured = ProjectRgbd(kCamera, in_cam);
       observation.has_depth = has_depth;
       if (!has_depth) {
         observation.measured.z() = -1.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/optim/robust.h"
+#include "optim/robust.h"
 
 #include <gtest/gtest.h>
 

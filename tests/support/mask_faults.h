@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/io/text_rows.h"
-#include "hullslam/util/random_seed.h"
+#include "io/text_rows.h"
+#include "util/random_seed.h"
 
 namespace hullslam {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "hullslam/camera/instance_mask.h"
+#include "hullslam/frame/instance_mask.h"
 
 namespace hullslam {
 

@@ -12,13 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "hullslam/frame/frame.h"
+#include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/rigid3.h"
-#include "hullslam/map/appearance.h"
-#include "hullslam/map/covisibility.h"
-#include "hullslam/map/frame.h"
 #include "hullslam/map/map.h"
-#include "hullslam/map/sensor.h"
-#include "hullslam/util/random_seed.h"
+#include "map/covisibility.h"
+#include "map/landmark_edits.h"
+#include "util/random_seed.h"
 
 namespace hullslam {
 

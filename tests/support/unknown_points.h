@@ -3,9 +3,9 @@
 
 #include <random>
 
-#include "hullslam/map/frame.h"
-#include "hullslam/map/sensor.h"
-#include "hullslam/util/random_seed.h"
+#include "hullslam/frame/frame.h"
+#include "hullslam/frame/sensor.h"
+#include "util/random_seed.h"
 
 namespace hullslam {
 

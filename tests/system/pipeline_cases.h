@@ -7,10 +7,10 @@
 #include <memory>
 #include <vector>
 
-#include "hullslam/system/pipeline.h"
-#include "hullslam/system/trajectory.h"
+#include "hullslam/system/compose_trajectory.h"
 #include "support/synthetic_world.h"
 #include "support/unknown_points.h"
+#include "system/pipeline.h"
 
 // What the tests of the pipelines share.
 namespace hullslam {

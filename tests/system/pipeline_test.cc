@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/system/pipeline.h"
+#include "system/pipeline.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <thread>
 #include <vector>
 
-#include "hullslam/map/invariants.h"
-#include "hullslam/system/sequential_pipeline.h"
-#include "hullslam/system/threaded_pipeline.h"
 #include "hullslam/util/check.h"
+#include "map/invariants.h"
 #include "system/pipeline_cases.h"
+#include "system/sequential_pipeline.h"
+#include "system/threaded_pipeline.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/system/sequential_pipeline.h"
+#include "system/sequential_pipeline.h"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "hullslam/map/invariants.h"
 #include "hullslam/util/check.h"
+#include "map/invariants.h"
 #include "support/expect_error.h"
 
 namespace hullslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/system/threaded_pipeline.h"
+#include "system/threaded_pipeline.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <string>
 #include <thread>
 
-#include "hullslam/map/invariants.h"
 #include "hullslam/util/check.h"
+#include "map/invariants.h"
 #include "system/pipeline_cases.h"
 
 namespace hullslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/tracking/local_map.h"
+#include "tracking/local_map.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/map/spanning_tree.h"
+#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/tracking/object_guide.h"
+#include "tracking/object_guide.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@
 #include <memory>
 #include <utility>
 
-#include "hullslam/tracking/pose_objects.h"
-#include "hullslam/tracking/tracker.h"
 #include "objects/made_objects.h"
 #include "support/synthetic_world.h"
 #include "support/unknown_points.h"
+#include "tracking/pose_objects.h"
+#include "tracking/tracker.h"
 
 namespace hullslam {
 namespace {

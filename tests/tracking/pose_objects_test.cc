@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/tracking/pose_objects.h"
+#include "tracking/pose_objects.h"
 
 #include <gtest/gtest.h>
 
-#include "hullslam/objects/misfit.h"
 #include "objects/made_objects.h"
+#include "objects/misfit.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/tracking/sighting_counter.h"
+#include "tracking/sighting_counter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/tracking/tracker.h"
+#include "tracking/tracker.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "hullslam/map/covisibility.h"
+#include "map/covisibility.h"
 #include "support/synthetic_world.h"
 #include "support/unknown_points.h"
 

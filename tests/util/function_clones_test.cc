@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/util/function_clones.h"
+#include "util/function_clones.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/util/published.h"
+#include "util/published.h"
 
 #include <gtest/gtest.h>
 

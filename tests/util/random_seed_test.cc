@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/util/random_seed.h"
+#include "util/random_seed.h"
 
 #include <gtest/gtest.h>
 

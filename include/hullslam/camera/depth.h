@@ -17,7 +17,7 @@ struct DepthOptions {
 };
 
 // Depth in metres at a raw pixel (nearest pixel), 0 where it is unknown or outside the image.
-// `depth` is CV_16UC1 or CV_32FC1 as in RgbdImage, else CheckError is thrown.
+// `depth` is CV_16UC1 or CV_32FC1 as in ImageInput, else CheckError is thrown.
 float SampleDepth(const cv::Mat& depth, const Eigen::Vector2f& raw_pixel, double units_per_metre);
 
 // Right coordinate of the virtual stereo pair, u - bf / depth, in px; -1 for an unknown depth.

@@ -6,23 +6,19 @@
 #include <string_view>
 #include <vector>
 
+#include "hullslam/frame/object_primitive.h"
+
 namespace hullslam {
 
 // The residuals that can hold a quadric (docs/objects.md); each has its own file in costs/.
 enum class ObjectResidual { kTangent, kAlgebraicPlane, kAlgebraicPoint, kDistribution, kOverlap };
 
-// What of a detection they are computed from.
-enum class ObjectPrimitive { kSupport, kHull, kContour, kBox, kConic };
-
-// Their names in settings: tangent, algebraic_plane, ...; support, hull, contour, bbox, conic.
+// The name in settings: tangent, algebraic_plane, ...
 std::string_view NameOf(ObjectResidual residual);
-std::string_view NameOf(ObjectPrimitive primitive);
 // Nothing for an unknown name.
 std::optional<ObjectResidual> ObjectResidualByName(std::string_view name);
-std::optional<ObjectPrimitive> ObjectPrimitiveByName(std::string_view name);
 // All names, in the order of the enumerators.
 std::vector<std::string> ObjectResidualNames();
-std::vector<std::string> ObjectPrimitiveNames();
 
 // Whether the residual can be computed from the primitive: tangent and algebraic_plane take lines,
 // which every primitive has (of a conic: tangents), algebraic_point takes the contour,

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "hullslam/system/trajectory.h"
+#include "hullslam/geometry/trajectory.h"
 #include "hullslam/util/stamp_pairing.h"
 
 namespace hullslam {

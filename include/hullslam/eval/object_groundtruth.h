@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/map/object_report.h"
-#include "hullslam/map/true_object.h"
+#include "hullslam/report/object_report.h"
+#include "hullslam/eval/true_object.h"
 
 namespace hullslam {
 

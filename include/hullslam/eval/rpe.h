@@ -7,7 +7,7 @@
 
 #include "hullslam/eval/association.h"
 #include "hullslam/eval/error_statistics.h"
-#include "hullslam/system/trajectory.h"
+#include "hullslam/geometry/trajectory.h"
 
 namespace hullslam {
 

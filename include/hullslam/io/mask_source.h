@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/camera/instance_mask.h"
+#include "hullslam/frame/instance_mask.h"
 #include "hullslam/io/tum_sequence.h"
 
 namespace hullslam {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "hullslam/map/object_report.h"
+#include "hullslam/report/object_report.h"
 
 namespace hullslam {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "hullslam/system/trajectory.h"
+#include "hullslam/geometry/trajectory.h"
 
 namespace hullslam {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "hullslam/map/true_object.h"
+#include "hullslam/eval/true_object.h"
 
 namespace hullslam {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
-#include "hullslam/camera/rgbd_image.h"
+#include "hullslam/frame/image_input.h"
 
 namespace hullslam {
 
@@ -50,6 +50,6 @@ TumSequence OpenTumSequence(const std::filesystem::path& folder,
 
 // Decodes one frame. Throws InputError for an image that ReadGreyImage() or ReadDepthImage()
 // refuses or whose size is not the camera's.
-RgbdImage LoadRgbd(const RgbdFramePaths& paths, const PinholeCamera& camera);
+ImageInput LoadRgbd(const RgbdFramePaths& paths, const PinholeCamera& camera);
 
 }  // namespace hullslam

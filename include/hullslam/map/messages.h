@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hullslam/geometry/rigid3.h"
-#include "hullslam/map/frame.h"
+#include "hullslam/frame/frame.h"
 #include "hullslam/util/id.h"
 
 namespace hullslam {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "hullslam/map/map.h"
-#include "hullslam/map/sensor.h"
+#include "hullslam/frame/sensor.h"
 #include "hullslam/objects/object_options.h"
 #include "hullslam/objects/rejection.h"
 #include "hullslam/objects/validity.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "hullslam/costs/object_residual.h"
-#include "hullslam/objects/detection_options.h"
+#include "hullslam/frame/detection_options.h"
 #include "hullslam/util/option_table.h"
 
 namespace hullslam {

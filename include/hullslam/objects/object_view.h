@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "hullslam/map/detection.h"
+#include "hullslam/frame/detection.h"
 #include "hullslam/map/map.h"
 
 namespace hullslam {

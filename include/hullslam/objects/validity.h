@@ -6,7 +6,7 @@
 #include <string>
 
 #include "hullslam/geometry/dual_quadric.h"
-#include "hullslam/map/sensor.h"
+#include "hullslam/frame/sensor.h"
 #include "hullslam/objects/object_options.h"
 #include "hullslam/objects/object_view.h"
 #include "hullslam/objects/rejection.h"

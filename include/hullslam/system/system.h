@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/camera/rgbd_image.h"
+#include "hullslam/frame/image_input.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
-#include "hullslam/map/sensor.h"
+#include "hullslam/frame/sensor.h"
 #include "hullslam/system/options.h"
-#include "hullslam/system/trajectory.h"
+#include "hullslam/geometry/trajectory.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
 
@@ -50,11 +50,11 @@ class System {
   ~System();
 
   // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order that Camera.RGB says; `depth` as in
-  // RgbdImage. Time stamps (s) must increase. Throws CheckError otherwise.
+  // ImageInput. Time stamps (s) must increase. Throws CheckError otherwise.
   // `masks` are those of the objects in the image, in its raw pixels.
   TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
                      std::vector<InstanceMask> masks = {});
-  TrackedFrame Track(const RgbdImage& image);
+  TrackedFrame Track(const ImageInput& image);
 
   // Waits for the mapping that is under way, then adjusts the whole map if
   // mapping.final_bundle_adjustment says so; that ends early, with what it has, when `cancellation`

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "hullslam/features/frame_features.h"
+#include "hullslam/frame/detection.h"
+#include "hullslam/util/id.h"
+
+namespace hullslam {
+
+// One image after extraction; immutable once built and shared by the stages.
+struct Frame {
+  FrameId id;
+  double timestamp = 0.0;  // seconds
+  FrameFeatures features;
+  std::vector<Detection> detections;
+};
+
+}  // namespace hullslam

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "hullslam/frame/instance_mask.h"
+
+namespace hullslam {
+
+// One input frame of an RGB-D camera; depth is registered to the colour image.
+struct ImageInput {
+  double timestamp = 0.0;  // seconds
+  cv::Mat grey;            // CV_8UC1
+  // CV_16UC1, units of 1 / DepthMapFactor metres, or CV_32FC1, metres; 0 (or not finite) is
+  // unknown.
+  cv::Mat depth;
+  std::vector<InstanceMask> masks = {};  // of the objects in it; empty without
+};
+
+}  // namespace hullslam

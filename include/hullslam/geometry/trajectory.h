@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "hullslam/geometry/rigid3.h"
+
+namespace hullslam {
+
+struct StampedPose {
+  double timestamp = 0.0;  // seconds
+  Rigid3 world_from_cam;
+};
+
+// Poses in order of time, one per time stamp.
+using Trajectory = std::vector<StampedPose>;
+
+// The pose at `timestamp` (seconds), between its two neighbours in the trajectory: the position on
+// the straight line, the rotation at constant angular velocity. Nothing before the first pose, after
+// the last one, or in a gap longer than `max_gap` seconds.
+std::optional<Rigid3> InterpolatePose(const Trajectory& trajectory, double timestamp,
+                                      double max_gap);
+
+}  // namespace hullslam

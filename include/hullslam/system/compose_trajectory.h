@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+
+#include "hullslam/geometry/trajectory.h"
+#include "hullslam/map/map.h"
+#include "hullslam/map/messages.h"
+
+namespace hullslam {
+
+// The poses of all tracked frames in the current map. The pose of a frame is relative to its
+// reference keyframe, so it follows the map; a frame that is a keyframe has the keyframe's pose.
+// Frames without a pose are left out.
+Trajectory ComposeTrajectory(const Map& map, std::span<const TrackedFrame> frames);
+
+// The poses of the keyframes.
+Trajectory KeyframeTrajectory(const Map& map);
+
+}  // namespace hullslam

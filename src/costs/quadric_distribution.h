@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "costs/ellipse_projection.h"
+
+namespace hullslam {
+
+enum class DistributionDistance { kWasserstein, kBhattacharyya };
+
+// `distribution`: one residual, the distance between the outline and a measured ellipse, each as a
+// Gaussian with its centre as mean and its shape as covariance (m1, S1 and m2, S2), over sigma.
+//   Wasserstein, squared, px^2 (Cao 2022; OA-SLAM, VOOM):
+//     |m1 - m2|^2 + tr(S1 + S2 - 2 (S1^1/2 S2 S1^1/2)^1/2)
+//   Bhattacharyya, no unit, with S = (S1 + S2) / 2:
+//     (m1 - m2)^T S^-1 (m1 - m2) / 8 + ln(det S / sqrt(det S1 det S2)) / 2
+// Parameters: those of QuadricInCamera. Not defined unless the quadric is in front of the camera
+// and its outline has an area.
+class DistributionCost final : public ObjectCost {
+ public:
+  DistributionCost(const PinholeCamera& camera, const Ellipse& measured, double sigma,
+                   DistributionDistance distance = DistributionDistance::kWasserstein);
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  PinholeCamera camera_;
+  Ellipse measured_;
+  double inverse_sigma_;
+  DistributionDistance distance_;
+};
+
+}  // namespace hullslam

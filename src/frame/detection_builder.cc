@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/frame/detection_builder.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "frame/detection_depth.h"
+#include "frame/detection_lines.h"
+#include "frame/detection_outline.h"
+#include "frame/detection_region.h"
+#include "geometry/polyline.h"
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+// Of two masks the smaller one may also be a fragment of the larger: nearly all of it lies inside,
+// it is not much smaller (else it is a thing of its own in front, as a cup before a monitor), and
+// it is as far away.
+constexpr double kContained = 0.85;     // share of the smaller mask in the larger
+constexpr double kFragmentShare = 0.4;  // area of the smaller mask of that of the larger
+constexpr double kSameDepth = 0.05;     // relative difference of the medians
+
+using Rejections = std::vector<std::optional<DetectionRejection>>;
+
+// A mask on its way to a detection.
+struct Candidate {
+  size_t index;  // of the mask
+  const InstanceMask* mask;
+  std::vector<Polygon2> parts;
+  Outline outline;
+  MaskRegion region;
+  Detection detection;
+  double depth = 0.0;  // m, median of its points; 0 where unknown
+};
+
+struct FrameView {
+  const DetectionOptions& options;
+  DepthView depth;
+  std::span<const Keypoint> keypoints;
+};
+
+bool IsAtBorder(const Eigen::Vector2d& undistorted, const PinholeCamera& camera, double border) {
+  const Eigen::Vector2d raw = camera.Distort(undistorted);
+  return raw.x() <= border || raw.y() <= border || raw.x() >= camera.width - 1 - border ||
+         raw.y() >= camera.height - 1 - border;
+}
+
+std::optional<DetectionRejection> CheckOutline(const Outline& outline, const FrameView& frame) {
+  if (outline.hull.size() < 3) {
+    return DetectionRejection::kDegenerate;
+  }
+  if (BoundingBox(outline.hull).sizes().minCoeff() < frame.options.min_side_px) {
+    return DetectionRejection::kTooSmall;
+  }
+  const double image = static_cast<double>(frame.depth.camera.width) * frame.depth.camera.height;
+  if (SignedArea(outline.hull) > frame.options.max_area_share * image) {
+    return DetectionRejection::kTooLarge;
+  }
+  return std::nullopt;
+}
+
+std::vector<uint32_t> KeypointsIn(const MaskRegion& region, std::span<const Keypoint> keypoints) {
+  std::vector<uint32_t> inside;
+  for (size_t i = 0; i < keypoints.size(); ++i) {
+    if (region.Contains(keypoints[i].raw.cast<double>())) {
+      inside.push_back(static_cast<uint32_t>(i));
+    }
+  }
+  return inside;
+}
+
+// All but the lines, which need the other masks.
+Detection DetectionOf(const InstanceMask& mask, const Outline& outline, const FrameView& frame) {
+  Detection detection;
+  detection.label = mask.label;
+  detection.score = mask.score;
+  detection.contour = outline.contour;
+  detection.hull = outline.hull;
+  detection.box = BoundingBox(outline.hull);
+  detection.is_box = mask.shape == MaskShape::kBox;
+  detection.is_cut = std::any_of(outline.hull.begin(), outline.hull.end(), [&](const auto& corner) {
+    return IsAtBorder(corner, frame.depth.camera, frame.options.border_px);
+  });
+  if (mask.shape == MaskShape::kEllipse || frame.options.primitive == ObjectPrimitive::kConic) {
+    detection.ellipse = FitEllipse(outline.contour);
+  }
+  return detection;
+}
+
+// Appends a candidate unless the mask is rejected by itself.
+std::optional<DetectionRejection> Prepare(const InstanceMask& mask, size_t index,
+                                          const FrameView& frame,
+                                          std::vector<Candidate>& candidates) {
+  if (mask.score < frame.options.min_score) {
+    return DetectionRejection::kLowScore;
+  }
+  std::vector<Polygon2> parts = LargeParts(mask.outlines);
+  Outline outline = UndistortOutline(parts, frame.depth.camera);
+  if (const auto rejection = CheckOutline(outline, frame)) {
+    return rejection;
+  }
+  MaskRegion region(parts, frame.depth.camera);
+  Detection detection = DetectionOf(mask, outline, frame);
+  detection.keypoints = KeypointsIn(region, frame.keypoints);
+  if (detection.keypoints.size() < static_cast<size_t>(frame.options.min_keypoints)) {
+    return DetectionRejection::kFewKeypoints;
+  }
+  if (!frame.depth.image.empty()) {
+    detection.points = DepthPoints(frame.depth, region, frame.options.max_depth_points);
+  }
+  const double depth = MedianDepth(detection.points);
+  candidates.push_back({.index = index,
+                        .mask = &mask,
+                        .parts = std::move(parts),
+                        .outline = std::move(outline),
+                        .region = std::move(region),
+                        .detection = std::move(detection),
+                        .depth = depth});
+  return std::nullopt;
+}
+
+// Whether two masks show one object. Across classes: a real network calls a thing by two at once.
+bool AreOneObject(const Candidate& a, const Candidate& b, double duplicate_iou) {
+  const double shared = SharedArea(a.region, b.region);
+  const double smaller = std::min(a.region.area(), b.region.area());
+  const double larger = std::max(a.region.area(), b.region.area());
+  if (shared <= 0.0) {
+    return false;
+  }
+  if (shared >= duplicate_iou * (smaller + larger - shared)) {
+    return true;
+  }
+  const bool is_fragment = shared >= kContained * smaller && smaller >= kFragmentShare * larger;
+  const bool is_as_far = a.depth > 0.0 && b.depth > 0.0 &&
+                         std::abs(a.depth - b.depth) <= kSameDepth * std::min(a.depth, b.depth);
+  return is_fragment && is_as_far;
+}
+
+// Keeps of masks that show one object the one of the highest score, of equal ones the first.
+void RejectDuplicates(double duplicate_iou, std::vector<Candidate>& candidates,
+                      Rejections& rejections) {
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& a, const auto& b) { return a.mask->score > b.mask->score; });
+  std::vector<Candidate> kept;
+  kept.reserve(candidates.size());
+  for (Candidate& candidate : candidates) {
+    const bool is_known = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
+      return AreOneObject(candidate, other, duplicate_iou);
+    });
+    if (is_known) {
+      rejections[candidate.index] = DetectionRejection::kDuplicate;
+    } else {
+      kept.push_back(std::move(candidate));
+    }
+  }
+  candidates = std::move(kept);
+  std::sort(candidates.begin(), candidates.end(),
+            [](const auto& a, const auto& b) { return a.index < b.index; });
+}
+
+std::vector<LineOnOutline> LinesOf(const Candidate& candidate, const FrameView& frame) {
+  if (candidate.mask->shape == MaskShape::kBox) {
+    return SidesOfBox(candidate.parts[0], frame.depth.camera);
+  }
+  const ObjectPrimitive primitive = candidate.mask->shape == MaskShape::kEllipse
+                                        ? ObjectPrimitive::kConic
+                                        : frame.options.primitive;
+  return LinesOfOutline(candidate.outline, candidate.detection.ellipse, primitive, frame.options);
+}
+
+bool IsOneSided(const LineOnOutline& line, const FrameView& frame, double depth,
+                std::span<const Occluder> others) {
+  const bool is_cut =
+      std::all_of(line.touching.begin(), line.touching.end(), [&](const Eigen::Vector2d& place) {
+        return IsAtBorder(place, frame.depth.camera, frame.options.border_px);
+      });
+  return is_cut || (!frame.depth.image.empty() && IsHidden(line, frame.depth, depth, others));
+}
+
+void AddLines(const std::vector<Candidate>& candidates, const FrameView& frame,
+              Candidate& candidate) {
+  std::vector<Occluder> others;
+  for (const Candidate& other : candidates) {
+    if (other.index != candidate.index) {
+      others.push_back({.region = &other.region, .depth = other.depth});
+    }
+  }
+  for (const LineOnOutline& line : LinesOf(candidate, frame)) {
+    candidate.detection.lines.push_back(
+        {.line = line.line, .is_one_sided = IsOneSided(line, frame, candidate.depth, others)});
+  }
+}
+
+void CheckDepth(const cv::Mat& depth, const PinholeCamera& camera) {
+  if (!depth.empty()) {
+    Check(depth.size() == cv::Size(camera.width, camera.height),
+          "the depth image is not of the camera's size");
+    Check(depth.type() == CV_16UC1 || depth.type() == CV_32FC1,
+          "the depth image is neither CV_16UC1 nor CV_32FC1");
+  }
+}
+
+}  // namespace
+
+std::string ToString(DetectionRejection reason) {
+  constexpr std::array<const char*, kDetectionRejectionCount> kNames = {
+      "low_score",     "degenerate", "too_small",    "too_large",
+      "few_keypoints", "duplicate",  "no_silhouette"};
+  return kNames.at(static_cast<size_t>(reason));
+}
+
+DetectionResult DetectionBuilder::Build(std::span<const InstanceMask> masks, const cv::Mat& depth,
+                                        std::span<const Keypoint> keypoints) const {
+  CheckDepth(depth, camera_);
+  const FrameView frame{
+      .options = options_,
+      .depth = {.camera = camera_, .image = depth, .units_per_metre = units_per_metre_},
+      .keypoints = keypoints};
+  DetectionResult result;
+  std::vector<Candidate> candidates;
+  candidates.reserve(masks.size());
+  for (size_t i = 0; i < masks.size(); ++i) {
+    result.rejections.push_back(Prepare(masks[i], i, frame, candidates));
+  }
+  RejectDuplicates(options_.duplicate_iou, candidates, result.rejections);
+  for (Candidate& candidate : candidates) {
+    AddLines(candidates, frame, candidate);
+  }
+  for (Candidate& candidate : candidates) {
+    const std::vector<SilhouetteLine>& lines = candidate.detection.lines;
+    const bool is_held = std::any_of(lines.begin(), lines.end(),
+                                     [](const SilhouetteLine& line) { return !line.is_one_sided; });
+    if (is_held) {
+      result.detections.push_back(std::move(candidate.detection));
+    } else {
+      result.rejections[candidate.index] = DetectionRejection::kNoSilhouette;
+    }
+  }
+  return result;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+#include <span>
+#include <vector>
+
+#include "frame/detection_lines.h"
+#include "frame/detection_region.h"
+#include "hullslam/camera/pinhole.h"
+
+namespace hullslam {
+
+// A depth image with the camera that took it.
+struct DepthView {
+  const PinholeCamera& camera;
+  const cv::Mat& image;  // as in ImageInput, or empty
+  double units_per_metre;
+
+  // m, 0 where unknown.
+  double AtRaw(const Eigen::Vector2d& raw) const;
+};
+
+// An object of the frame as what may hide others.
+struct Occluder {
+  const MaskRegion* region = nullptr;
+  double depth = 0.0;  // m, median of its points; 0 where unknown
+};
+
+// At most about `max_points` points of the mask in the camera frame, m, on a regular grid of raw
+// pixels, away from the border of the mask where depth is that of the background.
+std::vector<Eigen::Vector3d> DepthPoints(const DepthView& view, const MaskRegion& region,
+                                         int max_points);
+
+// Median of z; 0 for no points.
+double MedianDepth(std::span<const Eigen::Vector3d> points);
+
+// Whether something nearer than the object begins just beyond the line, by the depth image or by
+// the masks of `others`, at half of the places where that is known or more.
+bool IsHidden(const LineOnOutline& line, const DepthView& view, double object_depth,
+              std::span<const Occluder> others);
+
+}  // namespace hullslam

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "frame/detection_outline.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/convex_hull.h"
+#include "geometry/polyline.h"
+
+namespace hullslam {
+namespace {
+
+constexpr double kMinArea = 1.0;       // px^2
+constexpr double kMinPartShare = 0.1;  // of the largest part
+constexpr double kLargestStep = 12.0;  // px between points of a contour
+
+// The outline undistorted, in positive order. Its long edges get points between, as what is
+// straight in the raw image is bent in the undistorted one.
+Polygon2 UndistortDensely(const Polygon2& outline, const PinholeCamera& camera) {
+  Polygon2 contour;
+  contour.reserve(2 * outline.size());
+  for (size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d& from = outline[i];
+    const Eigen::Vector2d step = outline[(i + 1) % outline.size()] - from;
+    const int pieces = std::max(1, static_cast<int>(std::ceil(step.norm() / kLargestStep)));
+    for (int k = 0; k < pieces; ++k) {
+      contour.push_back(camera.Undistort(from + step * (static_cast<double>(k) / pieces)));
+    }
+  }
+  if (SignedArea(contour) < 0.0) {
+    std::reverse(contour.begin(), contour.end());
+  }
+  return contour;
+}
+
+}  // namespace
+
+std::vector<Polygon2> LargeParts(std::span<const Polygon2> outlines) {
+  double largest = kMinArea;
+  for (const Polygon2& outline : outlines) {
+    largest = std::max(largest, std::abs(SignedArea(outline)));
+  }
+  std::vector<Polygon2> parts;
+  for (const Polygon2& outline : outlines) {
+    const double area = std::abs(SignedArea(outline));
+    if (area >= kMinArea && area >= kMinPartShare * largest) {
+      parts.push_back(outline);
+    }
+  }
+  std::stable_sort(parts.begin(), parts.end(), [](const Polygon2& a, const Polygon2& b) {
+    return std::abs(SignedArea(a)) > std::abs(SignedArea(b));
+  });
+  return parts;
+}
+
+Outline UndistortOutline(std::span<const Polygon2> parts, const PinholeCamera& camera) {
+  Outline outline;
+  for (const Polygon2& part : parts) {
+    Polygon2 contour = UndistortDensely(part, camera);
+    outline.boundary.insert(outline.boundary.end(), contour.begin(), contour.end());
+    if (outline.contour.empty()) {
+      outline.contour = std::move(contour);
+    }
+  }
+  // Points put on a straight edge are off it by rounding; they are not corners.
+  outline.hull = SimplifyPolygon(ConvexHull(outline.boundary), 1e-6);
+  return outline;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/frame/dynamic_mask.h"
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace hullslam {
+namespace {
+
+// Corners at a silhouette are half background, and masks tend to be small.
+constexpr int kMargin = 7;  // px
+
+}  // namespace
+
+std::set<std::string> SplitNames(std::string_view names) {
+  std::set<std::string> split;
+  while (!names.empty()) {
+    const size_t comma = std::min(names.find(','), names.size());
+    std::string_view name = names.substr(0, comma);
+    names.remove_prefix(std::min(comma + 1, names.size()));
+    const size_t first = name.find_first_not_of(' ');
+    if (first != std::string_view::npos) {
+      split.emplace(name.substr(first, name.find_last_not_of(' ') + 1 - first));
+    }
+  }
+  return split;
+}
+
+cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::string>& classes,
+                    cv::Size size) {
+  cv::Mat region;
+  cv::Rect box;  // of all that is filled
+  for (const InstanceMask& mask : masks) {
+    if (!classes.contains(mask.label)) {
+      continue;
+    }
+    if (region.empty()) {
+      region = cv::Mat::zeros(size, CV_8UC1);
+    }
+    for (const std::vector<Eigen::Vector2d>& outline : mask.outlines) {
+      std::vector<cv::Point> polygon;
+      polygon.reserve(outline.size());
+      for (const Eigen::Vector2d& point : outline) {
+        polygon.emplace_back(cvRound(point.x()), cvRound(point.y()));
+      }
+      cv::fillPoly(region, std::vector{polygon}, cv::Scalar(255));
+      box |= cv::boundingRect(polygon);
+    }
+  }
+  if (region.empty()) {
+    return region;
+  }
+  // Only around what is filled: the rest of the image stays zero.
+  const cv::Rect grown(box.x - kMargin, box.y - kMargin, box.width + 2 * kMargin,
+                       box.height + 2 * kMargin);
+  cv::Mat part = region(grown & cv::Rect({}, size));
+  if (!part.empty()) {
+    cv::dilate(part, part,
+               cv::getStructuringElement(cv::MORPH_RECT, {2 * kMargin + 1, 2 * kMargin + 1}));
+  }
+  return region;
+}
+
+void RemoveMasked(const cv::Mat& mask, std::vector<Keypoint>& keypoints,
+                  std::vector<Descriptor>& descriptors) {
+  size_t kept = 0;
+  for (size_t i = 0; i < keypoints.size(); ++i) {
+    const cv::Point pixel(cvRound(keypoints[i].raw.x()), cvRound(keypoints[i].raw.y()));
+    const bool is_masked = cv::Rect({}, mask.size()).contains(pixel) && mask.at<uchar>(pixel) != 0;
+    if (!is_masked) {
+      keypoints[kept] = keypoints[i];
+      descriptors[kept] = descriptors[i];
+      ++kept;
+    }
+  }
+  keypoints.resize(kept);
+  descriptors.resize(kept);
+}
+
+}  // namespace hullslam

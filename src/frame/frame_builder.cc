@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "frame/frame_builder.h"
+
+#include <utility>
+
+#include "hullslam/frame/dynamic_mask.h"
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+void Undistort(const PinholeCamera& camera, std::vector<Keypoint>& keypoints) {
+  for (Keypoint& keypoint : keypoints) {
+    keypoint.undistorted = camera.Undistort(keypoint.raw.cast<double>()).cast<float>();
+  }
+}
+
+void AddDepth(const Sensor& sensor, const cv::Mat& depth, double units_per_metre,
+              FrameFeatures& features) {
+  features.depth.reserve(features.size());
+  features.right_u.reserve(features.size());
+  for (const Keypoint& keypoint : features.keypoints) {
+    const float z = SampleDepth(depth, keypoint.raw, units_per_metre);
+    features.depth.push_back(z);
+    features.right_u.push_back(VirtualRight(keypoint.undistorted.x(), z, sensor.camera.bf));
+  }
+}
+
+}  // namespace
+
+FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
+                           const FeatureOptions& features,
+                           const std::optional<DetectionOptions>& detection,
+                           std::set<std::string> dynamic_classes)
+    : sensor_(sensor),
+      depth_(depth),
+      extractor_(features),
+      dynamic_classes_(std::move(dynamic_classes)) {
+  if (detection) {
+    detection_builder_.emplace(sensor.camera, depth.units_per_metre, *detection);
+  }
+}
+
+std::shared_ptr<const Frame> FrameBuilder::Build(const ImageInput& image, FrameId id) {
+  const cv::Size size(sensor_.camera.width, sensor_.camera.height);
+  Check(image.grey.type() == CV_8UC1 && image.grey.size() == size,
+        "the grey image is not CV_8UC1 of the camera's size");
+  Check(image.depth.size() == size, "the depth image is not of the camera's size");
+  Check(image.depth.type() == CV_16UC1 || image.depth.type() == CV_32FC1,
+        "the depth image is neither CV_16UC1 nor CV_32FC1");
+  auto frame = std::make_shared<Frame>();
+  frame->id = id;
+  frame->timestamp = image.timestamp;
+  ExtractedFeatures extracted = extractor_.Extract(image.grey);
+  FrameFeatures& features = frame->features;
+  features.keypoints = std::move(extracted.keypoints);
+  features.descriptors = std::move(extracted.descriptors);
+  if (const cv::Mat mask = DynamicMask(image.masks, dynamic_classes_, size); !mask.empty()) {
+    RemoveMasked(mask, features.keypoints, features.descriptors);
+  }
+  Undistort(sensor_.camera, features.keypoints);
+  AddDepth(sensor_, image.depth, depth_.units_per_metre, features);
+  const PinholeCamera::Bounds& bounds = sensor_.bounds;
+  features.grid =
+      FeatureGrid(features.keypoints, Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
+                  Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
+  counts_.frames_with_masks += image.masks.empty() ? 0 : 1;
+  if (detection_builder_ && !image.masks.empty()) {
+    frame->detections = Detect(image, features.keypoints);
+  }
+  return frame;
+}
+
+std::vector<Detection> FrameBuilder::Detect(const ImageInput& image,
+                                            const std::vector<Keypoint>& keypoints) {
+  std::vector<InstanceMask> masks = image.masks;
+  std::erase_if(masks,
+                [&](const InstanceMask& mask) { return dynamic_classes_.contains(mask.label); });
+  DetectionResult result = detection_builder_->Build(masks, image.depth, keypoints);
+  for (const std::optional<DetectionRejection>& rejection : result.rejections) {
+    if (rejection) {
+      ++counts_.rejections[*rejection];
+    }
+  }
+  counts_.detections += result.detections.size();
+  return std::move(result.detections);
+}
+
+}  // namespace hullslam

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/geometry/trajectory.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace hullslam {
+
+std::optional<Rigid3> InterpolatePose(const Trajectory& trajectory, double timestamp,
+                                      double max_gap) {
+  const auto after = std::lower_bound(
+      trajectory.begin(), trajectory.end(), timestamp,
+      [](const StampedPose& pose, double stamp) { return pose.timestamp < stamp; });
+  if (after == trajectory.end()) {
+    return std::nullopt;
+  }
+  if (after->timestamp == timestamp) {
+    return after->world_from_cam;
+  }
+  if (after == trajectory.begin()) {
+    return std::nullopt;
+  }
+  const StampedPose& before = *std::prev(after);
+  const double gap = after->timestamp - before.timestamp;
+  if (gap > max_gap) {
+    return std::nullopt;
+  }
+  const double share = (timestamp - before.timestamp) / gap;
+  const Rigid3& a = before.world_from_cam;
+  const Rigid3& b = after->world_from_cam;
+  return Rigid3(a.rotation.slerp(share, b.rotation),
+                (1.0 - share) * a.translation + share * b.translation);
+}
+
+}  // namespace hullslam

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "hullslam/frame/sensor.h"
+#include "hullslam/map/map.h"
+#include "hullslam/map/messages.h"
+#include "hullslam/mapping/mapping_options.h"
+#include "hullslam/objects/object_mapper.h"
+#include "hullslam/util/cancellation.h"
+#include "hullslam/util/stage_timer.h"
+#include "optim/bundle_adjustment.h"
+
+namespace hullslam {
+
+// Owns the live map: makes keyframes, creates, fuses and culls landmarks, maps objects, adjusts the
+// neighbourhood.
+class Mapper {
+ public:
+  using Publish = std::function<void(std::shared_ptr<const Map>)>;
+
+  // `sensor` must outlive the mapper. `publish` is called in Process with every snapshot that
+  // others should see.
+  Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
+         Publish publish);
+
+  // `hurry` (may be null) is asked when another keyframe waits: then what can be left out is.
+  void Process(const KeyframeRequest& request, const Cancellation* hurry);
+
+  // To be called once, at the end: adjusts the whole map where that is wanted, and publishes it.
+  // Ends early, with what it has, when `cancellation` (may be null) asks.
+  void Finish(const Cancellation* cancellation);
+
+  const StageTimes& times() const { return times_; }
+  const std::map<ObjectRejection, size_t>& object_rejections() const {
+    return object_mapper_.rejections();
+  }
+
+ private:
+  void PublishSnapshot();
+  void MapObjects(KeyframeId keyframe);
+  void AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry);
+  void Adjust(const BundleWindow& window, const BundleOptions& options,
+              const Cancellation* cancellation);
+  void RecheckObjects(const std::vector<ObjectId>& objects);
+  WindowObjects ObjectsToAdjust() const;
+
+  const Sensor& sensor_;
+  MappingOptions options_;
+  ObjectOptions object_options_;
+  Publish publish_;
+  StageTimes times_;
+  ObjectMapper object_mapper_;
+  Map map_;
+  std::vector<LandmarkId> recent_;  // landmarks that have yet to prove themselves
+};
+
+}  // namespace hullslam

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hullslam/features/frame_features.h"
+#include "matching/match.h"
+
+namespace hullslam {
+
+struct TriangulationSearch {
+  int max_distance = 50;  // Hamming
+  // px^2 over sigma^2; 95 % of a chi-square distribution with one degree of freedom
+  double max_epipolar_chi2 = 3.84;
+  double min_epipole_distance = 10.0;  // px at level 0; nearer the parallax is too small
+};
+
+// Pairs keypoints of image a (`a_indices`) with keypoints of image b (`b_indices`) that look alike
+// and lie on the epipolar line. `fundamental` maps a pixel of a to its line in b: x_b^T F x_a = 0.
+// `epipole` is the centre of camera a in image b, px (far outside if it is not in front of b). The
+// epipole's surroundings are left out for pairs in which neither keypoint has a depth.
+std::vector<Match> MatchForTriangulation(
+    const FrameFeatures& a, std::span<const uint32_t> a_indices, const FrameFeatures& b,
+    std::span<const uint32_t> b_indices, const Eigen::Matrix3d& fundamental,
+    const Eigen::Vector2d& epipole, const ScaleLevels& levels, const TriangulationSearch& search);
+
+}  // namespace hullslam

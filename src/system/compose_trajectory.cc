@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/system/compose_trajectory.h"
+
+#include <optional>
+
+namespace hullslam {
+
+Trajectory ComposeTrajectory(const Map& map, std::span<const TrackedFrame> frames) {
+  Trajectory trajectory;
+  for (const TrackedFrame& frame : frames) {
+    if (frame.state != TrackingState::kTracked) {
+      continue;
+    }
+    const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame.frame);
+    const Rigid3 cam_from_world =
+        keyframe ? map.CamFromWorld(*keyframe)
+                 : frame.cam_from_reference * map.CamFromWorld(frame.reference);
+    trajectory.push_back({frame.timestamp, Inverse(cam_from_world)});
+  }
+  return trajectory;
+}
+
+Trajectory KeyframeTrajectory(const Map& map) {
+  Trajectory trajectory;
+  map.keyframes().ForEach([&](KeyframeId, const Keyframe& keyframe) {
+    trajectory.push_back({keyframe.frame->timestamp, Inverse(keyframe.cam_from_world)});
+  });
+  return trajectory;
+}
+
+}  // namespace hullslam

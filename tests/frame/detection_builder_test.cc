@@ -1,0 +1,550 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/frame/detection_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <set>
+
+#include "geometry/convex_hull.h"
+#include "geometry/polyline.h"
+#include "hullslam/geometry/dual_quadric.h"
+#include "hullslam/util/check.h"
+#include "made_masks.h"
+#include "support/random_geometry.h"
+
+namespace hullslam {
+namespace {
+
+constexpr double kUnits = 1000.0;
+
+using Reason = DetectionRejection;
+
+DetectionResult Build(const std::vector<InstanceMask>& masks, const PinholeCamera& camera,
+                      const DetectionOptions& options = {}, const cv::Mat& depth = {}) {
+  return DetectionBuilder(camera, kUnits, options).Build(masks, depth, {});
+}
+
+Detection BuildOne(const InstanceMask& mask, const PinholeCamera& camera,
+                   const DetectionOptions& options = {}, const cv::Mat& depth = {}) {
+  DetectionResult result = Build({mask}, camera, options, depth);
+  EXPECT_EQ(result.detections.size(), 1U);
+  return result.detections.empty() ? Detection() : result.detections[0];
+}
+
+std::optional<Reason> RejectionOf(const InstanceMask& mask, const DetectionOptions& options = {}) {
+  return Build({mask}, PlainCamera(), options).rejections.at(0);
+}
+
+DetectionOptions WithPrimitive(ObjectPrimitive primitive, double epsilon = 3.0) {
+  DetectionOptions options;
+  options.primitive = primitive;
+  options.epsilon_px = epsilon;
+  return options;
+}
+
+// How far the line is outside of the parallel tangent of the ellipse, px.
+double Excess(const Line2& line, const Ellipse& ellipse) {
+  return -line.SignedDistance(ellipse.center) - ellipse.HalfExtent(line.normal);
+}
+
+double LargestExcess(const Detection& detection, const Ellipse& ellipse) {
+  double largest = 0.0;
+  for (const SilhouetteLine& line : detection.lines) {
+    largest = std::max(largest, std::abs(Excess(line.line, ellipse)));
+  }
+  return largest;
+}
+
+double MeanExcess(const Detection& detection, const Ellipse& ellipse) {
+  double sum = 0.0;
+  for (const SilhouetteLine& line : detection.lines) {
+    sum += Excess(line.line, ellipse);
+  }
+  return sum / static_cast<double>(detection.lines.size());
+}
+
+std::vector<bool> SidesOneSided(const Detection& detection) {
+  const std::vector<Eigen::Vector2d> directions{{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}};
+  std::vector<bool> sides;
+  for (const Eigen::Vector2d& direction : directions) {
+    const auto line = std::find_if(
+        detection.lines.begin(), detection.lines.end(),
+        [&](const SilhouetteLine& l) { return l.line.normal.dot(direction) > 0.9999; });
+    EXPECT_NE(line, detection.lines.end());
+    sides.push_back(line != detection.lines.end() && line->is_one_sided);
+  }
+  return sides;  // right, bottom, left, top
+}
+
+// Where a seen ellipsoid stands in the undistorted image of freiburg1's camera, off its middle.
+Ellipse SeenEllipsoid() {
+  const PinholeCamera camera = DistortedCamera();
+  Eigen::Matrix3d k;
+  k << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0;
+  const Ellipsoid ellipsoid{{ExpSo3({0.3, 0.5, -0.2}), {-0.62, -0.4, 1.6}}, {0.25, 0.15, 0.2}};
+  return ProjectEllipsoid(k, Rigid3(), ellipsoid).value();
+}
+
+TEST(DetectionBuilder, SupportLinesOfADistortedMaskTouchTheTrueEllipse) {
+  const Ellipse truth = SeenEllipsoid();
+  const Detection detection = BuildOne(MaskOf(truth, DistortedCamera()), DistortedCamera());
+  ASSERT_GE(detection.lines.size(), 8U);
+  EXPECT_LT(LargestExcess(detection, truth), 0.1);
+  EXPECT_FALSE(detection.is_cut);
+  for (const SilhouetteLine& line : detection.lines) {
+    EXPECT_FALSE(line.is_one_sided);
+  }
+  // Of a mask of whole pixels they are off by half of one.
+  InstanceMask rounded = MaskOf(truth, DistortedCamera());
+  for (Eigen::Vector2d& p : rounded.outlines[0]) {
+    p = p.array().round();
+  }
+  EXPECT_LT(LargestExcess(BuildOne(rounded, DistortedCamera()), truth), 0.75);
+}
+
+TEST(DetectionBuilder, MasksNeedToBeUndistorted) {
+  const Ellipse truth = SeenEllipsoid();
+  PinholeCamera undistorted = DistortedCamera();
+  undistorted.k1 = undistorted.k2 = undistorted.k3 = undistorted.p1 = undistorted.p2 = 0.0;
+  EXPECT_GT(LargestExcess(BuildOne(MaskOf(truth, DistortedCamera()), undistorted), truth), 2.0);
+}
+
+// What is straight in the raw image is bent in the undistorted one, also between two far corners.
+TEST(DetectionBuilder, LongEdgesAreUndistortedAllAlong) {
+  const PinholeCamera camera = DistortedCamera();
+  const Detection detection = BuildOne(RectangleMask(20.0, 20.0, 400.0, 160.0), camera);
+  const Eigen::Vector2d middle = camera.Undistort({220.0, 20.0});
+  double nearest = 1e9;
+  for (const Eigen::Vector2d& p : detection.contour) {
+    nearest = std::min(nearest, std::abs((p - middle).norm()));
+  }
+  EXPECT_LT(nearest, 6.1);
+  for (const SilhouetteLine& line : detection.lines) {
+    EXPECT_LT(line.line.SignedDistance(middle), 1e-9);
+  }
+}
+
+TEST(DetectionBuilder, SupportLinesRestOnTheFullHull) {
+  RandomGeometry random(1);
+  for (int round = 0; round < 30; ++round) {
+    InstanceMask mask{.label = "thing", .score = 0.7, .outlines = {{}}};
+    for (int i = 0; i < 60; ++i) {
+      const double angle = 2.0 * 3.14159265 * i / 60;
+      mask.outlines[0].emplace_back(Eigen::Vector2d(320.0, 240.0) +
+                                    random.Number(40.0, 60.0) *
+                                        Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    }
+    const Detection detection = BuildOne(mask, DistortedCamera());
+    double before = -4.0;
+    for (const SilhouetteLine& line : detection.lines) {
+      double outermost = -1e9;
+      for (const Eigen::Vector2d& corner : detection.hull) {
+        outermost = std::max(outermost, line.line.SignedDistance(corner));
+      }
+      EXPECT_NEAR(outermost, 0.0, 1e-9);
+      EXPECT_NEAR(line.line.normal.norm(), 1.0, 1e-12);
+      // No two of nearly one direction.
+      const double angle = std::atan2(line.line.normal.y(), line.line.normal.x());
+      EXPECT_GT(angle - before, 0.08);
+      before = angle;
+    }
+  }
+}
+
+// The bias of chords, which support lines are there to remove.
+TEST(DetectionBuilder, ChordsOfTheSimplifiedHullCutInsideAndSupportLinesDoNot) {
+  const Ellipse truth = MakeEllipse({320.0, 240.0}, 90.0, 60.0, 0.3);
+  const InstanceMask mask = MaskOf(truth, PlainCamera());
+  for (const double epsilon : {3.0, 6.0}) {
+    const Detection chords =
+        BuildOne(mask, PlainCamera(), WithPrimitive(ObjectPrimitive::kHull, epsilon));
+    EXPECT_LT(MeanExcess(chords, truth), -0.4 * epsilon);
+    EXPECT_GT(MeanExcess(chords, truth), -epsilon - 0.1);
+    const Detection support =
+        BuildOne(mask, PlainCamera(), WithPrimitive(ObjectPrimitive::kSupport, epsilon));
+    EXPECT_LT(LargestExcess(support, truth), 0.02);
+  }
+}
+
+// A side between two borders is a silhouette, though both its ends are cut.
+TEST(DetectionBuilder, ASideFromBorderToBorderIsNotOneSided) {
+  for (const ObjectPrimitive primitive : {ObjectPrimitive::kSupport, ObjectPrimitive::kHull}) {
+    const Detection detection =
+        BuildOne(RectangleMask(0.0, 0.0, 639.0, 200.0), PlainCamera(), WithPrimitive(primitive));
+    EXPECT_EQ(SidesOneSided(detection), (std::vector<bool>{true, false, true, true}));
+  }
+}
+
+struct Cut {
+  Eigen::Vector2d center;
+  const char* name;
+};
+
+// An ellipse that the image cuts: what is two-sided touches it, what is one-sided does not reach
+// beyond it, and what the image cuts is one-sided.
+TEST(DetectionBuilder, LinesOfACutMaskAreOneSidedWhereItIsCut) {
+  for (const PinholeCamera& camera : {PlainCamera(), DistortedCamera()}) {
+    for (const Cut& cut :
+         {Cut{{20.0, 240.0}, "left"}, Cut{{620.0, 200.0}, "right"}, Cut{{320.0, 10.0}, "top"},
+          Cut{{300.0, 470.0}, "bottom"}, Cut{{15.0, 465.0}, "corner"}}) {
+      SCOPED_TRACE(cut.name);
+      const Ellipse truth = MakeEllipse(camera.Undistort(cut.center), 80.0, 50.0, 0.4);
+      const Detection detection = BuildOne(MaskOf(truth, camera), camera);
+      EXPECT_TRUE(detection.is_cut);
+      int one_sided = 0;
+      for (const SilhouetteLine& line : detection.lines) {
+        const Eigen::Vector2d touch =
+            truth.center + truth.shape * line.line.normal / truth.HalfExtent(line.line.normal);
+        const Eigen::Vector2d raw = camera.Distort(touch);
+        const bool is_inside = raw.x() > 12.0 && raw.y() > 12.0 && raw.x() < camera.width - 12.0 &&
+                               raw.y() < camera.height - 12.0;
+        EXPECT_LT(Excess(line.line, truth), 0.1);
+        if (is_inside) {
+          EXPECT_FALSE(line.is_one_sided) << line.line.normal.transpose();
+        }
+        if (!line.is_one_sided) {
+          EXPECT_NEAR(Excess(line.line, truth), 0.0, 0.7);
+        }
+        one_sided += line.is_one_sided ? 1 : 0;
+      }
+      EXPECT_GE(one_sided, 1);
+      EXPECT_GE(static_cast<int>(detection.lines.size()) - one_sided, 4);
+    }
+  }
+}
+
+// Millimetres: a wall at 3 m, the object (the given raw rectangle) at 2 m.
+cv::Mat DepthOfAnObject(const cv::Rect& object) {
+  cv::Mat depth(480, 640, CV_16UC1, cv::Scalar(3000));
+  depth(object) = 2000;
+  return depth;
+}
+
+TEST(DetectionBuilder, SidesHiddenBySomethingNearerAreOneSided) {
+  const InstanceMask mask = RectangleMask(200.0, 150.0, 119.0, 99.0);
+  cv::Mat depth = DepthOfAnObject({200, 150, 120, 100});
+  EXPECT_EQ(SidesOneSided(BuildOne(mask, PlainCamera(), {}, depth)),
+            (std::vector<bool>{false, false, false, false}));
+  depth(cv::Rect(320, 100, 80, 200)) = 1500;  // right of it, nearer
+  EXPECT_EQ(SidesOneSided(BuildOne(mask, PlainCamera(), {}, depth)),
+            (std::vector<bool>{true, false, false, false}));
+  depth(cv::Rect(320, 100, 80, 200)) = 1960;  // a little nearer: within noise and slant
+  EXPECT_EQ(SidesOneSided(BuildOne(mask, PlainCamera(), {}, depth)),
+            (std::vector<bool>{false, false, false, false}));
+  depth(cv::Rect(320, 150, 80, 30)) = 1500;  // less than half of the side
+  EXPECT_EQ(SidesOneSided(BuildOne(mask, PlainCamera(), {}, depth)),
+            (std::vector<bool>{false, false, false, false}));
+  EXPECT_EQ(SidesOneSided(BuildOne(mask, PlainCamera())),
+            (std::vector<bool>{false, false, false, false}));
+}
+
+TEST(DetectionBuilder, OcclusionIsSeenInDepthInMetresToo) {
+  const InstanceMask mask = RectangleMask(200.0, 150.0, 119.0, 99.0);
+  cv::Mat depth = DepthOfAnObject({200, 150, 120, 100});
+  depth(cv::Rect(180, 250, 160, 80)) = 1500;  // below it
+  cv::Mat metres;
+  depth.convertTo(metres, CV_32FC1, 1e-3);
+  EXPECT_EQ(SidesOneSided(BuildOne(mask, PlainCamera(), {}, metres)),
+            (std::vector<bool>{false, true, false, false}));
+}
+
+// Where the depth along the border of two objects is unknown, their masks tell.
+TEST(DetectionBuilder, ANearerMaskThatTouchesASideHidesIt) {
+  const InstanceMask far = RectangleMask(200.0, 150.0, 119.0, 99.0, "book");
+  const InstanceMask near = RectangleMask(320.0, 130.0, 99.0, 140.0, "cup");
+  cv::Mat depth = DepthOfAnObject({200, 150, 120, 100});
+  depth(cv::Rect(320, 130, 100, 140)) = 1500;
+  depth(cv::Rect(305, 100, 30, 200)) = 0;
+  const DetectionResult result = Build({far, near}, PlainCamera(), {}, depth);
+  ASSERT_EQ(result.detections.size(), 2U);
+  EXPECT_EQ(SidesOneSided(result.detections[0]), (std::vector<bool>{true, false, false, false}));
+  EXPECT_EQ(SidesOneSided(result.detections[1]), (std::vector<bool>{false, false, false, false}));
+}
+
+TEST(DetectionBuilder, PartsAreOneHullButForSmallOnes) {
+  InstanceMask mask = RectangleMask(100.0, 100.0, 60.0, 80.0);
+  mask.outlines.push_back(Rectangle(200.0, 110.0, 40.0, 60.0));
+  mask.outlines.push_back(Rectangle(400.0, 400.0, 10.0, 10.0));  // 2 % of the first
+  const Detection detection = BuildOne(mask, PlainCamera());
+  EXPECT_EQ(detection.box.min(), Eigen::Vector2d(100.0, 100.0));
+  EXPECT_EQ(detection.box.max(), Eigen::Vector2d(240.0, 180.0));
+  EXPECT_NEAR(SignedArea(detection.contour), 60.0 * 80.0, 1e-9);
+  EXPECT_EQ(detection.hull, ConvexHull(std::vector<Eigen::Vector2d>{{100.0, 100.0},
+                                                                    {160.0, 100.0},
+                                                                    {100.0, 180.0},
+                                                                    {160.0, 180.0},
+                                                                    {240.0, 110.0},
+                                                                    {240.0, 170.0}}));
+}
+
+TEST(DetectionBuilder, TellsWhyAMaskIsRejected) {
+  const InstanceMask good = RectangleMask(100.0, 100.0, 60.0, 80.0);
+  EXPECT_EQ(RejectionOf(good), std::nullopt);
+  DetectionOptions strict;
+  strict.min_score = 0.85;
+  EXPECT_EQ(RejectionOf(good, strict), Reason::kLowScore);
+  DetectionOptions textured;
+  textured.min_keypoints = 2;
+  EXPECT_EQ(RejectionOf(good, textured), Reason::kFewKeypoints);
+  EXPECT_EQ(RejectionOf(RectangleMask(100.0, 100.0, 80.0, 6.0)), Reason::kTooSmall);
+  EXPECT_EQ(RejectionOf(RectangleMask(20.0, 20.0, 500.0, 400.0)), Reason::kTooLarge);
+  EXPECT_EQ(RejectionOf(RectangleMask(0.0, 0.0, 639.0, 200.0)), std::nullopt);
+  // Cut on every side that it has: a corner, seen from inside.
+  DetectionOptions wide;
+  wide.border_px = 130.0;
+  EXPECT_EQ(RejectionOf(RectangleMask(50.0, 50.0, 60.0, 60.0), wide), Reason::kNoSilhouette);
+  EXPECT_EQ(RejectionOf(RectangleMask(-90.0, 50.0, 60.0, 60.0)), Reason::kNoSilhouette);
+}
+
+TEST(DetectionBuilder, RejectsOutlinesWithoutAnArea) {
+  InstanceMask mask = RectangleMask(100.0, 100.0, 60.0, 80.0);
+  mask.outlines = {};
+  EXPECT_EQ(RejectionOf(mask), Reason::kDegenerate);
+  mask.outlines = {{}};
+  EXPECT_EQ(RejectionOf(mask), Reason::kDegenerate);
+  mask.outlines = {{{10.0, 10.0}, {50.0, 50.0}, {90.0, 90.0}}};
+  EXPECT_EQ(RejectionOf(mask), Reason::kDegenerate);
+  mask.outlines = {std::vector<Eigen::Vector2d>(5, Eigen::Vector2d(30.0, 40.0))};
+  EXPECT_EQ(RejectionOf(mask), Reason::kDegenerate);
+}
+
+TEST(DetectionBuilder, KeepsTheOrderAndClassOfMasks) {
+  const DetectionResult result = Build({RectangleMask(20.0, 20.0, 60.0, 60.0, "cup", 0.3),
+                                        RectangleMask(200.0, 20.0, 60.0, 4.0, "pen", 0.9),
+                                        RectangleMask(300.0, 300.0, 80.0, 60.0, "book", 0.8)},
+                                       PlainCamera());
+  ASSERT_EQ(result.detections.size(), 2U);
+  EXPECT_EQ(result.detections[0].label, "cup");
+  EXPECT_EQ(result.detections[0].score, 0.3);
+  EXPECT_EQ(result.detections[1].label, "book");
+  EXPECT_EQ(result.rejections,
+            (std::vector<std::optional<Reason>>{std::nullopt, Reason::kTooSmall, std::nullopt}));
+}
+
+TEST(DetectionBuilder, OneObjectUnderTwoClassesIsOneDetection) {
+  const DetectionResult result = Build({RectangleMask(200.0, 150.0, 100.0, 80.0, "laptop", 0.4),
+                                        RectangleMask(203.0, 152.0, 100.0, 80.0, "tv", 0.7)},
+                                       PlainCamera());
+  ASSERT_EQ(result.detections.size(), 1U);
+  EXPECT_EQ(result.detections[0].label, "tv");
+  EXPECT_EQ(result.rejections[0], Reason::kDuplicate);
+}
+
+TEST(DetectionBuilder, AFragmentIsADuplicateOnlyAtTheSameDepth) {
+  const std::vector<InstanceMask> masks{RectangleMask(200.0, 150.0, 120.0, 80.0, "keyboard", 0.9),
+                                        RectangleMask(202.0, 152.0, 52.0, 76.0, "keyboard", 0.5)};
+  cv::Mat depth(480, 640, CV_16UC1, cv::Scalar(2000));
+  EXPECT_EQ(Build(masks, PlainCamera(), {}, depth).rejections[1], Reason::kDuplicate);
+  depth(cv::Rect(202, 152, 53, 77)) = 1500;
+  EXPECT_EQ(Build(masks, PlainCamera(), {}, depth).rejections[1], std::nullopt);
+}
+
+// Containment alone does not make one object of two.
+TEST(DetectionBuilder, ACupBeforeAMonitorIsADetectionOfItsOwn) {
+  const InstanceMask cup = RectangleMask(260.0, 200.0, 30.0, 40.0, "cup", 0.6);
+  // The cup is cut out of the monitor's mask, but lies in its hull; or the mask covers it.
+  InstanceMask with_hole = RectangleMask(200.0, 100.0, 160.0, 140.0, "tv", 0.9);
+  with_hole.outlines = {{{200.0, 100.0},
+                         {360.0, 100.0},
+                         {360.0, 240.0},
+                         {292.0, 240.0},
+                         {292.0, 198.0},
+                         {258.0, 198.0},
+                         {258.0, 240.0},
+                         {200.0, 240.0}}};
+  const InstanceMask covering = RectangleMask(200.0, 100.0, 160.0, 140.0, "tv", 0.9);
+  const cv::Mat depth(480, 640, CV_16UC1, cv::Scalar(2000));
+  for (const InstanceMask& monitor : {with_hole, covering}) {
+    EXPECT_EQ(Build({monitor, cup}, PlainCamera()).detections.size(), 2U);
+    EXPECT_EQ(Build({monitor, cup}, PlainCamera(), {}, depth).detections.size(), 2U);
+  }
+}
+
+TEST(DetectionBuilder, ABoxGivesItsFourSidesWhateverIsAskedFor) {
+  for (const ObjectPrimitive primitive :
+       {ObjectPrimitive::kSupport, ObjectPrimitive::kHull, ObjectPrimitive::kConic}) {
+    for (const bool is_reversed : {false, true}) {
+      InstanceMask box = RectangleMask(3.0, 100.0, 80.0, 60.0);
+      box.shape = MaskShape::kBox;
+      if (is_reversed) std::reverse(box.outlines[0].begin(), box.outlines[0].end());
+      const Detection detection = BuildOne(box, PlainCamera(), WithPrimitive(primitive));
+      EXPECT_TRUE(detection.is_box);
+      ASSERT_EQ(detection.lines.size(), 4U);
+      EXPECT_EQ(SidesOneSided(detection), (std::vector<bool>{false, false, true, false}));
+      for (const SilhouetteLine& line : detection.lines) {
+        const Eigen::Vector2d center(43.0, 130.0);
+        EXPECT_NEAR(line.line.SignedDistance(center),
+                    std::abs(line.line.normal.x()) > 0.5 ? -40.0 : -30.0, 1e-9);
+      }
+    }
+  }
+}
+
+// A detector's box touches the object somewhere on its bent sides, not at its corners.
+TEST(DetectionBuilder, SidesOfADistortedBoxAreTheUndistortedSides) {
+  const PinholeCamera camera = DistortedCamera();
+  InstanceMask box = RectangleMask(20.0, 20.0, 150.0, 120.0);
+  box.shape = MaskShape::kBox;
+  for (const SilhouetteLine& line : BuildOne(box, camera).lines) {
+    double least = 1e9;
+    double most = -1e9;
+    for (double share = 0.0; share <= 1.0; share += 0.05) {
+      for (size_t i = 0; i < 4; ++i) {
+        const Eigen::Vector2d& from = box.outlines[0][i];
+        const Eigen::Vector2d along = box.outlines[0][(i + 1) % 4] - from;
+        const Eigen::Vector2d outwards(along.y(), -along.x());
+        if (outwards.normalized().dot(line.line.normal) > 0.9) {
+          const double distance = line.line.SignedDistance(camera.Undistort(from + share * along));
+          least = std::min(least, distance);
+          most = std::max(most, distance);
+        }
+      }
+    }
+    EXPECT_LT(most, 1.5);
+    EXPECT_GT(least, -1.5);
+    EXPECT_LE(least, 1e-9);
+    EXPECT_GE(most, -1e-9);
+  }
+}
+
+TEST(DetectionBuilder, AnEllipseGivesItsTangents) {
+  const Ellipse truth = SeenEllipsoid();
+  InstanceMask mask = MaskOf(truth, DistortedCamera());
+  mask.shape = MaskShape::kEllipse;
+  const Detection detection = BuildOne(mask, DistortedCamera());
+  ASSERT_TRUE(detection.ellipse);
+  EXPECT_EQ(detection.lines.size(), 16U);
+  EXPECT_LT(LargestExcess(detection, truth), 0.1);
+}
+
+TEST(DetectionBuilder, ConicGivesTheFittedEllipseAndItsTangents) {
+  const Ellipse truth = SeenEllipsoid();
+  const InstanceMask mask = MaskOf(truth, DistortedCamera());
+  const Detection detection =
+      BuildOne(mask, DistortedCamera(), WithPrimitive(ObjectPrimitive::kConic));
+  ASSERT_TRUE(detection.ellipse);
+  EXPECT_LT((detection.ellipse->center - truth.center).norm(), 0.05);
+  EXPECT_LT(LargestExcess(detection, truth), 0.1);
+  for (const SilhouetteLine& line : detection.lines) {
+    EXPECT_NEAR(Excess(line.line, *detection.ellipse), 0.0, 1e-9);
+  }
+  EXPECT_FALSE(BuildOne(mask, DistortedCamera()).ellipse);
+}
+
+TEST(DetectionBuilder, BoxOfAContourHasFourTangents) {
+  const Ellipse truth = SeenEllipsoid();
+  const Detection detection = BuildOne(MaskOf(truth, DistortedCamera()), DistortedCamera(),
+                                       WithPrimitive(ObjectPrimitive::kBox));
+  EXPECT_EQ(detection.lines.size(), 4U);
+  EXPECT_LT(LargestExcess(detection, truth), 0.1);
+  EXPECT_FALSE(detection.is_box);
+}
+
+TEST(DetectionBuilder, ContourFollowsAnInwardCornerAndTheHullDoesNot) {
+  InstanceMask mask = RectangleMask(0.0, 0.0, 1.0, 1.0);
+  mask.outlines = {{{100.0, 100.0},
+                    {200.0, 100.0},
+                    {200.0, 140.0},
+                    {140.0, 140.0},
+                    {140.0, 200.0},
+                    {100.0, 200.0}}};  // an L
+  const Detection contour = BuildOne(mask, PlainCamera(), WithPrimitive(ObjectPrimitive::kContour));
+  EXPECT_EQ(contour.lines.size(), 6U);
+  const Detection hull = BuildOne(mask, PlainCamera(), WithPrimitive(ObjectPrimitive::kHull));
+  EXPECT_EQ(hull.lines.size(), 5U);
+  const auto cuts_the_hull = [](const Detection& detection) {
+    return std::count_if(detection.lines.begin(), detection.lines.end(), [&](const auto& line) {
+      return std::any_of(detection.hull.begin(), detection.hull.end(), [&](const auto& corner) {
+        return line.line.SignedDistance(corner) > 1.0;
+      });
+    });
+  };
+  EXPECT_EQ(cuts_the_hull(contour), 2);
+  EXPECT_EQ(cuts_the_hull(hull), 0);
+}
+
+TEST(DetectionBuilder, ShortEdgesGiveNoLine) {
+  InstanceMask mask = RectangleMask(0.0, 0.0, 1.0, 1.0);
+  mask.outlines = {
+      {{100.0, 100.0}, {200.0, 100.0}, {204.0, 103.0}, {200.0, 200.0}, {100.0, 200.0}}};
+  DetectionOptions options = WithPrimitive(ObjectPrimitive::kHull, 0.0);
+  options.min_line_px = 6.0;
+  EXPECT_EQ(BuildOne(mask, PlainCamera(), options).lines.size(), 4U);
+  options.min_line_px = 4.0;
+  EXPECT_EQ(BuildOne(mask, PlainCamera(), options).lines.size(), 5U);
+}
+
+TEST(DetectionBuilder, DepthPointsAreInsideTheErodedMaskOnAGrid) {
+  const PinholeCamera camera = DistortedCamera();
+  const cv::Mat depth = DepthOfAnObject({200, 150, 120, 100});
+  const InstanceMask mask = RectangleMask(200.0, 150.0, 119.0, 99.0);
+  const Detection detection = BuildOne(mask, camera, {}, depth);
+  EXPECT_GT(detection.points.size(), 100U);
+  EXPECT_LE(detection.points.size(), 200U);
+  std::set<int> columns;
+  for (const Eigen::Vector3d& point : detection.points) {
+    EXPECT_NEAR(point.z(), 2.0, 1e-6);
+    const Eigen::Vector2d raw = camera.Distort(camera.Project(point));
+    EXPECT_LT((raw - raw.array().round().matrix()).norm(), 1e-5);
+    EXPECT_GE(raw.x(), 204.9);
+    EXPECT_LE(raw.x(), 315.1);
+    EXPECT_GE(raw.y(), 154.9);
+    EXPECT_LE(raw.y(), 245.1);
+    columns.insert(static_cast<int>(std::lround(raw.x())));
+  }
+  EXPECT_LT(columns.size(), 20U);
+  DetectionOptions few;
+  few.max_depth_points = 30;
+  EXPECT_LE(BuildOne(mask, camera, few, depth).points.size(), 30U);
+  EXPECT_TRUE(BuildOne(mask, camera).points.empty());
+}
+
+TEST(DetectionBuilder, UnknownDepthGivesNoPoints) {
+  cv::Mat depth = DepthOfAnObject({200, 150, 120, 100});
+  depth(cv::Rect(200, 150, 60, 100)) = 0;
+  const Detection detection =
+      BuildOne(RectangleMask(200.0, 150.0, 119.0, 99.0), PlainCamera(), {}, depth);
+  EXPECT_FALSE(detection.points.empty());
+  for (const Eigen::Vector3d& point : detection.points) {
+    EXPECT_GE(PlainCamera().Project(point).x(), 259.9);
+  }
+}
+
+TEST(DetectionBuilder, KeypointsAreThoseInAnyPartOfTheMask) {
+  InstanceMask mask = RectangleMask(100.0, 100.0, 60.0, 80.0);
+  mask.outlines.push_back(Rectangle(200.0, 110.0, 40.0, 60.0));
+  std::vector<Keypoint> keypoints(5);
+  keypoints[0].raw = {50.0f, 50.0f};
+  keypoints[1].raw = {120.0f, 150.0f};
+  keypoints[2].raw = {180.0f, 140.0f};  // in the hull, between the parts
+  keypoints[3].raw = {220.0f, 140.0f};
+  keypoints[4].raw = {1e6f, -1e6f};
+  const DetectionResult result =
+      DetectionBuilder(PlainCamera(), kUnits, {}).Build(std::vector{mask}, {}, keypoints);
+  ASSERT_EQ(result.detections.size(), 1U);
+  EXPECT_EQ(result.detections[0].keypoints, (std::vector<uint32_t>{1, 3}));
+}
+
+TEST(DetectionBuilder, RefusesADepthImageOfAnotherKind) {
+  const std::vector<InstanceMask> masks{RectangleMask(100.0, 100.0, 60.0, 80.0)};
+  EXPECT_THROW(Build(masks, PlainCamera(), {}, cv::Mat(240, 320, CV_16UC1, cv::Scalar(1))),
+               CheckError);
+  EXPECT_THROW(Build(masks, PlainCamera(), {}, cv::Mat(480, 640, CV_8UC1, cv::Scalar(1))),
+               CheckError);
+}
+
+TEST(DetectionRejection, HasANameForEach) {
+  std::set<std::string> names;
+  for (int i = 0; i < kDetectionRejectionCount; ++i) {
+    names.insert(ToString(static_cast<DetectionRejection>(i)));
+  }
+  EXPECT_EQ(names.size(), static_cast<size_t>(kDetectionRejectionCount));
+  EXPECT_EQ(ToString(DetectionRejection::kNoSilhouette), "no_silhouette");
+}
+
+}  // namespace
+}  // namespace hullslam

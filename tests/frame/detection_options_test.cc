@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/frame/detection_options.h"
+
+#include <gtest/gtest.h>
+
+#include "support/expect_error.h"
+
+namespace hullslam {
+namespace {
+
+TEST(DetectionOptions, AreSetByTheirKeys) {
+  DetectionOptions options;
+  OptionTable table;
+  options.Bind(table);
+  table.Set("objects.primitive", "bbox", "test");
+  table.Set("objects.epsilon_px", "6", "test");
+  table.Set("objects.min_score", "0.5", "test");
+  EXPECT_EQ(options.primitive, ObjectPrimitive::kBox);
+  EXPECT_EQ(options.epsilon_px, 6.0);
+  EXPECT_EQ(options.min_score, 0.5);
+}
+
+TEST(DetectionOptions, TellWhatIsExpected) {
+  DetectionOptions options;
+  OptionTable table;
+  options.Bind(table);
+  ExpectInputError([&] { table.Set("objects.primitive", "outline", "--set"); },
+                   {"objects.primitive", "'outline'", "support, hull, contour, bbox, conic"});
+  ExpectInputError([&] { table.Set("objects.epsilon_px", "-1", "--set"); },
+                   {"objects.epsilon_px", "'-1'", "from 0 to 100"});
+  ExpectInputError([&] { table.Set("objects.min_score", "1.5", "--set"); },
+                   {"objects.min_score", "'1.5'", "from 0 to 1"});
+}
+
+}  // namespace
+}  // namespace hullslam

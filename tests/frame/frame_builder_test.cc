@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "frame/frame_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "hullslam/util/check.h"
+#include "support/square_mask.h"
+
+namespace hullslam {
+namespace {
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 240;
+
+// The camera of TUM freiburg1 at half the size: strong distortion.
+Sensor DistortedSensor() {
+  Sensor sensor;
+  sensor.camera = {.fx = 258.653204,
+                   .fy = 258.234607,
+                   .cx = 159.321520,
+                   .cy = 127.656994,
+                   .k1 = 0.262383,
+                   .k2 = -0.953104,
+                   .p1 = -0.005358,
+                   .p2 = 0.002628,
+                   .k3 = 1.163314,
+                   .width = kWidth,
+                   .height = kHeight,
+                   .bf = 20.0};
+  sensor.bounds = sensor.camera.UndistortedBounds();
+  sensor.levels = ScaleLevels::Create(4, 1.2);
+  return sensor;
+}
+
+FeatureOptions FewFeatures() {
+  FeatureOptions options;
+  options.feature_count = 300;
+  options.level_count = 4;
+  return options;
+}
+
+// Bright and dark rectangles, and depths that change from pixel to pixel with holes.
+ImageInput MakeImage() {
+  ImageInput image;
+  image.timestamp = 12.5;
+  image.grey = cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(90));
+  cv::RNG random(7);
+  for (int i = 0; i < 120; ++i) {
+    const cv::Rect box(random.uniform(0, kWidth - 24), random.uniform(0, kHeight - 24),
+                       random.uniform(6, 24), random.uniform(6, 24));
+    image.grey(box).setTo(random.uniform(0, 256));
+  }
+  image.depth = cv::Mat(kHeight, kWidth, CV_16UC1);
+  random.fill(image.depth, cv::RNG::UNIFORM, 5000, 20000);
+  image.depth(cv::Rect(0, 0, kWidth / 2, kHeight / 2)).setTo(0);
+  return image;
+}
+
+// Keypoints whose raw position is in a square, by index.
+std::vector<uint32_t> KeypointsInside(const Frame& frame, double left, double top, double side) {
+  const Eigen::AlignedBox2d square(Eigen::Vector2d(left, top),
+                                   Eigen::Vector2d(left + side, top + side));
+  std::vector<uint32_t> inside;
+  for (uint32_t i = 0; i < frame.features.size(); ++i) {
+    if (square.contains(frame.features.keypoints[i].raw.cast<double>())) {
+      inside.push_back(i);
+    }
+  }
+  return inside;
+}
+
+class FrameBuilderTest : public testing::Test {
+ protected:
+  std::shared_ptr<const Frame> Build(const ImageInput& image) {
+    return FrameBuilder(sensor_, DepthOptions(), FewFeatures()).Build(image, FrameId(3));
+  }
+
+  const Sensor sensor_ = DistortedSensor();
+};
+
+TEST_F(FrameBuilderTest, HasOneEntryAKeypointAndItsStamp) {
+  const auto frame = Build(MakeImage());
+  EXPECT_EQ(frame->id, FrameId(3));
+  EXPECT_EQ(frame->timestamp, 12.5);
+  const FrameFeatures& features = frame->features;
+  ASSERT_GT(features.size(), 100u);
+  EXPECT_EQ(features.descriptors.size(), features.size());
+  EXPECT_EQ(features.depth.size(), features.size());
+  EXPECT_EQ(features.right_u.size(), features.size());
+}
+
+TEST_F(FrameBuilderTest, KeypointsAreUndistorted) {
+  const auto frame = Build(MakeImage());
+  float farthest = 0.0f;
+  for (const Keypoint& keypoint : frame->features.keypoints) {
+    const Eigen::Vector2d back = sensor_.camera.Distort(keypoint.undistorted.cast<double>());
+    EXPECT_LT((back - keypoint.raw.cast<double>()).norm(), 1e-3);
+    farthest = std::max(farthest, (keypoint.undistorted - keypoint.raw).norm());
+  }
+  EXPECT_GT(farthest, 1.0f) << "the camera distorts by more than a pixel";
+}
+
+TEST_F(FrameBuilderTest, DepthIsThatOfTheRawPixel) {
+  const ImageInput image = MakeImage();
+  const auto frame = Build(image);
+  const FrameFeatures& features = frame->features;
+  int unknown = 0;
+  for (size_t i = 0; i < features.size(); ++i) {
+    const Eigen::Vector2f raw = features.keypoints[i].raw;
+    const auto units = image.depth.at<uint16_t>(static_cast<int>(std::round(raw.y())),
+                                                static_cast<int>(std::round(raw.x())));
+    EXPECT_FLOAT_EQ(features.depth[i], static_cast<float>(units) / 5000.0f);
+    if (units == 0) {
+      ++unknown;
+      EXPECT_EQ(features.right_u[i], -1.0f);
+    } else {
+      EXPECT_NEAR(features.right_u[i], features.keypoints[i].undistorted.x() - 100000.0f / units,
+                  1e-3f);
+    }
+  }
+  EXPECT_GT(unknown, 0);
+  EXPECT_LT(unknown, static_cast<int>(features.size()));
+}
+
+TEST_F(FrameBuilderTest, TheGridFindsEveryKeypointWhereItIsUndistorted) {
+  const auto frame = Build(MakeImage());
+  const FrameFeatures& features = frame->features;
+  for (uint32_t i = 0; i < features.size(); ++i) {
+    const Keypoint& keypoint = features.keypoints[i];
+    std::vector<uint32_t> found;
+    features.grid.FindNear(features.keypoints, keypoint.undistorted, 0.5f, keypoint.level,
+                           keypoint.level, found);
+    EXPECT_NE(std::find(found.begin(), found.end(), i), found.end()) << i;
+  }
+}
+
+TEST_F(FrameBuilderTest, MetresInFloatGiveTheSameDepth) {
+  ImageInput image = MakeImage();
+  const auto units = Build(image);
+  image.depth.convertTo(image.depth, CV_32FC1, 1.0 / 5000.0);
+  const auto metres = Build(image);
+  ASSERT_EQ(units->features.size(), metres->features.size());
+  for (size_t i = 0; i < units->features.size(); ++i) {
+    EXPECT_FLOAT_EQ(units->features.depth[i], metres->features.depth[i]);
+  }
+}
+
+TEST_F(FrameBuilderTest, AnImageWithoutCornersGivesAFrameWithoutKeypoints) {
+  ImageInput image = MakeImage();
+  image.grey.setTo(128);
+  EXPECT_EQ(Build(image)->features.size(), 0u);
+}
+
+TEST_F(FrameBuilderTest, MasksGiveDetectionsInUndistortedPixels) {
+  ImageInput image = MakeImage();
+  image.masks = {Square("cup", 20, 160, 50), Square("book", 200, 60, 80)};
+  const auto frame = Build(image);
+  ASSERT_EQ(frame->detections.size(), 2u);
+  const Detection& book = frame->detections[1];
+  EXPECT_EQ(frame->detections[0].label, "cup");
+  EXPECT_EQ(book.label, "book");
+  const Eigen::Vector2d corner = sensor_.camera.Undistort({280.0, 140.0});
+  EXPECT_GT((corner - Eigen::Vector2d(280.0, 140.0)).norm(), 0.5);
+  EXPECT_LT(book.box.exteriorDistance(corner), 0.1);
+  EXPECT_EQ(book.keypoints, KeypointsInside(*frame, 200.0, 60.0, 80.0));
+  EXPECT_FALSE(book.keypoints.empty());
+}
+
+TEST_F(FrameBuilderTest, MasksOfStaticThingsLeaveTheKeypointsAsTheyAre) {
+  ImageInput image = MakeImage();
+  const auto without = Build(image);
+  EXPECT_TRUE(without->detections.empty());
+  image.masks = {Square("cup", 20, 160, 50)};
+  const auto with = Build(image);
+  EXPECT_EQ(with->features.descriptors, without->features.descriptors);
+}
+
+TEST_F(FrameBuilderTest, DynamicThingsHideTheirKeypointsAndAreNoDetections) {
+  ImageInput image = MakeImage();
+  const auto all = Build(image);
+  ASSERT_FALSE(KeypointsInside(*all, 200.0, 60.0, 80.0).empty());
+  image.masks = {Square("person", 200, 60, 80), Square("cup", 20, 160, 50)};
+  const auto frame =
+      FrameBuilder(sensor_, DepthOptions(), FewFeatures(), DetectionOptions(), {"person"})
+          .Build(image, FrameId(3));
+  EXPECT_TRUE(KeypointsInside(*frame, 200.0, 60.0, 80.0).empty());
+  EXPECT_GT(frame->features.size(), all->features.size() / 2);
+  EXPECT_EQ(frame->features.descriptors.size(), frame->features.size());
+  EXPECT_EQ(frame->features.depth.size(), frame->features.size());
+  ASSERT_EQ(frame->detections.size(), 1u);
+  EXPECT_EQ(frame->detections[0].label, "cup");
+}
+
+TEST_F(FrameBuilderTest, WithoutObjectsThereAreNoDetectionsButDynamicThingsStillHide) {
+  ImageInput image = MakeImage();
+  image.masks = {Square("person", 200, 60, 80), Square("cup", 20, 160, 50)};
+  FrameBuilder builder(sensor_, DepthOptions(), FewFeatures(), std::nullopt, {"person"});
+  const auto frame = builder.Build(image, FrameId(3));
+  EXPECT_TRUE(frame->detections.empty());
+  EXPECT_TRUE(KeypointsInside(*frame, 200.0, 60.0, 80.0).empty());
+  EXPECT_EQ(builder.counts().detections, 0u);
+}
+
+TEST_F(FrameBuilderTest, CountsAreOfAllFrames) {
+  FrameBuilder builder(sensor_, DepthOptions(), FewFeatures(), DetectionOptions(), {"person"});
+  ImageInput image = MakeImage();
+  builder.Build(image, FrameId(0));
+  image.masks = {Square("cup", 20, 160, 50), Square("mouse", 100, 100, 4)};
+  builder.Build(image, FrameId(1));
+  image.masks.push_back(Square("person", 200, 60, 80));
+  builder.Build(image, FrameId(2));
+  EXPECT_EQ(builder.counts().frames_with_masks, 2u);
+  EXPECT_EQ(builder.counts().detections, 2u);
+  EXPECT_EQ(builder.counts().rejections,
+            (std::map<DetectionRejection, size_t>{{DetectionRejection::kTooSmall, 2u}}));
+}
+
+TEST_F(FrameBuilderTest, ImagesOfAnotherSizeAreRefused) {
+  ImageInput image = MakeImage();
+  image.grey = image.grey(cv::Rect(0, 0, kWidth - 1, kHeight));
+  EXPECT_THROW(Build(image), CheckError);
+  image = MakeImage();
+  image.depth = image.depth(cv::Rect(0, 0, kWidth, kHeight - 1));
+  EXPECT_THROW(Build(image), CheckError);
+  image.depth = cv::Mat();
+  EXPECT_THROW(Build(image), CheckError);
+}
+
+TEST_F(FrameBuilderTest, ImagesOfAnotherTypeAreRefusedWhateverTheyShow) {
+  ImageInput image = MakeImage();
+  image.grey.convertTo(image.grey, CV_16UC1);
+  EXPECT_THROW(Build(image), CheckError);
+  image = MakeImage();
+  image.grey.setTo(128);  // without keypoints no depth is ever asked for
+  image.depth.convertTo(image.depth, CV_8UC1);
+  EXPECT_THROW(Build(image), CheckError);
+}
+
+}  // namespace
+}  // namespace hullslam

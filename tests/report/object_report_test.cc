@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/report/object_report.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace hullslam {
+namespace {
+
+KeyframeId AddView(Map& map, uint32_t frame_id, const std::string& label) {
+  auto frame = std::make_shared<Frame>();
+  frame->id = FrameId(frame_id);
+  frame->timestamp = 0.1 * frame_id;
+  Detection detection;
+  detection.label = label;
+  detection.score = 0.5;
+  detection.is_cut = true;
+  detection.hull = {{0, 0}, {4, 0}, {4, 4}};
+  detection.contour = {{0, 0}, {4, 0}, {4, 4}, {3, 2}};
+  detection.lines = {{{Eigen::Vector2d::UnitY(), -4.0}, true}};
+  frame->detections = {Detection(), detection};
+  return map.AddKeyframe(frame, Rigid3(Eigen::Quaterniond::Identity(), {1.0 * frame_id, 0, 0}));
+}
+
+ObjectId AddShape(Map& map, ObjectState state) {
+  const ObjectId id = map.AddObject();
+  ObjectLandmark& object = map.MutableObject(id);
+  object.state = state;
+  object.has_shape = true;
+  object.misfit_px = 3.0;
+  object.ellipsoid.half_axes = {0.1, 0.2, 0.3};
+  return id;
+}
+
+TEST(ObjectReport, HoldsWhatTheMapKnowsOfAnObject) {
+  Map map;
+  const ObjectId id = AddShape(map, ObjectState::kMapped);
+  map.AddObservation(id, AddView(map, 5, "cup"), 1);
+  map.AddObservation(id, AddView(map, 7, "bowl"), 1);
+  map.AddObservation(id, AddView(map, 8, "bowl"), 1);
+  PinholeCamera camera;
+  camera.fx = 500.0;
+  const ObjectReport report = ReportObjects(map, camera);
+  EXPECT_EQ(report.camera.fx, 500.0);
+  EXPECT_EQ(report.candidates, 0U);
+  ASSERT_EQ(report.objects.size(), 1U);
+  const ReportedObject& object = report.objects[0];
+  EXPECT_EQ(object.id, id);
+  EXPECT_EQ(object.label, "bowl");
+  EXPECT_EQ(object.state, ObjectState::kMapped);
+  EXPECT_EQ(object.misfit_px, 3.0);
+  EXPECT_EQ(object.ellipsoid.half_axes.z(), 0.3);
+  ASSERT_EQ(object.views.size(), 3U);
+  const ReportedView& view = object.views[1];
+  EXPECT_EQ(view.keyframe, KeyframeId(1));
+  EXPECT_EQ(view.timestamp, 0.1 * 7);
+  EXPECT_EQ(view.cam_from_world.translation.x(), 7.0);
+  EXPECT_EQ(view.label, "bowl");
+  EXPECT_EQ(view.score, 0.5);
+  EXPECT_TRUE(view.is_cut);
+  EXPECT_EQ(view.hull.size(), 3U);
+  EXPECT_EQ(view.contour.size(), 4U);
+  ASSERT_EQ(view.lines.size(), 1U);
+  EXPECT_TRUE(view.lines[0].is_one_sided);
+}
+
+TEST(ObjectReport, CountsCandidatesAndListsThoseThatHaveAShape) {
+  Map map;
+  const ObjectId shaped = AddShape(map, ObjectState::kCandidate);
+  map.AddObservation(shaped, AddView(map, 0, "cup"), 1);
+  map.AddObservation(map.AddObject(), AddView(map, 1, "cup"), 1);  // without a shape
+  AddShape(map, ObjectState::kMapped);                             // that nobody sees any more
+  const ObjectReport report = ReportObjects(map, PinholeCamera());
+  EXPECT_EQ(report.candidates, 2U);
+  ASSERT_EQ(report.objects.size(), 1U);
+  EXPECT_EQ(report.objects[0].id, shaped);
+}
+
+TEST(ObjectReport, IsEmptyForAnEmptyMap) {
+  const ObjectReport report = ReportObjects(Map(), PinholeCamera());
+  EXPECT_TRUE(report.objects.empty());
+  EXPECT_EQ(report.candidates, 0U);
+}
+
+}  // namespace
+}  // namespace hullslam
