@@ -38,6 +38,7 @@ Map Map::Snapshot() {
   copy.replaced_by_ = replaced_by_.Snapshot();
   copy.object_replaced_by_ = object_replaced_by_.Snapshot();
   copy.culled_ = culled_.Snapshot();
+  copy.correction_count_ = correction_count_;
   return copy;
 }
 
@@ -129,6 +130,7 @@ bool Map::AddObservation(ObjectId object, KeyframeId keyframe, uint32_t detectio
   ObjectLandmark& changed = objects_.Mutable(object);
   changed.observations.insert(PlaceOfObservation(changed.observations, keyframe),
                               {keyframe, detection});
+  changed.reference = changed.observations.front().keyframe;
   const Detection& seen = observer.frame->detections[detection];
   changed.votes[seen.label] += seen.score;
   keyframes_.Mutable(keyframe).objects[detection] = object;
@@ -142,6 +144,9 @@ void Map::RemoveObservation(ObjectId object, KeyframeId keyframe) {
   Keyframe& observer = keyframes_.Mutable(keyframe);
   observer.objects[it->detection] = ObjectId();
   changed.observations.erase(it);
+  if (!changed.observations.empty()) {
+    changed.reference = changed.observations.front().keyframe;
+  }
   // Counted anew: taking the score off would leave a rest by rounding.
   changed.votes.clear();
   for (const ObjectObservation& left : changed.observations) {
@@ -194,18 +199,33 @@ void Map::CullKeyframe(KeyframeId id) {
   DetachFromTree(*this, id);
   DetachCovisibility(*this, id);
   keyframes_.Erase(id);
-  const Rigid3 world_from_parent = Inverse(keyframes_.At(keyframe.parent).cam_from_world);
-  culled_.Put(id,
-              {keyframe.frame->id, keyframe.parent, keyframe.cam_from_world * world_from_parent});
+  culled_.Put(id, {.frame = keyframe.frame->id,
+                   .pose = RelativeTo(keyframe.parent, keyframe.cam_from_world),
+                   .scale = keyframe.scale});
 }
 
 Rigid3 Map::CamFromWorld(KeyframeId keyframe) const {
-  Rigid3 cam_from_ancestor;
-  while (const CulledKeyframe* culled = culled_.Find(keyframe)) {
-    cam_from_ancestor = cam_from_ancestor * culled->cam_from_parent;
-    keyframe = culled->parent;
-  }
-  return cam_from_ancestor * keyframes_.At(keyframe).cam_from_world;
+  const CulledKeyframe* culled = culled_.Find(keyframe);
+  return culled != nullptr ? CamFromWorld(culled->pose) : keyframes_.At(keyframe).cam_from_world;
+}
+
+Rigid3 Map::CamFromWorld(const RelativePose& pose) const {
+  Rigid3 cam_from_reference = pose.cam_from_reference;
+  cam_from_reference.translation *= ScaleOf(pose.reference) / pose.reference_scale;
+  return cam_from_reference * CamFromWorld(pose.reference);
+}
+
+RelativePose Map::RelativeTo(KeyframeId reference, const Rigid3& cam_from_world) const {
+  return {.reference = reference,
+          .cam_from_reference = cam_from_world * Inverse(CamFromWorld(reference)),
+          .reference_scale = ScaleOf(reference)};
+}
+
+double Map::ScaleOf(KeyframeId keyframe) const {
+  const CulledKeyframe* culled = culled_.Find(keyframe);
+  return culled != nullptr
+             ? culled->scale * (ScaleOf(culled->pose.reference) / culled->pose.reference_scale)
+             : keyframes_.At(keyframe).scale;
 }
 
 std::optional<KeyframeId> Map::KeyframeOfFrame(FrameId frame) const {
@@ -226,7 +246,7 @@ std::optional<KeyframeId> Map::KeyframeOfFrame(FrameId frame) const {
 
 KeyframeId Map::NearestAlive(KeyframeId keyframe) const {
   while (const CulledKeyframe* culled = culled_.Find(keyframe)) {
-    keyframe = culled->parent;
+    keyframe = culled->pose.reference;
   }
   return keyframe;
 }

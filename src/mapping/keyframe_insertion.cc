@@ -5,6 +5,7 @@
 
 #include "map/covisibility.h"
 #include "map/landmark_edits.h"
+#include "hullslam/util/check.h"
 #include "map/spanning_tree.h"
 
 namespace hullslam {
@@ -21,38 +22,35 @@ void ApplySightings(Map& map, const std::vector<Sighting>& sightings) {
   }
 }
 
+// Adds an observation and brings what follows from the observations up to date.
+void Observe(Map& map, LandmarkId landmark, KeyframeId keyframe, uint32_t keypoint,
+             const ScaleLevels& levels) {
+  if (map.AddObservation(landmark, keyframe, keypoint)) {
+    UpdateDescriptor(map, landmark);
+    UpdateViewingGeometry(map, landmark, levels);
+  }
+}
+
 void AddKnownLandmarks(Map& map, KeyframeId id, const std::vector<LandmarkId>& landmarks,
                        const ScaleLevels& levels) {
   for (uint32_t keypoint = 0; keypoint < landmarks.size(); ++keypoint) {
     const LandmarkId landmark = map.Resolve(landmarks[keypoint]);
-    if (landmark.IsValid() && map.AddObservation(landmark, id, keypoint)) {
-      UpdateDescriptor(map, landmark);
-      UpdateViewingGeometry(map, landmark, levels);
+    if (landmark.IsValid()) {
+      Observe(map, landmark, id, keypoint, levels);
     }
   }
 }
 
-// Keypoints with depth, nearest first.
-std::vector<uint32_t> ByDepth(const FrameFeatures& features) {
-  std::vector<uint32_t> keypoints;
-  for (uint32_t i = 0; i < features.size(); ++i) {
-    if (features.depth[i] > 0.0f) {
-      keypoints.push_back(i);
-    }
-  }
-  std::stable_sort(keypoints.begin(), keypoints.end(),
-                   [&](uint32_t a, uint32_t b) { return features.depth[a] < features.depth[b]; });
-  return keypoints;
-}
-
-void AddDepthLandmarks(Map& map, KeyframeId id, const Sensor& sensor, bool all,
+// Makes landmarks of keypoints with depth that show none yet: of all close ones, and of at least the
+// nearest hundred.
+void AddDepthLandmarks(Map& map, KeyframeId id, const Sensor& sensor,
                        std::vector<LandmarkId>& created) {
   const std::shared_ptr<const Frame> frame = map.keyframes().At(id).frame;
   const Rigid3 world_from_cam = Inverse(map.keyframes().At(id).cam_from_world);
   size_t count = 0;
-  for (const uint32_t keypoint : ByDepth(frame->features)) {
+  for (const uint32_t keypoint : KeypointsByDepth(frame->features)) {
     const double depth = static_cast<double>(frame->features.depth[keypoint]);
-    if (!all && depth > sensor.close_depth && count >= kMinDepthLandmarks) {
+    if (depth > sensor.close_depth && count >= kMinDepthLandmarks) {
       break;
     }
     ++count;
@@ -62,30 +60,49 @@ void AddDepthLandmarks(Map& map, KeyframeId id, const Sensor& sensor, bool all,
     const Eigen::Vector2d pixel = frame->features.keypoints[keypoint].undistorted.cast<double>();
     const LandmarkId landmark =
         map.AddLandmark(world_from_cam * sensor.camera.Unproject(pixel, depth), id);
-    map.AddObservation(landmark, id, keypoint);
-    UpdateDescriptor(map, landmark);
-    UpdateViewingGeometry(map, landmark, sensor.levels);
+    Observe(map, landmark, id, keypoint, sensor.levels);
     created.push_back(landmark);
   }
 }
 
 }  // namespace
 
+std::vector<KeyframeId> InsertInitialMap(Map& map, const InitialMap& initial, const Sensor& sensor,
+                                         std::vector<LandmarkId>& created) {
+  Check(map.keyframes().empty(), "a map has one initial map");
+  std::vector<KeyframeId> ids;
+  for (const InitialMap::View& view : initial.views) {
+    ids.push_back(map.AddKeyframe(view.frame, view.cam_from_world));
+  }
+  for (const InitialMap::Point& point : initial.points) {
+    Check(!point.observations.empty(), "an initial point needs an observation");
+    const LandmarkId landmark =
+        map.AddLandmark(point.position, ids.at(point.observations.front().view));
+    for (const InitialMap::Observation& seen : point.observations) {
+      Observe(map, landmark, ids.at(seen.view), seen.keypoint, sensor.levels);
+    }
+    created.push_back(landmark);
+  }
+  for (size_t i = 0; i < ids.size(); ++i) {
+    UpdateCovisibility(map, ids[i]);
+    if (i > 0 && !map.keyframes().At(ids[i]).parent.IsValid()) {
+      SetParent(map, ids[i], ids.front());  // the tree has one root
+    }
+  }
+  return ids;
+}
+
 KeyframeId InsertKeyframe(Map& map, const KeyframeRequest& request, const Sensor& sensor,
                           std::vector<LandmarkId>& created) {
-  const bool is_first = !request.reference.IsValid();
-  const Rigid3 cam_from_world =
-      is_first ? request.cam_from_reference
-               : request.cam_from_reference * map.CamFromWorld(request.reference);
-  const KeyframeId id = map.AddKeyframe(request.frame, cam_from_world);
+  const KeyframeId id = map.AddKeyframe(request.frame, map.CamFromWorld(request.pose));
   ApplySightings(map, request.sightings);
   AddKnownLandmarks(map, id, request.landmarks, sensor.levels);
   UpdateCovisibility(map, id);
-  if (!is_first && !map.keyframes().At(id).parent.IsValid()) {
-    // All it knew is gone meanwhile; it still must not become a second root.
-    SetParent(map, id, map.NearestAlive(request.reference));
+  if (!map.keyframes().At(id).parent.IsValid()) {
+    // All landmarks of the request are gone meanwhile. The keyframe must not become a second root.
+    SetParent(map, id, map.NearestAlive(request.pose.reference));
   }
-  AddDepthLandmarks(map, id, sensor, is_first, created);
+  AddDepthLandmarks(map, id, sensor, created);
   return id;
 }
 

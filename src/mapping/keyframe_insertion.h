@@ -9,10 +9,16 @@
 
 namespace hullslam {
 
-// Makes a keyframe of the requested frame: its observations of landmarks that still exist,
-// landmarks from depth for the other keypoints (all of the first keyframe; else the close ones and
-// at least the 100 nearest), its edges and its parent (its reference where it shares no landmark
-// with any keyframe). Ids of the new landmarks go to `created`.
+// Puts keyframes and landmarks of an initial map into an empty map. The first keyframe is the root
+// of the spanning tree. The ids of the landmarks are appended to `created`. Returns the ids of the
+// keyframes, one per view.
+std::vector<KeyframeId> InsertInitialMap(Map& map, const InitialMap& initial, const Sensor& sensor,
+                                         std::vector<LandmarkId>& created);
+
+// Makes a keyframe of the requested frame, with its edges and its parent. It observes the requested
+// landmarks that still exist. Keypoints with depth that show no landmark become landmarks: all close
+// ones, and at least the nearest hundred; their ids are appended to `created`. Where the keyframe
+// shares no landmark with another one, its reference becomes its parent.
 KeyframeId InsertKeyframe(Map& map, const KeyframeRequest& request, const Sensor& sensor,
                           std::vector<LandmarkId>& created);
 

@@ -2,7 +2,9 @@
 #include "mapping/mapper.h"
 
 #include <utility>
+#include <variant>
 
+#include "map/correction.h"
 #include "mapping/culling.h"
 #include "mapping/keyframe_insertion.h"
 #include "mapping/landmark_creation.h"
@@ -43,14 +45,44 @@ Mapper::Mapper(const Sensor& sensor, const MappingOptions& options, const Object
       publish_(std::move(publish)),
       object_mapper_(sensor, objects) {}
 
-void Mapper::Process(const KeyframeRequest& request, const Cancellation* hurry) {
-  const auto must_hurry = [&] { return hurry != nullptr && hurry->IsRequested(); };
+void Mapper::Process(const MapMessage& message, const Cancellation* hurry) {
+  std::visit([&](const auto& content) { Apply(content, hurry); }, message);
+}
+
+void Mapper::Apply(const InitialMap& initial, const Cancellation* hurry) {
+  std::vector<KeyframeId> keyframes;
+  {
+    const ScopedTimer timer(times_, "map_insert");
+    keyframes = InsertInitialMap(map_, initial, sensor_, recent_);
+    PublishSnapshot();
+  }
+  for (const KeyframeId keyframe : keyframes) {
+    ExtendMap(keyframe, hurry);
+  }
+}
+
+void Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
   KeyframeId keyframe;
   {
     const ScopedTimer timer(times_, "map_insert");
     keyframe = InsertKeyframe(map_, request, sensor_, recent_);
     PublishSnapshot();
   }
+  ExtendMap(keyframe, hurry);
+}
+
+void Mapper::Apply(const MapCorrection& correction, const Cancellation*) {
+  const ScopedTimer timer(times_, "map_correction");
+  const CorrectionOutcome outcome = ApplyCorrection(map_, correction, sensor_.levels);
+  if (outcome.is_applied) {
+    object_mapper_.RefineMerged(map_, outcome.merged_objects);
+    PublishSnapshot();
+  }
+}
+
+// All that a new keyframe gives rise to.
+void Mapper::ExtendMap(KeyframeId keyframe, const Cancellation* hurry) {
+  const auto must_hurry = [&] { return hurry != nullptr && hurry->IsRequested(); };
   {
     const ScopedTimer timer(times_, "map_landmarks");
     CullRecentLandmarks(map_, keyframe, recent_);

@@ -27,8 +27,10 @@ class Mapper {
   Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
          Publish publish);
 
-  // `hurry` (may be null) is asked when another keyframe waits: then what can be left out is.
-  void Process(const KeyframeRequest& request, const Cancellation* hurry);
+  // Does what the message asks for. `hurry` (may be null) is requested while another message waits:
+  // then the steps that can be left out are left out. Throws CheckError for an initial map in a map
+  // that is not empty.
+  void Process(const MapMessage& message, const Cancellation* hurry);
 
   // To be called once, at the end: adjusts the whole map where that is wanted, and publishes it.
   // Ends early, with what it has, when `cancellation` (may be null) asks.
@@ -40,6 +42,10 @@ class Mapper {
   }
 
  private:
+  void Apply(const InitialMap& initial, const Cancellation* hurry);
+  void Apply(const KeyframeRequest& request, const Cancellation* hurry);
+  void Apply(const MapCorrection& correction, const Cancellation* hurry);
+  void ExtendMap(KeyframeId keyframe, const Cancellation* hurry);
   void PublishSnapshot();
   void MapObjects(KeyframeId keyframe);
   void AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry);

@@ -245,6 +245,14 @@ void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
   }
 }
 
+void ObjectMapper::RefineMerged(Map& map, std::span<const ObjectId> objects) {
+  for (const ObjectId id : objects) {
+    if (map.objects().Contains(id) && !map.objects().At(id).observations.empty()) {
+      Update(map, id);
+    }
+  }
+}
+
 void ObjectMapper::FuseDuplicates(Map& map) {
   for (const auto& [kept, duplicate] : FindDuplicates(map)) {
     spdlog::debug("object {} is object {}: fused", duplicate.value, kept.value);

@@ -11,11 +11,11 @@ Trajectory ComposeTrajectory(const Map& map, std::span<const TrackedFrame> frame
     if (frame.state != TrackingState::kTracked) {
       continue;
     }
-    const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame.frame);
-    const Rigid3 cam_from_world =
-        keyframe ? map.CamFromWorld(*keyframe)
-                 : frame.cam_from_reference * map.CamFromWorld(frame.reference);
-    trajectory.push_back({frame.timestamp, Inverse(cam_from_world)});
+    if (const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame.frame)) {
+      trajectory.push_back({frame.timestamp, Inverse(map.CamFromWorld(*keyframe))});
+    } else if (frame.pose) {
+      trajectory.push_back({frame.timestamp, Inverse(map.CamFromWorld(*frame.pose))});
+    }
   }
   return trajectory;
 }

@@ -18,7 +18,7 @@ class Pipeline {
   virtual ~Pipeline() = default;
 
   // Frames come in order of time. Throws what a stage throws, and CheckError after Finish.
-  virtual TrackedFrame Track(std::shared_ptr<const Frame> frame) = 0;
+  virtual FrameReport Track(std::shared_ptr<const Frame> frame) = 0;
   // Waits until everything that was begun is in the map, and does what is to be done once at the
   // end (mapping.final_bundle_adjustment), which ends early when `cancellation` (may be null) asks.
   virtual void Finish(const Cancellation* cancellation) = 0;

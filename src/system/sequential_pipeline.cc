@@ -17,13 +17,13 @@ class SequentialPipeline final : public Pipeline {
         mapper_(sensor, options.mapping, options.objects,
                 [this](std::shared_ptr<const Map> map) { map_ = std::move(map); }) {}
 
-  TrackedFrame Track(std::shared_ptr<const Frame> frame) override {
+  FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(!is_finished_, "Track after Finish");
-    const Tracker::Result result = tracker_.Process(std::move(frame), map_, MapperStatus());
-    if (result.request) {
-      mapper_.Process(*result.request, nullptr);
+    Tracker::Result result = tracker_.Process(std::move(frame), map_, MapperStatus());
+    if (result.message) {
+      mapper_.Process(*result.message, nullptr);
     }
-    return result.frame;
+    return std::move(result.report);
   }
 
   void Finish(const Cancellation* cancellation) override {

@@ -92,7 +92,11 @@ TrackedFrame System::Track(const ImageInput& image) {
     const ScopedTimer timer(times_, "frame");
     frame = frame_builder_->Build(image, id);
   }
-  frames_.push_back(pipeline_->Track(std::move(frame)));
+  const FrameReport report = pipeline_->Track(std::move(frame));
+  frames_.push_back(report.tracked);
+  if (frame_callback_) {
+    frame_callback_(report);
+  }
   return frames_.back();
 }
 

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <thread>
 #include <utility>
+#include <variant>
 
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/check.h"
@@ -26,25 +27,25 @@ class ThreadedPipeline final : public Pipeline {
         tracker_(sensor, options.tracking, options.objects),
         mapper_(sensor, options.mapping, options.objects,
                 [this](std::shared_ptr<const Map> map) { Publish(std::move(map)); }),
-        requests_(kMailboxCapacity),
+        messages_(kMailboxCapacity),
         mapping_thread_([this] { RunMapping(); }) {}
 
   ~ThreadedPipeline() override { Stop(); }
 
-  TrackedFrame Track(std::shared_ptr<const Frame> frame) override {
+  FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(mapping_thread_.joinable(), "Track after Finish");
     RethrowFailure();
     const MapperStatus status = pace_ == Pace::kWaitForMapper ? MapperStatus() : Status();
     Tracker::Result result = tracker_.Process(std::move(frame), map_.Get(), status);
-    if (result.request) {
-      const bool is_first = !result.request->reference.IsValid();
-      if (is_first || pace_ == Pace::kWaitForMapper) {
-        PostAndWait(std::move(*result.request));
+    if (result.message) {
+      const bool is_initial = std::holds_alternative<InitialMap>(*result.message);
+      if (is_initial || pace_ == Pace::kWaitForMapper) {
+        PostAndWait(std::move(*result.message));
       } else {
-        Post(std::move(*result.request));
+        Post(std::move(*result.message));
       }
     }
-    return result.frame;
+    return std::move(result.report);
   }
 
   void Finish(const Cancellation* cancellation) override {
@@ -71,10 +72,10 @@ class ThreadedPipeline final : public Pipeline {
  private:
   MapperStatus Status() {
     const std::lock_guard lock(mutex_);
-    return {.is_idle = !is_busy_ && waiting_ == 0, .requests_waiting = waiting_};
+    return {.is_idle = !is_busy_ && waiting_ == 0, .messages_waiting = waiting_};
   }
 
-  void Post(KeyframeRequest request) {
+  void Post(MapMessage message) {
     {
       const std::lock_guard lock(mutex_);
       ++waiting_;
@@ -82,16 +83,17 @@ class ThreadedPipeline final : public Pipeline {
         hurry_.Request();
       }
     }
-    requests_.Send(std::move(request));
+    messages_.Send(std::move(message));
   }
 
-  // Posts once the mapper is done with all before, and returns when the keyframe is in the map.
-  void PostAndWait(KeyframeRequest request) {
+  // Waits until the mapper is done with all earlier messages, posts this one, and returns when its
+  // keyframe is in the map.
+  void PostAndWait(MapMessage message) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return (!is_busy_ && waiting_ == 0) || failure_; });
     const int before = published_;
     lock.unlock();
-    Post(std::move(request));
+    Post(std::move(message));
     lock.lock();
     changed_.wait(lock, [&] { return published_ != before || failure_; });
   }
@@ -104,10 +106,10 @@ class ThreadedPipeline final : public Pipeline {
   }
 
   void RunMapping() {
-    while (const std::optional<KeyframeRequest> request = requests_.Receive()) {
+    while (const std::optional<MapMessage> message = messages_.Receive()) {
       SetBusy(true);
       try {
-        mapper_.Process(*request, &hurry_);
+        mapper_.Process(*message, &hurry_);
       } catch (...) {
         const std::lock_guard lock(mutex_);
         failure_ = std::current_exception();
@@ -130,7 +132,7 @@ class ThreadedPipeline final : public Pipeline {
   }
 
   void Stop() {
-    requests_.Close();
+    messages_.Close();
     if (mapping_thread_.joinable()) {
       mapping_thread_.join();
     }
@@ -147,7 +149,7 @@ class ThreadedPipeline final : public Pipeline {
   Published<Map> map_;
   Tracker tracker_;
   Mapper mapper_;
-  Mailbox<KeyframeRequest> requests_;
+  Mailbox<MapMessage> messages_;
   Cancellation hurry_;
 
   std::mutex mutex_;  // guards the members below

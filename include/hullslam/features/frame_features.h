@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "hullslam/features/feature_grid.h"
@@ -19,5 +20,8 @@ struct FrameFeatures {
 
   size_t size() const { return keypoints.size(); }
 };
+
+// The indices of the keypoints whose depth is known, nearest first; equal depths by index.
+std::vector<uint32_t> KeypointsByDepth(const FrameFeatures& features);
 
 }  // namespace hullslam

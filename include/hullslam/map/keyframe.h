@@ -4,8 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "hullslam/geometry/rigid3.h"
 #include "hullslam/frame/frame.h"
+#include "hullslam/geometry/rigid3.h"
+#include "hullslam/map/relative_pose.h"
 #include "hullslam/util/id.h"
 
 namespace hullslam {
@@ -18,18 +19,22 @@ struct Covisible {
 struct Keyframe {
   std::shared_ptr<const Frame> frame;
   Rigid3 cam_from_world;
-  std::vector<LandmarkId> landmarks;  // one a keypoint, invalid where it observes none
-  std::vector<ObjectId> objects;      // one a detection, invalid where it is of none
+  // The product of the scales of all corrections since the keyframe was made: the unit of length of
+  // then in the current one. 1 in RGB-D, where corrections keep the scale.
+  double scale = 1.0;
+  std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it observes no landmark
+  std::vector<ObjectId> objects;      // one per detection; invalid where it shows no object
   std::vector<Covisible> covisible;   // by increasing keyframe id
   KeyframeId parent;                  // in the spanning tree; invalid for its root
   std::vector<KeyframeId> children;   // by increasing id
+  std::vector<KeyframeId> loops;      // joined to this one by a loop closure, by increasing id
 };
 
 // What is kept of a culled keyframe, so that frames tracked relative to it still have a pose.
 struct CulledKeyframe {
   FrameId frame;
-  KeyframeId parent;  // may itself be culled later
-  Rigid3 cam_from_parent;
+  RelativePose pose;   // relative to its parent, which may be culled later itself
+  double scale = 1.0;  // Keyframe::scale when it was culled
 };
 
 }  // namespace hullslam

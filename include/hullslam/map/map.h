@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -54,12 +55,23 @@ class Map {
   // Takes a keyframe out of the map. It must have a parent: its children go to their best
   // relatives.
   void CullKeyframe(KeyframeId keyframe);
-  // Pose of a keyframe, also of a culled one.
+  // The pose of a keyframe, also of a culled one.
   Rigid3 CamFromWorld(KeyframeId keyframe) const;
+  // The pose of a camera in the current map, at the map's current scale.
+  Rigid3 CamFromWorld(const RelativePose& pose) const;
+  // `cam_from_world`, which is a pose in the current map, relative to a keyframe, also a culled
+  // one.
+  RelativePose RelativeTo(KeyframeId reference, const Rigid3& cam_from_world) const;
+  // Keyframe::scale, also of a culled keyframe: it has followed the corrections since then.
+  double ScaleOf(KeyframeId keyframe) const;
   // The keyframe made of this frame, culled or not.
   std::optional<KeyframeId> KeyframeOfFrame(FrameId frame) const;
   // The keyframe itself or, if it is culled, the nearest ancestor that is not.
   KeyframeId NearestAlive(KeyframeId keyframe) const;
+
+  // How many corrections have been applied (map/correction.h).
+  uint32_t correction_count() const { return correction_count_; }
+  void CountCorrection() { ++correction_count_; }
 
   void SetPose(KeyframeId keyframe, const Rigid3& cam_from_world);
   void SetPosition(LandmarkId landmark, const Eigen::Vector3d& position);
@@ -78,6 +90,7 @@ class Map {
   CowTable<LandmarkId, LandmarkId> replaced_by_;
   CowTable<ObjectId, ObjectId, 16> object_replaced_by_;
   CowTable<KeyframeId, CulledKeyframe> culled_;
+  uint32_t correction_count_ = 0;
 };
 
 }  // namespace hullslam

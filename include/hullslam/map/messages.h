@@ -1,43 +1,119 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <variant>
 #include <vector>
 
-#include "hullslam/geometry/rigid3.h"
 #include "hullslam/frame/frame.h"
+#include "hullslam/geometry/rigid3.h"
+#include "hullslam/geometry/sim3.h"
+#include "hullslam/map/relative_pose.h"
 #include "hullslam/util/id.h"
 
 namespace hullslam {
 
-// What tracking learnt about a landmark since its last message.
+// The keyframes and points that a map begins with. RGB-D begins with one keyframe, a monocular map
+// with two or more.
+struct InitialMap {
+  struct View {
+    std::shared_ptr<const Frame> frame;
+    Rigid3 cam_from_world;
+  };
+  // A keypoint that shows a point.
+  struct Observation {
+    size_t view = 0;  // index into `views`
+    uint32_t keypoint = 0;
+  };
+  struct Point {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m, world frame
+    std::vector<Observation> observations;               // at least one, each of another view
+  };
+  std::vector<View> views;    // in order of time
+  std::vector<Point> points;  // in the order in which their landmarks get ids
+};
+
+// How often a landmark should have been visible and was found since the last message.
 struct Sighting {
   LandmarkId landmark;
   int visible = 0;
   int found = 0;
 };
 
-// From tracking to mapping: make a keyframe of this frame.
+// Asks the mapper to make a keyframe of a tracked frame.
 struct KeyframeRequest {
   std::shared_ptr<const Frame> frame;
-  KeyframeId reference;  // invalid for the first keyframe: then the world is its camera frame
-  Rigid3 cam_from_reference;
-  std::vector<LandmarkId> landmarks;  // one a keypoint, invalid where there is none
-  std::vector<Sighting> sightings;    // one a landmark
+  RelativePose pose;
+  std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
+  std::vector<Sighting> sightings;    // one per landmark
 };
+
+// Moves keyframes to where a loop closure or a global bundle adjustment has put them, and with them
+// everything that depends on their poses. It was computed from a snapshot of the map; the map may
+// have changed since then. map/correction.h applies it.
+struct MapCorrection {
+  // A pose of the snapshot and what it becomes.
+  struct Pose {
+    KeyframeId keyframe;
+    Rigid3 snapshot_cam_from_world;
+    // Maps the corrected world to the camera in the snapshot's unit of length, so its scale is the
+    // old unit of length over the new one.
+    Sim3 corrected_cam_from_world;
+  };
+  struct Position {
+    LandmarkId landmark;
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();  // in the corrected world
+  };
+  struct LandmarkMerge {
+    LandmarkId duplicate;
+    LandmarkId kept;
+  };
+  struct ObjectMerge {
+    ObjectId duplicate;
+    ObjectId kept;
+  };
+  // Two keyframes that see the same place although tracking did not lead from one to the other.
+  struct LoopEdge {
+    KeyframeId a;
+    KeyframeId b;
+  };
+
+  // Map::correction_count() of the snapshot. A correction of a map that was corrected again since
+  // then is refused, because the snapshot's world is not the map's any more.
+  uint32_t snapshot_corrections = 0;
+  std::vector<Pose> poses;          // by increasing keyframe id, each keyframe once
+  std::vector<Position> positions;  // only where a global bundle adjustment has moved landmarks
+  std::vector<LandmarkMerge> landmarks;
+  std::vector<ObjectMerge> objects;
+  std::optional<LoopEdge> loop;
+};
+
+// What the mapper receives.
+using MapMessage = std::variant<InitialMap, KeyframeRequest, MapCorrection>;
 
 enum class TrackingState { kNotInitialized, kTracked, kLost };
 
-// One line of the trajectory: the pose is relative, so that it follows the map's corrections.
+// One line of the trajectory.
 struct TrackedFrame {
   FrameId frame;
-  double timestamp = 0.0;
+  double timestamp = 0.0;  // seconds
   TrackingState state = TrackingState::kNotInitialized;
-  KeyframeId reference;  // invalid unless tracked; for the first keyframe its own
-  Rigid3 cam_from_reference;
-  Rigid3 cam_from_world;  // as it was when the frame was tracked
+  // Absent unless the frame is tracked, and for a frame of the initial map, which is a keyframe.
+  std::optional<RelativePose> pose;
+  Rigid3 cam_from_world;  // when the frame was tracked; later corrections do not change it
   int inliers = 0;        // landmarks found
+};
+
+// What tracking found in one frame: for viewers and callbacks.
+struct FrameReport {
+  TrackedFrame tracked;
+  std::shared_ptr<const Frame> frame;
+  std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
+  std::vector<ObjectId> objects;      // one per detection; invalid where it shows no mapped object
 };
 
 }  // namespace hullslam

@@ -37,11 +37,14 @@ struct ObjectLandmark {
   Ellipsoid ellipsoid;     // world frame
   Ellipsoid start;         // what it was initialised as; holds what silhouettes leave free
   std::map<std::string, double> votes;          // sum of scores by class
-  std::vector<ObjectObservation> observations;  // by increasing keyframe id, one a keyframe
-  size_t shaped_views = 0;                      // when its shape was last sought or refined
-  double misfit_px = 0.0;                       // RMS distance of its lines from the outline
-  double compensated_px = 0.0;                  // the same, less what other keyframes predict
-  std::vector<SupportSample> support;           // where its keyframes touch it
+  std::vector<ObjectObservation> observations;  // by increasing keyframe id, one per keyframe
+  // The keyframe with which a correction moves the object: the first that observes it. It stays
+  // when no observation is left, and may then be a culled keyframe.
+  KeyframeId reference;
+  size_t shaped_views = 0;             // when its shape was last sought or refined
+  double misfit_px = 0.0;              // RMS distance of its lines from the outline
+  double compensated_px = 0.0;         // the same, less what other keyframes predict
+  std::vector<SupportSample> support;  // where its keyframes touch it
   int visible = 0;  // frames in which it should have been seen since it was mapped
   int found = 0;    // frames in which it was
 

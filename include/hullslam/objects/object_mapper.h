@@ -26,6 +26,9 @@ class ObjectMapper {
   // what has turned bad goes back to candidate, what is still good has its misfit measured.
   void Recheck(Map& map, std::span<const ObjectId> objects);
 
+  // Seeks the shapes of objects that others have been merged into (map/correction.h).
+  void RefineMerged(Map& map, std::span<const ObjectId> objects);
+
   // How often an object was not mapped, or mapped no longer, for each reason.
   const std::map<ObjectRejection, size_t>& rejections() const { return rejections_; }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hullslam/frame/image_input.h"
@@ -56,6 +58,11 @@ class System {
                      std::vector<InstanceMask> masks = {});
   TrackedFrame Track(const ImageInput& image);
 
+  // `callback` is called at the end of every Track, in the same thread.
+  void SetFrameCallback(std::function<void(const FrameReport&)> callback) {
+    frame_callback_ = std::move(callback);
+  }
+
   // Waits for the mapping that is under way, then adjusts the whole map if
   // mapping.final_bundle_adjustment says so; that ends early, with what it has, when `cancellation`
   // (may be null) asks. No Track after it.
@@ -77,6 +84,7 @@ class System {
   const Sensor sensor_;
   std::unique_ptr<FrameBuilder> frame_builder_;
   std::unique_ptr<Pipeline> pipeline_;
+  std::function<void(const FrameReport&)> frame_callback_;
   std::vector<TrackedFrame> frames_;
   StageTimes times_;
 };

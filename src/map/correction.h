@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "hullslam/features/feature_set.h"
+#include "hullslam/map/map.h"
+#include "hullslam/map/messages.h"
+
+namespace hullslam {
+
+struct CorrectionOutcome {
+  // False for a correction of a map that was corrected again since its snapshot; the map is then
+  // unchanged.
+  bool is_applied = false;
+  // Objects that others were merged into. Each is a candidate now and has to be refined before it
+  // constrains anything again. By increasing id.
+  std::vector<ObjectId> merged_objects;
+};
+
+// Moves the map as the correction says. For a keyframe of the correction C = corrected^-1 * snapshot
+// maps the old world to the new one. A keyframe that the correction does not name (because it was
+// made since) takes the C of its nearest ancestor in the spanning tree that is named; without such
+// an ancestor it stays. C is applied to the keyframe's current pose, so what local bundle adjustment
+// has changed since the snapshot survives. Landmarks and objects move with their reference
+// keyframes, but a landmark with a position in the correction moves there. Half axes and misfit
+// samples of objects take the scale of C. Where the correction gives the snapshot's own pose, to the
+// last bit and with scale 1, nothing moves. Then landmarks and objects are merged, covisibility is
+// counted again and the loop edge is added. Ids that are gone since the snapshot are followed or
+// passed over.
+CorrectionOutcome ApplyCorrection(Map& map, const MapCorrection& correction,
+                                  const ScaleLevels& levels);
+
+}  // namespace hullslam
