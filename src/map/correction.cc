@@ -1,8 +1,291 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map/correction.h"
 
-namespace hullslam {
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
 
-CorrectionOutcome ApplyCorrection(Map&, const MapCorrection&, const ScaleLevels&) { return {}; }
+#include "hullslam/util/check.h"
+#include "map/covisibility.h"
+#include "map/landmark_edits.h"
+
+namespace hullslam {
+namespace {
+
+bool IsIdentity(const MapCorrection::Pose& pose) {
+  const Sim3& corrected = pose.corrected_cam_from_world;
+  const Rigid3& snapshot = pose.snapshot_cam_from_world;
+  return corrected.scale == 1.0 && corrected.rotation.coeffs() == snapshot.rotation.coeffs() &&
+         corrected.translation == snapshot.translation;
+}
+
+// For each keyframe, also a culled one, how the world around it moves.
+class WorldChanges {
+ public:
+  WorldChanges(const Map& map, const MapCorrection& correction)
+      : named_(map.keyframes().NextId().value, kUnknown) {
+    for (const MapCorrection::Pose& pose : correction.poses) {
+      const double scale = pose.corrected_cam_from_world.scale;
+      Check(std::isfinite(scale) && scale > 0.0, "the scale of a correction is positive");
+      if (pose.keyframe.value < named_.size()) {
+        named_[pose.keyframe.value] = static_cast<int>(changes_.size());
+        changes_.push_back(IsIdentity(pose) ? std::nullopt
+                                            : std::optional(Inverse(pose.corrected_cam_from_world) *
+                                                            Sim3(pose.snapshot_cam_from_world)));
+      }
+    }
+    for (uint32_t i = 0; i < named_.size(); ++i) {
+      FindNamed(map, KeyframeId(i));
+    }
+  }
+
+  // new_world_from_old_world of the nearest named ancestor. Null where nothing moves.
+  const Sim3* Find(KeyframeId keyframe) const {
+    if (keyframe.value >= named_.size() || named_[keyframe.value] == kNone) {
+      return nullptr;
+    }
+    const std::optional<Sim3>& change = changes_[static_cast<size_t>(named_[keyframe.value])];
+    return change ? &*change : nullptr;
+  }
+
+ private:
+  static constexpr int kUnknown = -2;
+  static constexpr int kNone = -1;
+
+  static KeyframeId ParentOf(const Map& map, KeyframeId id) {
+    const CulledKeyframe* culled = map.FindCulled(id);
+    return culled != nullptr ? culled->pose.reference : map.keyframes().At(id).parent;
+  }
+
+  // Writes the result at every keyframe on the path, so that each link is followed only once.
+  void FindNamed(const Map& map, KeyframeId id) {
+    std::vector<KeyframeId> path;
+    while (id.IsValid() && named_[id.value] == kUnknown) {
+      path.push_back(id);
+      id = ParentOf(map, id);
+    }
+    const int found = id.IsValid() ? named_[id.value] : kNone;
+    for (const KeyframeId passed : path) {
+      named_[passed.value] = found;
+    }
+  }
+
+  std::vector<std::optional<Sim3>> changes_;  // without a value where nothing moves
+  // One entry per keyframe: the index into changes_ of its nearest named ancestor.
+  std::vector<int> named_;
+};
+
+Rigid3 Moved(const Sim3& new_from_old, const Rigid3& cam_from_old) {
+  const Sim3 cam_from_new = Sim3(cam_from_old) * Inverse(new_from_old);
+  return {cam_from_new.rotation, new_from_old.scale * cam_from_new.translation};
+}
+
+Ellipsoid Moved(const Sim3& new_from_old, const Ellipsoid& ellipsoid) {
+  const Sim3 new_from_object = new_from_old * Sim3(ellipsoid.world_from_object);
+  return {{new_from_object.rotation, new_from_object.translation},
+          new_from_old.scale * ellipsoid.half_axes};
+}
+
+// A culled keyframe that the correction names, as it was before.
+struct CulledPose {
+  KeyframeId keyframe;
+  Rigid3 cam_from_world;
+  double scale = 1.0;
+};
+
+// Whether the keyframe or one of those that its pose is relative to moves.
+bool AnyMovesBetween(const Map& map, const WorldChanges& changes, KeyframeId keyframe) {
+  const CulledKeyframe* culled = map.FindCulled(keyframe);
+  return changes.Find(keyframe) != nullptr ||
+         (culled != nullptr && AnyMovesBetween(map, changes, culled->pose.reference));
+}
+
+std::vector<CulledPose> CollectNamedCulled(const Map& map, const MapCorrection& correction,
+                                           const WorldChanges& changes) {
+  std::vector<CulledPose> collected;
+  for (const MapCorrection::Pose& pose : correction.poses) {
+    const KeyframeId id = pose.keyframe;
+    if (map.FindCulled(id) != nullptr && AnyMovesBetween(map, changes, id)) {
+      collected.push_back({id, map.CamFromWorld(id), map.ScaleOf(id)});
+    }
+  }
+  return collected;
+}
+
+void MoveKeyframes(Map& map, const MapCorrection& correction, const WorldChanges& changes) {
+  const std::vector<CulledPose> culled = CollectNamedCulled(map, correction, changes);
+  for (uint32_t i = 0; i < map.keyframes().NextId().value; ++i) {
+    const KeyframeId id(i);
+    const Sim3* change = changes.Find(id);
+    if (change != nullptr && map.keyframes().Contains(id)) {
+      Keyframe& keyframe = map.MutableKeyframe(id);
+      keyframe.cam_from_world = Moved(*change, keyframe.cam_from_world);
+      keyframe.scale *= change->scale;
+    }
+  }
+  // Other culled keyframes follow those that their poses are relative to. A named one has a change
+  // of its own, which may differ from its parent's.
+  for (const CulledPose& before : culled) {
+    const Sim3* change = changes.Find(before.keyframe);
+    CulledKeyframe& keyframe = map.MutableCulledKeyframe(before.keyframe);
+    keyframe.pose = map.RelativeTo(
+        map.NearestAlive(before.keyframe),
+        change != nullptr ? Moved(*change, before.cam_from_world) : before.cam_from_world);
+    keyframe.scale = change != nullptr ? before.scale * change->scale : before.scale;
+  }
+}
+
+std::vector<MapCorrection::Position> NewPositions(const Map& map, const MapCorrection& correction,
+                                                  const WorldChanges& changes) {
+  std::vector<MapCorrection::Position> positions;
+  map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+    if (const Sim3* change = changes.Find(landmark.reference)) {
+      positions.push_back({id, *change * landmark.position});
+    }
+  });
+  // They come last, so that they count where a landmark has both.
+  for (const MapCorrection::Position& given : correction.positions) {
+    const Landmark* landmark = map.landmarks().Find(given.landmark);
+    if (landmark != nullptr && landmark->position != given.position) {
+      positions.push_back(given);
+    }
+  }
+  return positions;
+}
+
+void MoveLandmarks(Map& map, const MapCorrection& correction, const WorldChanges& changes,
+                   const ScaleLevels& levels) {
+  std::vector<bool> is_moved(map.landmarks().NextId().value, false);
+  for (const auto& [id, position] : NewPositions(map, correction, changes)) {
+    map.SetPosition(id, position);
+    is_moved[id.value] = true;
+  }
+  std::vector<LandmarkId> seen_anew;
+  map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+    if (is_moved[id.value] ||
+        std::any_of(landmark.observations.begin(), landmark.observations.end(),
+                    [&](const Observation& o) { return changes.Find(o.keyframe) != nullptr; })) {
+      seen_anew.push_back(id);
+    }
+  });
+  for (const LandmarkId id : seen_anew) {
+    UpdateViewingGeometry(map, id, levels);
+  }
+}
+
+void MoveObjects(Map& map, const WorldChanges& changes) {
+  for (uint32_t i = 0; i < map.objects().NextId().value; ++i) {
+    const ObjectLandmark* object = map.objects().Find(ObjectId(i));
+    const Sim3* change = object != nullptr ? changes.Find(object->reference) : nullptr;
+    if (change == nullptr || !object->has_shape) {
+      continue;
+    }
+    ObjectLandmark& moved = map.MutableObject(ObjectId(i));
+    moved.ellipsoid = Moved(*change, moved.ellipsoid);
+    moved.start = Moved(*change, moved.start);
+    for (auto& sample : moved.support) {
+      sample.excess *= change->scale;
+    }
+  }
+}
+
+template <typename Type>
+void SortUnique(std::vector<Type>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+// The ids that now stand for `ids`, each once.
+template <typename IdType>
+std::vector<IdType> ResolveAll(const Map& map, std::vector<IdType> ids) {
+  for (IdType& id : ids) {
+    id = map.Resolve(id);
+  }
+  SortUnique(ids);
+  return ids;
+}
+
+void AppendObservers(const Landmark& landmark, std::vector<KeyframeId>& keyframes) {
+  for (const Observation& observation : landmark.observations) {
+    keyframes.push_back(observation.keyframe);
+  }
+}
+
+void MergeLandmarks(Map& map, const MapCorrection& correction, const ScaleLevels& levels) {
+  std::vector<LandmarkId> merged;
+  std::vector<KeyframeId> observers;
+  for (const MapCorrection::LandmarkMerge& merge : correction.landmarks) {
+    const LandmarkId duplicate = map.Resolve(merge.duplicate);
+    const LandmarkId kept = map.Resolve(merge.kept);
+    if (!duplicate.IsValid() || !kept.IsValid() || duplicate == kept) {
+      continue;
+    }
+    AppendObservers(map.landmarks().At(duplicate), observers);
+    AppendObservers(map.landmarks().At(kept), observers);
+    map.ReplaceLandmark(duplicate, kept);
+    merged.push_back(kept);
+  }
+  for (const LandmarkId id : ResolveAll(map, std::move(merged))) {
+    UpdateDescriptor(map, id);
+    UpdateViewingGeometry(map, id, levels);
+  }
+  SortUnique(observers);
+  for (const KeyframeId id : observers) {
+    UpdateCovisibility(map, id);
+  }
+}
+
+std::vector<ObjectId> MergeObjects(Map& map, const MapCorrection& correction) {
+  std::vector<ObjectId> merged;
+  for (const MapCorrection::ObjectMerge& merge : correction.objects) {
+    const ObjectId duplicate = map.Resolve(merge.duplicate);
+    const ObjectId kept = map.Resolve(merge.kept);
+    if (!duplicate.IsValid() || !kept.IsValid() || duplicate == kept) {
+      continue;
+    }
+    map.ReplaceObject(duplicate, kept);
+    merged.push_back(kept);
+  }
+  merged = ResolveAll(map, std::move(merged));
+  for (const ObjectId id : merged) {
+    ObjectLandmark& object = map.MutableObject(id);
+    object.state = ObjectState::kCandidate;
+    object.shaped_views = 0;
+  }
+  return merged;
+}
+
+void AddLoop(Map& map, const MapCorrection::LoopEdge& loop) {
+  const KeyframeId a = map.NearestAlive(loop.a);
+  const KeyframeId b = map.NearestAlive(loop.b);
+  if (a != b && map.keyframes().Contains(a) && map.keyframes().Contains(b)) {
+    map.AddLoop(a, b);
+  }
+}
+
+}  // namespace
+
+CorrectionOutcome ApplyCorrection(Map& map, const MapCorrection& correction,
+                                  const ScaleLevels& levels) {
+  if (correction.snapshot_corrections != map.correction_count()) {
+    return {};
+  }
+  const WorldChanges changes(map, correction);
+  MoveObjects(map, changes);
+  MoveKeyframes(map, correction, changes);
+  MoveLandmarks(map, correction, changes, levels);
+  MergeLandmarks(map, correction, levels);
+  CorrectionOutcome outcome;
+  outcome.is_applied = true;
+  outcome.merged_objects = MergeObjects(map, correction);
+  if (correction.loop) {
+    AddLoop(map, *correction.loop);
+  }
+  map.CountCorrection();
+  return outcome;
+}
 
 }  // namespace hullslam

@@ -18,16 +18,20 @@ struct CorrectionOutcome {
   std::vector<ObjectId> merged_objects;
 };
 
-// Moves the map as the correction says. For a keyframe of the correction C = corrected^-1 * snapshot
-// maps the old world to the new one. A keyframe that the correction does not name (because it was
-// made since) takes the C of its nearest ancestor in the spanning tree that is named; without such
-// an ancestor it stays. C is applied to the keyframe's current pose, so what local bundle adjustment
-// has changed since the snapshot survives. Landmarks and objects move with their reference
-// keyframes, but a landmark with a position in the correction moves there. Half axes and misfit
-// samples of objects take the scale of C. Where the correction gives the snapshot's own pose, to the
-// last bit and with scale 1, nothing moves. Then landmarks and objects are merged, covisibility is
-// counted again and the loop edge is added. Ids that are gone since the snapshot are followed or
-// passed over.
+// Moves the map as the correction says. For a keyframe of the correction
+// C = corrected^-1 * snapshot maps the old world to the new one. A keyframe that the correction
+// does not name, because it was made or culled at another time, takes the C of its nearest ancestor
+// in the spanning tree that is named; without such an ancestor it stays. A culled keyframe is moved
+// too, so that frames tracked relative to it follow. C is applied to the keyframe's current pose,
+// so what local bundle adjustment has changed since the snapshot survives. Landmarks and objects
+// move with their reference keyframes, but a landmark with a position in the correction moves
+// there. Half axes and misfit samples of objects take the scale of C. Where the correction gives
+// the snapshot's own pose, to the last bit and with scale 1, nothing moves.
+//
+// Then landmarks and objects are merged, covisibility is counted again for the keyframes whose
+// observations were merged, and the loop edge is added. An id of a merge or of the loop edge that
+// was replaced or culled since the snapshot is followed; one that is erased is passed over, like
+// the position of a landmark that is gone.
 CorrectionOutcome ApplyCorrection(Map& map, const MapCorrection& correction,
                                   const ScaleLevels& levels);
 

@@ -78,6 +78,9 @@ void CheckObject(const Map& map, ObjectId id, const ObjectLandmark& object,
   if (object.state == ObjectState::kMapped && !object.has_shape) {
     violations.push_back(Name(id) + " is mapped without a shape");
   }
+  if (!object.observations.empty() && object.reference != object.observations.front().keyframe) {
+    violations.push_back(Name(id) + " has a reference that is not the first to observe it");
+  }
   std::map<std::string, double> votes;
   for (size_t i = 0; i < object.observations.size(); ++i) {
     const ObjectObservation& observation = object.observations[i];
@@ -151,6 +154,21 @@ void CheckLinks(const Map& map, KeyframeId id, const Keyframe& keyframe,
   }
 }
 
+void CheckLoops(const Map& map, KeyframeId id, const Keyframe& keyframe,
+                std::vector<std::string>& violations) {
+  for (size_t i = 0; i < keyframe.loops.size(); ++i) {
+    const KeyframeId loop = keyframe.loops[i];
+    const Keyframe* other = map.keyframes().Find(loop);
+    if (loop == id || other == nullptr ||
+        std::find(other->loops.begin(), other->loops.end(), id) == other->loops.end()) {
+      violations.push_back(Name(id) + " has a loop edge that " + Name(loop) + " has not");
+    }
+    if (i > 0 && !(keyframe.loops[i - 1] < loop)) {
+      violations.push_back(Name(id) + " has loop edges out of order");
+    }
+  }
+}
+
 void CheckAncestors(const Map& map, KeyframeId id, std::vector<std::string>& violations) {
   size_t steps = 0;
   for (const Keyframe* keyframe = map.keyframes().Find(id);
@@ -176,9 +194,13 @@ std::vector<std::string> FindViolations(const Map& map) {
     if (!IsFinite(keyframe.cam_from_world)) {
       violations.push_back(Name(id) + " has no finite pose");
     }
+    if (!std::isfinite(keyframe.scale) || keyframe.scale <= 0.0) {
+      violations.push_back(Name(id) + " has no finite scale above 0");
+    }
     CheckObservations(map, id, keyframe, violations);
     CheckDetections(map, id, keyframe, violations);
     CheckLinks(map, id, keyframe, violations);
+    CheckLoops(map, id, keyframe, violations);
     CheckAncestors(map, id, violations);
   });
   return violations;

@@ -28,6 +28,23 @@ auto FindObservation(auto& observations, KeyframeId keyframe) {
   return it != observations.end() && it->keyframe == keyframe ? it : observations.end();
 }
 
+void InsertLoop(Keyframe& keyframe, KeyframeId other) {
+  const auto it = std::lower_bound(keyframe.loops.begin(), keyframe.loops.end(), other);
+  if (it == keyframe.loops.end() || *it != other) {
+    keyframe.loops.insert(it, other);
+  }
+}
+
+// Moves the loop edges of `id` to its parent.
+void HandOverLoops(Map& map, KeyframeId id, const Keyframe& keyframe) {
+  for (const KeyframeId other : keyframe.loops) {
+    std::erase(map.MutableKeyframe(other).loops, id);
+    if (other != keyframe.parent) {
+      map.AddLoop(keyframe.parent, other);
+    }
+  }
+}
+
 }  // namespace
 
 Map Map::Snapshot() {
@@ -183,6 +200,13 @@ ObjectId Map::Resolve(ObjectId object) const {
   return object;
 }
 
+void Map::AddLoop(KeyframeId a, KeyframeId b) {
+  Check(a != b && keyframes_.Contains(a) && keyframes_.Contains(b),
+        "a loop edge joins two keyframes of the map");
+  InsertLoop(keyframes_.Mutable(a), b);
+  InsertLoop(keyframes_.Mutable(b), a);
+}
+
 void Map::CullKeyframe(KeyframeId id) {
   const Keyframe keyframe = keyframes_.At(id);
   Check(keyframe.parent.IsValid(), "the root of the spanning tree cannot be culled");
@@ -196,6 +220,7 @@ void Map::CullKeyframe(KeyframeId id) {
       RemoveObservation(object, id);
     }
   }
+  HandOverLoops(*this, id, keyframe);
   DetachFromTree(*this, id);
   DetachCovisibility(*this, id);
   keyframes_.Erase(id);

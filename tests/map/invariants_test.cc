@@ -169,6 +169,40 @@ TEST_F(Invariants, TellMiscountedVotes) {
   ExpectViolation("object 0 has its votes miscounted");
 }
 
+TEST_F(Invariants, TellAWrongReferenceOfAnObject) {
+  const ObjectId object = map_.AddObject();
+  map_.MutableObject(object).reference = KeyframeId(99);
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());  // nothing observes it
+  ASSERT_TRUE(map_.AddObservation(object, a_, 1));
+  ASSERT_TRUE(map_.AddObservation(object, b_, 1));
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+  map_.MutableObject(object).reference = b_;
+  ExpectViolation("object 0 has a reference that is not the first to observe it");
+}
+
+TEST_F(Invariants, TellLoopEdgesThatAreWrong) {
+  map_.AddLoop(a_, b_);
+  map_.AddLoop(a_, c_);
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+  map_.MutableKeyframe(a_).loops = {c_, b_};
+  ExpectViolation("keyframe 0 has loop edges out of order");
+  map_.MutableKeyframe(a_).loops = {b_, b_, c_};
+  ExpectViolation("keyframe 0 has loop edges out of order");
+  map_.MutableKeyframe(a_).loops = {c_};
+  ExpectViolation("keyframe 1 has a loop edge that keyframe 0 has not");
+  map_.MutableKeyframe(b_).loops = {b_};
+  ExpectViolation("keyframe 1 has a loop edge that keyframe 1 has not");
+  map_.MutableKeyframe(c_).loops = {KeyframeId(99)};
+  ExpectViolation("keyframe 2 has a loop edge that keyframe 99 has not");
+}
+
+TEST_F(Invariants, TellAScaleThatIsNotPositive) {
+  for (const double scale : {0.0, -1.0, kNan, std::numeric_limits<double>::infinity()}) {
+    map_.MutableKeyframe(b_).scale = scale;
+    ExpectViolation("keyframe 1 has no finite scale above 0");
+  }
+}
+
 TEST_F(Invariants, TellAShapeThatIsNone) {
   const ObjectId object = map_.AddObject();
   map_.MutableObject(object).state = ObjectState::kMapped;

@@ -15,7 +15,10 @@ TEST(Keyframe, StandsAloneAtFirst) {
   EXPECT_TRUE(keyframe.children.empty());
   EXPECT_TRUE(keyframe.covisible.empty());
   EXPECT_FALSE(Covisible().keyframe.IsValid());
-  EXPECT_FALSE(CulledKeyframe().parent.IsValid());
+  EXPECT_TRUE(keyframe.loops.empty());
+  EXPECT_EQ(keyframe.scale, 1.0);
+  EXPECT_FALSE(CulledKeyframe().pose.reference.IsValid());
+  EXPECT_EQ(CulledKeyframe().scale, 1.0);
 }
 
 // The features of an image are large; copying a keyframe, as snapshots do, must not copy them.

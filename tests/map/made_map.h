@@ -62,16 +62,57 @@ inline std::vector<LandmarkId> Share(Map& map, const std::vector<KeyframeId>& ke
   return added;
 }
 
-// All that a map holds, to compare maps by.
+inline void Dump(const Rigid3& pose, std::ostream& out) {
+  out << ' ' << pose.rotation.coeffs().transpose() << ' ' << pose.translation.transpose();
+}
+
+inline void Dump(const ObjectLandmark& object, std::ostream& out) {
+  out << " state " << static_cast<int>(object.state) << ' ' << object.has_shape << ' '
+      << object.shaped_views << " reference " << object.reference.value;
+  for (const Ellipsoid& ellipsoid : {object.ellipsoid, object.start}) {
+    Dump(ellipsoid.world_from_object, out);
+    out << ' ' << ellipsoid.half_axes.transpose();
+  }
+  for (const auto& sample : object.support) {
+    out << " sample " << sample.normal.transpose() << ' ' << sample.excess << ' '
+        << sample.keyframe.value;
+  }
+  out << " counts " << object.visible << ' ' << object.found;
+  for (const auto& [label, votes] : object.votes) {
+    out << ' ' << label << ':' << votes;
+  }
+  for (const ObjectObservation& observation : object.observations) {
+    out << ' ' << observation.keyframe.value << ':' << observation.detection;
+  }
+}
+
+inline void Dump(const Landmark& landmark, std::ostream& out) {
+  out << ' ' << landmark.position.transpose() << " from " << landmark.viewing_direction.transpose()
+      << ' ' << landmark.min_distance << ' ' << landmark.max_distance << " reference "
+      << landmark.reference.value << ' ' << landmark.support << ' ' << landmark.visible << ' '
+      << landmark.found << " descriptor";
+  for (const uint64_t word : landmark.descriptor) {
+    out << ' ' << word;
+  }
+  for (const Observation& observation : landmark.observations) {
+    out << ' ' << observation.keyframe.value << ':' << observation.keypoint;
+  }
+}
+
+// Everything in a map but the number of its corrections, to compare maps by: 17 digits tell any two
+// doubles apart.
 inline std::string Dump(const Map& map) {
   std::ostringstream out;
   out.precision(17);
   map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
-    out << "\nkeyframe " << id.value << " frame " << keyframe.frame->id.value << " pose "
-        << keyframe.cam_from_world.ToMatrix().reshaped().transpose() << " parent "
-        << keyframe.parent.value << " children";
+    out << "\nkeyframe " << id.value << " frame " << keyframe.frame->id.value << " pose";
+    Dump(keyframe.cam_from_world, out);
+    out << " scale " << keyframe.scale << " parent " << keyframe.parent.value << " children";
     for (const KeyframeId child : keyframe.children) {
       out << ' ' << child.value;
+    }
+    for (const KeyframeId loop : keyframe.loops) {
+      out << " loop " << loop.value;
     }
     for (const Covisible& edge : keyframe.covisible) {
       out << " edge " << edge.keyframe.value << ':' << edge.shared;
@@ -79,30 +120,31 @@ inline std::string Dump(const Map& map) {
     for (const LandmarkId landmark : keyframe.landmarks) {
       out << ' ' << landmark.value;
     }
+    for (const ObjectId object : keyframe.objects) {
+      out << ' ' << object.value;
+    }
   });
   map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
-    out << "\nobject " << id.value << ' ' << object.visible << ' ' << object.found;
-    for (const auto& [label, votes] : object.votes) {
-      out << ' ' << label << ':' << votes;
-    }
-    for (const ObjectObservation& observation : object.observations) {
-      out << ' ' << observation.keyframe.value << ':' << observation.detection;
-    }
+    out << "\nobject " << id.value;
+    Dump(object, out);
   });
   map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
-    out << "\nlandmark " << id.value << ' ' << landmark.position.transpose() << " reference "
-        << landmark.reference.value << ' ' << landmark.support << ' ' << landmark.visible << ' '
-        << landmark.found;
-    for (const Observation& observation : landmark.observations) {
-      out << ' ' << observation.keyframe.value << ':' << observation.keypoint;
-    }
+    out << "\nlandmark " << id.value;
+    Dump(landmark, out);
   });
   for (uint32_t i = 0; i < map.landmarks().NextId().value; ++i) {
     out << ' ' << map.Resolve(LandmarkId(i)).value;
   }
+  for (uint32_t i = 0; i < map.objects().NextId().value; ++i) {
+    out << ' ' << map.Resolve(ObjectId(i)).value;
+  }
   for (uint32_t i = 0; i < map.keyframes().NextId().value; ++i) {
-    out << ' ' << map.NearestAlive(KeyframeId(i)).value << ' '
-        << map.CamFromWorld(KeyframeId(i)).translation.transpose();
+    if (const CulledKeyframe* culled = map.FindCulled(KeyframeId(i))) {
+      out << "\nculled " << i << " frame " << culled->frame.value << " reference "
+          << culled->pose.reference.value;
+      Dump(culled->pose.cam_from_reference, out);
+      out << " scale " << culled->pose.reference_scale << ' ' << culled->scale;
+    }
   }
   return std::move(out).str();
 }

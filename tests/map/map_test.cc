@@ -193,6 +193,79 @@ TEST_F(CulledKeyframes, MoveWithTheirParent) {
   EXPECT_LT(Distance(map_.CamFromWorld(Id(2)), relative * map_.CamFromWorld(Id(1))), 1e-12);
 }
 
+// Keyframes of one map have different scales after a correction.
+TEST_F(CulledKeyframes, TakeTheScaleThatTheirParentGains) {
+  const std::vector<double> scales = {1.0, 2.0, 0.5, 3.0};
+  for (int i = 0; i < 4; ++i) {
+    map_.MutableKeyframe(Id(i)).scale = scales[static_cast<size_t>(i)];
+  }
+  std::vector<Rigid3> poses;
+  for (int i = 0; i < 4; ++i) {
+    poses.push_back(map_.CamFromWorld(Id(i)));
+  }
+  for (const int culled : {2, 1}) {
+    map_.CullKeyframe(Id(culled));
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_DOUBLE_EQ(map_.ScaleOf(Id(i)), scales[static_cast<size_t>(i)]);
+      EXPECT_LT(Distance(map_.CamFromWorld(Id(i)), poses[static_cast<size_t>(i)]), 1e-12);
+    }
+  }
+  EXPECT_EQ(map_.FindCulled(Id(2))->scale, 0.5);
+  map_.MutableKeyframe(Id(0)).scale = 4.0;
+  EXPECT_DOUBLE_EQ(map_.ScaleOf(Id(1)), 8.0);
+  EXPECT_DOUBLE_EQ(map_.ScaleOf(Id(2)), 2.0);
+  EXPECT_DOUBLE_EQ(map_.ScaleOf(Id(3)), 3.0);
+  Rigid3 relative = poses[2] * Inverse(poses[0]);
+  relative.translation *= 4.0;
+  EXPECT_LT(Distance(map_.CamFromWorld(Id(2)), relative * poses[0]), 1e-12);
+}
+
+TEST_F(CulledKeyframes, AreFoundAmongTheCulled) {
+  map_.CullKeyframe(Id(2));
+  ASSERT_NE(map_.FindCulled(Id(2)), nullptr);
+  EXPECT_EQ(map_.FindCulled(Id(2))->pose.reference, Id(1));
+  EXPECT_EQ(map_.FindCulled(Id(1)), nullptr);
+  EXPECT_EQ(map_.FindCulled(Id(9)), nullptr);
+}
+
+TEST_F(CulledKeyframes, HandTheirLoopEdgesToTheirParent) {
+  map_.AddLoop(Id(3), Id(0));
+  map_.AddLoop(Id(3), Id(1));
+  map_.CullKeyframe(Id(3));  // its parent is 2
+  EXPECT_EQ(map_.keyframes().At(Id(2)).loops, (std::vector<KeyframeId>{Id(0), Id(1)}));
+  EXPECT_EQ(map_.keyframes().At(Id(0)).loops, std::vector<KeyframeId>{Id(2)});
+  EXPECT_EQ(map_.keyframes().At(Id(1)).loops, std::vector<KeyframeId>{Id(2)});
+  // The edge to the parent itself is dropped.
+  map_.CullKeyframe(Id(2));
+  EXPECT_EQ(map_.keyframes().At(Id(1)).loops, std::vector<KeyframeId>{Id(0)});
+  EXPECT_EQ(map_.keyframes().At(Id(0)).loops, std::vector<KeyframeId>{Id(1)});
+  map_.CullKeyframe(Id(1));
+  EXPECT_TRUE(map_.keyframes().At(Id(0)).loops.empty());
+}
+
+TEST(Map, ALoopEdgeIsKnownAtBothEndsOnce) {
+  Map map;
+  const KeyframeId a = AddKeyframe(map, 1);
+  const KeyframeId b = AddKeyframe(map, 1);
+  const KeyframeId c = AddKeyframe(map, 1);
+  map.AddLoop(b, c);
+  map.AddLoop(b, a);
+  map.AddLoop(a, b);
+  EXPECT_EQ(map.keyframes().At(b).loops, (std::vector<KeyframeId>{a, c}));
+  EXPECT_EQ(map.keyframes().At(a).loops, std::vector<KeyframeId>{b});
+  EXPECT_EQ(map.keyframes().At(c).loops, std::vector<KeyframeId>{b});
+  EXPECT_THROW(map.AddLoop(a, a), CheckError);
+  EXPECT_THROW(map.AddLoop(a, KeyframeId(9)), CheckError);
+}
+
+TEST(Map, CountsItsCorrections) {
+  Map map;
+  EXPECT_EQ(map.correction_count(), 0u);
+  map.CountCorrection();
+  EXPECT_EQ(map.correction_count(), 1u);
+  EXPECT_EQ(map.Snapshot().correction_count(), 1u);
+}
+
 TEST_F(CulledKeyframes, HaveANearestAncestorAlive) {
   map_.CullKeyframe(Id(2));
   map_.CullKeyframe(Id(1));

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <variant>
+
 namespace hullslam {
 namespace {
 
@@ -11,17 +13,48 @@ TEST(TrackedFrame, IsNotTrackedAtFirst) {
   const TrackedFrame frame;
   EXPECT_EQ(frame.state, TrackingState::kNotInitialized);
   EXPECT_FALSE(frame.frame.IsValid());
-  EXPECT_FALSE(frame.reference.IsValid());
+  EXPECT_FALSE(frame.pose.has_value());
   EXPECT_EQ(frame.inliers, 0);
 }
 
-TEST(KeyframeRequest, IsThatOfTheFirstKeyframeAtFirst) {
+TEST(KeyframeRequest, IsRelativeToNothingAtFirst) {
   const KeyframeRequest request;
-  EXPECT_FALSE(request.reference.IsValid());
-  EXPECT_EQ(request.cam_from_reference * Eigen::Vector3d(1.0, 2.0, 3.0),
-            Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_EQ(request.frame, nullptr);
+  EXPECT_FALSE(request.pose.reference.IsValid());
   EXPECT_TRUE(request.landmarks.empty());
   EXPECT_TRUE(request.sightings.empty());
+}
+
+TEST(InitialMap, IsEmptyAtFirst) {
+  const InitialMap initial;
+  EXPECT_TRUE(initial.views.empty());
+  EXPECT_TRUE(initial.points.empty());
+  EXPECT_TRUE(InitialMap::Point().observations.empty());
+}
+
+TEST(MapCorrection, NamesNothingAtFirst) {
+  const MapCorrection correction;
+  EXPECT_EQ(correction.snapshot_corrections, 0u);
+  EXPECT_TRUE(correction.poses.empty());
+  EXPECT_TRUE(correction.positions.empty());
+  EXPECT_TRUE(correction.landmarks.empty());
+  EXPECT_TRUE(correction.objects.empty());
+  EXPECT_FALSE(correction.loop.has_value());
+  EXPECT_EQ(MapCorrection::Pose().corrected_cam_from_world.scale, 1.0);
+}
+
+TEST(MapMessage, IsOneOfThree) {
+  EXPECT_TRUE(std::holds_alternative<InitialMap>(MapMessage(InitialMap())));
+  EXPECT_TRUE(std::holds_alternative<KeyframeRequest>(MapMessage(KeyframeRequest())));
+  EXPECT_TRUE(std::holds_alternative<MapCorrection>(MapMessage(MapCorrection())));
+}
+
+TEST(FrameReport, ShowsNothingAtFirst) {
+  const FrameReport report;
+  EXPECT_EQ(report.tracked.state, TrackingState::kNotInitialized);
+  EXPECT_EQ(report.frame, nullptr);
+  EXPECT_TRUE(report.landmarks.empty());
+  EXPECT_TRUE(report.objects.empty());
 }
 
 TEST(Sighting, CountsNothingAtFirst) {

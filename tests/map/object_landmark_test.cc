@@ -77,6 +77,21 @@ TEST(ObjectsOfTheMap, LoseTheObservationsOfACulledKeyframe) {
   map.AddObservation(object, b, 1);
   map.CullKeyframe(b);
   EXPECT_TRUE(map.objects().At(object).observations.empty());
+  EXPECT_EQ(map.objects().At(object).reference, b);  // which has a pose although it is culled
+}
+
+TEST(ObjectsOfTheMap, ReferToTheFirstKeyframeThatObservesThem) {
+  Map map;
+  const KeyframeId a = AddKeyframe(map, 1);
+  const KeyframeId b = AddKeyframe(map, 1);
+  const ObjectId object = map.AddObject();
+  EXPECT_FALSE(map.objects().At(object).reference.IsValid());
+  map.AddObservation(object, b, 0);
+  EXPECT_EQ(map.objects().At(object).reference, b);
+  map.AddObservation(object, a, 0);
+  EXPECT_EQ(map.objects().At(object).reference, a);
+  map.RemoveObservation(object, a);
+  EXPECT_EQ(map.objects().At(object).reference, b);
 }
 
 }  // namespace

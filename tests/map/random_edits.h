@@ -17,7 +17,7 @@ class RandomEdits {
   explicit RandomEdits(uint32_t seed) : random_(seed) {}
 
   void Edit(Map& map) {
-    const uint32_t kind = random_.Index(16);
+    const uint32_t kind = random_.Index(17);
     if (map.keyframes().size() < 3 || kind == 0) {
       Grow(map);
     } else if (kind <= 3) {
@@ -36,6 +36,8 @@ class RandomEdits {
       map.SetPose(AnyKeyframe(map), random_.Pose(1.0, 2.0));
     } else if (kind == 11) {
       Move(map);
+    } else if (kind == 12) {
+      JoinLoop(map);
     } else {
       EditObjects(map);
     }
@@ -90,6 +92,14 @@ class RandomEdits {
     map.CountSightings(id, 2, 1);
     if (random_.Index(3) == 0) {
       map.EraseLandmark(id);
+    }
+  }
+
+  void JoinLoop(Map& map) {
+    const KeyframeId a = AnyKeyframe(map);
+    const KeyframeId b = AnyKeyframe(map);
+    if (a != b) {
+      map.AddLoop(a, b);
     }
   }
 

@@ -52,9 +52,15 @@ class Map {
   void ReplaceObject(ObjectId object, ObjectId by);
   ObjectId Resolve(ObjectId object) const;
 
+  // Joins two keyframes of the map by a loop edge. Nothing changes if they are joined already.
+  void AddLoop(KeyframeId a, KeyframeId b);
+
   // Takes a keyframe out of the map. It must have a parent: its children go to their best
-  // relatives.
+  // relatives. Its loop edges go to its parent: without them a later pose graph could open the
+  // loops again, and an edge of the parent, which is near, closes them as well.
   void CullKeyframe(KeyframeId keyframe);
+  // What is kept of a culled keyframe; null for any other.
+  const CulledKeyframe* FindCulled(KeyframeId keyframe) const { return culled_.Find(keyframe); }
   // The pose of a keyframe, also of a culled one.
   Rigid3 CamFromWorld(KeyframeId keyframe) const;
   // The pose of a camera in the current map, at the map's current scale.
@@ -79,6 +85,7 @@ class Map {
 
   // For the files of this module that keep derived data in step.
   Keyframe& MutableKeyframe(KeyframeId keyframe) { return keyframes_.Mutable(keyframe); }
+  CulledKeyframe& MutableCulledKeyframe(KeyframeId keyframe) { return culled_.Mutable(keyframe); }
   Landmark& MutableLandmark(LandmarkId landmark) { return landmarks_.Mutable(landmark); }
   // State, shape, misfit and counts may be written; observations and votes belong to this class.
   ObjectLandmark& MutableObject(ObjectId object) { return objects_.Mutable(object); }

@@ -1,0 +1,793 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/correction.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hullslam/geometry/dual_quadric.h"
+#include "hullslam/system/compose_trajectory.h"
+#include "map/invariants.h"
+#include "map/landmark_projection.h"
+#include "map/made_correction.h"
+#include "map/made_map.h"
+#include "map/random_edits.h"
+#include "map/spanning_tree.h"
+#include "support/random_geometry.h"
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+constexpr uint32_t kSeeds = 12;
+
+ScaleLevels Levels() { return ScaleLevels::Create(8, 1.2); }
+
+Rigid3 Shift(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }
+
+double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
+
+std::vector<KeyframeId> AllIds(const Map& map) {
+  std::vector<KeyframeId> ids;
+  for (uint32_t i = 0; i < map.keyframes().NextId().value; ++i) {
+    ids.emplace_back(i);
+  }
+  return ids;
+}
+
+Ellipsoid RandomEllipsoid(RandomGeometry& random) {
+  const double x = random.Number(0.05, 0.3);
+  const double y = random.Number(0.05, 0.3);
+  return {random.Pose(2.0, 3.0), {x, y, random.Number(0.05, 0.3)}};
+}
+
+void GiveShape(Map& map, ObjectId id, RandomGeometry& random) {
+  ObjectLandmark& object = map.MutableObject(id);
+  object.has_shape = true;
+  object.state = ObjectState::kMapped;
+  object.shaped_views = 4;
+  object.ellipsoid = RandomEllipsoid(random);
+  object.start = RandomEllipsoid(random);
+  object.support.assign(2, {});
+  for (auto& sample : object.support) {
+    sample.normal = random.Vector(1.0).normalized();
+    sample.excess = random.Number(-0.02, 0.02);
+  }
+}
+
+void GiveShapes(Map& map, RandomGeometry& random) {
+  for (uint32_t i = 0; i < map.objects().NextId().value; ++i) {
+    if (map.objects().Contains(ObjectId(i)) && !map.objects().At(ObjectId(i)).has_shape) {
+      GiveShape(map, ObjectId(i), random);
+    }
+  }
+}
+
+// What moves with its world: a camera sees a moved point where it saw the point before, only
+// `scale` times as far away.
+void ExpectMoved(const Rigid3& after, const Rigid3& before, const Sim3& new_from_old,
+                 const std::string& what) {
+  const Eigen::Vector3d center = Inverse(before).translation;
+  EXPECT_LT((Inverse(after).translation - new_from_old * center).norm(), 1e-9) << what;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d point = center + Eigen::Vector3d::Unit(axis);
+    const Eigen::Vector3d seen = after * (new_from_old * point);
+    EXPECT_LT((seen - new_from_old.scale * (before * point)).norm(), 1e-9) << what;
+  }
+}
+
+void ExpectMoved(const Ellipsoid& after, const Ellipsoid& before, const Sim3& new_from_old) {
+  EXPECT_LT((after.half_axes - new_from_old.scale * before.half_axes).norm(), 1e-12);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d end = before.half_axes[axis] * Eigen::Vector3d::Unit(axis);
+    EXPECT_LT((after.world_from_object * (new_from_old.scale * end) -
+               new_from_old * (before.world_from_object * end))
+                  .norm(),
+              1e-9);
+  }
+}
+
+// All numbers of a map that a correction may change, in a fixed order.
+std::vector<double> Numbers(const Map& map) {
+  std::vector<double> numbers;
+  const auto add = [&](const auto& matrix) {
+    for (const double number : matrix.reshaped()) {
+      numbers.push_back(number);
+    }
+  };
+  for (const KeyframeId id : AllIds(map)) {
+    add(map.CamFromWorld(id).ToMatrix());
+    numbers.push_back(map.ScaleOf(id));
+  }
+  map.landmarks().ForEach([&](LandmarkId, const Landmark& landmark) {
+    add(landmark.position);
+    add(landmark.viewing_direction);
+    numbers.push_back(landmark.min_distance);
+    numbers.push_back(landmark.max_distance);
+  });
+  map.objects().ForEach([&](ObjectId, const ObjectLandmark& object) {
+    for (const Ellipsoid& ellipsoid : {object.ellipsoid, object.start}) {
+      add(ellipsoid.world_from_object.ToMatrix());
+      add(ellipsoid.half_axes);
+    }
+    for (const auto& sample : object.support) {
+      numbers.push_back(sample.excess);
+    }
+  });
+  return numbers;
+}
+
+void ExpectNear(const Map& a, const Map& b, double tolerance) {
+  const std::vector<double> numbers_a = Numbers(a);
+  const std::vector<double> numbers_b = Numbers(b);
+  ASSERT_EQ(numbers_a.size(), numbers_b.size());
+  for (size_t i = 0; i < numbers_a.size(); ++i) {
+    ASSERT_NEAR(numbers_a[i], numbers_b[i], tolerance) << i;
+  }
+}
+
+// The map of a long run that a correction of an older snapshot reaches: since the snapshot,
+// keyframes and landmarks were made, moved, merged, erased and culled at random.
+class LateCorrection : public ::testing::TestWithParam<uint32_t> {
+ protected:
+  LateCorrection() {
+    Edit(250);
+    GiveShapes(map_, random_);
+    // The scales of the keyframes differ from here on.
+    const MapCorrection former = MakeCorrection(map_, RandomChange(2.0));
+    EXPECT_TRUE(ApplyCorrection(map_, former, levels_).is_applied);
+    Edit(50);
+    GiveShapes(map_, random_);
+    snapshot_ = map_.Snapshot();
+    TrackFrames();
+    Edit(150);
+    GiveShapes(map_, random_);
+    TrackFrames();
+  }
+
+  void Edit(int count) {
+    for (int i = 0; i < count; ++i) {
+      edits_.Edit(map_);
+    }
+  }
+
+  // Frames relative to every keyframe, also to culled ones. No keyframe was made of them.
+  void TrackFrames() {
+    for (const KeyframeId id : AllIds(map_)) {
+      TrackedFrame& frame = frames_.emplace_back();
+      frame.frame = FrameId(kFramesPerKeyframe * id.value + 1);
+      frame.timestamp = static_cast<double>(frames_.size());
+      frame.state = TrackingState::kTracked;
+      frame.pose = map_.RelativeTo(id, random_.Pose(1.0, 2.0));
+    }
+  }
+
+  std::function<Sim3(KeyframeId)> RandomChange(double factor) {
+    return [this, factor](KeyframeId) { return RandomSim3(random_, factor); };
+  }
+
+  // A correction of the snapshot with another change for every keyframe, which `changes_` keeps.
+  MapCorrection MakeLateCorrection(double factor) {
+    return MakeCorrection(snapshot_, [this, factor](KeyframeId id) {
+      return changes_[id] = RandomSim3(random_, factor);
+    });
+  }
+
+  // The change of the nearest ancestor that the correction names, found link by link.
+  std::optional<Sim3> ExpectedChange(const Map& map, KeyframeId id) const {
+    while (id.IsValid()) {
+      if (const auto found = changes_.find(id); found != changes_.end()) {
+        return found->second;
+      }
+      const CulledKeyframe* culled = map.FindCulled(id);
+      id = culled != nullptr ? culled->pose.reference : map.keyframes().At(id).parent;
+    }
+    return std::nullopt;
+  }
+
+  void ExpectKeyframesMoved(const Map& before) const {
+    for (const KeyframeId id : AllIds(before)) {
+      const Sim3 change = ExpectedChange(before, id).value_or(Sim3());
+      const std::string what = "keyframe " + std::to_string(id.value);
+      ExpectMoved(map_.CamFromWorld(id), before.CamFromWorld(id), change, what);
+      EXPECT_NEAR(map_.ScaleOf(id), before.ScaleOf(id) * change.scale, 1e-9) << what;
+    }
+  }
+
+  void ExpectLandmarksMoved(const Map& before) const {
+    before.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+      const Sim3 change = ExpectedChange(before, landmark.reference).value_or(Sim3());
+      const Eigen::Vector3d moved = map_.landmarks().At(id).position;
+      EXPECT_LT((moved - change * landmark.position).norm(), 1e-9) << id.value;
+    });
+  }
+
+  void ExpectObjectsMoved(const Map& before) const {
+    before.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+      const Sim3 change = ExpectedChange(before, object.reference).value_or(Sim3());
+      const ObjectLandmark& moved = map_.objects().At(id);
+      ExpectMoved(moved.ellipsoid, object.ellipsoid, change);
+      ExpectMoved(moved.start, object.start, change);
+      for (size_t i = 0; i < object.support.size(); ++i) {
+        EXPECT_EQ(moved.support[i].normal, object.support[i].normal);
+        EXPECT_NEAR(moved.support[i].excess, change.scale * object.support[i].excess, 1e-12);
+      }
+    });
+  }
+
+  void ExpectFramesMoved(const Map& before) const {
+    const Trajectory old_trajectory = ComposeTrajectory(before, frames_);
+    const Trajectory new_trajectory = ComposeTrajectory(map_, frames_);
+    ASSERT_EQ(old_trajectory.size(), frames_.size());
+    ASSERT_EQ(new_trajectory.size(), frames_.size());
+    for (size_t i = 0; i < frames_.size(); ++i) {
+      ExpectMoved(Inverse(new_trajectory[i].world_from_cam),
+                  Inverse(old_trajectory[i].world_from_cam),
+                  ExpectedChange(before, frames_[i].pose->reference).value_or(Sim3()),
+                  "frame " + std::to_string(i));
+    }
+  }
+
+  const ScaleLevels levels_ = Levels();
+  RandomGeometry random_{GetParam()};
+  RandomEdits edits_{GetParam() + 1000};
+  Map map_;
+  Map snapshot_;
+  std::vector<TrackedFrame> frames_;
+  std::map<KeyframeId, Sim3> changes_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Seeds, LateCorrection, ::testing::Range(0u, kSeeds));
+
+TEST_P(LateCorrection, MovesEverythingByTheChangeOfItsNearestNamedAncestor) {
+  for (const double factor : {1.0, 3.0}) {
+    Map before = map_.Snapshot();
+    changes_.clear();
+    MapCorrection correction = MakeLateCorrection(factor);
+    correction.snapshot_corrections = map_.correction_count();
+    EXPECT_TRUE(ApplyCorrection(map_, correction, levels_).is_applied);
+    ExpectKeyframesMoved(before);
+    ExpectLandmarksMoved(before);
+    ExpectObjectsMoved(before);
+    ExpectFramesMoved(before);
+    ASSERT_EQ(FindViolations(map_), std::vector<std::string>());
+  }
+}
+
+TEST_P(LateCorrection, WithoutChangeOfScaleLeavesAllScalesAsTheyAre) {
+  std::vector<double> scales;
+  for (const KeyframeId id : AllIds(map_)) {
+    scales.push_back(map_.ScaleOf(id));
+  }
+  EXPECT_TRUE(ApplyCorrection(map_, MakeLateCorrection(1.0), levels_).is_applied);
+  for (const KeyframeId id : AllIds(map_)) {
+    EXPECT_NEAR(map_.ScaleOf(id), scales[id.value], 1e-12);
+    if (map_.keyframes().Contains(id)) {
+      EXPECT_EQ(map_.ScaleOf(id), scales[id.value]);
+    }
+  }
+}
+
+TEST_P(LateCorrection, ByIdentityChangesNoBit) {
+  MapCorrection correction = MakeIdentity(snapshot_);
+  map_.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+    correction.positions.push_back({id, landmark.position});
+  });
+  const std::string before = Dump(map_);
+  EXPECT_TRUE(ApplyCorrection(map_, correction, levels_).is_applied);
+  EXPECT_EQ(Dump(map_), before);
+  EXPECT_EQ(map_.correction_count(), snapshot_.correction_count() + 1);
+}
+
+// Only the neighbourhood of one keyframe moves.
+TEST_P(LateCorrection, LeavesWhatFollowsAnIdentityAsItIs) {
+  MapCorrection correction = MakeIdentity(snapshot_);
+  const KeyframeId moved = correction.poses.back().keyframe;
+  const Sim3 change = RandomSim3(random_);
+  correction.poses.back().corrected_cam_from_world =
+      Sim3(correction.poses.back().snapshot_cam_from_world) * Inverse(change);
+  for (const MapCorrection::Pose& pose : correction.poses) {
+    changes_[pose.keyframe] = pose.keyframe == moved ? change : Sim3();
+  }
+  Map before = map_.Snapshot();
+  EXPECT_TRUE(ApplyCorrection(map_, correction, levels_).is_applied);
+  ExpectKeyframesMoved(before);
+  before.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    const Sim3 expected = ExpectedChange(before, id).value_or(Sim3());
+    const Keyframe& after = map_.keyframes().At(id);
+    if (expected.scale == 1.0) {
+      EXPECT_EQ(after.cam_from_world.rotation.coeffs(), keyframe.cam_from_world.rotation.coeffs());
+      EXPECT_EQ(after.cam_from_world.translation, keyframe.cam_from_world.translation);
+    }
+  });
+}
+
+TEST_P(LateCorrection, ThatIsStaleIsRefused) {
+  const MapCorrection stale = MakeLateCorrection(2.0);
+  EXPECT_TRUE(ApplyCorrection(map_, MakeLateCorrection(2.0), levels_).is_applied);
+  const std::string before = Dump(map_);
+  const uint32_t count = map_.correction_count();
+  const CorrectionOutcome outcome = ApplyCorrection(map_, stale, levels_);
+  EXPECT_FALSE(outcome.is_applied);
+  EXPECT_TRUE(outcome.merged_objects.empty());
+  EXPECT_EQ(Dump(map_), before);
+  EXPECT_EQ(map_.correction_count(), count);
+}
+
+// Points, objects and loops are merged and joined by ids that are partly gone since the snapshot.
+TEST_P(LateCorrection, KeepsTheMapSound) {
+  MapCorrection correction = MakeLateCorrection(2.0);
+  const uint32_t keyframes = map_.keyframes().NextId().value;
+  const uint32_t landmarks = map_.landmarks().NextId().value + 1;
+  const uint32_t objects = map_.objects().NextId().value + 1;
+  for (int i = 0; i < 40; ++i) {
+    correction.landmarks.push_back(
+        {LandmarkId(random_.Index(landmarks)), LandmarkId(random_.Index(landmarks))});
+    correction.positions.push_back({LandmarkId(random_.Index(landmarks)), random_.Vector(3.0)});
+  }
+  for (int i = 0; i < 4; ++i) {
+    correction.objects.push_back(
+        {ObjectId(random_.Index(objects)), ObjectId(random_.Index(objects))});
+  }
+  correction.loop = {KeyframeId(random_.Index(keyframes)), KeyframeId(random_.Index(keyframes))};
+  const CorrectionOutcome outcome = ApplyCorrection(map_, correction, levels_);
+  EXPECT_TRUE(outcome.is_applied);
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+  EXPECT_TRUE(std::is_sorted(outcome.merged_objects.begin(), outcome.merged_objects.end()));
+  for (const ObjectId id : outcome.merged_objects) {
+    EXPECT_EQ(map_.objects().At(id).state, ObjectState::kCandidate);
+  }
+  Edit(100);
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+}
+
+// A correction B after A is the correction by the product of their changes.
+TEST_P(LateCorrection, ComposesWithTheNext) {
+  // Viewing geometry must be up to date, as a correction leaves it.
+  EXPECT_TRUE(ApplyCorrection(map_, MakeLateCorrection(2.0), levels_).is_applied);
+  std::map<KeyframeId, Sim3> first;
+  std::map<KeyframeId, Sim3> second;
+  for (const KeyframeId id : AllIds(map_)) {
+    first[id] = RandomSim3(random_, 2.0);
+    second[id] = RandomSim3(random_, 2.0);
+  }
+  Map twice = map_.Snapshot();
+  for (const auto& changes : {first, second}) {
+    const MapCorrection correction =
+        MakeCorrection(twice, [&](KeyframeId id) { return changes.at(id); });
+    EXPECT_TRUE(ApplyCorrection(twice, correction, levels_).is_applied);
+  }
+  const MapCorrection correction =
+      MakeCorrection(map_, [&](KeyframeId id) { return second.at(id) * first.at(id); });
+  EXPECT_TRUE(ApplyCorrection(map_, correction, levels_).is_applied);
+  ExpectNear(twice, map_, 1e-9);
+  for (const TrackedFrame& frame : frames_) {
+    EXPECT_LT(Distance(twice.CamFromWorld(*frame.pose), map_.CamFromWorld(*frame.pose)), 1e-9);
+  }
+}
+
+// It does not matter for poses whether a keyframe is culled shortly before a correction or after.
+TEST_P(LateCorrection, CommutesWithCulling) {
+  map_ = snapshot_.Snapshot();
+  const MapCorrection correction = MakeLateCorrection(3.0);
+  std::vector<KeyframeId> leaves;
+  snapshot_.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    if (keyframe.parent.IsValid() && id.value % 2 == 0) {
+      leaves.push_back(id);
+    }
+  });
+  ASSERT_FALSE(leaves.empty());
+  Map culled_after = map_.Snapshot();
+  for (const KeyframeId id : leaves) {
+    map_.CullKeyframe(id);
+  }
+  EXPECT_TRUE(ApplyCorrection(map_, correction, levels_).is_applied);
+  EXPECT_TRUE(ApplyCorrection(culled_after, correction, levels_).is_applied);
+  for (const KeyframeId id : leaves) {
+    culled_after.CullKeyframe(id);
+  }
+  for (const KeyframeId id : AllIds(map_)) {
+    EXPECT_LT(Distance(map_.CamFromWorld(id), culled_after.CamFromWorld(id)), 1e-9) << id.value;
+    EXPECT_NEAR(map_.ScaleOf(id), culled_after.ScaleOf(id), 1e-9) << id.value;
+  }
+  for (const TrackedFrame& frame : frames_) {
+    if (frame.pose->reference < snapshot_.keyframes().NextId()) {
+      EXPECT_LT(Distance(map_.CamFromWorld(*frame.pose), culled_after.CamFromWorld(*frame.pose)),
+                1e-9);
+    }
+  }
+}
+
+TEST_P(LateCorrection, KeepsRelativePosesOfWhatMovesAlikeUpToScale) {
+  Map before = map_.Snapshot();
+  const Sim3 change = RandomSim3(random_);
+  for (const MapCorrection::Pose& pose : MakeCorrection(snapshot_, change).poses) {
+    changes_[pose.keyframe] = change;
+  }
+  EXPECT_TRUE(ApplyCorrection(map_, MakeCorrection(snapshot_, change), levels_).is_applied);
+  KeyframeId last;
+  for (const KeyframeId id : AllIds(map_)) {
+    if (!ExpectedChange(before, id)) {
+      continue;
+    }
+    if (last.IsValid()) {
+      Rigid3 expected = before.CamFromWorld(id) * Inverse(before.CamFromWorld(last));
+      expected.translation *= change.scale;
+      EXPECT_LT(Distance(map_.CamFromWorld(id) * Inverse(map_.CamFromWorld(last)), expected), 1e-9);
+    }
+    last = id;
+  }
+}
+
+// Corrections and culls in turn: the frames keep their poses when keyframes are culled, however
+// much the scales of the keyframes differ.
+TEST_P(LateCorrection, FramesKeepTheirPosesInChainsOfCulledKeyframes) {
+  for (int round = 0; round < 6; ++round) {
+    EXPECT_TRUE(ApplyCorrection(map_, MakeCorrection(map_, RandomChange(2.0)), levels_).is_applied);
+    const Map before = map_.Snapshot();
+    int culled = 0;
+    before.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+      if (keyframe.parent.IsValid() && random_.Index(3) == 0) {
+        map_.CullKeyframe(id);
+        ++culled;
+      }
+    });
+    for (const TrackedFrame& frame : frames_) {
+      EXPECT_LT(Distance(map_.CamFromWorld(*frame.pose), before.CamFromWorld(*frame.pose)), 1e-9);
+    }
+    for (const KeyframeId id : AllIds(map_)) {
+      EXPECT_NEAR(map_.ScaleOf(id), before.ScaleOf(id), 1e-9);
+    }
+  }
+}
+
+// Three keyframes in a row, 1 below 0 and 2 below 1, at x = 1, 2 and 3 m, which look along z.
+class CorrectionByHand : public ::testing::Test {
+ protected:
+  CorrectionByHand() {
+    for (int i = 0; i < 3; ++i) {
+      AddKeyframe(map_, 40, 10, Shift(-1.0 - i));
+    }
+    SetParent(map_, b_, a_);
+    SetParent(map_, c_, b_);
+  }
+
+  // Names the keyframe and turns the world's x into `scale` * x + `shift`.
+  void Name(KeyframeId id, double scale, double shift) {
+    const Sim3 new_from_old(scale, Eigen::Quaterniond::Identity(), {shift, 0.0, 0.0});
+    const Rigid3& pose = map_.keyframes().At(id).cam_from_world;
+    correction_.poses.push_back({id, pose, Sim3(pose) * Inverse(new_from_old)});
+  }
+
+  CorrectionOutcome Apply() { return ApplyCorrection(map_, correction_, Levels()); }
+
+  double CenterX(KeyframeId id) const { return Inverse(map_.CamFromWorld(id)).translation.x(); }
+
+  Map map_;
+  MapCorrection correction_;
+  const KeyframeId a_{0};
+  const KeyframeId b_{1};
+  const KeyframeId c_{2};
+};
+
+TEST_F(CorrectionByHand, MovesAndScales) {
+  const LandmarkId landmark = Share(map_, {b_, c_}).front();  // at (0, 0, 2)
+  RandomGeometry random(1);
+  const ObjectId object = map_.AddObject();
+  ASSERT_TRUE(map_.AddObservation(object, b_, 0));
+  GiveShape(map_, object, random);
+  map_.MutableObject(object).ellipsoid = {Shift(4.0), {0.1, 0.2, 0.3}};
+  map_.MutableObject(object).start = {Shift(5.0), {0.2, 0.3, 0.4}};
+  map_.MutableObject(object).support[0].excess = -0.01;
+  Name(a_, 1.0, 0.0);
+  Name(b_, 2.0, 10.0);
+  Name(c_, 3.0, -1.0);
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_DOUBLE_EQ(CenterX(a_), 1.0);
+  EXPECT_DOUBLE_EQ(CenterX(b_), 14.0);
+  EXPECT_DOUBLE_EQ(CenterX(c_), 8.0);
+  EXPECT_DOUBLE_EQ(map_.keyframes().At(b_).scale, 2.0);
+  EXPECT_DOUBLE_EQ(map_.keyframes().At(c_).scale, 3.0);
+  EXPECT_LT((map_.landmarks().At(landmark).position - Eigen::Vector3d(10.0, 0.0, 4.0)).norm(),
+            1e-12);
+  const ObjectLandmark& moved = map_.objects().At(object);
+  EXPECT_DOUBLE_EQ(moved.ellipsoid.world_from_object.translation.x(), 18.0);
+  EXPECT_DOUBLE_EQ(moved.ellipsoid.half_axes.z(), 0.6);
+  EXPECT_DOUBLE_EQ(moved.start.world_from_object.translation.x(), 20.0);
+  EXPECT_DOUBLE_EQ(moved.start.half_axes.x(), 0.4);
+  EXPECT_DOUBLE_EQ(moved.support[0].excess, -0.02);
+  EXPECT_EQ(moved.state, ObjectState::kMapped);  // a shape that only moves stays valid
+}
+
+TEST_F(CorrectionByHand, TakesAlongWhatItDoesNotName) {
+  Name(a_, 1.0, 5.0);
+  const KeyframeId alone = AddKeyframe(map_, 1, 0, Shift(-20.0));
+  const LandmarkId still = map_.AddLandmark({1.0, 2.0, 3.0}, alone);
+  map_.CullKeyframe(b_);
+  const KeyframeId late = AddKeyframe(map_, 1, 0, Shift(-4.0));
+  SetParent(map_, late, c_);
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_DOUBLE_EQ(CenterX(a_), 6.0);
+  EXPECT_DOUBLE_EQ(CenterX(b_), 7.0);
+  EXPECT_DOUBLE_EQ(CenterX(c_), 8.0);
+  EXPECT_DOUBLE_EQ(CenterX(late), 9.0);
+  EXPECT_EQ(CenterX(alone), 20.0);
+  EXPECT_EQ(map_.landmarks().At(still).position, Eigen::Vector3d(1.0, 2.0, 3.0));
+}
+
+// The reference of an object without observations may be culled. It is named here itself.
+TEST_F(CorrectionByHand, MovesAnObjectWithItsCulledReference) {
+  RandomGeometry random(2);
+  const ObjectId object = map_.AddObject();
+  ASSERT_TRUE(map_.AddObservation(object, b_, 0));
+  GiveShape(map_, object, random);
+  map_.MutableObject(object).ellipsoid = {Shift(4.0), {0.1, 0.2, 0.3}};
+  Name(a_, 1.0, 5.0);
+  Name(b_, 1.0, 7.0);
+  map_.CullKeyframe(b_);
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_DOUBLE_EQ(map_.objects().At(object).ellipsoid.world_from_object.translation.x(), 11.0);
+  EXPECT_DOUBLE_EQ(CenterX(b_), 9.0);
+  // The next snapshot does not have it any more.
+  correction_ = {};
+  correction_.snapshot_corrections = 1;
+  Name(a_, 1.0, 100.0);
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_DOUBLE_EQ(map_.objects().At(object).ellipsoid.world_from_object.translation.x(), 111.0);
+  EXPECT_DOUBLE_EQ(CenterX(b_), 109.0);
+}
+
+// The keyframe was moved by 0.25 m and the landmark by 0.5 m after the snapshot.
+TEST_F(CorrectionByHand, KeepsLocalAdjustments) {
+  const LandmarkId landmark = Share(map_, {b_, c_}).front();
+  Name(b_, 2.0, 10.0);
+  map_.SetPose(b_, Shift(-2.25));
+  map_.SetPosition(landmark, {0.5, 0.0, 2.0});
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_DOUBLE_EQ(CenterX(b_), 14.5);
+  EXPECT_LT((map_.landmarks().At(landmark).position - Eigen::Vector3d(11.0, 0.0, 4.0)).norm(),
+            1e-12);
+}
+
+TEST_F(CorrectionByHand, MovesLandmarksToGivenPositions) {
+  const std::vector<LandmarkId> landmarks = Share(map_, {b_, c_}, 4);
+  for (int i = 0; i < 3; ++i) {
+    correction_.positions.push_back(
+        {landmarks[static_cast<size_t>(i)], Eigen::Vector3d(1.0 + i, 2.0, 3.0)});
+  }
+  correction_.positions.push_back({LandmarkId(99), Eigen::Vector3d::Zero()});
+  Name(a_, 1.0, 5.0);
+  // An erased landmark is passed over. So is a replaced one, whose position is not that of the
+  // landmark that replaces it.
+  map_.EraseLandmark(landmarks[1]);
+  map_.ReplaceLandmark(landmarks[2], landmarks[3]);
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_EQ(map_.landmarks().At(landmarks[0]).position, Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_FALSE(map_.landmarks().Contains(landmarks[1]));
+  EXPECT_LT((map_.landmarks().At(landmarks[3]).position - Eigen::Vector3d(5.0, 0.0, 2.0)).norm(),
+            1e-12);
+}
+
+// The second keyframe looks from elsewhere when the first, which it does not depend on, moves.
+TEST_F(CorrectionByHand, ViewingGeometryFollowsPositionsAndObservers) {
+  const LandmarkId landmark = Share(map_, {a_, c_}).front();
+  UpdateViewingGeometry(map_, landmark, Levels());
+  const double distance = map_.landmarks().At(landmark).max_distance;
+  correction_.positions.push_back({landmark, {0.0, 0.0, 4.0}});
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_NEAR(map_.landmarks().At(landmark).max_distance,
+              distance * std::sqrt(17.0) / std::sqrt(5.0), 1e-12);
+  correction_ = {};
+  correction_.snapshot_corrections = 1;
+  Name(c_, 1.0, 3.0);
+  const Eigen::Vector3d direction = map_.landmarks().At(landmark).viewing_direction;
+  EXPECT_TRUE(Apply().is_applied);
+  const Eigen::Vector3d expected =
+      (Eigen::Vector3d(-1.0, 0.0, 4.0).normalized() + Eigen::Vector3d(-6.0, 0.0, 4.0).normalized())
+          .normalized();
+  EXPECT_GT((direction - expected).norm(), 0.1);
+  EXPECT_LT((map_.landmarks().At(landmark).viewing_direction - expected).norm(), 1e-12);
+}
+
+TEST_F(CorrectionByHand, MergesLandmarks) {
+  const std::vector<LandmarkId> old_ones = Share(map_, {a_, b_}, 16);
+  const std::vector<LandmarkId> new_ones = Share(map_, {c_}, 16);
+  UpdateCovisibility(map_, a_);
+  ASSERT_TRUE(map_.keyframes().At(c_).covisible.empty());
+  // The descriptors of the old ones are those of two keyframes, so they are the most typical.
+  for (const KeyframeId id : {a_, b_}) {
+    auto frame = std::make_shared<Frame>(*map_.keyframes().At(id).frame);
+    std::fill(frame->features.descriptors.begin(), frame->features.descriptors.end(),
+              Descriptor{7, 0, 0, 0});
+    map_.MutableKeyframe(id).frame = frame;
+  }
+  for (size_t i = 0; i < old_ones.size(); ++i) {
+    UpdateDescriptor(map_, new_ones[i]);
+    correction_.landmarks.push_back({old_ones[i], new_ones[i]});
+  }
+  EXPECT_TRUE(Apply().is_applied);
+  for (size_t i = 0; i < old_ones.size(); ++i) {
+    EXPECT_EQ(map_.Resolve(old_ones[i]), new_ones[i]);
+    const Landmark& kept = map_.landmarks().At(new_ones[i]);
+    EXPECT_EQ(kept.observations.size(), 3u);
+    EXPECT_EQ(kept.descriptor, (Descriptor{7, 0, 0, 0}));
+    EXPECT_GT(kept.max_distance, 0.0);
+  }
+  const std::vector<Covisible>& edges = map_.keyframes().At(c_).covisible;
+  ASSERT_EQ(edges.size(), 2u);
+  EXPECT_EQ(edges[0].keyframe, a_);
+  EXPECT_EQ(edges[0].shared, 16);
+  EXPECT_EQ(edges[1].keyframe, b_);
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+}
+
+TEST_F(CorrectionByHand, FollowsTheIdsOfMerges) {
+  const std::vector<LandmarkId> ids = Share(map_, {a_, b_}, 3);
+  const std::vector<LandmarkId> others = Share(map_, {c_}, 3);
+  map_.ReplaceLandmark(ids[0], ids[1]);
+  map_.EraseLandmark(others[2]);
+  correction_.landmarks = {{others[0], ids[0]},   // ids[0] is ids[1] now
+                           {ids[1], ids[0]},      // the same landmark: passed over
+                           {ids[2], others[2]},   // erased: passed over
+                           {others[0], ids[1]},   // merged already: passed over
+                           {ids[1], others[1]}};  // merged further
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_EQ(map_.Resolve(others[0]), others[1]);
+  EXPECT_EQ(map_.Resolve(ids[0]), others[1]);
+  EXPECT_EQ(map_.Resolve(ids[2]), ids[2]);
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+}
+
+TEST_F(CorrectionByHand, MergedObjectsAreCandidatesWithAllVotes) {
+  RandomGeometry random(3);
+  std::vector<ObjectId> ids;
+  for (int i = 0; i < 6; ++i) {
+    ids.push_back(map_.AddObject());
+    GiveShape(map_, ids.back(), random);
+  }
+  ASSERT_TRUE(map_.AddObservation(ids[0], a_, 0));  // a cup of score 0.3
+  ASSERT_TRUE(map_.AddObservation(ids[1], b_, 2));  // a cup of score 0.5
+  ASSERT_TRUE(map_.AddObservation(ids[2], c_, 1));  // a book of score 0.4
+  const ObjectLandmark untouched = map_.objects().At(ids[5]);
+  const Ellipsoid shape = map_.objects().At(ids[1]).ellipsoid;
+  map_.EraseObject(ids[4]);
+  correction_.objects = {{ids[0], ids[3]},  // ids[3] is merged into ids[1] below
+                         {ids[2], ids[1]},
+                         {ids[3], ids[1]},
+                         {ids[3], ids[1]},   // merged already
+                         {ids[5], ids[4]}};  // ids[4] is gone
+  const CorrectionOutcome outcome = Apply();
+  EXPECT_EQ(outcome.merged_objects, std::vector<ObjectId>{ids[1]});
+  const ObjectLandmark& merged = map_.objects().At(ids[1]);
+  EXPECT_EQ(merged.state, ObjectState::kCandidate);
+  EXPECT_EQ(merged.shaped_views, 0u);
+  EXPECT_TRUE(merged.has_shape);
+  EXPECT_EQ(merged.ellipsoid.half_axes, shape.half_axes);
+  EXPECT_DOUBLE_EQ(merged.votes.at("cup"), 0.8);
+  EXPECT_DOUBLE_EQ(merged.votes.at("book"), 0.4);
+  EXPECT_EQ(merged.observations.size(), 3u);
+  EXPECT_EQ(merged.reference, a_);
+  EXPECT_EQ(map_.objects().At(ids[5]).state, untouched.state);
+  EXPECT_EQ(map_.objects().At(ids[5]).shaped_views, untouched.shaped_views);
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+}
+
+TEST_F(CorrectionByHand, KeepsTheLoopEdgeAtBothEnds) {
+  const KeyframeId d = AddKeyframe(map_, 1, 0, Shift(-4.0));
+  SetParent(map_, d, c_);
+  map_.AddLoop(a_, d);
+  correction_.loop = {d, b_};
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_EQ(map_.keyframes().At(d).loops, (std::vector<KeyframeId>{a_, b_}));
+  EXPECT_EQ(map_.keyframes().At(a_).loops, std::vector<KeyframeId>{d});
+  EXPECT_EQ(map_.keyframes().At(b_).loops, std::vector<KeyframeId>{d});
+  correction_.snapshot_corrections = 1;
+  EXPECT_TRUE(Apply().is_applied);  // the same edge once more
+  EXPECT_EQ(map_.keyframes().At(d).loops, (std::vector<KeyframeId>{a_, b_}));
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+}
+
+TEST_F(CorrectionByHand, TheLoopEdgeOfACulledKeyframeGoesToItsNearestAncestor) {
+  const KeyframeId d = AddKeyframe(map_, 1, 0, Shift(-4.0));
+  SetParent(map_, d, c_);
+  map_.CullKeyframe(c_);
+  map_.CullKeyframe(b_);
+  correction_.loop = {c_, d};
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_EQ(map_.keyframes().At(a_).loops, std::vector<KeyframeId>{d});
+  EXPECT_EQ(map_.keyframes().At(d).loops, std::vector<KeyframeId>{a_});
+  for (const KeyframeId other : {b_, KeyframeId(99), KeyframeId()}) {
+    correction_.snapshot_corrections = map_.correction_count();
+    correction_.loop = {a_, other};  // to itself, or to a keyframe that never was
+    EXPECT_TRUE(Apply().is_applied);
+    EXPECT_EQ(map_.keyframes().At(a_).loops, std::vector<KeyframeId>{d});
+  }
+}
+
+// The keyframes see an object each by a detection, and all landmarks of the world.
+class UniformCorrection : public ::testing::Test {
+ protected:
+  UniformCorrection()
+      : made_(MakeSyntheticMap(world_, {0, 10, 20, 30, 40}, [](Frame& frame, const Rigid3&) {
+          frame.detections.resize(kDetections);
+          for (Detection& detection : frame.detections) {
+            detection.label = "cup";
+          }
+        })) {
+    RandomGeometry random(5);
+    for (uint32_t i = 0; i < kDetections; ++i) {
+      const ObjectId object = made_.map.AddObject();
+      for (const KeyframeId id : AllIds(made_.map)) {
+        made_.map.AddObservation(object, id, i);
+      }
+      GiveShape(made_.map, object, random);
+      made_.map.MutableObject(object).ellipsoid.world_from_object.translation =
+          random.Vector(0.8) + Eigen::Vector3d(0.0, 0.0, 4.0);
+    }
+  }
+
+  const SyntheticWorld world_;
+  SyntheticMap made_;
+};
+
+TEST_F(UniformCorrection, KeepsEveryLandmarkInItsPixel) {
+  RandomGeometry random(6);
+  Map before = made_.map.Snapshot();
+  for (int round = 0; round < 3; ++round) {
+    const Sim3 change = RandomSim3(random);
+    EXPECT_TRUE(
+        ApplyCorrection(made_.map, MakeCorrection(made_.map, change), world_.sensor().levels)
+            .is_applied);
+    int seen = 0;
+    before.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+      for (const Observation& observation : landmark.observations) {
+        const auto expected =
+            ViewLandmark(world_.sensor(), before.CamFromWorld(observation.keyframe), landmark);
+        const auto view =
+            ViewLandmark(world_.sensor(), made_.map.CamFromWorld(observation.keyframe),
+                         made_.map.landmarks().At(id));
+        ASSERT_EQ(view.has_value(), expected.has_value());
+        if (view) {
+          EXPECT_LT((view->pixel - expected->pixel).norm(), 1e-9);
+          EXPECT_NEAR(view->cos_view, expected->cos_view, 1e-9);
+          EXPECT_NEAR(made_.map.landmarks().At(id).max_distance / view->point_in_cam.norm(),
+                      landmark.max_distance / expected->point_in_cam.norm(), 1e-9);
+          ++seen;
+        }
+      }
+    });
+    EXPECT_GT(seen, 500);
+  }
+}
+
+TEST_F(UniformCorrection, KeepsTheProjectedEllipsesOfObjects) {
+  RandomGeometry random(7);
+  Map before = made_.map.Snapshot();
+  EXPECT_TRUE(ApplyCorrection(made_.map, MakeCorrection(made_.map, RandomSim3(random)),
+                              world_.sensor().levels)
+                  .is_applied);
+  const PinholeCamera& camera = world_.sensor().camera;
+  Eigen::Matrix3d k;
+  k << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0;
+  before.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    for (const ObjectObservation& observation : object.observations) {
+      const auto expected =
+          ProjectEllipsoid(k, before.CamFromWorld(observation.keyframe), object.ellipsoid);
+      const auto ellipse = ProjectEllipsoid(k, made_.map.CamFromWorld(observation.keyframe),
+                                            made_.map.objects().At(id).ellipsoid);
+      ASSERT_TRUE(expected && ellipse);
+      EXPECT_LT((ellipse->center - expected->center).norm(), 1e-9);
+      EXPECT_LT((ellipse->shape - expected->shape).norm(), 1e-9 * expected->shape.norm());
+    }
+  });
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/map/relative_pose.h"
+
+#include <gtest/gtest.h>
+
+#include "hullslam/map/map.h"
+#include "hullslam/util/check.h"
+#include "map/made_map.h"
+#include "map/spanning_tree.h"
+#include "support/random_geometry.h"
+
+namespace hullslam {
+namespace {
+
+double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
+
+Rigid3 Shift(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }
+
+TEST(RelativePose, RefersToNothingAtFirst) {
+  const RelativePose pose;
+  EXPECT_FALSE(pose.reference.IsValid());
+  EXPECT_EQ(pose.reference_scale, 1.0);
+  EXPECT_THROW(Map().CamFromWorld(pose), CheckError);
+}
+
+TEST(RelativePose, GivesThePoseThatItWasMadeOf) {
+  RandomGeometry random(1);
+  Map map;
+  const KeyframeId reference = AddKeyframe(map, 1, 0, random.Pose(2.0, 3.0));
+  map.MutableKeyframe(reference).scale = 1.7;
+  const Rigid3 cam_from_world = random.Pose(2.0, 3.0);
+  const RelativePose pose = map.RelativeTo(reference, cam_from_world);
+  EXPECT_EQ(pose.reference, reference);
+  EXPECT_EQ(pose.reference_scale, 1.7);
+  EXPECT_LT(Distance(map.CamFromWorld(pose), cam_from_world), 1e-12);
+}
+
+TEST(RelativePose, FollowsItsReference) {
+  RandomGeometry random(2);
+  Map map;
+  const KeyframeId reference = AddKeyframe(map, 1, 0, random.Pose(2.0, 3.0));
+  const RelativePose pose = map.RelativeTo(reference, random.Pose(2.0, 3.0));
+  const Rigid3 moved = random.Pose(2.0, 3.0);
+  map.SetPose(reference, moved);
+  EXPECT_LT(Distance(map.CamFromWorld(pose), pose.cam_from_reference * moved), 1e-12);
+}
+
+TEST(RelativePose, TakesTheScaleThatItsReferenceHasGainedSince) {
+  Map map;
+  const KeyframeId reference = AddKeyframe(map, 1, 0, Shift(1.0));
+  map.MutableKeyframe(reference).scale = 2.0;
+  const RelativePose pose = map.RelativeTo(reference, Shift(4.0));
+  EXPECT_EQ(pose.cam_from_reference.translation.x(), 3.0);
+  map.MutableKeyframe(reference).scale = 6.0;
+  EXPECT_EQ(map.CamFromWorld(pose).translation.x(), 1.0 + 3.0 * (6.0 / 2.0));
+}
+
+TEST(RelativePose, TakesTheScaleThroughACulledReference) {
+  Map map;
+  const KeyframeId parent = AddKeyframe(map, 1, 0, Shift(1.0));
+  const KeyframeId reference = AddKeyframe(map, 1, 0, Shift(3.0));
+  SetParent(map, reference, parent);
+  map.MutableKeyframe(parent).scale = 2.0;
+  map.MutableKeyframe(reference).scale = 4.0;
+  const RelativePose pose = map.RelativeTo(reference, Shift(8.0));
+  map.CullKeyframe(reference);
+  EXPECT_EQ(map.CamFromWorld(pose).translation.x(), 8.0);
+  map.MutableKeyframe(parent).scale = 6.0;  // three times as much
+  EXPECT_EQ(map.CamFromWorld(reference).translation.x(), 1.0 + 3.0 * 2.0);
+  EXPECT_EQ(map.CamFromWorld(pose).translation.x(), 1.0 + 3.0 * 2.0 + 3.0 * 5.0);
+  // A pose that is made now remembers the scale that the culled keyframe has now.
+  const RelativePose later = map.RelativeTo(reference, Shift(40.0));
+  EXPECT_EQ(later.reference_scale, 12.0);
+  EXPECT_EQ(map.CamFromWorld(later).translation.x(), 40.0);
+}
+
+}  // namespace
+}  // namespace hullslam
