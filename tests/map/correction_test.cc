@@ -762,6 +762,20 @@ TEST_F(CorrectionByHand, MergedObjectsAreCandidatesWithAllVotes) {
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
 }
 
+TEST_F(CorrectionByHand, FollowsTheIdsOfMergedObjects) {
+  std::vector<ObjectId> ids;
+  for (int i = 0; i < 6; ++i) {
+    ids.push_back(map_.AddObject());
+  }
+  map_.ReplaceObject(ids[0], ids[1]);
+  map_.ReplaceObject(ids[3], ids[4]);
+  correction_.objects = {{ids[2], ids[0]}, {ids[3], ids[5]}, {ids[0], ids[1]}};
+  EXPECT_EQ(Apply().merged_objects, (std::vector<ObjectId>{ids[1], ids[5]}));
+  EXPECT_EQ(map_.Resolve(ids[2]), ids[1]);
+  EXPECT_EQ(map_.Resolve(ids[4]), ids[5]);
+  EXPECT_EQ(map_.objects().size(), 2u);
+}
+
 TEST_F(CorrectionByHand, KeepsTheLoopEdgeAtBothEnds) {
   const KeyframeId d = AddKeyframe(map_, 1, 0, Shift(-4.0));
   SetParent(map_, d, c_);
