@@ -230,14 +230,22 @@ void Map::CullKeyframe(KeyframeId id) {
 }
 
 Rigid3 Map::CamFromWorld(KeyframeId keyframe) const {
-  const CulledKeyframe* culled = culled_.Find(keyframe);
-  return culled != nullptr ? CamFromWorld(culled->pose) : keyframes_.At(keyframe).cam_from_world;
+  Rigid3 cam_from_ancestor;
+  while (const CulledKeyframe* culled = culled_.Find(keyframe)) {
+    cam_from_ancestor = cam_from_ancestor * AtCurrentScale(culled->pose);
+    keyframe = culled->pose.reference;
+  }
+  return cam_from_ancestor * keyframes_.At(keyframe).cam_from_world;
 }
 
 Rigid3 Map::CamFromWorld(const RelativePose& pose) const {
+  return AtCurrentScale(pose) * CamFromWorld(pose.reference);
+}
+
+Rigid3 Map::AtCurrentScale(const RelativePose& pose) const {
   Rigid3 cam_from_reference = pose.cam_from_reference;
   cam_from_reference.translation *= ScaleOf(pose.reference) / pose.reference_scale;
-  return cam_from_reference * CamFromWorld(pose.reference);
+  return cam_from_reference;
 }
 
 RelativePose Map::RelativeTo(KeyframeId reference, const Rigid3& cam_from_world) const {
@@ -247,10 +255,12 @@ RelativePose Map::RelativeTo(KeyframeId reference, const Rigid3& cam_from_world)
 }
 
 double Map::ScaleOf(KeyframeId keyframe) const {
-  const CulledKeyframe* culled = culled_.Find(keyframe);
-  return culled != nullptr
-             ? culled->scale * (ScaleOf(culled->pose.reference) / culled->pose.reference_scale)
-             : keyframes_.At(keyframe).scale;
+  double scale_since_culled = 1.0;
+  while (const CulledKeyframe* culled = culled_.Find(keyframe)) {
+    scale_since_culled *= culled->scale / culled->pose.reference_scale;
+    keyframe = culled->pose.reference;
+  }
+  return scale_since_culled * keyframes_.At(keyframe).scale;
 }
 
 std::optional<KeyframeId> Map::KeyframeOfFrame(FrameId frame) const {

@@ -72,7 +72,7 @@ class ThreadedPipeline final : public Pipeline {
  private:
   MapperStatus Status() {
     const std::lock_guard lock(mutex_);
-    return {.is_idle = !is_busy_ && waiting_ == 0, .messages_waiting = waiting_};
+    return {.is_idle = !is_busy_ && waiting_ == 0, .requests_waiting = waiting_};
   }
 
   void Post(MapMessage message) {

@@ -34,12 +34,18 @@ std::vector<SilhouetteLine> KnownLines(const Sensor& sensor, const Rigid3& cam_f
 
 }  // namespace
 
-std::vector<ObjectId> FindMappedObjects(const Map& map, const Sensor& sensor, const Frame& frame,
-                                        const Rigid3& cam_from_world,
-                                        std::span<const LandmarkId> landmarks) {
+std::vector<ObjectId> FindMappedObjects(const Frame& frame, const Map& map,
+                                        const TrackingContext& context,
+                                        const PoseEstimate& estimate) {
+  const ObjectOptions& objects = context.objects;
+  const bool is_wanted = objects.enabled && (objects.joint_pose || objects.guided_matching);
+  if (!is_wanted || frame.detections.empty() || map.objects().empty()) {
+    return std::vector<ObjectId>(frame.detections.size());
+  }
   AssociationOptions association;
   association.mapped_only = true;
-  return AssociateDetections(map, sensor, frame, cam_from_world, landmarks, association);
+  return AssociateDetections(map, context.sensor, frame, estimate.cam_from_world,
+                             estimate.landmarks, association);
 }
 
 PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& frame,

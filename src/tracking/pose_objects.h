@@ -9,6 +9,8 @@
 #include "hullslam/map/map.h"
 #include "hullslam/objects/object_options.h"
 #include "optim/joint_pose_optimization.h"
+#include "tracking/pose_estimate.h"
+#include "tracking/tracking_context.h"
 
 namespace hullslam {
 
@@ -19,11 +21,11 @@ struct PoseObjects {
   std::deque<std::vector<SilhouetteLine>> lines;  // that the measurements refer to
 };
 
-// For each detection of a frame the mapped object that it shows, invalid for none; see
-// AssociateDetections. `landmarks` has one entry a keypoint (or is empty).
-std::vector<ObjectId> FindMappedObjects(const Map& map, const Sensor& sensor, const Frame& frame,
-                                        const Rigid3& cam_from_world,
-                                        std::span<const LandmarkId> landmarks);
+// The mapped object that each detection of a frame shows, invalid for none; one entry per
+// detection. All are invalid where objects take no part in tracking. See AssociateDetections.
+std::vector<ObjectId> FindMappedObjects(const Frame& frame, const Map& map,
+                                        const TrackingContext& context,
+                                        const PoseEstimate& estimate);
 
 // Detections of a frame with the objects they show (`ids`: one a detection). With misfit
 // compensation the lines are moved by what keyframes tell of the object there; lines of which they

@@ -5,12 +5,49 @@
 #include <cmath>
 #include <utility>
 
+#include "tracking/pose_source.h"
+
 namespace hullslam {
 namespace {
 
-size_t CountCloseKeypoints(const Frame& frame, const Sensor& sensor,
-                           const std::vector<LandmarkId>& landmarks, bool tracked) {
-  size_t count = 0;
+KeyframePolicy MakePolicy(const Sensor& sensor, const TrackingOptions& options) {
+  KeyframePolicy policy;
+  policy.min_reference_ratio = options.keyframe_ratio;
+  policy.min_frames_between =
+      static_cast<uint32_t>(std::lround(options.keyframe_interval * sensor.frames_per_second));
+  policy.frames_for_objects = static_cast<uint32_t>(std::max(1.0, sensor.frames_per_second / 3.0));
+  policy.max_frames_between = static_cast<uint32_t>(std::max(1.0, sensor.frames_per_second));
+  return policy;
+}
+
+// The initial map of an RGB-D camera: one frame, which is the world, and a point for each of its
+// keypoints with depth.
+InitialMap MakeInitialMap(std::shared_ptr<const Frame> frame, const PinholeCamera& camera,
+                          const std::vector<uint32_t>& keypoints) {
+  InitialMap initial;
+  for (const uint32_t keypoint : keypoints) {
+    const Eigen::Vector2d pixel = frame->features.keypoints[keypoint].undistorted.cast<double>();
+    const double depth = static_cast<double>(frame->features.depth[keypoint]);
+    initial.points.push_back({.position = camera.Unproject(pixel, depth),
+                              .observations = {{.view = 0, .keypoint = keypoint}}});
+  }
+  initial.views.push_back({.frame = std::move(frame), .cam_from_world = Rigid3()});
+  return initial;
+}
+
+std::optional<PoseEstimate> FirstPose(const Frame& frame, const Map& map,
+                                      const TrackingContext& context, const LastFrame& last) {
+  for (PoseSource* source : kPoseSources) {
+    if (std::optional<PoseEstimate> estimate = source(frame, map, context, last)) {
+      return estimate;
+    }
+  }
+  return std::nullopt;
+}
+
+int CountCloseKeypoints(const Frame& frame, const Sensor& sensor,
+                        const std::vector<LandmarkId>& landmarks, bool tracked) {
+  int count = 0;
   for (size_t i = 0; i < landmarks.size(); ++i) {
     const double depth = static_cast<double>(frame.features.depth[i]);
     const bool is_close = depth > 0.0 && depth < sensor.close_depth;
@@ -19,154 +56,141 @@ size_t CountCloseKeypoints(const Frame& frame, const Sensor& sensor,
   return count;
 }
 
-// Puts the landmarks of now in place of those replaced. Where two have become one the first
-// keypoint keeps it: a frame observes a landmark once.
-void ResolveAll(const Map& map, std::vector<LandmarkId>& landmarks) {
-  std::vector<bool> is_taken(map.landmarks().NextId().value, false);
-  for (LandmarkId& landmark : landmarks) {
-    landmark = map.Resolve(landmark);
-    if (!landmark.IsValid()) {
-      continue;
-    }
-    if (is_taken[landmark.value]) {
-      landmark = LandmarkId();
-    } else {
-      is_taken[landmark.value] = true;
-    }
+// The landmarks of the reference keyframe that enough observations confirm.
+int CountReferenceLandmarks(const Map& map, KeyframeId reference) {
+  const int min_weight = map.keyframes().size() <= 2 ? 2 : 3;
+  int count = 0;
+  for (const LandmarkId id : map.keyframes().At(reference).landmarks) {
+    count += id.IsValid() && map.landmarks().At(id).support >= min_weight ? 1 : 0;
   }
+  return count;
+}
+
+KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor& sensor,
+                                const LocalTracking& tracking, FrameId last_requested_frame,
+                                const MapperStatus& mapper) {
+  const PoseEstimate& estimate = tracking.estimate;
+  return {.frames_since_keyframe = frame.id.value - last_requested_frame.value,
+          .inliers = estimate.inliers,
+          .reference_landmarks = CountReferenceLandmarks(map, tracking.reference),
+          .close_tracked = CountCloseKeypoints(frame, sensor, estimate.landmarks, true),
+          .close_untracked = CountCloseKeypoints(frame, sensor, estimate.landmarks, false),
+          .unknown_objects = tracking.unknown_objects,
+          .keyframes = map.keyframes().size(),
+          .mapper_is_idle = mapper.is_idle,
+          .requests_waiting = mapper.requests_waiting};
 }
 
 }  // namespace
 
 Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects)
-    : sensor_(sensor), options_(options), object_options_(objects) {
-  policy_.min_reference_ratio = options.keyframe_ratio;
-  policy_.min_frames_between =
-      static_cast<uint32_t>(std::lround(options.keyframe_interval * sensor.frames_per_second));
-  policy_.frames_for_objects = static_cast<uint32_t>(std::max(1.0, sensor.frames_per_second / 3.0));
-  policy_.max_frames_between = static_cast<uint32_t>(std::max(1.0, sensor.frames_per_second));
-}
+    : sensor_(sensor),
+      options_(options),
+      object_options_(objects),
+      policy_(MakePolicy(sensor, options)) {}
 
 Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
                                  const MapperStatus& mapper) {
   const ScopedTimer timer(times_, "pose");
-  frame_ = std::move(frame);
-  map_ = std::move(map);
-  if (map_ == nullptr || map_->keyframes().empty()) {
-    return Initialize();
-  }
-  FollowMap();
-  std::optional<Estimate> estimate = TrackWithMotionModel();
-  if (!estimate) {
-    estimate = TrackReferenceKeyframe();
-  }
-  if (estimate) {
-    estimate = TrackLocalMap(std::move(*estimate));
-  }
-  if (!estimate) {
-    return {Lose(), std::nullopt};
-  }
-  Result result;
-  if (NeedsKeyframe(*estimate, mapper)) {
-    result.request = MakeRequest(*estimate);
-  }
-  result.frame = Remember(*estimate);
-  return result;
+  const bool has_map = map != nullptr && !map->keyframes().empty();
+  return has_map ? Track(std::move(frame), *map, mapper) : Initialize(std::move(frame));
 }
 
-Tracker::Result Tracker::Initialize() {
+Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
   Result result;
-  result.frame.frame = frame_->id;
-  result.frame.timestamp = frame_->timestamp;
-  const auto with_depth = std::count_if(
-      frame_->features.depth.begin(), frame_->features.depth.end(), [](float z) { return z > 0; });
-  if (with_depth < options_.min_initial_points) {
+  result.report.frame = frame;
+  result.report.tracked.frame = frame->id;
+  result.report.tracked.timestamp = frame->timestamp;
+  const std::vector<uint32_t> with_depth = KeypointsByDepth(frame->features);
+  if (with_depth.size() < static_cast<size_t>(options_.min_initial_points)) {
     return result;
   }
-  KeyframeRequest request;
-  request.frame = frame_;
-  request.landmarks.resize(frame_->features.size());
-  result.request = std::move(request);
-  result.frame.state = TrackingState::kTracked;
-  result.frame.reference = KeyframeId(0);
-  result.frame.inliers = static_cast<int>(with_depth);
-  last_ = {frame_, std::vector<LandmarkId>(frame_->features.size()), KeyframeId(0), Rigid3()};
-  last_keyframe_ = frame_->id;
-  reference_ = KeyframeId(0);
-  velocity_.reset();
+  result.report.tracked.state = TrackingState::kTracked;
+  result.report.tracked.inliers = static_cast<int>(with_depth.size());
+  result.report.landmarks.resize(frame->features.size());
+  result.report.objects.resize(frame->detections.size());
+  result.message = MakeInitialMap(frame, sensor_.camera, with_depth);
+  last_ = LastFrame();
+  last_.frame = std::move(frame);
+  last_requested_frame_ = last_.frame->id;
   return result;
 }
 
-// Brings what is remembered of the last frame up to date with the map of now.
-void Tracker::FollowMap() {
-  reference_ = map_->NearestAlive(reference_);
-  if (const std::optional<KeyframeId> keyframe = map_->KeyframeOfFrame(last_.frame->id);
-      keyframe && map_->keyframes().Contains(*keyframe)) {
-    last_.landmarks = map_->keyframes().At(*keyframe).landmarks;
-    last_.reference = *keyframe;
-    last_.cam_from_reference = Rigid3();
-    reference_ = *keyframe;
+Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& map,
+                               const MapperStatus& mapper) {
+  last_ = FollowMap(map, std::move(last_));
+  std::optional<PoseEstimate> start = FirstPose(*frame, map, Context(), last_);
+  if (!start) {
+    return Lose(std::move(frame));
   }
-  ResolveAll(*map_, last_.landmarks);
-  last_from_world_ = last_.cam_from_reference * map_->CamFromWorld(last_.reference);
+  LocalTracking tracking = TrackLocalMap(*frame, map, Context(), std::move(*start));
+  CountSightings(tracking);
+  if (tracking.estimate.EffectiveInliers() < options_.min_inliers) {
+    return Lose(std::move(frame));
+  }
+  if (!tracking.reference.IsValid()) {
+    tracking.reference = last_.reference;
+  }
+  const PoseEstimate& estimate = tracking.estimate;
+  const RelativePose pose = map.RelativeTo(tracking.reference, estimate.cam_from_world);
+
+  Result result;
+  if (policy_.NeedsKeyframe(
+          GatherEvidence(*frame, map, sensor_, tracking, last_requested_frame_, mapper))) {
+    result.message = MakeRequest(frame, tracking, pose);
+  }
+  result.report = {.tracked = {.frame = frame->id,
+                               .timestamp = frame->timestamp,
+                               .state = TrackingState::kTracked,
+                               .pose = pose,
+                               .cam_from_world = estimate.cam_from_world,
+                               .inliers = estimate.inliers},
+                   .frame = frame,
+                   .landmarks = estimate.landmarks,
+                   .objects = tracking.objects};
+  // After lost frames the motion since the last tracked frame is not that of a single step.
+  const bool is_next = frame->id.value == last_.frame->id.value + 1;
+  last_ = {.frame = std::move(frame),
+           .landmarks = estimate.landmarks,
+           .pose = pose,
+           .reference = tracking.reference,
+           .cam_from_world = estimate.cam_from_world,
+           .velocity = is_next
+                           ? std::optional(estimate.cam_from_world * Inverse(last_.cam_from_world))
+                           : std::nullopt};
+  return result;
 }
 
-bool Tracker::NeedsKeyframe(const Estimate& estimate, const MapperStatus& mapper) const {
-  KeyframeEvidence evidence;
-  evidence.frames_since_keyframe = frame_->id.value - last_keyframe_.value;
-  evidence.inliers = estimate.inliers;
-  evidence.unknown_objects = estimate.unknown_objects;
-  evidence.keyframes = map_->keyframes().size();
-  evidence.mapper_is_idle = mapper.is_idle;
-  evidence.requests_waiting = mapper.requests_waiting;
-  const int min_support = evidence.keyframes <= 2 ? 2 : 3;
-  for (const LandmarkId id : map_->keyframes().At(reference_).landmarks) {
-    if (id.IsValid() && map_->landmarks().At(id).support >= min_support) {
-      ++evidence.reference_landmarks;
+Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame) {
+  last_.velocity.reset();
+  Result result;
+  result.report.tracked.frame = frame->id;
+  result.report.tracked.timestamp = frame->timestamp;
+  result.report.tracked.state = TrackingState::kLost;
+  result.report.landmarks.resize(frame->features.size());
+  result.report.objects.resize(frame->detections.size());
+  result.report.frame = std::move(frame);
+  return result;
+}
+
+void Tracker::CountSightings(const LocalTracking& tracking) {
+  for (const LandmarkId landmark : tracking.visible) {
+    sightings_.CountVisible(landmark);
+  }
+  for (const LandmarkId landmark : tracking.estimate.landmarks) {
+    if (landmark.IsValid()) {
+      sightings_.CountFound(landmark);
     }
   }
-  evidence.close_tracked =
-      static_cast<int>(CountCloseKeypoints(*frame_, sensor_, estimate.landmarks, true));
-  evidence.close_untracked =
-      static_cast<int>(CountCloseKeypoints(*frame_, sensor_, estimate.landmarks, false));
-  return policy_.NeedsKeyframe(evidence);
 }
 
-KeyframeRequest Tracker::MakeRequest(const Estimate& estimate) {
-  KeyframeRequest request;
-  request.frame = frame_;
-  request.reference = reference_;
-  request.cam_from_reference = estimate.cam_from_world * Inverse(map_->CamFromWorld(reference_));
-  request.landmarks = estimate.landmarks;
-  request.sightings = sightings_.Take();
-  last_keyframe_ = frame_->id;
-  return request;
-}
-
-TrackedFrame Tracker::Remember(const Estimate& estimate) {
-  const Rigid3 cam_from_reference =
-      estimate.cam_from_world * Inverse(map_->CamFromWorld(reference_));
-  // After lost frames the motion since the last tracked one is not that of a single step.
-  const bool is_next = frame_->id.value == last_.frame->id.value + 1;
-  velocity_ =
-      is_next ? std::optional(estimate.cam_from_world * Inverse(last_from_world_)) : std::nullopt;
-  last_ = {frame_, estimate.landmarks, reference_, cam_from_reference};
-  return {.frame = frame_->id,
-          .timestamp = frame_->timestamp,
-          .state = TrackingState::kTracked,
-          .reference = reference_,
-          .cam_from_reference = cam_from_reference,
-          .cam_from_world = estimate.cam_from_world,
-          .inliers = estimate.inliers};
-}
-
-TrackedFrame Tracker::Lose() {
-  velocity_.reset();
-  TrackedFrame lost;
-  lost.frame = frame_->id;
-  lost.timestamp = frame_->timestamp;
-  lost.state = TrackingState::kLost;
-  return lost;
+KeyframeRequest Tracker::MakeRequest(std::shared_ptr<const Frame> frame,
+                                     const LocalTracking& tracking, const RelativePose& pose) {
+  last_requested_frame_ = frame->id;
+  return {.frame = std::move(frame),
+          .pose = pose,
+          .landmarks = tracking.estimate.landmarks,
+          .sightings = sightings_.Take()};
 }
 
 }  // namespace hullslam

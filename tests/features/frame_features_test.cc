@@ -67,5 +67,13 @@ TEST(FrameFeatures, OfTheSyntheticWorldAreTheSameEveryTime) {
   EXPECT_EQ(first.frame->features.right_u, second.frame->features.right_u);
 }
 
+TEST(KeypointsByDepth, AreThoseWithDepthNearestFirst) {
+  FrameFeatures features;
+  features.keypoints.resize(5);
+  features.depth = {2.0f, 0.0f, 1.0f, 2.0f, 0.5f};
+  EXPECT_EQ(KeypointsByDepth(features), (std::vector<uint32_t>{4, 2, 0, 3}));
+  EXPECT_TRUE(KeypointsByDepth({}).empty());
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -5,17 +5,23 @@
 
 #include <algorithm>
 
+#include "hullslam/util/check.h"
 #include "map/invariants.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
 namespace {
 
-KeyframeRequest FirstRequest(const SyntheticView& view) {
-  KeyframeRequest request;
-  request.frame = view.frame;
-  request.landmarks.resize(view.frame->features.size());
-  return request;
+// One view at the origin with a point for each keypoint with depth.
+InitialMap InitialMapOf(const SyntheticView& view, const PinholeCamera& camera) {
+  InitialMap initial;
+  initial.views.push_back({view.frame, Rigid3()});
+  for (const uint32_t i : KeypointsByDepth(view.frame->features)) {
+    const Eigen::Vector2d pixel = view.frame->features.keypoints[i].undistorted.cast<double>();
+    const double depth = static_cast<double>(view.frame->features.depth[i]);
+    initial.points.push_back({camera.Unproject(pixel, depth), {{0, i}}});
+  }
+  return initial;
 }
 
 // The path's frame, seen from keyframe `reference` of the made map, with all landmarks it knows.
@@ -23,9 +29,7 @@ KeyframeRequest Request(const SyntheticMap& made, const SyntheticView& view, uin
                         KeyframeId reference) {
   KeyframeRequest request;
   request.frame = view.frame;
-  request.reference = reference;
-  request.cam_from_reference =
-      SyntheticWorld::CamFromWorld(index) * Inverse(made.map.CamFromWorld(reference));
+  request.pose = made.map.RelativeTo(reference, SyntheticWorld::CamFromWorld(index));
   for (const uint32_t point : view.points) {
     request.landmarks.push_back(made.landmarks[point]);
   }
@@ -37,12 +41,15 @@ size_t CountLandmarks(const Keyframe& keyframe) {
                                            [](LandmarkId id) { return id.IsValid(); }));
 }
 
-TEST(KeyframeInsertion, TheFirstKeyframeTakesAllItsDepths) {
+TEST(InitialMapInsertion, PointsOfOneViewBecomeItsLandmarks) {
   const SyntheticWorld world({.depth_share = 0.7});
   const SyntheticView view = world.Observe(0);
   Map map;
   std::vector<LandmarkId> created;
-  const KeyframeId id = InsertKeyframe(map, FirstRequest(view), world.sensor(), created);
+  const InitialMap initial = InitialMapOf(view, world.sensor().camera);
+  const std::vector<KeyframeId> ids = InsertInitialMap(map, initial, world.sensor(), created);
+  ASSERT_EQ(ids.size(), 1u);
+  const KeyframeId id = ids[0];
   EXPECT_EQ(id, KeyframeId(0));
   EXPECT_EQ(FindViolations(map), std::vector<std::string>());
   const Keyframe& keyframe = map.keyframes().At(id);
@@ -65,7 +72,60 @@ TEST(KeyframeInsertion, TheFirstKeyframeTakesAllItsDepths) {
   EXPECT_EQ(map.landmarks().size(), with_depth);
 }
 
-// Later keyframes: every close depth, else the nearest hundred.
+// Two views that share points, as a monocular map begins.
+TEST(InitialMapInsertion, PointsOfTwoViewsAreObservedByBoth) {
+  const SyntheticWorld world({.depth_share = 0.0});
+  const SyntheticView a = world.Observe(0);
+  const SyntheticView b = world.Observe(10);
+  InitialMap initial;
+  initial.views = {{a.frame, SyntheticWorld::CamFromWorld(0)},
+                   {b.frame, SyntheticWorld::CamFromWorld(10)}};
+  for (uint32_t i = 0; i < a.points.size(); ++i) {
+    const auto same = std::find(b.points.begin(), b.points.end(), a.points[i]);
+    if (same != b.points.end()) {
+      initial.points.push_back({world.points()[a.points[i]],
+                                {{0, i}, {1, static_cast<uint32_t>(same - b.points.begin())}}});
+    }
+  }
+  Map map;
+  std::vector<LandmarkId> created;
+  const std::vector<KeyframeId> ids = InsertInitialMap(map, initial, world.sensor(), created);
+  EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+  ASSERT_EQ(ids.size(), 2u);
+  EXPECT_GT(created.size(), 100u);
+  EXPECT_EQ(created.size(), initial.points.size());
+  EXPECT_FALSE(map.keyframes().At(ids[0]).parent.IsValid());
+  EXPECT_EQ(map.keyframes().At(ids[1]).parent, ids[0]);
+  EXPECT_EQ(CountLandmarks(map.keyframes().At(ids[1])), created.size());
+  for (size_t i = 0; i < created.size(); ++i) {
+    const Landmark& landmark = map.landmarks().At(created[i]);
+    EXPECT_EQ(landmark.position, initial.points[i].position);
+    EXPECT_EQ(landmark.observations.size(), 2u);
+    EXPECT_GT(landmark.max_distance, 0.0);
+  }
+}
+
+TEST(InitialMapInsertion, ViewsWithoutSharedPointsHangInOneTree) {
+  const SyntheticWorld world;
+  InitialMap initial;
+  initial.views = {{world.Observe(0).frame, Rigid3()}, {world.Observe(1).frame, Rigid3()}};
+  Map map;
+  std::vector<LandmarkId> created;
+  const std::vector<KeyframeId> ids = InsertInitialMap(map, initial, world.sensor(), created);
+  EXPECT_EQ(map.keyframes().At(ids[1]).parent, ids[0]);
+  EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+}
+
+TEST(InitialMapInsertion, OnlyAnEmptyMapTakesIt) {
+  const SyntheticWorld world;
+  const InitialMap initial = InitialMapOf(world.Observe(0), world.sensor().camera);
+  Map map;
+  std::vector<LandmarkId> created;
+  InsertInitialMap(map, initial, world.sensor(), created);
+  EXPECT_THROW(InsertInitialMap(map, initial, world.sensor(), created), CheckError);
+}
+
+// Keyframes after the initial map: every close depth, else the nearest hundred.
 void ExpectNearestAreTaken(double close_depth, bool more_than_hundred_are_close) {
   const SyntheticWorld world;
   Sensor sensor = world.sensor();

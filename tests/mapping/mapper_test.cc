@@ -36,16 +36,26 @@ class MapperTest : public testing::Test {
 
   const Map& map() const { return *published_.back(); }
 
-  // The request for the path's frame `index` relative to `reference` (invalid: the first).
+  // The initial map that the path's frame `index` begins: the points with depth, nearest first.
+  InitialMap Initial(uint32_t index) const {
+    const SyntheticView view = world_.Observe(index);
+    const FrameFeatures& features = view.frame->features;
+    InitialMap initial;
+    initial.views.push_back({view.frame, Rigid3()});
+    for (const uint32_t i : KeypointsByDepth(features)) {
+      const Eigen::Vector2d pixel = features.keypoints[i].undistorted.cast<double>();
+      const auto depth = static_cast<double>(features.depth[i]);
+      initial.points.push_back({world_.sensor().camera.Unproject(pixel, depth), {{0, i}}});
+    }
+    return initial;
+  }
+
+  // The request for the path's frame `index` relative to `reference`.
   KeyframeRequest Request(uint32_t index, KeyframeId reference) const {
     const SyntheticView view = world_.Observe(index);
     KeyframeRequest request;
     request.frame = view.frame;
-    request.reference = reference;
-    if (reference.IsValid()) {
-      request.cam_from_reference =
-          SyntheticWorld::CamFromWorld(index) * Inverse(map().CamFromWorld(reference));
-    }
+    request.pose = map().RelativeTo(reference, SyntheticWorld::CamFromWorld(index));
     for (const uint32_t point : view.points) {
       const auto known = landmark_of_point_.find(point);
       request.landmarks.push_back(known != landmark_of_point_.end() ? known->second : LandmarkId());
@@ -56,16 +66,18 @@ class MapperTest : public testing::Test {
     return request;
   }
 
-  void Process(const KeyframeRequest& request, const Cancellation* hurry = nullptr) {
-    mapper_->Process(request, hurry);
+  void Process(const MapMessage& message, const Cancellation* hurry = nullptr) {
+    mapper_->Process(message, hurry);
     Learn();
   }
   // The newest keyframe that is there is the reference.
   void ProcessFrame(uint32_t index, const Cancellation* hurry = nullptr) {
-    KeyframeId newest;
-    if (!published_.empty()) {
-      map().keyframes().ForEach([&](KeyframeId id, const Keyframe&) { newest = id; });
+    if (published_.empty()) {
+      Process(Initial(index), hurry);
+      return;
     }
+    KeyframeId newest;
+    map().keyframes().ForEach([&](KeyframeId id, const Keyframe&) { newest = id; });
     Process(Request(index, newest), hurry);
   }
 
@@ -125,7 +137,7 @@ TEST_F(MapperTest, BundleAdjustmentMendsAPoseThatIsOff) {
     ProcessFrame(index);
   }
   KeyframeRequest request = Request(25, KeyframeId(0));
-  request.cam_from_reference.translation += Eigen::Vector3d(0.01, -0.01, 0.01);
+  request.pose.cam_from_reference.translation += Eigen::Vector3d(0.01, -0.01, 0.01);
   Process(request);
   const Keyframe& keyframe = map().keyframes().At(*map().KeyframeOfFrame(FrameId(25)));
   EXPECT_LT(
@@ -222,6 +234,34 @@ TEST_F(MapperTest, ARequestMayReferToWhatIsGoneMeanwhile) {
   ASSERT_TRUE(keyframe);
   const Rigid3 error = map().CamFromWorld(*keyframe) * Inverse(SyntheticWorld::CamFromWorld(12));
   EXPECT_LT(error.translation.norm(), 0.02);
+}
+
+// A correction moves the map as a whole; the next keyframe, tracked before it, follows.
+TEST_F(MapperTest, ACorrectionIsAppliedAndPublished) {
+  for (uint32_t index = 0; index <= 20; index += 5) {
+    ProcessFrame(index);
+  }
+  const std::shared_ptr<const Map> snapshot = published_.back();
+  const Sim3 old_from_new(2.0, ExpSo3({0.1, 0.3, -0.2}), {1.0, 2.0, 3.0});
+  MapCorrection correction;
+  snapshot->keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    correction.poses.push_back(
+        {id, keyframe.cam_from_world, Sim3(keyframe.cam_from_world) * old_from_new});
+  });
+  const KeyframeRequest request = Request(25, *snapshot->KeyframeOfFrame(FrameId(20)));
+  Process(correction);
+  ASSERT_NE(published_.back(), snapshot);
+  EXPECT_EQ(map().correction_count(), 1u);
+  Process(request);
+  const Keyframe& keyframe = map().keyframes().At(*map().KeyframeOfFrame(FrameId(25)));
+  const Eigen::Vector3d expected =
+      Inverse(old_from_new) * Inverse(SyntheticWorld::CamFromWorld(25)).translation;
+  EXPECT_LT((Inverse(keyframe.cam_from_world).translation - expected).norm(), 0.01);
+  EXPECT_GT(keyframe.covisible.size(), 1u) << "it finds the landmarks where they are now";
+
+  const size_t published = published_.size();
+  Process(correction);
+  EXPECT_EQ(published_.size(), published) << "the same correction again is stale";
 }
 
 TEST_F(MapperTest, InAHurryWhatCanBeLeftOutIs) {

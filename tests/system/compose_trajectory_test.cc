@@ -22,8 +22,7 @@ TEST(ComposeTrajectory, FramesFollowTheirKeyframes) {
   for (TrackedFrame& frame : frames) {
     frame.timestamp = frame.frame.value;
     frame.state = TrackingState::kTracked;
-    frame.reference = keyframe;
-    frame.cam_from_reference = Shift(-0.5);
+    frame.pose = RelativePose{keyframe, Shift(-0.5), 1.0};
   }
   frames[2].state = TrackingState::kLost;
   map.SetPose(keyframe, Shift(-3.0));

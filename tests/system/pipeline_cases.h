@@ -34,7 +34,7 @@ inline std::vector<TrackedFrame> TrackPath(Pipeline& pipeline, const SyntheticWo
                                            uint32_t first, uint32_t end) {
   std::vector<TrackedFrame> tracked;
   for (uint32_t i = first; i < end; ++i) {
-    tracked.push_back(pipeline.Track(PathFrame(world, i)));
+    tracked.push_back(pipeline.Track(PathFrame(world, i)).tracked);
   }
   return tracked;
 }

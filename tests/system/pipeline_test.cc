@@ -43,9 +43,9 @@ TEST_P(PipelineTest, HasNoMapBeforeTheFirstKeyframe) {
   const auto pipeline = Make();
   EXPECT_EQ(pipeline->map(), nullptr);
   const SyntheticWorld blind({.depth_share = 0.0});
-  EXPECT_EQ(pipeline->Track(blind.Observe(0).frame).state, TrackingState::kNotInitialized);
+  EXPECT_EQ(pipeline->Track(blind.Observe(0).frame).tracked.state, TrackingState::kNotInitialized);
   EXPECT_EQ(pipeline->map(), nullptr);
-  EXPECT_EQ(pipeline->Track(world_.Observe(1).frame).state, TrackingState::kTracked);
+  EXPECT_EQ(pipeline->Track(world_.Observe(1).frame).tracked.state, TrackingState::kTracked);
   ASSERT_NE(pipeline->map(), nullptr);
   EXPECT_EQ(pipeline->map()->keyframes().size(), 1u);
 }
@@ -160,7 +160,7 @@ TEST_P(PipelineTest, MapsTakenOutliveThePipeline) {
 TEST_P(PipelineTest, AnExceptionInMappingReachesTheCaller) {
   const FailingMapping failing;
   const auto pipeline = GetParam().make(failing.sensor, options_);
-  EXPECT_EQ(pipeline->Track(failing.first).state, TrackingState::kTracked);
+  EXPECT_EQ(pipeline->Track(failing.first).tracked.state, TrackingState::kTracked);
   EXPECT_THROW(
       {
         pipeline->Track(failing.second);

@@ -284,5 +284,21 @@ TEST(System, SixteenBitDepthIsReadInTheUnitsOfTheOption) {
   });
 }
 
+TEST(System, TheCallbackGetsAReportOfEachFrame) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  std::vector<FrameReport> reports;
+  system.SetFrameCallback([&](const FrameReport& report) { reports.push_back(report); });
+  for (int i = 0; i < 3; ++i) {
+    TrackFrame(system, i);
+  }
+  ASSERT_EQ(reports.size(), 3u);
+  for (size_t i = 0; i < reports.size(); ++i) {
+    EXPECT_EQ(reports[i].tracked.frame, system.frames()[i].frame);
+    EXPECT_EQ(reports[i].tracked.inliers, system.frames()[i].inliers);
+    ASSERT_NE(reports[i].frame, nullptr);
+    EXPECT_EQ(reports[i].landmarks.size(), reports[i].frame->features.size());
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

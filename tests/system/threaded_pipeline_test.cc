@@ -50,7 +50,11 @@ TEST(ThreadedPipeline, FinishWaitsForTheKeyframesThatWait) {
   const auto map = pipeline->map();
   EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
   for (const TrackedFrame& frame : frames) {
-    EXPECT_LT(frame.reference.value, map->keyframes().NextId().value);
+    if (frame.pose) {
+      EXPECT_LT(frame.pose->reference.value, map->keyframes().NextId().value);
+    } else {
+      EXPECT_TRUE(map->KeyframeOfFrame(frame.frame));
+    }
   }
 }
 

@@ -92,7 +92,7 @@ class ObjectGuideTest : public testing::Test {
     tracker.Process(world_.Observe(0).frame, nullptr, {});
     tracker.Process(FrameWithoutBall(17), snapshot, {});
     tracker.Process(FrameWithoutBall(18), snapshot, {});
-    const TrackedFrame tracked = tracker.Process(std::move(last), snapshot, {}).frame;
+    const TrackedFrame tracked = tracker.Process(std::move(last), snapshot, {}).report.tracked;
     EXPECT_EQ(tracked.state, TrackingState::kTracked);
     const Rigid3 truth = SyntheticWorld::CamFromWorld(19);
     EXPECT_LT((tracked.cam_from_world.translation - truth.translation).norm(), 1e-5);

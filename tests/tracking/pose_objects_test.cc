@@ -43,7 +43,11 @@ class PoseObjectsTest : public ::testing::Test {
     ObjectOptions options;
     options.misfit_compensation = compensate;
     options.residual = residual;
-    const std::vector<ObjectId> ids = FindMappedObjects(map_, sensor_, frame_, camera_, {});
+    const TrackingOptions tracking;
+    PoseEstimate estimate;
+    estimate.cam_from_world = camera_;
+    const std::vector<ObjectId> ids =
+        FindMappedObjects(frame_, map_, {sensor_, tracking, options}, estimate);
     return MakePoseObjects(map_, sensor_, frame_, camera_, ids, options);
   }
   // Largest distance of a line from the tangent of the mapped quadric, px.

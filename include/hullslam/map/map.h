@@ -91,6 +91,9 @@ class Map {
   ObjectLandmark& MutableObject(ObjectId object) { return objects_.Mutable(object); }
 
  private:
+  // cam_from_reference with the translation in the map's current unit of length.
+  Rigid3 AtCurrentScale(const RelativePose& pose) const;
+
   CowTable<KeyframeId, Keyframe, 1> keyframes_;
   CowTable<LandmarkId, Landmark> landmarks_;
   CowTable<ObjectId, ObjectLandmark, 4> objects_;

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "hullslam/frame/frame.h"
+#include "hullslam/map/map.h"
+#include "hullslam/map/relative_pose.h"
+
+namespace hullslam {
+
+// What tracking remembers of the frame that was tracked last.
+struct LastFrame {
+  std::shared_ptr<const Frame> frame;
+  std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
+  // Absent for a frame of the initial map until the map that holds it is seen.
+  std::optional<RelativePose> pose;
+  // The keyframe that shares most landmarks with the frame.
+  KeyframeId reference;
+  Rigid3 cam_from_world;           // in the map that FollowMap was given
+  std::optional<Rigid3> velocity;  // cam_from_last_cam over one frame; absent after lost frames
+};
+
+// The last frame in the current map: its pose, the scale of its velocity, its reference keyframe
+// and its landmarks follow what has become of the map. If the frame has become a keyframe, it has
+// this keyframe's landmarks. The frame or its reference must be known to the map, else CheckError
+// is thrown.
+LastFrame FollowMap(const Map& map, LastFrame last);
+
+}  // namespace hullslam

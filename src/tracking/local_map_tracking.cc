@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tracking/local_map_tracking.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "map/landmark_projection.h"
+#include "matching/by_projection.h"
+#include "tracking/local_map.h"
+#include "tracking/object_guide.h"
+#include "tracking/pose_objects.h"
+#include "tracking/pose_refinement.h"
+
+namespace hullslam {
+namespace {
+
+// Search windows in px at level 0: Mur-Artal and Tardos 2017.
+constexpr double kRadius = 4.0;
+constexpr double kRadiusFrontal = 2.5;
+constexpr double kCosFrontal = 0.998;
+constexpr double kDepthRadiusFactor = 3.0;  // depth makes first poses and landmarks less certain
+
+// Where a landmark is searched; nothing where the camera cannot recognise it.
+std::optional<Projection> ExpectLandmark(const Sensor& sensor, const Rigid3& cam_from_world,
+                                         const Landmark& landmark) {
+  const std::optional<LandmarkView> view = ViewLandmark(sensor, cam_from_world, landmark);
+  if (!view) {
+    return std::nullopt;
+  }
+  const double radius =
+      kDepthRadiusFactor * (view->cos_view > kCosFrontal ? kRadiusFrontal : kRadius);
+  Projection projection;
+  projection.pixel = view->pixel.cast<float>();
+  projection.right_u = static_cast<float>(view->right_u);
+  projection.radius =
+      static_cast<float>(radius) * sensor.levels.scale[static_cast<size_t>(view->level)];
+  projection.min_level = view->level - 1;
+  projection.max_level = view->level;
+  projection.descriptor = landmark.descriptor;
+  return projection;
+}
+
+// The search for landmarks in one frame from one pose. A landmark that was searched once is not
+// searched again.
+class LandmarkSearch {
+ public:
+  // The landmarks of the estimate count as searched.
+  LandmarkSearch(const Frame& frame, const Map& map, const Sensor& sensor,
+                 const PoseEstimate& estimate)
+      : frame_(frame),
+        map_(map),
+        sensor_(sensor),
+        cam_from_world_(estimate.cam_from_world),
+        is_known_(map.landmarks().NextId().value, false) {
+    for (const LandmarkId id : estimate.landmarks) {
+      if (id.IsValid()) {
+        MarkVisible(id);
+      }
+    }
+  }
+
+  // Searches `candidates` at the keypoints that show no landmark yet and are not excluded
+  // (`is_excluded`: one entry per keypoint, or empty). What is found goes into `landmarks`, one
+  // entry per keypoint.
+  void Run(std::span<const LandmarkId> candidates, std::span<const uint8_t> is_excluded,
+           std::vector<LandmarkId>& landmarks) {
+    std::vector<Projection> projections;
+    std::vector<LandmarkId> ids;
+    for (const LandmarkId id : candidates) {
+      if (is_known_[id.value]) {
+        continue;
+      }
+      if (const auto projection =
+              ExpectLandmark(sensor_, cam_from_world_, map_.landmarks().At(id))) {
+        MarkVisible(id);
+        projections.push_back(*projection);
+        ids.push_back(id);
+      }
+    }
+    std::vector<uint8_t> taken(frame_.features.size(), 0);
+    for (size_t i = 0; i < taken.size(); ++i) {
+      const bool is_excluded_here = !is_excluded.empty() && is_excluded[i] != 0;
+      taken[i] = is_excluded_here || landmarks[i].IsValid() ? 1 : 0;
+    }
+    const std::vector<Match> matches = MatchByProjection(frame_.features, projections, taken,
+                                                         {.max_distance = 100, .max_ratio = 0.8});
+    for (const Match& match : matches) {
+      landmarks[match.keypoint] = ids[match.query];
+    }
+  }
+
+  // By landmark id: whether it was searched or found before.
+  const std::vector<bool>& is_known() const { return is_known_; }
+  std::vector<LandmarkId> TakeVisible() { return std::move(visible_); }
+
+ private:
+  void MarkVisible(LandmarkId id) {
+    is_known_[id.value] = true;
+    visible_.push_back(id);
+  }
+
+  const Frame& frame_;
+  const Map& map_;
+  const Sensor& sensor_;
+  const Rigid3 cam_from_world_;
+  std::vector<bool> is_known_;
+  std::vector<LandmarkId> visible_;
+};
+
+}  // namespace
+
+LocalTracking TrackLocalMap(const Frame& frame, const Map& map, const TrackingContext& context,
+                            PoseEstimate start) {
+  LocalTracking tracking;
+  const LocalMap local =
+      SelectLocalMap(map, start.landmarks, static_cast<size_t>(context.options.local_keyframes));
+  tracking.reference = local.reference;
+  LandmarkSearch search(frame, map, context.sensor, start);
+  search.Run(local.landmarks, {}, start.landmarks);
+  tracking.objects = FindMappedObjects(frame, map, context, start);
+  if (context.objects.guided_matching) {
+    for (const ObjectGuide& guide :
+         GuideByObjects(map, frame, tracking.objects, search.is_known())) {
+      search.Run(guide.landmarks, guide.is_outside, start.landmarks);
+    }
+  }
+  PoseObjects pose_objects;
+  if (context.objects.joint_pose) {
+    pose_objects = MakePoseObjects(map, context.sensor, frame, start.cam_from_world,
+                                   tracking.objects, context.objects);
+    tracking.unknown_objects =
+        static_cast<int>(frame.detections.size() - pose_objects.objects.size());
+  }
+  tracking.estimate = RefinePose(frame, map, context, pose_objects.objects, std::move(start));
+  tracking.visible = search.TakeVisible();
+  return tracking;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "hullslam/frame/frame.h"
+#include "hullslam/map/map.h"
+#include "tracking/pose_estimate.h"
+#include "tracking/tracking_context.h"
+
+namespace hullslam {
+
+// A frame tracked against its local map.
+struct LocalTracking {
+  PoseEstimate estimate;
+  // The keyframe that shares most landmarks with the frame; invalid if none shares any.
+  KeyframeId reference;
+  std::vector<ObjectId> objects;    // one per detection; invalid where it shows no mapped object
+  std::vector<LandmarkId> visible;  // landmarks that should be in the image, found or not
+  // Detections that show no mapped object; 0 where objects do not take part in poses.
+  int unknown_objects = 0;
+};
+
+// Improves a first pose: searches the landmarks of the local map in the frame, then those on mapped
+// objects that the local map lacks (objects.guided_matching), and optimises the pose with all
+// landmarks found and all mapped objects (objects.joint_pose).
+LocalTracking TrackLocalMap(const Frame& frame, const Map& map, const TrackingContext& context,
+                            PoseEstimate start);
+
+}  // namespace hullslam

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "matching/by_projection.h"
+#include "tracking/pose_objects.h"
+#include "tracking/pose_refinement.h"
+#include "tracking/pose_source.h"
+
+namespace hullslam {
+namespace {
+
+constexpr double kRadius = 15.0;  // px at level 0 (Mur-Artal and Tardos 2017)
+
+struct LevelRange {
+  int min = 0;
+  int max = 0;
+};
+
+// When the camera moves forward, patches grow and are found at higher levels; when it moves
+// backward, at lower levels.
+LevelRange LevelsAfterMotion(int level, double forward, double baseline, int level_count) {
+  if (forward > baseline) {
+    return {level, level_count - 1};
+  }
+  if (-forward > baseline) {
+    return {0, level};
+  }
+  return {level - 1, level + 1};
+}
+
+struct Expected {
+  std::vector<Projection> projections;
+  std::vector<LandmarkId> landmarks;  // one per projection
+};
+
+// Where the last frame's landmarks are expected by a camera at `cam_from_world`.
+Expected ExpectLandmarks(const Map& map, const Sensor& sensor, const LastFrame& last,
+                         const Rigid3& cam_from_world, double forward) {
+  Expected expected;
+  for (size_t i = 0; i < last.landmarks.size(); ++i) {
+    const Landmark* landmark = map.landmarks().Find(last.landmarks[i]);
+    if (landmark == nullptr) {
+      continue;
+    }
+    const Eigen::Vector3d point = cam_from_world * landmark->position;
+    if (point.z() <= 0.0) {
+      continue;
+    }
+    const Eigen::Vector2d pixel = sensor.camera.Project(point);
+    if (!sensor.bounds.Contains(pixel)) {
+      continue;
+    }
+    const Keypoint& seen = last.frame->features.keypoints[i];
+    const LevelRange levels =
+        LevelsAfterMotion(seen.level, forward, sensor.baseline(), sensor.levels.count());
+    Projection& projection = expected.projections.emplace_back();
+    projection.pixel = pixel.cast<float>();
+    projection.right_u = static_cast<float>(pixel.x() - sensor.camera.bf / point.z());
+    projection.radius =
+        static_cast<float>(kRadius) * sensor.levels.scale[static_cast<size_t>(seen.level)];
+    projection.min_level = levels.min;
+    projection.max_level = levels.max;
+    projection.descriptor = landmark->descriptor;
+    projection.angle = seen.angle;
+    expected.landmarks.push_back(last.landmarks[i]);
+  }
+  return expected;
+}
+
+}  // namespace
+
+std::optional<PoseEstimate> PoseByMotionModel(const Frame& frame, const Map& map,
+                                              const TrackingContext& context,
+                                              const LastFrame& last) {
+  if (!last.velocity) {
+    return std::nullopt;
+  }
+  PoseEstimate estimate;
+  estimate.cam_from_world = *last.velocity * last.cam_from_world;
+  const double forward = Inverse(*last.velocity).translation.z();
+  Expected expected = ExpectLandmarks(map, context.sensor, last, estimate.cam_from_world, forward);
+  const ProjectionSearch search{.max_distance = 100, .compare_rotation = true};
+  std::vector<Match> matches = MatchByProjection(frame.features, expected.projections, {}, search);
+  if (matches.size() < context.min_motion_matches()) {
+    for (Projection& projection : expected.projections) {
+      projection.radius *= 2.0f;
+    }
+    matches = MatchByProjection(frame.features, expected.projections, {}, search);
+  }
+  estimate.landmarks.resize(frame.features.size());
+  for (const Match& match : matches) {
+    estimate.landmarks[match.keypoint] = expected.landmarks[match.query];
+  }
+  // Objects are only looked for if there are too few landmarks without them.
+  PoseObjects objects;
+  if (matches.size() < context.min_motion_matches() && context.objects.joint_pose) {
+    objects = MakePoseObjects(map, context.sensor, frame, estimate.cam_from_world,
+                              FindMappedObjects(frame, map, context, estimate), context.objects);
+  }
+  if (matches.size() + PoseEstimate::kLandmarksPerObject * objects.objects.size() <
+      context.min_motion_matches()) {
+    return std::nullopt;
+  }
+  estimate = RefinePose(frame, map, context, objects.objects, std::move(estimate));
+  return estimate.EffectiveInliers() >= context.min_start_inliers()
+             ? std::optional(std::move(estimate))
+             : std::nullopt;
+}
+
+}  // namespace hullslam

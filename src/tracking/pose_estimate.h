@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "hullslam/geometry/rigid3.h"
+#include "hullslam/util/id.h"
+
+namespace hullslam {
+
+// A pose of a frame with the landmarks that were found in it.
+struct PoseEstimate {
+  // An object that constrains a pose counts as this many landmarks.
+  static constexpr int kLandmarksPerObject = 5;
+
+  Rigid3 cam_from_world;
+  std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
+  int inliers = 0;                    // landmarks that agree with the pose
+  int used_objects = 0;               // objects that constrain the pose
+
+  // What the pose rests on, in landmarks.
+  int EffectiveInliers() const { return inliers + kLandmarksPerObject * used_objects; }
+};
+
+}  // namespace hullslam

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "hullslam/frame/frame.h"
+#include "hullslam/map/map.h"
+#include "tracking/last_frame.h"
+#include "tracking/pose_estimate.h"
+#include "tracking/tracking_context.h"
+
+namespace hullslam {
+
+// A way to get a first pose of a frame: from the map and the last frame, which is up to date with
+// the map (FollowMap). Nothing if it finds too little. Each source has its own file.
+using PoseSource = std::optional<PoseEstimate>(const Frame& frame, const Map& map,
+                                               const TrackingContext& context,
+                                               const LastFrame& last);
+
+// The last frame's landmarks are searched where its velocity says they are; nothing without a
+// velocity (motion_model_source.cc).
+PoseSource PoseByMotionModel;
+
+// Keypoints are compared with those of the last frame's reference keyframe by descriptor alone,
+// starting from the last frame's pose (reference_keyframe_source.cc).
+PoseSource PoseByReferenceKeyframe;
+
+// All sources, in the order in which they are tried.
+inline constexpr std::array<PoseSource*, 2> kPoseSources = {&PoseByMotionModel,
+                                                            &PoseByReferenceKeyframe};
+
+}  // namespace hullslam

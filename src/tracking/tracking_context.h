@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+
+#include "hullslam/frame/sensor.h"
+#include "hullslam/objects/object_options.h"
+#include "hullslam/tracking/tracking_options.h"
+
+namespace hullslam {
+
+// What every step of tracking knows besides the frame and the map. It refers to its parts.
+struct TrackingContext {
+  const Sensor& sensor;
+  const TrackingOptions& options;
+  const ObjectOptions& objects;
+
+  // Bounds of Mur-Artal and Tardos 2017, as shares of tracking.min_inliers: with its default of 30
+  // they are 20 and 15 matches and 10 inliers.
+  size_t min_motion_matches() const { return static_cast<size_t>(options.min_inliers) * 2 / 3; }
+  size_t min_reference_matches() const { return static_cast<size_t>(options.min_inliers) / 2; }
+  int min_start_inliers() const { return options.min_inliers / 3; }
+};
+
+}  // namespace hullslam
