@@ -22,7 +22,7 @@ bool IsIdentity(const MapCorrection::Pose& pose) {
          corrected.translation == snapshot.translation;
 }
 
-// For each keyframe, also a culled one, how the world around it moves.
+// How the world around each keyframe moves; also around culled ones.
 class WorldChanges {
  public:
   WorldChanges(const Map& map, const MapCorrection& correction)
@@ -96,11 +96,15 @@ struct CulledPose {
   double scale = 1.0;
 };
 
-// Whether the keyframe or one of those that its pose is relative to moves.
-bool AnyMovesBetween(const Map& map, const WorldChanges& changes, KeyframeId keyframe) {
-  const CulledKeyframe* culled = map.FindCulled(keyframe);
-  return changes.Find(keyframe) != nullptr ||
-         (culled != nullptr && AnyMovesBetween(map, changes, culled->pose.reference));
+// Whether the culled keyframe moves, or any keyframe that its pose depends on.
+bool DependsOnMoved(const Map& map, const WorldChanges& changes, KeyframeId keyframe) {
+  while (const CulledKeyframe* culled = map.FindCulled(keyframe)) {
+    if (changes.Find(keyframe) != nullptr) {
+      return true;
+    }
+    keyframe = culled->pose.reference;
+  }
+  return changes.Find(keyframe) != nullptr;
 }
 
 std::vector<CulledPose> CollectNamedCulled(const Map& map, const MapCorrection& correction,
@@ -108,7 +112,7 @@ std::vector<CulledPose> CollectNamedCulled(const Map& map, const MapCorrection& 
   std::vector<CulledPose> collected;
   for (const MapCorrection::Pose& pose : correction.poses) {
     const KeyframeId id = pose.keyframe;
-    if (map.FindCulled(id) != nullptr && AnyMovesBetween(map, changes, id)) {
+    if (map.FindCulled(id) != nullptr && DependsOnMoved(map, changes, id)) {
       collected.push_back({id, map.CamFromWorld(id), map.ScaleOf(id)});
     }
   }

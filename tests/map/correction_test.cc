@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,7 +15,9 @@
 
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/system/compose_trajectory.h"
+#include "map/covisibility.h"
 #include "map/invariants.h"
+#include "map/landmark_edits.h"
 #include "map/landmark_projection.h"
 #include "map/made_correction.h"
 #include "map/made_map.h"
@@ -70,8 +73,8 @@ void GiveShapes(Map& map, RandomGeometry& random) {
   }
 }
 
-// What moves with its world: a camera sees a moved point where it saw the point before, only
-// `scale` times as far away.
+// A camera that moves with the world sees a moved point in the old direction, `scale` times as far
+// away.
 void ExpectMoved(const Rigid3& after, const Rigid3& before, const Sim3& new_from_old,
                  const std::string& what) {
   const Eigen::Vector3d center = Inverse(before).translation;
@@ -350,7 +353,7 @@ TEST_P(LateCorrection, KeepsTheMapSound) {
 
 // A correction B after A is the correction by the product of their changes.
 TEST_P(LateCorrection, ComposesWithTheNext) {
-  // Viewing geometry must be up to date, as a correction leaves it.
+  // Viewing geometry must be up to date, as a correction to_cull it.
   EXPECT_TRUE(ApplyCorrection(map_, MakeLateCorrection(2.0), levels_).is_applied);
   std::map<KeyframeId, Sim3> first;
   std::map<KeyframeId, Sim3> second;
@@ -377,20 +380,20 @@ TEST_P(LateCorrection, ComposesWithTheNext) {
 TEST_P(LateCorrection, CommutesWithCulling) {
   map_ = snapshot_.Snapshot();
   const MapCorrection correction = MakeLateCorrection(3.0);
-  std::vector<KeyframeId> leaves;
+  std::vector<KeyframeId> to_cull;
   snapshot_.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
     if (keyframe.parent.IsValid() && id.value % 2 == 0) {
-      leaves.push_back(id);
+      to_cull.push_back(id);
     }
   });
-  ASSERT_FALSE(leaves.empty());
+  ASSERT_FALSE(to_cull.empty());
   Map culled_after = map_.Snapshot();
-  for (const KeyframeId id : leaves) {
+  for (const KeyframeId id : to_cull) {
     map_.CullKeyframe(id);
   }
   EXPECT_TRUE(ApplyCorrection(map_, correction, levels_).is_applied);
   EXPECT_TRUE(ApplyCorrection(culled_after, correction, levels_).is_applied);
-  for (const KeyframeId id : leaves) {
+  for (const KeyframeId id : to_cull) {
     culled_after.CullKeyframe(id);
   }
   for (const KeyframeId id : AllIds(map_)) {
@@ -504,6 +507,46 @@ TEST_F(CorrectionByHand, MovesAndScales) {
   EXPECT_DOUBLE_EQ(moved.start.half_axes.x(), 0.4);
   EXPECT_DOUBLE_EQ(moved.support[0].excess, -0.02);
   EXPECT_EQ(moved.state, ObjectState::kMapped);  // a shape that only moves stays valid
+}
+
+// A pose that changes by its rotation or its scale alone is no identity.
+TEST_F(CorrectionByHand, MovesByScaleAlone) {
+  Name(a_, 1.0, 0.0);
+  correction_.poses.back().corrected_cam_from_world.scale = 2.0;
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_DOUBLE_EQ(CenterX(a_), 0.5);
+  EXPECT_DOUBLE_EQ(map_.keyframes().At(a_).scale, 0.5);
+}
+
+TEST_F(CorrectionByHand, MovesByRotationAlone) {
+  Name(a_, 1.0, 0.0);
+  correction_.poses.back().corrected_cam_from_world.rotation =
+      Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0);  // half a turn around y
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_DOUBLE_EQ(CenterX(a_), -1.0);
+  EXPECT_LT(
+      (map_.CamFromWorld(a_) * Eigen::Vector3d(0.0, 0.0, 1.0) - Eigen::Vector3d(-1.0, 0.0, -1.0))
+          .norm(),
+      1e-12);
+}
+
+// The culled keyframe b stays although a, which its pose is relative to, moves. So does c, culled
+// before b, which depends on both.
+TEST_F(CorrectionByHand, ACulledKeyframeStaysWhenTheCorrectionSaysSo) {
+  Name(a_, 2.0, 5.0);
+  Name(b_, 1.0, 0.0);
+  Name(c_, 1.0, 0.0);
+  const RelativePose frame = map_.RelativeTo(c_, Shift(-7.0));
+  map_.CullKeyframe(c_);
+  map_.CullKeyframe(b_);
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_DOUBLE_EQ(CenterX(a_), 7.0);
+  EXPECT_DOUBLE_EQ(CenterX(b_), 2.0);
+  EXPECT_DOUBLE_EQ(CenterX(c_), 3.0);
+  EXPECT_DOUBLE_EQ(map_.ScaleOf(a_), 2.0);
+  EXPECT_DOUBLE_EQ(map_.ScaleOf(b_), 1.0);
+  EXPECT_DOUBLE_EQ(map_.ScaleOf(c_), 1.0);
+  EXPECT_DOUBLE_EQ(map_.CamFromWorld(frame).translation.x(), -7.0);
 }
 
 TEST_F(CorrectionByHand, TakesAlongWhatItDoesNotName) {
@@ -628,20 +671,59 @@ TEST_F(CorrectionByHand, MergesLandmarks) {
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
 }
 
+// A keyframe that shares fewer than 15 landmarks keeps its best edge alone, so an edge may be found
+// only when covisibility is counted from its side.
+TEST_F(CorrectionByHand, RecountsCovisibilityOnBothSidesOfAMerge) {
+  for (const bool keeps_the_old : {true, false}) {
+    Map map = map_.Snapshot();
+    const std::vector<LandmarkId> old_ones = Share(map, {a_, b_}, 20);
+    const std::vector<LandmarkId> new_ones = Share(map, {c_}, 5);
+    UpdateCovisibility(map, a_);
+    MapCorrection correction;
+    for (size_t i = 0; i < new_ones.size(); ++i) {
+      const MapCorrection::LandmarkMerge merge{new_ones[i], old_ones[i]};
+      correction.landmarks.push_back(
+          keeps_the_old ? merge : MapCorrection::LandmarkMerge{merge.kept, merge.duplicate});
+    }
+    EXPECT_TRUE(ApplyCorrection(map, correction, Levels()).is_applied);
+    const std::vector<Covisible>& edges = map.keyframes().At(c_).covisible;
+    ASSERT_EQ(edges.size(), 1u);
+    EXPECT_EQ(edges[0].keyframe, b_);
+    EXPECT_EQ(edges[0].shared, 5);
+    EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+  }
+}
+
 TEST_F(CorrectionByHand, FollowsTheIdsOfMerges) {
-  const std::vector<LandmarkId> ids = Share(map_, {a_, b_}, 3);
-  const std::vector<LandmarkId> others = Share(map_, {c_}, 3);
+  const std::vector<LandmarkId> ids = Share(map_, {a_, b_}, 5);
+  const std::vector<LandmarkId> others = Share(map_, {c_}, 4);
   map_.ReplaceLandmark(ids[0], ids[1]);
-  map_.EraseLandmark(others[2]);
+  map_.ReplaceLandmark(ids[2], ids[3]);
+  map_.EraseLandmark(others[3]);
   correction_.landmarks = {{others[0], ids[0]},   // ids[0] is ids[1] now
+                           {ids[2], others[1]},   // ids[2] is ids[3] now
                            {ids[1], ids[0]},      // the same landmark: passed over
-                           {ids[2], others[2]},   // erased: passed over
-                           {others[0], ids[1]},   // merged already: passed over
-                           {ids[1], others[1]}};  // merged further
+                           {ids[4], others[3]},   // erased: passed over
+                           {others[3], ids[4]}};  // likewise
   EXPECT_TRUE(Apply().is_applied);
-  EXPECT_EQ(map_.Resolve(others[0]), others[1]);
-  EXPECT_EQ(map_.Resolve(ids[0]), others[1]);
-  EXPECT_EQ(map_.Resolve(ids[2]), ids[2]);
+  EXPECT_EQ(map_.Resolve(others[0]), ids[1]);
+  EXPECT_EQ(map_.landmarks().At(ids[1]).observations.size(), 3u);
+  EXPECT_EQ(map_.Resolve(ids[3]), others[1]);
+  EXPECT_EQ(map_.landmarks().At(others[1]).observations.size(), 3u);
+  EXPECT_EQ(map_.landmarks().At(ids[4]).observations.size(), 2u);
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+}
+
+// A landmark that others were merged into is merged itself.
+TEST_F(CorrectionByHand, MergesAreDoneInTurn) {
+  const std::vector<LandmarkId> ids = Share(map_, {a_}, 2);
+  const LandmarkId last = Share(map_, {b_}).front();
+  const LandmarkId first = Share(map_, {c_}).front();
+  correction_.landmarks = {{first, ids[0]}, {ids[0], last}, {first, ids[1]}};
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_EQ(map_.Resolve(first), ids[1]);
+  EXPECT_EQ(map_.Resolve(last), ids[1]);
+  EXPECT_EQ(map_.landmarks().At(ids[1]).observations.size(), 3u);
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
 }
 
@@ -674,9 +756,24 @@ TEST_F(CorrectionByHand, MergedObjectsAreCandidatesWithAllVotes) {
   EXPECT_DOUBLE_EQ(merged.votes.at("book"), 0.4);
   EXPECT_EQ(merged.observations.size(), 3u);
   EXPECT_EQ(merged.reference, a_);
+  EXPECT_EQ(map_.Resolve(ids[0]), ids[1]);
   EXPECT_EQ(map_.objects().At(ids[5]).state, untouched.state);
   EXPECT_EQ(map_.objects().At(ids[5]).shaped_views, untouched.shaped_views);
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+}
+
+TEST_F(CorrectionByHand, FollowsTheIdsOfMergedObjects) {
+  std::vector<ObjectId> ids;
+  for (int i = 0; i < 6; ++i) {
+    ids.push_back(map_.AddObject());
+  }
+  map_.ReplaceObject(ids[0], ids[1]);
+  map_.ReplaceObject(ids[3], ids[4]);
+  correction_.objects = {{ids[2], ids[0]}, {ids[3], ids[5]}, {ids[0], ids[1]}};
+  EXPECT_EQ(Apply().merged_objects, (std::vector<ObjectId>{ids[1], ids[5]}));
+  EXPECT_EQ(map_.Resolve(ids[2]), ids[1]);
+  EXPECT_EQ(map_.Resolve(ids[4]), ids[5]);
+  EXPECT_EQ(map_.objects().size(), 2u);
 }
 
 TEST_F(CorrectionByHand, KeepsTheLoopEdgeAtBothEnds) {
