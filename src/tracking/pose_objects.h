@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <deque>
 #include <span>
 #include <vector>
 
@@ -15,15 +14,15 @@ namespace hullslam {
 // The mapped objects that a frame shows, ready for OptimizeJointPose.
 struct PoseObjects {
   std::vector<ObjectId> ids;
-  std::vector<PoseObject> objects;                // one an id
-  std::deque<std::vector<SilhouetteLine>> lines;  // that the measurements refer to
+  std::vector<PoseObject> objects;  // one per id
 };
 
 // For each detection of a frame the mapped object that it shows, invalid for none; see
 // AssociateDetections. `landmarks` has one entry a keypoint (or is empty).
 std::vector<ObjectId> FindMappedObjects(const Map& map, const Sensor& sensor, const Frame& frame,
                                         const Rigid3& cam_from_world,
-                                        std::span<const LandmarkId> landmarks);
+                                        std::span<const LandmarkId> landmarks,
+                                        const AssociationOptions& options);
 
 // Detections of a frame with the objects they show (`ids`: one a detection). With misfit
 // compensation the lines are moved by what keyframes tell of the object there; lines of which they

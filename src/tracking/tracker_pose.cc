@@ -181,7 +181,7 @@ std::vector<ObjectId> Tracker::FindObjects(const Estimate& estimate) const {
   const bool may_show = object_options_.enabled && is_wanted && !frame_->detections.empty() &&
                         !map_->objects().empty();
   return may_show ? FindMappedObjects(*map_, sensor_, *frame_, estimate.cam_from_world,
-                                      estimate.landmarks)
+                                      estimate.landmarks, object_options_.association)
                   : std::vector<ObjectId>();
 }
 
@@ -252,10 +252,7 @@ void Tracker::OptimizePose(Estimate& estimate, std::span<const PoseObject> objec
         static_cast<double>(sensor_.levels.inverse_sigma2[static_cast<size_t>(keypoint.level)]);
     keypoints.push_back(i);
   }
-  JointPoseOptions options;
-  options.residual = object_options_.residual;
-  options.primitive = object_options_.detection.primitive;
-  options.max_effective_lines = object_options_.max_effective_lines;
+  const JointPoseOptions options{.objects = object_options_.pose};
   const JointPoseResult joint =
       OptimizeJointPose(sensor_.camera, estimate.cam_from_world, observations, objects, options);
   const PoseOptimizationResult& result = joint.points;
