@@ -56,8 +56,8 @@ BENCHMARK(PoseOptimization)
 // With the outlines of eight objects besides, 16 lines each.
 void JointPoseOptimization(benchmark::State& state) {
   const auto observations = MakeObservations(static_cast<size_t>(state.range(0)));
-  std::vector<std::vector<SilhouetteLine>> lines(8);
-  std::vector<PoseObject> objects(lines.size());
+  const Detection detection;
+  std::vector<PoseObject> objects(8);
   for (size_t i = 0; i < objects.size(); ++i) {
     const double x = static_cast<double>(i % 4) - 1.5;
     objects[i].ellipsoid = {{Eigen::Quaterniond::Identity(), {0.6 * x, i < 4 ? -0.4 : 0.4, 3.0}},
@@ -67,11 +67,11 @@ void JointPoseOptimization(benchmark::State& state) {
     for (int k = 0; k < 16; ++k) {
       const double angle = k * std::numbers::pi / 8.0;
       const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
-      lines[i].push_back(
+      objects[i].lines.push_back(
           {{normal, -normal.dot(ellipse.center) - ellipse.HalfExtent(normal)}, false});
     }
-    objects[i].measurement.lines = lines[i];
-    objects[i].sigma_px = 4.0;
+    objects[i].detection = &detection;
+    objects[i].misfit_px = 4.0;
   }
   const Rigid3 start(ExpSo3({0.01, -0.02, 0.01}), {0.02, 0.01, -0.02});
   int used = 0;

@@ -33,12 +33,9 @@ PoseEstimate RefinePose(const Frame& frame, const Map& map, const TrackingContex
       keypoints.push_back(i);
     }
   }
-  JointPoseOptions options;
-  options.residual = context.objects.residual;
-  options.primitive = context.objects.detection.primitive;
-  options.max_effective_lines = context.objects.max_effective_lines;
-  const JointPoseResult joint = OptimizeJointPose(context.sensor.camera, estimate.cam_from_world,
-                                                  observations, objects, options);
+  const JointPoseResult joint =
+      OptimizeJointPose(context.sensor.camera, estimate.cam_from_world, observations, objects,
+                        {.objects = context.objects.pose});
   estimate.cam_from_world = joint.points.cam_from_world;
   estimate.inliers = joint.points.inlier_count;
   estimate.used_objects = joint.used_objects;
