@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "camera/rgbd_projection.h"
+#include "hullslam/camera/pinhole.h"
 #include "costs/quadric_in_camera.h"
 #include "hullslam/geometry/conic.h"
 

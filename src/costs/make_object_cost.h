@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-#include "camera/rgbd_projection.h"
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/costs/object_residual.h"
 #include "hullslam/geometry/conic.h"
 #include "hullslam/geometry/line2.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "camera/rgbd_projection.h"
+#include "hullslam/camera/pinhole.h"
 #include "costs/quadric_in_camera.h"
 #include "hullslam/geometry/line2.h"
 

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "camera/rgbd_projection.h"
+#include "hullslam/camera/pinhole.h"
 #include "costs/pose_manifold.h"
 #include "hullslam/map/map.h"
 #include "optim/bundle_adjustment.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "frame/point_measurement.h"
 #include "map/landmark_projection.h"
 #include "matching/by_descriptor.h"
 #include "matching/by_projection.h"
@@ -242,14 +243,9 @@ void Tracker::OptimizePose(Estimate& estimate, std::span<const PoseObject> objec
     if (!estimate.landmarks[i].IsValid()) {
       continue;
     }
-    const Keypoint& keypoint = features.keypoints[i];
     PoseObservation& observation = observations.emplace_back();
     observation.point = map_->landmarks().At(estimate.landmarks[i]).position;
-    observation.measured << keypoint.undistorted.cast<double>(),
-        static_cast<double>(keypoint.undistorted.x() - features.right_u[i]);
-    observation.has_depth = features.right_u[i] >= 0.0f;
-    observation.inverse_sigma2 =
-        static_cast<double>(sensor_.levels.inverse_sigma2[static_cast<size_t>(keypoint.level)]);
+    observation.measurement = MeasurePoint(sensor_, features, static_cast<uint32_t>(i));
     keypoints.push_back(i);
   }
   JointPoseOptions options;

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <vector>
 
-#include "camera/rgbd_projection.h"
+#include "hullslam/camera/pinhole.h"
 #include "costs/pose_manifold.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/geometry/line2.h"

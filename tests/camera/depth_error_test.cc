@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "camera/rgbd_projection.h"
+#include "camera/depth_error.h"
 
 #include <gtest/gtest.h>
 
