@@ -11,8 +11,7 @@ namespace hullslam::internal {
 // Residual and Jacobians of the first kRows rows of PointResidual: 2 for the pixel, 3 with the
 // disparity.
 template <int kRows>
-bool EvaluateReprojection(const PinholeCamera& camera,
-                          const PointMeasurement& measurement,
+bool EvaluateReprojection(const PinholeCamera& camera, const PointMeasurement& measurement,
                           double const* const* parameters, double* residuals, double** jacobians) {
   const Eigen::Map<const Eigen::Quaterniond> rotation(parameters[0]);
   const Eigen::Map<const Eigen::Vector3d> translation(parameters[0] + 4);

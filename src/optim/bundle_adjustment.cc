@@ -151,8 +151,8 @@ class Bundle {
       if (keyframe == keyframes_.end()) {
         continue;
       }
-      const PointMeasurement measurement = MeasurePoint(
-          sensor, map.keyframes().At(seen.keyframe).frame->features, seen.keypoint);
+      const PointMeasurement measurement =
+          MeasurePoint(sensor, map.keyframes().At(seen.keyframe).frame->features, seen.keypoint);
       BundleObservation& observation = observations_.emplace_back();
       observation.landmark = landmark;
       observation.keyframe = seen.keyframe;

@@ -35,8 +35,8 @@ class PointTerms {
   bool robust_;
 };
 
-// Chooses as inliers the observations that are inliers at the result's pose by their OutlierBound, or all
-// but those behind the camera.
+// Chooses as inliers the observations that are inliers at the result's pose by their OutlierBound,
+// or all but those behind the camera.
 enum class InlierRule { kBelowBound, kInFront };
 void ChooseInliers(const PinholeCamera& camera, std::span<const PoseObservation> observations,
                    InlierRule rule, PoseOptimizationResult& result);

@@ -47,7 +47,8 @@ TEST(ReprojectionCost, GradientIsTrue) {
   for (int i = 0; i < 30; ++i) {
     const Rigid3 cam_from_world = random.Pose(1.0, 1.0);
     const Eigen::Vector3d in_cam = random.Vector(1.0) + Eigen::Vector3d(0.0, 0.0, 3.0);
-    const ReprojectionCost cost(kCamera, Measurement({random.Number(0, 640), random.Number(0, 480)}, 1.44));
+    const ReprojectionCost cost(kCamera,
+                                Measurement({random.Number(0, 640), random.Number(0, 480)}, 1.44));
     ExpectTrueGradient<2>(cost, cam_from_world, Inverse(cam_from_world) * in_cam);
   }
 }

@@ -152,7 +152,8 @@ TEST_F(PoseOptimization, GivesTheStartBackForFewerThanThreePoints) {
 TEST_F(PoseOptimization, GivesTheStartBackForFewerThanThreeInliers) {
   auto observations = Observe(8, true);
   for (PoseObservation& observation : observations) {
-    observation.measurement.measured = {random_.Number(0, 640), random_.Number(0, 480), random_.Number(0, 640)};
+    observation.measurement.measured = {random_.Number(0, 640), random_.Number(0, 480),
+                                        random_.Number(0, 640)};
   }
   const Rigid3 start = Start();
   for (const int rounds : {1, 2, 4}) {
