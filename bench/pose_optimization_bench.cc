@@ -5,10 +5,11 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <vector>
 
-#include "camera/rgbd_projection.h"
+#include "camera/depth_error.h"
 #include "optim/joint_pose_optimization.h"
 #include "optim/pose_optimization.h"
 
@@ -27,12 +28,13 @@ std::vector<PoseObservation> MakeObservations(size_t count) {
   for (size_t i = 0; i < count; ++i) {
     PoseObservation& observation = observations[i];
     observation.point = {number(-1.0, 1.0), number(-0.8, 0.8), number(2.0, 5.0)};
-    observation.measured = ProjectRgbd(kCamera, observation.point) +
-                           Eigen::Vector3d(noise(random), noise(random), noise(random));
-    observation.has_depth = i % 4 != 0;
+    Eigen::Vector3d measured = ProjectRgbd(kCamera, observation.point) +
+                               Eigen::Vector3d(noise(random), noise(random), noise(random));
     if (i % 10 == 0) {
-      observation.measured.x() += number(10.0, 60.0);
+      measured.x() += number(10.0, 60.0);
     }
+    observation.measurement = PointMeasurement::Create(
+        measured.head<2>(), 1.0, i % 4 != 0 ? std::optional(measured.z()) : std::nullopt, {});
   }
   return observations;
 }

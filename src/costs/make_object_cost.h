@@ -6,7 +6,7 @@
 #include <memory>
 #include <span>
 
-#include "camera/rgbd_projection.h"
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/costs/object_residual.h"
 #include "hullslam/frame/detection.h"
 

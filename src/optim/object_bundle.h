@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "camera/rgbd_projection.h"
 #include "costs/pose_manifold.h"
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/map/map.h"
 #include "optim/bundle_adjustment.h"
 

@@ -12,8 +12,8 @@
 #include <numbers>
 #include <vector>
 
-#include "camera/rgbd_projection.h"
 #include "costs/pose_manifold.h"
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/geometry/line2.h"
 #include "support/random_geometry.h"

@@ -60,11 +60,11 @@ class JointPose : public ::testing::Test {
       const Eigen::Vector3d in_cam = place + random_.Vector(1.0).cwiseProduct(reach);
       PoseObservation& observation = observations_.emplace_back();
       observation.point = Inverse(true_pose_) * in_cam;
-      observation.measured = ProjectRgbd(sensor_.camera, in_cam);
-      observation.has_depth = true;
+      Eigen::Vector3d measured = ProjectRgbd(sensor_.camera, in_cam);
       for (int k = 0; k < 3; ++k) {
-        observation.measured[k] += noise * normal_(generator_);
+        measured[k] += noise * normal_(generator_);
       }
+      observation.measurement = PointMeasurement::Create(measured.head<2>(), 1.0, measured.z(), {});
     }
   }
   void AddSpreadPoints(int count, double noise) {
