@@ -151,7 +151,7 @@ def check_file(path, module, public, root, links):
 
 
 def check_tree(root):
-    """The faults of the tree at `root`, one line per fault. Finding no C++ files is a fault too."""
+    """The faults of the tree at `root`, one line per fault. Finding no files is a fault too."""
     root = pathlib.Path(root).resolve()
     files = list(source_files(root))
     if not files:

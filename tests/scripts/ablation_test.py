@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tests of scripts/ablation.py, with a made-up program in place of rgbd_tum."""
+"""Tests of scripts/ablation.py with a small program in place of rgbd_tum."""
 
 import json
 import pathlib
@@ -13,7 +13,7 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "ablation.py"
 sys.path.insert(0, str(SCRIPT.parent))
 import ablation  # noqa: E402
 
-# Its ATE is 0.01 + 0.001 * seed, twice that with objects.residual=bad. It counts its calls.
+# Its ATE is 0.01 + 0.001 * seed, or twice that with objects.residual=bad. It logs its calls.
 PROGRAM = """#!/usr/bin/python3
 import json, pathlib, sys
 arguments = sys.argv[1:]

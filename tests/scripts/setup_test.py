@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/setup.sh with stand-ins for dpkg-query, apt-get, id and sudo: it installs nothing here."""
+"""Tests of scripts/setup.sh with replacements for dpkg-query, apt-get, id and sudo, so that nothing
+is installed."""
 
 import os
 import pathlib
