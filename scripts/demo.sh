@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: scripts/demo.sh
 #
-# Shows the whole of HullSLAM from a fresh clone: installs packages, builds, renders the synthetic
+# Demonstrates HullSLAM from a fresh clone: installs packages, builds, renders the synthetic
 # sequence build/demo/desk (unless it exists), and runs RGB-D SLAM on it with object masks. Then it
 # prints accuracy, times and the mapped objects, and draws build/demo/run/run.png and overlays.png.
 set -euo pipefail

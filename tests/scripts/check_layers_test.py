@@ -113,13 +113,13 @@ class CheckLayersTest(unittest.TestCase):
         self.assert_fault({"src/map/a.cc": '#include "hullslam/all.h"\n'}, "unknown module")
         self.assert_fault({"include/hullslam/all.h": "\n"}, "unknown module")
 
-    def test_no_module_sees_the_synthetic_world(self):
+    def test_no_module_may_include_the_renderer(self):
         self.assert_fault({"src/io/a.cc": '#include "synthetic/scene.h"\n'}, "up", "synthetic")
         self.assertEqual(faults_of({
             "src/synthetic/a.cc": '#include "synthetic/scene.h"\n#include <embree3/rtcore.h>\n'
                                   '#include "hullslam/io/settings.h"\n'}), [])
 
-    def test_kept_out_of_public_headers(self):
+    def test_libraries_that_public_headers_may_not_include(self):
         for header in ("CGAL/convex_hull_2.h", "cholmod.h", "suitesparse/cholmod.h",
                        "Eigen/CholmodSupport", "SuiteSparseQR.hpp", "embree3/rtcore.h"):
             with self.subTest(header):
@@ -127,7 +127,7 @@ class CheckLayersTest(unittest.TestCase):
                 self.assert_fault({"include/hullslam/geometry/a.h": text}, "public header", header)
                 self.assertEqual(faults_of({"src/geometry/a.cc": text}), [])
 
-    def test_comments_are_no_includes(self):
+    def test_includes_in_comments_do_not_count(self):
         self.assertEqual(faults_of({"src/util/a.cc": '// #include "hullslam/map/map.h"\n'}), [])
 
     def test_empty_tree_fails(self):

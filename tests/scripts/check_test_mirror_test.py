@@ -41,7 +41,7 @@ class CheckTestMirrorTest(unittest.TestCase):
         self.assertEqual(len(faults), 2, faults)
         self.assertIn("tests/map/id_test.cc: neither", faults[1])
 
-    def test_test_of_nothing(self):
+    def test_test_without_header(self):
         faults = faults_of({HEADER: "", TEST: BODY, "tests/util/gone_test.cc": BODY})
         self.assertEqual(len(faults), 1, faults)
         self.assertIn("gone_test.cc: neither", faults[0])

@@ -101,14 +101,14 @@ class DownloadTumTest(unittest.TestCase):
         self.serve(archive(sequence()))
         self.assert_whole(self.download())
 
-    def test_every_way_to_write_a_name(self):
+    def test_every_accepted_form_of_a_name(self):
         self.serve(archive(sequence()))
         for name in ("fr1/xyz", "fr1_xyz", FOLDER):
             with self.subTest(name):
                 self.assertEqual(self.download(name).returncode, 0)
         self.assertEqual(len(self.server.requests), 1, "downloaded only once")
 
-    def test_goes_on_where_it_stopped(self):
+    def test_resumes_an_interrupted_download(self):
         data = archive(sequence())
         self.serve(data)
         self.to.mkdir()
@@ -116,7 +116,7 @@ class DownloadTumTest(unittest.TestCase):
         self.assert_whole(self.download())
         self.assertEqual([span for _, span in self.server.requests], ["bytes=1000-"])
 
-    def test_starts_again_where_the_server_cannot_resume(self):
+    def test_starts_again_if_the_server_cannot_resume(self):
         data = archive(sequence())
         self.serve(data)
         self.server.resumes = False
@@ -124,14 +124,14 @@ class DownloadTumTest(unittest.TestCase):
         (self.to / f"{FOLDER}.tgz.part").write_bytes(data[:1000])
         self.assert_whole(self.download())
 
-    def test_part_that_was_already_whole(self):
+    def test_part_file_that_is_already_complete(self):
         data = archive(sequence())
         self.serve(data)
         self.to.mkdir()
         (self.to / f"{FOLDER}.tgz.part").write_bytes(data)
         self.assert_whole(self.download())
 
-    def test_broken_connection_keeps_what_is_there(self):
+    def test_broken_connection_keeps_the_part_file(self):
         self.to.mkdir()
         part = self.to / f"{FOLDER}.tgz.part"
         part.write_bytes(b"half")
