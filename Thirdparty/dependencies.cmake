@@ -1,14 +1,14 @@
-# Everything comes from Debian 12 packages (Thirdparty/apt-packages.txt). Versions are checked here,
-# so that an unsupported system is told at configuration and not in the middle of the build.
+# All libraries are Debian 12 packages (Thirdparty/apt-packages.txt). Their versions are checked
+# here, so that an unsupported system gives an error when CMake configures and not during the build.
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs features2d calib3d)
 find_package(Ceres 2.1 REQUIRED)
-find_package(CGAL 5.5 REQUIRED)  # headers only: hulls, boxes; brings GMP and MPFR
+find_package(CGAL 5.5 REQUIRED)  # headers only: convex hulls, oriented boxes; needs GMP and MPFR
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(spdlog 1.10 REQUIRED)
-find_package(Boost 1.74 REQUIRED)  # headers only: CRC, Student's distribution
+find_package(Boost 1.74 REQUIRED)  # headers only: CRC, Student's t-distribution
 if(HULLSLAM_BUILD_EXAMPLES OR HULLSLAM_BUILD_TESTS)
   find_package(CLI11 2.1 REQUIRED)
   find_package(embree 3.13 REQUIRED)

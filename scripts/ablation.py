@@ -1,21 +1,24 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-r"""Runs SLAM with several settings, several times each, and tables what comes out: OUT/ablation.md
-and OUT/ablation.json with trajectory error, overlap of the objects and time of every variant.
+r"""Compares variants of the settings: runs SLAM several times with each variant and writes a table
+of the results, with trajectory error, fit of the objects and time of every variant, to
+OUT/ablation.md and OUT/ablation.json.
 
     scripts/ablation.py --sequence SEQUENCE --out OUT --seeds 5 --common "--masks MASKS" \
         --variant off:objects.enabled=false --variant default: \
         --variant plane:objects.residual=algebraic_plane,objects.primitive=hull
 
-In every argument of a run {seed} is replaced by its seed and {sequence} by the sequence's folder.
-As nothing in a sequential run is random, this is how repetitions get to differ: by sequences that
-make_synthetic has rendered with several seeds (--sequence "desk-{seed}" --common "--masks
-{sequence}/masks"), or by the frame that a real one begins with (--common "--first {seed}").
+A variant is NAME:KEY=VALUE,KEY=VALUE,... Each pair becomes an argument --set KEY=VALUE. An item
+that begins with a dash is passed on unchanged (NAME:--threaded). Write "\," for a comma in a value.
 
-A variant is NAME:KEY=VALUE,KEY=VALUE...; each key becomes --set KEY=VALUE, and an item that begins
-with a dash is given as it is (NAME:--preset=paper); "\," is a comma within a value. Runs are kept
-in OUT/SEQUENCE/NAME/seed-N; one that is there, complete and of the same command and program is not
-run again. A run that fails is told, counted and tried again the next time.
+In every argument of a run, {seed} is replaced by the run's seed and {sequence} by the folder of its
+sequence. Nothing in a sequential run is random, so repetitions differ only if their input does. For
+a synthetic sequence render it with several seeds (--sequence "desk-{seed}" --common "--masks
+{sequence}/masks"). For a real sequence start each run at another frame (--common "--first {seed}").
+
+Each run is stored in OUT/SEQUENCE/NAME/seed-N. A run is skipped if it is complete there and was
+made by the same command and the same program. A run that fails is reported and counted, and is
+repeated when the script is started again.
 """
 
 import argparse
@@ -28,8 +31,8 @@ import statistics
 import subprocess
 import sys
 
-RECORD = "ablation_run.json"  # beside a run's outputs: what they were made by
-COLUMNS = [  # heading, place in summary.json, format
+RECORD = "ablation_run.json"  # beside the outputs of a run: the command that made them
+COLUMNS = [  # heading, keys in summary.json, format
     ("ATE m", ("trajectory", "ate_rmse_m"), ".5f"),
     ("tracked", ("trajectory", "tracked"), ".0f"),
     ("objects", ("objects", "count"), ".1f"),
@@ -42,11 +45,11 @@ COLUMNS = [  # heading, place in summary.json, format
 
 
 class InputError(Exception):
-    """Something that the user can mend."""
+    """An error that the user can correct."""
 
 
 def parse_variant(text):
-    """(name, arguments) of NAME:KEY=VALUE,..."""
+    """The name and the arguments that NAME:KEY=VALUE,... stands for."""
     name, colon, settings = text.partition(":")
     if not colon or not re.fullmatch(r"[\w.+-]+", name):
         raise InputError(f"--variant is '{text}', expected NAME:KEY=VALUE,... with a name of "
@@ -64,14 +67,14 @@ def parse_variant(text):
 
 
 def fingerprint(command):
-    """Of the command and the program's bytes: what a finished run is good for."""
+    """A hash of the command and the program's bytes. If it changes, a finished run is repeated."""
     program = pathlib.Path(command[0])
     content = program.read_bytes() if program.is_file() else b""
     return hashlib.sha256(content + json.dumps(command).encode()).hexdigest()
 
 
 def read_json(path):
-    """The object in a file, or None where there is none that can be read."""
+    """The JSON object in a file; None if the file cannot be read or contains something else."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -80,7 +83,10 @@ def read_json(path):
 
 
 def run_once(command, folder, seconds):
-    """The summary of a run in `folder`, old or new, and what went wrong (empty: nothing)."""
+    """Returns (summary, error) of the run in `folder`, which is made unless it is there already.
+
+    The error is empty if the run succeeded.
+    """
     mark = fingerprint(command)
     record, summary = read_json(folder / RECORD), read_json(folder / "summary.json")
     if record and record.get("fingerprint") == mark and summary is not None:
@@ -95,11 +101,11 @@ def run_once(command, folder, seconds):
             code = subprocess.run(command, stdout=log, stderr=subprocess.STDOUT, check=False,
                                   timeout=seconds).returncode
         except subprocess.TimeoutExpired:
-            return None, f"not done after {seconds:.0f} s"
+            return None, f"not finished after {seconds:.0f} s"
         except OSError as error:
             raise InputError(f"{command[0]}: {error.strerror}") from error
     summary = read_json(folder / "summary.json")
-    if code == 2:  # bad usage or input: no other run would fare better
+    if code == 2:  # bad usage or input: all other runs would fail too
         last = (folder / "log.txt").read_text(encoding="utf-8", errors="replace").splitlines()[-1]
         raise InputError(f"{shlex.join(command)}: {last}")
     if code != 0 or summary is None:
@@ -110,7 +116,7 @@ def run_once(command, folder, seconds):
 
 
 def value_at(summary, place):
-    """The number at a place of the summary, or None."""
+    """The number under these keys of the summary; None if there is no number."""
     for key in place:
         summary = summary.get(key) if isinstance(summary, dict) else None
     is_number = isinstance(summary, (int, float)) and not isinstance(summary, bool)
@@ -118,7 +124,7 @@ def value_at(summary, place):
 
 
 def collect(summaries):
-    """For every column mean, standard deviation (of the sample; 0 for one run) and values."""
+    """Mean, sample standard deviation (0 for a single run) and values of every column."""
     row = {}
     for heading, place, _ in COLUMNS:
         values = [value for value in (value_at(summary, place) for summary in summaries)
@@ -139,7 +145,10 @@ def cell(entry, form, with_deviation):
 
 
 def table(results):
-    """Markdown: a row a sequence and variant, ATE with its deviation and against the first one."""
+    """A Markdown table with one row per sequence and variant.
+
+    The ATE has its standard deviation and its change against the first variant of the sequence.
+    """
     lines = ["| sequence | variant | runs | " + " | ".join(c[0] for c in COLUMNS) + " | ATE change |",
              "|---|---|---|" + "---|" * (len(COLUMNS) + 1)]
     first = {}
@@ -155,14 +164,14 @@ def table(results):
 
 
 def write(path, text):
-    """Whole or not at all."""
+    """Writes a file by renaming a temporary one, so that it is never incomplete."""
     temporary = path.with_name(path.name + ".tmp")
     temporary.write_text(text, encoding="utf-8")
     temporary.replace(path)
 
 
 def run_variant(arguments, sequence, name, settings):
-    """The result of all repetitions of a variant on a sequence."""
+    """Makes all runs of a variant on a sequence and returns their result."""
     summaries, failures = [], []
     title = sequence.resolve().name.replace("-{seed}", "").replace("{seed}", "") or "sequence"
     for seed in range(arguments.first_seed, arguments.first_seed + arguments.seeds):
@@ -191,7 +200,7 @@ def find_program(given):
     top = pathlib.Path(__file__).resolve().parent.parent
     program = given or top / "build" / "release" / "bin" / "rgbd_tum"
     if not program.is_file():
-        raise InputError(f"{program}: no such program; build it or give --program")
+        raise InputError(f"{program}: no such program; build it or give another one by --program")
     return program
 
 
@@ -199,15 +208,21 @@ def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--sequence", type=pathlib.Path, action="append", required=True,
-                        help="folder of a sequence, may have {seed} in it; repeat for more")
+                        help="folder of a sequence, may contain {seed}; can be repeated")
     parser.add_argument("--variant", action="append", required=True,
-                        help="NAME:KEY=VALUE,...; repeat for more, the first is compared with")
-    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder of runs and tables")
-    parser.add_argument("--seeds", type=int, default=5, help="repetitions (default 5)")
-    parser.add_argument("--first-seed", type=int, default=0)
-    parser.add_argument("--common", default="", help="arguments of all runs, in one text")
-    parser.add_argument("--program", type=pathlib.Path, help="default: rgbd_tum of build/release")
-    parser.add_argument("--timeout", type=float, default=3600.0, help="of a run, s (default 3600)")
+                        help="NAME:KEY=VALUE,...; can be repeated, the others are compared "
+                             "with the first")
+    parser.add_argument("--out", type=pathlib.Path, required=True,
+                        help="folder for runs and tables")
+    parser.add_argument("--seeds", type=int, default=5,
+                        help="number of runs per variant and sequence (default 5)")
+    parser.add_argument("--first-seed", type=int, default=0,
+                        help="seed of the first run; the next have the next numbers (default 0)")
+    parser.add_argument("--common", default="", help="arguments of every run, as one string")
+    parser.add_argument("--program", type=pathlib.Path,
+                        help="program to run (default: build/release/bin/rgbd_tum)")
+    parser.add_argument("--timeout", type=float, default=3600.0,
+                        help="longest time of a run, s (default 3600)")
     arguments = parser.parse_args()
     if arguments.seeds < 1 or arguments.first_seed < 0:
         parser.error("--seeds must be 1 or more, --first-seed 0 or more")
@@ -226,7 +241,7 @@ def main():
         for sequence in arguments.sequence:
             for name, settings in variants:
                 results.append(run_variant(arguments, sequence, name, settings))
-                # After each, so that a look at the table needs not wait for the last.
+                # Written after each variant, so that the table can be read while others run.
                 write(arguments.out / "ablation.md", table(results))
                 write(arguments.out / "ablation.json", json.dumps(results, indent=1) + "\n")
     except (InputError, OSError) as error:

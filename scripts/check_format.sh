@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: scripts/check_format.sh
 #
-# Fails unless every C++ file is as clang-format leaves it and begins with the SPDX line. In a git
-# checkout only tracked files are looked at. `clang-format -i FILE` mends the first.
+# Checks that every C++ file begins with the SPDX line and that clang-format would not change it. In
+# a git checkout only tracked files are checked. `clang-format -i FILE` corrects the format.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$top"
@@ -31,7 +31,7 @@ command -v clang-format >/dev/null || fail "clang-format is not installed; run s
 files=()
 bad=0
 while IFS= read -r -d '' file; do
-  [ -e "$file" ] || continue # deleted, and that not committed yet
+  [ -e "$file" ] || continue # deleted, but the deletion is not committed yet
   files+=("$file")
   IFS= read -r first <"$file" || first=""
   if [ "$first" != "$spdx" ]; then

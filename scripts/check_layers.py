@@ -1,10 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fails on an #include that goes up or sideways between the modules of HullSLAM.
+"""Checks which headers the modules of HullSLAM include; fails if one breaks a rule below.
 
-A module includes only headers of its own and of modules of strictly lower levels, and of these only
-the ones that its CMakeLists.txt names in LINKS. Public headers include no private headers, and
-nothing of CGAL, SuiteSparse or Embree, so that users of the library need none of them.
+1. A module includes only its own headers and headers of modules at strictly lower levels (LEVELS).
+2. Of those modules it includes only the ones that its CMakeLists.txt names in LINKS. A module whose
+   CMakeLists.txt is missing or does not call hullslam_module() is not checked for this rule.
+3. A public header (in include/) includes no private header (in src/).
+4. A public header includes nothing of CGAL, SuiteSparse or Embree, so that users of the library do
+   not need them.
 """
 
 import argparse
@@ -27,7 +30,8 @@ LEVELS = {
     "report": 11,
     "eval": 12,
     "io": 13,
-    # A library of the programs, not of libhullslam: it sees all modules, and no module sees it.
+    # A library for the programs and not a part of libhullslam. It may include every module; no
+    # module may include it.
     "synthetic": 14,
 }
 PROGRAM_SIDE = {"synthetic"}
@@ -36,12 +40,13 @@ KEPT_PRIVATE = re.compile(
     r"CGAL/|embree\d?/|suitesparse/|Eigen/(Cholmod|SPQR|UmfPack|KLU)Support$"
     r"|(cholmod|amd|colamd|camd|ccolamd|cs|umfpack|klu|SuiteSparse)\w*\.(h|hpp)$",
     re.IGNORECASE)
-MODULE_CALL = re.compile(r"hullslam_module\(\s*\w+(?:\s+LINKS([\s\w]*?))?\s*(?=PUBLIC|PRIVATE|\))")
+COMMENT = re.compile(r"#.*")
+MODULE_CALL = re.compile(r"\bhullslam_module\(([^)]*)\)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
 def source_files(root):
-    """(path, module, is public header) of every C++ file of the library, in order of the path."""
+    """Yields (path, module, is public header) for every C++ file of the library, sorted by path."""
     for top, public in (("include/hullslam", True), ("src", False)):
         for path in sorted((root / top).rglob("*")):
             if path.suffix in (".h", ".cc"):
@@ -49,34 +54,66 @@ def source_files(root):
                 yield path, inside[0] if len(inside) > 1 else "", public
 
 
-def target_module(included, quoted, path, root):
-    """The module that an include names: "" where it has none, None for a header from outside."""
-    parts = included.split("/")
-    if parts[0] == "hullslam":
-        return parts[1] if len(parts) > 2 else ""
-    if quoted and len(parts) > 1 and parts[0] in LEVELS:
-        return parts[0]
-    if quoted:
-        beside = (path.parent / included).resolve()
-        for top in (root / "src", root / "include" / "hullslam"):
-            if beside.is_relative_to(top):
-                return beside.relative_to(top).parts[0]
+def file_beside(included, quoted, path, root):
+    """The path, from the top of the repository, of a header that is named relative to `path`.
+
+    None if the include is written otherwise or the path lies outside of the library.
+    """
+    beside = (path.parent / included).resolve()
+    tops = (root / "src", root / "include")
+    if quoted and any(beside.is_relative_to(top) for top in tops):
+        return beside.relative_to(root)
     return None
 
 
+def target_module(included, quoted, path, root):
+    """The module that an include names: "" if it names no module, None for a foreign header."""
+    parts = included.split("/")
+    if parts[0] == "hullslam":
+        return parts[1] if len(parts) > 2 else ""
+    if len(parts) > 1 and parts[0] in LEVELS:
+        return parts[0]
+    beside = file_beside(included, quoted, path, root)
+    if beside is None:
+        return None
+    inside = beside.parts[1:] if beside.parts[0] == "src" else beside.parts[2:]
+    return inside[0] if inside else ""
+
+
+def is_private(included, quoted, path, root):
+    """Whether an include names a header in src/."""
+    parts = included.split("/")
+    if len(parts) > 1 and parts[0] in LEVELS:
+        return True
+    beside = file_beside(included, quoted, path, root)
+    return beside is not None and beside.parts[0] == "src"
+
+
+def links_of(arguments):
+    """The words after LINKS in the arguments of hullslam_module(), up to PUBLIC or PRIVATE."""
+    links, key = set(), ""
+    for word in arguments.split():
+        if word in ("LINKS", "PUBLIC", "PRIVATE"):
+            key = word
+        elif key == "LINKS":
+            links.add(word)
+    return links
+
+
 def declared_links(root):
-    """The modules that each module names in LINKS, by module; without those that declare none."""
+    """For each module that calls hullslam_module(): the modules that it names in LINKS."""
     links = {}
     for module in LEVELS:
         file = root / "src" / module / "CMakeLists.txt"
-        call = MODULE_CALL.search(file.read_text(encoding="utf-8")) if file.exists() else None
+        text = COMMENT.sub("", file.read_text(encoding="utf-8")) if file.exists() else ""
+        call = MODULE_CALL.search(text)
         if call:
-            links[module] = set((call[1] or "").split())
+            links[module] = links_of(call[1])
     return links
 
 
 def fault(module, target, links):
-    """Why `module` may not include a header of `target`, or None."""
+    """The reason why `module` may not include a header of `target`; None if it may."""
     if target == module:
         return None
     if target not in LEVELS:
@@ -95,7 +132,7 @@ def check_file(path, module, public, root, links):
     if module not in LEVELS:
         return [f'{where}: unknown module "{module}"; add it to LEVELS in check_layers.py']
     if public and module in PROGRAM_SIDE:
-        return [f"{where}: {module} belongs to the programs and has no public headers"]
+        return [f"{where}: {module} belongs to the programs and may not have public headers"]
     faults = []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         match = INCLUDE.match(line)
@@ -104,7 +141,7 @@ def check_file(path, module, public, root, links):
         quoted, included = match[1] == '"', match[2]
         if public and KEPT_PRIVATE.match(included):
             faults.append(f"{where}:{number}: {included} in a public header")
-        if public and quoted and included.split("/")[0] in LEVELS:
+        if public and is_private(included, quoted, path, root):
             faults.append(f"{where}:{number}: private header {included} in a public one")
         target = target_module(included, quoted, path, root)
         reason = None if target is None else fault(module, target, links)
@@ -114,7 +151,7 @@ def check_file(path, module, public, root, links):
 
 
 def check_tree(root):
-    """The faults of the tree at `root`, one line each. A tree without sources is one."""
+    """The faults of the tree at `root`, one line per fault. Finding no files is a fault too."""
     root = pathlib.Path(root).resolve()
     files = list(source_files(root))
     if not files:
@@ -125,9 +162,10 @@ def check_tree(root):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("root", nargs="?", default=pathlib.Path(__file__).resolve().parent.parent,
-                        help="top of the repository (default: of this script)")
+                        help="top folder of the repository (default: the one of this script)")
     faults = check_tree(parser.parse_args().root)
     for line in faults:
         print(line, file=sys.stderr)

@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fails unless the tests mirror the headers.
+"""Checks that the tests mirror the headers; fails if one of these rules is broken.
 
-Every include/hullslam/<module>/<file>.h has tests/<module>/<file>_test.cc, and every
-tests/<module>/<file>_test.cc is named after such a header or after a private one,
-src/<module>/<file>.h, and holds a test. tests/integration, support, consumer and scripts are free.
+1. Every public header include/hullslam/<module>/<file>.h has a test tests/<module>/<file>_test.cc.
+2. Every tests/<module>/<file>_test.cc is named after such a header or after a private header
+   src/<module>/<file>.h, and contains at least one test.
+
+The folders integration, support, consumer and scripts of tests/ are not checked.
 """
 
 import argparse
@@ -37,11 +39,11 @@ def stray_tests(root):
         if not (root / public).exists() and not (root / private).exists():
             yield f"{test.relative_to(root)}: neither {public} nor {private} exists"
         if not TEST.search(test.read_text(encoding="utf-8")):
-            yield f"{test.relative_to(root)}: holds no test"
+            yield f"{test.relative_to(root)}: contains no test"
 
 
 def check_tree(root):
-    """The faults of the tree at `root`, one line each. A tree without headers is one."""
+    """The faults of the tree at `root`, one line per fault. Finding no headers is a fault too."""
     root = pathlib.Path(root).resolve()
     if not any((root / "include" / "hullslam").rglob("*.h")):
         return [f"{root}: no headers in include/hullslam"]
@@ -49,9 +51,10 @@ def check_tree(root):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("root", nargs="?", default=pathlib.Path(__file__).resolve().parent.parent,
-                        help="top of the repository (default: of this script)")
+                        help="top folder of the repository (default: the one of this script)")
     faults = check_tree(parser.parse_args().root)
     for line in faults:
         print(line, file=sys.stderr)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Sourced by the shell scripts: messages, help and named steps.
+# Functions for messages, help texts and named steps; the other shell scripts source this file.
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
@@ -13,12 +13,12 @@ usage_error() {
   exit 2
 }
 
-# Prints the comment block below the SPDX line of the script that was called.
+# Prints the help text: the comment block below the SPDX line of the script that was called.
 print_help() {
   awk 'NR > 2 && !/^#/ {exit} NR > 2 {sub(/^# ?/, ""); print}' "$0"
 }
 
-# Announces a step; if the script ends with an error before the next one, this one is named.
+# Announces a step. If the script fails before the next step, the error message names this one.
 step() {
   current_step="$1"
   trap report_failed_step EXIT

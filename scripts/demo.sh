@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: scripts/demo.sh
 #
-# From a fresh clone to pictures: sets up, builds, renders the synthetic sequence build/demo/desk
-# (once), runs RGB-D SLAM with its object masks, prints how exact and how quick it was and which
-# objects it mapped, and draws build/demo/run/run.png and overlays.png.
+# Demonstrates HullSLAM from a fresh clone: installs packages, builds, renders the synthetic
+# sequence build/demo/desk (unless it exists), and runs RGB-D SLAM on it with object masks. Then it
+# prints accuracy, times and the mapped objects, and draws build/demo/run/run.png and overlays.png.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$top"
@@ -31,9 +31,10 @@ cmake --build --preset release -j "$(nproc)" --target rgbd_tum evaluate make_syn
 
 step "render $sequence"
 if [ -d "$sequence" ]; then
-  printf '%s is there already.\n' "$sequence"
+  printf '%s exists already.\n' "$sequence"
 else
-  # Under another name until it is whole, so that an interrupted one is not taken for the sequence.
+  # The folder has another name until rendering is complete, so that a later run does not use the
+  # incomplete sequence of an interrupted one.
   mkdir -p build/demo
   rm -rf "$sequence.partial"
   "$bin/make_synthetic" "$sequence.partial" --scene desk
@@ -43,7 +44,7 @@ fi
 step "run"
 "$bin/rgbd_tum" "$sequence" --masks "$sequence/masks" --output "$run"
 
-step "objects, against the truth"
+step "compare objects with ground truth"
 "$bin/evaluate" objects "$run" --groundtruth "$sequence/groundtruth_objects.json"
 
 step "draw"

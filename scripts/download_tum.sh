@@ -4,60 +4,61 @@
 #
 # Downloads sequences of the TUM RGB-D benchmark (CC BY 4.0) and unpacks each into
 # DIR/rgbd_dataset_<name>. SEQUENCE is for example freiburg1_xyz, fr1/xyz or
-# rgbd_dataset_freiburg1_xyz. DIR is the working directory if not given. An interrupted download
-# goes on where it stopped; a sequence that is there already is left alone.
+# rgbd_dataset_freiburg1_xyz. An interrupted download continues where it stopped. A sequence that
+# exists already is not downloaded again.
 #
-#   --to DIR    where to put the sequences
-#   --base URL  where the folders freiburg1, freiburg2 and freiburg3 are
+#   --to DIR    folder for the sequences (default: the working directory)
+#   --base URL  address of the folders freiburg1, freiburg2 and freiburg3
 #               (default: https://cvg.cit.tum.de/rgbd/dataset)
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-# freiburg1_xyz from any of the ways to write it.
+# Prints the name of a sequence in the form freiburg1_xyz, whichever accepted form was given.
 plain_name() {
   local name=${1#rgbd_dataset_}
   name=${name/\//_}
   [[ "$name" == fr[123]_* ]] && name="freiburg${name#fr}"
   [[ "$name" =~ ^freiburg[123]_[a-z0-9_]+$ ]] ||
-    usage_error "\"$1\" is no TUM sequence; expected a name like freiburg1_xyz or fr1/xyz"
+    usage_error "\"$1\" is not a TUM sequence; expected a name like freiburg1_xyz or fr1/xyz"
   printf '%s' "$name"
 }
 
-# Under another name until it is whole. A server that cannot resume (curl: 33), or that says that
-# there is nothing left to send (HTTP 416), is asked for all of it again.
+# The file is named *.part until the download is complete. If the server cannot resume a download
+# (curl exit code 33) or reports that nothing is left to send (HTTP 416), all of it is requested
+# again.
 download() {
   local url=$1 file=$2 code=0 status
   local options=(--fail --location --show-error --connect-timeout 30 --retry 3 --output "$file.part")
   [ -t 2 ] && options+=(--progress-bar) || options+=(--silent)
   if [ -s "$file.part" ]; then
-    printf 'Going on with %s\n' "$url"
+    printf 'Resuming %s\n' "$url"
     status=$(curl "${options[@]}" --write-out '%{http_code}' --continue-at - "$url") || code=$?
     if [ "$code" -eq 33 ] || [ "$status" = 416 ]; then
       rm -f "$file.part"
     elif [ "$code" -ne 0 ]; then
-      fail "the download of $url broke off (curl: $code); run again to go on"
+      fail "the download of $url was interrupted (curl: $code); run again to resume it"
     fi
   fi
   if [ ! -s "$file.part" ]; then
     printf 'Downloading %s\n' "$url"
-    curl "${options[@]}" "$url" || fail "cannot download $url (curl: $?); run again to go on"
+    curl "${options[@]}" "$url" || fail "cannot download $url (curl: $?); run again to retry"
   fi
   mv "$file.part" "$file"
 }
 
-# Only folders and plain files below the sequence's own folder are unpacked.
+# Fails unless the archive contains only folders and plain files below the sequence's own folder.
 check_archive() {
   local file=$1 folder=$2 names kinds
   if ! names=$(tar --list --gzip --absolute-names --file "$file" 2>/dev/null) ||
     ! kinds=$(LC_ALL=C tar --list --verbose --gzip --file "$file" 2>/dev/null | cut -c 1); then
     rm -f "$file"
-    fail "$file was damaged and is deleted; run again to download it anew"
+    fail "$file was damaged and has been deleted; run again to download it again"
   fi
   if grep -qv '^[-d]' <<<"$kinds"; then
-    fail "$file holds links or special files; it is not unpacked"
+    fail "$file contains links or special files; it is not unpacked"
   fi
   if grep -Eqv "^(\./)?$folder(/|\$)" <<<"$names" || grep -Eq '(^|/)\.\.(/|$)' <<<"$names"; then
-    fail "$file holds files outside $folder; it is not unpacked"
+    fail "$file contains files outside $folder; it is not unpacked"
   fi
 }
 
@@ -69,7 +70,8 @@ unpack() {
   tar --extract --gzip --no-same-owner --no-same-permissions --file "$file" --directory "$work" ||
     fail "cannot unpack $file into $work"
   for list in rgb.txt depth.txt groundtruth.txt; do
-    [ -s "$work/$folder/$list" ] || fail "$file is no TUM RGB-D sequence: it has no $folder/$list"
+    [ -s "$work/$folder/$list" ] ||
+      fail "$file is not a TUM RGB-D sequence: it has no $folder/$list"
   done
   mv "$work/$folder" "$folder"
   rm -rf "$work" "$file"
@@ -78,7 +80,7 @@ unpack() {
 fetch() {
   local name=$1 folder="rgbd_dataset_$1"
   if [ -d "$folder" ]; then
-    printf '%s is there already.\n' "$PWD/$folder"
+    printf '%s exists already.\n' "$PWD/$folder"
     return
   fi
   [ -s "$folder.tgz" ] || download "$base/${name%%_*}/$folder.tgz" "$folder.tgz"
@@ -108,7 +110,7 @@ while [ $# -gt 0 ]; do
       ;;
   esac
 done
-[ "${#names[@]}" -gt 0 ] || usage_error "no sequence is named"
+[ "${#names[@]}" -gt 0 ] || usage_error "no SEQUENCE is given"
 command -v curl >/dev/null || fail "curl is not installed; run scripts/setup.sh"
 mkdir -p "$to" && cd "$to" || fail "cannot use the folder $to"
 for name in "${names[@]}"; do

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Prints the mapped objects of finished runs as a Markdown table: class, observations, the largest
-angle between two views of the object, half axes by length, SIoU and tangent distance.
+"""Prints the mapped objects of finished runs as a Markdown table. The columns are the class, the
+number of observations, the largest angle between two views of the object, the half axes (longest
+first), SIoU and tangent distance.
 
-RUN_DIR is an output folder of rgbd_tum or map_objects; of each objects.json is read.
+RUN_DIR is an output folder of rgbd_tum or map_objects. Its objects.json is read.
 """
 
 import argparse
@@ -20,7 +21,7 @@ HEADER = ("| run | id | class | views | angle ° | half axes m | SIoU | SIoU mas
 
 
 def largest_angle(entry):
-    """Largest angle at the object's centre between two of its cameras, degrees."""
+    """Largest angle at the object's centre between two cameras that observe it, degrees."""
     centre = np.array(entry["world_from_object"][:3], dtype=float)
     rays = []
     for view in entry["observations"]:
@@ -45,15 +46,15 @@ def row(name, entry):
 
 
 def rows(run_dir, min_angle):
-    """The rows of the objects that are seen from `min_angle` degrees or more."""
+    """The rows of the objects whose largest angle is at least `min_angle` degrees."""
     path = run_dir / "objects.json"
     try:
         entries = json.loads(path.read_text(encoding="utf-8"))["objects"]
         return [row(run_dir.resolve().name, entry) for entry in entries
                 if entry["state"] == "mapped" and largest_angle(entry) >= min_angle]
     except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
-        reason = f"no {error}" if isinstance(error, KeyError) else error
-        raise InputError(f"{path}: not readable as objects.json: {reason}") from error
+        reason = f"no key {error}" if isinstance(error, KeyError) else error
+        raise InputError(f"{path}: not a valid objects.json: {reason}") from error
 
 
 def main():
@@ -61,7 +62,7 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run_dirs", type=pathlib.Path, metavar="RUN_DIR", nargs="+")
     parser.add_argument("--min-angle", type=float, default=0.0, metavar="DEGREES",
-                        help="leave out objects seen from less")
+                        help="leave out objects whose largest angle is smaller (default 0)")
     arguments = parser.parse_args()
     try:
         lines = [line for run_dir in arguments.run_dirs

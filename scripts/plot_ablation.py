@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the trajectory error of an ablation over a number: of variants named NAME-NUMBER
-(with-1000, with-300, without-1000, ...) each NAME becomes a curve over NUMBER, with a panel for
-each sequence.
+"""Draws how the trajectory error of an ablation depends on a number. The variants must be named
+NAME-NUMBER (with-1000, with-300, without-1000, ...). Each NAME becomes a curve over NUMBER, and
+each sequence has a panel of its own.
 
-OUT is a folder of scripts/ablation.py; of each ablation.json is read. Points are means over the
-runs, bars the standard deviation. Where runs failed or tracked fewer frames than others of the
-sequence did, the point is hollow: its error is that of an easier part.
+OUT is an output folder of scripts/ablation.py. Its ablation.json is read. A point is the mean over
+the runs, its bar the standard deviation. A point is hollow if runs failed, or if they tracked fewer
+frames than the best variant of the sequence: its error is then that of an easier part.
 """
 
 import argparse
@@ -21,7 +21,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 from run_objects import InputError  # noqa: E402
 
-COMPLETE = 0.99  # share of the frames of the best variant: fewer are fewer
+COMPLETE = 0.99  # a variant that tracks at least this share of the best one's frames
 
 
 def read_points(folder):
@@ -43,10 +43,10 @@ def read_points(folder):
             curves.setdefault(result["sequence"], {}).setdefault(name[1], []).append(
                 (float(name[2]), 1000.0 * ate["mean"], 1000.0 * ate["sd"], is_complete))
     except (OSError, ValueError, KeyError, TypeError) as error:
-        reason = f"no {error}" if isinstance(error, KeyError) else error
-        raise InputError(f"{path}: not readable as ablation.json: {reason}") from error
+        reason = f"no key {error}" if isinstance(error, KeyError) else error
+        raise InputError(f"{path}: not a valid ablation.json: {reason}") from error
     if not curves:
-        raise InputError(f"{path}: no variant with a trajectory error is named NAME-NUMBER")
+        raise InputError(f"{path}: no variant named NAME-NUMBER has a trajectory error")
     return {sequence: {name: sorted(points) for name, points in named.items()}
             for sequence, named in curves.items()}
 
@@ -77,8 +77,8 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", type=pathlib.Path, metavar="OUT", nargs="+")
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("ablation.png"),
-                        help="picture (default ablation.png)")
-    parser.add_argument("--x", default="number", help="what the numbers are")
+                        help="file of the picture (default ablation.png)")
+    parser.add_argument("--x", default="number", help="label of the x axis: what the numbers are")
     arguments = parser.parse_args()
     try:
         panels = [panel for folder in arguments.folders for panel in read_points(folder).items()]

@@ -1,13 +1,16 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws a finished run: DIR/run.png with the trajectory (and the map) from above and from the side,
-and below it the error over time and what each stage took; prints the figures of the run.
-With --overlay N also DIR/overlays.png: N keyframes with the outlines of the mapped objects (solid
-where the keyframe observes them, else dashed) and the hulls of their masks (dotted).
+"""Draws a finished run and prints its figures. DIR/run.png shows the trajectory, the map and the
+objects from above and from the side, the error over time, and the time of each stage.
 
-RUN_DIR is what `rgbd_tum --output` wrote: trajectory.txt, and if they are there map.ply,
-keyframes.txt, objects.json and summary.json. With --groundtruth the run is aligned to it (SE3, Umeyama 1991,
-pairs within 0.02 s); without it, the picture is in the frame of the first camera.
+With --overlay N, DIR/overlays.png is drawn too. It shows N keyframes with the projected ellipses of
+the mapped objects and the hulls of their masks. An ellipse is solid if the keyframe observes the
+object and dashed if not. Hulls are dotted.
+
+RUN_DIR is a folder that `rgbd_tum --output` wrote. It must contain trajectory.txt; map.ply,
+keyframes.txt, objects.json and summary.json are used if they exist. With --groundtruth the run is
+aligned to the ground truth (SE3, Umeyama 1991, pairs within 0.02 s). Without it, the run is drawn
+in the frame of the first camera.
 """
 
 import argparse
@@ -23,15 +26,15 @@ import numpy as np  # noqa: E402
 import run_objects  # noqa: E402
 from run_objects import InputError  # noqa: E402
 
-MAX_DIFFERENCE = 0.02  # s, between an estimated pose and its ground truth
-MAX_POINTS = 30000  # of the map that are drawn
+MAX_DIFFERENCE = 0.02  # s, between the stamps of an estimated pose and a true one
+MAX_POINTS = 30000  # points of the map that are drawn at most
 ESTIMATE, TRUTH, MAP, MARK = "#0072b2", "#000000", "#b0b0b0", "#d55e00"
 PLY_TYPES = {"float": "<f4", "float32": "<f4", "double": "<f8", "uchar": "u1", "uint8": "u1",
              "int": "<i4", "uint": "<u4", "short": "<i2", "ushort": "<u2", "char": "i1"}
 
 
 def read_trajectory(path):
-    """Stamps (n) and positions (n x 3) of a TUM file, `stamp tx ty tz qx qy qz qw` a line."""
+    """Stamps (n) and positions (n x 3) of a TUM file, which has one pose per line."""
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
@@ -54,7 +57,7 @@ def read_trajectory(path):
 
 
 def read_ply_header(file, path):
-    """Number of vertices and the numpy type of one, leaving `file` at the first."""
+    """The number of vertices and the numpy type of a vertex. `file` is left at the first vertex."""
     if file.readline().strip() != b"ply":
         raise InputError(f"{path}: not a PLY file")
     count, fields, binary, element = 0, [], False, ""
@@ -69,7 +72,7 @@ def read_ply_header(file, path):
             count = int(words[2]) if element == "vertex" else count
         elif words[:1] == ["property"] and element == "vertex":
             if len(words) != 3 or words[1] not in PLY_TYPES:
-                raise InputError(f"{path}: vertex property not understood: {' '.join(words)}")
+                raise InputError(f"{path}: vertex property of an unknown type: {' '.join(words)}")
             fields.append((words[2], PLY_TYPES[words[1]]))
     if not binary or not {"x", "y", "z"} <= {name for name, _ in fields}:
         raise InputError(f"{path}: expected a binary little-endian PLY with vertices x y z")
@@ -77,12 +80,12 @@ def read_ply_header(file, path):
 
 
 def read_map(path):
-    """Points (n x 3) and colours (n x 3, 0 to 1; grey if the file has none) of a PLY file."""
+    """Points (n x 3) and colours (n x 3, 0 to 1; grey if the file has no colours) of a PLY file."""
     with path.open("rb") as file:
         count, kind = read_ply_header(file, path)
         data = file.read(count * kind.itemsize)
     if len(data) < count * kind.itemsize:
-        raise InputError(f"{path}: cut short; {count} vertices are announced")
+        raise InputError(f"{path}: cut short; its header announces {count} vertices")
     vertices = np.frombuffer(data, kind)
     vertices = vertices[::max(1, -(-count // MAX_POINTS))]
     points = np.stack([vertices[axis].astype(float) for axis in "xyz"], axis=1)
@@ -92,7 +95,10 @@ def read_map(path):
 
 
 def pair(stamps, truth_stamps):
-    """Index pairs (k x 2) within MAX_DIFFERENCE: one to one, smallest difference first."""
+    """Pairs of indices (k x 2) of stamps that differ by less than MAX_DIFFERENCE.
+
+    Each stamp is in one pair at most; the pair with the smallest difference is taken first.
+    """
     candidates = []
     begin = np.searchsorted(truth_stamps, stamps - MAX_DIFFERENCE)
     end = np.searchsorted(truth_stamps, stamps + MAX_DIFFERENCE, side="right")
@@ -109,7 +115,10 @@ def pair(stamps, truth_stamps):
 
 
 def align(source, target):
-    """R (3 x 3), t (3) that minimise |R source + t - target|; both are n x 3 (Umeyama 1991)."""
+    """Returns R (3 x 3) and t (3) that minimise |R source + t - target| (Umeyama 1991).
+
+    `source` and `target` are n x 3, one point per row.
+    """
     source_mean, target_mean = source.mean(axis=0), target.mean(axis=0)
     u, _, vt = np.linalg.svd((target - target_mean).T @ (source - source_mean))
     flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(u) * np.linalg.det(vt))])
@@ -118,7 +127,7 @@ def align(source, target):
 
 
 class Run:
-    """What is drawn: all positions in one frame whose third axis points up."""
+    """Everything that is drawn. All positions are in one frame, whose third axis points up."""
 
     def __init__(self, run_dir, groundtruth):
         self.stamps, self.positions = read_trajectory(run_dir / "trajectory.txt")
@@ -133,17 +142,17 @@ class Run:
         self.truth = self.error_stamps = self.errors = None
         if groundtruth:
             self._align_to(groundtruth)
-        else:  # of a camera: x right, y down, z forward
+        else:  # from a camera frame: x right, y down, z forward
             self._move(np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]]), np.zeros(3))
 
     def _align_to(self, path):
         truth_stamps, truth = read_trajectory(path)
         if (np.diff(truth_stamps) < 0).any():
-            raise InputError(f"{path}: time stamps go back")
+            raise InputError(f"{path}: the time stamps decrease")
         pairs = pair(self.stamps, truth_stamps)
         if len(pairs) < 3:
-            raise InputError(f"{path}: {len(pairs)} poses within {MAX_DIFFERENCE} s of the run's; "
-                             "at least 3 are needed; is it of the same sequence?")
+            raise InputError(f"{path}: {len(pairs)} poses are within {MAX_DIFFERENCE} s of a pose of "
+                             "the run, at least 3 are needed; is it the same sequence?")
         self._move(*align(self.positions[pairs[:, 0]], truth[pairs[:, 1]]))
         self.error_stamps = self.stamps[pairs[:, 0]]
         difference = self.positions[pairs[:, 0]] - truth[pairs[:, 1]]
@@ -167,14 +176,14 @@ def read_summary(path):
     try:
         summary = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise InputError(f"{path}: not readable as JSON: {error}") from error
+        raise InputError(f"{path}: not valid JSON: {error}") from error
     if not isinstance(summary, dict):
-        raise InputError(f"{path}: expected an object")
+        raise InputError(f"{path}: expected a JSON object")
     return summary
 
 
 def drawn_part(run, axes):
-    """Limits (2 x 2) of a view: the trajectory and most of the map, without its far outliers."""
+    """Limits (2 x 2) of a view of the trajectory and of the map without its farthest points."""
     parts = [run.positions] + ([run.truth] if run.truth is not None else [])
     if len(run.points):
         low, high = np.percentile(run.points, [3, 97], axis=0)
@@ -224,7 +233,7 @@ def draw_error(plot, run):
 
 
 def stage_times(summary):
-    """(name, median, p95) in ms of tracking as a whole and of each stage, as far as known."""
+    """(name, median, p95) in ms for all of tracking and for each stage; without unknown ones."""
     timing = summary.get("timing") or {}
     stages = {"tracking": timing.get("track_ms"), **(timing.get("stages_ms") or {})}
     return [(name, stage["median"], stage["p95"]) for name, stage in stages.items()
@@ -247,7 +256,7 @@ def draw_times(plot, run):
     for row, median in zip(rows, medians):
         figures = f"{median:.0f}" if median >= 100.0 else f"{median:.3g}"
         plot.text(max(median, 0.1), row, f" {figures}", va="center", fontsize=8)
-    plot.set_xscale("log")  # a pose takes milliseconds, adjusting the whole map a second
+    plot.set_xscale("log")  # a pose takes milliseconds, a global bundle adjustment a second
     plot.set_xlim(left=0.1, right=3.0 * max(1.0, *tails))
     plot.set_yticks(rows, names, fontsize=8)
     plot.invert_yaxis()
@@ -299,10 +308,10 @@ def print_objects(run):
 
 
 def find_sequence(run, chosen):
-    """The folder of the run's images: the one given, else the one of the summary."""
+    """The folder of the images: the one that was given, else the one named in summary.json."""
     folder = chosen or (run.summary.get("provenance") or {}).get("sequence")
     if not folder:
-        raise InputError("summary.json names no sequence for the overlays; give --sequence")
+        raise InputError("summary.json names no sequence to take images from; give --sequence")
     return folder
 
 
@@ -310,17 +319,20 @@ def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run_dir", type=pathlib.Path, metavar="RUN_DIR")
-    parser.add_argument("--groundtruth", type=pathlib.Path, metavar="FILE", help="in TUM's format")
-    parser.add_argument("--out", type=pathlib.Path, metavar="DIR", help="default: RUN_DIR")
+    parser.add_argument("--groundtruth", type=pathlib.Path, metavar="FILE",
+                        help="true trajectory in TUM's format")
+    parser.add_argument("--out", type=pathlib.Path, metavar="DIR",
+                        help="folder for the pictures (default: RUN_DIR)")
     parser.add_argument("--overlay", type=int, default=0, metavar="N",
-                        help="draw objects on N keyframes")
+                        help="draw the objects on N keyframes")
     parser.add_argument("--sequence", type=pathlib.Path, metavar="DIR",
-                        help="folder of the images (default: the one summary.json names)")
+                        help="folder of the sequence, for its images (default: the one that "
+                             "summary.json names)")
     arguments = parser.parse_args(words)
     out = arguments.out or arguments.run_dir
     try:
         if arguments.overlay < 0:
-            raise InputError(f"--overlay is {arguments.overlay}, expected a number of keyframes")
+            raise InputError(f"--overlay is {arguments.overlay}, expected 0 or more keyframes")
         run = Run(arguments.run_dir, arguments.groundtruth)
         out.mkdir(parents=True, exist_ok=True)
         overlays = 0

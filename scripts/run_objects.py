@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects of a finished run, as objects.json holds them, and how plot_run.py draws them."""
+"""Reads the objects of a finished run from objects.json and draws them for plot_run.py."""
 
 import json
 import pathlib
@@ -12,11 +12,11 @@ CIRCLE = np.stack([np.cos(TURN), np.sin(TURN)])
 
 
 class InputError(Exception):
-    """Something that the user can mend; the message names the file."""
+    """An error that the user can correct. The message names the file."""
 
 
 def rotation(quaternion):
-    """Rotation matrix of qx, qy, qz, qw, of any length above zero."""
+    """Rotation matrix of a quaternion qx, qy, qz, qw, which need not be normalised."""
     x, y, z, w = np.asarray(quaternion, dtype=float) / np.linalg.norm(quaternion)
     return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
                      [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
@@ -24,7 +24,7 @@ def rotation(quaternion):
 
 
 def colour_of(label):
-    """That of the class in objects.ply: a hash (FNV-1a) gives the hue."""
+    """The colour that the class has in objects.ply; its hue is a hash (FNV-1a) of the name."""
     number = 2166136261
     for byte in label.encode("utf-8", "surrogateescape"):
         number = (number ^ byte) * 16777619 % 2**32
@@ -34,12 +34,12 @@ def colour_of(label):
 
 
 def ellipse_points(centre, shape):
-    """Closed outline (65 x 2) of the ellipse (p - centre)^T shape^-1 (p - centre) = 1."""
+    """A closed polygon (65 x 2) on the ellipse (p - centre)^T shape^-1 (p - centre) = 1."""
     return centre + (np.linalg.cholesky(shape) @ CIRCLE).T
 
 
 class Object:
-    """An ellipsoid of the world: `shape` is R diag(a^2, b^2, c^2) R^T."""
+    """An ellipsoid in the world frame; `shape` is R diag(a^2, b^2, c^2) R^T."""
 
     def __init__(self, entry):
         pose = np.array(entry["world_from_object"], dtype=float)
@@ -56,11 +56,11 @@ class Object:
         self.shape = turn @ self.shape @ turn.T
 
     def seen_along(self, axes):
-        """Outline of its parallel projection on two axes of the world."""
+        """The ellipse of its parallel projection onto two axes of the world."""
         return ellipse_points(self.centre[axes], self.shape[np.ix_(axes, axes)])
 
     def seen_from(self, camera, cam_from_world):
-        """Outline in undistorted pixels, or None unless all of it is in front of the camera."""
+        """Its projected ellipse, undistorted px; None unless all of it is in front of the camera."""
         turn = rotation(cam_from_world[3:])
         centre = turn @ self.centre + cam_from_world[:3]
         shape = turn @ self.shape @ turn.T
@@ -74,19 +74,19 @@ class Object:
 
 
 def read_objects(path):
-    """The camera and the objects of objects.json; ({}, []) where there is none."""
+    """The camera and the objects of objects.json; ({}, []) if the file does not exist."""
     if not path.exists():
         return {}, []
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         return content["camera"], [Object(entry) for entry in content["objects"]]
     except (OSError, ValueError, KeyError, TypeError, IndexError, np.linalg.LinAlgError) as error:
-        reason = f"no {error}" if isinstance(error, KeyError) else error
-        raise InputError(f"{path}: not readable as objects.json: {reason}") from error
+        reason = f"no key {error}" if isinstance(error, KeyError) else error
+        raise InputError(f"{path}: not a valid objects.json: {reason}") from error
 
 
 def draw_from_afar(plot, objects, axes):
-    """The mapped objects in a view along the third axis."""
+    """Draws the mapped objects as they look along the third axis."""
     for item in objects:
         if item.is_mapped:
             colour = colour_of(item.label)
@@ -96,7 +96,7 @@ def draw_from_afar(plot, objects, axes):
 
 
 def distort(points, camera):
-    """Raw pixels of undistorted ones (n x 2), by Brown's model."""
+    """Raw pixels of undistorted pixels (n x 2) by Brown's distortion model."""
     x = (points[:, 0] - camera["cx"]) / camera["fx"]
     y = (points[:, 1] - camera["cy"]) / camera["fy"]
     k1, k2, p1, p2, k3 = (camera.get(key, 0.0) for key in ("k1", "k2", "p1", "p2", "k3"))
@@ -108,7 +108,7 @@ def distort(points, camera):
 
 
 def image_list(sequence):
-    """Stamps and paths of the images that rgb.txt of the sequence names."""
+    """Stamps and paths of the images that are listed in rgb.txt of the sequence."""
     path = pathlib.Path(sequence) / "rgb.txt"
     try:
         rows = [line.split() for line in path.read_text(encoding="utf-8").splitlines()]
@@ -116,36 +116,36 @@ def image_list(sequence):
         stamps = np.array([float(row[0]) for row in rows])
         files = [path.parent / row[1] for row in rows]
     except (OSError, ValueError, IndexError) as error:
-        raise InputError(f"{path}: no list of images, `stamp file` a line: {error}; "
-                         "--sequence says where they are") from error
+        raise InputError(f"{path}: not a list of images with one line `stamp file` per image: "
+                         f"{error}; give the folder of the images by --sequence") from error
     if not files:
-        raise InputError(f"{path}: names no image")
+        raise InputError(f"{path}: lists no images")
     return stamps, files
 
 
 def choose_evenly(stamps, count):
-    """`count` of the stamps, or all if they are fewer, the first and the last among them."""
+    """`count` evenly chosen stamps, with the first and the last; all if there are fewer."""
     stamps = sorted(stamps)
     picks = np.linspace(0, len(stamps) - 1, min(count, len(stamps)))
     return [stamps[int(round(pick))] for pick in picks]
 
 
 def draw_overlay(plot, image, stamp, camera, objects):
-    """Outlines of the mapped objects on one image, with the hulls of those that it was seen by."""
+    """Draws the projected ellipses of the mapped objects and the observed hulls on one image."""
     plot.imshow(image, cmap="gray")
     pose = next(np.array(item.views[stamp]["cam_from_world"], dtype=float) for item in objects
                 if stamp in item.views)
     for item in objects:
-        outline = item.seen_from(camera, pose) if item.is_mapped else None
+        ellipse = item.seen_from(camera, pose) if item.is_mapped else None
         view, colour = item.views.get(stamp), colour_of(item.label)
         if view:
             hull = distort(np.array(view["hull"] + view["hull"][:1], dtype=float), camera)
             plot.plot(*hull.T, color="white", linewidth=2.0)
             plot.plot(*hull.T, color=colour, linewidth=1.0, linestyle=":")
-        if outline is not None:
-            outline = distort(outline, camera)
-            plot.plot(*outline.T, color=colour, linewidth=1.6, linestyle="-" if view else "--")
-            plot.text(*outline.mean(axis=0), item.name, color="white", fontsize=7, ha="center",
+        if ellipse is not None:
+            ellipse = distort(ellipse, camera)
+            plot.plot(*ellipse.T, color=colour, linewidth=1.6, linestyle="-" if view else "--")
+            plot.text(*ellipse.mean(axis=0), item.name, color="white", fontsize=7, ha="center",
                       bbox={"color": colour, "alpha": 0.6, "pad": 1}, clip_on=True)
     height, width = image.shape[:2]
     plot.set_xlim(-0.5, width - 0.5)
@@ -155,7 +155,10 @@ def draw_overlay(plot, image, stamp, camera, objects):
 
 
 def draw_overlays(path, sequence, camera, objects, count):
-    """Draws `count` keyframes with objects, evenly chosen, into one picture. Returns how many."""
+    """Draws `count` evenly chosen keyframes with objects into one picture.
+
+    Returns the number of keyframes that were drawn.
+    """
     chosen = choose_evenly({stamp for item in objects for stamp in item.views}, count)
     if not chosen:
         return 0
@@ -169,11 +172,12 @@ def draw_overlays(path, sequence, camera, objects, count):
     for plot, stamp in zip(plots.flat, chosen):
         nearest = int(np.argmin(np.abs(stamps - stamp)))
         if abs(stamps[nearest] - stamp) > 1e-3:
-            raise InputError(f"{sequence}/rgb.txt: no image of {stamp:.6f}; is it the run's own?")
+            raise InputError(f"{sequence}/rgb.txt: no image of {stamp:.6f}; "
+                             "is it the sequence of the run?")
         try:
             image = plt.imread(files[nearest])
         except (OSError, SyntaxError, ValueError) as error:
-            raise InputError(f"{files[nearest]}: no image: {error}") from error
+            raise InputError(f"{files[nearest]}: not an image: {error}") from error
         draw_overlay(plot, image, stamp, camera, objects)
     figure.savefig(path, dpi=100)
     plt.close(figure)

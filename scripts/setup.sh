@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: scripts/setup.sh
 #
-# Installs the Debian 12 packages of Thirdparty/apt-packages.txt, as root or with sudo. Does nothing
-# where all of them are installed.
+# Installs the Debian 12 packages that Thirdparty/apt-packages.txt lists, as root or with sudo. Does
+# nothing if all of them are installed.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 list="$top/Thirdparty/apt-packages.txt"
 
-# Another system than Debian 12 is told so, but may still have all that is needed.
+# On another system than Debian 12 a note is printed. It may still have everything that is needed.
 check_system() {
   local system="unknown" name="an unknown system"
   if [ -r /etc/os-release ]; then
@@ -21,7 +21,7 @@ check_system() {
     printf 'CMake will check the versions of the libraries.\n' >&2
   fi
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-    fail "no dpkg-query or apt-get here: install what corresponds to the packages of $list by hand"
+    fail "dpkg-query or apt-get is missing; install the equivalents of the packages in $list by hand"
   fi
 }
 
@@ -29,7 +29,7 @@ read_packages() {
   sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$list"
 }
 
-# Those packages of stdin that are not installed.
+# Prints those packages from stdin that are not installed.
 missing_packages() {
   local package status
   while read -r package; do
@@ -42,7 +42,7 @@ install_packages() {
   local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null ||
-      fail "not root, and no sudo; run as root: apt-get install --no-install-recommends $*"
+      fail "not root and sudo is missing; run as root: apt-get install --no-install-recommends $*"
     as_root=(sudo)
   fi
   "${as_root[@]}" apt-get update || fail "apt-get update failed"

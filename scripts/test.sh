@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: scripts/test.sh [--preset NAME]...
 #
-# Sets up, builds and tests. The preset is release if none is given; others are debug, asan, tsan and
-# tidy (which only builds: clang-tidy runs on every file). Several are taken one after the other.
+# Installs packages, builds and runs all tests with each of the given presets, one after the other.
+# NAME is release (default), debug, asan, tsan or tidy. The preset tidy runs clang-tidy on every file
+# while it builds, and runs no tests.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$top"

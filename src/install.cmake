@@ -1,5 +1,5 @@
-# The installed tree: headers, library, settings of known cameras, and a package for
-# find_package(hullslam). Programs are installed where they are defined (Examples).
+# Installs the public headers, the library, the settings of known cameras, and a CMake package for
+# find_package(hullslam). Examples/CMakeLists.txt installs the programs.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(HULLSLAM_INSTALL_CONFIGDIR ${CMAKE_INSTALL_DATADIR}/hullslam/config)

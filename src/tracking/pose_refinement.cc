@@ -6,6 +6,7 @@
 #include "frame/point_measurement.h"
 
 namespace hullslam {
+
 PoseEstimate RefinePose(const Frame& frame, const Map& map, const TrackingContext& context,
                         std::span<const PoseObject> objects, PoseEstimate estimate) {
   std::vector<PoseObservation> observations;

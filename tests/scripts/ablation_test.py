@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tests of scripts/ablation.py, with a made-up program in place of rgbd_tum."""
+"""Tests of scripts/ablation.py with a small program in place of rgbd_tum."""
 
 import json
 import pathlib
@@ -13,7 +13,7 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "ablation.py"
 sys.path.insert(0, str(SCRIPT.parent))
 import ablation  # noqa: E402
 
-# Its ATE is 0.01 + 0.001 * seed, twice that with objects.residual=bad. It counts its calls.
+# Its ATE is 0.01 + 0.001 * seed, or twice that with objects.residual=bad. It logs its calls.
 PROGRAM = """#!/usr/bin/python3
 import json, pathlib, sys
 arguments = sys.argv[1:]
@@ -45,14 +45,14 @@ class VariantTest(unittest.TestCase):
                          ("p", ["--preset=paper", "--set", "x=1"]))
         self.assertEqual(ablation.parse_variant("c:list=a\\,b"), ("c", ["--set", "list=a,b"]))
 
-    def test_others_are_refused(self):
+    def test_malformed_variants_are_refused(self):
         for text in ("a", ":x=1", "a/b:x=1", "a:x", "a:=1", "a:x="):
             with self.subTest(text), self.assertRaises(ablation.InputError):
                 ablation.parse_variant(text)
 
 
 class FiguresTest(unittest.TestCase):
-    def test_mean_and_deviation_of_what_is_known(self):
+    def test_mean_and_deviation_of_known_values(self):
         runs = [{"trajectory": {"ate_rmse_m": ate}, "objects": None} for ate in (1.0, 3.0, None)]
         row = ablation.collect(runs)
         self.assertEqual(row["ATE m"]["mean"], 2.0)
@@ -95,7 +95,7 @@ class AblationTest(unittest.TestCase):
         self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
         self.assertIn(part, result.stderr)
 
-    def test_every_variant_and_seed_is_run_and_tabled(self):
+    def test_every_variant_and_seed_is_run_and_in_the_table(self):
         result = self.run_script("--seeds", "3", "--common", "--masks 'a b'", "--variant", "good:",
                                  "--variant", "bad:objects.residual=bad")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -141,13 +141,13 @@ class AblationTest(unittest.TestCase):
         self.run_script("--seeds", "1", "--variant", "v:x=1")
         self.assertEqual(len(self.calls()), 5)
 
-    def test_broken_results_are_made_anew(self):
+    def test_runs_with_broken_results_are_repeated(self):
         self.run_script("--seeds", "1", "--variant", "v:")
         (self.dir / "out" / "desk" / "v" / "seed-0" / "summary.json").write_text("{")
         self.assertEqual(self.run_script("--seeds", "1", "--variant", "v:").returncode, 0)
         self.assertEqual(len(self.calls()), 2)
 
-    def test_failed_runs_are_told_and_tried_again(self):
+    def test_failed_runs_are_reported_and_repeated(self):
         arguments = ["--seeds", "2", "--variant", "good:", "--variant", "crash:mode=crash"]
         result = self.run_script(*arguments)
         self.assertEqual(result.returncode, 1)
@@ -158,7 +158,7 @@ class AblationTest(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(len(self.calls()), 6)
 
-    def test_bad_input_ends_it_at_once(self):
+    def test_bad_input_ends_the_script_at_once(self):
         self.assert_refused(self.run_script("--variant", "v:mode=refuse"), "mode is 'refuse'")
         self.assertEqual(len(self.calls()), 1)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/check_test_mirror.py on small trees, most of them broken."""
+"""Tests of scripts/check_test_mirror.py on small trees; most of them break one rule."""
 
 import pathlib
 import sys
@@ -41,13 +41,13 @@ class CheckTestMirrorTest(unittest.TestCase):
         self.assertEqual(len(faults), 2, faults)
         self.assertIn("tests/map/id_test.cc: neither", faults[1])
 
-    def test_test_of_nothing(self):
+    def test_test_without_header(self):
         faults = faults_of({HEADER: "", TEST: BODY, "tests/util/gone_test.cc": BODY})
         self.assertEqual(len(faults), 1, faults)
         self.assertIn("gone_test.cc: neither", faults[0])
 
     def test_file_without_a_test(self):
-        self.assertEqual(faults_of({HEADER: "", TEST: "// TEST(\n"}), [f"{TEST}: holds no test"])
+        self.assertEqual(faults_of({HEADER: "", TEST: "// TEST(\n"}), [f"{TEST}: contains no test"])
 
     def test_empty_tree_fails(self):
         self.assertEqual(len(faults_of({})), 1)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/download_tum.sh against a file server of its own that can resume."""
+"""Tests of scripts/download_tum.sh with a local file server that can resume downloads."""
 
 import functools
 import http.server
@@ -20,7 +20,7 @@ LISTS = {name: STAMPS for name in ("rgb.txt", "depth.txt", "groundtruth.txt")}
 
 
 class Handler(http.server.SimpleHTTPRequestHandler):
-    """Serves files, and the rest of one where `Range: bytes=N-` asks for it."""
+    """Serves files, or the rest of a file from byte N if `Range: bytes=N-` requests that."""
 
     def log_message(self, format, *args):  # noqa: A002
         pass
@@ -41,7 +41,7 @@ class Handler(http.server.SimpleHTTPRequestHandler):
 
 
 def archive(files, links=()):
-    """The bytes of a tgz; noise keeps it long enough to be cut."""
+    """The bytes of a tgz file. Random data make it long enough to be cut short in tests."""
     noise = random.Random(1).randbytes(4000)
     data = io.BytesIO()
     with tarfile.open(fileobj=data, mode="w:gz") as tar:
@@ -101,14 +101,14 @@ class DownloadTumTest(unittest.TestCase):
         self.serve(archive(sequence()))
         self.assert_whole(self.download())
 
-    def test_every_way_to_write_a_name(self):
+    def test_every_accepted_form_of_a_name(self):
         self.serve(archive(sequence()))
         for name in ("fr1/xyz", "fr1_xyz", FOLDER):
             with self.subTest(name):
                 self.assertEqual(self.download(name).returncode, 0)
-        self.assertEqual(len(self.server.requests), 1, "what is there is not fetched again")
+        self.assertEqual(len(self.server.requests), 1, "downloaded only once")
 
-    def test_goes_on_where_it_stopped(self):
+    def test_resumes_an_interrupted_download(self):
         data = archive(sequence())
         self.serve(data)
         self.to.mkdir()
@@ -116,7 +116,7 @@ class DownloadTumTest(unittest.TestCase):
         self.assert_whole(self.download())
         self.assertEqual([span for _, span in self.server.requests], ["bytes=1000-"])
 
-    def test_starts_again_where_the_server_cannot_resume(self):
+    def test_starts_again_if_the_server_cannot_resume(self):
         data = archive(sequence())
         self.serve(data)
         self.server.resumes = False
@@ -124,18 +124,18 @@ class DownloadTumTest(unittest.TestCase):
         (self.to / f"{FOLDER}.tgz.part").write_bytes(data[:1000])
         self.assert_whole(self.download())
 
-    def test_part_that_was_already_whole(self):
+    def test_part_file_that_is_already_complete(self):
         data = archive(sequence())
         self.serve(data)
         self.to.mkdir()
         (self.to / f"{FOLDER}.tgz.part").write_bytes(data)
         self.assert_whole(self.download())
 
-    def test_broken_connection_keeps_what_is_there(self):
+    def test_broken_connection_keeps_the_part_file(self):
         self.to.mkdir()
         part = self.to / f"{FOLDER}.tgz.part"
         part.write_bytes(b"half")
-        self.assert_refused(self.download(), "broke off")
+        self.assert_refused(self.download(), "interrupted")
         self.assertEqual(part.read_bytes(), b"half")
 
     def test_missing_on_the_server(self):
@@ -155,7 +155,7 @@ class DownloadTumTest(unittest.TestCase):
 
     def test_links(self):
         self.serve(archive(sequence(), links=[(f"{FOLDER}/link", "/etc")]))
-        self.assert_refused(self.download(), "holds links")
+        self.assert_refused(self.download(), "contains links")
 
     def test_no_sequence_inside(self):
         self.serve(archive(sequence(**{"depth.txt": ""})))

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/object_table.py: its angle, a made-up run, and broken files."""
+"""Tests of scripts/object_table.py: the angle, the table of a small run, and broken files."""
 
 import json
 import pathlib
@@ -15,7 +15,7 @@ import object_table  # noqa: E402
 
 
 def make_object(**changes):
-    """Seen from 2 m ahead and, a quarter turn about y further, from 2 m to its right."""
+    """An object that is seen from 2 m in front and from 2 m to its right: 90 degrees apart."""
     half = 0.5**0.5
     # Cameras at (0, 0, 0) and (2, 0, 2): cam_from_world of the second is R with t = -R c.
     views = [{"cam_from_world": [0, 0, 0, 0, 0, 0, 1]},
@@ -41,13 +41,13 @@ class ObjectTableTest(unittest.TestCase):
         self.assertAlmostEqual(object_table.largest_angle(make_object()), 90.0)
         self.assertEqual(object_table.largest_angle(make_object(observations=[])), 0.0)
 
-    def test_a_row_an_object(self):
+    def test_one_row_per_object(self):
         result = self.run_script(make_object(), make_object(id=5, state="candidate"))
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(result.stdout.splitlines()[2:],
                          ["| desk | 4 | cup | 2 | 90 | 0.060 0.050 0.040 | 0.812 | - | 2.50 |"])
 
-    def test_objects_seen_from_little_are_left_out(self):
+    def test_objects_below_the_least_angle_are_left_out(self):
         result = self.run_script(make_object(), arguments=["--min-angle", "91"])
         self.assertEqual(len(result.stdout.splitlines()), 2)
 

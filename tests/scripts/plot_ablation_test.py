@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/plot_ablation.py: what it reads of an ablation, its picture, and broken files."""
+"""Tests of scripts/plot_ablation.py: what it reads, the picture it draws, and broken files."""
 
 import json
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/plot_run.py: its alignment and pairing, a whole made-up run, and broken files."""
+"""Tests of scripts/plot_run.py: alignment and pairing, small complete runs, and broken files."""
 
 import contextlib
 import io
@@ -37,7 +37,10 @@ def ply_bytes(points, colour=(10, 20, 30)):
 
 
 def objects_file(stamps, image_size=(64, 48)):
-    """A sphere of 0.2 m radius, 2 m in front of cameras at the world's origin, and a candidate."""
+    """objects.json with a mapped sphere and a candidate.
+
+    The sphere has a radius of 0.2 m and is 2 m in front of the cameras, which are at the origin.
+    """
     width, height = image_size
     view = {"keyframe": 0, "cam_from_world": [0, 0, 0, 0, 0, 0, 1], "class": "cup", "score": 0.9,
             "cut": False, "box": False, "hull": [[20, 10], [40, 10], [40, 30]], "contour": [],
@@ -56,13 +59,13 @@ class ObjectTest(unittest.TestCase):
         content = objects_file([1.0])
         self.camera, self.sphere = content["camera"], run_objects.Object(content["objects"][0])
 
-    def test_outline_of_a_sphere_ahead_is_the_circle_of_its_tangent_cone(self):
-        outline = self.sphere.seen_from(self.camera, np.array([0, 0, 0, 0, 0, 0, 1.0]))
+    def test_a_sphere_ahead_projects_to_the_circle_of_its_tangent_cone(self):
+        ellipse = self.sphere.seen_from(self.camera, np.array([0, 0, 0, 0, 0, 0, 1.0]))
         radius = 50 * 0.2 / np.sqrt(2.0**2 - 0.2**2)
-        distances = np.linalg.norm(outline - [32, 24], axis=1)
+        distances = np.linalg.norm(ellipse - [32, 24], axis=1)
         np.testing.assert_allclose(distances, radius, rtol=1e-9)
 
-    def test_no_outline_of_what_is_not_in_front(self):
+    def test_no_ellipse_of_an_object_that_is_not_in_front(self):
         for z in (-2.0, -4.0):
             self.assertIsNone(self.sphere.seen_from(self.camera, np.array([0, 0, z, 0, 0, 0, 1.0])))
 
@@ -70,8 +73,8 @@ class ObjectTest(unittest.TestCase):
         self.sphere.shape = np.diag([1.0, 4.0, 9.0])
         self.sphere.move(TURN, np.array([1.0, 2.0, 3.0]))
         np.testing.assert_allclose(self.sphere.centre, [1, 2, 5])
-        outline = self.sphere.seen_along([0, 1]) - [1, 2]
-        np.testing.assert_allclose(np.abs(outline).max(axis=0), [2, 1], atol=1e-9)
+        ellipse = self.sphere.seen_along([0, 1]) - [1, 2]
+        np.testing.assert_allclose(np.abs(ellipse).max(axis=0), [2, 1], atol=1e-9)
 
     def test_distortion_is_browns(self):
         camera = dict(self.camera, k1=0.1, k2=0.0, p1=0.01, p2=0.0, k3=0.0)
@@ -120,7 +123,7 @@ class PlotRunTest(unittest.TestCase):
         stamps = 1000 + np.arange(40) / 30
         positions = np.stack([np.cos(stamps), np.sin(stamps), 0.1 * np.cos(3 * stamps)], axis=1)
         self.write("trajectory.txt", trajectory_text(stamps, positions))
-        # Constant shifts in turn along z leave an error that no alignment removes: 10 mm each.
+        # Shifts of 10 mm, alternately up and down, leave an error that no alignment removes.
         shift = np.where(np.arange(40) % 2, 0.01, -0.01)[:, None] * [0, 0, 1]
         self.write("groundtruth.txt", trajectory_text(stamps + 0.005, positions @ TURN.T + shift))
 
@@ -129,7 +132,7 @@ class PlotRunTest(unittest.TestCase):
         (self.dir / name).write_bytes(data)
 
     def plot(self, *arguments):
-        """As the program would, but without starting a Python for each."""
+        """Runs the script in this process, which is faster than starting a new one."""
         out, errors = io.StringIO(), io.StringIO()
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors):
             code = plot_run.main([str(word) for word in (self.dir, *arguments)])
@@ -222,7 +225,7 @@ class PlotRunTest(unittest.TestCase):
         self.write("sequence/rgb.txt", "one two\n")
         self.assert_refused(self.plot(*overlay, self.dir / "sequence"), "rgb.txt")
         self.write("sequence/rgb.txt", "\n")
-        self.assert_refused(self.plot(*overlay, self.dir / "sequence"), "names no image")
+        self.assert_refused(self.plot(*overlay, self.dir / "sequence"), "lists no images")
         self.assert_refused(self.plot("--overlay", "-1"), "--overlay")
 
     def test_broken_images(self):
@@ -263,7 +266,7 @@ class PlotRunTest(unittest.TestCase):
         good = ply_bytes([[1, 2, 3], [4, 5, 6]])
         for data, part in ((good[:-1], "cut short"), (b"", "not a PLY"), (b"\xff\xd8\xff", "PLY"),
                            (good.replace(b"binary_little_endian", b"ascii"), "binary"),
-                           (good.replace(b"float y", b"list y z"), "not understood")):
+                           (good.replace(b"float y", b"list y z"), "unknown type")):
             with self.subTest(part):
                 self.write("map.ply", data)
                 self.assert_refused(self.plot(), "map.ply", part)

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/setup.sh with stand-ins for dpkg-query, apt-get, id and sudo: it installs nothing here."""
+"""Tests of scripts/setup.sh with replacements for dpkg-query, apt-get, id and sudo, so that nothing
+is installed."""
 
 import os
 import pathlib
@@ -37,13 +38,13 @@ class SetupTest(unittest.TestCase):
     def calls(self):
         return self.log.read_text().splitlines() if self.log.exists() else []
 
-    def test_does_nothing_when_all_is_there(self):
+    def test_does_nothing_if_all_packages_are_installed(self):
         result = self.run_setup(root=False)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("packages are installed", result.stdout)
         self.assertEqual(self.calls(), [])
 
-    def test_installs_only_what_is_missing(self):
+    def test_installs_only_missing_packages(self):
         result = self.run_setup(missing=("ccache", "libceres-dev"))
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(self.calls()[0], "apt-get update")

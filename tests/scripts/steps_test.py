@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/demo.sh and scripts/test.sh in a tree of stand-ins that log how they were called."""
+"""Tests of scripts/demo.sh and scripts/test.sh. Replacements of the programs that these call log
+their arguments."""
 
 import os
 import pathlib
