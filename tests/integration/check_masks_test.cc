@@ -144,7 +144,7 @@ TEST_F(CheckMasks, RunsTellTheFormatAndTheFramesWithout) {
                                               folder_.path() / "masks"};
   const ProgramResult result = RunProgram("rgbd_tum", arguments);
   EXPECT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NE(result.output.find("(yolo-seg), 2 of 4 frames without"), std::string::npos)
+  EXPECT_NE(result.output.find("(yolo-seg), 2 of 4 frames have none"), std::string::npos)
       << result.output;
   EXPECT_NE(ReadFile(out / "summary.json").find("\"masks_format\": \"yolo-seg\""),
             std::string::npos);

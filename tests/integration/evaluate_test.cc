@@ -204,7 +204,7 @@ TEST_F(EvaluateObjects, PrintsTables) {
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   for (const char* const part :
        {"1 mapped, 2 candidates; 1 observations and 1 lines", "mean SIoU 0.98",
-        "0 visible (in 41 masks or more)", "ellipsoid    1 mapped: centre off by 0.0 %"}) {
+        "0 visible (in 41 masks or more)", "ellipsoid    1 mapped: mean centre error 0.0 %"}) {
     EXPECT_NE(result.output.find(part), std::string::npos) << part << " in\n" << result.output;
   }
 }
@@ -214,7 +214,8 @@ TEST_F(EvaluateObjects, ARunWithoutObjectsHasNoMeans) {
   WriteRun();
   const ProgramResult result = RunProgram("evaluate", {"objects", run_});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NE(result.output.find("mean SIoU -, with the mask -"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("mean SIoU - with hulls, - with masks"), std::string::npos)
+      << result.output;
 }
 
 TEST_F(EvaluateObjects, BadInputIsRefusedWithOneLine) {
