@@ -1,5 +1,6 @@
 # cmake -D BUILD_DIR=build/release -D WORK_DIR=... -P run.cmake
-# Installs BUILD_DIR into a fresh prefix, moves it, and builds and runs the consumer project against it.
+# Installs BUILD_DIR into an empty prefix, moves this prefix, then builds and runs the consumer project
+# against it.
 function(run)
   execute_process(COMMAND ${ARGV} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
