@@ -8,12 +8,13 @@
 
 namespace hullslam {
 
-// What all frames of a run have in common.
+// The properties of the camera that are the same for all frames of a run.
 struct Sensor {
   PinholeCamera camera;
   PinholeCamera::Bounds bounds;  // of the undistorted image, px
   ScaleLevels levels;
-  double close_depth = 0.0;  // m; nearer depths are precise enough for a landmark from one view
+  double close_depth =
+      0.0;  // m; smaller depths are precise enough to make a landmark from one view
   double frames_per_second = 30.0;
 
   double baseline() const { return camera.bf / camera.fx; }  // m
