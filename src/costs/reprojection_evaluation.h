@@ -8,10 +8,10 @@
 
 namespace hullslam::internal {
 
-inline constexpr double kMinDepth = 1e-3;  // m; nearer the projection has no meaning
+inline constexpr double kMinDepth = 1e-3;  // m; a nearer point has no usable projection
 
-// Residual and Jacobians of a reprojection error with its first kRows rows: 2 for the pixel, 3 with
-// the disparity.
+// Residual and Jacobians of a reprojection error with kRows rows: 2 for the pixel alone, 3 for the
+// pixel and the disparity.
 template <int kRows>
 bool EvaluateReprojection(const PinholeCamera& camera,
                           const Eigen::Matrix<double, kRows, 1>& measured,

@@ -86,7 +86,7 @@ class FrameBuilderTest : public testing::Test {
   const Sensor sensor_ = DistortedSensor();
 };
 
-TEST_F(FrameBuilderTest, HasOneEntryAKeypointAndItsStamp) {
+TEST_F(FrameBuilderTest, HasOneEntryPerKeypointAndItsStamp) {
   const auto frame = Build(MakeImage());
   EXPECT_EQ(frame->id, FrameId(3));
   EXPECT_EQ(frame->timestamp, 12.5);
