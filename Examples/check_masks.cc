@@ -72,8 +72,8 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       ->required();
   AddMaskFormat(app, arguments.format, "--format,--masks-format");
   app.add_option("--settings", arguments.settings,
-                 "settings file (default: camera.yaml in SEQUENCE; if there is none, the file in "
-                 "config/ for the camera in the sequence's name, such as TUM1.yaml for freiburg1)");
+                 "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
+                 "that fits the folder's name, such as TUM1.yaml for freiburg1)");
   app.add_option(
       "--associations", arguments.tum.associations,
       "file with one pair of images per line: stamp rgb stamp depth (default: images are "

@@ -58,8 +58,8 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
   app.get_option("--masks")->required();
   app.add_option("--settings", arguments.settings,
-                 "settings file (default: camera.yaml in SEQUENCE; if there is none, the file in "
-                 "config/ for the camera in the sequence's name, such as TUM1.yaml for freiburg1)");
+                 "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
+                 "that fits the folder's name, such as TUM1.yaml for freiburg1)");
   app.add_option("--set", arguments.overrides,
                  "key=value: overrides one setting; can be given several times")
       ->take_all()

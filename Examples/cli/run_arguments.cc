@@ -26,8 +26,8 @@ void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::st
                  "SEQUENCE: folder with rgb.txt and depth.txt\n"
                  "or VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS, the arguments of ORB-SLAM2");
   app.add_option("--settings", arguments.settings,
-                 "settings file (default: camera.yaml in SEQUENCE; if there is none, the file in "
-                 "config/ for the camera in the sequence's name, such as TUM1.yaml for freiburg1)");
+                 "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
+                 "that fits the folder's name, such as TUM1.yaml for freiburg1)");
   app.add_option("--vocabulary", arguments.vocabulary,
                  "vocabulary file (this version does not use it)");
   app.add_option(
