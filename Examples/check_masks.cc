@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks the masks of a sequence, counts what they become, and draws it.
+// Checks the masks of a sequence, counts the detections that they give, and can draw them.
 #include <fmt/format.h>
 
 #include <array>
@@ -42,7 +42,7 @@ struct Arguments {
   bool quiet = false;
 };
 
-// What became of the instances of a class.
+// The instances of one class: how many there are, and how many give a detection.
 struct ClassCount {
   size_t instances = 0;
   size_t kept = 0;
@@ -67,21 +67,30 @@ struct Counts {
 
 void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("SEQUENCE", arguments.sequence, "folder with rgb.txt and depth.txt")->required();
-  app.add_option("MASKS", arguments.masks, "folder or JSON file (docs/masks.md)")->required();
+  app.add_option("MASKS", arguments.masks,
+                 "masks of the sequence: a folder or a JSON file (docs/masks.md)")
+      ->required();
   AddMaskFormat(app, arguments.format, "--format,--masks-format");
   app.add_option("--settings", arguments.settings,
-                 "settings file (default: camera.yaml of the sequence, else by its name)");
-  app.add_option("--associations", arguments.tum.associations,
-                 "file of pairs: stamp rgb stamp depth (default: pairs are formed)");
-  app.add_option("--set", arguments.overrides, "key=value: overrides a setting; repeat for more")
+                 "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
+                 "that fits the folder's name, such as TUM1.yaml for freiburg1)");
+  app.add_option(
+      "--associations", arguments.tum.associations,
+      "file with one pair of images per line: stamp rgb stamp depth (default: images are "
+      "paired by their stamps, at most 0.02 s apart)");
+  app.add_option("--set", arguments.overrides,
+                 "key=value: overrides one setting; can be given several times")
       ->take_all()
       ->allow_extra_args(false);
-  app.add_option("--output", arguments.output, "folder for pictures (default: none are drawn)");
-  app.add_option("--every", arguments.every, "draw every n-th frame, and the first")
+  app.add_option("--output", arguments.output,
+                 "folder for the pictures (default: no pictures are drawn)");
+  app.add_option("--every", arguments.every, "draw the first frame and every n-th frame after it")
       ->check(CLI::Range(size_t{1}, size_t{1'000'000'000}).description(""))
       ->capture_default_str();
-  app.add_flag("--quiet", arguments.quiet, "do not show how far it is");
-  app.footer("Exit codes: 0 all masks can be read, 2 some are malformed or bad usage.");
+  app.add_flag("--quiet", arguments.quiet, "do not show the progress");
+  app.footer(
+      "Exit codes: 0 all masks and images can be read, 1 the program failed, 2 some of them cannot "
+      "be read, or bad usage.");
 }
 
 void CountDetections(const FrameMasks& frame, const DetectionResult& result, Counts& counts) {
@@ -112,7 +121,7 @@ void DrawFrame(const fs::path& path, const cv::Mat& grey, const PinholeCamera& c
   WriteFileAtomically(path, std::string(bytes.begin(), bytes.end()));
 }
 
-// A frame whose masks or images cannot be read is a fault.
+// Counts and draws one frame. If its masks or images cannot be read, this is recorded as a fault.
 void CheckFrame(const Arguments& arguments, const SystemOptions& options, const MaskSource& source,
                 const RgbdFramePaths& paths, const MaskFrame& names, Counts& counts) {
   const bool is_drawn = !arguments.output.empty() && counts.frames % arguments.every == 0;
@@ -175,13 +184,14 @@ void PrintFaults(const std::vector<std::string>& faults) {
     fmt::print(stderr, "error: {}\n", faults[i]);
   }
   if (faults.size() > kMostFaultsShown) {
-    fmt::print(stderr, "error: and {} more\n", faults.size() - kMostFaultsShown);
+    fmt::print(stderr, "error: {} more frames cannot be read\n", faults.size() - kMostFaultsShown);
   }
 }
 
 int Run(int argc, char** argv) {
-  CLI::App app("Checks the masks of a sequence, counts what they become, and draws it.",
-               "check_masks");
+  CLI::App app(
+      "Checks the masks of a sequence, counts the detections that they give, and can draw them.",
+      "check_masks");
   Arguments arguments;
   AddOptions(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {
@@ -191,7 +201,7 @@ int Run(int argc, char** argv) {
                                 ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
                                 : arguments.settings;
   SystemOptions options = ReadSettings(settings, arguments.overrides);
-  options.objects.detection.min_keypoints = 0;  // none are extracted here
+  options.objects.detection.min_keypoints = 0;  // no keypoints are extracted here
   const TumSequence sequence = OpenTumSequence(arguments.sequence, arguments.tum);
   const std::vector<MaskFrame> frames = MaskFrames(sequence);
   const auto source = OpenMasks(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Renders a synthetic RGB-D sequence with exact ground truth of camera and objects.
+// Renders a synthetic RGB-D sequence with exact ground truth of the camera and the objects.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -28,24 +28,26 @@ struct Arguments {
 };
 
 void AddOptions(CLI::App& app, Arguments& arguments) {
-  app.add_option("OUT", arguments.folder, "Folder to write: a TUM sequence with ground truth")
+  app.add_option("OUT", arguments.folder,
+                 "folder to create, with a TUM sequence and its ground truth")
       ->required();
-  app.add_option("--scene", arguments.scene, "desk, room, lowtexture or dynamic")
+  app.add_option("--scene", arguments.scene, "scene: desk, room, lowtexture or dynamic")
       ->check(CLI::IsMember({"desk", "room", "lowtexture", "dynamic"}))
       ->capture_default_str();
-  app.add_option("--frames", arguments.frames, "Number of frames (default: 300; room: 600)")
+  app.add_option("--frames", arguments.frames, "number of frames (default: 300; 600 for room)")
       ->check(CLI::Range(1, 100000));
-  app.add_option("--seed", arguments.options.seed, "Seed of textures, hand motion and noise")
+  app.add_option("--seed", arguments.options.seed, "seed of textures, hand motion and noise")
       ->capture_default_str();
-  app.add_option("--threads", arguments.options.threads, "Threads, 0 for all; same bytes with any")
+  app.add_option("--threads", arguments.options.threads,
+                 "number of threads, 0 for one per core; does not change the output")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
-  app.add_flag("--force", arguments.options.force, "Replace a former synthetic sequence in OUT");
-  app.add_flag("--quiet", arguments.quiet, "No progress");
+  app.add_flag("--force", arguments.options.force, "replace an earlier synthetic sequence in OUT");
+  app.add_flag("--quiet", arguments.quiet, "print nothing but errors");
 }
 
-// SIGINT and SIGTERM stay pending instead of ending the program, and are asked for after each
-// frame, so that nothing half written is left behind.
+// Blocks SIGINT and SIGTERM, so that they stay pending and do not end the program.
+// SignalIsPending() asks for them after each frame, so that no half-written sequence is left.
 void HoldSignals() {
   sigset_t held;
   sigemptyset(&held);
@@ -82,7 +84,7 @@ int Render(Arguments& arguments) {
     std::fputc('\n', stderr);
   }
   if (!finished) {
-    std::fprintf(stderr, "error: interrupted; nothing was written\n");
+    std::fprintf(stderr, "error: the program was interrupted; nothing was written\n");
     return kFailed;
   }
   if (!arguments.quiet) {
@@ -95,8 +97,10 @@ int Render(Arguments& arguments) {
 
 int Run(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app("Renders a synthetic RGB-D sequence with exact ground truth of camera and objects.",
-               "make_synthetic");
+  CLI::App app(
+      "Renders a synthetic RGB-D sequence with exact ground truth of the camera and the "
+      "objects.",
+      "make_synthetic");
   AddOptions(app, arguments);
   if (!hullslam::ParseCommandLine(app, argc, argv)) {
     return kDone;

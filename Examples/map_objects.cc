@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Maps objects from masks and known camera poses; needs no images.
+// Maps objects from masks and known camera poses. Colour images are not needed.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -32,7 +32,7 @@
 namespace hullslam {
 namespace {
 
-constexpr double kMaxPoseGap = 0.1;  // s, between the poses that one is interpolated from
+constexpr double kMaxPoseGap = 0.1;  // s, between the two poses that a pose is interpolated from
 
 struct Arguments {
   std::filesystem::path sequence;
@@ -51,27 +51,30 @@ struct Arguments {
 void AddArguments(CLI::App& app, Arguments& arguments) {
   app.add_option(
          "SEQUENCE", arguments.sequence,
-         "folder with rgb.txt (stamps and names; the images may be missing) and, for depth, "
-         "depth.txt")
+         "folder with rgb.txt (the images themselves may be missing) and, to use depth, depth.txt "
+         "with its images")
       ->required();
-  app.add_option("--poses", arguments.poses, "trajectory of the camera in TUM's format")
-      ->required();
+  app.add_option("--poses", arguments.poses, "trajectory of the camera in TUM format")->required();
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
   app.get_option("--masks")->required();
   app.add_option("--settings", arguments.settings,
-                 "settings file (default: camera.yaml of the sequence, else by its name)");
-  app.add_option("--set", arguments.overrides, "key=value: overrides a setting; repeat for more")
+                 "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
+                 "that fits the folder's name, such as TUM1.yaml for freiburg1)");
+  app.add_option("--set", arguments.overrides,
+                 "key=value: overrides one setting; can be given several times")
       ->take_all()
       ->allow_extra_args(false);
-  app.add_option("--output", arguments.output, "folder for the results")->capture_default_str();
+  app.add_option("--output", arguments.output, "folder for the result files")
+      ->capture_default_str();
   app.add_option("--min-distance", arguments.min_distance,
-                 "motion after which a frame is used as a view, m")
+                 "a frame is used if the camera has moved this far since the last used frame, m")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_option("--min-angle", arguments.min_angle, "or rotation, degrees")
+  app.add_option("--min-angle", arguments.min_angle,
+                 "a frame is also used if the camera has turned this far since then, degrees")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_flag("--without-depth", arguments.without_depth, "leave depth images out");
+  app.add_flag("--without-depth", arguments.without_depth, "do not use the depth images");
   AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
   app.set_version_flag("--version", HULLSLAM_VERSION);
@@ -91,7 +94,7 @@ Sensor MakeSensor(const SystemOptions& options) {
   return sensor;
 }
 
-// A frame whose objects are mapped.
+// A frame that is used for mapping.
 struct View {
   size_t frame = 0;  // index in the sequence
   Rigid3 world_from_cam;
@@ -108,8 +111,8 @@ bool HasMoved(const Arguments& arguments, const Rigid3& last, const Rigid3& pose
          angle * 180.0 / std::numbers::pi >= arguments.min_angle;
 }
 
-// The frames at which the camera has moved enough since the last of them. Throws InputError where
-// no frame has a pose.
+// Chooses the frames to use: each one at which the camera has moved enough since the one before.
+// Throws InputError if no frame has a pose.
 Views ChooseViews(const Arguments& arguments, const std::vector<RgbdFramePaths>& frames,
                   const Trajectory& poses) {
   Views chosen;
@@ -123,14 +126,15 @@ Views ChooseViews(const Arguments& arguments, const std::vector<RgbdFramePaths>&
     }
   }
   if (chosen.views.empty()) {
-    throw InputError(fmt::format("{}: no frame of {} has a pose within {} s of others",
-                                 arguments.poses.string(), arguments.sequence.string(),
-                                 kMaxPoseGap));
+    throw InputError(
+        fmt::format("{}: no frame of {} has a pose, expected poses before and after a frame "
+                    "that are at most {} s apart",
+                    arguments.poses.string(), arguments.sequence.string(), kMaxPoseGap));
   }
   return chosen;
 }
 
-// Maps the objects in the views.
+// Maps objects from one view after the other.
 class ObjectRun {
  public:
   explicit ObjectRun(const SystemOptions& options)
@@ -242,7 +246,7 @@ RunSummary Summarize(const Arguments& arguments, const Inputs& inputs, const Seq
 void WriteOutputs(const Arguments& arguments, const ObjectRun& run, const ObjectReport& report,
                   const RunSummary& summary) {
   std::vector<FileContent> files = ObjectFiles(arguments.output, report);
-  // The poses of the views: what evaluate and plot_run look for in the folder of any run.
+  // The poses of the views, because evaluate and plot_run expect these files in every run's folder.
   const std::string poses = FormatTrajectory(KeyframeTrajectory(run.map()));
   files.push_back({arguments.output / "trajectory.txt", poses});
   files.push_back({arguments.output / "keyframes.txt", poses});
@@ -251,7 +255,8 @@ void WriteOutputs(const Arguments& arguments, const ObjectRun& run, const Object
 }
 
 int Run(int argc, char** argv) {
-  CLI::App app("Maps objects from masks and known camera poses; needs no images.", "map_objects");
+  CLI::App app("Maps objects from masks and known camera poses. Colour images are not needed.",
+               "map_objects");
   Arguments arguments;
   AddArguments(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {

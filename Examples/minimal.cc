@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HullSLAM as a library: frames from memory in, poses out. A plane with a random texture, 1 m away,
-// is seen by a camera that moves to the right by 1 cm a frame.
+// Uses HullSLAM as a library: gives it frames from memory and prints the poses. The camera looks at
+// a plane with a random texture, 1 m away, and moves to the right by 1 cm per frame.
 #include <cstdio>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -19,7 +19,7 @@ int main() {
   cv::resize(texture, texture, cv::Size(800, 480), 0.0, 0.0, cv::INTER_CUBIC);
   const cv::Mat depth(480, 640, CV_32FC1, cv::Scalar(1.0));
   for (int i = 0; i < 20; ++i) {
-    const cv::Mat image = texture(cv::Rect(5 * i, 0, 640, 480)).clone();  // 5 px are 1 cm
+    const cv::Mat image = texture(cv::Rect(5 * i, 0, 640, 480)).clone();  // 5 px correspond to 1 cm
     system.Track(i / 30.0, image, depth);
   }
   system.Finish();

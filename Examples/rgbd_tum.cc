@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// RGB-D SLAM on a sequence in TUM's format.
+// Runs RGB-D SLAM on a sequence in TUM format.
 #include "cli/program.h"
 #include "cli/rgbd_run.h"
 #include "cli/run_arguments.h"
@@ -7,7 +7,7 @@
 int main(int argc, char** argv) {
   return hullslam::RunMain(
       [](int count, char** words) {
-        CLI::App app("RGB-D SLAM on a sequence in TUM's format.", "rgbd_tum");
+        CLI::App app("Runs RGB-D SLAM on a sequence in TUM format.", "rgbd_tum");
         hullslam::RunArguments arguments;
         std::vector<std::string> positional;
         hullslam::AddRunArguments(app, arguments, positional);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Local bundle adjustment around the newest keyframe of a made-up map, with the numbers of
-// keyframes that mapping uses by default and with fewer.
+// Local bundle adjustment around the newest keyframe of a synthetic map, with as many keyframes as
+// mapping uses by default, and with fewer.
 #include <benchmark/benchmark.h>
 
 #include "hullslam/mapping/mapping_options.h"
@@ -31,7 +31,7 @@ BENCHMARK(LocalBundleAdjustment)
     ->Arg(MappingOptions().local_keyframes)
     ->Unit(benchmark::kMillisecond);
 
-// The same with the quadrics of objects, about range(0) in each image.
+// The same with objects, of which each image shows about range(0).
 void ObjectBundleAdjustment(benchmark::State& state) {
   const Sensor sensor = BenchSensor();
   const double spacing = 2.0 / static_cast<double>(state.range(0));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Masks to detections (hulls, lines, depth points) of a frame with ten instances of about 170
-// outline points, for each primitive.
+// Turns the masks of one frame into detections (hulls, lines, depth points), for each primitive.
+// There are ten masks with 170 outline points each.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ PinholeCamera BenchCamera() {
   return camera;
 }
 
-// Ragged ellipses on a grid of 5 x 2, as a network outlines things.
+// Ellipses with ragged outlines, as a network gives them, on a grid of 5 x 2.
 std::vector<InstanceMask> BenchMasks() {
   std::vector<InstanceMask> masks;
   for (int i = 0; i < 10; ++i) {

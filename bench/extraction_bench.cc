@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Extraction of ORB features and its stages, on the image given as first argument (a made-up one
-// without): extraction_bench [IMAGE] [benchmark options]
+// Extraction of ORB features, and each of its stages, on IMAGE or, without it, on a drawn image:
+//   extraction_bench [IMAGE] [benchmark options]
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -49,7 +49,7 @@ void Pyramid(benchmark::State& state, const cv::Mat& image) {
   }
 }
 
-// The stages below run over all levels, as in an extraction.
+// Runs over all levels of the pyramid, as in an extraction.
 void Corners(benchmark::State& state, const cv::Mat& image) {
   ImagePyramid pyramid(ScaleLevels::Create(8, 1.2));
   pyramid.Build(image);
@@ -162,7 +162,7 @@ int main(int argc, char** argv) {
   const cv::Mat image =
       argc > 1 ? cv::imread(argv[1], cv::IMREAD_GRAYSCALE) : hullslam::MakeImage();
   if (image.empty()) {
-    std::fprintf(stderr, "extraction_bench: cannot read the image %s\n", argv[1]);
+    std::fprintf(stderr, "error: %s: the file cannot be read as an image\n", argv[1]);
     return 2;
   }
   hullslam::Register(image);

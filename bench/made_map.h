@@ -27,8 +27,8 @@ inline Sensor BenchSensor() {
   return sensor;
 }
 
-// Frame `number` of a camera at `cam_from_world` that sees `points` with 0.5 px of noise. `seen`
-// gets the point of every keypoint.
+// The frame with this number, of a camera at `cam_from_world` that sees `points` with 0.5 px of
+// noise. Appends to `seen` the index of the point that each keypoint shows.
 inline std::shared_ptr<const Frame> MakeBenchFrame(uint32_t number, const Sensor& sensor,
                                                    const Rigid3& cam_from_world,
                                                    const std::vector<Eigen::Vector3d>& points,
@@ -56,7 +56,7 @@ inline std::shared_ptr<const Frame> MakeBenchFrame(uint32_t number, const Sensor
   return frame;
 }
 
-// The objects in front of the wall of MakeBenchMap, `spacing` m apart.
+// Objects in front of the wall of MakeBenchMap, `spacing` m apart.
 inline std::vector<Ellipsoid> BenchObjects(uint32_t keyframes, double spacing) {
   std::vector<Ellipsoid> ellipsoids;
   for (double x = -1.0; x < 0.1 * keyframes + 1.0; x += spacing) {
@@ -66,8 +66,8 @@ inline std::vector<Ellipsoid> BenchObjects(uint32_t keyframes, double spacing) {
   return ellipsoids;
 }
 
-// What of the objects a camera sees, 16 tangents and 100 depth points each; `seen` gets the object
-// of every detection.
+// The detections of the objects that a camera sees, each with 16 tangents and 100 depth points.
+// Appends to `seen` the index of the object of each detection.
 inline std::vector<Detection> DetectBenchObjects(const Sensor& sensor, const Rigid3& cam_from_world,
                                                  const std::vector<Ellipsoid>& objects,
                                                  std::vector<size_t>& seen) {
@@ -94,9 +94,10 @@ inline std::vector<Detection> DetectBenchObjects(const Sensor& sensor, const Rig
   return detections;
 }
 
-// A camera that moves sideways past a wall of random points, a keyframe every 10 cm. Each sees
-// about 800 points, and each point is seen by about 25 keyframes. The positions of the landmarks
-// are 1 cm off; their ids are in the order of the way, as in mapping.
+// The map of a camera that moves sideways along a wall of random points, with a keyframe every
+// 10 cm. Each keyframe sees about 800 points, and each point is seen by about 25 keyframes. The
+// positions of the landmarks have an error of 1 cm (standard deviation). Their ids increase along
+// the wall, as they would in mapping.
 inline Map MakeBenchMap(uint32_t keyframes, const Sensor& sensor,
                         const std::vector<Ellipsoid>& objects = {}) {
   constexpr double kSpacing = 0.1;  // m

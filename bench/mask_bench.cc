@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Masks of one frame, of the size that a real network gives: from text to outlines, and on to
-// lines.
+// Reads the masks of one frame from text, and turns them into detections with lines. The masks have
+// about as many points as those of a real network.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -19,9 +19,9 @@ namespace hullslam {
 namespace {
 
 constexpr int kInstances = 10;
-constexpr int kPoints = 200;  // a mask; the median of fr1_xyz is 142
+constexpr int kPoints = 200;  // per mask; the median of fr1_xyz is 142
 
-// A folder with one frame's file; it is removed at the end.
+// A folder with the mask file of one frame. The destructor removes it.
 class MaskFile {
  public:
   MaskFile() {

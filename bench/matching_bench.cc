@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The three searches for matches, on two frames of 1000 made-up keypoints with noise.
+// The three kinds of matching, on two frames with 1000 random keypoints each.
 #include <benchmark/benchmark.h>
 
 #include <cstdint>
@@ -17,8 +17,9 @@ namespace {
 
 constexpr size_t kKeypoints = 1000;
 
-// Frame b sees what frame a sees 10 px further left, with 20 bits changed. The depths that would
-// hold such a disparity are all alike, which does not matter for the time.
+// Frame b has the keypoints of frame a, 10 px further to the left and with 20 bits of each
+// descriptor flipped. An equal shift means that all points have the same depth, which does not
+// matter for the time.
 struct Frames {
   FrameFeatures a;
   FrameFeatures b;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pose of one frame from made-up observations: noise of 1 px, a tenth of them wrong, the start
-// as far off as a motion model is.
+// Estimates the pose of one frame from synthetic observations, which have a noise of 1 px. One in
+// ten is an outlier. The start is as far from the true pose as the prediction of a motion model.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -55,7 +55,7 @@ BENCHMARK(PoseOptimization)
     ->Arg(1000)
     ->Unit(benchmark::kMillisecond);
 
-// With the outlines of eight objects besides, 16 lines each.
+// The same with eight objects of 16 lines each.
 void JointPoseOptimization(benchmark::State& state) {
   const auto observations = MakeObservations(static_cast<size_t>(state.range(0)));
   const Detection detection;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Publishing the map: the copy itself, and what writing after it costs, when chunks that the
-// snapshot shares are cloned.
+// The cost of publishing the map: of the copy itself, and of the writes after it, which clone the
+// chunks that the snapshot shares.
 #include <benchmark/benchmark.h>
 
 #include <vector>
@@ -24,7 +24,7 @@ void SnapshotCopy(benchmark::State& state) {
 }
 BENCHMARK(SnapshotCopy)->ArgName("keyframes")->Arg(30)->Arg(300)->Unit(benchmark::kMicrosecond);
 
-// As after a local bundle adjustment: the landmarks of the last 20 keyframes get new positions.
+// Writes to all landmarks that one of the last 20 keyframes sees, as local bundle adjustment does.
 void WriteAfterSnapshot(benchmark::State& state) {
   Map map = MakeBenchMap(static_cast<uint32_t>(state.range(0)), BenchSensor());
   std::vector<LandmarkId> written;

@@ -7,7 +7,8 @@
 namespace hullslam {
 namespace {
 
-// A signal handler can reach nothing but a lock-free variable.
+// A signal handler may only use lock-free variables, and it gets no argument of ours, so this is a
+// global variable.
 static_assert(std::atomic<bool>::is_always_lock_free);
 Cancellation interruption;
 

@@ -5,8 +5,10 @@
 
 namespace hullslam {
 
-// Lets SIGINT and SIGTERM ask for an end instead of ending the program; the second one ends it.
+// From now on SIGINT and SIGTERM do not end the program, but request that it stops early. A second
+// signal of the same kind ends it.
 void CatchInterrupts();
+// The request that the signals make.
 const Cancellation& Interruption();
 bool IsInterrupted();
 

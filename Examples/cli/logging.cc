@@ -14,7 +14,7 @@ void AddDebugFlag(CLI::App& app) {
         spdlog::set_pattern("%l: %v");
         spdlog::set_level(spdlog::level::debug);
       },
-      "log to stderr what becomes of every object, and why");
+      "log to stderr what happens to each object, and why");
 }
 
 }  // namespace hullslam

@@ -5,7 +5,8 @@
 
 namespace hullslam {
 
-// Adds --debug: the library's log, down to what becomes of every object, goes to stderr.
+// Adds --debug, which sends the library's log to stderr, including its debug messages on what
+// happens to each object.
 void AddDebugFlag(CLI::App& app);
 
 }  // namespace hullslam

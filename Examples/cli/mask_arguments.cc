@@ -12,12 +12,14 @@ namespace hullslam {
 
 void AddMaskFormat(CLI::App& app, std::string& format, const std::string& names) {
   app.add_option(names, format,
-                 fmt::format("{} (default: detected)", fmt::join(MaskFormatNames(), ", ")))
+                 fmt::format("format of the masks: {} (default: detected from the files)",
+                             fmt::join(MaskFormatNames(), ", ")))
       ->check(CLI::IsMember(MaskFormatNames()).description(""));
 }
 
 void AddMaskArguments(CLI::App& app, std::filesystem::path& path, std::string& format) {
-  app.add_option("--masks", path, "masks of the objects: a folder or a JSON file (docs/masks.md)");
+  app.add_option("--masks", path,
+                 "instance masks of the objects: a folder or a JSON file (docs/masks.md)");
   AddMaskFormat(app, format, "--masks-format");
 }
 
@@ -27,7 +29,8 @@ SequenceMasks::SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> 
     source_ = OpenMasks(request, frames_);
     missing_ = CheckMasks(*source_, frames_);
   } else if (!request.format.empty()) {
-    throw InputError(fmt::format("--masks-format is '{}' without --masks", request.format));
+    throw InputError(fmt::format("--masks-format is '{}' without --masks, expected both or neither",
+                                 request.format));
   }
 }
 
@@ -41,7 +44,7 @@ std::optional<std::string> SequenceMasks::format() const {
 
 std::string SequenceMasks::Describe() const {
   return source_ == nullptr ? std::string("no masks")
-                            : fmt::format("masks: {} ({}), {} of {} frames without", path_,
+                            : fmt::format("masks: {} ({}), {} of {} frames have none", path_,
                                           source_->format(), missing_, frames_.size());
 }
 

@@ -13,22 +13,23 @@
 
 namespace hullslam {
 
-// Adds --masks and --masks-format, which write to these two; they must outlive the app.
+// Adds --masks and --masks-format, which write to `path` and `format`. Both must outlive the app.
 void AddMaskArguments(CLI::App& app, std::filesystem::path& path, std::string& format);
-// The format alone, by the option's names, for programs whose masks are an argument.
+// Adds only the option for the format, under the given names, for programs that take the masks as a
+// positional argument.
 void AddMaskFormat(CLI::App& app, std::string& format, const std::string& names);
 
-// The masks of a sequence, all checked before the first is asked for; none for an empty path.
+// The masks of a sequence. The constructor checks all of them. With an empty path there are none.
 class SequenceMasks {
  public:
-  // Throws InputError for what OpenMasks() or CheckMasks() refuses, and for a format without a
-  // path.
+  // Throws InputError if OpenMasks() or CheckMasks() refuses the masks, and if there is a format
+  // but no path.
   SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> frames);
 
-  // Of one of the frames, by its index; may be called by another thread.
+  // The masks of the frame with this index. May be called by another thread.
   std::vector<InstanceMask> Read(size_t frame) const;
   std::optional<std::string> format() const;
-  std::string Describe() const;  // "masks: yolo-seg of 798 frames, 0 frames without"
+  std::string Describe() const;  // "masks: PATH (yolo-seg), 0 of 798 frames have none"
 
  private:
   std::string path_;

@@ -14,8 +14,8 @@ using Eigen::Vector2d;
 
 constexpr int kScale = 2;
 constexpr int kShift = 4;               // fractional bits of drawn coordinates
-constexpr double kLongestPiece = 24.0;  // px, of a drawn line to either side of where it touches
-constexpr double kTick = 4.0;           // px
+constexpr double kLongestPiece = 24.0;  // px, drawn of a line on either side of its touching point
+constexpr double kTick = 4.0;           // px, the mark that shows the outer side of a line
 
 const cv::Scalar kWhite(255, 255, 255);
 const cv::Scalar kRed(60, 60, 255);
@@ -23,7 +23,7 @@ const cv::Scalar kYellow(0, 230, 255);
 const cv::Scalar kGreen(60, 220, 60);
 const cv::Scalar kOrange(0, 130, 255);
 
-// The sub-pixel place, in the picture, of a point of the raw image.
+// Position in the picture of a point of the raw image, with kShift fractional bits.
 cv::Point ToPicture(const Vector2d& raw) {
   const Vector2d scaled = ((raw.array() + 0.5) * kScale - 0.5) * (1 << kShift);
   return {cvRound(scaled.x()), cvRound(scaled.y())};
@@ -50,7 +50,7 @@ void DrawText(cv::Mat& picture, const Vector2d& raw, const std::string& text,
   }
 }
 
-// Where the line supports the hull.
+// The corner of the hull that lies farthest along the line's normal.
 Vector2d Support(const Detection& detection, const Line2& line) {
   return *std::max_element(detection.hull.begin(), detection.hull.end(),
                            [&](const Vector2d& a, const Vector2d& b) {
@@ -95,7 +95,8 @@ void DrawOutlines(cv::Mat& picture, const InstanceMask& mask,
   }
   if (rejection && !mask.outlines.empty()) {
     const std::vector<Vector2d>& outline = mask.outlines.front();
-    const Vector2d middle = outline[outline.size() / 2];  // labels of hulls stand at the upper left
+    const Vector2d middle =
+        outline[outline.size() / 2];  // the labels of hulls are at the upper left
     DrawText(picture, middle,
              fmt::format("{} {:.2f}: {}", mask.label, mask.score, ToString(*rejection)), kRed);
   }
@@ -106,7 +107,7 @@ void DrawOutlines(cv::Mat& picture, const InstanceMask& mask,
 cv::Mat DrawMasks(const cv::Mat& grey, const PinholeCamera& camera,
                   std::span<const InstanceMask> masks, const DetectionResult& result) {
   cv::Mat picture;
-  cv::cvtColor(0.6 * grey, picture, cv::COLOR_GRAY2BGR);  // darkened, so that lines are seen
+  cv::cvtColor(0.6 * grey, picture, cv::COLOR_GRAY2BGR);  // darkened, so that the lines are visible
   cv::resize(picture, picture, {}, kScale, kScale, cv::INTER_LINEAR);
   for (size_t i = 0; i < masks.size(); ++i) {
     DrawOutlines(picture, masks[i], result.rejections.at(i));

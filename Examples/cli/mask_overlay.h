@@ -11,10 +11,11 @@
 
 namespace hullslam {
 
-// A picture (CV_8UC3, twice the size) of what the masks of a frame become, drawn over its grey
-// image as it is, lens distortion included. The outlines are white, of rejected masks red with the
-// reason; hulls are yellow, lines that hold a quadric green, one-sided ones orange, each a piece of
-// a tangent with a tick to the outside; labels have their scores.
+// Draws the masks of a frame and their detections over its raw grey image (with lens distortion).
+// The picture is CV_8UC3 and has twice the size of the image. Outlines are white; those of rejected
+// masks are red and have the reason as a label. Hulls are yellow and have class and score as a
+// label. Two-sided lines are green and one-sided lines orange; of each a short piece is drawn, with
+// a tick that points to the outside.
 cv::Mat DrawMasks(const cv::Mat& grey, const PinholeCamera& camera,
                   std::span<const InstanceMask> masks, const DetectionResult& result);
 

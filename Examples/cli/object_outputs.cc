@@ -46,8 +46,9 @@ std::string FormatFigure(const std::optional<double>& figure, int decimals) {
 
 std::string DescribeObjects(const ObjectsSummary& summary) {
   return fmt::format(
-      "{} objects, {} candidates; mean SIoU {} with hulls, {} with masks, tangents {} px off, MTD "
-      "{} m^2 ({} observations)",
+      "{} objects, {} candidates; means: SIoU {} with hulls, {} with masks, tangent distance {} "
+      "px, "
+      "MTD {} m^2 (of {} observations)",
       summary.count, summary.candidates, FormatFigure(summary.siou_mean, 3),
       FormatFigure(summary.siou_mask_mean, 3), FormatFigure(summary.tangent_mean_px, 1),
       FormatFigure(summary.mtd_mean_m2, 5), summary.observations);

@@ -14,20 +14,21 @@
 
 namespace hullslam {
 
-// The objects of a map with their fits.
+// The objects of a map, and how well each fits its observations.
 ObjectReport CollectObjects(const Map& map, const PinholeCamera& camera,
                             const std::filesystem::path& sequence);
 
 ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& counts);
 
-// objects.json and objects.ply, to be written with the other files of a run.
+// The contents of objects.json and objects.ply, so that they can be written together with the other
+// files of a run.
 std::vector<FileContent> ObjectFiles(const std::filesystem::path& folder,
                                      const ObjectReport& report);
 
-// With so many decimals, "-" for none.
+// The number with this many decimals; "-" if there is none.
 std::string FormatFigure(const std::optional<double>& figure, int decimals);
 
-// "7 objects, 3 candidates; mean SIoU 0.81 ..."
+// "7 objects, 3 candidates; means: SIoU 0.810 with hulls, ..."
 std::string DescribeObjects(const ObjectsSummary& summary);
 
 }  // namespace hullslam

@@ -11,8 +11,8 @@ namespace hullslam {
 
 enum ExitCode { kDone = 0, kFailed = 1, kBadInput = 2 };
 
-// Parses the command line. True if the program should go on; false after --help and the like.
-// Throws InputError for what cannot be parsed.
+// Parses the command line. Returns true if the program should go on, and false after options such
+// as --help. Throws InputError if the command line cannot be parsed.
 inline bool ParseCommandLine(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -25,7 +25,8 @@ inline bool ParseCommandLine(CLI::App& app, int argc, char** argv) {
   }
 }
 
-// Calls `run(argc, argv)` and turns exceptions into one line on stderr and an exit code.
+// Calls `run(argc, argv)` and returns its exit code. Turns an exception into one line on stderr and
+// an exit code.
 template <typename Run>
 int RunMain(const Run& run, int argc, char** argv) {
   try {

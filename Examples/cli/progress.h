@@ -8,15 +8,16 @@
 
 namespace hullslam {
 
-// Shows how far a run is on stderr: a bar that redraws itself on a terminal, else a line at every
-// tenth of the run.
+// Shows the progress of a run on stderr: as a bar that is redrawn if stderr is a terminal, else as
+// one line per tenth of the run.
 class Progress {
  public:
   Progress(size_t frames, bool quiet);
 
-  // `done` counts from 1; `state` is asked for what to say besides where something is shown.
+  // `done` is the number of frames that are done. `state` gives text to show beside it; it is only
+  // called if something is shown.
   void Show(size_t done, const std::function<std::string()>& state = {});
-  // Ends the line of the bar, so that something else can be printed.
+  // Ends the line of the bar, so that other text can be printed on the next line.
   void Clear();
 
  private:

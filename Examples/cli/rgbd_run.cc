@@ -32,19 +32,19 @@ namespace hullslam {
 namespace {
 
 constexpr size_t kImagesAhead = 4;
-constexpr size_t kLostForGood = 30;  // a run that ends with so many lost frames in a row has failed
+constexpr size_t kLostForGood = 30;  // the run has failed if the last 30 frames or more are lost
 
 using Clock = std::chrono::steady_clock;
 
-// An image, or why there is none.
+// An image, or the reason why it could not be loaded.
 struct LoadedFrame {
   std::optional<ImageInput> image;
   std::string error;
 };
 
 struct RunResult {
-  size_t given = 0;    // frames the run came to
-  size_t skipped = 0;  // of these with a broken image
+  size_t given = 0;    // frames that were loaded or skipped before the run ended
+  size_t skipped = 0;  // those of them with an image that cannot be read
   double seconds = 0.0;
   bool was_interrupted = false;
 };
@@ -63,8 +63,9 @@ PipelineKind ChoosePipeline(const RunArguments& arguments) {
   return arguments.realtime ? PipelineKind::kRealtime : PipelineKind::kThreaded;
 }
 
-// Broken images are skipped, broken masks end the run: a frame without its masks would look like
-// one without objects.
+// An image that cannot be read is reported in LoadedFrame, so that the frame can be skipped. Masks
+// that cannot be read end the run, because a frame without its masks would look like a frame
+// without objects.
 Prefetcher<LoadedFrame> StartLoading(const TumSequence& sequence, const PinholeCamera& camera,
                                      const SequenceMasks& masks) {
   return Prefetcher<LoadedFrame>(
@@ -87,7 +88,7 @@ Prefetcher<LoadedFrame> StartLoading(const TumSequence& sequence, const PinholeC
       kImagesAhead);
 }
 
-// Waits until the frame is due when played at the pace of its stamps.
+// Waits until the time, counted from `start`, at which the camera took the frame.
 void WaitForStamp(const TumSequence& sequence, double stamp, Clock::time_point start) {
   const std::chrono::duration<double> due(stamp - sequence.frames.front().timestamp);
   std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(due));
@@ -128,7 +129,7 @@ RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
         throw InputError(loaded->error);
       }
       progress.Clear();
-      fmt::print(stderr, "warning: {}; the frame is skipped\n", loaded->error);
+      fmt::print(stderr, "warning: {}; this frame is skipped\n", loaded->error);
       ++result.skipped;
       continue;
     }
@@ -140,7 +141,7 @@ RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
   }
   progress.Clear();
   if (!arguments.quiet && !IsInterrupted()) {
-    fmt::print(stderr, "finishing the map\n");  // bundle adjustment of all of it takes a while
+    fmt::print(stderr, "finishing the map\n");  // the bundle adjustment of the whole map is slow
   }
   system.Finish(&Interruption());
   result.was_interrupted = IsInterrupted();
@@ -152,7 +153,7 @@ void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory,
               TrajectorySummary& summary) {
   const AteReport ate = EvaluateAte(groundtruth, trajectory);
   if (!ate.ok()) {
-    fmt::print(stderr, "warning: no trajectory error: {}\n", ate.failure);
+    fmt::print(stderr, "warning: the trajectory error cannot be computed: {}\n", ate.failure);
     return;
   }
   summary.ate_rmse_m = ate.errors.rmse;
@@ -212,7 +213,7 @@ std::string FormatMap(const Map& map, const Trajectory& keyframes) {
   return FormatPly(landmarks, centers);
 }
 
-// Files of objects are written for a run with masks only.
+// The files of objects are only written if the run has masks.
 void WriteOutputs(const std::filesystem::path& folder, const Map& map, const Trajectory& trajectory,
                   const RunSummary& summary, const ObjectReport& objects) {
   const Trajectory keyframes = KeyframeTrajectory(map);
@@ -232,7 +233,7 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary) {
              trajectory.frames, trajectory.tracked, trajectory.lost, trajectory.skipped,
              trajectory.unpaired);
   if (trajectory.ate_rmse_m) {
-    fmt::print("ATE RMSE {:.4f} m ({}, {} pairs of all frames, {:.1f} % covered)\n",
+    fmt::print("ATE RMSE {:.4f} m ({} alignment, {} pairs of poses, coverage {:.1f} %)\n",
                *trajectory.ate_rmse_m, trajectory.alignment, trajectory.pairs,
                100.0 * trajectory.coverage.value_or(0.0));
   }
@@ -245,8 +246,8 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary) {
     fmt::print("{}\n", DescribeObjects(*summary.objects));
   }
   fmt::print(
-      "tracking {:.1f} ms a frame (median; mean {:.1f}, p95 {:.1f}); {:.1f} frames/s in all; "
-      "{:.0f} MB at most\n",
+      "tracking {:.1f} ms per frame (median; mean {:.1f}, p95 {:.1f}); {:.1f} frames/s overall; "
+      "peak memory {:.0f} MB\n",
       summary.timing.track_ms.median, summary.timing.track_ms.mean, summary.timing.track_ms.p95,
       summary.timing.frames_per_second, summary.peak_memory_mb);
   fmt::print("results are in {}\n", arguments.output.string());
@@ -265,7 +266,7 @@ bool IsLostForGood(const System& system) {
 
 int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
   const SystemOptions options = LoadOptions(arguments);
-  LoadRgbd(sequence.frames.front(), options.camera);  // wrong types and sizes show here
+  LoadRgbd(sequence.frames.front(), options.camera);  // finds images of a wrong type or size early
   const std::optional<Trajectory> groundtruth =
       sequence.groundtruth ? std::optional(ReadTrajectory(*sequence.groundtruth)) : std::nullopt;
   const SequenceMasks masks(
@@ -276,7 +277,7 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
     fmt::print("{}\n", masks.Describe());
   }
   if (!arguments.vocabulary.empty()) {
-    fmt::print(stderr, "warning: {}: this version uses no vocabulary\n",
+    fmt::print(stderr, "warning: {}: this version does not use the vocabulary\n",
                arguments.vocabulary.string());
   }
   CatchInterrupts();
@@ -297,14 +298,15 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
   }
   WriteOutputs(arguments.output, *map, trajectory, summary, objects);
   if (result.was_interrupted) {
-    fmt::print(stderr, "warning: interrupted after {} of {} frames\n", result.given,
+    fmt::print(stderr, "warning: the run was interrupted after {} of {} frames\n", result.given,
                sequence.frames.size());
   }
   if (!arguments.quiet) {
     PrintReport(arguments, summary);
   }
   if (!result.was_interrupted && IsLostForGood(system)) {
-    fmt::print(stderr, "error: tracking is lost for good: {} of {} frames have a pose\n",
+    fmt::print(stderr,
+               "error: tracking was lost and did not recover: {} of {} frames have a pose\n",
                summary.trajectory.tracked, summary.trajectory.frames);
     return kFailed;
   }

@@ -6,9 +6,9 @@
 
 namespace hullslam {
 
-// Runs RGB-D SLAM on a sequence, writes trajectory.txt, keyframes.txt, map.ply and summary.json to
-// the output folder and prints the results. Returns the program's exit code; throws InputError for
-// bad input, before the first frame wherever that can be told.
+// Runs RGB-D SLAM on a sequence. Writes trajectory.txt, keyframes.txt, map.ply and summary.json to
+// the output folder, with masks also objects.json and objects.ply, and prints the results. Returns
+// the program's exit code. Throws InputError for bad input, before the first frame if possible.
 int RunRgbd(const RunArguments& arguments, const TumSequence& sequence);
 
 }  // namespace hullslam

@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-// CLI11 alone would take -1 as the largest number there is.
+// Without this check CLI11 would turn -1 into the largest unsigned number.
 CLI::Validator WholeNumber() {
   return CLI::Validator(
       [](const std::string& text) {
@@ -24,34 +24,47 @@ CLI::Validator WholeNumber() {
 void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::string>& positional) {
   app.add_option("ARGUMENTS", positional,
                  "SEQUENCE: folder with rgb.txt and depth.txt\n"
-                 "or VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS, as of ORB-SLAM2");
+                 "or VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS, the arguments of ORB-SLAM2");
   app.add_option("--settings", arguments.settings,
-                 "settings file (default: camera.yaml of the sequence, else by its name)");
-  app.add_option("--vocabulary", arguments.vocabulary, "vocabulary (not used by this version)");
-  app.add_option("--associations", arguments.tum.associations,
-                 "file of pairs: stamp rgb stamp depth (default: pairs are formed)");
+                 "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
+                 "that fits the folder's name, such as TUM1.yaml for freiburg1)");
+  app.add_option("--vocabulary", arguments.vocabulary,
+                 "vocabulary file (this version does not use it)");
+  app.add_option(
+      "--associations", arguments.tum.associations,
+      "file with one pair of images per line: stamp rgb stamp depth (default: images are "
+      "paired by their stamps, at most 0.02 s apart)");
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
-  app.add_option("--set", arguments.overrides, "key=value: overrides a setting; repeat for more")
+  app.add_option("--set", arguments.overrides,
+                 "key=value: overrides one setting; can be given several times")
       ->take_all()
-      ->allow_extra_args(false);  // else it would take the positional arguments behind it too
-  app.add_option("--output", arguments.output, "folder for the results")->capture_default_str();
+      ->allow_extra_args(false);  // else it would also take the positional arguments after it
+  app.add_option("--output", arguments.output, "folder for the result files")
+      ->capture_default_str();
   app.add_flag("--threaded", arguments.threaded,
-               "map in a thread of its own: faster, not reproducible to the bit");
-  app.add_flag("--realtime", arguments.realtime, "play the images at the pace of their stamps");
+               "run mapping in its own thread: faster, but results differ a little between runs");
+  app.add_flag("--realtime", arguments.realtime,
+               "process the images no faster than the camera took them, by their stamps");
   app.add_option("--seed", arguments.seed, "seed of all random choices")
       ->check(WholeNumber())
       ->capture_default_str();
-  app.add_option("--first", arguments.tum.selection.first, "first frame, counted from 0")
+  app.add_option("--first", arguments.tum.selection.first,
+                 "number of the first frame, counted from 0 (default: 0)")
       ->check(WholeNumber());
-  app.add_option("--last", arguments.tum.selection.last, "last frame")->check(WholeNumber());
-  app.add_option("--stride", arguments.tum.selection.stride, "take every n-th frame")
+  app.add_option("--last", arguments.tum.selection.last,
+                 "number of the last frame, inclusive (default: last of the sequence)")
       ->check(WholeNumber());
-  app.add_flag("--strict", arguments.strict, "stop at a broken image instead of skipping it");
+  app.add_option("--stride", arguments.tum.selection.stride,
+                 "use every n-th frame only (default: 1)")
+      ->check(WholeNumber());
+  app.add_flag("--strict", arguments.strict,
+               "stop at an image that cannot be read instead of skipping the frame");
   AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
   app.set_version_flag("--version", HULLSLAM_VERSION);
   app.footer(
-      "Exit codes: 0 done, 1 the run failed (tracking lost for good), 2 bad usage or input.");
+      "Exit codes: 0 done (also if interrupted: the results up to then are written), 1 the run "
+      "failed (tracking was lost and did not recover), 2 bad usage or input.");
 }
 
 void FinishArguments(const std::vector<std::string>& positional, RunArguments& arguments) {

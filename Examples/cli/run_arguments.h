@@ -11,10 +11,10 @@
 
 namespace hullslam {
 
-// The command line that all programs that run SLAM have in common.
+// The command line options that all programs share which run SLAM.
 struct RunArguments {
   std::filesystem::path sequence;
-  std::filesystem::path settings;    // empty: by the name of the sequence
+  std::filesystem::path settings;    // empty: chosen by FindDefaultSettings()
   std::filesystem::path vocabulary;  // empty: none
   TumSequenceOptions tum;
   std::filesystem::path masks;         // empty: none
@@ -29,10 +29,11 @@ struct RunArguments {
 };
 
 // Adds the options and the positional arguments: SEQUENCE, or ORB-SLAM2's VOCABULARY SETTINGS
-// SEQUENCE ASSOCIATIONS. `arguments` must outlive the app; FinishArguments sorts the positional
-// ones out.
+// SEQUENCE ASSOCIATIONS. `arguments` and `positional` must outlive the app. Call FinishArguments
+// after parsing.
 void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::string>& positional);
-// Throws InputError for another number of positional arguments than 1 or 4.
+// Copies the positional arguments to the fields that they stand for. Throws InputError unless there
+// are 1 or 4 of them.
 void FinishArguments(const std::vector<std::string>& positional, RunArguments& arguments);
 
 }  // namespace hullslam

@@ -73,24 +73,26 @@ void PrintText(const ObjectReport& report) {
     PrintObject(object);
   }
   const MapFit fit = SummarizeFits(report);
-  fmt::print("\n{} mapped, {} candidates; {} observations and {} lines of the mapped\n",
+  fmt::print("\n{} mapped, {} candidates; {} observations and {} lines of mapped objects\n",
              fit.objects, report.candidates, fit.mean.observations, fit.mean.lines);
-  fmt::print("mean SIoU {}, with the mask {}; MTD {} m2; tangents off by {} px\n",
-             FormatFigure(fit.mean.siou, 4), FormatFigure(fit.mean.siou_mask, 4),
-             FormatFigure(fit.mean.mtd_m2, 6), FormatFigure(fit.mean.tangent_px, 2));
+  fmt::print(
+      "mean SIoU {} with hulls, {} with masks; mean MTD {} m2; mean tangent distance {} px\n",
+      FormatFigure(fit.mean.siou, 4), FormatFigure(fit.mean.siou_mask, 4),
+      FormatFigure(fit.mean.mtd_m2, 6), FormatFigure(fit.mean.tangent_px, 2));
 }
 
 }  // namespace
 
 CLI::App* AddObjectsCommand(CLI::App& app, ObjectsArguments& arguments) {
   CLI::App* const command =
-      app.add_subcommand("objects", "SIoU, MTD and tangent distance of a run's objects");
+      app.add_subcommand("objects", "SIoU, MTD and tangent distance of the objects of a run");
   command->add_option("RUN_DIR", arguments.run, "output folder of the run")->required();
   command->add_option("--groundtruth", arguments.groundtruth,
-                      "groundtruth_objects.json of a sequence of make_synthetic");
+                      "groundtruth_objects.json of the sequence, which make_synthetic wrote "
+                      "(default: no comparison with true objects)");
   command
       ->add_option("--min-masks", arguments.min_masks,
-                   "masks in which a true object must show to count as visible")
+                   "a true object counts as visible if at least this many masks show it")
       ->check(CLI::Range(0, 1000000).description(""))
       ->capture_default_str();
   command->add_flag("--json", arguments.json, "print the report as JSON");

@@ -10,15 +10,15 @@ namespace hullslam {
 struct ObjectsArguments {
   std::filesystem::path run;
   std::filesystem::path groundtruth;  // groundtruth_objects.json; empty: none
-  size_t min_masks = 30;              // in which a true object shows to count as visible
+  size_t min_masks = 30;              // a true object with fewer masks does not count as visible
   bool json = false;
 };
 
 // `arguments` must outlive the app.
 CLI::App* AddObjectsCommand(CLI::App& app, ObjectsArguments& arguments);
 
-// Prints how well the objects of a run fit what was seen, and how near they are to the true ones.
-// Throws InputError for bad files.
+// Prints how well the objects of a run fit their observations and, with ground truth, how near they
+// are to the true objects. Throws InputError for bad files.
 void RunObjectsCommand(const ObjectsArguments& arguments);
 
 }  // namespace hullslam

@@ -32,7 +32,7 @@ std::vector<SeenBox> BoxesOf(const std::vector<InstanceMask>& masks, const Pinho
   return boxes;
 }
 
-// In how many masks each true object shows while the run lasted. Empty where the folder holds no
+// For each true object, the number of masks during the run that show it. Empty if the folder has no
 // sequence with masks.
 std::vector<size_t> ReadSightings(const std::filesystem::path& folder,
                                   const std::vector<TrueObject>& truths,
@@ -92,7 +92,7 @@ void PrintTrueObject(const TruthEvaluation& evaluation, size_t index) {
   const std::string name =
       fmt::format("{:>4} {:<14} {:<12} {:>5}", truth.id, truth.label, truth.shape, masks);
   if (evaluation.comparison.times_mapped[index] == 0) {
-    fmt::print("{}  {}\n", name, truth.is_dynamic ? "moves" : "never");
+    fmt::print("{}  {}\n", name, truth.is_dynamic ? "not mapped (it moves)" : "not mapped");
     return;
   }
   for (const ObjectError& error : evaluation.comparison.errors) {
@@ -127,24 +127,27 @@ TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectRep
 }
 
 void PrintTruth(const TruthEvaluation& evaluation) {
-  fmt::print("\ntrue objects; worlds aligned by the trajectory, ATE RMSE {:.4f} m\n",
+  fmt::print("\ntrue objects, after alignment of the trajectories (ATE RMSE {:.4f} m)\n",
              evaluation.ate_rmse_m);
   fmt::print("{:>4} {:<14} {:<12} {:>5}  {:>4}  {:>6} {:>6}  {:<17}  {}\n", "id", "class", "shape",
-             "masks", "as", "mm", "% size", "axes, mapped/true", "extents, mapped/true");
+             "masks", "id", "mm", "% size", "axes, mapped/true", "extents, mapped/true");
   for (size_t i = 0; i < evaluation.truths.size(); ++i) {
     PrintTrueObject(evaluation, i);
   }
   const TruthCounts& counts = evaluation.counts;
   fmt::print(
-      "{} visible ({}): {} mapped once, {} more than once, {} never; {} without a true one\n",
+      "{} visible ({}): {} mapped once, {} more than once, {} never; {} mapped objects match no "
+      "true "
+      "object\n",
       counts.visible,
-      evaluation.sightings.empty() ? std::string("all, no masks known")
+      evaluation.sightings.empty() ? std::string("all of them, as the sequence has no masks")
                                    : fmt::format("in {} masks or more", evaluation.min_masks),
       counts.once, counts.more, counts.never, evaluation.comparison.without_truth.size());
   for (const auto& [shape, errors] : SummarizeByShape(evaluation.truths, evaluation.comparison)) {
     fmt::print(
-        "{:<12} {} mapped: centre off by {:.1f} % of the size (at most {:.1f}), axes {:.3f} of "
-        "the true ones (at most {:.1f} % off), SIoU {}\n",
+        "{:<12} {} mapped: mean centre error {:.1f} % of the size (largest {:.1f} %), mean ratio "
+        "of "
+        "mapped to true axes {:.3f} (largest error {:.1f} %), mean SIoU {}\n",
         shape, errors.objects, 100.0 * errors.center_share_mean, 100.0 * errors.center_share_max,
         errors.axis_ratio_mean, 100.0 * errors.axis_ratio_deviation,
         FormatFigure(errors.siou_mean, 3));

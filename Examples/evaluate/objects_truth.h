@@ -10,18 +10,18 @@
 
 namespace hullslam {
 
-// The objects of a run beside those of the made-up sequence it was run on.
+// The objects of a run compared with the true objects of the synthetic sequence.
 struct TruthEvaluation {
   std::vector<TrueObject> truths;
-  std::vector<size_t> sightings;  // masks of each; empty where the sequence has none
+  std::vector<size_t> sightings;  // masks of each true object; empty if the sequence has no masks
   GroundtruthComparison comparison;
   TruthCounts counts;
   double ate_rmse_m = 0.0;  // of the trajectory that aligns the two worlds
   size_t min_masks = 0;
 };
 
-// Reads groundtruth_objects.json, and beside it groundtruth.txt and the masks. Throws InputError
-// for bad files, and where run and truth have no poses in common.
+// Reads groundtruth_objects.json, and from the same folder groundtruth.txt and the masks. Throws
+// InputError for bad files, and if no pose of the run has a true pose at its time.
 TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectReport& report);
 
 void PrintTruth(const TruthEvaluation& evaluation);

@@ -101,14 +101,18 @@ CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments) {
   CLI::App* const command =
       app.add_subcommand("trajectory", "absolute and relative error of a trajectory (TUM format)");
   command->add_option("GROUNDTRUTH", arguments.groundtruth, "true trajectory")->required();
-  command->add_option("ESTIMATE", arguments.estimate, "trajectory to be judged")->required();
-  command->add_option("--align", arguments.ate.alignment, "none, se3 (default) or sim3")
+  command->add_option("ESTIMATE", arguments.estimate, "estimated trajectory")->required();
+  command
+      ->add_option("--align", arguments.ate.alignment,
+                   "alignment with the true trajectory: none, se3 (default) or sim3")
       ->transform(CLI::CheckedTransformer(alignments).description(""));
-  command->add_option("--tool", arguments.ate.pairing, "whose pairing: tum (default) or evo")
+  command
+      ->add_option("--tool", arguments.ate.pairing,
+                   "tool whose rule pairs the poses: tum (default) or evo")
       ->transform(CLI::CheckedTransformer(tools).description(""));
   command
       ->add_option("--max-diff", arguments.ate.max_difference,
-                   "largest time between paired poses, s (default: tum 0.02, evo 0.01)")
+                   "largest time between two paired poses, s (default: 0.02 for tum, 0.01 for evo)")
       ->check(CLI::PositiveNumber);
   command->add_flag("--json", arguments.json, "print the report as JSON");
   return command;

@@ -18,8 +18,8 @@ struct TrajectoryArguments {
 // `arguments` must outlive the app.
 CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments);
 
-// Prints the errors of a trajectory. Throws InputError for bad files and for trajectories without
-// common poses.
+// Prints the absolute and relative errors of a trajectory. Throws InputError for bad files, and if
+// no two poses of the trajectories can be paired.
 void RunTrajectoryCommand(const TrajectoryArguments& arguments);
 
 }  // namespace hullslam

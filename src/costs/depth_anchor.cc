@@ -6,9 +6,10 @@
 namespace hullslam {
 namespace {
 
-constexpr double kCenter = 1e-3;  // share of the half axes within which no direction is held
+// As a share of the half axes: a point nearer to the centre than this has no direction.
+constexpr double kCenter = 1e-3;
 
-// Distance from the surface along the ray to the centre, and its derivative.
+// Distance of the point from the surface along the ray to the centre, and its derivative.
 double RadialDistance(const QuadricInCamera& quadric, const Eigen::Vector3d& point,
                       ByObjectInCamera& derivative) {
   derivative.setZero();
@@ -20,7 +21,7 @@ double RadialDistance(const QuadricInCamera& quadric, const Eigen::Vector3d& poi
     return -quadric.half_axes().minCoeff();
   }
   const double length = from_center.norm();
-  // Normal of the level's surface: d level = gradient . d from_center.
+  // The gradient of level: d level = gradient . d from_center.
   const Eigen::Vector3d gradient =
       quadric.cam_from_object() * scaled.cwiseQuotient(quadric.half_axes()) / level;
   const double by_length = 1.0 - 1.0 / level;

@@ -9,11 +9,13 @@
 
 namespace hullslam {
 
-// Holds an ellipsoid by points of its surface that a depth camera measured: what silhouettes from
-// nearby views leave free. One residual a point p (m, camera frame): its distance from the surface
-// along the ray to the centre, |y| (1 - 1 / |A^-1 y|) / sigma with y = p - t and the half axes A of
-// QuadricInCamera; sigma in m. Negative inside. At the centre itself, where the ray may be any, it
-// pulls nowhere. Parameters: those of QuadricInCamera.
+// Constrains an ellipsoid by points of its surface that a depth camera measured. These constrain
+// what silhouettes from nearby views do not. There is one residual per point p (m, camera frame):
+// its distance from the surface along the ray to the centre,
+//   |y| (1 - 1 / |A^-1 y|) / sigma
+// with y = p - t, the half axes A of QuadricInCamera, and sigma in m. It is negative inside the
+// ellipsoid. At the centre, where the ray has no direction, its derivative is zero. Parameters:
+// those of QuadricInCamera.
 class DepthAnchorCost final : public ObjectCost {
  public:
   DepthAnchorCost(std::span<const Eigen::Vector3d> points, double sigma);

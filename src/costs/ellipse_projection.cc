@@ -32,7 +32,8 @@ EllipseProjection::EllipseProjection(const PinholeCamera& camera, const QuadricI
 
 Eigen::Matrix2d EllipseProjection::shape() const { return ToEllipse(numbers_).shape; }
 
-// Of the numbers by a symmetric change of conic_: the differential of the constructor.
+// The change of the five numbers for a small symmetric change of conic_. This is the differential
+// of the computation in the constructor.
 EllipseNumbers EllipseProjection::Change(const Eigen::Matrix3d& change) const {
   const Eigen::Vector2d center = (change(2, 2) * center_ - change.col(2).head<2>()) / depth2_;
   const Eigen::Matrix2d shape =

@@ -10,15 +10,16 @@
 
 namespace hullslam {
 
-// About how large a residual of a detection is when its outline is `error_px` outside of the true
-// one everywhere, in the residual's unit: its sigma for an outline with a sigma of `error_px`, so
-// that all kinds of residuals weigh alike. With r the radius of the circle of the outline's area:
+// The approximate size of a residual, in its own unit, when the measured outline is `error_px`
+// outside of the true one everywhere. Used as the sigma of a residual whose outline has a sigma of
+// `error_px`, it gives all kinds of residuals the same weight. With r the radius of the circle that
+// has the area of the projected ellipse, and z the depth of the ellipsoid's centre:
 //   tangent          error_px
 //   algebraic_plane  2 h e with h = r z / f and e = error_px z / f
 //   algebraic_point  2 error_px / r
-//   distribution     error_px^2 (Wasserstein, of an outline shifted by error_px)
+//   distribution     error_px^2 (Wasserstein, for an ellipse that is shifted by error_px)
 //   overlap          1 - (r / (r + error_px))^2
-// Nothing where the ellipsoid is not in front of the camera or its outline has no area.
+// Nothing if the ellipsoid is not in front of the camera or its projected ellipse has no area.
 std::optional<double> ResidualOfPixelError(ObjectResidual residual, const PinholeCamera& camera,
                                            const Rigid3& cam_from_world, const Ellipsoid& ellipsoid,
                                            double error_px);

@@ -9,16 +9,17 @@
 
 namespace hullslam {
 
-// A Rigid3 as a block of parameters: qx qy qz qw tx ty tz.
+// A Rigid3 as a parameter block: qx qy qz qw tx ty tz.
 using PoseBlock = std::array<double, 7>;
 PoseBlock ToBlock(const Rigid3& pose);
 Rigid3 FromBlock(const double* block);
 
-// Rigid motions of a PoseBlock by Retract (rotation first, three and three).
+// The manifold of a PoseBlock. Plus is Retract with three numbers for the rotation, followed by
+// three for the translation.
 //
-// Costs on such a block write their derivative by the six numbers of Retract into the first six
-// columns of the block's Jacobian and zero into the seventh; PlusJacobian is [I; 0] to match. This
-// saves every residual the derivative by a quaternion and the product that would take it back.
+// Costs on such a block write their derivative with respect to these six numbers into the first six
+// columns of the block's Jacobian, and zero into the seventh. PlusJacobian is [I; 0] to match. So
+// no residual needs the derivative with respect to a quaternion, nor a product that undoes it.
 class PoseManifold final : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 7; }

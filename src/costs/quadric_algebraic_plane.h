@@ -10,13 +10,14 @@
 
 namespace hullslam {
 
-// `algebraic_plane` (Yu et al. 2025, Eq. 8): one residual a line, pi^T Q* pi / sigma with the plane
-// pi = P^T l through the camera's centre and the line, scaled to a unit normal; sigma in m^2. In
-// the camera frame pi = (n, 0) with n along K^T l, so it is h^2 - d^2 with h^2 = n^T B n the
-// squared half extent of the ellipsoid along n and d = n.t the distance of its centre: positive
-// where the plane cuts the ellipsoid, zero at both of the tangent planes parallel to pi. One-sided:
-// zero where the ellipsoid reaches the plane or lies beyond it. Parameters: those of
-// QuadricInCamera. Not defined unless the quadric is in front of the camera.
+// `algebraic_plane` (Yu et al. 2025, Eq. 8): one residual per line, pi^T Q* pi / sigma, with sigma
+// in m^2. The plane pi = P^T l goes through the camera's centre and the line, and is scaled to a
+// unit normal. In the camera frame pi = (n, 0) with n along K^T l. So pi^T Q* pi = h^2 - d^2, where
+// h^2 = n^T B n is the squared half extent of the ellipsoid along n and d = n.t the signed distance
+// of its centre from the plane. It is positive if the plane cuts the ellipsoid, and zero if the
+// plane touches it from either side. For a one-sided line it is also zero if the ellipsoid reaches
+// the plane or lies beyond it. Parameters: those of QuadricInCamera. Not defined unless the quadric
+// is in front of the camera.
 class AlgebraicPlaneCost final : public ObjectCost {
  public:
   AlgebraicPlaneCost(const PinholeCamera& camera, std::span<const SilhouetteLine> lines,

@@ -9,11 +9,11 @@
 
 namespace hullslam {
 
-// `algebraic_point` (QISO-SLAM): one residual a contour point, p^T C p / sigma with the conic C
-// scaled to -1 at the centre of its ellipse, so that it is (p - m)^T S^-1 (p - m) - 1: without
-// unit, zero on the outline, -1 at the centre; sigma without unit. Parameters: those of
-// QuadricInCamera. Not defined unless the quadric is in front of the camera and its outline has an
-// area.
+// `algebraic_point` (QISO-SLAM): one residual per contour point, p^T C p / sigma. The conic C is
+// scaled to -1 at the centre of its ellipse, so that p^T C p = (p - m)^T S^-1 (p - m) - 1. This is
+// zero on the projected ellipse. It has no unit, nor has sigma. Parameters: those of
+// QuadricInCamera. Not defined unless the quadric is in front of the camera and its projected
+// ellipse has an area.
 class AlgebraicPointCost final : public ObjectCost {
  public:
   AlgebraicPointCost(const PinholeCamera& camera, std::span<const Eigen::Vector2d> contour,
@@ -28,9 +28,9 @@ class AlgebraicPointCost final : public ObjectCost {
   double inverse_sigma_;
 };
 
-// The contour points that a chi-square test with one degree of freedom (5 %) leaves: error^2 is at
-// most 3.841 times its variance, propagated from an error of sigma_px in both coordinates of the
-// point, |d error / d p|^2 sigma_px^2.
+// The contour points that pass a chi-square test with one degree of freedom (5 %): error^2 is at
+// most 3.841 times its variance |d error / d p|^2 sigma_px^2, where both coordinates of the point
+// have a sigma of sigma_px.
 std::vector<Eigen::Vector2d> GateContour(std::span<const Eigen::Vector2d> contour,
                                          const Ellipse& ellipse, double sigma_px);
 

@@ -7,7 +7,8 @@
 namespace hullslam {
 namespace {
 
-// Derivative by centre and (symmetric) shape as one by the five numbers.
+// Turns a derivative with respect to the centre and the symmetric shape into one with respect to
+// the five numbers of an ellipse.
 ByEllipse Gather(const Eigen::Vector2d& by_center, const Eigen::Matrix2d& by_shape) {
   ByEllipse by_ellipse;
   by_ellipse << by_center.transpose(), by_shape(0, 0), 2.0 * by_shape(0, 1), by_shape(1, 1);

@@ -9,7 +9,7 @@
 namespace hullslam {
 namespace {
 
-constexpr double kMinDepth = 1e-3;  // m; nearer an outline has no meaning
+constexpr double kMinDepth = 1e-3;  // m; a nearer ellipsoid has no usable projection
 
 }  // namespace
 
@@ -26,14 +26,15 @@ QuadricInCamera::QuadricInCamera(double const* const* parameters) {
 }
 
 bool QuadricInCamera::IsInFront() const {
-  // False for NaN too.
+  // Also false for NaN.
   return center_.z() - std::sqrt(square_(2, 2)) > kMinDepth && center_.allFinite() &&
          square_.allFinite();
 }
 
-// With g the derivatives by turn and shift: a motion (omega, v) of the camera frame turns the
-// object by omega and shifts it by omega x center + v; one of the world frame by R omega and by
-// R (omega x object + v). And g . (omega x x) = omega . (x x g).
+// The chain rule, with the derivatives g with respect to turn and shift. A change (omega, v) of
+// cam_from_world turns the object by omega and shifts it by omega x center + v. A change (omega, v)
+// of world_from_object turns it by R omega and shifts it by R (omega x object + v). The code uses
+// that g . (omega x x) = omega . (x x g).
 void QuadricInCamera::WriteRow(int row, const ByObjectInCamera& derivative,
                                double** jacobians) const {
   const Eigen::Vector3d by_turn = derivative.segment<3>(0).transpose();

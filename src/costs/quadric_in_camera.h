@@ -7,14 +7,14 @@
 
 namespace hullslam {
 
-// Derivative of a number by a small change of an object as a camera sees it: a turn around its
-// centre (3, radians) and a shift (3, m), both along the axes of the camera frame, and the
-// logarithms of its half axes (3).
+// Derivative of a number with respect to a small change of an object in the camera frame: a turn
+// around its centre (3, radians), a shift (3, m), both along the axes of the camera frame, and a
+// change of the logarithms of its half axes (3).
 using ByObjectInCamera = Eigen::Matrix<double, 1, 9>;
 
-// An ellipsoid in the frame of a camera, from the parameters that every cost of an object has, in
-// this order: cam_from_world (PoseBlock), world_from_object (PoseBlock), both with PoseManifold,
-// and the logarithms of the half axes (3, log m).
+// An ellipsoid in the camera frame. It is computed from the parameters that all costs of objects
+// have, in this order: cam_from_world (PoseBlock), world_from_object (PoseBlock), both with
+// PoseManifold, and the logarithms of the half axes (3, log m).
 class QuadricInCamera {
  public:
   explicit QuadricInCamera(double const* const* parameters);
@@ -28,11 +28,12 @@ class QuadricInCamera {
   const Eigen::Vector3d& half_axes() const { return half_axes_; }  // m
   const Eigen::Matrix3d& cam_from_object() const { return cam_from_object_; }
 
-  // Whether all of it is in front of the camera and finite; else it has no outline.
+  // Whether the whole ellipsoid is in front of the camera, and finite. Otherwise it has no
+  // projected ellipse.
   bool IsInFront() const;
 
-  // Writes row `row` of the Jacobians (as Ceres passes them; null pointers are passed over) of a
-  // residual whose derivative is `derivative`.
+  // Writes row `row` of the Jacobians of a residual whose derivative is `derivative`. `jacobians`
+  // are as Ceres passes them; null pointers are skipped.
   void WriteRow(int row, const ByObjectInCamera& derivative, double** jacobians) const;
 
  private:
@@ -45,7 +46,7 @@ class QuadricInCamera {
   Eigen::Matrix3d square_;
 };
 
-// A cost on the parameters of QuadricInCamera.
+// A cost with the parameters of QuadricInCamera.
 class ObjectCost : public ceres::CostFunction {
  protected:
   explicit ObjectCost(size_t residuals);

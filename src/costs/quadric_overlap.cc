@@ -15,10 +15,10 @@ double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// The intersection of the unit disc with a polygon, edge by edge: its area, and over the arcs of
-// the circle inside the polygon the integrals of u and u u^T, u = (cos phi, sin phi). What of an
-// edge lies inside the disc adds a triangle with the centre, what lies outside a sector; both have
-// a sign.
+// Sums up the intersection of the unit disc with a polygon, edge by edge: its area, and the
+// integrals of u and u u^T, u = (cos phi, sin phi), over the arcs of the circle inside the polygon.
+// The part of an edge inside the disc adds the area of a triangle with the centre; the part outside
+// adds a sector. Both have a sign.
 class DiscIntersection {
  public:
   void AddEdge(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -71,7 +71,7 @@ class DiscIntersection {
   Eigen::Matrix2d second_moment_ = Eigen::Matrix2d::Zero();
 };
 
-// From areas of intersection and ellipse with their derivatives.
+// The overlap from the areas of the intersection and the ellipse, and from their derivatives.
 Overlap OverlapOfAreas(double intersection, const ByEllipse& by_intersection, double covered,
                        const ByEllipse& by_covered, double region) {
   const double united = covered + region - intersection;
@@ -81,7 +81,8 @@ Overlap OverlapOfAreas(double intersection, const ByEllipse& by_intersection, do
   return overlap;
 }
 
-// Length that two intervals share, and its derivative by centre and half length of the first.
+// The length that two intervals share, and its derivative with respect to the centre and the half
+// length of the first one.
 struct SharedLength {
   double length = 0.0;
   double by_center = 0.0;
@@ -105,9 +106,9 @@ SharedLength Share(double center, double half, double low, double high) {
 }  // namespace
 
 // The ellipse is m + L u with S = L L^T. When m and S change, its boundary moves outwards by
-// n.dm + n^T dS n / (2 h) at the point with normal n and half extent h; integrated over the arcs
-// inside the region, with n h = L^-T u and an arc of det(L) |L^-T u| dphi, that is the change of
-// the intersection:
+// n.dm + n^T dS n / (2 h) at the point with normal n and half extent h. The change of the
+// intersection's area is the integral of this over the arcs inside the region. With n h = L^-T u
+// and an arc length of det(L) |L^-T u| dphi it is:
 //   d/dm = det(L) L^-T int u,   d/dS = det(L) / 2 L^-T (int u u^T) L^-1.
 Overlap EllipseOverlap(const EllipseNumbers& ellipse, std::span<const Eigen::Vector2d> region) {
   const Eigen::Matrix2d shape = ToEllipse(ellipse).shape;

@@ -10,23 +10,25 @@
 
 namespace hullslam {
 
-// How much of a region an ellipse covers: area of the intersection over area of the union.
+// How much an ellipse and a region overlap: area of the intersection over area of the union.
 struct Overlap {
-  double iou = 0.0;  // 0 to 1; with derivative zero where they are apart
+  double iou = 0.0;  // 0 to 1; its derivative is zero if they are disjoint
   ByEllipse by_ellipse = ByEllipse::Zero();
 };
 
-// Exact. The region is a simple polygon, convex or not, in the order of positive signed area.
+// The exact overlap. The region is a simple polygon, convex or not, with positive signed area.
 Overlap EllipseOverlap(const EllipseNumbers& ellipse, std::span<const Eigen::Vector2d> region);
-// Of the ellipse's bounding box with another box. Its derivative jumps where two sides meet.
+// The overlap of the ellipse's bounding box with another box. Its derivative is discontinuous where
+// two sides coincide.
 Overlap BoxOverlap(const EllipseNumbers& ellipse, const Eigen::AlignedBox2d& box);
 
-// `overlap` (Hosseinzadeh 2019): one residual, (1 - IoU of the outline with the region) / sigma,
-// or of the outline's bounding box with a box; without unit. Parameters: those of QuadricInCamera.
-// Not defined unless the quadric is in front of the camera and its outline has an area.
+// `overlap` (Hosseinzadeh 2019): one residual, (1 - IoU) / sigma, without unit. The IoU is that of
+// the projected ellipse with the region, or that of its bounding box with a box. Parameters: those
+// of QuadricInCamera. Not defined unless the quadric is in front of the camera and its projected
+// ellipse has an area.
 class OverlapCost final : public ObjectCost {
  public:
-  // The polygon may have either order.
+  // The polygon may have either orientation.
   OverlapCost(const PinholeCamera& camera, std::span<const Eigen::Vector2d> region, double sigma);
   OverlapCost(const PinholeCamera& camera, const Eigen::AlignedBox2d& box, double sigma);
 
@@ -35,7 +37,7 @@ class OverlapCost final : public ObjectCost {
 
  private:
   PinholeCamera camera_;
-  std::vector<Eigen::Vector2d> region_;  // none: the box counts
+  std::vector<Eigen::Vector2d> region_;  // empty: the box is used
   Eigen::AlignedBox2d box_;
   double inverse_sigma_;
 };

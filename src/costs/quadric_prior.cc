@@ -34,7 +34,7 @@ bool QuadricPriorCost::Evaluate(double const* const* parameters, double* residua
     by_pose.setZero();
     by_pose.block<3, 3>(3, 0) = -inverse_sigmas_[1] * Skew(pose.translation);
     by_pose.block<3, 3>(3, 3).diagonal().setConstant(inverse_sigmas_[1]);
-    // A turn by omega on the left changes the vector part by (w omega + omega x v) / 2.
+    // A turn by omega, applied from the left, changes the vector part by (w omega + omega x v) / 2.
     by_pose.block<3, 3>(6, 0) =
         inverse_sigmas_[2] * (turn.w() * Eigen::Matrix3d::Identity() - Skew(turn.vec()));
   }

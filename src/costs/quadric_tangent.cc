@@ -7,7 +7,7 @@
 namespace hullslam {
 namespace {
 
-// sqrt(n^T S n), px. A flat ellipse seen from its edge has none along n, and no derivative there.
+// sqrt(n^T S n), px. If the ellipse is a line perpendicular to n, it is zero and has no derivative.
 double HalfExtent(const Eigen::Vector2d& n, const EllipseNumbers& ellipse) {
   const double square =
       n.x() * n.x() * ellipse[2] + 2.0 * n.x() * n.y() * ellipse[3] + n.y() * n.y() * ellipse[4];

@@ -10,13 +10,14 @@
 namespace hullslam {
 
 // Signed distance, px, from a line of a silhouette to the tangent of the ellipse that is parallel
-// to it and on the side its normal points to: n.m + c + sqrt(n^T S n). Positive where the ellipse
-// reaches over the line. One-sided: zero there.
+// to the line, on the side to which the line's normal points: n.m + c + sqrt(n^T S n). It is
+// positive if the ellipse reaches beyond the line; for a one-sided line it is zero in this case.
 double TangentDistance(const SilhouetteLine& line, const EllipseNumbers& ellipse);
 
-// `tangent`: one residual a line, TangentDistance / sigma, sigma in px. With the four sides of a
-// box these are the four bounding-box coordinates of QuadricSLAM (Nicholson 2019). Parameters:
-// those of QuadricInCamera. Not defined unless the quadric is in front of the camera.
+// `tangent`: one residual per line, TangentDistance / sigma, with sigma in px. For the four sides
+// of a box these are the errors of the four bounding-box coordinates, as in QuadricSLAM (Nicholson
+// 2019). Parameters: those of QuadricInCamera. Not defined unless the quadric is in front of the
+// camera.
 class TangentCost final : public ObjectCost {
  public:
   TangentCost(const PinholeCamera& camera, std::span<const SilhouetteLine> lines, double sigma);

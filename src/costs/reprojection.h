@@ -11,7 +11,7 @@ namespace hullslam {
 // of PointResidual at cam_from_world * point,
 //   r = (project(cam_from_world * point) - pixel) / sigma
 // Parameters: cam_from_world (PoseBlock, with PoseManifold), point (m, world frame). Not defined
-// for a point that is not in front of the camera: Evaluate is false there.
+// for a point that is not in front of the camera: then Evaluate returns false.
 class ReprojectionCost final : public ceres::SizedCostFunction<2, 7, 3> {
  public:
   ReprojectionCost(const PinholeCamera& camera, const PointMeasurement& measurement)

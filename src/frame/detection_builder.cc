@@ -27,9 +27,9 @@ constexpr double kSameDepth = 0.05;     // relative difference of the medians
 
 using Rejections = std::vector<std::optional<DetectionRejection>>;
 
-// A mask on its way to a detection.
+// A mask for which a detection is being built.
 struct Candidate {
-  size_t index;  // of the mask
+  size_t index;  // index of the mask
   const InstanceMask* mask;
   std::vector<Polygon2> parts;
   Outline outline;
@@ -74,7 +74,7 @@ std::vector<uint32_t> KeypointsIn(const MaskRegion& region, std::span<const Keyp
   return inside;
 }
 
-// All but the lines, which need the other masks.
+// Makes the detection without its lines. They are added later, because they depend on other masks.
 Detection DetectionOf(const InstanceMask& mask, const Outline& outline, const FrameView& frame) {
   Detection detection;
   detection.label = mask.label;
@@ -93,7 +93,7 @@ Detection DetectionOf(const InstanceMask& mask, const Outline& outline, const Fr
   return detection;
 }
 
-// Appends a candidate unless the mask is rejected by itself.
+// Appends a candidate, unless the mask alone is a reason to reject it.
 std::optional<DetectionRejection> Prepare(const InstanceMask& mask, size_t index,
                                           const FrameView& frame,
                                           std::vector<Candidate>& candidates) {
@@ -125,7 +125,8 @@ std::optional<DetectionRejection> Prepare(const InstanceMask& mask, size_t index
   return std::nullopt;
 }
 
-// Whether two masks show one object. Across classes: a real network calls a thing by two at once.
+// Whether two masks show the same object. The classes are not compared, because a real network can
+// report one thing under two classes.
 bool AreOneObject(const Candidate& a, const Candidate& b, double duplicate_iou) {
   const double shared = SharedArea(a.region, b.region);
   const double smaller = std::min(a.region.area(), b.region.area());
@@ -142,7 +143,8 @@ bool AreOneObject(const Candidate& a, const Candidate& b, double duplicate_iou) 
   return is_fragment && is_as_far;
 }
 
-// Keeps of masks that show one object the one of the highest score, of equal ones the first.
+// When several masks show the same object, keeps the one with the highest score; ties go to the
+// first.
 void RejectDuplicates(double duplicate_iou, std::vector<Candidate>& candidates,
                       Rejections& rejections) {
   std::stable_sort(candidates.begin(), candidates.end(),

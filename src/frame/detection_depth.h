@@ -18,26 +18,28 @@ struct DepthView {
   const cv::Mat& image;  // as in ImageInput, or empty
   double units_per_metre;
 
-  // m, 0 where unknown.
+  // Depth at a raw pixel, m; 0 if it is unknown.
   double AtRaw(const Eigen::Vector2d& raw) const;
 };
 
-// An object of the frame as what may hide others.
+// An object of the frame that may hide others.
 struct Occluder {
   const MaskRegion* region = nullptr;
-  double depth = 0.0;  // m, median of its points; 0 where unknown
+  double depth = 0.0;  // m, median of its points; 0 if unknown
 };
 
-// At most about `max_points` points of the mask in the camera frame, m, on a regular grid of raw
-// pixels, away from the border of the mask where depth is that of the background.
+// Points of the mask in the camera frame, m, at most about `max_points`. They are on a regular grid
+// of raw pixels and keep away from the border of the mask, where depth may be that of the
+// background.
 std::vector<Eigen::Vector3d> DepthPoints(const DepthView& view, const MaskRegion& region,
                                          int max_points);
 
 // Median of z; 0 for no points.
 double MedianDepth(std::span<const Eigen::Vector3d> points);
 
-// Whether something nearer than the object begins just beyond the line, by the depth image or by
-// the masks of `others`, at half of the places where that is known or more.
+// Whether something nearer than the object begins just beyond the line. This is tested at several
+// places along the line, with the depth image and the masks of `others`. It must hold at half or
+// more of the places where it is known.
 bool IsHidden(const LineOnOutline& line, const DepthView& view, double object_depth,
               std::span<const Occluder> others);
 

@@ -29,7 +29,7 @@ double Reach(const Polygon2& points, const Eigen::Vector2d& direction) {
   return reach;
 }
 
-// At most kMaxPlaces of the points with these indices, evenly chosen.
+// Of the points with these indices at most kMaxPlaces, evenly chosen.
 Polygon2 Places(const Polygon2& points, const std::vector<Eigen::Index>& indices) {
   Polygon2 places;
   const size_t used = std::min(kMaxPlaces, indices.size());
@@ -42,7 +42,7 @@ Polygon2 Places(const Polygon2& points, const std::vector<Eigen::Index>& indices
 }
 
 LineOnOutline LineAlong(const Outline& outline, const Line2& line) {
-  // The points as the columns of a matrix: this runs for each line of each mask.
+  // The points are taken as the columns of a matrix, because this runs for each line of each mask.
   const Eigen::Map<const Eigen::Matrix2Xd> points(
       outline.boundary[0].data(), 2, static_cast<Eigen::Index>(outline.boundary.size()));
   const Eigen::RowVectorXd reaches = line.normal.transpose() * points;
@@ -86,13 +86,14 @@ std::vector<Edge> EdgesOf(const Polygon2& polygon, double min_length) {
   return edges;
 }
 
-// Simplified, unless nothing of an area is left by that.
+// The simplified polygon, or the polygon itself if simplification leaves no area.
 Polygon2 Simplified(const Polygon2& polygon, double epsilon) {
   Polygon2 simplified = SimplifyPolygon(polygon, epsilon);
   return simplified.size() >= 3 ? simplified : polygon;
 }
 
-// Directions of long edges first, so that of two nearly equal ones the better known is kept.
+// The directions of the edges are added from the longest to the shortest edge. Of two nearly equal
+// directions this keeps the one of the longer edge, which is more precise.
 std::vector<Eigen::Vector2d> SupportDirections(const Polygon2& hull,
                                                const DetectionOptions& options) {
   std::vector<Edge> edges = EdgesOf(Simplified(hull, options.epsilon_px), options.min_line_px);
@@ -179,7 +180,8 @@ std::vector<LineOnOutline> SidesOfBox(const Polygon2& raw_corners, const Pinhole
   const size_t count = raw_corners.size();
   const bool is_positive = SignedArea(raw_corners) > 0.0;
   for (size_t i = 0; i < count; ++i) {
-    // Quarter points: the chord through them halves the error of a bent side.
+    // An undistorted side is curved. The line through its quarter points has half the error of the
+    // line through its ends.
     const Eigen::Vector2d& from = raw_corners[is_positive ? i : count - 1 - i];
     const Eigen::Vector2d& to =
         raw_corners[is_positive ? (i + 1) % count : (2 * count - 2 - i) % count];

@@ -13,15 +13,16 @@
 
 namespace hullslam {
 
-// A line with the places of the outline (undistorted px) that say whether it is a silhouette.
+// A line, with the points of the outline (undistorted px) that decide whether it is one-sided.
 struct LineOnOutline {
   Line2 line;
-  Polygon2 touching;  // what it rests on: it is cut by the border where all of this is
-  Polygon2 near;      // points of the boundary along it, to look for something nearer beyond
+  Polygon2
+      touching;   // where it touches; the border cuts the line if all of these are at the border
+  Polygon2 near;  // points along the line, where IsHidden() looks for something nearer beyond it
 };
 
-// The lines of a primitive, none shorter than `min_line_px` where they are edges; `ellipse` is for
-// `conic`, which has none without. In the order of their angle for support lines.
+// The lines of a primitive. Edges shorter than `min_line_px` give no line. Support lines are in the
+// order of their angle. `ellipse` is only used for `conic`, which gives no lines without it.
 std::vector<LineOnOutline> LinesOfOutline(const Outline& outline,
                                           const std::optional<Ellipse>& ellipse,
                                           ObjectPrimitive primitive,

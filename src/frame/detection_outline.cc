@@ -14,8 +14,8 @@ constexpr double kMinArea = 1.0;       // px^2
 constexpr double kMinPartShare = 0.1;  // of the largest part
 constexpr double kLargestStep = 12.0;  // px between points of a contour
 
-// The outline undistorted, in positive order. Its long edges get points between, as what is
-// straight in the raw image is bent in the undistorted one.
+// The undistorted outline, with positive signed area. Points are added on long edges, because an
+// edge that is straight in the raw image is curved in the undistorted image.
 Polygon2 UndistortDensely(const Polygon2& outline, const PinholeCamera& camera) {
   Polygon2 contour;
   contour.reserve(2 * outline.size());
@@ -62,7 +62,7 @@ Outline UndistortOutline(std::span<const Polygon2> parts, const PinholeCamera& c
       outline.contour = std::move(contour);
     }
   }
-  // Points put on a straight edge are off it by rounding; they are not corners.
+  // Points that were added on a straight edge are off it by rounding errors; this removes them.
   outline.hull = SimplifyPolygon(ConvexHull(outline.boundary), 1e-6);
   return outline;
 }

@@ -11,14 +11,15 @@ namespace hullslam {
 
 using Polygon2 = std::vector<Eigen::Vector2d>;
 
-// What is seen of an object, undistorted; closed polygons of positive signed area.
+// The shape of a mask, undistorted, px. The polygons are closed and have positive signed area.
 struct Outline {
-  Polygon2 contour;   // of the largest part; neighbouring points are a few pixels apart
-  Polygon2 boundary;  // the points of the contours of all parts
-  Polygon2 hull;      // of all parts; less than three corners where they have no area
+  Polygon2 contour;   // outline of the largest part; neighbouring points are a few pixels apart
+  Polygon2 boundary;  // the points of the outlines of all parts
+  Polygon2 hull;      // convex hull of all parts; fewer than three corners if they have no area
 };
 
-// The parts of a mask that are at least a tenth of its largest one, raw; none without an area.
+// The parts of a mask that have at least a tenth of the area of its largest part, in raw pixels.
+// Parts without area are left out.
 std::vector<Polygon2> LargeParts(std::span<const Polygon2> outlines);
 
 Outline UndistortOutline(std::span<const Polygon2> parts, const PinholeCamera& camera);

@@ -37,7 +37,8 @@ MaskRegion::MaskRegion(std::span<const std::vector<Eigen::Vector2d>> outlines,
     return;
   }
   pixels_ = cv::Mat::zeros(box_.size(), CV_8UC1);
-  for (const std::vector<cv::Point>& part : parts) {  // one by one: parts may overlap
+  // Each part is filled by itself, because cv::fillPoly would leave holes where parts overlap.
+  for (const std::vector<cv::Point>& part : parts) {
     cv::fillPoly(pixels_, part, cv::Scalar(255), cv::LINE_8, 0, -box_.tl());
   }
   area_ = cv::countNonZero(pixels_);

@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// The pixels of a mask in the raw image; those outside the image are left out.
+// The pixels of a mask inside the raw image.
 class MaskRegion {
  public:
   MaskRegion(std::span<const std::vector<Eigen::Vector2d>> outlines, const PinholeCamera& camera);
@@ -22,7 +22,8 @@ class MaskRegion {
     return x >= 0 && y >= 0 && x < box_.width && y < box_.height &&
            pixels_.at<unsigned char>(y, x) != 0;
   }
-  // Whether this pixel and those `margin` px away in eight directions are in the mask.
+  // Whether this pixel and the pixels at a distance of `margin` px in eight directions are in the
+  // mask.
   bool ContainsAround(const Eigen::Vector2d& raw, double margin) const;
 
   int area() const { return area_; }  // px
@@ -31,7 +32,7 @@ class MaskRegion {
 
  private:
   cv::Rect box_;
-  cv::Mat pixels_;  // CV_8UC1 of the box
+  cv::Mat pixels_;  // CV_8UC1, of the size of the box
   int area_ = 0;
 };
 

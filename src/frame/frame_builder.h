@@ -9,34 +9,34 @@
 #include <vector>
 
 #include "hullslam/camera/depth.h"
-#include "hullslam/frame/image_input.h"
 #include "hullslam/features/extractor.h"
-#include "hullslam/frame/frame.h"
-#include "hullslam/frame/sensor.h"
 #include "hullslam/frame/detection_builder.h"
+#include "hullslam/frame/frame.h"
+#include "hullslam/frame/image_input.h"
+#include "hullslam/frame/sensor.h"
 
 namespace hullslam {
 
-// Turns images into frames: features, undistortion, depth and virtual right coordinates, grid,
-// detections of objects. Keypoints on things of the dynamic classes are left out, and so are these
-// things.
+// Turns images into frames: extracts and undistorts keypoints, looks up their depths and virtual
+// right coordinates, builds the grid, and makes the detections of objects. Things of the dynamic
+// classes give no detections, and the keypoints on them are removed.
 class FrameBuilder {
  public:
-  // `sensor` must outlive the builder. Without `detection` frames have no detections.
+  // `sensor` must outlive the builder. If `detection` is empty, frames have no detections.
   FrameBuilder(const Sensor& sensor, const DepthOptions& depth, const FeatureOptions& features,
                const std::optional<DetectionOptions>& detection = DetectionOptions(),
                std::set<std::string> dynamic_classes = {});
 
-  // Throws CheckError where the images are not of the camera's size or not of the types that
-  // ImageInput says.
+  // Throws CheckError if an image does not have the size of the camera or a type that ImageInput
+  // allows.
   std::shared_ptr<const Frame> Build(const ImageInput& image, FrameId id);
 
   struct Counts {
     size_t detections = 0;
     size_t frames_with_masks = 0;
-    std::map<DetectionRejection, size_t> rejections;  // of masks that gave no detection
+    std::map<DetectionRejection, size_t> rejections;  // masks that gave no detection, by the reason
   };
-  // Of all frames that were built.
+  // The counts over all frames that were built.
   const Counts& counts() const { return counts_; }
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A user's program: finds the installed package, links it and uses it. What it calls stands in
-// several modules, so that the packages which these link must be found too.
+// The program of a user, which links the installed library and uses it. It calls functions of
+// several modules, so that CMake must also find the packages that these modules link.
 #include <filesystem>
 #include <iostream>
 #include <opencv2/core.hpp>
@@ -22,7 +22,7 @@ bool OptionsAreNamed() {
   return options.features.feature_count == 700;
 }
 
-// A camera that stands still before a textured wall 2 m away.
+// Tracks a camera that stands still in front of a textured wall, 2 m away.
 bool FramesAreTracked() {
   hullslam::SystemOptions options;
   options.camera.fx = options.camera.fy = 500.0;

@@ -15,7 +15,7 @@
 
 namespace hullslam {
 
-// The residual of a cost with the parameters (PoseBlock, point); zero where it is not defined.
+// The residual of a cost with the parameters (PoseBlock, point); zero if it is not defined.
 template <int kRows>
 Eigen::Matrix<double, kRows, 1> ResidualOf(const ceres::CostFunction& cost,
                                            const Rigid3& cam_from_world,
@@ -27,10 +27,10 @@ Eigen::Matrix<double, kRows, 1> ResidualOf(const ceres::CostFunction& cost,
   return residual;
 }
 
-// A cost on (PoseBlock, point) as one on (delta, point), delta being the six numbers of the
-// manifold's Plus, as ceres::GradientChecker needs it: its own treatment of manifolds would
-// differentiate by the block's first six numbers, and those of PoseManifold are not its tangent.
-// The derivative holds at delta = 0 only.
+// Turns a cost on (PoseBlock, point) into a cost on (delta, point), where delta are the six numbers
+// of the manifold's Plus. ceres::GradientChecker needs this, because with a manifold it would
+// differentiate with respect to the block's seven numbers, while our costs write derivatives with
+// respect to delta. The derivative is only valid at delta = 0.
 template <int kRows>
 class AtPose final : public ceres::SizedCostFunction<kRows, 6, 3> {
  public:
@@ -74,7 +74,7 @@ void ExpectTrueGradient(const ceres::CostFunction& cost, const Rigid3& cam_from_
   EXPECT_TRUE(checker.Probe(parameters, 1e-7, &results)) << results.error_log;
 }
 
-// Moving world and camera together changes nothing that the camera sees.
+// Moving the world and the camera together does not change the residual.
 template <int kRows>
 void ExpectRigidInvariance(const ceres::CostFunction& cost, const Rigid3& cam_from_world,
                            const Eigen::Vector3d& point, const Rigid3& new_from_old_world) {

@@ -49,7 +49,8 @@ TEST_F(MakeObjectCostTest, MakesWhatIsSupportedAndNothingElse) {
   }
 }
 
-// What is measured is the outline, so all of them vanish there; the polygons lack a little area.
+// The measured outline is the projected ellipse, so all residuals are zero, or nearly zero where a
+// polygon with a slightly smaller area stands for the ellipse.
 TEST_F(MakeObjectCostTest, AllAreSmallAtTheTruth) {
   for (const ObjectResidual residual : kResiduals) {
     for (const ObjectPrimitive primitive : kPrimitives) {

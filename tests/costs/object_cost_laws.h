@@ -23,7 +23,7 @@ namespace hullslam {
 constexpr PinholeCamera kObjectCamera{
     .fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
 
-// A camera and an ellipsoid, and their blocks of parameters.
+// A camera and an ellipsoid, with their parameter blocks.
 struct SeenEllipsoid {
   Rigid3 cam_from_world;
   Ellipsoid ellipsoid;
@@ -43,7 +43,7 @@ struct ObjectBlocks {
   Eigen::Vector3d log_axes;
 };
 
-// The whole ellipsoid is in front of the camera and its centre in the image.
+// A random state with the whole ellipsoid in front of the camera and its centre in the image.
 inline SeenEllipsoid RandomSeenEllipsoid(RandomGeometry& random) {
   SeenEllipsoid state;
   state.cam_from_world = random.Pose(1.0, 2.0);
@@ -56,8 +56,8 @@ inline SeenEllipsoid RandomSeenEllipsoid(RandomGeometry& random) {
   return state;
 }
 
-// A sphere of radius 0.6 m, 1 m in front of the camera: its outline is an ellipse around (320, 240)
-// with half axes f * 0.6 / sqrt(1 - 0.36) = 375 and 300 px.
+// A sphere of radius 0.6 m, 1 m in front of the camera. Its projected ellipse has the centre
+// (320, 240) and the half axes f * 0.6 / sqrt(1 - 0.36) = 375 and 300 px.
 inline SeenEllipsoid SphereAhead() {
   SeenEllipsoid state;
   state.ellipsoid.world_from_object.translation = {0.0, 0.0, 1.0};
@@ -65,9 +65,10 @@ inline SeenEllipsoid SphereAhead() {
   return state;
 }
 
-// A point of the outline and the tangent there, from the rays that touch the ellipsoid: with
-// X = t + A y the camera's centre is o = -A^-1 t among the y, and the ray through X touches where
-// |y| = 1 and y.o = 1; the normal there is along A^-T y.
+// A point of the projected ellipse and the tangent at this point, computed from the rays that touch
+// the ellipsoid. With X = t + A y the ellipsoid is the unit sphere |y| = 1 and the camera's centre
+// is o = -A^-1 t. The ray through X touches the sphere if |y| = 1 and y.o = 1. The normal at X is
+// along A^-T y.
 struct OutlinePoint {
   Eigen::Vector2d pixel;
   Line2 tangent;
@@ -113,7 +114,7 @@ inline std::vector<Eigen::Vector2d> ContourOf(const SeenEllipsoid& state, int co
   return contour;
 }
 
-// The residuals at a state; zero where they are not defined, which is a failure.
+// The residuals at a state. If they are not defined, the test fails and they are zero.
 inline Eigen::VectorXd ObjectResidualsOf(const ceres::CostFunction& cost,
                                          const SeenEllipsoid& state) {
   const ObjectBlocks blocks(state);
@@ -122,8 +123,8 @@ inline Eigen::VectorXd ObjectResidualsOf(const ceres::CostFunction& cost,
   return residuals;
 }
 
-// A cost whose first blocks are poses and the last one is a vector as one on the six numbers of
-// the manifold at each pose, as ceres::GradientChecker needs it (see AtPose).
+// Like AtPose, for a cost with several poses followed by one vector: turns it into a cost on the
+// six numbers of the manifold at each pose and the vector.
 class AtPoses final : public ceres::CostFunction {
  public:
   AtPoses(const ceres::CostFunction& cost, std::vector<PoseBlock> poses)
@@ -166,9 +167,10 @@ class AtPoses final : public ceres::CostFunction {
   std::vector<PoseBlock> poses_;
 };
 
-// Every row of every block's Jacobian agrees with numeric differentiation up to `precision` of its
-// largest element. `step` is the first that is tried, and small as the costs have kinks: Ceres'
-// default, a turn by 0.01 around an origin metres away, would move outlines by tens of pixels.
+// Expects that each row of each block's Jacobian agrees with numeric differentiation, up to
+// `precision` times its largest element. `step` is the first step size that is tried. It must be
+// small, because the costs have kinks: a turn by Ceres' default of 0.01 around an origin that is
+// metres away would move the projected ellipse by tens of pixels.
 inline void ExpectTrueGradientAt(const ceres::CostFunction& cost,
                                  const std::vector<PoseBlock>& poses, const Eigen::Vector3d& last,
                                  double precision, double step = 1e-4) {
@@ -202,7 +204,7 @@ inline void ExpectTrueObjectGradient(const ceres::CostFunction& cost, const Seen
   ExpectTrueGradientAt(cost, {blocks.camera, blocks.object}, blocks.log_axes, precision, step);
 }
 
-// Moving world, camera and object together changes nothing that the camera sees.
+// Moving the world, the camera and the object together does not change the residuals.
 inline void ExpectObjectRigidInvariance(const ceres::CostFunction& cost, const SeenEllipsoid& state,
                                         const Rigid3& new_from_old_world) {
   SeenEllipsoid moved = state;
@@ -212,7 +214,7 @@ inline void ExpectObjectRigidInvariance(const ceres::CostFunction& cost, const S
   EXPECT_LT((ObjectResidualsOf(cost, moved) - before).norm(), 1e-8 * (1.0 + before.norm()));
 }
 
-// An ellipsoid that reaches the camera or lies behind it has no outline.
+// An ellipsoid that reaches the camera or is behind it has no projected ellipse.
 inline void ExpectUndefinedUnlessInFront(const ceres::CostFunction& cost) {
   Eigen::VectorXd residuals(cost.num_residuals());
   for (const double z : {-2.0, 0.0, 0.3, 0.6}) {
@@ -227,7 +229,7 @@ inline void ExpectUndefinedUnlessInFront(const ceres::CostFunction& cost) {
   EXPECT_FALSE(cost.Evaluate(blocks.Pointers().data(), residuals.data(), nullptr));
 }
 
-// All of the laws but the values themselves.
+// All laws that do not depend on the values of a certain cost.
 inline void ExpectObjectCostLaws(const ceres::CostFunction& cost, const SeenEllipsoid& state,
                                  RandomGeometry& random) {
   ExpectTrueObjectGradient(cost, state);

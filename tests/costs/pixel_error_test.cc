@@ -11,7 +11,7 @@
 namespace hullslam {
 namespace {
 
-// A small sphere far off, with an outline of radius r = 500 * 0.2 / sqrt(25 - 0.04) px.
+// A small, distant sphere. The radius of its projection is r = 500 * 0.2 / sqrt(25 - 0.04) px.
 SeenEllipsoid SmallSphere() {
   SeenEllipsoid state;
   state.ellipsoid.world_from_object.translation = {0.0, 0.0, 5.0};
@@ -37,7 +37,7 @@ TEST(ResidualOfPixelError, ByHand) {
               1e-12);
 }
 
-// It is what the residuals themselves say of an outline that much too large.
+// The result agrees with the residuals of an outline that is larger by this error.
 TEST(ResidualOfPixelError, IsTheSizeOfTheResiduals) {
   const double radius = 100.0 / std::sqrt(25.0 - 0.04);
   const double error_px = 0.2;

@@ -31,7 +31,8 @@ Vector6d Minus(const PoseBlock& y, const PoseBlock& x) {
   return result;
 }
 
-// Distance of two poses; both signs of a quaternion are one rotation.
+// Distance between two poses. It compares matrices, because a quaternion and its negative are the
+// same rotation.
 double Distance(const PoseBlock& a, const PoseBlock& b) {
   return (FromBlock(a.data()).ToMatrix() - FromBlock(b.data()).ToMatrix()).norm();
 }
@@ -102,8 +103,8 @@ TEST(PoseManifold, PlusMayWriteOverItsInput) {
   EXPECT_EQ(in_place, Plus(x, delta));
 }
 
-// Costs give their derivative by the tangent in the first six columns, so the product with the
-// Jacobian of Plus takes exactly these.
+// Costs write their derivative with respect to the tangent into the first six columns, so the
+// product with the Jacobian of Plus must give exactly these columns.
 TEST(PoseManifold, JacobiansPassTheFirstSixColumns) {
   RandomGeometry random(7);
   const PoseBlock x = ToBlock(random.Pose(1.0, 2.0));

@@ -19,7 +19,7 @@ TEST(AlgebraicPlaneCost, ByHand) {
   EXPECT_NEAR(residuals[1], 3.6, 1e-9);
 }
 
-// pi^T Q* pi with pi = P^T l of unit normal, written out.
+// Compares with pi^T Q* pi, computed from the full matrices, where pi = P^T l has a unit normal.
 TEST(AlgebraicPlaneCost, IsThePapersResidual) {
   RandomGeometry random(1);
   const SeenEllipsoid state = RandomSeenEllipsoid(random);
@@ -63,7 +63,9 @@ TEST(AlgebraicPlaneCost, OneSidedIsZeroWhereTheObjectReachesThePlane) {
   RandomGeometry random(4);
   for (int i = 0; i < 10; ++i) {
     const SeenEllipsoid state = RandomSeenEllipsoid(random);
-    for (const double outwards : {-500.0, -3.0, 3.0}) {  // beyond the object, cutting it, short
+    // A line moved by -500 px has the object beyond it, one moved by -3 px cuts the object, and the
+    // object does not reach one moved by 3 px.
+    for (const double outwards : {-500.0, -3.0, 3.0}) {
       std::vector<SilhouetteLine> lines = TangentsOf(state, 16);
       for (SilhouetteLine& line : lines) {
         line.is_one_sided = true;

@@ -9,7 +9,8 @@ namespace hullslam {
 namespace {
 
 TEST(AlgebraicPointCost, ByHand) {
-  // Centre, outline, twice as far out, and half way up.
+  // The centre, a point on the ellipse, one at twice its half axis, and one at half of the other
+  // axis.
   const std::vector<Eigen::Vector2d> points = {
       {320.0, 240.0}, {695.0, 240.0}, {320.0 - 750.0, 240.0}, {320.0, 90.0}};
   const AlgebraicPointCost cost(kObjectCamera, points, 0.5);
@@ -39,8 +40,8 @@ TEST(AlgebraicPointCost, IsNotDefinedUnlessInFront) {
   ExpectUndefinedUnlessInFront(AlgebraicPointCost(kObjectCamera, ContourOf(SphereAhead(), 8), 1.0));
 }
 
-// On a circle of radius r the error of a point e px off is about 2 e / r, and its standard
-// deviation 2 (1 + e / r) sigma / r.
+// A point that is e px outside of a circle of radius r has an error of about 2 e / r. The standard
+// deviation of this error is 2 (1 + e / r) sigma / r.
 TEST(GateContour, LeavesThePointsNearTheOutline) {
   Ellipse circle;
   circle.center = {100.0, 50.0};

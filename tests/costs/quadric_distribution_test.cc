@@ -19,8 +19,9 @@ Ellipse OutlineEllipse(const SeenEllipsoid& state) {
   return ToEllipse(EllipseProjection(kObjectCamera, quadric).numbers());
 }
 
-// Half axes 375 and 300 px around (320, 240) against 370 and 310 px around (317, 244): for parallel
-// axes the Wasserstein distance is the sum of the squared differences.
+// The projected ellipse has the half axes 375 and 300 px and the centre (320, 240), the measured
+// one 370 and 310 px and (317, 244). If the axes are parallel, the squared Wasserstein distance is
+// the sum of the squared differences of these numbers.
 TEST(DistributionCost, WassersteinByHand) {
   Ellipse measured;
   measured.center = {317.0, 244.0};

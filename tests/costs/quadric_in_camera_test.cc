@@ -11,7 +11,7 @@
 namespace hullslam {
 namespace {
 
-// The centre and the columns of the half axes, so that the chain is checked by itself.
+// A cost on simple functions of the quadric, so that WriteRow is checked alone.
 class StateCost final : public ObjectCost {
  public:
   explicit StateCost(const Eigen::Vector3d& direction) : ObjectCost(2), direction_(direction) {}
@@ -37,7 +37,8 @@ class StateCost final : public ObjectCost {
 };
 
 TEST(QuadricInCamera, ByHand) {
-  // A quarter turn around z between camera and object: the long axis lies along the camera's y.
+  // The camera is turned against the object by 90 degrees around z, so the long axis of the object
+  // is along the camera's y axis.
   SeenEllipsoid state;
   state.cam_from_world = {ExpSo3({0.0, 0.0, std::numbers::pi / 2.0}), {1.0, 0.0, 0.0}};
   state.ellipsoid.world_from_object.translation = {0.0, 2.0, 3.0};

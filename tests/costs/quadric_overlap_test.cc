@@ -24,7 +24,7 @@ std::vector<Eigen::Vector2d> Rectangle(double x0, double y0, double x1, double y
 }
 
 double Intersection(const EllipseNumbers& ellipse, std::span<const Eigen::Vector2d> region) {
-  // Of I / (E + R - I).
+  // Solves iou = I / (E + R - I) for I.
   const double iou = EllipseOverlap(ellipse, region).iou;
   const double areas = ToEllipse(ellipse).Area() + SignedArea(region);
   return iou * areas / (1.0 + iou);
@@ -33,7 +33,8 @@ double Intersection(const EllipseNumbers& ellipse, std::span<const Eigen::Vector
 TEST(EllipseOverlap, ByHand) {
   const double pi = std::numbers::pi;
   const EllipseNumbers circle = Circle(10.0, 20.0, 2.0);
-  // A square around the circle, one inside of it, its right half, a quarter, and one apart.
+  // Squares around the circle and inside of it, rectangles over its right half and a quarter, and a
+  // rectangle that is disjoint from it.
   EXPECT_NEAR(EllipseOverlap(circle, Rectangle(8, 18, 12, 22)).iou, pi / 4.0, 1e-12);
   EXPECT_NEAR(EllipseOverlap(circle, Rectangle(9, 19, 11, 21)).iou, 1.0 / pi, 1e-12);
   EXPECT_NEAR(Intersection(circle, Rectangle(10, 10, 30, 30)), 2.0 * pi, 1e-9);
@@ -42,7 +43,7 @@ TEST(EllipseOverlap, ByHand) {
   EXPECT_LT(EllipseOverlap(circle, Rectangle(13, 18, 15, 22)).by_ellipse.norm(), 1e-12);
 }
 
-// The right half plane x > 1 takes a segment of r^2 acos(1 / 2) - sqrt(3).
+// The half plane x > 1 cuts off a circular segment with the area r^2 acos(1 / 2) - sqrt(3).
 TEST(EllipseOverlap, SegmentByHand) {
   EXPECT_NEAR(Intersection(Circle(0.0, 0.0, 2.0), Rectangle(1, -9, 9, 9)),
               4.0 * std::numbers::pi / 3.0 - std::sqrt(3.0), 1e-9);
@@ -63,7 +64,7 @@ TEST(EllipseOverlap, AgreesWithTheOverlapOfPolygons) {
   }
 }
 
-// An L is a square without a smaller one.
+// The region has the shape of an L: a large square without a smaller square.
 TEST(EllipseOverlap, RegionNeedNotBeConvex) {
   const std::vector<Eigen::Vector2d> corner = {{0, 0}, {8, 0}, {8, 3}, {3, 3}, {3, 8}, {0, 8}};
   RandomGeometry random(2);
@@ -88,7 +89,7 @@ TEST(BoxOverlap, ByHand) {
   EXPECT_TRUE(BoxOverlap(circle, apart).by_ellipse.isZero());
 }
 
-// Another object near enough that the two outlines overlap.
+// Another object that is so near that the two projected ellipses overlap.
 SeenEllipsoid Near(const SeenEllipsoid& state, RandomGeometry& random) {
   SeenEllipsoid moved = state;
   moved.ellipsoid.world_from_object.translation += random.Vector(0.05);
@@ -96,7 +97,8 @@ SeenEllipsoid Near(const SeenEllipsoid& state, RandomGeometry& random) {
   return moved;
 }
 
-// The area has kinks in its second derivative where an arc passes a corner of the region.
+// The tolerances are larger here, because the second derivative of the area jumps where an arc
+// passes a corner of the region.
 void ExpectOverlapLaws(const OverlapCost& cost, const SeenEllipsoid& state,
                        RandomGeometry& random) {
   ExpectTrueObjectGradient(cost, state, 1e-4, 1e-6);
@@ -111,7 +113,7 @@ TEST(OverlapCost, IsOneMinusTheOverlapInEitherOrder) {
   std::reverse(contour.begin(), contour.end());
   const double backward = ObjectResidualsOf(OverlapCost(kObjectCamera, contour, 0.5), state)[0];
   EXPECT_NEAR(forward, backward, 1e-9);
-  EXPECT_LT(forward, 0.01);  // what a polygon of 100 corners lacks
+  EXPECT_LT(forward, 0.01);  // a polygon of 100 corners has less area than the ellipse
   EXPECT_GT(forward, 0.0);
 }
 

@@ -22,7 +22,7 @@ Eigen::Matrix<double, 9, 1> PriorOf(const QuadricPriorCost& cost, const Ellipsoi
 Ellipsoid Start() {
   Ellipsoid start;
   start.world_from_object = {ExpSo3({0.3, -0.2, 0.5}), {1.0, 2.0, 3.0}};
-  start.half_axes = {0.8, 0.4, 0.2};  // of size 0.4
+  start.half_axes = {0.8, 0.4, 0.2};  // geometric mean 0.4
   return start;
 }
 
@@ -42,7 +42,7 @@ TEST(QuadricPriorCost, ByHand) {
   EXPECT_LT((PriorOf(cost, moved) - expected).norm(), 1e-9);
 }
 
-// A quaternion and its negative are one rotation.
+// A quaternion and its negative are the same rotation.
 TEST(QuadricPriorCost, DoesNotDependOnTheSignOfTheQuaternion) {
   Ellipsoid moved = Start();
   moved.world_from_object.rotation = ExpSo3({0.1, 0.2, 0.3}) * moved.world_from_object.rotation;

@@ -23,14 +23,14 @@ std::vector<SilhouetteLine> OneSided(std::vector<SilhouetteLine> lines) {
 }
 
 TEST(TangentCost, ByHand) {
-  // The outline reaches from 320 - 375 to 320 + 375 and up to 240 - 300.
+  // The ellipse reaches from x = 320 - 375 to 320 + 375, and up to y = 240 - 300.
   const std::vector<SilhouetteLine> lines = {{{{1.0, 0.0}, -690.0}, false},   // x <= 690
                                              {{{-1.0, 0.0}, -61.0}, false},   // x >= -61
                                              {{{0.0, -1.0}, -60.0}, false}};  // y >= -60
   const TangentCost cost(kObjectCamera, lines, 2.0);
   const Eigen::VectorXd residuals = ObjectResidualsOf(cost, SphereAhead());
-  EXPECT_NEAR(residuals[0], 2.5, 1e-9);   // 5 px over the line
-  EXPECT_NEAR(residuals[1], -3.0, 1e-9);  // 6 px short of it
+  EXPECT_NEAR(residuals[0], 2.5, 1e-9);   // reaches 5 px beyond the line
+  EXPECT_NEAR(residuals[1], -3.0, 1e-9);  // ends 6 px before the line
   EXPECT_NEAR(residuals[2], 0.0, 1e-9);
 }
 
@@ -62,7 +62,7 @@ TEST(TangentCost, KeepsTheLaws) {
   }
 }
 
-// A one-sided line says only that the object reaches it.
+// A one-sided line only tells that the object reaches at least to the line.
 TEST(TangentCost, OneSidedIsZeroWhereTheOutlineReachesTheLine) {
   RandomGeometry random(4);
   for (int i = 0; i < 10; ++i) {

@@ -18,8 +18,8 @@ PointMeasurement Measurement(const Eigen::Vector3d& measured, double pixel_sigma
 }
 
 TEST(RgbdReprojectionCost, ByHand) {
-  // (1, -0.5, 2) in the camera is pixel (570, 140) and has a disparity of 40 / 2 px. The sigma of
-  // the pixel does not matter to the disparity.
+  // (1, -0.5, 2) in the camera frame is pixel (570, 140) and has a disparity of 40 / 2 px. The
+  // sigma of the pixel does not affect the residual of the disparity.
   const Rigid3 cam_from_world(Eigen::Quaterniond::Identity(), {0.0, 0.0, -1.0});
   const RgbdReprojectionCost cost(kCamera, Measurement({569.0, 142.0, 17.0}, 2.0));
   const Eigen::Vector3d residual = ResidualOf<3>(cost, cam_from_world, {1.0, -0.5, 3.0});
@@ -63,7 +63,7 @@ TEST(RgbdReprojectionCost, FirstTwoRowsAreThoseWithoutDepth) {
   }
 }
 
-// Along the ray only the third row changes: this is what fixes the depth.
+// When the point moves along the ray, only the third row changes. So this row constrains the depth.
 TEST(RgbdReprojectionCost, ThirdRowFeelsTheDepth) {
   const RgbdReprojectionCost cost(kCamera, Measurement({320.0, 240.0, 20.0}, 1.0));
   EXPECT_LT(ResidualOf<3>(cost, Rigid3(), {0.0, 0.0, 2.0}).norm(), 1e-12);

@@ -19,8 +19,8 @@ PointMeasurement Measurement(const Eigen::Vector2d& pixel, double sigma) {
 }
 
 TEST(ReprojectionCost, ByHand) {
-  // The world is turned by a quarter turn around z and moved: (0.5, 0, 1) lies at (1, -0.5, 2) in
-  // the camera, which is pixel (500 / 2 + 320, -400 / 4 + 240).
+  // The world is turned by a quarter turn around z and moved: (0.5, 0, 1) is (1, -0.5, 2) in the
+  // camera frame, which is pixel (500 / 2 + 320, -400 / 4 + 240).
   const Rigid3 cam_from_world(ExpSo3({0.0, 0.0, std::numbers::pi / 2.0}), {1.0, -1.0, 1.0});
   const ReprojectionCost cost(kCamera, Measurement({567.0, 144.0}, 2.0));
   const Eigen::Vector2d residual = ResidualOf<2>(cost, cam_from_world, {0.5, 0.0, 1.0});
@@ -37,7 +37,7 @@ TEST(ReprojectionCost, DerivativeByThePointByHand) {
   Eigen::Matrix<double, 2, 3, Eigen::RowMajor> by_point;
   double* jacobians[] = {nullptr, by_point.data()};
   ASSERT_TRUE(cost.Evaluate(parameters, residual.data(), jacobians));
-  Eigen::Matrix<double, 2, 3> expected;  // twice the projection's, as sigma is 0.5
+  Eigen::Matrix<double, 2, 3> expected;  // twice the Jacobian of the projection, as sigma is 0.5
   expected << 500.0, 0.0, -250.0, 0.0, 400.0, 100.0;
   EXPECT_LT((by_point - expected).norm(), 1e-12);
 }

@@ -11,14 +11,15 @@
 namespace hullslam {
 namespace {
 
-// Three lines that the sphere's outline (x from -55 to 695) misses by 0, 1 and 16 px.
+// Three lines whose distances to the sphere's projected ellipse (x from -55 to 695) are 0, 1 and
+// 16 px.
 std::unique_ptr<TangentCost> ThreeLines() {
   const std::vector<SilhouetteLine> lines = {
       {{{1.0, 0.0}, -695.0}, false}, {{{1.0, 0.0}, -694.0}, false}, {{{-1.0, 0.0}, -71.0}, false}};
   return std::make_unique<TangentCost>(kObjectCamera, lines, 1.0);
 }
 
-// Huber's loss at 4 makes of 16^2 2 * 4 * 16 - 4^2 = 112.
+// Huber's loss with parameter 4 turns 16^2 into 2 * 4 * 16 - 4^2 = 112.
 TEST(RobustRowsCost, ByHand) {
   const RobustRowsCost cost(ThreeLines(), std::make_unique<ceres::HuberLoss>(4.0), 0.25);
   const Eigen::VectorXd residuals = ObjectResidualsOf(cost, SphereAhead());
@@ -54,7 +55,7 @@ TEST(RobustRowsCost, KeepsTheLaws) {
   }
 }
 
-// Near the minimum residuals are as small as rounding leaves them.
+// Near the minimum, residuals can be as small as rounding errors.
 TEST(RobustRowsCost, IsTheCostItselfForTinyResiduals) {
   for (const double error : {1e-3, 1e-5, 1e-7, 3e-9, 1e-12, 0.0}) {
     const std::vector<SilhouetteLine> lines = {{{{1.0, 0.0}, -695.0 + error}, false}};

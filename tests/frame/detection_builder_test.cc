@@ -46,7 +46,8 @@ DetectionOptions WithPrimitive(ObjectPrimitive primitive, double epsilon = 3.0) 
   return options;
 }
 
-// How far the line is outside of the parallel tangent of the ellipse, px.
+// Distance from the parallel tangent of the ellipse to the line, px; positive if the line is
+// outside of the ellipse.
 double Excess(const Line2& line, const Ellipse& ellipse) {
   return -line.SignedDistance(ellipse.center) - ellipse.HalfExtent(line.normal);
 }
@@ -80,7 +81,8 @@ std::vector<bool> SidesOneSided(const Detection& detection) {
   return sides;  // right, bottom, left, top
 }
 
-// Where a seen ellipsoid stands in the undistorted image of freiburg1's camera, off its middle.
+// The projection of an ellipsoid into the undistorted image of freiburg1's camera, away from the
+// middle of the image.
 Ellipse SeenEllipsoid() {
   const PinholeCamera camera = DistortedCamera();
   Eigen::Matrix3d k;
@@ -98,7 +100,7 @@ TEST(DetectionBuilder, SupportLinesOfADistortedMaskTouchTheTrueEllipse) {
   for (const SilhouetteLine& line : detection.lines) {
     EXPECT_FALSE(line.is_one_sided);
   }
-  // Of a mask of whole pixels they are off by half of one.
+  // A mask whose points are rounded to pixels gives an error of half a pixel.
   InstanceMask rounded = MaskOf(truth, DistortedCamera());
   for (Eigen::Vector2d& p : rounded.outlines[0]) {
     p = p.array().round();
@@ -113,7 +115,8 @@ TEST(DetectionBuilder, MasksNeedToBeUndistorted) {
   EXPECT_GT(LargestExcess(BuildOne(MaskOf(truth, DistortedCamera()), undistorted), truth), 2.0);
 }
 
-// What is straight in the raw image is bent in the undistorted one, also between two far corners.
+// An edge that is straight in the raw image is curved in the undistorted image, also between two
+// distant corners.
 TEST(DetectionBuilder, LongEdgesAreUndistortedAllAlong) {
   const PinholeCamera camera = DistortedCamera();
   const Detection detection = BuildOne(RectangleMask(20.0, 20.0, 400.0, 160.0), camera);
@@ -147,7 +150,7 @@ TEST(DetectionBuilder, SupportLinesRestOnTheFullHull) {
       }
       EXPECT_NEAR(outermost, 0.0, 1e-9);
       EXPECT_NEAR(line.line.normal.norm(), 1.0, 1e-12);
-      // No two of nearly one direction.
+      // No two lines have nearly the same direction.
       const double angle = std::atan2(line.line.normal.y(), line.line.normal.x());
       EXPECT_GT(angle - before, 0.08);
       before = angle;
@@ -155,7 +158,7 @@ TEST(DetectionBuilder, SupportLinesRestOnTheFullHull) {
   }
 }
 
-// The bias of chords, which support lines are there to remove.
+// The edges of a simplified hull are chords, which are biased to the inside. Support lines are not.
 TEST(DetectionBuilder, ChordsOfTheSimplifiedHullCutInsideAndSupportLinesDoNot) {
   const Ellipse truth = MakeEllipse({320.0, 240.0}, 90.0, 60.0, 0.3);
   const InstanceMask mask = MaskOf(truth, PlainCamera());
@@ -170,7 +173,7 @@ TEST(DetectionBuilder, ChordsOfTheSimplifiedHullCutInsideAndSupportLinesDoNot) {
   }
 }
 
-// A side between two borders is a silhouette, though both its ends are cut.
+// A side that reaches from border to border is two-sided, although both its ends are cut.
 TEST(DetectionBuilder, ASideFromBorderToBorderIsNotOneSided) {
   for (const ObjectPrimitive primitive : {ObjectPrimitive::kSupport, ObjectPrimitive::kHull}) {
     const Detection detection =
@@ -184,8 +187,8 @@ struct Cut {
   const char* name;
 };
 
-// An ellipse that the image cuts: what is two-sided touches it, what is one-sided does not reach
-// beyond it, and what the image cuts is one-sided.
+// The border of the image cuts an ellipse. No line is outside of the ellipse, two-sided lines touch
+// it, and lines that touch it away from the border are two-sided.
 TEST(DetectionBuilder, LinesOfACutMaskAreOneSidedWhereItIsCut) {
   for (const PinholeCamera& camera : {PlainCamera(), DistortedCamera()}) {
     for (const Cut& cut :
@@ -217,7 +220,7 @@ TEST(DetectionBuilder, LinesOfACutMaskAreOneSidedWhereItIsCut) {
   }
 }
 
-// Millimetres: a wall at 3 m, the object (the given raw rectangle) at 2 m.
+// A depth image in millimetres: a wall at 3 m, and an object at 2 m that fills the rectangle.
 cv::Mat DepthOfAnObject(const cv::Rect& object) {
   cv::Mat depth(480, 640, CV_16UC1, cv::Scalar(3000));
   depth(object) = 2000;
@@ -229,10 +232,11 @@ TEST(DetectionBuilder, SidesHiddenBySomethingNearerAreOneSided) {
   cv::Mat depth = DepthOfAnObject({200, 150, 120, 100});
   EXPECT_EQ(SidesOneSided(BuildOne(mask, PlainCamera(), {}, depth)),
             (std::vector<bool>{false, false, false, false}));
-  depth(cv::Rect(320, 100, 80, 200)) = 1500;  // right of it, nearer
+  depth(cv::Rect(320, 100, 80, 200)) = 1500;  // on its right, nearer
   EXPECT_EQ(SidesOneSided(BuildOne(mask, PlainCamera(), {}, depth)),
             (std::vector<bool>{true, false, false, false}));
-  depth(cv::Rect(320, 100, 80, 200)) = 1960;  // a little nearer: within noise and slant
+  depth(cv::Rect(320, 100, 80, 200)) =
+      1960;  // a little nearer, as noise or a slanted surface could be
   EXPECT_EQ(SidesOneSided(BuildOne(mask, PlainCamera(), {}, depth)),
             (std::vector<bool>{false, false, false, false}));
   depth(cv::Rect(320, 150, 80, 30)) = 1500;  // less than half of the side
@@ -252,7 +256,7 @@ TEST(DetectionBuilder, OcclusionIsSeenInDepthInMetresToo) {
             (std::vector<bool>{false, true, false, false}));
 }
 
-// Where the depth along the border of two objects is unknown, their masks tell.
+// If the depth along the common border of two objects is unknown, their masks are used.
 TEST(DetectionBuilder, ANearerMaskThatTouchesASideHidesIt) {
   const InstanceMask far = RectangleMask(200.0, 150.0, 119.0, 99.0, "book");
   const InstanceMask near = RectangleMask(320.0, 130.0, 99.0, 140.0, "cup");
@@ -268,7 +272,7 @@ TEST(DetectionBuilder, ANearerMaskThatTouchesASideHidesIt) {
 TEST(DetectionBuilder, PartsAreOneHullButForSmallOnes) {
   InstanceMask mask = RectangleMask(100.0, 100.0, 60.0, 80.0);
   mask.outlines.push_back(Rectangle(200.0, 110.0, 40.0, 60.0));
-  mask.outlines.push_back(Rectangle(400.0, 400.0, 10.0, 10.0));  // 2 % of the first
+  mask.outlines.push_back(Rectangle(400.0, 400.0, 10.0, 10.0));  // 2 % of the first part's area
   const Detection detection = BuildOne(mask, PlainCamera());
   EXPECT_EQ(detection.box.min(), Eigen::Vector2d(100.0, 100.0));
   EXPECT_EQ(detection.box.max(), Eigen::Vector2d(240.0, 180.0));
@@ -293,7 +297,7 @@ TEST(DetectionBuilder, TellsWhyAMaskIsRejected) {
   EXPECT_EQ(RejectionOf(RectangleMask(100.0, 100.0, 80.0, 6.0)), Reason::kTooSmall);
   EXPECT_EQ(RejectionOf(RectangleMask(20.0, 20.0, 500.0, 400.0)), Reason::kTooLarge);
   EXPECT_EQ(RejectionOf(RectangleMask(0.0, 0.0, 639.0, 200.0)), std::nullopt);
-  // Cut on every side that it has: a corner, seen from inside.
+  // With this border all its sides are cut.
   DetectionOptions wide;
   wide.border_px = 130.0;
   EXPECT_EQ(RejectionOf(RectangleMask(50.0, 50.0, 60.0, 60.0), wide), Reason::kNoSilhouette);
@@ -343,10 +347,11 @@ TEST(DetectionBuilder, AFragmentIsADuplicateOnlyAtTheSameDepth) {
   EXPECT_EQ(Build(masks, PlainCamera(), {}, depth).rejections[1], std::nullopt);
 }
 
-// Containment alone does not make one object of two.
+// Two masks are not the same object only because one contains the other.
 TEST(DetectionBuilder, ACupBeforeAMonitorIsADetectionOfItsOwn) {
   const InstanceMask cup = RectangleMask(260.0, 200.0, 30.0, 40.0, "cup", 0.6);
-  // The cup is cut out of the monitor's mask, but lies in its hull; or the mask covers it.
+  // In the first case the cup is cut out of the monitor's mask, but is inside its hull. In the
+  // second case the monitor's mask covers the cup.
   InstanceMask with_hole = RectangleMask(200.0, 100.0, 160.0, 140.0, "tv", 0.9);
   with_hole.outlines = {{{200.0, 100.0},
                          {360.0, 100.0},
@@ -384,7 +389,8 @@ TEST(DetectionBuilder, ABoxGivesItsFourSidesWhateverIsAskedFor) {
   }
 }
 
-// A detector's box touches the object somewhere on its bent sides, not at its corners.
+// The box of a detector touches the object somewhere on its sides, which are curved after
+// undistortion, and not at its corners.
 TEST(DetectionBuilder, SidesOfADistortedBoxAreTheUndistortedSides) {
   const PinholeCamera camera = DistortedCamera();
   InstanceMask box = RectangleMask(20.0, 20.0, 150.0, 120.0);

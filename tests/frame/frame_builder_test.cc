@@ -19,7 +19,7 @@ namespace {
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
 
-// The camera of TUM freiburg1 at half the size: strong distortion.
+// The camera of TUM freiburg1, which has strong distortion, at half its size.
 Sensor DistortedSensor() {
   Sensor sensor;
   sensor.camera = {.fx = 258.653204,
@@ -46,7 +46,8 @@ FeatureOptions FewFeatures() {
   return options;
 }
 
-// Bright and dark rectangles, and depths that change from pixel to pixel with holes.
+// An image of bright and dark rectangles, and depths that change from pixel to pixel and have
+// holes.
 ImageInput MakeImage() {
   ImageInput image;
   image.timestamp = 12.5;
@@ -63,7 +64,7 @@ ImageInput MakeImage() {
   return image;
 }
 
-// Keypoints whose raw position is in a square, by index.
+// The indices of the keypoints whose raw position is in a square.
 std::vector<uint32_t> KeypointsInside(const Frame& frame, double left, double top, double side) {
   const Eigen::AlignedBox2d square(Eigen::Vector2d(left, top),
                                    Eigen::Vector2d(left + side, top + side));
@@ -85,7 +86,7 @@ class FrameBuilderTest : public testing::Test {
   const Sensor sensor_ = DistortedSensor();
 };
 
-TEST_F(FrameBuilderTest, HasOneEntryAKeypointAndItsStamp) {
+TEST_F(FrameBuilderTest, HasOneEntryPerKeypointAndItsStamp) {
   const auto frame = Build(MakeImage());
   EXPECT_EQ(frame->id, FrameId(3));
   EXPECT_EQ(frame->timestamp, 12.5);
@@ -238,7 +239,7 @@ TEST_F(FrameBuilderTest, ImagesOfAnotherTypeAreRefusedWhateverTheyShow) {
   image.grey.convertTo(image.grey, CV_16UC1);
   EXPECT_THROW(Build(image), CheckError);
   image = MakeImage();
-  image.grey.setTo(128);  // without keypoints no depth is ever asked for
+  image.grey.setTo(128);  // without keypoints no depth is looked up
   image.depth.convertTo(image.depth, CV_8UC1);
   EXPECT_THROW(Build(image), CheckError);
 }

@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-// Stages hand frames on by value: the pixels are shared, not copied.
+// Stages pass images on by value. This shares the pixels and does not copy them.
 TEST(ImageInput, CopiesShareThePixels) {
   ImageInput image{.timestamp = 2.5,
                    .grey = cv::Mat(4, 6, CV_8UC1, cv::Scalar(9)),

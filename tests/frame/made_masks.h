@@ -13,7 +13,7 @@
 
 namespace hullslam {
 
-// freiburg1's camera, strongly distorted (config/TUM1.yaml).
+// The camera of freiburg1, which has strong distortion (config/TUM1.yaml).
 inline PinholeCamera DistortedCamera() {
   PinholeCamera camera;
   camera.fx = 517.306408;
@@ -41,7 +41,7 @@ inline Ellipse MakeEllipse(const Eigen::Vector2d& center, double a, double b, do
   return {center, turn * Eigen::Vector2d(a * a, b * b).asDiagonal() * turn.transpose()};
 }
 
-// The mask of an ellipse of the undistorted image, cut off where the raw image ends.
+// The mask of an ellipse in the undistorted image. It is cut at the border of the raw image.
 inline InstanceMask MaskOf(const Ellipse& ellipse, const PinholeCamera& camera) {
   InstanceMask mask{.label = "cup", .score = 0.9, .shape = MaskShape::kContour, .outlines = {{}}};
   for (const Eigen::Vector2d& p : ellipse.Polygon(720)) {

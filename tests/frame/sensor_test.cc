@@ -8,8 +8,8 @@
 namespace hullslam {
 namespace {
 
-// The baseline is what makes the virtual right coordinate of camera/depth.h that of a camera moved
-// along x by it.
+// The virtual right coordinate of camera/depth.h is the u coordinate in a camera that is moved
+// along x by the baseline.
 TEST(Sensor, BaselineIsThatOfTheVirtualRightCamera) {
   Sensor sensor;
   sensor.camera.fx = 500.0;

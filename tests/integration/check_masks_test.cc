@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 const char* const kCup = "41 0.25 0.25 0.5 0.25 0.5 0.5 0.25 0.5 0.9\n";
 
-// A sequence of four frames of which two have masks.
+// A sequence of four frames, two of which have masks.
 class CheckMasks : public ::testing::Test {
  protected:
   CheckMasks() {
@@ -35,7 +35,7 @@ class CheckMasks : public ::testing::Test {
     return RunProgram("check_masks", arguments);
   }
 
-  // The number behind a name at the begin of a line.
+  // The number that follows a name at the start of a line.
   static std::string Count(const ProgramResult& result, const std::string& name) {
     const size_t at = result.output.find('\n' + name + ' ');
     if (at == std::string::npos) {
@@ -64,11 +64,11 @@ TEST_F(CheckMasks, CountsFramesInstancesAndClasses) {
   EXPECT_EQ(Count(result, "person"), "1");
 }
 
-TEST_F(CheckMasks, ShowsHowFarItIs) {
+TEST_F(CheckMasks, ShowsProgress) {
   EXPECT_NE(Run().errors.find("frame 2/4  "), std::string::npos);
 }
 
-TEST_F(CheckMasks, GoesByTheSettings) {
+TEST_F(CheckMasks, AppliesTheSettings) {
   const ProgramResult result = Run({"--set", "objects.min_score=0.85"});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_EQ(Count(result, "kept"), "2");
@@ -87,7 +87,8 @@ TEST_F(CheckMasks, DrawsThePicturesAskedFor) {
   EXPECT_EQ(names, (std::set<std::string>{"00.png", "02.png"}));
   const cv::Mat picture = cv::imread(out / "00.png", cv::IMREAD_COLOR);
   ASSERT_EQ(picture.size(), cv::Size(1280, 960));
-  // The cup's left side, at x = 160 and y = 120 to 240 of the image, holds: it is drawn green.
+  // The cup's left side is at x = 160 and y = 120 to 240 of the image. It is two-sided, so it is
+  // green.
   cv::Mat is_green;
   cv::inRange(picture(cv::Rect(316, 230, 10, 260)), cv::Scalar(60, 220, 60),
               cv::Scalar(60, 220, 60), is_green);
@@ -102,7 +103,7 @@ TEST_F(CheckMasks, ListsAllMalformedFiles) {
   EXPECT_NE(result.errors.find("01.txt:1: 4 column(s)"), std::string::npos) << result.errors;
   EXPECT_NE(result.errors.find("03.txt:2: y is 'nan'"), std::string::npos) << result.errors;
   EXPECT_EQ(Count(result, "malformed"), "2");
-  EXPECT_EQ(Count(result, "kept"), "3");  // of the others
+  EXPECT_EQ(Count(result, "kept"), "3");  // in the other files
 }
 
 TEST_F(CheckMasks, RefusesBadArguments) {
@@ -125,7 +126,7 @@ TEST_F(CheckMasks, RefusesBadArguments) {
   refuse(RunProgram("check_masks", {sequence_.path(), folder_.path() / "others"}), "'1.5.txt'");
 }
 
-TEST(CheckMasksData, RealMasksAreAllWell) {
+TEST(CheckMasksData, RealMasksAreAllReadable) {
   const auto data = FindTestData("fr1_xyz");
   if (!data) {
     GTEST_SKIP() << "fr1_xyz is not on this machine; set HULLSLAM_DATA";
@@ -136,15 +137,15 @@ TEST(CheckMasksData, RealMasksAreAllWell) {
       << result.output;
 }
 
-// ---- --masks of the programs that run SLAM
+// ---- The option --masks of the programs that run SLAM
 
-TEST_F(CheckMasks, RunsTellTheFormatAndTheFramesWithout) {
+TEST_F(CheckMasks, RunsReportTheFormatAndTheFramesWithoutMasks) {
   const fs::path out = folder_.path() / "out";
   const std::vector<std::string> arguments = {sequence_.path(), "--output", out, "--masks",
                                               folder_.path() / "masks"};
   const ProgramResult result = RunProgram("rgbd_tum", arguments);
   EXPECT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NE(result.output.find("(yolo-seg), 2 of 4 frames without"), std::string::npos)
+  EXPECT_NE(result.output.find("(yolo-seg), 2 of 4 frames have none"), std::string::npos)
       << result.output;
   EXPECT_NE(ReadFile(out / "summary.json").find("\"masks_format\": \"yolo-seg\""),
             std::string::npos);

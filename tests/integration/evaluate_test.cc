@@ -32,7 +32,7 @@ class Evaluate : public ::testing::Test {
     WriteTrajectory(half_, Curve(0.5));
   }
 
-  // Bad input ends with code 2, nothing on stdout and one line that holds `part`.
+  // Expects exit code 2, nothing on stdout, and one line on stderr that contains `part`.
   static void ExpectRefusal(const std::vector<std::string>& arguments, const std::string& part) {
     const ProgramResult result = RunProgram("evaluate", arguments);
     EXPECT_EQ(result.exit_code, 2);
@@ -59,7 +59,7 @@ TEST_F(Evaluate, StatesErrorsPairsAlignmentAndScale) {
   }
 }
 
-TEST_F(Evaluate, JsonHoldsTheSame) {
+TEST_F(Evaluate, JsonHasTheSameNumbers) {
   const ProgramResult result =
       RunProgram("evaluate", {"trajectory", truth_, half_, "--json", "--tool", "evo", "--align",
                               "none", "--max-diff", "0.05"});
@@ -70,7 +70,7 @@ TEST_F(Evaluate, JsonHoldsTheSame) {
   EXPECT_EQ(json["alignment"], "none");
   EXPECT_EQ(json["max_difference_s"], 0.05);
   EXPECT_EQ(json["coverage"], 1.0);
-  // The last pose is the farthest: half of (cos t, sin t, t) at 5.9 s is missing.
+  // The error is largest at the last pose, at 5.9 s, where it is half of (cos t, sin t, t).
   EXPECT_NEAR(json["ate_m"]["max"].get<double>(), 0.5 * std::hypot(1.0, 5.9), 1e-6);
   EXPECT_GT(json["rpe"]["translation_m"]["rmse"].get<double>(), 0.1);
 }
@@ -93,8 +93,8 @@ TEST_F(Evaluate, BadUsageIsRefusedWithOneLine) {
   ExpectRefusal({"trajectory", truth_, half_, "--no-such"}, "--no-such");
 }
 
-// A run on a made-up sequence of 40 frames along a curve: a sphere that is mapped 1 % too large,
-// with a perfect mask, and one that is not mapped.
+// A run on a synthetic sequence of 40 frames along a curve. One sphere has a perfect mask and is
+// mapped 1 % too large; another one is not mapped.
 class EvaluateObjects : public Evaluate {
  protected:
   EvaluateObjects() {
@@ -123,7 +123,7 @@ class EvaluateObjects : public Evaluate {
 
   void WriteRun() { folder_.Write("run/objects.json", FormatObjects(report_)); }
 
-  // The run's world is moved against the true one.
+  // The world frame of the run differs from the true one by a rotation and a translation.
   void WriteSequence() {
     const Rigid3 truth_from_map(ExpSo3({0.0, 0.0, 0.3}), {1.0, 2.0, 3.0});
     Trajectory truth;
@@ -138,7 +138,7 @@ class EvaluateObjects : public Evaluate {
       const std::string number = std::to_string(i);
       images += std::to_string(t) + " images/" + number + ".png\n";
       folder_.Write("images/" + number + ".png", "");
-      // 60 px about the middle, where the sphere is.
+      // A square of 60 px around the middle, where the sphere is.
       folder_.Write("masks/" + number + ".txt",
                     "41 0.453 0.438 0.547 0.438 0.547 0.562 0.453 0.562 1\n");
     }
@@ -204,7 +204,7 @@ TEST_F(EvaluateObjects, PrintsTables) {
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   for (const char* const part :
        {"1 mapped, 2 candidates; 1 observations and 1 lines", "mean SIoU 0.98",
-        "0 visible (in 41 masks or more)", "ellipsoid    1 mapped: centre off by 0.0 %"}) {
+        "0 visible (in 41 masks or more)", "ellipsoid    1 mapped: mean centre error 0.0 %"}) {
     EXPECT_NE(result.output.find(part), std::string::npos) << part << " in\n" << result.output;
   }
 }
@@ -214,7 +214,8 @@ TEST_F(EvaluateObjects, ARunWithoutObjectsHasNoMeans) {
   WriteRun();
   const ProgramResult result = RunProgram("evaluate", {"objects", run_});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NE(result.output.find("mean SIoU -, with the mask -"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("mean SIoU - with hulls, - with masks"), std::string::npos)
+      << result.output;
 }
 
 TEST_F(EvaluateObjects, BadInputIsRefusedWithOneLine) {

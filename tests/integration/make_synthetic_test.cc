@@ -10,7 +10,7 @@
 namespace hullslam {
 namespace {
 
-TEST(MakeSynthetic, BadUsageIsToldAndWritesNothing) {
+TEST(MakeSynthetic, BadUsageIsRefusedAndWritesNothing) {
   const TemporaryFolder folder;
   const std::string out = (folder.path() / "out").string();
   EXPECT_EQ(RunProgram("make_synthetic", {"--help"}).exit_code, 0);
@@ -24,7 +24,7 @@ TEST(MakeSynthetic, BadUsageIsToldAndWritesNothing) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
-TEST(MakeSynthetic, ReplacesItsOwnSequenceByForceOnly) {
+TEST(MakeSynthetic, ReplacesItsOwnSequenceOnlyWithForce) {
   const TemporaryFolder folder;
   const std::string out = (folder.path() / "out").string();
   EXPECT_EQ(RunProgram("make_synthetic", {out, "--frames", "1"}).exit_code, 0);

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 using Json = nlohmann::json;
 
-// What `evaluate objects` says of a map made with the true poses.
+// The JSON that `evaluate objects` prints for a run, with the comparison with the true objects.
 Json CompareWithTruth(const fs::path& sequence, const fs::path& run) {
   const ProgramResult result = RunProgram(
       "evaluate",
@@ -28,10 +28,11 @@ Json CompareWithTruth(const fs::path& sequence, const fs::path& run) {
   return Json::parse(result.output);
 }
 
-TEST(MapObjects, EllipsoidsAreWhereAndAsLargeAsTheyAre) {
+TEST(MapObjects, EllipsoidsHaveTheTruePositionAndSize) {
   const TemporaryFolder folder;
   const fs::path desk = folder.path() / "desk";
-  // All 300 frames: after 150 the objects were seen from one side only, and their height is free.
+  // All 300 frames are needed: the first 150 show the objects from one side only, which does not
+  // constrain their height.
   ASSERT_EQ(RunProgram("make_synthetic", {desk, "--quiet"}).exit_code, 0);
   const fs::path run = folder.path() / "run";
   const ProgramResult result =
@@ -60,7 +61,7 @@ TEST(MapObjects, EllipsoidsAreWhereAndAsLargeAsTheyAre) {
   EXPECT_NEAR(truth["shapes"]["ellipsoid"]["axis_ratio_mean"].get<double>(), 1.0, 0.01);
 }
 
-// A sequence of four frames, its masks and, made up, the poses.
+// A sequence of four frames with masks. Each test refuses other poses, masks or settings.
 class MapObjectsRefuses : public ::testing::Test {
  protected:
   MapObjectsRefuses() {
@@ -80,7 +81,8 @@ class MapObjectsRefuses : public ::testing::Test {
       EXPECT_NE(result.errors.find(part), std::string::npos)
           << "no '" << part << "' in: " << result.errors;
     }
-    EXPECT_FALSE(fs::exists(folder_.path() / "out")) << "nothing was written, not even a folder";
+    EXPECT_FALSE(fs::exists(folder_.path() / "out"))
+        << "a refused run must not create its output folder";
   }
 
   TemporaryFolder folder_;
@@ -89,7 +91,7 @@ class MapObjectsRefuses : public ::testing::Test {
   std::string masks_ = folder_.path() / "masks";
 };
 
-TEST_F(MapObjectsRefuses, PosesThatAreMissingBrokenOrOfAnotherTime) {
+TEST_F(MapObjectsRefuses, PosesThatAreMissingMalformedOrOfAnotherTime) {
   Expect(folder_.path() / "none.txt", {"--masks", masks_}, {"none.txt", "No such file"});
   Expect(folder_.Write("broken.txt", "1 0 0 0 0 0 0 1\n2 0 nan 0 0 0 0 1\n"), {"--masks", masks_},
          {"broken.txt:2: ", "'nan'"});
@@ -101,7 +103,7 @@ TEST_F(MapObjectsRefuses, MasksThatAreMissingOrOfOtherFrames) {
   Expect(poses_, {}, {"--masks"});
   Expect(poses_, {"--masks", masks_ + "/none"}, {masks_ + "/none"});
   folder_.Write("others/1.5.txt", "41 0.25 0.25 0.5 0.25 0.5 0.5 0.25 0.5 0.9\n");
-  // One stem of each side shows what is wrong.
+  // The message names one mask file and one frame, so that the user can compare the names.
   Expect(poses_, {"--masks", folder_.path() / "others"}, {"'1.5.txt'", "00"});
 }
 

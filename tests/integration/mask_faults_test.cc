@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Objects can't harm: whatever is wrong with the masks, the camera is tracked as without them.
+// Objects do no harm: whatever is wrong with the masks, the camera is tracked about as well as
+// without masks.
 #include "support/mask_faults.h"
 
 #include <fmt/format.h>
@@ -22,15 +23,15 @@ namespace fs = std::filesystem;
 
 using Json = nlohmann::json;
 
-// The error may grow by a tenth and a slack: where the error is about 1 mm, as on the rendered
-// desk, a tenth of it is less than what another seed changes.
+// The error may grow by a tenth plus a slack. The slack is for errors of about 1 mm, as on the
+// rendered desk: there another seed changes the error by more than a tenth.
 constexpr double kMoreError = 1.10;
 constexpr double kSlack = 0.0003;  // m
 
 class MaskFaults : public ::testing::Test {
  protected:
-  // The summary's part on the trajectory of a run over frames 0 to `last` in which every frame was
-  // tracked.
+  // Runs over the frames 0 to `last`, expects that every frame is tracked, and returns the part
+  // "trajectory" of the summary.
   Json Run(const fs::path& sequence, int last, const std::vector<std::string>& more) const {
     std::vector<std::string> arguments = {sequence,  "--last",   std::to_string(last),
                                           "--quiet", "--output", folder_.path() / "out"};
@@ -44,7 +45,7 @@ class MaskFaults : public ::testing::Test {
     return trajectory;
   }
 
-  // Runs with each fault against the run without masks.
+  // Compares a run with each kind of fault with a run without masks.
   void ExpectNoHarm(const fs::path& sequence, const fs::path& masks, int last) const {
     const auto error = [&](const std::vector<std::string>& more) {
       return Run(sequence, last, more)["ate_rmse_m"].get<double>();

@@ -10,8 +10,8 @@
 namespace hullslam {
 namespace {
 
-// The camera of the example moves to the right by 1 cm a frame, 30 times a second.
-TEST(Minimal, PrintsAPoseAFrame) {
+// The camera of the example moves to the right by 1 cm per frame, at 30 frames per second.
+TEST(Minimal, PrintsOnePosePerFrame) {
   const ProgramResult result = RunProgram("minimal", {});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_EQ(result.errors, "");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// rgbd_tum with masks: what it writes, and what a run without objects has in common with it.
+// rgbd_tum with masks: the files that it writes, and which of them equal those of a run without
+// objects.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +22,7 @@ using Json = nlohmann::json;
 
 class RgbdObjects : public ::testing::Test {
  protected:
-  // Renders the begin of a scene.
+  // Renders the first frames of a scene.
   void Render(const std::string& scene, int frames) const {
     const ProgramResult result =
         RunProgram("make_synthetic",
@@ -29,7 +30,7 @@ class RgbdObjects : public ::testing::Test {
     ASSERT_EQ(result.exit_code, 0) << result.errors;
   }
 
-  // Exit code 0; the folder with the results.
+  // Runs the program, expects exit code 0 and returns the folder with the results.
   fs::path Run(const std::string& name, const std::vector<std::string>& more) const {
     const fs::path output = folder_.path() / name;
     std::vector<std::string> arguments = {sequence_, "--quiet", "--output", output};
@@ -91,8 +92,8 @@ TEST_F(RgbdObjects, AreMappedByThreads) {
   EXPECT_GE(summary["objects"]["count"], 3);
 }
 
-// A box of a person's class walks through the image. Without its mask it takes the camera along,
-// 10 cm after 75 frames.
+// A box of class person moves through the scene. Without its mask the estimated camera follows it,
+// by 10 cm after 75 frames.
 TEST_F(RgbdObjects, ThatMoveDoNotMoveTheCamera) {
   Render("dynamic", 75);
   const auto error = [&](const std::string& name, const std::vector<std::string>& more) {
@@ -106,7 +107,8 @@ TEST_F(RgbdObjects, ThatMoveDoNotMoveTheCamera) {
   fmt::print("ATE RMSE {:.2f} mm, without masks {:.2f} mm\n", 1e3 * with, 1e3 * without);
 }
 
-// Poses rest on points alone where objects are in neither the pose nor bundle adjustment.
+// If objects are used neither for the pose nor in bundle adjustment, only points determine the
+// poses, so these do not change.
 TEST_F(RgbdObjects, ThatAreOnlyMappedLeavePosesAlone) {
   Render("desk", 60);
   const std::vector<std::string> masks = {"--masks", masks_, "--set", "tracking.dynamic_classes="};

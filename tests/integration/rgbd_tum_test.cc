@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 using Arguments = std::vector<std::string>;
 using Json = nlohmann::json;
 
-// Another content for a file while this lives; the former one comes back.
+// Replaces the content of a file. The destructor restores the former content.
 class EditedFile {
  public:
   EditedFile(fs::path path, const std::string& content)
@@ -55,7 +55,7 @@ class EditedFile {
   std::string former_;
 };
 
-// Bytes of all files of a folder by name, temporary ones as well.
+// The bytes of all files of a folder, by name, including temporary files.
 std::map<std::string, std::string> ReadFolder(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -87,7 +87,7 @@ void ExpectParts(const std::string& text, const std::vector<std::string>& parts)
 
 class RgbdTum : public ::testing::Test {
  protected:
-  // Exit code 0; what the program said.
+  // Runs the program, expects exit code 0 and returns what the program printed.
   ProgramResult RunWell(const Arguments& arguments) const {
     ProgramResult result = RunProgram("rgbd_tum", arguments + Arguments{"--output", output_});
     EXPECT_EQ(result.exit_code, 0) << result.errors;
@@ -191,7 +191,7 @@ TEST_F(RgbdTum, TakesTheFourArgumentsOfOrbSlam2) {
   EXPECT_EQ(Poses().size(), 12U);
 }
 
-TEST_F(RgbdTum, SetOverridesASettingWhereverItStands) {
+TEST_F(RgbdTum, SetOverridesASettingBeforeAndAfterTheSequence) {
   RunWell({path_});
   const std::string plain = Summary()["provenance"]["settings_hash"];
   RunWell({path_, "--set", "ORBextractor.nFeatures=500"});
@@ -272,12 +272,12 @@ class RgbdTumRefuses : public RgbdTum {
     former_ = ReadFolder(output_);
   }
 
-  // Exit code 2, nothing on stdout, one line on stderr with all `parts`, and the results of the
-  // former run are as they were.
+  // Expects exit code 2, nothing on stdout, one line on stderr that contains all `parts`, and that
+  // the results of the former run are unchanged.
   void ExpectRefusal(const Arguments& arguments, const std::vector<std::string>& parts,
                      const std::string& setup = "") const {
     Expect(arguments + Arguments{"--output", output_}, parts, setup);
-    EXPECT_TRUE(ReadFolder(output_) == former_) << "the former results were changed";
+    EXPECT_TRUE(ReadFolder(output_) == former_) << "the results of the former run were changed";
   }
 
   static void Expect(const Arguments& arguments, const std::vector<std::string>& parts,
@@ -290,7 +290,7 @@ class RgbdTumRefuses : public RgbdTum {
     ExpectParts(result.errors, parts);
   }
 
-  // The same with another content in a file of the sequence.
+  // Expects a refusal after a file of the sequence gets another content.
   void ExpectRefusalOf(const std::string& name, const std::string& content,
                        const std::vector<std::string>& parts) const {
     const EditedFile edited(sequence_.path() / name, content);
@@ -315,7 +315,7 @@ TEST_F(RgbdTumRefuses, BadSettings) {
   const auto refuse = [&](const std::string& line, const std::vector<std::string>& parts) {
     ExpectRefusalOf("camera.yaml", good + line + '\n', parts);
   };
-  const std::string place = path_ + "/camera.yaml:13: ";  // the line behind the good ones
+  const std::string place = path_ + "/camera.yaml:13: ";  // the line after the good ones
   refuse("Camera.fz: 500.0", {place, "unknown key 'Camera.fz'", "Camera.f"});
   refuse("Camera.k1: wide", {place, "Camera.k1 is 'wide'", "a number"});
   refuse("ORBextractor.nLevels: 2.5", {place, "ORBextractor.nLevels is '2.5'", "an integer"});
@@ -371,7 +371,7 @@ TEST_F(RgbdTumRefuses, BrokenLists) {
   ExpectRefusalOf("rgb.txt", "1.0\n", {path_ + "/rgb.txt:1: "});
   ExpectRefusalOf("rgb.txt", "soon rgb/00.png\n", {path_ + "/rgb.txt:1: ", "'soon'"});
   ExpectRefusalOf("depth.txt", "", {path_ + "/depth.txt", "no images"});
-  // The colour image nearest in time is that of 1000 s.
+  // The nearest colour image in time is the one at 1000 s.
   ExpectRefusalOf("depth.txt", "999.97 depth/00.png\n", {path_, "0.02 s", "smallest gap is 0.03"});
   ExpectRefusalOf("groundtruth.txt", "1 0 0 0 0 0 0 1\n2 0 nan 0 0 0 0 1\n",
                   {path_ + "/groundtruth.txt:2: ", "'nan'"});
@@ -401,13 +401,13 @@ TEST_F(RgbdTumRefuses, OutputThatCannotBeWritten) {
   EXPECT_EQ(ReadFile(file), "precious");
 }
 
-// trajectory.txt is small enough, map.ply is not; no former file may be replaced.
+// trajectory.txt is smaller than the limit, but map.ply is larger. No former file may be replaced.
 TEST_F(RgbdTumRefuses, FilesThatMayNotGrow) {
   ExpectRefusal({path_, "--quiet"}, {(output_ / "map.ply").string(), "cannot be written"},
                 "trap '' XFSZ; ulimit -f 4; ");
 }
 
-// A disk of its own that can be filled.
+// Mounts a small disk at a folder, so that a test can fill it.
 class SmallDisk {
  public:
   explicit SmallDisk(fs::path folder) : folder_(std::move(folder)) {
@@ -438,11 +438,12 @@ TEST_F(RgbdTumRefuses, FullDisk) {
   const fs::path disk = folder_.path() / "disk";
   const SmallDisk mounted(disk);
   if (!mounted.is_mounted()) {
-    GTEST_SKIP() << "a small disk cannot be mounted here; FilesThatMayNotGrow tests the same";
+    GTEST_SKIP()
+        << "cannot mount a small disk here; the test FilesThatMayNotGrow covers the same case";
   }
   fs::copy(output_, disk / "out");
   output_ = disk / "out";
-  // Room for one page, so that the test before the run passes and trajectory.txt still fits.
+  // Leaves room for one page: the check before the run passes and trajectory.txt still fits.
   std::ofstream filler(disk / "filler", std::ios::binary);
   while (fs::space(disk).available > 8192 && filler) {
     filler << std::string(4096, 'x') << std::flush;
@@ -454,7 +455,7 @@ TEST_F(RgbdTumRefuses, FullDisk) {
   ExpectRefusal({path_}, {disk.string(), "No space left on device"});
 }
 
-// ---- runs that meet trouble on the way
+// ---- runs in which something goes wrong after the first frame
 
 TEST_F(RgbdTum, BrokenImageInTheMiddleIsSkipped) {
   const std::string broken = path_ + "/depth/05.png";
@@ -477,7 +478,8 @@ TEST_F(RgbdTumRefuses, BrokenImageInTheMiddleIfStrict) {
   }
 }
 
-// Black images from frame `first` on, 40 of them.
+// Writes an association file, black.txt, in which frame `first` and the 39 frames after it are
+// black.
 void Blacken(const PlaneSequence& sequence, int first) {
   cv::imwrite(sequence.path() / "rgb/black.png", cv::Mat(480, 640, CV_8UC1, cv::Scalar(0)));
   std::string pairs;
@@ -504,13 +506,13 @@ TEST_F(RgbdTum, LostForGoodIsAFailure) {
   }
 }
 
-// A program that runs while the test goes on; its stderr can be read line by line.
+// rgbd_tum in a process of its own, whose output the test can read line by line while it runs.
 class RunningProgram {
  public:
   explicit RunningProgram(Arguments arguments) {
     std::array<int, 2> pipe{};
     if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
-      throw std::runtime_error("no pipe can be made");
+      throw std::runtime_error("cannot create a pipe");
     }
     arguments.insert(arguments.begin(), std::string(HULLSLAM_BIN_DIR) + "/rgbd_tum");
     std::vector<char*> words;
@@ -532,13 +534,14 @@ class RunningProgram {
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
-  // The next line; empty at the end.
+  // The next line of its output; empty at the end.
   std::string ReadLine() {
     std::array<char, 1000> line{};
     return std::fgets(line.data(), line.size(), errors_) != nullptr ? line.data() : "";
   }
 
-  // Sends SIGINT and waits for the end; the exit code, -1 where a signal ended it.
+  // Sends SIGINT, waits until the program has ended and returns the exit code; -1 if a signal ended
+  // it.
   int Interrupt() {
     ::kill(process_, SIGINT);
     while (!ReadLine().empty()) {
@@ -553,7 +556,7 @@ class RunningProgram {
   std::FILE* errors_ = nullptr;
 };
 
-TEST_F(RgbdTum, AnInterruptWritesWhatThereIs) {
+TEST_F(RgbdTum, AnInterruptWritesTheResultsSoFar) {
   const PlaneSequence slow(12, 0.5);
   for (const Arguments& more : {Arguments{}, Arguments{"--threaded"}}) {
     RunningProgram program(Arguments{slow.path(), "--realtime", "--output", output_} + more);

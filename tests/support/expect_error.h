@@ -10,7 +10,7 @@
 
 namespace hullslam {
 
-// Expects `action` to throw InputError with a one-line message that holds all `parts`.
+// Expects `action` to throw InputError with a message of one line that contains all `parts`.
 template <typename Action>
 void ExpectInputError(const Action& action, const std::vector<std::string>& parts) {
   try {

@@ -18,15 +18,15 @@
 
 namespace hullslam {
 
-// A line of a file of type yolo-seg.
+// One line of a file in the format yolo-seg.
 struct MaskLine {
   int class_id = 0;
-  std::vector<double> corners;       // x, y, x, y ... as shares of the width and the height
-  std::vector<double> confidence{};  // one number or none
+  std::vector<double> corners;       // x, y, x, y, ..., as shares of the image's width and height
+  std::vector<double> confidence{};  // one number, or empty if the line has none
 };
 
-// The lines by the files' names. Stamps of one sequence have one length, so names are in the order
-// of time.
+// The lines of each file, by the file's name. All stamps of a sequence have the same length, so the
+// names are in the order of time.
 using MaskFolder = std::map<std::string, std::vector<MaskLine>>;
 
 inline MaskFolder ReadMaskFolder(const std::filesystem::path& path) {
@@ -68,8 +68,8 @@ inline void WriteMaskFolder(const std::filesystem::path& path, const MaskFolder&
   }
 }
 
-// All masks moved to the right by a share of the image's width; what leaves the image is pressed
-// against its border.
+// Moves all masks to the right by a share of the image's width. Corners that leave the image are
+// put on its border.
 inline MaskFolder ShiftMasks(MaskFolder folder, double share) {
   for (auto& [name, lines] : folder) {
     for (MaskLine& line : lines) {
@@ -81,8 +81,8 @@ inline MaskFolder ShiftMasks(MaskFolder folder, double share) {
   return folder;
 }
 
-// Each file has the lines of the one `later` files behind it; the last ones have those of the
-// first.
+// Gives each file the lines of the file that is `later` files after it. After the last file the
+// count goes on with the first one.
 inline MaskFolder UseMasksOfLaterFiles(const MaskFolder& folder, size_t later) {
   MaskFolder moved;
   size_t index = later;
@@ -94,7 +94,7 @@ inline MaskFolder UseMasksOfLaterFiles(const MaskFolder& folder, size_t later) {
   return moved;
 }
 
-// Every mask of every frame is of any of the 80 classes.
+// Gives every mask a random one of the 80 classes.
 inline MaskFolder ShuffleClasses(MaskFolder folder, uint64_t seed) {
   uint32_t index = 0;
   for (auto& [name, lines] : folder) {
@@ -106,7 +106,7 @@ inline MaskFolder ShuffleClasses(MaskFolder folder, uint64_t seed) {
   return folder;
 }
 
-// Each mask stays with a probability of one half; a frame that keeps none has no file.
+// Removes each mask with a probability of one half. A frame without masks has no file.
 inline MaskFolder LoseHalfOfMasks(MaskFolder folder, uint64_t seed) {
   uint32_t index = 0;
   for (auto& [name, lines] : folder) {
@@ -117,7 +117,8 @@ inline MaskFolder LoseHalfOfMasks(MaskFolder folder, uint64_t seed) {
   return folder;
 }
 
-// Adds to every frame a table over 49 % of the image, just under what is dropped as too large.
+// Adds to every frame a table that covers 49 % of the image. This is just below the limit above
+// which masks are rejected as too large.
 inline MaskFolder AddGiantMask(MaskFolder folder) {
   for (auto& [name, lines] : folder) {
     lines.push_back({60, {0.15, 0.15, 0.85, 0.15, 0.85, 0.85, 0.15, 0.85}, {0.99}});
@@ -125,7 +126,7 @@ inline MaskFolder AddGiantMask(MaskFolder folder) {
   return folder;
 }
 
-// The faults by name.
+// One folder of masks for each kind of fault, by the fault's name.
 inline std::map<std::string, MaskFolder> MakeMaskFaults(const MaskFolder& good) {
   return {{"shifted by 40 px", ShiftMasks(good, 40.0 / 640.0)},
           {"of other frames", UseMasksOfLaterFiles(good, std::min<size_t>(100, good.size() / 2))},

@@ -16,10 +16,10 @@
 
 namespace hullslam {
 
-// A sequence in TUM's format of 640 x 480 px, drawn in a moment: a camera without distortion moves
-// to the right by 1 cm a frame before a plane with a random texture, 1 m away. Files:
-// rgb/00.png ... and depth/00.png ..., their lists, groundtruth.txt, camera.yaml and
-// associations.txt.
+// A small sequence in TUM format with images of 640 x 480 px, which takes little time to draw. A
+// camera without distortion looks at a plane with a random texture, 1 m away, and moves to the
+// right by 1 cm per frame. Files: rgb/00.png ... and depth/00.png ..., rgb.txt and depth.txt,
+// groundtruth.txt, camera.yaml and associations.txt.
 class PlaneSequence {
  public:
   explicit PlaneSequence(int frames = 12, double seconds_a_frame = 0.1)
@@ -40,7 +40,7 @@ class PlaneSequence {
 
  private:
   void DrawImages(int frames) const {
-    constexpr int kShift = 5;  // px a frame: 500 px * 0.01 m / 1 m
+    constexpr int kShift = 5;  // px per frame: 500 px * 0.01 m / 1 m
     cv::Mat texture(60, (640 + kShift * frames) / 8 + 1, CV_8UC1);
     cv::RNG(1).fill(texture, cv::RNG::UNIFORM, 0, 256);
     cv::resize(texture, texture, cv::Size(8 * texture.cols, 480), 0.0, 0.0, cv::INTER_CUBIC);

@@ -10,7 +10,7 @@
 
 namespace hullslam {
 
-// Seeded random numbers, vectors and poses for tests of laws.
+// Random numbers, vectors and poses from a seed, for tests of laws.
 class RandomGeometry {
  public:
   explicit RandomGeometry(uint32_t seed) : generator_(seed) {}

@@ -15,13 +15,13 @@
 namespace hullslam {
 
 struct ProgramResult {
-  int exit_code = -1;  // -1 where a signal ended it
+  int exit_code = -1;  // -1 if a signal ended the program
   std::string output;  // of stdout
   std::string errors;  // of stderr
 };
 
-// Runs a program of this build with arguments and waits for it; `setup` are commands of the shell
-// before it, such as "ulimit -f 8;".
+// Runs a program of this build and waits for it to end. `setup` holds shell commands to run before
+// it, such as "ulimit -f 8;".
 inline ProgramResult RunProgram(const std::string& name, const std::vector<std::string>& arguments,
                                 const std::string& setup = "") {
   const TemporaryFolder folder;

@@ -7,7 +7,7 @@
 
 namespace hullslam {
 
-// The mask of a square, raw pixels.
+// A mask in the shape of a square, in raw pixels.
 inline InstanceMask Square(const std::string& label, double left, double top, double side) {
   InstanceMask mask;
   mask.label = label;

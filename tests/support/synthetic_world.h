@@ -22,8 +22,8 @@
 
 namespace hullslam {
 
-// A camera without distortion, 640 x 480 px, with a baseline of 0.08 m and close depths up to 3.2
-// m.
+// A camera without distortion, with images of 640 x 480 px and a baseline of 0.08 m. Depths up to
+// 3.2 m count as close.
 inline Sensor SyntheticSensor() {
   Sensor sensor;
   sensor.camera = {.fx = 500.0, .fy = 500.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
@@ -35,23 +35,23 @@ inline Sensor SyntheticSensor() {
 
 struct SyntheticWorldOptions {
   int points = 600;
-  // px, standard deviation of u and v at level 0, and of the disparity at any level.
+  // px, standard deviation of u and v at level 0, and of the disparity at every level.
   double pixel_noise = 0.0;
-  double depth_share = 1.0;  // of the points whose depth is known wherever they are seen
-  int flipped_bits = 0;      // of the descriptor, other ones in every frame
+  double depth_share = 1.0;  // share of the points that have a depth in every frame that sees them
+  int flipped_bits = 0;      // of each descriptor; every frame flips other bits
   uint64_t seed = 1;
 };
 
-// One image of the made-up world.
+// One frame of the synthetic world.
 struct SyntheticView {
   std::shared_ptr<const Frame> frame;
-  std::vector<uint32_t> points;  // index into SyntheticWorld::points(), one a keypoint
+  std::vector<uint32_t> points;  // indices into SyntheticWorld::points(), one per keypoint
 };
 
-// Random points in a box of 5 x 3.6 x 4 m, 2 to 6 m in front of the origin, and frames of them made
+// Random points in a box of 5 x 3.6 x 4 m, 2 to 6 m in front of the origin. Frames of them are made
 // without images: keypoints are exact projections (rounded to float) plus noise, descriptors are
-// random and far apart, levels follow the distance. Nothing hides anything. Same options, same
-// bits.
+// random and far apart, and a keypoint's level follows from its distance. No point hides another.
+// The same options give the same bits.
 class SyntheticWorld {
  public:
   explicit SyntheticWorld(const SyntheticWorldOptions& options = {})
@@ -75,8 +75,9 @@ class SyntheticWorld {
   const Descriptor& descriptor(uint32_t point) const { return patches_[point].descriptor; }
   bool has_depth(uint32_t point) const { return patches_[point].has_depth; }
 
-  // Pose of frame `index` on a smooth path of about 2 cm a frame, looking at the middle of the
-  // points. The world is the camera frame of index 0; after 200 frames the path is closed.
+  // Pose of frame `index` on a smooth path, with about 2 cm from frame to frame. The camera looks
+  // at the middle of the points. The world frame is the camera frame of index 0. The path is closed
+  // after 200 frames.
   static Rigid3 CamFromWorld(double index) {
     const double phase = 2.0 * std::numbers::pi * index / 200.0;
     const Eigen::Vector3d center(0.6 * std::sin(phase), 0.25 * std::sin(2.0 * phase),
@@ -93,7 +94,7 @@ class SyntheticWorld {
     return {Eigen::Quaterniond(rotation), -(rotation * center)};
   }
 
-  // The image taken from a pose. Noise and flipped bits depend on the id alone.
+  // The frame seen from a pose. Noise and flipped bits depend only on the seed and the frame's id.
   SyntheticView Observe(FrameId id, const Rigid3& cam_from_world) const {
     std::mt19937_64 random(HashSeed(options_.seed, id.value, "noise"));
     auto frame = std::make_shared<Frame>();
@@ -113,7 +114,7 @@ class SyntheticWorld {
                                        Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
     return {std::move(frame), std::move(points)};
   }
-  // The image of frame `index` of the path.
+  // Frame `index` of the path.
   SyntheticView Observe(uint32_t index) const {
     return Observe(FrameId(index), CamFromWorld(index));
   }
@@ -122,7 +123,7 @@ class SyntheticWorld {
   struct Patch {
     Descriptor descriptor{};
     float angle = 0.0f;
-    double max_distance = 0.0;  // m, from where it is seen at level 0
+    double max_distance = 0.0;  // m, the largest distance at which it is seen at level 0
     bool has_depth = true;
   };
 
@@ -160,18 +161,20 @@ class SyntheticWorld {
   std::vector<Patch> patches_;
 };
 
-// A map of the made-up world with every point where it is, and what belongs to what.
+// A map of the synthetic world with every landmark at its true position, and the relation of
+// keyframes to views and of points to landmarks.
 struct SyntheticMap {
   Map map;
-  std::vector<SyntheticView> views;   // one a keyframe
-  std::vector<LandmarkId> landmarks;  // one a point of the world; invalid where none is
+  std::vector<SyntheticView> views;   // one per keyframe
+  std::vector<LandmarkId> landmarks;  // one per point; invalid if the point is no landmark
 };
 
-// Adds to a frame what is seen from a pose besides the points.
+// Adds to a frame what the camera sees in addition to the points, such as objects.
 using FrameDecoration = std::function<void(Frame& frame, const Rigid3& cam_from_world)>;
 
-// The keyframes are the path's frames `indices`, in this order; the landmarks are the points that
-// at least two of them see. Covisibility, spanning tree and appearance are up to date.
+// Makes a map whose keyframes are the frames `indices` of the path, in this order. Its landmarks
+// are the points that at least two of them see. Covisibility, spanning tree, and the landmarks'
+// descriptors and viewing geometry are up to date.
 inline SyntheticMap MakeSyntheticMap(const SyntheticWorld& world,
                                      const std::vector<uint32_t>& indices,
                                      const FrameDecoration& decorate = {}) {

@@ -12,13 +12,13 @@
 
 namespace hullslam {
 
-// A new folder that is removed with all that is in it.
+// Creates a new folder. The destructor removes it with everything in it.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
     std::string name = ::testing::TempDir() + "/hullslam_XXXXXX";
     if (::mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error("no temporary folder can be made at " + name);
+      throw std::runtime_error("cannot create a temporary folder: " + name);
     }
     path_ = name;
   }
@@ -31,7 +31,7 @@ class TemporaryFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
-  // Writes a file, and the folders above it, below this folder.
+  // Writes a file whose name is relative to this folder, and creates the folders that it is in.
   std::filesystem::path Write(const std::string& name, std::string_view content) const {
     const std::filesystem::path path = path_ / name;
     std::filesystem::create_directories(path.parent_path());

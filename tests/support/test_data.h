@@ -8,11 +8,12 @@
 
 namespace hullslam {
 
-// The folder of real sequences and golden trajectories: $HULLSLAM_DATA, else `shared/data` beside
-// one of the parents of the source tree; nothing where this machine has neither.
+// Finds a file or folder of the real sequences and golden trajectories. They are in $HULLSLAM_DATA
+// or, if this is not set, in a folder `shared/data` next to the source tree or one of its parent
+// folders. Returns nothing if it does not exist on this machine.
 inline std::optional<std::filesystem::path> FindTestData(const std::string& relative) {
   namespace fs = std::filesystem;
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody sets the environment meanwhile
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): no other thread sets the environment
   if (const char* const folder = std::getenv("HULLSLAM_DATA")) {
     const fs::path path = fs::path(folder) / relative;
     return fs::exists(path) ? std::optional(path) : std::nullopt;

@@ -9,7 +9,7 @@
 
 namespace hullslam {
 
-// Sorts the frame's keypoints into its grid anew.
+// Builds the frame's grid again from its keypoints.
 inline void RebuildGrid(const Sensor& sensor, Frame& frame) {
   const PinholeCamera::Bounds& bounds = sensor.bounds;
   frame.features.grid = FeatureGrid(frame.features.keypoints,
@@ -17,8 +17,8 @@ inline void RebuildGrid(const Sensor& sensor, Frame& frame) {
                                     Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
 }
 
-// Adds keypoints at a depth of 1 m that no other frame shows. As many as 71 of them are close
-// points about to be lost: where fewer than 100 close ones are known a keyframe is wanted.
+// Adds keypoints at a depth of 1 m that no other frame shows. If there are more than 70 of them,
+// and the frame tracks fewer than 100 close points, the tracker asks for a keyframe.
 inline void AddUnknownPoints(const Sensor& sensor, int count, int level, Frame& frame) {
   std::mt19937_64 random(HashSeed(0, frame.id.value, "unknown points"));
   std::uniform_real_distribution<float> u(100.0f, 600.0f);

@@ -10,19 +10,19 @@
 
 namespace hullslam {
 
-// The residuals that can hold a quadric (docs/objects.md); each has its own file in costs/.
+// The residuals that can constrain a quadric (docs/objects.md). Each has its own file in costs/.
 enum class ObjectResidual { kTangent, kAlgebraicPlane, kAlgebraicPoint, kDistribution, kOverlap };
 
-// The name in settings: tangent, algebraic_plane, ...
+// The name in settings files: tangent, algebraic_plane, ...
 std::string_view NameOf(ObjectResidual residual);
-// Nothing for an unknown name.
+// The residual with this name; nothing for an unknown name.
 std::optional<ObjectResidual> ObjectResidualByName(std::string_view name);
 // All names, in the order of the enumerators.
 std::vector<std::string> ObjectResidualNames();
 
-// Whether the residual can be computed from the primitive: tangent and algebraic_plane take lines,
-// which every primitive has (of a conic: tangents), algebraic_point takes the contour,
-// distribution the conic, and overlap any region; support lines bound no region of their own.
+// Whether the residual can be computed from the primitive. tangent and algebraic_plane need lines,
+// which every primitive has (a conic has its tangents). algebraic_point needs the contour and
+// distribution the conic. overlap needs a region, which every primitive but the support lines has.
 bool IsSupported(ObjectResidual residual, ObjectPrimitive primitive);
 
 }  // namespace hullslam

@@ -14,22 +14,22 @@
 
 namespace hullslam {
 
-// One object seen in one frame; undistorted pixels throughout.
+// One object seen in one frame. All pixel coordinates are undistorted.
 struct Detection {
   std::string label;
   double score = 1.0;
-  std::vector<Eigen::Vector2d> contour;  // closed, px; the largest part of the mask
-  std::vector<Eigen::Vector2d> hull;     // of all parts; convex, positive signed area, px
-  Eigen::AlignedBox2d box;               // of the hull, px
+  std::vector<Eigen::Vector2d> contour;  // outline of the largest part of the mask, closed, px
+  std::vector<Eigen::Vector2d> hull;     // convex hull of all parts, positive signed area, px
+  Eigen::AlignedBox2d box;               // bounding box of the hull, px
   // What its residuals are computed from, as DetectionOptions::primitive asks for.
   ObjectPrimitive primitive = ObjectPrimitive::kSupport;
-  std::vector<SilhouetteLine> lines;  // constrain the quadric
-  std::optional<Ellipse> ellipse;     // least-squares fit of the contour, where asked for
-  bool is_cut = false;                // by the border of the image
-  bool is_box = false;                // nothing but a box is known
+  std::vector<SilhouetteLine> lines;  // the lines that constrain the quadric
+  std::optional<Ellipse> ellipse;     // least-squares fit of the contour, if it is needed
+  bool is_cut = false;                // the border of the image cuts the mask
+  bool is_box = false;                // the mask is only a bounding box
   // Points of the depth image inside the eroded mask, m, camera frame; a few hundred at most.
   std::vector<Eigen::Vector3d> points;
-  std::vector<uint32_t> keypoints;  // indices of the frame's keypoints inside the contour
+  std::vector<uint32_t> keypoints;  // indices of the frame's keypoints inside the mask
 };
 
 }  // namespace hullslam

@@ -7,51 +7,52 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/frame/instance_mask.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/features/feature_set.h"
 #include "hullslam/frame/detection.h"
 #include "hullslam/frame/detection_options.h"
+#include "hullslam/frame/instance_mask.h"
 
 namespace hullslam {
 
 // Why a mask gives no detection.
 enum class DetectionRejection {
   kLowScore,
-  kDegenerate,    // no outline that has an area
-  kTooSmall,      // its box
-  kTooLarge,      // its hull
-  kFewKeypoints,  // in it
-  kDuplicate,     // another mask of a higher score shows the same object
+  kDegenerate,    // no outline has an area
+  kTooSmall,      // its bounding box is too small
+  kTooLarge,      // its hull is too large
+  kFewKeypoints,  // too few keypoints are in it
+  kDuplicate,     // another mask with a higher score shows the same object
   kNoSilhouette,  // all its sides are cut by the border of the image or hidden
 };
 inline constexpr int kDetectionRejectionCount = 7;
 
-// As in summary.json: "low_score".
+// The name in summary.json, such as "low_score".
 std::string ToString(DetectionRejection reason);
 
 struct DetectionResult {
-  std::vector<Detection> detections;  // of the masks that were not rejected, in their order
-  std::vector<std::optional<DetectionRejection>> rejections;  // one a mask
+  std::vector<Detection> detections;  // one per mask that was not rejected, in the masks' order
+  std::vector<std::optional<DetectionRejection>> rejections;  // one per mask
 };
 
-// Turns the masks of a frame into detections. Outlines are undistorted point by point, the parts of
-// a mask that are at least a tenth of its largest one are put into one hull, and lines are taken of
-// it: `support` (default) lines have the directions of the edges of the simplified hull and some
-// evenly spread ones, and touch the full hull, so that, unlike those edges, they do not cut inside.
-// Of a mask that is a box they are its sides and of an ellipse its tangents, whatever is asked for.
+// Turns the masks of a frame into detections. The outlines are undistorted point by point. The hull
+// encloses all parts of a mask that have at least a tenth of the area of its largest part. The
+// primitive decides which lines are taken. Support lines (`support`, the default) have the
+// directions of the edges of the simplified hull and some evenly spread directions. They touch the
+// full hull, while the edges of the simplified hull can cut through it. A mask that is a box always
+// gives its sides, and one that is an ellipse its tangents, whatever the primitive.
 //
-// One-sided are lines that touch the mask only at the border of the raw image, and, with depth,
-// those beyond which something nearer begins.
+// A line is one-sided if it touches the mask only at the border of the raw image. With depth it is
+// also one-sided if something nearer to the camera begins just beyond it.
 class DetectionBuilder {
  public:
   DetectionBuilder(const PinholeCamera& camera, double units_per_metre,
                    const DetectionOptions& options)
       : camera_(camera), units_per_metre_(units_per_metre), options_(options) {}
 
-  // `depth` as in ImageInput, of the size of the camera, or empty: then no points are taken and no
-  // occlusion is seen. `keypoints` are those of the frame. Throws CheckError for a depth image of
-  // another size or type.
+  // `depth` is as in ImageInput and has the size of the camera, or it is empty: then detections
+  // have no points and no occlusion is found. `keypoints` are those of the frame. Throws CheckError
+  // for a depth image of another size or type.
   DetectionResult Build(std::span<const InstanceMask> masks, const cv::Mat& depth,
                         std::span<const Keypoint> keypoints) const;
 

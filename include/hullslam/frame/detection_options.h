@@ -6,9 +6,9 @@
 
 namespace hullslam {
 
-// How masks become outlines and lines.
+// How masks are turned into detections.
 struct DetectionOptions {
-  ObjectPrimitive primitive = ObjectPrimitive::kSupport;  // which lines hold the quadrics
+  ObjectPrimitive primitive = ObjectPrimitive::kSupport;  // which lines constrain the quadrics
   double epsilon_px = 3.0;     // simplification of the hull or contour (Douglas-Peucker)
   int uniform_directions = 8;  // of support lines, besides the edges of the simplified hull
   double min_line_px = 5.0;    // shorter edges give no line

@@ -8,20 +8,21 @@
 #include <string_view>
 #include <vector>
 
-#include "hullslam/frame/instance_mask.h"
 #include "hullslam/features/feature_set.h"
+#include "hullslam/frame/instance_mask.h"
 
 namespace hullslam {
 
-// Names separated by commas, blanks around them left out: "person, cat" are two.
+// Splits a list of names at its commas and removes the blanks around each name: "person, cat" gives
+// two names.
 std::set<std::string> SplitNames(std::string_view names);
 
-// Where the raw image shows things of these classes (CV_8UC1, 255), a little more than their
-// outlines; empty where it shows none.
+// The pixels of the raw image that show things of these classes (CV_8UC1, 255), with a small margin
+// around their outlines. Empty if there are no such things.
 cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::string>& classes,
                     cv::Size size);
 
-// Takes out the keypoints whose raw position is in the mask, with their descriptors.
+// Removes the keypoints whose raw position is in the mask, and their descriptors.
 void RemoveMasked(const cv::Mat& mask, std::vector<Keypoint>& keypoints,
                   std::vector<Descriptor>& descriptors);
 

@@ -9,7 +9,8 @@
 
 namespace hullslam {
 
-// One image after extraction; immutable once built and shared by the stages.
+// What was extracted from one image. A frame does not change after it is built; the stages share
+// it.
 struct Frame {
   FrameId id;
   double timestamp = 0.0;  // seconds

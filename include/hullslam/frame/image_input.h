@@ -12,10 +12,10 @@ namespace hullslam {
 struct ImageInput {
   double timestamp = 0.0;  // seconds
   cv::Mat grey;            // CV_8UC1
-  // CV_16UC1, units of 1 / DepthMapFactor metres, or CV_32FC1, metres; 0 (or not finite) is
-  // unknown.
+  // CV_16UC1 in units of 1 / DepthMapFactor metres, or CV_32FC1 in metres. The depth is unknown
+  // where the value is 0 or not finite.
   cv::Mat depth;
-  std::vector<InstanceMask> masks = {};  // of the objects in it; empty without
+  std::vector<InstanceMask> masks = {};  // the objects that it shows; empty without masks
 };
 
 }  // namespace hullslam

@@ -7,17 +7,17 @@
 
 namespace hullslam {
 
-// What an outline is: that of a mask, or all that is known of a box or an ellipse.
+// What the outlines of an instance are: those of a mask, or only a bounding box or an ellipse.
 enum class MaskShape { kContour, kBox, kEllipse };
 
-// One instance that a detector or segmenter found in an image, in **raw** (distorted) pixels;
-// pixel centres have integer coordinates.
+// One instance that a detector or segmenter found in an image, in **raw** (distorted) pixels. Pixel
+// centres have integer coordinates.
 struct InstanceMask {
-  std::string label;   // the class's name, as "cup"
+  std::string label;   // name of the class, such as "cup"
   double score = 1.0;  // confidence, 0 to 1
   MaskShape shape = MaskShape::kContour;
-  // Closed outlines without holes, one a connected part, the largest first; three points or more
-  // each. For a box: one outline, its four corners. For an ellipse: one, 64 points on it.
+  // Closed outlines without holes, one per connected part, the largest first. Each has at least
+  // three points. A box has one outline with its four corners; an ellipse has one with 64 points.
   std::vector<std::vector<Eigen::Vector2d>> outlines;
 };
 

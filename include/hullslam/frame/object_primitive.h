@@ -8,12 +8,12 @@
 
 namespace hullslam {
 
-// The part of an instance mask from which the residuals of its object are computed.
+// The geometric shape, taken from an instance mask, from which an object's residuals are computed.
 enum class ObjectPrimitive { kSupport, kHull, kContour, kBox, kConic };
 
-// The name in settings: support, hull, contour, bbox, conic.
+// The name in settings files: support, hull, contour, bbox or conic.
 std::string_view NameOf(ObjectPrimitive primitive);
-// Nothing for an unknown name.
+// The primitive with this name; nothing for an unknown name.
 std::optional<ObjectPrimitive> ObjectPrimitiveByName(std::string_view name);
 // All names, in the order of the enumerators.
 std::vector<std::string> ObjectPrimitiveNames();

@@ -9,12 +9,12 @@
 
 namespace hullslam {
 
-// What all frames of a run have in common.
+// The properties of the camera that are the same for all frames of a run.
 struct Sensor {
   PinholeCamera camera;
   PinholeCamera::Bounds bounds;  // of the undistorted image, px
   ScaleLevels levels;
-  double close_depth = 0.0;  // m; nearer depths are precise enough for a landmark from one view
+  double close_depth = 0.0;  // m; smaller depths are precise enough for a landmark from one view
   DepthErrorOptions depth_error;
   double frames_per_second = 30.0;
 
