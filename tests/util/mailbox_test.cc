@@ -21,13 +21,13 @@ TEST(Mailbox, IsFirstInFirstOut) {
   EXPECT_EQ(mailbox.size(), 0u);
 }
 
-TEST(Mailbox, CarriesWhatCannotBeCopied) {
+TEST(Mailbox, CarriesMessagesThatCannotBeCopied) {
   Mailbox<std::unique_ptr<int>> mailbox(1);
   mailbox.Send(std::make_unique<int>(5));
   EXPECT_EQ(**mailbox.Receive(), 5);
 }
 
-TEST(Mailbox, ClosedDeliversWhatWasSentAndTakesNoMore) {
+TEST(Mailbox, AfterCloseDeliversSentMessagesAndAcceptsNoMore) {
   Mailbox<int> mailbox(2);
   mailbox.Send(1);
   mailbox.Close();
@@ -56,7 +56,7 @@ TEST(Mailbox, KeepsTheOrderBetweenThreadsAndNeverOverflows) {
   EXPECT_EQ(expected, kMessages);
 }
 
-TEST(Mailbox, FullMakesTheSenderWait) {
+TEST(Mailbox, SenderWaitsWhileFull) {
   Mailbox<int> mailbox(1);
   mailbox.Send(1);
   std::atomic<bool> sent{false};

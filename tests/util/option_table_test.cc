@@ -31,7 +31,7 @@ struct Fields {
   }
 };
 
-TEST(Range, ContainsItsClosedEndsAndNothingInfinite) {
+TEST(Range, ContainsItsClosedEndsAndNoInfiniteNumber) {
   EXPECT_TRUE(Range::Between(1.0, 2.0).Contains(1.0));
   EXPECT_TRUE(Range::Between(1.0, 2.0).Contains(2.0));
   EXPECT_FALSE(Range::Between(1.0, 2.0).Contains(2.1));
@@ -41,14 +41,14 @@ TEST(Range, ContainsItsClosedEndsAndNothingInfinite) {
   EXPECT_FALSE(Range::Any().Contains(std::numeric_limits<double>::quiet_NaN()));
 }
 
-TEST(Range, IsToldInWords) {
+TEST(Range, IsDescribedInWords) {
   EXPECT_EQ(Range::Positive().ToString(), "> 0");
   EXPECT_EQ(Range::AtLeast(1).ToString(), ">= 1");
   EXPECT_EQ(Range::Between(0, 1).ToString(), "from 0 to 1");
   EXPECT_EQ(Range::Any().ToString(), "of any size");
 }
 
-TEST(OptionTable, SetsAnEnumByItsNames) {
+TEST(OptionTable, SetsAnEnumByName) {
   enum class Colour { kRed, kGreen, kBlue };
   Colour colour = Colour::kGreen;
   OptionTable table;
@@ -102,7 +102,7 @@ TEST(OptionTable, RefusedValuesChangeNothing) {
   EXPECT_EQ(fields.mode, "fast");
 }
 
-TEST(OptionTable, AnUnknownKeyIsToldWithTheNearestOne) {
+TEST(OptionTable, AnUnknownKeyGetsASuggestion) {
   Fields fields;
   OptionTable table = fields.Bind();
   ExpectInputError([&] { table.Set("b.lenght", "1", "--set"); },
@@ -112,7 +112,7 @@ TEST(OptionTable, AnUnknownKeyIsToldWithTheNearestOne) {
   EXPECT_FALSE(table.Contains("b.lenght"));
 }
 
-TEST(OptionTable, EntriesAreSortedAndTellTheValuesInUse) {
+TEST(OptionTable, EntriesAreSortedAndShowTheCurrentValues) {
   Fields fields;
   OptionTable table = fields.Bind();
   table.Set("b.count", "5", "test");
@@ -126,13 +126,13 @@ TEST(OptionTable, EntriesAreSortedAndTellTheValuesInUse) {
   EXPECT_EQ(entries[4].value, "fast");
 }
 
-TEST(OptionTable, AKeyIsBoundOnce) {
+TEST(OptionTable, AKeyCannotBeBoundTwice) {
   Fields fields;
   OptionTable table = fields.Bind();
   EXPECT_THROW(table.Add("flag", &fields.flag, "again"), CheckError);
 }
 
-TEST(OptionTable, TextIsTakenAsItIs) {
+TEST(OptionTable, TextIsStoredUnchanged) {
   std::string field = "person";
   OptionTable table;
   table.AddText("classes", &field, "names");
