@@ -23,7 +23,8 @@ TEST(Shape, VerticesAreOnTheSurfaceAndItsExtentsAreTight) {
     Eigen::AlignedBox3d box;
     for (const Vector3d& vertex : Tessellate(shape).vertices) {
       box.extend(vertex);
-      if (shape.kind != ShapeKind::kCylinder) {  // the discs at its ends have inner vertices too
+      if (shape.kind !=
+          ShapeKind::kCylinder) {  // the discs at its ends also have vertices inside the disc
         EXPECT_NEAR(shape.Implicit(vertex), 0.0, 1e-9);
       }
     }
@@ -42,12 +43,12 @@ TEST(Shape, ImplicitIsNegativeInsideAndPositiveOutside) {
   EXPECT_GT(Shape::Torus(0.1, 0.02).Implicit(Vector3d::Zero()), 0.0);
 }
 
-TEST(Shape, HandComputedValues) {
+TEST(Shape, MatchesHandComputedValues) {
   EXPECT_DOUBLE_EQ(Shape::Box({1.0, 2.0, 4.0}).Implicit({0.5, 3.0, 4.0}), 0.5);
   EXPECT_DOUBLE_EQ(Shape::Ellipsoid({1.0, 2.0, 4.0}).Implicit({0.0, 6.0, 16.0}), 4.0);
   EXPECT_DOUBLE_EQ(Shape::Cylinder(0.5, 2.0).Implicit({0.6, 0.8, 1.0}), 1.0);
   EXPECT_DOUBLE_EQ(Shape::Torus(3.0, 1.0).Implicit({0.0, 0.0, 5.0}), 1.0);
-  // Exponents of one make an ellipsoid.
+  // With both exponents 1 a superquadric is an ellipsoid.
   EXPECT_NEAR(Shape::Superquadric({1.0, 2.0, 4.0}, 1.0, 1.0).Implicit({0.0, 6.0, 16.0}), 4.0,
               1e-12);
 }
