@@ -78,7 +78,7 @@ std::vector<JsonNode> JsonNode::Elements() const {
 
 std::string JsonNode::Text() const {
   if (!value_->is_string()) {
-    Fail("a text");
+    Fail("a string");
   }
   return value_->get<std::string>();
 }

@@ -21,7 +21,8 @@ using Outline = std::vector<Eigen::Vector2d>;
 void SortByArea(std::vector<Outline>& outlines) {
   std::vector<std::pair<double, size_t>> areas;
   for (size_t i = 0; i < outlines.size(); ++i) {
-    areas.emplace_back(-std::abs(SignedArea(outlines[i])), i);  // the largest first, then in order
+    areas.emplace_back(-std::abs(SignedArea(outlines[i])),
+                       i);  // the largest first; ties in the original order
   }
   std::sort(areas.begin(), areas.end());
   std::vector<Outline> sorted;

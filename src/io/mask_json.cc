@@ -50,14 +50,14 @@ Json Parse(const std::filesystem::path& path, size_t most_bytes,
   }
 }
 
-// Takes the objects out of the document as soon as they are complete.
+// Takes each object out of the document as soon as it is complete.
 class RecordTaker {
  public:
   RecordTaker(const std::filesystem::path& path,
               const std::function<void(const JsonRecord& record)>& visit)
       : path_(path), visit_(visit) {}
 
-  // False where the value is not to be kept.
+  // Returns false if the value is not to be kept.
   bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
     Count(depth);
     if (depth == 0 && event == Json::parse_event_t::object_start) {
@@ -83,13 +83,13 @@ class RecordTaker {
     }
     if (depth > kMostDepth) {
       throw InputError(
-          fmt::format("{}: lists in lists more than {} deep", path_.string(), kMostDepth));
+          fmt::format("{}: lists nested more than {} deep", path_.string(), kMostDepth));
     }
   }
 
   const std::filesystem::path& path_;
   const std::function<void(const JsonRecord& record)>& visit_;
-  int records_depth_ = 1;  // of objects in a list; 2 in a list in an object
+  int records_depth_ = 1;  // depth of the records: 1 in a list, 2 in a list in an object
   std::string section_;
   std::map<std::string, size_t> indices_;
   size_t values_ = 0;
@@ -117,7 +117,7 @@ std::string ShowJson(const Json& value) {
 }
 
 const Json& Member(const JsonRecord& record, const Json& object, const char* name) {
-  const auto found = object.find(name);  // the end of what is no object
+  const auto found = object.find(name);  // end() if `object` is no object
   if (found == object.end()) {
     record.Fail(fmt::format("has no '{}'", name));
   }
@@ -141,7 +141,7 @@ double ScoreOf(const JsonRecord& record, const Json& object, const char* name) {
   }
   const double score = found->is_number() ? found->get<double>() : -1.0;
   if (!(score >= 0.0 && score <= 1.0)) {
-    record.Fail(fmt::format("{} is {}, expected from 0 to 1", name, ShowJson(*found)));
+    record.Fail(fmt::format("{} is {}, expected a number from 0 to 1", name, ShowJson(*found)));
   }
   return score;
 }

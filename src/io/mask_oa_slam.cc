@@ -28,14 +28,14 @@ struct OaSlamDetection {
 };
 using OaSlamImages = std::map<std::string, std::vector<OaSlamDetection>>;  // by stem
 
-// What the numbers of ellipses have to be multiplied by: axes may be half or whole, as those of
-// OpenCV, angles radians or degrees.
+// Factors for the numbers of ellipses: axes may be half axes or, as in OpenCV, full axes; angles
+// may be radians or degrees.
 struct EllipseUnits {
   double axis = 1.0;
   double angle = 1.0;
 };
 
-// Half the size of the upright box round an ellipse.
+// Half the size of the axis-aligned box around an ellipse.
 Eigen::Vector2d HalfSize(const std::array<double, 5>& ellipse, const EllipseUnits& units) {
   const double a = units.axis * ellipse[2];
   const double b = units.axis * ellipse[3];
@@ -44,8 +44,8 @@ Eigen::Vector2d HalfSize(const std::array<double, 5>& ellipse, const EllipseUnit
   return {std::hypot(a * cosine, b * sine), std::hypot(a * sine, b * cosine)};
 }
 
-// Files do not say which units they have; each ellipse stands beside its box, and in other units
-// than the right ones it does not fit.
+// Files do not say which units they use. Each ellipse comes with its box, and it only fits the box
+// in the right units.
 EllipseUnits FindUnits(const OaSlamImages& images) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   constexpr std::array<EllipseUnits, 4> kUnits = {
@@ -103,7 +103,7 @@ class OaSlamReader {
       detections.push_back(ReadDetection(record, json));
     }
     if (detections.size() > kMostInstances) {
-      record.Fail(fmt::format("too many instances, expected at most {} a frame", kMostInstances));
+      record.Fail(fmt::format("too many instances, expected at most {} per frame", kMostInstances));
     }
   }
 
@@ -184,7 +184,8 @@ class OaSlamMasks : public MaskSource {
     return result;
   }
 
-  void Check(const MaskFrame& /*frame*/) const override {}  // all was checked when it was read
+  void Check(const MaskFrame& /*frame*/) const override {
+  }  // everything was checked when the file was read
 
  private:
   MaskRequest request_;

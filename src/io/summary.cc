@@ -93,7 +93,7 @@ std::string FormatSummary(const RunSummary& summary) {
                      {"map", ToJson(summary.map)},
                      {"provenance", ToJson(summary.provenance)}};
   constexpr int kIndent = 2;
-  // A folder's name may hold any bytes; those that are not UTF-8 are replaced.
+  // The name of a folder may contain any bytes; those that are not UTF-8 are replaced.
   return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-TEST(MapFile, HoldsLandmarksThenKeyframesByteByByte) {
+TEST(Ply, HasLandmarksThenKeyframes) {
   const std::string ply = FormatPly(Points{{1.0, -2.0, 0.5}}, Points{{0.0, 0.0, 1.0}});
   const std::string end = "end_header\n";
   const size_t data = ply.find(end) + end.size();
@@ -31,7 +31,7 @@ TEST(MapFile, HoldsLandmarksThenKeyframesByteByByte) {
   EXPECT_EQ(ply.substr(data), expected);
 }
 
-TEST(MapFile, AnEmptyMapIsAFileWithoutPoints) {
+TEST(Ply, AnEmptyMapGivesAFileWithoutPoints) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "map.ply";
   WritePly(path, {}, {});
@@ -46,7 +46,7 @@ float FloatAt(const std::string& bytes, size_t place) {
   return value;
 }
 
-// What FormatObjectsPly() wrote, read again.
+// The mesh in a file of FormatObjectsPly().
 struct Mesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::string> colours;
@@ -79,7 +79,7 @@ ReportedObject MakeObject(const std::string& label) {
   return object;
 }
 
-TEST(ObjectsPly, HoldsTheEllipsoidAsAClosedSurfaceFacingOutwards) {
+TEST(ObjectsPly, ContainsTheEllipsoidAsAClosedSurfaceFacingOutwards) {
   const ReportedObject object = MakeObject("cup");
   const Mesh mesh(FormatObjectsPly(std::vector<ReportedObject>{object, object}));
   ASSERT_EQ(mesh.faces.size() % 2, 0U);
@@ -97,7 +97,7 @@ TEST(ObjectsPly, HoldsTheEllipsoidAsAClosedSurfaceFacingOutwards) {
     ++edges[{b, c}];
     ++edges[{c, a}];
   }
-  for (const auto& [edge, count] : edges) {  // each edge once in each direction
+  for (const auto& [edge, count] : edges) {  // each edge occurs once per direction
     EXPECT_EQ(count, 1);
     EXPECT_TRUE(edges.contains({edge.second, edge.first}));
   }
@@ -105,7 +105,7 @@ TEST(ObjectsPly, HoldsTheEllipsoidAsAClosedSurfaceFacingOutwards) {
   EXPECT_NEAR(six_volumes / 6.0 / (2.0 * volume), 0.93, 0.07);
 }
 
-TEST(ObjectsPly, TheColourTellsTheClass) {
+TEST(ObjectsPly, TheColourDependsOnTheClassOnly) {
   const Mesh mesh(FormatObjectsPly(
       std::vector<ReportedObject>{MakeObject("cup"), MakeObject("keyboard"), MakeObject("cup")}));
   const size_t corners = mesh.vertices.size() / 3;

@@ -23,12 +23,12 @@ TEST(TrajectoryFile, ReadsPosesAndNormalisesTheirRotations) {
   ASSERT_EQ(trajectory.size(), 1U);
   EXPECT_EQ(trajectory[0].timestamp, 1.5);
   EXPECT_EQ(trajectory[0].world_from_cam.translation, Eigen::Vector3d(1, 2, -0.3));
-  // Half of a right angle in the quaternion: a quarter turn about z.
+  // The quaternion of half a right angle: a quarter turn about z.
   const Eigen::Vector3d turned = trajectory[0].world_from_cam.rotation * Eigen::Vector3d::UnitX();
   EXPECT_LT((turned - Eigen::Vector3d::UnitY()).norm(), 1e-15);
 }
 
-TEST(TrajectoryFile, TheLastOfEqualStampsCounts) {
+TEST(TrajectoryFile, TheLastOfEqualStampsIsUsed) {
   const TemporaryFolder folder;
   const Trajectory trajectory =
       ReadTrajectory(folder.Write("t.txt", std::string(kLine) + "1.5 7 0 0 0 0 0 1\n"));
@@ -45,7 +45,7 @@ TEST(TrajectoryFile, WritesFixedDecimals) {
             "-0.000000000 -0.000000000 -0.000000000 1.000000000\n");
 }
 
-TEST(TrajectoryFile, WhatWasWrittenReadsBackAndWritesTheSameAgain) {
+TEST(TrajectoryFile, ReadingAndWritingGivesTheSameBytes) {
   const TemporaryFolder folder;
   Trajectory trajectory;
   for (int i = 0; i < 100; ++i) {
@@ -70,7 +70,7 @@ TEST(TrajectoryFile, WhatWasWrittenReadsBackAndWritesTheSameAgain) {
   EXPECT_EQ(ReadTrajectory(folder.path() / "again.txt").size(), again.size());
 }
 
-TEST(TrajectoryFile, BrokenLinesAreNamed) {
+TEST(TrajectoryFile, BrokenLinesAreReported) {
   const TemporaryFolder folder;
   const auto expect = [&](const std::string& line, const std::vector<std::string>& parts) {
     const auto path = folder.Write("bad.txt", "# head\n" + std::string(kLine) + line + "\n");
@@ -101,7 +101,7 @@ TEST(TrajectoryFile, FilesWithoutPosesAreRefused) {
       {"binary:1:"});
 }
 
-TEST(TrajectoryFile, ValuesThatAreNotFiniteAreNeverWritten) {
+TEST(TrajectoryFile, NonFiniteValuesAreNeverWritten) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Trajectory trajectory = {{1.0, Rigid3(Eigen::Quaterniond::Identity(), {nan, 0, 0})}};
   EXPECT_THROW(FormatTrajectory(trajectory), CheckError);
