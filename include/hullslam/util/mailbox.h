@@ -49,14 +49,9 @@ class Mailbox {
     changed_.notify_all();
   }
 
-  size_t size() const {
-    const std::lock_guard lock(mutex_);
-    return messages_.size();
-  }
-
  private:
   const size_t capacity_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Message> messages_;
   bool closed_ = false;
