@@ -130,11 +130,6 @@ ObjectFit MeasureIn(const ImagePlane& image, const Ellipsoid& ellipsoid, const R
 
 }  // namespace
 
-ObjectFit MeasureView(const Ellipsoid& ellipsoid, const ReportedView& view,
-                      const PinholeCamera& camera) {
-  return MeasureIn(ImagePlane(camera), ellipsoid, view);
-}
-
 ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ReportedView> views,
                         const PinholeCamera& camera) {
   const ImagePlane image(camera);

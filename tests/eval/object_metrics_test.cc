@@ -50,6 +50,11 @@ ReportedView PerfectView(const Ellipsoid& ellipsoid, const Rigid3& cam_from_worl
   return view;
 }
 
+ObjectFit MeasureView(const Ellipsoid& ellipsoid, const ReportedView& view,
+                      const PinholeCamera& camera) {
+  return MeasureObject(ellipsoid, {&view, 1}, camera);
+}
+
 TEST(ObjectMetrics, APerfectViewFitsPerfectly) {
   const Ellipsoid ellipsoid = {Rigid3(ExpSo3({0.3, 0.5, -0.2}), {0.1, -0.1, 2.0}), {0.1, 0.2, 0.3}};
   const ObjectFit fit = MeasureView(ellipsoid, PerfectView(ellipsoid), Camera());

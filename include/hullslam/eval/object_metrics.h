@@ -8,7 +8,7 @@
 
 namespace hullslam {
 
-// How well the projected ellipse of an ellipsoid agrees with one view:
+// How well the projected ellipse of an ellipsoid agrees with its views:
 //   siou        intersection over union with the hull, both clipped to the undistorted image. If
 //               the view has only a box, the bounding box of the ellipse is compared with it.
 //   siou_mask   the same with the contour; absent for a box
@@ -18,10 +18,7 @@ namespace hullslam {
 //               without such lines
 // An ellipsoid that is not wholly in front of the camera has no projected ellipse. Then the
 // overlaps are 0 and the distances are absent.
-ObjectFit MeasureView(const Ellipsoid& ellipsoid, const ReportedView& view,
-                      const PinholeCamera& camera);
-
-// Means over the views; all values are absent if there are no views.
+// Returns the means over the views; all values are absent if there are no views.
 ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ReportedView> views,
                         const PinholeCamera& camera);
 
