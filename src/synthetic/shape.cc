@@ -165,24 +165,6 @@ Shape Shape::Torus(double ring, double tube) {
   return {.kind = ShapeKind::kTorus, .half = {ring + tube, tube, ring + tube}, .tube = tube};
 }
 
-double Shape::Implicit(const Vector3d& point) const {
-  const Vector3d q = point.cwiseQuotient(half);
-  switch (kind) {
-    case ShapeKind::kBox:
-      return q.lpNorm<Eigen::Infinity>() - 1.0;
-    case ShapeKind::kEllipsoid:
-      return q.norm() - 1.0;
-    case ShapeKind::kSuperquadric:
-      return std::pow(SuperquadricSum(*this, q), north / 2.0) - 1.0;
-    case ShapeKind::kCylinder:
-      return std::max(q.head<2>().norm(), std::abs(q.z())) - 1.0;
-    case ShapeKind::kTorus:
-      return std::hypot(std::hypot(point.x(), point.z()) - (half.x() - tube), point.y()) / tube -
-             1.0;
-  }
-  throw CheckError("unknown kind of shape");
-}
-
 Vector3d Shape::Normal(const Vector3d& point) const {
   const Vector3d q = point.cwiseQuotient(half);
   switch (kind) {

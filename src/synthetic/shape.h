@@ -28,9 +28,6 @@ struct Shape {
   // A torus around the y axis. `ring` is the radius of the circle in the middle of the tube.
   static Shape Torus(double ring, double tube);
 
-  // Implicit function: negative inside, 0 on the surface, positive outside. It has no unit and is
-  // roughly the distance divided by the size.
-  double Implicit(const Eigen::Vector3d& point) const;
   // Outward unit normal at a point on (or near) the surface.
   Eigen::Vector3d Normal(const Eigen::Vector3d& point) const;
 };

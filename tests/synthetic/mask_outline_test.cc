@@ -64,7 +64,7 @@ TEST(FindOutlines, TakesTheLargestPartAndFillsHoles) {
   cv::Mat image = Empty();
   image(cv::Rect(0, 0, 30, 20)) = 1;
   image(cv::Rect(10, 5, 10, 10)) = 2;   // a hole in 1
-  image(cv::Rect(40, 0, 20, 20)) = 1;   // a smaller second part
+  image(cv::Rect(40, 0, 20, 20)) = 1;   // a second, smaller part of object 1
   image(cv::Rect(30, 20, 12, 12)) = 5;  // touches object 1 at a corner only
   const auto outlines = FindOutlines(image, 100);
   ASSERT_EQ(outlines.size(), 3U);

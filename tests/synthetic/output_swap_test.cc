@@ -64,7 +64,7 @@ TEST_F(OutputSwapTest, ForeignFilesAreNeverReplaced) {
   Put(root_ / "out" / "thesis.txt", "precious");
   EXPECT_THROW(OutputSwap(root_ / "out", false), InputError);
   EXPECT_THROW(OutputSwap(root_ / "out", true), InputError);
-  PutFormerSequence(root_ / "out");  // beside the foreign file
+  PutFormerSequence(root_ / "out");  // next to the foreign file
   EXPECT_THROW(OutputSwap(root_ / "out", true), InputError);
   EXPECT_EQ(Get(root_ / "out" / "thesis.txt"), "precious");
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "synthetic/hash_noise.h"
+#include "synthetic/implicit_shape.h"
 #include "synthetic/object_models.h"
 #include "synthetic/scene_builder.h"
 
@@ -64,7 +65,7 @@ TEST(RayCaster, EveryRayInARoomHitsAPointOnASurface) {
       const Shape& shape = placed.part->shape;
       // The triangles are up to 4e-5 m inside the surface. Implicit values are relative to the
       // size.
-      EXPECT_NEAR(shape.Implicit(local) *
+      EXPECT_NEAR(Implicit(shape, local) *
                       (shape.kind == ShapeKind::kTorus ? shape.tube : shape.half.minCoeff()),
                   0.0, 1.5e-4);
       if (placed.object >= 0) {

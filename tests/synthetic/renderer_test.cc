@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "synthetic/camera_path.h"
+#include "synthetic/implicit_shape.h"
 #include "synthetic/mask_outline.h"
 #include "synthetic/object_models.h"
 #include "synthetic/scene_builder.h"
@@ -108,7 +109,7 @@ TEST(Renderer, DepthIsTheDepthOfTheEllipsoidOrTheWall) {
       const Vector3d local = Inverse(hit.world_from_object) * point;
       // At grazing angles 4e-5 m across the surface are more along the ray, but the point is still
       // on the surface.
-      EXPECT_NEAR(hit.parts[0].shape.Implicit(local), 0.0, 2e-3);
+      EXPECT_NEAR(Implicit(hit.parts[0].shape, local), 0.0, 2e-3);
       ++on_objects;
     }
   }
