@@ -38,7 +38,8 @@ void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::st
   app.add_flag("--threaded", arguments.threaded,
                "map in a thread of its own: faster, not reproducible to the bit");
   app.add_flag("--realtime", arguments.realtime, "play the images at the pace of their stamps");
-  app.add_option("--seed", arguments.seed, "seed of all random choices")
+  app.add_option("--seed", arguments.seed,
+                 "has no effect yet: nothing in a run is random. It is only copied to summary.json")
       ->check(WholeNumber())
       ->capture_default_str();
   app.add_option("--first", arguments.tum.selection.first, "first frame, counted from 0")
