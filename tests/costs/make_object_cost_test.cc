@@ -34,7 +34,7 @@ class MakeObjectCostTest : public ::testing::Test {
   }
 
   RandomGeometry random_{1};
-  ObjectState state_ = RandomObjectState(random_);
+  ObjectInCamera state_ = RandomObjectInCamera(random_);
   std::vector<SilhouetteLine> lines_ = TangentsOf(state_, 10);
   std::vector<Eigen::Vector2d> contour_ = ContourOf(state_, 200);
   ObjectMeasurement measurement_;
@@ -72,7 +72,7 @@ TEST_F(MakeObjectCostTest, OneRowALineOrAPoint) {
 }
 
 TEST_F(MakeObjectCostTest, SigmaDividesTheResidual) {
-  ObjectState moved = state_;
+  ObjectInCamera moved = state_;
   moved.ellipsoid.half_axes *= 1.1;
   for (const ObjectResidual residual : kResiduals) {
     for (const ObjectPrimitive primitive : kPrimitives) {

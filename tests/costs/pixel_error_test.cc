@@ -12,8 +12,8 @@ namespace hullslam {
 namespace {
 
 // A small sphere far off, with an outline of radius r = 500 * 0.2 / sqrt(25 - 0.04) px.
-ObjectState SmallSphere() {
-  ObjectState state;
+ObjectInCamera SmallSphere() {
+  ObjectInCamera state;
   state.ellipsoid.world_from_object.translation = {0.0, 0.0, 5.0};
   state.ellipsoid.half_axes.setConstant(0.2);
   return state;
@@ -22,7 +22,7 @@ ObjectState SmallSphere() {
 constexpr PinholeCamera kSquare{.fx = 500.0, .fy = 500.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
 
 double SizeOf(ObjectResidual residual, double error_px) {
-  const ObjectState state = SmallSphere();
+  const ObjectInCamera state = SmallSphere();
   return ResidualOfPixelError(residual, kSquare, state.cam_from_world, state.ellipsoid, error_px)
       .value();
 }
@@ -71,7 +71,7 @@ TEST(ResidualOfPixelError, IsTheSizeOfTheResiduals) {
 }
 
 TEST(ResidualOfPixelError, IsNothingUnlessInFront) {
-  ObjectState state = SmallSphere();
+  ObjectInCamera state = SmallSphere();
   for (const double z : {-5.0, 0.0, 0.2}) {
     state.ellipsoid.world_from_object.translation.z() = z;
     EXPECT_FALSE(ResidualOfPixelError(ObjectResidual::kTangent, kSquare, state.cam_from_world,

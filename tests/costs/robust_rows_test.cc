@@ -36,9 +36,9 @@ TEST(RobustRowsCost, WithoutLossOnlyWeighs) {
 TEST(RobustRowsCost, KeepsTheLaws) {
   RandomGeometry random(1);
   for (int i = 0; i < 20; ++i) {
-    const ObjectState state = RandomObjectState(random);
+    const ObjectInCamera state = RandomObjectInCamera(random);
     const RobustRowsCost cost(std::make_unique<TangentCost>(
-                                  kObjectCamera, TangentsOf(RandomObjectState(random), 12), 5.0),
+                                  kObjectCamera, TangentsOf(RandomObjectInCamera(random), 12), 5.0),
                               std::make_unique<ceres::CauchyLoss>(2.5), 0.3);
     ExpectObjectCostLaws(cost, state, random);
   }
