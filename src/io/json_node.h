@@ -14,10 +14,6 @@
 
 namespace hullslam {
 
-// The content of a JSON file. Throws InputError with the file's name where it cannot be read or is
-// no JSON.
-nlohmann::json ReadJson(const std::filesystem::path& path);
-
 // A value in a JSON file that knows its path in the file. If a value is not as expected, InputError
 // says "FILE: PATH is VALUE, expected ...". The file name and the value must outlive the node.
 class JsonNode {

@@ -36,15 +36,6 @@ void SortByArea(std::vector<Outline>& outlines) {
 
 }  // namespace
 
-void CheckFileSize(const std::filesystem::path& path, size_t most_bytes) {
-  std::error_code error;
-  const uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > most_bytes) {
-    throw InputError(fmt::format("{}: {} bytes, expected at most {} MB", path.string(), size,
-                                 most_bytes / 1'000'000));
-  }
-}
-
 std::string ImageStem(std::string_view name) {
   name.remove_prefix(std::min(name.find_last_of("/\\") + 1, name.size()));
   const size_t dot = name.find_last_of('.');

@@ -18,10 +18,6 @@ constexpr size_t kMostJsonFileBytes = 512'000'000;  // limit for a JSON file of 
 constexpr double kMostBeyondImage = 1.0;  // px; how far an outline may extend beyond the border
 constexpr double kSmallestArea = 1.0;     // px^2
 
-// Throws InputError if the file has more bytes. (If the size cannot be read, the error is left to
-// the reader of the file.)
-void CheckFileSize(const std::filesystem::path& path, size_t most_bytes);
-
 // The file name without folders and without an extension of letters: "rgb/12.5.png" and "12.5" both
 // give 12.5.
 std::string ImageStem(std::string_view name);

@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "hullslam/util/error.h"
-#include "io/mask_checks.h"
 #include "io/text_rows.h"
 
 namespace hullslam {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
+#include "io/json_file.h"
 #include "io/mask_checks.h"
 #include "io/mask_classes.h"
 #include "io/mask_json.h"

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
+#include "io/json_file.h"
 #include "io/mask_checks.h"
-#include "io/text_rows.h"
 
 namespace hullslam {
 namespace {
@@ -20,35 +20,6 @@ using Json = nlohmann::json;
 constexpr size_t kMostValues = 2'000'000;
 constexpr size_t kMostRecords = 1'000'000;
 constexpr int kMostDepth = 16;
-constexpr size_t kLongestShown = 120;
-
-std::string Shorten(std::string text) {
-  if (text.size() > kLongestShown) {
-    text.resize(kLongestShown);
-    text += "...";
-  }
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text;
-}
-
-// nlohmann's message begins with its own name for the error.
-[[noreturn]] void FailParsing(const std::filesystem::path& path, std::string_view message) {
-  const size_t begin = message.find("] ");
-  message.remove_prefix(begin == std::string_view::npos ? 0 : begin + 2);
-  throw InputError(path.string() + ": is no valid JSON, " + Shorten(std::string(message)));
-}
-
-Json Parse(const std::filesystem::path& path, size_t most_bytes,
-           const Json::parser_callback_t& callback) {
-  CheckFileSize(path, most_bytes);
-  const std::string text = ReadFile(path);
-  try {
-    return Json::parse(text, callback);
-  } catch (const Json::exception& error) {
-    FailParsing(path, error.what());
-  }
-}
 
 // Takes each object out of the document as soon as it is complete.
 class RecordTaker {
@@ -105,15 +76,7 @@ void JsonRecord::Fail(const std::string& what) const {
 void ForEachJsonRecord(const std::filesystem::path& path,
                        const std::function<void(const JsonRecord& record)>& visit) {
   RecordTaker taker(path, visit);
-  Parse(path, kMostJsonFileBytes, std::ref(taker));
-}
-
-Json ReadJson(const std::filesystem::path& path, size_t most_bytes) {
-  return Parse(path, most_bytes, nullptr);
-}
-
-std::string ShowJson(const Json& value) {
-  return Shorten(value.dump(-1, ' ', true, Json::error_handler_t::replace));
+  ReadJson(path, kMostJsonFileBytes, std::ref(taker));
 }
 
 const Json& Member(const JsonRecord& record, const Json& object, const char* name) {

@@ -30,12 +30,6 @@ struct JsonRecord {
 void ForEachJsonRecord(const std::filesystem::path& path,
                        const std::function<void(const JsonRecord& record)>& visit);
 
-// The document of a file of at most `most_bytes`; the same errors.
-nlohmann::json ReadJson(const std::filesystem::path& path, size_t most_bytes);
-
-// What a message can show of a value.
-std::string ShowJson(const nlohmann::json& value);
-
 // A member of an object; record.Fail() if it is missing.
 const nlohmann::json& Member(const JsonRecord& record, const nlohmann::json& object,
                              const char* name);

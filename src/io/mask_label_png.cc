@@ -11,8 +11,8 @@
 
 #include "hullslam/io/image_file.h"
 #include "hullslam/util/error.h"
+#include "io/json_file.h"
 #include "io/mask_checks.h"
-#include "io/mask_json.h"
 #include "io/mask_outline.h"
 #include "io/mask_text.h"
 #include "io/text_rows.h"

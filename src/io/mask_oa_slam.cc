@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "io/json_file.h"
 #include "io/mask_checks.h"
 #include "io/mask_classes.h"
 #include "io/mask_json.h"

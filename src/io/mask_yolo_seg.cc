@@ -5,7 +5,6 @@
 
 #include <utility>
 
-#include "io/mask_checks.h"
 #include "io/mask_text.h"
 
 namespace hullslam {

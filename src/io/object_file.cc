@@ -5,6 +5,7 @@
 
 #include "geometry/polyline.h"
 #include "hullslam/util/check.h"
+#include "io/json_file.h"
 #include "io/json_node.h"
 
 namespace hullslam {

@@ -12,8 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include "hullslam/io/atomic_file.h"
-
 namespace hullslam {
 namespace {
 
@@ -103,8 +101,8 @@ Colour ColourOf(std::string_view label) {
 
 }  // namespace
 
-std::string FormatPly(std::span<const Eigen::Vector3d> landmarks,
-                      std::span<const Eigen::Vector3d> keyframes) {
+std::string FormatMapPly(std::span<const Eigen::Vector3d> landmarks,
+                         std::span<const Eigen::Vector3d> keyframes) {
   constexpr Colour kGrey = {128, 128, 128};
   constexpr Colour kOrange = {255, 128, 0};
   std::string bytes = StartPly(landmarks.size() + keyframes.size()) + "end_header\n";
@@ -142,11 +140,6 @@ std::string FormatObjectsPly(std::span<const ReportedObject> objects) {
          fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
                      count * sphere.triangles.size()) +
          vertices + faces;
-}
-
-void WritePly(const std::filesystem::path& path, std::span<const Eigen::Vector3d> landmarks,
-              std::span<const Eigen::Vector3d> keyframes) {
-  WriteFileAtomically(path, FormatPly(landmarks, keyframes));
 }
 
 }  // namespace hullslam

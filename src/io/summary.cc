@@ -5,8 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "hullslam/io/atomic_file.h"
-
 namespace hullslam {
 namespace {
 
@@ -95,10 +93,6 @@ std::string FormatSummary(const RunSummary& summary) {
   constexpr int kIndent = 2;
   // The name of a folder may contain any bytes; those that are not UTF-8 are replaced.
   return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + '\n';
-}
-
-void WriteSummary(const std::filesystem::path& path, const RunSummary& summary) {
-  WriteFileAtomically(path, FormatSummary(summary));
 }
 
 std::map<std::string, TimeStatistics> SummarizeStages(const StageTimes& times) {

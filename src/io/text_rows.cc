@@ -61,6 +61,15 @@ std::string ReadFile(const std::filesystem::path& path) {
   return bytes;
 }
 
+void CheckFileSize(const std::filesystem::path& path, size_t most_bytes) {
+  std::error_code error;
+  const uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error && size > most_bytes) {
+    throw InputError(fmt::format("{}: {} bytes, expected at most {} MB", path.string(), size,
+                                 most_bytes / 1'000'000));
+  }
+}
+
 bool ParseFinite(std::string_view text, double& value) {
   if (text.starts_with('+')) {
     text.remove_prefix(1);

@@ -13,6 +13,10 @@ namespace hullslam {
 // is a folder, or cannot be read.
 std::string ReadFile(const std::filesystem::path& path);
 
+// Throws InputError if the file has more bytes. (If the size cannot be read, the error is left to
+// the reader of the file.)
+void CheckFileSize(const std::filesystem::path& path, size_t most_bytes);
+
 // Parses `text` as a finite number. Returns false if it is none or if characters are left over.
 bool ParseFinite(std::string_view text, double& value);
 

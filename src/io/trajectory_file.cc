@@ -5,7 +5,6 @@
 
 #include <iterator>
 
-#include "hullslam/io/atomic_file.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 #include "io/text_rows.h"
@@ -69,10 +68,6 @@ std::string FormatTrajectory(const Trajectory& trajectory) {
                    t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
   }
   return text;
-}
-
-void WriteTrajectory(const std::filesystem::path& path, const Trajectory& trajectory) {
-  WriteFileAtomically(path, FormatTrajectory(trajectory));
 }
 
 }  // namespace hullslam

@@ -46,7 +46,6 @@ TEST_F(MaskJson, ReportsWhereAFileIsNotJson) {
   ExpectRefusal("[{\"a\": 1}", {"is no valid JSON", "line 1"});
   ExpectRefusal("[1] 2", {"is no valid JSON"});
   ExpectRefusal(std::string("[\"\xff\"]"), {"is no valid JSON"});
-  ExpectInputError([&] { ReadJson(folder_.path() / "none.json", 100); }, {"none.json"});
 }
 
 TEST_F(MaskJson, RefusesTooLargeFiles) {
@@ -61,13 +60,9 @@ TEST_F(MaskJson, RefusesTooLargeFiles) {
     many += "{},";
   }
   ExpectRefusal(many + "{}]", {"more than 1000000 records"});
-  const std::filesystem::path path = folder_.Write("file.json", "[1, 2, 3]");
-  ExpectInputError([&] { ReadJson(path, 5); }, {"file.json: 9 bytes"});
 }
 
 TEST_F(MaskJson, MessagesShortenLongValues) {
-  EXPECT_EQ(ShowJson("a\n\xc3\xa9"), "\"a\\n\\u00e9\"");
-  EXPECT_LT(ShowJson(std::string(1'000'000, 'a')).size(), 200U);
   ExpectRefusal("[\"" + std::string(100'000, 'a'), {"..."});
 }
 

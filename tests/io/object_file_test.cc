@@ -185,7 +185,7 @@ TEST(ObjectFile, TruncatedAndMissingFilesAreRefused) {
   const std::string text = FormatObjects(MakeReport());
   for (const size_t length : {size_t{0}, text.size() / 2, text.size() - 3}) {
     const auto path = folder.Write("objects.json", text.substr(0, length));
-    ExpectInputError([&] { ReadObjects(path); }, {"objects.json: not JSON"});
+    ExpectInputError([&] { ReadObjects(path); }, {"objects.json: is no valid JSON"});
   }
   ExpectInputError([&] { ReadObjects(folder.Write("empty.json", "{}")); },
                    {"empty.json: \"version\" is missing"});

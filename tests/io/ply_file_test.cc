@@ -11,16 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "io/text_rows.h"
-#include "support/temporary_folder.h"
-
 namespace hullslam {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-TEST(Ply, HasLandmarksThenKeyframes) {
-  const std::string ply = FormatPly(Points{{1.0, -2.0, 0.5}}, Points{{0.0, 0.0, 1.0}});
+TEST(MapPly, HasLandmarksThenKeyframes) {
+  const std::string ply = FormatMapPly(Points{{1.0, -2.0, 0.5}}, Points{{0.0, 0.0, 1.0}});
   const std::string end = "end_header\n";
   const size_t data = ply.find(end) + end.size();
   EXPECT_EQ(ply.find("ply\nformat binary_little_endian 1.0\nelement vertex 2\n"), 0U);
@@ -31,11 +28,8 @@ TEST(Ply, HasLandmarksThenKeyframes) {
   EXPECT_EQ(ply.substr(data), expected);
 }
 
-TEST(Ply, AnEmptyMapGivesAFileWithoutPoints) {
-  const TemporaryFolder folder;
-  const auto path = folder.path() / "map.ply";
-  WritePly(path, {}, {});
-  const std::string ply = ReadFile(path);
+TEST(MapPly, AnEmptyMapGivesAFileWithoutPoints) {
+  const std::string ply = FormatMapPly({}, {});
   EXPECT_NE(ply.find("element vertex 0\n"), std::string::npos);
   EXPECT_TRUE(ply.ends_with("end_header\n"));
 }

@@ -45,16 +45,14 @@ TEST(TrajectoryFile, WritesFixedDecimals) {
             "-0.000000000 -0.000000000 -0.000000000 1.000000000\n");
 }
 
-TEST(TrajectoryFile, ReadingAndWritingGivesTheSameBytes) {
+TEST(TrajectoryFile, ReadingInvertsWriting) {
   const TemporaryFolder folder;
   Trajectory trajectory;
   for (int i = 0; i < 100; ++i) {
     trajectory.push_back({1305031102.0 + 0.033 * i,
                           Rigid3(ExpSo3({0.1 * i, -0.05 * i, 0.02 * i}), {0.01 * i, 1.0, -2.0})});
   }
-  const auto path = folder.path() / "t.txt";
-  WriteTrajectory(path, trajectory);
-  const Trajectory again = ReadTrajectory(path);
+  const Trajectory again = ReadTrajectory(folder.Write("t.txt", FormatTrajectory(trajectory)));
   ASSERT_EQ(again.size(), trajectory.size());
   for (size_t i = 0; i < again.size(); ++i) {
     EXPECT_NEAR(again[i].timestamp, trajectory[i].timestamp, 1e-6);
@@ -66,8 +64,6 @@ TEST(TrajectoryFile, ReadingAndWritingGivesTheSameBytes) {
         1e-7);
     EXPECT_GE(again[i].world_from_cam.rotation.w(), 0.0);
   }
-  WriteTrajectory(folder.path() / "again.txt", again);
-  EXPECT_EQ(ReadTrajectory(folder.path() / "again.txt").size(), again.size());
 }
 
 TEST(TrajectoryFile, BrokenLinesAreReported) {

@@ -63,7 +63,8 @@ TEST(TrueObjectFile, OtherFilesAreRefused) {
                    {"a.json: \"objects\" is missing"});
   ExpectInputError([&] { ReadTrueObjects(folder.Write("a.json", R"({"objects": [{}]})")); },
                    {"objects[0]: \"id\" is missing"});
-  ExpectInputError([&] { ReadTrueObjects(folder.Write("a.json", "cup 1 2 3")); }, {"not JSON"});
+  ExpectInputError([&] { ReadTrueObjects(folder.Write("a.json", "cup 1 2 3")); },
+                   {"is no valid JSON"});
   ExpectInputError([&] { ReadTrueObjects(folder.path() / "none.json"); }, {"none.json"});
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <filesystem>
 #include <span>
 #include <string>
 
@@ -12,12 +11,8 @@ namespace hullslam {
 
 // A binary little-endian PLY with points `float x y z, uchar red green blue`, in metres in the
 // world frame: first the landmarks in grey, then the centres of the keyframes in orange.
-std::string FormatPly(std::span<const Eigen::Vector3d> landmarks,
-                      std::span<const Eigen::Vector3d> keyframes);
-
-// Writes FormatPly() by WriteFileAtomically().
-void WritePly(const std::filesystem::path& path, std::span<const Eigen::Vector3d> landmarks,
-              std::span<const Eigen::Vector3d> keyframes);
+std::string FormatMapPly(std::span<const Eigen::Vector3d> landmarks,
+                         std::span<const Eigen::Vector3d> keyframes);
 
 // A binary little-endian PLY with the ellipsoids of the mapped objects as triangles. The vertices
 // are as above; the faces are `uchar 3, int a b c`, with corners in anticlockwise order seen from

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -38,7 +37,7 @@ struct ObjectsSummary {
   std::optional<double> siou_mask_mean = std::nullopt;  // with the contour
   std::optional<double> mtd_mean_m2 = std::nullopt;
   std::optional<double> tangent_mean_px = std::nullopt;
-  size_t observations = 0;  // of mapped objects in keyframes
+  size_t observations = 0;  // observations of mapped objects in keyframes
   size_t candidates = 0;    // objects that are not mapped at the end of the run
   size_t detections = 0;    // usable detections in all frames
   size_t frames_with_masks = 0;
@@ -82,9 +81,6 @@ struct RunSummary {
 
 // JSON with the keys in the order of the structs, with a final line feed.
 std::string FormatSummary(const RunSummary& summary);
-
-// Writes FormatSummary() by WriteFileAtomically().
-void WriteSummary(const std::filesystem::path& path, const RunSummary& summary);
 
 // The statistics of each stage.
 std::map<std::string, TimeStatistics> SummarizeStages(const StageTimes& times);

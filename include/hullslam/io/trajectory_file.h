@@ -19,7 +19,4 @@ Trajectory ReadTrajectory(const std::filesystem::path& path);
 // poses give the same bytes. Throws CheckError for values that are not finite.
 std::string FormatTrajectory(const Trajectory& trajectory);
 
-// Writes FormatTrajectory() by WriteFileAtomically().
-void WriteTrajectory(const std::filesystem::path& path, const Trajectory& trajectory);
-
 }  // namespace hullslam
