@@ -32,7 +32,7 @@ class Renderer {
 
  private:
   struct View;      // poses at one time
-  struct Fragment;  // what one ray found
+  struct Fragment;  // what one ray hits
   Fragment Shade(const View& view, int part, float distance, const Eigen::Vector3f& direction,
                  int max_samples) const;
   View MakeView(double time) const;

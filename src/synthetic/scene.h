@@ -31,12 +31,13 @@ struct Part {
 
 // An object that a segmentation network would find.
 struct SceneObject {
-  std::string class_name;  // of COCO
-  int class_id = 0;        // of COCO, from 0
+  std::string class_name;  // name of COCO
+  int class_id = 0;        // id of COCO, counted from 0
   std::string shape;       // "ellipsoid", "box", "superquadric" or "compound"
   std::vector<Part> parts;
-  Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();  // tight, in the object's frame, metres
-  Rigid3 world_from_object;                                // at time 0
+  Eigen::Vector3d half_extents =
+      Eigen::Vector3d::Zero();  // tight, in the frame of the object, metres
+  Rigid3 world_from_object;     // at time 0
   // Pose of a moving object at a time in seconds; empty for a static object.
   std::function<Rigid3(double)> motion;
 

@@ -73,7 +73,7 @@ TEST(MaskRle, RefusesInvalidNumbers) {
   EXPECT_FALSE(DecodeRuns("532M").has_value() && CountPixels(*DecodeRuns("532M")) != 10);
   EXPECT_FALSE(DecodeRuns("533L").has_value());  // 3 - 4 is negative
   EXPECT_FALSE(DecodeRuns(Compress({1, 2, 3, 0xffffffff}) + Compress({1, 2, 3, 0xffffffff}))
-                   .has_value());  // beyond 32 bits
+                   .has_value());  // more than 32 bits
 }
 
 TEST(MaskRle, OutlinesAreTheOutlinesOfTheMask) {

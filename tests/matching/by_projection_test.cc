@@ -102,7 +102,7 @@ TEST(MatchByProjection, RightCoordinateIsComparedIfBothAreKnown) {
                     {.pixel = {101.0f, 100.0f}, .bits = 5, .right_u = 80.0f},
                     {.pixel = {102.0f, 100.0f}, .bits = 9}});
   Projection projection = At(100.0f, 100.0f);
-  EXPECT_EQ(Found(features, projection), 0);  // nothing to compare with
+  EXPECT_EQ(Found(features, projection), 0);  // the projection has no right coordinate
   projection.right_u = 88.0f;
   EXPECT_EQ(Found(features, projection), 1);
   projection.right_u = 69.9f;

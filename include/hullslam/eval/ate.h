@@ -28,8 +28,8 @@ struct AteReport {
   size_t pairs = 0;
   size_t estimate_poses = 0;
   size_t reference_poses = 0;
-  double coverage = 0.0;     // share of the estimate's poses that have a partner, 0 to 1
-  double paired_span = 0.0;  // s from the first pair to the last
+  double coverage = 0.0;     // share of the estimated poses that are paired, 0 to 1
+  double paired_span = 0.0;  // s, from the first to the last pair
 
   bool ok() const { return failure.empty(); }
 };

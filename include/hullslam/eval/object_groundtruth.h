@@ -21,8 +21,8 @@ struct ObjectError {
   size_t truth = 0;               // index of the true object
   double center_m = 0.0;          // distance of the centres
   double center_share = 0.0;      // center_m divided by the Size() of the true object
-  Eigen::Vector3d axis_ratios;    // mapped over true half axes, paired by length, longest first
-  Eigen::Vector3d extent_ratios;  // mapped over true half extents along the true object's axes
+  Eigen::Vector3d axis_ratios;    // mapped / true half axes, both sorted by length, longest first
+  Eigen::Vector3d extent_ratios;  // mapped / true half extents along the axes of the true object
   std::optional<double> siou;     // of the mapped object, from its ObjectFit
 };
 

@@ -29,7 +29,7 @@ struct Keypoint {
   int level = 0;                // level of the pyramid
 };
 
-// The image pyramid's geometry: level l is smaller by scale[l] = factor^l.
+// Geometry of the image pyramid: level l is smaller than level 0 by the factor scale[l] = factor^l.
 struct ScaleLevels {
   std::vector<float> scale;           // 1, 1.2, 1.44 ...
   std::vector<float> sigma2;          // px^2: scale^2, variance of a keypoint's position

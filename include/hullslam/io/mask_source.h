@@ -16,7 +16,7 @@ namespace hullslam {
 // A frame by the names that mask files use for it.
 struct MaskFrame {
   std::string stem;   // of the file of the colour image: "1305031102.175304"
-  size_t number = 0;  // of the colour image in the sequence, from 0
+  size_t number = 0;  // index of the colour image in the sequence, from 0
 };
 
 // The frames of a sequence, in order.

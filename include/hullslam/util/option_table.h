@@ -35,7 +35,7 @@ class OptionTable {
   void Add(std::string key, double* field, Range range, std::string help);
   void Add(std::string key, int* field, Range range, std::string help);
   void Add(std::string key, uint64_t* field, Range range, std::string help);
-  void Add(std::string key, bool* field, std::string help);  // 0, 1, true, false
+  void Add(std::string key, bool* field, std::string help);  // accepts 0, 1, true, false
   void Add(std::string key, std::string* field, std::vector<std::string> choices, std::string help);
   // An enum that is set by name: `names[i]` is the enumerator with value i.
   template <typename Enum>

@@ -23,7 +23,7 @@ class StageTimes {
   std::map<std::string, std::vector<double>, std::less<>> samples_;
 };
 
-// Adds the time from its construction to its destruction to `times`.
+// Measures the time from construction to destruction and adds it to `times`.
 class ScopedTimer {
  public:
   ScopedTimer(StageTimes& times, std::string_view stage)
