@@ -51,18 +51,18 @@ EllipseUnits FindUnits(const OaSlamImages& images) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   constexpr std::array<EllipseUnits, 4> kUnits = {
       {{1.0, 1.0}, {0.5, 1.0}, {1.0, kDegree}, {0.5, kDegree}}};
-  std::array<double, kUnits.size()> misfits{};
+  std::array<double, kUnits.size()> differences{};
   for (const auto& [stem, detections] : images) {
     for (const OaSlamDetection& detection : detections) {
       for (size_t i = 0; i < kUnits.size() && detection.ellipse; ++i) {
         const Eigen::Vector2d size = 2.0 * HalfSize(*detection.ellipse, kUnits[i]);
-        misfits[i] += std::abs(size.x() - (detection.box[2] - detection.box[0])) +
-                      std::abs(size.y() - (detection.box[3] - detection.box[1]));
+        differences[i] += std::abs(size.x() - (detection.box[2] - detection.box[0])) +
+                          std::abs(size.y() - (detection.box[3] - detection.box[1]));
       }
     }
   }
-  const auto best = std::min_element(misfits.begin(), misfits.end());
-  return kUnits[static_cast<size_t>(best - misfits.begin())];
+  const auto best = std::min_element(differences.begin(), differences.end());
+  return kUnits[static_cast<size_t>(best - differences.begin())];
 }
 
 std::vector<Eigen::Vector2d> EllipseOutline(const std::array<double, 5>& ellipse,
