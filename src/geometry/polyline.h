@@ -8,9 +8,8 @@
 
 namespace hullslam {
 
-// Simplifies a closed polygon: keeps as few of its corners as possible while all removed corners
-// are within `epsilon` px (Douglas and Peucker 1973). With `epsilon` 0 the polygon is returned
-// unchanged.
+// Simplifies a closed polygon: removes corners that stay within `epsilon` px of the simplified
+// polygon (Douglas and Peucker 1973). With `epsilon` 0 the polygon is returned unchanged.
 std::vector<Eigen::Vector2d> SimplifyPolygon(std::span<const Eigen::Vector2d> polygon,
                                              double epsilon);
 

@@ -62,7 +62,7 @@ TEST(MatchByProjection, TheLimitOfTheDistanceIsInclusive) {
   EXPECT_EQ(Found(features, At(100.0f, 100.0f), {.max_distance = 59}), -1);
 }
 
-TEST(MatchByProjection, RatioRejectsWhatIsAmbiguousAtOneLevelOnly) {
+TEST(MatchByProjection, RatioComparesOnlyKeypointsOfTheSameLevel) {
   const std::vector<MadeKeypoint> same_level = {{.pixel = {100.0f, 100.0f}, .bits = 40},
                                                 {.pixel = {101.0f, 100.0f}, .bits = 45}};
   const Projection projection = At(100.0f, 100.0f);
