@@ -26,7 +26,7 @@ std::vector<MaskFrame> MaskFrames(const TumSequence& sequence);
 struct FrameMasks {
   std::vector<InstanceMask> masks;  // in the order of the file
   bool is_missing = false;          // the frame has no file, or no entry in the file
-  size_t without_area = 0;  // ignored outlines with an area of less than 1 px^2 in the image
+  size_t without_area = 0;  // ignored masks without an outline of at least 1 px^2 in the image
   size_t crowds = 0;        // ignored masks that are marked as a group of objects
 };
 
