@@ -202,7 +202,7 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
   return summary;
 }
 
-std::string FormatMap(const Map& map, const Trajectory& keyframes) {
+std::string MapPly(const Map& map, const Trajectory& keyframes) {
   std::vector<Eigen::Vector3d> landmarks;
   map.landmarks().ForEach(
       [&](LandmarkId, const Landmark& landmark) { landmarks.push_back(landmark.position); });
@@ -210,7 +210,7 @@ std::string FormatMap(const Map& map, const Trajectory& keyframes) {
   for (const StampedPose& pose : keyframes) {
     centers.push_back(pose.world_from_cam.translation);
   }
-  return FormatPly(landmarks, centers);
+  return FormatMapPly(landmarks, centers);
 }
 
 // The files of objects are only written if the run has masks.
@@ -219,7 +219,7 @@ void WriteOutputs(const std::filesystem::path& folder, const Map& map, const Tra
   const Trajectory keyframes = KeyframeTrajectory(map);
   std::vector<FileContent> files = {{folder / "trajectory.txt", FormatTrajectory(trajectory)},
                                     {folder / "keyframes.txt", FormatTrajectory(keyframes)},
-                                    {folder / "map.ply", FormatMap(map, keyframes)},
+                                    {folder / "map.ply", MapPly(map, keyframes)},
                                     {folder / "summary.json", FormatSummary(summary)}};
   if (summary.objects) {
     std::ranges::move(ObjectFiles(folder, objects), std::back_inserter(files));

@@ -45,7 +45,8 @@ void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::st
                "run mapping in its own thread: faster, but results differ a little between runs");
   app.add_flag("--realtime", arguments.realtime,
                "process the images no faster than the camera took them, by their stamps");
-  app.add_option("--seed", arguments.seed, "seed of all random choices")
+  app.add_option("--seed", arguments.seed,
+                 "has no effect yet: nothing in a run is random. It is only copied to summary.json")
       ->check(WholeNumber())
       ->capture_default_str();
   app.add_option("--first", arguments.tum.selection.first,

@@ -15,7 +15,7 @@ void DepthErrorOptions::Bind(OptionTable& options) {
 
 void DepthOptions::Bind(OptionTable& options) {
   options.Add("DepthMapFactor", &units_per_metre, Range::Positive(),
-              "units of 16-bit depth images in a metre");
+              "units of a 16-bit depth image per metre");
   options.Add("ThDepth", &close_baselines, Range::Positive(),
               "depths up to this many baselines count as close");
   error.Bind(options);
@@ -26,7 +26,7 @@ float SampleDepth(const cv::Mat& depth, const Eigen::Vector2f& raw_pixel, double
         "the depth image is neither CV_16UC1 nor CV_32FC1");
   const float x = std::round(raw_pixel.x());
   const float y = std::round(raw_pixel.y());
-  // Written so that a pixel that is not a number is outside.
+  // The comparison is written so that a NaN pixel counts as outside.
   const bool inside = x >= 0.0f && y >= 0.0f && x < static_cast<float>(depth.cols) &&
                       y < static_cast<float>(depth.rows);
   if (!inside) {

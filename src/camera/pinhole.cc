@@ -70,7 +70,7 @@ Eigen::Vector2d PinholeCamera::Undistort(const Eigen::Vector2d& raw) const {
       break;
     }
     if (distortion.jacobian.determinant() <= 1e-6) {
-      break;  // the polynomial folds here: no inverse beyond
+      break;  // the polynomial folds here and has no inverse beyond
     }
     estimate -= distortion.jacobian.inverse() * error;
   }
@@ -89,7 +89,8 @@ PinholeCamera::Bounds PinholeCamera::UndistortedBounds() const {
     bounds.max_x = std::max(bounds.max_x, p.x());
     bounds.max_y = std::max(bounds.max_y, p.y());
   };
-  // The whole border, not only the corners: with barrel distortion its middle bulges out.
+  // The whole border is used, not only the corners: with barrel distortion the middle of a side
+  // bulges out.
   constexpr int kSteps = 32;
   for (int i = 0; i <= kSteps; ++i) {
     const double x = static_cast<double>(width) * i / kSteps;

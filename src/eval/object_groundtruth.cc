@@ -39,7 +39,7 @@ ObjectError Compare(const TrueObject& truth, const Ellipsoid& mapped) {
   return error;
 }
 
-// Against the nearest true object that is near enough.
+// Compares with the nearest true object, or returns nothing if none is near enough.
 std::optional<ObjectError> CompareWithNearest(std::span<const TrueObject> truths,
                                               const Ellipsoid& mapped) {
   constexpr double kFarthest = 0.5;
@@ -58,7 +58,7 @@ std::optional<ObjectError> CompareWithNearest(std::span<const TrueObject> truths
   return nearest;
 }
 
-// Where the image shows each object; empty where it does not.
+// The box of each object in the image; empty if the object is not in the image or moves.
 std::vector<Eigen::AlignedBox2d> ProjectBoxes(std::span<const TrueObject> truths,
                                               const PinholeCamera& camera,
                                               const Rigid3& cam_from_truth) {
@@ -68,10 +68,10 @@ std::vector<Eigen::AlignedBox2d> ProjectBoxes(std::span<const TrueObject> truths
   std::vector<Eigen::AlignedBox2d> boxes(truths.size());
   for (size_t i = 0; i < truths.size(); ++i) {
     const Ellipsoid ellipsoid = {truths[i].world_from_object, truths[i].half_extents};
-    const std::optional<Ellipse> outline =
+    const std::optional<Ellipse> ellipse =
         ProjectEllipsoid(camera.Matrix(), cam_from_truth, ellipsoid);
-    if (outline && !truths[i].is_dynamic) {
-      boxes[i] = outline->Bounds().intersection(image);
+    if (ellipse && !truths[i].is_dynamic) {
+      boxes[i] = ellipse->Bounds().intersection(image);
     }
   }
   return boxes;
@@ -143,7 +143,7 @@ std::map<std::string, ShapeErrors> SummarizeByShape(std::span<const TrueObject> 
   std::optional<size_t> last;
   for (const ObjectError& error : comparison.errors) {
     if (last == error.truth) {
-      continue;  // mapped twice; the nearer one came first
+      continue;  // mapped several times; the nearest came first
     }
     last = error.truth;
     ShapeErrors& shape = shapes[truths[error.truth].shape];
@@ -171,7 +171,7 @@ std::map<std::string, ShapeErrors> SummarizeByShape(std::span<const TrueObject> 
 void CountSightings(std::span<const TrueObject> truths, const PinholeCamera& camera,
                     const Rigid3& cam_from_truth, std::span<const SeenBox> seen,
                     std::vector<size_t>& sightings) {
-  Check(sightings.size() == truths.size(), "one count a true object");
+  Check(sightings.size() == truths.size(), "sightings need one count per true object");
   const std::vector<Eigen::AlignedBox2d> boxes = ProjectBoxes(truths, camera, cam_from_truth);
   std::vector<bool> is_shown(truths.size(), false);
   for (const SeenBox& detection : seen) {

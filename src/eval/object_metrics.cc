@@ -12,9 +12,9 @@ namespace {
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
-constexpr int kOutlineCorners = 128;
+constexpr int kEllipseCorners = 128;
 
-// The mean of the values given to it.
+// Running mean of the values passed to Add().
 class Mean {
  public:
   void Add(const std::optional<double>& value) {
@@ -32,7 +32,7 @@ class Mean {
   size_t count_ = 0;
 };
 
-// The means of fits and the sums of their counts.
+// Running means of fits and sums of their counts.
 class FitMean {
  public:
   void Add(const ObjectFit& fit) {
@@ -57,7 +57,7 @@ class FitMean {
   size_t lines_ = 0;
 };
 
-// What of a camera outlines depend on.
+// The part of a camera that the projection depends on.
 struct ImagePlane {
   Eigen::Matrix3d k;
   Eigen::AlignedBox2d bounds;
@@ -69,7 +69,7 @@ struct ImagePlane {
   }
 };
 
-// Segmenters give contours either way round.
+// Segmenters give contours in either orientation.
 Polygon WithPositiveArea(Polygon polygon) {
   if (SignedArea(polygon) < 0.0) {
     std::reverse(polygon.begin(), polygon.end());
@@ -77,19 +77,19 @@ Polygon WithPositiveArea(Polygon polygon) {
   return polygon;
 }
 
-double OverlapWithHull(const Polygon& outline, const ReportedView& view,
+double OverlapWithHull(const Polygon& polygon, const ReportedView& view,
                        const Eigen::AlignedBox2d& image) {
   const Polygon hull = ClipToBox(view.hull, image);
-  return view.is_box ? IntersectionOverUnion(BoundingBox(outline), BoundingBox(hull))
-                     : IntersectionOverUnion(outline, hull);
+  return view.is_box ? IntersectionOverUnion(BoundingBox(polygon), BoundingBox(hull))
+                     : IntersectionOverUnion(polygon, hull);
 }
 
-double OverlapWithMask(const Polygon& outline, const ReportedView& view,
+double OverlapWithMask(const Polygon& polygon, const ReportedView& view,
                        const Eigen::AlignedBox2d& image) {
-  return IntersectionOverUnion(ClipToBox(WithPositiveArea(view.contour), image), outline);
+  return IntersectionOverUnion(ClipToBox(WithPositiveArea(view.contour), image), polygon);
 }
 
-void MeasureLines(const Ellipsoid& ellipsoid, const Ellipse& outline, const ReportedView& view,
+void MeasureLines(const Ellipsoid& ellipsoid, const Ellipse& ellipse, const ReportedView& view,
                   const Eigen::Matrix3d& k, ObjectFit& fit) {
   const Eigen::Matrix4d quadric = (view.cam_from_world * ellipsoid).DualQuadric();
   Mean mtd;
@@ -99,11 +99,11 @@ void MeasureLines(const Ellipsoid& ellipsoid, const Ellipse& outline, const Repo
       continue;
     }
     ++fit.lines;
-    // The plane through the camera's centre and the line, in the camera's frame.
+    // The plane through the camera centre and the line, in the camera frame.
     const Eigen::Vector3d normal = (k.transpose() * line.Homogeneous()).normalized();
     const Eigen::Vector4d plane(normal.x(), normal.y(), normal.z(), 0.0);
     mtd.Add(std::abs(plane.dot(quadric * plane)));
-    tangent.Add(std::abs(line.SignedDistance(outline.center) + outline.HalfExtent(line.normal)));
+    tangent.Add(std::abs(line.SignedDistance(ellipse.center) + ellipse.HalfExtent(line.normal)));
   }
   fit.mtd_m2 = mtd.Value();
   fit.tangent_px = tangent.Value();
@@ -119,21 +119,16 @@ ObjectFit MeasureIn(const ImagePlane& image, const Ellipsoid& ellipsoid, const R
   if (!ellipse) {
     return fit;
   }
-  const Polygon outline = ClipToBox(ellipse->Polygon(kOutlineCorners), image.bounds);
-  fit.siou = OverlapWithHull(outline, view, image.bounds);
+  const Polygon polygon = ClipToBox(ellipse->Polygon(kEllipseCorners), image.bounds);
+  fit.siou = OverlapWithHull(polygon, view, image.bounds);
   if (has_mask) {
-    fit.siou_mask = OverlapWithMask(outline, view, image.bounds);
+    fit.siou_mask = OverlapWithMask(polygon, view, image.bounds);
   }
   MeasureLines(ellipsoid, *ellipse, view, image.k, fit);
   return fit;
 }
 
 }  // namespace
-
-ObjectFit MeasureView(const Ellipsoid& ellipsoid, const ReportedView& view,
-                      const PinholeCamera& camera) {
-  return MeasureIn(ImagePlane(camera), ellipsoid, view);
-}
 
 ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ReportedView> views,
                         const PinholeCamera& camera) {

@@ -11,7 +11,7 @@
 namespace hullslam {
 namespace {
 
-// Position of the end of the motion that starts at `start`.
+// Index of the end of the motion that starts at `start`.
 std::optional<size_t> FindEnd(const std::vector<double>& stamps, size_t start,
                               const RpeOptions& options) {
   if (options.unit == RpeOptions::Unit::kFrames) {

@@ -31,8 +31,8 @@ struct Brightest {
 
 // NOLINTBEGIN(cppcoreguidelines-pro-type-member-init): arrays of the hottest loop, filled at once.
 
-// Outer over all arcs of 9 neighbours of Inner over the arc. The arcs from i and from i + 1 share
-// eight pixels, so only eight pairs of arcs are looked at.
+// Applies Inner to each arc of 9 neighbours, and Outer to the results of all arcs. The arcs from i
+// and from i + 1 share eight pixels, so it suffices to look at eight pairs of arcs.
 template <typename Order>
 inline uint8_t OverArcs(const std::array<uint8_t, kCircle>& p) {
   std::array<uint8_t, 8> pairs;
@@ -59,17 +59,17 @@ inline uint8_t OverArcs(const std::array<uint8_t, kCircle>& p) {
   return result;
 }
 
-// Rows are treated in whole blocks, without a slow remainder: up to kBlock - 1 results after the
-// last pixel wanted are made of the following rows and never used. With the smallest border there
-// are always rows enough below, so nothing outside the image is read.
+// Rows are processed in whole blocks, without a slow remainder. Therefore up to kBlock - 1 results
+// after the last wanted pixel are computed from pixels of the following rows and ignored. With the
+// smallest border there are always enough rows below, so nothing outside the image is read.
 constexpr int kBlock = 32;
 constexpr int kSmallestBorder = 8;
 
 int BlockCount(int pixels) { return (pixels + kBlock - 1) / kBlock; }
 
-// Score of each pixel of `blocks` blocks from `row` on: an arc is brighter than the centre by more
-// than t if its darkest pixel is. Without branches, so that the compiler can treat many pixels at
-// once.
+// Computes the score of each pixel in `blocks` blocks from `row` on. An arc is brighter than the
+// centre by more than t if its darkest pixel is. The code has no branches, so that the compiler can
+// process many pixels at once.
 HULLSLAM_FUNCTION_CLONES
 void ScoreRow(const uint8_t* row, ptrdiff_t step, int blocks, uint8_t* __restrict scores) {
   std::array<const uint8_t*, kCircle> circle;
@@ -92,8 +92,8 @@ void ScoreRow(const uint8_t* row, ptrdiff_t step, int blocks, uint8_t* __restric
 
 // NOLINTEND(cppcoreguidelines-pro-type-member-init)
 
-// Keeps the scores that are at least `threshold`, above those of the neighbours before it in raster
-// order and not below those after it; the others become 0.
+// Keeps a score if it is at least `threshold`, larger than the scores of the neighbours before it
+// in raster order, and not smaller than the scores of those after it. All other scores become 0.
 HULLSLAM_FUNCTION_CLONES
 void MaximaOfRow(const uint8_t* above, const uint8_t* row, const uint8_t* below, int blocks,
                  uint8_t threshold, uint8_t* __restrict maxima) {
@@ -108,7 +108,7 @@ void MaximaOfRow(const uint8_t* above, const uint8_t* row, const uint8_t* below,
   }
 }
 
-// The scores of three rows, by x of the image.
+// The scores of three rows, indexed by the x coordinate in the image.
 struct ScoreRows {
   const uint8_t* above;
   const uint8_t* row;
@@ -125,7 +125,7 @@ struct ScoreRows {
   }
 };
 
-// Most pixels are no maxima: whole words of zeros are passed over.
+// Most pixels are no maxima, so whole words of zeros are skipped.
 void CollectRow(const uint8_t* maxima, const ScoreRows& scores, int begin, int end, int y,
                 std::vector<Corner>& corners) {
   for (int x = begin; x < end; x += 8) {
@@ -144,7 +144,8 @@ void CollectRow(const uint8_t* maxima, const ScoreRows& scores, int begin, int e
   }
 }
 
-// Top of the parabola through (-1, before), (0, top) and (1, after), where top is the largest.
+// Position of the maximum of the parabola through (-1, before), (0, top) and (1, after), where top
+// is the largest value.
 float ParabolaTop(int before, int top, int after) {
   const int curvature = 2 * top - before - after;
   return curvature > 0 ? 0.5f * static_cast<float>(after - before) / static_cast<float>(curvature)
@@ -200,7 +201,7 @@ void CornerDetector::FindMaxima(const cv::Mat& image, int border, std::vector<Co
   };
   const auto step = static_cast<ptrdiff_t>(image.step);
   const int blocks = BlockCount(image.cols - 2 * border);
-  // One pixel more on each side than corners are wanted, to compare with.
+  // Scores are computed for one more pixel on each side, to compare the outermost corners with.
   const int score_blocks = BlockCount(image.cols - 2 * border + 2);
   for (int y = border - 1; y <= image.rows - border; ++y) {
     ScoreRow(image.ptr(y) + border - 1, step, score_blocks, ring_row(y) + border - 1);
@@ -224,7 +225,8 @@ void CornerDetector::DropWeakInStrongCells(const cv::Mat& image, std::vector<Cor
   }
   size_t kept = 0;
   for (size_t i = 0; i < corners.size(); ++i) {
-    // Written always and counted where it is kept: which corners are cannot be foreseen.
+    // The corner is always written, and the count only grows if it is kept. This avoids a branch
+    // that the CPU cannot predict.
     const bool keep = corners[i].score >= initial_threshold_ || strong_[cell_of_corner_[i]] == 0;
     corners[kept] = corners[i];
     kept += keep ? 1 : 0;

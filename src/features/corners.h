@@ -11,29 +11,29 @@ namespace hullslam {
 struct Corner {
   int16_t x = 0;  // px
   int16_t y = 0;
-  // Largest threshold (grey levels) with which the pixel is a FAST corner.
+  // The largest threshold (grey levels) at which the pixel is a FAST corner.
   int16_t score = 0;
-  // Scores of the neighbours, for a refined position.
+  // Scores of the four neighbours, for SubpixelOffset().
   uint8_t left = 0;
   uint8_t right = 0;
   uint8_t above = 0;
   uint8_t below = 0;
 };
 
-// From the pixel of a corner to the top of the parabolas through its score and those of its
-// neighbours, at most half a pixel in x and in y.
+// Offset from the pixel of a corner to the maximum of the parabolas through its score and the
+// scores of its neighbours. At most half a pixel in x and in y.
 Eigen::Vector2f SubpixelOffset(const Corner& corner);
 
-// FAST-9/16 corners (Rosten and Drummond 2006) that are maxima of their 3 x 3 neighbourhood. Of
-// equal neighbours the first in raster order is one. Keeps its buffers from image to image.
+// FAST-9/16 corners (Rosten and Drummond 2006) that are maxima of their 3 x 3 neighbourhood; among
+// equal neighbours the first in raster order is kept. Keeps its buffers from image to image.
 class CornerDetector {
  public:
-  // In cells of about 30 px that have no corner of `initial_threshold` those of
-  // `minimum_threshold` (grey levels, at least 1) are taken.
+  // The image has cells of about 30 px. A cell without a corner at `initial_threshold` gets the
+  // corners at `minimum_threshold` (both in grey levels, at least 1).
   CornerDetector(int initial_threshold, int minimum_threshold);
 
-  // Corners at least `border` px (8 or more) away from the outermost pixels of `image` (CV_8UC1),
-  // in raster order; `corners` is overwritten.
+  // Finds the corners that are at least `border` px (8 or more) away from the outermost pixels of
+  // `image` (CV_8UC1), in raster order. `corners` is overwritten.
   void Detect(const cv::Mat& image, int border, std::vector<Corner>& corners);
 
  private:
@@ -42,9 +42,9 @@ class CornerDetector {
 
   int initial_threshold_;
   int minimum_threshold_;
-  std::vector<uint8_t> score_rows_;  // of three image rows, as a ring
-  std::vector<uint8_t> maxima_;      // of one row: the score where it is a maximum, else 0
-  std::vector<uint8_t> strong_;      // of a cell: has a corner of the initial threshold
+  std::vector<uint8_t> score_rows_;  // scores of three image rows, in a ring buffer
+  std::vector<uint8_t> maxima_;      // of one row: the score if it is a maximum, else 0
+  std::vector<uint8_t> strong_;      // per cell: has a corner at the initial threshold
   std::vector<uint32_t> cell_of_corner_;
 };
 

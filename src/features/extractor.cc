@@ -16,8 +16,8 @@ namespace {
 
 constexpr int kSmallestSide = 64;  // px
 
-// Shares the features out so that each level has as many to an area of its own pixels: falling by
-// the scale factor from level to level. The top level gets what rounding leaves.
+// Distributes the features over the levels: their number falls by the scale factor from level to
+// level. The top level gets the rest.
 std::vector<size_t> LevelQuotas(const FeatureOptions& options) {
   const double ratio = 1.0 / options.scale_factor;
   double wanted =
@@ -38,7 +38,7 @@ std::vector<size_t> LevelQuotas(const FeatureOptions& options) {
 
 void FeatureOptions::Bind(OptionTable& options) {
   options.Add("ORBextractor.nFeatures", &feature_count, Range::Between(1, 100000),
-              "features wanted in an image");
+              "number of features per image");
   options.Add("ORBextractor.scaleFactor", &scale_factor,
               {.low = 1.0, .high = 2.0, .low_open = true},
               "ratio of the sizes of neighbouring levels of the image pyramid");
@@ -47,9 +47,9 @@ void FeatureOptions::Bind(OptionTable& options) {
   options.Add("ORBextractor.iniThFAST", &initial_fast_threshold, Range::Between(1, 255),
               "FAST threshold, grey levels");
   options.Add("ORBextractor.minThFAST", &minimum_fast_threshold, Range::Between(1, 255),
-              "FAST threshold where there are no corners otherwise, grey levels");
+              "FAST threshold of cells without other corners, grey levels");
   options.Add("ORBextractor.subpixel", &subpixel,
-              "refine the positions of features within a pixel of their level");
+              "refine the positions of features to a fraction of a pixel");
 }
 
 struct FeatureExtractor::Impl {

@@ -8,8 +8,9 @@
 namespace hullslam {
 namespace {
 
-// Cell number of a distance from the box's edge in cells, clamped to those there are. Compared
-// before the conversion, so that far, infinite and undefined values do not overflow the integer.
+// Converts a distance from the edge of the box, in cells, to a cell number within the grid. The
+// comparison is done before the conversion, so that far, infinite and NaN values do not overflow
+// the integer.
 int ClampedCell(float cells, int count) {
   if (!(cells > 0.0f)) {
     return 0;
@@ -59,7 +60,8 @@ void FeatureGrid::FindNear(std::span<const Keypoint> keypoints, const Eigen::Vec
   const int first_row = ClampedCell(low.y() * cells_per_pixel_.y(), kRows);
   const int last_row = ClampedCell(high.y() * cells_per_pixel_.y(), kRows);
   for (int column = first_column; column <= last_column; ++column) {
-    // The cells of a column follow one another, so its rows are one run.
+    // The cells of a column are stored one after another, so the wanted rows form one contiguous
+    // range.
     const uint32_t begin = cell_start_[static_cast<size_t>(column * kRows + first_row)];
     const uint32_t end = cell_start_[static_cast<size_t>(column * kRows + last_row + 1)];
     for (uint32_t i = begin; i < end; ++i) {

@@ -9,7 +9,7 @@
 namespace hullslam {
 
 ScaleLevels ScaleLevels::Create(int levels, double factor) {
-  Check(levels >= 1, "a pyramid needs a level");
+  Check(levels >= 1, "a pyramid needs at least one level");
   Check(factor > 1.0, "the scale factor is not above 1");
   ScaleLevels result;
   result.log_factor = static_cast<float>(std::log(factor));
@@ -24,7 +24,8 @@ ScaleLevels ScaleLevels::Create(int levels, double factor) {
 
 int ScaleLevels::PredictLevel(double distance, double max_distance) const {
   Check(distance > 0.0 && max_distance > 0.0, "a distance is not positive");
-  // Far below the precision of any distance; keeps rounding from adding a level.
+  // A small tolerance, so that rounding does not add a level. It is far below the precision of any
+  // distance.
   constexpr double kSlack = 1e-3;
   const double level = std::ceil(std::log(max_distance / distance) / log_factor - kSlack);
   return static_cast<int>(std::clamp(level, 0.0, static_cast<double>(count() - 1)));

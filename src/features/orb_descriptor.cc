@@ -17,14 +17,15 @@ namespace {
 
 constexpr int kDiscRadius = 15;
 constexpr int kDiscRows = 2 * kDiscRadius + 1;
-constexpr int kDiscColumns = 32;  // one more than needed: a whole number of vectors
+constexpr int kDiscColumns = 32;  // one more than needed, to fill whole SIMD vectors
 
-// Half width of the disc in each row from its middle, as OpenCV's ORB rounds it: symmetric under
-// swapping x and y.
+// Half width of the disc in each row from its centre, rounded as in the ORB of OpenCV: symmetric
+// under swapping x and y.
 constexpr std::array<int, kDiscRadius + 1> kDiscHalfWidth = {15, 15, 15, 15, 14, 14, 14, 13,
                                                              13, 12, 11, 10, 9,  8,  6,  3};
 
-// For each pixel of the square around the disc its x from the middle and 1; both 0 outside.
+// For each pixel of the square around the disc its x from the centre, and 1. Both are 0 outside the
+// disc.
 struct DiscWeights {
   std::array<std::array<int16_t, kDiscColumns>, kDiscRows> x{};
   std::array<std::array<int16_t, kDiscColumns>, kDiscRows> one{};
@@ -73,7 +74,7 @@ Moments DiscMoments(const uint8_t* center, ptrdiff_t step) {
 
 constexpr size_t kTests = kOrbPattern.size();
 
-// The tests' points as columns, first points and then second points.
+// The points of the tests as columns: first all first points, then all second points.
 struct PatternColumns {
   std::array<float, 2 * kTests> x{};
   std::array<float, 2 * kTests> y{};
@@ -92,8 +93,8 @@ constexpr PatternColumns MakePatternColumns() {
 
 constexpr PatternColumns kPatternColumns = MakePatternColumns();
 
-// Nearest integer, ties to even, for |value| < 2^22: in the sum the last bit of the mantissa is 1.
-// Unlike std::lrint the compiler can do many at once.
+// Rounds to the nearest integer, ties to even, for |value| < 2^22. In the sum the last bit of the
+// mantissa has the value 1. Unlike std::lrint, the compiler can vectorise this.
 inline int32_t RoundSmall(float value) {
   constexpr float kShift = 12582912.0f;  // 1.5 * 2^23
   return std::bit_cast<int32_t>(value + kShift) - std::bit_cast<int32_t>(kShift);
@@ -101,8 +102,8 @@ inline int32_t RoundSmall(float value) {
 
 using Offsets = std::array<int32_t, 2 * kTests>;
 
-// Where the rotated points are in memory, from the centre. AVX2 does not bring fused multiply-add,
-// so both clones round alike.
+// Offsets in memory of the rotated points from the centre. AVX2 alone has no fused multiply-add, so
+// both clones round in the same way.
 HULLSLAM_FUNCTION_CLONES
 void RotatePattern(const Orientation& orientation, int32_t step, Offsets& offsets) {
   const float cosine = orientation.cosine;
@@ -119,7 +120,7 @@ void RotatePattern(const Orientation& orientation, int32_t step, Offsets& offset
 float Orientation::Angle() const {
   const float angle = std::atan2(sine, cosine);
   constexpr float kTurn = 2.0f * std::numbers::pi_v<float>;
-  // A tiny negative angle plus a turn rounds to a turn.
+  // A tiny negative angle plus a full turn would round to a full turn.
   return angle >= 0.0f ? angle : (angle + kTurn < kTurn ? angle + kTurn : 0.0f);
 }
 
@@ -129,7 +130,8 @@ Orientation ComputeOrientation(const cv::Mat& image, cv::Point center) {
   if (moments.x == 0 && moments.y == 0) {
     return {};
   }
-  // Cosine and sine need no trigonometric function, whose last bit may depend on the CPU.
+  // Cosine and sine are computed without trigonometric functions, whose last bit may depend on the
+  // CPU.
   const double x = moments.x;
   const double y = moments.y;
   const double norm = std::sqrt(x * x + y * y);

@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-// The first of equally strong corners.
+// The strongest corner; ties go to the first.
 const Corner& Strongest(const std::vector<Corner>& corners, size_t begin, size_t end) {
   size_t best = begin;
   for (size_t i = begin + 1; i < end; ++i) {
@@ -21,7 +21,7 @@ const Corner& Strongest(const std::vector<Corner>& corners, size_t begin, size_t
 
 }  // namespace
 
-// A total order, so that the result does not depend on the heap's.
+// A total order, so that the result does not depend on the implementation of the heap.
 bool QuadtreeSelection::IsCutLater(const Node& a, const Node& b) {
   return std::tuple(b.depth, a.count(), b.begin) < std::tuple(a.depth, b.count(), a.begin);
 }
@@ -62,7 +62,7 @@ void QuadtreeSelection::Add(const Node& node) {
   }
 }
 
-// Sorts the corners of the box by quarter, keeping their order within each.
+// Sorts the corners of the box by quarter and keeps their order within each quarter.
 void QuadtreeSelection::Cut(const Node& node, std::vector<Corner>& corners) {
   const int x = (node.x0 + node.x1) / 2;
   const int y = (node.y0 + node.y1) / 2;

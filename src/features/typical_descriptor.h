@@ -8,8 +8,8 @@
 
 namespace hullslam {
 
-// The index of the descriptor whose median Hamming distance to the others is least; the first of
-// equals, 0 for none (Mur-Artal and Tardos 2017).
+// Index of the descriptor with the least median Hamming distance to the others; ties go to the
+// first (Mur-Artal and Tardos 2017). Returns 0 for an empty list.
 size_t MostTypicalDescriptor(std::span<const Descriptor> descriptors);
 
 }  // namespace hullslam

@@ -29,7 +29,8 @@ bool HasSpread(const Points& points) {
 
 PointAlignment AlignPoints(std::span<const Eigen::Vector3d> source,
                            std::span<const Eigen::Vector3d> target, AlignmentKind kind) {
-  Check(source.size() == target.size(), "points are aligned in pairs");
+  Check(source.size() == target.size(),
+        "the alignment needs as many source points as target points");
   PointAlignment alignment;
   if (kind == AlignmentKind::kNone) {
     return alignment;

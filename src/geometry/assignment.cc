@@ -11,8 +11,8 @@ namespace {
 
 constexpr Eigen::Index kNone = -1;
 
-// The costs with a column of its own for each row to be left out; pairs that are never made cost
-// more than that.
+// Adds one column per row; a row that is assigned to its own extra column is left out. Pairs that
+// must not be chosen cost more than leaving the row out.
 Eigen::MatrixXd Extended(const Eigen::MatrixXd& cost, double max_cost) {
   const Eigen::Index rows = cost.rows();
   const double never = max_cost + std::abs(max_cost) + 1.0;
@@ -23,8 +23,8 @@ Eigen::MatrixXd Extended(const Eigen::MatrixXd& cost, double max_cost) {
   return extended;
 }
 
-// Rows are assigned one after the other, each along the shortest path in reduced costs to a free
-// column (Dijkstra); the prices keep every reduced cost at zero or above.
+// Assigns one row after the other, each along the shortest path in reduced costs to a free column
+// (Dijkstra). The prices keep all reduced costs non-negative.
 class AugmentingPaths {
  public:
   explicit AugmentingPaths(const Eigen::MatrixXd& cost)
@@ -38,7 +38,7 @@ class AugmentingPaths {
     distance_.assign(columns, std::numeric_limits<double>::infinity());
     came_from_.assign(columns, kNone);
     is_done_.assign(columns, false);
-    Eigen::Index column = kNone;  // the last one reached; none is the start, `row` itself
+    Eigen::Index column = kNone;  // the column reached last; kNone at the start, which is `row`
     double reached = 0.0;
     do {
       Relax(column == kNone ? row : RowOf(column), column, reached);
@@ -84,7 +84,7 @@ class AugmentingPaths {
     }
   }
 
-  // Gives every column of the path the row of the column before it.
+  // Moves every row of the path to the next column of the path, so that `row` gets a column too.
   void Flip(Eigen::Index column, Eigen::Index row) {
     while (column != kNone) {
       const Eigen::Index before = came_from_[static_cast<size_t>(column)];
@@ -105,7 +105,7 @@ class AugmentingPaths {
 }  // namespace
 
 std::vector<int> AssignMinimumCost(const Eigen::MatrixXd& cost, double max_cost) {
-  Check(std::isfinite(max_cost), "the cost of leaving out is finite");
+  Check(std::isfinite(max_cost), "the cost of leaving a row out is not finite");
   std::vector<int> column_of(static_cast<size_t>(cost.rows()), -1);
   const Eigen::MatrixXd extended = Extended(cost, max_cost);
   AugmentingPaths paths(extended);

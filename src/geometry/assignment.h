@@ -6,9 +6,9 @@
 
 namespace hullslam {
 
-// Minimum-cost assignment (Kuhn 1955; shortest augmenting paths): for each row the column it gets,
-// -1 for none. A pair whose cost is not below `max_cost` is never made; leaving a row out costs
-// `max_cost`. Of equal solutions always the same one is given.
+// Minimum-cost assignment (Kuhn 1955; shortest augmenting paths). Returns the column of each row,
+// -1 for a row without a column. Leaving a row out costs `max_cost`; a pair whose cost is not below
+// `max_cost` is never chosen. Among equal solutions the choice is deterministic.
 std::vector<int> AssignMinimumCost(const Eigen::MatrixXd& cost, double max_cost);
 
 }  // namespace hullslam

@@ -22,7 +22,8 @@ Eigen::Vector2d Mean(std::span<const Eigen::Vector2d> points) {
   return sum / static_cast<double>(points.size());
 }
 
-// Standard deviations across and along the direction in which the points spread most.
+// Standard deviations of the points: first the smaller one, across the main direction, then the
+// larger one, along it.
 Eigen::Vector2d Spread(std::span<const Eigen::Vector2d> points, const Eigen::Vector2d& mean) {
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (const Eigen::Vector2d& point : points) {
@@ -33,9 +34,9 @@ Eigen::Vector2d Spread(std::span<const Eigen::Vector2d> points, const Eigen::Vec
   return variances.cwiseMax(0.0).cwiseSqrt();
 }
 
-// The ellipse of the points (point - origin) / scale as a conic p^T C p = 0, by the direct
-// least-squares fit of Fitzgibbon, Pilu and Fisher (1999) in the stable form of Halir and Flusser
-// (1998).
+// Fits an ellipse to the points (point - origin) / scale and returns its conic C, p^T C p = 0. The
+// direct least-squares fit of Fitzgibbon, Pilu and Fisher (1999), in the numerically stable form of
+// Halir and Flusser (1998).
 std::optional<Eigen::Matrix3d> DirectLeastSquares(std::span<const Eigen::Vector2d> points,
                                                   const Eigen::Vector2d& origin, double scale) {
   // Sums over (x^2, x y, y^2) and (x, y, 1).
@@ -52,7 +53,7 @@ std::optional<Eigen::Matrix3d> DirectLeastSquares(std::span<const Eigen::Vector2
   }
   const Eigen::Matrix3d first_from_second = -linear.inverse() * mixed.transpose();
   const Eigen::Matrix3d reduced = quadratic + mixed * first_from_second;
-  Eigen::Matrix3d problem;  // times the inverse of the constraint 4 a c - b^2 = 1
+  Eigen::Matrix3d problem;  // `reduced`, times the inverse of the matrix of 4 a c - b^2 = 1
   problem << 0.5 * reduced.row(2), -reduced.row(1), 0.5 * reduced.row(0);
   if (!problem.allFinite()) {
     return std::nullopt;
@@ -61,7 +62,7 @@ std::optional<Eigen::Matrix3d> DirectLeastSquares(std::span<const Eigen::Vector2
       Eigen::EigenSolver<Eigen::Matrix3d>(problem).eigenvectors().real();
   for (Eigen::Index i = 0; i < 3; ++i) {
     const Eigen::Vector3d a = vectors.col(i);
-    if (4.0 * a[0] * a[2] - a[1] * a[1] > 0.0) {  // of an ellipse; the two others are not
+    if (4.0 * a[0] * a[2] - a[1] * a[1] > 0.0) {  // only one of the three is an ellipse
       const Eigen::Vector3d b = first_from_second * a;
       Eigen::Matrix3d conic;
       conic << a[0], 0.5 * a[1], 0.5 * b[0], 0.5 * a[1], a[2], 0.5 * b[1], 0.5 * b[0], 0.5 * b[1],
@@ -92,7 +93,7 @@ Eigen::Matrix3d Ellipse::DualConic() const {
 }
 
 std::vector<Eigen::Vector2d> Ellipse::Polygon(int vertices) const {
-  Check(vertices >= 3, "a polygon has three corners or more");
+  Check(vertices >= 3, "a polygon needs at least 3 corners");
   const double step = 2.0 * kPi / vertices;
   // The polygon of a unit circle has the area vertices / 2 * sin(step) instead of pi.
   const double scale = std::sqrt(step / std::sin(step));
@@ -115,7 +116,8 @@ std::optional<Ellipse> EllipseFromDualConic(const Eigen::Matrix3d& dual_conic) {
   const Eigen::Matrix2d block = scaled.topLeftCorner<2, 2>();
   ellipse.shape = 0.5 * (block + block.transpose()) + ellipse.center * ellipse.center.transpose();
   const double trace = ellipse.shape.trace();
-  // About the smaller half axis squared; below this it is rounding noise of the difference above.
+  // About the square of the smaller half axis. If it is tiny, it is only the rounding error of the
+  // sum above.
   const double smaller = ellipse.shape.determinant() / trace;
   const bool good = trace > 0.0 && smaller > 1e-12 * (trace + ellipse.center.squaredNorm());
   return good ? std::optional(ellipse) : std::nullopt;

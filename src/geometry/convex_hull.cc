@@ -17,8 +17,9 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Points = std::vector<Kernel::Point_2>;
 
-// The kernel with a fast choice of the point farthest from a line, which decides nothing but where
-// QuickHull splits: the kernel's own takes interval arithmetic and most of the time of a hull.
+// The kernel with a fast test for the point farthest from a line. The test only decides where
+// QuickHull splits, so it need not be exact. The kernel's own test uses interval arithmetic and
+// takes most of the time of a hull.
 struct Traits : Kernel {
   struct Less_signed_distance_to_line_2 {  // NOLINT(readability-identifier-naming): CGAL's name
     bool operator()(const Point_2& from, const Point_2& to, const Point_2& a,
@@ -33,8 +34,8 @@ struct Traits : Kernel {
   Less_signed_distance_to_line_2 less_signed_distance_to_line_2_object() const { return {}; }
 };
 
-// Of equally distant points any may have been split at: some corners are on the line between their
-// neighbours, or by rounding behind it.
+// Among equally distant points QuickHull may split at any, so some corners lie on the line between
+// their neighbours or, by rounding, behind it. These corners are removed.
 Points WithoutFlatCorners(const Points& corners) {
   const size_t size = corners.size();
   Points strict;
@@ -48,8 +49,8 @@ Points WithoutFlatCorners(const Points& corners) {
   return strict;
 }
 
-// All corners as left turns, by exact predicates. A corner of the hull is one whatever its
-// neighbours are, so none is lost.
+// Removes corners until all are strict left turns by exact predicates. A true corner of the hull is
+// a left turn whatever its neighbours are, so no true corner is removed.
 Points StrictlyConvex(Points corners) {
   size_t before = 0;
   while (corners.size() >= 3 && corners.size() != before) {
@@ -65,7 +66,7 @@ std::vector<Eigen::Vector2d> ConvexHull(std::span<const Eigen::Vector2d> points)
   Points input;
   input.reserve(points.size());
   for (const Eigen::Vector2d& point : points) {
-    Check(point.allFinite(), "a hull is taken of finite points");
+    Check(point.allFinite(), "the points of a hull are not finite");
     input.emplace_back(point.x(), point.y());
   }
   Points corners;

@@ -26,7 +26,8 @@ double Ellipsoid::RadialDistance(const Eigen::Vector3d& point_in_world) const {
   const Eigen::Vector3d point = Inverse(world_from_object) * point_in_world;
   const double distance = point.norm();
   const double in_radii = point.cwiseQuotient(half_axes).norm();
-  // At the centre itself the ray may be any: the one to the nearest end.
+  // At the centre itself the direction of the ray is undefined: the ray to the nearest end of an
+  // axis is used.
   return in_radii > 0.0 ? distance - distance / in_radii : -half_axes.minCoeff();
 }
 
@@ -40,7 +41,7 @@ std::optional<Ellipse> ProjectEllipsoid(const Eigen::Matrix3d& k, const Rigid3& 
   const Eigen::Vector3d& center = in_cam.world_from_object.translation;
   const Eigen::Matrix3d shape = ShapeMatrix(in_cam);
   const double nearest_depth = center.z() - std::sqrt(shape(2, 2));
-  // Not only C*33 < 0: that holds for an ellipsoid wholly behind the camera, too.
+  // C*33 < 0 is not sufficient: it also holds for an ellipsoid that is wholly behind the camera.
   if (!(nearest_depth > 0.0)) {
     return std::nullopt;
   }

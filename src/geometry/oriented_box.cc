@@ -22,8 +22,8 @@ std::optional<Eigen::Matrix3d> OrientedBoxAxes(std::span<const Eigen::Vector3d> 
     input.emplace_back(point.x(), point.y(), point.z());
   }
   std::array<Kernel::Point_3, 8> corners;
-  // The search is genetic and draws from CGAL's generator of this thread: seeded anew for each
-  // call, the same points give the same box.
+  // The search is a genetic algorithm that draws from the random generator of this thread in CGAL.
+  // It is seeded for each call, so that the same points give the same box.
   CGAL::get_default_random() = CGAL::Random(0);
   CGAL::oriented_bounding_box(input, corners);
   const auto edge = [&](size_t to) {

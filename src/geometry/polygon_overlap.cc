@@ -11,8 +11,8 @@ namespace {
 
 using Corners = std::vector<Eigen::Vector2d>;
 
-// The part of a convex polygon to the left of the directed line through `from` and `to` (inside for
-// a polygon of positive area) (Sutherland and Hodgman 1974).
+// The part of a convex polygon to the left of the directed line through `from` and `to` (Sutherland
+// and Hodgman 1974). The left side of an edge is the inside of a polygon with positive area.
 Corners ClipToLeft(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& from,
                    const Eigen::Vector2d& to) {
   const Eigen::Vector2d along = to - from;

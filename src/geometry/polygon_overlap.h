@@ -8,8 +8,8 @@
 
 namespace hullslam {
 
-// Polygons here are convex, closed and in the order of positive signed area; less than three
-// corners are the empty set.
+// Polygons here are convex, closed and in the order of positive signed area. A polygon with fewer
+// than three corners is the empty set.
 
 std::vector<Eigen::Vector2d> ClipToBox(std::span<const Eigen::Vector2d> polygon,
                                        const Eigen::AlignedBox2d& box);

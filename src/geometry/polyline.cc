@@ -30,8 +30,8 @@ size_t Farthest(std::span<const Eigen::Vector2d> polygon, size_t from) {
   return farthest;
 }
 
-// Marks the corners that the chain from `first` to `last` (counted on beyond the end of the closed
-// polygon) needs besides its ends.
+// Marks the corners between `first` and `last` that are needed to stay within `epsilon`. `last` may
+// exceed the number of corners: the polygon is closed, so indices wrap around.
 void MarkChain(std::span<const Eigen::Vector2d> polygon, size_t first, size_t last, double epsilon,
                std::vector<bool>& kept) {
   const size_t size = polygon.size();
@@ -64,7 +64,8 @@ std::vector<Eigen::Vector2d> SimplifyPolygon(std::span<const Eigen::Vector2d> po
   if (!(epsilon > 0.0) || polygon.size() < 3) {
     return {polygon.begin(), polygon.end()};
   }
-  // A closed polygon has no ends to start from: two corners far apart are.
+  // A closed polygon has no end points to start from, so two corners that are far apart take their
+  // place.
   size_t first = Farthest(polygon, 0);
   size_t second = Farthest(polygon, first);
   if (first > second) {
@@ -87,7 +88,7 @@ std::vector<Eigen::Vector2d> SimplifyPolygon(std::span<const Eigen::Vector2d> po
 double SignedArea(std::span<const Eigen::Vector2d> polygon) {
   double twice = 0.0;
   for (size_t i = 0; i < polygon.size(); ++i) {
-    // Relative to a corner, so that far from the origin nothing cancels.
+    // Coordinates relative to a corner avoid cancellation far from the origin.
     const Eigen::Vector2d a = polygon[i] - polygon[0];
     const Eigen::Vector2d b = polygon[(i + 1) % polygon.size()] - polygon[0];
     twice += a.x() * b.y() - a.y() * b.x();

@@ -8,15 +8,15 @@
 
 namespace hullslam {
 
-// The closed polygon with as few of its corners as keep it within `epsilon` px (Douglas and Peucker
-// 1973); the same polygon for 0.
+// Simplifies a closed polygon: removes corners that stay within `epsilon` px of the simplified
+// polygon (Douglas and Peucker 1973). With `epsilon` 0 the polygon is returned unchanged.
 std::vector<Eigen::Vector2d> SimplifyPolygon(std::span<const Eigen::Vector2d> polygon,
                                              double epsilon);
 
 // Signed area by the shoelace formula, px^2.
 double SignedArea(std::span<const Eigen::Vector2d> polygon);
 
-// The least box that holds the points, with sides along the axes; empty for none.
+// The smallest axis-aligned box that contains the points; empty if there are none.
 Eigen::AlignedBox2d BoundingBox(std::span<const Eigen::Vector2d> points);
 
 }  // namespace hullslam

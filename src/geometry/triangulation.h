@@ -9,8 +9,8 @@
 namespace hullslam {
 
 // Linear triangulation of one point from two views (Hartley and Zisserman 2004, section 12.2). The
-// image points are normalised (x/z, y/z). The point is in the world frame; nothing where it is at
-// infinity. It may lie behind a camera: the caller checks.
+// image points are normalised (x/z, y/z). Returns the point in the world frame, or nothing if it is
+// at infinity. The point may lie behind a camera: the caller must check this.
 std::optional<Eigen::Vector3d> TriangulatePoint(const Rigid3& a_from_world,
                                                 const Eigen::Vector2d& point_in_a,
                                                 const Rigid3& b_from_world,

@@ -18,12 +18,12 @@ namespace {
   throw InputError(path.string() + ": cannot be written: " + std::generic_category().message(code));
 }
 
-// A new file that is removed again unless it was renamed to its target.
+// A new file that is removed in the destructor unless it was renamed to its target.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::filesystem::path& target)
       : target_(target), path_(target.string() + '.' + std::to_string(::getpid()) + ".tmp") {
-    ::unlink(path_.c_str());  // left by a process of the same number that was killed
+    ::unlink(path_.c_str());  // left behind by a killed process with the same number
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0) {
       FailWriting(target_, errno);
@@ -51,9 +51,9 @@ class TemporaryFile {
     }
   }
 
-  // After the last Write.
+  // Call after the last Write().
   void Finish() {
-    // Some disks tell that they are full only when the data must really go there.
+    // Some disks only report that they are full when the data is really written.
     if (::fsync(descriptor_) != 0) {
       FailWriting(target_, errno);
     }
@@ -64,7 +64,7 @@ class TemporaryFile {
     }
   }
 
-  // After Finish.
+  // Call after Finish().
   void Publish() {
     if (::rename(path_.c_str(), target_.c_str()) != 0) {
       FailWriting(target_, errno);
@@ -83,7 +83,7 @@ void CheckTarget(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    // Renaming would put a file in the place of a device or a pipe.
+    // Renaming would replace a device or a pipe by a file.
     throw InputError(path.string() + ": cannot be written: it is not a regular file");
   }
 }

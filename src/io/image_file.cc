@@ -35,11 +35,11 @@ uint64_t BigEndian(std::string_view bytes, size_t at, size_t count) {
 
 enum class ImageState { kGood, kCutOff, kBroken };
 
-// Chunks are length, type, data and checksum of type and data. libpng would hand out the upper part
-// of an image whose lower part is missing, so the last chunk must be there; and it tells of wrong
-// bytes on stderr, so they are found before.
+// A chunk consists of length, type, data, and the checksum of type and data. libpng would return
+// the upper part of an image whose lower part is missing, so the last chunk must be there. libpng
+// also reports wrong bytes on stderr, so the checksums are tested before it is called.
 ImageState CheckPngChunks(std::string_view bytes) {
-  constexpr size_t kFrame = 12;  // bytes of a chunk beside its data
+  constexpr size_t kFrame = 12;  // bytes of a chunk in addition to its data
   size_t at = kPngSignature.size();
   while (at + kFrame <= bytes.size()) {
     const size_t length = BigEndian(bytes, at, 4);
@@ -61,11 +61,11 @@ ImageState CheckPngChunks(std::string_view bytes) {
 }
 
 ImageSize PngSize(std::string_view bytes) {
-  constexpr size_t kWidth = 16;  // signature, length and type of the header chunk come before
+  constexpr size_t kWidth = 16;  // after the signature and the length and type of the header chunk
   return {BigEndian(bytes, kWidth, 4), BigEndian(bytes, kWidth + 4, 4)};
 }
 
-// The marker for the end may have padding behind it.
+// The end marker may be followed by padding.
 ImageState CheckJpegEnd(std::string_view bytes) {
   constexpr size_t kMostPadding = 4096;
   const size_t tail = bytes.size() > kMostPadding ? bytes.size() - kMostPadding : 0;
@@ -73,7 +73,8 @@ ImageState CheckJpegEnd(std::string_view bytes) {
   return has_end ? ImageState::kGood : ImageState::kCutOff;
 }
 
-// Of the frame header (SOF0 to SOF15 without the tables DHT, JPG and DAC); zeros without one.
+// Size in the frame header (SOF0 to SOF15 without the tables DHT, JPG and DAC); zeros if there is
+// none.
 ImageSize JpegSize(std::string_view bytes) {
   for (size_t at = 2; at + 9 <= bytes.size();) {
     const auto marker = static_cast<unsigned char>(bytes[at + 1]);

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "hullslam/util/error.h"
-#include "io/text_rows.h"
+#include "io/json_file.h"
 
 namespace hullslam {
 namespace {
@@ -25,17 +25,6 @@ bool AreNumbers(const Json& value, size_t count) {
 }
 
 }  // namespace
-
-Json ReadJson(const std::filesystem::path& path) {
-  const std::string text = ReadFile(path);
-  try {
-    return Json::parse(text);
-  } catch (const Json::exception& error) {
-    std::string reason = error.what();
-    reason = reason.substr(0, reason.find('\n'));
-    throw InputError(fmt::format("{}: not JSON: {}", path.string(), reason));
-  }
-}
 
 JsonNode JsonNode::At(const std::string& key) const {
   if (!value_->is_object()) {
@@ -78,7 +67,7 @@ std::vector<JsonNode> JsonNode::Elements() const {
 
 std::string JsonNode::Text() const {
   if (!value_->is_string()) {
-    Fail("a text");
+    Fail("a string");
   }
   return value_->get<std::string>();
 }
@@ -150,13 +139,8 @@ Rigid3 JsonNode::Pose() const {
 }
 
 void JsonNode::Fail(std::string_view expected) const {
-  constexpr size_t kShown = 60;
-  std::string value = value_->dump(-1, ' ', true, Json::error_handler_t::replace);
-  if (value.size() > kShown) {
-    value = value.substr(0, kShown) + "...";
-  }
   throw InputError(fmt::format("{}: {} is {}, expected {}", file_->string(),
-                               place_.empty() ? "the top" : place_, value, expected));
+                               place_.empty() ? "the top" : place_, ShowJson(*value_), expected));
 }
 
 }  // namespace hullslam

@@ -14,22 +14,18 @@
 
 namespace hullslam {
 
-// The content of a JSON file. Throws InputError with the file's name where it cannot be read or is
-// no JSON.
-nlohmann::json ReadJson(const std::filesystem::path& path);
-
-// A value of a JSON file that knows its place in it. What is not as expected throws InputError
-// "FILE: PLACE is VALUE, expected ...". File and value must outlive the node.
+// A value in a JSON file that knows its path in the file. If a value is not as expected, InputError
+// says "FILE: PATH is VALUE, expected ...". The file name and the value must outlive the node.
 class JsonNode {
  public:
   JsonNode(const std::filesystem::path& file, const nlohmann::json& value)
       : file_(&file), value_(&value) {}
 
-  // A member of an object; it must be there.
+  // A member of an object. Throws InputError if it is missing.
   JsonNode At(const std::string& key) const;
-  // Whether the object has this member, and not as null.
+  // Whether the object has this member and its value is not null.
   bool Has(const std::string& key) const;
-  // The members of an object in the order of their keys, the values of an array in theirs.
+  // The members of an object, sorted by key.
   std::vector<std::pair<std::string, JsonNode>> Members() const;
   std::vector<JsonNode> Elements() const;
 
@@ -38,7 +34,7 @@ class JsonNode {
   double Number() const;          // finite
   double PositiveNumber() const;  // finite, > 0
   uint32_t Count() const;         // 0 to 2^32 - 2
-  // An array of just so many finite numbers.
+  // An array of exactly `count` finite numbers.
   std::vector<double> Numbers(size_t count) const;
   // An array of points [x, y].
   std::vector<Eigen::Vector2d> Points() const;
@@ -53,7 +49,7 @@ class JsonNode {
 
   const std::filesystem::path* file_;
   const nlohmann::json* value_;
-  std::string place_;  // as objects[2].hull; empty at the top
+  std::string place_;  // such as objects[2].hull; empty at the top
 };
 
 }  // namespace hullslam

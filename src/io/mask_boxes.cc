@@ -43,7 +43,7 @@ class BoxMasks : public TextMasks {
 
 }  // namespace
 
-// Boxes in shares of width and height, which YOLO writes for detections, are not meant.
+// Boxes in fractions of width and height, which YOLO writes for detections, are another format.
 bool IsBoxes(const MaskProbe& probe) {
   return probe.columns == kColumns && !IsNormalized(probe, 1) && IsNormalized(probe, kColumns - 1);
 }

@@ -8,8 +8,8 @@
 
 namespace hullslam {
 
-// boxes: `<stem>.txt` with `class x y width height score` a line, of pixels, x and y of the upper
-// left corner; EAO-SLAM (Wu et al. 2020) reads these.
+// Format boxes: `<stem>.txt` with one line `class x y width height score` per box, in pixels; x and
+// y are the upper left corner. EAO-SLAM (Wu et al. 2020) reads these files.
 bool IsBoxes(const MaskProbe& probe);
 std::unique_ptr<MaskSource> OpenBoxes(const MaskRequest& request);
 

@@ -21,7 +21,8 @@ using Outline = std::vector<Eigen::Vector2d>;
 void SortByArea(std::vector<Outline>& outlines) {
   std::vector<std::pair<double, size_t>> areas;
   for (size_t i = 0; i < outlines.size(); ++i) {
-    areas.emplace_back(-std::abs(SignedArea(outlines[i])), i);  // the largest first, then in order
+    areas.emplace_back(-std::abs(SignedArea(outlines[i])),
+                       i);  // the largest first; ties in the original order
   }
   std::sort(areas.begin(), areas.end());
   std::vector<Outline> sorted;
@@ -34,15 +35,6 @@ void SortByArea(std::vector<Outline>& outlines) {
 }
 
 }  // namespace
-
-void CheckFileSize(const std::filesystem::path& path, size_t most_bytes) {
-  std::error_code error;
-  const uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > most_bytes) {
-    throw InputError(fmt::format("{}: {} bytes, expected at most {} MB", path.string(), size,
-                                 most_bytes / 1'000'000));
-  }
-}
 
 std::string ImageStem(std::string_view name) {
   name.remove_prefix(std::min(name.find_last_of("/\\") + 1, name.size()));

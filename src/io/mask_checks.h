@@ -12,32 +12,30 @@
 
 namespace hullslam {
 
-constexpr size_t kMostInstances = 10'000;           // of a frame
-constexpr size_t kMostFrameFileBytes = 16'000'000;  // of the text of one frame
-constexpr size_t kMostJsonFileBytes = 512'000'000;  // of a JSON file of all frames
-constexpr double kMostBeyondImage = 1.0;            // px, that an outline may reach over the border
-constexpr double kSmallestArea = 1.0;               // px^2
+constexpr size_t kMostInstances = 10'000;           // limit for one frame
+constexpr size_t kMostFrameFileBytes = 16'000'000;  // limit for the text file of one frame
+constexpr size_t kMostJsonFileBytes = 512'000'000;  // limit for a JSON file of all frames
+constexpr double kMostBeyondImage = 1.0;  // px; how far an outline may extend beyond the border
+constexpr double kSmallestArea = 1.0;     // px^2
 
-// Throws InputError where the file has more bytes. (What cannot be asked is told by who reads it.)
-void CheckFileSize(const std::filesystem::path& path, size_t most_bytes);
-
-// File name without folders and without an extension of letters: "rgb/12.5.png" and "12.5" are
-// both 12.5.
+// The file name without folders and without an extension of letters: "rgb/12.5.png" and "12.5" both
+// give 12.5.
 std::string ImageStem(std::string_view name);
 
-// Whether a point, in pixels with integer centres, is in the image or next to it.
+// Whether a point, in pixels with integer centres, is in the image or at most kMostBeyondImage
+// outside.
 bool IsNearImage(const Eigen::Vector2d& point, const MaskRequest& request);
 
-// A rectangle's part in the image as an outline; the arguments are coordinates of pixels'
-// **edges**, so that the image runs from 0 to its width, the outline's of their centres. No area
-// outside.
+// The part of a rectangle inside the image, as an outline. The arguments are coordinates in which
+// the **edges** of pixels are integers, so that the image extends from 0 to its width; in the
+// outline the centres of pixels are integers. Without a part inside, the area of the outline is 0.
 std::vector<Eigen::Vector2d> BoxOutline(double left, double top, double right, double bottom,
                                         const MaskRequest& request);
 
-// Adds an instance with its outlines sorted by area; those without area are left out, and counted
-// where none remains.
+// Adds an instance with its outlines sorted by area. Outlines smaller than kSmallestArea are
+// removed; an instance without any outline left is only counted.
 void AddInstance(InstanceMask instance, FrameMasks& frame);
-// More instances than kMostInstances, those that were left out included.
+// Whether there are more instances than kMostInstances, including those that were left out.
 bool HasTooMany(const FrameMasks& frame);
 
 }  // namespace hullslam

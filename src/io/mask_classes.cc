@@ -7,13 +7,12 @@
 #include <system_error>
 
 #include "hullslam/util/error.h"
-#include "io/mask_checks.h"
 #include "io/text_rows.h"
 
 namespace hullslam {
 namespace {
 
-// The identifiers from 1 to 90 that COCO's annotations never use.
+// The identifiers between 1 and 90 that the annotations of COCO never use.
 constexpr std::array<int64_t, 10> kGaps = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};
 
 std::string Trimmed(std::string_view line) {
@@ -88,7 +87,7 @@ std::vector<std::string> ReadClasses(const std::filesystem::path& folder) {
     names.pop_back();
   }
   if (names.empty()) {
-    throw InputError(path.string() + ": holds no names, expected one a line");
+    throw InputError(path.string() + ": has no names, expected one per line");
   }
   for (size_t i = 0; i < names.size(); ++i) {
     if (names[i].empty()) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
+#include "io/json_file.h"
 #include "io/mask_checks.h"
 #include "io/mask_classes.h"
 #include "io/mask_json.h"
@@ -20,13 +21,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kNoClass = "object";  // SAM tells none
+constexpr const char* kNoClass = "object";  // SAM has no classes
 
-// The outlines of run lengths are formed when the frame is asked for: that takes a while, and the
-// runs are smaller.
+// Outlines of run lengths are computed when the frame is read: this takes a while, and runs need
+// less memory.
 struct CocoInstance {
   InstanceMask mask;
-  MaskRuns runs;  // empty: the outlines are there
+  MaskRuns runs;  // empty: the outlines are used
 };
 
 struct CocoImage {
@@ -36,7 +37,7 @@ struct CocoImage {
 
 // An annotation whose image and category may come later in the file.
 struct CocoAnnotation {
-  size_t index = 0;  // in its list
+  size_t index = 0;  // index in its list
   std::string image;
   std::optional<int64_t> category;
   bool is_crowd = false;
@@ -121,7 +122,7 @@ class CocoReader {
     }
   }
 
-  // COCO's coordinates are those of the corners of pixels: 0 is the border of the image.
+  // In COCO's coordinates the corners of pixels are integers: 0 is the border of the image.
   std::vector<Eigen::Vector2d> ReadPolygon(const JsonRecord& record, const Json& list) const {
     const std::vector<double> numbers = Numbers(record, list, "a polygon of segmentation");
     if (numbers.size() < 6 || numbers.size() % 2 != 0) {
@@ -202,7 +203,7 @@ class CocoReader {
       image.instances.push_back(std::move(annotation.instance));
     }
     if (image.instances.size() + image.crowds > kMostInstances) {
-      place.Fail(fmt::format("too many instances, expected at most {} a frame", kMostInstances));
+      place.Fail(fmt::format("too many instances, expected at most {} per frame", kMostInstances));
     }
   }
 
@@ -235,7 +236,7 @@ class CocoReader {
     return value.get<int64_t>();
   }
 
-  // Integers in decimal; strings, which are names of images, as stems.
+  // An integer in decimal, or the stem of a string, which is the name of an image.
   static std::string ImageId(const JsonRecord& record, const char* name) {
     const Json& value = Member(record, record.value, name);
     if (!value.is_string() && !value.is_number_integer()) {
@@ -277,12 +278,14 @@ class CocoMasks : public MaskSource {
     return result;
   }
 
-  void Check(const MaskFrame& /*frame*/) const override {}  // all was checked when it was read
+  void Check(const MaskFrame& /*frame*/) const override {
+  }  // everything was checked when the file was read
 
  private:
   using Images = std::map<std::string, CocoImage>;  // by stem
 
-  // Results without a list of images have numbers for names: 000012 is 12 there.
+  // In results without a list of images, a frame with a name of digits is found by its number:
+  // 000012 is 12 there.
   Images::const_iterator Find(const MaskFrame& frame) const {
     const auto image = images_.find(frame.stem);
     const bool is_number = frame.stem.find_first_not_of("0123456789") == std::string::npos;

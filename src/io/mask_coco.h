@@ -8,8 +8,8 @@
 
 namespace hullslam {
 
-// coco: a JSON file of results or of instances in the format of COCO (cocodataset.org), with
-// polygons or run lengths, else boxes; also with what SAM and Ultralytics write.
+// Format coco: a JSON file with results or instances in the format of COCO (cocodataset.org), with
+// polygons or run lengths, else boxes. It also reads the files that SAM and Ultralytics write.
 bool IsCoco(const MaskProbe& probe);
 std::unique_ptr<MaskSource> OpenCoco(const MaskRequest& request);
 

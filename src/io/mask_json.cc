@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
+#include "io/json_file.h"
 #include "io/mask_checks.h"
-#include "io/text_rows.h"
 
 namespace hullslam {
 namespace {
@@ -20,44 +20,15 @@ using Json = nlohmann::json;
 constexpr size_t kMostValues = 2'000'000;
 constexpr size_t kMostRecords = 1'000'000;
 constexpr int kMostDepth = 16;
-constexpr size_t kLongestShown = 120;
 
-std::string Shorten(std::string text) {
-  if (text.size() > kLongestShown) {
-    text.resize(kLongestShown);
-    text += "...";
-  }
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text;
-}
-
-// nlohmann's message begins with its own name for the error.
-[[noreturn]] void FailParsing(const std::filesystem::path& path, std::string_view message) {
-  const size_t begin = message.find("] ");
-  message.remove_prefix(begin == std::string_view::npos ? 0 : begin + 2);
-  throw InputError(path.string() + ": is no valid JSON, " + Shorten(std::string(message)));
-}
-
-Json Parse(const std::filesystem::path& path, size_t most_bytes,
-           const Json::parser_callback_t& callback) {
-  CheckFileSize(path, most_bytes);
-  const std::string text = ReadFile(path);
-  try {
-    return Json::parse(text, callback);
-  } catch (const Json::exception& error) {
-    FailParsing(path, error.what());
-  }
-}
-
-// Takes the objects out of the document as soon as they are complete.
+// Takes each object out of the document as soon as it is complete.
 class RecordTaker {
  public:
   RecordTaker(const std::filesystem::path& path,
               const std::function<void(const JsonRecord& record)>& visit)
       : path_(path), visit_(visit) {}
 
-  // False where the value is not to be kept.
+  // Returns false if the value is not to be kept.
   bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
     Count(depth);
     if (depth == 0 && event == Json::parse_event_t::object_start) {
@@ -83,13 +54,13 @@ class RecordTaker {
     }
     if (depth > kMostDepth) {
       throw InputError(
-          fmt::format("{}: lists in lists more than {} deep", path_.string(), kMostDepth));
+          fmt::format("{}: lists nested more than {} deep", path_.string(), kMostDepth));
     }
   }
 
   const std::filesystem::path& path_;
   const std::function<void(const JsonRecord& record)>& visit_;
-  int records_depth_ = 1;  // of objects in a list; 2 in a list in an object
+  int records_depth_ = 1;  // depth of the records: 1 in a list, 2 in a list in an object
   std::string section_;
   std::map<std::string, size_t> indices_;
   size_t values_ = 0;
@@ -105,19 +76,11 @@ void JsonRecord::Fail(const std::string& what) const {
 void ForEachJsonRecord(const std::filesystem::path& path,
                        const std::function<void(const JsonRecord& record)>& visit) {
   RecordTaker taker(path, visit);
-  Parse(path, kMostJsonFileBytes, std::ref(taker));
-}
-
-Json ReadJson(const std::filesystem::path& path, size_t most_bytes) {
-  return Parse(path, most_bytes, nullptr);
-}
-
-std::string ShowJson(const Json& value) {
-  return Shorten(value.dump(-1, ' ', true, Json::error_handler_t::replace));
+  ReadJson(path, kMostJsonFileBytes, std::ref(taker));
 }
 
 const Json& Member(const JsonRecord& record, const Json& object, const char* name) {
-  const auto found = object.find(name);  // the end of what is no object
+  const auto found = object.find(name);  // end() if `object` is no object
   if (found == object.end()) {
     record.Fail(fmt::format("has no '{}'", name));
   }
@@ -141,7 +104,7 @@ double ScoreOf(const JsonRecord& record, const Json& object, const char* name) {
   }
   const double score = found->is_number() ? found->get<double>() : -1.0;
   if (!(score >= 0.0 && score <= 1.0)) {
-    record.Fail(fmt::format("{} is {}, expected from 0 to 1", name, ShowJson(*found)));
+    record.Fail(fmt::format("{} is {}, expected a number from 0 to 1", name, ShowJson(*found)));
   }
   return score;
 }

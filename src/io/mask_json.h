@@ -11,10 +11,10 @@
 
 namespace hullslam {
 
-// An object of a JSON file, and where it is, so that messages can say so.
+// An object in a JSON file and its position there, for messages.
 struct JsonRecord {
   const std::filesystem::path& path;
-  std::string section;  // "annotations"; empty for a file that is a list
+  std::string section;  // such as "annotations"; empty if the file is a list
   size_t index = 0;     // in the list, from 0
   nlohmann::json value;
 
@@ -22,27 +22,22 @@ struct JsonRecord {
   [[noreturn]] void Fail(const std::string& what) const;
 };
 
-// Visits the objects of a file that is a list of objects, or an object of such lists, in order and
-// one at a time, so that memory is bounded by the largest. What is neither is passed over. Throws
-// InputError for a file that is missing, no JSON (with line and column), beyond 512 MB, or with
-// more than a million records, or two million values in one or outside of all.
+// Visits the objects in a file that is a list of objects, or an object whose members are such
+// lists. They are visited in order and one at a time, so that the memory is bounded by the largest
+// object. Everything else is skipped. Throws InputError for a file that is missing, no valid JSON
+// (with line and column), larger than 512 MB, or has more than a million objects, or more than two
+// million values in one object or outside of all objects.
 void ForEachJsonRecord(const std::filesystem::path& path,
                        const std::function<void(const JsonRecord& record)>& visit);
 
-// The document of a file of at most `most_bytes`; the same errors.
-nlohmann::json ReadJson(const std::filesystem::path& path, size_t most_bytes);
-
-// What a message can show of a value.
-std::string ShowJson(const nlohmann::json& value);
-
-// The member of a record; it fails where there is none.
+// A member of an object; record.Fail() if it is missing.
 const nlohmann::json& Member(const JsonRecord& record, const nlohmann::json& object,
                              const char* name);
 
-// A list of numbers; it fails for anything else, with the name of what it is.
+// A list of numbers; for anything else record.Fail() with `name`.
 std::vector<double> Numbers(const JsonRecord& record, const nlohmann::json& list, const char* name);
 
-// A member that is a confidence, from 0 to 1; 1 where there is none.
+// A member that is a confidence from 0 to 1; 1 if the member is missing.
 double ScoreOf(const JsonRecord& record, const nlohmann::json& object, const char* name);
 
 }  // namespace hullslam

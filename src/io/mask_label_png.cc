@@ -11,8 +11,8 @@
 
 #include "hullslam/io/image_file.h"
 #include "hullslam/util/error.h"
+#include "io/json_file.h"
 #include "io/mask_checks.h"
-#include "io/mask_json.h"
 #include "io/mask_outline.h"
 #include "io/mask_text.h"
 #include "io/text_rows.h"
@@ -25,14 +25,14 @@ using Json = nlohmann::json;
 constexpr size_t kMostClassesBytes = 16'000'000;
 constexpr const char* kClassesFile = "classes.json";
 
-// What an instance's number stands for.
+// The class and score of an instance.
 struct InstanceClass {
   std::string label;
   double score = 1.0;
 };
 using InstanceClasses = std::map<int, InstanceClass>;
 
-// Of one frame, or of all frames that say nothing else.
+// The classes of all frames, and those of single frames, which take precedence.
 struct LabelClasses {
   InstanceClasses of_all;
   std::map<std::string, InstanceClasses> of_frame;
@@ -89,8 +89,9 @@ class ClassesReader {
     if (value.is_object() && value.contains("score")) {
       entry.score = value["score"].is_number() ? value["score"].get<double>() : -1.0;
       if (!(entry.score >= 0.0 && entry.score <= 1.0)) {
-        throw InputError(fmt::format("{}: score of instance {} is {}, expected from 0 to 1",
-                                     path_.string(), key, ShowJson(value["score"])));
+        throw InputError(
+            fmt::format("{}: score of instance {} is {}, expected a number from 0 to 1",
+                        path_.string(), key, ShowJson(value["score"])));
       }
     }
   }
@@ -98,7 +99,7 @@ class ClassesReader {
   std::filesystem::path path_;
 };
 
-// Where each number is in a label image.
+// The bounding box of each number in a label image.
 std::map<int, cv::Rect> FindInstances(const cv::Mat& labels) {
   std::map<int, cv::Rect> instances;
   for (int y = 0; y < labels.rows; ++y) {
@@ -138,7 +139,7 @@ class LabelPngMasks : public MaskSource {
     for (const auto& [number, box] : FindInstances(labels)) {
       AddInstance(Outline(frame, labels, number, box), result);
       if (HasTooMany(result)) {
-        throw InputError(fmt::format("{}: too many instances, expected at most {} a frame",
+        throw InputError(fmt::format("{}: too many instances, expected at most {} per frame",
                                      Path(frame).string(), kMostInstances));
       }
     }

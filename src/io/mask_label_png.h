@@ -8,9 +8,10 @@
 
 namespace hullslam {
 
-// label-png: `<stem>.png` with an instance's number in each of its pixels, 16 bit, 0 for none, and
-// classes.json that says what they are: {"1": "cup", "2": {"class": "tv", "score": 0.9}} for all
-// frames and, before that, {"frames": {"<stem>": {"1": "mouse"}}} for one.
+// Format label-png: `<stem>.png` with 16 bits per pixel, which contain the number of the instance,
+// 0 for none; and classes.json with the classes of the instances: {"1": "cup", "2": {"class": "tv",
+// "score": 0.9}} for all frames and, with precedence, {"frames": {"<stem>": {"1": "mouse"}}} for
+// one frame.
 bool IsLabelPng(const MaskProbe& probe);
 std::unique_ptr<MaskSource> OpenLabelPng(const MaskRequest& request);
 

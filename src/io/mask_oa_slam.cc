@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "io/json_file.h"
 #include "io/mask_checks.h"
 #include "io/mask_classes.h"
 #include "io/mask_json.h"
@@ -28,14 +29,14 @@ struct OaSlamDetection {
 };
 using OaSlamImages = std::map<std::string, std::vector<OaSlamDetection>>;  // by stem
 
-// What the numbers of ellipses have to be multiplied by: axes may be half or whole, as those of
-// OpenCV, angles radians or degrees.
+// Factors for the numbers of ellipses: axes may be half axes or, as in OpenCV, full axes; angles
+// may be radians or degrees.
 struct EllipseUnits {
   double axis = 1.0;
   double angle = 1.0;
 };
 
-// Half the size of the upright box round an ellipse.
+// Half the size of the axis-aligned box around an ellipse.
 Eigen::Vector2d HalfSize(const std::array<double, 5>& ellipse, const EllipseUnits& units) {
   const double a = units.axis * ellipse[2];
   const double b = units.axis * ellipse[3];
@@ -44,24 +45,24 @@ Eigen::Vector2d HalfSize(const std::array<double, 5>& ellipse, const EllipseUnit
   return {std::hypot(a * cosine, b * sine), std::hypot(a * sine, b * cosine)};
 }
 
-// Files do not say which units they have; each ellipse stands beside its box, and in other units
-// than the right ones it does not fit.
+// Files do not say which units they use. Each ellipse comes with its box, and it only fits the box
+// in the right units.
 EllipseUnits FindUnits(const OaSlamImages& images) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   constexpr std::array<EllipseUnits, 4> kUnits = {
       {{1.0, 1.0}, {0.5, 1.0}, {1.0, kDegree}, {0.5, kDegree}}};
-  std::array<double, kUnits.size()> misfits{};
+  std::array<double, kUnits.size()> differences{};
   for (const auto& [stem, detections] : images) {
     for (const OaSlamDetection& detection : detections) {
       for (size_t i = 0; i < kUnits.size() && detection.ellipse; ++i) {
         const Eigen::Vector2d size = 2.0 * HalfSize(*detection.ellipse, kUnits[i]);
-        misfits[i] += std::abs(size.x() - (detection.box[2] - detection.box[0])) +
-                      std::abs(size.y() - (detection.box[3] - detection.box[1]));
+        differences[i] += std::abs(size.x() - (detection.box[2] - detection.box[0])) +
+                          std::abs(size.y() - (detection.box[3] - detection.box[1]));
       }
     }
   }
-  const auto best = std::min_element(misfits.begin(), misfits.end());
-  return kUnits[static_cast<size_t>(best - misfits.begin())];
+  const auto best = std::min_element(differences.begin(), differences.end());
+  return kUnits[static_cast<size_t>(best - differences.begin())];
 }
 
 std::vector<Eigen::Vector2d> EllipseOutline(const std::array<double, 5>& ellipse,
@@ -103,7 +104,7 @@ class OaSlamReader {
       detections.push_back(ReadDetection(record, json));
     }
     if (detections.size() > kMostInstances) {
-      record.Fail(fmt::format("too many instances, expected at most {} a frame", kMostInstances));
+      record.Fail(fmt::format("too many instances, expected at most {} per frame", kMostInstances));
     }
   }
 
@@ -184,7 +185,8 @@ class OaSlamMasks : public MaskSource {
     return result;
   }
 
-  void Check(const MaskFrame& /*frame*/) const override {}  // all was checked when it was read
+  void Check(const MaskFrame& /*frame*/) const override {
+  }  // everything was checked when the file was read
 
  private:
   MaskRequest request_;

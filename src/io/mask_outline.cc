@@ -8,10 +8,10 @@
 namespace hullslam {
 namespace {
 
-// A lattice of twice the resolution: pixel (x, y) of the mask is at (2x + 2, 2y + 2), the middles
-// of the edges and the corners between pixels are between, and one line is empty all round. A
-// middle is inside if one of its two pixels is, a corner if two of its four are. The outermost
-// points inside are then the middles of the edges of the mask and, on straight edges, the corners.
+// A lattice with twice the resolution and one empty line around it. Pixel (x, y) of the mask is at
+// (2x + 2, 2y + 2); between the pixels are the middles of their edges and their corners. A middle
+// is inside if one of its two pixels is, a corner if two of its four pixels are. Then the outermost
+// inside points are the middles of the edges of the mask and, on straight edges, the corners.
 cv::Mat MakeLattice(const cv::Mat& mask) {
   cv::Mat padded;
   cv::copyMakeBorder(mask != 0, padded, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
@@ -35,7 +35,7 @@ cv::Mat MakeLattice(const cv::Mat& mask) {
 }  // namespace
 
 std::vector<std::vector<Eigen::Vector2d>> FindMaskOutlines(const cv::Mat& mask) {
-  Check(mask.type() == CV_8UC1, "a mask has one channel of 8 bits");
+  Check(mask.type() == CV_8UC1, "the mask is not CV_8UC1");
   std::vector<std::vector<cv::Point>> contours;
   cv::findContours(MakeLattice(mask), contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_SIMPLE);
   std::vector<std::vector<Eigen::Vector2d>> outlines;

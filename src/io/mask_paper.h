@@ -8,9 +8,9 @@
 
 namespace hullslam {
 
-// paper: `segmentation_txt/000012.txt` for the frame numbered 12, with `instance track label
-// confidence x1 y1 ... xn yn` a line, of pixels with integer centres; Yu et al. 2025 read these.
-// The label is a number or a name.
+// Format paper: `segmentation_txt/000012.txt` for frame number 12, with one line `instance track
+// label confidence x1 y1 ... xn yn` per instance, in pixels whose centres are integers. Yu et al.
+// 2025 read these files. The label is a number or a name.
 bool IsPaper(const MaskProbe& probe);
 std::unique_ptr<MaskSource> OpenPaper(const MaskRequest& request);
 

@@ -17,9 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMostColumns = 64;  // enough to tell a format
+constexpr size_t kMostColumns = 64;  // enough to recognise a format
 
-// False for a file without rows.
+// Returns false for a file without rows.
 bool ProbeRow(const fs::path& path, MaskProbe& probe) {
   CheckFileSize(path, kMostFrameFileBytes);
   ForEachRow(path, [&](const TextRow& row) {

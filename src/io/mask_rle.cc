@@ -11,10 +11,11 @@
 namespace hullslam {
 namespace {
 
-constexpr int kMostBits = 40;  // 32 of a run, the sign, rounded up to characters
+constexpr int kMostBits = 40;  // 32 bits of a run and the sign, rounded up to whole characters
 
-// Reads one number: five bits a character, the lowest first, 32 says that more follow, 16 of the
-// last is the sign. Nothing where the text is no such number.
+// Reads one number: five bits per character, the lowest bits first. Bit 32 means that more
+// characters follow; bit 16 of the last character is the sign. Returns nothing if the text does not
+// start with such a number.
 std::optional<int64_t> TakeNumber(std::string_view& text) {
   int64_t value = 0;
   for (int shift = 0; !text.empty() && shift < kMostBits; shift += 5) {
@@ -74,12 +75,13 @@ uint64_t CountPixels(const MaskRuns& runs) {
 
 std::vector<std::vector<Eigen::Vector2d>> OutlineRuns(const MaskRuns& runs, int width, int height) {
   Check(CountPixels(runs) == static_cast<uint64_t>(width) * static_cast<uint64_t>(height),
-        "the runs of a mask cover its image");
+        "the runs of the mask do not add up to the size of the image");
   const cv::Rect bounds = Bounds(runs, height);
   if (bounds.empty()) {
     return {};
   }
-  cv::Mat columns = cv::Mat::zeros(width, height, CV_8UC1);  // transposed: runs are contiguous
+  cv::Mat columns =
+      cv::Mat::zeros(width, height, CV_8UC1);  // transposed, so that runs are contiguous
   size_t begin = 0;
   for (size_t i = 0; i < runs.size(); ++i) {
     if (i % 2 == 1) {

@@ -56,11 +56,11 @@ const MaskFormat& DetectFormat(const std::filesystem::path& path) {
     }
   }
   if (fitting.size() != 1) {
-    throw InputError(fmt::format(
-        "{}: the format of the masks cannot be told, {}; give --masks-format, one of: {}",
-        path.string(),
-        names.empty() ? "none fits" : fmt::format("{} fit", fmt::join(names, " and ")),
-        fmt::join(MaskFormatNames(), ", ")));
+    throw InputError(
+        fmt::format("{}: the format of the masks is not clear, {}; give --masks-format, one of: {}",
+                    path.string(),
+                    names.empty() ? "none fits" : fmt::format("{} fit", fmt::join(names, " and ")),
+                    fmt::join(MaskFormatNames(), ", ")));
   }
   return *fitting.front();
 }
@@ -72,7 +72,7 @@ void CheckSomeFrameHasMasks(const std::filesystem::path& path, const MaskSource&
   if (!found) {
     const std::string example = source.Example();
     throw InputError(fmt::format(
-        "{}: no masks ({}) of any of the {} frames: there is {}, and a frame is '{}'",
+        "{}: no masks ({}) for any of the {} frames: there is {}, and a frame is '{}'",
         path.string(), source.format(), frames.size(),
         example.empty() ? std::string("nothing") : '\'' + example + '\'', frames.front().stem));
   }
@@ -99,7 +99,7 @@ std::vector<std::string> MaskFormatNames() {
 std::unique_ptr<const MaskSource> OpenMasks(const MaskRequest& request,
                                             std::span<const MaskFrame> frames) {
   Check(!frames.empty() && request.width > 0 && request.height > 0,
-        "masks belong to frames of a known size");
+        "masks need frames and the size of their images");
   const MaskFormat& format =
       request.format.empty() ? DetectFormat(request.path) : FindFormat(request.format);
   std::unique_ptr<const MaskSource> source = format.open(request);

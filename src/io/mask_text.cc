@@ -59,7 +59,7 @@ FrameMasks TextMasks::Read(const MaskFrame& frame) const {
   ForEachRow(path, [&](const TextRow& row) {
     AddInstance(Parse(row), result);
     if (HasTooMany(result)) {
-      row.Fail(fmt::format("too many instances, expected at most {} a frame", kMostInstances));
+      row.Fail(fmt::format("too many instances, expected at most {} per frame", kMostInstances));
     }
   });
   return result;
@@ -80,7 +80,7 @@ const std::string& TextMasks::ClassName(const TextRow& row, size_t column) const
 double TextMasks::Score(const TextRow& row, size_t column) {
   const double score = row.Number(column, "confidence");
   if (score < 0.0 || score > 1.0) {
-    row.Fail(fmt::format("confidence is '{}', expected from 0 to 1", score));
+    row.Fail(fmt::format("confidence is '{}', expected a number from 0 to 1", score));
   }
   return score;
 }

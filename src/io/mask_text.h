@@ -12,12 +12,12 @@
 
 namespace hullslam {
 
-// The names, without `extension`, of the files in a folder that have it. Throws InputError where
-// the folder cannot be read.
+// The names, without `extension`, of all files with this extension in a folder. Throws InputError
+// if the folder cannot be read.
 std::set<std::string> ListFiles(const std::filesystem::path& folder, std::string_view extension);
 
-// Masks in a folder with a text file a frame and a line an instance. A format says how its lines
-// and files look.
+// Masks in a folder with one text file per frame and one line per instance. Each format defines its
+// own lines and file names.
 class TextMasks : public MaskSource {
  public:
   explicit TextMasks(const MaskRequest& request);
@@ -28,13 +28,13 @@ class TextMasks : public MaskSource {
 
  protected:
   virtual InstanceMask Parse(const TextRow& row) const = 0;
-  // The name of the frame's file, without its extension.
+  // The name of the file of the frame, without its extension.
   virtual std::string FileName(const MaskFrame& frame) const { return frame.stem; }
 
   const MaskRequest& request() const { return request_; }
-  // The class whose number is in a column.
+  // The class whose number is in the column.
   const std::string& ClassName(const TextRow& row, size_t column) const;
-  // The confidence in a column.
+  // The confidence in the column.
   static double Score(const TextRow& row, size_t column);
 
  private:

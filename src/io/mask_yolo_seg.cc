@@ -5,13 +5,13 @@
 
 #include <utility>
 
-#include "io/mask_checks.h"
 #include "io/mask_text.h"
 
 namespace hullslam {
 namespace {
 
-// Outlines between pixels end half a pixel beyond the centres at the border; rounding adds to it.
+// Outlines that run between pixels end half a pixel beyond the centres at the border. Rounding adds
+// to this.
 constexpr double kMostBeyond = 1.0;  // px
 
 class YoloSegMasks : public TextMasks {
@@ -20,8 +20,8 @@ class YoloSegMasks : public TextMasks {
   std::string format() const override { return "yolo-seg"; }
 
  private:
-  // Coordinates are those of pixels with integer centres divided by width and height: that is what
-  // Ultralytics writes, which divides the pixels that cv::findContours() gives.
+  // Coordinates are pixels with integer centres, divided by width and height. Ultralytics writes
+  // them so: it divides the pixels that cv::findContours() returns.
   InstanceMask Parse(const TextRow& row) const override {
     const size_t points = (row.columns.size() - 1) / 2;
     if (points < 3) {
@@ -43,13 +43,13 @@ class YoloSegMasks : public TextMasks {
     return instance;
   }
 
-  // In pixels.
+  // A coordinate in pixels.
   static double Coordinate(const TextRow& row, size_t column, const char* name, int size) {
     const double value = row.Number(column, name);
     const double pixels = value * size;
     if (pixels < -kMostBeyond || pixels > size + kMostBeyond) {
-      row.Fail(
-          fmt::format("{} is '{}' in column {}, expected from 0 to 1", name, value, column + 1));
+      row.Fail(fmt::format("{} is '{}' in column {}, expected a number from 0 to 1", name, value,
+                           column + 1));
     }
     return pixels;
   }

@@ -8,7 +8,8 @@
 
 namespace hullslam {
 
-// yolo-seg: `<stem>.txt` with `class x1 y1 ... xn yn [confidence]` a line, of width and height.
+// Format yolo-seg: `<stem>.txt` with one line `class x1 y1 ... xn yn [confidence]` per instance;
+// coordinates are fractions of width and height.
 bool IsYoloSeg(const MaskProbe& probe);
 std::unique_ptr<MaskSource> OpenYoloSeg(const MaskRequest& request);
 

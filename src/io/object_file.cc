@@ -5,6 +5,7 @@
 
 #include "geometry/polyline.h"
 #include "hullslam/util/check.h"
+#include "io/json_file.h"
 #include "io/json_node.h"
 
 namespace hullslam {
@@ -16,14 +17,14 @@ constexpr uint32_t kVersion = 1;
 constexpr double kPixel = 1e-2;
 constexpr double kMetre = 1e-9;
 
-// `value` with the decimals of `unit` (1 over a power of ten); never -0.
+// Rounds `value` to a multiple of `unit` (1 over a power of ten). Never returns -0.
 double Rounded(double value, double unit) {
-  Check(std::isfinite(value), "an object to be written is not finite");
+  Check(std::isfinite(value), "a number of an object is not finite");
   const double units = std::round(1.0 / unit);
   return std::round(value * units) / units + 0.0;
 }
 
-// null for what is not known.
+// null if the value is not known.
 Json OrNull(const std::optional<double>& value) {
   return value ? Json(Rounded(*value, kMetre)) : Json(nullptr);
 }
@@ -48,7 +49,7 @@ Json PointsJson(const std::vector<Eigen::Vector2d>& points) {
 }
 
 Json LinesJson(const std::vector<SilhouetteLine>& lines) {
-  // Across an image of 1000 px the rounded normal turns the line by 0.001 px.
+  // Over an image of 1000 px the rounding of the normal moves the line by 0.001 px.
   constexpr double kNormal = 1e-6;
   constexpr double kOffset = 1e-3;
   Json json = Json::array();
@@ -91,7 +92,7 @@ Json ToJson(const ReportedView& view) {
           {"lines", LinesJson(view.lines)}};
 }
 
-// All of an object but its views.
+// Everything about an object except its views.
 Json ToJson(const ReportedObject& object) {
   Json votes = Json::object();
   for (const auto& [label, score] : object.votes) {
@@ -113,12 +114,12 @@ Json ToJson(const ReportedObject& object) {
           {"misfit_px", Rounded(object.misfit_px, kMetre)}};
 }
 
-// Labels come from files of others and may hold any bytes.
+// Labels come from the files of users and may contain any bytes.
 std::string Dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// The texts on a line each, with commas between them.
+// Joins the texts, each on its own line, with commas between them.
 std::string Join(const std::vector<std::string>& texts, const char* indent) {
   std::string joined;
   for (const std::string& text : texts) {

@@ -12,7 +12,7 @@ void PrepareOutputFolder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error || !std::filesystem::is_directory(folder, error)) {
-    throw InputError(folder.string() + ": cannot be made an output folder: " +
+    throw InputError(folder.string() + ": cannot be used as output folder: " +
                      (error ? error.message() : "it is a file"));
   }
   const std::filesystem::path probe = folder / ".hullslam_probe";

@@ -12,8 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include "hullslam/io/atomic_file.h"
-
 namespace hullslam {
 namespace {
 
@@ -37,7 +35,7 @@ void AppendPoints(std::string& bytes, std::span<const Eigen::Vector3d> points,
   }
 }
 
-// The header up to the vertices.
+// The header up to and including the vertices.
 std::string StartPly(size_t vertices) {
   return fmt::format(
       "ply\nformat binary_little_endian 1.0\nelement vertex {}\n"
@@ -46,7 +44,7 @@ std::string StartPly(size_t vertices) {
       vertices);
 }
 
-// A unit sphere of rings of corners between two poles.
+// A unit sphere: rings of corners between two poles.
 struct Mesh {
   std::vector<Eigen::Vector3d> corners;
   std::vector<Triangle> triangles;
@@ -84,7 +82,7 @@ Mesh MakeSphere() {
   return mesh;
 }
 
-// A colour of full saturation whose hue is a hash (FNV-1a) of the class.
+// A colour of full saturation. Its hue is a hash (FNV-1a) of the class.
 Colour ColourOf(std::string_view label) {
   uint32_t hash = 2166136261U;
   for (const char letter : label) {
@@ -93,7 +91,7 @@ Colour ColourOf(std::string_view label) {
   const double hue = 6.0 * ((hash >> 16) % 360) / 360.0;
   Colour colour{};
   for (size_t channel = 0; channel < 3; ++channel) {
-    // Each channel is a hat of width 4 about its own hue, 0, 2 or 4 of 6.
+    // Each channel is a trapezoid of width 4 around its own hue (0, 2 or 4 of 6).
     const double away = std::abs(std::remainder(hue - 2.0 * static_cast<double>(channel), 6.0));
     const double value = std::clamp(2.0 - away, 0.0, 1.0);
     colour[channel] = static_cast<uint8_t>(std::lround(40.0 + 200.0 * value));
@@ -103,8 +101,8 @@ Colour ColourOf(std::string_view label) {
 
 }  // namespace
 
-std::string FormatPly(std::span<const Eigen::Vector3d> landmarks,
-                      std::span<const Eigen::Vector3d> keyframes) {
+std::string FormatMapPly(std::span<const Eigen::Vector3d> landmarks,
+                         std::span<const Eigen::Vector3d> keyframes) {
   constexpr Colour kGrey = {128, 128, 128};
   constexpr Colour kOrange = {255, 128, 0};
   std::string bytes = StartPly(landmarks.size() + keyframes.size()) + "end_header\n";
@@ -117,7 +115,7 @@ std::string FormatObjectsPly(std::span<const ReportedObject> objects) {
   const Mesh sphere = MakeSphere();
   std::string vertices;
   std::string faces;
-  uint32_t first = 0;  // vertex of the object
+  uint32_t first = 0;  // first vertex of the object
   size_t count = 0;
   for (const ReportedObject& object : objects) {
     if (object.state != ObjectState::kMapped) {
@@ -142,11 +140,6 @@ std::string FormatObjectsPly(std::span<const ReportedObject> objects) {
          fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
                      count * sphere.triangles.size()) +
          vertices + faces;
-}
-
-void WritePly(const std::filesystem::path& path, std::span<const Eigen::Vector3d> landmarks,
-              std::span<const Eigen::Vector3d> keyframes) {
-  WriteFileAtomically(path, FormatPly(landmarks, keyframes));
 }
 
 }  // namespace hullslam

@@ -28,8 +28,8 @@ namespace fs = std::filesystem;
 constexpr std::array kIntrinsics = {"Camera.fx", "Camera.fy", "Camera.cx", "Camera.cy"};
 constexpr std::string_view kBlanks = " \t\r";
 
-// A `key: value` line as it is written. OpenCV's nodes know neither their line, nor that a key was
-// there before, nor integers beyond 32 bits.
+// A `key: value` line as it is written in the file. OpenCV's nodes have no line numbers, do not
+// notice repeated keys, and cannot represent integers above 32 bits.
 struct WrittenValue {
   int line = 0;
   std::string text;
@@ -77,7 +77,7 @@ WrittenValues ScanLines(const fs::path& file, std::string_view text) {
   return values;
 }
 
-// A byte order mark, as editors on Windows put it, is no error.
+// A byte order mark, which editors on Windows add, is accepted.
 std::string ReadYamlText(const fs::path& file) {
   constexpr size_t kLargest = 1 << 20;
   std::string text = ReadFile(file);
@@ -88,12 +88,12 @@ std::string ReadYamlText(const fs::path& file) {
     throw InputError(Place(file, 1) + ": expected a settings file with '%YAML:1.0' as first line");
   }
   if (text.size() > kLargest || text.find('\0') != std::string::npos) {
-    throw InputError(file.string() + ": is no text file of settings");
+    throw InputError(file.string() + ": is not a text file with settings");
   }
   return text;
 }
 
-// OpenCV's parser puts "(line): message" into the field for the function's name.
+// OpenCV's parser puts "(line): message" into the field for the name of the function.
 [[noreturn]] void FailParsing(const fs::path& file, const cv::Exception& error) {
   int line = 0;
   char reason[200] = "is not valid YAML";
@@ -112,7 +112,8 @@ cv::FileStorage ParseYaml(const fs::path& file, const std::string& text) {
   }
 }
 
-// The text for OptionTable::Set(). A number in quotes keeps them, so that it is not taken for one.
+// The text for OptionTable::Set(). A quoted number keeps its quotes, so that it is not accepted as
+// a number.
 std::string ScalarText(const cv::FileNode& node, const WrittenValue& written,
                        const std::string& place) {
   if (node.isInt() || node.isReal()) {
@@ -120,7 +121,7 @@ std::string ScalarText(const cv::FileNode& node, const WrittenValue& written,
     const bool is_plain = ParseFinite(written.text, value);
     const bool is_whole = is_plain && std::abs(value) < 1e15 && value == std::trunc(value);
     const bool has_exponent_or_point = written.text.find_first_of(".eE") != std::string::npos;
-    // Files written by OpenCV have "1000." for a whole number.
+    // OpenCV writes a whole number as "1000.".
     return is_whole && has_exponent_or_point ? fmt::format("{:.0f}", value) : written.text;
   }
   if (node.isString()) {
@@ -145,7 +146,7 @@ void ApplyNodes(const fs::path& file, const cv::FileNode& root, const WrittenVal
     }
     const std::string place = Place(file, it->second.line);
     if (!table.Contains(key)) {
-      table.Set(key, "", place);  // throws, with the nearest known key
+      table.Set(key, "", place);  // throws and suggests the most similar known key
     }
     table.Set(key, ScalarText(node, it->second, place), place);
     given.insert(key);
@@ -158,7 +159,7 @@ void ApplyFile(const fs::path& file, OptionTable& table, std::set<std::string>& 
   try {
     const cv::FileNode root = storage.root();
     if (!root.isMap()) {
-      throw InputError(file.string() + ": holds no settings, expected lines of 'key: value'");
+      throw InputError(file.string() + ": has no settings, expected lines of 'key: value'");
     }
     ApplyNodes(file, root, ScanLines(file, text), table, given);
   } catch (const cv::Exception& error) {
@@ -179,8 +180,8 @@ void ApplyOverrides(std::span<const std::string> overrides, OptionTable& table,
   }
 }
 
-// The number of the TUM camera that a name tells, "rgbd_dataset_freiburg1_xyz" or "fr1_desk"; 0 for
-// none.
+// The number of the TUM camera in a name, such as "rgbd_dataset_freiburg1_xyz" or "fr1_desk"; 0 if
+// there is none.
 int TumCamera(std::string name) {
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -232,7 +233,7 @@ fs::path FindDefaultSettings(const fs::path& sequence, const fs::path& config_fo
   const int camera = TumCamera(name);
   if (camera == 0) {
     throw InputError(
-        fmt::format("{}: the name '{}' does not tell the camera and there is no "
+        fmt::format("{}: the name '{}' does not contain a known camera and there is no "
                     "camera.yaml in the folder, expected --settings FILE",
                     sequence.string(), name));
   }
@@ -241,11 +242,11 @@ fs::path FindDefaultSettings(const fs::path& sequence, const fs::path& config_fo
 
 fs::path FindConfigFolder() {
   std::error_code error;
-  // Nobody in this library sets the environment, so reading it is safe.
+  // Nothing in this library changes the environment, so reading it is safe.
   // NOLINTNEXTLINE(concurrency-mt-unsafe)
   if (const char* const chosen = std::getenv("HULLSLAM_CONFIG")) {
     if (!fs::is_directory(chosen, error)) {
-      throw InputError(std::string("HULLSLAM_CONFIG: '") + chosen + "' is no folder");
+      throw InputError(std::string("HULLSLAM_CONFIG: '") + chosen + "' is not a folder");
     }
     return chosen;
   }

@@ -5,8 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "hullslam/io/atomic_file.h"
-
 namespace hullslam {
 namespace {
 
@@ -93,12 +91,8 @@ std::string FormatSummary(const RunSummary& summary) {
                      {"map", ToJson(summary.map)},
                      {"provenance", ToJson(summary.provenance)}};
   constexpr int kIndent = 2;
-  // A folder's name may hold any bytes; those that are not UTF-8 are replaced.
+  // The name of a folder may contain any bytes; those that are not UTF-8 are replaced.
   return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + '\n';
-}
-
-void WriteSummary(const std::filesystem::path& path, const RunSummary& summary) {
-  WriteFileAtomically(path, FormatSummary(summary));
 }
 
 std::map<std::string, TimeStatistics> SummarizeStages(const StageTimes& times) {

@@ -5,7 +5,6 @@
 
 #include <iterator>
 
-#include "hullslam/io/atomic_file.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 #include "io/text_rows.h"
@@ -23,7 +22,7 @@ StampedPose ParsePose(const TextRow& row) {
   pose.timestamp = row.Number(0, "timestamp");
   Rigid3& world_from_cam = pose.world_from_cam;
   world_from_cam.translation = {row.Number(1, "tx"), row.Number(2, "ty"), row.Number(3, "tz")};
-  // In Eigen's order w, x, y, z; a comma initialiser would abort where a column throws.
+  // The order of Eigen: w, x, y, z. A comma initialiser would abort if a column throws.
   world_from_cam.rotation = Eigen::Quaterniond(row.Number(7, "qw"), row.Number(4, "qx"),
                                                row.Number(5, "qy"), row.Number(6, "qz"));
   constexpr double kShortest = 1e-6;
@@ -45,12 +44,12 @@ Trajectory ReadTrajectory(const std::filesystem::path& path) {
     } else if (pose.timestamp == trajectory.back().timestamp) {
       trajectory.back() = pose;
     } else {
-      row.Fail(fmt::format("time stamp {:.6f} is before the one of the line above, {:.6f}",
+      row.Fail(fmt::format("time stamp {:.6f} is before the one of the previous pose, {:.6f}",
                            pose.timestamp, trajectory.back().timestamp));
     }
   });
   if (trajectory.empty()) {
-    throw InputError(path.string() + ": holds no poses");
+    throw InputError(path.string() + ": has no poses");
   }
   return trajectory;
 }
@@ -60,7 +59,7 @@ std::string FormatTrajectory(const Trajectory& trajectory) {
   for (const StampedPose& pose : trajectory) {
     const Eigen::Vector3d& t = pose.world_from_cam.translation;
     Eigen::Vector4d q = pose.world_from_cam.rotation.normalized().coeffs();
-    Check(t.allFinite() && q.allFinite(), "a pose to be written is not finite");
+    Check(t.allFinite() && q.allFinite(), "a number of a pose is not finite");
     if (q.w() < 0.0) {
       q = -q;
     }
@@ -69,10 +68,6 @@ std::string FormatTrajectory(const Trajectory& trajectory) {
                    t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
   }
   return text;
-}
-
-void WriteTrajectory(const std::filesystem::path& path, const Trajectory& trajectory) {
-  WriteFileAtomically(path, FormatTrajectory(trajectory));
 }
 
 }  // namespace hullslam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/io/true_object_file.h"
 
+#include "io/json_file.h"
 #include "io/json_node.h"
 
 namespace hullslam {

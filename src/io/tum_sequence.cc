@@ -33,7 +33,7 @@ void CheckColumns(const TextRow& row, size_t count, const char* names) {
 
 void CheckIncreasing(const TextRow& row, double stamp, const double* former) {
   if (former != nullptr && stamp <= *former) {
-    row.Fail(fmt::format("time stamp {:.6f} does not come after the one before, {:.6f}", stamp,
+    row.Fail(fmt::format("time stamp {:.6f} does not come after the previous one, {:.6f}", stamp,
                          *former));
   }
 }
@@ -49,12 +49,12 @@ ImageList ReadImageList(const fs::path& folder, const char* name) {
     list.files.push_back(folder / row.columns[1]);
   });
   if (list.stamps.empty()) {
-    throw InputError(path.string() + ": holds no images");
+    throw InputError(path.string() + ": has no images");
   }
   return list;
 }
 
-// Frames of the colour images alone.
+// The frames if only the colour images are used.
 TumSequence ReadColourList(const fs::path& folder) {
   const ImageList rgb = ReadImageList(folder, "rgb.txt");
   TumSequence sequence;
@@ -99,7 +99,7 @@ TumSequence ReadAssociations(const fs::path& folder, const fs::path& path) {
     sequence.frames.push_back(std::move(frame));
   });
   if (sequence.frames.empty()) {
-    throw InputError(path.string() + ": holds no images");
+    throw InputError(path.string() + ": has no images");
   }
   return sequence;
 }

@@ -12,11 +12,12 @@ namespace hullslam {
 
 struct DescriptorSearch {
   int max_distance = 50;   // Hamming
-  double max_ratio = 0.7;  // of the best to the second best
+  double max_ratio = 0.7;  // of the best distance to the second best
 };
 
-// Compares every keypoint of `queries` in `indices` with every one of `features`, without any guess
-// of where to look; rotations must agree. Match::query is a keypoint index.
+// Compares every keypoint of `queries` that is listed in `indices` with every keypoint of
+// `features`, without a prediction of its position. The rotations of the matches must agree.
+// Match::query is a keypoint index.
 std::vector<Match> MatchByDescriptor(const FrameFeatures& queries,
                                      std::span<const uint32_t> indices,
                                      const FrameFeatures& features, const DescriptorSearch& search);

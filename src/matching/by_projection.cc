@@ -70,7 +70,7 @@ std::vector<Match> MatchByProjection(const FrameFeatures& features,
                                      std::span<const Projection> projections,
                                      std::span<const uint8_t> taken,
                                      const ProjectionSearch& search) {
-  Check(taken.empty() || taken.size() == features.size(), "`taken` needs an entry a keypoint");
+  Check(taken.empty() || taken.size() == features.size(), "`taken` needs one entry per keypoint");
   std::vector<Match> matches;
   std::vector<uint32_t> candidates;
   for (uint32_t query = 0; query < projections.size(); ++query) {

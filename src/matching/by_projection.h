@@ -11,27 +11,28 @@
 
 namespace hullslam {
 
-// Where something seen before is expected in an image.
+// The place in an image where something seen before is expected.
 struct Projection {
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // px, undistorted
-  float right_u = -1.0f;  // px in the virtual right image; below 0 where it is not to be compared
-  float radius = 0.0f;    // px; half side of the window searched, and bound on the error of right_u
+  float right_u = -1.0f;  // px in the virtual right image; below 0: not compared
+  float radius = 0.0f;    // px; half side of the search window and bound on the error of right_u
   int min_level = 0;
   int max_level = 0;
   Descriptor descriptor{};
-  float angle = 0.0f;  // radians; used where rotations are compared
+  float angle = 0.0f;  // radians; used if rotations are compared
 };
 
 struct ProjectionSearch {
   int max_distance = 100;  // Hamming
-  // The best must be below this share of the second best at the same level; 1: no such test.
+  // The best distance must be below this share of the second best at the same level. 1: no such
+  // test.
   double max_ratio = 1.0;
   bool compare_rotation = false;
 };
 
-// For every projection the keypoint in its window with the nearest descriptor; one keypoint serves
-// one projection. Keypoints with a nonzero entry in `taken` (empty, or one a keypoint) are left
-// out.
+// Finds for each projection the keypoint in its window with the most similar descriptor. A keypoint
+// is matched to at most one projection. `taken` is empty or has one entry per keypoint; keypoints
+// with a nonzero entry are not matched.
 std::vector<Match> MatchByProjection(const FrameFeatures& features,
                                      std::span<const Projection> projections,
                                      std::span<const uint8_t> taken,

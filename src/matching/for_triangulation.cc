@@ -14,7 +14,7 @@ struct Candidate {
   int distance = 0;
 };
 
-// All of b that look like the keypoint of a.
+// All keypoints of b whose descriptors are similar to that of the keypoint of a.
 HULLSLAM_FUNCTION_CLONES
 void FindSimilar(const Descriptor& query, const std::vector<Descriptor>& descriptors,
                  std::span<const uint32_t> indices, int max_distance,
@@ -28,8 +28,8 @@ void FindSimilar(const Descriptor& query, const std::vector<Descriptor>& descrip
   }
 }
 
-// Squared distance in px^2 from a pixel to a line a x + b y + c = 0; not a number where a and b are
-// zero, as they are without a baseline.
+// Squared distance from a pixel to the line a x + b y + c = 0, px^2. It is NaN if a and b are zero,
+// which happens without a baseline.
 double SquaredLineDistance(const Eigen::Vector3d& line, const Eigen::Vector2d& pixel) {
   const double value = line.head<2>().dot(pixel) + line.z();
   return value * value / line.head<2>().squaredNorm();

@@ -15,13 +15,13 @@ struct TriangulationSearch {
   int max_distance = 50;  // Hamming
   // px^2 over sigma^2; 95 % of a chi-square distribution with one degree of freedom
   double max_epipolar_chi2 = 3.84;
-  double min_epipole_distance = 10.0;  // px at level 0; nearer the parallax is too small
+  double min_epipole_distance = 10.0;  // px at level 0; the parallax is too small below this
 };
 
-// Pairs keypoints of image a (`a_indices`) with keypoints of image b (`b_indices`) that look alike
-// and lie on the epipolar line. `fundamental` maps a pixel of a to its line in b: x_b^T F x_a = 0.
-// `epipole` is the centre of camera a in image b, px (far outside if it is not in front of b). The
-// epipole's surroundings are left out for pairs in which neither keypoint has a depth.
+// Pairs keypoints of image a (`a_indices`) with keypoints of image b (`b_indices`) that have
+// similar descriptors and lie on the epipolar line. `fundamental` maps a pixel of a to its line in
+// b: x_b^T F x_a = 0. `epipole` is the centre of camera a in image b, px (far outside if it is not
+// in front of b). Pairs without any depth are not made near the epipole.
 std::vector<Match> MatchForTriangulation(
     const FrameFeatures& a, std::span<const uint32_t> a_indices, const FrameFeatures& b,
     std::span<const uint32_t> b_indices, const Eigen::Matrix3d& fundamental,

@@ -18,7 +18,7 @@ size_t RotationBin(float query_angle, float keypoint_angle) {
   if (change < 0.0) {
     change += kTurn;
   }
-  // Bins are centred on their angles, so that a pure translation falls in the middle of one.
+  // Bins are centred on their angles, so that a change of zero lies in the middle of a bin.
   return static_cast<size_t>(std::lround(change / kTurn * kBins)) % kBins;
 }
 

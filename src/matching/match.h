@@ -8,18 +8,19 @@
 namespace hullslam {
 
 struct Match {
-  uint32_t query = 0;     // index into what is searched for
-  uint32_t keypoint = 0;  // index into what is searched in
+  uint32_t query = 0;     // index of what is searched for
+  uint32_t keypoint = 0;  // index of the keypoint that was found
   int distance = 0;       // Hamming, 0 to 256
 };
 
-// Keeps for every keypoint the match of least distance, of equal ones that of the lowest query.
-// `matches` comes back by increasing query.
+// Keeps for each keypoint the match of least distance; ties go to the lowest query. `matches` comes
+// back sorted by query.
 void KeepBestPerKeypoint(std::vector<Match>& matches);
 
-// Keeps the matches whose change of keypoint angle agrees with the three most frequent changes, in
-// 30 bins of 12 degrees (Mur-Artal and Tardos 2017); of the second and third bin only where they
-// hold at least a tenth of the first. Angles are in radians, indexed by query and keypoint.
+// Keeps the matches whose change of keypoint angle is among the three most frequent changes, in 30
+// bins of 12 degrees (Mur-Artal and Tardos 2017). The second and third bins only count if they
+// contain at least a tenth of the matches of the first. Angles are in radians, indexed by query and
+// by keypoint.
 void KeepConsistentRotations(std::span<const float> query_angles,
                              std::span<const float> keypoint_angles, std::vector<Match>& matches);
 

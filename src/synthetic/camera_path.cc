@@ -35,14 +35,15 @@ HandMotion::HandMotion(uint64_t seed) {
 }
 
 Rigid3 HandMotion::Apply(const Rigid3& world_from_cam, double time) const {
-  // Frequencies in hertz; the strength falls with them, so that accelerations stay those of a hand.
+  // Frequencies in hertz. The amplitude falls with the frequency, so that the accelerations are
+  // those of a hand.
   constexpr std::array<double, 3> kFrequency = {0.23, 0.61, 1.3};
   constexpr std::array<double, 3> kStrength = {1.0, 0.35, 0.08};
   Eigen::Matrix<double, 6, 1> wave = Eigen::Matrix<double, 6, 1>::Zero();
   for (int row = 0; row < 6; ++row) {
     for (size_t i = 0; i < kFrequency.size(); ++i) {
       const double phase = phases_(row, static_cast<Eigen::Index>(i));
-      // Slightly different tones on each axis, for the sum not to repeat.
+      // Each axis has slightly different frequencies, so that the sum does not repeat.
       const double frequency = kFrequency[i] * (1.0 + 0.07 * row);
       wave[row] += kStrength[i] * std::sin(kTwoPi * frequency * time + phase);
     }

@@ -8,32 +8,35 @@
 
 namespace hullslam::synthetic {
 
-// The camera at `eye` with its optical axis through `target` and the image upright (world z up).
+// Pose of a camera at `eye` whose optical axis goes through `target`, with the image upright (world
+// z up).
 Rigid3 LookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target);
 
-// The motion of a hand over a steady path: sums of slow sines with phases from the seed, about
-// 1.5 cm and 0.8 degrees.
+// The shaking of a hand, added to a steady path: sums of slow sines with phases from the seed,
+// about 1.5 cm and 0.8 degrees.
 class HandMotion {
  public:
   explicit HandMotion(uint64_t seed);
-  // The pose with the motion at `time` (seconds) added in the camera's frame.
+  // Adds the hand motion at `time` (seconds) to the pose, in the camera frame.
   Rigid3 Apply(const Rigid3& world_from_cam, double time) const;
 
  private:
   Eigen::Matrix<double, 6, 3> phases_;
 };
 
-// Round a table: the camera looks at its middle from a changing distance and height.
+// A path around a table. The camera looks at the middle of the table from a changing distance and
+// height.
 struct OrbitPath {
   double radius = 1.4;           // metres from the axis, on average
   double height = 1.32;          // metres
   double start_angle = -2.3;     // radians from +x
-  double angular_speed = 0.165;  // radians a second
+  double angular_speed = 0.165;  // radians per second
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
   Rigid3 WorldFromCam(double time) const;
 };
 
-// Once round a room and a little further, looking outwards, so that the start is seen again.
+// A path around a room, slightly more than a full turn, so that the start is seen again. The camera
+// looks outwards.
 struct LoopPath {
   Eigen::Vector2d radius{0.8, 0.6};  // metres
   double height = 1.4;

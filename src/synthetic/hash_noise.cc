@@ -6,7 +6,7 @@
 namespace hullslam::synthetic {
 namespace {
 
-// Inverse of the normal distribution function by bisection; exact enough for a float.
+// Inverse of the normal distribution function by bisection, precise enough for a float.
 double NormalQuantile(double probability) {
   double low = -8.0;
   double high = 8.0;

@@ -7,8 +7,8 @@
 
 namespace hullslam::synthetic {
 
-// The `counter`-th random word of the stream `seed` (SplitMix64, Steele 2014). No draw depends on
-// the ones before it, so pixels can be drawn in any order and by any thread.
+// The `counter`-th random word of the stream `seed` (SplitMix64, Steele 2014). A word does not
+// depend on earlier draws, so pixels can be drawn in any order and by any thread.
 inline uint64_t CounterHash(uint64_t seed, uint64_t counter) {
   uint64_t x = seed + (counter + 1) * 0x9e3779b97f4a7c15ULL;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -16,18 +16,18 @@ inline uint64_t CounterHash(uint64_t seed, uint64_t counter) {
   return x ^ (x >> 31);
 }
 
-// Uniform in [0, 1) from the upper bits of a random word.
+// A uniform number in [0, 1) from the upper bits of a random word.
 inline double UnitInterval(uint64_t word) { return static_cast<double>(word >> 11) * 0x1.0p-53; }
 
-// A stream of random numbers for building things one after another, the same on every platform
-// (the distributions of the standard library are not).
+// A stream of random numbers that are drawn in order, the same on every platform (the distributions
+// of the standard library differ between platforms).
 class RandomStream {
  public:
   explicit RandomStream(uint64_t seed) : seed_(seed) {}
 
   uint64_t Word() { return CounterHash(seed_, counter_++); }
   double Uniform(double low, double high) { return low + (high - low) * UnitInterval(Word()); }
-  // Uniform in 0 .. count - 1.
+  // A uniform integer from 0 to count - 1.
   int Index(int count) {
     return static_cast<int>(UnitInterval(Word()) * static_cast<double>(count));
   }
@@ -38,8 +38,8 @@ class RandomStream {
 };
 
 // Quantiles of the standard normal distribution at the midpoints of 4096 equal steps of
-// probability: a normal number from 12 random bits, limited to 3.7 sigma, without a logarithm a
-// pixel.
+// probability. They turn 12 random bits into a normal number, limited to 3.7 sigma, without
+// computing a logarithm per pixel.
 class NormalTable {
  public:
   static constexpr int kBits = 12;

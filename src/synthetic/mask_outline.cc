@@ -45,8 +45,8 @@ std::pair<cv::Mat, int> LargestComponent(const cv::Mat& mask) {
   return {labels == best, stats.at<int>(best, cv::CC_STAT_AREA)};
 }
 
-// Walks round the outer boundary of the component along the edges between pixels, the inside to
-// the right, and gives the middle of each edge. Pixels have corners at integers here.
+// Walks along the edges between pixels around the component, with the inside to the right, and
+// returns the middle of each edge. Here the corners of pixels have integer coordinates.
 std::vector<Vector2d> TraceEdges(const cv::Mat& component) {
   const auto inside = [&](int x, int y) { return component.at<uint8_t>(y, x) != 0; };
   std::array<int, 2> start = {0, 0};
@@ -78,7 +78,7 @@ std::vector<Vector2d> TraceEdges(const cv::Mat& component) {
   return middles;
 }
 
-// Leaves out vertices on the straight line between their neighbours.
+// Removes vertices that are on the straight line between their neighbours.
 std::vector<Vector2d> DropCollinear(const std::vector<Vector2d>& points) {
   std::vector<Vector2d> kept;
   for (size_t i = 0; i < points.size(); ++i) {
@@ -94,7 +94,7 @@ std::vector<Vector2d> DropCollinear(const std::vector<Vector2d>& points) {
 }  // namespace
 
 std::vector<InstanceOutline> FindOutlines(const cv::Mat& instance, int min_area) {
-  Check(instance.type() == CV_16SC1, "an instance image has 16-bit signed pixels");
+  Check(instance.type() == CV_16SC1, "the instance image is not CV_16SC1");
   std::vector<InstanceOutline> outlines;
   for (const auto& [object, box] : BoundingBoxes(instance)) {
     const auto [component, area] = LargestComponent(instance(box) == object);
@@ -104,7 +104,7 @@ std::vector<InstanceOutline> FindOutlines(const cv::Mat& instance, int min_area)
     InstanceOutline outline{.object = object, .area = area, .vertices = {}};
     outline.vertices = DropCollinear(TraceEdges(component));
     for (Vector2d& vertex : outline.vertices) {
-      // From corners of the bordered region to centres of the image's pixels.
+      // Converts from corners in the bordered region to centres of pixels in the image.
       vertex += Vector2d(box.x - 1.5, box.y - 1.5);
     }
     outlines.push_back(std::move(outline));

@@ -7,7 +7,7 @@
 
 namespace hullslam::synthetic {
 
-// The outline of what is seen of one object.
+// The outline of the visible part of one object.
 struct InstanceOutline {
   int object = 0;                         // the value in the instance image
   int area = 0;                           // px, of the outlined component
@@ -15,10 +15,10 @@ struct InstanceOutline {
 };
 
 // Outlines of the objects in an instance image (CV_16SC1, negative for the background), ordered by
-// object. Of an object that something in front splits the largest part (4-connected) is taken;
-// holes are filled; parts smaller than `min_area` px are left out. The outline runs halfway between
-// the centres of pixels inside and outside, so that it is not biased to either side; the centre of
-// a pixel has integer coordinates.
+// object. If something in front splits an object, only its largest part (4-connected) is outlined.
+// Holes are filled, and parts smaller than `min_area` px are left out. The outline runs halfway
+// between the centres of inside and outside pixels, so that it is not biased to either side. The
+// centre of a pixel has integer coordinates.
 std::vector<InstanceOutline> FindOutlines(const cv::Mat& instance, int min_area);
 
 }  // namespace hullslam::synthetic

@@ -67,7 +67,7 @@ ObjectBuilder& ObjectBuilder::Add(const Shape& shape, const Material& material,
 }
 
 SceneObject ObjectBuilder::Build(const Vector3d& base, double yaw) const {
-  Check(!parts_.empty(), "an object needs parts");
+  Check(!parts_.empty(), "an object needs at least one part");
   const Eigen::AlignedBox3d box = TightBox(parts_);
   SceneObject object;
   object.class_name = class_name_;

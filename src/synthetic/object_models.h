@@ -9,19 +9,21 @@
 
 namespace hullslam::synthetic {
 
-// COCO's id (from 0, as in the 80 classes of YOLO) of a class that the scenes use; an unknown name
-// is a CheckError.
+// The id of a COCO class that the scenes use, counted from 0 as in the 80 classes of YOLO. Throws
+// CheckError for an unknown name.
 int CocoClassId(std::string_view class_name);
 
-// Puts an object together from parts in any frame with z up. The frame of the finished object is
-// at the centre of its tight box, so that its half extents are those of an ellipsoid about it.
+// Assembles an object from parts, in any frame with z up. The frame of the finished object is at
+// the centre of its tight box, so that its half extents are also those of an ellipsoid around that
+// centre.
 class ObjectBuilder {
  public:
   ObjectBuilder(std::string class_name, std::string shape);
 
   ObjectBuilder& Add(const Shape& shape, const Material& material,
                      const Rigid3& frame_from_part = {});
-  // The object standing with the middle of its underside on `base`, turned by `yaw` radians.
+  // Places the object: the centre of its underside is at `base`, and it is rotated by `yaw`
+  // radians.
   SceneObject Build(const Eigen::Vector3d& base, double yaw) const;
 
  private:
@@ -30,12 +32,12 @@ class ObjectBuilder {
   std::vector<Part> parts_;
 };
 
-// Shift without rotation, and turns about the axes in radians, as transforms.
+// Transforms: a translation, and rotations about the axes in radians.
 Rigid3 Shift(double x, double y, double z);
 Rigid3 TurnAboutX(double angle, const Eigen::Vector3d& translation);
 Rigid3 TurnAboutZ(double angle, const Eigen::Vector3d& translation);
 
-// Compound objects; all stand on z = 0.
+// Compound objects. All of them stand on z = 0.
 ObjectBuilder MakeMug(const Material& material);
 ObjectBuilder MakeBottle(const Material& glass, const Material& label);
 ObjectBuilder MakeTeddyBear(double height, const Material& fur, const Material& snout);
@@ -44,7 +46,7 @@ ObjectBuilder MakeMonitor(const Material& screen, const Material& frame);
 ObjectBuilder MakeLaptop(const Material& screen, const Material& keys, const Material& body);
 ObjectBuilder MakePottedPlant(double height, const Material& pot, const Material& leaves);
 ObjectBuilder MakeCouch(const Material& cushion, const Material& frame);
-// A box of the given half extents; objects of one primitive likewise.
+// An object of one primitive.
 ObjectBuilder MakeSolid(const std::string& class_name, const Shape& shape,
                         const Material& material);
 

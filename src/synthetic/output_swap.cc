@@ -39,17 +39,18 @@ void CheckReplaceable(const fs::path& folder, bool force) {
     return;
   }
   if (!fs::is_directory(status)) {
-    throw InputError(folder.string() + ": exists and is no folder");
+    throw InputError(folder.string() + ": exists and is not a folder");
   }
   if (fs::is_empty(folder)) {
     return;
   }
   if (!IsFormerSequence(folder)) {
-    throw InputError(folder.string() +
-                     ": not empty and not (only) a sequence of make_synthetic; choose another");
+    throw InputError(
+        folder.string() +
+        ": is not empty and is not (only) a sequence of make_synthetic; choose another folder");
   }
   if (!force) {
-    throw InputError(folder.string() + ": holds a sequence already; --force replaces it");
+    throw InputError(folder.string() + ": already contains a sequence; --force replaces it");
   }
 }
 
@@ -64,7 +65,7 @@ OutputSwap::OutputSwap(const fs::path& folder, bool force) {
   try {
     folder_ = fs::weakly_canonical(fs::absolute(folder));
     if (folder_.filename().empty()) {
-      folder_ = folder_.parent_path();  // it ended in a slash
+      folder_ = folder_.parent_path();  // the path ended in a slash
     }
     CheckReplaceable(folder_, force);
     working_ = Beside(folder_, "partial");
@@ -76,7 +77,7 @@ OutputSwap::OutputSwap(const fs::path& folder, bool force) {
 }
 
 OutputSwap::~OutputSwap() {
-  std::error_code ignored;  // after Commit there is nothing to remove
+  std::error_code ignored;  // after Commit() there is nothing to remove
   fs::remove_all(working_, ignored);
 }
 
@@ -100,12 +101,12 @@ void OutputSwap::Commit() {
   if (!error) {
     fs::rename(working_, folder_, error);
     if (error && replaces) {
-      std::error_code ignored;  // the first error is the one to tell
+      std::error_code ignored;  // only the first error is reported
       fs::rename(former, folder_, ignored);
     }
   }
   if (error) {
-    throw InputError(folder_.string() + ": cannot be put in place: " + error.message());
+    throw InputError(folder_.string() + ": cannot be moved to its place: " + error.message());
   }
   if (replaces) {
     fs::remove_all(former, error);

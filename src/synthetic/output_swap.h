@@ -6,20 +6,21 @@
 
 namespace hullslam::synthetic {
 
-// A folder that is filled under a temporary name beside its place and moved there when complete.
+// A folder that is written under a temporary name next to its final place, and moved there when it
+// is complete.
 class OutputSwap {
  public:
-  // Throws InputError when `folder` exists and is not empty, unless `force` and it holds nothing
-  // but a former synthetic sequence; or when it cannot be made.
+  // Throws InputError if the folder cannot be created, or if `folder` exists and is not empty. With
+  // `force` it may contain an earlier synthetic sequence, but nothing else.
   OutputSwap(const std::filesystem::path& folder, bool force);
-  // Removes what was not moved.
+  // Removes the temporary folder if it was not moved.
   ~OutputSwap();
   OutputSwap(const OutputSwap&) = delete;
   OutputSwap& operator=(const OutputSwap&) = delete;
 
   const std::filesystem::path& working_folder() const { return working_; }
   void WriteFile(const std::filesystem::path& relative, const std::string& content) const;
-  // Moves the finished folder to its place; what is replaced is removed afterwards.
+  // Moves the finished folder to its place. A replaced folder is removed afterwards.
   void Commit();
 
  private:

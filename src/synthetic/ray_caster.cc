@@ -26,7 +26,7 @@ struct Mover {
   SceneHandle scene;
 };
 
-// Copies the part's triangles, in the frame of `frame_from_part`, to the scene under `id`.
+// Copies the triangles of the part, in the frame of `frame_from_part`, to the scene under `id`.
 void Attach(RTCDevice device, RTCScene scene, const Part& part, const Rigid3& frame_from_part,
             unsigned id) {
   const TriangleMesh mesh = Tessellate(part.shape);
@@ -37,7 +37,7 @@ void Attach(RTCDevice device, RTCScene scene, const Part& part, const Rigid3& fr
   auto* triangles = static_cast<uint32_t*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                               3 * sizeof(uint32_t), mesh.triangles.size()));
-  Check(vertices != nullptr && triangles != nullptr, "Embree gave no memory for a mesh");
+  Check(vertices != nullptr && triangles != nullptr, "Embree has no memory for a mesh");
   for (size_t i = 0; i < mesh.vertices.size(); ++i) {
     Eigen::Map<Eigen::Vector3f>(vertices + 3 * i) =
         (frame_from_part * mesh.vertices[i]).cast<float>();
@@ -50,12 +50,13 @@ void Attach(RTCDevice device, RTCScene scene, const Part& part, const Rigid3& fr
 
 SceneHandle NewScene(RTCDevice device) {
   SceneHandle scene(rtcNewScene(device));
-  // Robust: no ray slips between neighbouring triangles.
+  // In robust mode no ray passes between neighbouring triangles.
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   return scene;
 }
 
-// Casts the packet's rays, given in the frame of `scene`, and keeps hits nearer than the packet's.
+// Casts the rays of the packet, given in the frame of `scene`, and keeps hits that are nearer than
+// those in the packet.
 void CastIn(RTCScene scene, const Eigen::Vector3f& origin,
             const std::array<Eigen::Vector3f, RayPacket::kSize>& direction, RayPacket& packet) {
   RTCRayHit8 query{};
@@ -98,7 +99,8 @@ struct RayCaster::Device {
 };
 
 RayCaster::RayCaster(const Scene& scene) : device_(std::make_unique<Device>()) {
-  // One thread: the acceleration structure must not depend on the timing of several.
+  // One thread only, because the acceleration structure must not depend on the timing of several
+  // threads.
   device_->device.reset(rtcNewDevice("threads=1"));
   Check(device_->device != nullptr, "Embree has no device on this machine");
   RTCDevice device = device_->device.get();

@@ -12,23 +12,24 @@
 
 namespace hullslam::synthetic {
 
-// A part with the object it belongs to (index in Scene::objects), -1 for the background.
+// A part and the index of its object in Scene::objects, -1 for the background.
 struct PlacedPart {
   const Part* part = nullptr;
   int object = -1;
 };
 
-// Eight rays with a common origin, cast together for speed.
+// Eight rays with a common origin, which are cast together for speed.
 struct RayPacket {
   static constexpr int kSize = 8;
   std::array<Eigen::Vector3f, kSize> direction;  // world frame, of any length
-  std::array<float, kSize> distance{};           // to the first hit, in lengths of `direction`
-  std::array<int, kSize> part{};                 // index in RayCaster::parts(), -1 for no hit
+  std::array<float, kSize> distance{};  // to the first hit, in units of the length of `direction`
+  std::array<int, kSize> part{};        // index in RayCaster::parts(), -1 for no hit
 };
 
-// First hits of rays with a scene, by Embree. All static parts are one acceleration structure;
-// each moving object has its own in its own frame and rays are brought there, so that frames at
-// different times can be cast by different threads at once. The same rays give the same bits.
+// Finds the first hits of rays with a scene, by Embree. All static parts share one acceleration
+// structure. Each moving object has its own one in its own frame, and rays are transformed to this
+// frame, so that several threads can cast frames of different times at once. The same rays give
+// bit-identical results.
 class RayCaster {
  public:
   // Keeps a reference to `scene`.
@@ -37,9 +38,9 @@ class RayCaster {
   RayCaster(const RayCaster&) = delete;
   RayCaster& operator=(const RayCaster&) = delete;
 
-  // The background's parts first, then those of the objects in order.
+  // First the parts of the background, then the parts of the objects in order.
   std::span<const PlacedPart> parts() const { return parts_; }
-  // Fills distance and part of `packet`. `world_from_object` holds the pose of every object.
+  // Fills in distance and part of `packet`. `world_from_object` has the pose of each object.
   void Cast(const Eigen::Vector3f& origin, std::span<const Rigid3> world_from_object,
             RayPacket& packet) const;
 

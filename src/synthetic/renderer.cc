@@ -14,7 +14,7 @@ using Eigen::Matrix3f;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-// Blocks of four by two pixels are cast together.
+// Blocks of 4 x 2 pixels are cast together.
 constexpr int kBlockColumns = 4;
 constexpr int kBlockRows = RayPacket::kSize / kBlockColumns;
 
@@ -23,14 +23,14 @@ struct Placement {
   Vector3f centre;  // world frame
 };
 
-// An ellipsoid about an object that keeps the ambient light from the surfaces near it.
+// An ellipsoid around an object that blocks ambient light from the surfaces near it.
 struct Occluder {
   Matrix3f unit_from_world;
   Vector3f centre;
   float reach = 0.0F;  // metres
 };
 
-// The occluders that reach into the box about the part.
+// The occluders whose reach includes some point of the box around the part.
 std::vector<Occluder> OccludersNear(const Part& part, const Placement& placement,
                                     const std::vector<Occluder>& all) {
   std::vector<Occluder> near;
@@ -45,7 +45,8 @@ std::vector<Occluder> OccludersNear(const Part& part, const Placement& placement
   return near;
 }
 
-// Fraction of the light that is left near the occluders: soft shadows where things stand.
+// Fraction of the ambient light that the occluders let through. It gives soft shadows where objects
+// stand.
 float AmbientLeft(const std::vector<Occluder>& occluders, const Vector3f& point,
                   const Vector3f& normal) {
   float left = 1.0F;
@@ -60,7 +61,7 @@ float AmbientLeft(const std::vector<Occluder>& occluders, const Vector3f& point,
       continue;
     }
     const float unit = std::max(1.0F, (occluder.unit_from_world * offset).squaredNorm());
-    // The last factor lets the shadow end without an edge at its reach.
+    // The last factor fades the shadow out, so that it has no edge at its reach.
     const float fade = 1.0F - squared / (occluder.reach * occluder.reach);
     left *= 1.0F - 0.75F * facing / std::sqrt(squared) / unit * fade;
   }
@@ -73,7 +74,7 @@ float Lambert(const Scene& scene, const Vector3f& point, const Vector3f& normal,
     const Vector3f offset = source.position - point;
     const float squared = offset.squaredNorm();
     const float facing = normal.dot(offset) / std::sqrt(squared);
-    // Lamps have a size: the light falls off as if they were a metre further away.
+    // Lamps have a size: the light falls off as if the lamps were a metre farther away.
     light += std::max(0.0F, facing) * source.strength / (1.0F + squared) * (0.4F + 0.6F * ambient);
   }
   return light;
@@ -85,8 +86,8 @@ int DominantAxis(const Vector3f& v) {
   return static_cast<int>(axis);
 }
 
-// Texture coordinates on the plane across `axis`, each in repeats. Seen from outside, u goes to
-// the right and v down.
+// Texture coordinates, in repeats, on the plane across `axis`. Seen from outside, u goes to the
+// right and v down.
 Vector2f PlaneCoordinates(int axis, float side, const Vector3f& repeats) {
   switch (axis) {
     case 0:
@@ -121,8 +122,8 @@ struct Renderer::View {
   Matrix3f world_from_cam;
   Vector3f eye;
   std::vector<Rigid3> world_from_object;
-  std::vector<Placement> placements;             // of RayCaster::parts()
-  std::vector<std::vector<Occluder>> occluders;  // of each part; none for those of objects
+  std::vector<Placement> placements;             // one per entry of RayCaster::parts()
+  std::vector<std::vector<Occluder>> occluders;  // per part; empty for the parts of objects
 
   Vector3f Direction(const PinholeCamera& camera, float x, float y) const {
     const Vector3f in_cam(static_cast<float>((x - camera.cx) / camera.fx),
@@ -139,7 +140,7 @@ struct Renderer::Fragment {
 
 Renderer::Renderer(const Scene& scene, const PinholeCamera& camera)
     : scene_(scene), camera_(camera), caster_(scene) {
-  Check(!camera.IsDistorted(), "the renderer's camera has no distortion");
+  Check(!camera.IsDistorted(), "the renderer needs a camera without distortion");
 }
 
 Renderer::View Renderer::MakeView(double time) const {
@@ -177,8 +178,8 @@ Vector3f Renderer::TextureColour(const Material& material, const Vector3f& point
                                  int max_samples) const {
   const int axis = DominantAxis(normal);
   const float side = normal[axis] < 0.0F ? -1.0F : 1.0F;
-  // A pixel covers `across` metres across the view and more along it on a slanted surface; up to
-  // `max_samples` samples in that direction keep the detail that the other one has.
+  // A pixel covers `across` metres across the view, and more along the view on a slanted surface.
+  // Up to `max_samples` samples along the view preserve the detail across it.
   const float across = distance / static_cast<float>(camera_.fx);
   const float cosine = std::max(0.05F, std::abs(normal.dot(direction)));
   const int samples = std::min(max_samples, static_cast<int>(1.0F / cosine));
@@ -188,7 +189,8 @@ Vector3f Renderer::TextureColour(const Material& material, const Vector3f& point
   const float tile = axis == 0 ? material.tile.y() : material.tile.x();
   const Texture& texture = scene_.textures[static_cast<size_t>(material.texture)];
   const float level = texture.LevelOfDetail(width / tile);
-  // The offset is that of the face seen from outside, whichever way the coordinate runs.
+  // The offset refers to the face as seen from outside, in whichever direction the coordinate
+  // increases.
   const Vector2f offset((axis == 0 ? material.offset.y() : material.offset.x()) / tile,
                         axis == 2 ? material.offset.y() / material.tile.y()
                                   : material.offset.z() / material.tile.z());
@@ -254,7 +256,8 @@ void Renderer::RenderBlock(const View& view, int x0, int y0, RenderedFrame& fram
 }
 
 void Renderer::RenderCentres(const View& view, RenderedFrame& frame, cv::Mat& facet) const {
-  // In tiles, because a whole row of the image goes through too many pages of the textures.
+  // The image is rendered in tiles, because a whole row touches too many memory pages of the
+  // textures.
   constexpr int kTile = 32;
   for (int top = 0; top < camera_.height; top += kTile) {
     for (int left = 0; left < camera_.width; left += kTile) {
@@ -268,8 +271,8 @@ void Renderer::RenderCentres(const View& view, RenderedFrame& frame, cv::Mat& fa
 }
 
 void Renderer::SmoothEdges(const View& view, const cv::Mat& facet, RenderedFrame& frame) const {
-  // Four rays in a rotated grid, so that upright and level edges get four shades too; two pixels
-  // share a packet.
+  // Four rays in a rotated grid, so that vertical and horizontal edges get four shades too. Two
+  // pixels share a packet.
   constexpr std::array<std::array<float, 2>, 4> kOffsets = {
       {{-0.125F, -0.375F}, {0.375F, -0.125F}, {0.125F, 0.375F}, {-0.375F, 0.125F}}};
   const std::vector<cv::Point> edges = FacetEdges(facet);

@@ -12,34 +12,35 @@
 
 namespace hullslam::synthetic {
 
-// What an ideal camera sees, all of the same size; the centre of a pixel has integer coordinates.
+// The images of an ideal camera, all of the same size. The centre of a pixel has integer
+// coordinates.
 struct RenderedFrame {
-  cv::Mat colour;    // CV_32FC3, BGR, 0 to 255, edges smoothed by four rays a pixel
+  cv::Mat colour;    // CV_32FC3, BGR, 0 to 255, edges smoothed by four rays per pixel
   cv::Mat depth;     // CV_32FC1, metres along z at the centre of the pixel
   cv::Mat instance;  // CV_16SC1, index in Scene::objects, -1 for the background
   cv::Mat cosine;    // CV_32FC1, of the angle between surface normal and ray
 };
 
-// Renders frames of a scene. Rendering is const and may run in several threads at once; a frame has
-// the same bits whatever else runs.
+// Renders frames of a scene. Rendering is const and may run in several threads at once; a frame is
+// bit-identical whatever else runs.
 class Renderer {
  public:
-  // Keeps a reference to `scene`. The camera has no distortion.
+  // Keeps a reference to `scene`. The camera must have no distortion.
   Renderer(const Scene& scene, const PinholeCamera& camera);
 
   RenderedFrame Render(double time) const;
 
  private:
   struct View;      // poses at one time
-  struct Fragment;  // what one ray found
+  struct Fragment;  // what one ray hits
   Fragment Shade(const View& view, int part, float distance, const Eigen::Vector3f& direction,
                  int max_samples) const;
   View MakeView(double time) const;
   void RenderBlock(const View& view, int x0, int y0, RenderedFrame& frame, cv::Mat& facet) const;
   void RenderCentres(const View& view, RenderedFrame& frame, cv::Mat& facet) const;
   void SmoothEdges(const View& view, const cv::Mat& facet, RenderedFrame& frame) const;
-  // Colour of `material` at a point, given in the part's frame with its normal and the ray's
-  // direction; up to `max_samples` samples of the texture on slanted surfaces.
+  // Colour of `material` at a point. Point, normal and direction of the ray are given in the frame
+  // of the part. Slanted surfaces use up to `max_samples` samples of the texture.
   Eigen::Vector3f TextureColour(const Material& material, const Eigen::Vector3f& point,
                                 const Eigen::Vector3f& normal, const Eigen::Vector3f& direction,
                                 float distance, int max_samples) const;

@@ -12,8 +12,9 @@
 
 namespace hullslam::synthetic {
 
-// How a surface looks. The texture lies on the three coordinate planes of the part's frame and is
-// taken from the one that the normal is nearest to; on sides it stands upright along z.
+// The appearance of a surface. The texture lies on the three coordinate planes of the frame of the
+// part; each point uses the plane whose normal is nearest to its own. On vertical sides the texture
+// is upright along z.
 struct Material {
   int texture = 0;                                   // index in Scene::textures
   Eigen::Vector3f tile = Eigen::Vector3f::Ones();    // metres per repeat along the axes
@@ -28,15 +29,16 @@ struct Part {
   Rigid3 owner_from_part;
 };
 
-// One thing that a segmentation network would find.
+// An object that a segmentation network would find.
 struct SceneObject {
-  std::string class_name;  // of COCO
-  int class_id = 0;        // of COCO, from 0
+  std::string class_name;  // name of COCO
+  int class_id = 0;        // id of COCO, counted from 0
   std::string shape;       // "ellipsoid", "box", "superquadric" or "compound"
   std::vector<Part> parts;
-  Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();  // tight, in the object's frame, metres
-  Rigid3 world_from_object;                                // at time 0
-  // Pose at a time in seconds, of a thing that moves; empty for a static one.
+  Eigen::Vector3d half_extents =
+      Eigen::Vector3d::Zero();  // tight, in the frame of the object, metres
+  Rigid3 world_from_object;     // at time 0
+  // Pose of a moving object at a time in seconds; empty for a static object.
   std::function<Rigid3(double)> motion;
 
   bool IsDynamic() const { return static_cast<bool>(motion); }
@@ -45,18 +47,18 @@ struct SceneObject {
 
 struct PointLight {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();
-  float strength = 1.0F;  // at the distance of a metre from a surface that faces the light
+  float strength = 1.0F;  // on a surface at a distance of 1 m that faces the light
 };
 
-// A closed room (every ray hits something) with objects, and the path of the camera in it. World
-// frame: z up, metres.
+// A closed room (every ray hits something) with objects, and the path of the camera in it. The
+// world frame has z up, in metres.
 struct Scene {
   std::vector<Texture> textures;
   std::vector<Part> background;
   std::vector<SceneObject> objects;
   std::vector<PointLight> lights;
   float ambient = 0.5F;
-  std::function<Rigid3(double)> world_from_cam;  // of the time in seconds
+  std::function<Rigid3(double)> world_from_cam;  // as a function of the time in seconds
 };
 
 }  // namespace hullslam::synthetic

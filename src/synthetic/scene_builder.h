@@ -15,14 +15,14 @@ namespace hullslam::synthetic {
 // The textures of a scene, as indices in Scene::textures.
 struct Palette {
   int wall = 0;
-  int feature_wall = 0;  // one wall may differ
+  int feature_wall = 0;  // for the one wall that differs
   int floor = 0;
   int ceiling = 0;
   int table = 0;
   int wood = 0;
   int fabric = 0;
   int fur = 0;
-  int speckle = 0;  // light, to be tinted
+  int speckle = 0;  // a light texture, meant to be tinted
   int checker = 0;
   int keys = 0;
   std::vector<int> posters;
@@ -30,41 +30,41 @@ struct Palette {
   std::vector<int> screens;
 };
 
-// Half the floor's sides and the height, metres.
+// Half the side lengths of the floor, and the height of the room, metres.
 struct RoomSize {
   double half_x = 3.0;
   double half_y = 3.0;
   double height = 2.7;
 };
 
-// The walls as seen from inside, clockwise from above: kBack is at +y.
+// The walls, clockwise as seen from above: kBack is at +y.
 enum class Wall { kBack, kRight, kFront, kLeft };
 
-// Assembles a scene piece by piece; what is left to chance is drawn from the seed in order.
+// Assembles a scene step by step. Random choices are drawn from the seed in the order of the calls.
 class SceneBuilder {
  public:
   explicit SceneBuilder(uint64_t seed) : seed_(seed), random_(seed) {}
 
-  // Textures with detail everywhere, or all but bare ones.
+  // Rich: textures with detail everywhere. Bare: textures with almost no detail.
   Palette AddRichPalette();
   Palette AddBarePalette();
 
-  // The texture once over each side of a box of these half extents.
+  // A material that shows the texture exactly once on each side of a box with these half extents.
   Material Fit(int texture, const Eigen::Vector3d& half) const;
-  // The texture every `metres`, from a random place on and with a tint.
+  // A material that repeats the texture every `metres`, from a random position, with a tint.
   Material Repeat(int texture, double metres,
                   const Eigen::Vector3f& tint_bgr = Eigen::Vector3f::Ones());
 
   void AddRoom(const RoomSize& size, const Palette& palette);
-  // A flat picture on a wall; `along` is metres to the right of the wall's middle as seen from
-  // inside, `z` the height of its centre.
+  // Adds a flat picture to a wall. `along` is the distance in metres to the right of the middle of
+  // the wall, as seen from inside; `z` is the height of the centre.
   void AddPanel(Wall wall, double along, double z, double half_width, double half_height,
                 const Material& material);
-  // Posters side by side along all walls.
+  // Adds posters side by side along all walls.
   void AddPosters(const Palette& palette);
-  // An open shelf full of books, its back against the wall.
+  // Adds an open shelf full of books with its back against the wall.
   void AddShelf(Wall wall, double along, const Palette& palette);
-  // A table with its top at z = `height`.
+  // Adds a table with its top at z = `height`.
   void AddTable(const Eigen::Vector2d& centre, const Eigen::Vector2d& half, double height,
                 const Palette& palette);
   void AddBackground(const Shape& shape, const Material& material, const Rigid3& world_from_part);

@@ -28,7 +28,7 @@ constexpr double kFramesPerSecond = 30.0;
 constexpr double kTableHeight = 0.75;
 constexpr double kPi = std::numbers::pi;
 
-// Tints, blue green red.
+// Tints in the order blue, green, red.
 Vector3f Red() { return {0.35F, 0.35F, 1.1F}; }
 Vector3f Green() { return {0.45F, 0.95F, 0.45F}; }
 Vector3f Blue() { return {1.1F, 0.65F, 0.4F}; }
@@ -158,8 +158,8 @@ Scene BuildDesk(uint64_t seed) {
   return builder.Finish();
 }
 
-// Gives all surfaces nearly the same brightness by day's flat light, so that things differ in hue
-// and edges are too weak for most corner detectors to fire along them.
+// Gives all surfaces nearly the same brightness in flat daylight. Then objects differ mostly in
+// hue, and most corner detectors find nothing along the weak edges.
 void EvenOutBrightness(Scene& scene, RandomStream& random) {
   const auto even_out = [&](Part& part) {
     const Texture& texture = scene.textures[static_cast<size_t>(part.material.texture)];
@@ -190,9 +190,10 @@ Scene BuildLowTexture(uint64_t seed) {
   return builder.Finish();
 }
 
-// Walks to and fro between the camera's circle and the table, always facing along the path.
+// The pose of a person who walks back and forth between the circle of the camera and the table,
+// always facing along the path.
 Rigid3 WalkerPose(const OrbitPath& orbit, double half_height, double time) {
-  constexpr double kSwing = 0.95;   // radians to either side of where the camera is
+  constexpr double kSwing = 0.95;   // radians to either side of the camera
   constexpr double kPeriod = 11.0;  // seconds
   const double phase = 2.0 * kPi * time / kPeriod + 0.5 * kPi;
   const double angle = orbit.start_angle + orbit.angular_speed * time + kSwing * std::sin(phase);
@@ -298,7 +299,8 @@ Scene BuildRoom(int frames, uint64_t seed) {
   FurnishLeftWall(builder, palette);
   builder.scene().lights = {{.position = {-1.0F, -0.5F, 2.5F}, .strength = 1.9F},
                             {.position = {1.2F, 0.6F, 2.5F}, .strength = 1.7F}};
-  // Below 300 frames the loop is cut short rather than run faster than a hand can turn.
+  // A loop of fewer than 300 frames is cut off instead of run faster, because a hand cannot turn
+  // faster.
   const LoopPath loop{.duration = std::max(frames - 1, 299) / kFramesPerSecond};
   const HandMotion hand(HashSeed(seed, 0, "hand"));
   builder.scene().world_from_cam = [loop, hand](double time) {

@@ -10,15 +10,15 @@ namespace hullslam::synthetic {
 
 enum class SceneKind { kDesk, kRoom, kLowTexture, kDynamic };
 
-// "desk", "room", "lowtexture", "dynamic"; another name throws InputError.
+// The kind with the name "desk", "room", "lowtexture" or "dynamic"; another name throws InputError.
 SceneKind ParseSceneKind(std::string_view name);
 std::string_view SceneName(SceneKind kind);
 
-// Frames of the sequence that the scene is made for, at 30 frames a second.
+// The number of frames of the sequence that the scene was designed for, at 30 frames per second.
 int DefaultFrames(SceneKind kind);
 
-// The whole scene with the path of its camera. Layout and path are the same for every seed up to
-// small changes; textures differ. `frames` sets how fast `room` closes its loop.
+// The whole scene with the path of its camera. Layout and path are the same for every seed except
+// for small changes; the textures differ. `frames` determines how fast `room` closes its loop.
 Scene BuildScene(SceneKind kind, int frames, uint64_t seed);
 
 }  // namespace hullslam::synthetic

@@ -11,25 +11,27 @@
 namespace hullslam::synthetic {
 namespace {
 
-// Focal length (px) times distance from camera to projector (m).
+// Focal length (px) times the distance between camera and projector (m).
 constexpr float kProjectorBaseline = 535.0F * 0.075F;
 
-// True for pixels whose surface the projector does not see. The projector is to the right: a
-// surface at column x has column x - b/z there, and along a row, from the right, what falls behind
-// the leftmost column reached so far is in the shadow of something nearer.
+// True for pixels whose surface the projector does not see. The projector is to the right of the
+// camera and sees the surface at column x in its own column x - b/z. Going along a row from the
+// right, a surface is in the shadow of something nearer if its projector column is to the right of
+// the leftmost column so far.
 std::vector<uint8_t> ShadowOfRow(const float* depth, int width) {
   std::vector<uint8_t> shadow(static_cast<size_t>(width), 0);
   float reached = std::numeric_limits<float>::infinity();
   for (int x = width - 1; x >= 0; --x) {
     const float column = static_cast<float>(x) - kProjectorBaseline / depth[x];
-    // Half a pixel: neighbours on a slanted surface are no shadow.
+    // A tolerance of half a pixel: neighbours on a slanted surface do not shadow each other.
     shadow[static_cast<size_t>(x)] = column > reached + 0.5F ? 1 : 0;
     reached = std::min(reached, column);
   }
   return shadow;
 }
 
-// Normal numbers on a coarse grid, interpolated: an error that neighbouring pixels share.
+// Normally distributed numbers on a coarse grid, interpolated: an error that neighbouring pixels
+// share.
 class SmoothNoise {
  public:
   SmoothNoise(const NormalTable& normal, uint64_t seed, const cv::Size& size)

@@ -9,31 +9,31 @@
 
 namespace hullslam::synthetic {
 
-// An RGB-D camera of the first Kinect's kind that looks at rendered frames. What is random depends
-// on seed, frame number and pixel alone.
+// Simulates an RGB-D camera like the first Kinect on rendered frames. The random errors depend only
+// on seed, frame number and pixel.
 class Sensor {
  public:
   struct Options {
-    bool noise = true;  // false: exact colours and depths, only rounded to the image's units
+    bool noise = true;  // false: exact colours and depths, only rounded to integers
     double units_per_metre = 5000.0;
-    double min_depth = 0.5;  // metres; nearer and further ones are unknown
+    double min_depth = 0.5;  // metres; depths outside these limits are unknown
     double max_depth = 8.0;
-    // Width of a step of the measured disparity, as a change of inverse depth (1/m): an eighth of
+    // Size of one step of the measured disparity, as a change of inverse depth (1/m): an eighth of
     // a pixel at a focal length of 580 px and a baseline of 7.5 cm (Khoshelham and Elberink 2012).
-    // A step of depth is this times z^2.
+    // One step of depth is this times z^2.
     double disparity_step = 2.87e-3;
   };
 
   Sensor(const Options& options, uint64_t seed) : options_(options), seed_(seed) {}
 
-  // CV_8UC3, BGR: vignette, slow changes of exposure, and noise with a part that grows with the
-  // signal.
+  // The colour image, CV_8UC3, BGR, with vignetting, slow changes of exposure, and noise, of which
+  // a part grows with the signal.
   cv::Mat Colour(const RenderedFrame& frame, uint32_t number) const;
-  // CV_16UC1, 0 where unknown. Disparity has half a step of noise, partly common to neighbours as
-  // in block matching, and is then rounded, so that the error grows with z^2. Unknown are depths
-  // out of range, surfaces seen at a grazing angle, what the pattern's projector (to the right of
-  // the camera) does not reach, and many pixels at depth edges; others there take their
-  // neighbour's depth.
+  // The depth image, CV_16UC1, 0 where unknown. The disparity gets noise of half a step, which
+  // neighbours partly share as in block matching, and is then rounded, so that the error of the
+  // depth grows with z^2. The depth is unknown if it is out of range, if the surface is seen at a
+  // grazing angle, and if the projector (to the right of the camera) does not reach the surface.
+  // Many pixels at depth edges are unknown too; other pixels there take the depth of a neighbour.
   cv::Mat Depth(const RenderedFrame& frame, uint32_t number) const;
 
  private:

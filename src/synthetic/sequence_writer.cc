@@ -130,8 +130,8 @@ void WriteFrame(const Scene& scene, const Renderer& renderer, const Sensor& sens
   output.WriteFile("masks/" + stem + ".txt", MaskText(scene, rendered.instance));
 }
 
-// Calls `write` for all frames from `threads` threads, whole frames each. Returns false when
-// `progress` gave up; throws what the first failing frame threw.
+// Calls `write` for all frames from `threads` threads, one call per frame. Returns false if
+// `progress` asked to stop. If frames fail, throws the exception of the first one.
 bool ForEachFrame(int frames, int threads, const std::function<void(int)>& write,
                   const std::function<bool(int)>& progress) {
   std::atomic<int> next = 0;
@@ -179,7 +179,7 @@ double FrameStamp(int frame) { return 1000.0 + std::round(FrameTime(frame) * 1e6
 
 bool WriteSequence(const std::filesystem::path& folder, const SequenceOptions& options,
                    const std::function<bool(int)>& progress) {
-  Check(options.frames > 0 && options.threads >= 0, "a sequence needs frames");
+  Check(options.frames > 0 && options.threads >= 0, "a sequence needs at least one frame");
   OutputSwap output(folder, options.force);
   const Scene scene = BuildScene(options.scene, options.frames, options.seed);
   const PinholeCamera camera = SyntheticCamera();

@@ -14,24 +14,25 @@ struct SequenceOptions {
   SceneKind scene = SceneKind::kDesk;
   int frames = 300;
   uint64_t seed = 0;
-  bool force = false;  // may replace a folder that an earlier run has written
-  bool noise = true;   // of the sensor
-  int threads = 0;     // 0: as many as the machine has
+  bool force = false;  // allows replacing a folder that an earlier run wrote
+  bool noise = true;   // whether the sensor has noise
+  int threads = 0;     // 0: as many as the CPU supports
 };
 
-// 640x480, the intrinsics of TUM's freiburg3 without distortion.
+// A camera with 640x480 px, the intrinsics of TUM freiburg3, and no distortion.
 PinholeCamera SyntheticCamera();
 
-// Time stamp in seconds of a frame, as it is written: 1000 and 30 frames a second.
+// Time stamp of a frame in seconds, as it is written: 1000 s plus frame / 30 s.
 double FrameStamp(int frame);
 
-// Renders a scene and writes a TUM folder with ground truth (docs/synthetic.md). The same options
-// but for `threads` give the same bytes. All is written next to `folder` under another name and
-// moved there at the end; when something fails, nothing is left and what was there is untouched.
+// Renders a scene and writes a folder in TUM's format with ground truth (docs/synthetic.md). The
+// result does not depend on `threads`: the same options give the same bytes. Everything is written
+// under a temporary name next to `folder` and moved there at the end, so after a failure nothing is
+// left and earlier content is unchanged.
 //
-// `progress` is called after each frame with the number done, by one thread at a time; it returns
-// false to give up. Returns whether the sequence was finished. Throws InputError when `folder`
-// exists and may not be replaced or cannot be written.
+// `progress` is called after each frame with the number of finished frames, by one thread at a
+// time; it returns false to stop. Returns whether the sequence was completed. Throws InputError if
+// `folder` exists and may not be replaced, or if it cannot be written.
 bool WriteSequence(const std::filesystem::path& folder, const SequenceOptions& options,
                    const std::function<bool(int)>& progress);
 

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 constexpr double kMaxError = 4e-5;  // metres
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-// |x|^(2/east) + |y|^(2/east), raised to east/north, + |z|^(2/north): 1 on the surface and
+// (|x|^(2/east) + |y|^(2/east))^(east/north) + |z|^(2/north), which is 1 on the surface and
 // homogeneous of degree 2/north.
 double SuperquadricSum(const Shape& shape, const Vector3d& q) {
   const double around =
@@ -56,8 +56,8 @@ Vector3d TorusNormal(const Shape& shape, const Vector3d& point) {
   return point - ring * flat.normalized();
 }
 
-// Vertices of a closed grid of `rows` x `columns` quads, split into triangles. Neighbouring faces
-// of a cube repeat their common vertices with the same bits, so no ray passes between them.
+// Adds the vertices of a grid of `rows` x `columns` quads, which are split into triangles.
+// Neighbouring faces of a cube have bit-identical common vertices, so no ray passes between them.
 void AddGrid(int rows, int columns, const std::function<Vector3d(double, double)>& point,
              TriangleMesh& mesh) {
   const auto first = static_cast<uint32_t>(mesh.vertices.size());
@@ -78,12 +78,12 @@ void AddGrid(int rows, int columns, const std::function<Vector3d(double, double)
   }
 }
 
-// Six faces of a cube of `steps` x `steps` quads, each vertex moved by `map`. The grid lines are
-// spread by a tangent, so that they are evenly spaced in angle on a sphere.
+// A cube with six faces of `steps` x `steps` quads, whose vertices are moved by `map`. The grid
+// lines are spaced by a tangent, so that they are evenly spaced in angle on a sphere.
 TriangleMesh CubeMesh(int steps, const std::function<Vector3d(const Vector3d&)>& map) {
   TriangleMesh mesh;
   const auto spread = [](double fraction) {
-    const double t = 2.0 * fraction - 1.0;  // the ends are exact, for the faces to join
+    const double t = 2.0 * fraction - 1.0;  // exact at both ends, so that the faces join
     return std::abs(t) == 1.0 ? t : std::tan(std::numbers::pi / 4.0 * t);
   };
   for (int axis = 0; axis < 3; ++axis) {
@@ -103,8 +103,9 @@ TriangleMesh CubeMesh(int steps, const std::function<Vector3d(const Vector3d&)>&
   return mesh;
 }
 
-// Quads along a quarter of a circle for the chords to stay within `kMaxError` of a radius of `half`
-// metres; even, so that the ends of the axes are vertices.
+// The number of quads along a quarter of a circle with a radius of `half` metres for which the
+// chords stay within `kMaxError` of the circle. It is even, so that the ends of the axes are
+// vertices.
 int SphereSteps(double half) {
   const double angle = std::sqrt(8.0 * kMaxError / half);
   return 2 * static_cast<int>(std::ceil(0.25 * std::numbers::pi / angle));
@@ -162,24 +163,6 @@ Shape Shape::Cylinder(double radius, double half_height) {
 
 Shape Shape::Torus(double ring, double tube) {
   return {.kind = ShapeKind::kTorus, .half = {ring + tube, tube, ring + tube}, .tube = tube};
-}
-
-double Shape::Implicit(const Vector3d& point) const {
-  const Vector3d q = point.cwiseQuotient(half);
-  switch (kind) {
-    case ShapeKind::kBox:
-      return q.lpNorm<Eigen::Infinity>() - 1.0;
-    case ShapeKind::kEllipsoid:
-      return q.norm() - 1.0;
-    case ShapeKind::kSuperquadric:
-      return std::pow(SuperquadricSum(*this, q), north / 2.0) - 1.0;
-    case ShapeKind::kCylinder:
-      return std::max(q.head<2>().norm(), std::abs(q.z())) - 1.0;
-    case ShapeKind::kTorus:
-      return std::hypot(std::hypot(point.x(), point.z()) - (half.x() - tube), point.y()) / tube -
-             1.0;
-  }
-  throw CheckError("unknown kind of shape");
 }
 
 Vector3d Shape::Normal(const Vector3d& point) const {

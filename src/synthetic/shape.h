@@ -10,27 +10,24 @@ namespace hullslam::synthetic {
 
 enum class ShapeKind { kBox, kEllipsoid, kSuperquadric, kCylinder, kTorus };
 
-// A primitive solid centred at the origin of its own frame; lengths in metres.
+// A primitive solid, centred at the origin of its own frame. Lengths are in metres.
 struct Shape {
   ShapeKind kind = ShapeKind::kBox;
   Eigen::Vector3d half = Eigen::Vector3d::Ones();  // half extents along the axes, tight
-  // Exponents of a superquadric (Barr 1981): `north` along z, `east` around z; 1 and 1 is an
-  // ellipsoid, towards 0 a box.
+  // Exponents of a superquadric (Barr 1981): `north` along z, `east` around z. 1 and 1 give an
+  // ellipsoid, values towards 0 a box.
   double north = 1.0;
   double east = 1.0;
-  double tube = 0.0;  // radius of a torus' tube
+  double tube = 0.0;  // radius of the tube of a torus
 
   static Shape Box(const Eigen::Vector3d& half);
   static Shape Ellipsoid(const Eigen::Vector3d& half);
   static Shape Superquadric(const Eigen::Vector3d& half, double north, double east);
-  // Along z, with flat ends.
+  // A cylinder along z, with flat ends.
   static Shape Cylinder(double radius, double half_height);
-  // Around the y axis; `ring` is the radius of the circle inside the tube.
+  // A torus around the y axis. `ring` is the radius of the circle in the middle of the tube.
   static Shape Torus(double ring, double tube);
 
-  // Negative inside, 0 on the surface, positive outside; without unit, about the distance divided
-  // by the size.
-  double Implicit(const Eigen::Vector3d& point) const;
   // Outward unit normal at a point on (or near) the surface.
   Eigen::Vector3d Normal(const Eigen::Vector3d& point) const;
 };
@@ -40,8 +37,8 @@ struct TriangleMesh {
   std::vector<std::array<uint32_t, 3>> triangles;
 };
 
-// The surface as triangles with all vertices on it; between them they are at most 4e-5 m inside an
-// ellipsoid: 0.04 px at half a metre.
+// The surface as triangles with all vertices on it. Between the vertices the triangles of an
+// ellipsoid are at most 4e-5 m inside the surface, which is 0.04 px at half a metre.
 TriangleMesh Tessellate(const Shape& shape);
 
 }  // namespace hullslam::synthetic

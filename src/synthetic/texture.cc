@@ -12,22 +12,23 @@
 namespace hullslam::synthetic {
 namespace {
 
-// std::floor is a function call for processors without SSE 4.1, and this is the innermost loop.
+// Without SSE 4.1 std::floor is a function call, and this is the innermost loop.
 int Floor(float x) {
   const int truncated = static_cast<int>(x);
   return truncated - (x < static_cast<float>(truncated) ? 1 : 0);
 }
 
-// The colour between four texels, times 256, in 16-bit lanes. The weights are integers that add up
-// to 256, so no lane runs over into the next and one multiplication serves all three colours.
-// `texels`: a square of `size` x `size`.
+// Interpolates between four texels. Returns 256 times the colour, in 16-bit lanes. The weights are
+// integers with sum 256, so no lane overflows into the next one, and one multiplication serves all
+// three colours. `texels` is a square of `size` x `size`.
 uint64_t Bilinear(const uint64_t* texels, int size, float u, float v) {
   const int x = Floor((u * static_cast<float>(size) - 0.5F) * 256.0F + 0.5F);
   const int y = Floor((v * static_cast<float>(size) - 0.5F) * 256.0F + 0.5F);
   const auto fx = static_cast<uint64_t>(x & 255);
   const auto fy = static_cast<uint64_t>(y & 255);
   const uint64_t both = (fx * fy + 128) >> 8;
-  const int mask = size - 1;  // the size is a power of two: wraps negative indices too
+  const int mask =
+      size - 1;  // works because the size is a power of two; wraps negative indices too
   const int left = (x >> 8) & mask;
   const int right = (left + 1) & mask;
   const auto* upper = texels + static_cast<ptrdiff_t>((y >> 8) & mask) * size;
@@ -48,7 +49,7 @@ Eigen::Vector3f Unpack(uint64_t lanes) {
 Texture::Texture(const cv::Mat& image) {
   Check(image.type() == CV_8UC3 && image.rows == image.cols && image.rows > 0 &&
             std::has_single_bit(static_cast<unsigned>(image.rows)),
-        "a texture is a square colour image, a power of two wide");
+        "the texture is not a square colour image with a power of two as width");
   cv::Mat current = image;
   while (true) {
     Level level;

@@ -8,17 +8,17 @@
 
 namespace hullslam::synthetic {
 
-// A repeating colour image with its mip levels (Williams 1983), so that what is sampled is limited
-// to the band that the pixels can hold and corners do not flicker from frame to frame.
+// A repeating colour image with its mip levels (Williams 1983). Samples are band-limited to what
+// the pixels can represent, so that corners do not flicker from frame to frame.
 class Texture {
  public:
-  // `image`: CV_8UC3, BGR, square, a power of two wide; else CheckError.
+  // Throws CheckError unless `image` is CV_8UC3 (BGR), square, and a power of two wide.
   explicit Texture(const cv::Mat& image);
 
   int size() const { return levels_.front().size; }
-  // Mip level, with a fraction, for samples that stand for a width of `footprint` image widths.
+  // The mip level, with a fraction, for samples that represent a width of `footprint` image widths.
   float LevelOfDetail(float footprint) const;
-  // BGR, 0 to 255, at (u, v) where 1 is one image width or height, v downwards.
+  // The colour (BGR, 0 to 255) at (u, v). 1 is one image width or height, and v points down.
   Eigen::Vector3f Sample(const Eigen::Vector2f& uv, float level_of_detail) const;
 
  private:

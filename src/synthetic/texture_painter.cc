@@ -13,7 +13,7 @@ namespace hullslam::synthetic {
 namespace {
 
 cv::Scalar RandomColour(RandomStream& random, double low, double high) {
-  // Printed colours are not pure: each is halfway to a common grey.
+  // Printed colours are not pure, so each is halfway to grey.
   const double grey = 0.5 * random.Uniform(low, high);
   const double b = 0.5 * random.Uniform(low, high);
   const double g = 0.5 * random.Uniform(low, high);
@@ -23,7 +23,7 @@ cv::Scalar RandomColour(RandomStream& random, double low, double high) {
 
 cv::Mat Canvas(int size, const cv::Scalar& colour) { return {size, size, CV_8UC3, colour}; }
 
-// Adds noise of strength `contrast` (grey levels), the same to all three colours.
+// Adds noise with a standard deviation of `contrast` (grey levels), the same to all three colours.
 void AddNoise(uint64_t seed, int period, int octaves, double contrast, cv::Mat& image) {
   const cv::Mat noise = PaintNoise(seed, image.rows, period, octaves);
   for (int y = 0; y < image.rows; ++y) {
@@ -36,8 +36,8 @@ void AddNoise(uint64_t seed, int period, int octaves, double contrast, cv::Mat& 
   }
 }
 
-// Draws with `draw(offset)` at the place and at its copies beyond the borders, so that what is cut
-// at one side goes on at the other.
+// Calls `draw(offset)` for the original position and for its copies beyond the borders. What is cut
+// off at one side then continues at the opposite side.
 template <typename Draw>
 void Tiled(int size, const Draw& draw) {
   for (const int dy : {-size, 0, size}) {
@@ -58,7 +58,7 @@ std::string RandomWord(RandomStream& random) {
   return word;
 }
 
-// Lines of words inside `box`, letters about `height` px high.
+// Draws lines of words inside `box`, with letters about `height` px high.
 void WriteText(RandomStream& random, const cv::Rect& box, int height, const cv::Scalar& ink,
                cv::Mat& image) {
   const double scale = height / 22.0;

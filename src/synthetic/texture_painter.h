@@ -6,15 +6,15 @@
 
 namespace hullslam::synthetic {
 
-// Procedural textures: CV_8UC3, BGR, square, `size` (a power of two) wide. Those of surfaces
-// repeat without a seam; posters, pages and screens are single pictures. All have detail over
-// several octaves, so that corners are found at every level of an image pyramid.
+// Procedural textures: CV_8UC3, BGR, square, `size` (a power of two) wide. Textures of surfaces
+// repeat without a seam; posters, pages and screens are single pictures. All textures have detail
+// over several octaves, so that corners are found at all levels of an image pyramid.
 
-// Sum of `octaves` octaves of value noise, about -1 to 1, CV_32FC1. The first has `period` cells
-// across the image, each next one twice as many at half the strength.
+// Sum of `octaves` octaves of value noise, about -1 to 1, CV_32FC1. The first octave has `period`
+// cells across the image; each following one has twice as many cells and half the strength.
 cv::Mat PaintNoise(uint64_t seed, int size, int period, int octaves);
 
-// One colour with noise of standard strength `contrast` (grey levels) over it.
+// One colour plus noise with a standard deviation of `contrast` (grey levels).
 cv::Mat PaintPlain(uint64_t seed, int size, const cv::Scalar& colour, double contrast);
 // Plaster with stains, chips and cracks.
 cv::Mat PaintPlaster(uint64_t seed, int size, const cv::Scalar& colour);

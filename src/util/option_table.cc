@@ -45,7 +45,7 @@ std::optional<bool> ParseBool(std::string_view text) {
   return std::nullopt;
 }
 
-// Levenshtein distance (two-row dynamic programme), to suggest a key for a misspelt one.
+// Levenshtein distance, to suggest the right key for a misspelt one.
 size_t EditDistance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), size_t{0});
@@ -90,7 +90,7 @@ void OptionTable::AddOption(std::string key, Option option) {
   Check(inserted, "an option is bound twice");
 }
 
-// Both strings are moved on, which clang-tidy does not see in a template.
+// Both strings are moved from, but clang-tidy does not see this in a template.
 template <typename Number>
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
 void OptionTable::AddNumber(std::string key, Number* field, Range range, std::string help) {

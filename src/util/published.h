@@ -7,8 +7,8 @@
 
 namespace hullslam {
 
-// The newest version of an immutable value: one thread publishes, any thread reads. A reader keeps
-// its version for as long as it holds the pointer.
+// The newest version of an immutable value: one thread publishes, any thread reads. A version stays
+// alive as long as a reader holds a pointer to it.
 template <typename Value>
 class Published {
  public:

@@ -37,7 +37,7 @@ std::vector<Candidate> FindCandidates(std::span<const double> first, std::span<c
 std::vector<IndexPair> PairStampsGreedily(std::span<const double> first,
                                           std::span<const double> second, double max_difference) {
   std::vector<Candidate> candidates = FindCandidates(first, second, max_difference);
-  // Equal differences are taken in order of time, as associate.py's sorted tuples are.
+  // Ties are broken by time, as in the sorted tuples of associate.py.
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return std::tie(a.difference, a.pair.first, a.pair.second) <
            std::tie(b.difference, b.pair.first, b.pair.second);

@@ -31,7 +31,7 @@ TEST(SampleDepth, KeepsTheFullRangeOfAnIntegerImage) {
   EXPECT_FLOAT_EQ(SampleDepth(depth, {1.0f, 1.0f}, 5000.0), 13.107f);
 }
 
-TEST(SampleDepth, ReadsMetresAndDropsWhatIsNoDepth) {
+TEST(SampleDepth, ReadsMetresAndTreatsInvalidValuesAsUnknown) {
   cv::Mat depth(1, 5, CV_32FC1);
   const float values[] = {2.25f, kNan, kInfinity, -1.0f, 0.0f};
   for (int i = 0; i < 5; ++i) {
@@ -55,14 +55,14 @@ TEST(SampleDepth, IsUnknownOutsideTheImage) {
   EXPECT_EQ(SampleDepth(depth, {1e30f, 1.0f}, 5000.0), 0.0f);
 }
 
-TEST(SampleDepth, RejectsOtherTypes) {
+TEST(SampleDepth, RejectsOtherImageTypes) {
   EXPECT_THROW(SampleDepth(cv::Mat(3, 4, CV_8UC1, cv::Scalar(5)), {1.0f, 1.0f}, 5000.0),
                CheckError);
   EXPECT_THROW(SampleDepth(cv::Mat(3, 4, CV_64FC1, cv::Scalar(5)), {1.0f, 1.0f}, 5000.0),
                CheckError);
 }
 
-TEST(VirtualRight, IsTheDisparityToTheLeft) {
+TEST(VirtualRight, IsLeftOfThePixelByTheDisparity) {
   EXPECT_FLOAT_EQ(VirtualRight(320.0f, 2.0f, 40.0), 300.0f);
   EXPECT_FLOAT_EQ(VirtualRight(10.0f, 0.5f, 40.0), -70.0f);
   EXPECT_EQ(VirtualRight(320.0f, 0.0f, 40.0), -1.0f);

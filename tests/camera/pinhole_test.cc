@@ -13,7 +13,8 @@
 namespace hullslam {
 namespace {
 
-// TUM freiburg1, the strongest distortion of the settings that ORB-SLAM2 ships.
+// The camera of TUM freiburg1, which has the strongest distortion of the cameras that ORB-SLAM2
+// ships settings for.
 PinholeCamera Tum1() {
   return {.fx = 517.306408,
           .fy = 516.469215,
@@ -44,7 +45,7 @@ std::vector<Eigen::Vector2d> PixelsOf(const PinholeCamera& camera) {
   return pixels;
 }
 
-TEST(PinholeCamera, ProjectsByHand) {
+TEST(PinholeCamera, ProjectsAsComputedByHand) {
   const PinholeCamera camera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0};
   EXPECT_EQ(camera.Project({1.0, -0.5, 2.0}), Eigen::Vector2d(570.0, 140.0));
   EXPECT_EQ(camera.Project({0.0, 0.0, 7.0}), Eigen::Vector2d(320.0, 240.0));
@@ -67,7 +68,7 @@ TEST(PinholeCamera, UndistortInvertsDistort) {
   }
 }
 
-TEST(PinholeCamera, DistortIsThatOfOpenCv) {
+TEST(PinholeCamera, DistortAgreesWithOpenCv) {
   const PinholeCamera camera = Tum1();
   for (const Eigen::Vector2d& pixel : PixelsOf(camera)) {
     const Eigen::Vector3d point = camera.Unproject(pixel, 1.0);
@@ -80,7 +81,7 @@ TEST(PinholeCamera, DistortIsThatOfOpenCv) {
   }
 }
 
-TEST(PinholeCamera, UndistortIsThatOfOpenCv) {
+TEST(PinholeCamera, UndistortAgreesWithOpenCv) {
   const PinholeCamera camera = Tum1();
   for (const Eigen::Vector2d& raw : PixelsOf(camera)) {
     const std::vector<cv::Point2d> points = {{raw.x(), raw.y()}};
@@ -94,14 +95,14 @@ TEST(PinholeCamera, UndistortIsThatOfOpenCv) {
   }
 }
 
-TEST(PinholeCamera, PrincipalPointStays) {
+TEST(PinholeCamera, PrincipalPointIsNotMoved) {
   const PinholeCamera camera = Tum1();
   const Eigen::Vector2d center(camera.cx, camera.cy);
   EXPECT_LT((camera.Distort(center) - center).norm(), 1e-12);
   EXPECT_LT((camera.Undistort(center) - center).norm(), 1e-12);
 }
 
-TEST(PinholeCamera, WithoutDistortionNothingMoves) {
+TEST(PinholeCamera, WithoutDistortionNoPixelMoves) {
   PinholeCamera camera = Tum1();
   camera.k1 = camera.k2 = camera.p1 = camera.p2 = camera.k3 = 0.0;
   EXPECT_FALSE(camera.IsDistorted());
@@ -113,7 +114,7 @@ TEST(PinholeCamera, WithoutDistortionNothingMoves) {
   EXPECT_EQ(bounds.max_y, 480.0);
 }
 
-// r (1 - r^2) has its maximum 0.385 at r = 0.577: no undistorted point lies beyond.
+// r (1 - r^2) has its maximum 0.385 at r = 0.577, so no undistorted point lies beyond.
 TEST(PinholeCamera, UndistortStopsAtAFold) {
   const PinholeCamera camera{.fx = 100.0, .fy = 100.0, .cx = 0.0, .cy = 0.0, .k1 = -1.0};
   const Eigen::Vector2d inside = camera.Undistort({38.0, 0.0});
@@ -125,7 +126,7 @@ TEST(PinholeCamera, UndistortStopsAtAFold) {
   }
 }
 
-TEST(PinholeCamera, BoundsHoldTheImage) {
+TEST(PinholeCamera, BoundsContainTheImage) {
   const PinholeCamera camera = Tum1();
   const PinholeCamera::Bounds bounds = camera.UndistortedBounds();
   for (const Eigen::Vector2d& raw : PixelsOf(camera)) {
@@ -137,7 +138,7 @@ TEST(PinholeCamera, BoundsHoldTheImage) {
   }
 }
 
-TEST(PinholeCamera, BoundsContainHalfOpen) {
+TEST(PinholeCamera, BoundsAreHalfOpen) {
   const PinholeCamera::Bounds bounds{.min_x = 0.0, .min_y = -2.0, .max_x = 10.0, .max_y = 5.0};
   EXPECT_TRUE(bounds.Contains({0.0, -2.0}));
   EXPECT_TRUE(bounds.Contains({9.999, 4.999}));

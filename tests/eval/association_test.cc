@@ -19,25 +19,25 @@ Trajectory AtTimes(const std::vector<double>& stamps) {
 TEST(Association, TumRuleIsOneToOneAndEvoRuleIsNot) {
   const Trajectory reference = AtTimes({1.000});
   const Trajectory estimate = AtTimes({0.996, 1.003});
-  // The reference is shorter, so evo asks once for the nearest estimate.
+  // The reference is the shorter trajectory, so evo looks for one pair only.
   EXPECT_EQ(PairPoses(reference, estimate, PairingRule::kEvo, 0.01),
             (std::vector<IndexPair>{{0, 1}}));
   const Trajectory two = AtTimes({0.996, 1.003});
   const Trajectory three = AtTimes({1.000, 2.0, 3.0});
-  // Here the estimate is, and both of its poses are given the same partner.
+  // Here the estimate is shorter, and both of its poses get the same partner.
   EXPECT_EQ(PairPoses(three, two, PairingRule::kEvo, 0.01),
             (std::vector<IndexPair>{{0, 0}, {0, 1}}));
   EXPECT_EQ(PairPoses(three, two, PairingRule::kTum, 0.01), (std::vector<IndexPair>{{0, 1}}));
 }
 
-TEST(Association, OfEquallyLongOnesEvoGoesThroughTheEstimate) {
+TEST(Association, EvoUsesTheStampsOfTheEstimateForEqualLengths) {
   const Trajectory reference = AtTimes({1.000, 5.0});
   const Trajectory estimate = AtTimes({0.996, 1.003});
   EXPECT_EQ(PairPoses(reference, estimate, PairingRule::kEvo, 0.01),
             (std::vector<IndexPair>{{0, 0}, {0, 1}}));
 }
 
-TEST(Association, OnlyEvoCountsTheLimitItself) {
+TEST(Association, TheLimitIsInclusiveForEvoOnly) {
   const Trajectory reference = AtTimes({1.0, 2.0});
   const Trajectory estimate = AtTimes({1.5});
   EXPECT_EQ(PairPoses(reference, estimate, PairingRule::kEvo, 0.5).size(), 1U);
@@ -51,7 +51,7 @@ TEST(Association, EmptyTrajectoriesHaveNoPairs) {
   }
 }
 
-TEST(Association, RulesAreNamedWithTheLimitsOfTheirTools) {
+TEST(Association, RulesHaveTheNamesAndLimitsOfTheirTools) {
   EXPECT_STREQ(ToString(PairingRule::kTum), "tum");
   EXPECT_STREQ(ToString(PairingRule::kEvo), "evo");
   EXPECT_EQ(DefaultMaxDifference(PairingRule::kTum), 0.02);

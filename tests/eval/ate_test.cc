@@ -30,7 +30,7 @@ Trajectory Moved(const Trajectory& trajectory, const Rigid3& motion, double scal
   return moved;
 }
 
-TEST(Ate, IsInvariantUnderWhatTheAlignmentTakesAway) {
+TEST(Ate, IsInvariantUnderTheTransformsOfTheAlignment) {
   const Trajectory reference = Helix(50);
   const Rigid3 motion(ExpSo3({1.0, -0.5, 2.0}), {3.0, 4.0, -5.0});
   const AteReport rigid = EvaluateAte(reference, Moved(reference, motion, 1.0));
@@ -43,7 +43,7 @@ TEST(Ate, IsInvariantUnderWhatTheAlignmentTakesAway) {
   EXPECT_NEAR(similar.reference_from_estimate.scale, 2.0, 1e-9);
 }
 
-TEST(Ate, WithoutAlignmentIsThePlainDistance) {
+TEST(Ate, WithoutAlignmentIsTheDistanceOfThePositions) {
   const Trajectory reference = Helix(10);
   const Trajectory shifted = Moved(reference, Rigid3({1, 0, 0, 0}, {0.0, 3.0, 4.0}), 1.0);
   const AteReport report = EvaluateAte(reference, shifted, {.alignment = AlignmentKind::kNone});

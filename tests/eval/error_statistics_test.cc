@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-TEST(ErrorStatistics, OfAHandMadeList) {
+TEST(ErrorStatistics, MatchHandComputedValues) {
   const ErrorStatistics statistics = SummarizeErrors({4.0, 1.0, 3.0, 2.0});
   EXPECT_DOUBLE_EQ(statistics.rmse, std::sqrt(30.0 / 4.0));
   EXPECT_DOUBLE_EQ(statistics.mean, 2.5);
@@ -17,7 +17,7 @@ TEST(ErrorStatistics, OfAHandMadeList) {
   EXPECT_DOUBLE_EQ(SummarizeErrors({9.0, 1.0, 2.0}).median, 2.0);
 }
 
-TEST(ErrorStatistics, OfNothingAreZeros) {
+TEST(ErrorStatistics, OfAnEmptyListAreZero) {
   const ErrorStatistics statistics = SummarizeErrors({});
   EXPECT_EQ(statistics.rmse, 0.0);
   EXPECT_EQ(statistics.mean, 0.0);

@@ -27,14 +27,14 @@ ReportedObject MakeObject(uint32_t id, const Ellipsoid& ellipsoid) {
   return object;
 }
 
-// The true object as it would be mapped, moved by `shift` in the world.
+// The ellipsoid of a perfectly mapped true object, moved by `shift` in the world.
 Ellipsoid MappedAs(const TrueObject& truth, const Eigen::Vector3d& shift = {0, 0, 0}) {
   Ellipsoid ellipsoid = {truth.world_from_object, truth.half_extents};
   ellipsoid.world_from_object.translation += shift;
   return ellipsoid;
 }
 
-TEST(ObjectGroundtruth, ATrueObjectHasNoErrorInAnyWorld) {
+TEST(ObjectGroundtruth, APerfectlyMappedObjectHasNoErrorInAnyWorldFrame) {
   RandomGeometry random(5);
   const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0}), MakeTruth({1, 0, 0})};
   const Rigid3 truth_from_map = random.Pose(2.0, 10.0);
@@ -52,7 +52,7 @@ TEST(ObjectGroundtruth, ATrueObjectHasNoErrorInAnyWorld) {
   EXPECT_TRUE(comparison.without_truth.empty());
 }
 
-TEST(ObjectGroundtruth, ErrorsAreTheHandComputedOnes) {
+TEST(ObjectGroundtruth, ErrorsMatchHandComputedValues) {
   const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0})};
   ObjectReport report;
   Ellipsoid mapped = MappedAs(truths[0], {0.0, 0.02, 0.0});
@@ -65,8 +65,8 @@ TEST(ObjectGroundtruth, ErrorsAreTheHandComputedOnes) {
   EXPECT_LT((error.extent_ratios - Eigen::Vector3d(1.1, 1.0, 0.9)).norm(), 1e-9);
 }
 
-// The same ellipsoid with its axes called otherwise; turned by a right angle it is another one,
-// with the same axes.
+// Permuting the axes gives the same ellipsoid. A rotation by a right angle gives another ellipsoid
+// with axes of the same lengths.
 TEST(ObjectGroundtruth, TheOrderOfTheAxesDoesNotMatterButTheirDirectionsDo) {
   const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0})};
   ObjectReport report;
@@ -85,7 +85,7 @@ TEST(ObjectGroundtruth, TheOrderOfTheAxesDoesNotMatterButTheirDirectionsDo) {
   EXPECT_LT((error.extent_ratios - Eigen::Vector3d(2.0, 0.5, 1.0)).norm(), 1e-9);
 }
 
-TEST(ObjectGroundtruth, CountsTwiceMappedMissedAndInvented) {
+TEST(ObjectGroundtruth, CountsObjectsMappedTwiceMissedAndInvented) {
   TrueObject walker = MakeTruth({3, 0, 0}, "person");
   walker.is_dynamic = true;
   const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0}), MakeTruth({1, 0, 0}), walker};
@@ -93,7 +93,7 @@ TEST(ObjectGroundtruth, CountsTwiceMappedMissedAndInvented) {
   report.objects = {
       MakeObject(0, MappedAs(truths[0], {0.1, 0.0, 0.0})),   // farther
       MakeObject(1, MappedAs(truths[0], {0.0, 0.05, 0.0})),  // nearer
-      MakeObject(2, MappedAs(truths[0], {0.0, 0.0, 0.21})),  // over half the size away
+      MakeObject(2, MappedAs(truths[0], {0.0, 0.0, 0.21})),  // farther than half the size
       MakeObject(3, MappedAs(walker)),
       MakeObject(4, MappedAs(truths[1])),
   };
@@ -106,7 +106,7 @@ TEST(ObjectGroundtruth, CountsTwiceMappedMissedAndInvented) {
   EXPECT_EQ(comparison.without_truth, (std::vector<ObjectId>{ObjectId(2), ObjectId(3)}));
 }
 
-TEST(ObjectGroundtruth, OnlyWhatIsSeenOftenEnoughCanBeMissed) {
+TEST(ObjectGroundtruth, OnlyObjectsSeenOftenEnoughCanBeMissed) {
   TrueObject walker = MakeTruth({3, 0, 0}, "person");
   walker.is_dynamic = true;
   const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0}), MakeTruth({1, 0, 0}),
@@ -124,7 +124,7 @@ TEST(ObjectGroundtruth, OnlyWhatIsSeenOftenEnoughCanBeMissed) {
   EXPECT_EQ(seen.never, 1U);
 }
 
-TEST(ObjectGroundtruth, ErrorsAreSummarizedByShapeOverTheNearest) {
+TEST(ObjectGroundtruth, ErrorsAreSummarizedByShapeOverTheNearestMappedObjects) {
   std::vector<TrueObject> truths = {MakeTruth({0, 0, 0}), MakeTruth({1, 0, 0}),
                                     MakeTruth({2, 0, 0})};
   truths[0].shape = truths[1].shape = "ellipsoid";
@@ -149,7 +149,7 @@ TEST(ObjectGroundtruth, ErrorsAreSummarizedByShapeOverTheNearest) {
   EXPECT_NEAR(*ellipsoids.siou_mean, 0.85, 1e-12);
 }
 
-TEST(ObjectGroundtruth, ASightingIsOfTheClassAndWhereTheObjectIs) {
+TEST(ObjectGroundtruth, ASightingNeedsTheSameClassAndEnoughOverlap) {
   PinholeCamera camera;
   camera.fx = camera.fy = 500.0;
   camera.cx = 320.0;
@@ -165,14 +165,15 @@ TEST(ObjectGroundtruth, ASightingIsOfTheClassAndWhereTheObjectIs) {
   const std::vector<SeenBox> both = {
       {"bowl", around(340)}, {"cup", around(330)}, {"cup", around(310)}, {"vase", around(330)}};
   CountSightings(truths, camera, {}, both, sightings);
-  EXPECT_EQ(sightings, (std::vector<size_t>{2, 1, 0, 0}));  // twice in one frame counts once
+  EXPECT_EQ(sightings, (std::vector<size_t>{
+                           2, 1, 0, 0}));  // two detections of one frame count as one sighting
   CountSightings(truths, camera, {}, std::vector<SeenBox>{{"cup", around(100)}}, sightings);
   EXPECT_EQ(sightings, (std::vector<size_t>{2, 1, 0, 0}));
   CountSightings(truths, camera, {}, std::vector<SeenBox>{{"cup", around(525)}}, sightings);
   EXPECT_EQ(sightings, (std::vector<size_t>{2, 1, 0, 1}));
 }
 
-TEST(ObjectGroundtruth, OneCountATrueObject) {
+TEST(ObjectGroundtruth, SightingsNeedOneCountPerTrueObject) {
   std::vector<size_t> none;
   EXPECT_THROW(CountSightings(std::vector<TrueObject>(1), PinholeCamera(), {}, {}, none),
                CheckError);

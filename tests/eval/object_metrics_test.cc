@@ -27,27 +27,32 @@ Ellipsoid Sphere(double depth, double radius) {
           Eigen::Vector3d::Constant(radius)};
 }
 
-// The lines at `gap` px outside the outline, in `count` directions.
-std::vector<SilhouetteLine> LinesAround(const Ellipse& outline, int count, double gap) {
+// Lines at a distance of `gap` px outside the ellipse, in `count` directions.
+std::vector<SilhouetteLine> LinesAround(const Ellipse& ellipse, int count, double gap) {
   std::vector<SilhouetteLine> lines;
   for (int i = 0; i < count; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / count;
     const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
-    const double reach = outline.HalfExtent(normal) + gap;
-    lines.push_back({{normal, -normal.dot(outline.center) - reach}, false});
+    const double reach = ellipse.HalfExtent(normal) + gap;
+    lines.push_back({{normal, -normal.dot(ellipse.center) - reach}, false});
   }
   return lines;
 }
 
-// What a perfect segmenter sees of the ellipsoid.
+// The view that a perfect segmenter has of the ellipsoid.
 ReportedView PerfectView(const Ellipsoid& ellipsoid, const Rigid3& cam_from_world = {}) {
-  const Ellipse outline = ProjectEllipsoid(Camera().Matrix(), cam_from_world, ellipsoid).value();
+  const Ellipse ellipse = ProjectEllipsoid(Camera().Matrix(), cam_from_world, ellipsoid).value();
   ReportedView view;
   view.cam_from_world = cam_from_world;
-  view.hull = outline.Polygon(200);
+  view.hull = ellipse.Polygon(200);
   view.contour = view.hull;
-  view.lines = LinesAround(outline, 9, 0.0);
+  view.lines = LinesAround(ellipse, 9, 0.0);
   return view;
+}
+
+ObjectFit MeasureView(const Ellipsoid& ellipsoid, const ReportedView& view,
+                      const PinholeCamera& camera) {
+  return MeasureObject(ellipsoid, {&view, 1}, camera);
 }
 
 TEST(ObjectMetrics, APerfectViewFitsPerfectly) {
@@ -61,19 +66,19 @@ TEST(ObjectMetrics, APerfectViewFitsPerfectly) {
   EXPECT_EQ(fit.lines, 9U);
 }
 
-TEST(ObjectMetrics, TangentDistanceIsInPixelsOnBothSides) {
+TEST(ObjectMetrics, TangentDistanceIsPositiveOnBothSides) {
   const Ellipsoid sphere = Sphere(2.0, 0.3);
-  const Ellipse outline = ProjectEllipsoid(Camera().Matrix(), {}, sphere).value();
+  const Ellipse ellipse = ProjectEllipsoid(Camera().Matrix(), {}, sphere).value();
   ReportedView view = PerfectView(sphere);
-  view.lines = LinesAround(outline, 4, 3.0);
+  view.lines = LinesAround(ellipse, 4, 3.0);
   EXPECT_NEAR(MeasureView(sphere, view, Camera()).tangent_px.value(), 3.0, 1e-9);
-  view.lines = LinesAround(outline, 4, -5.0);
+  view.lines = LinesAround(ellipse, 4, -5.0);
   EXPECT_NEAR(MeasureView(sphere, view, Camera()).tangent_px.value(), 5.0, 1e-9);
 }
 
-// A plane through the centre of a sphere of radius r has pi^T Q* pi = r^2; one at distance d from
-// it r^2 - d^2.
-TEST(ObjectMetrics, MtdIsTheHandComputedOneInSquareMetres) {
+// A plane through the centre of a sphere of radius r has pi^T Q* pi = r^2. A plane at distance d
+// from the centre has r^2 - d^2.
+TEST(ObjectMetrics, MtdMatchesHandComputedValues) {
   const Ellipsoid sphere = Sphere(2.0, 0.3);
   ReportedView view = PerfectView(sphere);
   view.lines = {{{Eigen::Vector2d::UnitX(), -320.0}, false}};  // x = cx: the plane x = 0
@@ -94,7 +99,7 @@ TEST(ObjectMetrics, OneSidedLinesAreNotCounted) {
   EXPECT_FALSE(MeasureView(sphere, view, Camera()).mtd_m2);
 }
 
-TEST(ObjectMetrics, ACommonMotionOfWorldAndCameraChangesNothing) {
+TEST(ObjectMetrics, IsInvariantUnderACommonMotionOfWorldAndCamera) {
   RandomGeometry random(3);
   const Ellipsoid ellipsoid = {random.Pose(1.0, 0.2), {0.1, 0.2, 0.3}};
   const Rigid3 cam_from_world(ExpSo3({0.1, 0.2, 0.3}), {0.0, 0.1, 2.0});
@@ -111,7 +116,7 @@ TEST(ObjectMetrics, ACommonMotionOfWorldAndCameraChangesNothing) {
   EXPECT_NEAR(after.tangent_px.value(), before.tangent_px.value(), 1e-6);
 }
 
-TEST(ObjectMetrics, OnlyWhatTheImageShowsIsCompared) {
+TEST(ObjectMetrics, OnlyThePartInsideTheImageIsCompared) {
   Ellipsoid sphere = Sphere(2.0, 0.3);
   sphere.world_from_object.translation.x() = 1.28;  // at the right border, x = 640
   const ReportedView whole = PerfectView(sphere);
@@ -123,8 +128,8 @@ TEST(ObjectMetrics, OnlyWhatTheImageShowsIsCompared) {
   EXPECT_GT(MeasureView(sphere, cut, Camera()).siou_mask.value(), 0.99);
 }
 
-TEST(ObjectMetrics, AContourMayBeHollowedAndGoEitherWayRound) {
-  const Ellipsoid all_over = Sphere(2.0, 1.9);  // its outline holds the whole image
+TEST(ObjectMetrics, AContourMayBeConcaveAndOfEitherOrientation) {
+  const Ellipsoid all_over = Sphere(2.0, 1.9);  // its image covers the whole image
   ReportedView view;
   view.hull = {{100, 100}, {300, 100}, {300, 300}, {100, 300}};
   // The lower left quarter of the square is cut out.
@@ -137,7 +142,7 @@ TEST(ObjectMetrics, AContourMayBeHollowedAndGoEitherWayRound) {
   EXPECT_NEAR(MeasureView(all_over, view, Camera()).siou_mask.value(), 30000.0 / pixels, 1e-6);
 }
 
-TEST(ObjectMetrics, ABoxIsComparedWithTheBoxOfTheOutline) {
+TEST(ObjectMetrics, ABoxIsComparedWithTheBoxOfTheEllipse) {
   const Ellipsoid sphere = Sphere(2.0, 0.3);
   ReportedView view = PerfectView(sphere);
   const Eigen::AlignedBox2d box = ProjectEllipsoid(Camera().Matrix(), {}, sphere).value().Bounds();
@@ -150,7 +155,7 @@ TEST(ObjectMetrics, ABoxIsComparedWithTheBoxOfTheOutline) {
   EXPECT_FALSE(MeasureView(sphere, view, Camera()).siou_mask);
 }
 
-TEST(ObjectMetrics, WhatIsNotInFrontHasNoOverlapAndNoDistance) {
+TEST(ObjectMetrics, AnEllipsoidNotInFrontHasNoOverlapAndNoDistance) {
   const ReportedView view = PerfectView(Sphere(2.0, 0.3));
   for (const double depth : {-2.0, 0.1}) {
     const ObjectFit fit = MeasureView(Sphere(depth, 0.3), view, Camera());
@@ -189,7 +194,7 @@ TEST(ObjectMetrics, MeansAreOverViewsAndThenOverMappedObjects) {
   EXPECT_NEAR(summary.mean.siou.value(), 0.75, 1e-3);
 }
 
-TEST(ObjectMetrics, NothingHasNoMean) {
+TEST(ObjectMetrics, AnEmptyReportHasNoMeans) {
   const MapFit summary = SummarizeFits(ObjectReport());
   EXPECT_EQ(summary.objects, 0U);
   EXPECT_FALSE(summary.mean.siou);

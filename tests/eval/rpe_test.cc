@@ -10,7 +10,7 @@
 namespace hullslam {
 namespace {
 
-// Ten poses a second, straight ahead at `speed` m/s, turning about z at `turn` rad/s.
+// Ten poses per second, straight ahead at `speed` m/s, turning about z at `turn` rad/s.
 Trajectory Drive(int count, double speed, double turn = 0.0) {
   Trajectory trajectory;
   for (int i = 0; i < count; ++i) {
@@ -20,7 +20,7 @@ Trajectory Drive(int count, double speed, double turn = 0.0) {
   return trajectory;
 }
 
-TEST(Rpe, OfDriftInTranslation) {
+TEST(Rpe, MeasuresDriftInTranslation) {
   const RpeReport report = EvaluateRpe(Drive(31, 1.0), Drive(31, 1.1));
   ASSERT_TRUE(report.ok()) << report.failure;
   EXPECT_EQ(report.motions, 21U);
@@ -29,14 +29,14 @@ TEST(Rpe, OfDriftInTranslation) {
   EXPECT_NEAR(report.rotation.max, 0.0, 1e-6);
 }
 
-TEST(Rpe, OfDriftInRotationIsInDegrees) {
+TEST(Rpe, MeasuresDriftInRotationInDegrees) {
   const double turn = std::numbers::pi / 180.0;
   const RpeReport report = EvaluateRpe(Drive(31, 0.0), Drive(31, 0.0, turn));
   EXPECT_NEAR(report.rotation.rmse, 1.0, 1e-6);
   EXPECT_NEAR(report.translation.rmse, 0.0, 1e-12);
 }
 
-TEST(Rpe, IsInvariantUnderTheChoiceOfWorlds) {
+TEST(Rpe, IsInvariantUnderTheChoiceOfWorldFrames) {
   const Trajectory reference = Drive(31, 1.0, 0.5);
   Trajectory estimate = Drive(31, 1.2, 0.4);
   const RpeReport before = EvaluateRpe(reference, estimate);
@@ -50,14 +50,14 @@ TEST(Rpe, IsInvariantUnderTheChoiceOfWorlds) {
   EXPECT_NEAR(before.rotation.rmse, after.rotation.rmse, 1e-6);
 }
 
-TEST(Rpe, ByFramesComparesNeighbours) {
+TEST(Rpe, WithADeltaInFramesComparesNeighbours) {
   const RpeReport report = EvaluateRpe(Drive(31, 1.0), Drive(31, 2.0),
                                        {.unit = RpeOptions::Unit::kFrames, .delta = 1.0});
   EXPECT_EQ(report.motions, 30U);
   EXPECT_NEAR(report.translation.mean, 0.1, 1e-9);
 }
 
-TEST(Rpe, TheScaleMultipliesTheEstimate) {
+TEST(Rpe, ScalesTheEstimate) {
   const RpeReport report = EvaluateRpe(Drive(31, 1.0), Drive(31, 0.5), {.scale = 2.0});
   EXPECT_NEAR(report.translation.max, 0.0, 1e-9);
 }

@@ -6,7 +6,7 @@
 namespace hullslam {
 namespace {
 
-TEST(TrueObject, SizeIsTheMeanFullExtentWhateverThePose) {
+TEST(TrueObject, SizeIsTheMeanFullExtentForAnyPose) {
   TrueObject object;
   object.half_extents = {0.1, 0.2, 0.6};
   EXPECT_NEAR(object.Size(), 0.6, 1e-15);

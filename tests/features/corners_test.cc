@@ -23,7 +23,8 @@ std::vector<Corner> Detect(const cv::Mat& image, int initial_threshold, int mini
   return corners;
 }
 
-// Position and score of OpenCV's corners, without suppression: it finds every FAST corner.
+// Positions and scores of OpenCV's corners. Without non-maximum suppression OpenCV finds all FAST
+// corners.
 std::map<std::pair<int, int>, int> OpenCvScores(const cv::Mat& image, int threshold) {
   std::vector<cv::KeyPoint> keypoints;
   cv::FAST(image, keypoints, threshold, false);
@@ -39,8 +40,9 @@ std::map<std::pair<int, int>, int> OpenCvScores(const cv::Mat& image, int thresh
   return scores;
 }
 
-// OpenCV drops both of two neighbours with one score, we keep the first: ours has all of OpenCV's
-// maxima with the same scores, and beside them FAST corners only.
+// If two neighbours have the same score, OpenCV drops both, and our detector keeps the first. So
+// our result contains all of OpenCV's maxima with the same scores, and all others are FAST corners
+// too.
 TEST(CornerDetector, AgreesWithOpenCvsFast) {
   const cv::Mat image = MakeCornerImage();
   constexpr int kThreshold = 10;
@@ -62,7 +64,7 @@ TEST(CornerDetector, AgreesWithOpenCvsFast) {
   }
 }
 
-// A dot that is brighter by 50 than all of its circle: a corner for every threshold below 50.
+// A dot that is brighter by 50 than its whole circle is a corner at all thresholds below 50.
 TEST(CornerDetector, ScoreIsTheLargestThreshold) {
   for (const int sign : {-1, 1}) {
     cv::Mat image(64, 64, CV_8UC1, cv::Scalar(100));
@@ -113,8 +115,8 @@ TEST(CornerDetector, FindsExtremesOfTheGreyRange) {
   EXPECT_TRUE(Detect(cv::Mat(64, 64, CV_8UC1, cv::Scalar(255)), 1, 1).empty());
 }
 
-// A weak dot is dropped beside a strong one and kept in a cell of its own.
-TEST(CornerDetector, FallsBackToTheMinimumThresholdByCell) {
+// A weak dot is dropped if a strong one is in the same cell, and kept if it is alone in its cell.
+TEST(CornerDetector, UsesTheMinimumThresholdInCellsWithoutStrongCorners) {
   cv::Mat image(128, 128, CV_8UC1, cv::Scalar(100));
   image.at<uint8_t>(40, 40) = 150;
   image.at<uint8_t>(40, 50) = 112;
@@ -126,7 +128,7 @@ TEST(CornerDetector, FallsBackToTheMinimumThresholdByCell) {
   EXPECT_EQ(corners[1].score, 11);
 }
 
-TEST(CornerDetector, KeepsTheBorderAndTheOrder) {
+TEST(CornerDetector, RespectsTheBorderAndTheRasterOrder) {
   const cv::Mat image = MakeCornerImage(101, 83);
   const std::vector<Corner> corners = Detect(image, 5, 5);
   ASSERT_GT(corners.size(), 20u);
@@ -148,22 +150,23 @@ TEST(CornerDetector, KeepsTheBorderAndTheOrder) {
   }
 }
 
-TEST(CornerDetector, TakesImagesThatAreAllBorder) {
+TEST(CornerDetector, FindsNothingInImagesThatAreAllBorder) {
   EXPECT_TRUE(Detect(MakeCornerImage(38, 100), 20, 7).empty());
 }
 
-TEST(CornerDetector, TellsTheScoresOfTheNeighbours) {
+TEST(CornerDetector, ReturnsTheScoresOfTheNeighbours) {
   const cv::Mat image = MakeCornerImage(200, 150);
   std::map<std::pair<int, int>, int> scores;
   for (const auto& [position, score] : OpenCvScores(image, 1)) {
-    scores[position] = score;  // 0 where OpenCV suppressed it
+    scores[position] = score;  // 0 if OpenCV suppressed it
   }
   const std::vector<Corner> corners = Detect(image, 7, 7);
   ASSERT_GT(corners.size(), 20u);
   for (const Corner& corner : corners) {
     const int highest = std::max({corner.left, corner.right, corner.above, corner.below});
     EXPECT_LE(highest, corner.score);
-    // A neighbour that is a FAST corner at threshold 1 has a score of 1 or more, another has 0.
+    // A neighbour that is a FAST corner at threshold 1 has a score of at least 1; any other
+    // neighbour has 0.
     const auto is_corner = [&](int dx, int dy) {
       return scores.contains({corner.x + dx, corner.y + dy});
     };
@@ -174,21 +177,21 @@ TEST(CornerDetector, TellsTheScoresOfTheNeighbours) {
   }
 }
 
-TEST(SubpixelOffset, IsTheTopOfTheParabola) {
-  // 60 - 20 (t - 1/4)^2, scaled to whole numbers at t = -1, 0, 1: 115, 235, 195 (times 1/4).
+TEST(SubpixelOffset, IsTheMaximumOfTheParabola) {
+  // 60 - 20 (t - 1/4)^2 at t = -1, 0, 1, times 4 to give integers: 115, 235, 195.
   const Corner corner{.score = 235, .left = 115, .right = 195, .above = 195, .below = 115};
   EXPECT_FLOAT_EQ(SubpixelOffset(corner).x(), 0.25f);
   EXPECT_FLOAT_EQ(SubpixelOffset(corner).y(), -0.25f);
 }
 
-TEST(SubpixelOffset, IsHalfAPixelAtMost) {
+TEST(SubpixelOffset, IsAtMostHalfAPixel) {
   const Corner plateau{.score = 50, .left = 0, .right = 50, .above = 50, .below = 0};
   EXPECT_EQ(SubpixelOffset(plateau), Eigen::Vector2f(0.5f, -0.5f));
   const Corner flat{.score = 50, .left = 50, .right = 50, .above = 50, .below = 50};
   EXPECT_EQ(SubpixelOffset(flat), Eigen::Vector2f(0.0f, 0.0f));
 }
 
-// Sizes just above twice the border; AddressSanitizer watches the reads.
+// The sizes are just above twice the border; AddressSanitizer checks the reads.
 TEST(CornerDetector, StaysInsideTheSmallestImages) {
   for (const int border : {8, 19}) {
     for (int extra = 1; extra < 40; extra += 3) {
@@ -202,7 +205,7 @@ TEST(CornerDetector, StaysInsideTheSmallestImages) {
   }
 }
 
-TEST(CornerDetector, RejectsWhatItCannotUse) {
+TEST(CornerDetector, RejectsInvalidArguments) {
   std::vector<Corner> corners;
   EXPECT_THROW(CornerDetector(20, 0), CheckError);
   EXPECT_THROW(CornerDetector(20, 256), CheckError);

@@ -29,7 +29,7 @@ bool SameBits(const ExtractedFeatures& a, const ExtractedFeatures& b) {
   return true;
 }
 
-TEST(FeatureExtractor, FindsAboutAsManyAsWanted) {
+TEST(FeatureExtractor, FindsAboutTheRequestedNumber) {
   for (const int wanted : {1, 100, 1000}) {
     FeatureOptions options;
     options.feature_count = wanted;
@@ -40,7 +40,7 @@ TEST(FeatureExtractor, FindsAboutAsManyAsWanted) {
   }
 }
 
-TEST(FeatureExtractor, KeypointsAreSound) {
+TEST(FeatureExtractor, KeypointsAreValid) {
   FeatureExtractor extractor(FeatureOptions{});
   const ExtractedFeatures features = extractor.Extract(MakeCornerImage());
   ASSERT_EQ(features.keypoints.size(), features.descriptors.size());
@@ -61,16 +61,16 @@ TEST(FeatureExtractor, KeypointsAreSound) {
   EXPECT_EQ(last_level, 7);
 }
 
-TEST(FeatureExtractor, GivesTheSameBitsAgain) {
+TEST(FeatureExtractor, IsReproducible) {
   const cv::Mat image = MakeCornerImage();
   FeatureExtractor extractor(FeatureOptions{});
   const ExtractedFeatures first = extractor.Extract(image);
-  extractor.Extract(MakeCornerImage(320, 200, 99));  // leaves other sizes in the buffers
+  extractor.Extract(MakeCornerImage(320, 200, 99));  // leaves buffers of another size
   EXPECT_TRUE(SameBits(first, extractor.Extract(image)));
   EXPECT_TRUE(SameBits(first, FeatureExtractor(FeatureOptions{}).Extract(image)));
 }
 
-TEST(FeatureExtractor, ReadsPartOfALargerImage) {
+TEST(FeatureExtractor, ReadsAPartOfALargerImage) {
   const cv::Mat large = MakeCornerImage(800, 600);
   const cv::Mat part = large(cv::Rect(50, 60, 640, 480));
   FeatureExtractor extractor(FeatureOptions{});
@@ -90,7 +90,7 @@ TEST(FeatureExtractor, WorksOnTheSmallestImage) {
   EXPECT_FALSE(extractor.Extract(MakeCornerImage(64, 64)).keypoints.empty());
 }
 
-TEST(FeatureExtractor, FindsWeakCornersWhereThereAreNoOthers) {
+TEST(FeatureExtractor, FindsWeakCornersInCellsWithoutStrongOnes) {
   cv::Mat image(480, 640, CV_8UC1, cv::Scalar(100));
   cv::rectangle(image, cv::Rect(100, 100, 40, 40), cv::Scalar(110), cv::FILLED);  // contrast 10
   FeatureOptions options;
@@ -100,7 +100,7 @@ TEST(FeatureExtractor, FindsWeakCornersWhereThereAreNoOthers) {
   EXPECT_TRUE(FeatureExtractor(options).Extract(image).keypoints.empty());
 }
 
-TEST(FeatureExtractor, SubpixelMovesPositionsOnly) {
+TEST(FeatureExtractor, SubpixelOnlyChangesPositions) {
   const cv::Mat image = MakeCornerImage();
   FeatureOptions options;
   const ExtractedFeatures whole = FeatureExtractor(options).Extract(image);
@@ -120,8 +120,8 @@ TEST(FeatureExtractor, SubpixelMovesPositionsOnly) {
   EXPECT_GT(moved, whole.keypoints.size() / 2);
 }
 
-// Small against the FAST circle: a wider one reaches it, and then the score is highest beside its
-// centre.
+// The dot is small compared with the FAST circle. A wider dot would reach the circle, and then the
+// score would be highest beside the centre of the dot.
 cv::Mat MakeDot(const Eigen::Vector2f& place) {
   cv::Mat image(128, 128, CV_8UC1);
   for (int y = 0; y < image.rows; ++y) {
@@ -134,7 +134,7 @@ cv::Mat MakeDot(const Eigen::Vector2f& place) {
   return image;
 }
 
-// Mean distance of the only feature to its dot, over places all over a pixel.
+// Mean distance between the only feature and its dot, over places within a pixel.
 float MeanErrorOfDots(bool subpixel) {
   FeatureOptions options;
   options.level_count = 1;
@@ -152,7 +152,8 @@ float MeanErrorOfDots(bool subpixel) {
   return sum / (kSteps * kSteps);
 }
 
-// Whole pixels are off by 0.38 px in the mean; the score is no parabola, so some error stays.
+// Without refinement the mean error is 0.38 px. The score is not exactly a parabola, so some error
+// remains.
 TEST(FeatureExtractor, SubpixelHalvesTheErrorOfDots) {
   const float whole = MeanErrorOfDots(false);
   EXPECT_NEAR(whole, 0.38f, 0.02f);

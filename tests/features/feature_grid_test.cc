@@ -13,7 +13,7 @@
 namespace hullslam {
 namespace {
 
-// In the undistorted image of a camera like TUM1, some of them outside its box.
+// Keypoints in the undistorted image of a camera like TUM1, some of them outside the box.
 std::vector<Keypoint> MakeKeypoints(size_t count) {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> x(-40.0f, 680.0f);
@@ -46,7 +46,7 @@ std::vector<uint32_t> FindBySearchingAll(const std::vector<Keypoint>& keypoints,
   return found;
 }
 
-TEST(FeatureGrid, FindsWhatASearchOfAllFinds) {
+TEST(FeatureGrid, FindsTheSameAsASearchOfAllKeypoints) {
   const std::vector<Keypoint> keypoints = MakeKeypoints(1000);
   const FeatureGrid grid = MakeGrid(keypoints);
   size_t total = 0;
@@ -64,7 +64,7 @@ TEST(FeatureGrid, FindsWhatASearchOfAllFinds) {
   EXPECT_GT(total, 10000u);
 }
 
-TEST(FeatureGrid, FindsEveryKeypointAtItsPlace) {
+TEST(FeatureGrid, FindsEveryKeypointAtItsPosition) {
   const std::vector<Keypoint> keypoints = MakeKeypoints(500);
   const FeatureGrid grid = MakeGrid(keypoints);
   for (uint32_t i = 0; i < keypoints.size(); ++i) {
@@ -99,15 +99,15 @@ TEST(FeatureGrid, RadiusIsExclusive) {
   EXPECT_EQ(found.size(), 1u);
 }
 
-TEST(FeatureGrid, FindsNothingInNothing) {
+TEST(FeatureGrid, FindsNothingWithoutKeypoints) {
   std::vector<uint32_t> found;
   FeatureGrid().FindNear({}, {1.0f, 1.0f}, 100.0f, 0, 7, found);
   FeatureGrid({}, {0.0f, 0.0f}, {640.0f, 480.0f}).FindNear({}, {1.0f, 1.0f}, 9.0f, 0, 7, found);
   EXPECT_TRUE(found.empty());
 }
 
-// A point just in front of the camera can project anywhere.
-TEST(FeatureGrid, TakesCentersFarAwayOrNotFinite) {
+// A point just in front of the camera can be projected to any pixel.
+TEST(FeatureGrid, AcceptsCentersThatAreFarAwayOrNotFinite) {
   const std::vector<Keypoint> keypoints = MakeKeypoints(100);
   const FeatureGrid grid = MakeGrid(keypoints);
   constexpr float kInfinity = std::numeric_limits<float>::infinity();

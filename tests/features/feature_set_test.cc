@@ -34,14 +34,14 @@ TEST(ScaleLevels, AreAGeometricSeries) {
   }
 }
 
-TEST(ScaleLevels, RejectsWhatIsNoPyramid) {
+TEST(ScaleLevels, RejectsInvalidPyramids) {
   EXPECT_THROW(ScaleLevels::Create(0, 1.2), CheckError);
   EXPECT_THROW(ScaleLevels::Create(8, 1.0), CheckError);
   EXPECT_THROW(ScaleLevels::Create(8, std::numeric_limits<double>::quiet_NaN()), CheckError);
 }
 
-// From d, a landmark seen at level l there is seen at level 0 from d scale[l].
-TEST(ScaleLevels, PredictsTheLevelItWasSeenAt) {
+// A landmark that is seen at level l from distance d is seen at level 0 from distance d scale[l].
+TEST(ScaleLevels, PredictsTheLevelAtWhichALandmarkWasSeen) {
   const ScaleLevels levels = ScaleLevels::Create(8, 1.2);
   for (const double distance : {0.3, 1.0, 4.7}) {
     for (int l = 0; l < 8; ++l) {

@@ -17,8 +17,9 @@ TEST(FrameFeatures, CountsItsKeypoints) {
   EXPECT_EQ(features.size(), 3u);
 }
 
-// The grid holds numbers of keypoints, no addresses, so it stays good when the whole is moved.
-TEST(FrameFeatures, GridIsGoodAfterAMove) {
+// The grid stores indices of keypoints and no addresses, so it stays valid when the features are
+// moved.
+TEST(FrameFeatures, GridIsValidAfterAMove) {
   FrameFeatures features;
   features.keypoints.resize(2);
   features.keypoints[0].undistorted = {10.0f, 10.0f};
@@ -30,8 +31,8 @@ TEST(FrameFeatures, GridIsGoodAfterAMove) {
   EXPECT_EQ(found, std::vector<uint32_t>{1});
 }
 
-// The made-up frames that other tests build on are what they say.
-TEST(FrameFeatures, OfTheSyntheticWorldAreProjectionsOfItsPoints) {
+// Checks the synthetic frames that other tests use.
+TEST(FrameFeatures, SyntheticFeaturesAreProjectionsOfTheWorldPoints) {
   const SyntheticWorld world({.depth_share = 0.5});
   for (const uint32_t index : {0u, 30u, 130u}) {
     const SyntheticView view = world.Observe(index);
@@ -58,7 +59,7 @@ TEST(FrameFeatures, OfTheSyntheticWorldAreProjectionsOfItsPoints) {
   }
 }
 
-TEST(FrameFeatures, OfTheSyntheticWorldAreTheSameEveryTime) {
+TEST(FrameFeatures, SyntheticFeaturesAreReproducible) {
   const SyntheticWorldOptions options{.pixel_noise = 1.0, .flipped_bits = 5, .seed = 3};
   const SyntheticView first = SyntheticWorld(options).Observe(7);
   const SyntheticView second = SyntheticWorld(options).Observe(7);

@@ -29,9 +29,9 @@ cv::Point LevelPixel(const Keypoint& keypoint, const cv::Mat& image, const cv::M
           cvRound((keypoint.raw.y() + 0.5f) * ratio_y - 0.5f)};
 }
 
-// OpenCV's ORB blurs each level where it lies in a larger buffer, in another arithmetic than that
-// of whole images: some pixels differ by a grey level. Here the same is done, so that all else can
-// be compared exactly.
+// OpenCV's ORB blurs each level inside a larger buffer, with another arithmetic than for whole
+// images, so some pixels differ by one grey level. This function blurs in the same way, so that
+// everything else can be compared exactly.
 cv::Mat BlurInsideLargerImage(const cv::Mat& image) {
   constexpr int kBorder = 32;
   cv::Mat larger;
@@ -41,8 +41,9 @@ cv::Mat BlurInsideLargerImage(const cv::Mat& image) {
   return part;
 }
 
-// The extractor's keypoints as cv::ORB takes them (the position is the level's pixel times the
-// scale), with our descriptors: those of the extractor, or made anew from `blur` of the levels.
+// The keypoints of the extractor in the form of cv::ORB (the position is the pixel of the level
+// times the scale), with our descriptors: those of the extractor if `blur` returns empty images,
+// else computed anew from the levels blurred by `blur`.
 template <typename Blur>
 Described DescribeBy(const cv::Mat& image, int level_count, const Blur& blur) {
   FeatureOptions options;
@@ -82,7 +83,7 @@ Descriptor FromOpenCv(const cv::Mat& row) {
   return descriptor;
 }
 
-// Share of the bits that differ from those of cv::ORB on the same keypoints.
+// Share of the bits that differ from the bits of cv::ORB for the same keypoints.
 double DifferingBits(const cv::Mat& image, int level_count, Described ours) {
   const size_t count = ours.keypoints.size();
   EXPECT_GT(count, 500u);
@@ -99,15 +100,16 @@ double DifferingBits(const cv::Mat& image, int level_count, Described ours) {
   return different / (256.0 * static_cast<double>(count));
 }
 
-// With OpenCV's blur all bits are equal but a few of a hundred thousand: cosine and sine are not
-// rounded as those that OpenCV makes of an angle in degrees, so a rotated test that lies on the
-// border of two pixels can fall into the other one.
+// With OpenCV's blur almost all bits are equal; a few of a hundred thousand differ. The reason is
+// that OpenCV computes cosine and sine from an angle in degrees, with other rounding, so a rotated
+// test point on the border between two pixels can fall into the other one.
 void ExpectOpenCvsBits(const cv::Mat& image, int level_count) {
   const Described exact = DescribeBy(image, level_count, BlurInsideLargerImage);
   EXPECT_LE(DifferingBits(image, level_count, exact), 5e-5);
   const auto keep = [](const cv::Mat&) { return cv::Mat(); };
   const Described extracted = DescribeBy(image, level_count, keep);
-  // Flat areas suffer most from a difference of a grey level; the made-up image has many.
+  // A difference of one grey level changes most bits in flat areas, and the synthetic image has
+  // many.
   EXPECT_LE(DifferingBits(image, level_count, extracted), 1e-2);
 }
 
@@ -125,7 +127,7 @@ TEST(OrbDescriptor, EqualsOpenCvOnRealImage) {
 }
 
 // cv::ORB::detect() gives every keypoint the angle of its own patch.
-TEST(OrbDescriptor, OrientationIsThatOfOpenCv) {
+TEST(OrbDescriptor, OrientationAgreesWithOpenCv) {
   const cv::Mat image = MakeCornerImage();
   std::vector<cv::KeyPoint> keypoints;
   cv::ORB::create(500, 1.2f, 1)->detect(image, keypoints);
@@ -154,19 +156,20 @@ TEST(OrbDescriptor, OrientationPointsToTheBrightSide) {
   EXPECT_EQ(angle_of(16, 0), 0.0f) << "outside the disc";
 }
 
-TEST(OrbDescriptor, AngleIsBelowATurn) {
+TEST(OrbDescriptor, AngleIsBelowAFullTurn) {
   const Orientation just_below{.cosine = 1.0f, .sine = -1e-12f};
   EXPECT_EQ(just_below.Angle(), 0.0f);
   const Orientation backwards{.cosine = 0.0f, .sine = -1.0f};
   EXPECT_FLOAT_EQ(backwards.Angle(), 1.5f * std::numbers::pi_v<float>);
 }
 
-// Turning patch and direction by a right angle permutes pixels only, so no bit may change.
-TEST(OrbDescriptor, TurnsWithThePatch) {
+// Rotating patch and direction by a right angle only permutes pixels, so no bit may change.
+TEST(OrbDescriptor, RotatesWithThePatch) {
   cv::Mat patch = MakeCornerImage(39, 39);
   const cv::Point center(19, 19);
   const Orientation orientation = ComputeOrientation(patch, center);
-  // Away from a multiple of a right angle no rotated test lies half way between two pixels.
+  // Unless the angle is a multiple of a right angle, no rotated test point lies half way between
+  // two pixels.
   ASSERT_GT(std::abs(orientation.cosine * orientation.sine), 0.01f);
   const Descriptor before = ComputeDescriptor(patch, center, orientation);
   cv::Mat turned;
@@ -177,8 +180,8 @@ TEST(OrbDescriptor, TurnsWithThePatch) {
   EXPECT_EQ(HammingDistance(before, ComputeDescriptor(turned, center, after)), 0);
 }
 
-// Test 0 compares (8, -3) with (9, 5), test 255 (-1, -6) with (0, -11).
-TEST(OrbDescriptor, BitsAreInOrderOfTests) {
+// Test 0 compares (8, -3) with (9, 5); test 255 compares (-1, -6) with (0, -11).
+TEST(OrbDescriptor, BitsAreInTheOrderOfTheTests) {
   cv::Mat patch(39, 39, CV_8UC1, cv::Scalar(100));
   const cv::Point center(19, 19);
   EXPECT_EQ(ComputeDescriptor(patch, center, {}), Descriptor{}) << "equal pixels give 0";

@@ -35,8 +35,8 @@ TEST(ImagePyramid, MapsTheCornersOfTheImage) {
   EXPECT_EQ(pyramid.ToLevelZero({17.0f, 23.0f}, 0), Eigen::Vector2f(17.0f, 23.0f));
 }
 
-// The centre of gravity of a smooth spot is at the same place on all levels.
-TEST(ImagePyramid, MapsThePlaceOfASpot) {
+// The centre of gravity of a smooth spot is at the same position on all levels.
+TEST(ImagePyramid, MapsThePositionOfASpot) {
   cv::Mat image(480, 640, CV_8UC1, cv::Scalar(0));
   const Eigen::Vector2f center(560.0f, 400.0f);
   for (int y = 0; y < image.rows; ++y) {

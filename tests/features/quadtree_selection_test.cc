@@ -14,7 +14,7 @@ namespace {
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
 
-// Distinct pixels with random scores; `share` of them within one corner of the image.
+// Distinct pixels with random scores; a share of `share` lies in one corner of the image.
 std::vector<Corner> MakeCorners(size_t count, double share) {
   std::mt19937 random(5);
   std::set<std::tuple<int, int>> taken;
@@ -39,7 +39,7 @@ std::vector<Corner> Select(std::vector<Corner> corners, size_t count) {
   return selected;
 }
 
-TEST(QuadtreeSelection, GivesTheCountInRasterOrder) {
+TEST(QuadtreeSelection, SelectsTheWantedNumberInRasterOrder) {
   const std::vector<Corner> corners = MakeCorners(3000, 0.5);
   std::set<std::tuple<int, int, int>> offered;
   for (const Corner& corner : corners) {
@@ -52,13 +52,14 @@ TEST(QuadtreeSelection, GivesTheCountInRasterOrder) {
     for (size_t i = 0; i < selected.size(); ++i) {
       EXPECT_TRUE(offered.contains(Key(selected[i])));
       if (i > 0) {
-        EXPECT_LT(Key(selected[i - 1]), Key(selected[i]));  // so none is there twice
+        EXPECT_LT(Key(selected[i - 1]),
+                  Key(selected[i]));  // so no corner is selected more than once
       }
     }
   }
 }
 
-TEST(QuadtreeSelection, TakesAllWhereThereAreNotMore) {
+TEST(QuadtreeSelection, SelectsAllIfThereAreNotMore) {
   const std::vector<Corner> corners = MakeCorners(50, 0.0);
   EXPECT_EQ(Select(corners, 50).size(), 50u);
   EXPECT_EQ(Select(corners, 51).size(), 50u);
@@ -66,14 +67,14 @@ TEST(QuadtreeSelection, TakesAllWhereThereAreNotMore) {
   EXPECT_TRUE(Select({}, 0).empty());
 }
 
-TEST(QuadtreeSelection, TakesTheStrongest) {
+TEST(QuadtreeSelection, SelectsTheStrongest) {
   const std::vector<Corner> corners = {{10, 10, 30}, {20, 12, 50}, {200, 100, 40}};
   const std::vector<Corner> one = Select(corners, 1);
   ASSERT_EQ(one.size(), 1u);
   EXPECT_EQ(one[0].score, 50);
 }
 
-TEST(QuadtreeSelection, TakesOneOfEachQuarterFirst) {
+TEST(QuadtreeSelection, SelectsFromEachQuarterFirst) {
   const std::vector<Corner> corners = {{10, 10, 90}, {14, 10, 80}, {600, 10, 8},
                                        {12, 14, 70}, {10, 400, 9}, {610, 470, 10}};
   const std::vector<Corner> four = Select(corners, 4);
@@ -84,7 +85,8 @@ TEST(QuadtreeSelection, TakesOneOfEachQuarterFirst) {
   EXPECT_EQ(four[3].score, 10);
 }
 
-// Nine of ten corners crowd in a fiftieth of the image; of those selected only few may.
+// Nine of ten corners are crowded in a fiftieth of the image; only few of the selected corners may
+// be there.
 TEST(QuadtreeSelection, SpreadsCrowdedCorners) {
   const std::vector<Corner> selected = Select(MakeCorners(3000, 0.9), 200);
   const auto crowded = std::count_if(selected.begin(), selected.end(), [](const Corner& corner) {
@@ -93,7 +95,7 @@ TEST(QuadtreeSelection, SpreadsCrowdedCorners) {
   EXPECT_LT(static_cast<double>(crowded), 0.2 * static_cast<double>(selected.size()));
 }
 
-TEST(QuadtreeSelection, DoesNotDependOnWhatCameBefore) {
+TEST(QuadtreeSelection, DoesNotDependOnEarlierCalls) {
   const std::vector<Corner> corners = MakeCorners(2000, 0.3);
   QuadtreeSelection selection;
   std::vector<Corner> first;

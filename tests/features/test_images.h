@@ -10,7 +10,8 @@
 
 namespace hullslam {
 
-// Random bright and dark boxes and discs with some noise: corners of all strengths and scales.
+// Random bright and dark boxes and discs with some noise, which give corners of all strengths and
+// scales.
 inline cv::Mat MakeCornerImage(int width = 640, int height = 480, uint64_t seed = 7) {
   cv::Mat image(height, width, CV_8UC1, cv::Scalar(120));
   cv::RNG random(seed);
@@ -30,7 +31,7 @@ inline cv::Mat MakeCornerImage(int width = 640, int height = 480, uint64_t seed 
   return image;
 }
 
-// A grey image of TUM freiburg1_xyz; empty where the data is not on this machine.
+// A grey image of TUM freiburg1_xyz; empty if the data is not on this machine.
 inline cv::Mat LoadRealImage() {
   const auto path = FindTestData("fr1_xyz/rgb/1305031102.175304.jpg");
   return path ? cv::imread(path->string(), cv::IMREAD_GRAYSCALE) : cv::Mat();

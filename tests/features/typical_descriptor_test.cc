@@ -9,7 +9,7 @@
 namespace hullslam {
 namespace {
 
-// The first `count` bits set.
+// A descriptor with the first `count` bits set.
 Descriptor FirstBits(int count) {
   Descriptor descriptor{};
   for (int i = 0; i < count; ++i) {
@@ -31,7 +31,7 @@ TEST(MostTypicalDescriptor, HasTheLeastMedianDistanceToTheOthers) {
   EXPECT_EQ(MostTypicalOf({200, 10, 11}), 1u);
 }
 
-TEST(MostTypicalDescriptor, IsTheFirstOfEquals) {
+TEST(MostTypicalDescriptor, TiesGoToTheFirst) {
   EXPECT_EQ(MostTypicalOf({5, 9}), 0u);
   EXPECT_EQ(MostTypicalOf({3, 3, 3}), 0u);
   EXPECT_EQ(MostTypicalOf({}), 0u);

@@ -59,7 +59,7 @@ TEST(Alignment, RecoversARigidMotion) {
   }
 }
 
-TEST(Alignment, RecoversTheScaleOnlyWhenAsked) {
+TEST(Alignment, RecoversTheScaleOnlyForSim3) {
   const PointAlignment truth = Similarity(2.5, {0.1, 0.2, -0.3}, {1.0, 2.0, 3.0});
   const Points source = RandomPoints(20, 2);
   const Points target = Apply(truth, source);

@@ -13,7 +13,7 @@
 namespace hullslam {
 namespace {
 
-// Cost of what is assigned, rows left out included.
+// Cost of an assignment, including the rows left out.
 double TotalCost(const Eigen::MatrixXd& cost, const std::vector<int>& columns, double max_cost) {
   double total = 0.0;
   for (Eigen::Index row = 0; row < cost.rows(); ++row) {
@@ -23,7 +23,7 @@ double TotalCost(const Eigen::MatrixXd& cost, const std::vector<int>& columns, d
   return total;
 }
 
-// The least cost of all assignments of the rows from `row` on, by trying each.
+// The least cost of assigning the rows from `row` on, found by trying all assignments.
 double LeastCost(const Eigen::MatrixXd& cost, double max_cost, Eigen::Index row,
                  std::vector<bool>& is_taken) {
   if (row == cost.rows()) {
@@ -64,13 +64,13 @@ void ExpectOneToOneBelow(const Eigen::MatrixXd& cost, const std::vector<int>& co
   }
 }
 
-TEST(AssignMinimumCost, TakesTheDearerForOneWhenThatIsCheaperForAll) {
+TEST(AssignMinimumCost, MinimisesTheTotalCostAndNotTheCostOfEachRow) {
   Eigen::MatrixXd cost(2, 2);
-  cost << 1.0, 2.0, 1.5, 9.0;  // row 0 would like column 0, but row 1 has nothing else
+  cost << 1.0, 2.0, 1.5, 9.0;  // column 0 is best for row 0, but row 1 needs it more
   EXPECT_EQ(AssignMinimumCost(cost, 10.0), (std::vector<int>{1, 0}));
 }
 
-TEST(AssignMinimumCost, IsTheBestOfAllOfThem) {
+TEST(AssignMinimumCost, HasTheLeastCostOfAllAssignments) {
   RandomGeometry random(1);
   for (int round = 0; round < 300; ++round) {
     const auto rows = static_cast<Eigen::Index>(1 + random.Index(6));
@@ -85,22 +85,22 @@ TEST(AssignMinimumCost, IsTheBestOfAllOfThem) {
   }
 }
 
-TEST(AssignMinimumCost, OfTheTransposeCostsTheSame) {
+TEST(AssignMinimumCost, TheTransposedProblemCostsTheSame) {
   RandomGeometry random(2);
   for (int round = 0; round < 20; ++round) {
     const Eigen::MatrixXd cost = RandomCosts(random, 30, 30, false);
-    const double max_cost = 20.0;  // nothing is left out of a square one
+    const double max_cost = 20.0;  // so large that no row is left out
     const Eigen::MatrixXd transposed = cost.transpose();
     EXPECT_NEAR(TotalCost(cost, AssignMinimumCost(cost, max_cost), max_cost),
                 TotalCost(transposed, AssignMinimumCost(transposed, max_cost), max_cost), 1e-9);
   }
 }
 
-TEST(AssignMinimumCost, NeverMakesAPairThatIsNotBelowTheLimit) {
+TEST(AssignMinimumCost, NeverChoosesAPairThatIsNotBelowTheLimit) {
   const double infinity = std::numeric_limits<double>::infinity();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Eigen::MatrixXd cost(4, 4);
-  cost << 5.0, infinity, infinity, infinity,  // the limit itself
+  cost << 5.0, infinity, infinity, infinity,  // exactly the limit
       infinity, 4.0, infinity, infinity,      //
       nan, nan, nan, nan,                     //
       infinity, 3.0, 1e300, infinity;
@@ -112,7 +112,7 @@ TEST(AssignMinimumCost, HandlesNoRowsOrNoColumns) {
   EXPECT_EQ(AssignMinimumCost(Eigen::MatrixXd(2, 0), 1.0), (std::vector<int>{-1, -1}));
 }
 
-TEST(AssignMinimumCost, GivesTheSameOfEqualSolutions) {
+TEST(AssignMinimumCost, IsDeterministicAmongEqualSolutions) {
   const Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(3, 3, 1.0);
   const std::vector<int> first = AssignMinimumCost(cost, 2.0);
   EXPECT_EQ(first, (std::vector<int>{0, 1, 2}));

@@ -43,7 +43,7 @@ double Form(const Ellipse& ellipse, const Eigen::Vector2d& point) {
   return p.dot(ellipse.shape.inverse() * p);
 }
 
-TEST(Ellipse, OfACircleIsKnown) {
+TEST(Ellipse, MatchesHandComputedValuesForACircle) {
   const Ellipse circle = MakeEllipse({30.0, 20.0}, 5.0, 5.0, 0.0);
   EXPECT_DOUBLE_EQ(circle.HalfExtent({0.6, -0.8}), 5.0);
   EXPECT_DOUBLE_EQ(circle.Area(), 25.0 * kPi);
@@ -54,7 +54,7 @@ TEST(Ellipse, OfACircleIsKnown) {
   EXPECT_NEAR(line.dot(circle.DualConic() * line), -24.0, 1e-12);
 }
 
-TEST(Ellipse, HalfExtentIsTheFarthestItsPointsReach) {
+TEST(Ellipse, HalfExtentIsTheLargestDistanceOfItsPoints) {
   RandomGeometry random(1);
   for (int i = 0; i < 50; ++i) {
     const Ellipse ellipse = RandomEllipse(random);
@@ -71,7 +71,7 @@ TEST(Ellipse, HalfExtentIsTheFarthestItsPointsReach) {
   }
 }
 
-TEST(Ellipse, TangentsAndOnlyTheyAreOnTheDualConic) {
+TEST(Ellipse, OnlyTangentsAreOnTheDualConic) {
   RandomGeometry random(2);
   for (int i = 0; i < 50; ++i) {
     const Ellipse ellipse = RandomEllipse(random);
@@ -86,7 +86,7 @@ TEST(Ellipse, TangentsAndOnlyTheyAreOnTheDualConic) {
   }
 }
 
-TEST(Ellipse, DualConicOfAnyScaleGoesThereAndBack) {
+TEST(Ellipse, IsRecoveredFromADualConicOfAnyScale) {
   RandomGeometry random(3);
   for (int i = 0; i < 100; ++i) {
     const Ellipse ellipse = RandomEllipse(random);
@@ -98,7 +98,7 @@ TEST(Ellipse, DualConicOfAnyScaleGoesThereAndBack) {
   }
 }
 
-TEST(Ellipse, IsNotFoundInAHyperbolaOrAFlatOrBrokenConic) {
+TEST(Ellipse, IsNotFoundInAHyperbolaOrADegenerateConic) {
   const Ellipse good = MakeEllipse({300.0, 200.0}, 40.0, 20.0, 0.3);
   Ellipse hyperbola = good;
   hyperbola.shape = good.shape - 900.0 * Eigen::Matrix2d::Identity();
@@ -118,7 +118,7 @@ TEST(Ellipse, IsNotFoundInAHyperbolaOrAFlatOrBrokenConic) {
   EXPECT_FALSE(EllipseFromDualConic(broken));
 }
 
-TEST(Ellipse, PolygonHasItsAreaAndCentreAndPositiveOrder) {
+TEST(Ellipse, PolygonHasTheSameAreaAndCentreAndPositiveOrder) {
   RandomGeometry random(4);
   for (const int vertices : {3, 7, 64}) {
     const Ellipse ellipse = RandomEllipse(random);
@@ -149,7 +149,7 @@ TEST(FitEllipse, FindsTheEllipseOfItsPoints) {
   }
 }
 
-TEST(FitEllipse, IsNearForNoisyPoints) {
+TEST(FitEllipse, IsCloseForNoisyPoints) {
   RandomGeometry random(6);
   const Ellipse ellipse = MakeEllipse({320.0, 200.0}, 80.0, 40.0, 0.4);
   std::vector<Eigen::Vector2d> points = PointsOn(ellipse, 200, 0.0, 2.0 * kPi);
@@ -162,7 +162,7 @@ TEST(FitEllipse, IsNearForNoisyPoints) {
   EXPECT_NEAR(fit->Area(), ellipse.Area(), 0.02 * ellipse.Area());
 }
 
-TEST(FitEllipse, FindsNoneInTooFewPointsOrPointsOfALine) {
+TEST(FitEllipse, FindsNoneForTooFewPointsOrPointsOnALine) {
   const Ellipse ellipse = MakeEllipse({320.0, 200.0}, 80.0, 40.0, 0.4);
   EXPECT_FALSE(FitEllipse({}));
   EXPECT_FALSE(FitEllipse(PointsOn(ellipse, 4, 0.0, 6.0)));

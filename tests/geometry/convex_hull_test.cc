@@ -20,7 +20,7 @@ double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// Random points; on a grid, many coincide and lie on lines.
+// Random points. On a grid many of them coincide and many lie on common lines.
 Points RandomPoints(RandomGeometry& random, int count, bool on_grid) {
   Points points;
   for (int i = 0; i < count; ++i) {
@@ -34,20 +34,20 @@ bool IsAmong(const Points& points, const Eigen::Vector2d& point) {
   return std::find(points.begin(), points.end(), point) != points.end();
 }
 
-TEST(ConvexHull, OfASquareWithPointsInItAndOnItsSides) {
+TEST(ConvexHull, OfASquareIgnoresPointsInsideAndOnItsSides) {
   const Points points{{2.0, 2.0}, {0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}, {1.0, 1.0},
                       {0.0, 2.0}, {0.0, 1.0}, {2.0, 0.0}, {0.0, 0.0}};
   EXPECT_EQ(ConvexHull(points), (Points{{0.0, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {0.0, 2.0}}));
 }
 
-TEST(ConvexHull, OfRandomPointsIsStrictlyConvexAndHoldsThemAll) {
+TEST(ConvexHull, OfRandomPointsIsStrictlyConvexAndContainsThemAll) {
   RandomGeometry random(1);
   for (int round = 0; round < 200; ++round) {
     const int count = 3 + static_cast<int>(random.Index(60));
     const Points points = RandomPoints(random, count, round % 2 == 0);
     const Points hull = ConvexHull(points);
     if (hull.size() < 3) {
-      continue;  // few points of the grid may be on one line
+      continue;  // a few points of the grid may all be on one line
     }
     EXPECT_GT(SignedArea(hull), 0.0);
     for (size_t i = 0; i < hull.size(); ++i) {
@@ -62,7 +62,7 @@ TEST(ConvexHull, OfRandomPointsIsStrictlyConvexAndHoldsThemAll) {
   }
 }
 
-TEST(ConvexHull, OfAHullIsTheHullInWhateverOrder) {
+TEST(ConvexHull, OfAHullIsTheHullInAnyOrderOfPoints) {
   RandomGeometry random(2);
   for (int round = 0; round < 50; ++round) {
     Points points = RandomPoints(random, 40, round % 2 == 0);

@@ -24,7 +24,7 @@ Ellipsoid RandomEllipsoid(RandomGeometry& random) {
           {random.Number(0.05, 0.4), random.Number(0.05, 0.4), random.Number(0.05, 0.4)}};
 }
 
-// Looks at the origin's neighbourhood from about 3 m.
+// A camera that looks at the neighbourhood of the origin from about 3 m.
 Rigid3 RandomView(RandomGeometry& random) {
   const Rigid3 turned = random.Pose(2.0, 0.2);
   return Rigid3(Eigen::Quaterniond::Identity(), {0.0, 0.0, 3.0}) * turned;
@@ -39,13 +39,13 @@ Eigen::Vector2d Pixel(const Rigid3& cam_from_world, const Eigen::Vector3d& point
   return (Calibration() * (cam_from_world * point)).hnormalized();
 }
 
-TEST(Ellipsoid, DualQuadricOfASphereIsKnown) {
+TEST(Ellipsoid, DualQuadricOfASphereMatchesHandComputedValues) {
   const Ellipsoid sphere{{Eigen::Quaterniond::Identity(), {1.0, 2.0, 3.0}}, {0.5, 0.5, 0.5}};
   const Eigen::Matrix4d dual = sphere.DualQuadric();
   EXPECT_DOUBLE_EQ(dual(3, 3), -1.0);
   EXPECT_DOUBLE_EQ(dual(0, 0), 0.25 - 1.0);
   EXPECT_DOUBLE_EQ(dual(0, 1), -2.0);
-  // The plane z = 3.5 touches it, z = 4 has h^2 - d^2 = 0.25 - 1.
+  // The plane z = 3.5 touches the sphere. For z = 4, h^2 - d^2 = 0.25 - 1.
   const Eigen::Vector4d touching(0.0, 0.0, 1.0, -3.5);
   const Eigen::Vector4d beyond(0.0, 0.0, 1.0, -4.0);
   EXPECT_NEAR(touching.dot(dual * touching), 0.0, 1e-14);
@@ -63,11 +63,11 @@ TEST(Ellipsoid, DualQuadricIsZTimesDiagonalTimesZ) {
   EXPECT_LT((ellipsoid.DualQuadric() - expected).norm(), 1e-14);
 }
 
-TEST(Ellipsoid, PlanesThatTouchItAreOnTheDualQuadric) {
+TEST(Ellipsoid, TangentPlanesAreOnTheDualQuadric) {
   RandomGeometry random(2);
   for (int i = 0; i < 100; ++i) {
     const Ellipsoid ellipsoid = RandomEllipsoid(random);
-    // At a point s * u of the surface in the object's frame the normal is u / s.
+    // At the point s * u of the surface, in the frame of the object, the normal is along u / s.
     const Eigen::Vector3d u = random.Vector(1.0).normalized();
     const Eigen::Vector3d point = ellipsoid.world_from_object * u.cwiseProduct(ellipsoid.half_axes);
     const Eigen::Vector3d normal =
@@ -107,8 +107,9 @@ TEST(Ellipsoid, RadialDistanceIsZeroOnTheSurfaceAndAlongTheRay) {
   EXPECT_DOUBLE_EQ(ellipsoid.RadialDistance(ellipsoid.world_from_object.translation), -0.1);
 }
 
-// The outline of a sphere around the optical axis: a circle whose rays touch the sphere.
-TEST(ProjectEllipsoid, OfASphereOnTheAxisIsKnown) {
+// The image of a sphere on the optical axis is a circle. The rays through this circle touch the
+// sphere.
+TEST(ProjectEllipsoid, OfASphereOnTheAxisMatchesHandComputedValues) {
   const Eigen::Matrix3d k = Eigen::Vector3d(500.0, 500.0, 1.0).asDiagonal();
   const Ellipsoid sphere{{Eigen::Quaterniond::Identity(), {0.0, 0.0, 2.0}}, {0.5, 0.5, 0.5}};
   const auto ellipse = ProjectEllipsoid(k, Rigid3(), sphere);
@@ -118,7 +119,7 @@ TEST(ProjectEllipsoid, OfASphereOnTheAxisIsKnown) {
   EXPECT_NEAR(ellipse->HalfExtent({0.6, 0.8}), 500.0 * tangent, 1e-10);
 }
 
-TEST(ProjectEllipsoid, HoldsAllPixelsOfTheSurfaceAndTouchesThem) {
+TEST(ProjectEllipsoid, ContainsAllPixelsOfTheSurfaceAndTouchesThem) {
   RandomGeometry random(5);
   for (int i = 0; i < 20; ++i) {
     const Ellipsoid ellipsoid = RandomEllipsoid(random);
@@ -137,8 +138,8 @@ TEST(ProjectEllipsoid, HoldsAllPixelsOfTheSurfaceAndTouchesThem) {
   }
 }
 
-// A plane through the camera's centre that touches the ellipsoid is seen as a line that touches the
-// ellipse: l^T P Q* P^T l = 0.
+// A plane through the camera centre that touches the ellipsoid is seen as a line that touches the
+// projected ellipse: l^T P Q* P^T l = 0.
 TEST(ProjectEllipsoid, TangentsOfTheEllipseBackprojectToTangentPlanes) {
   RandomGeometry random(6);
   for (int i = 0; i < 50; ++i) {
@@ -155,7 +156,7 @@ TEST(ProjectEllipsoid, TangentsOfTheEllipseBackprojectToTangentPlanes) {
   }
 }
 
-TEST(ProjectEllipsoid, SeesTheSameAfterACommonMotion) {
+TEST(ProjectEllipsoid, IsInvariantUnderACommonMotion) {
   RandomGeometry random(7);
   for (int i = 0; i < 50; ++i) {
     const Ellipsoid ellipsoid = RandomEllipsoid(random);
@@ -171,7 +172,7 @@ TEST(ProjectEllipsoid, SeesTheSameAfterACommonMotion) {
   }
 }
 
-TEST(ProjectEllipsoid, IsNothingUnlessAllOfItIsInFront) {
+TEST(ProjectEllipsoid, IsNothingUnlessTheWholeEllipsoidIsInFront) {
   const auto at_depth = [](double z) {
     const Ellipsoid ellipsoid{{ExpSo3({0.0, std::numbers::pi / 2.0, 0.0}), {0.1, 0.2, z}},
                               {0.5, 0.2, 0.1}};  // reaches 0.5 m along the view
@@ -182,7 +183,7 @@ TEST(ProjectEllipsoid, IsNothingUnlessAllOfItIsInFront) {
   EXPECT_FALSE(at_depth(0.49));  // crosses the plane of the camera
   EXPECT_FALSE(at_depth(0.0));
   EXPECT_FALSE(at_depth(-0.49));
-  EXPECT_FALSE(at_depth(-2.0));  // behind, where C*33 < 0 as well
+  EXPECT_FALSE(at_depth(-2.0));  // behind the camera, where C*33 < 0 too
   EXPECT_FALSE(at_depth(std::numeric_limits<double>::quiet_NaN()));
 }
 

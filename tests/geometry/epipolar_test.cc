@@ -19,7 +19,7 @@ Eigen::Matrix3d Calibration(double fx, double fy, double cx, double cy) {
 }
 
 // Two cameras side by side: epipolar lines are the image rows.
-TEST(Epipolar, OfAMotionAlongXIsKnown) {
+TEST(Epipolar, OfAMotionAlongXMatchesHandComputedValues) {
   const Rigid3 b_from_a(Eigen::Quaterniond::Identity(), {-2.0, 0.0, 0.0});
   Eigen::Matrix3d expected;
   expected << 0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0, -2.0, 0.0;
@@ -50,7 +50,7 @@ TEST(Epipolar, ProjectionsOfOnePointSatisfyTheConstraint) {
   }
 }
 
-TEST(Epipolar, ConstraintTellsAPointOffTheLine) {
+TEST(Epipolar, ConstraintIsViolatedByAPointOffTheLine) {
   const Rigid3 b_from_a(ExpSo3({0.1, -0.2, 0.05}), {0.3, -0.1, 0.2});
   const Eigen::Vector3d in_a(0.4, 0.3, 3.0);
   const Eigen::Vector3d in_b = b_from_a * in_a;
@@ -60,7 +60,7 @@ TEST(Epipolar, ConstraintTellsAPointOffTheLine) {
   EXPECT_NEAR(moved.homogeneous().dot(line) / line.head<2>().norm(), 0.01, 1e-12);
 }
 
-TEST(Epipolar, EssentialHasTwoEqualSingularValuesAndTheEpipolesAsNullSpaces) {
+TEST(Epipolar, EssentialHasTwoEqualSingularValuesAndTheEpipolesAsNullVectors) {
   RandomGeometry random(2);
   for (int i = 0; i < 20; ++i) {
     const Rigid3 b_from_a = random.Pose(1.0, 2.0);
@@ -69,13 +69,13 @@ TEST(Epipolar, EssentialHasTwoEqualSingularValuesAndTheEpipolesAsNullSpaces) {
     EXPECT_NEAR(singular[0], b_from_a.translation.norm(), 1e-12);
     EXPECT_NEAR(singular[1], singular[0], 1e-12);
     EXPECT_NEAR(singular[2], 0.0, 1e-12);
-    // The centre of a seen from b, and of b seen from a.
+    // The centre of camera a seen from b, and the centre of b seen from a.
     EXPECT_LT((b_from_a.translation.transpose() * essential).norm(), 1e-12);
     EXPECT_LT((essential * Inverse(b_from_a).translation).norm(), 1e-12);
   }
 }
 
-TEST(Epipolar, SwappingTheCamerasTransposes) {
+TEST(Epipolar, SwappingTheCamerasTransposesTheMatrix) {
   RandomGeometry random(3);
   const Eigen::Matrix3d k_a = Calibration(500.0, 510.0, 320.0, 240.0);
   const Eigen::Matrix3d k_b = Calibration(450.0, 440.0, 300.0, 250.0);

@@ -17,7 +17,7 @@ TEST(Line2, DistanceIsPositiveOnTheSideOfTheNormal) {
   EXPECT_DOUBLE_EQ(line.SignedDistance({9.0, 12.0}), 5.0);
 }
 
-TEST(Line2, HomogeneousFormGivesTheDistanceAndIsTheMeetOfItsPoints) {
+TEST(Line2, HomogeneousFormGivesTheDistanceAndIsTheCrossProductOfItsPoints) {
   RandomGeometry random(1);
   for (int i = 0; i < 100; ++i) {
     const double angle = random.Number(-4.0, 4.0);

@@ -28,7 +28,7 @@ TEST(OrientedBox, HasTheAxesOfABox) {
     const auto axes = OrientedBoxAxes(Box(rotation, {0.1, 0.2, 0.4}));
     ASSERT_TRUE(axes);
     EXPECT_NEAR(axes->determinant(), 1.0, 1e-9);
-    // Each axis is one of the box's, up to sign and order.
+    // Each axis is an axis of the box, up to sign and order.
     const Eigen::Matrix3d cosines = (axes->transpose() * rotation.toRotationMatrix()).cwiseAbs();
     for (int i = 0; i < 3; ++i) {
       EXPECT_GT(cosines.row(i).maxCoeff(), 0.999) << trial;
@@ -36,7 +36,7 @@ TEST(OrientedBox, HasTheAxesOfABox) {
   }
 }
 
-TEST(OrientedBox, OfTheSamePointsIsTheSame) {
+TEST(OrientedBox, IsDeterministic) {
   const auto points = Box(Eigen::Quaterniond(0.9, 0.1, 0.3, 0.2).normalized(), {0.1, 0.2, 0.4});
   EXPECT_EQ(OrientedBoxAxes(points).value(), OrientedBoxAxes(points).value());
 }

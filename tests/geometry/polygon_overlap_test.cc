@@ -28,7 +28,7 @@ Polygon RandomConvex(RandomGeometry& random) {
   return ConvexHull(points);
 }
 
-TEST(IntersectionArea, OfRectanglesIsKnown) {
+TEST(IntersectionArea, OfRectanglesMatchesHandComputedValues) {
   const Polygon a = Rectangle(0.0, 0.0, 4.0, 3.0);
   EXPECT_DOUBLE_EQ(IntersectionArea(a, Rectangle(1.0, 1.0, 10.0, 10.0)), 6.0);
   EXPECT_DOUBLE_EQ(IntersectionArea(a, Rectangle(1.0, 1.0, 1.0, 0.5)), 0.5);
@@ -37,16 +37,16 @@ TEST(IntersectionArea, OfRectanglesIsKnown) {
   EXPECT_DOUBLE_EQ(IntersectionOverUnion(a, Rectangle(2.0, 0.0, 4.0, 3.0)), 6.0 / 18.0);
 }
 
-// A square and the same turned by 45 degrees share a regular octagon of area 2 (sqrt(2) - 1)
-// side^2.
-TEST(IntersectionArea, OfASquareAndItsTurnedSelfIsAnOctagon) {
+// A square and the same square rotated by 45 degrees share a regular octagon of area 2 (sqrt(2) -
+// 1) side^2.
+TEST(IntersectionArea, OfASquareAndItsRotatedCopyIsAnOctagon) {
   const double r = std::numbers::sqrt2;
   const Polygon square = Rectangle(-1.0, -1.0, 2.0, 2.0);
   const Polygon turned{{-r, 0.0}, {0.0, -r}, {r, 0.0}, {0.0, r}};
   EXPECT_NEAR(IntersectionArea(square, turned), 8.0 * (r - 1.0), 1e-12);
 }
 
-TEST(IntersectionOverUnion, OfPolygonsIsSymmetricOneForEqualAndBounded) {
+TEST(IntersectionOverUnion, OfPolygonsIsSymmetricBoundedAndOneForEqualPolygons) {
   RandomGeometry random(1);
   for (int i = 0; i < 200; ++i) {
     const Polygon a = RandomConvex(random);
@@ -60,7 +60,7 @@ TEST(IntersectionOverUnion, OfPolygonsIsSymmetricOneForEqualAndBounded) {
   }
 }
 
-TEST(IntersectionOverUnion, OfPolygonsDoesNotChangeWithACommonMotion) {
+TEST(IntersectionOverUnion, OfPolygonsIsInvariantUnderACommonMotion) {
   RandomGeometry random(2);
   for (int i = 0; i < 100; ++i) {
     Polygon a = RandomConvex(random);
@@ -92,7 +92,7 @@ TEST(IntersectionOverUnion, OfEmptySetsIsZero) {
   EXPECT_EQ(IntersectionOverUnion(Eigen::AlignedBox2d(), Eigen::AlignedBox2d()), 0.0);
 }
 
-TEST(IntersectionOverUnion, OfBoxesIsThatOfTheirPolygons) {
+TEST(IntersectionOverUnion, OfBoxesEqualsThatOfTheirPolygons) {
   RandomGeometry random(3);
   for (int i = 0; i < 100; ++i) {
     const Eigen::Vector2d low_a = random.Vector(20.0).head<2>();
@@ -108,13 +108,14 @@ TEST(IntersectionOverUnion, OfBoxesIsThatOfTheirPolygons) {
   }
 }
 
-TEST(ClipToBox, KeepsWhatIsInTheBox) {
+TEST(ClipToBox, KeepsThePartInsideTheBox) {
   const Eigen::AlignedBox2d box(Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(640.0, 480.0));
   const Polygon inside = Rectangle(10.0, 10.0, 5.0, 5.0);
   EXPECT_EQ(ClipToBox(inside, box), inside);
   EXPECT_TRUE(ClipToBox(Rectangle(700.0, 10.0, 5.0, 5.0), box).empty());
   EXPECT_DOUBLE_EQ(SignedArea(ClipToBox(Rectangle(-10.0, -20.0, 30.0, 50.0), box)), 20.0 * 30.0);
-  // The triangle's corner beyond x = 640 is cut off: half the base and height are left outside.
+  // The triangle's corner beyond x = 640 is cut off. The part outside has half of the triangle's
+  // base and height.
   const Polygon triangle{{540.0, 100.0}, {740.0, 200.0}, {540.0, 300.0}};
   EXPECT_NEAR(SignedArea(ClipToBox(triangle, box)), 20000.0 * 0.75, 1e-9);
   EXPECT_TRUE(ClipToBox(inside, Eigen::AlignedBox2d()).empty());

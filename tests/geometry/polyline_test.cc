@@ -16,8 +16,8 @@ namespace {
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
-// A closed star-shaped outline with a ragged border.
-Polygon RaggedOutline(RandomGeometry& random, int corners) {
+// A closed star-shaped polygon with a ragged border.
+Polygon RaggedPolygon(RandomGeometry& random, int corners) {
   Polygon polygon;
   for (int i = 0; i < corners; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / corners;
@@ -39,7 +39,7 @@ double DistanceTo(const Polygon& polygon, const Eigen::Vector2d& point) {
   return nearest;
 }
 
-TEST(SimplifyPolygon, KeepsTheCornersOfASquareOnly) {
+TEST(SimplifyPolygon, KeepsOnlyTheCornersOfASquare) {
   Polygon square;
   for (int i = 0; i < 10; ++i) square.emplace_back(i, 0.1 * (i % 2));
   for (int i = 0; i < 10; ++i) square.emplace_back(10.0, i);
@@ -52,7 +52,7 @@ TEST(SimplifyPolygon, KeepsTheCornersOfASquareOnly) {
 TEST(SimplifyPolygon, KeepsEveryCornerWithinEpsilon) {
   RandomGeometry random(1);
   for (int round = 0; round < 40; ++round) {
-    const Polygon outline = RaggedOutline(random, 150);
+    const Polygon outline = RaggedPolygon(random, 150);
     size_t before = outline.size();
     for (const double epsilon : {0.5, 3.0, 6.0, 12.0}) {
       const Polygon simplified = SimplifyPolygon(outline, epsilon);
@@ -68,7 +68,7 @@ TEST(SimplifyPolygon, KeepsEveryCornerWithinEpsilon) {
 
 TEST(SimplifyPolygon, GivesCornersOfThePolygonInTheirOrder) {
   RandomGeometry random(2);
-  const Polygon outline = RaggedOutline(random, 100);
+  const Polygon outline = RaggedPolygon(random, 100);
   const Polygon simplified = SimplifyPolygon(outline, 4.0);
   auto next = outline.begin();
   for (const Eigen::Vector2d& corner : simplified) {
@@ -77,29 +77,29 @@ TEST(SimplifyPolygon, GivesCornersOfThePolygonInTheirOrder) {
   }
 }
 
-TEST(SimplifyPolygon, OfAConvexOneIsConvex) {
+TEST(SimplifyPolygon, OfAConvexPolygonIsConvex) {
   RandomGeometry random(3);
-  const Polygon hull = ConvexHull(RaggedOutline(random, 200));
+  const Polygon hull = ConvexHull(RaggedPolygon(random, 200));
   const Polygon simplified = SimplifyPolygon(hull, 3.0);
   ASSERT_GE(simplified.size(), 3U);
   EXPECT_EQ(ConvexHull(simplified).size(), simplified.size());
-  EXPECT_LT(SignedArea(simplified), SignedArea(hull));  // chords cut inside
+  EXPECT_LT(SignedArea(simplified), SignedArea(hull));  // its chords lie inside the hull
 }
 
-TEST(SimplifyPolygon, WithoutEpsilonIsTheSame) {
+TEST(SimplifyPolygon, WithoutEpsilonChangesNothing) {
   RandomGeometry random(4);
-  const Polygon outline = RaggedOutline(random, 50);
+  const Polygon outline = RaggedPolygon(random, 50);
   EXPECT_EQ(SimplifyPolygon(outline, 0.0), outline);
 }
 
-TEST(SimplifyPolygon, OfDegenerateOnesIsWhatIsLeft) {
+TEST(SimplifyPolygon, HandlesDegeneratePolygons) {
   EXPECT_TRUE(SimplifyPolygon({}, 3.0).empty());
   EXPECT_EQ(SimplifyPolygon(Polygon(5, Eigen::Vector2d(1.0, 2.0)), 3.0).size(), 1U);
   const Polygon line{{0.0, 0.0}, {5.0, 1.0}, {10.0, 2.0}, {5.0, 1.0}};
   EXPECT_EQ(SimplifyPolygon(line, 1.0), (Polygon{{0.0, 0.0}, {10.0, 2.0}}));
 }
 
-TEST(SignedArea, IsKnownAndChangesSignWithTheOrder) {
+TEST(SignedArea, MatchesHandComputedValuesAndChangesSignWithTheOrder) {
   Polygon triangle{{1000.0, 1000.0}, {1004.0, 1000.0}, {1000.0, 1003.0}};
   EXPECT_DOUBLE_EQ(SignedArea(triangle), 6.0);
   std::reverse(triangle.begin(), triangle.end());
@@ -108,7 +108,7 @@ TEST(SignedArea, IsKnownAndChangesSignWithTheOrder) {
   EXPECT_EQ(SignedArea(Polygon{{1.0, 2.0}, {3.0, 4.0}}), 0.0);
 }
 
-TEST(BoundingBox, HoldsThePoints) {
+TEST(BoundingBox, ContainsThePoints) {
   const std::vector<Eigen::Vector2d> points{{1.0, 5.0}, {-2.0, 3.0}, {0.0, 7.0}};
   const Eigen::AlignedBox2d box = BoundingBox(points);
   EXPECT_EQ(box.min(), Eigen::Vector2d(-2.0, 3.0));

@@ -26,7 +26,7 @@ class Random {
 
 double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
-TEST(Rigid3, MovesPointsByHand) {
+TEST(Rigid3, MovesPointsAsComputedByHand) {
   // A quarter turn around z takes x to y.
   const Rigid3 b_from_a(ExpSo3({0.0, 0.0, kPi / 2.0}), {10.0, 20.0, 30.0});
   const Eigen::Vector3d moved = b_from_a * Eigen::Vector3d(1.0, 2.0, 3.0);
@@ -38,7 +38,7 @@ TEST(Rigid3, DefaultIsIdentity) {
   EXPECT_EQ(Rigid3() * point, point);
 }
 
-TEST(Rigid3, ToMatrixMovesPointsAlike) {
+TEST(Rigid3, ToMatrixMovesPointsInTheSameWay) {
   Random random;
   for (int i = 0; i < 50; ++i) {
     const Rigid3 pose = random.Pose();
@@ -59,7 +59,7 @@ TEST(Rigid3, ProductsAreAssociativeAndMovePointsInTurn) {
   }
 }
 
-TEST(Rigid3, InverseUndoes) {
+TEST(Rigid3, InverseUndoesTheTransform) {
   Random random;
   for (int i = 0; i < 50; ++i) {
     const Rigid3 pose = random.Pose();
@@ -96,8 +96,8 @@ TEST(So3, LogInvertsExp) {
   }
 }
 
-// Both signs of a quaternion are one rotation.
-TEST(So3, LogIsTheShortWayRound) {
+// Both signs of a quaternion describe the same rotation.
+TEST(So3, LogIsTheShortestRotation) {
   const Eigen::Vector3d omega(0.0, 0.0, 1.5 * kPi);
   EXPECT_LT((LogSo3(ExpSo3(omega)) - Eigen::Vector3d(0.0, 0.0, -0.5 * kPi)).norm(), 1e-12);
   Eigen::Quaterniond rotation = ExpSo3({0.1, 0.2, -0.3});
@@ -128,7 +128,7 @@ TEST(Retract, ActsOnTheLeft) {
   EXPECT_LT(Distance(Retract(pose, Vector6d::Zero()), pose), 1e-14);
 }
 
-TEST(Retract, DerivativeAtZeroIsAsDocumented) {
+TEST(Retract, DerivativeAtZeroMatchesItsDocumentation) {
   Random random;
   const Rigid3 pose = random.Pose();
   const Eigen::Vector3d point = random.Vector();

@@ -6,13 +6,13 @@
 namespace hullslam {
 namespace {
 
-TEST(Trajectory, APoseIsAtTheOriginUntilItIsGiven) {
+TEST(Trajectory, DefaultPoseIsTheIdentity) {
   const StampedPose pose;
   EXPECT_EQ(pose.timestamp, 0.0);
   EXPECT_EQ(pose.world_from_cam * Eigen::Vector3d(1.0, 2.0, 3.0), Eigen::Vector3d(1.0, 2.0, 3.0));
 }
 
-TEST(Trajectory, PosesTakePointsOfTheCameraToTheWorld) {
+TEST(Trajectory, PosesMapPointsFromTheCameraToTheWorld) {
   const Trajectory trajectory = {
       {2.5, Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.0, 0.0, 7.0))}};
   EXPECT_EQ(trajectory[0].world_from_cam * Eigen::Vector3d::Zero(), Eigen::Vector3d(0, 0, 7));
@@ -29,7 +29,7 @@ TEST(InterpolatePose, LiesBetweenNeighboursInTime) {
   EXPECT_EQ(InterpolatePose(trajectory, 1.0, 1.5)->translation.x(), 0.0);
 }
 
-TEST(InterpolatePose, IsNothingOutsideAndInGaps) {
+TEST(InterpolatePose, IsNothingOutsideTheTrajectoryAndInGaps) {
   const Trajectory trajectory = {{1.0, Rigid3()}, {2.0, Rigid3()}};
   EXPECT_FALSE(InterpolatePose(trajectory, 0.9, 1.5));
   EXPECT_FALSE(InterpolatePose(trajectory, 2.1, 1.5));

@@ -12,15 +12,16 @@ Eigen::Vector2d Normalized(const Rigid3& cam_from_world, const Eigen::Vector3d& 
   return (cam_from_world * point).hnormalized();
 }
 
-TEST(Triangulation, OfTwoCamerasSideBySideByHand) {
-  // Centres at x = 0 and x = 1; the rays x/z = 0.5 and 0.25 meet at depth 1 / (0.5 - 0.25) = 4.
+TEST(Triangulation, OfTwoCamerasSideBySideMatchesHandComputedValues) {
+  // The centres are at x = 0 and x = 1. The rays x/z = 0.5 and 0.25 meet at depth 1 / (0.5 - 0.25)
+  // = 4.
   const Rigid3 b_from_world(Eigen::Quaterniond::Identity(), {-1.0, 0.0, 0.0});
   const auto point = TriangulatePoint(Rigid3(), {0.5, -0.25}, b_from_world, {0.25, -0.25});
   ASSERT_TRUE(point.has_value());
   EXPECT_LT((*point - Eigen::Vector3d(2.0, -1.0, 4.0)).norm(), 1e-12);
 }
 
-TEST(Triangulation, RecoversWhatTwoCamerasSee) {
+TEST(Triangulation, RecoversThePointThatTwoCamerasSee) {
   RandomGeometry random(1);
   for (int i = 0; i < 200; ++i) {
     const Rigid3 a_from_world = random.Pose(0.3, 1.0);
@@ -39,7 +40,7 @@ TEST(Triangulation, DoesNotDependOnTheOrderOfTheViews) {
     const Rigid3 a_from_world = random.Pose(0.2, 0.5);
     const Rigid3 b_from_world = random.Pose(0.2, 0.5);
     const Eigen::Vector3d point(0.2, -0.1, 4.0);
-    // Off the epipolar line, as real measurements are.
+    // These pixels are off the epipolar line, as real measurements are.
     const Eigen::Vector2d in_a = Normalized(a_from_world, point) + Eigen::Vector2d(1e-3, -1e-3);
     const Eigen::Vector2d in_b = Normalized(b_from_world, point);
     const auto forth = TriangulatePoint(a_from_world, in_a, b_from_world, in_b);
@@ -49,13 +50,13 @@ TEST(Triangulation, DoesNotDependOnTheOrderOfTheViews) {
   }
 }
 
-TEST(Triangulation, ParallelRaysMeetNowhere) {
+TEST(Triangulation, ParallelRaysGiveNoPoint) {
   const Rigid3 b_from_world(Eigen::Quaterniond::Identity(), {-1.0, 0.0, 0.0});
   EXPECT_FALSE(TriangulatePoint(Rigid3(), {0.0, 0.0}, b_from_world, {0.0, 0.0}).has_value());
 }
 
-// Rays that part meet behind the cameras: the caller is told to check.
-TEST(Triangulation, PartingRaysMeetBehind) {
+// Diverging rays meet behind the cameras; the caller must check this.
+TEST(Triangulation, DivergingRaysMeetBehindTheCameras) {
   const Rigid3 b_from_world(Eigen::Quaterniond::Identity(), {-1.0, 0.0, 0.0});
   const auto point = TriangulatePoint(Rigid3(), {-0.25, 0.0}, b_from_world, {0.25, 0.0});
   ASSERT_TRUE(point.has_value());

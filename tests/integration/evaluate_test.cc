@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hullslam/io/atomic_file.h"
 #include "hullslam/io/object_file.h"
 #include "hullslam/io/trajectory_file.h"
 #include "support/run_program.h"
@@ -28,8 +29,8 @@ Trajectory Curve(double scale) {
 class Evaluate : public ::testing::Test {
  protected:
   Evaluate() {
-    WriteTrajectory(truth_, Curve(1.0));
-    WriteTrajectory(half_, Curve(0.5));
+    WriteFileAtomically(truth_, FormatTrajectory(Curve(1.0)));
+    WriteFileAtomically(half_, FormatTrajectory(Curve(0.5)));
   }
 
   // Expects exit code 2, nothing on stdout, and one line on stderr that contains `part`.
@@ -144,8 +145,8 @@ class EvaluateObjects : public Evaluate {
     }
     folder_.Write("rgb.txt", images);
     folder_.Write("depth.txt", images);
-    WriteTrajectory(folder_.path() / "groundtruth.txt", truth);
-    WriteTrajectory(folder_.path() / "run" / "trajectory.txt", run);
+    WriteFileAtomically(folder_.path() / "groundtruth.txt", FormatTrajectory(truth));
+    WriteFileAtomically(folder_.path() / "run" / "trajectory.txt", FormatTrajectory(run));
     const Eigen::Vector3d center = truth_from_map * Eigen::Vector3d(0.0, 0.0, 2.0);
     const auto entry = [](int id, const Eigen::Vector3d& at) {
       return nlohmann::json{{"id", id},

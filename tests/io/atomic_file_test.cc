@@ -16,7 +16,7 @@
 namespace hullslam {
 namespace {
 
-// Stands in for a full disk: writes beyond `bytes` of a file fail while it lives.
+// Simulates a full disk: as long as the object exists, writing more than `bytes` to a file fails.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : former_handler_(::signal(SIGXFSZ, SIG_IGN)) {
@@ -39,7 +39,7 @@ long CountFiles(const std::filesystem::path& folder) {
   return std::distance(std::filesystem::directory_iterator(folder), {});
 }
 
-TEST(AtomicFile, WritesAndReplacesWholeFiles) {
+TEST(AtomicFile, WritesAndReplacesCompleteFiles) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "out.txt";
   WriteFileAtomically(path, "first, and longer than the second");
@@ -49,7 +49,7 @@ TEST(AtomicFile, WritesAndReplacesWholeFiles) {
   EXPECT_EQ(CountFiles(folder.path()), 1);
 }
 
-TEST(AtomicFile, ADiskThatIsFullLeavesTheGoodFile) {
+TEST(AtomicFile, AFullDiskLeavesTheOldFile) {
   const TemporaryFolder folder;
   const auto path = folder.Write("out.txt", "good");
   {
@@ -61,7 +61,7 @@ TEST(AtomicFile, ADiskThatIsFullLeavesTheGoodFile) {
   EXPECT_EQ(CountFiles(folder.path()), 1);
 }
 
-TEST(AtomicFile, FilesThatBelongTogetherAreAllNewOrAllAsBefore) {
+TEST(AtomicFile, FilesThatBelongTogetherAreAllReplacedOrAllUnchanged) {
   const TemporaryFolder folder;
   const auto first = folder.Write("first.txt", "good");
   const auto second = folder.Write("second.txt", "good too");
@@ -81,7 +81,7 @@ TEST(AtomicFile, FilesThatBelongTogetherAreAllNewOrAllAsBefore) {
   EXPECT_EQ(CountFiles(folder.path()), 2);
 }
 
-TEST(AtomicFile, FoldersThatTakeNoFileAreTold) {
+TEST(AtomicFile, UnusableFoldersAreReported) {
   const TemporaryFolder folder;
   const auto file = folder.Write("file", "x");
   ExpectInputError([&] { WriteFileAtomically(file / "out.txt", "y"); },

@@ -28,7 +28,7 @@ cv::Mat Ramp(int type) {
   return image;
 }
 
-TEST(ImageFile, DepthIsReadToTheBit) {
+TEST(ImageFile, DepthIsReadExactly) {
   const TemporaryFolder folder;
   cv::Mat depth = Ramp(CV_16UC1);
   depth.at<uint16_t>(3, 4) = 65535;
@@ -48,7 +48,7 @@ TEST(ImageFile, ColourBecomesLuma) {
   }
 }
 
-TEST(ImageFile, OnlySixteenBitDepthIsTaken) {
+TEST(ImageFile, OnlySixteenBitDepthIsAccepted) {
   const TemporaryFolder folder;
   const auto eight = folder.Write("8.png", Encode(".png", Ramp(CV_8UC1)));
   ExpectInputError([&] { ReadDepthImage(eight); },
@@ -57,7 +57,7 @@ TEST(ImageFile, OnlySixteenBitDepthIsTaken) {
   ExpectInputError([&] { ReadDepthImage(colour); }, {"c.png", "3 channel(s) of 16 bits"});
 }
 
-TEST(ImageFile, EveryCutIsFound) {
+TEST(ImageFile, EveryTruncationIsFound) {
   const TemporaryFolder folder;
   const cv::Mat noise(48, 64, CV_8UC1);
   cv::randu(noise, 0, 255);
@@ -73,7 +73,7 @@ TEST(ImageFile, EveryCutIsFound) {
   }
 }
 
-TEST(ImageFile, BrokenFilesAreNamed) {
+TEST(ImageFile, BrokenFilesAreReportedByName) {
   const TemporaryFolder folder;
   ExpectInputError([&] { ReadGreyImage(folder.Write("empty.png", "")); },
                    {"empty.png", "is empty"});
@@ -86,7 +86,7 @@ TEST(ImageFile, BrokenFilesAreNamed) {
                    {"flipped.png", "is broken", "checksum"});
 }
 
-TEST(ImageFile, AHugeSizeIsRefusedBeforeMemoryIsTaken) {
+TEST(ImageFile, AHugeSizeIsRefusedBeforeMemoryIsAllocated) {
   const TemporaryFolder folder;
   std::string png = Encode(".png", Ramp(CV_8UC1));
   png[16] = 0x7f;  // the highest byte of the width

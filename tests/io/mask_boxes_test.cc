@@ -23,7 +23,7 @@ class BoxesTest : public MaskFixture {
   }
 };
 
-TEST_F(BoxesTest, BoxesAreThePixelsFromXOn) {
+TEST_F(BoxesTest, BoxesStartAtXAndY) {
   Write("1.5.txt", "73 173 138 46 70 0.5789\n56 16 256 220 215 1\n");
   const FrameMasks frame = ReadFrame(0);
   ASSERT_EQ(frame.masks.size(), 2U);
@@ -31,12 +31,12 @@ TEST_F(BoxesTest, BoxesAreThePixelsFromXOn) {
   EXPECT_EQ(book.label, "book");
   EXPECT_EQ(book.score, 0.5789);
   EXPECT_EQ(book.shape, MaskShape::kBox);
-  // 46 x 70 pixels, from that of centre (173, 138) to that of (218, 207).
+  // 46 x 70 pixels, with centres from (173, 138) to (218, 207).
   EXPECT_EQ(book.outlines, (std::vector<std::vector<Eigen::Vector2d>>{
                                {{172.5, 137.5}, {218.5, 137.5}, {218.5, 207.5}, {172.5, 207.5}}}));
 }
 
-TEST_F(BoxesTest, BoxesEndAtTheBorder) {
+TEST_F(BoxesTest, BoxesAreClippedAtTheBorder) {
   Write("1.5.txt", "0 -20 -20 1000 1000 0.5\n");
   const auto outline = ReadFrame(0).masks.at(0).outlines.at(0);
   EXPECT_EQ(outline[0], Eigen::Vector2d(-0.5, -0.5));
@@ -59,7 +59,7 @@ TEST_F(BoxesTest, MalformedLinesAreRefused) {
   ExpectRefusedLine("73 173 138 46 70 50", {"confidence is '50'", "from 0 to 1"});
 }
 
-TEST_F(BoxesTest, AreToldFromSharesOfTheImage) {
+TEST_F(BoxesTest, AreDistinguishedFromFractionsOfTheImage) {
   format_ = "";
   Write("1.5.txt", "73 173 138 46 70 0.5789\n");
   EXPECT_EQ(Open()->format(), "boxes");

@@ -6,7 +6,7 @@
 namespace hullslam {
 namespace {
 
-TEST(MaskChecks, StemsHaveNeitherFolderNorExtensionOfLetters) {
+TEST(MaskChecks, StemsHaveNoFolderAndNoExtension) {
   EXPECT_EQ(ImageStem("rgb/1305031102.175304.png"), "1305031102.175304");
   EXPECT_EQ(ImageStem("1305031102.175304"), "1305031102.175304");
   EXPECT_EQ(ImageStem("C:\\data\\0012.JPEG"), "0012");
@@ -15,7 +15,7 @@ TEST(MaskChecks, StemsHaveNeitherFolderNorExtensionOfLetters) {
   EXPECT_EQ(ImageStem("rgb/"), "");
 }
 
-TEST(MaskChecks, OutlinesAreSortedByAreaAndThoseWithoutAreDropped) {
+TEST(MaskChecks, OutlinesAreSortedAndThoseWithoutAreaAreRemoved) {
   const auto square = [](double side) {
     return std::vector<Eigen::Vector2d>{{0.0, 0.0}, {side, 0.0}, {side, side}, {0.0, side}};
   };
@@ -29,7 +29,7 @@ TEST(MaskChecks, OutlinesAreSortedByAreaAndThoseWithoutAreDropped) {
   EXPECT_EQ(frame.without_area, 1U);
 }
 
-TEST(MaskChecks, PointsMayBeAPixelBeyondTheBorder) {
+TEST(MaskChecks, PointsMayBeOnePixelBeyondTheBorder) {
   const MaskRequest request{.path = {}, .format = {}, .width = 640, .height = 480};
   EXPECT_TRUE(IsNearImage({-0.5, 479.5}, request));
   EXPECT_TRUE(IsNearImage({640.5, -1.5}, request));

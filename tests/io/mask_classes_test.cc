@@ -12,7 +12,7 @@
 namespace hullslam {
 namespace {
 
-TEST(MaskClasses, EightyClassesWithoutRepetition) {
+TEST(MaskClasses, HasEightyDifferentClasses) {
   const std::set<std::string> names(CocoClasses().begin(), CocoClasses().end());
   EXPECT_EQ(CocoClasses().size(), 80U);
   EXPECT_EQ(names.size(), 80U);
@@ -20,7 +20,7 @@ TEST(MaskClasses, EightyClassesWithoutRepetition) {
   EXPECT_EQ(CocoClasses()[62], "tv");
 }
 
-TEST(MaskClasses, CategoriesAreTheClassesWithGaps) {
+TEST(MaskClasses, CategoriesAreTheClassesNumberedWithGaps) {
   std::vector<std::string> names;
   for (int id = -1; id <= 100; ++id) {
     if (const auto name = CocoCategory(id)) {
@@ -37,7 +37,7 @@ TEST(MaskClasses, CategoriesAreTheClassesWithGaps) {
   }
 }
 
-TEST(MaskClasses, FileReplacesThem) {
+TEST(MaskClasses, AFileReplacesTheNames) {
   const TemporaryFolder folder;
   EXPECT_EQ(ReadClasses(folder.path()), CocoClasses());
   folder.Write("classes.txt", " robot \r\nred ball\n\n\n");

@@ -24,7 +24,8 @@ class CocoTest : public MaskFixture {
     all.insert(all.end(), parts.begin(), parts.end());
     ExpectRefusal(all, "masks.json");
   }
-  // Results with one annotation of the first frame that has these members beside.
+  // Expects that results are refused if the only annotation, of the first frame, also has these
+  // members.
   void ExpectRefusedMember(const std::string& members,
                            const std::vector<std::string>& parts) const {
     ExpectRefusedJson("[{\"image_id\": \"1.5\", " + members + "}]", parts);
@@ -43,10 +44,10 @@ const char* const kInstances = R"({
     {"id": 32, "file_name": "2.5.jpg"}, {"id": 33, "file_name": "3.5.jpg"}],
   "categories": [{"id": 5, "name": "robot"}, {"id": 9, "name": "ball"}]})";
 
-// Columns 2 and 3 are inside.
+// Columns 2 and 3 are inside the mask.
 const char* const kCounts = R"({"size": [480, 640], "counts": [960, 480, 0, 480, 305280]})";
 
-TEST_F(CocoTest, InstancesWithImagesAndCategoriesInAnyOrder) {
+TEST_F(CocoTest, ImagesAndCategoriesMayComeInAnyOrder) {
   const FrameMasks frame = ReadJson(0, kInstances);
   ASSERT_EQ(frame.masks.size(), 1U);
   EXPECT_EQ(frame.crowds, 1U);
@@ -54,12 +55,12 @@ TEST_F(CocoTest, InstancesWithImagesAndCategoriesInAnyOrder) {
   EXPECT_EQ(frame.masks[0].score, 1.0);
   EXPECT_EQ(frame.masks[0].shape, MaskShape::kContour);
   ASSERT_EQ(frame.masks[0].outlines.size(), 2U);
-  // The larger part first; coordinates are those of pixels' corners.
+  // The larger part comes first. In the file, the corners of pixels have integer coordinates.
   EXPECT_EQ(frame.masks[0].outlines[0][0], Eigen::Vector2d(99.5, 99.5));
   EXPECT_EQ(frame.masks[0].outlines[1][0], Eigen::Vector2d(10.0, 20.0));
 }
 
-TEST_F(CocoTest, WithoutSegmentationTheBoxCounts) {
+TEST_F(CocoTest, WithoutSegmentationTheBoxIsUsed) {
   const FrameMasks frame = ReadJson(1, kInstances);
   ASSERT_EQ(frame.masks.size(), 1U);
   EXPECT_EQ(frame.masks[0].label, "ball");
@@ -77,7 +78,7 @@ TEST_F(CocoTest, ImagesWithoutAnnotationsAreNotMissing) {
   EXPECT_TRUE(source->Read({"4.5", 3}).is_missing);
 }
 
-TEST_F(CocoTest, ResultsHaveStemsForIdsAndCocosCategories) {
+TEST_F(CocoTest, ResultsUseStemsAsIdsAndTheCategoriesOfCoco) {
   const FrameMasks frame = ReadJson(0, std::string(R"([
     {"image_id": "1.5", "category_id": 47, "score": 0.9, "segmentation": )") +
                                            kCounts + R"(},
@@ -93,7 +94,7 @@ TEST_F(CocoTest, ResultsHaveStemsForIdsAndCocosCategories) {
   EXPECT_EQ(frame.masks[1].label, "object");  // no category: SAM has none
 }
 
-TEST_F(CocoTest, CompressedAndPlainRunsAreTheSame) {
+TEST_F(CocoTest, CompressedAndPlainRunsGiveTheSameMask) {
   const auto read = [&](const std::string& counts) {
     return ReadJson(0, R"([{"image_id": "1.5", "segmentation": {"size": [480, 640], "counts": )" +
                            counts + "}}]")
@@ -104,7 +105,7 @@ TEST_F(CocoTest, CompressedAndPlainRunsAreTheSame) {
   EXPECT_EQ(read("[100, 200, 306900]"), read("\"T3X6df[9\""));
 }
 
-TEST_F(CocoTest, NumbersOfImagesMatchStemsOfDigits) {
+TEST_F(CocoTest, ImageNumbersMatchStemsOfDigits) {
   frames_ = {{"000012", 0}, {"000000", 1}};
   const std::string json = R"([{"image_id": 12, "bbox": [1, 1, 20, 20]},
                                {"image_id": 0, "bbox": [1, 1, 20, 20]}])";
@@ -168,7 +169,7 @@ TEST_F(CocoTest, BrokenTablesAreRefused) {
   refuse("{\"id\": 9, \"name\"", "{\"name\"", {"categories[1]: has no 'id'"});
 }
 
-TEST_F(CocoTest, WhatIsNoJsonIsRefused) {
+TEST_F(CocoTest, FilesThatAreNotJsonAreRefused) {
   ExpectRefusedJson("", {"no valid JSON"});
   ExpectRefusedJson("annotations", {"no valid JSON", "line 1, column 1"});
   ExpectRefusedJson(std::string(kInstances).substr(0, 400), {"no valid JSON", "line "});

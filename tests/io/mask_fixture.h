@@ -14,12 +14,12 @@
 
 namespace hullslam {
 
-// Masks of a format in a temporary folder, of images of 640x480 px and two frames, "1.5" and "2.5".
+// Masks in a temporary folder, for images of 640x480 px and two frames, "1.5" and "2.5".
 class MaskFixture : public ::testing::Test {
  protected:
   explicit MaskFixture(std::string format) : format_(std::move(format)) {}
 
-  // In the folder; "masks" itself where `name` is empty.
+  // A path in the folder "masks", or the folder itself if `name` is empty.
   std::filesystem::path Path(const std::string& name = "") const {
     return name.empty() ? folder_.path() / "masks" : folder_.path() / "masks" / name;
   }

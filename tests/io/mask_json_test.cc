@@ -13,7 +13,7 @@ namespace {
 
 class MaskJson : public ::testing::Test {
  protected:
-  // "section index value" of all records.
+  // Returns "section index value" for each record.
   std::vector<std::string> Records(const std::string& json) const {
     const std::filesystem::path path = folder_.Write("file.json", json);
     std::vector<std::string> records;
@@ -30,26 +30,25 @@ class MaskJson : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(MaskJson, RecordsOfAList) {
+TEST_F(MaskJson, VisitsTheRecordsOfAList) {
   EXPECT_EQ(Records(R"([{"a": [{"b": 1}]}, 7, {"c": {}}])"),
             (std::vector<std::string>{R"( 0 {"a":[{"b":1}]})", R"( 1 {"c":{}})"}));
   EXPECT_TRUE(Records("[]").empty());
 }
 
-TEST_F(MaskJson, RecordsOfListsInAnObject) {
+TEST_F(MaskJson, VisitsTheRecordsOfListsInAnObject) {
   EXPECT_EQ(Records(R"({"x": [{"a": 1}, {"a": 2}], "y": 3, "z": [{"b": {"c": 4}}]})"),
             (std::vector<std::string>{R"(x 0 {"a":1})", R"(x 1 {"a":2})", R"(z 0 {"b":{"c":4}})"}));
 }
 
-TEST_F(MaskJson, RefusesWhatIsNoJsonWithItsPlace) {
+TEST_F(MaskJson, ReportsWhereAFileIsNotJson) {
   ExpectRefusal("[{\"a\": 1},\n {\"a\" 2}]", {"file.json: is no valid JSON", "line 2, column"});
   ExpectRefusal("[{\"a\": 1}", {"is no valid JSON", "line 1"});
   ExpectRefusal("[1] 2", {"is no valid JSON"});
   ExpectRefusal(std::string("[\"\xff\"]"), {"is no valid JSON"});
-  ExpectInputError([&] { ReadJson(folder_.path() / "none.json", 100); }, {"none.json"});
 }
 
-TEST_F(MaskJson, RefusesWhatIsTooMuch) {
+TEST_F(MaskJson, RefusesTooLargeFiles) {
   ExpectRefusal(std::string(100'000, '['), {"more than 16 deep"});
   std::string many = "[";
   for (int i = 0; i < 2'000'000; ++i) {
@@ -61,13 +60,9 @@ TEST_F(MaskJson, RefusesWhatIsTooMuch) {
     many += "{},";
   }
   ExpectRefusal(many + "{}]", {"more than 1000000 records"});
-  const std::filesystem::path path = folder_.Write("file.json", "[1, 2, 3]");
-  ExpectInputError([&] { ReadJson(path, 5); }, {"file.json: 9 bytes"});
 }
 
-TEST_F(MaskJson, MessagesShowAPartOfLongValues) {
-  EXPECT_EQ(ShowJson("a\n\xc3\xa9"), "\"a\\n\\u00e9\"");
-  EXPECT_LT(ShowJson(std::string(1'000'000, 'a')).size(), 200U);
+TEST_F(MaskJson, MessagesShortenLongValues) {
   ExpectRefusal("[\"" + std::string(100'000, 'a'), {"..."});
 }
 

@@ -38,7 +38,7 @@ class LabelPngTest : public MaskFixture {
   cv::Mat labels_ = cv::Mat::zeros(480, 640, CV_16UC1);
 };
 
-TEST_F(LabelPngTest, InstancesComeInTheOrderOfTheirNumbers) {
+TEST_F(LabelPngTest, InstancesAreOrderedByNumber) {
   const FrameMasks frame = ReadFrame(0);
   ASSERT_EQ(frame.masks.size(), 2U);
   EXPECT_EQ(frame.masks[0].label, "cup");
@@ -61,7 +61,7 @@ TEST_F(LabelPngTest, IsDetected) {
   EXPECT_EQ(Open()->format(), "label-png");
 }
 
-TEST_F(LabelPngTest, AFrameMayHaveClassesOfItsOwn) {
+TEST_F(LabelPngTest, AFrameMayHaveItsOwnClasses) {
   Write("classes.json", R"({"7": "cup", "300": "tv", "frames": {"1.5": {"300": "laptop"}}})");
   EXPECT_EQ(ReadFrame(0).masks.at(0).label, "cup");
   EXPECT_EQ(ReadFrame(0).masks.at(1).label, "laptop");
@@ -87,7 +87,7 @@ TEST_F(LabelPngTest, OtherImagesAreRefused) {
   ExpectRefusal({path, "empty"});
 }
 
-TEST_F(LabelPngTest, InstancesThatClassesDoNotNameAreRefused) {
+TEST_F(LabelPngTest, InstancesWithoutAClassAreRefused) {
   Write("classes.json", R"({"300": "tv"})");
   ExpectRefusal({Path("1.5.png"), "instance 7 is not in classes.json"});
 }

@@ -42,7 +42,7 @@ class OaSlamTest : public MaskFixture {
 const char* const kCup =
     R"({"category_id": 41, "detection_score": 0.9, "bbox": [100.0, 50.0, 140.0, 80.0]})";
 
-TEST_F(OaSlamTest, BoxesAreCorners) {
+TEST_F(OaSlamTest, BoxesAreGivenByTheirCorners) {
   const FrameMasks frame = ReadDetections(kCup);
   ASSERT_EQ(frame.masks.size(), 1U);
   EXPECT_EQ(frame.masks[0].label, "cup");
@@ -53,7 +53,7 @@ TEST_F(OaSlamTest, BoxesAreCorners) {
   EXPECT_TRUE(Open("detections.json")->Read(frames_[1]).is_missing);
 }
 
-// Axes are half or whole, angles radians or degrees: the box beside tells.
+// Axes may be half or full axes, and angles radians or degrees. The box shows which.
 TEST_F(OaSlamTest, EllipsesAreUnderstoodInAllUnits) {
   const double turn = 30.0 * kDegree;
   const double half_width = std::hypot(40.0 * std::cos(turn), 20.0 * std::sin(turn));
@@ -77,7 +77,7 @@ TEST_F(OaSlamTest, EllipsesAreUnderstoodInAllUnits) {
   }
 }
 
-TEST_F(OaSlamTest, ClassesFileBesideNamesTheClasses) {
+TEST_F(OaSlamTest, AClassesFileNextToTheFileNamesTheClasses) {
   Write("classes.txt", "robot\nball\n");
   EXPECT_EQ(ReadDetections(R"({"category_id": 1, "bbox": [1, 1, 9, 9]})").masks.at(0).label,
             "ball");

@@ -22,7 +22,7 @@ double SignedArea(const Outline& outline) {
   return twice / 2.0;
 }
 
-// Pixels whose centres are in an ellipse.
+// A mask of the pixels whose centres are inside an ellipse.
 cv::Mat DrawEllipse(const Vector2d& center, double a, double b, double turn) {
   cv::Mat mask(240, 320, CV_8UC1, cv::Scalar(0));
   for (int y = 0; y < mask.rows; ++y) {
@@ -41,7 +41,7 @@ TEST(MaskOutline, RectanglesHaveStraightSidesBetweenPixels) {
   mask(cv::Rect(5, 3, 10, 4)).setTo(1);
   const auto outlines = FindMaskOutlines(mask);
   ASSERT_EQ(outlines.size(), 1U);
-  ASSERT_EQ(outlines[0].size(), 8U);  // the corners are cut off from middle to middle
+  ASSERT_EQ(outlines[0].size(), 8U);  // the corners are cut off between the middles of edges
   Vector2d low(1e9, 1e9);
   Vector2d high(-1e9, -1e9);
   for (const Vector2d& point : outlines[0]) {
@@ -83,8 +83,9 @@ TEST(MaskOutline, HolesAreFilledAndPartsAreSeparate) {
   EXPECT_TRUE(FindMaskOutlines(cv::Mat::zeros(5, 5, CV_8UC1)).empty());
 }
 
-// The law that hulls and quadrics stand on: no bias. An outline through the outermost pixels'
-// centres would be 0.5 px too small in every direction, one along their edges too large on slopes.
+// Hulls and quadrics rely on this: the outline has no bias. An outline through the centres of the
+// outermost pixels would be 0.5 px too small in every direction; an outline along their edges would
+// be too large on slopes.
 TEST(MaskOutline, EllipsesKeepTheirSizeInEveryDirection) {
   constexpr double kA = 70.3;
   constexpr double kB = 40.7;

@@ -24,7 +24,7 @@ class PaperTest : public MaskFixture {
 
 const char* const kTriangle = "10 20 300.5 20 10 400";
 
-TEST_F(PaperTest, FilesHaveTheFramesNumbersAndPixels) {
+TEST_F(PaperTest, FilesAreNamedByFrameNumberAndUsePixels) {
   Write("segmentation_txt/000000.txt", std::string("0 5 cup 0.5 ") + kTriangle + '\n');
   Write("segmentation_txt/000017.txt", std::string("3 -1 62 1 ") + kTriangle + '\n');
   const InstanceMask cup = ReadFrame(0).masks.at(0);
@@ -36,7 +36,7 @@ TEST_F(PaperTest, FilesHaveTheFramesNumbersAndPixels) {
   EXPECT_EQ(ReadFrame(1).masks.at(0).label, "tv");
 }
 
-TEST_F(PaperTest, TheInnerFolderMayBeGivenAndEitherIsDetected) {
+TEST_F(PaperTest, OuterAndInnerFolderAreAccepted) {
   Write("segmentation_txt/000000.txt", std::string("0 5 41 0.5 ") + kTriangle + '\n');
   format_ = "";
   EXPECT_EQ(Open()->format(), "paper");

@@ -12,8 +12,9 @@
 namespace hullslam {
 namespace {
 
-// COCO's compressed form, written from its description: numbers in groups of five bits, the lowest
-// first, plus 48; 32 says that more follow; the last group's 16 is the sign.
+// COCO's compressed form, implemented from its description. Numbers are in groups of five bits, the
+// lowest first, plus 48. Bit 32 means that more groups follow. Bit 16 of the last group is the
+// sign.
 std::string Compress(const MaskRuns& runs) {
   std::string text;
   for (size_t i = 0; i < runs.size(); ++i) {
@@ -44,15 +45,15 @@ MaskRuns RunsOf(const cv::Mat& mask) {
   return runs;
 }
 
-TEST(MaskRle, DecodesByHand) {
+TEST(MaskRle, DecodesAsComputedByHand) {
   EXPECT_EQ(DecodeRuns("5"), MaskRuns({5}));
-  EXPECT_EQ(DecodeRuns("d0"), MaskRuns({20}));  // 20 = 10100b: one group, but for the sign
-  EXPECT_EQ(DecodeRuns("5325"), MaskRuns({5, 3, 2, 8}));  // the fourth is 5 more than the second
-  EXPECT_EQ(DecodeRuns("532N"), MaskRuns({5, 3, 2, 1}));  // 2 less: 11110b
+  EXPECT_EQ(DecodeRuns("d0"), MaskRuns({20}));  // 20 = 10100b needs a second group for the sign
+  EXPECT_EQ(DecodeRuns("5325"), MaskRuns({5, 3, 2, 8}));  // the fourth run is 5 + the second
+  EXPECT_EQ(DecodeRuns("532N"), MaskRuns({5, 3, 2, 1}));  // 2 less than the second: 11110b
   EXPECT_EQ(DecodeRuns(""), MaskRuns());
 }
 
-TEST(MaskRle, WhatIsCompressedComesBack) {
+TEST(MaskRle, DecodingInvertsCompression) {
   std::mt19937 random(1);
   std::uniform_int_distribution<uint32_t> bits(0, 31);
   for (int repeat = 0; repeat < 200; ++repeat) {
@@ -64,18 +65,18 @@ TEST(MaskRle, WhatIsCompressedComesBack) {
   }
 }
 
-TEST(MaskRle, RefusesWhatIsNoNumber) {
+TEST(MaskRle, RefusesInvalidNumbers) {
   EXPECT_FALSE(DecodeRuns("5 3").has_value());
   EXPECT_FALSE(DecodeRuns("5\x90").has_value());
-  EXPECT_FALSE(DecodeRuns("5d").has_value());               // more would have to follow
+  EXPECT_FALSE(DecodeRuns("5d").has_value());  // incomplete: more characters should follow
   EXPECT_FALSE(DecodeRuns("oooooooooooooo0").has_value());  // 70 bits
   EXPECT_FALSE(DecodeRuns("532M").has_value() && CountPixels(*DecodeRuns("532M")) != 10);
-  EXPECT_FALSE(DecodeRuns("533L").has_value());  // 3 - 4
+  EXPECT_FALSE(DecodeRuns("533L").has_value());  // 3 - 4 is negative
   EXPECT_FALSE(DecodeRuns(Compress({1, 2, 3, 0xffffffff}) + Compress({1, 2, 3, 0xffffffff}))
-                   .has_value());  // beyond 32 bits
+                   .has_value());  // more than 32 bits
 }
 
-TEST(MaskRle, OutlinesAreThoseOfTheMask) {
+TEST(MaskRle, OutlinesAreTheOutlinesOfTheMask) {
   cv::Mat mask(60, 80, CV_8UC1, cv::Scalar(0));
   mask(cv::Rect(10, 20, 30, 25)).setTo(1);
   mask(cv::Rect(30, 5, 9, 50)).setTo(1);

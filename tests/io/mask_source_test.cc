@@ -12,13 +12,13 @@ namespace {
 
 const char* const kYoloSeg = "41 0.25 0.25 0.5 0.25 0.25 0.75 0.9\n";
 
-// The format is detected.
+// Masks whose format is detected.
 class MaskSourceTest : public MaskFixture {
  protected:
   MaskSourceTest() : MaskFixture("") {}
 };
 
-TEST(MaskFrames, HaveTheImagesStemsAndNumbers) {
+TEST(MaskFrames, HaveTheStemsAndNumbersOfTheImages) {
   TumSequence sequence;
   sequence.frames = {{1.5, "a/rgb/1.500000.png", "", 3}, {2.5, "/b/rgb/0007.JPG", "", 4}};
   const std::vector<MaskFrame> frames = MaskFrames(sequence);
@@ -28,17 +28,17 @@ TEST(MaskFrames, HaveTheImagesStemsAndNumbers) {
   EXPECT_EQ(frames[1].stem, "0007");
 }
 
-TEST_F(MaskSourceTest, FormatIsToldByTheFirstLineOfAnyFile) {
+TEST_F(MaskSourceTest, FormatIsDetectedFromTheFirstLineOfAnyFile) {
   Write("0.5.txt", "");
   Write("1.5.txt", "# nothing\n\n");
   Write("3.5.txt", kYoloSeg);
   EXPECT_EQ(Open()->format(), "yolo-seg");
 }
 
-TEST_F(MaskSourceTest, PathThatIsMissingOrEmptyIsRefused) {
+TEST_F(MaskSourceTest, MissingAndEmptyPathsAreRefused) {
   ExpectRefusal({Path("none").string(), "no such"}, "none");
   std::filesystem::create_directories(Path());
-  ExpectRefusal({Path().string(), "cannot be told, none fits", "--masks-format", "yolo-seg"});
+  ExpectRefusal({Path().string(), "is not clear, none fits", "--masks-format", "yolo-seg"});
   format_ = "yolo-seg";
   ExpectRefusal({Path().string(), "there is nothing", "'1.5'"});
 }
@@ -47,10 +47,10 @@ TEST_F(MaskSourceTest, SeveralFormatsInOneFolderAreRefused) {
   Write("1.5.txt", kYoloSeg);
   Write("1.5.png", "");
   Write("classes.json", "{}");
-  ExpectRefusal({"cannot be told, yolo-seg and label-png fit", "--masks-format"});
+  ExpectRefusal({"is not clear, yolo-seg and label-png fit", "--masks-format"});
 }
 
-TEST_F(MaskSourceTest, FileOfAnotherKindIsRefused) {
+TEST_F(MaskSourceTest, FilesOfOtherKindsAreRefused) {
   folder_.Write("masks/file", "some text");
   ExpectRefusal({Path("file").string(), "none fits"}, "file");
 }
@@ -85,7 +85,7 @@ TEST_F(MaskSourceTest, UnknownFormatIsRefused) {
   ExpectRefusal({"--masks-format is 'yolo'", "yolo-seg"});
 }
 
-TEST_F(MaskSourceTest, MasksOfOtherFramesAreRefusedWithOneOfEachSide) {
+TEST_F(MaskSourceTest, MasksOfOtherFramesAreRefusedWithAnExample) {
   Write("0001.txt", kYoloSeg);
   Write("0002.txt", kYoloSeg);
   ExpectRefusal({Path().string(), "any of the 2 frames", "'0001.txt'", "'1.5'"});

@@ -13,7 +13,7 @@ class YoloSegTest : public MaskFixture {
  protected:
   YoloSegTest() : MaskFixture("yolo-seg") {}
 
-  // The first frame has this line, behind a comment.
+  // Expects that the first frame is refused if this line follows a comment in its file.
   void ExpectRefusedLine(const std::string& line, const std::vector<std::string>& parts) const {
     Write("1.5.txt", "# masks\n" + line + '\n');
     std::vector<std::string> all = {Path("1.5.txt").string() + ":2: "};
@@ -24,7 +24,7 @@ class YoloSegTest : public MaskFixture {
 
 const char* const kTriangle = "0.25 0.25 0.5 0.25 0.25 0.75";
 
-TEST_F(YoloSegTest, CoordinatesAreThoseOfPixelCentresInWidthsAndHeights) {
+TEST_F(YoloSegTest, CoordinatesArePixelCentresInFractionsOfTheSize) {
   Write("1.5.txt", std::string("41 ") + kTriangle + " 0.9\r\n62 " + kTriangle + '\n');
   const FrameMasks frame = ReadFrame(0);
   ASSERT_EQ(frame.masks.size(), 2U);
@@ -36,10 +36,10 @@ TEST_F(YoloSegTest, CoordinatesAreThoseOfPixelCentresInWidthsAndHeights) {
   EXPECT_EQ(cup.outlines, (std::vector<std::vector<Eigen::Vector2d>>{
                               {{160.0, 120.0}, {320.0, 120.0}, {160.0, 360.0}}}));
   EXPECT_EQ(frame.masks[1].label, "tv");
-  EXPECT_EQ(frame.masks[1].score, 1.0);  // none is given
+  EXPECT_EQ(frame.masks[1].score, 1.0);  // the file has none
 }
 
-TEST_F(YoloSegTest, FramesWithoutFileAreMissingAndEmptyFilesAreNot) {
+TEST_F(YoloSegTest, FramesWithoutFileAreMissingButEmptyFilesAreNot) {
   Write("1.5.txt", "");
   EXPECT_FALSE(ReadFrame(0).is_missing);
   EXPECT_TRUE(ReadFrame(0).masks.empty());
@@ -47,7 +47,7 @@ TEST_F(YoloSegTest, FramesWithoutFileAreMissingAndEmptyFilesAreNot) {
   EXPECT_EQ(CheckMasks(*Open(), frames_), 1U);
 }
 
-TEST_F(YoloSegTest, RoundingBeyondTheBorderIsKept) {
+TEST_F(YoloSegTest, PointsBeyondTheBorderByRoundingAreAccepted) {
   Write("1.5.txt", "0 -0.0007 0.0 1.0007 0.0 0.5 1.001\n");
   EXPECT_NEAR(ReadFrame(0).masks.at(0).outlines[0][1].x(), 640.448, 1e-9);
 }
@@ -58,7 +58,8 @@ TEST_F(YoloSegTest, OutlinesWithoutAreaAreLeftOutAndCounted) {
   EXPECT_EQ(ReadFrame(0).without_area, 2U);
 }
 
-// About one in a hundred outlines of real networks crosses itself; its hull is as good as any.
+// About one percent of the outlines of real networks cross themselves. Their hulls are still
+// usable.
 TEST_F(YoloSegTest, OutlinesMayCrossThemselves) {
   Write("1.5.txt", "41 0.1 0.1 0.5 0.5 0.5 0.1 0.1 0.6\n");
   EXPECT_EQ(ReadFrame(0).masks.at(0).outlines[0].size(), 4U);

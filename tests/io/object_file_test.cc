@@ -80,7 +80,7 @@ TEST(ObjectFile, HasTheKeysOfTheFormat) {
   EXPECT_EQ(view["lines"][1], Json({-1.0, 0.0, 0.0, 1}));
 }
 
-TEST(ObjectFile, TheQuadricIsThatOfPoseAndAxes) {
+TEST(ObjectFile, TheQuadricMatchesPoseAndAxes) {
   const ObjectReport report = MakeReport();
   const Json json = Json::parse(FormatObjects(report));
   const Eigen::Matrix4d expected = report.objects[0].ellipsoid.DualQuadric();
@@ -94,7 +94,7 @@ TEST(ObjectFile, TheQuadricIsThatOfPoseAndAxes) {
   }
 }
 
-TEST(ObjectFile, WhatWasWrittenReadsBackAndWritesTheSameBytes) {
+TEST(ObjectFile, ReadingAndWritingGivesTheSameBytes) {
   const TemporaryFolder folder;
   const std::string text = FormatObjects(MakeReport());
   const ObjectReport read = ReadObjects(folder.Write("objects.json", text));
@@ -115,7 +115,7 @@ TEST(ObjectFile, WhatWasWrittenReadsBackAndWritesTheSameBytes) {
   EXPECT_NEAR(view.lines[0].line.normal.x(), 0.6, 1e-9);
 }
 
-TEST(ObjectFile, AMapWithoutObjectsIsAFile) {
+TEST(ObjectFile, AMapWithoutObjectsGivesAValidFile) {
   const TemporaryFolder folder;
   ObjectReport empty;
   empty.camera = MakeReport().camera;
@@ -124,14 +124,14 @@ TEST(ObjectFile, AMapWithoutObjectsIsAFile) {
   EXPECT_EQ(read.candidates, 0U);
 }
 
-TEST(ObjectFile, ClassesMayHoldAnyBytes) {
+TEST(ObjectFile, ClassesMayContainAnyBytes) {
   ObjectReport report = MakeReport();
   report.objects[0].label = "a\"b\\\xff\n";
   report.objects[0].votes = {{report.objects[0].label, 1.0}};
   EXPECT_TRUE(Json::accept(FormatObjects(report)));
 }
 
-TEST(ObjectFile, ValuesThatAreNotFiniteAreNeverWritten) {
+TEST(ObjectFile, NonFiniteValuesAreNeverWritten) {
   ObjectReport report = MakeReport();
   report.objects[0].ellipsoid.half_axes.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(FormatObjects(report), CheckError);
@@ -140,7 +140,7 @@ TEST(ObjectFile, ValuesThatAreNotFiniteAreNeverWritten) {
   EXPECT_THROW(FormatObjects(report), CheckError);
 }
 
-// Expects the file with the value at `pointer` replaced by `value`, or removed, to be refused.
+// Expects that the file is refused when the value at `pointer` is replaced by `value`, or removed.
 void ExpectRefusal(const std::string& pointer, const Json& value,
                    const std::vector<std::string>& parts) {
   Json json = Json::parse(FormatObjects(MakeReport()));
@@ -151,7 +151,7 @@ void ExpectRefusal(const std::string& pointer, const Json& value,
   ExpectInputError([&] { ReadObjects(path); }, parts);
 }
 
-TEST(ObjectFile, BrokenValuesAreNamedWithTheirPlace) {
+TEST(ObjectFile, BrokenValuesAreReportedWithTheirPath) {
   const std::string object = "/objects/1/";
   const std::string view = object + "observations/0/";
   const std::string at = "objects[1].observations[0].";
@@ -163,7 +163,7 @@ TEST(ObjectFile, BrokenValuesAreNamedWithTheirPlace) {
   ExpectRefusal("/objects", "none", {"objects is \"none\"", "an array"});
   ExpectRefusal(object + "id", "x", {"objects[1].id is \"x\""});
   ExpectRefusal(object + "state", "lost", {"objects[1].state is \"lost\"", "mapped"});
-  ExpectRefusal(object + "class", 3, {"objects[1].class is 3", "a text"});
+  ExpectRefusal(object + "class", 3, {"objects[1].class is 3", "a string"});
   ExpectRefusal(object + "votes", {{"cup", "many"}}, {"objects[1].votes.cup is \"many\""});
   ExpectRefusal(object + "world_from_object", {0, 0, 0, 0, 0, 0, 0}, {"length zero"});
   ExpectRefusal(object + "half_axes", {1, 0, 1}, {"objects[1].half_axes is [1,0,1]", "> 0"});
@@ -180,12 +180,12 @@ TEST(ObjectFile, BrokenValuesAreNamedWithTheirPlace) {
   ExpectRefusal(view + "lines", {{1, 0}}, {at + "lines[0]", "4 finite numbers"});
 }
 
-TEST(ObjectFile, WhatIsCutShortOrMissingIsRefused) {
+TEST(ObjectFile, TruncatedAndMissingFilesAreRefused) {
   const TemporaryFolder folder;
   const std::string text = FormatObjects(MakeReport());
   for (const size_t length : {size_t{0}, text.size() / 2, text.size() - 3}) {
     const auto path = folder.Write("objects.json", text.substr(0, length));
-    ExpectInputError([&] { ReadObjects(path); }, {"objects.json: not JSON"});
+    ExpectInputError([&] { ReadObjects(path); }, {"objects.json: is no valid JSON"});
   }
   ExpectInputError([&] { ReadObjects(folder.Write("empty.json", "{}")); },
                    {"empty.json: \"version\" is missing"});

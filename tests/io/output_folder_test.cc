@@ -10,7 +10,7 @@
 namespace hullslam {
 namespace {
 
-TEST(OutputFolder, IsMadeWithItsParentsAndLeftEmpty) {
+TEST(OutputFolder, IsCreatedWithItsParentsAndLeftEmpty) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a" / "b";
   PrepareOutputFolder(path);
@@ -25,7 +25,7 @@ TEST(OutputFolder, KeepsTheFilesOfAnExistingFolder) {
   EXPECT_EQ(ReadFile(file), "of the last run");
 }
 
-TEST(OutputFolder, AFileInTheWayIsTold) {
+TEST(OutputFolder, AnExistingFileIsReported) {
   const TemporaryFolder folder;
   const auto file = folder.Write("file", "x");
   ExpectInputError([&] { PrepareOutputFolder(file); }, {file.string()});

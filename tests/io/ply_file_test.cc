@@ -11,16 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "io/text_rows.h"
-#include "support/temporary_folder.h"
-
 namespace hullslam {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-TEST(MapFile, HoldsLandmarksThenKeyframesByteByByte) {
-  const std::string ply = FormatPly(Points{{1.0, -2.0, 0.5}}, Points{{0.0, 0.0, 1.0}});
+TEST(MapPly, HasLandmarksThenKeyframes) {
+  const std::string ply = FormatMapPly(Points{{1.0, -2.0, 0.5}}, Points{{0.0, 0.0, 1.0}});
   const std::string end = "end_header\n";
   const size_t data = ply.find(end) + end.size();
   EXPECT_EQ(ply.find("ply\nformat binary_little_endian 1.0\nelement vertex 2\n"), 0U);
@@ -31,11 +28,8 @@ TEST(MapFile, HoldsLandmarksThenKeyframesByteByByte) {
   EXPECT_EQ(ply.substr(data), expected);
 }
 
-TEST(MapFile, AnEmptyMapIsAFileWithoutPoints) {
-  const TemporaryFolder folder;
-  const auto path = folder.path() / "map.ply";
-  WritePly(path, {}, {});
-  const std::string ply = ReadFile(path);
+TEST(MapPly, AnEmptyMapGivesAFileWithoutPoints) {
+  const std::string ply = FormatMapPly({}, {});
   EXPECT_NE(ply.find("element vertex 0\n"), std::string::npos);
   EXPECT_TRUE(ply.ends_with("end_header\n"));
 }
@@ -46,7 +40,7 @@ float FloatAt(const std::string& bytes, size_t place) {
   return value;
 }
 
-// What FormatObjectsPly() wrote, read again.
+// The mesh in a file of FormatObjectsPly().
 struct Mesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::string> colours;
@@ -79,7 +73,7 @@ ReportedObject MakeObject(const std::string& label) {
   return object;
 }
 
-TEST(ObjectsPly, HoldsTheEllipsoidAsAClosedSurfaceFacingOutwards) {
+TEST(ObjectsPly, ContainsTheEllipsoidAsAClosedSurfaceFacingOutwards) {
   const ReportedObject object = MakeObject("cup");
   const Mesh mesh(FormatObjectsPly(std::vector<ReportedObject>{object, object}));
   ASSERT_EQ(mesh.faces.size() % 2, 0U);
@@ -97,7 +91,7 @@ TEST(ObjectsPly, HoldsTheEllipsoidAsAClosedSurfaceFacingOutwards) {
     ++edges[{b, c}];
     ++edges[{c, a}];
   }
-  for (const auto& [edge, count] : edges) {  // each edge once in each direction
+  for (const auto& [edge, count] : edges) {  // each edge occurs once per direction
     EXPECT_EQ(count, 1);
     EXPECT_TRUE(edges.contains({edge.second, edge.first}));
   }
@@ -105,7 +99,7 @@ TEST(ObjectsPly, HoldsTheEllipsoidAsAClosedSurfaceFacingOutwards) {
   EXPECT_NEAR(six_volumes / 6.0 / (2.0 * volume), 0.93, 0.07);
 }
 
-TEST(ObjectsPly, TheColourTellsTheClass) {
+TEST(ObjectsPly, TheColourDependsOnTheClassOnly) {
   const Mesh mesh(FormatObjectsPly(
       std::vector<ReportedObject>{MakeObject("cup"), MakeObject("keyboard"), MakeObject("cup")}));
   const size_t corners = mesh.vertices.size() / 3;

@@ -14,7 +14,7 @@
 namespace hullslam {
 namespace {
 
-// As ORB-SLAM2's own files are laid out, with sections, comments and keys for its viewer.
+// A file with the layout of the files of ORB-SLAM2: sections, comments and keys of its viewer.
 constexpr const char* kOrbSlam2 = R"(%YAML:1.0
 
 #--------------------------------------------------------------------------------------------
@@ -98,7 +98,7 @@ TEST_F(Settings, FilesOfOrbSlam2WorkUnchanged) {
   EXPECT_EQ(options.features.scale_factor, 1.2);
 }
 
-TEST_F(Settings, CarriageReturnsAndAByteOrderMarkAreFine) {
+TEST_F(Settings, CarriageReturnsAndAByteOrderMarkAreAccepted) {
   std::string text = "\xEF\xBB\xBF" + std::string(kMinimal);
   for (size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) {
     text.replace(at, 1, "\r\n");
@@ -113,7 +113,7 @@ TEST_F(Settings, WholeNumbersMayBeWrittenWithAPoint) {
                   {"ORBextractor.nFeatures is '1000.5'", "an integer"});
 }
 
-TEST_F(Settings, OverridesCount) {
+TEST_F(Settings, OverridesReplaceValuesOfTheFile) {
   EXPECT_EQ(Read(kMinimal, {"ORBextractor.nFeatures=700", "Camera.fx = 400"}).camera.fx, 400.0);
   ExpectError(kMinimal, {"--set", "ORBextractor.nFeatures is '-1'", "expected an integer"},
               {"ORBextractor.nFeatures=-1"});
@@ -128,7 +128,7 @@ TEST_F(Settings, OverridesCanGiveMissingIntrinsics) {
   ExpectError(text, {"camera.yaml", "Camera.cy is not given"});
 }
 
-TEST_F(Settings, BrokenValuesAreNamedWithLineKeyAndExpectation) {
+TEST_F(Settings, BrokenValuesAreReportedWithLineKeyAndExpectation) {
   ExpectLineError("ORBextractor.nFeatures: -5", {"ORBextractor.nFeatures is '-5'", "an integer"});
   ExpectLineError("Camera.width: 99999999999", {"Camera.width is '99999999999'", "an integer"});
   ExpectLineError("DepthMapFactor: 0", {"DepthMapFactor is '0'", "> 0"});
@@ -147,16 +147,16 @@ TEST_F(Settings, AZeroFocalLengthIsRefused) {
   ExpectError("%YAML:1.0\nCamera.fx: 0.0\n", {"camera.yaml:2: ", "Camera.fx is '0'", "> 0"});
 }
 
-TEST_F(Settings, FilesThatAreNoYamlAreRefused) {
+TEST_F(Settings, FilesThatAreNotYamlAreRefused) {
   ExpectError("", {"camera.yaml:1: ", "%YAML:1.0"});
   ExpectError("Camera.fx: 500\n", {"camera.yaml:1: ", "%YAML:1.0"});
   ExpectError(std::string("\x7f"
                           "ELF\x02\0\0",
                           7),
               {"camera.yaml:1: ", "%YAML:1.0"});
-  ExpectError(std::string("%YAML:1.0\na\0b: 1\n", 17), {"camera.yaml", "no text file"});
-  ExpectError("%YAML:1.0\n", {"camera.yaml", "holds no settings"});
-  ExpectError("%YAML:1.0\n- 1\n- 2\n", {"camera.yaml", "holds no settings"});
+  ExpectError(std::string("%YAML:1.0\na\0b: 1\n", 17), {"camera.yaml", "not a text file"});
+  ExpectError("%YAML:1.0\n", {"camera.yaml", "has no settings"});
+  ExpectError("%YAML:1.0\n- 1\n- 2\n", {"camera.yaml", "has no settings"});
   ExpectError("%YAML:1.0\n---\nCamera.fx 500\nb: 2\n", {"camera.yaml:3: "});
   ExpectError("%YAML:1.0\nCamera.fx: \"500\n", {"camera.yaml:2: "});
   ExpectError("%YAML:1.0\n\tCamera.fx: 500\n", {"camera.yaml:2: ", "Tabs"});
@@ -165,7 +165,7 @@ TEST_F(Settings, FilesThatAreNoYamlAreRefused) {
   ExpectInputError([&] { ReadSettings(folder_.path()); }, {"is a folder"});
 }
 
-TEST_F(Settings, NoFileOfRandomBytesGetsFurtherThanAnInputError) {
+TEST_F(Settings, RandomBytesGiveAnInputError) {
   uint32_t state = 1;
   for (int i = 0; i < 300; ++i) {
     std::string text = kOrbSlam2;
@@ -181,21 +181,21 @@ TEST_F(Settings, NoFileOfRandomBytesGetsFurtherThanAnInputError) {
   }
 }
 
-TEST_F(Settings, WhatIsWrittenReadsBackTheSame) {
+TEST_F(Settings, WrittenSettingsAreReadBackUnchanged) {
   const SystemOptions options = Read(kOrbSlam2, {"ORBextractor.nFeatures=1234"});
   const std::string text = FormatSettings(options);
   EXPECT_NE(text.find("\nORBextractor.nFeatures: 1234\n"), std::string::npos);
   EXPECT_EQ(FormatSettings(Read(text)), text);
 }
 
-TEST_F(Settings, TheHashTellsSettingsApart) {
+TEST_F(Settings, DifferentSettingsHaveDifferentHashes) {
   const std::string hash = HashSettings(Read(kOrbSlam2));
   EXPECT_EQ(hash.size(), 16U);
   EXPECT_EQ(HashSettings(Read(FormatSettings(Read(kOrbSlam2)))), hash);
   EXPECT_NE(HashSettings(Read(kOrbSlam2, {"Camera.fx=517.306409"})), hash);
 }
 
-TEST_F(Settings, TheDefaultFileFollowsTheNameOfTheSequence) {
+TEST_F(Settings, TheDefaultFileDependsOnTheNameOfTheSequence) {
   const auto expect = [](const char* sequence, const char* file) {
     EXPECT_EQ(FindDefaultSettings(sequence, "/config"), std::filesystem::path("/config") / file);
   };
@@ -208,7 +208,7 @@ TEST_F(Settings, TheDefaultFileFollowsTheNameOfTheSequence) {
   }
 }
 
-TEST_F(Settings, ASequencesOwnFileComesFirst) {
+TEST_F(Settings, AFileInTheSequenceTakesPrecedence) {
   const auto own = folder_.Write("fr1_like/camera.yaml", kMinimal);
   EXPECT_EQ(FindDefaultSettings(own.parent_path(), "/config"), own);
 }
@@ -228,7 +228,7 @@ TEST_F(Settings, TheSettingsOfKnownCamerasAreFoundAndRead) {
   EXPECT_TRUE(std::filesystem::exists(FindConfigFolder() / "TUM1.yaml"));
 }
 
-// docs/settings.md must tell every key with what is expected of it.
+// docs/settings.md must list every key and what is expected of its value.
 TEST_F(Settings, EveryKeyIsDocumented) {
   const std::string docs = ReadFile(HULLSLAM_SOURCE_DIR "/docs/settings.md");
   SystemOptions options;

@@ -12,7 +12,7 @@
 namespace hullslam {
 namespace {
 
-TEST(TextRows, PassesOverCommentsAndBlankLinesAndCountsThem) {
+TEST(TextRows, SkipsCommentsAndBlankLinesButCountsThem) {
   const TemporaryFolder folder;
   const auto path = folder.Write("a.txt", "# head\r\n\r\n1 two,3\t4\r\n   # indented\n 5\n\n6");
   std::vector<std::string> seen;
@@ -26,7 +26,7 @@ TEST(TextRows, PassesOverCommentsAndBlankLinesAndCountsThem) {
   EXPECT_EQ(seen, (std::vector<std::string>{"3|1|two|3|4", "5|5", "7|6"}));
 }
 
-TEST(TextRows, NumbersAreFiniteAndWhole) {
+TEST(TextRows, NumbersAreFiniteAndFillTheirColumn) {
   double value = 0.0;
   EXPECT_TRUE(ParseFinite("-1.5e3", value));
   EXPECT_EQ(value, -1500.0);
@@ -36,7 +36,7 @@ TEST(TextRows, NumbersAreFiniteAndWhole) {
   }
 }
 
-TEST(TextRows, ErrorsNameFileLineAndColumn) {
+TEST(TextRows, ErrorsReportFileLineAndColumn) {
   const TemporaryFolder folder;
   const auto path = folder.Write("bad.txt", "1\n# comment\nn\x01m\n");
   const auto read = [&] {
@@ -45,7 +45,7 @@ TEST(TextRows, ErrorsNameFileLineAndColumn) {
   ExpectInputError(read, {"bad.txt:3: ", "timestamp is 'n?m'", "finite number"});
 }
 
-TEST(TextRows, FilesThatCannotBeReadAreNamed) {
+TEST(TextRows, UnreadableFilesAreReportedByName) {
   const TemporaryFolder folder;
   const auto file = folder.Write("file", "x");
   const auto missing = folder.path() / "none.txt";

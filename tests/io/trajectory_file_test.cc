@@ -23,12 +23,12 @@ TEST(TrajectoryFile, ReadsPosesAndNormalisesTheirRotations) {
   ASSERT_EQ(trajectory.size(), 1U);
   EXPECT_EQ(trajectory[0].timestamp, 1.5);
   EXPECT_EQ(trajectory[0].world_from_cam.translation, Eigen::Vector3d(1, 2, -0.3));
-  // Half of a right angle in the quaternion: a quarter turn about z.
+  // The quaternion of half a right angle: a quarter turn about z.
   const Eigen::Vector3d turned = trajectory[0].world_from_cam.rotation * Eigen::Vector3d::UnitX();
   EXPECT_LT((turned - Eigen::Vector3d::UnitY()).norm(), 1e-15);
 }
 
-TEST(TrajectoryFile, TheLastOfEqualStampsCounts) {
+TEST(TrajectoryFile, TheLastOfEqualStampsIsUsed) {
   const TemporaryFolder folder;
   const Trajectory trajectory =
       ReadTrajectory(folder.Write("t.txt", std::string(kLine) + "1.5 7 0 0 0 0 0 1\n"));
@@ -45,16 +45,14 @@ TEST(TrajectoryFile, WritesFixedDecimals) {
             "-0.000000000 -0.000000000 -0.000000000 1.000000000\n");
 }
 
-TEST(TrajectoryFile, WhatWasWrittenReadsBackAndWritesTheSameAgain) {
+TEST(TrajectoryFile, ReadingInvertsWriting) {
   const TemporaryFolder folder;
   Trajectory trajectory;
   for (int i = 0; i < 100; ++i) {
     trajectory.push_back({1305031102.0 + 0.033 * i,
                           Rigid3(ExpSo3({0.1 * i, -0.05 * i, 0.02 * i}), {0.01 * i, 1.0, -2.0})});
   }
-  const auto path = folder.path() / "t.txt";
-  WriteTrajectory(path, trajectory);
-  const Trajectory again = ReadTrajectory(path);
+  const Trajectory again = ReadTrajectory(folder.Write("t.txt", FormatTrajectory(trajectory)));
   ASSERT_EQ(again.size(), trajectory.size());
   for (size_t i = 0; i < again.size(); ++i) {
     EXPECT_NEAR(again[i].timestamp, trajectory[i].timestamp, 1e-6);
@@ -66,11 +64,9 @@ TEST(TrajectoryFile, WhatWasWrittenReadsBackAndWritesTheSameAgain) {
         1e-7);
     EXPECT_GE(again[i].world_from_cam.rotation.w(), 0.0);
   }
-  WriteTrajectory(folder.path() / "again.txt", again);
-  EXPECT_EQ(ReadTrajectory(folder.path() / "again.txt").size(), again.size());
 }
 
-TEST(TrajectoryFile, BrokenLinesAreNamed) {
+TEST(TrajectoryFile, BrokenLinesAreReported) {
   const TemporaryFolder folder;
   const auto expect = [&](const std::string& line, const std::vector<std::string>& parts) {
     const auto path = folder.Write("bad.txt", "# head\n" + std::string(kLine) + line + "\n");
@@ -101,7 +97,7 @@ TEST(TrajectoryFile, FilesWithoutPosesAreRefused) {
       {"binary:1:"});
 }
 
-TEST(TrajectoryFile, ValuesThatAreNotFiniteAreNeverWritten) {
+TEST(TrajectoryFile, NonFiniteValuesAreNeverWritten) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Trajectory trajectory = {{1.0, Rigid3(Eigen::Quaterniond::Identity(), {nan, 0, 0})}};
   EXPECT_THROW(FormatTrajectory(trajectory), CheckError);

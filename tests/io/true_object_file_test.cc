@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// As make_synthetic writes it.
+// A file as make_synthetic writes it.
 Json File() {
   return Json::parse(R"({"generator": "make_synthetic", "scene": "desk", "seed": 1, "frames": 2,
       "objects": [
@@ -24,7 +24,7 @@ Json File() {
          "poses": [{"timestamp": 1000, "world_from_object": [1, 2, 3, 0, 0, 0, 1]}]}]})");
 }
 
-TEST(TrueObjectFile, ReadsWhatTheRendererWrites) {
+TEST(TrueObjectFile, ReadsTheFilesOfMakeSynthetic) {
   const TemporaryFolder folder;
   const std::vector<TrueObject> objects =
       ReadTrueObjects(folder.Write("groundtruth_objects.json", File().dump()));
@@ -39,7 +39,7 @@ TEST(TrueObjectFile, ReadsWhatTheRendererWrites) {
   EXPECT_NEAR(objects[1].world_from_object.rotation.norm(), 1.0, 1e-15);
 }
 
-TEST(TrueObjectFile, BrokenValuesAreNamedWithTheirPlace) {
+TEST(TrueObjectFile, BrokenValuesAreReportedWithTheirPath) {
   const TemporaryFolder folder;
   const auto expect = [&](const char* key, const Json& value, const std::string& part) {
     Json json = File();
@@ -49,8 +49,8 @@ TEST(TrueObjectFile, BrokenValuesAreNamedWithTheirPlace) {
                      {"truth.json: objects[1]." + std::string(key), part});
   };
   expect("id", "x", "an integer");
-  expect("class", 3, "a text");
-  expect("shape", nullptr, "a text");
+  expect("class", 3, "a string");
+  expect("shape", nullptr, "a string");
   expect("dynamic", 1, "true or false");
   expect("world_from_object", {1, 2, 3}, "qx");
   expect("half_extents", {1, 2, 0}, "> 0");
@@ -63,7 +63,8 @@ TEST(TrueObjectFile, OtherFilesAreRefused) {
                    {"a.json: \"objects\" is missing"});
   ExpectInputError([&] { ReadTrueObjects(folder.Write("a.json", R"({"objects": [{}]})")); },
                    {"objects[0]: \"id\" is missing"});
-  ExpectInputError([&] { ReadTrueObjects(folder.Write("a.json", "cup 1 2 3")); }, {"not JSON"});
+  ExpectInputError([&] { ReadTrueObjects(folder.Write("a.json", "cup 1 2 3")); },
+                   {"is no valid JSON"});
   ExpectInputError([&] { ReadTrueObjects(folder.path() / "none.json"); }, {"none.json"});
 }
 

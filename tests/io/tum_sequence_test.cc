@@ -37,10 +37,11 @@ class TumSequenceTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(TumSequenceTest, PairsTheImagesAndCountsTheRest) {
+TEST_F(TumSequenceTest, PairsImagesAndCountsUnpairedOnes) {
   const TumSequence sequence = Open();
   ASSERT_EQ(sequence.frames.size(), 3U);
-  EXPECT_EQ(sequence.unpaired, 1U);  // 1.03: its neighbour belongs to 1.06, which is closer
+  EXPECT_EQ(sequence.unpaired,
+            1U);  // 1.03: its nearest depth image is paired with 1.06, which is closer
   EXPECT_EQ(sequence.frames[1].timestamp, 1.06);
   EXPECT_EQ(sequence.frames[1].rgb, folder_.path() / "rgb/c.png");
   EXPECT_EQ(sequence.frames[1].depth, folder_.path() / "depth/b.png");
@@ -49,7 +50,7 @@ TEST_F(TumSequenceTest, PairsTheImagesAndCountsTheRest) {
   EXPECT_EQ(Open().groundtruth, folder_.path() / "groundtruth.txt");
 }
 
-TEST_F(TumSequenceTest, WithoutImagesGivesStampsAndTheDepthThereIs) {
+TEST_F(TumSequenceTest, WithoutImagesReturnsStampsAndExistingDepthImages) {
   std::filesystem::remove(folder_.path() / "rgb/c.png");
   std::filesystem::remove(folder_.path() / "depth/b.png");
   ExpectError({"the image is missing"});
@@ -85,7 +86,7 @@ TEST_F(TumSequenceTest, SelectsFrames) {
   expect({.stride = 0}, {"--stride is '0'"});
 }
 
-TEST_F(TumSequenceTest, AnAssociationFileReplacesThePairing) {
+TEST_F(TumSequenceTest, AnAssociationFileReplacesPairingByTime) {
   const auto path = folder_.Write(
       "assoc.txt", "# head\n1.0 rgb/a.png 7.5 depth/d.png\n1.5 rgb/b.png 1.5 depth/b.png\n");
   const TumSequence sequence = Open({.associations = path, .selection = {}});
@@ -94,7 +95,7 @@ TEST_F(TumSequenceTest, AnAssociationFileReplacesThePairing) {
   EXPECT_EQ(sequence.unpaired, 0U);
 }
 
-TEST_F(TumSequenceTest, BrokenAssociationsAreNamed) {
+TEST_F(TumSequenceTest, BrokenAssociationsAreReported) {
   const auto expect = [&](const std::string& lines, const std::vector<std::string>& parts) {
     ExpectError(parts, {.associations = folder_.Write("assoc.txt", lines), .selection = {}});
   };
@@ -103,12 +104,12 @@ TEST_F(TumSequenceTest, BrokenAssociationsAreNamed) {
   expect(good + "1.0 rgb/b.png 1.0 depth/b.png\n", {"assoc.txt:2: ", "does not come after"});
   expect(good + "1.5 rgb/b.png x depth/b.png\n", {"assoc.txt:2: ", "timestamp of depth is 'x'"});
   expect(good + "1.5 rgb/x.png 1.5 depth/b.png\n", {"rgb/x.png: the image is missing"});
-  expect("", {"assoc.txt", "holds no images"});
+  expect("", {"assoc.txt", "has no images"});
   ExpectError({"none.txt", "No such file"},
               {.associations = folder_.path() / "none.txt", .selection = {}});
 }
 
-TEST_F(TumSequenceTest, BrokenListsAreNamed) {
+TEST_F(TumSequenceTest, BrokenListsAreReported) {
   const auto expect = [&](const std::string& line, const std::vector<std::string>& parts) {
     WriteRgb("1.00 rgb/a.png\n" + line + "\n");
     ExpectError(parts);
@@ -120,18 +121,18 @@ TEST_F(TumSequenceTest, BrokenListsAreNamed) {
   expect("1.01", {"rgb.txt:3: ", "1 column(s), expected 2"});
   expect("1.05 rgb/x.png", {"rgb/x.png: the image is missing"});
   WriteRgb("");
-  ExpectError({"rgb.txt", "holds no images"});
+  ExpectError({"rgb.txt", "has no images"});
 }
 
-TEST_F(TumSequenceTest, WithoutPairsTheSmallestGapIsTold) {
+TEST_F(TumSequenceTest, WithoutPairsTheSmallestGapIsReported) {
   WriteDepth("0.95 depth/a.png\n1.75 depth/b.png\n");
   ExpectError({"within 0.02 s", "smallest gap is 0.050000 s"});
 }
 
-TEST_F(TumSequenceTest, MissingFilesAreNamed) {
+TEST_F(TumSequenceTest, MissingFilesAreReportedByName) {
   std::filesystem::remove(folder_.path() / "depth" / "b.png");
   ExpectError({"depth/b.png: the image is missing"});
-  // Images that are not asked for need not be there.
+  // Images of frames that are not selected need not exist.
   EXPECT_EQ(Open({.associations = {}, .selection = {.last = 0}}).frames.size(), 1U);
   std::filesystem::remove(folder_.path() / "depth.txt");
   ExpectError({"depth.txt", "No such file"});
@@ -164,7 +165,7 @@ TEST_F(LoadRgbdTest, DecodesBothImages) {
   EXPECT_EQ(image.depth.at<uint16_t>(1, 2), 999);
 }
 
-TEST_F(LoadRgbdTest, SizesMustBeThoseOfTheCamera) {
+TEST_F(LoadRgbdTest, ImagesMustHaveTheSizeOfTheCamera) {
   ExpectInputError(
       [&] {
         Load({64, 48}, {32, 24});

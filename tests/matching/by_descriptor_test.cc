@@ -19,14 +19,14 @@ std::vector<uint32_t> All(const FrameFeatures& features) {
   return indices;
 }
 
-// The keypoint of `features` that a query with `bits` finds; -1 where there is none.
+// The keypoint of `features` that matches a query with `bits`; -1 if there is none.
 int Found(int bits, const FrameFeatures& features, const DescriptorSearch& search = {}) {
   const FrameFeatures query = MakeFeatures({{.bits = bits}});
   const auto matches = MatchByDescriptor(query, All(query), features, search);
   return matches.empty() ? -1 : static_cast<int>(matches[0].keypoint);
 }
 
-TEST(MatchByDescriptor, TakesTheNearestWhereverItIs) {
+TEST(MatchByDescriptor, FindsTheMostSimilarKeypointAnywhere) {
   const FrameFeatures features = MakeFeatures({{.pixel = {600.0f, 400.0f}, .bits = 200},
                                                {.pixel = {10.0f, 10.0f}, .bits = 100},
                                                {.pixel = {300.0f, 10.0f}, .bits = 0}});
@@ -34,7 +34,7 @@ TEST(MatchByDescriptor, TakesTheNearestWhereverItIs) {
   EXPECT_EQ(Found(195, features), 0);
 }
 
-TEST(MatchByDescriptor, BoundsDistanceAndRatio) {
+TEST(MatchByDescriptor, LimitsDistanceAndRatio) {
   const FrameFeatures lone = MakeFeatures({{.bits = 50}});
   EXPECT_EQ(Found(0, lone), 0);
   EXPECT_EQ(Found(0, lone, {.max_distance = 49}), -1);
@@ -45,7 +45,7 @@ TEST(MatchByDescriptor, BoundsDistanceAndRatio) {
   EXPECT_EQ(Found(9, twins, {.max_ratio = 1.0}), -1);
 }
 
-TEST(MatchByDescriptor, OneKeypointServesTheClosestQuery) {
+TEST(MatchByDescriptor, AKeypointIsMatchedToTheMostSimilarQuery) {
   const FrameFeatures queries = MakeFeatures({{.bits = 10}, {.bits = 4}, {.bits = 4}});
   const FrameFeatures features = MakeFeatures({{.bits = 0}, {.bits = 200}});
   const auto matches = MatchByDescriptor(queries, All(queries), features, {});
@@ -54,7 +54,7 @@ TEST(MatchByDescriptor, OneKeypointServesTheClosestQuery) {
   EXPECT_EQ(matches[0].distance, 4);
 }
 
-TEST(MatchByDescriptor, ComparesOnlyTheQueriesAskedFor) {
+TEST(MatchByDescriptor, ComparesOnlyTheListedQueries) {
   const SyntheticWorld world;
   const FrameFeatures features = world.Observe(0).frame->features;
   const std::vector<uint32_t> some = {3, 17, 90};
@@ -67,7 +67,7 @@ TEST(MatchByDescriptor, ComparesOnlyTheQueriesAskedFor) {
   }
 }
 
-TEST(MatchByDescriptor, PairsTwoViewsOfTheWorldAndNothingElse) {
+TEST(MatchByDescriptor, FindsAllAndOnlyTrueMatchesInTwoViews) {
   const SyntheticWorld world({.flipped_bits = 10});
   const SyntheticView a = world.Observe(0);
   const SyntheticView b = world.Observe(40);
@@ -94,7 +94,7 @@ TEST(MatchByDescriptor, RotationsMustAgree) {
   }
 }
 
-TEST(MatchByDescriptor, OfNothingIsNothing) {
+TEST(MatchByDescriptor, EmptyInputGivesNoMatches) {
   EXPECT_TRUE(MatchByDescriptor(MakeFeatures({}), {}, MakeFeatures({}), {}).empty());
   EXPECT_EQ(Found(0, MakeFeatures({})), -1);
 }

@@ -21,7 +21,7 @@ Projection At(float x, float y) {
   return projection;
 }
 
-// The keypoint found for one projection; -1 where there is none.
+// The keypoint found for one projection; -1 if there is none.
 int Found(const FrameFeatures& features, const Projection& projection,
           const ProjectionSearch& search = {}, const std::vector<uint8_t>& taken = {}) {
   const std::vector<Match> matches = MatchByProjection(features, {&projection, 1}, taken, search);
@@ -29,7 +29,7 @@ int Found(const FrameFeatures& features, const Projection& projection,
   return matches.empty() ? -1 : static_cast<int>(matches[0].keypoint);
 }
 
-TEST(MatchByProjection, TakesTheNearestDescriptorInTheWindow) {
+TEST(MatchByProjection, TakesTheMostSimilarDescriptorInTheWindow) {
   const FrameFeatures features = MakeFeatures({{.pixel = {100.0f, 100.0f}, .bits = 30},
                                                {.pixel = {109.0f, 91.0f}, .bits = 20},
                                                {.pixel = {111.0f, 100.0f}, .bits = 0},
@@ -42,7 +42,7 @@ TEST(MatchByProjection, TakesTheNearestDescriptorInTheWindow) {
   EXPECT_EQ(matches[0].distance, 20);
 }
 
-TEST(MatchByProjection, SearchesTheLevelsAskedFor) {
+TEST(MatchByProjection, SearchesOnlyTheGivenLevels) {
   const FrameFeatures features = MakeFeatures({{.pixel = {100.0f, 100.0f}, .bits = 0, .level = 1},
                                                {.pixel = {100.0f, 100.0f}, .bits = 5, .level = 2},
                                                {.pixel = {100.0f, 100.0f}, .bits = 9, .level = 3},
@@ -56,13 +56,13 @@ TEST(MatchByProjection, SearchesTheLevelsAskedFor) {
   EXPECT_EQ(Found(features, projection), -1);
 }
 
-TEST(MatchByProjection, DistanceMayReachItsBound) {
+TEST(MatchByProjection, TheLimitOfTheDistanceIsInclusive) {
   const FrameFeatures features = MakeFeatures({{.pixel = {100.0f, 100.0f}, .bits = 60}});
   EXPECT_EQ(Found(features, At(100.0f, 100.0f), {.max_distance = 60}), 0);
   EXPECT_EQ(Found(features, At(100.0f, 100.0f), {.max_distance = 59}), -1);
 }
 
-TEST(MatchByProjection, RatioRejectsWhatIsAmbiguousAtOneLevelOnly) {
+TEST(MatchByProjection, RatioComparesOnlyKeypointsOfTheSameLevel) {
   const std::vector<MadeKeypoint> same_level = {{.pixel = {100.0f, 100.0f}, .bits = 40},
                                                 {.pixel = {101.0f, 100.0f}, .bits = 45}};
   const Projection projection = At(100.0f, 100.0f);
@@ -75,43 +75,43 @@ TEST(MatchByProjection, RatioRejectsWhatIsAmbiguousAtOneLevelOnly) {
   EXPECT_EQ(Found(MakeFeatures(two_levels), projection, {.max_ratio = 0.8}), 0);
 }
 
-TEST(MatchByProjection, RatioCountsTwinsAndPassesALoneCandidate) {
+TEST(MatchByProjection, RatioRejectsTwinsAndAcceptsASingleCandidate) {
   const FrameFeatures twins = MakeFeatures(
       {{.pixel = {100.0f, 100.0f}, .bits = 40}, {.pixel = {101.0f, 100.0f}, .bits = 40}});
   EXPECT_EQ(Found(twins, At(100.0f, 100.0f), {.max_ratio = 0.9}), -1);
-  EXPECT_EQ(Found(twins, At(100.0f, 100.0f)), 0);  // the lower index without the test
+  EXPECT_EQ(Found(twins, At(100.0f, 100.0f)), 0);  // without the test the lower index wins
   const FrameFeatures lone = MakeFeatures({{.pixel = {100.0f, 100.0f}, .bits = 40}});
   EXPECT_EQ(Found(lone, At(100.0f, 100.0f), {.max_ratio = 0.1}), 0);
 }
 
-TEST(MatchByProjection, LeavesOutWhatIsTaken) {
+TEST(MatchByProjection, LeavesOutTakenKeypoints) {
   const FrameFeatures features = MakeFeatures(
       {{.pixel = {100.0f, 100.0f}, .bits = 0}, {.pixel = {101.0f, 100.0f}, .bits = 9}});
   EXPECT_EQ(Found(features, At(100.0f, 100.0f), {}, {1, 0}), 1);
   EXPECT_EQ(Found(features, At(100.0f, 100.0f), {}, {1, 1}), -1);
-  // What is taken is no rival either.
+  // A taken keypoint does not count as the second best either.
   EXPECT_EQ(Found(features, At(100.0f, 100.0f), {.max_ratio = 0.1}, {1, 0}), 1);
   const Projection projection = At(100.0f, 100.0f);
   const std::vector<uint8_t> too_short = {0};
   EXPECT_THROW(MatchByProjection(features, {&projection, 1}, too_short, {}), CheckError);
 }
 
-TEST(MatchByProjection, RightCoordinateIsComparedWhereBothAreKnown) {
+TEST(MatchByProjection, RightCoordinateIsComparedIfBothAreKnown) {
   const FrameFeatures features =
       MakeFeatures({{.pixel = {100.0f, 100.0f}, .bits = 0, .right_u = 60.0f},
                     {.pixel = {101.0f, 100.0f}, .bits = 5, .right_u = 80.0f},
                     {.pixel = {102.0f, 100.0f}, .bits = 9}});
   Projection projection = At(100.0f, 100.0f);
-  EXPECT_EQ(Found(features, projection), 0);  // nothing to compare with
+  EXPECT_EQ(Found(features, projection), 0);  // the projection has no right coordinate
   projection.right_u = 88.0f;
   EXPECT_EQ(Found(features, projection), 1);
   projection.right_u = 69.9f;
   EXPECT_EQ(Found(features, projection), 0);
   projection.right_u = 20.0f;
-  EXPECT_EQ(Found(features, projection), 2);  // the one without depth cannot disagree
+  EXPECT_EQ(Found(features, projection), 2);  // the keypoint without depth cannot disagree
 }
 
-TEST(MatchByProjection, OneKeypointServesTheClosestProjection) {
+TEST(MatchByProjection, AKeypointIsMatchedToTheMostSimilarProjection) {
   const FrameFeatures features = MakeFeatures({{.pixel = {100.0f, 100.0f}, .bits = 50}});
   std::vector<Projection> projections(3, At(100.0f, 100.0f));
   projections[0].descriptor = FirstBits(20);
@@ -119,10 +119,10 @@ TEST(MatchByProjection, OneKeypointServesTheClosestProjection) {
   projections[2].descriptor = FirstBits(55);
   const auto matches = MatchByProjection(features, projections, {}, {});
   ASSERT_EQ(matches.size(), 1u);
-  EXPECT_EQ(matches[0].query, 1u);  // as near as the third, and before it
+  EXPECT_EQ(matches[0].query, 1u);  // ties with query 2 and comes first
 }
 
-TEST(MatchByProjection, RotationIsComparedOnlyWhenAsked) {
+TEST(MatchByProjection, RotationIsComparedOnlyOnRequest) {
   std::vector<MadeKeypoint> made;
   std::vector<Projection> projections;
   for (int i = 0; i < 20; ++i) {
@@ -140,7 +140,7 @@ TEST(MatchByProjection, RotationIsComparedOnlyWhenAsked) {
   }
 }
 
-TEST(MatchByProjection, FindsEveryPointOfTheWorldWhereItIs) {
+TEST(MatchByProjection, FindsEveryPointOfTheWorldAtItsProjection) {
   const SyntheticWorld world({.pixel_noise = 0.5, .flipped_bits = 10});
   const SyntheticView view = world.Observe(10);
   const FrameFeatures& features = view.frame->features;
@@ -161,7 +161,7 @@ TEST(MatchByProjection, FindsEveryPointOfTheWorldWhereItIs) {
   }
 }
 
-TEST(MatchByProjection, OfNothingIsNothing) {
+TEST(MatchByProjection, EmptyInputGivesNoMatches) {
   EXPECT_TRUE(MatchByProjection(MakeFeatures({}), {}, {}, {}).empty());
   EXPECT_EQ(Found(MakeFeatures({}), At(100.0f, 100.0f)), -1);
 }

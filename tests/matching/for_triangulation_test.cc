@@ -35,21 +35,22 @@ std::vector<Match> MatchAll(const FrameFeatures& a, const FrameFeatures& b,
                                ScaleLevels::Create(8, 1.2), search);
 }
 
-// The keypoint of b that the keypoint of a at (300, 100) without set bits finds; -1 where none.
+// The keypoint of b that matches the keypoint of a at (300, 100), whose descriptor is zero; -1 if
+// there is none.
 int Found(const std::vector<MadeKeypoint>& b, const TriangulationSearch& search = {}) {
   const auto matches = MatchAll(MakeFeatures({{.pixel = {300.0f, 100.0f}}}), MakeFeatures(b),
                                 SideBySide(), kFarEpipole, search);
   return matches.empty() ? -1 : static_cast<int>(matches[0].keypoint);
 }
 
-TEST(MatchForTriangulation, TakesTheNearestDescriptorOnTheLine) {
+TEST(MatchForTriangulation, TakesTheMostSimilarDescriptorOnTheLine) {
   EXPECT_EQ(Found({{.pixel = {100.0f, 100.0f}, .bits = 20},
                    {.pixel = {200.0f, 101.0f}, .bits = 10},
                    {.pixel = {200.0f, 103.0f}, .bits = 0}}),
             1);
 }
 
-TEST(MatchForTriangulation, DistanceMayReachItsBound) {
+TEST(MatchForTriangulation, TheLimitOfTheDistanceIsInclusive) {
   EXPECT_EQ(Found({{.pixel = {100.0f, 100.0f}, .bits = 50}}), 0);
   EXPECT_EQ(Found({{.pixel = {100.0f, 100.0f}, .bits = 51}}), -1);
 }
@@ -64,7 +65,7 @@ TEST(MatchForTriangulation, DistanceToTheLineIsInSigmasOfTheLevel) {
   EXPECT_EQ(Found({{.pixel = {100.0f, 103.0f}}}, {.max_epipolar_chi2 = 9.1}), 0);
 }
 
-TEST(MatchForTriangulation, LeavesOutTheSurroundingsOfTheEpipoleWithoutDepth) {
+TEST(MatchForTriangulation, WithoutDepthLeavesOutKeypointsNearTheEpipole) {
   const Eigen::Vector2d epipole(305.0, 100.0);
   const auto count = [&](float right_of_a, const MadeKeypoint& b) {
     const FrameFeatures a = MakeFeatures({{.pixel = {300.0f, 100.0f}, .right_u = right_of_a}});
@@ -76,7 +77,7 @@ TEST(MatchForTriangulation, LeavesOutTheSurroundingsOfTheEpipoleWithoutDepth) {
   EXPECT_EQ(count(280.0f, {.pixel = {296.0f, 100.0f}}), 1u);
 }
 
-TEST(MatchForTriangulation, OneKeypointServesTheClosestQuery) {
+TEST(MatchForTriangulation, AKeypointIsMatchedToTheMostSimilarQuery) {
   const FrameFeatures a = MakeFeatures({{.pixel = {300.0f, 100.0f}, .bits = 8},
                                         {.pixel = {310.0f, 100.0f}, .bits = 2},
                                         {.pixel = {320.0f, 100.0f}, .bits = 2}});
@@ -86,7 +87,7 @@ TEST(MatchForTriangulation, OneKeypointServesTheClosestQuery) {
   EXPECT_EQ(matches[0].distance, 2);
 }
 
-TEST(MatchForTriangulation, SearchesOnlyTheIndicesAskedFor) {
+TEST(MatchForTriangulation, SearchesOnlyTheGivenIndices) {
   const FrameFeatures a = MakeFeatures({{.pixel = {300.0f, 100.0f}}, {.pixel = {300.0f, 200.0f}}});
   const FrameFeatures b = MakeFeatures({{.pixel = {200.0f, 100.0f}, .bits = 0},
                                         {.pixel = {210.0f, 100.0f}, .bits = 9},
@@ -100,13 +101,13 @@ TEST(MatchForTriangulation, SearchesOnlyTheIndicesAskedFor) {
   EXPECT_EQ(matches[0].keypoint, 1u);
 }
 
-// Without a baseline there is no line, and nothing can be triangulated.
-TEST(MatchForTriangulation, NothingLiesOnALineThatIsNone) {
+// Without a baseline there is no epipolar line, and nothing can be triangulated.
+TEST(MatchForTriangulation, WithoutABaselineThereAreNoMatches) {
   const FrameFeatures features = MakeFeatures({{.pixel = {300.0f, 100.0f}}});
   EXPECT_TRUE(MatchAll(features, features, Eigen::Matrix3d::Zero()).empty());
 }
 
-TEST(MatchForTriangulation, PairsTwoViewsOfTheWorldAndNothingElse) {
+TEST(MatchForTriangulation, FindsAllAndOnlyTrueMatchesInTwoViews) {
   const SyntheticWorld world({.depth_share = 0.0, .flipped_bits = 10});
   const SyntheticView a = world.Observe(0);
   const SyntheticView b = world.Observe(20);
@@ -122,7 +123,7 @@ TEST(MatchForTriangulation, PairsTwoViewsOfTheWorldAndNothingElse) {
   }
 }
 
-TEST(MatchForTriangulation, OfNothingIsNothing) {
+TEST(MatchForTriangulation, EmptyInputGivesNoMatches) {
   EXPECT_TRUE(MatchAll(MakeFeatures({}), MakeFeatures({}), SideBySide()).empty());
 }
 

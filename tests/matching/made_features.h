@@ -10,7 +10,8 @@
 
 namespace hullslam {
 
-// A descriptor with the first `count` bits set: at distance |a - b| from one with other many.
+// A descriptor with the first `count` bits set. FirstBits(a) and FirstBits(b) have the distance |a
+// - b|.
 inline Descriptor FirstBits(int count) {
   Descriptor descriptor{};
   for (int i = 0; i < count; ++i) {
@@ -21,7 +22,7 @@ inline Descriptor FirstBits(int count) {
 
 struct MadeKeypoint {
   Eigen::Vector2f pixel = {0.0f, 0.0f};
-  int bits = 0;  // of FirstBits
+  int bits = 0;  // argument of FirstBits()
   int level = 0;
   float right_u = -1.0f;
   float angle = 0.0f;

@@ -25,8 +25,8 @@ std::vector<uint32_t> Queries(const std::vector<Match>& matches) {
   return queries;
 }
 
-// Match i pairs query i with keypoint i, whose angle is smaller by changes[i] degrees. The queries
-// that are kept.
+// Returns the queries that KeepConsistentRotations() keeps. Match i pairs query i with keypoint i,
+// whose angle is smaller by changes[i] degrees.
 std::vector<uint32_t> KeptOf(const std::vector<float>& changes, float turn = 0.0f) {
   std::vector<Match> matches;
   std::vector<float> query_angles;
@@ -54,7 +54,7 @@ std::vector<uint32_t> Range(uint32_t begin, uint32_t end) {
   return range;
 }
 
-TEST(KeepBestPerKeypoint, KeepsTheClosestAndOfEqualOnesTheLowestQuery) {
+TEST(KeepBestPerKeypoint, KeepsTheLeastDistanceAndTiesGoToTheLowestQuery) {
   std::vector<Match> matches = {{5, 1, 20}, {0, 1, 30}, {3, 2, 7}, {2, 2, 7}, {4, 9, 99}};
   KeepBestPerKeypoint(matches);
   ASSERT_EQ(Queries(matches), (std::vector<uint32_t>{2, 4, 5}));
@@ -64,7 +64,7 @@ TEST(KeepBestPerKeypoint, KeepsTheClosestAndOfEqualOnesTheLowestQuery) {
   EXPECT_EQ(matches[2].distance, 20);
 }
 
-TEST(KeepBestPerKeypoint, OfNothingIsNothing) {
+TEST(KeepBestPerKeypoint, AcceptsEmptyInput) {
   std::vector<Match> matches;
   KeepBestPerKeypoint(matches);
   EXPECT_TRUE(matches.empty());
@@ -88,24 +88,25 @@ TEST(KeepBestPerKeypoint, DoesNotDependOnTheOrderOfItsInput) {
   }
 }
 
-TEST(KeepConsistentRotations, LeavesOutTheOddOnes) {
+TEST(KeepConsistentRotations, LeavesOutOutliers) {
   EXPECT_EQ(KeptOf(Repeated({{36.0f, 20}, {180.0f, 1}})), Range(0, 20));
 }
 
-TEST(KeepConsistentRotations, KeepsThreeBinsOfWhichNoneIsBelowATenthOfTheFirst) {
-  // 30 in the first bin, 10, 3 (a tenth) and then a fourth bin with 2.
+TEST(KeepConsistentRotations, KeepsThreeBinsUnlessBelowATenthOfTheFirst) {
+  // The first bin has 30 matches, the second 10, the third 3 (a tenth), and a fourth one 2.
   EXPECT_EQ(KeptOf(Repeated({{0.0f, 30}, {48.0f, 10}, {120.0f, 3}, {240.0f, 2}})), Range(0, 43));
-  // 31 in the first bin: 3 are less than a tenth.
+  // The first bin has 31 matches: 3 are less than a tenth.
   EXPECT_EQ(KeptOf(Repeated({{0.0f, 31}, {48.0f, 10}, {120.0f, 3}})), Range(0, 41));
 }
 
 TEST(KeepConsistentRotations, BinsAreCentredOnTheirAngles) {
-  // Around no rotation at all nothing is cut in two: 1 and 359 degrees are one bin, 7 is another.
+  // Changes near zero are not split between two bins: 1 and 359 degrees are in the same bin, 7 is
+  // in another.
   const std::vector<float> changes = Repeated({{1.0f, 10}, {359.0f, 10}, {-5.0f, 10}, {7.0f, 2}});
   EXPECT_EQ(KeptOf(changes), Range(0, 30));
 }
 
-TEST(KeepConsistentRotations, WholeTurnsAndATurnOfAllChangeNothing) {
+TEST(KeepConsistentRotations, FullTurnsAndACommonTurnChangeNothing) {
   const std::vector<float> changes =
       Repeated({{3.0f, 30}, {50.0f, 12}, {121.0f, 5}, {241.0f, 4}, {301.0f, 1}});
   const std::vector<uint32_t> kept = KeptOf(changes);
@@ -115,7 +116,7 @@ TEST(KeepConsistentRotations, WholeTurnsAndATurnOfAllChangeNothing) {
   }
 }
 
-TEST(KeepConsistentRotations, OfNothingIsNothing) { EXPECT_TRUE(KeptOf({}).empty()); }
+TEST(KeepConsistentRotations, AcceptsEmptyInput) { EXPECT_TRUE(KeptOf({}).empty()); }
 
 }  // namespace
 }  // namespace hullslam

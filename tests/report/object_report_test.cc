@@ -33,7 +33,7 @@ ObjectId AddShape(Map& map, ObjectState state) {
   return id;
 }
 
-TEST(ObjectReport, HoldsWhatTheMapKnowsOfAnObject) {
+TEST(ObjectReport, ContainsWhatTheMapKnowsAboutAnObject) {
   Map map;
   const ObjectId id = AddShape(map, ObjectState::kMapped);
   map.AddObservation(id, AddView(map, 5, "cup"), 1);
@@ -65,12 +65,12 @@ TEST(ObjectReport, HoldsWhatTheMapKnowsOfAnObject) {
   EXPECT_TRUE(view.lines[0].is_one_sided);
 }
 
-TEST(ObjectReport, CountsCandidatesAndListsThoseThatHaveAShape) {
+TEST(ObjectReport, CountsCandidatesAndListsObjectsWithAShape) {
   Map map;
   const ObjectId shaped = AddShape(map, ObjectState::kCandidate);
   map.AddObservation(shaped, AddView(map, 0, "cup"), 1);
   map.AddObservation(map.AddObject(), AddView(map, 1, "cup"), 1);  // without a shape
-  AddShape(map, ObjectState::kMapped);                             // that nobody sees any more
+  AddShape(map, ObjectState::kMapped);                             // without any observation
   const ObjectReport report = ReportObjects(map, PinholeCamera());
   EXPECT_EQ(report.candidates, 2U);
   ASSERT_EQ(report.objects.size(), 1U);

@@ -16,7 +16,7 @@ TEST(LookAt, PutsTheTargetOnTheAxisAndKeepsTheImageUpright) {
   EXPECT_LT((cam_from_world * target - Vector3d(0.0, 0.0, (target - eye).norm())).norm(), 1e-12);
   const Vector3d above = cam_from_world * (target + Vector3d(0.0, 0.0, 0.1));
   EXPECT_NEAR(above.x(), 0.0, 1e-12);
-  EXPECT_LT(above.y(), 0.0);  // y points down
+  EXPECT_LT(above.y(), 0.0);  // the y axis points down
 }
 
 TEST(OrbitPath, KeepsItsDistanceAndSpeed) {
@@ -31,7 +31,7 @@ TEST(OrbitPath, KeepsItsDistanceAndSpeed) {
   }
 }
 
-TEST(LoopPath, ComesBackToTheStartAndALittleFurther) {
+TEST(LoopPath, ReturnsToTheStartAndGoesALittleFurther) {
   const LoopPath loop;
   double nearest = 10.0;
   for (int i = 800; i <= 1000; ++i) {

@@ -9,7 +9,7 @@ namespace hullslam::synthetic {
 namespace {
 
 TEST(CounterHash, IsSplitMix64) {
-  // The first outputs of the reference implementation for the state 0.
+  // The first outputs of the reference implementation for state 0.
   EXPECT_EQ(CounterHash(0, 0), 0xe220a8397b1dcdafULL);
   EXPECT_EQ(CounterHash(0, 1), 0x6e789e6aa1b965f4ULL);
 }
@@ -20,7 +20,7 @@ TEST(UnitInterval, CoversZeroToBelowOne) {
   EXPECT_EQ(UnitInterval(uint64_t{1} << 63), 0.5);
 }
 
-TEST(RandomStream, StaysInItsBounds) {
+TEST(RandomStream, StaysWithinItsBounds) {
   RandomStream random(5);
   for (int i = 0; i < 1000; ++i) {
     const double value = random.Uniform(-2.0, 3.0);

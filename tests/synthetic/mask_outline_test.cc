@@ -64,8 +64,8 @@ TEST(FindOutlines, TakesTheLargestPartAndFillsHoles) {
   cv::Mat image = Empty();
   image(cv::Rect(0, 0, 30, 20)) = 1;
   image(cv::Rect(10, 5, 10, 10)) = 2;   // a hole in 1
-  image(cv::Rect(40, 0, 20, 20)) = 1;   // a smaller second part
-  image(cv::Rect(30, 20, 12, 12)) = 5;  // touches the first by a corner only
+  image(cv::Rect(40, 0, 20, 20)) = 1;   // a second, smaller part of object 1
+  image(cv::Rect(30, 20, 12, 12)) = 5;  // touches object 1 at a corner only
   const auto outlines = FindOutlines(image, 100);
   ASSERT_EQ(outlines.size(), 3U);
   EXPECT_EQ(outlines[0].area, 500);
@@ -83,7 +83,7 @@ TEST(FindOutlines, PixelsThatTouchByACornerAreTwoParts) {
   EXPECT_EQ(outlines[0].area, 36);
 }
 
-TEST(FindOutlines, LeavesOutSmallOnesAndChecksTheType) {
+TEST(FindOutlines, LeavesOutSmallPartsAndChecksTheImageType) {
   cv::Mat image = Empty();
   image(cv::Rect(3, 3, 9, 11)) = 0;
   EXPECT_TRUE(FindOutlines(image, 100).empty());

@@ -24,7 +24,7 @@ TEST(ObjectBuilder, CentresTheObjectInItsTightBox) {
   ObjectBuilder builder("cup", "compound");
   builder.Add(Shape::Box({0.1, 0.1, 0.1}), {}, Shift(0.0, 0.0, 0.1));
   builder.Add(Shape::Ellipsoid({0.05, 0.02, 0.3}), {}, Shift(0.25, 0.0, 0.3));
-  // x from -0.1 to 0.3, y from -0.1 to 0.1, z from 0 to 0.6.
+  // The object extends from -0.1 to 0.3 in x, from -0.1 to 0.1 in y, and from 0 to 0.6 in z.
   const SceneObject object = builder.Build({1.0, 2.0, 0.5}, 0.0);
   EXPECT_TRUE(object.half_extents.isApprox(Vector3d(0.2, 0.1, 0.3), 1e-9));
   EXPECT_TRUE(object.world_from_object.translation.isApprox(Vector3d(1.0, 2.0, 0.8), 1e-9));
@@ -34,7 +34,7 @@ TEST(ObjectBuilder, CentresTheObjectInItsTightBox) {
   EXPECT_FALSE(object.IsDynamic());
 }
 
-TEST(ObjectBuilder, TurnsAboutTheVertical) {
+TEST(ObjectBuilder, RotatesAboutTheVertical) {
   const SceneObject object = MakeSolid("book", Shape::Box({0.2, 0.1, 0.05}), {})
                                  .Build(Vector3d::Zero(), std::numbers::pi / 2.0);
   EXPECT_TRUE((object.world_from_object * Vector3d(0.2, 0.0, 0.0))

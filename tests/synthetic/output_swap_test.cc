@@ -34,7 +34,7 @@ class OutputSwapTest : public testing::Test {
   const fs::path& root_ = folder_.path();
 };
 
-TEST_F(OutputSwapTest, NothingIsInPlaceBeforeCommit) {
+TEST_F(OutputSwapTest, TheFolderIsUntouchedBeforeCommit) {
   {
     OutputSwap swap(root_ / "a" / "out", false);
     swap.WriteFile("rgb.txt", "new");
@@ -46,12 +46,12 @@ TEST_F(OutputSwapTest, NothingIsInPlaceBeforeCommit) {
   EXPECT_EQ(std::distance(fs::directory_iterator(root_ / "a"), fs::directory_iterator()), 1);
 }
 
-TEST_F(OutputSwapTest, GivingUpLeavesNothing) {
+TEST_F(OutputSwapTest, CancellingLeavesNothing) {
   { OutputSwap(root_ / "out", false).WriteFile("rgb.txt", "new"); }
   EXPECT_EQ(Entries(), 0);
 }
 
-TEST_F(OutputSwapTest, EmptyFolderIsFilledAlsoWithASlash) {
+TEST_F(OutputSwapTest, AnEmptyFolderIsFilledAlsoWithATrailingSlash) {
   fs::create_directory(root_ / "out");
   OutputSwap swap(root_ / "out/", false);
   swap.WriteFile("rgb.txt", "new");
@@ -64,12 +64,12 @@ TEST_F(OutputSwapTest, ForeignFilesAreNeverReplaced) {
   Put(root_ / "out" / "thesis.txt", "precious");
   EXPECT_THROW(OutputSwap(root_ / "out", false), InputError);
   EXPECT_THROW(OutputSwap(root_ / "out", true), InputError);
-  PutFormerSequence(root_ / "out");  // beside the foreign file
+  PutFormerSequence(root_ / "out");  // next to the foreign file
   EXPECT_THROW(OutputSwap(root_ / "out", true), InputError);
   EXPECT_EQ(Get(root_ / "out" / "thesis.txt"), "precious");
 }
 
-TEST_F(OutputSwapTest, FolderWithoutOurGroundTruthIsNotReplaced) {
+TEST_F(OutputSwapTest, AFolderWithoutSyntheticGroundTruthIsNotReplaced) {
   fs::create_directory(root_ / "out");
   Put(root_ / "out" / "rgb.txt", "a real sequence");
   EXPECT_THROW(OutputSwap(root_ / "out", true), InputError);
@@ -78,7 +78,7 @@ TEST_F(OutputSwapTest, FolderWithoutOurGroundTruthIsNotReplaced) {
   EXPECT_EQ(Get(root_ / "out" / "rgb.txt"), "a real sequence");
 }
 
-TEST_F(OutputSwapTest, FormerSequenceIsReplacedByForceOnly) {
+TEST_F(OutputSwapTest, AnEarlierSequenceIsOnlyReplacedWithForce) {
   PutFormerSequence(root_ / "out");
   EXPECT_THROW(OutputSwap(root_ / "out", false), InputError);
   { OutputSwap(root_ / "out", true).WriteFile("rgb.txt", "given up"); }
@@ -91,7 +91,7 @@ TEST_F(OutputSwapTest, FormerSequenceIsReplacedByForceOnly) {
   EXPECT_EQ(Entries(), 1);
 }
 
-TEST_F(OutputSwapTest, FileInTheWayIsAnError) {
+TEST_F(OutputSwapTest, AnExistingFileIsAnError) {
   Put(root_ / "file", "x");
   EXPECT_THROW(OutputSwap(root_ / "file", true), InputError);
   EXPECT_THROW(OutputSwap(root_ / "file" / "below", true), InputError);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "synthetic/hash_noise.h"
+#include "synthetic/implicit_shape.h"
 #include "synthetic/object_models.h"
 #include "synthetic/scene_builder.h"
 
@@ -13,7 +14,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// A bare room with one object of each shape, the last of which moves along x.
+// A bare room with one object of each shape. The last object moves along x.
 Scene TestScene() {
   SceneBuilder builder(1);
   const Palette palette = builder.AddBarePalette();
@@ -38,7 +39,7 @@ std::vector<Rigid3> Poses(const Scene& scene, double time) {
   return poses;
 }
 
-TEST(RayCaster, EveryRayInARoomHitsASurfaceThatHasThePoint) {
+TEST(RayCaster, EveryRayInARoomHitsAPointOnASurface) {
   const Scene scene = TestScene();
   const RayCaster caster(scene);
   const std::vector<Rigid3> poses = Poses(scene, 0.5);
@@ -62,8 +63,9 @@ TEST(RayCaster, EveryRayInARoomHitsASurfaceThatHasThePoint) {
       const Rigid3 owner = placed.object < 0 ? Rigid3() : poses[static_cast<size_t>(placed.object)];
       const Vector3d local = Inverse(owner * placed.part->owner_from_part) * point;
       const Shape& shape = placed.part->shape;
-      // The triangles are up to 4e-5 m inside; implicit values are per size.
-      EXPECT_NEAR(shape.Implicit(local) *
+      // The triangles are up to 4e-5 m inside the surface. Implicit values are relative to the
+      // size.
+      EXPECT_NEAR(Implicit(shape, local) *
                       (shape.kind == ShapeKind::kTorus ? shape.tube : shape.half.minCoeff()),
                   0.0, 1.5e-4);
       if (placed.object >= 0) {
@@ -76,7 +78,7 @@ TEST(RayCaster, EveryRayInARoomHitsASurfaceThatHasThePoint) {
   }
 }
 
-TEST(RayCaster, HandComputedDistances) {
+TEST(RayCaster, MatchesHandComputedDistances) {
   const Scene scene = TestScene();
   const RayCaster caster(scene);
   RayPacket packet;
@@ -88,10 +90,10 @@ TEST(RayCaster, HandComputedDistances) {
   };
   cast(0.0);
   EXPECT_NEAR(packet.distance[0], 1.2F, 1e-5F);
-  EXPECT_NEAR(packet.distance[1], 4.0F, 1e-5F);  // in lengths of the direction
+  EXPECT_NEAR(packet.distance[1], 4.0F, 1e-5F);  // in units of the length of the direction
   EXPECT_NEAR(packet.distance[2], 2.0F, 1e-5F);  // the wall: the walker is at x = -2
   cast(2.0);
-  EXPECT_NEAR(packet.distance[2], 1.0F, 1e-5F);  // the walker's side at y = -1
+  EXPECT_NEAR(packet.distance[2], 1.0F, 1e-5F);  // the side of the walker at y = -1
   EXPECT_EQ(caster.parts()[static_cast<size_t>(packet.part[2])].object, 3);
 }
 

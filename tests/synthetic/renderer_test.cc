@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "synthetic/camera_path.h"
+#include "synthetic/implicit_shape.h"
 #include "synthetic/mask_outline.h"
 #include "synthetic/object_models.h"
 #include "synthetic/scene_builder.h"
@@ -23,7 +24,7 @@ using Eigen::Vector4d;
 
 const Vector3d kEye(-1.0, -1.4, 1.3);
 
-// Ellipsoids floating in a bare room, seen from one place.
+// Ellipsoids that float in a bare room, seen from one place.
 Scene EllipsoidScene() {
   SceneBuilder builder(1);
   const Palette palette = builder.AddBarePalette();
@@ -48,7 +49,7 @@ Matrix3d Calibration(const PinholeCamera& camera) {
   return k;
 }
 
-// C* = P Q* P^T of an ellipsoid with its true pose and half extents.
+// C* = P Q* P^T of an ellipsoid with the true pose and half extents.
 Matrix3d DualConic(const SceneObject& object, const Rigid3& cam_from_world,
                    const PinholeCamera& camera) {
   Matrix4d pose = Matrix4d::Identity();
@@ -60,7 +61,7 @@ Matrix3d DualConic(const SceneObject& object, const Rigid3& cam_from_world,
   return projection * quadric * projection.transpose();
 }
 
-// Distance from a pixel to the ellipse to first order (Sampson), with the same sign all outside.
+// Signed distance from a pixel to the ellipse, to first order (Sampson).
 double DistanceToConic(const Matrix3d& dual_conic, const Vector2d& pixel) {
   const Matrix3d conic = dual_conic.inverse();
   const Vector3d x = pixel.homogeneous();
@@ -82,12 +83,12 @@ TEST(Renderer, MasksAreTheProjectionsOfTheTrueDualQuadrics) {
       EXPECT_LT(std::abs(distance), 0.8) << vertex.transpose();
       sum += distance;
     }
-    // Not biased to the inside or the outside.
+    // The masks are biased neither to the inside nor to the outside.
     EXPECT_NEAR(sum / static_cast<double>(outline.vertices.size()), 0.0, 0.1);
   }
 }
 
-TEST(Renderer, DepthIsThatOfTheEllipsoidOrTheWall) {
+TEST(Renderer, DepthIsTheDepthOfTheEllipsoidOrTheWall) {
   const Scene scene = EllipsoidScene();
   const PinholeCamera camera = SyntheticCamera();
   const RenderedFrame frame = Renderer(scene, camera).Render(1.0);
@@ -106,17 +107,18 @@ TEST(Renderer, DepthIsThatOfTheEllipsoidOrTheWall) {
       }
       const SceneObject& hit = scene.objects[static_cast<size_t>(object)];
       const Vector3d local = Inverse(hit.world_from_object) * point;
-      // Where the view grazes, 4e-5 m across the surface are more along the ray, not off it.
-      EXPECT_NEAR(hit.parts[0].shape.Implicit(local), 0.0, 2e-3);
+      // At grazing angles 4e-5 m across the surface are more along the ray, but the point is still
+      // on the surface.
+      EXPECT_NEAR(Implicit(hit.parts[0].shape, local), 0.0, 2e-3);
       ++on_objects;
     }
   }
   EXPECT_GT(on_objects, 1000);
 }
 
-TEST(Renderer, KnownLandmarkIsSeenWhereTheTruePosePutsIt) {
-  // The centre of each ellipsoid projects into its own mask, and the depth there is nearer by about
-  // the extent along the ray.
+TEST(Renderer, AKnownPointIsSeenWhereTheTruePosePredictsIt) {
+  // The centre of each ellipsoid is projected into its own mask. The depth there is smaller by
+  // about the extent along the ray.
   const Scene scene = EllipsoidScene();
   const PinholeCamera camera = SyntheticCamera();
   const Renderer renderer(scene, camera);
@@ -130,7 +132,7 @@ TEST(Renderer, KnownLandmarkIsSeenWhereTheTruePosePutsIt) {
       const int x = static_cast<int>(std::lround(pixel.x()));
       const int y = static_cast<int>(std::lround(pixel.y()));
       ASSERT_EQ(frame.instance.at<int16_t>(y, x), static_cast<int>(i));
-      // Along the ray through the centre, the surface is 1 / |S^-1 R^T d| before it.
+      // On the ray through the centre, the surface is 1 / |S^-1 R^T d| before the centre.
       const Vector3d ray =
           object.world_from_object.rotation.conjugate() *
           (object.world_from_object.translation - scene.world_from_cam(time).translation)
@@ -142,10 +144,10 @@ TEST(Renderer, KnownLandmarkIsSeenWhereTheTruePosePutsIt) {
   }
 }
 
-TEST(Renderer, SameBitsAgain) {
+TEST(Renderer, IsReproducible) {
   const Scene scene = EllipsoidScene();
   PinholeCamera camera = SyntheticCamera();
-  camera.width = 163;  // no multiple of a packet
+  camera.width = 163;  // not a multiple of a packet
   camera.height = 121;
   const Renderer renderer(scene, camera);
   const RenderedFrame a = renderer.Render(0.4);

@@ -23,7 +23,7 @@ PinholeCamera SmallCamera() {
   return {.fx = 133.85, .fy = 134.8, .cx = 80.0, .cy = 61.9, .width = 160, .height = 120};
 }
 
-TEST(SceneKind, NamesGoBothWays) {
+TEST(SceneKind, NamesAreParsedAndPrinted) {
   for (const SceneKind kind : kAll) {
     EXPECT_EQ(ParseSceneKind(SceneName(kind)), kind);
   }
@@ -31,7 +31,7 @@ TEST(SceneKind, NamesGoBothWays) {
   EXPECT_THROW(ParseSceneKind(""), InputError);
 }
 
-// Largest motion in px of 640x480 of what is seen at `time` until the next frame.
+// The largest motion, in px of a 640x480 image, of anything visible at `time` until the next frame.
 double LargestMotion(const Scene& scene, const RenderedFrame& frame, double time) {
   const PinholeCamera small = SmallCamera();
   const Rigid3 world_from_cam = scene.world_from_cam(time);
@@ -53,7 +53,7 @@ double LargestMotion(const Scene& scene, const RenderedFrame& frame, double time
   return largest;
 }
 
-TEST(Scenes, AreClosedFilledAndSlowEnoughToTrack) {
+TEST(Scenes, AreClosedFurnishedAndSlowEnoughToTrack) {
   for (const SceneKind kind : kAll) {
     const int frames = DefaultFrames(kind);
     const Scene scene = BuildScene(kind, frames, 1);
@@ -70,7 +70,7 @@ TEST(Scenes, AreClosedFilledAndSlowEnoughToTrack) {
   }
 }
 
-TEST(Scenes, OtherSeedOtherTexturesSameObjects) {
+TEST(Scenes, AnotherSeedChangesTexturesAndKeepsObjects) {
   const Scene a = BuildScene(SceneKind::kDesk, 300, 1);
   const Scene b = BuildScene(SceneKind::kDesk, 300, 2);
   ASSERT_EQ(a.objects.size(), b.objects.size());
@@ -79,7 +79,7 @@ TEST(Scenes, OtherSeedOtherTexturesSameObjects) {
   EXPECT_GT(cv::norm(seen_a, seen_b, cv::NORM_L1) / static_cast<double>(seen_a.total()), 5.0);
 }
 
-TEST(Scenes, PersonCoversMuchOfTheViewInMuchOfDynamic) {
+TEST(Scenes, InDynamicThePersonOftenCoversMuchOfTheView) {
   const Scene scene = BuildScene(SceneKind::kDynamic, 300, 0);
   const Renderer renderer(scene, SmallCamera());
   const int person = static_cast<int>(scene.objects.size()) - 1;
@@ -97,7 +97,7 @@ TEST(Scenes, PersonCoversMuchOfTheViewInMuchOfDynamic) {
   EXPECT_GE(free_frames, 3);
 }
 
-TEST(Scenes, RoomLooksAtItsStartAgain) {
+TEST(Scenes, InRoomTheStartIsSeenAgain) {
   const Scene scene = BuildScene(SceneKind::kRoom, 600, 0);
   const Rigid3 start = scene.world_from_cam(0.0);
   double nearest = 10.0;

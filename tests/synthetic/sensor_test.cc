@@ -17,7 +17,7 @@ RenderedFrame FlatFrame(float depth, float cosine) {
           .cosine = cv::Mat(size, CV_32FC1, cv::Scalar(cosine))};
 }
 
-// Standard deviation in metres of the depths that are known.
+// Standard deviation of the known depths, in metres.
 double DepthError(float z) {
   const cv::Mat depth = Sensor({}, 1).Depth(FlatFrame(z, 1.0F), 0);
   double squares = 0.0;
@@ -32,7 +32,7 @@ double DepthError(float z) {
   return std::sqrt(squares / count);
 }
 
-TEST(Sensor, WithoutNoiseDepthIsRoundedToUnits) {
+TEST(Sensor, WithoutNoiseDepthIsOnlyRounded) {
   const Sensor sensor({.noise = false}, 1);
   const cv::Mat depth = sensor.Depth(FlatFrame(1.23456F, 1.0F), 0);
   EXPECT_EQ(depth.type(), CV_16UC1);
@@ -53,7 +53,7 @@ TEST(Sensor, DepthOutOfRangeOrGrazingIsUnknown) {
 }
 
 TEST(Sensor, DepthErrorGrowsWithTheSquareOfDepth) {
-  // Half a step of noise and the rounding: 0.5 to 0.75 steps of 2.87e-3 z^2.
+  // Half a step of noise plus rounding: 0.5 to 0.75 steps of 2.87e-3 z^2.
   for (const float z : {1.0F, 2.0F, 4.0F}) {
     const double steps = DepthError(z) / (2.87e-3 * z * z);
     EXPECT_GT(steps, 0.4) << z;
@@ -61,7 +61,7 @@ TEST(Sensor, DepthErrorGrowsWithTheSquareOfDepth) {
   }
 }
 
-TEST(Sensor, NearThingsCastAShadowToTheLeft) {
+TEST(Sensor, NearSurfacesCastAShadowToTheLeft) {
   RenderedFrame frame = FlatFrame(3.0F, 1.0F);
   frame.depth(cv::Rect(150, 100, 60, 60)) = 1.0;
   const cv::Mat depth = Sensor({}, 1).Depth(frame, 0);
@@ -83,7 +83,7 @@ TEST(Sensor, ColourNoiseIsUnbiasedAndSmall) {
   EXPECT_LT(image.at<cv::Vec3b>(2, 2)[1], 115);  // the corners are darker
 }
 
-TEST(Sensor, NoiseDependsOnSeedAndFrameAlone) {
+TEST(Sensor, NoiseDependsOnlyOnSeedAndFrame) {
   const RenderedFrame frame = FlatFrame(2.0F, 1.0F);
   const Sensor one({}, 1);
   EXPECT_EQ(cv::norm(one.Colour(frame, 3), Sensor({}, 1).Colour(frame, 3), cv::NORM_INF), 0.0);

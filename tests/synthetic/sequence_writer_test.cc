@@ -54,7 +54,7 @@ TEST(FrameStamp, IsThirtyFramesASecondInMicroseconds) {
   EXPECT_NEAR(FrameStamp(30), 1001.0, 1e-9);
 }
 
-TEST_F(SequenceWriterTest, SameSeedSameBytesWithAnyNumberOfThreads) {
+TEST_F(SequenceWriterTest, TheSameSeedGivesTheSameBytesWithAnyNumberOfThreads) {
   const SequenceOptions options{.frames = 4, .seed = 7, .threads = 1};
   SequenceOptions two = options;
   two.threads = 3;
@@ -137,7 +137,7 @@ TEST_F(SequenceWriterTest, MasksAreValidPolygonsOfListedClasses) {
   EXPECT_GE(instances, 10);
 }
 
-// Features of OpenCV's ORB in the first frame.
+// Number of features that ORB of OpenCV finds in the first frame.
 int OrbFeatures(const fs::path& folder) {
   const cv::Mat grey = cv::imread((folder / "rgb/1000.000000.png").string(), cv::IMREAD_GRAYSCALE);
   std::vector<cv::KeyPoint> keypoints;
@@ -145,14 +145,14 @@ int OrbFeatures(const fs::path& folder) {
   return static_cast<int>(keypoints.size());
 }
 
-TEST_F(SequenceWriterTest, DeskIsRichAndLowTexturePoorInCorners) {
+TEST_F(SequenceWriterTest, DeskHasManyCornersAndLowTextureFew) {
   EXPECT_EQ(OrbFeatures(Write("desk", {.frames = 1})), 1000);
   const int poor = OrbFeatures(Write("low", {.scene = SceneKind::kLowTexture, .frames = 1}));
   EXPECT_GT(poor, 30);
   EXPECT_LT(poor, 150);
 }
 
-TEST_F(SequenceWriterTest, GivingUpLeavesNothingAndKeepsTheFormer) {
+TEST_F(SequenceWriterTest, CancellingLeavesNothingAndKeepsTheEarlierSequence) {
   const auto give_up = [](int) { return false; };
   EXPECT_FALSE(WriteSequence(root_ / "out", {.frames = 5}, give_up));
   EXPECT_TRUE(fs::is_empty(root_));

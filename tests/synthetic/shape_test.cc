@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "synthetic/implicit_shape.h"
+
 namespace hullslam::synthetic {
 namespace {
 
@@ -23,8 +25,9 @@ TEST(Shape, VerticesAreOnTheSurfaceAndItsExtentsAreTight) {
     Eigen::AlignedBox3d box;
     for (const Vector3d& vertex : Tessellate(shape).vertices) {
       box.extend(vertex);
-      if (shape.kind != ShapeKind::kCylinder) {  // the discs at its ends have inner vertices too
-        EXPECT_NEAR(shape.Implicit(vertex), 0.0, 1e-9);
+      if (shape.kind !=
+          ShapeKind::kCylinder) {  // the discs at its ends also have vertices inside the disc
+        EXPECT_NEAR(Implicit(shape, vertex), 0.0, 1e-9);
       }
     }
     EXPECT_TRUE(box.max().isApprox(shape.half, 1e-9)) << box.max().transpose();
@@ -35,20 +38,20 @@ TEST(Shape, VerticesAreOnTheSurfaceAndItsExtentsAreTight) {
 TEST(Shape, ImplicitIsNegativeInsideAndPositiveOutside) {
   for (const Shape& shape : AllShapes()) {
     const Vector3d on_x(shape.half.x(), 0.0, 0.0);
-    EXPECT_NEAR(shape.Implicit(on_x), 0.0, 1e-9);
-    EXPECT_LT(shape.Implicit(0.95 * on_x), 0.0);
-    EXPECT_GT(shape.Implicit(1.05 * on_x), 0.0);
+    EXPECT_NEAR(Implicit(shape, on_x), 0.0, 1e-9);
+    EXPECT_LT(Implicit(shape, 0.95 * on_x), 0.0);
+    EXPECT_GT(Implicit(shape, 1.05 * on_x), 0.0);
   }
-  EXPECT_GT(Shape::Torus(0.1, 0.02).Implicit(Vector3d::Zero()), 0.0);
+  EXPECT_GT(Implicit(Shape::Torus(0.1, 0.02), Vector3d::Zero()), 0.0);
 }
 
-TEST(Shape, HandComputedValues) {
-  EXPECT_DOUBLE_EQ(Shape::Box({1.0, 2.0, 4.0}).Implicit({0.5, 3.0, 4.0}), 0.5);
-  EXPECT_DOUBLE_EQ(Shape::Ellipsoid({1.0, 2.0, 4.0}).Implicit({0.0, 6.0, 16.0}), 4.0);
-  EXPECT_DOUBLE_EQ(Shape::Cylinder(0.5, 2.0).Implicit({0.6, 0.8, 1.0}), 1.0);
-  EXPECT_DOUBLE_EQ(Shape::Torus(3.0, 1.0).Implicit({0.0, 0.0, 5.0}), 1.0);
-  // Exponents of one make an ellipsoid.
-  EXPECT_NEAR(Shape::Superquadric({1.0, 2.0, 4.0}, 1.0, 1.0).Implicit({0.0, 6.0, 16.0}), 4.0,
+TEST(Shape, MatchesHandComputedValues) {
+  EXPECT_DOUBLE_EQ(Implicit(Shape::Box({1.0, 2.0, 4.0}), {0.5, 3.0, 4.0}), 0.5);
+  EXPECT_DOUBLE_EQ(Implicit(Shape::Ellipsoid({1.0, 2.0, 4.0}), {0.0, 6.0, 16.0}), 4.0);
+  EXPECT_DOUBLE_EQ(Implicit(Shape::Cylinder(0.5, 2.0), {0.6, 0.8, 1.0}), 1.0);
+  EXPECT_DOUBLE_EQ(Implicit(Shape::Torus(3.0, 1.0), {0.0, 0.0, 5.0}), 1.0);
+  // With both exponents 1 a superquadric is an ellipsoid.
+  EXPECT_NEAR(Implicit(Shape::Superquadric({1.0, 2.0, 4.0}, 1.0, 1.0), {0.0, 6.0, 16.0}), 4.0,
               1e-12);
 }
 
@@ -63,7 +66,7 @@ TEST(Shape, NormalIsTheGradient) {
       Vector3d gradient;
       for (int axis = 0; axis < 3; ++axis) {
         const Vector3d step = 1e-6 * Vector3d::Unit(axis);
-        gradient[axis] = shape.Implicit(point + step) - shape.Implicit(point - step);
+        gradient[axis] = Implicit(shape, point + step) - Implicit(shape, point - step);
       }
       EXPECT_LT((shape.Normal(point) - gradient.normalized()).norm(), 1e-3) << point.transpose();
     }

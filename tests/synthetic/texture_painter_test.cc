@@ -32,7 +32,7 @@ std::vector<Painter> AllPainters() {
   return painters;
 }
 
-TEST(TexturePainter, SameSeedSamePictureOtherSeedAnother) {
+TEST(TexturePainter, ThePictureDependsOnTheSeedOnly) {
   for (const Painter& paint : AllPainters()) {
     const cv::Mat first = paint(1);
     ASSERT_EQ(first.type(), CV_8UC3);
@@ -42,7 +42,7 @@ TEST(TexturePainter, SameSeedSamePictureOtherSeedAnother) {
   }
 }
 
-// Mean absolute difference of two columns in grey levels.
+// Mean absolute difference between two columns, in grey levels.
 double Difference(const cv::Mat& image, int a, int b) {
   return cv::norm(image.col(a), image.col(b), cv::NORM_L1) / (3.0 * image.rows);
 }
@@ -58,7 +58,7 @@ TEST(TexturePainter, RepeatsWithoutASeam) {
   }
 }
 
-TEST(TexturePainter, NoiseHasNoMeanAndStaysSmall) {
+TEST(TexturePainter, NoiseHasZeroMeanAndStaysSmall) {
   const cv::Mat noise = PaintNoise(9, 512, 8, 5);
   double low = 0.0;
   double high = 0.0;

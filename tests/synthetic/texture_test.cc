@@ -11,14 +11,14 @@
 namespace hullslam::synthetic {
 namespace {
 
-TEST(Texture, RefusesWhatIsNoSquarePowerOfTwoInColour) {
+TEST(Texture, RejectsImagesThatAreNotSquareColourWithAPowerOfTwo) {
   EXPECT_THROW(Texture(cv::Mat(8, 4, CV_8UC3)), CheckError);
   EXPECT_THROW(Texture(cv::Mat(6, 6, CV_8UC3)), CheckError);
   EXPECT_THROW(Texture(cv::Mat(8, 8, CV_8UC1)), CheckError);
   EXPECT_THROW(Texture{cv::Mat()}, CheckError);
 }
 
-TEST(Texture, OneColourStaysAtAnyPlaceAndWidth) {
+TEST(Texture, AUniformColourIsTheSameAtAnyPositionAndWidth) {
   const Texture texture(cv::Mat(16, 16, CV_8UC3, cv::Scalar(10, 100, 255)));
   for (const float footprint : {0.0F, 0.07F, 0.4F, 1.0F, 30.0F}) {
     for (const float u : {-3.3F, 0.0F, 0.49F, 7.9F}) {
@@ -29,7 +29,7 @@ TEST(Texture, OneColourStaysAtAnyPlaceAndWidth) {
   }
 }
 
-TEST(Texture, CentreOfATexelIsItsColourAndBetweenIsTheMean) {
+TEST(Texture, InterpolatesBetweenTheCentresOfTexels) {
   cv::Mat image(4, 4, CV_8UC3, cv::Scalar(0, 0, 0));
   image.at<cv::Vec3b>(1, 2) = {40, 80, 120};
   const Texture texture(image);
@@ -38,7 +38,7 @@ TEST(Texture, CentreOfATexelIsItsColourAndBetweenIsTheMean) {
   EXPECT_TRUE(texture.Sample({2.5F / 4 + 1, 1.5F / 4 - 2}, 0.0F).isApprox(colour));
   EXPECT_TRUE(texture.Sample({3.0F / 4, 1.5F / 4}, 0.0F).isApprox(0.5F * colour));
   EXPECT_TRUE(texture.Sample({2.5F / 4, 1.75F / 4}, 0.0F).isApprox(0.75F * colour));
-  // The whole image is one sixteenth of it.
+  // One of the 16 texels has the colour, so the mean of the image is a sixteenth of it.
   EXPECT_NEAR(texture.Sample({0.1F, 0.9F}, texture.LevelOfDetail(1.0F)).y(), 5.0F, 0.6F);
 }
 

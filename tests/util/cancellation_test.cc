@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-TEST(Cancellation, HoldsUntilReset) {
+TEST(Cancellation, StaysRequestedUntilReset) {
   Cancellation cancellation;
   EXPECT_FALSE(cancellation.IsRequested());
   cancellation.Request();
@@ -19,7 +19,7 @@ TEST(Cancellation, HoldsUntilReset) {
   EXPECT_FALSE(cancellation.IsRequested());
 }
 
-// What was written before the request is seen after it; ThreadSanitizer watches.
+// Writes made before the request are visible after it; ThreadSanitizer checks this.
 TEST(Cancellation, EndsALoopOnAnotherThread) {
   Cancellation cancellation;
   int reason = 0;

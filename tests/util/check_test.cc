@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-TEST(Check, PassesWhereTheConditionHolds) { EXPECT_NO_THROW(Check(true, "never said")); }
+TEST(Check, PassesIfTheConditionHolds) { EXPECT_NO_THROW(Check(true, "never said")); }
 
 TEST(Check, NamesReasonAndPlace) {
   const int line = __LINE__ + 2;
@@ -23,7 +23,7 @@ TEST(Check, NamesReasonAndPlace) {
   }
 }
 
-TEST(Check, IsAMistakeOfTheProgram) { EXPECT_THROW(Check(false, ""), std::logic_error); }
+TEST(Check, ThrowsALogicError) { EXPECT_THROW(Check(false, ""), std::logic_error); }
 
 }  // namespace
 }  // namespace hullslam

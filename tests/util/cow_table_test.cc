@@ -32,7 +32,7 @@ std::map<uint32_t, std::string> Content(const Table& table) {
   return content;
 }
 
-TEST(CowTable, GivesIdsInOrderAndNeverAgain) {
+TEST(CowTable, AssignsIdsInOrderAndNeverReusesThem) {
   Table table = MakeTable(10);
   EXPECT_EQ(table.size(), 10u);
   table.Erase(LandmarkId(9));
@@ -57,7 +57,7 @@ TEST(CowTable, VisitsInOrderOfIds) {
   EXPECT_EQ(table.size(), visited.size());
 }
 
-TEST(CowTable, PutGivesAnIdItsValue) {
+TEST(CowTable, PutStoresAValueUnderAnId) {
   Table table;
   table.Put(LandmarkId(9), "nine");
   table.Put(LandmarkId(2), "two");
@@ -79,7 +79,7 @@ TEST(CowTable, RefusesIdsWithoutValue) {
   }
 }
 
-// Every kind of write, on either side of a snapshot, leaves the other side as it was.
+// No kind of write to a table or to its snapshot changes the other one.
 TEST(CowTable, SnapshotAndTableDoNotSeeEachOthersWrites) {
   Table table = MakeTable(10);
   const auto before = Content(table);
@@ -97,7 +97,7 @@ TEST(CowTable, SnapshotAndTableDoNotSeeEachOthersWrites) {
   EXPECT_EQ(Content(table), after);
 }
 
-TEST(CowTable, SnapshotsOfAllAgesKeepTheirContent) {
+TEST(CowTable, OldSnapshotsKeepTheirContent) {
   std::mt19937 random(2);
   Table table;
   std::map<uint32_t, std::string> model;
@@ -161,7 +161,7 @@ TEST(CowTable, FreesAChunkWithoutValues) {
   EXPECT_EQ(*table.At(LandmarkId(1)), 11);
 }
 
-TEST(CowTable, MovesLeaveTheValuesInPlace) {
+TEST(CowTable, MovingATableDoesNotMoveItsValues) {
   Table table = MakeTable(5);
   const std::string* value = table.Find(LandmarkId(4));
   const Table moved = std::move(table);
@@ -169,7 +169,8 @@ TEST(CowTable, MovesLeaveTheValuesInPlace) {
   EXPECT_EQ(moved.size(), 5u);
 }
 
-// The writer goes on while readers look at a snapshot and let go of it; ThreadSanitizer watches.
+// The writer continues while a reader reads a snapshot and releases it; ThreadSanitizer checks
+// this.
 TEST(CowTable, SnapshotsAreReadWhileTheTableIsWritten) {
   Table table = MakeTable(100);
   for (int round = 0; round < 20; ++round) {

@@ -15,7 +15,7 @@ TEST(InputError, KeepsItsMessage) {
   EXPECT_STREQ(error.what(), "a.txt:3: expected 4 numbers");
 }
 
-// Programs give exit code 2 for the one only, so neither may be caught as the other.
+// Programs exit with code 2 for InputError only, so neither error may be caught as the other.
 TEST(InputError, IsNoCheckError) {
   EXPECT_TRUE((std::is_base_of_v<std::runtime_error, InputError>));
   EXPECT_FALSE((std::is_base_of_v<CheckError, InputError>));

@@ -17,8 +17,9 @@ void SaturatedDifferences(const uint8_t* a, const uint8_t* b, size_t count, uint
   }
 }
 
-// Whichever clone the loader chose, it starts and counts as plain code does, remainders included.
-TEST(FunctionClones, ComputeAsPlainCode) {
+// The clone that the loader chose gives the same results as plain code, also for counts that are no
+// multiple of the vector width.
+TEST(FunctionClones, GiveTheSameResultsAsPlainCode) {
   for (const size_t count : {0u, 1u, 31u, 32u, 1003u}) {
     std::vector<uint8_t> a(count);
     std::vector<uint8_t> b(count);

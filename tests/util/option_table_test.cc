@@ -31,7 +31,7 @@ struct Fields {
   }
 };
 
-TEST(Range, ContainsItsClosedEndsAndNothingInfinite) {
+TEST(Range, ContainsItsClosedEndsAndNoInfiniteNumber) {
   EXPECT_TRUE(Range::Between(1.0, 2.0).Contains(1.0));
   EXPECT_TRUE(Range::Between(1.0, 2.0).Contains(2.0));
   EXPECT_FALSE(Range::Between(1.0, 2.0).Contains(2.1));
@@ -41,7 +41,7 @@ TEST(Range, ContainsItsClosedEndsAndNothingInfinite) {
   EXPECT_FALSE(Range::Any().Contains(std::numeric_limits<double>::quiet_NaN()));
 }
 
-TEST(Range, IsToldInWords) {
+TEST(Range, IsDescribedInWords) {
   EXPECT_EQ(Range::Positive().ToString(), "> 0");
   EXPECT_EQ(Range::AtLeast(1).ToString(), ">= 1");
   EXPECT_EQ(Range::Between(0, 1).ToString(), "from 0 to 1");
@@ -72,7 +72,7 @@ TEST(OptionTable, ASharedKeySetsItsMembers) {
   EXPECT_THROW(table.AddShared("none", {"third"}, "not bound"), CheckError);
 }
 
-TEST(OptionTable, SetsAnEnumByItsNames) {
+TEST(OptionTable, SetsAnEnumByName) {
   enum class Colour { kRed, kGreen, kBlue };
   Colour colour = Colour::kGreen;
   OptionTable table;
@@ -126,7 +126,7 @@ TEST(OptionTable, RefusedValuesChangeNothing) {
   EXPECT_EQ(fields.mode, "fast");
 }
 
-TEST(OptionTable, AnUnknownKeyIsToldWithTheNearestOne) {
+TEST(OptionTable, AnUnknownKeyGetsASuggestion) {
   Fields fields;
   OptionTable table = fields.Bind();
   ExpectInputError([&] { table.Set("b.lenght", "1", "--set"); },
@@ -136,7 +136,7 @@ TEST(OptionTable, AnUnknownKeyIsToldWithTheNearestOne) {
   EXPECT_FALSE(table.Contains("b.lenght"));
 }
 
-TEST(OptionTable, EntriesAreSortedAndTellTheValuesInUse) {
+TEST(OptionTable, EntriesAreSortedAndShowTheCurrentValues) {
   Fields fields;
   OptionTable table = fields.Bind();
   table.Set("b.count", "5", "test");
@@ -150,13 +150,13 @@ TEST(OptionTable, EntriesAreSortedAndTellTheValuesInUse) {
   EXPECT_EQ(entries[4].value, "fast");
 }
 
-TEST(OptionTable, AKeyIsBoundOnce) {
+TEST(OptionTable, AKeyCannotBeBoundTwice) {
   Fields fields;
   OptionTable table = fields.Bind();
   EXPECT_THROW(table.Add("flag", &fields.flag, "again"), CheckError);
 }
 
-TEST(OptionTable, TextIsTakenAsItIs) {
+TEST(OptionTable, TextIsStoredUnchanged) {
   std::string field = "person";
   OptionTable table;
   table.AddText("classes", &field, "names");

@@ -9,7 +9,7 @@
 namespace hullslam {
 namespace {
 
-TEST(Published, IsNullBeforeTheFirst) { EXPECT_EQ(Published<int>().Get(), nullptr); }
+TEST(Published, IsNullBeforeTheFirstPublish) { EXPECT_EQ(Published<int>().Get(), nullptr); }
 
 TEST(Published, GivesTheNewest) {
   Published<int> published;
@@ -29,8 +29,8 @@ TEST(Published, ReadersKeepTheirVersionAndOldOnesAreFreed) {
   EXPECT_TRUE(watched.expired());
 }
 
-// A reader sees whole values only, and never an older one after a newer one.
-TEST(Published, ReadersSeeWholeValuesInOrder) {
+// A reader only sees complete values, and never an older value after a newer one.
+TEST(Published, ReadersSeeCompleteValuesInOrder) {
   constexpr int kVersions = 3000;
   Published<std::array<int, 16>> published;
   std::thread writer([&] {

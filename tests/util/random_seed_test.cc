@@ -10,7 +10,8 @@
 namespace hullslam {
 namespace {
 
-// Computed by a second implementation (Python's integers): runs stay reproducible over versions.
+// The expected values come from a second implementation in Python. If they changed, runs would not
+// be reproducible across versions.
 TEST(HashSeed, HasFixedValues) {
   EXPECT_EQ(HashSeed(0, 0, ""), 0x7dc2c42b173ebf65u);
   EXPECT_EQ(HashSeed(1, 42, "pose"), 0x02942679a343dcfdu);
@@ -30,7 +31,7 @@ TEST(HashSeed, DependsOnEachPart) {
   EXPECT_EQ(seeds.size(), 3000u);
 }
 
-// Neighbouring frames must not get similar seeds: about half of the bits change.
+// Neighbouring frames must not get similar seeds: about half of the bits must differ.
 TEST(HashSeed, ScattersNeighbours) {
   size_t changed = 0;
   for (uint32_t frame = 0; frame < 1000; ++frame) {

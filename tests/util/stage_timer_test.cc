@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-TEST(StageTimes, GathersByName) {
+TEST(StageTimes, GroupsByName) {
   StageTimes times;
   times.Add("track", 3.0);
   times.Add("map", 7.0);
@@ -30,7 +30,7 @@ TEST(StageTimes, MergeAppends) {
   EXPECT_EQ(second.samples().size(), 2u);
 }
 
-TEST(ScopedTimer, AddsOneSampleAtItsEnd) {
+TEST(ScopedTimer, AddsOneSampleWhenDestroyed) {
   StageTimes times;
   {
     const ScopedTimer timer(times, "stage");
@@ -41,7 +41,7 @@ TEST(ScopedTimer, AddsOneSampleAtItsEnd) {
   EXPECT_GE(times.samples().find("stage")->second[0], 0.0);
 }
 
-TEST(Summarize, GivesZerosForNothing) {
+TEST(Summarize, GivesZerosForNoSamples) {
   const TimeStatistics none = Summarize({});
   EXPECT_EQ(none.median, 0.0);
   EXPECT_EQ(none.mean, 0.0);
@@ -49,7 +49,7 @@ TEST(Summarize, GivesZerosForNothing) {
   EXPECT_EQ(none.max, 0.0);
 }
 
-TEST(Summarize, OfAnySingleSampleIsTheSample) {
+TEST(Summarize, OfASingleSampleIsThatSample) {
   const TimeStatistics one = Summarize({2.5});
   EXPECT_EQ(one.median, 2.5);
   EXPECT_EQ(one.mean, 2.5);
@@ -57,7 +57,7 @@ TEST(Summarize, OfAnySingleSampleIsTheSample) {
   EXPECT_EQ(one.max, 2.5);
 }
 
-TEST(Summarize, ByHand) {
+TEST(Summarize, MatchesHandComputedValues) {
   const TimeStatistics odd = Summarize({9.0, 1.0, 2.0});
   EXPECT_EQ(odd.median, 2.0);
   EXPECT_EQ(odd.mean, 4.0);

@@ -15,14 +15,14 @@ namespace hullslam {
 namespace {
 
 TEST(StampPairing, TakesTheClosestPairFirst) {
-  // 1.015 is within reach of both, but nearer to 1.02; 1.00 then has to take 0.99.
+  // 1.015 is near enough to both but closer to 1.02, so 1.00 is paired with 0.99.
   const std::vector<double> first = {1.00, 1.02};
   const std::vector<double> second = {0.99, 1.015};
   const std::vector<IndexPair> expected = {{0, 0}, {1, 1}};
   EXPECT_EQ(PairStampsGreedily(first, second, 0.02), expected);
 }
 
-TEST(StampPairing, AGreedyChoiceMayLeaveAPartnerAlone) {
+TEST(StampPairing, AGreedyChoiceMayLeaveStampsUnpaired) {
   // The closest pair (1.012, 1.010) leaves 1.000 and 1.035 without a partner.
   const std::vector<double> first = {1.000, 1.012};
   const std::vector<double> second = {1.010, 1.035};
@@ -30,7 +30,7 @@ TEST(StampPairing, AGreedyChoiceMayLeaveAPartnerAlone) {
   EXPECT_EQ(PairStampsGreedily(first, second, 0.02), expected);
 }
 
-TEST(StampPairing, TheLimitItselfIsOutside) {
+TEST(StampPairing, TheLimitIsExclusive) {
   EXPECT_TRUE(PairStampsGreedily(std::vector<double>{1.0}, std::vector<double>{1.5}, 0.5).empty());
   EXPECT_EQ(PairStampsGreedily(std::vector<double>{1.0}, std::vector<double>{1.5}, 0.500001).size(),
             1U);
@@ -73,13 +73,13 @@ TEST(StampPairing, IsOneToOneMaximalAndSymmetric) {
   for (IndexPair& pair : swapped) {
     std::swap(pair.first, pair.second);
   }
-  // Pairs may cross in time, so the order by the other list is another one.
+  // Pairs may cross in time, so sorting by the other list gives another order.
   std::sort(swapped.begin(), swapped.end(),
             [](const IndexPair& a, const IndexPair& b) { return a.first < b.first; });
   EXPECT_TRUE(swapped == pairs);
 }
 
-TEST(NearestStamp, FindsTheNearestAndOfTwoTheEarlier) {
+TEST(NearestStamp, FindsTheNearestAndTheEarlierOneOfATie) {
   const std::vector<double> stamps = {1.0, 2.0, 4.0};
   EXPECT_EQ(NearestStamp(stamps, -5.0), 0U);
   EXPECT_EQ(NearestStamp(stamps, 1.4), 0U);
@@ -89,7 +89,7 @@ TEST(NearestStamp, FindsTheNearestAndOfTwoTheEarlier) {
   EXPECT_THROW(NearestStamp({}, 1.0), CheckError);
 }
 
-TEST(SmallestGap, IsTheLeastDifferenceOfAll) {
+TEST(SmallestGap, IsTheSmallestDifferenceOfAllPairs) {
   EXPECT_DOUBLE_EQ(SmallestGap(std::vector<double>{1.0, 5.0}, std::vector<double>{2.0, 4.5}), 0.5);
   EXPECT_EQ(SmallestGap({}, std::vector<double>{2.0}), std::numeric_limits<double>::infinity());
 }

@@ -19,19 +19,20 @@ struct DepthErrorOptions {
 };
 
 struct DepthOptions {
-  double units_per_metre = 5000.0;  // of 16-bit depth images
-  double close_baselines = 40.0;    // depths up to this many baselines count as close (well known)
+  double units_per_metre = 5000.0;  // units of a 16-bit depth image per metre
+  double close_baselines = 40.0;    // depths up to this many baselines count as close
   DepthErrorOptions error;
 
   // Binds ORB-SLAM2's keys `DepthMapFactor` and `ThDepth`, and those of the error.
   void Bind(OptionTable& options);
 };
 
-// Depth in metres at a raw pixel (nearest pixel), 0 where it is unknown or outside the image.
-// `depth` is CV_16UC1 or CV_32FC1 as in ImageInput, else CheckError is thrown.
+// Returns the depth in metres at the pixel nearest to `raw_pixel`, or 0 if it is unknown or outside
+// the image. Throws CheckError unless `depth` is CV_16UC1 or CV_32FC1, as in ImageInput.
 float SampleDepth(const cv::Mat& depth, const Eigen::Vector2f& raw_pixel, double units_per_metre);
 
-// Right coordinate of the virtual stereo pair, u - bf / depth, in px; -1 for an unknown depth.
+// Column in the right image of the virtual stereo pair, u - bf / depth, in px; -1 if the depth is
+// unknown.
 float VirtualRight(float u, float depth, double bf);
 
 }  // namespace hullslam

@@ -8,9 +8,9 @@
 
 namespace hullslam {
 
-// Pinhole camera with Brown distortion (k1 k2 p1 p2 k3, OpenCV's order) and, for RGB-D, the
-// baseline of the virtual stereo pair. All SLAM mathematics is done on undistorted pixels with the
-// same intrinsics; raw pixels appear only where images are read.
+// Pinhole camera with Brown distortion (k1 k2 p1 p2 k3, in the order of OpenCV). For RGB-D it also
+// has the baseline of the virtual stereo pair. All SLAM mathematics uses undistorted pixels with
+// the same intrinsics; raw pixels appear only where images are read.
 struct PinholeCamera {
   double fx = 0.0;  // px
   double fy = 0.0;
@@ -25,7 +25,7 @@ struct PinholeCamera {
   int height = 480;
   double bf = 40.0;  // baseline (m) times fx (px)
 
-  // Binds ORB-SLAM2's keys `Camera.fx` ... to the fields.
+  // Binds the fields to ORB-SLAM2's keys `Camera.fx` and so on.
   void Bind(OptionTable& options);
 
   // Calibration matrix: upper triangular, px.
@@ -35,24 +35,24 @@ struct PinholeCamera {
 
   bool IsDistorted() const { return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0 || k3 != 0.0; }
 
-  // Undistorted pixel of a point in the camera frame (metres, z forward). The point needs z > 0.
+  // Undistorted pixel of a point in the camera frame (metres, z forward). Requires z > 0.
   Eigen::Vector2d Project(const Eigen::Vector3d& point_in_cam) const {
     const double inverse_z = 1.0 / point_in_cam.z();
     return {fx * point_in_cam.x() * inverse_z + cx, fy * point_in_cam.y() * inverse_z + cy};
   }
-  // Point in the camera frame at `depth` metres along z seen at an undistorted pixel.
+  // Point in the camera frame that is seen at an undistorted pixel, at `depth` metres along z.
   Eigen::Vector3d Unproject(const Eigen::Vector2d& pixel, double depth) const {
     return {(pixel.x() - cx) / fx * depth, (pixel.y() - cy) / fy * depth, depth};
   }
 
-  // Raw pixel of an undistorted one (Brown 1971).
+  // Raw pixel of an undistorted pixel (Brown 1971).
   Eigen::Vector2d Distort(const Eigen::Vector2d& undistorted) const;
-  // Undistorted pixel of a raw one, by Newton's method on Distort; the residual is below 1e-6 px
-  // inside the image for the cameras of config/. Where the distortion polynomial folds and has no
-  // inverse the best point found is returned.
+  // Undistorted pixel of a raw pixel, by Newton's method on Distort(). The residual is below 1e-6
+  // px inside the image for the cameras in config/. Where the distortion polynomial has no inverse
+  // because it folds, the best point found is returned.
   Eigen::Vector2d Undistort(const Eigen::Vector2d& raw) const;
 
-  // Smallest upright box that holds the undistorted image.
+  // Smallest axis-aligned box that contains the undistorted image.
   struct Bounds {
     double min_x = 0.0;
     double min_y = 0.0;

@@ -8,19 +8,22 @@
 
 namespace hullslam {
 
-// How poses of two trajectories are paired by time.
+// How the poses of two trajectories are paired by time.
 enum class PairingRule {
-  kTum,  // TUM's associate.py: |dt| < limit, the closest first, one to one
-  kEvo,  // evo: for each stamp of the shorter trajectory (the estimate's where both are as long)
-         // the nearest of the other one, |dt| <= limit; not one to one
+  // TUM's associate.py: |dt| < limit, the closest pairs first, one to one.
+  kTum,
+  // evo: each pose of the shorter trajectory (of the estimate if both have the same length) is
+  // paired with the nearest pose of the other one if |dt| <= limit; not one to one.
+  kEvo,
 };
 
 const char* ToString(PairingRule rule);
 
-// The limit that the tool of this rule has by default, s: 0.02 for TUM, 0.01 for evo.
+// The default limit of the tool with this rule, s: 0.02 for TUM, 0.01 for evo.
 double DefaultMaxDifference(PairingRule rule);
 
-// Pairs (first: reference, second: estimate) in order of the shorter trajectory's time.
+// Pairs (first: index in reference, second: index in estimate), ordered by the time of the shorter
+// trajectory.
 std::vector<IndexPair> PairPoses(const Trajectory& reference, const Trajectory& estimate,
                                  PairingRule rule, double max_difference);
 

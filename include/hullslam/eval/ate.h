@@ -16,20 +16,20 @@ struct AteOptions {
   AlignmentKind alignment = AlignmentKind::kSe3;
   PairingRule pairing = PairingRule::kTum;
   std::optional<double> max_difference =
-      std::nullopt;  // s; the pairing's default where it is not given
+      std::nullopt;  // s; absent: the default of the pairing rule
 };
 
-// Absolute trajectory error (Sturm et al. 2012): distances between the translations of paired poses
-// after the estimate was aligned to the reference.
+// Absolute trajectory error (Sturm et al. 2012): the distances between the translations of paired
+// poses, after the estimate was aligned to the reference.
 struct AteReport {
-  std::string failure;     // empty, or why there is no error: too few pairs
+  std::string failure;     // the reason if there is no error (too few pairs), else empty
   ErrorStatistics errors;  // m
   PointAlignment reference_from_estimate;
   size_t pairs = 0;
   size_t estimate_poses = 0;
   size_t reference_poses = 0;
-  double coverage = 0.0;     // share of the estimate's poses that have a partner, 0 to 1
-  double paired_span = 0.0;  // s from the first pair to the last
+  double coverage = 0.0;     // share of the estimated poses that are paired, 0 to 1
+  double paired_span = 0.0;  // s, from the first to the last pair
 
   bool ok() const { return failure.empty(); }
 };

@@ -5,11 +5,11 @@
 
 namespace hullslam {
 
-// Of a list of errors, in their unit; zeros for an empty list.
+// Statistics of a list of errors, in the unit of the errors; all zero for an empty list.
 struct ErrorStatistics {
   double rmse = 0.0;
   double mean = 0.0;
-  double median = 0.0;  // mean of the two in the middle for an even count
+  double median = 0.0;  // for an even count the mean of the two middle errors
   double max = 0.0;
 };
 

@@ -10,67 +10,70 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/report/object_report.h"
 #include "hullslam/eval/true_object.h"
+#include "hullslam/report/object_report.h"
 
 namespace hullslam {
 
-// A mapped object beside the true one it stands for.
+// A mapped object compared with the true object that it represents.
 struct ObjectError {
   ObjectId object;
   size_t truth = 0;               // index of the true object
   double center_m = 0.0;          // distance of the centres
-  double center_share = 0.0;      // of the true object's Size()
-  Eigen::Vector3d axis_ratios;    // mapped over true half axes, paired by length, longest first
-  Eigen::Vector3d extent_ratios;  // mapped over true half extents along the true object's axes
-  std::optional<double> siou;     // of the mapped object (ObjectFit)
+  double center_share = 0.0;      // center_m divided by the Size() of the true object
+  Eigen::Vector3d axis_ratios;    // mapped / true half axes, both sorted by length, longest first
+  Eigen::Vector3d extent_ratios;  // mapped / true half extents along the axes of the true object
+  std::optional<double> siou;     // of the mapped object, from its ObjectFit
 };
 
 struct GroundtruthComparison {
-  std::vector<ObjectError> errors;      // by true object, the nearest first
-  std::vector<ObjectId> without_truth;  // mapped where no true object is
-  std::vector<size_t> times_mapped;     // of each true object
+  std::vector<ObjectError> errors;      // grouped by true object, the nearest first
+  std::vector<ObjectId> without_truth;  // mapped objects that represent no true object
+  std::vector<size_t> times_mapped;     // one count per true object
 };
 
-// Gives every mapped object of the report the true object whose centre is nearest in shares of its
-// size, if it is within half of it; classes don't matter. Moving objects stand for nothing.
+// Assigns to each mapped object of the report the true object with the nearest centre, where
+// distances are divided by the Size() of the true object and must be at most one half. Classes do
+// not matter. Moving true objects are never assigned.
 GroundtruthComparison CompareWithTruth(std::span<const TrueObject> truths,
                                        const ObjectReport& report, const Rigid3& truth_from_map);
 
-// How many true objects that can be asked for are mapped how often.
+// Counts how often the true objects that should be mapped were mapped.
 struct TruthCounts {
-  size_t visible = 0;  // seen often enough, and at rest
-  size_t once = 0;     // of these mapped as one object
-  size_t more = 0;     // as several
+  size_t visible = 0;  // seen often enough and not moving
+  size_t once = 0;     // visible objects that were mapped as one object
+  size_t more = 0;     // visible objects that were mapped as several objects
   size_t never = 0;
 };
 
-// Of the objects with `min_sightings` or more; without counts of sightings all are visible.
+// Counts the true objects with at least `min_sightings` sightings. Without counts of sightings all
+// objects count as visible.
 TruthCounts CountMapped(std::span<const TrueObject> truths, const GroundtruthComparison& comparison,
                         std::span<const size_t> sightings, size_t min_sightings);
 
-// The errors of the true objects of one shape, of each the nearest mapped one.
+// The errors of the true objects of one shape. If a true object was mapped several times, only the
+// nearest mapped object counts.
 struct ShapeErrors {
   size_t objects = 0;
   double center_share_mean = 0.0;
   double center_share_max = 0.0;
-  double axis_ratio_mean = 0.0;       // over all axes: the bias of their lengths
+  double axis_ratio_mean = 0.0;       // over all axes; differs from 1 if lengths are biased
   double axis_ratio_deviation = 0.0;  // largest |ratio - 1|
-  std::optional<double> siou_mean;    // over the objects that have one
+  std::optional<double> siou_mean;    // over the objects that have a value
 };
 
 std::map<std::string, ShapeErrors> SummarizeByShape(std::span<const TrueObject> truths,
                                                     const GroundtruthComparison& comparison);
 
-// A detection of a frame whose true pose is known.
+// A detection in a frame whose true pose is known.
 struct SeenBox {
   std::string label;
   Eigen::AlignedBox2d box;  // undistorted, px
 };
 
-// Adds one to the count of every true object that a detection of the frame shows: the one of its
-// class whose projection's box, cut to the image, overlaps the detection's box most, at least by a
-// fifth (intersection over union).
+// Adds one to the count of each true object that a detection of the frame shows. A detection shows
+// the true object of its class whose projected box, clipped to the image, has the largest
+// intersection over union with the box of the detection, if this is more than 0.2.
 void CountSightings(std::span<const TrueObject> truths, const PinholeCamera& camera,
                     const Rigid3& cam_from_truth, std::span<const SeenBox> seen,
                     std::vector<size_t>& sightings);

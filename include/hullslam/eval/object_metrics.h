@@ -8,28 +8,24 @@
 
 namespace hullslam {
 
-// How well an ellipsoid's outline agrees with one view of it:
-//   siou        intersection over union with the hull, both clipped to the (undistorted) image; of
-//   a
-//               view that knows a box alone, that of the outline's box with it
+// How well the projected ellipse of an ellipsoid agrees with its views:
+//   siou        intersection over union with the hull, both clipped to the undistorted image. If
+//               the view has only a box, the bounding box of the ellipse is compared with it.
 //   siou_mask   the same with the contour; absent for a box
-//   mtd_m2      mean of |pi^T Q* pi| over the planes of the two-sided lines, with unit normals (Yu
-//   et
-//               al. 2025, Eq. 8); absent without such lines
-//   tangent_px  mean distance of these lines from the outline's parallel tangents
-// Where the ellipsoid is not wholly in front of the camera it has no outline: the overlaps are 0
-// and the distances absent.
-ObjectFit MeasureView(const Ellipsoid& ellipsoid, const ReportedView& view,
-                      const PinholeCamera& camera);
-
-// Means over the views; no value at all without views.
+//   mtd_m2      mean of |pi^T Q* pi| over the planes of the two-sided lines, with unit normals
+//               (Yu et al. 2025, Eq. 8); absent without such lines
+//   tangent_px  mean distance of these lines from the parallel tangents of the ellipse; absent
+//               without such lines
+// An ellipsoid that is not wholly in front of the camera has no projected ellipse. Then the
+// overlaps are 0 and the distances are absent.
+// Returns the means over the views; all values are absent if there are no views.
 ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ReportedView> views,
                         const PinholeCamera& camera);
 
 // Fills in the fit of every object.
 void MeasureObjects(ObjectReport& report);
 
-// Of all mapped objects: means of their fits, sums of their counts.
+// Summary of all mapped objects: means of their fits and sums of their counts.
 struct MapFit {
   size_t objects = 0;
   ObjectFit mean;

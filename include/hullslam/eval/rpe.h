@@ -14,19 +14,19 @@ namespace hullslam {
 struct RpeOptions {
   enum class Unit { kFrames, kSeconds };
   Unit unit = Unit::kSeconds;
-  double delta = 1.0;  // length of the motions compared, > 0; whole for frames
-  double scale = 1.0;  // by which the estimate's translations are multiplied first
+  double delta = 1.0;  // length of the compared motions, > 0; an integer for frames
+  double scale = 1.0;  // the translations of the estimate are multiplied by this first
   PairingRule pairing = PairingRule::kTum;
   std::optional<double> max_difference =
-      std::nullopt;  // s; the pairing's default where it is not given
+      std::nullopt;  // s; absent: the default of the pairing rule
 };
 
-// Relative pose error (Sturm et al. 2012, Eq. 1): for paired poses i and j, `delta` apart,
-// E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j) of reference Q and estimate P. Every i is used (TUM's
-// --fixed_delta); with seconds j is the pair nearest to t_i + delta, and i is left out where there
-// is none within a tenth of delta.
+// Relative pose error (Sturm et al. 2012, Eq. 1): E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j) for reference Q
+// and estimate P, over paired poses i and j that are `delta` apart. Each i is used (--fixed_delta
+// in the TUM tools). For a delta in seconds, j is the pair nearest to t_i + delta; i is left out if
+// no pair is within a tenth of delta.
 struct RpeReport {
-  std::string failure;          // empty, or why there is no error
+  std::string failure;          // the reason if there is no error, else empty
   ErrorStatistics translation;  // m
   ErrorStatistics rotation;     // degrees
   size_t motions = 0;

@@ -16,20 +16,21 @@ struct FeatureOptions {
   double scale_factor = 1.2;
   int level_count = 8;
   int initial_fast_threshold = 20;  // grey levels
-  int minimum_fast_threshold = 7;   // where a cell has no corner at the initial threshold
+  int minimum_fast_threshold = 7;   // for cells that have no corner at the initial threshold
 
-  bool subpixel = false;  // refine positions within the pixel of their level
+  bool subpixel = false;  // refine positions to a fraction of a pixel
 
-  // Binds ORB-SLAM2's keys `ORBextractor.nFeatures` ... and `ORBextractor.subpixel` to the fields.
+  // Binds the fields to ORB-SLAM2's keys `ORBextractor.nFeatures` and so on, and to
+  // `ORBextractor.subpixel`.
   void Bind(OptionTable& options);
 };
 
 struct ExtractedFeatures {
   std::vector<Keypoint> keypoints;      // `undistorted` equals `raw`; ordered by level
-  std::vector<Descriptor> descriptors;  // one a keypoint
+  std::vector<Descriptor> descriptors;  // one per keypoint
 };
 
-// Keeps its buffers from image to image; one extractor a thread.
+// Keeps its buffers from image to image. Use one extractor per thread.
 class FeatureExtractor {
  public:
   explicit FeatureExtractor(const FeatureOptions& options);
@@ -39,8 +40,8 @@ class FeatureExtractor {
 
   const ScaleLevels& levels() const;
 
-  // `grey` is CV_8UC1 and not smaller than 64 x 64 px, else CheckError is thrown. About
-  // feature_count features, fewer where the image has not as many corners.
+  // Throws CheckError unless `grey` is CV_8UC1 and at least 64 x 64 px. Returns about feature_count
+  // features, or fewer if the image has fewer corners.
   ExtractedFeatures Extract(const cv::Mat& grey);
 
  private:

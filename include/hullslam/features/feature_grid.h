@@ -10,17 +10,18 @@
 
 namespace hullslam {
 
-// Keypoints sorted into the cells of an image, to find those near a pixel.
+// Keypoints sorted into cells of the image, to find the keypoints near a pixel.
 class FeatureGrid {
  public:
   FeatureGrid() = default;
-  // Sorts by `undistorted`; the box is that of the undistorted image, in px. Keypoints outside it
-  // go into the nearest cell.
+  // Sorts by `undistorted`. The box is that of the undistorted image, in px. Keypoints outside it
+  // are put into the nearest cell.
   FeatureGrid(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_min,
               const Eigen::Vector2f& box_max);
 
-  // Appends to `found` the indices of the keypoints with |dx| < radius and |dy| < radius and a
-  // level from min_level to max_level, cell by cell and in order of index within a cell.
+  // Appends to `found` the indices of all keypoints with |dx| < radius, |dy| < radius and a level
+  // from min_level to max_level. Cells are visited one after the other; within a cell the indices
+  // are in increasing order.
   void FindNear(std::span<const Keypoint> keypoints, const Eigen::Vector2f& center, float radius,
                 int min_level, int max_level, std::vector<uint32_t>& found) const;
 

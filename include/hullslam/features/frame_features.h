@@ -10,7 +10,7 @@
 
 namespace hullslam {
 
-// All that matching needs to know of one image; the vectors have one entry a keypoint.
+// Everything that matching needs to know about one image. The vectors have one entry per keypoint.
 struct FrameFeatures {
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;

@@ -10,7 +10,7 @@
 namespace hullslam {
 
 enum class AlignmentKind {
-  kNone,  // the points are compared as they are
+  kNone,  // no alignment: the points stay where they are
   kSe3,   // rotation and translation
   kSim3,  // rotation, translation and scale
 };
@@ -19,7 +19,7 @@ enum class AlignmentKind {
 struct PointAlignment {
   double scale = 1.0;
   Rigid3 target_from_source;
-  std::string failure;  // empty where the alignment is good, else the reason
+  std::string failure;  // empty if the alignment succeeded, else the reason
 
   bool ok() const { return failure.empty(); }
   Eigen::Vector3d operator*(const Eigen::Vector3d& source) const {
@@ -27,10 +27,11 @@ struct PointAlignment {
   }
 };
 
-// The alignment with the least sum of squared distances between target and aligned source points
-// (Umeyama 1991), of `kind`. Both lists have the same length. Fails, with the identity, for fewer
-// than three points and for a scale that no spread of the points fixes. For points on one line the
-// rotation about it is arbitrary, while the distances are still the least.
+// Returns the alignment of `kind` with the least sum of squared distances between target and
+// aligned source points (Umeyama 1991). Both lists have the same length. The result is a failure
+// with the identity if there are fewer than three points, or if the points do not determine the
+// scale. For points on one line the rotation about this line is arbitrary; the distances are still
+// the least.
 PointAlignment AlignPoints(std::span<const Eigen::Vector3d> source,
                            std::span<const Eigen::Vector3d> target, AlignmentKind kind);
 

@@ -6,7 +6,7 @@
 
 namespace hullslam {
 
-// Rigid transform of points: x_b = rotation * x_a + translation for a Rigid3 named `b_from_a`.
+// A rigid transform of points: a Rigid3 named `b_from_a` maps x_b = rotation * x_a + translation.
 // Lengths are in metres (in monocular SLAM: in units of the map).
 struct Rigid3 {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
@@ -34,8 +34,8 @@ Eigen::Vector3d LogSo3(const Eigen::Quaterniond& rotation);
 // The matrix of the cross product: Skew(a) * b = a x b.
 Eigen::Matrix3d Skew(const Eigen::Vector3d& a);
 
-// Small motion applied on the left, after `b_from_a`: x_b is turned by delta[0..2] (radians) and
-// then moved by delta[3..5]. Its derivative at zero is dx_b / ddelta = [-Skew(x_b), I].
+// Applies a small motion on the left, after `b_from_a`: x_b is rotated by delta[0..2] (radians) and
+// then moved by delta[3..5]. The derivative at zero is dx_b / ddelta = [-Skew(x_b), I].
 Rigid3 Retract(const Rigid3& b_from_a, const Eigen::Matrix<double, 6, 1>& delta);
 
 // Angle between two rotations in radians, 0 to pi.

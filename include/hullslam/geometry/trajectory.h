@@ -16,9 +16,9 @@ struct StampedPose {
 // Poses in order of time, one per time stamp.
 using Trajectory = std::vector<StampedPose>;
 
-// The pose at `timestamp` (seconds), between its two neighbours in the trajectory: the position on
-// the straight line, the rotation at constant angular velocity. Nothing before the first pose, after
-// the last one, or in a gap longer than `max_gap` seconds.
+// The pose at `timestamp` (seconds), interpolated between its two neighbours in the trajectory: the
+// position on a straight line, the rotation at constant angular velocity. Returns nothing before
+// the first pose, after the last pose, or in a gap longer than `max_gap` seconds.
 std::optional<Rigid3> InterpolatePose(const Trajectory& trajectory, double timestamp,
                                       double max_gap);
 

@@ -8,10 +8,10 @@
 
 namespace hullslam {
 
-// Puts `content` at `path` so that the file is there whole or not at all: written and synced under
-// a temporary name in the same folder, then renamed. Throws InputError that names `path` and the
-// system's reason where that fails (disk full, folder missing or not writable); the temporary file
-// is removed and a former file at `path` stays as it was.
+// Writes `content` to `path` so that the file is either complete or not there at all: it is written
+// and synced under a temporary name in the same folder, and then renamed. Throws InputError with
+// `path` and the reason of the system if this fails (disk full, folder missing or not writable).
+// Then the temporary file is removed, and an earlier file at `path` is unchanged.
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content);
 
 struct FileContent {
@@ -19,9 +19,9 @@ struct FileContent {
   std::string content;
 };
 
-// The same for files that belong together: all are written and synced before the first one is
-// renamed, so that a disk that fills up on the way leaves all former files as they were. (Only
-// where a rename itself fails, as no full disk makes it, are the files before it new already.)
+// The same for files that belong together. All are written and synced before the first one is
+// renamed, so a disk that becomes full leaves all earlier files unchanged. (Only if a rename itself
+// fails, which a full disk does not cause, are the files before it already replaced.)
 void WriteFilesAtomically(std::span<const FileContent> files);
 
 }  // namespace hullslam

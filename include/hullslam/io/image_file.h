@@ -6,18 +6,19 @@
 
 namespace hullslam {
 
-// All throw InputError, with the file and the reason, where it is missing, empty, cut off, neither
-// PNG nor JPEG, beyond 64 million pixels, or does not decode. (Bits that flipped inside a JPEG
-// cannot be told from a picture.)
+// All functions throw InputError with the file and the reason if the file is missing, empty, cut
+// off, neither PNG nor JPEG, larger than 64 million pixels, or cannot be decoded. (Flipped bits
+// inside a JPEG cannot be detected.)
 
-// The luma of a PNG or JPEG image, CV_8UC1. An orientation in EXIF data is not applied: pixels stay
-// where the camera's calibration has them.
+// The luma of a PNG or JPEG image, CV_8UC1. An orientation in the EXIF data is ignored, because the
+// calibration of the camera refers to the pixels as stored.
 cv::Mat ReadGreyImage(const std::filesystem::path& path);
 
-// A depth image as it is, CV_16UC1. Other depths than 16 bits or more channels are errors too.
+// A depth image with unchanged values, CV_16UC1. Another bit depth than 16 or several channels are
+// errors too.
 cv::Mat ReadDepthImage(const std::filesystem::path& path);
 
-// The same of an image with the number of an instance in each pixel.
+// A label image, with the number of an instance in each pixel. Read and checked like a depth image.
 cv::Mat ReadLabelImage(const std::filesystem::path& path);
 
 }  // namespace hullslam

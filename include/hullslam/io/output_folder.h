@@ -5,9 +5,10 @@
 
 namespace hullslam {
 
-// Makes the folder, with its parents, where it is missing, and proves that files can be written
-// there; the folder's files are left alone. Throws InputError with the folder and the system's
-// reason. To be called before the first frame, so that no run is lost for want of a place.
+// Creates the folder and its parents if they are missing, and checks that files can be written
+// there. Existing files are left alone. Throws InputError with the folder and the reason of the
+// system. Call this before the first frame, so that no run is lost because its results cannot be
+// written.
 void PrepareOutputFolder(const std::filesystem::path& folder);
 
 }  // namespace hullslam

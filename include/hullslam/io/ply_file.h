@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <filesystem>
 #include <span>
 #include <string>
 
@@ -10,18 +9,14 @@
 
 namespace hullslam {
 
-// A binary little-endian PLY of points `float x y z, uchar red green blue` in metres of the world:
-// landmarks in grey, then the centres of the keyframes in orange.
-std::string FormatPly(std::span<const Eigen::Vector3d> landmarks,
-                      std::span<const Eigen::Vector3d> keyframes);
+// A binary little-endian PLY with points `float x y z, uchar red green blue`, in metres in the
+// world frame: first the landmarks in grey, then the centres of the keyframes in orange.
+std::string FormatMapPly(std::span<const Eigen::Vector3d> landmarks,
+                         std::span<const Eigen::Vector3d> keyframes);
 
-// Writes FormatPly() by WriteFileAtomically().
-void WritePly(const std::filesystem::path& path, std::span<const Eigen::Vector3d> landmarks,
-              std::span<const Eigen::Vector3d> keyframes);
-
-// A binary little-endian PLY of the mapped objects' ellipsoids as triangles: vertices as above and
-// faces `uchar 3, int a b c`, whose corners go anticlockwise seen from outside. The colour tells
-// the class; the same class has the same colour in every run.
+// A binary little-endian PLY with the ellipsoids of the mapped objects as triangles. The vertices
+// are as above; the faces are `uchar 3, int a b c`, with corners in anticlockwise order seen from
+// outside. The colour shows the class; a class has the same colour in every run.
 std::string FormatObjectsPly(std::span<const ReportedObject> objects);
 
 }  // namespace hullslam

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,38 +11,39 @@
 
 namespace hullslam {
 
-// What a run reports, field by field as in `summary.json` (docs/outputs.md). What is not known, an
-// error without ground truth say, is absent here and null in the file.
+// The summary of a run, field by field as in `summary.json` (docs/outputs.md). A value that is not
+// known, such as an error without ground truth, is absent here and null in the file.
 struct TrajectorySummary {
   std::optional<double> ate_rmse_m = std::nullopt;
   std::string alignment = "se3";  // none, se3 or sim3
   std::optional<double> scale = std::nullopt;
-  size_t pairs = 0;                                 // of estimated and true poses
-  size_t frames = 0;                                // that the run was given
-  size_t tracked = 0;                               // with a pose
-  size_t lost = 0;                                  // decoded, but without a pose
-  std::string poses = "all frames";                 // which the errors are of, or "keyframes"
-  std::string pairing = "tum";                      // the rule of the pairs, tum or evo
-  std::optional<double> coverage = std::nullopt;    // share of the poses that have a pair
+  size_t pairs = 0;                               // pairs of an estimated and a true pose
+  size_t frames = 0;                              // frames given to the run
+  size_t tracked = 0;                             // frames with a pose
+  size_t lost = 0;                                // decoded frames without a pose
+  std::string poses = "all frames";               // poses that the errors refer to, or "keyframes"
+  std::string pairing = "tum";                    // the rule that pairs poses: tum or evo
+  std::optional<double> coverage = std::nullopt;  // share of the poses that are in a pair
   std::optional<double> rpe_rmse_m = std::nullopt;  // over one second
   std::optional<double> rpe_rmse_deg = std::nullopt;
   size_t skipped = 0;   // frames with a broken image
   size_t unpaired = 0;  // colour images without depth
 };
 
-// Of the mapped objects, means over each one's observations and then over the objects.
+// Mapped objects: means over the observations of each object, and then over the objects.
 struct ObjectsSummary {
-  size_t count = 0;                                     // mapped
+  size_t count = 0;                                     // mapped objects
   std::optional<double> siou_mean = std::nullopt;       // with the hull
-  std::optional<double> siou_mask_mean = std::nullopt;  // with the raw mask
+  std::optional<double> siou_mask_mean = std::nullopt;  // with the contour
   std::optional<double> mtd_mean_m2 = std::nullopt;
   std::optional<double> tangent_mean_px = std::nullopt;
-  size_t observations = 0;  // of mapped objects in keyframes
-  size_t candidates = 0;    // objects that were never, or are no longer, mapped
-  size_t detections = 0;    // in all frames, as far as they were fit for use
+  size_t observations = 0;  // observations of mapped objects in keyframes
+  size_t candidates = 0;    // objects that are not mapped at the end of the run
+  size_t detections = 0;    // usable detections in all frames
   size_t frames_with_masks = 0;
-  size_t frames_without_masks = 0;                // for which there was no file, or an empty one
-  std::map<std::string, size_t> rejections = {};  // how often, by reason
+  size_t frames_without_masks = 0;  // frames without a file of masks, or with an empty one
+  std::map<std::string, size_t> rejections =
+      {};  // numbers of rejected masks and objects, by reason
 };
 
 struct TimingSummary {
@@ -79,11 +79,8 @@ struct RunSummary {
   ProvenanceSummary provenance;
 };
 
-// JSON with the keys in the order of the structs, ended by a line feed.
+// JSON with the keys in the order of the structs, with a final line feed.
 std::string FormatSummary(const RunSummary& summary);
-
-// Writes FormatSummary() by WriteFileAtomically().
-void WriteSummary(const std::filesystem::path& path, const RunSummary& summary);
 
 // The statistics of each stage.
 std::map<std::string, TimeStatistics> SummarizeStages(const StageTimes& times);

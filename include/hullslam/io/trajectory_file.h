@@ -8,17 +8,15 @@
 
 namespace hullslam {
 
-// Reads a trajectory in TUM's format, `timestamp tx ty tz qx qy qz qw` a line (s, m, world from
-// camera). Throws InputError with file and line for anything but eight finite numbers, for a
-// quaternion of zero length, for time that runs backwards and for a file without poses. Of poses
-// with the same stamp, as TUM's own ground truth has them, the last one counts (as in TUM's tools).
+// Reads a trajectory in TUM's format: one line `timestamp tx ty tz qx qy qz qw` per pose (s, m,
+// world from camera). Throws InputError with file and line for a line without eight finite numbers,
+// for a quaternion of zero length, for decreasing time stamps, and for a file without poses. If
+// poses have the same stamp, as in TUM's own ground truth, the last one is used (as in TUM's
+// tools).
 Trajectory ReadTrajectory(const std::filesystem::path& path);
 
 // The trajectory in TUM's format: stamps with 6 decimals, values with 9, qw not negative. The same
-// poses give the same bytes. CheckError for values that are not finite.
+// poses give the same bytes. Throws CheckError for values that are not finite.
 std::string FormatTrajectory(const Trajectory& trajectory);
-
-// Writes FormatTrajectory() by WriteFileAtomically().
-void WriteTrajectory(const std::filesystem::path& path, const Trajectory& trajectory);
 
 }  // namespace hullslam

@@ -8,8 +8,8 @@
 
 namespace hullslam {
 
-// Reads `groundtruth_objects.json` (docs/synthetic.md). Throws InputError with the file's name and
-// the key's place for missing keys and values of another kind.
+// Reads `groundtruth_objects.json` (docs/synthetic.md). Throws InputError with the name of the file
+// and the path of the key for missing keys and for values of another type.
 std::vector<TrueObject> ReadTrueObjects(const std::filesystem::path& path);
 
 }  // namespace hullslam

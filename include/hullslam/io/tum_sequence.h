@@ -16,10 +16,10 @@ struct RgbdFramePaths {
   double timestamp = 0.0;  // of the colour image, s
   std::filesystem::path rgb;
   std::filesystem::path depth;
-  size_t number = 0;  // among all lines of rgb.txt, or of the association file, from 0
+  size_t number = 0;  // index among the images of rgb.txt or of the association file, from 0
 };
 
-// The frames `first`, `first + stride`, ... up to `last` (inclusive), counted from 0.
+// Selects the frames `first`, `first + stride`, ... up to and including `last`, counted from 0.
 struct FrameSelection {
   size_t first = 0;
   size_t last = std::numeric_limits<size_t>::max();
@@ -27,29 +27,29 @@ struct FrameSelection {
 };
 
 struct TumSequenceOptions {
-  std::filesystem::path associations = {};  // empty: pairs are formed here
-  // False for programs that work with masks and poses: images may be missing, and so may depth.txt;
-  // frames without a depth image have an empty path then.
+  std::filesystem::path associations = {};  // empty: images are paired by time
+  // False for programs that only use masks and poses. Then images may be missing, and depth.txt
+  // too; frames without a depth image have an empty path.
   bool need_images = true;
   FrameSelection selection = {};
 };
 
 struct TumSequence {
-  std::vector<RgbdFramePaths> frames;  // in order of time, those selected
-  size_t unpaired = 0;                 // colour images without depth within 0.02 s, of all
-  std::optional<std::filesystem::path> groundtruth;  // groundtruth.txt, where there is one
+  std::vector<RgbdFramePaths> frames;  // the selected frames, in order of time
+  size_t unpaired = 0;  // colour images of the whole sequence without depth within 0.02 s
+  std::optional<std::filesystem::path> groundtruth;  // groundtruth.txt if it exists
 };
 
-// Opens a sequence in TUM's format: `rgb.txt` and `depth.txt` with `timestamp file` a line, paired
-// one to one, the closest first, within 0.02 s; or an association file with `timestamp rgb
-// timestamp depth` a line. All that can be told without decoding is checked: InputError names file
-// and line for malformed lines and for stamps that do not increase, the first image that is
-// missing, and the smallest gap where no image has a partner.
+// Opens a sequence in TUM's format: `rgb.txt` and `depth.txt` with one line `timestamp file` per
+// image, which are paired one to one, closest first, within 0.02 s; or an association file with
+// lines `timestamp rgb timestamp depth`. Everything that needs no decoding is checked. InputError
+// names file and line of malformed lines and of stamps that do not increase, the first missing
+// image, and the smallest gap if no image can be paired.
 TumSequence OpenTumSequence(const std::filesystem::path& folder,
                             const TumSequenceOptions& options = {});
 
 // Decodes one frame. Throws InputError for an image that ReadGreyImage() or ReadDepthImage()
-// refuses or whose size is not the camera's.
+// rejects, or that does not have the size of the camera.
 ImageInput LoadRgbd(const RgbdFramePaths& paths, const PinholeCamera& camera);
 
 }  // namespace hullslam

@@ -14,7 +14,8 @@
 
 namespace hullslam {
 
-// One view of an object, with all that its shape can be judged by; undistorted pixels.
+// One observation of an object, with everything that is needed to judge the shape of the object.
+// Pixels are undistorted.
 struct ReportedView {
   KeyframeId keyframe;
   double timestamp = 0.0;  // seconds
@@ -24,19 +25,19 @@ struct ReportedView {
   bool is_cut = false;
   bool is_box = false;
   std::vector<Eigen::Vector2d> hull;     // convex, positive signed area
-  std::vector<Eigen::Vector2d> contour;  // closed; of the largest part
+  std::vector<Eigen::Vector2d> contour;  // closed contour of the largest part
   std::vector<SilhouetteLine> lines;
 };
 
-// How well an ellipsoid agrees with its views (eval/object_metrics.h measures it): means over the
-// views that have a value; absent where none has.
+// How well an ellipsoid agrees with its views (measured by eval/object_metrics.h): means over the
+// views that have a value; absent if no view has one.
 struct ObjectFit {
   std::optional<double> siou = std::nullopt;       // with the hull, 0 to 1
   std::optional<double> siou_mask = std::nullopt;  // with the contour, 0 to 1
   std::optional<double> mtd_m2 = std::nullopt;
   std::optional<double> tangent_px = std::nullopt;
   size_t observations = 0;
-  size_t lines = 0;  // two-sided ones, of which the last two means are
+  size_t lines = 0;  // two-sided lines, over which mtd_m2 and tangent_px are means
 };
 
 struct ReportedObject {
@@ -50,15 +51,15 @@ struct ReportedObject {
   ObjectFit fit;
 };
 
-// What a run tells about its objects, free of the map it was taken from.
+// What a run reports about its objects. It does not refer to the map that it was made from.
 struct ObjectReport {
-  std::string sequence;  // its folder
+  std::string sequence;  // the folder of the sequence
   PinholeCamera camera;
-  size_t candidates = 0;                // objects that are not mapped, with a shape or without
-  std::vector<ReportedObject> objects;  // those with a shape, by increasing id
+  size_t candidates = 0;                // objects that are not mapped, with or without a shape
+  std::vector<ReportedObject> objects;  // objects with a shape, by increasing id
 };
 
-// All but `sequence` and the fits.
+// Fills in everything except `sequence` and the fits.
 ObjectReport ReportObjects(const Map& map, const PinholeCamera& camera);
 
 }  // namespace hullslam

@@ -5,7 +5,7 @@
 
 namespace hullslam {
 
-// Asks a long computation on another thread to end early at the next good place.
+// Asks a long computation on another thread to stop early, at its next check.
 class Cancellation {
  public:
   void Request() { requested_.store(true, std::memory_order_release); }

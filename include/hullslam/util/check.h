@@ -6,7 +6,7 @@
 
 namespace hullslam {
 
-// A broken precondition or invariant: a mistake in a program, never in its input.
+// A broken precondition or invariant: an error in the program, never in its input.
 class CheckError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
@@ -16,8 +16,8 @@ namespace internal {
 [[noreturn]] void FailCheck(std::string_view what, const char* file, int line);
 }
 
-// Throws CheckError with `what` and the caller's place unless `condition` holds. (The place is by
-// the builtins below std::source_location, which the clang-tidy of Debian 12 does not know.)
+// Throws CheckError with `what` and the caller's file and line unless `condition` holds. (The
+// builtins are used because the clang-tidy of Debian 12 does not know std::source_location.)
 inline void Check(bool condition, std::string_view what, const char* file = __builtin_FILE(),
                   int line = __builtin_LINE()) {
   if (!condition) [[unlikely]] {

@@ -14,13 +14,12 @@
 
 namespace hullslam {
 
-// A table from ids to values in chunks that are copied when written. Snapshot() shares every chunk
-// with the table it is taken from and costs one pointer copy a chunk; the first write to a chunk
-// after that clones this chunk alone. Iteration is in the order of the ids. Ids are never used
-// again, so an erased id stays empty; a chunk without values is freed.
+// A table from ids to values, stored in chunks that are copied on write. Snapshot() shares all
+// chunks with the original table and costs one pointer copy per chunk. The first write to a shared
+// chunk clones that chunk only. Iteration is in the order of ids. Ids are never reused, so an
+// erased id stays empty. A chunk without values is freed.
 //
-// A table has one writer. Snapshots may be read, or written as tables of their own, by other
-// threads.
+// A table has one writer. Other threads may read a snapshot, or write to it as their own table.
 template <typename IdType, typename Value, size_t kChunkSize = 64>
 class CowTable {
  public:
@@ -30,7 +29,8 @@ class CowTable {
   CowTable(const CowTable&) = delete;
   CowTable& operator=(const CowTable&) = delete;
 
-  // A table with the same values. From here on neither of the two writes to a shared chunk.
+  // Returns a table with the same values. After this call a write to either table clones the shared
+  // chunk first.
   CowTable Snapshot() {
     owned_.assign(chunks_.size(), false);
     CowTable copy;
@@ -41,11 +41,11 @@ class CowTable {
     return copy;
   }
 
-  // Number of values, without those erased.
+  // Number of values; erased ones do not count.
   size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
 
-  // The id that the next Insert gives; every id handed out so far is below it.
+  // The id that the next Insert() returns. It is larger than every id used so far.
   IdType NextId() const { return IdType(next_id_); }
 
   IdType Insert(Value value) {
@@ -54,7 +54,7 @@ class CowTable {
     return id;
   }
 
-  // Gives a value to an id that has none; later ids from Insert are above it.
+  // Stores a value under an id that has none. Later ids from Insert() are larger.
   void Put(IdType id, Value value) {
     Check(id.IsValid() && !Contains(id), "the id is invalid or has a value");
     const size_t chunk = id.value / kChunkSize;
@@ -73,7 +73,7 @@ class CowTable {
     next_id_ = std::max(next_id_, id.value + 1);
   }
 
-  // Null where the id was never given or is erased. The pointer is good until the next write.
+  // Null if the id was never used or was erased. The pointer is valid until the next write.
   const Value* Find(IdType id) const {
     const size_t chunk = id.value / kChunkSize;
     if (chunk >= chunks_.size() || chunks_[chunk] == nullptr) {
@@ -85,14 +85,14 @@ class CowTable {
 
   bool Contains(IdType id) const { return Find(id) != nullptr; }
 
-  // Throws CheckError where there is no value.
+  // Throws CheckError if there is no value.
   const Value& At(IdType id) const {
     const Value* value = Find(id);
     Check(value != nullptr, "no value with this id");
     return *value;
   }
 
-  // The value for writing; clones its chunk if a snapshot shares it. Throws as At does.
+  // The value for writing. Clones its chunk if a snapshot shares it. Throws like At().
   Value& Mutable(IdType id) {
     Check(Find(id) != nullptr, "no value with this id");
     return *WritableChunk(id.value / kChunkSize).slots[id.value % kChunkSize];
@@ -141,8 +141,9 @@ class CowTable {
   }
 
   std::vector<std::shared_ptr<Chunk>> chunks_;
-  // Chunks made since the last snapshot, which nobody else can see. Asking the shared pointers for
-  // their use count instead would race with readers that let go of a snapshot.
+  // True for chunks that were created after the last snapshot; no other table can see them. The use
+  // count of the shared pointers would not do: reading it races with readers that release a
+  // snapshot.
   std::vector<bool> owned_;
   size_t size_ = 0;
   uint32_t next_id_ = 0;

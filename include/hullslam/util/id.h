@@ -9,8 +9,8 @@
 
 namespace hullslam {
 
-// The number of an entity. Ids of different entities do not convert into one another; the default
-// value is invalid. Ids are given in order and never used again.
+// The number of an entity. Ids of different kinds of entities do not convert into each other. The
+// default value is invalid. Ids are assigned in increasing order and are never reused.
 template <typename Tag>
 struct Id {
   static constexpr uint32_t kInvalid = std::numeric_limits<uint32_t>::max();

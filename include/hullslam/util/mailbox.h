@@ -10,14 +10,14 @@
 
 namespace hullslam {
 
-// A bounded first-in first-out queue between two threads. A full mailbox makes the sender wait
-// (back-pressure), an empty one the receiver; closing it wakes both.
+// A bounded first-in first-out queue between two threads. The sender waits while the mailbox is
+// full (back-pressure), the receiver waits while it is empty. Closing it wakes both.
 template <typename Message>
 class Mailbox {
  public:
   explicit Mailbox(size_t capacity) : capacity_(capacity) {}
 
-  // False, and the message is dropped, once the mailbox is closed.
+  // Returns false and drops the message if the mailbox is closed.
   bool Send(Message message) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return closed_ || messages_.size() < capacity_; });
@@ -29,7 +29,7 @@ class Mailbox {
     return true;
   }
 
-  // The oldest message; nothing once the mailbox is closed and empty.
+  // Returns the oldest message, or nothing if the mailbox is closed and empty.
   std::optional<Message> Receive() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return closed_ || !messages_.empty(); });
@@ -42,21 +42,16 @@ class Mailbox {
     return message;
   }
 
-  // Messages already sent can still be received.
+  // Messages that were already sent can still be received.
   void Close() {
     const std::lock_guard lock(mutex_);
     closed_ = true;
     changed_.notify_all();
   }
 
-  size_t size() const {
-    const std::lock_guard lock(mutex_);
-    return messages_.size();
-  }
-
  private:
   const size_t capacity_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Message> messages_;
   bool closed_ = false;

@@ -13,7 +13,7 @@
 
 namespace hullslam {
 
-// Closed or open interval of allowed numbers.
+// An interval of allowed numbers; its lower end may be open.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -27,17 +27,17 @@ struct Range {
   std::string ToString() const;  // "> 0", ">= 1", "from 0 to 1", "of any size"
 };
 
-// The options of a run by their names in settings files. A struct of options binds its fields here
-// once, with range and description; from this table come the reader, --set, the list of settings
-// and the error for an unknown key. The fields must outlive the table.
+// The options of a run, by the names that they have in settings files. Each struct of options binds
+// its fields here, with range and description. The reader of settings files, --set, the list of
+// settings and the error for an unknown key all use this table. The fields must outlive the table.
 class OptionTable {
  public:
   void Add(std::string key, double* field, Range range, std::string help);
   void Add(std::string key, int* field, Range range, std::string help);
   void Add(std::string key, uint64_t* field, Range range, std::string help);
-  void Add(std::string key, bool* field, std::string help);  // 0, 1, true, false
+  void Add(std::string key, bool* field, std::string help);  // accepts 0, 1, true, false
   void Add(std::string key, std::string* field, std::vector<std::string> choices, std::string help);
-  // An enum by the names of its enumerators, which count from 0 in the order of `names`.
+  // An enum that is set by name: `names[i]` is the enumerator with value i.
   template <typename Enum>
   void AddEnum(const std::string& key, Enum* field, const std::vector<std::string>& names,
                const std::string& help) {
@@ -50,17 +50,18 @@ class OptionTable {
   void AddShared(std::string key, std::vector<std::string> members, std::string help);
   // Any text.
   void AddText(std::string key, std::string* field, std::string help);
-  // A key that other programs' settings files have and that means nothing here: accepted, ignored.
+  // A key of other programs' settings files that has no meaning here: it is accepted and ignored.
   void AddIgnored(std::string key);
 
   bool Contains(std::string_view key) const;
-  // Throws InputError that names key, value and what was expected; `origin` (a file, "--set") goes
-  // in front. An unknown key is told with the nearest known one.
+  // Sets an option from text. Throws InputError that starts with `origin` (a file name or "--set")
+  // and names the key, the value and what was expected. For an unknown key the message suggests the
+  // most similar known key.
   void Set(const std::string& key, const std::string& value, const std::string& origin);
 
   struct Entry {
     std::string key;
-    std::string value;     // as it is now
+    std::string value;     // the current value
     std::string expected;  // "a number > 0", "an integer >= 1", "one of: a, b"
     std::string help;
     bool is_shared = false;  // sets other keys (AddShared) and has no value of its own
@@ -71,7 +72,7 @@ class OptionTable {
 
  private:
   struct Option {
-    std::function<bool(const std::string&)> parse;  // false where the text does not fit
+    std::function<bool(const std::string&)> parse;  // false if the text is no valid value
     std::function<std::string()> print;
     std::string expected;
     std::string help;

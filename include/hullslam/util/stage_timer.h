@@ -9,8 +9,8 @@
 
 namespace hullslam {
 
-// Durations in milliseconds, gathered by the name of the stage. Not safe for several threads: each
-// thread has its own and they are merged at the end.
+// Durations in milliseconds, grouped by the name of the stage. Not thread-safe: each thread keeps
+// its own, and Merge() joins them at the end.
 class StageTimes {
  public:
   void Add(std::string_view stage, double milliseconds);
@@ -23,7 +23,7 @@ class StageTimes {
   std::map<std::string, std::vector<double>, std::less<>> samples_;
 };
 
-// Adds the time from its construction to its destruction to `times`.
+// Measures the time from construction to destruction and adds it to `times`.
 class ScopedTimer {
  public:
   ScopedTimer(StageTimes& times, std::string_view stage)
@@ -38,7 +38,7 @@ class ScopedTimer {
   std::chrono::steady_clock::time_point start_;
 };
 
-// Median, mean, 95th percentile (nearest rank) and maximum; zeros for no samples.
+// Median, mean, 95th percentile (nearest rank) and maximum; all zero if there are no samples.
 struct TimeStatistics {
   double median = 0.0;
   double mean = 0.0;

@@ -7,7 +7,7 @@
 
 namespace hullslam {
 
-// Positions in the two lists that were paired.
+// Indices of two paired entries, one per list.
 struct IndexPair {
   size_t first = 0;
   size_t second = 0;
@@ -15,16 +15,16 @@ struct IndexPair {
 };
 
 // Pairs time stamps (seconds, both lists in ascending order) one to one by the rule of TUM's
-// associate.py: of all pairs with |first - second| < max_difference the closest is taken, then the
-// closest of what is left, and so on. The result is ordered by `first`.
+// associate.py: the closest of all pairs with |first - second| < max_difference is taken first,
+// then the closest of the remaining pairs, and so on. The result is ordered by `first`.
 std::vector<IndexPair> PairStampsGreedily(std::span<const double> first,
                                           std::span<const double> second, double max_difference);
 
-// Position of the stamp nearest to `stamp`, the earlier one of two as near. `stamps` is ascending
-// and not empty.
+// Index of the stamp nearest to `stamp`; ties go to the earlier one. `stamps` is ascending and not
+// empty.
 size_t NearestStamp(std::span<const double> stamps, double stamp);
 
-// Smallest |first - second| over both ascending lists; infinite where one is empty.
+// Smallest |first - second| over both ascending lists; infinity if either is empty.
 double SmallestGap(std::span<const double> first, std::span<const double> second);
 
 }  // namespace hullslam
