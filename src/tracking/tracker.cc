@@ -61,7 +61,7 @@ int CountReferenceLandmarks(const Map& map, KeyframeId reference) {
   const int min_weight = map.keyframes().size() <= 2 ? 2 : 3;
   int count = 0;
   for (const LandmarkId id : map.keyframes().At(reference).landmarks) {
-    count += id.IsValid() && map.landmarks().At(id).support >= min_weight ? 1 : 0;
+    count += id.IsValid() && map.landmarks().At(id).observation_weight >= min_weight ? 1 : 0;
   }
   return count;
 }
