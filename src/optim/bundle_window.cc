@@ -9,7 +9,8 @@
 namespace hullslam {
 namespace {
 
-// Keyframes outside `inside` (sorted) that observe the landmarks, most observations first.
+// At most `count` keyframes that observe the landmarks and are not in `inside` (sorted), those with
+// most observations first.
 std::vector<KeyframeId> OuterObservers(const Map& map, const std::vector<LandmarkId>& landmarks,
                                        const std::vector<KeyframeId>& inside, size_t count) {
   std::map<KeyframeId, int> shared;
