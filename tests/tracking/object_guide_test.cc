@@ -16,8 +16,8 @@
 namespace hullslam {
 namespace {
 
-// The made-up world with a ball among its points, which keyframes and frames detect. Other points
-// are before, behind and beside it; nothing hides anything.
+// The synthetic world with a ball among its points, which keyframes and frames detect. Other points
+// are in front of, behind and beside it. Nothing is occluded.
 class ObjectGuideTest : public testing::Test {
  protected:
   ObjectGuideTest() {
@@ -107,7 +107,7 @@ class ObjectGuideTest : public testing::Test {
   std::vector<bool> known_ = std::vector<bool>(made_.map.landmarks().NextId().value, false);
 };
 
-TEST_F(ObjectGuideTest, LandmarksOnAnObjectAreThoseInItNotThoseBehindIt) {
+TEST_F(ObjectGuideTest, LandmarksBehindAnObjectAreNotOnIt) {
   const std::vector<LandmarkId> found = LandmarksOn(made_.map, object(), known_);
   EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
   int inside = 0;
@@ -123,7 +123,7 @@ TEST_F(ObjectGuideTest, LandmarksOnAnObjectAreThoseInItNotThoseBehindIt) {
   EXPECT_GT(inside, 10);
 }
 
-TEST_F(ObjectGuideTest, AGuideLeavesOutTheKeypointsBesideTheMask) {
+TEST_F(ObjectGuideTest, AGuideExcludesTheKeypointsOutsideTheMask) {
   const Rigid3 camera = SyntheticWorld::CamFromWorld(19);
   Frame frame = *world_.Observe(19).frame;
   AddDetection(frame, camera);
@@ -143,7 +143,7 @@ TEST_F(ObjectGuideTest, AGuideLeavesOutTheKeypointsBesideTheMask) {
   }
 }
 
-TEST_F(ObjectGuideTest, DetectionsOfNoObjectGuideNothing) {
+TEST_F(ObjectGuideTest, DetectionsWithoutObjectGiveNoGuide) {
   Frame frame = *world_.Observe(19).frame;
   AddDetection(frame, SyntheticWorld::CamFromWorld(19));
   EXPECT_TRUE(GuideByObjects(made_.map, frame, std::vector<ObjectId>{ObjectId()}, known_).empty());
@@ -162,13 +162,13 @@ TEST_F(ObjectGuideTest, LeavesOutTheLandmarksThatAreKnown) {
   EXPECT_TRUE(GuideByObjects(made_.map, frame, objects, known_).empty());
 }
 
-TEST_F(ObjectGuideTest, WhatTheLocalMapHasIsSearchedAsEver) {
+TEST_F(ObjectGuideTest, ChangesNothingForLandmarksOfTheLocalMap) {
   auto frame = std::make_shared<Frame>(*world_.Observe(19).frame);
   AddDetection(*frame, SyntheticWorld::CamFromWorld(19));
   EXPECT_EQ(Track(frame, true), Track(frame, false));
 }
 
-TEST_F(ObjectGuideTest, BringsInLandmarksThatTheLocalMapForgot) {
+TEST_F(ObjectGuideTest, FindsLandmarksThatTheLocalMapLacks) {
   // Frames are tracked by keyframe 0; only the last two found the landmarks on the ball.
   for (const LandmarkId id : LandmarksOn(made_.map, object(), known_)) {
     for (uint32_t k = 0; k < 3; ++k) {
