@@ -10,7 +10,7 @@ void MappingOptions::Bind(OptionTable& options) {
               "largest number of fixed keyframes in local bundle adjustment");
   options.Add("mapping.cull_keyframes", &cull_keyframes, "remove redundant keyframes");
   options.Add("mapping.final_bundle_adjustment", &final_bundle_adjustment,
-              "adjust the whole map once at the end of the run");
+              "run a global bundle adjustment once at the end of the run");
 }
 
 }  // namespace hullslam
