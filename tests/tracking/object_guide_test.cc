@@ -37,16 +37,16 @@ class ObjectGuideTest : public testing::Test {
   void AddDetection(Frame& frame, const Rigid3& cam_from_world) const {
     Detection& detection =
         frame.detections.emplace_back(Detect(ball_, world_.sensor(), cam_from_world));
-    const Ellipse outline = Outline(cam_from_world);
+    const Ellipse ellipse = ProjectedEllipse(cam_from_world);
     for (uint32_t i = 0; i < frame.features.size(); ++i) {
       const Eigen::Vector2d offset =
-          frame.features.keypoints[i].undistorted.cast<double>() - outline.center;
-      if (offset.dot(outline.shape.inverse() * offset) < 1.0) {
+          frame.features.keypoints[i].undistorted.cast<double>() - ellipse.center;
+      if (offset.dot(ellipse.shape.inverse() * offset) < 1.0) {
         detection.keypoints.push_back(i);
       }
     }
   }
-  Ellipse Outline(const Rigid3& cam_from_world) const {
+  Ellipse ProjectedEllipse(const Rigid3& cam_from_world) const {
     return ProjectEllipsoid(world_.sensor().camera.Matrix(), cam_from_world, ball_.ellipsoid)
         .value();
   }
@@ -132,11 +132,11 @@ TEST_F(ObjectGuideTest, AGuideExcludesTheKeypointsOutsideTheMask) {
   ASSERT_EQ(guides.size(), 1u);
   EXPECT_EQ(guides[0].landmarks, LandmarksOn(made_.map, object(), known_));
   ASSERT_EQ(guides[0].is_outside.size(), frame.features.size());
-  const Ellipse outline = Outline(camera);
-  const double radius = std::sqrt(outline.Area() / std::numbers::pi);  // it is nearly a circle
+  const Ellipse ellipse = ProjectedEllipse(camera);
+  const double radius = std::sqrt(ellipse.Area() / std::numbers::pi);  // it is nearly a circle
   for (size_t i = 0; i < frame.features.size(); ++i) {
     const double distance =
-        (frame.features.keypoints[i].undistorted.cast<double>() - outline.center).norm() - radius;
+        (frame.features.keypoints[i].undistorted.cast<double>() - ellipse.center).norm() - radius;
     if (distance < 3.0 || distance > 11.0) {
       EXPECT_EQ(guides[0].is_outside[i], distance > 7.0 ? 1 : 0) << distance;
     }
