@@ -36,7 +36,7 @@ std::vector<KeyframeId> OuterObservers(const Map& map, const std::vector<Landmar
   return ids;
 }
 
-bool HoldsPoses(const ObjectLandmark& object) {
+bool ConstrainsPoses(const ObjectLandmark& object) {
   return object.state == ObjectState::kMapped && object.has_shape;
 }
 
@@ -44,7 +44,7 @@ std::vector<ObjectId> ObservedObjects(const Map& map, const std::vector<Keyframe
   std::set<ObjectId> objects;
   for (const KeyframeId keyframe : keyframes) {
     for (const ObjectId object : map.keyframes().At(keyframe).objects) {
-      if (object.IsValid() && HoldsPoses(map.objects().At(object))) {
+      if (object.IsValid() && ConstrainsPoses(map.objects().At(object))) {
         objects.insert(object);
       }
     }

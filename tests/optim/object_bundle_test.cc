@@ -56,7 +56,7 @@ class ObjectBundle : public ::testing::Test {
           for (size_t i = 0; i < objects_.size(); ++i) {
             frame.detections.push_back(Detect(objects_[i], world_->sensor(), cam_from_world));
             Disturb(frame, frame.detections.back());
-            if (static_cast<int>(i) == blind_object_) {
+            if (static_cast<int>(i) == object_without_depth_) {
               frame.detections.back().points.clear();
             }
           }
@@ -142,8 +142,8 @@ class ObjectBundle : public ::testing::Test {
 
   RandomGeometry random_{1};
   int shifted_frame_ = -1;
-  double line_noise_ = 0.0;  // px
-  int blind_object_ = -1;    // index of an object without depth points
+  double line_noise_ = 0.0;        // px
+  int object_without_depth_ = -1;  // index of an object
   std::optional<SyntheticWorld> world_;
   std::vector<MadeObject> objects_;
   SyntheticMap made_;
@@ -277,7 +277,7 @@ TEST_F(ObjectBundle, AWrongFrameDoesNotHarmManyPoints) {
 // Silhouettes alone do not constrain all of a quadric, so objects without depth have their own
 // prior.
 TEST_F(ObjectBundle, AnObjectWithoutDepthHasAPriorOfItsOwn) {
-  blind_object_ = 1;
+  object_without_depth_ = 1;
   Make({.points = 300, .depth_share = 0.7});
   PerturbObjects(0.2);
   BundleOptions options = kPrecise;

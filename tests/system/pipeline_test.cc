@@ -42,8 +42,9 @@ class PipelineTest : public testing::TestWithParam<Kind> {
 TEST_P(PipelineTest, HasNoMapBeforeTheFirstKeyframe) {
   const auto pipeline = Make();
   EXPECT_EQ(pipeline->map(), nullptr);
-  const SyntheticWorld blind({.depth_share = 0.0});
-  EXPECT_EQ(pipeline->Track(blind.Observe(0).frame).tracked.state, TrackingState::kNotInitialized);
+  const SyntheticWorld without_depth({.depth_share = 0.0});
+  EXPECT_EQ(pipeline->Track(without_depth.Observe(0).frame).tracked.state,
+            TrackingState::kNotInitialized);
   EXPECT_EQ(pipeline->map(), nullptr);
   EXPECT_EQ(pipeline->Track(world_.Observe(1).frame).tracked.state, TrackingState::kTracked);
   ASSERT_NE(pipeline->map(), nullptr);

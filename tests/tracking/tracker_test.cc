@@ -143,9 +143,10 @@ TEST_F(TrackerTest, InitialisesWithExactlyTheRequiredPoints) {
 }
 
 TEST_F(TrackerTest, InitialisesLaterWhenTheFirstFramesHaveNoDepth) {
-  const SyntheticWorld blind({.points = 300, .depth_share = 0.0});
+  const SyntheticWorld without_depth({.points = 300, .depth_share = 0.0});
   for (uint32_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(Process(blind.Observe(i).frame).report.tracked.state, TrackingState::kNotInitialized);
+    EXPECT_EQ(Process(without_depth.Observe(i).frame).report.tracked.state,
+              TrackingState::kNotInitialized);
   }
   EXPECT_TRUE(Process(world_.Observe(3).frame).message);
 }
