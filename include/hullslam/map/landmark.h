@@ -19,7 +19,7 @@ struct Observation {
 struct Landmark {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();           // m, world frame
   Eigen::Vector3d viewing_direction = Eigen::Vector3d::Zero();  // unit, mean of those from cameras
-  double min_distance = 0.0;              // m; nearer it is too large for the last level
+  double min_distance = 0.0;              // m; at this distance it is seen at the last level
   double max_distance = 0.0;              // m; at this distance it is seen at level 0
   Descriptor descriptor{};                // the most typical of the observed ones
   std::vector<Observation> observations;  // by increasing keyframe id, one per keyframe
