@@ -37,9 +37,9 @@ std::optional<TangentPlane> PlaneOfLine(const PinholeCamera& camera, const Rigid
   return plane;
 }
 
-std::vector<SupportSample> MeasureMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
-                                         std::span<const ObjectView> views) {
-  std::vector<SupportSample> samples;
+std::vector<MisfitSample> MeasureMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
+                                        std::span<const ObjectView> views) {
+  std::vector<MisfitSample> samples;
   for (const ObjectView& view : views) {
     for (const SilhouetteLine& line : view.detection->lines) {
       if (line.is_one_sided) {
@@ -53,7 +53,7 @@ std::vector<SupportSample> MeasureMisfit(const PinholeCamera& camera, const Elli
   return samples;
 }
 
-std::optional<double> PredictExcess(std::span<const SupportSample> samples,
+std::optional<double> PredictExcess(std::span<const MisfitSample> samples,
                                     const Eigen::Vector3d& normal, KeyframeId left_out) {
   // Axes of the plane that touches the unit sphere at the normal.
   const Eigen::Vector3d across = normal.unitOrthogonal();
@@ -61,7 +61,7 @@ std::optional<double> PredictExcess(std::span<const SupportSample> samples,
   const double min_cosine = std::cos(kReach);
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
-  for (const SupportSample& sample : samples) {
+  for (const MisfitSample& sample : samples) {
     const double cosine = sample.normal.dot(normal);
     if (cosine < min_cosine || sample.keyframe == left_out) {
       continue;
@@ -91,7 +91,7 @@ std::vector<SilhouetteLine> CompensateLines(const PinholeCamera& camera,
   for (size_t i = 0; i < moved.size(); ++i) {
     const auto plane = PlaneOfLine(camera, cam_from_world, object.ellipsoid, moved[i].line);
     const auto excess =
-        plane ? PredictExcess(object.support, plane->normal, left_out) : std::nullopt;
+        plane ? PredictExcess(object.misfit_samples, plane->normal, left_out) : std::nullopt;
     if (excess) {
       moved[i].line.offset += *excess * plane->pixels_per_metre;
       known[i] = 1;
@@ -115,7 +115,7 @@ MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& ob
       }
       const double excess = plane->excess * plane->pixels_per_metre;
       const double predicted =
-          PredictExcess(object.support, plane->normal, view.keyframe).value_or(0.0) *
+          PredictExcess(object.misfit_samples, plane->normal, view.keyframe).value_or(0.0) *
           plane->pixels_per_metre;
       plain += excess * excess;
       compensated += (excess - predicted) * (excess - predicted);

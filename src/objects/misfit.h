@@ -32,12 +32,12 @@ std::optional<TangentPlane> PlaneOfLine(const PinholeCamera& camera, const Rigid
                                         const Ellipsoid& ellipsoid, const Line2& line);
 
 // The excess of all two-sided lines of the views.
-std::vector<SupportSample> MeasureMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
-                                         std::span<const ObjectView> views);
+std::vector<MisfitSample> MeasureMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
+                                        std::span<const ObjectView> views);
 
 // The excess at a normal by samples of keyframes other than `left_out`: a locally linear fit with
 // Gaussian weights (4 degrees). Nothing where too few samples are near.
-std::optional<double> PredictExcess(std::span<const SupportSample> samples,
+std::optional<double> PredictExcess(std::span<const MisfitSample> samples,
                                     const Eigen::Vector3d& normal, KeyframeId left_out);
 
 // The lines of a detection moved to where the quadric would touch them if it were the real object.

@@ -214,7 +214,7 @@ void ObjectMapper::Refine(Map& map, ObjectId id, std::span<const ObjectView> vie
 void ObjectMapper::Accept(Map& map, ObjectId id, std::span<const ObjectView> views) const {
   const std::vector<ObjectView> latest = LatestViews(map, map.objects().At(id), kMisfitViews);
   ObjectLandmark& object = map.MutableObject(id);
-  object.support = MeasureMisfit(sensor_.camera, object.ellipsoid, latest);
+  object.misfit_samples = MeasureMisfit(sensor_.camera, object.ellipsoid, latest);
   const MisfitSpread spread = MeasureSpread(sensor_.camera, object, views);
   object.misfit_px = spread.plain_px;
   object.compensated_px = spread.compensated_px;
