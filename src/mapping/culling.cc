@@ -7,7 +7,7 @@ namespace hullslam {
 namespace {
 
 constexpr double kMinFoundRatio = 0.25;
-constexpr uint32_t kTrialKeyframes = 2;  // later a small weight is a reason to erase
+constexpr uint32_t kTrialKeyframes = 2;  // from this age on a small weight is a reason to erase
 constexpr int kMaxWeakWeight = 3;
 constexpr int kOtherObservers = 3;
 constexpr double kRedundantShare = 0.9;

@@ -14,9 +14,9 @@ namespace hullslam {
 // longer exist or that are three keyframes old leave the list.
 void CullRecentLandmarks(Map& map, KeyframeId current, std::vector<LandmarkId>& recent);
 
-// Removes redundant keyframes among those covisible with `current`: three other keyframes see nine
-// tenths of their close landmarks at the same or a finer level (section VI.E). Returns how many
-// were removed.
+// Removes redundant keyframes among those covisible with `current`. A keyframe is redundant if more
+// than nine tenths of its close landmarks are each seen by at least three others, at most one level
+// coarser than it sees them (section VI.E). Returns how many were removed.
 int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor);
 
 }  // namespace hullslam
