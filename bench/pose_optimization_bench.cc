@@ -5,10 +5,11 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <vector>
 
-#include "camera/rgbd_projection.h"
+#include "camera/depth_error.h"
 #include "optim/joint_pose_optimization.h"
 #include "optim/pose_optimization.h"
 
@@ -27,12 +28,13 @@ std::vector<PoseObservation> MakeObservations(size_t count) {
   for (size_t i = 0; i < count; ++i) {
     PoseObservation& observation = observations[i];
     observation.point = {number(-1.0, 1.0), number(-0.8, 0.8), number(2.0, 5.0)};
-    observation.measured = ProjectRgbd(kCamera, observation.point) +
-                           Eigen::Vector3d(noise(random), noise(random), noise(random));
-    observation.has_depth = i % 4 != 0;
+    Eigen::Vector3d measured = ProjectRgbd(kCamera, observation.point) +
+                               Eigen::Vector3d(noise(random), noise(random), noise(random));
     if (i % 10 == 0) {
-      observation.measured.x() += number(10.0, 60.0);
+      measured.x() += number(10.0, 60.0);
     }
+    observation.measurement = PointMeasurement::Create(
+        measured.head<2>(), 1.0, i % 4 != 0 ? std::optional(measured.z()) : std::nullopt, {});
   }
   return observations;
 }
@@ -56,8 +58,8 @@ BENCHMARK(PoseOptimization)
 // With the outlines of eight objects besides, 16 lines each.
 void JointPoseOptimization(benchmark::State& state) {
   const auto observations = MakeObservations(static_cast<size_t>(state.range(0)));
-  std::vector<std::vector<SilhouetteLine>> lines(8);
-  std::vector<PoseObject> objects(lines.size());
+  const Detection detection;
+  std::vector<PoseObject> objects(8);
   for (size_t i = 0; i < objects.size(); ++i) {
     const double x = static_cast<double>(i % 4) - 1.5;
     objects[i].ellipsoid = {{Eigen::Quaterniond::Identity(), {0.6 * x, i < 4 ? -0.4 : 0.4, 3.0}},
@@ -67,11 +69,11 @@ void JointPoseOptimization(benchmark::State& state) {
     for (int k = 0; k < 16; ++k) {
       const double angle = k * std::numbers::pi / 8.0;
       const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
-      lines[i].push_back(
+      objects[i].lines.push_back(
           {{normal, -normal.dot(ellipse.center) - ellipse.HalfExtent(normal)}, false});
     }
-    objects[i].measurement.lines = lines[i];
-    objects[i].sigma_px = 4.0;
+    objects[i].detection = &detection;
+    objects[i].misfit_px = 4.0;
   }
   const Rigid3 start(ExpSo3({0.01, -0.02, 0.01}), {0.02, 0.01, -0.02});
   int used = 0;

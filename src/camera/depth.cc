@@ -8,11 +8,17 @@
 
 namespace hullslam {
 
+void DepthErrorOptions::Bind(OptionTable& options) {
+  options.Add("depth.disparity_sigma", &disparity_sigma, Range::Between(0.01, 100.0),
+              "error of a depth as disparity Camera.bf / depth, px");
+}
+
 void DepthOptions::Bind(OptionTable& options) {
   options.Add("DepthMapFactor", &units_per_metre, Range::Positive(),
               "units of 16-bit depth images in a metre");
   options.Add("ThDepth", &close_baselines, Range::Positive(),
               "depths up to this many baselines count as close");
+  error.Bind(options);
 }
 
 float SampleDepth(const cv::Mat& depth, const Eigen::Vector2f& raw_pixel, double units_per_metre) {

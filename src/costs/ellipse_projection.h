@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
-#include "camera/rgbd_projection.h"
 #include "costs/quadric_in_camera.h"
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/conic.h"
 
 namespace hullslam {

@@ -1,29 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "costs/make_object_cost.h"
 
-#include <vector>
-
 #include "costs/quadric_algebraic_plane.h"
 #include "costs/quadric_algebraic_point.h"
 #include "costs/quadric_distribution.h"
 #include "costs/quadric_overlap.h"
 #include "costs/quadric_tangent.h"
+#include "util/thin.h"
 
 namespace hullslam {
 namespace {
 
 constexpr size_t kMaxPoints = 64;  // neighbours on a contour have the same error
 constexpr int kConicVertices = 64;
-
-std::vector<Eigen::Vector2d> Thin(std::span<const Eigen::Vector2d> contour) {
-  const size_t count = std::min(contour.size(), kMaxPoints);
-  std::vector<Eigen::Vector2d> thinned;
-  thinned.reserve(count);
-  for (size_t i = 0; i < count; ++i) {
-    thinned.push_back(contour[i * contour.size() / count]);
-  }
-  return thinned;
-}
 
 using CostPointer = std::unique_ptr<ceres::CostFunction>;
 
@@ -35,32 +24,33 @@ CostPointer OverlapWithRegion(const PinholeCamera& camera, std::span<const Eigen
   return std::make_unique<OverlapCost>(camera, region, sigma);
 }
 
-CostPointer MakeOverlap(ObjectPrimitive primitive, const PinholeCamera& camera,
-                        const ObjectMeasurement& measurement, double sigma) {
+CostPointer MakeOverlap(const PinholeCamera& camera, const Detection& detection, double sigma) {
+  const ObjectPrimitive primitive = detection.primitive;
   if (primitive == ObjectPrimitive::kHull) {
-    return OverlapWithRegion(camera, measurement.hull, sigma);
+    return OverlapWithRegion(camera, detection.hull, sigma);
   }
   if (primitive == ObjectPrimitive::kContour) {
-    return OverlapWithRegion(camera, measurement.contour, sigma);
+    return OverlapWithRegion(camera, detection.contour, sigma);
   }
-  if (primitive == ObjectPrimitive::kConic && measurement.ellipse.has_value()) {
-    return OverlapWithRegion(camera, measurement.ellipse->Polygon(kConicVertices), sigma);
+  if (primitive == ObjectPrimitive::kConic && detection.ellipse.has_value()) {
+    return OverlapWithRegion(camera, detection.ellipse->Polygon(kConicVertices), sigma);
   }
-  if (primitive == ObjectPrimitive::kBox && !measurement.box.isEmpty()) {
-    return std::make_unique<OverlapCost>(camera, measurement.box, sigma);
+  if (primitive == ObjectPrimitive::kBox && !detection.box.isEmpty()) {
+    return std::make_unique<OverlapCost>(camera, detection.box, sigma);
   }
   return nullptr;
 }
 
-bool HasInput(ObjectResidual residual, const ObjectMeasurement& measurement) {
+bool HasInput(ObjectResidual residual, const Detection& detection,
+              std::span<const SilhouetteLine> lines) {
   switch (residual) {
     case ObjectResidual::kTangent:
     case ObjectResidual::kAlgebraicPlane:
-      return !measurement.lines.empty();
+      return !lines.empty();
     case ObjectResidual::kAlgebraicPoint:
-      return measurement.contour.size() >= 3;
+      return detection.contour.size() >= 3;
     case ObjectResidual::kDistribution:
-      return measurement.ellipse.has_value();
+      return detection.ellipse.has_value();
     case ObjectResidual::kOverlap:  // depends on the primitive
       return true;
   }
@@ -69,23 +59,24 @@ bool HasInput(ObjectResidual residual, const ObjectMeasurement& measurement) {
 
 }  // namespace
 
-CostPointer MakeObjectCost(ObjectResidual residual, ObjectPrimitive primitive,
-                           const PinholeCamera& camera, const ObjectMeasurement& measurement,
+CostPointer MakeObjectCost(ObjectResidual residual, const PinholeCamera& camera,
+                           const Detection& detection, std::span<const SilhouetteLine> lines,
                            double sigma) {
-  if (!IsSupported(residual, primitive) || !HasInput(residual, measurement)) {
+  if (!IsSupported(residual, detection.primitive) || !HasInput(residual, detection, lines)) {
     return nullptr;
   }
   switch (residual) {
     case ObjectResidual::kTangent:
-      return std::make_unique<TangentCost>(camera, measurement.lines, sigma);
+      return std::make_unique<TangentCost>(camera, lines, sigma);
     case ObjectResidual::kAlgebraicPlane:
-      return std::make_unique<AlgebraicPlaneCost>(camera, measurement.lines, sigma);
+      return std::make_unique<AlgebraicPlaneCost>(camera, lines, sigma);
     case ObjectResidual::kAlgebraicPoint:
-      return std::make_unique<AlgebraicPointCost>(camera, Thin(measurement.contour), sigma);
+      return std::make_unique<AlgebraicPointCost>(camera, Thin(detection.contour, kMaxPoints),
+                                                  sigma);
     case ObjectResidual::kDistribution:
-      return std::make_unique<DistributionCost>(camera, measurement.ellipse.value(), sigma);
+      return std::make_unique<DistributionCost>(camera, detection.ellipse.value(), sigma);
     case ObjectResidual::kOverlap:
-      return MakeOverlap(primitive, camera, measurement, sigma);
+      return MakeOverlap(camera, detection, sigma);
   }
   return nullptr;
 }

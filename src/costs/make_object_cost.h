@@ -3,36 +3,25 @@
 
 #include <ceres/cost_function.h>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <memory>
-#include <optional>
 #include <span>
 
-#include "camera/rgbd_projection.h"
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/costs/object_residual.h"
-#include "hullslam/geometry/conic.h"
-#include "hullslam/geometry/line2.h"
+#include "hullslam/frame/detection.h"
 
 namespace hullslam {
 
-// What a detection offers to the residuals; undistorted pixels. The spans are not kept.
-struct ObjectMeasurement {
-  std::span<const SilhouetteLine> lines;
-  std::span<const Eigen::Vector2d> contour;
-  std::span<const Eigen::Vector2d> hull;
-  std::optional<Ellipse> ellipse;
-  Eigen::AlignedBox2d box;
-};
-
-// The residual of a detection over the parameters of QuadricInCamera, one row a line or contour
-// point (at most 64, evenly chosen) or a single one. `sigma` is in the unit of the residual: see
-// ResidualOfPixelError. Null where the residual and the primitive do not go together (IsSupported)
-// or the measurement has nothing to compute it from: no line, fewer than three points, no ellipse.
+// The residual of a detection over the parameters of QuadricInCamera: one row per line or contour
+// point (at most 64, evenly chosen), or a single row. `lines` are the detection's own or moved
+// ones; the other residuals take the detection's contour, hull, ellipse or box. `sigma` is in the
+// unit of the residual: see ResidualOfPixelError. Null where the residual cannot be computed from
+// the detection's primitive (IsSupported) or where the detection lacks what the residual needs: a
+// line, three points of a contour, an ellipse.
 std::unique_ptr<ceres::CostFunction> MakeObjectCost(ObjectResidual residual,
-                                                    ObjectPrimitive primitive,
                                                     const PinholeCamera& camera,
-                                                    const ObjectMeasurement& measurement,
+                                                    const Detection& detection,
+                                                    std::span<const SilhouetteLine> lines,
                                                     double sigma);
 
 }  // namespace hullslam

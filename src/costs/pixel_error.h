@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "camera/rgbd_projection.h"
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/costs/object_residual.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/geometry/rigid3.h"

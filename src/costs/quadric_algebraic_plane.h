@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "camera/rgbd_projection.h"
 #include "costs/quadric_in_camera.h"
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/line2.h"
 
 namespace hullslam {

@@ -3,12 +3,9 @@
 
 #include <Eigen/LU>
 
+#include "util/chi_square.h"
+
 namespace hullslam {
-namespace {
-
-constexpr double kChi2 = 3.841;  // 95 %, one degree of freedom
-
-}  // namespace
 
 AlgebraicPointCost::AlgebraicPointCost(const PinholeCamera& camera,
                                        std::span<const Eigen::Vector2d> contour, double sigma)
@@ -53,7 +50,7 @@ std::vector<Eigen::Vector2d> GateContour(std::span<const Eigen::Vector2d> contou
     const Eigen::Vector2d y = inverse_shape * from_center;
     const double error = from_center.dot(y) - 1.0;
     const double variance = 4.0 * y.squaredNorm() * sigma_px * sigma_px;
-    if (error * error <= kChi2 * variance) {
+    if (error * error <= Chi2Bound(1) * variance) {
       gated.push_back(point);
     }
   }

@@ -5,19 +5,14 @@
 
 #include <Eigen/Core>
 
+#include "hullslam/costs/quadric_prior_sigmas.h"
 #include "hullslam/geometry/dual_quadric.h"
 
 namespace hullslam {
 
-// Standard deviations of the prior on an ellipsoid.
-struct QuadricPriorSigmas {
-  double log_axes = 0.5;
-  double center = 0.5;    // relative to the size of the start, the geometric mean of its half axes
-  double rotation = 0.5;  // radians
-};
-
-// Holds an ellipsoid near what it started as (R0, t0, half axes s0), so that silhouettes that leave
-// it free make it neither flat nor run away. Nine residuals, each over its sigma:
+// Pulls an ellipsoid towards a given shape (R0, t0, half axes s0). Outlines over a small angle
+// leave a part of the shape free; without the prior it could become flat or run away there. Nine
+// residuals, each over its sigma:
 //   log s - log s0,  (t - t0) / (s0_1 s0_2 s0_3)^1/3,  2 sin(angle / 2) axis of R R0^T
 // Parameters: world_from_object (PoseBlock, with PoseManifold), log half axes (3, log m).
 class QuadricPriorCost final : public ceres::SizedCostFunction<9, 7, 3> {

@@ -7,8 +7,7 @@ namespace hullslam {
 
 bool ReprojectionCost::Evaluate(double const* const* parameters, double* residuals,
                                 double** jacobians) const {
-  return internal::EvaluateReprojection<2>(
-      camera_, pixel_, Eigen::Vector2d::Constant(inverse_sigma_), parameters, residuals, jacobians);
+  return internal::EvaluateReprojection<2>(camera_, measurement_, parameters, residuals, jacobians);
 }
 
 }  // namespace hullslam

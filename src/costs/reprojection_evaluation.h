@@ -3,19 +3,15 @@
 
 #include <Eigen/Core>
 
-#include "camera/rgbd_projection.h"
+#include "camera/depth_error.h"
 #include "costs/pose_manifold.h"
 
 namespace hullslam::internal {
 
-inline constexpr double kMinDepth = 1e-3;  // m; nearer the projection has no meaning
-
-// Residual and Jacobians of a reprojection error with its first kRows rows: 2 for the pixel, 3 with
-// the disparity.
+// Residual and Jacobians of the first kRows rows of PointResidual: 2 for the pixel, 3 with the
+// disparity.
 template <int kRows>
-bool EvaluateReprojection(const PinholeCamera& camera,
-                          const Eigen::Matrix<double, kRows, 1>& measured,
-                          const Eigen::Matrix<double, kRows, 1>& inverse_sigma,
+bool EvaluateReprojection(const PinholeCamera& camera, const PointMeasurement& measurement,
                           double const* const* parameters, double* residuals, double** jacobians) {
   const Eigen::Map<const Eigen::Quaterniond> rotation(parameters[0]);
   const Eigen::Map<const Eigen::Vector3d> translation(parameters[0] + 4);
@@ -26,14 +22,12 @@ bool EvaluateReprojection(const PinholeCamera& camera,
     return false;
   }
   Eigen::Map<Eigen::Matrix<double, kRows, 1>> residual(residuals);
-  residual = inverse_sigma.cwiseProduct(ProjectRgbd(camera, point_in_cam).template head<kRows>() -
-                                        measured);
+  residual = PointResidual(camera, measurement, point_in_cam).template head<kRows>();
   if (jacobians == nullptr) {
     return true;
   }
   const Eigen::Matrix<double, kRows, 3> by_point_in_cam =
-      inverse_sigma.asDiagonal() *
-      ProjectRgbdJacobian(camera, point_in_cam).template topRows<kRows>();
+      PointResidualJacobian(camera, measurement, point_in_cam).template topRows<kRows>();
   if (jacobians[0] != nullptr) {
     Eigen::Map<Eigen::Matrix<double, kRows, 7, Eigen::RowMajor>> by_pose(jacobians[0]);
     by_pose.template leftCols<3>() = -by_point_in_cam * Skew(point_in_cam);

@@ -7,8 +7,7 @@ namespace hullslam {
 
 bool RgbdReprojectionCost::Evaluate(double const* const* parameters, double* residuals,
                                     double** jacobians) const {
-  return internal::EvaluateReprojection<3>(camera_, measured_, inverse_sigma_, parameters,
-                                           residuals, jacobians);
+  return internal::EvaluateReprojection<3>(camera_, measurement_, parameters, residuals, jacobians);
 }
 
 }  // namespace hullslam

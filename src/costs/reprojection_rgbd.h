@@ -3,33 +3,26 @@
 
 #include <ceres/sized_cost_function.h>
 
-#include <Eigen/Core>
-
-#include "camera/rgbd_projection.h"
+#include "camera/depth_error.h"
 
 namespace hullslam {
 
-// Reprojection error of a landmark seen with depth, as the disparity of a virtual stereo pair, in
-// standard deviations:
-//   r = ((u, v, bf / z)(cam_from_world * point) - measured) / (sigma, sigma, kDisparitySigma)
-// Mur-Artal and Tardos 2017, section III.A, have u - bf / z instead, with the pixel's sigma: that
-// trusts depth the less the coarser the keypoint's level is (docs/decisions.md).
+// Reprojection error of a landmark seen with depth, in standard deviations: PointResidual at
+// cam_from_world * point,
+//   r = ((u, v, bf / z)(cam_from_world * point) - measured) / (sigma, sigma, disparity_sigma)
 // Parameters: cam_from_world (PoseBlock, with PoseManifold), point (m, world frame). Not defined
 // for a point that is not in front of the camera: Evaluate is false there.
 class RgbdReprojectionCost final : public ceres::SizedCostFunction<3, 7, 3> {
  public:
-  RgbdReprojectionCost(const PinholeCamera& camera, const Eigen::Vector3d& measured, double sigma)
-      : camera_(camera),
-        measured_(measured),
-        inverse_sigma_(1.0 / sigma, 1.0 / sigma, 1.0 / kDisparitySigma) {}
+  RgbdReprojectionCost(const PinholeCamera& camera, const PointMeasurement& measurement)
+      : camera_(camera), measurement_(measurement) {}
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
 
  private:
   PinholeCamera camera_;
-  Eigen::Vector3d measured_;
-  Eigen::Vector3d inverse_sigma_;
+  PointMeasurement measurement_;
 };
 
 }  // namespace hullslam

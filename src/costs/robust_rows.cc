@@ -12,23 +12,32 @@ namespace {
 // ln(1 + x), and none below 1e-16, where the slope would be 1 / 0.
 constexpr double kQuadratic = 1e-8;
 
-// What `loss` makes of a residual, as factors of it and of its derivative.
+// The loss of a squared residual and its derivative.
+std::pair<double, double> Rho(const ceres::LossFunction* loss, double square) {
+  if (loss == nullptr || square < kQuadratic) {
+    return {square, 1.0};
+  }
+  double rho[3];
+  loss->Evaluate(square, rho);
+  return {rho[0], rho[1]};
+}
+
+// The factors by which the loss changes a residual and its derivative.
 std::pair<double, double> Factors(const ceres::LossFunction* loss, double residual) {
   const double square = residual * residual;
   if (loss == nullptr || square < kQuadratic) {
     return {1.0, 1.0};
   }
-  double rho[3];
-  loss->Evaluate(square, rho);
-  const double factor = std::sqrt(rho[0] / square);
-  return {factor, rho[1] / factor};
+  const auto [rho, slope] = Rho(loss, square);
+  const double factor = std::sqrt(rho / square);
+  return {factor, slope / factor};
 }
 
 }  // namespace
 
 RobustRowsCost::RobustRowsCost(std::unique_ptr<ceres::CostFunction> cost,
                                std::unique_ptr<ceres::LossFunction> loss, double weight)
-    : cost_(std::move(cost)), loss_(std::move(loss)), root_weight_(std::sqrt(weight)) {
+    : cost_(std::move(cost)), loss_(std::move(loss)), weight_(weight) {
   set_num_residuals(cost_->num_residuals());
   *mutable_parameter_block_sizes() = cost_->parameter_block_sizes();
 }
@@ -38,18 +47,27 @@ bool RobustRowsCost::Evaluate(double const* const* parameters, double* residuals
   if (!cost_->Evaluate(parameters, residuals, jacobians)) {
     return false;
   }
+  const double root_weight = std::sqrt(weight_);
   for (int row = 0; row < num_residuals(); ++row) {
     const auto [factor, slope] = Factors(loss_.get(), residuals[row]);
-    residuals[row] *= root_weight_ * factor;
+    residuals[row] *= root_weight * factor;
     for (size_t block = 0; jacobians != nullptr && block < parameter_block_sizes().size();
          ++block) {
       if (jacobians[block] != nullptr) {
         const int size = parameter_block_sizes()[block];
-        Eigen::Map<Eigen::VectorXd>(jacobians[block] + row * size, size) *= root_weight_ * slope;
+        Eigen::Map<Eigen::VectorXd>(jacobians[block] + row * size, size) *= root_weight * slope;
       }
     }
   }
   return true;
+}
+
+double RobustRowsCost::CostOf(double residual) const {
+  return weight_ * Rho(loss_.get(), residual * residual).first;
+}
+
+double RobustRowsCost::WeightOf(double residual) const {
+  return weight_ * Rho(loss_.get(), residual * residual).second;
 }
 
 }  // namespace hullslam

@@ -23,10 +23,15 @@ class RobustRowsCost final : public ceres::CostFunction {
   // The residuals without loss and weight.
   const ceres::CostFunction& plain() const { return *cost_; }
 
+  // What a plain residual r adds to the sum that is minimised, and the weight of its square in
+  // iteratively reweighted least squares: weight rho(r^2) and weight rho'(r^2).
+  double CostOf(double residual) const;
+  double WeightOf(double residual) const;
+
  private:
   std::unique_ptr<ceres::CostFunction> cost_;
   std::unique_ptr<ceres::LossFunction> loss_;
-  double root_weight_;
+  double weight_;
 };
 
 }  // namespace hullslam

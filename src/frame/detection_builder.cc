@@ -82,6 +82,7 @@ Detection DetectionOf(const InstanceMask& mask, const Outline& outline, const Fr
   detection.contour = outline.contour;
   detection.hull = outline.hull;
   detection.box = BoundingBox(outline.hull);
+  detection.primitive = frame.options.primitive;
   detection.is_box = mask.shape == MaskShape::kBox;
   detection.is_cut = std::any_of(outline.hull.begin(), outline.hull.end(), [&](const auto& corner) {
     return IsAtBorder(corner, frame.depth.camera, frame.options.border_px);

@@ -263,7 +263,9 @@ fs::path FindConfigFolder() {
 std::string FormatSettings(SystemOptions options) {
   std::string text = "%YAML:1.0\n";
   for (const OptionTable::Entry& entry : options.Bind().Entries()) {
-    text += entry.key + ": " + entry.value + '\n';
+    if (!entry.is_shared) {
+      text += entry.key + ": " + entry.value + '\n';
+    }
   }
   return text;
 }

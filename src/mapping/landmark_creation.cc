@@ -5,12 +5,12 @@
 #include <cmath>
 #include <optional>
 
+#include "frame/point_measurement.h"
 #include "geometry/epipolar.h"
 #include "geometry/triangulation.h"
 #include "map/covisibility.h"
 #include "map/landmark_edits.h"
 #include "matching/for_triangulation.h"
-#include "optim/robust.h"
 
 namespace hullslam {
 namespace {
@@ -26,8 +26,8 @@ struct View {
   Eigen::Vector2d normalized;
   Eigen::Vector3d ray_in_world;  // unit
   double depth = 0.0;            // m, 0 where unknown
-  double right_u = -1.0;
-  double scale = 1.0;  // of the keypoint's level
+  double scale = 1.0;            // of the keypoint's level
+  PointMeasurement measurement;
 };
 
 View MakeView(const Keyframe& keyframe, uint32_t keypoint, const Sensor& sensor) {
@@ -40,9 +40,9 @@ View MakeView(const Keyframe& keyframe, uint32_t keypoint, const Sensor& sensor)
   view.normalized = ray.head<2>();
   view.ray_in_world = keyframe.cam_from_world.rotation.conjugate() * ray.normalized();
   view.depth = static_cast<double>(features.depth[keypoint]);
-  view.right_u = static_cast<double>(features.right_u[keypoint]);
   view.scale = static_cast<double>(
       sensor.levels.scale[static_cast<size_t>(features.keypoints[keypoint].level)]);
+  view.measurement = MeasurePoint(sensor, features, keypoint);
   return view;
 }
 
@@ -72,19 +72,7 @@ std::optional<Eigen::Vector3d> Locate(const View& a, const View& b, const Sensor
 }
 
 bool Reprojects(const View& view, const Eigen::Vector3d& point, const Sensor& sensor) {
-  const Eigen::Vector3d point_in_cam = view.keyframe->cam_from_world * point;
-  if (point_in_cam.z() <= 0.0) {
-    return false;
-  }
-  const Eigen::Vector2d pixel = sensor.camera.Project(point_in_cam);
-  double squared_error = (pixel - view.pixel).squaredNorm();
-  double bound = kChi2Mono;
-  if (view.right_u >= 0.0) {
-    const double right_error = pixel.x() - sensor.camera.bf / point_in_cam.z() - view.right_u;
-    squared_error += right_error * right_error;
-    bound = kChi2Rgbd;
-  }
-  return squared_error <= bound * view.scale * view.scale;
+  return IsInlier(sensor.camera, view.measurement, view.keyframe->cam_from_world * point);
 }
 
 // A patch is found at a finer level the farther away it is seen from: the product of distance and

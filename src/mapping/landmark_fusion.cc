@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "frame/point_measurement.h"
 #include "map/covisibility.h"
 #include "map/landmark_edits.h"
 #include "map/landmark_projection.h"
 #include "matching/by_projection.h"
-#include "optim/robust.h"
 
 namespace hullslam {
 namespace {
@@ -33,20 +33,6 @@ std::vector<KeyframeId> Neighbourhood(const Map& map, KeyframeId id) {
   return targets;
 }
 
-bool Agrees(const FrameFeatures& features, uint32_t keypoint, const Projection& projection,
-            const ScaleLevels& levels) {
-  const Keypoint& seen = features.keypoints[keypoint];
-  const double inverse_sigma2 =
-      static_cast<double>(levels.inverse_sigma2[static_cast<size_t>(seen.level)]);
-  const double pixel_error =
-      static_cast<double>((seen.undistorted - projection.pixel).squaredNorm());
-  if (features.right_u[keypoint] < 0.0f) {
-    return pixel_error * inverse_sigma2 <= kChi2Mono;
-  }
-  const double right_error = static_cast<double>(features.right_u[keypoint] - projection.right_u);
-  return (pixel_error + right_error * right_error) * inverse_sigma2 <= kChi2Rgbd;
-}
-
 void Join(Map& map, LandmarkId landmark, LandmarkId other, const ScaleLevels& levels) {
   if (landmark == other) {
     return;
@@ -65,6 +51,7 @@ void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landma
   const std::vector<LandmarkId> known = ObservedLandmarks(map, std::span(&target, 1));
   std::vector<Projection> projections;
   std::vector<LandmarkId> ids;
+  std::vector<Eigen::Vector3d> points_in_cam;
   for (const LandmarkId id : landmarks) {
     const Landmark* landmark = map.landmarks().Find(id);
     if (landmark == nullptr || std::binary_search(known.begin(), known.end(), id)) {
@@ -82,13 +69,15 @@ void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landma
     projection.max_level = view->level;
     projection.descriptor = landmark->descriptor;
     ids.push_back(id);
+    points_in_cam.push_back(view->point_in_cam);
   }
   const std::vector<Match> matches =
       MatchByProjection(frame->features, projections, {}, {.max_distance = kMaxDistance});
   for (const Match& match : matches) {
     const LandmarkId landmark = map.Resolve(ids[match.query]);
     if (!landmark.IsValid() ||
-        !Agrees(frame->features, match.keypoint, projections[match.query], sensor.levels)) {
+        !IsInlier(sensor.camera, MeasurePoint(sensor, frame->features, match.keypoint),
+                  points_in_cam[match.query])) {
       continue;
     }
     const LandmarkId other = map.keyframes().At(target).landmarks[match.keypoint];

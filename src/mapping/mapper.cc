@@ -13,22 +13,9 @@
 namespace hullslam {
 namespace {
 
-BundleOptions MakeBundleOptions(const ObjectOptions& objects) {
-  BundleOptions options;
-  options.objects.residual = objects.residual;
-  options.objects.primitive = objects.detection.primitive;
-  options.objects.sigma_px = objects.sigma;
-  options.objects.max_effective_lines = objects.max_effective_lines;
-  options.objects.depth_sigma = objects.depth_sigma;
-  options.objects.prior.log_axes = objects.prior_sigma;
-  options.objects.prior_blind.log_axes = objects.prior_sigma_blind;
-  return options;
-}
-
-// A step that changes the cost by less than the tolerance is not taken. In the whole map what bends
-// it is a small part of the cost.
-BundleOptions MakeGlobalBundleOptions(const ObjectOptions& objects) {
-  BundleOptions options = MakeBundleOptions(objects);
+// A step that changes the cost by less than the tolerance is not taken. In a global adjustment the
+// terms that correct drift are a small share of the cost, so the tolerance must be small.
+BundleOptions ForWholeMap(BundleOptions options) {
   options.robust_iterations = 10;
   options.final_iterations = 20;
   options.function_tolerance = 1e-6;
@@ -120,7 +107,7 @@ void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry)
     const ScopedTimer timer(times_, "local_bundle_adjustment");
     window = LocalWindow(map_, keyframe, static_cast<size_t>(options_.local_keyframes),
                          static_cast<size_t>(options_.fixed_keyframes), ObjectsToAdjust());
-    Adjust(window, MakeBundleOptions(object_options_), hurry);
+    Adjust(window, {.objects = object_options_.bundle}, hurry);
   }
   RecheckObjects(window.objects);
 }
@@ -134,7 +121,7 @@ void Mapper::Finish(const Cancellation* cancellation) {
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
     window = GlobalWindow(map_, ObjectsToAdjust());
-    Adjust(window, MakeGlobalBundleOptions(object_options_), cancellation);
+    Adjust(window, ForWholeMap({.objects = object_options_.bundle}), cancellation);
   }
   RecheckObjects(window.objects);
   PublishSnapshot();

@@ -53,12 +53,14 @@ double SizeOf(std::span<const Eigen::Vector3d> points) {
 class Associator {
  public:
   Associator(const Map& map, const Sensor& sensor, const Frame& frame, const Rigid3& cam_from_world,
-             std::span<const LandmarkId> landmarks, const AssociationOptions& options)
+             std::span<const LandmarkId> landmarks, AssociationScope scope,
+             const AssociationOptions& options)
       : map_(map),
         sensor_(sensor),
         frame_(frame),
         cam_from_world_(cam_from_world),
         landmarks_(landmarks),
+        scope_(scope),
         options_(options),
         image_(Eigen::Vector2d(sensor.bounds.min_x, sensor.bounds.min_y),
                Eigen::Vector2d(sensor.bounds.max_x, sensor.bounds.max_y)) {}
@@ -66,7 +68,8 @@ class Associator {
   std::vector<ObjectId> Run() const {
     std::vector<Prediction> predictions;
     map_.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
-      const bool is_wanted = !options_.mapped_only || object.state == ObjectState::kMapped;
+      const bool is_wanted =
+          scope_ == AssociationScope::kAll || object.state == ObjectState::kMapped;
       if (is_wanted && !object.observations.empty()) {
         predictions.push_back(Predict(id, object));
       }
@@ -214,7 +217,7 @@ class Associator {
     const bool one_centroid =
         !seen.cloud.empty() &&
         MayBeTheMean(seen.centroid, prediction.centroids, options_.alpha, options_.centroid_noise);
-    const bool is_match = outline >= options_.min_outline_iou ||
+    const bool is_match = outline >= options_.min_projection_iou ||
                           carried >= options_.min_carried_iou ||
                           shared >= options_.min_shared_ratio ||
                           ((one_cloud || one_centroid) && std::max(outline, carried) > 0.1);
@@ -231,6 +234,7 @@ class Associator {
   const Frame& frame_;
   const Rigid3& cam_from_world_;
   std::span<const LandmarkId> landmarks_;
+  AssociationScope scope_;
   const AssociationOptions& options_;
   Eigen::AlignedBox2d image_;
 };
@@ -240,8 +244,9 @@ class Associator {
 std::vector<ObjectId> AssociateDetections(const Map& map, const Sensor& sensor, const Frame& frame,
                                           const Rigid3& cam_from_world,
                                           std::span<const LandmarkId> landmarks,
+                                          AssociationScope scope,
                                           const AssociationOptions& options) {
-  return Associator(map, sensor, frame, cam_from_world, landmarks, options).Run();
+  return Associator(map, sensor, frame, cam_from_world, landmarks, scope, options).Run();
 }
 
 }  // namespace hullslam

@@ -21,8 +21,7 @@ namespace hullslam {
 namespace {
 
 constexpr size_t kRefinementViews = 20;
-constexpr size_t kMisfitViews = 40;    // the latest
-constexpr double kMinLineSigma = 1.0;  // px
+constexpr size_t kMisfitViews = 40;  // the latest
 constexpr size_t kStartPoints = 2000;
 constexpr size_t kMinPoints = 20;             // with fewer an object is treated as without depth
 constexpr uint32_t kCandidateKeyframes = 20;  // a candidate not seen for so long is culled
@@ -74,8 +73,9 @@ void ObjectMapper::Process(Map& map, KeyframeId keyframe) {
 // Gives each detection of the keyframe its object; a new one where there is none yet.
 void ObjectMapper::Observe(Map& map, KeyframeId keyframe) {
   const Keyframe& observer = map.keyframes().At(keyframe);
-  std::vector<ObjectId> objects = AssociateDetections(
-      map, sensor_, *observer.frame, observer.cam_from_world, observer.landmarks, {});
+  std::vector<ObjectId> objects =
+      AssociateDetections(map, sensor_, *observer.frame, observer.cam_from_world,
+                          observer.landmarks, AssociationScope::kAll, options_.association);
   for (uint32_t i = 0; i < objects.size(); ++i) {
     if (!objects[i].IsValid()) {
       objects[i] = map.AddObject();
@@ -110,13 +110,14 @@ void ObjectMapper::CountVisible(Map& map, KeyframeId keyframe) const {
 }
 
 Objection ObjectMapper::FewViews(const ObjectLandmark& object) const {
-  return {ObjectRejection::kFewViews, fmt::format("{} keyframes, expected at least {}",
-                                                  object.observations.size(), options_.min_views)};
+  return {ObjectRejection::kFewViews,
+          fmt::format("{} keyframes, expected at least {}", object.observations.size(),
+                      options_.start.min_views)};
 }
 
 void ObjectMapper::Update(Map& map, ObjectId id) {
   const ObjectLandmark& object = map.objects().At(id);
-  if (object.observations.size() < static_cast<size_t>(options_.min_views)) {
+  if (object.observations.size() < static_cast<size_t>(options_.start.min_views)) {
     Reject(map, id, FewViews(object));
     return;
   }
@@ -143,7 +144,8 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
   }
   const double parallax = Parallax(views, sphere ? sphere->world_from_object.translation
                                                  : MeanOf(CollectPoints(views, kMinPoints)));
-  const double min_parallax = has_depth ? options_.min_parallax : options_.min_parallax_blind;
+  const double min_parallax =
+      has_depth ? options_.start.min_parallax : options_.start.min_parallax_without_depth;
   if (parallax < min_parallax) {
     Reject(map, id,
            {ObjectRejection::kLittleParallax,
@@ -151,7 +153,7 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
     return;
   }
   const std::vector<Ellipsoid> starts =
-      has_depth ? StartsFromPoints(CollectPoints(views, kStartPoints), options_.initial_inflation)
+      has_depth ? StartsFromPoints(CollectPoints(views, kStartPoints), options_.start.inflation)
                 : std::vector<Ellipsoid>{*sphere};
   if (starts.empty()) {
     Reject(map, id, {ObjectRejection::kNoStart, "too few depth points to begin with"});
@@ -161,8 +163,8 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
   best.cost = std::numeric_limits<double>::infinity();
   Ellipsoid best_start;
   for (const Ellipsoid& start : starts) {
-    const Refinement refined =
-        RefineEllipsoid(start, start, sensor_, views, options_.refinement_sigma, options_);
+    const Refinement refined = RefineEllipsoid(
+        start, start, sensor_, views, options_.refinement.max_misfit_px, options_.refinement);
     if (refined.is_usable && refined.cost < best.cost) {
       best = refined;
       best_start = start;
@@ -176,7 +178,7 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
   object.has_shape = true;
   object.ellipsoid = best.ellipsoid;
   object.start = best_start;
-  if (const auto objection = FindObjection(best.ellipsoid, sensor_, views, options_)) {
+  if (const auto objection = FindObjection(best.ellipsoid, sensor_, views, options_.validity)) {
     Reject(map, id, *objection);
     return;
   }
@@ -194,13 +196,13 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
 
 void ObjectMapper::Refine(Map& map, ObjectId id, std::span<const ObjectView> views) {
   const ObjectLandmark& object = map.objects().At(id);
-  const Refinement refined =
-      RefineEllipsoid(object.ellipsoid, object.start, sensor_, views, LineSigma(object), options_);
+  const Refinement refined = RefineEllipsoid(object.ellipsoid, object.start, sensor_, views,
+                                             object.misfit_px, options_.refinement);
   if (!refined.is_usable) {
     Reject(map, id, {ObjectRejection::kNotRefined, "the solver failed"});
     return;
   }
-  if (const auto objection = FindObjection(refined.ellipsoid, sensor_, views, options_)) {
+  if (const auto objection = FindObjection(refined.ellipsoid, sensor_, views, options_.validity)) {
     Reject(map, id, *objection);
     return;
   }
@@ -218,25 +220,19 @@ void ObjectMapper::Accept(Map& map, ObjectId id, std::span<const ObjectView> vie
   object.compensated_px = spread.compensated_px;
 }
 
-// What an outline says of a thing that really is an ellipsoid is sharper than of others; its misfit
-// tells.
-double ObjectMapper::LineSigma(const ObjectLandmark& object) const {
-  return std::clamp(object.misfit_px, std::min(kMinLineSigma, options_.refinement_sigma),
-                    options_.refinement_sigma);
-}
-
 void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
   for (const ObjectId id : objects) {
     const ObjectLandmark* object = map.objects().Find(id);
     if (object == nullptr || object->state != ObjectState::kMapped) {
       continue;
     }
-    if (object->observations.size() < static_cast<size_t>(options_.min_views)) {
+    if (object->observations.size() < static_cast<size_t>(options_.start.min_views)) {
       Reject(map, id, FewViews(*object));  // the keyframes that saw it have been culled
       continue;
     }
     const std::vector<ObjectView> views = CollectViews(map, *object, kRefinementViews);
-    if (const auto objection = FindObjection(object->ellipsoid, sensor_, views, options_)) {
+    if (const auto objection =
+            FindObjection(object->ellipsoid, sensor_, views, options_.validity)) {
       Reject(map, id, *objection);
       map.MutableObject(id).shaped_views = 0;  // to be sought anew with the next view
     } else {

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/frame/sensor.h"
+#include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/objects/object_options.h"
 #include "hullslam/objects/object_view.h"
 
@@ -17,11 +17,12 @@ struct Refinement {
 };
 
 // The ellipsoid that best explains the views, from `ellipsoid`; poses are fixed. Besides the
-// residuals of the outlines (ObjectOptions::residual, with `sigma_px` a line) depth points pull at
-// the surface and a prior at `start`: silhouettes over a small angle leave the extent along the
-// view free.
+// outlines, depth points constrain the surface, and a prior about `start` constrains the shape:
+// outlines over a small angle leave the extent along the view free. The better an object fits an
+// ellipsoid, the more precise its outline is, so `misfit_px`, within the bounds of the options, is
+// the sigma.
 Refinement RefineEllipsoid(const Ellipsoid& ellipsoid, const Ellipsoid& start, const Sensor& sensor,
-                           std::span<const ObjectView> views, double sigma_px,
-                           const ObjectOptions& options);
+                           std::span<const ObjectView> views, double misfit_px,
+                           const ObjectRefinementOptions& options);
 
 }  // namespace hullslam

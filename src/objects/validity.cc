@@ -22,7 +22,7 @@ constexpr size_t kMinPoints = 20;  // fewer say nothing
 
 std::optional<Objection> CheckPoints(const Ellipsoid& ellipsoid,
                                      std::span<const Eigen::Vector3d> points,
-                                     const ObjectOptions& options) {
+                                     const ValidityOptions& options) {
   const double margin = std::max(kNearSurface, kNearSurfaceShare * ellipsoid.half_axes.mean());
   const Rigid3 object_from_world = Inverse(ellipsoid.world_from_object);
   std::array<std::vector<double>, 3> extents;
@@ -78,7 +78,7 @@ double MeanOverlap(const Ellipsoid& ellipsoid, const Sensor& sensor,
 
 std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor& sensor,
                                        std::span<const ObjectView> views,
-                                       const ObjectOptions& options) {
+                                       const ValidityOptions& options) {
   double distance = std::numeric_limits<double>::infinity();
   for (const ObjectView& view : views) {
     if (!ProjectEllipsoid(sensor.camera.Matrix(), view.cam_from_world, ellipsoid)) {

@@ -13,9 +13,10 @@
 #include "costs/pose_manifold.h"
 #include "costs/reprojection.h"
 #include "costs/reprojection_rgbd.h"
+#include "frame/point_measurement.h"
 #include "map/landmark_edits.h"
 #include "optim/object_bundle.h"
-#include "optim/robust.h"
+#include "util/chi_square.h"
 
 namespace hullslam {
 namespace {
@@ -47,18 +48,12 @@ class StopOnRequest final : public ceres::IterationCallback {
   const Cancellation* cancellation_;
 };
 
-std::unique_ptr<ceres::CostFunction> MakeCost(const Sensor& sensor, const FrameFeatures& features,
-                                              uint32_t keypoint) {
-  const PinholeCamera& camera = sensor.camera;
-  const Eigen::Vector2d pixel = features.keypoints[keypoint].undistorted.cast<double>();
-  const auto level = static_cast<size_t>(features.keypoints[keypoint].level);
-  const double sigma = static_cast<double>(sensor.levels.scale[level]);
-  const double right_u = static_cast<double>(features.right_u[keypoint]);
-  if (right_u < 0.0) {
-    return std::make_unique<ReprojectionCost>(camera, pixel, sigma);
+std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
+                                              const PointMeasurement& measurement) {
+  if (measurement.has_depth()) {
+    return std::make_unique<RgbdReprojectionCost>(camera, measurement);
   }
-  return std::make_unique<RgbdReprojectionCost>(
-      camera, Eigen::Vector3d(pixel.x(), pixel.y(), pixel.x() - right_u), sigma);
+  return std::make_unique<ReprojectionCost>(camera, measurement);
 }
 
 // The blocks of parameters and the observations between them.
@@ -156,21 +151,23 @@ class Bundle {
       if (keyframe == keyframes_.end()) {
         continue;
       }
-      const FrameFeatures& features = map.keyframes().At(seen.keyframe).frame->features;
+      const PointMeasurement measurement =
+          MeasurePoint(sensor, map.keyframes().At(seen.keyframe).frame->features, seen.keypoint);
       BundleObservation& observation = observations_.emplace_back();
       observation.landmark = landmark;
       observation.keyframe = seen.keyframe;
       observation.point_index = point_index;
       observation.pose_index = static_cast<size_t>(keyframe - keyframes_.begin());
-      observation.bound = features.right_u[seen.keypoint] >= 0.0f ? kChi2Rgbd : kChi2Mono;
-      observation.cost = MakeCost(sensor, features, seen.keypoint);
+      observation.bound = OutlierBound(measurement);
+      observation.cost = MakeCost(sensor.camera, measurement);
     }
   }
 
   void AddResiduals(ceres::Problem& problem, bool robust) {
     for (BundleObservation& observation : observations_) {
       if (observation.is_inlier) {
-        ceres::LossFunction* loss = observation.bound == kChi2Rgbd ? &huber_rgbd_ : &huber_mono_;
+        ceres::LossFunction* loss =
+            observation.cost->num_residuals() == 3 ? &huber_with_depth_ : &huber_without_depth_;
         problem.AddResidualBlock(observation.cost.get(), robust ? loss : nullptr,
                                  poses_[observation.pose_index].data(),
                                  points_[observation.point_index].data());
@@ -204,8 +201,8 @@ class Bundle {
   std::vector<BundleObservation> observations_;
   internal::ObjectBundle objects_;
   PoseManifold manifold_;
-  ceres::HuberLoss huber_mono_{std::sqrt(kChi2Mono)};
-  ceres::HuberLoss huber_rgbd_{std::sqrt(kChi2Rgbd)};
+  ceres::HuberLoss huber_without_depth_{std::sqrt(Chi2Bound(2))};
+  ceres::HuberLoss huber_with_depth_{std::sqrt(Chi2Bound(3))};
 };
 
 BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& window,

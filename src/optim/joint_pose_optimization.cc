@@ -15,8 +15,8 @@ class JointProblem {
   JointProblem(const internal::PointTerms& points, const internal::ObjectTerms& objects,
                const Rigid3& start, const JointPoseOptions& options)
       : points_(points), objects_(objects), world_from_start_(Inverse(start)) {
-    information_ << Eigen::Vector3d::Constant(1.0 / options.prior_rotation),
-        Eigen::Vector3d::Constant(1.0 / options.prior_translation);
+    information_ << Eigen::Vector3d::Constant(1.0 / options.objects.prior_rotation),
+        Eigen::Vector3d::Constant(1.0 / options.objects.prior_translation);
     information_ = information_.cwiseAbs2().eval();
   }
 
@@ -49,7 +49,7 @@ class JointProblem {
 };
 
 bool IsHeld(const JointPoseResult& result, const JointPoseOptions& options) {
-  return result.points.inlier_count >= 3 || result.used_objects >= options.min_objects;
+  return result.points.inlier_count >= 3 || result.used_objects >= options.objects.min_objects;
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ JointPoseResult OptimizeJointPose(const PinholeCamera& camera, const Rigid3& cam
                                   std::span<const PoseObject> objects,
                                   const JointPoseOptions& options) {
   JointPoseResult result;
-  internal::ObjectTerms terms(camera, cam_from_world, objects, options);
+  internal::ObjectTerms terms(camera, cam_from_world, objects, options.objects);
   terms.Write(result);
   if (result.used_objects == 0) {
     result.points = OptimizePose(camera, cam_from_world, observations, options.points);

@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optim/object_bundle.h"
 
-#include <ceres/loss_function.h>
-
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "costs/depth_anchor.h"
-#include "costs/make_object_cost.h"
-#include "costs/object_measurement.h"
-#include "costs/pixel_error.h"
-#include "costs/robust_rows.h"
+#include "objects/object_constraint.h"
+#include "util/thin.h"
 
 namespace hullslam::internal {
 namespace {
 
-constexpr double kMinTukeyPx = 15.0;    // a loss that lets go earlier spoils the shape
-constexpr double kSystematic = 2.0;     // what an ellipsoid misses it misses in all similar views
 constexpr double kMaxAxisChange = 3.0;  // more is no adjustment of the quadric that was there
 
 // Half axes may only be so different from before.
@@ -25,25 +17,6 @@ bool IsPlausible(const Ellipsoid& after, const Ellipsoid& before) {
   const Eigen::Array3d ratio = after.half_axes.array() / before.half_axes.array();
   return after.world_from_object.ToMatrix().allFinite() && (ratio > 1.0 / kMaxAxisChange).all() &&
          (ratio < kMaxAxisChange).all();
-}
-
-// At most `count` of the elements, evenly chosen.
-template <typename T>
-std::vector<T> Thin(const std::vector<T>& all, size_t count) {
-  std::vector<T> thinned;
-  count = std::min(count, all.size());
-  thinned.reserve(count);
-  for (size_t i = 0; i < count; ++i) {
-    thinned.push_back(all[i * all.size() / count]);
-  }
-  return thinned;
-}
-
-std::unique_ptr<ceres::CostFunction> Weigh(std::unique_ptr<ceres::CostFunction> cost,
-                                           std::unique_ptr<ceres::LossFunction> loss,
-                                           double max_effective_rows) {
-  const double weight = std::min(1.0, max_effective_rows / cost->num_residuals());
-  return std::make_unique<RobustRowsCost>(std::move(cost), std::move(loss), weight);
 }
 
 }  // namespace
@@ -74,53 +47,26 @@ void ObjectBundle::AddObject(const Map& map, ObjectId id,
       outer.push_back(seen);
       continue;
     }
-    const Keyframe& keyframe = map.keyframes().At(seen.keyframe);
-    AddView(keyframe, keyframe.frame->detections[seen.detection], landmark.misfit_px,
-            static_cast<size_t>(place - keyframes.begin()));
+    AddView(map, seen, landmark.misfit_px, static_cast<size_t>(place - keyframes.begin()));
   }
-  for (const ObjectObservation& seen : Thin(outer, options_.max_outer_views)) {
-    const Keyframe& keyframe = map.keyframes().At(seen.keyframe);
-    outer_poses_.push_back(ToBlock(keyframe.cam_from_world));
-    AddView(keyframe, keyframe.frame->detections[seen.detection], landmark.misfit_px,
-            window_poses_ + outer_poses_.size() - 1);
+  for (const ObjectObservation& seen : Thin(outer, static_cast<size_t>(options_.max_outer_views))) {
+    outer_poses_.push_back(ToBlock(map.keyframes().At(seen.keyframe).cam_from_world));
+    AddView(map, seen, landmark.misfit_px, window_poses_ + outer_poses_.size() - 1);
   }
-  object.prior = std::make_unique<QuadricPriorCost>(
-      landmark.ellipsoid, object.has_depth ? options_.prior : options_.prior_blind);
+  object.prior = MakeObjectPrior(landmark.ellipsoid, object.has_depth, options_.constraint);
 }
 
-void ObjectBundle::AddView(const Keyframe& keyframe, const Detection& detection, double misfit_px,
+void ObjectBundle::AddView(const Map& map, const ObjectObservation& seen, double misfit_px,
                            size_t pose) {
-  AddTerm(keyframe.cam_from_world, pose, MakeOutline(keyframe, detection, misfit_px));
-  AddTerm(keyframe.cam_from_world, pose, MakeDepth(detection));
-  objects_.back().has_depth |= !detection.points.empty();
-}
-
-std::unique_ptr<ceres::CostFunction> ObjectBundle::MakeOutline(const Keyframe& keyframe,
-                                                               const Detection& detection,
-                                                               double misfit_px) const {
-  const double sigma_px = std::hypot(options_.sigma_px, kSystematic * misfit_px);
-  const auto sigma = ResidualOfPixelError(options_.residual, camera_, keyframe.cam_from_world,
-                                          objects_.back().before, sigma_px);
-  if (!sigma.has_value()) {
-    return nullptr;
-  }
-  auto cost = MakeObjectCost(options_.residual, options_.primitive, camera_,
-                             ToMeasurement(detection), *sigma);
-  if (cost == nullptr) {
-    return nullptr;
-  }
-  const double tukey = std::max(options_.tukey, kMinTukeyPx / sigma_px);
-  return Weigh(std::move(cost), std::make_unique<ceres::TukeyLoss>(tukey),
-               options_.max_effective_lines);
-}
-
-std::unique_ptr<ceres::CostFunction> ObjectBundle::MakeDepth(const Detection& detection) const {
-  const std::vector<Eigen::Vector3d> points = Thin(detection.points, options_.max_depth_points);
-  if (points.empty()) {
-    return nullptr;
-  }
-  return Weigh(std::make_unique<DepthAnchorCost>(points, options_.depth_sigma),
-               std::make_unique<ceres::CauchyLoss>(options_.cauchy), options_.max_effective_points);
+  const Keyframe& keyframe = map.keyframes().At(seen.keyframe);
+  const Detection& detection = keyframe.frame->detections[seen.detection];
+  const ObjectView view{seen.keyframe, keyframe.cam_from_world, &detection};
+  Object& object = objects_.back();
+  ObjectConstraint constraint = MakeObjectConstraint(camera_, view, detection.lines, object.before,
+                                                     misfit_px, options_.constraint);
+  AddTerm(keyframe.cam_from_world, pose, std::move(constraint.outline));
+  AddTerm(keyframe.cam_from_world, pose, std::move(constraint.depth));
+  object.has_depth |= !detection.points.empty();
 }
 
 // Passes over a term that is null or not defined at the start, where the solver would fail.

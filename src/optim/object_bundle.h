@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "camera/rgbd_projection.h"
 #include "costs/pose_manifold.h"
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/map/map.h"
 #include "optim/bundle_adjustment.h"
 
@@ -47,11 +47,8 @@ class ObjectBundle {
   };
 
   void AddObject(const Map& map, ObjectId id, const std::vector<KeyframeId>& keyframes);
-  void AddView(const Keyframe& keyframe, const Detection& detection, double misfit_px, size_t pose);
-  std::unique_ptr<ceres::CostFunction> MakeOutline(const Keyframe& keyframe,
-                                                   const Detection& detection,
-                                                   double misfit_px) const;
-  std::unique_ptr<ceres::CostFunction> MakeDepth(const Detection& detection) const;
+  // `pose` is an index as in Term.
+  void AddView(const Map& map, const ObjectObservation& seen, double misfit_px, size_t pose);
   void AddTerm(const Rigid3& cam_from_world, size_t pose,
                std::unique_ptr<ceres::CostFunction> cost);
 

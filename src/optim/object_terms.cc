@@ -2,36 +2,30 @@
 #include "optim/object_terms.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
-#include "costs/pixel_error.h"
+#include "objects/object_constraint.h"
 
 namespace hullslam::internal {
 
 ObjectTerms::ObjectTerms(const PinholeCamera& camera, const Rigid3& start,
-                         std::span<const PoseObject> objects, const JointPoseOptions& options)
-    : terms_(objects.size()), cauchy2_(options.cauchy * options.cauchy) {
+                         std::span<const PoseObject> objects, const ObjectPoseOptions& options)
+    : terms_(objects.size()), outlier_(options.constraint.loss_scale) {
   int most_rows = 0;
   for (size_t i = 0; i < objects.size(); ++i) {
     const PoseObject& object = objects[i];
-    const auto sigma =
-        ResidualOfPixelError(options.residual, camera, start, object.ellipsoid, object.sigma_px);
-    if (!sigma.has_value()) {
-      continue;
-    }
+    const ObjectView view{KeyframeId(), start, object.detection};
     Term& term = terms_[i];
-    term.cost =
-        MakeObjectCost(options.residual, options.primitive, camera, object.measurement, *sigma);
+    term.cost = MakeObjectConstraint(camera, view, object.lines, object.ellipsoid, object.misfit_px,
+                                     options.constraint)
+                    .outline;
     if (term.cost == nullptr) {
       continue;
     }
-    const int rows = term.cost->num_residuals();
     term.world_from_object = ToBlock(object.ellipsoid.world_from_object);
     term.log_axes = object.ellipsoid.half_axes.array().log();
-    term.weight = std::min(1.0, options.max_effective_lines / rows);
     term.is_used = true;
-    most_rows = std::max(most_rows, rows);
+    most_rows = std::max(most_rows, term.cost->num_residuals());
   }
   residuals_.resize(most_rows);
   by_pose_.resize(most_rows, 7);
@@ -40,7 +34,8 @@ ObjectTerms::ObjectTerms(const PinholeCamera& camera, const Rigid3& start,
 bool ObjectTerms::Evaluate(const Term& term, const PoseBlock& pose, bool with_derivative) const {
   const double* parameters[] = {pose.data(), term.world_from_object.data(), term.log_axes.data()};
   double* jacobians[] = {by_pose_.data(), nullptr, nullptr};
-  return term.cost->Evaluate(parameters, residuals_.data(), with_derivative ? jacobians : nullptr);
+  return term.cost->plain().Evaluate(parameters, residuals_.data(),
+                                     with_derivative ? jacobians : nullptr);
 }
 
 double ObjectTerms::Cost(const Rigid3& pose) const {
@@ -54,7 +49,7 @@ double ObjectTerms::Cost(const Rigid3& pose) const {
       return std::numeric_limits<double>::infinity();
     }
     for (int i = 0; i < term.cost->num_residuals(); ++i) {
-      cost += term.weight * cauchy2_ * std::log1p(residuals_[i] * residuals_[i] / cauchy2_);
+      cost += term.cost->CostOf(residuals_[i]);
     }
   }
   return cost;
@@ -67,7 +62,7 @@ void ObjectTerms::Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& gra
       continue;
     }
     for (int i = 0; i < term.cost->num_residuals(); ++i) {
-      const double weight = term.weight / (1.0 + residuals_[i] * residuals_[i] / cauchy2_);
+      const double weight = term.cost->WeightOf(residuals_[i]);
       const Vector6d by_pose = by_pose_.row(i).head<6>().transpose();
       hessian.noalias() += weight * by_pose * by_pose.transpose();
       gradient += weight * residuals_[i] * by_pose;
@@ -81,7 +76,7 @@ void ObjectTerms::Choose(const Rigid3& pose) {
     term.is_used = term.cost != nullptr && Evaluate(term, block, false);
     if (term.is_used) {
       const auto rows = term.cost->num_residuals();
-      const auto inliers = (residuals_.head(rows).array().square() <= cauchy2_).count();
+      const auto inliers = (residuals_.head(rows).array().abs() <= outlier_).count();
       term.is_used = 2 * inliers > rows;
     }
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "costs/pose_manifold.h"
+#include "costs/robust_rows.h"
 #include "optim/joint_pose_optimization.h"
 #include "optim/pose_problem.h"
 
@@ -18,7 +19,7 @@ class ObjectTerms {
  public:
   // Objects that have no residual at `start` are not used.
   ObjectTerms(const PinholeCamera& camera, const Rigid3& start, std::span<const PoseObject> objects,
-              const JointPoseOptions& options);
+              const ObjectPoseOptions& options);
 
   // Of the objects in use; infinite where one is not in front of the camera.
   double Cost(const Rigid3& pose) const;
@@ -32,17 +33,16 @@ class ObjectTerms {
 
  private:
   struct Term {
-    std::unique_ptr<ceres::CostFunction> cost;  // null: the object has no residual
+    std::unique_ptr<RobustRowsCost> cost;  // null: the object has no residual
     PoseBlock world_from_object{};
     Eigen::Vector3d log_axes = Eigen::Vector3d::Zero();
-    double weight = 1.0;  // of each residual
     bool is_used = false;
   };
-  // The residuals, and their derivative by the pose if asked for, into the buffers below.
+  // The plain residuals, and their derivative by the pose if asked for, into the buffers below.
   bool Evaluate(const Term& term, const PoseBlock& pose, bool with_derivative) const;
 
   std::vector<Term> terms_;
-  double cauchy2_;
+  double outlier_;  // sigmas: a residual beyond it is an outlier
   // Scratch, of the size of the largest term.
   mutable Eigen::VectorXd residuals_;
   mutable Eigen::Matrix<double, Eigen::Dynamic, 7, Eigen::RowMajor> by_pose_;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "camera/depth_error.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/rigid3.h"
 
@@ -13,10 +14,8 @@ namespace hullslam {
 
 // A landmark found in the image.
 struct PoseObservation {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();     // m, world frame
-  Eigen::Vector3d measured = Eigen::Vector3d::Zero();  // u, v, disparity; px, undistorted
-  bool has_depth = false;                              // else measured[2] is not used
-  double inverse_sigma2 = 1.0;                         // 1 / px^2, of u and v
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // m, world frame
+  PointMeasurement measurement;
 };
 
 struct PoseOptimizationOptions {

@@ -9,24 +9,9 @@
 namespace hullslam::internal {
 namespace {
 
-constexpr double kMinDepth = 1e-3;  // m
-
-// In u, v and the virtual right coordinate, u less the disparity.
-Eigen::Vector3d Residual(const PinholeCamera& camera, const PoseObservation& observation,
-                         const Eigen::Vector3d& point_in_cam) {
-  Eigen::Vector3d residual = ProjectRgbd(camera, point_in_cam) - observation.measured;
-  residual.z() = observation.has_depth ? residual.x() - residual.z() : 0.0;
-  return residual;
-}
-
-// Squared error in sigmas; infinite behind the camera.
 double Chi2(const PinholeCamera& camera, const PoseObservation& observation,
             const Rigid3& cam_from_world) {
-  const Eigen::Vector3d point_in_cam = cam_from_world * observation.point;
-  if (point_in_cam.z() < kMinDepth) {
-    return std::numeric_limits<double>::infinity();
-  }
-  return observation.inverse_sigma2 * Residual(camera, observation, point_in_cam).squaredNorm();
+  return PointChi2(camera, observation.measurement, cam_from_world * observation.point);
 }
 
 double HuberCost(double chi2, double bound) {
@@ -35,16 +20,12 @@ double HuberCost(double chi2, double bound) {
 
 }  // namespace
 
-double Bound(const PoseObservation& observation) {
-  return observation.has_depth ? kChi2Rgbd : kChi2Mono;
-}
-
 double PointTerms::Cost(const Rigid3& pose) const {
   double cost = 0.0;
   for (size_t i = 0; i < observations_.size(); ++i) {
     if (is_inlier_[i] != 0) {
       const double chi2 = Chi2(camera_, observations_[i], pose);
-      cost += robust_ ? HuberCost(chi2, Bound(observations_[i])) : chi2;
+      cost += robust_ ? HuberCost(chi2, OutlierBound(observations_[i].measurement)) : chi2;
     }
   }
   return cost;
@@ -60,14 +41,11 @@ void PointTerms::Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& grad
     if (is_inlier_[i] == 0 || point_in_cam.z() < kMinDepth) {
       continue;
     }
-    const Eigen::Vector3d residual = Residual(camera_, observation, point_in_cam);
-    Eigen::Matrix3d by_point = ProjectRgbdJacobian(camera_, point_in_cam);
-    by_point.row(2) = observation.has_depth ? by_point.row(0) - by_point.row(2)
-                                            : Eigen::RowVector3d::Zero().eval();
-    double weight = observation.inverse_sigma2;
-    if (robust_) {
-      weight *= HuberWeight(weight * residual.squaredNorm(), Bound(observation));
-    }
+    const PointMeasurement& measurement = observation.measurement;
+    const Eigen::Vector3d residual = PointResidual(camera_, measurement, point_in_cam);
+    const Eigen::Matrix3d by_point = PointResidualJacobian(camera_, measurement, point_in_cam);
+    const double weight =
+        robust_ ? HuberWeight(residual.squaredNorm(), OutlierBound(measurement)) : 1.0;
     Eigen::Matrix<double, 3, 6> by_pose;
     by_pose.leftCols<3>() = -by_point * Skew(point_in_cam);
     by_pose.rightCols<3>() = by_point;
@@ -80,7 +58,7 @@ void ChooseInliers(const PinholeCamera& camera, std::span<const PoseObservation>
                    InlierRule rule, PoseOptimizationResult& result) {
   result.inlier_count = 0;
   for (size_t i = 0; i < observations.size(); ++i) {
-    const double bound = rule == InlierRule::kBelowBound ? Bound(observations[i])
+    const double bound = rule == InlierRule::kBelowBound ? OutlierBound(observations[i].measurement)
                                                          : std::numeric_limits<double>::max();
     const bool is_inlier = Chi2(camera, observations[i], result.cam_from_world) <= bound;
     result.is_inlier[i] = is_inlier ? 1 : 0;

@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "camera/rgbd_projection.h"
 #include "hullslam/geometry/rigid3.h"
 #include "optim/pose_optimization.h"
 
@@ -16,9 +15,6 @@ namespace hullslam::internal {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
-// Squared error in sigmas above which an observation is an outlier.
-double Bound(const PoseObservation& observation);
 
 // The robust squared errors of the inliers among the observations.
 class PointTerms {
@@ -39,8 +35,8 @@ class PointTerms {
   bool robust_;
 };
 
-// Chooses as inliers the observations whose squared error at the result's pose is at most Bound, or
-// all but those behind the camera.
+// Chooses as inliers the observations that are inliers at the result's pose by their OutlierBound,
+// or all but those behind the camera.
 enum class InlierRule { kBelowBound, kInFront };
 void ChooseInliers(const PinholeCamera& camera, std::span<const PoseObservation> observations,
                    InlierRule rule, PoseOptimizationResult& result);

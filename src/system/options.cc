@@ -37,11 +37,7 @@ void SystemOptions::Validate() const {
                      "', its smallest image would be " + std::to_string(smallest_side) +
                      " px, expected at least 64 px");
   }
-  if (!IsSupported(objects.residual, objects.detection.primitive)) {
-    throw InputError("settings: objects.residual '" + std::string(NameOf(objects.residual)) +
-                     "' cannot be computed from objects.primitive '" +
-                     std::string(NameOf(objects.detection.primitive)) + "'");
-  }
+  objects.Validate();
 }
 
 }  // namespace hullslam

@@ -27,6 +27,7 @@ Sensor MakeSensor(const SystemOptions& options) {
   sensor.bounds = options.camera.UndistortedBounds();
   sensor.levels = ScaleLevels::Create(options.features.level_count, options.features.scale_factor);
   sensor.close_depth = options.depth.close_baselines * sensor.baseline();
+  sensor.depth_error = options.depth.error;
   sensor.frames_per_second = options.frames_per_second;
   return sensor;
 }

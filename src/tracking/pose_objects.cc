@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tracking/pose_objects.h"
 
-#include <cmath>
 #include <utility>
 
-#include "costs/object_measurement.h"
 #include "objects/association.h"
 #include "objects/misfit.h"
+#include "objects/object_constraint.h"
 
 namespace hullslam {
 namespace {
-
-bool TakesLines(ObjectResidual residual) {
-  return residual == ObjectResidual::kTangent || residual == ObjectResidual::kAlgebraicPlane;
-}
 
 // The lines whose misfit is known, moved by it; empty where these are less than half.
 std::vector<SilhouetteLine> KnownLines(const Sensor& sensor, const Rigid3& cam_from_world,
@@ -42,10 +37,8 @@ std::vector<ObjectId> FindMappedObjects(const Frame& frame, const Map& map,
   if (!is_wanted || frame.detections.empty() || map.objects().empty()) {
     return std::vector<ObjectId>(frame.detections.size());
   }
-  AssociationOptions association;
-  association.mapped_only = true;
   return AssociateDetections(map, context.sensor, frame, estimate.cam_from_world,
-                             estimate.landmarks, association);
+                             estimate.landmarks, AssociationScope::kMapped, objects.association);
 }
 
 PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& frame,
@@ -58,18 +51,16 @@ PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& f
     }
     const ObjectLandmark& object = map.objects().At(ids[i]);
     const Detection& detection = frame.detections[i];
-    PoseObject pose_object{object.ellipsoid, ToMeasurement(detection),
-                           std::hypot(options.sigma, object.misfit_px)};
-    if (options.misfit_compensation && TakesLines(options.residual)) {
-      std::vector<SilhouetteLine> lines =
-          KnownLines(sensor, cam_from_world, object, detection.lines);
-      if (!lines.empty()) {
-        pose_object.measurement.lines = found.lines.emplace_back(std::move(lines));
-        pose_object.sigma_px = std::hypot(options.sigma, object.compensated_px);
-      }
+    PoseObject pose_object{object.ellipsoid, &detection, {}, object.compensated_px};
+    if (options.misfit_compensation && TakesLines(options.pose.constraint.residual)) {
+      pose_object.lines = KnownLines(sensor, cam_from_world, object, detection.lines);
+    }
+    if (pose_object.lines.empty()) {
+      pose_object.lines = detection.lines;
+      pose_object.misfit_px = object.misfit_px;
     }
     found.ids.push_back(ids[i]);
-    found.objects.push_back(pose_object);
+    found.objects.push_back(std::move(pose_object));
   }
   return found;
 }

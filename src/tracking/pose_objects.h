@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <deque>
 #include <span>
 #include <vector>
 
@@ -17,8 +16,7 @@ namespace hullslam {
 // The mapped objects that a frame shows, ready for OptimizeJointPose.
 struct PoseObjects {
   std::vector<ObjectId> ids;
-  std::vector<PoseObject> objects;                // one an id
-  std::deque<std::vector<SilhouetteLine>> lines;  // that the measurements refer to
+  std::vector<PoseObject> objects;  // one per id
 };
 
 // The mapped object that each detection of a frame shows, invalid for none; one entry per
@@ -27,10 +25,10 @@ std::vector<ObjectId> FindMappedObjects(const Frame& frame, const Map& map,
                                         const TrackingContext& context,
                                         const PoseEstimate& estimate);
 
-// Detections of a frame with the objects they show (`ids`: one a detection). With misfit
-// compensation the lines are moved by what keyframes tell of the object there; lines of which they
-// tell nothing are left out, unless less than half of a detection's would remain: then it is taken
-// as it is.
+// The detections of a frame that show mapped objects (`ids`: one per detection). With misfit
+// compensation each line is moved by the excess that the keyframes have measured at its normal;
+// lines at normals that no keyframe has seen are left out. If fewer than half of a detection's
+// lines would remain, the detection is taken as it is.
 PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& frame,
                             const Rigid3& cam_from_world, std::span<const ObjectId> ids,
                             const ObjectOptions& options);

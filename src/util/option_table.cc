@@ -167,6 +167,26 @@ void OptionTable::AddChoice(std::string key, std::vector<std::string> names,
              .help = std::move(help)});
 }
 
+void OptionTable::AddShared(std::string key, std::vector<std::string> members, std::string help) {
+  std::vector<Option> options;
+  for (const std::string& member : members) {
+    const auto it = options_.find(member);
+    Check(it != options_.end(), "a shared key has a member that is not bound");
+    options.push_back(it->second);
+  }
+  AddOption(std::move(key), {.parse =
+                                 [options](const std::string& text) {
+                                   // One that refuses leaves those before it set: the run ends.
+                                   return std::all_of(
+                                       options.begin(), options.end(),
+                                       [&](const Option& option) { return option.parse(text); });
+                                 },
+                             .print = options.front().print,
+                             .expected = options.front().expected,
+                             .help = std::move(help),
+                             .shared = true});
+}
+
 void OptionTable::AddText(std::string key, std::string* field, std::string help) {
   AddOption(std::move(key), {.parse =
                                  [field](const std::string& text) {
@@ -211,7 +231,7 @@ std::vector<OptionTable::Entry> OptionTable::Entries() const {
   std::vector<Entry> entries;
   for (const auto& [key, option] : options_) {
     if (!option.ignored) {
-      entries.push_back({key, option.print(), option.expected, option.help});
+      entries.push_back({key, option.print(), option.expected, option.help, option.shared});
     }
   }
   return entries;

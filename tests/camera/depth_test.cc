@@ -82,5 +82,16 @@ TEST(DepthOptions, BindsTheKeysOfOrbSlam2) {
   }
 }
 
+TEST(DepthErrorOptions, AreBoundWithTheOtherOptionsOfDepth) {
+  DepthOptions options;
+  OptionTable table;
+  options.Bind(table);
+  table.Set("depth.disparity_sigma", "0.25", "test");
+  EXPECT_EQ(options.error.disparity_sigma, 0.25);
+  for (const char* value : {"0", "-1", "nan", "x"}) {
+    EXPECT_THROW(table.Set("depth.disparity_sigma", value, "test"), InputError) << value;
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -10,7 +10,7 @@ namespace {
 
 TEST(DepthAnchorCost, ByHand) {
   // Half axes 0.5, 0.2 and 0.1 m around (0, 0, 2).
-  ObjectState state;
+  SeenEllipsoid state;
   state.ellipsoid.world_from_object.translation = {0.0, 0.0, 2.0};
   state.ellipsoid.half_axes = {0.5, 0.2, 0.1};
   const std::vector<Eigen::Vector3d> points = {
@@ -22,7 +22,7 @@ TEST(DepthAnchorCost, ByHand) {
 TEST(DepthAnchorCost, IsTheRadialDistanceOfTheEllipsoid) {
   RandomGeometry random(1);
   for (int i = 0; i < 20; ++i) {
-    const ObjectState state = RandomObjectState(random);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
     const Eigen::Vector3d point =
         state.ellipsoid.world_from_object.translation + random.Vector(1.0);
     const std::vector<Eigen::Vector3d> in_camera = {state.cam_from_world * point};
@@ -34,7 +34,7 @@ TEST(DepthAnchorCost, IsTheRadialDistanceOfTheEllipsoid) {
 TEST(DepthAnchorCost, KeepsTheLaws) {
   RandomGeometry random(2);
   for (int i = 0; i < 30; ++i) {
-    const ObjectState state = RandomObjectState(random);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
     const Eigen::Vector3d center =
         state.cam_from_world * state.ellipsoid.world_from_object.translation;
     const std::vector<Eigen::Vector3d> points = {

@@ -37,7 +37,7 @@ TEST(EllipseProjection, ByHand) {
 TEST(EllipseProjection, PassesThroughTheTangentRays) {
   RandomGeometry random(1);
   for (int i = 0; i < 20; ++i) {
-    const ObjectState state = RandomObjectState(random);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
     const ObjectBlocks blocks(state);
     const QuadricInCamera quadric(blocks.Pointers().data());
     const EllipseProjection ellipse(kObjectCamera, quadric);
@@ -51,7 +51,7 @@ TEST(EllipseProjection, PassesThroughTheTangentRays) {
 TEST(EllipseProjection, DerivativeIsTrue) {
   RandomGeometry random(2);
   for (int i = 0; i < 20; ++i) {
-    ExpectObjectCostLaws(NumbersCost(), RandomObjectState(random), random);
+    ExpectObjectCostLaws(NumbersCost(), RandomSeenEllipsoid(random), random);
   }
 }
 

@@ -21,23 +21,23 @@ class MakeObjectCostTest : public ::testing::Test {
  protected:
   MakeObjectCostTest() {
     for (const Eigen::Vector2d& point : contour_) {
-      measurement_.box.extend(point);
+      detection_.box.extend(point);
     }
-    measurement_.lines = lines_;
-    measurement_.contour = contour_;
-    measurement_.hull = contour_;
-    measurement_.ellipse = FitEllipse(contour_);
+    detection_.lines = TangentsOf(state_, 10);
+    detection_.contour = contour_;
+    detection_.hull = contour_;
+    detection_.ellipse = FitEllipse(contour_);
   }
-  std::unique_ptr<ceres::CostFunction> Make(ObjectResidual residual,
-                                            ObjectPrimitive primitive) const {
-    return MakeObjectCost(residual, primitive, kObjectCamera, measurement_, 1.0);
+  std::unique_ptr<ceres::CostFunction> Make(ObjectResidual residual, ObjectPrimitive primitive,
+                                            double sigma = 1.0) {
+    detection_.primitive = primitive;
+    return MakeObjectCost(residual, kObjectCamera, detection_, detection_.lines, sigma);
   }
 
   RandomGeometry random_{1};
-  ObjectState state_ = RandomObjectState(random_);
-  std::vector<SilhouetteLine> lines_ = TangentsOf(state_, 10);
+  SeenEllipsoid state_ = RandomSeenEllipsoid(random_);
   std::vector<Eigen::Vector2d> contour_ = ContourOf(state_, 200);
-  ObjectMeasurement measurement_;
+  Detection detection_;
 };
 
 TEST_F(MakeObjectCostTest, MakesWhatIsSupportedAndNothingElse) {
@@ -67,17 +67,17 @@ TEST_F(MakeObjectCostTest, OneRowALineOrAPoint) {
   EXPECT_EQ(Make(ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour)->num_residuals(), 64);
   EXPECT_EQ(Make(ObjectResidual::kDistribution, ObjectPrimitive::kConic)->num_residuals(), 1);
   EXPECT_EQ(Make(ObjectResidual::kOverlap, ObjectPrimitive::kBox)->num_residuals(), 1);
-  measurement_.contour = std::span(contour_).first(10);
+  detection_.contour.resize(10);
   EXPECT_EQ(Make(ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour)->num_residuals(), 10);
 }
 
 TEST_F(MakeObjectCostTest, SigmaDividesTheResidual) {
-  ObjectState moved = state_;
+  SeenEllipsoid moved = state_;
   moved.ellipsoid.half_axes *= 1.1;
   for (const ObjectResidual residual : kResiduals) {
     for (const ObjectPrimitive primitive : kPrimitives) {
       if (const auto cost = Make(residual, primitive)) {
-        const auto scaled = MakeObjectCost(residual, primitive, kObjectCamera, measurement_, 4.0);
+        const auto scaled = Make(residual, primitive, 4.0);
         const Eigen::VectorXd residuals = ObjectResidualsOf(*cost, moved);
         EXPECT_GT(residuals.norm(), 0.0);
         EXPECT_LT((4.0 * ObjectResidualsOf(*scaled, moved) - residuals).norm(),
@@ -87,8 +87,14 @@ TEST_F(MakeObjectCostTest, SigmaDividesTheResidual) {
   }
 }
 
-TEST_F(MakeObjectCostTest, IsNothingWithoutAMeasurement) {
-  measurement_ = {};
+TEST_F(MakeObjectCostTest, TakesTheLinesThatAreGiven) {
+  const auto cost = MakeObjectCost(ObjectResidual::kTangent, kObjectCamera, detection_,
+                                   std::span(detection_.lines).first(3), 1.0);
+  EXPECT_EQ(cost->num_residuals(), 3);
+}
+
+TEST_F(MakeObjectCostTest, IsNothingOfAnEmptyDetection) {
+  detection_ = {};
   for (const ObjectResidual residual : kResiduals) {
     for (const ObjectPrimitive primitive : kPrimitives) {
       EXPECT_EQ(Make(residual, primitive), nullptr);

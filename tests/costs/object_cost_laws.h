@@ -12,8 +12,8 @@
 #include <numbers>
 #include <vector>
 
-#include "camera/rgbd_projection.h"
 #include "costs/pose_manifold.h"
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/geometry/line2.h"
 #include "support/random_geometry.h"
@@ -24,13 +24,13 @@ constexpr PinholeCamera kObjectCamera{
     .fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
 
 // A camera and an ellipsoid, and their blocks of parameters.
-struct ObjectState {
+struct SeenEllipsoid {
   Rigid3 cam_from_world;
   Ellipsoid ellipsoid;
 };
 
 struct ObjectBlocks {
-  explicit ObjectBlocks(const ObjectState& state)
+  explicit ObjectBlocks(const SeenEllipsoid& state)
       : camera(ToBlock(state.cam_from_world)),
         object(ToBlock(state.ellipsoid.world_from_object)),
         log_axes(state.ellipsoid.half_axes.array().log()) {}
@@ -44,8 +44,8 @@ struct ObjectBlocks {
 };
 
 // The whole ellipsoid is in front of the camera and its centre in the image.
-inline ObjectState RandomObjectState(RandomGeometry& random) {
-  ObjectState state;
+inline SeenEllipsoid RandomSeenEllipsoid(RandomGeometry& random) {
+  SeenEllipsoid state;
   state.cam_from_world = random.Pose(1.0, 2.0);
   const Rigid3 cam_from_object(
       ExpSo3(random.Vector(1.5)),
@@ -58,8 +58,8 @@ inline ObjectState RandomObjectState(RandomGeometry& random) {
 
 // A sphere of radius 0.6 m, 1 m in front of the camera: its outline is an ellipse around (320, 240)
 // with half axes f * 0.6 / sqrt(1 - 0.36) = 375 and 300 px.
-inline ObjectState SphereAhead() {
-  ObjectState state;
+inline SeenEllipsoid SphereAhead() {
+  SeenEllipsoid state;
   state.ellipsoid.world_from_object.translation = {0.0, 0.0, 1.0};
   state.ellipsoid.half_axes.setConstant(0.6);
   return state;
@@ -73,7 +73,7 @@ struct OutlinePoint {
   Line2 tangent;
 };
 
-inline std::vector<OutlinePoint> OutlineOf(const ObjectState& state, int count) {
+inline std::vector<OutlinePoint> OutlineOf(const SeenEllipsoid& state, int count) {
   const Rigid3 cam_from_object = state.cam_from_world * state.ellipsoid.world_from_object;
   const Eigen::Matrix3d axes =
       cam_from_object.rotation.toRotationMatrix() * state.ellipsoid.half_axes.asDiagonal();
@@ -97,7 +97,7 @@ inline std::vector<OutlinePoint> OutlineOf(const ObjectState& state, int count) 
   return outline;
 }
 
-inline std::vector<SilhouetteLine> TangentsOf(const ObjectState& state, int count) {
+inline std::vector<SilhouetteLine> TangentsOf(const SeenEllipsoid& state, int count) {
   std::vector<SilhouetteLine> lines;
   for (const OutlinePoint& point : OutlineOf(state, count)) {
     lines.push_back({point.tangent, false});
@@ -105,7 +105,7 @@ inline std::vector<SilhouetteLine> TangentsOf(const ObjectState& state, int coun
   return lines;
 }
 
-inline std::vector<Eigen::Vector2d> ContourOf(const ObjectState& state, int count) {
+inline std::vector<Eigen::Vector2d> ContourOf(const SeenEllipsoid& state, int count) {
   std::vector<Eigen::Vector2d> contour;
   for (const OutlinePoint& point : OutlineOf(state, count)) {
     contour.push_back(point.pixel);
@@ -115,7 +115,7 @@ inline std::vector<Eigen::Vector2d> ContourOf(const ObjectState& state, int coun
 
 // The residuals at a state; zero where they are not defined, which is a failure.
 inline Eigen::VectorXd ObjectResidualsOf(const ceres::CostFunction& cost,
-                                         const ObjectState& state) {
+                                         const SeenEllipsoid& state) {
   const ObjectBlocks blocks(state);
   Eigen::VectorXd residuals = Eigen::VectorXd::Zero(cost.num_residuals());
   EXPECT_TRUE(cost.Evaluate(blocks.Pointers().data(), residuals.data(), nullptr));
@@ -196,16 +196,16 @@ inline void ExpectTrueGradientAt(const ceres::CostFunction& cost,
   }
 }
 
-inline void ExpectTrueObjectGradient(const ceres::CostFunction& cost, const ObjectState& state,
+inline void ExpectTrueObjectGradient(const ceres::CostFunction& cost, const SeenEllipsoid& state,
                                      double precision = 1e-6, double step = 1e-4) {
   const ObjectBlocks blocks(state);
   ExpectTrueGradientAt(cost, {blocks.camera, blocks.object}, blocks.log_axes, precision, step);
 }
 
 // Moving world, camera and object together changes nothing that the camera sees.
-inline void ExpectObjectRigidInvariance(const ceres::CostFunction& cost, const ObjectState& state,
+inline void ExpectObjectRigidInvariance(const ceres::CostFunction& cost, const SeenEllipsoid& state,
                                         const Rigid3& new_from_old_world) {
-  ObjectState moved = state;
+  SeenEllipsoid moved = state;
   moved.cam_from_world = state.cam_from_world * Inverse(new_from_old_world);
   moved.ellipsoid.world_from_object = new_from_old_world * state.ellipsoid.world_from_object;
   const Eigen::VectorXd before = ObjectResidualsOf(cost, state);
@@ -216,19 +216,19 @@ inline void ExpectObjectRigidInvariance(const ceres::CostFunction& cost, const O
 inline void ExpectUndefinedUnlessInFront(const ceres::CostFunction& cost) {
   Eigen::VectorXd residuals(cost.num_residuals());
   for (const double z : {-2.0, 0.0, 0.3, 0.6}) {
-    ObjectState state = SphereAhead();
+    SeenEllipsoid state = SphereAhead();
     state.ellipsoid.world_from_object.translation = {0.1, 0.0, z};
     const ObjectBlocks blocks(state);
     EXPECT_FALSE(cost.Evaluate(blocks.Pointers().data(), residuals.data(), nullptr)) << z;
   }
-  ObjectState huge = SphereAhead();
+  SeenEllipsoid huge = SphereAhead();
   huge.ellipsoid.half_axes.setConstant(1e300);
   const ObjectBlocks blocks(huge);
   EXPECT_FALSE(cost.Evaluate(blocks.Pointers().data(), residuals.data(), nullptr));
 }
 
 // All of the laws but the values themselves.
-inline void ExpectObjectCostLaws(const ceres::CostFunction& cost, const ObjectState& state,
+inline void ExpectObjectCostLaws(const ceres::CostFunction& cost, const SeenEllipsoid& state,
                                  RandomGeometry& random) {
   ExpectTrueObjectGradient(cost, state);
   ExpectObjectRigidInvariance(cost, state, random.Pose(2.0, 5.0));

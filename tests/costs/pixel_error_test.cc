@@ -12,8 +12,8 @@ namespace hullslam {
 namespace {
 
 // A small sphere far off, with an outline of radius r = 500 * 0.2 / sqrt(25 - 0.04) px.
-ObjectState SmallSphere() {
-  ObjectState state;
+SeenEllipsoid SmallSphere() {
+  SeenEllipsoid state;
   state.ellipsoid.world_from_object.translation = {0.0, 0.0, 5.0};
   state.ellipsoid.half_axes.setConstant(0.2);
   return state;
@@ -22,7 +22,7 @@ ObjectState SmallSphere() {
 constexpr PinholeCamera kSquare{.fx = 500.0, .fy = 500.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
 
 double SizeOf(ObjectResidual residual, double error_px) {
-  const ObjectState state = SmallSphere();
+  const SeenEllipsoid state = SmallSphere();
   return ResidualOfPixelError(residual, kSquare, state.cam_from_world, state.ellipsoid, error_px)
       .value();
 }
@@ -45,33 +45,35 @@ TEST(ResidualOfPixelError, IsTheSizeOfTheResiduals) {
   wrong.center = {320.0, 240.0};
   wrong.shape = (radius + error_px) * (radius + error_px) * Eigen::Matrix2d::Identity();
   const std::vector<Eigen::Vector2d> contour = wrong.Polygon(720);
-  const std::vector<SilhouetteLine> lines = {
-      {{{1.0, 0.0}, -320.0 - radius - error_px}, false},
-      {{{0.6, 0.8}, -0.6 * 320.0 - 0.8 * 240.0 - radius - error_px}, false}};
-  const ObjectMeasurement measurement{
-      .lines = lines, .contour = contour, .hull = contour, .ellipse = wrong, .box = {}};
+  Detection detection;
+  detection.contour = wrong.Polygon(720);
+  detection.hull = detection.contour;
+  detection.ellipse = wrong;
+  detection.lines = {{{{1.0, 0.0}, -320.0 - radius - error_px}, false},
+                     {{{0.6, 0.8}, -0.6 * 320.0 - 0.8 * 240.0 - radius - error_px}, false}};
   for (const auto& [residual, primitive] :
        {std::pair(ObjectResidual::kTangent, ObjectPrimitive::kSupport),
         {ObjectResidual::kAlgebraicPlane, ObjectPrimitive::kSupport},
         {ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour},
         {ObjectResidual::kOverlap, ObjectPrimitive::kHull}}) {
-    const auto cost = MakeObjectCost(residual, primitive, kSquare, measurement, 1.0);
+    detection.primitive = primitive;
+    const auto cost = MakeObjectCost(residual, kSquare, detection, detection.lines, 1.0);
     const double size = ObjectResidualsOf(*cost, SmallSphere()).cwiseAbs().mean();
     EXPECT_NEAR(size / SizeOf(residual, error_px), 1.0, 0.03) << NameOf(residual);
   }
   wrong.shape = radius * radius * Eigen::Matrix2d::Identity();
   wrong.center.x() += error_px;
-  const ObjectMeasurement shifted{
-      .lines = {}, .contour = {}, .hull = {}, .ellipse = wrong, .box = {}};
+  detection.primitive = ObjectPrimitive::kConic;
+  detection.ellipse = wrong;
   const auto cost =
-      MakeObjectCost(ObjectResidual::kDistribution, ObjectPrimitive::kConic, kSquare, shifted, 1.0);
+      MakeObjectCost(ObjectResidual::kDistribution, kSquare, detection, detection.lines, 1.0);
   EXPECT_NEAR(
       ObjectResidualsOf(*cost, SmallSphere())[0] / SizeOf(ObjectResidual::kDistribution, error_px),
       1.0, 1e-6);
 }
 
 TEST(ResidualOfPixelError, IsNothingUnlessInFront) {
-  ObjectState state = SmallSphere();
+  SeenEllipsoid state = SmallSphere();
   for (const double z : {-5.0, 0.0, 0.2}) {
     state.ellipsoid.world_from_object.translation.z() = z;
     EXPECT_FALSE(ResidualOfPixelError(ObjectResidual::kTangent, kSquare, state.cam_from_world,

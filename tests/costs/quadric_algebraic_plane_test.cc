@@ -22,8 +22,8 @@ TEST(AlgebraicPlaneCost, ByHand) {
 // pi^T Q* pi with pi = P^T l of unit normal, written out.
 TEST(AlgebraicPlaneCost, IsThePapersResidual) {
   RandomGeometry random(1);
-  const ObjectState state = RandomObjectState(random);
-  const std::vector<SilhouetteLine> lines = TangentsOf(RandomObjectState(random), 8);
+  const SeenEllipsoid state = RandomSeenEllipsoid(random);
+  const std::vector<SilhouetteLine> lines = TangentsOf(RandomSeenEllipsoid(random), 8);
   const AlgebraicPlaneCost cost(kObjectCamera, lines, 1.0);
   const Eigen::VectorXd residuals = ObjectResidualsOf(cost, state);
   Eigen::Matrix3d k;
@@ -44,7 +44,7 @@ TEST(AlgebraicPlaneCost, IsThePapersResidual) {
 TEST(AlgebraicPlaneCost, IsZeroForEveryTangent) {
   RandomGeometry random(2);
   for (int i = 0; i < 20; ++i) {
-    const ObjectState state = RandomObjectState(random);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
     const AlgebraicPlaneCost cost(kObjectCamera, TangentsOf(state, 16), 1.0);
     EXPECT_LT(ObjectResidualsOf(cost, state).norm(), 1e-9);
   }
@@ -53,8 +53,8 @@ TEST(AlgebraicPlaneCost, IsZeroForEveryTangent) {
 TEST(AlgebraicPlaneCost, KeepsTheLaws) {
   RandomGeometry random(3);
   for (int i = 0; i < 20; ++i) {
-    const ObjectState state = RandomObjectState(random);
-    const AlgebraicPlaneCost cost(kObjectCamera, TangentsOf(RandomObjectState(random), 12), 0.3);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
+    const AlgebraicPlaneCost cost(kObjectCamera, TangentsOf(RandomSeenEllipsoid(random), 12), 0.3);
     ExpectObjectCostLaws(cost, state, random);
   }
 }
@@ -62,7 +62,7 @@ TEST(AlgebraicPlaneCost, KeepsTheLaws) {
 TEST(AlgebraicPlaneCost, OneSidedIsZeroWhereTheObjectReachesThePlane) {
   RandomGeometry random(4);
   for (int i = 0; i < 10; ++i) {
-    const ObjectState state = RandomObjectState(random);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
     for (const double outwards : {-500.0, -3.0, 3.0}) {  // beyond the object, cutting it, short
       std::vector<SilhouetteLine> lines = TangentsOf(state, 16);
       for (SilhouetteLine& line : lines) {

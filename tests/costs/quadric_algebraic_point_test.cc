@@ -20,7 +20,7 @@ TEST(AlgebraicPointCost, ByHand) {
 TEST(AlgebraicPointCost, IsZeroOnTheOutline) {
   RandomGeometry random(1);
   for (int i = 0; i < 20; ++i) {
-    const ObjectState state = RandomObjectState(random);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
     const AlgebraicPointCost cost(kObjectCamera, ContourOf(state, 16), 1.0);
     EXPECT_LT(ObjectResidualsOf(cost, state).norm(), 1e-8);
   }
@@ -29,8 +29,8 @@ TEST(AlgebraicPointCost, IsZeroOnTheOutline) {
 TEST(AlgebraicPointCost, KeepsTheLaws) {
   RandomGeometry random(2);
   for (int i = 0; i < 20; ++i) {
-    const ObjectState state = RandomObjectState(random);
-    const AlgebraicPointCost cost(kObjectCamera, ContourOf(RandomObjectState(random), 8), 0.4);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
+    const AlgebraicPointCost cost(kObjectCamera, ContourOf(RandomSeenEllipsoid(random), 8), 0.4);
     ExpectObjectCostLaws(cost, state, random);
   }
 }

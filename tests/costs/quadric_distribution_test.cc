@@ -13,7 +13,7 @@ namespace {
 constexpr std::array kDistances = {DistributionDistance::kWasserstein,
                                    DistributionDistance::kBhattacharyya};
 
-Ellipse OutlineEllipse(const ObjectState& state) {
+Ellipse OutlineEllipse(const SeenEllipsoid& state) {
   const ObjectBlocks blocks(state);
   const QuadricInCamera quadric(blocks.Pointers().data());
   return ToEllipse(EllipseProjection(kObjectCamera, quadric).numbers());
@@ -46,10 +46,10 @@ TEST(DistributionCost, IsZeroForTheOutlineAndPositiveForOthers) {
   RandomGeometry random(1);
   for (const DistributionDistance distance : kDistances) {
     for (int i = 0; i < 20; ++i) {
-      const ObjectState state = RandomObjectState(random);
+      const SeenEllipsoid state = RandomSeenEllipsoid(random);
       const DistributionCost cost(kObjectCamera, OutlineEllipse(state), 1.0, distance);
       EXPECT_NEAR(ObjectResidualsOf(cost, state)[0], 0.0, 1e-7);
-      EXPECT_GT(ObjectResidualsOf(cost, RandomObjectState(random))[0], 1e-3);
+      EXPECT_GT(ObjectResidualsOf(cost, RandomSeenEllipsoid(random))[0], 1e-3);
     }
   }
 }
@@ -58,9 +58,9 @@ TEST(DistributionCost, KeepsTheLaws) {
   RandomGeometry random(2);
   for (const DistributionDistance distance : kDistances) {
     for (int i = 0; i < 20; ++i) {
-      const Ellipse measured = OutlineEllipse(RandomObjectState(random));
+      const Ellipse measured = OutlineEllipse(RandomSeenEllipsoid(random));
       const DistributionCost cost(kObjectCamera, measured, 7.0, distance);
-      ExpectObjectCostLaws(cost, RandomObjectState(random), random);
+      ExpectObjectCostLaws(cost, RandomSeenEllipsoid(random), random);
     }
   }
 }

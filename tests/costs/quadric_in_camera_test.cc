@@ -38,7 +38,7 @@ class StateCost final : public ObjectCost {
 
 TEST(QuadricInCamera, ByHand) {
   // A quarter turn around z between camera and object: the long axis lies along the camera's y.
-  ObjectState state;
+  SeenEllipsoid state;
   state.cam_from_world = {ExpSo3({0.0, 0.0, std::numbers::pi / 2.0}), {1.0, 0.0, 0.0}};
   state.ellipsoid.world_from_object.translation = {0.0, 2.0, 3.0};
   state.ellipsoid.half_axes = {0.5, 0.2, 0.1};
@@ -53,13 +53,13 @@ TEST(QuadricInCamera, ChainOfDerivativesIsTrue) {
   RandomGeometry random(1);
   for (int i = 0; i < 20; ++i) {
     const StateCost cost(random.Vector(1.0));
-    ExpectObjectCostLaws(cost, RandomObjectState(random), random);
+    ExpectObjectCostLaws(cost, RandomSeenEllipsoid(random), random);
   }
 }
 
 TEST(QuadricInCamera, NullJacobiansArePassedOver) {
   RandomGeometry random(2);
-  const ObjectBlocks blocks(RandomObjectState(random));
+  const ObjectBlocks blocks(RandomSeenEllipsoid(random));
   const QuadricInCamera quadric(blocks.Pointers().data());
   double* jacobians[] = {nullptr, nullptr, nullptr};
   quadric.WriteRow(0, ByObjectInCamera::Ones(), jacobians);
@@ -72,12 +72,12 @@ TEST(QuadricInCamera, NullJacobiansArePassedOver) {
 TEST(QuadricInCamera, IsInFrontWhereAllOfItIs) {
   for (const auto& [z, expected] :
        {std::pair(-2.0, false), {0.0, false}, {0.59, false}, {0.6, false}, {0.61, true}}) {
-    ObjectState state = SphereAhead();
+    SeenEllipsoid state = SphereAhead();
     state.ellipsoid.world_from_object.translation.z() = z;
     const ObjectBlocks blocks(state);
     EXPECT_EQ(QuadricInCamera(blocks.Pointers().data()).IsInFront(), expected) << z;
   }
-  ObjectState broken = SphereAhead();
+  SeenEllipsoid broken = SphereAhead();
   broken.ellipsoid.world_from_object.translation.x() = std::numeric_limits<double>::quiet_NaN();
   const ObjectBlocks blocks(broken);
   EXPECT_FALSE(QuadricInCamera(blocks.Pointers().data()).IsInFront());

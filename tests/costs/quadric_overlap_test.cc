@@ -89,22 +89,23 @@ TEST(BoxOverlap, ByHand) {
 }
 
 // Another object near enough that the two outlines overlap.
-ObjectState Near(const ObjectState& state, RandomGeometry& random) {
-  ObjectState moved = state;
+SeenEllipsoid Near(const SeenEllipsoid& state, RandomGeometry& random) {
+  SeenEllipsoid moved = state;
   moved.ellipsoid.world_from_object.translation += random.Vector(0.05);
   moved.ellipsoid.half_axes *= random.Number(0.7, 1.3);
   return moved;
 }
 
 // The area has kinks in its second derivative where an arc passes a corner of the region.
-void ExpectOverlapLaws(const OverlapCost& cost, const ObjectState& state, RandomGeometry& random) {
+void ExpectOverlapLaws(const OverlapCost& cost, const SeenEllipsoid& state,
+                       RandomGeometry& random) {
   ExpectTrueObjectGradient(cost, state, 1e-4, 1e-6);
   ExpectObjectRigidInvariance(cost, state, random.Pose(2.0, 5.0));
 }
 
 TEST(OverlapCost, IsOneMinusTheOverlapInEitherOrder) {
   RandomGeometry random(3);
-  const ObjectState state = RandomObjectState(random);
+  const SeenEllipsoid state = RandomSeenEllipsoid(random);
   auto contour = ContourOf(state, 100);
   const double forward = ObjectResidualsOf(OverlapCost(kObjectCamera, contour, 0.5), state)[0];
   std::reverse(contour.begin(), contour.end());
@@ -117,7 +118,7 @@ TEST(OverlapCost, IsOneMinusTheOverlapInEitherOrder) {
 TEST(OverlapCost, KeepsTheLaws) {
   RandomGeometry random(4);
   for (int i = 0; i < 30; ++i) {
-    const ObjectState state = RandomObjectState(random);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
     const OverlapCost cost(kObjectCamera, ContourOf(Near(state, random), 12), 0.2);
     ExpectOverlapLaws(cost, state, random);
   }
@@ -126,7 +127,7 @@ TEST(OverlapCost, KeepsTheLaws) {
 TEST(OverlapCost, OfBoxesKeepsTheLaws) {
   RandomGeometry random(5);
   for (int i = 0; i < 30; ++i) {
-    const ObjectState state = RandomObjectState(random);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
     Eigen::AlignedBox2d box;
     for (const Eigen::Vector2d& point : ContourOf(Near(state, random), 50)) {
       box.extend(point);

@@ -55,8 +55,8 @@ TEST(QuadricPriorCost, DoesNotDependOnTheSignOfTheQuaternion) {
 TEST(QuadricPriorCost, GradientIsTrue) {
   RandomGeometry random(1);
   for (int i = 0; i < 20; ++i) {
-    const QuadricPriorCost cost(RandomObjectState(random).ellipsoid);
-    const ObjectBlocks blocks(RandomObjectState(random));
+    const QuadricPriorCost cost(RandomSeenEllipsoid(random).ellipsoid);
+    const ObjectBlocks blocks(RandomSeenEllipsoid(random));
     ExpectTrueGradientAt(cost, {blocks.object}, blocks.log_axes, 1e-7);
   }
 }

@@ -37,7 +37,7 @@ TEST(TangentCost, ByHand) {
 TEST(TangentCost, IsZeroForEveryTangent) {
   RandomGeometry random(1);
   for (int i = 0; i < 20; ++i) {
-    const ObjectState state = RandomObjectState(random);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
     const TangentCost cost(kObjectCamera, TangentsOf(state, 16), 1.0);
     EXPECT_LT(ObjectResidualsOf(cost, state).norm(), 1e-7);
   }
@@ -46,7 +46,7 @@ TEST(TangentCost, IsZeroForEveryTangent) {
 TEST(TangentCost, IsTheSignedDistanceInPixels) {
   RandomGeometry random(2);
   for (int i = 0; i < 20; ++i) {
-    const ObjectState state = RandomObjectState(random);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
     const double outwards = random.Number(-8.0, 8.0);
     const TangentCost cost(kObjectCamera, Shifted(TangentsOf(state, 16), outwards), 1.0);
     EXPECT_LT((ObjectResidualsOf(cost, state).array() + outwards).matrix().norm(), 1e-7);
@@ -56,8 +56,8 @@ TEST(TangentCost, IsTheSignedDistanceInPixels) {
 TEST(TangentCost, KeepsTheLaws) {
   RandomGeometry random(3);
   for (int i = 0; i < 20; ++i) {
-    const ObjectState state = RandomObjectState(random);
-    const TangentCost cost(kObjectCamera, TangentsOf(RandomObjectState(random), 12), 1.7);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
+    const TangentCost cost(kObjectCamera, TangentsOf(RandomSeenEllipsoid(random), 12), 1.7);
     ExpectObjectCostLaws(cost, state, random);
   }
 }
@@ -66,7 +66,7 @@ TEST(TangentCost, KeepsTheLaws) {
 TEST(TangentCost, OneSidedIsZeroWhereTheOutlineReachesTheLine) {
   RandomGeometry random(4);
   for (int i = 0; i < 10; ++i) {
-    const ObjectState state = RandomObjectState(random);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
     const std::vector<SilhouetteLine> lines = OneSided(TangentsOf(state, 16));
     const TangentCost over(kObjectCamera, Shifted(lines, -3.0), 1.0);
     EXPECT_EQ(ObjectResidualsOf(over, state).norm(), 0.0);
@@ -83,8 +83,8 @@ TEST(TangentCost, IsNotDefinedUnlessInFront) {
 
 TEST(TangentDistance, IsTheResidual) {
   RandomGeometry random(5);
-  const ObjectState state = RandomObjectState(random);
-  const std::vector<SilhouetteLine> lines = TangentsOf(RandomObjectState(random), 5);
+  const SeenEllipsoid state = RandomSeenEllipsoid(random);
+  const std::vector<SilhouetteLine> lines = TangentsOf(RandomSeenEllipsoid(random), 5);
   const TangentCost cost(kObjectCamera, lines, 1.0);
   const Eigen::VectorXd residuals = ObjectResidualsOf(cost, state);
   const ObjectBlocks blocks(state);

@@ -33,12 +33,22 @@ TEST(RobustRowsCost, WithoutLossOnlyWeighs) {
   EXPECT_LT((ObjectResidualsOf(cost, SphereAhead()) - 2.0 * plain).norm(), 1e-12);
 }
 
+// The sum of the squares that Ceres sees is that of CostOf, and WeightOf is its slope.
+TEST(RobustRowsCost, TellsTheCostAndTheWeightOfAResidual) {
+  const RobustRowsCost cost(ThreeLines(), std::make_unique<ceres::HuberLoss>(4.0), 0.25);
+  EXPECT_NEAR(cost.CostOf(16.0), 0.25 * 112.0, 1e-9);
+  EXPECT_NEAR(cost.CostOf(-1.0), 0.25, 1e-9);
+  EXPECT_NEAR(cost.WeightOf(16.0), 0.25 * 4.0 / 16.0, 1e-9);
+  EXPECT_NEAR(cost.WeightOf(1.0), 0.25, 1e-9);
+  EXPECT_EQ(RobustRowsCost(ThreeLines(), nullptr, 2.0).WeightOf(100.0), 2.0);
+}
+
 TEST(RobustRowsCost, KeepsTheLaws) {
   RandomGeometry random(1);
   for (int i = 0; i < 20; ++i) {
-    const ObjectState state = RandomObjectState(random);
+    const SeenEllipsoid state = RandomSeenEllipsoid(random);
     const RobustRowsCost cost(std::make_unique<TangentCost>(
-                                  kObjectCamera, TangentsOf(RandomObjectState(random), 12), 5.0),
+                                  kObjectCamera, TangentsOf(RandomSeenEllipsoid(random), 12), 5.0),
                               std::make_unique<ceres::CauchyLoss>(2.5), 0.3);
     ExpectObjectCostLaws(cost, state, random);
   }

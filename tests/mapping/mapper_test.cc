@@ -236,13 +236,14 @@ TEST_F(MapperTest, ARequestMayReferToWhatIsGoneMeanwhile) {
   EXPECT_LT(error.translation.norm(), 0.02);
 }
 
-// A correction moves the map as a whole; the next keyframe, tracked before it, follows.
+// A correction moves the map as a whole; a keyframe that was tracked before it follows. (The scale
+// stays: the depths of the frames are metric.)
 TEST_F(MapperTest, ACorrectionIsAppliedAndPublished) {
   for (uint32_t index = 0; index <= 20; index += 5) {
     ProcessFrame(index);
   }
   const std::shared_ptr<const Map> snapshot = published_.back();
-  const Sim3 old_from_new(2.0, ExpSo3({0.1, 0.3, -0.2}), {1.0, 2.0, 3.0});
+  const Sim3 old_from_new(1.0, ExpSo3({0.1, 0.3, -0.2}), {1.0, 2.0, 3.0});
   MapCorrection correction;
   snapshot->keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
     correction.poses.push_back(

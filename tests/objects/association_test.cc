@@ -28,13 +28,14 @@ class Association : public ::testing::Test {
     }
   }
   std::vector<ObjectId> Associate(const std::vector<MadeObject>& seen, double angle,
-                                  AssociationOptions options = {}) {
+                                  const AssociationOptions& options = {},
+                                  AssociationScope scope = AssociationScope::kAll) {
     const Rigid3 cam_from_world = CameraOnCircle(angle, 1.5, 0.6);
     Frame frame;
     for (const MadeObject& object : seen) {
       frame.detections.push_back(Detect(object, sensor_, cam_from_world));
     }
-    return AssociateDetections(map_, sensor_, frame, cam_from_world, {}, options);
+    return AssociateDetections(map_, sensor_, frame, cam_from_world, {}, scope, options);
   }
   Sensor sensor_ = MakeObjectSensor();
   Map map_;
@@ -52,7 +53,7 @@ TEST_F(Association, FindsCandidatesBySeeingThemOnce) {
   Build(table, 1, false);
   const auto found = Associate(table, 0.1);
   EXPECT_EQ(found, (std::vector<ObjectId>{ObjectId(0), ObjectId(1), ObjectId(2)}));
-  EXPECT_EQ(Associate(table, 0.1, {.mapped_only = true}), std::vector<ObjectId>(3));
+  EXPECT_EQ(Associate(table, 0.1, {}, AssociationScope::kMapped), std::vector<ObjectId>(3));
 }
 
 TEST_F(Association, ANewThingIsOfNoObject) {
@@ -101,8 +102,9 @@ TEST_F(Association, WithoutDepthTheOutlineTells) {
     frame.detections.push_back(Detect(object, sensor_, cam_from_world));
     frame.detections.back().points.clear();
   }
-  EXPECT_EQ(AssociateDetections(map_, sensor_, frame, cam_from_world, {}, {}),
-            (std::vector<ObjectId>{ObjectId(0), ObjectId(1), ObjectId(2)}));
+  EXPECT_EQ(
+      AssociateDetections(map_, sensor_, frame, cam_from_world, {}, AssociationScope::kAll, {}),
+      (std::vector<ObjectId>{ObjectId(0), ObjectId(1), ObjectId(2)}));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "hullslam/util/error.h"
+#include "support/expect_error.h"
 
 namespace hullslam {
 namespace {
@@ -19,9 +20,44 @@ TEST(ObjectOptions, AreBoundByTheirNames) {
   table.Set("objects.sigma", "2.5", "test");
   EXPECT_FALSE(options.enabled);
   EXPECT_FALSE(options.guided_matching);
-  EXPECT_EQ(options.residual, ObjectResidual::kAlgebraicPlane);
+  EXPECT_EQ(options.refinement.constraint.residual, ObjectResidual::kAlgebraicPlane);
+  EXPECT_EQ(options.pose.constraint.residual, ObjectResidual::kAlgebraicPlane);
+  EXPECT_EQ(options.bundle.constraint.residual, ObjectResidual::kAlgebraicPlane);
   EXPECT_EQ(options.detection.primitive, ObjectPrimitive::kHull);
-  EXPECT_EQ(options.sigma, 2.5);
+  EXPECT_EQ(options.pose.constraint.sigma_px, 2.5);
+  EXPECT_EQ(options.bundle.constraint.sigma_px, 2.5);
+}
+
+TEST(ObjectOptions, EachUseHasItsOwnResidualAndLoss) {
+  ObjectOptions options;
+  OptionTable table;
+  options.Bind(table);
+  table.Set("objects.residual", "algebraic_plane", "test");
+  table.Set("objects.pose.residual", "tangent", "test");
+  table.Set("objects.bundle.loss", "huber", "test");
+  table.Set("objects.max_effective_lines", "5", "test");
+  table.Set("objects.pose.max_effective_lines", "6", "test");
+  EXPECT_EQ(options.refinement.constraint.residual, ObjectResidual::kAlgebraicPlane);
+  EXPECT_EQ(options.pose.constraint.residual, ObjectResidual::kTangent);
+  EXPECT_EQ(options.bundle.constraint.residual, ObjectResidual::kAlgebraicPlane);
+  EXPECT_EQ(options.bundle.constraint.loss, RobustLoss::kHuber);
+  EXPECT_EQ(options.refinement.constraint.max_effective_lines, 4.0);
+  EXPECT_EQ(options.pose.constraint.max_effective_lines, 6.0);
+  EXPECT_EQ(options.bundle.constraint.max_effective_lines, 5.0);
+}
+
+TEST(ObjectOptions, RefuseAResidualThatThePrimitiveHasNot) {
+  for (const char* const use : {"refinement", "pose", "bundle"}) {
+    ObjectOptions options;
+    OptionTable table;
+    options.Bind(table);
+    EXPECT_NO_THROW(options.Validate());
+    const std::string key = "objects." + std::string(use) + ".residual";
+    table.Set(key, "distribution", "test");
+    ExpectInputError([&] { options.Validate(); }, {key, "'distribution'", "'support'"});
+    table.Set("objects.primitive", "conic", "test");
+    EXPECT_NO_THROW(options.Validate());
+  }
 }
 
 TEST(ObjectOptions, RefuseWhatIsOutOfRange) {
@@ -31,6 +67,9 @@ TEST(ObjectOptions, RefuseWhatIsOutOfRange) {
   EXPECT_THROW(table.Set("objects.residual", "tangents", "test"), InputError);
   EXPECT_THROW(table.Set("objects.sigma", "0", "test"), InputError);
   EXPECT_THROW(table.Set("objects.min_views", "1", "test"), InputError);
+  EXPECT_THROW(table.Set("objects.pose.loss", "l2", "test"), InputError);
+  EXPECT_THROW(table.Set("objects.bundle.loss_scale", "0", "test"), InputError);
+  EXPECT_THROW(table.Set("objects.refinement.depth_points", "-1", "test"), InputError);
 }
 
 }  // namespace

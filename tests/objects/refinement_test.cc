@@ -41,9 +41,9 @@ TEST_F(RefinementTest, FindsTheTruthFromManySides) {
   Look(0.3, 12);
   for (const ObjectResidual residual :
        {ObjectResidual::kTangent, ObjectResidual::kAlgebraicPlane}) {
-    ObjectOptions options;
-    options.residual = residual;
-    options.prior_sigma = 10.0;
+    ObjectRefinementOptions options;
+    options.constraint.residual = residual;
+    options.constraint.prior.log_axes = 10.0;
     const Refinement refined = RefineEllipsoid(Start(), Start(), sensor_, Views(), 5.0, options);
     ASSERT_TRUE(refined.is_usable);
     EXPECT_LT(AxisError(refined.ellipsoid, made_.ellipsoid), 0.02) << NameOf(residual);

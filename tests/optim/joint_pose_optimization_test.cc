@@ -7,7 +7,6 @@
 #include <random>
 #include <vector>
 
-#include "costs/object_measurement.h"
 #include "objects/made_objects.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
@@ -61,26 +60,29 @@ class JointPose : public ::testing::Test {
       const Eigen::Vector3d in_cam = place + random_.Vector(1.0).cwiseProduct(reach);
       PoseObservation& observation = observations_.emplace_back();
       observation.point = Inverse(true_pose_) * in_cam;
-      observation.measured = ProjectRgbd(sensor_.camera, in_cam);
-      observation.has_depth = true;
+      Eigen::Vector3d measured = ProjectRgbd(sensor_.camera, in_cam);
       for (int k = 0; k < 3; ++k) {
-        observation.measured[k] += noise * normal_(generator_);
+        measured[k] += noise * normal_(generator_);
       }
+      observation.measurement = PointMeasurement::Create(measured.head<2>(), 1.0, measured.z(), {});
     }
   }
   void AddSpreadPoints(int count, double noise) {
     AddPoints(count, {0.0, 0.0, 4.0}, {1.2, 0.9, 2.0}, noise);
   }
+  // The whole sigma of an outline is the misfit.
   std::vector<PoseObject> Objects(double sigma_px) const {
     std::vector<PoseObject> objects;
     for (size_t i = 0; i < detections_.size(); ++i) {
-      objects.push_back({ellipsoids_[i], ToMeasurement(detections_[i]), sigma_px});
+      objects.push_back({ellipsoids_[i], &detections_[i], detections_[i].lines, sigma_px});
     }
     return objects;
   }
   JointPoseResult Optimize(const Rigid3& start, double sigma_px,
-                           const JointPoseOptions& options = {}) const {
-    return OptimizeJointPose(sensor_.camera, start, observations_, Objects(sigma_px), options);
+                           ObjectPoseOptions options = {}) const {
+    options.constraint.sigma_px = 0.0;
+    return OptimizeJointPose(sensor_.camera, start, observations_, Objects(sigma_px),
+                             {.objects = options});
   }
   Rigid3 Start(double angle = 0.01, double distance = 0.02) {
     return random_.Pose(angle, distance) * true_pose_;
@@ -132,14 +134,16 @@ TEST_F(JointPose, OtherResidualsRecoverThePoseToo) {
        {std::pair(ObjectResidual::kAlgebraicPlane, ObjectPrimitive::kHull),
         {ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour},
         {ObjectResidual::kOverlap, ObjectPrimitive::kBox}}) {
-    JointPoseOptions options;
-    options.residual = residual;
-    options.primitive = primitive;
+    ObjectPoseOptions options;
+    options.constraint.residual = residual;
     double sum = 0.0;
     double start_sum = 0.0;
     for (uint32_t seed = 1; seed <= 10; ++seed) {
       MakeScene(seed);
       AddObjects(4);
+      for (Detection& detection : detections_) {
+        detection.primitive = primitive;
+      }
       const Rigid3 start = Start();
       sum += Distance(Optimize(start, 1.5, options).points.cam_from_world, true_pose_);
       start_sum += Distance(start, true_pose_);
@@ -291,8 +295,9 @@ TEST_F(JointPose, OneDetectionWeighsAsSoManyLinesAtMost) {
     detection.lines.insert(detection.lines.end(), lines.begin(), lines.end());
   }
   EXPECT_LT(Distance(Optimize(start, 3.0).points.cam_from_world, few), 1e-6);
-  EXPECT_GT(Distance(Optimize(start, 3.0, {.max_effective_lines = 1.0}).points.cam_from_world, few),
-            1e-5);
+  ObjectPoseOptions one_line;
+  one_line.constraint.max_effective_lines = 1.0;
+  EXPECT_GT(Distance(Optimize(start, 3.0, one_line).points.cam_from_world, few), 1e-5);
 }
 
 TEST_F(JointPose, DoesNotDependOnTheWorldFrame) {

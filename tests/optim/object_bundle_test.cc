@@ -280,7 +280,8 @@ TEST_F(ObjectBundle, AnObjectWithoutDepthHasAPriorOfItsOwn) {
   Make({.points = 300, .depth_share = 0.7});
   PerturbObjects(0.2);
   BundleOptions options = kPrecise;
-  options.objects.prior_blind = {.log_axes = 1e-4, .center = 1e-4, .rotation = 1e-4};
+  options.objects.constraint.prior_without_depth = {
+      .log_axes = 1e-4, .center = 1e-4, .rotation = 1e-4};
   const BundleResult result = Adjust(Window(), options);
   ASSERT_EQ(result.ellipsoids.size(), 3u);
   for (const auto& [id, ellipsoid] : result.ellipsoids) {
@@ -330,8 +331,8 @@ TEST_F(ObjectBundle, AShapeThatRunsAwayIsNotWritten) {
   const Eigen::Vector3d before = 5.0 * objects_[1].ellipsoid.half_axes;
   made_.map.MutableObject(ids_[1]).ellipsoid.half_axes = before;
   BundleOptions options = kPrecise;
-  options.objects.tukey = 1e3;  // outlines far off are not taken for outliers
-  options.objects.prior.log_axes = 1e3;
+  options.objects.constraint.loss_scale = 1e3;  // outlines far off are not taken for outliers
+  options.objects.constraint.prior.log_axes = 1e3;
   const BundleResult result = Adjust(Window(), options);
   ASSERT_TRUE(result.is_usable);
   EXPECT_EQ(result.failed_objects, std::vector<ObjectId>{ids_[1]});

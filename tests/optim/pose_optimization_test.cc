@@ -5,10 +5,11 @@
 
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <vector>
 
-#include "camera/rgbd_projection.h"
+#include "camera/depth_error.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
 
@@ -30,11 +31,9 @@ class PoseOptimization : public ::testing::Test {
           Eigen::Vector3d(0.0, 0.0, 4.0);
       PoseObservation& observation = observations.emplace_back();
       observation.point = Inverse(true_pose_) * in_cam;
-      observation.measured = ProjectRgbd(kCamera, in_cam);
-      observation.has_depth = has_depth;
-      if (!has_depth) {
-        observation.measured.z() = -1.0;
-      }
+      const Eigen::Vector3d measured = ProjectRgbd(kCamera, in_cam);
+      observation.measurement = PointMeasurement::Create(
+          measured.head<2>(), 1.0, has_depth ? std::optional(measured.z()) : std::nullopt, {});
     }
     return observations;
   }
@@ -75,7 +74,7 @@ TEST_F(PoseOptimization, FlagsThirtyPercentOfOutliers) {
     auto observations = Observe(100, has_depth);
     for (size_t i = 0; i < 30; ++i) {
       const double side = i % 2 == 0 ? 1.0 : -1.0;
-      observations[3 * i].measured +=
+      observations[3 * i].measurement.measured +=
           side * Eigen::Vector3d(random_.Number(20, 100), random_.Number(-100, 100), 0.0);
     }
     const PoseOptimizationResult result = OptimizePose(kCamera, Start(), observations);
@@ -89,9 +88,9 @@ TEST_F(PoseOptimization, FlagsThirtyPercentOfOutliers) {
 
 TEST_F(PoseOptimization, AWrongDepthAloneMakesAnOutlier) {
   auto observations = Observe(50, true);
-  observations[7].measured.z() -= 10.0;
-  observations[8].measured.z() -= 10.0;
-  observations[8].has_depth = false;  // then it is not looked at
+  observations[7].measurement.measured.z() -= 10.0;
+  observations[8].measurement.measured.z() -= 10.0;
+  observations[8].measurement.inverse_sigma.z() = 0.0;  // then it is not looked at
   const PoseOptimizationResult result = OptimizePose(kCamera, Start(), observations);
   EXPECT_EQ(result.inlier_count, 49);
   EXPECT_EQ(result.is_inlier[7], 0);
@@ -99,9 +98,9 @@ TEST_F(PoseOptimization, AWrongDepthAloneMakesAnOutlier) {
 
 TEST_F(PoseOptimization, ErrorsCountInSigmas) {
   auto observations = Observe(100, false);
-  observations[4].measured.x() += 4.0;
-  observations[5].measured.x() += 4.0;
-  observations[5].inverse_sigma2 = 0.25;
+  observations[4].measurement.measured.x() += 4.0;
+  observations[5].measurement.measured.x() += 4.0;
+  observations[5].measurement.inverse_sigma *= 0.5;
   const PoseOptimizationResult result = OptimizePose(kCamera, true_pose_, observations);
   EXPECT_EQ(result.is_inlier[4], 0);
   EXPECT_EQ(result.is_inlier[5], 1);
@@ -112,7 +111,7 @@ TEST_F(PoseOptimization, NoiseLeavesAnErrorOfItsSize) {
   std::mt19937 generator(2);
   std::normal_distribution<double> noise;
   for (PoseObservation& observation : observations) {
-    observation.measured +=
+    observation.measurement.measured +=
         Eigen::Vector3d(noise(generator), noise(generator), 0.3 * noise(generator));
   }
   const PoseOptimizationResult result = OptimizePose(kCamera, Start(), observations);
@@ -153,7 +152,8 @@ TEST_F(PoseOptimization, GivesTheStartBackForFewerThanThreePoints) {
 TEST_F(PoseOptimization, GivesTheStartBackForFewerThanThreeInliers) {
   auto observations = Observe(8, true);
   for (PoseObservation& observation : observations) {
-    observation.measured = {random_.Number(0, 640), random_.Number(0, 480), random_.Number(0, 640)};
+    observation.measurement.measured = {random_.Number(0, 640), random_.Number(0, 480),
+                                        random_.Number(0, 640)};
   }
   const Rigid3 start = Start();
   for (const int rounds : {1, 2, 4}) {

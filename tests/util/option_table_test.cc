@@ -48,6 +48,30 @@ TEST(Range, IsToldInWords) {
   EXPECT_EQ(Range::Any().ToString(), "of any size");
 }
 
+// Of a shared key and its members the one that is set last wins.
+TEST(OptionTable, ASharedKeySetsItsMembers) {
+  double first = 1.0;
+  double second = 1.0;
+  OptionTable table;
+  table.Add("first", &first, Range::Between(0.0, 9.0), "one");
+  table.Add("second", &second, Range::Between(0.0, 9.0), "another");
+  table.AddShared("both", {"first", "second"}, "both of them");
+  table.Set("both", "3", "test");
+  table.Set("second", "4", "test");
+  EXPECT_EQ(first, 3.0);
+  EXPECT_EQ(second, 4.0);
+  table.Set("both", "5", "test");
+  EXPECT_EQ(second, 5.0);
+  EXPECT_THROW(table.Set("both", "10", "test"), InputError);
+  const std::vector<OptionTable::Entry> entries = table.Entries();
+  ASSERT_EQ(entries.size(), 3u);
+  EXPECT_EQ(entries[0].key, "both");
+  EXPECT_TRUE(entries[0].is_shared);
+  EXPECT_EQ(entries[0].expected, entries[1].expected);
+  EXPECT_FALSE(entries[1].is_shared);
+  EXPECT_THROW(table.AddShared("none", {"third"}, "not bound"), CheckError);
+}
+
 TEST(OptionTable, SetsAnEnumByItsNames) {
   enum class Colour { kRed, kGreen, kBlue };
   Colour colour = Colour::kGreen;

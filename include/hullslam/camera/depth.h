@@ -8,11 +8,22 @@
 
 namespace hullslam {
 
+// The model of the error of depth (src/camera/depth_error.h).
+struct DepthErrorOptions {
+  // Standard deviation of the disparity bf / z, px. Sensors are more precise than the default, but
+  // the pixel that the depth is taken from need not show the landmark.
+  double disparity_sigma = 1.0;
+
+  // Binds the key `depth.disparity_sigma`.
+  void Bind(OptionTable& options);
+};
+
 struct DepthOptions {
   double units_per_metre = 5000.0;  // of 16-bit depth images
   double close_baselines = 40.0;    // depths up to this many baselines count as close (well known)
+  DepthErrorOptions error;
 
-  // Binds ORB-SLAM2's keys `DepthMapFactor` and `ThDepth`.
+  // Binds ORB-SLAM2's keys `DepthMapFactor` and `ThDepth`, and those of the error.
   void Bind(OptionTable& options);
 };
 

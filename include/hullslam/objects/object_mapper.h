@@ -4,8 +4,8 @@
 #include <map>
 #include <span>
 
-#include "hullslam/map/map.h"
 #include "hullslam/frame/sensor.h"
+#include "hullslam/map/map.h"
 #include "hullslam/objects/object_options.h"
 #include "hullslam/objects/rejection.h"
 #include "hullslam/objects/validity.h"
@@ -40,7 +40,6 @@ class ObjectMapper {
   void Refine(Map& map, ObjectId id, std::span<const ObjectView> views);
   void Accept(Map& map, ObjectId id, std::span<const ObjectView> views) const;
   Objection FewViews(const ObjectLandmark& object) const;
-  double LineSigma(const ObjectLandmark& object) const;
   void FuseDuplicates(Map& map);
   void CullSeldomSeen(Map& map, KeyframeId keyframe);
   void Reject(Map& map, ObjectId id, const Objection& objection);

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/frame/sensor.h"
+#include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/objects/object_options.h"
 #include "hullslam/objects/object_view.h"
 #include "hullslam/objects/rejection.h"
@@ -24,7 +24,7 @@ struct Objection {
 // near the surface, no half axis stretched beyond the points. Nothing for a valid one.
 std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor& sensor,
                                        std::span<const ObjectView> views,
-                                       const ObjectOptions& options);
+                                       const ValidityOptions& options);
 
 // Mean over the views of the IoU of the outline, clipped to the image, with the hull, or of their
 // boxes where the mask is a box; 0 where the ellipsoid is not in front of a camera.

@@ -45,6 +45,9 @@ class OptionTable {
         key, names, [field](size_t index) { *field = static_cast<Enum>(index); },
         [field] { return static_cast<size_t>(*field); }, help);
   }
+  // A key that sets several others at once, all bound before with the same type and value. What is
+  // set later wins, be it this key or one of the others.
+  void AddShared(std::string key, std::vector<std::string> members, std::string help);
   // Any text.
   void AddText(std::string key, std::string* field, std::string help);
   // A key that other programs' settings files have and that means nothing here: accepted, ignored.
@@ -60,8 +63,10 @@ class OptionTable {
     std::string value;     // as it is now
     std::string expected;  // "a number > 0", "an integer >= 1", "one of: a, b"
     std::string help;
+    bool is_shared = false;  // sets other keys (AddShared) and has no value of its own
   };
-  // All options but the ignored, sorted by key.
+  // All options but the ignored, sorted by key. The value of a shared one is that of its first
+  // member.
   std::vector<Entry> Entries() const;
 
  private:
@@ -71,6 +76,7 @@ class OptionTable {
     std::string expected;
     std::string help;
     bool ignored = false;
+    bool shared = false;
   };
   void AddOption(std::string key, Option option);
   void AddChoice(std::string key, std::vector<std::string> names, std::function<void(size_t)> set,

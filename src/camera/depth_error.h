@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+
+#include "hullslam/camera/depth.h"
+#include "hullslam/camera/pinhole.h"
+
+// The error of a point that a keypoint shows, with or without depth. Depth z counts as the
+// disparity bf / z of a virtual stereo pair, in which a sensor of structured light has about the
+// same error at all distances (Khoshelham and Elberink 2012). Pose estimation, bundle adjustment
+// and the creation and fusion of landmarks all use this error.
+namespace hullslam {
+
+inline constexpr double kMinDepth = 1e-3;  // m; the projection of nearer points has no meaning
+
+// Undistorted pixel (u, v) and disparity bf / z of a point (m, camera frame, z > 0).
+inline Eigen::Vector3d ProjectRgbd(const PinholeCamera& camera, const Eigen::Vector3d& point) {
+  const double inverse_z = 1.0 / point.z();
+  const double u = camera.fx * point.x() * inverse_z + camera.cx;
+  return {u, camera.fy * point.y() * inverse_z + camera.cy, camera.bf * inverse_z};
+}
+
+// Derivative of ProjectRgbd by the point.
+inline Eigen::Matrix3d ProjectRgbdJacobian(const PinholeCamera& camera,
+                                           const Eigen::Vector3d& point) {
+  const double inverse_z = 1.0 / point.z();
+  const double fx_z = camera.fx * inverse_z;
+  const double fy_z = camera.fy * inverse_z;
+  const double x_z = point.x() * inverse_z;
+  const double y_z = point.y() * inverse_z;
+  Eigen::Matrix3d jacobian;
+  jacobian << fx_z, 0.0, -fx_z * x_z,  //
+      0.0, fy_z, -fy_z * y_z,          //
+      0.0, 0.0, -camera.bf * inverse_z * inverse_z;
+  return jacobian;
+}
+
+// What a keypoint says about its point.
+struct PointMeasurement {
+  Eigen::Vector3d measured = Eigen::Vector3d::Zero();  // u, v, disparity; px, undistorted
+  // Inverse standard deviations of the three, 1 / px; that of an unknown disparity is 0.
+  Eigen::Vector3d inverse_sigma = Eigen::Vector3d(1.0, 1.0, 0.0);
+
+  // `pixel_sigma` in px; no disparity where the depth is unknown.
+  static PointMeasurement Create(const Eigen::Vector2d& pixel, double pixel_sigma,
+                                 std::optional<double> disparity, const DepthErrorOptions& options);
+
+  bool has_depth() const { return inverse_sigma.z() > 0.0; }
+  // The number of residuals: two for the pixel, and one for the disparity if it is known.
+  size_t degrees_of_freedom() const { return has_depth() ? 3 : 2; }
+};
+
+// (du, dv, d disparity) in standard deviations, projected minus measured, of a point (m, camera
+// frame) at least kMinDepth in front of the camera. The third is 0 where the depth is unknown.
+inline Eigen::Vector3d PointResidual(const PinholeCamera& camera,
+                                     const PointMeasurement& measurement,
+                                     const Eigen::Vector3d& point) {
+  return measurement.inverse_sigma.cwiseProduct(ProjectRgbd(camera, point) - measurement.measured);
+}
+
+// Derivative of PointResidual by the point.
+inline Eigen::Matrix3d PointResidualJacobian(const PinholeCamera& camera,
+                                             const PointMeasurement& measurement,
+                                             const Eigen::Vector3d& point) {
+  return measurement.inverse_sigma.asDiagonal() * ProjectRgbdJacobian(camera, point);
+}
+
+// Squared norm of PointResidual; infinite for a point nearer than kMinDepth or behind the camera.
+double PointChi2(const PinholeCamera& camera, const PointMeasurement& measurement,
+                 const Eigen::Vector3d& point);
+
+// The bound on PointChi2 above which the measurement is an outlier: the 95 % quantile for its
+// degrees of freedom.
+double OutlierBound(const PointMeasurement& measurement);
+
+// Whether PointChi2 is within OutlierBound.
+bool IsInlier(const PinholeCamera& camera, const PointMeasurement& measurement,
+              const Eigen::Vector3d& point);
+
+}  // namespace hullslam

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "frame/point_measurement.h"
+
+#include <optional>
+
+namespace hullslam {
+
+PointMeasurement MeasurePoint(const Sensor& sensor, const FrameFeatures& features,
+                              uint32_t keypoint) {
+  const Keypoint& seen = features.keypoints[keypoint];
+  const Eigen::Vector2d pixel = seen.undistorted.cast<double>();
+  const double right_u = static_cast<double>(features.right_u[keypoint]);
+  std::optional<double> disparity;
+  if (right_u >= 0.0) {
+    disparity = pixel.x() - right_u;
+  }
+  const double scale = static_cast<double>(sensor.levels.scale[static_cast<size_t>(seen.level)]);
+  return PointMeasurement::Create(pixel, scale, disparity, sensor.depth_error);
+}
+
+}  // namespace hullslam

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "camera/depth_error.h"
+#include "hullslam/features/frame_features.h"
+#include "hullslam/frame/sensor.h"
+
+namespace hullslam {
+
+// What a keypoint of a frame says about its point. The standard deviation of the pixel is 1 px at
+// the keypoint's pyramid level.
+PointMeasurement MeasurePoint(const Sensor& sensor, const FrameFeatures& features,
+                              uint32_t keypoint);
+
+}  // namespace hullslam

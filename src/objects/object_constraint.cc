@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "objects/object_constraint.h"
+
+#include <ceres/loss_function.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "costs/depth_anchor.h"
+#include "costs/make_object_cost.h"
+#include "costs/pixel_error.h"
+#include "costs/quadric_prior.h"
+#include "util/thin.h"
+
+namespace hullslam {
+namespace {
+
+std::unique_ptr<ceres::LossFunction> MakeLoss(RobustLoss loss, double scale) {
+  switch (loss) {
+    case RobustLoss::kNone:
+      return nullptr;
+    case RobustLoss::kHuber:
+      return std::make_unique<ceres::HuberLoss>(scale);
+    case RobustLoss::kCauchy:
+      return std::make_unique<ceres::CauchyLoss>(scale);
+    case RobustLoss::kTukey:
+      return std::make_unique<ceres::TukeyLoss>(scale);
+  }
+  return nullptr;
+}
+
+// The rows count as `max_effective_rows` at most.
+std::unique_ptr<RobustRowsCost> MakeRobust(std::unique_ptr<ceres::CostFunction> cost,
+                                           std::unique_ptr<ceres::LossFunction> loss,
+                                           double max_effective_rows) {
+  const double weight = std::min(1.0, max_effective_rows / cost->num_residuals());
+  return std::make_unique<RobustRowsCost>(std::move(cost), std::move(loss), weight);
+}
+
+std::unique_ptr<RobustRowsCost> MakeOutline(const PinholeCamera& camera, const ObjectView& view,
+                                            std::span<const SilhouetteLine> lines,
+                                            const Ellipsoid& ellipsoid, double misfit_px,
+                                            const ObjectConstraintOptions& options) {
+  const double sigma_px = std::hypot(options.sigma_px, options.misfit_factor * misfit_px);
+  const auto sigma =
+      ResidualOfPixelError(options.residual, camera, view.cam_from_world, ellipsoid, sigma_px);
+  if (!sigma) {
+    return nullptr;
+  }
+  auto cost = MakeObjectCost(options.residual, camera, *view.detection, lines, *sigma);
+  if (cost == nullptr) {
+    return nullptr;
+  }
+  const double scale = std::max(options.loss_scale, options.min_loss_px / sigma_px);
+  return MakeRobust(std::move(cost), MakeLoss(options.loss, scale), options.max_effective_lines);
+}
+
+std::unique_ptr<RobustRowsCost> MakeDepth(const Detection& detection,
+                                          const ObjectDepthOptions& options) {
+  const std::vector<Eigen::Vector3d> points =
+      Thin(detection.points, static_cast<size_t>(options.max_points));
+  if (points.empty()) {
+    return nullptr;
+  }
+  return MakeRobust(std::make_unique<DepthAnchorCost>(points, options.sigma),
+                    MakeLoss(options.loss, options.loss_scale), options.max_effective_points);
+}
+
+}  // namespace
+
+ObjectConstraint MakeObjectConstraint(const PinholeCamera& camera, const ObjectView& view,
+                                      std::span<const SilhouetteLine> lines,
+                                      const Ellipsoid& ellipsoid, double misfit_px,
+                                      const ObjectConstraintOptions& options) {
+  return {.outline = MakeOutline(camera, view, lines, ellipsoid, misfit_px, options),
+          .depth = MakeDepth(*view.detection, options.depth)};
+}
+
+std::unique_ptr<ceres::CostFunction> MakeObjectPrior(const Ellipsoid& shape, bool has_depth,
+                                                     const ObjectConstraintOptions& options) {
+  return std::make_unique<QuadricPriorCost>(
+      shape, has_depth ? options.prior : options.prior_without_depth);
+}
+
+bool TakesLines(ObjectResidual residual) {
+  return residual == ObjectResidual::kTangent || residual == ObjectResidual::kAlgebraicPlane;
+}
+
+}  // namespace hullslam

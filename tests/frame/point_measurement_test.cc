@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "frame/point_measurement.h"
+
+#include <gtest/gtest.h>
+
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+TEST(MeasurePoint, TakesPixelLevelAndDepthOfTheKeypoint) {
+  Sensor sensor = SyntheticSensor();
+  sensor.depth_error.disparity_sigma = 0.25;
+  FrameFeatures features;
+  for (const float right_u : {80.0f, -1.0f}) {
+    Keypoint& keypoint = features.keypoints.emplace_back();
+    keypoint.raw = {90.0f, 40.0f};
+    keypoint.undistorted = {100.0f, 50.0f};
+    keypoint.level = 2;
+    features.right_u.push_back(right_u);
+  }
+  const double inverse_scale = 1.0 / static_cast<double>(sensor.levels.scale[2]);
+
+  const PointMeasurement with_depth = MeasurePoint(sensor, features, 0);
+  EXPECT_EQ(with_depth.measured, Eigen::Vector3d(100.0, 50.0, 20.0));
+  EXPECT_EQ(with_depth.inverse_sigma, Eigen::Vector3d(inverse_scale, inverse_scale, 4.0));
+
+  const PointMeasurement without_depth = MeasurePoint(sensor, features, 1);
+  EXPECT_EQ(without_depth.measured.head<2>(), Eigen::Vector2d(100.0, 50.0));
+  EXPECT_EQ(without_depth.inverse_sigma, Eigen::Vector3d(inverse_scale, inverse_scale, 0.0));
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "objects/object_constraint.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "costs/object_cost_laws.h"
+
+namespace hullslam {
+namespace {
+
+// Three lines that the outline of SphereAhead (x from -55 to 695) misses by 0, 1 and 16 px, and a
+// point of the optical axis 0.3 m before its surface at z = 0.4 m.
+class ObjectConstraintTest : public ::testing::Test {
+ protected:
+  ObjectConstraintTest() {
+    detection_.lines = {{{{1.0, 0.0}, -695.0}, false},
+                        {{{1.0, 0.0}, -694.0}, false},
+                        {{{-1.0, 0.0}, -71.0}, false}};
+    detection_.points.assign(6, {0.0, 0.0, 0.1});
+    options_.sigma_px = 2.0;
+    options_.misfit_factor = 0.0;
+    options_.loss = RobustLoss::kNone;
+    options_.depth.max_points = 6;
+    options_.depth.loss = RobustLoss::kNone;
+  }
+  ObjectConstraint Make() const {
+    return MakeObjectConstraint(kObjectCamera, {KeyframeId(), Rigid3(), &detection_},
+                                detection_.lines, SphereAhead().ellipsoid, misfit_px_, options_);
+  }
+  // What the outline's line that is 16 px off adds to the sum.
+  double WorstSquare() const {
+    const double worst = ObjectResidualsOf(*Make().outline, SphereAhead())[2];
+    return worst * worst;
+  }
+
+  Detection detection_;
+  double misfit_px_ = 0.0;
+  ObjectConstraintOptions options_;
+};
+
+TEST_F(ObjectConstraintTest, ByHandWithoutLoss) {
+  const ObjectConstraint constraint = Make();
+  const Eigen::VectorXd outline = ObjectResidualsOf(*constraint.outline, SphereAhead());
+  ASSERT_EQ(outline.size(), 3);
+  EXPECT_NEAR(outline[0], 0.0, 1e-9);
+  EXPECT_NEAR(outline[1], 0.5, 1e-9);
+  EXPECT_NEAR(outline[2], -8.0, 1e-9);
+  // 0.3 m at 0.1 m are 3 sigmas; six points count as one.
+  const Eigen::VectorXd depth = ObjectResidualsOf(*constraint.depth, SphereAhead());
+  ASSERT_EQ(depth.size(), 6);
+  EXPECT_NEAR(depth[0], 3.0 / std::sqrt(6.0), 1e-9);
+}
+
+TEST_F(ObjectConstraintTest, TheMisfitAddsToTheSigma) {
+  options_.misfit_factor = 0.5;
+  misfit_px_ = 3.0;
+  EXPECT_NEAR(WorstSquare(), 256.0 / (2.0 * 2.0 + 1.5 * 1.5), 1e-9);
+}
+
+TEST_F(ObjectConstraintTest, LinesCountAsSoManyAtMost) {
+  options_.max_effective_lines = 3.0;
+  EXPECT_NEAR(WorstSquare(), 64.0, 1e-9);
+  options_.max_effective_lines = 1.5;
+  EXPECT_NEAR(WorstSquare(), 32.0, 1e-9);
+}
+
+// The formulas of the losses at 8 sigmas.
+TEST_F(ObjectConstraintTest, EachLossByHand) {
+  options_.loss_scale = 4.0;
+  options_.loss = RobustLoss::kHuber;
+  EXPECT_NEAR(WorstSquare(), 2.0 * 4.0 * 8.0 - 16.0, 1e-9);
+  options_.loss = RobustLoss::kCauchy;
+  EXPECT_NEAR(WorstSquare(), 16.0 * std::log(5.0), 1e-9);
+  options_.loss = RobustLoss::kTukey;
+  EXPECT_NEAR(WorstSquare(), 16.0 / 3.0, 1e-9);  // as much as at its scale
+  options_.loss_scale = 8.01;
+  EXPECT_GT(WorstSquare(), 16.0 / 3.0);
+}
+
+TEST_F(ObjectConstraintTest, TheLossScaleIsAtLeastSoManyPixels) {
+  options_.loss = RobustLoss::kHuber;
+  options_.loss_scale = 4.0;
+  options_.min_loss_px = 7.9;  // less than 4 sigmas of 2 px
+  EXPECT_NEAR(WorstSquare(), 48.0, 1e-9);
+  options_.min_loss_px = 16.1;
+  EXPECT_NEAR(WorstSquare(), 64.0, 1e-9);
+}
+
+TEST_F(ObjectConstraintTest, DepthHasALossAndANumberOfPointsOfItsOwn) {
+  options_.depth.loss = RobustLoss::kCauchy;
+  options_.depth.loss_scale = 1.0;
+  options_.depth.sigma = 0.15;  // two sigmas
+  options_.depth.max_points = 2;
+  options_.depth.max_effective_points = 2.0;
+  const Eigen::VectorXd depth = ObjectResidualsOf(*Make().depth, SphereAhead());
+  ASSERT_EQ(depth.size(), 2);
+  EXPECT_NEAR(depth.squaredNorm(), 2.0 * std::log(5.0), 1e-9);
+  options_.depth.max_points = 0;
+  EXPECT_EQ(Make().depth, nullptr);
+}
+
+TEST_F(ObjectConstraintTest, IsNothingWithoutWhatItIsMadeOf) {
+  options_.residual = ObjectResidual::kAlgebraicPoint;  // not of support lines
+  EXPECT_EQ(Make().outline, nullptr);
+  options_.residual = ObjectResidual::kTangent;
+  detection_.lines.clear();
+  detection_.points.clear();
+  EXPECT_EQ(Make().outline, nullptr);
+  EXPECT_EQ(Make().depth, nullptr);
+}
+
+TEST_F(ObjectConstraintTest, AnObjectBehindTheCameraHasNoOutline) {
+  Ellipsoid behind = SphereAhead().ellipsoid;
+  behind.world_from_object.translation.z() = -3.0;
+  const ObjectConstraint constraint =
+      MakeObjectConstraint(kObjectCamera, {KeyframeId(), Rigid3(), &detection_}, detection_.lines,
+                           behind, 0.0, options_);
+  EXPECT_EQ(constraint.outline, nullptr);
+}
+
+TEST_F(ObjectConstraintTest, KeepsTheLaws) {
+  RandomGeometry random(1);
+  for (const RobustLoss loss :
+       {RobustLoss::kNone, RobustLoss::kHuber, RobustLoss::kCauchy, RobustLoss::kTukey}) {
+    options_.loss = loss;
+    options_.depth.loss = loss;
+    for (int i = 0; i < 5; ++i) {
+      const SeenEllipsoid state = RandomSeenEllipsoid(random);
+      detection_.lines = TangentsOf(RandomSeenEllipsoid(random), 12);
+      detection_.points.clear();
+      for (int k = 0; k < 8; ++k) {
+        detection_.points.push_back(state.cam_from_world *
+                                        state.ellipsoid.world_from_object.translation +
+                                    random.Vector(0.5));
+      }
+      const ObjectConstraint constraint =
+          MakeObjectConstraint(kObjectCamera, {KeyframeId(), state.cam_from_world, &detection_},
+                               detection_.lines, state.ellipsoid, 3.0, options_);
+      ExpectTrueObjectGradient(*constraint.outline, state);
+      ExpectTrueObjectGradient(*constraint.depth, state);
+    }
+  }
+}
+
+TEST(ObjectPrior, DependsOnDepth) {
+  ObjectConstraintOptions options;
+  options.prior.log_axes = 0.5;
+  options.prior_without_depth.log_axes = 0.1;
+  const ObjectBlocks start(SphereAhead());
+  ObjectBlocks blocks = start;
+  blocks.log_axes.x() += 0.2;
+  const double* parameters[] = {blocks.object.data(), blocks.log_axes.data()};
+  Eigen::Matrix<double, 9, 1> residuals;
+  for (const auto& [has_depth, expected] : {std::pair(true, 0.4), {false, 2.0}}) {
+    const auto prior = MakeObjectPrior(SphereAhead().ellipsoid, has_depth, options);
+    ASSERT_TRUE(prior->Evaluate(parameters, residuals.data(), nullptr));
+    EXPECT_NEAR(residuals[0], expected, 1e-12);
+  }
+}
+
+TEST(TakesLines, IsSoForTheTwoResidualsOfLines) {
+  EXPECT_TRUE(TakesLines(ObjectResidual::kTangent));
+  EXPECT_TRUE(TakesLines(ObjectResidual::kAlgebraicPlane));
+  EXPECT_FALSE(TakesLines(ObjectResidual::kAlgebraicPoint));
+  EXPECT_FALSE(TakesLines(ObjectResidual::kDistribution));
+  EXPECT_FALSE(TakesLines(ObjectResidual::kOverlap));
+}
+
+}  // namespace
+}  // namespace hullslam

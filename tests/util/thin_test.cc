@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "util/thin.h"
+
+#include <gtest/gtest.h>
+
+namespace hullslam {
+namespace {
+
+TEST(Thin, ChoosesEvenly) {
+  EXPECT_EQ(Thin(std::vector{0, 1, 2, 3, 4, 5, 6, 7, 8}, 3), (std::vector{0, 3, 6}));
+  EXPECT_EQ(Thin(std::vector{0, 1, 2, 3, 4}, 4), (std::vector{0, 1, 2, 3}));
+}
+
+TEST(Thin, KeepsFewElements) {
+  EXPECT_EQ(Thin(std::vector{4, 2}, 2), (std::vector{4, 2}));
+  EXPECT_EQ(Thin(std::vector{4, 2}, 9), (std::vector{4, 2}));
+}
+
+TEST(Thin, NoneOfNothing) {
+  EXPECT_TRUE(Thin(std::vector{4, 2}, 0).empty());
+  EXPECT_TRUE(Thin(std::vector<int>(), 3).empty());
+}
+
+}  // namespace
+}  // namespace hullslam
