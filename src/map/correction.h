@@ -31,7 +31,8 @@ struct CorrectionOutcome {
 // Then landmarks and objects are merged, covisibility is counted again for the keyframes whose
 // observations were merged, and the loop edge is added. An id of a merge or of the loop edge that
 // was replaced or culled since the snapshot is followed; one that is erased is passed over, like
-// the position of a landmark that is gone.
+// the position of a landmark that is gone. Scales must be finite and positive, else CheckError is
+// thrown and the map is unchanged.
 CorrectionOutcome ApplyCorrection(Map& map, const MapCorrection& correction,
                                   const ScaleLevels& levels);
 
