@@ -9,7 +9,8 @@ namespace hullslam {
 namespace {
 
 // In the order of the enumerators.
-constexpr std::array<std::string_view, 5> kNames = {"tangent", "algebraic_plane", "algebraic_point", "distribution", "overlap"};
+constexpr std::array<std::string_view, 5> kNames = {"tangent", "algebraic_plane", "algebraic_point",
+                                                    "distribution", "overlap"};
 
 }  // namespace
 

@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/rigid3.h"
 #include "hullslam/map/landmark.h"
-#include "hullslam/frame/sensor.h"
 
 namespace hullslam {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "hullslam/map/map.h"
 #include "hullslam/frame/sensor.h"
+#include "hullslam/map/map.h"
 
 namespace hullslam {
 

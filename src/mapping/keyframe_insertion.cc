@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "hullslam/util/check.h"
 #include "map/covisibility.h"
 #include "map/landmark_edits.h"
-#include "hullslam/util/check.h"
 #include "map/spanning_tree.h"
 
 namespace hullslam {
@@ -41,8 +41,8 @@ void AddKnownLandmarks(Map& map, KeyframeId id, const std::vector<LandmarkId>& l
   }
 }
 
-// Makes landmarks of keypoints with depth that show none yet: of all close ones, and of at least the
-// nearest hundred.
+// Makes landmarks of keypoints with depth that show none yet: of all close ones, and of at least
+// the nearest hundred.
 void AddDepthLandmarks(Map& map, KeyframeId id, const Sensor& sensor,
                        std::vector<LandmarkId>& created) {
   const std::shared_ptr<const Frame> frame = map.keyframes().At(id).frame;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "hullslam/map/map.h"
 #include "hullslam/frame/sensor.h"
+#include "hullslam/map/map.h"
 
 namespace hullslam {
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/map/map.h"
 #include "hullslam/frame/sensor.h"
+#include "hullslam/map/map.h"
 
 namespace hullslam {
 

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "hullslam/frame/image_input.h"
+#include "hullslam/frame/sensor.h"
+#include "hullslam/geometry/trajectory.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
-#include "hullslam/frame/sensor.h"
 #include "hullslam/system/options.h"
-#include "hullslam/geometry/trajectory.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
 
