@@ -22,7 +22,7 @@ bool IsIdentity(const MapCorrection::Pose& pose) {
          corrected.translation == snapshot.translation;
 }
 
-// How the world around each keyframe moves; also around culled ones.
+// How the world around each keyframe, culled or not, moves.
 class WorldChanges {
  public:
   WorldChanges(const Map& map, const MapCorrection& correction)
@@ -42,7 +42,7 @@ class WorldChanges {
     }
   }
 
-  // new_world_from_old_world of the nearest named ancestor. Null where nothing moves.
+  // new_world_from_old_world of the nearest named ancestor. Null if nothing moves there.
   const Sim3* Find(KeyframeId keyframe) const {
     if (keyframe.value >= named_.size() || named_[keyframe.value] == kNone) {
       return nullptr;
@@ -150,7 +150,7 @@ std::vector<MapCorrection::Position> NewPositions(const Map& map, const MapCorre
       positions.push_back({id, *change * landmark.position});
     }
   });
-  // They come last, so that they count where a landmark has both.
+  // The given positions come last, so they win if a landmark has both.
   for (const MapCorrection::Position& given : correction.positions) {
     const Landmark* landmark = map.landmarks().Find(given.landmark);
     if (landmark != nullptr && landmark->position != given.position) {

@@ -29,10 +29,11 @@ struct CorrectionOutcome {
 // the snapshot's own pose, to the last bit and with scale 1, nothing moves.
 //
 // Then landmarks and objects are merged, covisibility is counted again for the keyframes whose
-// observations were merged, and the loop edge is added. An id of a merge or of the loop edge that
-// was replaced or culled since the snapshot is followed; one that is erased is passed over, like
-// the position of a landmark that is gone. Scales must be finite and positive, else CheckError is
-// thrown and the map is unchanged.
+// observations were merged, and the loop edge is added. If a landmark, an object or a keyframe that
+// a merge or the loop edge names was replaced or culled since the snapshot, its replacement or
+// nearest ancestor is used. Merges of erased landmarks or objects and positions of missing
+// landmarks are passed over. Scales must be finite and positive, else CheckError is thrown and the
+// map is unchanged.
 CorrectionOutcome ApplyCorrection(Map& map, const MapCorrection& correction,
                                   const ScaleLevels& levels);
 

@@ -75,7 +75,7 @@ void UpdateCovisibility(Map& map, KeyframeId id) {
   }
   map.MutableKeyframe(id).covisible = std::move(edges);
 
-  // A parent is older than its first children, so that the tree stays a tree.
+  // This parent is older than its child, so the tree cannot get a cycle.
   const bool has_parent = map.keyframes().At(id).parent.IsValid();
   if (!has_parent && best_older.keyframe.IsValid()) {
     SetParent(map, id, best_older.keyframe);

@@ -8,15 +8,17 @@
 
 namespace hullslam {
 
-// Recounts the landmarks that `keyframe` shares with others and mends the edges at both ends. Edges
-// need 15 shared landmarks; where no other keyframe has as many, the best one is kept. A keyframe
-// without parent becomes the child of the older one it shares most with.
+// Counts the landmarks that `keyframe` shares with others and updates its edges at both ends. An
+// edge needs 15 shared landmarks. If no other keyframe shares that many, the one that shares most
+// gets an edge. A keyframe without parent becomes the child of the older keyframe that it shares
+// most with.
 void UpdateCovisibility(Map& map, KeyframeId keyframe);
 
 // Removes all edges of `keyframe`.
 void DetachCovisibility(Map& map, KeyframeId keyframe);
 
-// At most `count` neighbours, by falling number of shared landmarks, then by falling id.
+// At most `count` covisible keyframes, by decreasing number of shared landmarks, then by decreasing
+// id.
 std::vector<KeyframeId> BestCovisible(const Keyframe& keyframe, size_t count);
 
 // The landmarks that any of the keyframes observes, by increasing id.

@@ -27,7 +27,7 @@ void CheckLandmark(const Map& map, LandmarkId id, const Landmark& landmark,
   if (!landmark.position.allFinite()) {
     violations.push_back(Name(id) + " has no finite position");
   }
-  int support = 0;
+  int weight = 0;
   for (size_t i = 0; i < landmark.observations.size(); ++i) {
     const Observation& observation = landmark.observations[i];
     if (i > 0 && !(landmark.observations[i - 1].keyframe < observation.keyframe)) {
@@ -39,17 +39,17 @@ void CheckLandmark(const Map& map, LandmarkId id, const Landmark& landmark,
       violations.push_back(Name(id) + " is not observed by " + Name(observation.keyframe));
       continue;
     }
-    support += keyframe->frame->features.right_u[observation.keypoint] >= 0.0f ? 2 : 1;
+    weight += keyframe->frame->features.right_u[observation.keypoint] >= 0.0f ? 2 : 1;
   }
-  if (support != landmark.support) {
-    violations.push_back(Name(id) + " has its support miscounted");
+  if (weight != landmark.observation_weight) {
+    violations.push_back(Name(id) + " has a wrong observation weight");
   }
 }
 
 void CheckObservations(const Map& map, KeyframeId id, const Keyframe& keyframe,
                        std::vector<std::string>& violations) {
   if (keyframe.landmarks.size() != keyframe.frame->features.size()) {
-    violations.push_back(Name(id) + " has not one landmark slot a keypoint");
+    violations.push_back(Name(id) + " does not have one landmark entry per keypoint");
   }
   for (uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
     if (!keyframe.landmarks[i].IsValid()) {
@@ -63,7 +63,7 @@ void CheckObservations(const Map& map, KeyframeId id, const Keyframe& keyframe,
                                    });
     if (!known) {
       violations.push_back(Name(id) + " observes " + Name(keyframe.landmarks[i]) +
-                           ", which does not know");
+                           ", which has no such observation");
     }
   }
 }
@@ -103,14 +103,14 @@ void CheckObject(const Map& map, ObjectId id, const ObjectLandmark& object,
                    return a.first == b.first && std::abs(a.second - b.second) < 1e-9;
                  });
   if (!same_votes) {
-    violations.push_back(Name(id) + " has its votes miscounted");
+    violations.push_back(Name(id) + " has wrong votes");
   }
 }
 
 void CheckDetections(const Map& map, KeyframeId id, const Keyframe& keyframe,
                      std::vector<std::string>& violations) {
   if (keyframe.objects.size() != keyframe.frame->detections.size()) {
-    violations.push_back(Name(id) + " has not one object slot a detection");
+    violations.push_back(Name(id) + " does not have one object entry per detection");
   }
   for (uint32_t i = 0; i < keyframe.objects.size(); ++i) {
     if (!keyframe.objects[i].IsValid()) {
@@ -125,7 +125,7 @@ void CheckDetections(const Map& map, KeyframeId id, const Keyframe& keyframe,
                                          });
     if (!known) {
       violations.push_back(Name(id) + " observes " + Name(keyframe.objects[i]) +
-                           ", which does not know");
+                           ", which has no such observation");
     }
   }
 }
@@ -136,13 +136,14 @@ void CheckLinks(const Map& map, KeyframeId id, const Keyframe& keyframe,
     const Keyframe* other = map.keyframes().Find(edge.keyframe);
     const Covisible* back = other != nullptr ? FindEdge(*other, id) : nullptr;
     if (back == nullptr || back->shared != edge.shared) {
-      violations.push_back(Name(id) + " has an edge that " + Name(edge.keyframe) + " has not");
+      violations.push_back(Name(id) + " has an edge that " + Name(edge.keyframe) +
+                           " does not have");
     }
   }
   for (const KeyframeId child : keyframe.children) {
     const Keyframe* other = map.keyframes().Find(child);
     if (other == nullptr || other->parent != id) {
-      violations.push_back(Name(id) + " has a child that is not: " + Name(child));
+      violations.push_back(Name(id) + " has a child with another parent: " + Name(child));
     }
   }
   if (keyframe.parent.IsValid()) {
@@ -161,7 +162,7 @@ void CheckLoops(const Map& map, KeyframeId id, const Keyframe& keyframe,
     const Keyframe* other = map.keyframes().Find(loop);
     if (loop == id || other == nullptr ||
         std::find(other->loops.begin(), other->loops.end(), id) == other->loops.end()) {
-      violations.push_back(Name(id) + " has a loop edge that " + Name(loop) + " has not");
+      violations.push_back(Name(id) + " has a loop edge that " + Name(loop) + " does not have");
     }
     if (i > 0 && !(keyframe.loops[i - 1] < loop)) {
       violations.push_back(Name(id) + " has loop edges out of order");

@@ -8,10 +8,10 @@
 
 namespace hullslam {
 
-// What is wrong with a map, one sentence per fault: observations known at one end only, support or
-// votes miscounted, covisibility, loop edges or tree links known at one end only, a cycle in the
+// What is inconsistent in a map, one sentence per fault: observations, covisibility edges, loop
+// edges or tree links that only one end knows, wrong observation weights or votes, a cycle in the
 // tree, an object whose reference is not the first keyframe that observes it, values that are not
-// finite. Empty for a sound map.
+// finite. Empty for a consistent map.
 std::vector<std::string> FindViolations(const Map& map);
 
 }  // namespace hullslam

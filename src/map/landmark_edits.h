@@ -6,12 +6,13 @@
 
 namespace hullslam {
 
-// Chooses the landmark's descriptor anew: the observed one with the least median distance to the
+// Sets the landmark's descriptor to the observed one with the smallest median distance to the
 // others (Mur-Artal and Tardos 2017).
 void UpdateDescriptor(Map& map, LandmarkId landmark);
 
-// Viewing direction and the distances between which the landmark can be recognised, from the
-// keyframes that observe it and the level at which the reference keyframe does.
+// Sets the viewing direction and the range of distances in which the landmark can be recognised.
+// They follow from the keyframes that observe it and from the level at which the reference keyframe
+// does.
 void UpdateViewingGeometry(Map& map, LandmarkId landmark, const ScaleLevels& levels);
 
 }  // namespace hullslam

@@ -5,7 +5,7 @@ namespace hullslam {
 namespace {
 
 constexpr double kMinCosView = 0.5;      // 60 degrees
-constexpr double kDistanceMargin = 1.2;  // on both ends of the range: one level of the pyramid
+constexpr double kDistanceMargin = 1.2;  // at both ends of the range; one level of the pyramid
 
 }  // namespace
 

@@ -10,17 +10,18 @@
 
 namespace hullslam {
 
-// A landmark as a camera should see it.
+// How a camera should see a landmark.
 struct LandmarkView {
   Eigen::Vector3d point_in_cam = Eigen::Vector3d::Zero();  // m
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();         // px, undistorted
   double right_u = 0.0;                                    // px in the virtual right image
-  double cos_view = 0.0;  // of the angle to the mean direction it was seen from
-  int level = 0;          // of the pyramid at which its patch should look alike
+  double cos_view = 0.0;  // cosine of the angle to the landmark's viewing direction
+  int level = 0;          // level of the pyramid at which it should be found
 };
 
-// Nothing where the camera cannot recognise it: behind or outside the image, much nearer or farther
-// than it was seen from, or from a direction more than 60 degrees off.
+// Null if the camera cannot recognise the landmark: it is behind the camera or outside the image,
+// it is much nearer or farther than it was observed, or the camera sees it from a direction more
+// than 60 degrees away from its viewing direction.
 std::optional<LandmarkView> ViewLandmark(const Sensor& sensor, const Rigid3& cam_from_world,
                                          const Landmark& landmark);
 

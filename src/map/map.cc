@@ -11,12 +11,13 @@
 namespace hullslam {
 namespace {
 
-// With depth an observation holds a landmark in all three dimensions, as two views without do.
-int SupportOf(const Keyframe& keyframe, uint32_t keypoint) {
+// An observation with depth constrains all three coordinates of a landmark, like two observations
+// without depth.
+int ObservationWeight(const Keyframe& keyframe, uint32_t keypoint) {
   return keyframe.frame->features.right_u[keypoint] >= 0.0f ? 2 : 1;
 }
 
-// Where the observation by `keyframe` is, or would be.
+// The position of the observation by `keyframe`, or where it would be inserted.
 auto PlaceOfObservation(auto& observations, KeyframeId keyframe) {
   return std::lower_bound(
       observations.begin(), observations.end(), keyframe,
@@ -79,7 +80,7 @@ LandmarkId Map::AddLandmark(const Eigen::Vector3d& position, KeyframeId created_
 
 bool Map::AddObservation(LandmarkId landmark, KeyframeId keyframe, uint32_t keypoint) {
   const Keyframe& observer = keyframes_.At(keyframe);
-  Check(keypoint < observer.landmarks.size(), "no keypoint with this index");
+  Check(keypoint < observer.landmarks.size(), "the keyframe has no keypoint with this index");
   const Landmark& observed = landmarks_.At(landmark);
   if (observer.landmarks[keypoint].IsValid() ||
       FindObservation(observed.observations, keyframe) != observed.observations.end()) {
@@ -88,7 +89,7 @@ bool Map::AddObservation(LandmarkId landmark, KeyframeId keyframe, uint32_t keyp
   Landmark& changed = landmarks_.Mutable(landmark);
   changed.observations.insert(PlaceOfObservation(changed.observations, keyframe),
                               {keyframe, keypoint});
-  changed.support += SupportOf(observer, keypoint);
+  changed.observation_weight += ObservationWeight(observer, keypoint);
   keyframes_.Mutable(keyframe).landmarks[keypoint] = landmark;
   return true;
 }
@@ -99,9 +100,9 @@ void Map::RemoveObservation(LandmarkId landmark, KeyframeId keyframe) {
   Check(it != changed.observations.end(), "the keyframe does not observe the landmark");
   Keyframe& observer = keyframes_.Mutable(keyframe);
   observer.landmarks[it->keypoint] = LandmarkId();
-  changed.support -= SupportOf(observer, it->keypoint);
+  changed.observation_weight -= ObservationWeight(observer, it->keypoint);
   changed.observations.erase(it);
-  if (changed.support <= 2) {
+  if (changed.observation_weight <= 2) {
     EraseLandmark(landmark);
   } else if (changed.reference == keyframe) {
     changed.reference = changed.observations.front().keyframe;
@@ -138,7 +139,7 @@ ObjectId Map::AddObject() { return objects_.Insert(ObjectLandmark()); }
 
 bool Map::AddObservation(ObjectId object, KeyframeId keyframe, uint32_t detection) {
   const Keyframe& observer = keyframes_.At(keyframe);
-  Check(detection < observer.objects.size(), "no detection with this index");
+  Check(detection < observer.objects.size(), "the keyframe has no detection with this index");
   const ObjectLandmark& observed = objects_.At(object);
   if (observer.objects[detection].IsValid() ||
       FindObservation(observed.observations, keyframe) != observed.observations.end()) {
@@ -164,7 +165,7 @@ void Map::RemoveObservation(ObjectId object, KeyframeId keyframe) {
   if (!changed.observations.empty()) {
     changed.reference = changed.observations.front().keyframe;
   }
-  // Counted anew: taking the score off would leave a rest by rounding.
+  // Counted again, because subtracting the score would leave a rounding error.
   changed.votes.clear();
   for (const ObjectObservation& left : changed.observations) {
     const Detection& seen = keyframes_.At(left.keyframe).frame->detections[left.detection];
@@ -264,7 +265,7 @@ double Map::ScaleOf(KeyframeId keyframe) const {
 }
 
 std::optional<KeyframeId> Map::KeyframeOfFrame(FrameId frame) const {
-  // Keyframes are made in the order of their frames; the newest are asked for most.
+  // Keyframes are made in the order of their frames. Most calls ask for one of the newest.
   for (uint32_t number = keyframes_.NextId().value; number-- > 0;) {
     const KeyframeId id(number);
     const Keyframe* keyframe = keyframes_.Find(id);

@@ -7,8 +7,9 @@ namespace hullslam {
 
 void SetParent(Map& map, KeyframeId child, KeyframeId parent);
 
-// Hands the children of `keyframe` to the keyframes they share most landmarks with among its parent
-// and the siblings already handed over, else to its parent; then takes it out of the tree.
+// Removes `keyframe` from the tree. Each of its children gets a new parent: of the parent of
+// `keyframe` and the siblings that already have a new parent, the one that it shares most landmarks
+// with. A child that shares none with them becomes a child of the parent of `keyframe`.
 void DetachFromTree(Map& map, KeyframeId keyframe);
 
 }  // namespace hullslam

@@ -7,8 +7,8 @@ namespace hullslam {
 namespace {
 
 constexpr double kMinFoundRatio = 0.25;
-constexpr uint32_t kTrialKeyframes = 2;  // after which too little support is a reason to go
-constexpr int kMaxWeakSupport = 3;
+constexpr uint32_t kTrialKeyframes = 2;  // later a small weight is a reason to erase
+constexpr int kMaxWeakWeight = 3;
 constexpr int kOtherObservers = 3;
 constexpr double kRedundantShare = 0.9;
 
@@ -54,7 +54,7 @@ void CullRecentLandmarks(Map& map, KeyframeId current, std::vector<LandmarkId>& 
     }
     const uint32_t age = current.value - landmark->created_by.value;
     const bool is_seldom_found = landmark->found < kMinFoundRatio * landmark->visible;
-    const bool is_weak = age >= kTrialKeyframes && landmark->support <= kMaxWeakSupport;
+    const bool is_weak = age >= kTrialKeyframes && landmark->observation_weight <= kMaxWeakWeight;
     if (is_seldom_found || is_weak) {
       map.EraseLandmark(id);
       return true;

@@ -8,14 +8,15 @@
 
 namespace hullslam {
 
-// Removes of the `recent` landmarks those that were found in less than a quarter of the frames they
-// should have been seen in, or that are still held by too little two keyframes after they came
-// (Mur-Artal and Tardos 2015, section VI.B). What is gone, or has stood the test for three
-// keyframes, leaves the list.
+// Removes `recent` landmarks from the map if they were found in less than a quarter of the frames
+// in which they should have been visible, or if their observation weight is still too small two
+// keyframes after they were made (Mur-Artal and Tardos 2015, section VI.B). Landmarks that no
+// longer exist or that are three keyframes old leave the list.
 void CullRecentLandmarks(Map& map, KeyframeId current, std::vector<LandmarkId>& recent);
 
-// Removes those of the keyframes covisible with `current` nine tenths of whose close landmarks are
-// seen by three others at the same or a finer level (section VI.E). Returns how many.
+// Removes redundant keyframes among those covisible with `current`: three other keyframes see nine
+// tenths of their close landmarks at the same or a finer level (section VI.E). Returns how many
+// were removed.
 int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor);
 
 }  // namespace hullslam

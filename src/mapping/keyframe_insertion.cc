@@ -22,7 +22,7 @@ void ApplySightings(Map& map, const std::vector<Sighting>& sightings) {
   }
 }
 
-// Adds an observation and brings what follows from the observations up to date.
+// Adds an observation and updates what depends on the observations of the landmark.
 void Observe(Map& map, LandmarkId landmark, KeyframeId keyframe, uint32_t keypoint,
              const ScaleLevels& levels) {
   if (map.AddObservation(landmark, keyframe, keypoint)) {
@@ -41,8 +41,8 @@ void AddKnownLandmarks(Map& map, KeyframeId id, const std::vector<LandmarkId>& l
   }
 }
 
-// Makes landmarks of keypoints with depth that show none yet: of all close ones, and of at least
-// the nearest hundred.
+// Makes landmarks of keypoints with depth that show none yet: of all close ones and of the nearest
+// hundred.
 void AddDepthLandmarks(Map& map, KeyframeId id, const Sensor& sensor,
                        std::vector<LandmarkId>& created) {
   const std::shared_ptr<const Frame> frame = map.keyframes().At(id).frame;
@@ -69,7 +69,7 @@ void AddDepthLandmarks(Map& map, KeyframeId id, const Sensor& sensor,
 
 std::vector<KeyframeId> InsertInitialMap(Map& map, const InitialMap& initial, const Sensor& sensor,
                                          std::vector<LandmarkId>& created) {
-  Check(map.keyframes().empty(), "a map has one initial map");
+  Check(map.keyframes().empty(), "an initial map needs an empty map");
   std::vector<KeyframeId> ids;
   for (const InitialMap::View& view : initial.views) {
     ids.push_back(map.AddKeyframe(view.frame, view.cam_from_world));
@@ -99,7 +99,8 @@ KeyframeId InsertKeyframe(Map& map, const KeyframeRequest& request, const Sensor
   AddKnownLandmarks(map, id, request.landmarks, sensor.levels);
   UpdateCovisibility(map, id);
   if (!map.keyframes().At(id).parent.IsValid()) {
-    // All landmarks of the request are gone meanwhile. The keyframe must not become a second root.
+    // None of the landmarks of the request exists any more. The keyframe must not become a second
+    // root.
     SetParent(map, id, map.NearestAlive(request.pose.reference));
   }
   AddDepthLandmarks(map, id, sensor, created);

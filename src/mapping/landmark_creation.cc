@@ -18,14 +18,14 @@ namespace {
 constexpr size_t kNeighbours = 10;
 constexpr double kMaxCosParallax = 0.9998;  // about 1.1 degrees, for pairs without depth
 
-// One keypoint of one keyframe, with what triangulation asks of it.
+// A keypoint of a keyframe with what triangulation needs.
 struct View {
   const Keyframe* keyframe = nullptr;
   uint32_t keypoint = 0;
   Eigen::Vector2d pixel;
   Eigen::Vector2d normalized;
   Eigen::Vector3d ray_in_world;  // unit
-  double depth = 0.0;            // m, 0 where unknown
+  double depth = 0.0;            // m, 0 if unknown
   double scale = 1.0;            // of the keypoint's level
   PointMeasurement measurement;
 };
@@ -46,7 +46,7 @@ View MakeView(const Keyframe& keyframe, uint32_t keypoint, const Sensor& sensor)
   return view;
 }
 
-// Cosine of the parallax between the two eyes of the virtual stereo pair; above 1 without depth.
+// Cosine of the parallax of the virtual stereo pair. 2, larger than any cosine, without depth.
 double CosStereoParallax(const View& view, double baseline) {
   return view.depth > 0.0 ? std::cos(2.0 * std::atan2(0.5 * baseline, view.depth)) : 2.0;
 }
@@ -75,8 +75,8 @@ bool Reprojects(const View& view, const Eigen::Vector3d& point, const Sensor& se
   return IsInlier(sensor.camera, view.measurement, view.keyframe->cam_from_world * point);
 }
 
-// A patch is found at a finer level the farther away it is seen from: the product of distance and
-// scale stays the same.
+// The farther away a patch is, the finer is the level at which it is found. Distance times scale is
+// constant.
 bool HasConsistentScale(const View& a, const View& b, const Eigen::Vector3d& point,
                         const Sensor& sensor) {
   const double distance_a = (a.keyframe->cam_from_world * point).norm();
@@ -102,7 +102,7 @@ std::vector<uint32_t> FreeKeypoints(const Keyframe& keyframe) {
 std::vector<Match> FindPairs(const Keyframe& a, const Keyframe& b, const Sensor& sensor) {
   const Rigid3 b_from_a = b.cam_from_world * Inverse(a.cam_from_world);
   if (b_from_a.translation.norm() < sensor.baseline()) {
-    return {};  // the depth camera does better
+    return {};  // depth is more precise than such a short baseline
   }
   Eigen::Matrix3d calibration = Eigen::Matrix3d::Identity();
   calibration(0, 0) = sensor.camera.fx;

@@ -8,9 +8,10 @@
 
 namespace hullslam {
 
-// Triangulates keypoints of `keyframe` that are no landmarks yet with those of its best covisible
-// keyframes, and takes depth where the parallax is smaller than that of the virtual stereo pair
-// (Mur-Artal and Tardos 2017). Returns the new landmarks.
+// Makes landmarks of keypoints of `keyframe` and of its best covisible keyframes that match and
+// show no landmark yet. They are triangulated if the parallax is larger than that of the virtual
+// stereo pair (Mur-Artal and Tardos 2017), and located by depth otherwise. Returns the new
+// landmarks.
 std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId keyframe, const Sensor& sensor);
 
 }  // namespace hullslam

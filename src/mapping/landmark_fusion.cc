@@ -37,14 +37,15 @@ void Join(Map& map, LandmarkId landmark, LandmarkId other, const ScaleLevels& le
   if (landmark == other) {
     return;
   }
-  const bool keep = map.landmarks().At(landmark).support >= map.landmarks().At(other).support;
+  const bool keep = map.landmarks().At(landmark).observation_weight >=
+                    map.landmarks().At(other).observation_weight;
   const LandmarkId kept = keep ? landmark : other;
   map.ReplaceLandmark(keep ? other : landmark, kept);
   UpdateDescriptor(map, kept);
   UpdateViewingGeometry(map, kept, levels);
 }
 
-// Searches the landmarks in one keyframe and joins what is found.
+// Searches the landmarks in one keyframe, and merges or adds what is found.
 void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landmarks,
               const Sensor& sensor) {
   const std::shared_ptr<const Frame> frame = map.keyframes().At(target).frame;

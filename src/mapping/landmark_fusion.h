@@ -6,10 +6,11 @@
 
 namespace hullslam {
 
-// Joins landmarks that are the same point: those of `keyframe` are searched by projection in its
-// neighbours and the neighbours' neighbours, and theirs in `keyframe`. Of two the one with less
-// support is replaced; a keypoint that was free observes the landmark from now on. Edges of
-// `keyframe` are brought up to date.
+// Merges landmarks that are the same point. The landmarks of `keyframe` are searched by projection
+// in its covisible keyframes and in those covisible with these, and the landmarks of all of them in
+// `keyframe`. If the keypoint found shows another landmark, the one with the smaller observation
+// weight is replaced; otherwise the keypoint becomes an observation. Then the covisibility of
+// `keyframe` is updated.
 void FuseLandmarks(Map& map, KeyframeId keyframe, const Sensor& sensor);
 
 }  // namespace hullslam

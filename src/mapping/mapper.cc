@@ -67,7 +67,7 @@ void Mapper::Apply(const MapCorrection& correction, const Cancellation*) {
   }
 }
 
-// All that a new keyframe gives rise to.
+// Everything that follows from a new keyframe.
 void Mapper::ExtendMap(KeyframeId keyframe, const Cancellation* hurry) {
   const auto must_hurry = [&] { return hurry != nullptr && hurry->IsRequested(); };
   {

@@ -16,24 +16,24 @@
 
 namespace hullslam {
 
-// Owns the live map: makes keyframes, creates, fuses and culls landmarks, maps objects, adjusts the
-// neighbourhood.
+// Owns the live map. It adds keyframes, creates, fuses and culls landmarks, maps objects, and runs
+// bundle adjustment.
 class Mapper {
  public:
   using Publish = std::function<void(std::shared_ptr<const Map>)>;
 
-  // `sensor` must outlive the mapper. `publish` is called in Process with every snapshot that
-  // others should see.
+  // `sensor` must outlive the mapper. `publish` is called with every snapshot that others
+  // should see.
   Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
          Publish publish);
 
-  // Does what the message asks for. `hurry` (may be null) is requested while another message waits:
-  // then the steps that can be left out are left out. Throws CheckError for an initial map in a map
-  // that is not empty.
+  // Does what the message asks for. `hurry` (may be null) is requested while another message waits.
+  // The mapper then leaves out what is not necessary. Throws CheckError for an initial map if the
+  // map is not empty.
   void Process(const MapMessage& message, const Cancellation* hurry);
 
-  // To be called once, at the end: adjusts the whole map where that is wanted, and publishes it.
-  // Ends early, with what it has, when `cancellation` (may be null) asks.
+  // To be called once, at the end. Adjusts the whole map if mapping.final_bundle_adjustment is set,
+  // and publishes it. If `cancellation` (may be null) is requested, it ends early with what it has.
   void Finish(const Cancellation* cancellation);
 
   const StageTimes& times() const { return times_; }
@@ -61,7 +61,7 @@ class Mapper {
   StageTimes times_;
   ObjectMapper object_mapper_;
   Map map_;
-  std::vector<LandmarkId> recent_;  // landmarks that have yet to prove themselves
+  std::vector<LandmarkId> recent_;  // new landmarks that CullRecentLandmarks checks
 };
 
 }  // namespace hullslam

@@ -5,12 +5,12 @@ namespace hullslam {
 
 void MappingOptions::Bind(OptionTable& options) {
   options.Add("mapping.local_keyframes", &local_keyframes, Range::AtLeast(2),
-              "keyframes that local bundle adjustment moves, at most");
+              "largest number of keyframes that local bundle adjustment moves");
   options.Add("mapping.fixed_keyframes", &fixed_keyframes, Range::AtLeast(1),
-              "keyframes that hold local bundle adjustment, at most");
+              "largest number of fixed keyframes in local bundle adjustment");
   options.Add("mapping.cull_keyframes", &cull_keyframes, "remove redundant keyframes");
   options.Add("mapping.final_bundle_adjustment", &final_bundle_adjustment,
-              "adjust the whole map once at the end of the run");
+              "run a global bundle adjustment once at the end of the run");
 }
 
 }  // namespace hullslam

@@ -21,8 +21,9 @@
 namespace hullslam {
 namespace {
 
-// Up to here the poses share so many points that their reduced system is nearly full, and a dense
-// solver is quicker; CHOLMOD would also start threads that take the tracker's core.
+// Up to this number, nearly all poses share points, so the reduced system is nearly full and a
+// dense solver is faster. CHOLMOD would also start threads, which take time from the tracker's
+// core.
 constexpr size_t kMaxDensePoses = 60;
 
 struct BundleObservation {
@@ -56,7 +57,7 @@ std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
   return std::make_unique<ReprojectionCost>(camera, measurement);
 }
 
-// The blocks of parameters and the observations between them.
+// The parameter blocks and the observations that connect them.
 class Bundle {
  public:
   Bundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
@@ -97,14 +98,15 @@ class Bundle {
     return summary.IsSolutionUsable();
   }
 
-  // Sets aside what has no residual to start from: points that are not in front of the camera.
+  // Leaves out observations without a residual at the start: their points are not in front of the
+  // camera.
   void ExcludeUndefined() {
     for (BundleObservation& observation : observations_) {
       observation.is_inlier = Chi2(observation) < std::numeric_limits<double>::infinity();
     }
   }
 
-  // Decides anew which observations are inliers.
+  // Decides again which observations are inliers.
   void Classify() {
     for (BundleObservation& observation : observations_) {
       observation.is_inlier = Chi2(observation) <= observation.bound;
@@ -213,7 +215,7 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
   if (!bundle.Solve(options, options.robust_iterations, true, cancellation, result)) {
     return result;
   }
-  // Errors that are not minimised yet say nothing about outliers.
+  // After a cancelled round the errors are not minimal, so they do not tell which are outliers.
   if (cancellation == nullptr || !cancellation->IsRequested()) {
     bundle.Classify();
     if (!bundle.Solve(options, options.final_iterations, false, cancellation, result)) {

@@ -14,31 +14,32 @@
 
 namespace hullslam {
 
-// What a bundle adjustment moves and what holds it. Ids are in increasing order.
+// What a bundle adjustment optimises and what it keeps fixed. Ids are in increasing order.
 struct BundleWindow {
   std::vector<KeyframeId> moving;
-  std::vector<KeyframeId> fixed;  // observe the landmarks too
+  std::vector<KeyframeId> fixed;  // they observe the landmarks too
   std::vector<LandmarkId> landmarks;
-  std::vector<ObjectId> objects;  // their quadrics move too; all of them have a shape
+  std::vector<ObjectId> objects;  // their quadrics are optimised; all of them have a shape
 };
 
-// The keyframe and those it shares most landmarks with (at most `max_moving` in all), their
-// landmarks, and the keyframes that observe most of these besides (at most `max_fixed`). The root
-// of the spanning tree never moves; where nothing would be fixed, the oldest keyframe is. With
-// WindowObjects::kMapped also the mapped objects that the moving keyframes observe.
+// The keyframe `center` and those it shares most landmarks with (at most `max_moving` in all) move.
+// The window has all landmarks that they observe. Of the other keyframes, those that observe most
+// of these landmarks are fixed (at most `max_fixed`). The root of the spanning tree never moves. If
+// no keyframe would be fixed, the oldest one is. With WindowObjects::kMapped the window also has
+// the mapped objects that the moving keyframes observe.
 enum class WindowObjects { kNone, kMapped };
 BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, size_t max_fixed,
                          WindowObjects objects = WindowObjects::kNone);
-// Every keyframe, landmark and (if asked for) mapped object; the root of the spanning tree is
-// fixed.
+// All keyframes, all landmarks and, if asked for, the mapped objects. Only the root of the spanning
+// tree is fixed.
 BundleWindow GlobalWindow(const Map& map, WindowObjects objects = WindowObjects::kNone);
 
 // How the problem is solved.
 struct BundleOptions {
-  int robust_iterations = 5;  // with Huber's loss; then outliers are set aside
-  int final_iterations = 10;  // without it, inliers only
+  int robust_iterations = 5;  // with Huber's loss; outliers are then left out
+  int final_iterations = 10;  // without Huber's loss, inliers only
   double function_tolerance = 1e-4;
-  int threads = 1;  // more than one: results differ in the last bits from run to run
+  int threads = 1;  // with more than one, the last bits differ from run to run
   ObjectBundleOptions objects = {};
 };
 
@@ -47,26 +48,26 @@ struct BundleResult {
   std::vector<std::pair<LandmarkId, Eigen::Vector3d>> positions;
   std::vector<std::pair<LandmarkId, KeyframeId>> outliers;  // observations to be removed
   std::vector<std::pair<ObjectId, Ellipsoid>> ellipsoids;
-  // Objects that came out not finite or with a half axis more than three times larger or smaller:
-  // they are left as they were and should be checked.
+  // Objects whose result is not finite or has a half axis that changed by more than a factor of
+  // three. They keep the shape that they had and should be checked.
   std::vector<ObjectId> failed_objects;
-  bool is_usable = false;  // false where the solver failed: the other fields are empty
+  bool is_usable = false;  // false if the solver failed; then there is no result to apply
   int residuals = 0;
   int iterations = 0;
 };
 
-// Minimises the reprojection errors of the window's landmarks in its keyframes, in Ceres with a
-// Schur complement on the points; and with them, for each object of the window, the constraints of
-// its detections (MakeObjectConstraint) and its prior (MakeObjectPrior) about what it is when the
-// adjustment begins. Where that fails it is done again without the objects, which are then all
-// among the failed ones. Ends early, with what it has, when `cancellation` (may be null) asks;
-// before the first round is done it calls no observation an outlier but those of points that are
+// Minimises the reprojection errors of the window's landmarks in its keyframes, with Ceres and a
+// Schur complement on the points. Each object of the window adds the constraints of its detections
+// (MakeObjectConstraint) and a prior (MakeObjectPrior) at the shape that it has at the beginning.
+// If the solver fails, the adjustment is repeated without objects, and all objects are reported as
+// failed. If `cancellation` (may be null) is requested, the adjustment ends early and returns what
+// it has. If that happens in the first round, the only outliers are observations of points that are
 // not in front of the camera.
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& options, const Cancellation* cancellation);
 
-// Writes the result into the map it was made from, or one that has changed since: what is gone
-// meanwhile is passed over.
+// Writes the result into the map that it was computed from. The map may have changed since then:
+// what no longer exists is passed over.
 void ApplyBundle(Map& map, const BundleResult& result, const ScaleLevels& levels);
 
 }  // namespace hullslam

@@ -9,7 +9,8 @@
 namespace hullslam {
 namespace {
 
-// Keyframes outside `inside` (sorted) that observe the landmarks, most observations first.
+// At most `count` keyframes that observe the landmarks and are not in `inside` (sorted), those with
+// most observations first.
 std::vector<KeyframeId> OuterObservers(const Map& map, const std::vector<LandmarkId>& landmarks,
                                        const std::vector<KeyframeId>& inside, size_t count) {
   std::map<KeyframeId, int> shared;
@@ -35,7 +36,7 @@ std::vector<KeyframeId> OuterObservers(const Map& map, const std::vector<Landmar
   return ids;
 }
 
-bool HoldsPoses(const ObjectLandmark& object) {
+bool ConstrainsPoses(const ObjectLandmark& object) {
   return object.state == ObjectState::kMapped && object.has_shape;
 }
 
@@ -43,7 +44,7 @@ std::vector<ObjectId> ObservedObjects(const Map& map, const std::vector<Keyframe
   std::set<ObjectId> objects;
   for (const KeyframeId keyframe : keyframes) {
     for (const ObjectId object : map.keyframes().At(keyframe).objects) {
-      if (object.IsValid() && HoldsPoses(map.objects().At(object))) {
+      if (object.IsValid() && ConstrainsPoses(map.objects().At(object))) {
         objects.insert(object);
       }
     }

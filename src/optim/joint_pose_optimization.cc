@@ -33,8 +33,8 @@ class JointProblem {
   }
 
  private:
-  // From the start, in the camera frame; its derivative by Retract is the identity to first order
-  // in the motion, which is enough for a weak prior.
+  // The motion from the start to `pose`, in the camera frame. Linearize takes the identity as its
+  // derivative, which is exact at the start only but good enough for a weak prior.
   Vector6d Motion(const Rigid3& pose) const {
     const Rigid3 moved_from_start = pose * world_from_start_;
     Vector6d motion;
@@ -48,7 +48,7 @@ class JointProblem {
   Vector6d information_;
 };
 
-bool IsHeld(const JointPoseResult& result, const JointPoseOptions& options) {
+bool IsConstrained(const JointPoseResult& result, const JointPoseOptions& options) {
   return result.points.inlier_count >= 3 || result.used_objects >= options.objects.min_objects;
 }
 
@@ -69,7 +69,7 @@ JointPoseResult OptimizeJointPose(const PinholeCamera& camera, const Rigid3& cam
   pose = cam_from_world;
   result.points.is_inlier.assign(observations.size(), 0);
   internal::ChooseInliers(camera, observations, internal::InlierRule::kInFront, result.points);
-  for (int round = 0; round < options.points.rounds && IsHeld(result, options); ++round) {
+  for (int round = 0; round < options.points.rounds && IsConstrained(result, options); ++round) {
     const internal::PointTerms points(camera, observations, result.points.is_inlier,
                                       round < options.points.robust_rounds);
     const JointProblem problem(points, terms, cam_from_world, options);
@@ -78,7 +78,7 @@ JointPoseResult OptimizeJointPose(const PinholeCamera& camera, const Rigid3& cam
     terms.Choose(pose);
     terms.Write(result);
   }
-  if (!IsHeld(result, options)) {
+  if (!IsConstrained(result, options)) {
     pose = cam_from_world;
   }
   return result;

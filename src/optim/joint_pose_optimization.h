@@ -16,8 +16,8 @@ namespace hullslam {
 struct PoseObject {
   Ellipsoid ellipsoid;                   // world frame
   const Detection* detection = nullptr;  // must outlive the call
-  std::vector<SilhouetteLine> lines;     // the detection's, or these moved
-  double misfit_px = 0.0;                // of the ellipsoid to these lines
+  std::vector<SilhouetteLine> lines;     // of the detection, maybe moved by misfit compensation
+  double misfit_px = 0.0;                // the misfit that is left in these lines
 };
 
 struct JointPoseOptions {
@@ -27,19 +27,20 @@ struct JointPoseOptions {
 
 struct JointPoseResult {
   PoseOptimizationResult points;     // the pose too
-  std::vector<uint8_t> object_used;  // one an object; 0: dropped or without residual
+  std::vector<uint8_t> object_used;  // one per object; 0 if dropped or without residual
   int used_objects = 0;
-  int dropped_objects = 0;  // half of their lines or more were outliers
+  int dropped_objects = 0;  // half of their residuals or more were outliers
 };
 
-// As OptimizePose, with the outlines of objects beside the points: it minimises
+// Like OptimizePose, but mapped objects constrain the pose together with the points. It minimises
 //   sum over inlier points of rho_Huber(chi^2)
-//   + the outline constraints of the used objects (MakeObjectConstraint), which are held fixed
-//   + |rotation / prior_rotation|^2 + |translation / prior_translation|^2 from the start.
-// After each round points are chosen anew, and so are objects: an object is dropped when half of
-// its residuals or more are outliers. With fewer than three inliers and fewer than min_objects used
-// objects the start is given back. Without objects the result is that of OptimizePose to the last
-// bit.
+//   + the outline constraints of the used objects (MakeObjectConstraint); their quadrics are fixed
+//   + |rotation / prior_rotation|^2 + |translation / prior_translation|^2 of the motion from the
+//     start.
+// After each round the inlier points and the used objects are chosen again. An object is dropped if
+// half of its residuals or more are outliers. With fewer than three inliers and fewer than
+// min_objects used objects the result is the start. Without objects the result is that of
+// OptimizePose to the last bit.
 JointPoseResult OptimizeJointPose(const PinholeCamera& camera, const Rigid3& cam_from_world,
                                   std::span<const PoseObservation> observations,
                                   std::span<const PoseObject> objects,

@@ -10,9 +10,9 @@
 namespace hullslam::internal {
 namespace {
 
-constexpr double kMaxAxisChange = 3.0;  // more is no adjustment of the quadric that was there
+constexpr double kMaxAxisChange = 3.0;  // a larger change is a failure, not an adjustment
 
-// Half axes may only be so different from before.
+// Whether the result is finite and no half axis has changed by more than kMaxAxisChange.
 bool IsPlausible(const Ellipsoid& after, const Ellipsoid& before) {
   const Eigen::Array3d ratio = after.half_axes.array() / before.half_axes.array();
   return after.world_from_object.ToMatrix().allFinite() && (ratio > 1.0 / kMaxAxisChange).all() &&
@@ -69,7 +69,7 @@ void ObjectBundle::AddView(const Map& map, const ObjectObservation& seen, double
   object.has_depth |= !detection.points.empty();
 }
 
-// Passes over a term that is null or not defined at the start, where the solver would fail.
+// Adds the term, unless it is null or not defined at the start: there the solver would fail.
 void ObjectBundle::AddTerm(const Rigid3& cam_from_world, size_t pose,
                            std::unique_ptr<ceres::CostFunction> cost) {
   if (cost == nullptr) {
@@ -100,9 +100,9 @@ void ObjectBundle::AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>&
 
 void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold,
                                  ceres::ParameterBlockOrdering& ordering) {
-  // Ceres sorts a group by address. A group holds the blocks of one vector only, so that their
-  // order is that of the vector, not of where two vectors happen to lie: else no two runs are
-  // alike.
+  // Ceres sorts the blocks of a group by address. Each group has the blocks of one vector only, so
+  // they stay in the order of the vector. With blocks of two vectors the order would depend on
+  // where these are in memory, and results would differ from run to run.
   for (Object& object : objects_) {
     problem.SetManifold(object.pose.data(), &manifold);
     ordering.AddElementToGroup(object.pose.data(), 2);

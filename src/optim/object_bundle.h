@@ -15,17 +15,17 @@
 
 namespace hullslam::internal {
 
-// The part of a bundle adjustment that the window's objects are: their parameters and what their
-// detections say of them and of the poses.
+// The objects of a bundle adjustment: their parameters, their priors, and the constraints between
+// them and the poses that their detections give.
 class ObjectBundle {
  public:
   ObjectBundle(const Map& map, const PinholeCamera& camera, const BundleWindow& window,
                const ObjectBundleOptions& options);
 
   // `poses` are those of the window's keyframes, the moving ones before the fixed ones. They and
-  // this must outlive the problem.
+  // this object must outlive the problem.
   void AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>& poses);
-  // Puts the objects into group 2 of the ordering, poses outside of the window into group 3.
+  // Puts the objects into group 2 of the ordering and the poses outside of the window into group 3.
   void AddParameters(ceres::Problem& problem, PoseManifold& manifold,
                      ceres::ParameterBlockOrdering& ordering);
   void Write(BundleResult& result) const;
@@ -36,13 +36,13 @@ class ObjectBundle {
     Ellipsoid before;
     PoseBlock pose{};  // world_from_object
     Eigen::Vector3d log_axes = Eigen::Vector3d::Zero();
-    bool has_depth = false;  // whether depth points hold it
+    bool has_depth = false;  // whether a view has depth points on it
     std::unique_ptr<ceres::CostFunction> prior;
   };
-  // One term of a detection: its outline or its depth points.
+  // The residuals of one detection: those of its outline or those of its depth points.
   struct Term {
     size_t object = 0;
-    size_t pose = 0;  // index into the window's poses, or that much beyond into outer_poses_
+    size_t pose = 0;  // index into the window's poses followed by outer_poses_
     std::unique_ptr<ceres::CostFunction> cost;
   };
 

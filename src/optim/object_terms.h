@@ -13,20 +13,20 @@
 
 namespace hullslam::internal {
 
-// The robust errors of objects' outlines as a function of the camera's pose. Memory is allocated
-// once, in the constructor.
+// The robust errors of the outlines of objects as a function of the camera's pose. Only the
+// constructor allocates memory.
 class ObjectTerms {
  public:
   // Objects that have no residual at `start` are not used.
   ObjectTerms(const PinholeCamera& camera, const Rigid3& start, std::span<const PoseObject> objects,
               const ObjectPoseOptions& options);
 
-  // Of the objects in use; infinite where one is not in front of the camera.
+  // The cost of the used objects; infinite if one of them is not in front of the camera.
   double Cost(const Rigid3& pose) const;
-  // Adds to hessian and gradient.
+  // Adds the terms of the used objects to hessian and gradient.
   void Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& gradient) const;
 
-  // Decides anew which objects are used.
+  // Decides again which objects are used, from their residuals at this pose.
   void Choose(const Rigid3& pose);
   int used() const;
   void Write(JointPoseResult& result) const;
@@ -38,12 +38,13 @@ class ObjectTerms {
     Eigen::Vector3d log_axes = Eigen::Vector3d::Zero();
     bool is_used = false;
   };
-  // The plain residuals, and their derivative by the pose if asked for, into the buffers below.
+  // Writes the plain residuals and, if asked for, their derivative by the pose into the buffers
+  // below. False if they are not defined at this pose.
   bool Evaluate(const Term& term, const PoseBlock& pose, bool with_derivative) const;
 
   std::vector<Term> terms_;
-  double outlier_;  // sigmas: a residual beyond it is an outlier
-  // Scratch, of the size of the largest term.
+  double outlier_;  // in sigmas; a residual beyond it is an outlier
+  // Buffers of the size of the largest term.
   mutable Eigen::VectorXd residuals_;
   mutable Eigen::Matrix<double, Eigen::Dynamic, 7, Eigen::RowMajor> by_pose_;
 };

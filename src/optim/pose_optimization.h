@@ -19,21 +19,21 @@ struct PoseObservation {
 };
 
 struct PoseOptimizationOptions {
-  int rounds = 4;                       // inliers are chosen anew after each
+  int rounds = 4;                       // after each of them the inliers are chosen again
   int robust_rounds = 3;                // the first ones use Huber's loss
-  int iterations = 10;                  // at most, a round
-  double min_relative_decrease = 1e-5;  // of the cost; a round ends below it
+  int iterations = 10;                  // at most, per round
+  double min_relative_decrease = 1e-5;  // of the cost; a smaller one ends the round
 };
 
 struct PoseOptimizationResult {
   Rigid3 cam_from_world;
-  std::vector<uint8_t> is_inlier;  // one an observation
+  std::vector<uint8_t> is_inlier;  // one per observation
   int inlier_count = 0;
 };
 
-// The pose that best explains the observations: Levenberg-Marquardt on the six numbers of Retract,
-// points held fixed (Mur-Artal and Tardos 2017, section III.C). With fewer than three inliers the
-// start is given back.
+// The pose that explains the observations best: Levenberg-Marquardt on the six parameters of
+// Retract, while the points are fixed (Mur-Artal and Tardos 2017, section III.C). With fewer than
+// three inliers the result is the start.
 PoseOptimizationResult OptimizePose(const PinholeCamera& camera, const Rigid3& cam_from_world,
                                     std::span<const PoseObservation> observations,
                                     const PoseOptimizationOptions& options = {});

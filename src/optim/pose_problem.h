@@ -23,9 +23,10 @@ class PointTerms {
              const std::vector<uint8_t>& is_inlier, bool robust)
       : camera_(camera), observations_(observations), is_inlier_(is_inlier), robust_(robust) {}
 
-  // Infinite where an inlier is behind the camera.
+  // Infinite if an inlier is behind the camera.
   double Cost(const Rigid3& pose) const;
-  // Sets hessian and gradient (both without the factor 2) by the six numbers of Retract.
+  // Sets hessian and gradient with respect to the six parameters of Retract, both without the
+  // factor 2.
   void Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& gradient) const;
 
  private:
@@ -35,14 +36,14 @@ class PointTerms {
   bool robust_;
 };
 
-// Chooses as inliers the observations that are inliers at the result's pose by their OutlierBound,
-// or all but those behind the camera.
+// Decides which observations are inliers at the result's pose: those whose error is below their
+// OutlierBound, or all that are in front of the camera.
 enum class InlierRule { kBelowBound, kInFront };
 void ChooseInliers(const PinholeCamera& camera, std::span<const PoseObservation> observations,
                    InlierRule rule, PoseOptimizationResult& result);
 
-// Levenberg-Marquardt on the six numbers of Retract. A Problem has Cost and Linearize as
-// PointTerms.
+// Levenberg-Marquardt on the six parameters of Retract. A Problem has functions Cost and Linearize
+// like those of PointTerms.
 template <typename Problem>
 Rigid3 Minimize(const Problem& problem, Rigid3 pose, const PoseOptimizationOptions& options) {
   Matrix6d hessian;

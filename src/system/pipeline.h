@@ -19,8 +19,9 @@ class Pipeline {
 
   // Frames come in order of time. Throws what a stage throws, and CheckError after Finish.
   virtual FrameReport Track(std::shared_ptr<const Frame> frame) = 0;
-  // Waits until everything that was begun is in the map, and does what is to be done once at the
-  // end (mapping.final_bundle_adjustment), which ends early when `cancellation` (may be null) asks.
+  // Waits until all keyframes are in the map. Then it adjusts the whole map if
+  // mapping.final_bundle_adjustment is set. That ends early if `cancellation` (may be null) is
+  // requested.
   virtual void Finish(const Cancellation* cancellation) = 0;
   void Finish() { Finish(nullptr); }
   // The newest snapshot; null before the first keyframe.

@@ -9,8 +9,8 @@
 
 namespace hullslam {
 
-// Everything inside Track: same frames, same options, same bits. `sensor` must outlive the
-// pipeline.
+// Does everything inside Track. The same frames and options give the same bits. `sensor` must
+// outlive the pipeline.
 std::unique_ptr<Pipeline> MakeSequentialPipeline(const Sensor& sensor,
                                                  const SystemOptions& options);
 

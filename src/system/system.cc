@@ -44,7 +44,7 @@ cv::Mat ToGrey(const cv::Mat& image, bool rgb_order) {
       cv::cvtColor(image, grey, rgb_order ? cv::COLOR_RGBA2GRAY : cv::COLOR_BGRA2GRAY);
       return grey;
     default:
-      throw CheckError("the image has not 8 bits in 1, 3 or 4 channels");
+      throw CheckError("the image must have 8 bits per channel and 1, 3 or 4 channels");
   }
 }
 
@@ -85,8 +85,7 @@ TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat
 
 TrackedFrame System::Track(const ImageInput& image) {
   Check(std::isfinite(image.timestamp), "the time stamp is not a number");
-  Check(frames_.empty() || image.timestamp > frames_.back().timestamp,
-        "time stamps do not increase");
+  Check(frames_.empty() || image.timestamp > frames_.back().timestamp, "time stamps must increase");
   const FrameId id(static_cast<uint32_t>(frames_.size()));
   std::shared_ptr<const Frame> frame;
   {

@@ -159,7 +159,7 @@ class ThreadedPipeline final : public Pipeline {
   int published_ = 0;
   std::exception_ptr failure_;
 
-  std::thread mapping_thread_;  // last: it uses the others
+  std::thread mapping_thread_;  // last member, because the thread uses the others
 };
 
 }  // namespace

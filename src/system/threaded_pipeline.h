@@ -9,14 +9,14 @@
 
 namespace hullslam {
 
-// What Track does with a keyframe while the mapper is still busy with the one before.
+// What Track does with a keyframe while the mapper is still busy with an earlier one.
 enum class Pace {
-  kWaitForMapper,  // waits: no keyframe is left out, however fast the frames come
-  kNeverWait,      // leaves it out, or cuts the mapper short if it is urgent, as ORB-SLAM2 does
+  kWaitForMapper,  // waits, so no keyframe is left out
+  kNeverWait,      // leaves it out, or if it is urgent, hurries the mapper, like ORB-SLAM2
 };
 
-// Mapping in a thread of its own, so that Track returns once the frame has its pose. Results depend
-// on timing. `sensor` must outlive the pipeline.
+// Mapping runs in a thread of its own, so Track returns as soon as the frame has its pose. Results
+// depend on timing. `sensor` must outlive the pipeline.
 std::unique_ptr<Pipeline> MakeThreadedPipeline(const Sensor& sensor, const SystemOptions& options,
                                                Pace pace);
 

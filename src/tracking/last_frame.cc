@@ -6,8 +6,8 @@
 namespace hullslam {
 namespace {
 
-// Replaces each landmark by the one that stands for it now. If two of them have become one, the
-// first keypoint keeps it: a frame observes a landmark once.
+// Replaces each landmark by the one that has replaced it. If two of them have become one, only the
+// first keypoint keeps it: a frame observes a landmark at one keypoint.
 void ResolveAll(const Map& map, std::vector<LandmarkId>& landmarks) {
   std::vector<bool> is_taken(map.landmarks().NextId().value, false);
   for (LandmarkId& landmark : landmarks) {

@@ -15,7 +15,7 @@ namespace hullslam {
 struct LastFrame {
   std::shared_ptr<const Frame> frame;
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
-  // Absent for a frame of the initial map until the map that holds it is seen.
+  // Absent for a frame of the initial map until FollowMap is given that map.
   std::optional<RelativePose> pose;
   // The keyframe that shares most landmarks with the frame.
   KeyframeId reference;
@@ -23,10 +23,9 @@ struct LastFrame {
   std::optional<Rigid3> velocity;  // cam_from_last_cam over one frame; absent after lost frames
 };
 
-// The last frame in the current map: its pose, the scale of its velocity, its reference keyframe
-// and its landmarks follow what has become of the map. If the frame has become a keyframe, it has
-// this keyframe's landmarks. The frame or its reference must be known to the map, else CheckError
-// is thrown.
+// Brings the last frame up to date with the current map: its pose, the scale of its velocity, its
+// reference keyframe and its landmarks. If the frame has become a keyframe, it gets the landmarks
+// of that keyframe. Throws CheckError if the map knows neither the frame nor its reference.
 LastFrame FollowMap(const Map& map, LastFrame last);
 
 }  // namespace hullslam

@@ -10,7 +10,7 @@ namespace {
 
 constexpr size_t kNeighbours = 10;
 
-// Keyframes by the number of the given landmarks they observe, most first.
+// The keyframes that observe any of the given landmarks, those that observe most first.
 std::vector<Covisible> CountObservers(const Map& map, std::span<const LandmarkId> landmarks) {
   std::vector<int> votes(map.keyframes().NextId().value, 0);
   for (const LandmarkId id : landmarks) {
@@ -33,7 +33,7 @@ std::vector<Covisible> CountObservers(const Map& map, std::span<const LandmarkId
   return observers;
 }
 
-// A set of keyframes that keeps the order in which they came.
+// A set of keyframes that keeps the order in which they were added.
 class KeyframeSet {
  public:
   KeyframeSet(const Map& map, size_t capacity)
@@ -70,7 +70,8 @@ void AddNeighbours(const Map& map, KeyframeSet& set) {
   }
 }
 
-// As ObservedLandmarks, which sorts; of 80 keyframes in every frame a set of bits is quicker.
+// The same as ObservedLandmarks, but with a bit per landmark instead of sorting. This is faster for
+// the 80 keyframes of every frame.
 std::vector<LandmarkId> LandmarksOf(const Map& map, const std::vector<KeyframeId>& keyframes) {
   std::vector<bool> is_local(map.landmarks().NextId().value, false);
   for (const KeyframeId id : keyframes) {

@@ -15,9 +15,9 @@ struct LocalMap {
   std::vector<LandmarkId> landmarks;  // by increasing id
 };
 
-// Keyframes that observe the given landmarks (those that share most, at most `max_keyframes` in
-// all), then neighbours of these in covisibility and spanning tree; and all landmarks of these
-// keyframes.
+// Selects at most `max_keyframes` keyframes: first those that observe most of the given landmarks,
+// then their neighbours in covisibility and spanning tree. The landmarks are all that these
+// observe.
 LocalMap SelectLocalMap(const Map& map, std::span<const LandmarkId> landmarks,
                         size_t max_keyframes);
 

@@ -20,9 +20,9 @@ namespace {
 constexpr double kRadius = 4.0;
 constexpr double kRadiusFrontal = 2.5;
 constexpr double kCosFrontal = 0.998;
-constexpr double kDepthRadiusFactor = 3.0;  // depth makes first poses and landmarks less certain
+constexpr double kDepthRadiusFactor = 3.0;  // first poses and landmarks from depth are less precise
 
-// Where a landmark is searched; nothing where the camera cannot recognise it.
+// Where a landmark is searched. Null if the camera cannot recognise it (ViewLandmark).
 std::optional<Projection> ExpectLandmark(const Sensor& sensor, const Rigid3& cam_from_world,
                                          const Landmark& landmark) {
   const std::optional<LandmarkView> view = ViewLandmark(sensor, cam_from_world, landmark);

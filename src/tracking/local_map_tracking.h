@@ -17,7 +17,7 @@ struct LocalTracking {
   KeyframeId reference;
   std::vector<ObjectId> objects;    // one per detection; invalid where it shows no mapped object
   std::vector<LandmarkId> visible;  // landmarks that should be in the image, found or not
-  // Detections that show no mapped object; 0 where objects do not take part in poses.
+  // Number of detections that show no mapped object; 0 if objects.joint_pose is off.
   int unknown_objects = 0;
 };
 

@@ -10,9 +10,9 @@ namespace hullslam {
 namespace {
 
 constexpr size_t kMaxViews = 20;
-// Corners at a silhouette are half background, and masks tend to be small.
+// The patch of a corner at the silhouette is half background, and masks tend to be too small.
 constexpr double kMaskMargin = 7.0;  // px
-// A landmark as far outside as this is still on the object, as in its validity.
+// A landmark outside the ellipsoid by less than this is on the object, as in the validity check.
 constexpr double kNearSurface = 0.03;      // m
 constexpr double kNearSurfaceShare = 0.2;  // of the mean half axis
 

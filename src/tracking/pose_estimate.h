@@ -18,7 +18,7 @@ struct PoseEstimate {
   int inliers = 0;                    // landmarks that agree with the pose
   int used_objects = 0;               // objects that constrain the pose
 
-  // What the pose rests on, in landmarks.
+  // How much constrains the pose, as a number of landmarks.
   int EffectiveInliers() const { return inliers + kLandmarksPerObject * used_objects; }
 };
 

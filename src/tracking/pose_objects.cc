@@ -10,7 +10,7 @@
 namespace hullslam {
 namespace {
 
-// The lines whose misfit is known, moved by it; empty where these are less than half.
+// The lines whose excess is known, moved by it. Empty if these are less than half of the lines.
 std::vector<SilhouetteLine> KnownLines(const Sensor& sensor, const Rigid3& cam_from_world,
                                        const ObjectLandmark& object,
                                        std::span<const SilhouetteLine> lines) {
@@ -19,7 +19,7 @@ std::vector<SilhouetteLine> KnownLines(const Sensor& sensor, const Rigid3& cam_f
       CompensateLines(sensor.camera, cam_from_world, object, lines, KeyframeId(), known);
   std::vector<SilhouetteLine> kept;
   for (size_t i = 0; i < moved.size(); ++i) {
-    // Where the object is cut or hidden its true reach is not seen, so there is nothing to correct.
+    // A one-sided line does not show how far the object reaches, so there is nothing to compensate.
     if (known[i] != 0 && !moved[i].is_one_sided) {
       kept.push_back(moved[i]);
     }

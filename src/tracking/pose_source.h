@@ -12,13 +12,13 @@
 
 namespace hullslam {
 
-// A way to get a first pose of a frame: from the map and the last frame, which is up to date with
-// the map (FollowMap). Nothing if it finds too little. Each source has its own file.
+// A way to get a first pose of a frame from the map and the last frame, which is up to date with
+// the map (FollowMap). Null if it finds too little. Each source has its own file.
 using PoseSource = std::optional<PoseEstimate>(const Frame& frame, const Map& map,
                                                const TrackingContext& context,
                                                const LastFrame& last);
 
-// The last frame's landmarks are searched where its velocity says they are; nothing without a
+// The last frame's landmarks are searched at the pose that its velocity predicts. Null without a
 // velocity (motion_model_source.cc).
 PoseSource PoseByMotionModel;
 

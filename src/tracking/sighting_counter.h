@@ -8,14 +8,14 @@
 
 namespace hullslam {
 
-// Gathers in how many frames landmarks should have been seen and were, between two messages to the
-// mapper.
+// Counts in how many frames each landmark should have been visible, and in how many it was found,
+// between two messages to the mapper.
 class SightingCounter {
  public:
   void CountVisible(LandmarkId landmark) { ++Slot(landmark).visible; }
   void CountFound(LandmarkId landmark) { ++Slot(landmark).found; }
 
-  // All since the last call, by increasing id; counting starts anew.
+  // The counts since the last call, by increasing id. Counting starts again from zero.
   std::vector<Sighting> Take();
 
  private:

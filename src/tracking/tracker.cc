@@ -20,8 +20,8 @@ KeyframePolicy MakePolicy(const Sensor& sensor, const TrackingOptions& options) 
   return policy;
 }
 
-// The initial map of an RGB-D camera: one frame, which is the world, and a point for each of its
-// keypoints with depth.
+// The initial map of an RGB-D camera: one frame, whose camera frame is the world frame, and a point
+// for each of its keypoints with depth.
 InitialMap MakeInitialMap(std::shared_ptr<const Frame> frame, const PinholeCamera& camera,
                           const std::vector<uint32_t>& keypoints) {
   InitialMap initial;
@@ -56,12 +56,12 @@ int CountCloseKeypoints(const Frame& frame, const Sensor& sensor,
   return count;
 }
 
-// The landmarks of the reference keyframe that enough observations confirm.
+// The number of the reference keyframe's landmarks with a sufficient observation weight.
 int CountReferenceLandmarks(const Map& map, KeyframeId reference) {
   const int min_weight = map.keyframes().size() <= 2 ? 2 : 3;
   int count = 0;
   for (const LandmarkId id : map.keyframes().At(reference).landmarks) {
-    count += id.IsValid() && map.landmarks().At(id).support >= min_weight ? 1 : 0;
+    count += id.IsValid() && map.landmarks().At(id).observation_weight >= min_weight ? 1 : 0;
   }
   return count;
 }
@@ -148,7 +148,7 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
                    .frame = frame,
                    .landmarks = estimate.landmarks,
                    .objects = tracking.objects};
-  // After lost frames the motion since the last tracked frame is not that of a single step.
+  // After lost frames, the motion since the last tracked frame is that of several frames.
   const bool is_next = frame->id.value == last_.frame->id.value + 1;
   last_ = {.frame = std::move(frame),
            .landmarks = estimate.landmarks,

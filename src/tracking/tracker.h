@@ -18,14 +18,14 @@
 
 namespace hullslam {
 
-// Whether the mapper can take a keyframe right now.
+// Whether the mapper can take a keyframe at the moment.
 struct MapperStatus {
   bool is_idle = true;
   int requests_waiting = 0;
 };
 
-// Finds the pose of each frame in a snapshot of the map and decides on keyframes. It writes nothing
-// into the map: what it learns goes out in its messages. Its members are what it remembers from one
+// Finds the pose of each frame in a snapshot of the map and decides on keyframes. It does not
+// change the map but sends messages to the mapper. Its members are what it remembers from one
 // frame to the next.
 class Tracker {
  public:
@@ -58,7 +58,7 @@ class Tracker {
   const KeyframePolicy policy_;
   StageTimes times_;
 
-  LastFrame last_;                // meaningful once there is a map
+  LastFrame last_;                // only valid if there is a map
   FrameId last_requested_frame_;  // the frame of the last message
   SightingCounter sightings_;     // since the last request
 };

@@ -9,7 +9,7 @@
 
 namespace hullslam {
 
-// What every step of tracking knows besides the frame and the map. It refers to its parts.
+// What every step of tracking needs besides the frame and the map. Its parts must outlive it.
 struct TrackingContext {
   const Sensor& sensor;
   const TrackingOptions& options;

@@ -5,17 +5,19 @@ namespace hullslam {
 
 void TrackingOptions::Bind(OptionTable& options) {
   options.Add("tracking.min_initial_points", &min_initial_points, Range::AtLeast(10),
-              "keypoints with depth that the first frame needs");
+              "number of keypoints with depth that the first frame needs");
   options.Add("tracking.min_inliers", &min_inliers, Range::AtLeast(6),
-              "landmarks that must be found in a frame, else it counts as lost");
+              "number of landmarks that must be found in a frame; with fewer it is lost");
   options.Add("tracking.local_keyframes", &local_keyframes, Range::AtLeast(1),
-              "keyframes against whose landmarks a frame is tracked, at most");
-  options.Add("tracking.keyframe_ratio", &keyframe_ratio, Range::Between(0.1, 1.0),
-              "share of the reference keyframe's landmarks below which a keyframe is due");
-  options.AddText("tracking.dynamic_classes", &dynamic_classes,
-                  "classes of masks to take keypoints out, separated by commas");
+              "largest number of keyframes whose landmarks form the local map");
+  options.Add(
+      "tracking.keyframe_ratio", &keyframe_ratio, Range::Between(0.1, 1.0),
+      "a keyframe is due if a frame finds a smaller share of the reference keyframe's landmarks");
+  options.AddText(
+      "tracking.dynamic_classes", &dynamic_classes,
+      "classes of dynamic objects, separated by commas; keypoints on their masks are removed");
   options.Add("tracking.keyframe_interval", &keyframe_interval, Range::Between(0.0, 60.0),
-              "least time between keyframes unless tracking weakens abruptly, s");
+              "least time between keyframes, unless tracking weakens abruptly, s");
 }
 
 }  // namespace hullslam

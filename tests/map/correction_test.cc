@@ -75,8 +75,8 @@ void GiveShapes(Map& map, RandomGeometry& random) {
   }
 }
 
-// A camera that moves with the world sees a moved point in the old direction, `scale` times as far
-// away.
+// A camera that moves with the world sees a moved point in the same direction as before, `scale`
+// times as far away.
 void ExpectMoved(const Rigid3& after, const Rigid3& before, const Sim3& new_from_old,
                  const std::string& what) {
   const Eigen::Vector3d center = Inverse(before).translation;
@@ -138,8 +138,8 @@ void ExpectNear(const Map& a, const Map& b, double tolerance) {
   }
 }
 
-// The map of a long run that a correction of an older snapshot reaches: since the snapshot,
-// keyframes and landmarks were made, moved, merged, erased and culled at random.
+// A map and a correction of an older snapshot of it. Since the snapshot, keyframes and landmarks
+// were made, moved, merged, erased and culled at random.
 class LateCorrection : public ::testing::TestWithParam<uint32_t> {
  protected:
   LateCorrection() {
@@ -178,7 +178,8 @@ class LateCorrection : public ::testing::TestWithParam<uint32_t> {
     return [this, factor](KeyframeId) { return RandomSim3(random_, factor); };
   }
 
-  // A correction of the snapshot with another change for every keyframe, which `changes_` keeps.
+  // A correction of the snapshot with a different change for every keyframe. `changes_` stores
+  // them.
   MapCorrection MakeLateCorrection(double factor) {
     return MakeCorrection(snapshot_, [this, factor](KeyframeId id) {
       return changes_[id] = RandomSim3(random_, factor);
@@ -266,7 +267,7 @@ TEST_P(LateCorrection, MovesEverythingByTheChangeOfItsNearestNamedAncestor) {
   }
 }
 
-TEST_P(LateCorrection, WithoutChangeOfScaleLeavesAllScalesAsTheyAre) {
+TEST_P(LateCorrection, WithoutChangeOfScaleKeepsAllScales) {
   std::vector<double> scales;
   for (const KeyframeId id : AllIds(map_)) {
     scales.push_back(map_.ScaleOf(id));
@@ -292,7 +293,7 @@ TEST_P(LateCorrection, ByIdentityChangesNoBit) {
 }
 
 // Only the neighbourhood of one keyframe moves.
-TEST_P(LateCorrection, LeavesWhatFollowsAnIdentityAsItIs) {
+TEST_P(LateCorrection, DoesNotChangeWhatFollowsAnIdentity) {
   MapCorrection correction = MakeIdentity(snapshot_);
   const KeyframeId moved = correction.poses.back().keyframe;
   const Sim3 change = RandomSim3(random_);
@@ -314,7 +315,7 @@ TEST_P(LateCorrection, LeavesWhatFollowsAnIdentityAsItIs) {
   });
 }
 
-TEST_P(LateCorrection, ThatIsStaleIsRefused) {
+TEST_P(LateCorrection, IsRefusedIfTheMapWasCorrectedSince) {
   const MapCorrection stale = MakeLateCorrection(2.0);
   EXPECT_TRUE(ApplyCorrection(map_, MakeLateCorrection(2.0), levels_).is_applied);
   const std::string before = Dump(map_);
@@ -326,8 +327,8 @@ TEST_P(LateCorrection, ThatIsStaleIsRefused) {
   EXPECT_EQ(map_.correction_count(), count);
 }
 
-// Points, objects and loops are merged and joined by ids that are partly gone since the snapshot.
-TEST_P(LateCorrection, KeepsTheMapSound) {
+// Some of the landmarks, objects and keyframes of the merges and the loop edge no longer exist.
+TEST_P(LateCorrection, KeepsTheMapConsistent) {
   MapCorrection correction = MakeLateCorrection(2.0);
   const uint32_t keyframes = map_.keyframes().NextId().value;
   const uint32_t landmarks = map_.landmarks().NextId().value + 1;
@@ -353,8 +354,8 @@ TEST_P(LateCorrection, KeepsTheMapSound) {
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
 }
 
-// A correction B after A is the correction by the product of their changes.
-TEST_P(LateCorrection, ComposesWithTheNext) {
+// A correction B after a correction A is one correction with the products of their changes.
+TEST_P(LateCorrection, ComposesWithTheNextCorrection) {
   // Viewing geometry must be up to date, as a correction to_cull it.
   EXPECT_TRUE(ApplyCorrection(map_, MakeLateCorrection(2.0), levels_).is_applied);
   std::map<KeyframeId, Sim3> first;
@@ -378,7 +379,7 @@ TEST_P(LateCorrection, ComposesWithTheNext) {
   }
 }
 
-// It does not matter for poses whether a keyframe is culled shortly before a correction or after.
+// Poses are the same whether a keyframe is culled just before a correction or just after it.
 TEST_P(LateCorrection, CommutesWithCulling) {
   map_ = snapshot_.Snapshot();
   const MapCorrection correction = MakeLateCorrection(3.0);
@@ -410,7 +411,7 @@ TEST_P(LateCorrection, CommutesWithCulling) {
   }
 }
 
-TEST_P(LateCorrection, KeepsRelativePosesOfWhatMovesAlikeUpToScale) {
+TEST_P(LateCorrection, KeepsRelativePosesUpToScaleWhereChangesAreEqual) {
   Map before = map_.Snapshot();
   const Sim3 change = RandomSim3(random_);
   for (const MapCorrection::Pose& pose : MakeCorrection(snapshot_, change).poses) {
@@ -464,7 +465,7 @@ class CorrectionByHand : public ::testing::Test {
     SetParent(map_, c_, b_);
   }
 
-  // Names the keyframe and turns the world's x into `scale` * x + `shift`.
+  // Adds the keyframe to the correction with a change that maps x to `scale` * x + `shift`.
   void Name(KeyframeId id, double scale, double shift) {
     const Sim3 new_from_old(scale, Eigen::Quaterniond::Identity(), {shift, 0.0, 0.0});
     const Rigid3& pose = map_.keyframes().At(id).cam_from_world;
@@ -508,10 +509,10 @@ TEST_F(CorrectionByHand, MovesAndScales) {
   EXPECT_DOUBLE_EQ(moved.start.world_from_object.translation.x(), 20.0);
   EXPECT_DOUBLE_EQ(moved.start.half_axes.x(), 0.4);
   EXPECT_DOUBLE_EQ(moved.support[0].excess, -0.02);
-  EXPECT_EQ(moved.state, ObjectState::kMapped);  // a shape that only moves stays valid
+  EXPECT_EQ(moved.state, ObjectState::kMapped);  // moving a shape keeps it valid
 }
 
-// A pose that changes by its rotation or its scale alone is no identity.
+// A change of scale alone, or of rotation alone, is not the identity.
 TEST_F(CorrectionByHand, MovesByScaleAlone) {
   Name(a_, 1.0, 0.0);
   correction_.poses.back().corrected_cam_from_world.scale = 2.0;
@@ -532,9 +533,9 @@ TEST_F(CorrectionByHand, MovesByRotationAlone) {
       1e-12);
 }
 
-// The culled keyframe b stays although a, which its pose is relative to, moves. So does c, culled
-// before b, which depends on both.
-TEST_F(CorrectionByHand, ACulledKeyframeStaysWhenTheCorrectionSaysSo) {
+// The culled keyframe b stays, although its pose is relative to a, which moves. So does c, which
+// was culled before b and depends on both.
+TEST_F(CorrectionByHand, ACulledKeyframeWithIdentityStays) {
   Name(a_, 2.0, 5.0);
   Name(b_, 1.0, 0.0);
   Name(c_, 1.0, 0.0);
@@ -551,7 +552,7 @@ TEST_F(CorrectionByHand, ACulledKeyframeStaysWhenTheCorrectionSaysSo) {
   EXPECT_DOUBLE_EQ(map_.CamFromWorld(frame).translation.x(), -7.0);
 }
 
-TEST_F(CorrectionByHand, TakesAlongWhatItDoesNotName) {
+TEST_F(CorrectionByHand, MovesWhatItDoesNotNameWithItsAncestor) {
   Name(a_, 1.0, 5.0);
   const KeyframeId alone = AddKeyframe(map_, 1, 0, Shift(-20.0));
   const LandmarkId still = map_.AddLandmark({1.0, 2.0, 3.0}, alone);
@@ -567,7 +568,7 @@ TEST_F(CorrectionByHand, TakesAlongWhatItDoesNotName) {
   EXPECT_EQ(map_.landmarks().At(still).position, Eigen::Vector3d(1.0, 2.0, 3.0));
 }
 
-// The reference of an object without observations may be culled. It is named here itself.
+// The reference of an object without observations may be culled. Here the correction names it.
 TEST_F(CorrectionByHand, MovesAnObjectWithItsCulledReference) {
   RandomGeometry random(2);
   const ObjectId object = map_.AddObject();
@@ -609,8 +610,8 @@ TEST_F(CorrectionByHand, MovesLandmarksToGivenPositions) {
   }
   correction_.positions.push_back({LandmarkId(99), Eigen::Vector3d::Zero()});
   Name(a_, 1.0, 5.0);
-  // An erased landmark is passed over. So is a replaced one, whose position is not that of the
-  // landmark that replaces it.
+  // An erased landmark is passed over. So is a replaced one: its position is not that of its
+  // replacement.
   map_.EraseLandmark(landmarks[1]);
   map_.ReplaceLandmark(landmarks[2], landmarks[3]);
   EXPECT_TRUE(Apply().is_applied);
@@ -620,7 +621,7 @@ TEST_F(CorrectionByHand, MovesLandmarksToGivenPositions) {
             1e-12);
 }
 
-// The second keyframe looks from elsewhere when the first, which it does not depend on, moves.
+// First only the landmark moves, then only the second of the two keyframes that observe it.
 TEST_F(CorrectionByHand, ViewingGeometryFollowsPositionsAndObservers) {
   const LandmarkId landmark = Share(map_, {a_, c_}).front();
   UpdateViewingGeometry(map_, landmark, Levels());
@@ -646,7 +647,7 @@ TEST_F(CorrectionByHand, MergesLandmarks) {
   const std::vector<LandmarkId> new_ones = Share(map_, {c_}, 16);
   UpdateCovisibility(map_, a_);
   ASSERT_TRUE(map_.keyframes().At(c_).covisible.empty());
-  // The descriptors of the old ones are those of two keyframes, so they are the most typical.
+  // Two keyframes have the descriptor of the old landmarks, so it is the most typical.
   for (const KeyframeId id : {a_, b_}) {
     auto frame = std::make_shared<Frame>(*map_.keyframes().At(id).frame);
     std::fill(frame->features.descriptors.begin(), frame->features.descriptors.end(),
@@ -673,8 +674,8 @@ TEST_F(CorrectionByHand, MergesLandmarks) {
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
 }
 
-// A keyframe that shares fewer than 15 landmarks keeps its best edge alone, so an edge may be found
-// only when covisibility is counted from its side.
+// A keyframe that shares fewer than 15 landmarks has its best edge only, so some edges are found
+// only when covisibility is counted from their other end.
 TEST_F(CorrectionByHand, RecountsCovisibilityOnBothSidesOfAMerge) {
   for (const bool keeps_the_old : {true, false}) {
     Map map = map_.Snapshot();
@@ -716,8 +717,8 @@ TEST_F(CorrectionByHand, FollowsTheIdsOfMerges) {
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
 }
 
-// A landmark that others were merged into is merged itself.
-TEST_F(CorrectionByHand, MergesAreDoneInTurn) {
+// A landmark into which another was merged is merged into a third.
+TEST_F(CorrectionByHand, MergesAreDoneInOrder) {
   const std::vector<LandmarkId> ids = Share(map_, {a_}, 2);
   const LandmarkId last = Share(map_, {b_}).front();
   const LandmarkId first = Share(map_, {c_}).front();
@@ -809,7 +810,7 @@ TEST_F(CorrectionByHand, KeepsTheLoopEdgeAtBothEnds) {
   EXPECT_EQ(map_.keyframes().At(a_).loops, std::vector<KeyframeId>{d});
   EXPECT_EQ(map_.keyframes().At(b_).loops, std::vector<KeyframeId>{d});
   correction_.snapshot_corrections = 1;
-  EXPECT_TRUE(Apply().is_applied);  // the same edge once more
+  EXPECT_TRUE(Apply().is_applied);  // the same edge again
   EXPECT_EQ(map_.keyframes().At(d).loops, (std::vector<KeyframeId>{a_, b_}));
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
 }
@@ -825,13 +826,13 @@ TEST_F(CorrectionByHand, TheLoopEdgeOfACulledKeyframeGoesToItsNearestAncestor) {
   EXPECT_EQ(map_.keyframes().At(d).loops, std::vector<KeyframeId>{a_});
   for (const KeyframeId other : {b_, KeyframeId(99), KeyframeId()}) {
     correction_.snapshot_corrections = map_.correction_count();
-    correction_.loop = {a_, other};  // to itself, or to a keyframe that never was
+    correction_.loop = {a_, other};  // to itself, or to a keyframe that never existed
     EXPECT_TRUE(Apply().is_applied);
     EXPECT_EQ(map_.keyframes().At(a_).loops, std::vector<KeyframeId>{d});
   }
 }
 
-// The keyframes see an object each by a detection, and all landmarks of the world.
+// Each keyframe observes one object and all landmarks of the world.
 class UniformCorrection : public ::testing::Test {
  protected:
   UniformCorrection()
@@ -857,7 +858,7 @@ class UniformCorrection : public ::testing::Test {
   SyntheticMap made_;
 };
 
-TEST_F(UniformCorrection, KeepsEveryLandmarkInItsPixel) {
+TEST_F(UniformCorrection, KeepsThePixelOfEveryLandmark) {
   RandomGeometry random(6);
   Map before = made_.map.Snapshot();
   for (int round = 0; round < 3; ++round) {

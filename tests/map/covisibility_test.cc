@@ -45,7 +45,7 @@ TEST_F(Covisibility, NeedsFifteenSharedLandmarks) {
   EXPECT_EQ(EdgesOf(map_, ids_[2]), (Edges{{3, 40}}));
 }
 
-TEST_F(Covisibility, KeepsTheBestWhereNoneHasEnough) {
+TEST_F(Covisibility, KeepsTheBestEdgeIfNoneHasEnough) {
   Share(map_, {ids_[3], ids_[0]}, 3);
   Share(map_, {ids_[3], ids_[1]}, 14);
   UpdateCovisibility(map_, ids_[3]);
@@ -54,13 +54,13 @@ TEST_F(Covisibility, KeepsTheBestWhereNoneHasEnough) {
   EXPECT_EQ(EdgesOf(map_, ids_[0]), Edges());
 }
 
-TEST_F(Covisibility, OfNothingSharedIsNone) {
+TEST_F(Covisibility, WithoutSharedLandmarksHasNoEdge) {
   UpdateCovisibility(map_, ids_[3]);
   EXPECT_EQ(EdgesOf(map_, ids_[3]), Edges());
   EXPECT_FALSE(map_.keyframes().At(ids_[3]).parent.IsValid());
 }
 
-TEST_F(Covisibility, FollowsTheObservations) {
+TEST_F(Covisibility, ChangesWithTheObservations) {
   const std::vector<LandmarkId> shared = Share(map_, {ids_[0], ids_[1], ids_[2]}, 20);
   UpdateCovisibility(map_, ids_[2]);
   EXPECT_EQ(EdgesOf(map_, ids_[2]), (Edges{{0, 20}, {1, 20}}));
@@ -74,7 +74,7 @@ TEST_F(Covisibility, FollowsTheObservations) {
   EXPECT_EQ(EdgesOf(map_, ids_[1]), (Edges{{2, 17}}));
 }
 
-TEST_F(Covisibility, ObservedLandmarksAreEachNamedOnceAndInOrder) {
+TEST_F(Covisibility, ObservedLandmarksAreUniqueAndInOrder) {
   const std::vector<LandmarkId> first = Share(map_, {ids_[0], ids_[1]}, 3);
   const std::vector<LandmarkId> second = Share(map_, {ids_[1], ids_[2]}, 2);
   std::vector<LandmarkId> all = first;
@@ -84,7 +84,7 @@ TEST_F(Covisibility, ObservedLandmarksAreEachNamedOnceAndInOrder) {
   EXPECT_EQ(ObservedLandmarks(map_, std::vector{ids_[3]}), std::vector<LandmarkId>());
 }
 
-TEST_F(Covisibility, GivesAParentOnce) {
+TEST_F(Covisibility, SetsTheParentOnlyOnce) {
   Share(map_, {ids_[3], ids_[0]}, 20);
   Share(map_, {ids_[3], ids_[1]}, 30);
   UpdateCovisibility(map_, ids_[3]);
@@ -95,14 +95,14 @@ TEST_F(Covisibility, GivesAParentOnce) {
   EXPECT_EQ(map_.keyframes().At(ids_[3]).parent, ids_[1]);
 }
 
-TEST_F(Covisibility, GivesAParentAlsoWhereTheEdgeIsWeak) {
+TEST_F(Covisibility, SetsTheParentAlsoByAWeakEdge) {
   Share(map_, {ids_[1], ids_[0]}, 2);
   UpdateCovisibility(map_, ids_[1]);
   EXPECT_EQ(map_.keyframes().At(ids_[1]).parent, ids_[0]);
 }
 
-// A younger parent could be a descendant: the tree would become a ring.
-TEST_F(Covisibility, TheParentIsOlderHoweverMuchIsSharedWithAYoungerOne) {
+// A younger parent could be a descendant of the keyframe. The tree would then have a cycle.
+TEST_F(Covisibility, TheParentIsOlderEvenIfAYoungerKeyframeSharesMore) {
   Share(map_, {ids_[1], ids_[0]}, 15);
   Share(map_, {ids_[1], ids_[2]}, 50);
   UpdateCovisibility(map_, ids_[2]);
@@ -123,7 +123,7 @@ TEST_F(Covisibility, DetachingRemovesBothEnds) {
   EXPECT_EQ(EdgesOf(map_, ids_[2]), (Edges{{0, 20}}));
 }
 
-TEST(BestCovisible, AreByFallingNumberThenByFallingId) {
+TEST(BestCovisible, AreSortedByDecreasingNumberThenId) {
   Keyframe keyframe;
   keyframe.covisible = {
       {KeyframeId(1), 20}, {KeyframeId(3), 50}, {KeyframeId(4), 20}, {KeyframeId(8), 15}};

@@ -32,7 +32,7 @@ class Invariants : public ::testing::Test {
     }
   }
 
-  // Expects faults, and one of them in these words.
+  // Expects faults, one of them with this message.
   void ExpectViolation(const std::string& words) {
     const std::vector<std::string> violations = FindViolations(map_);
     const bool found =
@@ -48,75 +48,75 @@ class Invariants : public ::testing::Test {
   std::vector<LandmarkId> shared_;
 };
 
-TEST_F(Invariants, HoldAtFirst) {
+TEST_F(Invariants, HoldForAConsistentMap) {
   EXPECT_TRUE(FindViolations(Map()).empty());
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
 }
 
-TEST_F(Invariants, TellAnObservationThatTheKeyframeDoesNotKnow) {
+TEST_F(Invariants, FindAnObservationMissingInTheKeyframe) {
   map_.MutableKeyframe(b_).landmarks[3] = LandmarkId();
   ExpectViolation("landmark 3 is not observed by keyframe 1");
 }
 
-TEST_F(Invariants, TellAnObservationThatTheLandmarkDoesNotKnow) {
+TEST_F(Invariants, FindAnObservationMissingInTheLandmark) {
   map_.MutableKeyframe(b_).landmarks[30] = shared_[3];
-  ExpectViolation("keyframe 1 observes landmark 3, which does not know");
+  ExpectViolation("keyframe 1 observes landmark 3, which has no such observation");
 }
 
-TEST_F(Invariants, TellAnObservationOfALandmarkThatIsGone) {
+TEST_F(Invariants, FindAnObservationOfAMissingLandmark) {
   map_.MutableKeyframe(b_).landmarks[30] = LandmarkId(999);
-  ExpectViolation("keyframe 1 observes landmark 999, which does not know");
+  ExpectViolation("keyframe 1 observes landmark 999, which has no such observation");
 }
 
-TEST_F(Invariants, TellAnObservationByAKeyframeOrKeypointThatIsNot) {
+TEST_F(Invariants, FindAnObservationByAMissingKeyframeOrKeypoint) {
   map_.MutableLandmark(shared_[0]).observations[2].keyframe = KeyframeId(99);
   ExpectViolation("landmark 0 is not observed by keyframe 99");
   map_.MutableLandmark(shared_[1]).observations[0].keypoint = 99;
   ExpectViolation("landmark 1 is not observed by keyframe 0");
 }
 
-TEST_F(Invariants, TellObservationsOutOfOrder) {
+TEST_F(Invariants, FindObservationsOutOfOrder) {
   auto& observations = map_.MutableLandmark(shared_[0]).observations;
   std::swap(observations[0], observations[1]);
   ExpectViolation("landmark 0 has observations out of order");
 }
 
-TEST_F(Invariants, TellMiscountedSupport) {
-  ++map_.MutableLandmark(shared_[15]).support;
-  ExpectViolation("landmark 15 has its support miscounted");
+TEST_F(Invariants, FindAWrongObservationWeight) {
+  ++map_.MutableLandmark(shared_[15]).observation_weight;
+  ExpectViolation("landmark 15 has a wrong observation weight");
 }
 
-TEST_F(Invariants, TellMissingSlots) {
+TEST_F(Invariants, FindMissingEntries) {
   map_.MutableKeyframe(c_).landmarks.pop_back();
-  ExpectViolation("keyframe 2 has not one landmark slot a keypoint");
+  ExpectViolation("keyframe 2 does not have one landmark entry per keypoint");
 }
 
-TEST_F(Invariants, TellEdgesKnownAtOneEnd) {
+TEST_F(Invariants, FindEdgesKnownAtOneEnd) {
   map_.MutableKeyframe(a_).covisible[0].shared += 1;
-  ExpectViolation("keyframe 0 has an edge that keyframe 1 has not");
+  ExpectViolation("keyframe 0 has an edge that keyframe 1 does not have");
   map_.MutableKeyframe(c_).covisible.clear();
-  ExpectViolation("keyframe 0 has an edge that keyframe 2 has not");
+  ExpectViolation("keyframe 0 has an edge that keyframe 2 does not have");
   map_.MutableKeyframe(b_).covisible.push_back({KeyframeId(99), 20});
-  ExpectViolation("keyframe 1 has an edge that keyframe 99 has not");
+  ExpectViolation("keyframe 1 has an edge that keyframe 99 does not have");
 }
 
-TEST_F(Invariants, TellTreeLinksKnownAtOneEnd) {
+TEST_F(Invariants, FindTreeLinksKnownAtOneEnd) {
   map_.MutableKeyframe(c_).children.push_back(KeyframeId(99));
-  ExpectViolation("keyframe 2 has a child that is not: keyframe 99");
+  ExpectViolation("keyframe 2 has a child with another parent: keyframe 99");
   map_.MutableKeyframe(a_).children.clear();
   ExpectViolation("keyframe 1 is not a child of its parent");
   map_.MutableKeyframe(b_).parent = KeyframeId(99);
   ExpectViolation("keyframe 1 is not a child of its parent");
 }
 
-TEST_F(Invariants, TellACycleInTheTree) {
+TEST_F(Invariants, FindACycleInTheTree) {
   SetParent(map_, a_, c_);
   SetParent(map_, c_, b_);
   SetParent(map_, b_, a_);
   ExpectViolation("keyframe 0 is its own ancestor");
 }
 
-TEST_F(Invariants, TellValuesThatAreNotFinite) {
+TEST_F(Invariants, FindValuesThatAreNotFinite) {
   map_.SetPosition(shared_[7], {0.0, kNan, 0.0});
   ExpectViolation("landmark 7 has no finite position");
   Rigid3 pose;
@@ -139,7 +139,7 @@ TEST(InvariantsAfterRandomEdits, Hold) {
   }
 }
 
-// The order in which mapping does not ask: all observations first, then all covisibilities.
+// The order is not that of mapping: first all observations, then covisibility of all keyframes.
 TEST(InvariantsOfTheSyntheticMap, Hold) {
   const SyntheticWorld world;
   const SyntheticMap made = MakeSyntheticMap(world, {0, 5, 10, 15, 20, 25, 30});
@@ -149,7 +149,7 @@ TEST(InvariantsOfTheSyntheticMap, Hold) {
   });
 }
 
-TEST_F(Invariants, TellAnObjectThatTheKeyframeDoesNotKnow) {
+TEST_F(Invariants, FindAnObjectMissingInTheKeyframe) {
   const ObjectId object = map_.AddObject();
   ASSERT_TRUE(map_.AddObservation(object, b_, 1));
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
@@ -157,19 +157,19 @@ TEST_F(Invariants, TellAnObjectThatTheKeyframeDoesNotKnow) {
   ExpectViolation("object 0 is not observed by keyframe 1");
 }
 
-TEST_F(Invariants, TellADetectionOfAnObjectThatIsNot) {
+TEST_F(Invariants, FindADetectionOfAMissingObject) {
   map_.MutableKeyframe(a_).objects[2] = ObjectId(7);
-  ExpectViolation("keyframe 0 observes object 7, which does not know");
+  ExpectViolation("keyframe 0 observes object 7, which has no such observation");
 }
 
-TEST_F(Invariants, TellMiscountedVotes) {
+TEST_F(Invariants, FindWrongVotes) {
   const ObjectId object = map_.AddObject();
   ASSERT_TRUE(map_.AddObservation(object, b_, 1));
   map_.MutableObject(object).votes["cup"] += 1.0;
-  ExpectViolation("object 0 has its votes miscounted");
+  ExpectViolation("object 0 has wrong votes");
 }
 
-TEST_F(Invariants, TellAWrongReferenceOfAnObject) {
+TEST_F(Invariants, FindAWrongReferenceOfAnObject) {
   const ObjectId object = map_.AddObject();
   map_.MutableObject(object).reference = KeyframeId(99);
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());  // nothing observes it
@@ -180,7 +180,7 @@ TEST_F(Invariants, TellAWrongReferenceOfAnObject) {
   ExpectViolation("object 0 has a reference that is not the first to observe it");
 }
 
-TEST_F(Invariants, TellLoopEdgesThatAreWrong) {
+TEST_F(Invariants, FindWrongLoopEdges) {
   map_.AddLoop(a_, b_);
   map_.AddLoop(a_, c_);
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
@@ -189,21 +189,21 @@ TEST_F(Invariants, TellLoopEdgesThatAreWrong) {
   map_.MutableKeyframe(a_).loops = {b_, b_, c_};
   ExpectViolation("keyframe 0 has loop edges out of order");
   map_.MutableKeyframe(a_).loops = {c_};
-  ExpectViolation("keyframe 1 has a loop edge that keyframe 0 has not");
+  ExpectViolation("keyframe 1 has a loop edge that keyframe 0 does not have");
   map_.MutableKeyframe(b_).loops = {b_};
-  ExpectViolation("keyframe 1 has a loop edge that keyframe 1 has not");
+  ExpectViolation("keyframe 1 has a loop edge that keyframe 1 does not have");
   map_.MutableKeyframe(c_).loops = {KeyframeId(99)};
-  ExpectViolation("keyframe 2 has a loop edge that keyframe 99 has not");
+  ExpectViolation("keyframe 2 has a loop edge that keyframe 99 does not have");
 }
 
-TEST_F(Invariants, TellAScaleThatIsNotPositive) {
+TEST_F(Invariants, FindAScaleThatIsNotPositive) {
   for (const double scale : {0.0, -1.0, kNan, std::numeric_limits<double>::infinity()}) {
     map_.MutableKeyframe(b_).scale = scale;
     ExpectViolation("keyframe 1 has no finite scale above 0");
   }
 }
 
-TEST_F(Invariants, TellAShapeThatIsNone) {
+TEST_F(Invariants, FindAMissingOrInvalidShape) {
   const ObjectId object = map_.AddObject();
   map_.MutableObject(object).state = ObjectState::kMapped;
   ExpectViolation("object 0 is mapped without a shape");

@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-TEST(Keyframe, StandsAloneAtFirst) {
+TEST(Keyframe, HasNoLinksAtFirst) {
   const Keyframe keyframe;
   EXPECT_EQ(keyframe.frame, nullptr);
   EXPECT_FALSE(keyframe.parent.IsValid());

@@ -15,7 +15,7 @@
 namespace hullslam {
 namespace {
 
-// The first `count` bits set.
+// A descriptor whose first `count` bits are set.
 Descriptor FirstBits(int count) {
   Descriptor descriptor{};
   for (int i = 0; i < count; ++i) {
@@ -24,7 +24,7 @@ Descriptor FirstBits(int count) {
   return descriptor;
 }
 
-// The descriptor chosen for a landmark whose observations look like these.
+// The descriptor chosen for a landmark whose observations have these descriptors.
 Descriptor Chosen(const std::vector<Descriptor>& descriptors) {
   Map map;
   const LandmarkId landmark = map.AddLandmark({0.0, 0.0, 2.0}, KeyframeId(0));
@@ -39,13 +39,13 @@ Descriptor Chosen(const std::vector<Descriptor>& descriptors) {
 
 TEST(UpdateDescriptor, ByHand) {
   EXPECT_EQ(Chosen({FirstBits(7)}), FirstBits(7));
-  // Distances from 12 to the others are 12, 2, 2 and 88: the least median.
+  // The descriptor of 12 bits has distances 12, 2, 2 and 88 to the others: the smallest median.
   EXPECT_EQ(Chosen({FirstBits(0), FirstBits(10), FirstBits(12), FirstBits(14), FirstBits(100)}),
             FirstBits(12));
   EXPECT_EQ(Chosen({FirstBits(200), FirstBits(10), FirstBits(11)}), FirstBits(10));
 }
 
-TEST(UpdateDescriptor, HasTheLeastMedianDistance) {
+TEST(UpdateDescriptor, HasTheSmallestMedianDistance) {
   std::mt19937_64 random(1);
   for (int round = 0; round < 20; ++round) {
     std::vector<Descriptor> all;
@@ -109,7 +109,7 @@ TEST_F(ViewingGeometry, ByHand) {
   EXPECT_NEAR(landmark.min_distance, 1.44 * std::sqrt(5.0) / std::pow(1.2, 7), 1e-6);
 }
 
-TEST_F(ViewingGeometry, IsThatOfTheReferenceOrElseOfTheFirstObserver) {
+TEST_F(ViewingGeometry, ComesFromTheReferenceOrElseFromTheFirstObserver) {
   map_.MutableLandmark(landmark_).reference = KeyframeId(1);
   EXPECT_NEAR(Updated().max_distance, std::sqrt(5.0), 1e-6);
   map_.MutableLandmark(landmark_).reference = KeyframeId(77);
@@ -118,7 +118,7 @@ TEST_F(ViewingGeometry, IsThatOfTheReferenceOrElseOfTheFirstObserver) {
 
 TEST_F(ViewingGeometry, DirectionIsTheMeanOfUnitVectors) {
   map_.SetPose(KeyframeId(1), {Eigen::Quaterniond::Identity(), {0.0, 0.0, -1.99}});
-  // 1 cm away it counts as much as from afar.
+  // A camera 1 cm away counts as much as a distant one.
   const Eigen::Vector3d expected =
       (Eigen::Vector3d::UnitZ() + Eigen::Vector3d(-1.0, 0.0, 2.0).normalized()).normalized();
   EXPECT_LT((Updated().viewing_direction - expected).norm(), 1e-12);

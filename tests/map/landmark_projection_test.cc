@@ -13,7 +13,7 @@
 namespace hullslam {
 namespace {
 
-// At (0.4, -0.2, 2), seen along z, at level 0 from 4 m.
+// A landmark at (0.4, -0.2, 2) that was observed along z, at level 0 from 4 m.
 Landmark MakeLandmark() {
   Landmark landmark;
   landmark.position = {0.4, -0.2, 2.0};
@@ -39,7 +39,7 @@ TEST(ViewLandmark, ByHand) {
   EXPECT_NEAR(view->pixel.y(), -500.0 * 0.1 + 240.0, 1e-12);
   EXPECT_NEAR(view->right_u, 420.0 - 40.0 / 2.0, 1e-12);
   EXPECT_NEAR(view->cos_view, 2.0 / std::sqrt(4.2), 1e-12);
-  // ln(4 / sqrt(4.2)) / ln(1.2) is 3.67: the level above.
+  // ln(4 / sqrt(4.2)) / ln(1.2) is 3.67, rounded up.
   EXPECT_EQ(view->level, 4);
 }
 
@@ -60,7 +60,7 @@ TEST(ViewLandmark, DoesNotDependOnTheWorldFrame) {
   }
 }
 
-TEST(ViewLandmark, NotBehindTheCamera) {
+TEST(ViewLandmark, IsNullBehindTheCamera) {
   Landmark landmark = MakeLandmark();
   landmark.position.z() = -2.0;
   landmark.viewing_direction = -Eigen::Vector3d::UnitZ();
@@ -69,7 +69,7 @@ TEST(ViewLandmark, NotBehindTheCamera) {
   EXPECT_FALSE(IsSeen(landmark));
 }
 
-TEST(ViewLandmark, NotOutsideTheImage) {
+TEST(ViewLandmark, IsNullOutsideTheImage) {
   // At 2 m the image ends 0.64 * 2 m left and right, 0.48 * 2 m above and below.
   Landmark landmark = MakeLandmark();
   for (const auto& [x, y, is_inside] :
@@ -82,7 +82,7 @@ TEST(ViewLandmark, NotOutsideTheImage) {
   }
 }
 
-TEST(ViewLandmark, NotFromMuchNearerOrFarther) {
+TEST(ViewLandmark, IsNullFromMuchNearerOrFarther) {
   // Seen from 1.116 m to 4 m, and one level of 1.2 more at both ends: from 0.930 m to 4.8 m.
   Landmark landmark = MakeLandmark();
   landmark.position = {0.0, 0.0, 0.0};
@@ -92,7 +92,7 @@ TEST(ViewLandmark, NotFromMuchNearerOrFarther) {
   EXPECT_FALSE(IsSeen(landmark, CameraAt(0.0, 0.0, -4.801)));
 }
 
-TEST(ViewLandmark, NotFromMoreThanSixtyDegreesOff) {
+TEST(ViewLandmark, IsNullFromMoreThanSixtyDegreesAway) {
   Landmark landmark = MakeLandmark();
   landmark.position = {0.0, 0.0, 2.0};
   for (const double degrees : {0.0, 59.9, 60.1, 120.0, 180.0}) {
@@ -102,8 +102,8 @@ TEST(ViewLandmark, NotFromMoreThanSixtyDegreesOff) {
   }
 }
 
-// Where its reference keyframe saw it, at the level at which it did.
-TEST(ViewLandmark, IsSeenAgainFromWhereItWasSeen) {
+// The reference keyframe sees the landmark at its keypoint and at the level of the keypoint.
+TEST(ViewLandmark, FindsTheKeypointOfTheReferenceKeyframe) {
   const SyntheticWorld world;
   const SyntheticMap made = MakeSyntheticMap(world, {0, 10, 20});
   int checked = 0;

@@ -6,17 +6,17 @@
 namespace hullslam {
 namespace {
 
-// Ratios of found to visible are taken from the first frame on.
-TEST(Landmark, HasBeenFoundOnceByTheKeyframeThatMadeIt) {
+// The ratio of found to visible must be defined from the first frame on.
+TEST(Landmark, CountsAsFoundInTheKeyframeThatMadeIt) {
   const Landmark landmark;
   EXPECT_EQ(landmark.visible, 1);
   EXPECT_EQ(landmark.found, 1);
 }
 
-TEST(Landmark, HasNothingElseAtFirst) {
+TEST(Landmark, HasNoObservationsAtFirst) {
   const Landmark landmark;
   EXPECT_TRUE(landmark.position.isZero(0.0));
-  EXPECT_EQ(landmark.support, 0);
+  EXPECT_EQ(landmark.observation_weight, 0);
   EXPECT_TRUE(landmark.observations.empty());
   EXPECT_FALSE(landmark.reference.IsValid());
   EXPECT_FALSE(landmark.created_by.IsValid());

@@ -11,14 +11,14 @@
 
 namespace hullslam {
 
-// new_world_from_old_world, with a scale from 1 / factor to factor.
+// A random new_world_from_old_world with a scale from 1 / factor to factor.
 inline Sim3 RandomSim3(RandomGeometry& random, double factor = 3.0) {
   const Rigid3 rigid = random.Pose(1.0, 2.0);
   return {std::exp(random.Number(-std::log(factor), std::log(factor))), rigid.rotation,
           rigid.translation};
 }
 
-// A correction of all keyframes of `snapshot`: what is around a keyframe moves by
+// A correction that names all keyframes of `snapshot` and moves the world around each of them by
 // `new_from_old(keyframe)`.
 inline MapCorrection MakeCorrection(const Map& snapshot,
                                     const std::function<Sim3(KeyframeId)>& new_from_old) {
@@ -31,7 +31,7 @@ inline MapCorrection MakeCorrection(const Map& snapshot,
   return correction;
 }
 
-// All of the snapshot moves alike.
+// A correction that moves the whole snapshot by the same change.
 inline MapCorrection MakeCorrection(const Map& snapshot, const Sim3& new_from_old) {
   return MakeCorrection(snapshot, [&](KeyframeId) { return new_from_old; });
 }

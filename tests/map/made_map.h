@@ -16,7 +16,7 @@
 namespace hullslam {
 
 inline constexpr uint32_t kFramesPerKeyframe = 3;
-inline constexpr uint32_t kDetections = 4;  // a frame: cup, book, cup, book, of scores that differ
+inline constexpr uint32_t kDetections = 4;  // per frame: cup, book, cup, book with different scores
 
 // A frame of `keypoints` keypoints at level 0, of which the first `with_depth` have a depth of 2 m.
 inline std::shared_ptr<Frame> MakeFrame(uint32_t id, size_t keypoints, size_t with_depth = 0) {
@@ -39,14 +39,14 @@ inline std::shared_ptr<Frame> MakeFrame(uint32_t id, size_t keypoints, size_t wi
   return frame;
 }
 
-// A keyframe of every third frame.
+// Adds a keyframe. Only every third frame number is used.
 inline KeyframeId AddKeyframe(Map& map, size_t keypoints, size_t with_depth = 0,
                               const Rigid3& cam_from_world = {}) {
   const uint32_t frame = kFramesPerKeyframe * map.keyframes().NextId().value;
   return map.AddKeyframe(MakeFrame(frame, keypoints, with_depth), cam_from_world);
 }
 
-// New landmarks that all of these keyframes observe, each at its first free keypoint.
+// Adds landmarks that all these keyframes observe, each keyframe at its first free keypoint.
 inline std::vector<LandmarkId> Share(Map& map, const std::vector<KeyframeId>& keyframes,
                                      int count = 1) {
   std::vector<LandmarkId> added;
@@ -89,8 +89,8 @@ inline void Dump(const ObjectLandmark& object, std::ostream& out) {
 inline void Dump(const Landmark& landmark, std::ostream& out) {
   out << ' ' << landmark.position.transpose() << " from " << landmark.viewing_direction.transpose()
       << ' ' << landmark.min_distance << ' ' << landmark.max_distance << " reference "
-      << landmark.reference.value << ' ' << landmark.support << ' ' << landmark.visible << ' '
-      << landmark.found << " descriptor";
+      << landmark.reference.value << ' ' << landmark.observation_weight << ' ' << landmark.visible
+      << ' ' << landmark.found << " descriptor";
   for (const uint64_t word : landmark.descriptor) {
     out << ' ' << word;
   }
@@ -99,8 +99,8 @@ inline void Dump(const Landmark& landmark, std::ostream& out) {
   }
 }
 
-// Everything in a map but the number of its corrections, to compare maps by: 17 digits tell any two
-// doubles apart.
+// Everything in a map except the number of its corrections as text, to compare maps. 17 digits
+// distinguish any two doubles.
 inline std::string Dump(const Map& map) {
   std::ostringstream out;
   out.precision(17);

@@ -17,7 +17,7 @@ namespace {
 
 double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
-TEST(Map, KeyframeHasASlotAKeypoint) {
+TEST(Map, KeyframeHasOneEntryPerKeypoint) {
   Map map;
   const KeyframeId id = AddKeyframe(map, 7);
   EXPECT_EQ(id, KeyframeId(0));
@@ -39,12 +39,12 @@ TEST(Map, ObservationIsKnownAtBothEnds) {
   EXPECT_EQ(seen.observations[0].keyframe, a);  // in order of the ids
   EXPECT_EQ(seen.observations[0].keypoint, 4u);
   EXPECT_EQ(seen.observations[1].keyframe, b);
-  EXPECT_EQ(seen.support, 3);
+  EXPECT_EQ(seen.observation_weight, 3);
   EXPECT_EQ(seen.reference, b);
   EXPECT_EQ(seen.created_by, b);
 }
 
-TEST(Map, AKeyframeObservesALandmarkOnceAndAKeypointIsOneLandmark) {
+TEST(Map, AKeyframeObservesALandmarkAtOneKeypointOnly) {
   Map map;
   const KeyframeId keyframe = AddKeyframe(map, 5);
   const LandmarkId a = map.AddLandmark({}, keyframe);
@@ -57,7 +57,7 @@ TEST(Map, AKeyframeObservesALandmarkOnceAndAKeypointIsOneLandmark) {
   EXPECT_EQ(Dump(map), before);
 }
 
-TEST(Map, RefusesWhatIsNotThere) {
+TEST(Map, RefusesWhatDoesNotExist) {
   Map map;
   const KeyframeId keyframe = AddKeyframe(map, 5);
   const LandmarkId landmark = map.AddLandmark({}, keyframe);
@@ -77,17 +77,17 @@ TEST(Map, RemovingAnObservationFreesTheKeypointAndMovesTheReference) {
   const LandmarkId landmark = Share(map, ids).front();
   map.RemoveObservation(landmark, ids[0]);
   EXPECT_FALSE(map.keyframes().At(ids[0]).landmarks[0].IsValid());
-  EXPECT_EQ(map.landmarks().At(landmark).support, 3);
+  EXPECT_EQ(map.landmarks().At(landmark).observation_weight, 3);
   EXPECT_EQ(map.landmarks().At(landmark).reference, ids[1]);
   EXPECT_TRUE(map.AddObservation(landmark, ids[0], 3));
   EXPECT_EQ(map.landmarks().At(landmark).reference, ids[1]);
 }
 
-TEST(Map, ALandmarkGoesWhenASupportOfTwoIsLeft) {
+TEST(Map, ALandmarkIsRemovedWhenItsObservationWeightFallsToTwo) {
   Map map;
   const std::vector<KeyframeId> ids = {AddKeyframe(map, 5, 5), AddKeyframe(map, 5),
                                        AddKeyframe(map, 5)};
-  // One observation with depth and two without: 4. Without one of the latter 3, without both 2.
+  // One observation with depth and two without: weight 4, then 3, then 2.
   const LandmarkId landmark = Share(map, ids).front();
   map.RemoveObservation(landmark, ids[1]);
   EXPECT_TRUE(map.landmarks().Contains(landmark));
@@ -110,15 +110,15 @@ TEST(Map, ReplacingMovesObservationsAndSightings) {
   EXPECT_EQ(map.Resolve(old), kept);
   const Landmark& landmark = map.landmarks().At(kept);
   ASSERT_EQ(landmark.observations.size(), 3u);
-  EXPECT_EQ(landmark.observations[1].keypoint, 1u);  // b's observation of both is that of `kept`
-  EXPECT_EQ(landmark.support, 3);
+  EXPECT_EQ(landmark.observations[1].keypoint, 1u);  // b observed both: that of `kept` stays
+  EXPECT_EQ(landmark.observation_weight, 3);
   EXPECT_EQ(map.keyframes().At(a).landmarks[0], kept);
   EXPECT_FALSE(map.keyframes().At(b).landmarks[0].IsValid());
   EXPECT_EQ(landmark.visible, 12);
   EXPECT_EQ(landmark.found, 7);
 }
 
-TEST(Map, ResolveFollowsAChainToItsLivingEnd) {
+TEST(Map, ResolveFollowsAChainOfReplacements) {
   Map map;
   const KeyframeId keyframe = AddKeyframe(map, 5);
   std::vector<LandmarkId> ids;
@@ -139,7 +139,7 @@ TEST(Map, ResolveFollowsAChainToItsLivingEnd) {
   EXPECT_FALSE(map.Resolve(LandmarkId(99)).IsValid());
 }
 
-// A root and three keyframes below one another, at random poses.
+// A root and three keyframes, each the child of the one before, at random poses.
 class CulledKeyframes : public ::testing::Test {
  protected:
   CulledKeyframes() {
@@ -156,16 +156,16 @@ class CulledKeyframes : public ::testing::Test {
   RandomGeometry random_{1};
 };
 
-TEST_F(CulledKeyframes, AreOutOfTheMapWithTheirObservations) {
+TEST_F(CulledKeyframes, LeaveTheMapWithTheirObservations) {
   const LandmarkId strong = Share(map_, {Id(0), Id(1), Id(2), Id(3)}).front();
   const LandmarkId weak = Share(map_, {Id(1), Id(2)}).front();
   map_.CullKeyframe(Id(1));
   EXPECT_FALSE(map_.keyframes().Contains(Id(1)));
-  EXPECT_EQ(map_.landmarks().At(strong).support, 3);
+  EXPECT_EQ(map_.landmarks().At(strong).observation_weight, 3);
   EXPECT_FALSE(map_.landmarks().Contains(weak));
   EXPECT_EQ(map_.keyframes().At(Id(2)).parent, Id(0));
   EXPECT_EQ(map_.keyframes().At(Id(0)).children, std::vector<KeyframeId>{Id(2)});
-  EXPECT_EQ(map_.keyframes().NextId(), Id(4));  // its id is never given again
+  EXPECT_EQ(map_.keyframes().NextId(), Id(4));  // its id is not used again
 }
 
 TEST_F(CulledKeyframes, KeepTheirPose) {
@@ -187,14 +187,14 @@ TEST_F(CulledKeyframes, MoveWithTheirParent) {
   map_.CullKeyframe(Id(2));
   map_.SetPose(Id(1), random_.Pose(1.0, 2.0));
   EXPECT_LT(Distance(map_.CamFromWorld(Id(2)), relative * map_.CamFromWorld(Id(1))), 1e-12);
-  // Also when the parent is culled in its turn and then the root moves.
+  // Also when the parent is culled later and then the root moves.
   map_.CullKeyframe(Id(1));
   map_.SetPose(Id(0), random_.Pose(1.0, 2.0));
   EXPECT_LT(Distance(map_.CamFromWorld(Id(2)), relative * map_.CamFromWorld(Id(1))), 1e-12);
 }
 
-// Keyframes of one map have different scales after a correction.
-TEST_F(CulledKeyframes, TakeTheScaleThatTheirParentGains) {
+// After a correction, keyframes of one map may have different scales.
+TEST_F(CulledKeyframes, FollowTheScaleOfTheirParent) {
   const std::vector<double> scales = {1.0, 2.0, 0.5, 3.0};
   for (int i = 0; i < 4; ++i) {
     map_.MutableKeyframe(Id(i)).scale = scales[static_cast<size_t>(i)];
@@ -220,7 +220,7 @@ TEST_F(CulledKeyframes, TakeTheScaleThatTheirParentGains) {
   EXPECT_LT(Distance(map_.CamFromWorld(Id(2)), relative * poses[0]), 1e-12);
 }
 
-TEST_F(CulledKeyframes, AreFoundAmongTheCulled) {
+TEST_F(CulledKeyframes, AreFoundByFindCulled) {
   map_.CullKeyframe(Id(2));
   ASSERT_NE(map_.FindCulled(Id(2)), nullptr);
   EXPECT_EQ(map_.FindCulled(Id(2))->pose.reference, Id(1));
@@ -243,7 +243,7 @@ TEST_F(CulledKeyframes, HandTheirLoopEdgesToTheirParent) {
   EXPECT_TRUE(map_.keyframes().At(Id(0)).loops.empty());
 }
 
-TEST(Map, ALoopEdgeIsKnownAtBothEndsOnce) {
+TEST(Map, ALoopEdgeIsAddedOnceAtBothEnds) {
   Map map;
   const KeyframeId a = AddKeyframe(map, 1);
   const KeyframeId b = AddKeyframe(map, 1);
@@ -266,7 +266,7 @@ TEST(Map, CountsItsCorrections) {
   EXPECT_EQ(map.Snapshot().correction_count(), 1u);
 }
 
-TEST_F(CulledKeyframes, HaveANearestAncestorAlive) {
+TEST_F(CulledKeyframes, HaveANearestAncestorInTheMap) {
   map_.CullKeyframe(Id(2));
   map_.CullKeyframe(Id(1));
   EXPECT_EQ(map_.NearestAlive(Id(2)), Id(0));

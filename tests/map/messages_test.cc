@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-// What nobody filled in must not pass for a pose.
+// A default TrackedFrame must not look like one with a pose.
 TEST(TrackedFrame, IsNotTrackedAtFirst) {
   const TrackedFrame frame;
   EXPECT_EQ(frame.state, TrackingState::kNotInitialized);
@@ -17,7 +17,7 @@ TEST(TrackedFrame, IsNotTrackedAtFirst) {
   EXPECT_EQ(frame.inliers, 0);
 }
 
-TEST(KeyframeRequest, IsRelativeToNothingAtFirst) {
+TEST(KeyframeRequest, HasNoReferenceAtFirst) {
   const KeyframeRequest request;
   EXPECT_EQ(request.frame, nullptr);
   EXPECT_FALSE(request.pose.reference.IsValid());
@@ -32,7 +32,7 @@ TEST(InitialMap, IsEmptyAtFirst) {
   EXPECT_TRUE(InitialMap::Point().observations.empty());
 }
 
-TEST(MapCorrection, NamesNothingAtFirst) {
+TEST(MapCorrection, IsEmptyAtFirst) {
   const MapCorrection correction;
   EXPECT_EQ(correction.snapshot_corrections, 0u);
   EXPECT_TRUE(correction.poses.empty());
@@ -43,13 +43,13 @@ TEST(MapCorrection, NamesNothingAtFirst) {
   EXPECT_EQ(MapCorrection::Pose().corrected_cam_from_world.scale, 1.0);
 }
 
-TEST(MapMessage, IsOneOfThree) {
+TEST(MapMessage, HoldsAnyOfThreeMessages) {
   EXPECT_TRUE(std::holds_alternative<InitialMap>(MapMessage(InitialMap())));
   EXPECT_TRUE(std::holds_alternative<KeyframeRequest>(MapMessage(KeyframeRequest())));
   EXPECT_TRUE(std::holds_alternative<MapCorrection>(MapMessage(MapCorrection())));
 }
 
-TEST(FrameReport, ShowsNothingAtFirst) {
+TEST(FrameReport, IsEmptyAtFirst) {
   const FrameReport report;
   EXPECT_EQ(report.tracked.state, TrackingState::kNotInitialized);
   EXPECT_EQ(report.frame, nullptr);
@@ -57,7 +57,7 @@ TEST(FrameReport, ShowsNothingAtFirst) {
   EXPECT_TRUE(report.objects.empty());
 }
 
-TEST(Sighting, CountsNothingAtFirst) {
+TEST(Sighting, IsZeroAtFirst) {
   const Sighting sighting;
   EXPECT_FALSE(sighting.landmark.IsValid());
   EXPECT_EQ(sighting.visible, 0);

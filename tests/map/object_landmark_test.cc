@@ -19,22 +19,22 @@ TEST(ObjectLandmark, IsACandidateWithoutShapeAtFirst) {
   EXPECT_THROW(object.Label(), CheckError);
 }
 
-TEST(ObjectLandmark, ItsClassIsThatWithMostVotes) {
+TEST(ObjectLandmark, HasTheClassWithMostVotes) {
   ObjectLandmark object;
   object.votes = {{"laptop", 0.9}, {"tv", 1.4}};
   EXPECT_EQ(object.Label(), "tv");
   object.votes["laptop"] = 1.4;
-  EXPECT_EQ(object.Label(), "laptop");  // the first of equals
+  EXPECT_EQ(object.Label(), "laptop");  // a tie goes to the first in the alphabet
 }
 
-TEST(ObjectsOfTheMap, AreObservedAtBothEndsAndVotedFor) {
+TEST(ObjectsOfTheMap, KnowTheirObservationsAndVotes) {
   Map map;
   const KeyframeId a = AddKeyframe(map, 1);
   const KeyframeId b = AddKeyframe(map, 1);
   const ObjectId object = map.AddObject();
   EXPECT_TRUE(map.AddObservation(object, b, 0));
   EXPECT_TRUE(map.AddObservation(object, a, 3));
-  EXPECT_FALSE(map.AddObservation(object, a, 2));  // once a keyframe
+  EXPECT_FALSE(map.AddObservation(object, a, 2));  // one observation per keyframe
   EXPECT_FALSE(map.AddObservation(map.AddObject(), a, 3));
   const ObjectLandmark& seen = map.objects().At(object);
   ASSERT_EQ(seen.observations.size(), 2u);
@@ -48,7 +48,7 @@ TEST(ObjectsOfTheMap, AreObservedAtBothEndsAndVotedFor) {
   EXPECT_EQ(map.objects().At(object).votes.count("book"), 0u);
 }
 
-TEST(ObjectsOfTheMap, ReplacingMovesObservationsAndResolves) {
+TEST(ObjectsOfTheMap, ReplacingMovesObservationsAndRedirectsTheId) {
   Map map;
   const KeyframeId a = AddKeyframe(map, 1);
   const KeyframeId b = AddKeyframe(map, 1);
@@ -77,7 +77,7 @@ TEST(ObjectsOfTheMap, LoseTheObservationsOfACulledKeyframe) {
   map.AddObservation(object, b, 1);
   map.CullKeyframe(b);
   EXPECT_TRUE(map.objects().At(object).observations.empty());
-  EXPECT_EQ(map.objects().At(object).reference, b);  // which has a pose although it is culled
+  EXPECT_EQ(map.objects().At(object).reference, b);  // it has a pose although it is culled
 }
 
 TEST(ObjectsOfTheMap, ReferToTheFirstKeyframeThatObservesThem) {

@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// Edits a map at random through all of its public edits, but for those of derived data.
+// Changes a map at random by all of its public functions except those for derived data.
 class RandomEdits {
  public:
   explicit RandomEdits(uint32_t seed) : random_(seed) {}
@@ -46,7 +46,7 @@ class RandomEdits {
  private:
   static constexpr uint32_t kKeypoints = 40;
 
-  // Keyframes come with what they share with those before, as in mapping, or with nothing.
+  // A new keyframe shares landmarks with earlier ones, as in mapping, or shares none.
   void Grow(Map& map) {
     const KeyframeId id = AddKeyframe(map, kKeypoints, kKeypoints / 3, random_.Pose(1.0, 2.0));
     for (uint32_t i = 0; i < random_.Index(30) && !map.landmarks().empty(); ++i) {
@@ -130,7 +130,7 @@ class RandomEdits {
     return all[random_.Index(all.size())];
   }
 
-  // One that is in the map; made where there is none.
+  // A random one of the map; if there is none, one is made.
   LandmarkId AnyLandmark(Map& map) {
     if (map.landmarks().empty()) {
       return map.AddLandmark(random_.Vector(3.0), AnyKeyframe(map));

@@ -16,14 +16,14 @@ double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToM
 
 Rigid3 Shift(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }
 
-TEST(RelativePose, RefersToNothingAtFirst) {
+TEST(RelativePose, HasNoReferenceAtFirst) {
   const RelativePose pose;
   EXPECT_FALSE(pose.reference.IsValid());
   EXPECT_EQ(pose.reference_scale, 1.0);
   EXPECT_THROW(Map().CamFromWorld(pose), CheckError);
 }
 
-TEST(RelativePose, GivesThePoseThatItWasMadeOf) {
+TEST(RelativePose, ReturnsThePoseThatItWasMadeFrom) {
   RandomGeometry random(1);
   Map map;
   const KeyframeId reference = AddKeyframe(map, 1, 0, random.Pose(2.0, 3.0));
@@ -45,7 +45,7 @@ TEST(RelativePose, FollowsItsReference) {
   EXPECT_LT(Distance(map.CamFromWorld(pose), pose.cam_from_reference * moved), 1e-12);
 }
 
-TEST(RelativePose, TakesTheScaleThatItsReferenceHasGainedSince) {
+TEST(RelativePose, FollowsTheScaleOfItsReference) {
   Map map;
   const KeyframeId reference = AddKeyframe(map, 1, 0, Shift(1.0));
   map.MutableKeyframe(reference).scale = 2.0;
@@ -55,7 +55,7 @@ TEST(RelativePose, TakesTheScaleThatItsReferenceHasGainedSince) {
   EXPECT_EQ(map.CamFromWorld(pose).translation.x(), 1.0 + 3.0 * (6.0 / 2.0));
 }
 
-TEST(RelativePose, TakesTheScaleThroughACulledReference) {
+TEST(RelativePose, FollowsTheScaleThroughACulledReference) {
   Map map;
   const KeyframeId parent = AddKeyframe(map, 1, 0, Shift(1.0));
   const KeyframeId reference = AddKeyframe(map, 1, 0, Shift(3.0));

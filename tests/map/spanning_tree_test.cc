@@ -51,22 +51,23 @@ TEST_F(SpanningTree, ANewParentReplacesTheFormer) {
   EXPECT_EQ(At(3).parent, KeyframeId(5));
   EXPECT_EQ(At(5).children, Ids({3}));
   EXPECT_EQ(At(1).children, Ids({2, 4, 5}));
-  SetParent(map_, KeyframeId(3), KeyframeId(5));  // nothing new
+  SetParent(map_, KeyframeId(3), KeyframeId(5));  // no change
   EXPECT_EQ(At(5).children, Ids({3}));
   SetParent(map_, KeyframeId(3), KeyframeId());
   EXPECT_FALSE(At(3).parent.IsValid());
   EXPECT_TRUE(At(5).children.empty());
 }
 
-TEST_F(SpanningTree, ChildrenWithoutRelativesGoToTheParent) {
+TEST_F(SpanningTree, ChildrenThatShareNothingGoToTheParent) {
   DetachFromTree(map_, KeyframeId(1));
   EXPECT_EQ(At(0).children, Ids({2, 3, 4, 5}));
   EXPECT_FALSE(At(1).parent.IsValid());
   EXPECT_TRUE(At(1).children.empty());
 }
 
-// 2 shares most with the parent; 3 with 2, which is handed over by then; 4 with 3; 5 with none.
-TEST_F(SpanningTree, ChildrenGoToTheRelativesTheyShareMostWith) {
+// 2 shares most with the parent, 3 with 2 (which has its new parent by then), 4 with 3, 5 with
+// none.
+TEST_F(SpanningTree, ChildrenGoToTheKeyframesThatTheyShareMostWith) {
   ShareAndLink(2, 0, 40);
   ShareAndLink(3, 2, 60);
   ShareAndLink(3, 0, 20);
@@ -78,8 +79,8 @@ TEST_F(SpanningTree, ChildrenGoToTheRelativesTheyShareMostWith) {
   EXPECT_EQ(At(5).parent, KeyframeId(0));
 }
 
-// Siblings that share only with one another must not adopt each other in a ring.
-TEST_F(SpanningTree, SiblingsAdoptNobodyBeforeTheyAreHandedOver) {
+// Siblings that share landmarks only with each other must not form a cycle.
+TEST_F(SpanningTree, SiblingsAdoptNoneBeforeTheyHaveANewParent) {
   ShareAndLink(3, 2, 60);
   ShareAndLink(5, 4, 50);
   DetachFromTree(map_, KeyframeId(1));
@@ -88,7 +89,7 @@ TEST_F(SpanningTree, SiblingsAdoptNobodyBeforeTheyAreHandedOver) {
   EXPECT_EQ(At(4).children, Ids({5}));
 }
 
-TEST_F(SpanningTree, ALeafJustGoes) {
+TEST_F(SpanningTree, ALeafIsRemoved) {
   DetachFromTree(map_, KeyframeId(4));
   EXPECT_EQ(At(1).children, Ids({2, 3, 5}));
   EXPECT_FALSE(At(4).parent.IsValid());

@@ -12,7 +12,7 @@
 namespace hullslam {
 namespace {
 
-// Keyframes with many keypoints with depth, to hang landmarks on.
+// Keyframes with many keypoints with depth, which can observe landmarks.
 class RecentLandmarksTest : public testing::Test {
  protected:
   RecentLandmarksTest() {
@@ -21,7 +21,7 @@ class RecentLandmarksTest : public testing::Test {
     }
   }
 
-  // Made by keyframe `by`, observed by `observers` keyframes from there on.
+  // Adds a landmark that keyframe `by` made and that `observers` keyframes from `by` on observe.
   LandmarkId Add(uint32_t by, uint32_t observers, int visible, int found) {
     const LandmarkId id = map_.AddLandmark(Eigen::Vector3d(0.0, 0.0, 3.0), KeyframeId(by));
     for (uint32_t i = 0; i < observers; ++i) {
@@ -51,13 +51,13 @@ class RecentLandmarksTest : public testing::Test {
   uint32_t next_keypoint_ = 0;
 };
 
-TEST_F(RecentLandmarksTest, GoWhenFoundInLessThanAQuarterOfTheFrames) {
+TEST_F(RecentLandmarksTest, AreErasedIfFoundInLessThanAQuarterOfTheFrames) {
   ExpectKept(Add(0, 3, 100, 25), 1, true, "exactly a quarter");
   ExpectCulled(Add(0, 3, 100, 24), 1, "below a quarter");
   ExpectCulled(Add(0, 3, 100, 24), 4, "below a quarter, old");
 }
 
-TEST_F(RecentLandmarksTest, GoWhenHeldByTooLittleAfterTwoKeyframes) {
+TEST_F(RecentLandmarksTest, AreErasedIfTheirWeightIsSmallAfterTwoKeyframes) {
   ExpectKept(Add(1, 1, 1, 1), 2, true, "one observation, one keyframe later");
   ExpectCulled(Add(1, 1, 1, 1), 3, "one observation with depth, two keyframes later");
   ExpectKept(Add(1, 2, 1, 1), 3, true, "two observations with depth are enough");
@@ -68,7 +68,7 @@ TEST_F(RecentLandmarksTest, LeaveTheListAfterThreeKeyframes) {
   ExpectKept(Add(1, 2, 1, 1), 4, false, "three keyframes later");
 }
 
-TEST_F(RecentLandmarksTest, ThatAreGoneAlreadyLeaveTheList) {
+TEST_F(RecentLandmarksTest, ThatNoLongerExistLeaveTheList) {
   const LandmarkId gone = Add(0, 2, 1, 1);
   const LandmarkId replaced = Add(0, 2, 1, 1);
   const LandmarkId by = Add(0, 2, 1, 1);
@@ -79,7 +79,7 @@ TEST_F(RecentLandmarksTest, ThatAreGoneAlreadyLeaveTheList) {
   EXPECT_EQ(recent, std::vector{by});
 }
 
-// Keyframes so near to one another that they see the same points at the same levels.
+// Keyframes so close together that they see the same points at the same levels.
 SyntheticMap NearbyKeyframes(const SyntheticWorld& world, uint32_t count) {
   SyntheticMap made;
   std::vector<LandmarkId>& landmarks = made.landmarks;
@@ -100,7 +100,7 @@ SyntheticMap NearbyKeyframes(const SyntheticWorld& world, uint32_t count) {
   return made;
 }
 
-TEST(CullKeyframes, RedundantOnesGoWhileThreeOthersSeeTheirLandmarks) {
+TEST(CullKeyframes, RemovesKeyframesWhileThreeOthersSeeTheirLandmarks) {
   const SyntheticWorld world;
   SyntheticMap made = NearbyKeyframes(world, 5);
   const auto landmarks = made.map.landmarks().size();
@@ -109,10 +109,10 @@ TEST(CullKeyframes, RedundantOnesGoWhileThreeOthersSeeTheirLandmarks) {
   EXPECT_FALSE(made.map.keyframes().Contains(KeyframeId(1)));
   EXPECT_FALSE(made.map.keyframes().Contains(KeyframeId(2)));
   EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(3))) << "two others are left";
-  EXPECT_EQ(made.map.landmarks().size(), landmarks) << "no landmark goes with it";
+  EXPECT_EQ(made.map.landmarks().size(), landmarks) << "no landmark is erased with it";
 }
 
-TEST(CullKeyframes, TheRootAndTheCurrentOneStay) {
+TEST(CullKeyframes, KeepsTheRootAndTheCurrentKeyframe) {
   const SyntheticWorld world;
   SyntheticMap made = NearbyKeyframes(world, 8);
   EXPECT_EQ(CullKeyframes(made.map, KeyframeId(7), world.sensor()), 5);
@@ -121,7 +121,7 @@ TEST(CullKeyframes, TheRootAndTheCurrentOneStay) {
   EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(7)));
 }
 
-TEST(CullKeyframes, OfThreeKeyframesNoneGoes) {
+TEST(CullKeyframes, RemovesNoneOfThreeKeyframes) {
   const SyntheticWorld world;
   SyntheticMap made = NearbyKeyframes(world, 3);
   EXPECT_EQ(CullKeyframes(made.map, KeyframeId(2), world.sensor()), 0);
@@ -148,7 +148,7 @@ TEST(CullKeyframes, MoreThanNineTenthsMustBeSeenByOthers) {
       }
     }
     const auto alone = static_cast<size_t>(share * static_cast<double>(close.size()));
-    for (size_t i = 0; i < alone; ++i) {  // two others still see them: too few
+    for (size_t i = 0; i < alone; ++i) {  // two other keyframes still see them, too few
       made.map.RemoveObservation(close[i], KeyframeId(3));
       made.map.RemoveObservation(close[i], KeyframeId(4));
     }
@@ -159,7 +159,7 @@ TEST(CullKeyframes, MoreThanNineTenthsMustBeSeenByOthers) {
   EXPECT_FALSE(is_culled_with_share_alone(0.12));
 }
 
-TEST(CullKeyframes, OthersThatSeeALandmarkAtACoarserLevelDoNotCount) {
+TEST(CullKeyframes, ObserversAtACoarserLevelDoNotCount) {
   const SyntheticWorld world;
   SyntheticMap made;
   std::vector<LandmarkId> landmarks(world.points().size());
@@ -183,7 +183,7 @@ TEST(CullKeyframes, OthersThatSeeALandmarkAtACoarserLevelDoNotCount) {
   CullKeyframes(made.map, KeyframeId(4), world.sensor());
   EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(1)));
   EXPECT_FALSE(made.map.keyframes().Contains(KeyframeId(2)))
-      << "keyframe 1 sees its landmarks finer";
+      << "keyframe 1 sees its landmarks at a finer level";
 }
 
 }  // namespace

@@ -24,7 +24,8 @@ InitialMap InitialMapOf(const SyntheticView& view, const PinholeCamera& camera) 
   return initial;
 }
 
-// The path's frame, seen from keyframe `reference` of the made map, with all landmarks it knows.
+// A request for the path's frame relative to keyframe `reference`, with all landmarks that the map
+// has of its keypoints.
 KeyframeRequest Request(const SyntheticMap& made, const SyntheticView& view, uint32_t index,
                         KeyframeId reference) {
   KeyframeRequest request;
@@ -72,7 +73,7 @@ TEST(InitialMapInsertion, PointsOfOneViewBecomeItsLandmarks) {
   EXPECT_EQ(map.landmarks().size(), with_depth);
 }
 
-// Two views that share points, as a monocular map begins.
+// Two views that share points, as at the beginning of a monocular map.
 TEST(InitialMapInsertion, PointsOfTwoViewsAreObservedByBoth) {
   const SyntheticWorld world({.depth_share = 0.0});
   const SyntheticView a = world.Observe(0);
@@ -105,7 +106,7 @@ TEST(InitialMapInsertion, PointsOfTwoViewsAreObservedByBoth) {
   }
 }
 
-TEST(InitialMapInsertion, ViewsWithoutSharedPointsHangInOneTree) {
+TEST(InitialMapInsertion, ViewsWithoutSharedPointsAreInOneTree) {
   const SyntheticWorld world;
   InitialMap initial;
   initial.views = {{world.Observe(0).frame, Rigid3()}, {world.Observe(1).frame, Rigid3()}};
@@ -116,7 +117,7 @@ TEST(InitialMapInsertion, ViewsWithoutSharedPointsHangInOneTree) {
   EXPECT_EQ(FindViolations(map), std::vector<std::string>());
 }
 
-TEST(InitialMapInsertion, OnlyAnEmptyMapTakesIt) {
+TEST(InitialMapInsertion, NeedsAnEmptyMap) {
   const SyntheticWorld world;
   const InitialMap initial = InitialMapOf(world.Observe(0), world.sensor().camera);
   Map map;
@@ -125,7 +126,8 @@ TEST(InitialMapInsertion, OnlyAnEmptyMapTakesIt) {
   EXPECT_THROW(InsertInitialMap(map, initial, world.sensor(), created), CheckError);
 }
 
-// Keyframes after the initial map: every close depth, else the nearest hundred.
+// A keyframe after the initial map makes landmarks of all close keypoints and of the nearest
+// hundred.
 void ExpectNearestAreTaken(double close_depth, bool more_than_hundred_are_close) {
   const SyntheticWorld world;
   Sensor sensor = world.sensor();
@@ -156,13 +158,13 @@ void ExpectNearestAreTaken(double close_depth, bool more_than_hundred_are_close)
   EXPECT_LT(farthest_taken, nearest_left);
 }
 
-TEST(KeyframeInsertion, LaterOnesTakeAllCloseDepths) { ExpectNearestAreTaken(4.5, true); }
+TEST(KeyframeInsertion, MakesLandmarksOfAllCloseKeypoints) { ExpectNearestAreTaken(4.5, true); }
 
-TEST(KeyframeInsertion, LaterOnesTakeTheNearestHundredWhereFewAreClose) {
+TEST(KeyframeInsertion, MakesLandmarksOfTheNearestHundredIfFewAreClose) {
   ExpectNearestAreTaken(2.2, false);
 }
 
-TEST(KeyframeInsertion, KnownLandmarksAreObservedNotMadeAgain) {
+TEST(KeyframeInsertion, KnownLandmarksAreObservedAndNotMadeAgain) {
   const SyntheticWorld world;
   SyntheticMap made = MakeSyntheticMap(world, {0, 5});
   const SyntheticView view = world.Observe(10);
@@ -185,7 +187,7 @@ TEST(KeyframeInsertion, KnownLandmarksAreObservedNotMadeAgain) {
   EXPECT_EQ(keyframe.parent, KeyframeId(1)) << "it shares more with the nearer one";
 }
 
-TEST(KeyframeInsertion, ThePoseFollowsAReferenceThatMovedOrWasCulledMeanwhile) {
+TEST(KeyframeInsertion, ThePoseFollowsAReferenceThatWasMovedOrCulled) {
   const SyntheticWorld world;
   SyntheticMap made = MakeSyntheticMap(world, {0, 5, 8});
   const SyntheticView view = world.Observe(10);
@@ -204,7 +206,7 @@ TEST(KeyframeInsertion, ThePoseFollowsAReferenceThatMovedOrWasCulledMeanwhile) {
   EXPECT_LT(AngularDistance(actual.rotation, expected.rotation), 1e-12);
 }
 
-TEST(KeyframeInsertion, LandmarksErasedOrReplacedMeanwhileAreFollowed) {
+TEST(KeyframeInsertion, ResolvesErasedAndReplacedLandmarks) {
   const SyntheticWorld world;
   SyntheticMap made = MakeSyntheticMap(world, {0, 5});
   const SyntheticView view = world.Observe(10);

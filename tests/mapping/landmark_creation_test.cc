@@ -56,7 +56,7 @@ Rigid3 LookingAhead(const Eigen::Vector3d& center) {
   return {Eigen::Quaterniond::Identity(), -center};
 }
 
-// The point of the world that the landmark was made from; the descriptor says which.
+// The point of the world that the landmark was made from. Each point has its own descriptor.
 uint32_t PointOf(const SyntheticWorld& world, const Landmark& landmark) {
   for (uint32_t i = 0; i < world.points().size(); ++i) {
     if (world.descriptor(i) == landmark.descriptor) {
@@ -93,7 +93,7 @@ TEST(LandmarkCreation, KeypointsWithoutDepthAreTriangulated) {
   const std::vector<LandmarkId> created = CreateLandmarks(pair.map, KeyframeId(1), world.sensor());
   EXPECT_EQ(FindViolations(pair.map), std::vector<std::string>());
   EXPECT_EQ(created.size(), CountFreeShared(world, pair, [](const auto&) { return true; }))
-      << "30 cm aside every point is 2.7 degrees or more apart";
+      << "with a baseline of 30 cm every parallax is at least 2.7 degrees";
   for (const LandmarkId id : created) {
     const Landmark& landmark = pair.map.landmarks().At(id);
     EXPECT_LT((landmark.position - world.points()[PointOf(world, landmark)]).norm(), 1e-4);
@@ -103,7 +103,7 @@ TEST(LandmarkCreation, KeypointsWithoutDepthAreTriangulated) {
   }
 }
 
-TEST(LandmarkCreation, TooLittleParallaxWithoutDepthGivesNone) {
+TEST(LandmarkCreation, SmallParallaxWithoutDepthGivesNoLandmark) {
   const SyntheticWorld world({.depth_share = 0.0});
   const Eigen::Vector3d center(0.09, 0.0, 0.0);
   TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead(center));
@@ -122,13 +122,13 @@ TEST(LandmarkCreation, TooLittleParallaxWithoutDepthGivesNone) {
   EXPECT_GT(CountFreeShared(world, pair, [&](const auto& p) { return parallax(p) < 1.1; }), 20u);
 }
 
-TEST(LandmarkCreation, WithinTheVirtualBaselineNothingIsTriangulated) {
+TEST(LandmarkCreation, NothingIsTriangulatedWithinTheVirtualBaseline) {
   const SyntheticWorld world;
   TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead({0.079, 0.0, 0.0}));
   EXPECT_TRUE(CreateLandmarks(pair.map, KeyframeId(1), world.sensor()).empty());
 }
 
-TEST(LandmarkCreation, DepthStandsInForParallax) {
+TEST(LandmarkCreation, DepthReplacesParallax) {
   const SyntheticWorld world;
   TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead({0.0, 0.0, 0.1}));
   const std::vector<LandmarkId> created = CreateLandmarks(pair.map, KeyframeId(1), world.sensor());
@@ -142,8 +142,8 @@ TEST(LandmarkCreation, DepthStandsInForParallax) {
   }
 }
 
-// 1.5 m nearer a patch is found up to seven levels of the pyramid higher.
-TEST(LandmarkCreation, LevelsThatChangeAsTheDistancesDoAreConsistent) {
+// From 1.5 m nearer, a patch is found up to seven levels of the pyramid higher.
+TEST(LandmarkCreation, LevelsThatChangeWithTheDistancesAreConsistent) {
   const SyntheticWorld world({.depth_share = 0.0});
   const Eigen::Vector3d center(0.4, 0.0, 1.5);
   TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead(center));
@@ -180,7 +180,7 @@ TEST(LandmarkCreation, PointsOffTheEpipolarLineAreRefused) {
   EXPECT_TRUE(CreateLandmarks(pair.map, KeyframeId(1), world.sensor()).empty());
 }
 
-TEST(LandmarkCreation, AKeyframeWithoutNeighboursMakesNone) {
+TEST(LandmarkCreation, AKeyframeWithoutNeighboursMakesNoLandmark) {
   const SyntheticWorld world;
   Map map;
   const KeyframeId id = map.AddKeyframe(world.Observe(0).frame, Rigid3());

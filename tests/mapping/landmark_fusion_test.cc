@@ -18,11 +18,11 @@ bool Observes(const Map& map, KeyframeId keyframe, LandmarkId landmark) {
 
 class LandmarkFusionTest : public testing::Test {
  protected:
-  // Landmarks that all three keyframes see with depth, every third.
+  // Every third of the landmarks that all three keyframes see with depth.
   std::vector<LandmarkId> Victims() const {
     std::vector<LandmarkId> victims;
     made_.map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
-      if (landmark.support == 6 && id.value % 3 == 0) {
+      if (landmark.observation_weight == 6 && id.value % 3 == 0) {
         victims.push_back(id);
       }
     });
@@ -30,7 +30,7 @@ class LandmarkFusionTest : public testing::Test {
     return victims;
   }
 
-  // Takes the landmark from the keyframe and gives its keypoint a landmark of its own instead.
+  // Removes the keyframe's observation of the landmark and makes a second landmark of its keypoint.
   LandmarkId Split(LandmarkId landmark, KeyframeId keyframe, const Eigen::Vector3d& shift) {
     const uint32_t keypoint = Forget(landmark, keyframe);
     const LandmarkId twin =
@@ -56,13 +56,13 @@ class LandmarkFusionTest : public testing::Test {
   const KeyframeId newest_{2};
 };
 
-TEST_F(LandmarkFusionTest, ASoundMapStaysAsItIs) {
+TEST_F(LandmarkFusionTest, DoesNotChangeAMapWithoutDuplicates) {
   const size_t landmarks = made_.map.landmarks().size();
   Fuse(newest_);
   EXPECT_EQ(made_.map.landmarks().size(), landmarks);
 }
 
-TEST_F(LandmarkFusionTest, DuplicatesOfTheKeyframeAreJoined) {
+TEST_F(LandmarkFusionTest, MergesDuplicatesOfTheKeyframe) {
   const size_t landmarks = made_.map.landmarks().size();
   std::vector<std::pair<LandmarkId, LandmarkId>> twins;
   for (const LandmarkId victim : Victims()) {
@@ -71,13 +71,14 @@ TEST_F(LandmarkFusionTest, DuplicatesOfTheKeyframeAreJoined) {
   Fuse(newest_);
   EXPECT_EQ(made_.map.landmarks().size(), landmarks);
   for (const auto& [victim, twin] : twins) {
-    EXPECT_EQ(made_.map.Resolve(twin), victim) << "the one with more support stays";
+    EXPECT_EQ(made_.map.Resolve(twin), victim)
+        << "the one with the larger observation weight stays";
     EXPECT_EQ(made_.map.landmarks().At(victim).observations.size(), 3u);
     EXPECT_TRUE(Observes(made_.map, newest_, victim));
   }
 }
 
-TEST_F(LandmarkFusionTest, DuplicatesInANeighbourAreJoinedToo) {
+TEST_F(LandmarkFusionTest, MergesDuplicatesInANeighbour) {
   std::vector<std::pair<LandmarkId, LandmarkId>> twins;
   for (const LandmarkId victim : Victims()) {
     twins.emplace_back(victim, Split(victim, KeyframeId(0), {0.001, -0.001, 0.002}));
@@ -89,7 +90,7 @@ TEST_F(LandmarkFusionTest, DuplicatesInANeighbourAreJoinedToo) {
   }
 }
 
-TEST_F(LandmarkFusionTest, FreeKeypointsObserveWhatIsSeenThere) {
+TEST_F(LandmarkFusionTest, AddsObservationsAtFreeKeypoints) {
   const std::vector<LandmarkId> victims = Victims();
   for (const LandmarkId victim : victims) {
     Forget(victim, newest_);
@@ -102,10 +103,10 @@ TEST_F(LandmarkFusionTest, FreeKeypointsObserveWhatIsSeenThere) {
   }
   EXPECT_EQ(made_.map.keyframes().At(newest_).covisible[0].shared,
             shared_before + static_cast<int>(victims.size()))
-      << "edges are brought up to date";
+      << "the edges are updated";
 }
 
-TEST_F(LandmarkFusionTest, PointsThatLookDifferentStayApart) {
+TEST_F(LandmarkFusionTest, DoesNotMergePointsWithDifferentDescriptors) {
   std::vector<std::pair<LandmarkId, LandmarkId>> neighbours;
   for (const LandmarkId victim : Victims()) {
     const LandmarkId twin = Split(victim, newest_, Eigen::Vector3d::Zero());
@@ -128,12 +129,12 @@ TEST_F(LandmarkFusionTest, PointsThatLookDifferentStayApart) {
   }
 }
 
-TEST_F(LandmarkFusionTest, PointsTooFarFromTheKeypointStayApart) {
+TEST_F(LandmarkFusionTest, DoesNotMergePointsFarFromTheKeypoint) {
   std::vector<LandmarkId> twins;
   for (const LandmarkId victim : Victims()) {
     const Landmark& landmark = made_.map.landmarks().At(victim);
     const double depth = (made_.map.CamFromWorld(newest_) * landmark.position).z();
-    // 50 px from the keypoints, to either side: beyond every window.
+    // 50 px left or right of the keypoints, outside of every search window.
     made_.map.SetPosition(victim, landmark.position + Eigen::Vector3d(0.0, 0.1 * depth, 0.0));
     twins.push_back(Split(victim, newest_, {0.0, -0.2 * depth, 0.0}));
   }

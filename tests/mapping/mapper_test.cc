@@ -17,7 +17,7 @@
 namespace hullslam {
 namespace {
 
-// Feeds keyframes of the made-up world to a mapper, as a tracker with the right poses would.
+// Sends keyframes of the synthetic world to a mapper, like a tracker that finds the true poses.
 class MapperTest : public testing::Test {
  protected:
   explicit MapperTest(const SyntheticWorldOptions& world = {.points = 400, .pixel_noise = 0.1})
@@ -36,7 +36,7 @@ class MapperTest : public testing::Test {
 
   const Map& map() const { return *published_.back(); }
 
-  // The initial map that the path's frame `index` begins: the points with depth, nearest first.
+  // The initial map of the path's frame `index` alone: its points with depth, nearest first.
   InitialMap Initial(uint32_t index) const {
     const SyntheticView view = world_.Observe(index);
     const FrameFeatures& features = view.frame->features;
@@ -70,7 +70,7 @@ class MapperTest : public testing::Test {
     mapper_->Process(message, hurry);
     Learn();
   }
-  // The newest keyframe that is there is the reference.
+  // The reference is the newest keyframe that is in the map.
   void ProcessFrame(uint32_t index, const Cancellation* hurry = nullptr) {
     if (published_.empty()) {
       Process(Initial(index), hurry);
@@ -81,7 +81,7 @@ class MapperTest : public testing::Test {
     Process(Request(index, newest), hurry);
   }
 
-  // Which landmark of the newest map stands for which point: the descriptor says.
+  // The landmark of each point in the newest map. The descriptor identifies the point.
   void Learn() {
     std::map<Descriptor, LandmarkId> by_descriptor;
     map().landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
@@ -113,12 +113,12 @@ class MapperTest : public testing::Test {
 TEST_F(MapperTest, PublishesBeforeAndAfterItsWork) {
   ProcessFrame(0);
   ASSERT_EQ(published_.size(), 2u);
-  EXPECT_EQ(published_[0]->keyframes().size(), 1u) << "tracking need not wait for the rest";
+  EXPECT_EQ(published_[0]->keyframes().size(), 1u) << "tracking does not have to wait for the rest";
   ProcessFrame(5);
   EXPECT_EQ(published_.size(), 4u);
 }
 
-TEST_F(MapperTest, BuildsASoundMapNearTheTruth) {
+TEST_F(MapperTest, BuildsAConsistentMapNearTheTruth) {
   for (uint32_t index = 0; index <= 60; index += 5) {
     ProcessFrame(index);
   }
@@ -132,7 +132,7 @@ TEST_F(MapperTest, BuildsASoundMapNearTheTruth) {
   });
 }
 
-TEST_F(MapperTest, BundleAdjustmentMendsAPoseThatIsOff) {
+TEST_F(MapperTest, BundleAdjustmentCorrectsAWrongPose) {
   for (uint32_t index = 0; index <= 20; index += 5) {
     ProcessFrame(index);
   }
@@ -143,10 +143,10 @@ TEST_F(MapperTest, BundleAdjustmentMendsAPoseThatIsOff) {
   EXPECT_LT(
       (keyframe.cam_from_world.translation - SyntheticWorld::CamFromWorld(25).translation).norm(),
       0.005)
-      << "it was 0.017 m off";
+      << "it was wrong by 0.017 m";
 }
 
-// Everything that a snapshot holds, as text.
+// The content of a snapshot as text.
 std::string Describe(const Map& map) {
   std::ostringstream text;
   text << std::hexfloat;
@@ -163,13 +163,13 @@ std::string Describe(const Map& map) {
   });
   map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
     text << "landmark " << id.value << ' ' << landmark.position.transpose() << ' '
-         << landmark.support << ' ' << landmark.visible << ' ' << landmark.found << ' '
+         << landmark.observation_weight << ' ' << landmark.visible << ' ' << landmark.found << ' '
          << landmark.max_distance << ' ' << landmark.viewing_direction.transpose() << '\n';
   });
   return text.str();
 }
 
-TEST_F(MapperTest, WhatIsPublishedNeverChanges) {
+TEST_F(MapperTest, PublishedSnapshotsDoNotChange) {
   std::vector<std::string> described;
   for (uint32_t index = 0; index <= 30; index += 3) {
     ProcessFrame(index);
@@ -195,7 +195,7 @@ TEST_F(MapperTest, SameRequestsGiveTheSameBits) {
   EXPECT_EQ(first, run());
 }
 
-TEST_F(MapperTest, RedundantKeyframesAreCulledUnlessThatIsOff) {
+TEST_F(MapperTest, RedundantKeyframesAreCulledIfThatIsWanted) {
   const auto count = [&](bool cull) {
     MappingOptions options;
     options.cull_keyframes = cull;
@@ -210,11 +210,11 @@ TEST_F(MapperTest, RedundantKeyframesAreCulledUnlessThatIsOff) {
   EXPECT_LT(count(true), 8u);
 }
 
-TEST_F(MapperTest, ARequestMayReferToWhatIsGoneMeanwhile) {
+TEST_F(MapperTest, ARequestMayReferToWhatNoLongerExists) {
   for (uint32_t index = 0; index < 8; ++index) {
     ProcessFrame(index);
   }
-  // Made from an old snapshot: its reference and many of its landmarks have gone since.
+  // From an old snapshot: its reference and many of its landmarks no longer exist.
   KeyframeId culled;
   for (uint32_t id = 1; id < 8 && !culled.IsValid(); ++id) {
     culled = map().keyframes().Contains(KeyframeId(id)) ? KeyframeId() : KeyframeId(id);
@@ -228,7 +228,7 @@ TEST_F(MapperTest, ARequestMayReferToWhatIsGoneMeanwhile) {
       request.sightings.push_back({id, 3, 2});
     }
   });
-  request.landmarks[gone] = LandmarkId(1000000);  // was never given
+  request.landmarks[gone] = LandmarkId(1000000);  // no landmark ever had this id
   Process(request);
   const std::optional<KeyframeId> keyframe = map().KeyframeOfFrame(FrameId(12));
   ASSERT_TRUE(keyframe);
@@ -236,8 +236,8 @@ TEST_F(MapperTest, ARequestMayReferToWhatIsGoneMeanwhile) {
   EXPECT_LT(error.translation.norm(), 0.02);
 }
 
-// A correction moves the map as a whole; a keyframe that was tracked before it follows. (The scale
-// stays: the depths of the frames are metric.)
+// A correction moves the whole map. A keyframe that was tracked before the correction follows it.
+// The scale stays 1 because the depths of the frames are metric.
 TEST_F(MapperTest, ACorrectionIsAppliedAndPublished) {
   for (uint32_t index = 0; index <= 20; index += 5) {
     ProcessFrame(index);
@@ -258,14 +258,14 @@ TEST_F(MapperTest, ACorrectionIsAppliedAndPublished) {
   const Eigen::Vector3d expected =
       Inverse(old_from_new) * Inverse(SyntheticWorld::CamFromWorld(25)).translation;
   EXPECT_LT((Inverse(keyframe.cam_from_world).translation - expected).norm(), 0.01);
-  EXPECT_GT(keyframe.covisible.size(), 1u) << "it finds the landmarks where they are now";
+  EXPECT_GT(keyframe.covisible.size(), 1u) << "it finds the landmarks at their new positions";
 
   const size_t published = published_.size();
   Process(correction);
-  EXPECT_EQ(published_.size(), published) << "the same correction again is stale";
+  EXPECT_EQ(published_.size(), published) << "the same correction again is refused";
 }
 
-TEST_F(MapperTest, InAHurryWhatCanBeLeftOutIs) {
+TEST_F(MapperTest, InAHurryItLeavesOutWhatIsNotNecessary) {
   Cancellation hurry;
   hurry.Request();
   for (uint32_t index = 0; index <= 30; index += 5) {
@@ -299,7 +299,7 @@ TEST_F(MapperTest, FinishAdjustsTheWholeMapIfThatIsWanted) {
   EXPECT_LT(map_path(true), 0.95 * without);
 }
 
-TEST_F(MapperTest, FinishOfNoOrOneKeyframeOrCancelledDoesNothing) {
+TEST_F(MapperTest, FinishDoesNothingWithFewerThanTwoKeyframesOrCancelled) {
   MappingOptions options;
   options.final_bundle_adjustment = true;
   Restart(options);

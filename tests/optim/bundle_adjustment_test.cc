@@ -46,12 +46,12 @@ Map MakeChain(uint32_t length) {
   return map;
 }
 
-TEST(LocalWindow, MovesTheNeighboursAndFixesWhoSeesTheSame) {
+TEST(LocalWindow, MovesTheNeighboursAndFixesOtherObservers) {
   const Map map = MakeChain(10);
   const BundleWindow window = LocalWindow(map, KeyframeId(9), 20, 40);
   EXPECT_EQ(window.moving, Ids({7, 8, 9}));
   EXPECT_EQ(window.fixed, Ids({5, 6}));
-  // 20 + 16 with older ones at each of the three; none is counted twice.
+  // Each of the three shares 20 + 16 landmarks with older keyframes; none is counted twice.
   EXPECT_EQ(window.landmarks.size(), 3u * 36u);
   EXPECT_TRUE(std::is_sorted(window.landmarks.begin(), window.landmarks.end()));
 }
@@ -66,21 +66,21 @@ TEST(LocalWindow, RootNeverMoves) {
   EXPECT_EQ(at_root.fixed, Ids({0, 3, 4}));
 }
 
-TEST(LocalWindow, IsCappedAndKeepsTheStrongest) {
+TEST(LocalWindow, IsLimitedToTheKeyframesThatShareMost) {
   const Map map = MakeChain(10);
   const BundleWindow two = LocalWindow(map, KeyframeId(9), 2, 40);
   EXPECT_EQ(two.moving, Ids({8, 9}));  // 8 shares 20, 7 only 16
   EXPECT_EQ(two.fixed, Ids({6, 7}));
   const BundleWindow one_fixed = LocalWindow(map, KeyframeId(9), 2, 1);
-  EXPECT_EQ(one_fixed.fixed, Ids({7}));  // of 36 against 16 observations
+  EXPECT_EQ(one_fixed.fixed, Ids({7}));  // it has 36 observations, 6 has 16
   EXPECT_EQ(LocalWindow(map, KeyframeId(9), 1, 40).moving, Ids({9}));
 }
 
-TEST(LocalWindow, SomethingIsAlwaysFixed) {
+TEST(LocalWindow, AKeyframeIsAlwaysFixed) {
   Map map = MakeChain(1);
   EXPECT_EQ(LocalWindow(map, KeyframeId(0), 20, 40).fixed, Ids({0}));
   EXPECT_TRUE(LocalWindow(map, KeyframeId(0), 20, 40).moving.empty());
-  // Two more that see nothing of what the root sees.
+  // Two more keyframes, which share no landmark with the root.
   for (int i = 0; i < 2; ++i) {
     SetParent(map, AddKeyframe(map, 50), KeyframeId(0));
   }
@@ -102,8 +102,8 @@ TEST(GlobalWindow, MovesAllButTheRoot) {
   EXPECT_TRUE(window.objects.empty());
 }
 
-// A map of the made-up world with its poses and points pushed off the truth, but for the first two
-// keyframes.
+// A map of the synthetic world. Perturb moves its points and all but the first two poses away from
+// the truth.
 class BundleAdjustment : public ::testing::Test {
  protected:
   static constexpr BundleOptions kPrecise{
@@ -131,7 +131,8 @@ class BundleAdjustment : public ::testing::Test {
     }
     return window;
   }
-  // Lets each of the first `count` landmarks of `keyframe` be observed where another one is.
+  // Exchanges the keypoints of `count` pairs of landmarks in `keyframe`. Returns the wrong
+  // observations.
   std::set<std::pair<LandmarkId, KeyframeId>> PlantOutliers(KeyframeId keyframe, size_t count) {
     std::set<std::pair<LandmarkId, KeyframeId>> planted;
     for (size_t i = 0; i < count; ++i) {
@@ -183,14 +184,14 @@ TEST_F(BundleAdjustment, RecoversTheTruth) {
   ASSERT_TRUE(result.is_usable);
   ASSERT_EQ(result.poses.size(), 4u);
   ASSERT_EQ(result.positions.size(), window.landmarks.size());
-  // What is left is the rounding of the pixels to float.
+  // The remaining error comes from rounding the pixels to float.
   EXPECT_LT(WorstPoseError(result), 1e-5);
   EXPECT_LT(WorstPointError(result), 1e-4);
   EXPECT_TRUE(result.outliers.empty());
   EXPECT_GT(result.residuals, 1000);
 }
 
-TEST_F(BundleAdjustment, DefaultsBringItNear) {
+TEST_F(BundleAdjustment, DefaultOptionsComeNearTheTruth) {
   Perturb(0.01, 0.03);
   const BundleResult result = AdjustBundle(made_.map, world_.sensor(), Window(), {}, nullptr);
   ASSERT_TRUE(result.is_usable);
@@ -198,14 +199,14 @@ TEST_F(BundleAdjustment, DefaultsBringItNear) {
   EXPECT_LE(result.iterations, 5 + 10 + 2);  // Ceres counts the start of each round
 }
 
-TEST_F(BundleAdjustment, AtTheTruthStaysThere) {
+TEST_F(BundleAdjustment, StaysAtTheTruth) {
   const BundleResult result = AdjustBundle(made_.map, world_.sensor(), Window(), kPrecise, nullptr);
   ASSERT_TRUE(result.is_usable);
   EXPECT_LT(WorstPoseError(result), 1e-5);
   EXPECT_TRUE(result.outliers.empty());
 }
 
-TEST_F(BundleAdjustment, MarksWhatIsWrongAndNothingElse) {
+TEST_F(BundleAdjustment, FindsExactlyTheWrongObservations) {
   const auto planted = PlantOutliers(KeyframeId(3), 10);
   ASSERT_EQ(planted.size(), 20u);
   ASSERT_TRUE(FindViolations(made_.map).empty());
@@ -232,7 +233,7 @@ TEST_F(BundleAdjustment, APointBehindACameraIsAnOutlierThere) {
   }
 }
 
-TEST_F(BundleAdjustment, MapIsNotTouched) {
+TEST_F(BundleAdjustment, DoesNotChangeTheMap) {
   Perturb(0.01, 0.03);
   const std::string before = Dump(made_.map);
   AdjustBundle(made_.map, world_.sensor(), Window(), {}, nullptr);
@@ -252,9 +253,9 @@ TEST_F(BundleAdjustment, SameInputGivesTheSameBits) {
   EXPECT_EQ(first.outliers, second.outliers);
 }
 
-// So many that the reduced system is solved by CHOLMOD, whose OpenMP threads the thread sanitizer
-// cannot follow.
-TEST_F(BundleAdjustment, OfManyPosesRecoversTheTruthAndGivesTheSameBits) {
+// With so many poses CHOLMOD solves the reduced system. The thread sanitizer cannot follow its
+// OpenMP threads.
+TEST_F(BundleAdjustment, WithManyPosesRecoversTheTruthAndGivesTheSameBits) {
 #ifdef __SANITIZE_THREAD__
   GTEST_SKIP();
 #endif
@@ -282,15 +283,15 @@ TEST_F(BundleAdjustment, OfManyPosesRecoversTheTruthAndGivesTheSameBits) {
   EXPECT_EQ(first.positions, second.positions);
 }
 
-// Errors that were not minimised say nothing about outliers.
-TEST_F(BundleAdjustment, AskedToStopAtOnceItGivesTheStartBackWithoutOutliers) {
+// Errors that were not minimised do not tell which observations are outliers.
+TEST_F(BundleAdjustment, CancelledAtOnceItReturnsTheStartWithoutOutliers) {
   Perturb(0.01, 0.03);
   Cancellation cancellation;
   cancellation.Request();
   const BundleResult result =
       AdjustBundle(made_.map, world_.sensor(), Window(), kPrecise, &cancellation);
   ASSERT_TRUE(result.is_usable);
-  EXPECT_EQ(result.iterations, 1);  // the look at the start
+  EXPECT_EQ(result.iterations, 1);  // the evaluation of the start
   EXPECT_TRUE(result.outliers.empty());
   ASSERT_EQ(result.poses.size(), 4u);
   for (const auto& [id, pose] : result.poses) {
@@ -301,7 +302,7 @@ TEST_F(BundleAdjustment, AskedToStopAtOnceItGivesTheStartBackWithoutOutliers) {
   }
 }
 
-TEST_F(BundleAdjustment, ACancellationThatNobodyRequestsChangesNothing) {
+TEST_F(BundleAdjustment, ACancellationThatIsNotRequestedChangesNothing) {
   Perturb(0.01, 0.03);
   const Cancellation cancellation;
   const BundleResult with = AdjustBundle(made_.map, world_.sensor(), Window(), {}, &cancellation);
@@ -310,7 +311,7 @@ TEST_F(BundleAdjustment, ACancellationThatNobodyRequestsChangesNothing) {
   EXPECT_EQ(with.iterations, without.iterations);
 }
 
-TEST_F(BundleAdjustment, OfNothingIsNothing) {
+TEST_F(BundleAdjustment, OfAnEmptyWindowIsEmpty) {
   const BundleResult nothing = AdjustBundle(made_.map, world_.sensor(), {}, {}, nullptr);
   EXPECT_TRUE(nothing.poses.empty());
   EXPECT_TRUE(nothing.positions.empty());
@@ -334,7 +335,7 @@ TEST_F(BundleAdjustment, ApplyingWritesPosesPositionsAndRemovesOutliers) {
   for (const auto& [id, position] : result.positions) {
     const Landmark& landmark = made_.map.landmarks().At(id);
     EXPECT_EQ(landmark.position, position);
-    // Distances are those from where the cameras are now.
+    // The distances are computed from the new camera centres.
     const Keyframe& reference = made_.map.keyframes().At(landmark.reference);
     EXPECT_GE(landmark.max_distance, (reference.cam_from_world * position).norm() * (1.0 - 1e-9));
   }
@@ -345,7 +346,7 @@ TEST_F(BundleAdjustment, ApplyingWritesPosesPositionsAndRemovesOutliers) {
   }
 }
 
-TEST_F(BundleAdjustment, ApplyingPassesOverWhatIsGoneMeanwhile) {
+TEST_F(BundleAdjustment, ApplyingPassesOverWhatNoLongerExists) {
   const auto planted = PlantOutliers(KeyframeId(3), 5);
   Perturb(0.005, 0.02);
   const BundleResult result = AdjustBundle(made_.map, world_.sensor(), Window(), kPrecise, nullptr);

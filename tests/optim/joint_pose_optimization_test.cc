@@ -24,7 +24,7 @@ void Shift(Detection& detection, double dx, double dy) {
   }
 }
 
-// A frame with points and objects in front of it, and how they are seen from the true pose.
+// A camera with points and objects in front of it, and what it sees from its true pose.
 class JointPose : public ::testing::Test {
  protected:
   void MakeScene(uint32_t seed) {
@@ -35,7 +35,7 @@ class JointPose : public ::testing::Test {
     detections_.clear();
     observations_.clear();
   }
-  // Objects on both sides of the image and in its middle, 2 to 4 m away.
+  // Objects at the left, in the middle and at the right of the image, 2 to 4 m away.
   void AddObjects(int count, double line_noise = 0.0) {
     for (int i = 0; i < count; ++i) {
       MadeObject object;
@@ -53,7 +53,7 @@ class JointPose : public ::testing::Test {
       detections_.push_back(std::move(detection));
     }
   }
-  // Points within `reach` (m) of a place in the camera frame, seen with `noise` px.
+  // Points within `reach` (m) of a place in the camera frame, measured with noise of `noise` px.
   void AddPoints(int count, const Eigen::Vector3d& place, const Eigen::Vector3d& reach,
                  double noise) {
     for (int i = 0; i < count; ++i) {
@@ -70,7 +70,7 @@ class JointPose : public ::testing::Test {
   void AddSpreadPoints(int count, double noise) {
     AddPoints(count, {0.0, 0.0, 4.0}, {1.2, 0.9, 2.0}, noise);
   }
-  // The whole sigma of an outline is the misfit.
+  // The sigma of the lines comes from the misfit alone: Optimize sets their own sigma to 0.
   std::vector<PoseObject> Objects(double sigma_px) const {
     std::vector<PoseObject> objects;
     for (size_t i = 0; i < detections_.size(); ++i) {
@@ -104,7 +104,7 @@ TEST_F(JointPose, ExactTangentsRecoverThePose) {
     AddObjects(3);
     AddSpreadPoints(20, 0.0);
     const JointPoseResult result = Optimize(Start(), 1.5);
-    // What is left is the pull of the prior.
+    // The remaining error comes from the prior.
     EXPECT_LT(Distance(result.points.cam_from_world, true_pose_), 2e-4);
     EXPECT_EQ(result.points.inlier_count, 20);
     EXPECT_EQ(result.used_objects, 3);
@@ -112,7 +112,7 @@ TEST_F(JointPose, ExactTangentsRecoverThePose) {
   }
 }
 
-// What is left is the pull of the prior along what four outlines hold least.
+// The remaining error comes from the prior, in the directions that four outlines constrain least.
 TEST_F(JointPose, ObjectsAloneRecoverThePose) {
   double sum = 0.0;
   double start_sum = 0.0;
@@ -152,7 +152,7 @@ TEST_F(JointPose, OtherResidualsRecoverThePoseToo) {
   }
 }
 
-TEST_F(JointPose, WithoutObjectsItIsOptimizePoseToTheLastBit) {
+TEST_F(JointPose, WithoutObjectsItEqualsOptimizePoseToTheLastBit) {
   MakeScene(1);
   AddSpreadPoints(60, 1.0);
   const Rigid3 start = Start();
@@ -165,7 +165,7 @@ TEST_F(JointPose, WithoutObjectsItIsOptimizePoseToTheLastBit) {
   EXPECT_EQ(result.used_objects, 0);
 }
 
-// The outlines of all objects lie 40 px beside them, in another direction each.
+// The outline of each object is shifted by 40 px in a random direction.
 TEST_F(JointPose, WrongDetectionsDoNotHarmAHundredPoints) {
   double with = 0.0;
   double without = 0.0;
@@ -188,9 +188,10 @@ TEST_F(JointPose, WrongDetectionsDoNotHarmAHundredPoints) {
   EXPECT_EQ(dropped, 4 * 20);
 }
 
-// The points lie within 30 cm, so that a turn of the camera and a shift look alike. It is not the
-// prior that helps: objects of which next to nothing is known bring it in too.
-TEST_F(JointPose, ObjectsHelpWhereFewPointsAreBunched) {
+// The points lie within 30 cm, so rotation and translation of the camera look alike. The prior
+// alone does not explain the improvement: objects with a sigma of 1e5 px add the prior and little
+// else.
+TEST_F(JointPose, ObjectsHelpWhenTheFewPointsAreCloseTogether) {
   double with = 0.0;
   double without = 0.0;
   double with_prior = 0.0;
@@ -210,7 +211,7 @@ TEST_F(JointPose, ObjectsHelpWhereFewPointsAreBunched) {
   EXPECT_LT(with, 0.8 * with_prior);
 }
 
-TEST_F(JointPose, ADroppedObjectIsToldAndHoldsNothing) {
+TEST_F(JointPose, ReportsWhichObjectWasDropped) {
   MakeScene(3);
   AddSpreadPoints(50, 1.0);
   AddObjects(3);
@@ -234,7 +235,7 @@ TEST_F(JointPose, ObjectsWithoutOutlineAreNeitherUsedNorDropped) {
   EXPECT_LT(Distance(result.points.cam_from_world, true_pose_), 0.02);
 }
 
-TEST_F(JointPose, OneObjectHoldsNoPoseAlone) {
+TEST_F(JointPose, OneObjectAloneIsTooFewForAPose) {
   MakeScene(5);
   AddObjects(1);
   const Rigid3 start = Start();
@@ -242,8 +243,8 @@ TEST_F(JointPose, OneObjectHoldsNoPoseAlone) {
   EXPECT_GT(Distance(Optimize(start, 1.5, {.min_objects = 1}).points.cam_from_world, start), 0.0);
 }
 
-// Whatever the outlines are, the pose stays near its start: here they belong to nothing.
-TEST_F(JointPose, NeverRunsAwayWithoutPoints) {
+// The outlines are random and fit no object. The pose must stay near its start nevertheless.
+TEST_F(JointPose, StaysNearTheStartWithoutPoints) {
   for (uint32_t seed = 1; seed <= 50; ++seed) {
     MakeScene(seed);
     AddObjects(2 + static_cast<int>(seed % 3));
@@ -260,11 +261,11 @@ TEST_F(JointPose, NeverRunsAwayWithoutPoints) {
   }
 }
 
-// Two objects one behind the other leave the turn around the line of sight nearly free.
-TEST_F(JointPose, WhatOutlinesLeaveFreeStaysAtTheStart) {
+// Two objects, one behind the other, hardly constrain the rotation around the line of sight.
+TEST_F(JointPose, AnUnconstrainedRotationStaysAtTheStart) {
   MakeScene(6);
   AddObjects(2);
-  for (size_t i = 0; i < 2; ++i) {  // spheres: no outline tells a turn around their centres
+  for (size_t i = 0; i < 2; ++i) {  // spheres: rotating them does not change their outlines
     MadeObject sphere;
     sphere.ellipsoid.world_from_object =
         Inverse(true_pose_) * Rigid3(Eigen::Quaterniond::Identity(), {0.0, 0.0, 2.0 + 1.0 * i});
@@ -283,13 +284,13 @@ TEST_F(JointPose, WhatOutlinesLeaveFreeStaysAtTheStart) {
   EXPECT_LT(std::hypot(seen.x(), seen.y()), 0.005);
 }
 
-TEST_F(JointPose, OneDetectionWeighsAsSoManyLinesAtMost) {
+TEST_F(JointPose, ADetectionCountsAsALimitedNumberOfLines) {
   MakeScene(7);
   AddSpreadPoints(10, 1.0);
   AddObjects(2, 3.0);
   const Rigid3 start = Start();
   const Rigid3 few = Optimize(start, 3.0).points.cam_from_world;
-  // Every line twice: nothing new.
+  // Every line twice adds no information.
   for (Detection& detection : detections_) {
     const std::vector<SilhouetteLine> lines = detection.lines;
     detection.lines.insert(detection.lines.end(), lines.begin(), lines.end());

@@ -20,8 +20,8 @@ namespace {
 
 double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
-// Distance of the centres and difference of the half extents along many directions, relative to the
-// size: says nothing of how the axes are called.
+// The largest of the distance of the centres and the differences of the half extents along many
+// directions, relative to the size. It does not depend on the order of the axes.
 double ShapeError(const Ellipsoid& a, const Ellipsoid& b) {
   const auto extent = [](const Ellipsoid& ellipsoid, const Eigen::Vector3d& direction) {
     return (ellipsoid.world_from_object.rotation.conjugate() * direction)
@@ -37,8 +37,8 @@ double ShapeError(const Ellipsoid& a, const Ellipsoid& b) {
   return worst / std::cbrt(b.half_axes.prod());
 }
 
-// A map of the made-up world with three objects in it that all keyframes see. The first two
-// keyframes are fixed.
+// A map of the synthetic world with three objects that all keyframes see. The first two keyframes
+// are fixed.
 class ObjectBundle : public ::testing::Test {
  protected:
   static constexpr BundleOptions kPrecise{
@@ -56,7 +56,7 @@ class ObjectBundle : public ::testing::Test {
           for (size_t i = 0; i < objects_.size(); ++i) {
             frame.detections.push_back(Detect(objects_[i], world_->sensor(), cam_from_world));
             Disturb(frame, frame.detections.back());
-            if (static_cast<int>(i) == blind_object_) {
+            if (static_cast<int>(i) == object_without_depth_) {
               frame.detections.back().points.clear();
             }
           }
@@ -74,7 +74,7 @@ class ObjectBundle : public ::testing::Test {
       object.start = object.ellipsoid;
     }
   }
-  // Shifts what the keyframe shifted_keyframe_ sees, and adds noise to all lines.
+  // Shifts the lines of frame shifted_frame_ by 40 px and adds noise to all lines.
   void Disturb(const Frame& frame, Detection& detection) {
     const double shift = static_cast<int>(frame.id.value) == shifted_frame_ ? 40.0 : 0.0;
     for (SilhouetteLine& line : detection.lines) {
@@ -142,15 +142,15 @@ class ObjectBundle : public ::testing::Test {
 
   RandomGeometry random_{1};
   int shifted_frame_ = -1;
-  double line_noise_ = 0.0;  // px
-  int blind_object_ = -1;    // has no depth points
+  double line_noise_ = 0.0;        // px
+  int object_without_depth_ = -1;  // index of an object
   std::optional<SyntheticWorld> world_;
   std::vector<MadeObject> objects_;
   SyntheticMap made_;
   std::vector<ObjectId> ids_;
 };
 
-TEST_F(ObjectBundle, WindowsHoldTheMappedObjects) {
+TEST_F(ObjectBundle, WindowsContainTheMappedObjects) {
   made_.map.MutableObject(ids_[1]).state = ObjectState::kCandidate;
   const std::vector<ObjectId> mapped = {ids_[0], ids_[2]};
   const KeyframeId last(5);
@@ -173,13 +173,13 @@ TEST_F(ObjectBundle, RecoversPosesAndShapes) {
   ASSERT_EQ(result.ellipsoids.size(), 3u);
   EXPECT_TRUE(result.failed_objects.empty());
   EXPECT_LT(MeanPoseError(result), 1e-3);
-  // What is left is the pull of the prior, about shapes that are wrong, and of the surface points'
-  // half.
+  // The remaining error comes from the prior, whose shapes are wrong, and from the depth points,
+  // which lie on the visible half of the surface.
   EXPECT_GT(before, 0.15);
   EXPECT_LT(MeanShapeError(result), 0.25 * before);
 }
 
-// The whole map: only the root is fixed.
+// Only the root is fixed.
 TEST_F(ObjectBundle, OfTheWholeMapImprovesPosesAndShapes) {
   PerturbPoses(0.01, 0.02);
   PerturbObjects(0.2);
@@ -193,7 +193,7 @@ TEST_F(ObjectBundle, OfTheWholeMapImprovesPosesAndShapes) {
   EXPECT_LT(MeanShapeError(result), 0.25 * before);
 }
 
-TEST_F(ObjectBundle, AtTheTruthStaysThere) {
+TEST_F(ObjectBundle, StaysAtTheTruth) {
   const BundleResult result = Adjust(Window());
   ASSERT_TRUE(result.is_usable);
   EXPECT_LT(MeanPoseError(result), 1e-5);
@@ -218,8 +218,8 @@ TEST_F(ObjectBundle, OtherResidualsImproveShapesToo) {
   }
 }
 
-// Detections that the window does not count change no bit.
-TEST_F(ObjectBundle, WithoutObjectsItIsThatOfThePoints) {
+// Detections of objects that are not in the window do not change any bit of the result.
+TEST_F(ObjectBundle, WithoutObjectsItAdjustsPointsOnly) {
   PerturbPoses(0.01, 0.02);
   const BundleResult result = Adjust(PointsOnly());
   for (const ObjectId id : ids_) {
@@ -245,7 +245,7 @@ TEST_F(ObjectBundle, SameInputGivesTheSameBits) {
   }
 }
 
-// A dozen points with noise, and outlines.
+// The map has only a dozen points, with noise, and outlines with noise.
 TEST_F(ObjectBundle, ObjectsHelpWherePointsAreFew) {
   double with = 0.0;
   double without = 0.0;
@@ -259,7 +259,7 @@ TEST_F(ObjectBundle, ObjectsHelpWherePointsAreFew) {
   EXPECT_LT(with, 0.9 * without);
 }
 
-// One keyframe sees all objects 40 px beside where they are.
+// In one keyframe the outlines of all objects are shifted by 40 px.
 TEST_F(ObjectBundle, AWrongFrameDoesNotHarmManyPoints) {
   double with = 0.0;
   double without = 0.0;
@@ -274,9 +274,10 @@ TEST_F(ObjectBundle, AWrongFrameDoesNotHarmManyPoints) {
   EXPECT_LT(with, 1.05 * without);
 }
 
-// What silhouettes leave free is held by its own prior where there is no depth.
+// Silhouettes alone do not constrain all of a quadric, so objects without depth have their own
+// prior.
 TEST_F(ObjectBundle, AnObjectWithoutDepthHasAPriorOfItsOwn) {
-  blind_object_ = 1;
+  object_without_depth_ = 1;
   Make({.points = 300, .depth_share = 0.7});
   PerturbObjects(0.2);
   BundleOptions options = kPrecise;
@@ -294,8 +295,8 @@ TEST_F(ObjectBundle, AnObjectWithoutDepthHasAPriorOfItsOwn) {
   }
 }
 
-// Keyframes outside of the window hold the objects, though they do not move.
-TEST_F(ObjectBundle, OuterViewsCount) {
+// Keyframes outside of the window constrain the objects, although they are fixed.
+TEST_F(ObjectBundle, OuterViewsConstrainObjects) {
   BundleWindow window = Window();
   window.moving = {KeyframeId(5)};
   window.fixed = {KeyframeId(4)};
@@ -306,13 +307,14 @@ TEST_F(ObjectBundle, OuterViewsCount) {
   const BundleResult two = Adjust(window, options);
   options.objects.max_outer_views = 10;
   const BundleResult all = Adjust(window, options);
-  EXPECT_EQ(two.residuals - none.residuals, 3 * 2 * 2);  // an outline and depth points each
+  EXPECT_EQ(two.residuals - none.residuals, 3 * 2 * 2);  // per view: outline and depth
   EXPECT_EQ(all.residuals - none.residuals, 3 * 4 * 2);
   EXPECT_EQ(all.poses.size(), 1u);
 }
 
-// Objects start as the side that was seen first, nearer to the camera than they are.
-TEST_F(ObjectBundle, WhatAnObjectStartedAsPullsNothing) {
+// An object starts as the side that was seen first, so its start is nearer to the camera than it
+// is.
+TEST_F(ObjectBundle, TheStartOfAnObjectHasNoInfluence) {
   PerturbPoses(0.01, 0.02);
   const BundleResult expected = Adjust(Window());
   for (const ObjectId id : ids_) {
@@ -327,11 +329,11 @@ TEST_F(ObjectBundle, WhatAnObjectStartedAsPullsNothing) {
   EXPECT_EQ(MeanShapeError(result), MeanShapeError(expected));
 }
 
-TEST_F(ObjectBundle, AShapeThatRunsAwayIsNotWritten) {
+TEST_F(ObjectBundle, AShapeThatChangesTooMuchIsNotWritten) {
   const Eigen::Vector3d before = 5.0 * objects_[1].ellipsoid.half_axes;
   made_.map.MutableObject(ids_[1]).ellipsoid.half_axes = before;
   BundleOptions options = kPrecise;
-  options.objects.constraint.loss_scale = 1e3;  // outlines far off are not taken for outliers
+  options.objects.constraint.loss_scale = 1e3;  // distant outlines are not outliers
   options.objects.constraint.prior.log_axes = 1e3;
   const BundleResult result = Adjust(Window(), options);
   ASSERT_TRUE(result.is_usable);
@@ -342,7 +344,7 @@ TEST_F(ObjectBundle, AShapeThatRunsAwayIsNotWritten) {
   EXPECT_EQ(made_.map.objects().At(ids_[1]).ellipsoid.half_axes, before);
 }
 
-// Ceres gives up at a value that is not finite: the points are adjusted nevertheless.
+// Ceres fails at a value that is not finite. The points are adjusted nevertheless.
 TEST_F(ObjectBundle, AnObjectThatIsNotFiniteDoesNotStopThePoints) {
   PerturbPoses(0.01, 0.02);
   const BundleResult expected = Adjust(PointsOnly());
@@ -355,7 +357,7 @@ TEST_F(ObjectBundle, AnObjectThatIsNotFiniteDoesNotStopThePoints) {
   EXPECT_EQ(result.positions, expected.positions);
 }
 
-TEST_F(ObjectBundle, AskedToStopAtOnceItGivesTheShapesBack) {
+TEST_F(ObjectBundle, CancelledAtOnceItKeepsTheShapes) {
   PerturbObjects(0.2);
   Cancellation cancellation;
   cancellation.Request();
@@ -367,7 +369,7 @@ TEST_F(ObjectBundle, AskedToStopAtOnceItGivesTheShapesBack) {
   }
 }
 
-TEST_F(ObjectBundle, ApplyingWritesShapesAndPassesOverWhatIsGone) {
+TEST_F(ObjectBundle, ApplyingWritesShapesAndPassesOverWhatNoLongerExists) {
   PerturbObjects(0.2);
   const BundleResult result = Adjust(Window());
   const std::string before = Dump(made_.map);

@@ -90,13 +90,13 @@ TEST_F(PoseOptimization, AWrongDepthAloneMakesAnOutlier) {
   auto observations = Observe(50, true);
   observations[7].measurement.measured.z() -= 10.0;
   observations[8].measurement.measured.z() -= 10.0;
-  observations[8].measurement.inverse_sigma.z() = 0.0;  // then it is not looked at
+  observations[8].measurement.inverse_sigma.z() = 0.0;  // an infinite sigma: it is ignored
   const PoseOptimizationResult result = OptimizePose(kCamera, Start(), observations);
   EXPECT_EQ(result.inlier_count, 49);
   EXPECT_EQ(result.is_inlier[7], 0);
 }
 
-TEST_F(PoseOptimization, ErrorsCountInSigmas) {
+TEST_F(PoseOptimization, ErrorsAreMeasuredInSigmas) {
   auto observations = Observe(100, false);
   observations[4].measurement.measured.x() += 4.0;
   observations[5].measurement.measured.x() += 4.0;
@@ -106,7 +106,7 @@ TEST_F(PoseOptimization, ErrorsCountInSigmas) {
   EXPECT_EQ(result.is_inlier[5], 1);
 }
 
-TEST_F(PoseOptimization, NoiseLeavesAnErrorOfItsSize) {
+TEST_F(PoseOptimization, TheErrorIsAsLargeAsTheNoiseExplains) {
   auto observations = Observe(200, true);
   std::mt19937 generator(2);
   std::normal_distribution<double> noise;
@@ -137,7 +137,7 @@ TEST_F(PoseOptimization, DoesNotDependOnTheWorldFrame) {
   EXPECT_LT(Distance(found, expected), 1e-9);
 }
 
-TEST_F(PoseOptimization, GivesTheStartBackForFewerThanThreePoints) {
+TEST_F(PoseOptimization, ReturnsTheStartForFewerThanThreePoints) {
   const Rigid3 start = Start();
   for (const int count : {0, 1, 2}) {
     const auto observations = Observe(count, true);
@@ -148,8 +148,8 @@ TEST_F(PoseOptimization, GivesTheStartBackForFewerThanThreePoints) {
   }
 }
 
-// Also where the last round is the one that finds out.
-TEST_F(PoseOptimization, GivesTheStartBackForFewerThanThreeInliers) {
+// Also when only the last round finds that there are too few inliers.
+TEST_F(PoseOptimization, ReturnsTheStartForFewerThanThreeInliers) {
   auto observations = Observe(8, true);
   for (PoseObservation& observation : observations) {
     observation.measurement.measured = {random_.Number(0, 640), random_.Number(0, 480),
@@ -164,11 +164,11 @@ TEST_F(PoseOptimization, GivesTheStartBackForFewerThanThreeInliers) {
   }
 }
 
-// A wrong match may lie behind the camera, where it has no error to be made less.
+// The landmark of a wrong match may be behind the camera, where its error cannot be minimised.
 TEST_F(PoseOptimization, APointBehindTheCameraDoesNotStopTheOthers) {
   auto observations = Observe(50, true);
   observations[20].point = Inverse(true_pose_) * Eigen::Vector3d(0.1, 0.1, -2.0);
-  // So far off that no observation is an inlier at the start.
+  // So far from the truth that no observation is an inlier at the start.
   const Rigid3 start = Rigid3(ExpSo3({0.03, -0.04, 0.02}), {0.05, 0.05, -0.05}) * true_pose_;
   const PoseOptimizationResult result = OptimizePose(kCamera, start, observations);
   EXPECT_LT(Distance(result.cam_from_world, true_pose_), 1e-9);

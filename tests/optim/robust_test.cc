@@ -16,8 +16,8 @@ TEST(HuberWeight, IsOneInsideAndFallsAsTheErrorGrows) {
   EXPECT_EQ(HuberWeight(400.0, 4.0), 0.1);
 }
 
-// Outside the bound the pull of an error, weight times error, does not grow.
-TEST(HuberWeight, BoundsThePullOfAnError) {
+// Beyond the bound, weight times error (the gradient of the cost) does not grow.
+TEST(HuberWeight, BoundsTheGradient) {
   for (const double chi2 : {6.0, 10.0, 1e3, 1e9}) {
     EXPECT_NEAR(HuberWeight(chi2, 4.0) * std::sqrt(chi2), 2.0, 1e-9);
   }

@@ -16,7 +16,7 @@ TEST(ComposeTrajectory, FramesFollowTheirKeyframes) {
   Map map;
   const KeyframeId keyframe = map.AddKeyframe(MakeFrame(4, 1), Shift(-1.0));
   std::vector<TrackedFrame> frames(3);
-  frames[0].frame = FrameId(4);  // the keyframe itself: its own pose counts
+  frames[0].frame = FrameId(4);  // the keyframe itself: it has the keyframe's pose
   frames[1].frame = FrameId(5);
   frames[2].frame = FrameId(6);
   for (TrackedFrame& frame : frames) {

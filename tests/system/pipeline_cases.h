@@ -12,10 +12,10 @@
 #include "support/unknown_points.h"
 #include "system/pipeline.h"
 
-// What the tests of the pipelines share.
+// Parts that the tests of the pipelines have in common.
 namespace hullslam {
 
-// A made-up world with noise like that of real features.
+// A synthetic world with noise like that of real features.
 inline SyntheticWorld NoisyWorld() {
   return SyntheticWorld({.points = 500, .pixel_noise = 0.2, .depth_share = 0.8, .flipped_bits = 8});
 }
@@ -29,7 +29,7 @@ inline std::shared_ptr<const Frame> PathFrame(const SyntheticWorld& world, uint3
   return frame;
 }
 
-// Tracks the path's frames first, first + 1 ... below `end`.
+// Tracks the path's frames from `first` to `end` - 1.
 inline std::vector<TrackedFrame> TrackPath(Pipeline& pipeline, const SyntheticWorld& world,
                                            uint32_t first, uint32_t end) {
   std::vector<TrackedFrame> tracked;
@@ -51,14 +51,14 @@ inline double PathError(const Trajectory& trajectory, const Sensor& sensor) {
   return std::sqrt(sum / static_cast<double>(trajectory.size()));
 }
 
-// Two frames that tracking gets along with and mapping does not: the second brings close points at
-// a level whose scale is not a number, and fusion has to look for them in the first.
+// Two frames that can be tracked but make mapping fail: the second has close points at a level
+// whose scale is not a number, and fusion searches these points in the first.
 struct FailingMapping {
   static constexpr int kBrokenLevel = 7;
 
   FailingMapping() {
     const SyntheticWorld world({.points = 300});
-    sensor.frames_per_second = 1.0;  // so slow that the next frame may be a keyframe at once
+    sensor.frames_per_second = 1.0;  // so slow that the next frame may be a keyframe
     sensor.levels.scale[kBrokenLevel] = std::numeric_limits<float>::quiet_NaN();
     first = WithoutUpperLevels(*world.Observe(0).frame);
     auto with_more = WithoutUpperLevels(*world.Observe(1).frame);

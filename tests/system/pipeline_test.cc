@@ -30,7 +30,7 @@ std::unique_ptr<Pipeline> MakeRealtime(const Sensor& sensor, const SystemOptions
   return MakeThreadedPipeline(sensor, options, Pace::kNeverWait);
 }
 
-// What every pipeline promises.
+// What every pipeline guarantees.
 class PipelineTest : public testing::TestWithParam<Kind> {
  protected:
   std::unique_ptr<Pipeline> Make() const { return GetParam().make(world_.sensor(), options_); }
@@ -42,8 +42,9 @@ class PipelineTest : public testing::TestWithParam<Kind> {
 TEST_P(PipelineTest, HasNoMapBeforeTheFirstKeyframe) {
   const auto pipeline = Make();
   EXPECT_EQ(pipeline->map(), nullptr);
-  const SyntheticWorld blind({.depth_share = 0.0});
-  EXPECT_EQ(pipeline->Track(blind.Observe(0).frame).tracked.state, TrackingState::kNotInitialized);
+  const SyntheticWorld without_depth({.depth_share = 0.0});
+  EXPECT_EQ(pipeline->Track(without_depth.Observe(0).frame).tracked.state,
+            TrackingState::kNotInitialized);
   EXPECT_EQ(pipeline->map(), nullptr);
   EXPECT_EQ(pipeline->Track(world_.Observe(1).frame).tracked.state, TrackingState::kTracked);
   ASSERT_NE(pipeline->map(), nullptr);
@@ -59,13 +60,13 @@ TEST_P(PipelineTest, TracksEveryFrameWithASmallError) {
   }
   const auto map = pipeline->map();
   EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
-  EXPECT_GT(map->keyframes().NextId().value, 10u) << "as many were made, culled or not";
+  EXPECT_GT(map->keyframes().NextId().value, 10u) << "more than ten were made, some may be culled";
   const Trajectory trajectory = ComposeTrajectory(*map, frames);
   EXPECT_EQ(trajectory.size(), 100u);
   EXPECT_LT(PathError(trajectory, world_.sensor()), 0.02);
 }
 
-TEST_P(PipelineTest, FindsItsWayBackAfterFramesOfAnotherWorld) {
+TEST_P(PipelineTest, RecoversAfterFramesOfAnotherWorld) {
   const auto pipeline = Make();
   TrackPath(*pipeline, world_, 0, 10);
   const SyntheticWorld other({.points = 500, .seed = 2});
@@ -77,7 +78,7 @@ TEST_P(PipelineTest, FindsItsWayBackAfterFramesOfAnotherWorld) {
   }
 }
 
-TEST_P(PipelineTest, FinishingTwiceIsFinishingOnce) {
+TEST_P(PipelineTest, FinishingTwiceIsLikeFinishingOnce) {
   const auto pipeline = Make();
   TrackPath(*pipeline, world_, 0, 30);
   pipeline->Finish();
@@ -103,7 +104,7 @@ TEST_P(PipelineTest, FinishAdjustsTheWholeMapOnceIfThatIsWanted) {
   EXPECT_EQ(pipeline->map(), map);
 }
 
-TEST_P(PipelineTest, FinishCancelledIsFinishWithoutAdjustment) {
+TEST_P(PipelineTest, ACancelledFinishDoesNotAdjust) {
   options_.mapping.final_bundle_adjustment = true;
   const auto pipeline = Make();
   TrackPath(*pipeline, world_, 0, 30);
@@ -114,7 +115,7 @@ TEST_P(PipelineTest, FinishCancelledIsFinishWithoutAdjustment) {
   EXPECT_EQ(FindViolations(*pipeline->map()), std::vector<std::string>());
 }
 
-TEST_P(PipelineTest, FinishMayBeCancelledMeanwhile) {
+TEST_P(PipelineTest, FinishMayBeCancelledWhileItRuns) {
   options_.mapping.final_bundle_adjustment = true;
   const auto pipeline = Make();
   const std::vector<TrackedFrame> frames = TrackPath(*pipeline, world_, 0, 60);
@@ -133,21 +134,21 @@ TEST_P(PipelineTest, TrackAfterFinishIsRefused) {
   EXPECT_THROW(TrackPath(*pipeline, world_, 2, 3), CheckError);
 }
 
-TEST_P(PipelineTest, FinishWithoutAFrameIsFine) {
+TEST_P(PipelineTest, FinishWithoutAFrameIsAllowed) {
   const auto pipeline = Make();
   EXPECT_NO_THROW(pipeline->Finish());
   EXPECT_EQ(pipeline->map(), nullptr);
   EXPECT_TRUE(pipeline->times().samples().empty());
 }
 
-TEST_P(PipelineTest, MayBeLeftAtAnyTime) {
+TEST_P(PipelineTest, MayBeDestroyedAtAnyTime) {
   for (const uint32_t frames : {0u, 1u, 2u, 25u}) {
     const auto pipeline = Make();
     EXPECT_EQ(TrackPath(*pipeline, world_, 0, frames).size(), frames);
   }
 }
 
-TEST_P(PipelineTest, MapsTakenOutliveThePipeline) {
+TEST_P(PipelineTest, MapsOutliveThePipeline) {
   std::shared_ptr<const Map> map;
   {
     const auto pipeline = Make();
@@ -169,17 +170,17 @@ TEST_P(PipelineTest, AnExceptionInMappingReachesTheCaller) {
       CheckError);
 }
 
-TEST_P(PipelineTest, AnExceptionThatNobodySeesDoesNoHarm) {
+TEST_P(PipelineTest, AnExceptionThatIsNeverRethrownDoesNoHarm) {
   const FailingMapping failing;
   const auto pipeline = GetParam().make(failing.sensor, options_);
   pipeline->Track(failing.first);
   try {
     pipeline->Track(failing.second);
-  } catch (const CheckError&) {  // the sequential pipeline throws at once
+  } catch (const CheckError&) {  // the sequential pipeline throws immediately
   }
 }
 
-TEST_P(PipelineTest, TimesHaveOneEntryACall) {
+TEST_P(PipelineTest, TimesHaveOneEntryPerCall) {
   const auto pipeline = Make();
   TrackPath(*pipeline, world_, 0, 30);
   pipeline->Finish();

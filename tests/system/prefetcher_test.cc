@@ -18,7 +18,7 @@ std::function<std::optional<int>()> CountTo(int end) {
   return [next = 0, end]() mutable { return next < end ? std::optional(next++) : std::nullopt; };
 }
 
-TEST(Prefetcher, DeliversInOrderThenTheEndForGood) {
+TEST(Prefetcher, DeliversInOrderAndStaysAtTheEnd) {
   Prefetcher<int> prefetcher(CountTo(1000), 3);
   for (int i = 0; i < 1000; ++i) {
     ASSERT_EQ(prefetcher.Next(), i);
@@ -27,7 +27,7 @@ TEST(Prefetcher, DeliversInOrderThenTheEndForGood) {
   EXPECT_EQ(prefetcher.Next(), std::nullopt);
 }
 
-TEST(Prefetcher, CarriesWhatCannotBeCopied) {
+TEST(Prefetcher, WorksForItemsThatCannotBeCopied) {
   int next = 0;
   Prefetcher<std::unique_ptr<int>> prefetcher(
       [&next]() -> std::optional<std::unique_ptr<int>> {
@@ -39,7 +39,7 @@ TEST(Prefetcher, CarriesWhatCannotBeCopied) {
   EXPECT_FALSE(prefetcher.Next());
 }
 
-TEST(Prefetcher, RunsAheadInAnotherThreadButNeverFartherThanItsCapacity) {
+TEST(Prefetcher, RunsAheadInAnotherThreadByAtMostItsCapacity) {
   constexpr int kCapacity = 2;
   std::atomic<int> taken{0};
   std::atomic<int> farthest{0};
@@ -49,12 +49,12 @@ TEST(Prefetcher, RunsAheadInAnotherThreadButNeverFartherThanItsCapacity) {
   Prefetcher<int> prefetcher(
       [&]() -> std::optional<int> {
         other_thread = std::this_thread::get_id() != consumer;
-        // Of the items made before this one, `taken` are gone and at most kCapacity wait.
+        // Of the items made before this one, `taken` were taken and at most kCapacity wait.
         farthest = std::max(farthest.load(), next - taken.load());
         return next < 500 ? std::optional(next++) : std::nullopt;
       },
       kCapacity);
-  // Counted before the call: an item may be on its way while the producer looks.
+  // Counted before the call, because the producer may look while an item is being taken.
   for (taken = 1; prefetcher.Next(); ++taken) {
   }
   EXPECT_TRUE(other_thread);
@@ -62,7 +62,7 @@ TEST(Prefetcher, RunsAheadInAnotherThreadButNeverFartherThanItsCapacity) {
   EXPECT_LE(farthest, kCapacity);
 }
 
-TEST(Prefetcher, ThrowsWhatTheProducerThrewAfterTheItemsBefore) {
+TEST(Prefetcher, RethrowsAfterTheItemsThatCameBefore) {
   int next = 0;
   Prefetcher<int> prefetcher(
       [&next]() -> std::optional<int> {
@@ -81,10 +81,10 @@ TEST(Prefetcher, ThrowsWhatTheProducerThrewAfterTheItemsBefore) {
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(std::string(error.what()), "broken image");
   }
-  EXPECT_EQ(prefetcher.Next(), std::nullopt) << "thrown once, then it is the end";
+  EXPECT_EQ(prefetcher.Next(), std::nullopt) << "after the exception comes the end";
 }
 
-TEST(Prefetcher, MayBeLeftEarlyWhileTheProducerWaits) {
+TEST(Prefetcher, MayBeDestroyedWhileTheProducerWaits) {
   std::atomic<int> produced{0};
   {
     Prefetcher<int> prefetcher([&]() -> std::optional<int> { return produced++; }, 2);
@@ -93,7 +93,7 @@ TEST(Prefetcher, MayBeLeftEarlyWhileTheProducerWaits) {
   EXPECT_LE(produced, 4) << "one taken, two waiting, one in hand";
 }
 
-TEST(Prefetcher, MayBeLeftWithAFailureThatNobodySaw) {
+TEST(Prefetcher, MayBeDestroyedWithAFailureThatWasNotRethrown) {
   const auto fail = []() -> std::optional<int> { throw std::runtime_error("unseen"); };
   EXPECT_NO_THROW(Prefetcher<int>(fail, 1));
 }

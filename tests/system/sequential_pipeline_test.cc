@@ -68,7 +68,7 @@ TEST(SequentialPipeline, TwoRunsGiveTheSameMapToTheBit) {
   });
 }
 
-// All frames hang on keyframes, and these have moved, but for the root.
+// All frames are relative to keyframes, and Finish has moved all keyframes but the root.
 TEST(SequentialPipeline, FramesFollowTheKeyframesThatFinishAdjusts) {
   const SyntheticWorld world = NoisyWorld();
   SystemOptions options;

@@ -41,7 +41,7 @@ class Wall {
     return options;
   }
 
-  // 1.5 cm a frame to the right and up, turning a little.
+  // Moves 1.5 cm per frame to the right and up, and rotates a little.
   static Rigid3 CamFromWorld(int index) {
     const Eigen::Vector3d center(0.015 * index, -0.006 * index, 0.004 * index);
     const Eigen::Quaterniond rotation = ExpSo3({0.0, -0.005 * index, 0.002 * index});
@@ -156,7 +156,7 @@ TEST_P(SystemTest, FinishAdjustsTheWholeMapUnlessCancelled) {
   }
 }
 
-TEST_P(SystemTest, MayBeLeftWithoutFinish) {
+TEST_P(SystemTest, MayBeDestroyedWithoutFinish) {
   System system(Wall::Options(), GetParam());
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(TrackFrame(system, i).state, TrackingState::kTracked);
@@ -235,7 +235,7 @@ TEST(System, ImagesOfAnotherTypeOrSizeAreRefused) {
   EXPECT_EQ(system.Track(1.0, image, depth).state, TrackingState::kTracked);
 }
 
-// The features of the first keyframe made of one image.
+// The features of the first keyframe, which is made from one image.
 FrameFeatures FeaturesOf(const cv::Mat& image, bool rgb_order) {
   SystemOptions options = Wall::Options();
   options.rgb_order = rgb_order;
@@ -244,7 +244,7 @@ FrameFeatures FeaturesOf(const cv::Mat& image, bool rgb_order) {
   return system.map()->keyframes().At(KeyframeId(0)).frame->features;
 }
 
-TEST(System, TheOrderOfColoursIsThatOfTheOption) {
+TEST(System, TheOrderOfColoursFollowsTheOption) {
   const cv::Mat rgb = TheWall().Photograph(0);
   cv::Mat bgr;
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
@@ -269,10 +269,10 @@ TEST(System, TrackAfterFinishIsRefused) {
   TrackFrame(system, 0);
   system.Finish();
   EXPECT_THROW(TrackFrame(system, 1), CheckError);
-  EXPECT_EQ(system.trajectory().size(), 1u) << "what there is stays";
+  EXPECT_EQ(system.trajectory().size(), 1u) << "the trajectory is kept";
 }
 
-TEST(System, SixteenBitDepthIsReadInTheUnitsOfTheOption) {
+TEST(System, SixteenBitDepthIsScaledByTheOption) {
   SystemOptions options = Wall::Options();
   options.depth.units_per_metre = 1000.0;
   System system(options, PipelineKind::kSequential);

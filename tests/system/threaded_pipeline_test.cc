@@ -41,7 +41,7 @@ TEST(ThreadedPipeline, WaitingForTheMapperLeavesOutNoKeyframe) {
   }
 }
 
-TEST(ThreadedPipeline, FinishWaitsForTheKeyframesThatWait) {
+TEST(ThreadedPipeline, FinishProcessesTheKeyframesThatWait) {
   const SyntheticWorld world = NoisyWorld();
   const SystemOptions options;
   const auto pipeline = MakeThreadedPipeline(world.sensor(), options, Pace::kNeverWait);
@@ -84,7 +84,7 @@ TEST(ThreadedPipeline, AFailureOfMappingIsThrownByTheNextTrack) {
   EXPECT_THROW(track_on(), CheckError);
 }
 
-TEST(ThreadedPipeline, TheMapMayBeReadByOtherThreadsMeanwhile) {
+TEST(ThreadedPipeline, OtherThreadsMayReadTheMapDuringTracking) {
   const SyntheticWorld world = NoisyWorld();
   const SystemOptions options;
   const auto pipeline = MakeThreadedPipeline(world.sensor(), options, Pace::kNeverWait);

@@ -67,7 +67,7 @@ TEST(KeyframePolicy, AsksWhenClosePointsWouldBeLost) {
   });
 }
 
-TEST(KeyframePolicy, TimeAloneIsNoReason) {
+TEST(KeyframePolicy, TimeAloneIsNoReasonForAKeyframe) {
   ExpectDecisions({
       {"overdue but healthy", With([](auto& e) { e.frames_since_keyframe = 1000; }), false},
   });

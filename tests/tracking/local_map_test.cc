@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kKeypoints = 50;
 
-// Keyframes with nothing but free keypoints; observations are planted one by one.
+// Keyframes with free keypoints only. The tests add observations one by one.
 class PlantedMap {
  public:
   explicit PlantedMap(int keyframes) {
@@ -55,7 +55,7 @@ class PlantedMap {
     edges.insert(place, {KeyframeId(to), shared});
   }
 
-  std::vector<uint32_t> used_;  // keypoints of each keyframe that observe something
+  std::vector<uint32_t> used_;  // number of used keypoints of each keyframe
 };
 
 std::vector<KeyframeId> Ids(const std::vector<uint32_t>& numbers) {
@@ -85,13 +85,13 @@ TEST(LocalMap, TheReferenceSharesMostLandmarks) {
   EXPECT_EQ(local.keyframes, Ids({0, 2, 3})) << "keyframe 1 observes none of them";
 }
 
-TEST(LocalMap, OfEqualVotesTheOldestKeyframeIsTheReference) {
+TEST(LocalMap, ATieGoesToTheOldestKeyframe) {
   PlantedMap planted(3);
   const LandmarkId a = planted.AddLandmark({1, 2});
   EXPECT_EQ(SelectLocalMap(planted.map, std::vector{a}, 10).reference, KeyframeId(1));
 }
 
-TEST(LocalMap, HoldsAllLandmarksOfItsKeyframesOnceAndInOrder) {
+TEST(LocalMap, ContainsAllLandmarksOfItsKeyframesOnceAndInOrder) {
   PlantedMap planted(3);
   const LandmarkId a = planted.AddLandmark({0, 1});
   const LandmarkId elsewhere = planted.AddLandmark({2});
@@ -112,7 +112,7 @@ TEST(LocalMap, InvalidAndErasedLandmarksHaveNoVote) {
   EXPECT_EQ(local.landmarks, std::vector{a});
 }
 
-TEST(LocalMap, NeighboursInCovisibilityAndTreeJoin) {
+TEST(LocalMap, ContainsNeighboursInCovisibilityAndTree) {
   PlantedMap planted(6);
   const LandmarkId a = planted.AddLandmark({2});
   planted.AddEdge(2, 4, 20);
@@ -121,10 +121,10 @@ TEST(LocalMap, NeighboursInCovisibilityAndTreeJoin) {
   SetParent(planted.map, KeyframeId(1), KeyframeId(0));
   planted.AddEdge(4, 3, 20);
   const LocalMap local = SelectLocalMap(planted.map, std::vector{a}, 10);
-  EXPECT_EQ(local.keyframes, Ids({0, 2, 4, 5})) << "neighbours of neighbours stay out";
+  EXPECT_EQ(local.keyframes, Ids({0, 2, 4, 5})) << "neighbours of neighbours are not added";
 }
 
-TEST(LocalMap, OnlyTheTenBestNeighboursJoin) {
+TEST(LocalMap, ContainsOnlyTheTenBestNeighbours) {
   PlantedMap planted(13);
   const LandmarkId a = planted.AddLandmark({0});
   for (uint32_t i = 1; i <= 12; ++i) {
@@ -134,7 +134,7 @@ TEST(LocalMap, OnlyTheTenBestNeighboursJoin) {
   EXPECT_EQ(local.keyframes, Ids({0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
 }
 
-TEST(LocalMap, TheCapKeepsThoseThatShareMost) {
+TEST(LocalMap, TheLimitKeepsTheKeyframesThatShareMost) {
   PlantedMap planted(5);
   std::vector<LandmarkId> landmarks;
   for (int i = 0; i < 3; ++i) {

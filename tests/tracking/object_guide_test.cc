@@ -16,8 +16,8 @@
 namespace hullslam {
 namespace {
 
-// The made-up world with a ball among its points, which keyframes and frames detect. Other points
-// are before, behind and beside it; nothing hides anything.
+// The synthetic world with a ball among its points, which keyframes and frames detect. Other points
+// are in front of, behind and beside it. Nothing is occluded.
 class ObjectGuideTest : public testing::Test {
  protected:
   ObjectGuideTest() {
@@ -37,16 +37,16 @@ class ObjectGuideTest : public testing::Test {
   void AddDetection(Frame& frame, const Rigid3& cam_from_world) const {
     Detection& detection =
         frame.detections.emplace_back(Detect(ball_, world_.sensor(), cam_from_world));
-    const Ellipse outline = Outline(cam_from_world);
+    const Ellipse ellipse = ProjectedEllipse(cam_from_world);
     for (uint32_t i = 0; i < frame.features.size(); ++i) {
       const Eigen::Vector2d offset =
-          frame.features.keypoints[i].undistorted.cast<double>() - outline.center;
-      if (offset.dot(outline.shape.inverse() * offset) < 1.0) {
+          frame.features.keypoints[i].undistorted.cast<double>() - ellipse.center;
+      if (offset.dot(ellipse.shape.inverse() * offset) < 1.0) {
         detection.keypoints.push_back(i);
       }
     }
   }
-  Ellipse Outline(const Rigid3& cam_from_world) const {
+  Ellipse ProjectedEllipse(const Rigid3& cam_from_world) const {
     return ProjectEllipsoid(world_.sensor().camera.Matrix(), cam_from_world, ball_.ellipsoid)
         .value();
   }
@@ -107,7 +107,7 @@ class ObjectGuideTest : public testing::Test {
   std::vector<bool> known_ = std::vector<bool>(made_.map.landmarks().NextId().value, false);
 };
 
-TEST_F(ObjectGuideTest, LandmarksOnAnObjectAreThoseInItNotThoseBehindIt) {
+TEST_F(ObjectGuideTest, LandmarksBehindAnObjectAreNotOnIt) {
   const std::vector<LandmarkId> found = LandmarksOn(made_.map, object(), known_);
   EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
   int inside = 0;
@@ -123,7 +123,7 @@ TEST_F(ObjectGuideTest, LandmarksOnAnObjectAreThoseInItNotThoseBehindIt) {
   EXPECT_GT(inside, 10);
 }
 
-TEST_F(ObjectGuideTest, AGuideLeavesOutTheKeypointsBesideTheMask) {
+TEST_F(ObjectGuideTest, AGuideExcludesTheKeypointsOutsideTheMask) {
   const Rigid3 camera = SyntheticWorld::CamFromWorld(19);
   Frame frame = *world_.Observe(19).frame;
   AddDetection(frame, camera);
@@ -132,18 +132,18 @@ TEST_F(ObjectGuideTest, AGuideLeavesOutTheKeypointsBesideTheMask) {
   ASSERT_EQ(guides.size(), 1u);
   EXPECT_EQ(guides[0].landmarks, LandmarksOn(made_.map, object(), known_));
   ASSERT_EQ(guides[0].is_outside.size(), frame.features.size());
-  const Ellipse outline = Outline(camera);
-  const double radius = std::sqrt(outline.Area() / std::numbers::pi);  // it is nearly a circle
+  const Ellipse ellipse = ProjectedEllipse(camera);
+  const double radius = std::sqrt(ellipse.Area() / std::numbers::pi);  // it is nearly a circle
   for (size_t i = 0; i < frame.features.size(); ++i) {
     const double distance =
-        (frame.features.keypoints[i].undistorted.cast<double>() - outline.center).norm() - radius;
+        (frame.features.keypoints[i].undistorted.cast<double>() - ellipse.center).norm() - radius;
     if (distance < 3.0 || distance > 11.0) {
       EXPECT_EQ(guides[0].is_outside[i], distance > 7.0 ? 1 : 0) << distance;
     }
   }
 }
 
-TEST_F(ObjectGuideTest, DetectionsOfNoObjectGuideNothing) {
+TEST_F(ObjectGuideTest, DetectionsWithoutObjectGiveNoGuide) {
   Frame frame = *world_.Observe(19).frame;
   AddDetection(frame, SyntheticWorld::CamFromWorld(19));
   EXPECT_TRUE(GuideByObjects(made_.map, frame, std::vector<ObjectId>{ObjectId()}, known_).empty());
@@ -162,13 +162,13 @@ TEST_F(ObjectGuideTest, LeavesOutTheLandmarksThatAreKnown) {
   EXPECT_TRUE(GuideByObjects(made_.map, frame, objects, known_).empty());
 }
 
-TEST_F(ObjectGuideTest, WhatTheLocalMapHasIsSearchedAsEver) {
+TEST_F(ObjectGuideTest, ChangesNothingForLandmarksOfTheLocalMap) {
   auto frame = std::make_shared<Frame>(*world_.Observe(19).frame);
   AddDetection(*frame, SyntheticWorld::CamFromWorld(19));
   EXPECT_EQ(Track(frame, true), Track(frame, false));
 }
 
-TEST_F(ObjectGuideTest, BringsInLandmarksThatTheLocalMapForgot) {
+TEST_F(ObjectGuideTest, FindsLandmarksThatTheLocalMapLacks) {
   // Frames are tracked by keyframe 0; only the last two found the landmarks on the ball.
   for (const LandmarkId id : LandmarksOn(made_.map, object(), known_)) {
     for (uint32_t k = 0; k < 3; ++k) {

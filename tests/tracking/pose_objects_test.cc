@@ -27,7 +27,7 @@ class PoseObjectsTest : public ::testing::Test {
       object.has_shape = true;
       object.state = ObjectState::kMapped;
       object.ellipsoid = table_[k].ellipsoid;
-      // All of them are mapped 10 % too small: what the keyframes see tells.
+      // All of them are mapped 10 % too small. The misfit samples of the keyframes show that.
       object.ellipsoid.half_axes *= 0.9;
       const auto views = CollectViews(map_, object);
       object.support = MeasureMisfit(sensor_.camera, object.ellipsoid, views);
@@ -50,7 +50,7 @@ class PoseObjectsTest : public ::testing::Test {
         FindMappedObjects(frame_, map_, {sensor_, tracking, options}, estimate);
     return MakePoseObjects(map_, sensor_, frame_, camera_, ids, options);
   }
-  // All three objects with the lines of their detections and their whole misfit.
+  // Expects all three objects with the original lines of their detections and the whole misfit.
   void ExpectPlain(const PoseObjects& found) const {
     ASSERT_EQ(found.objects.size(), 3u);
     for (size_t i = 0; i < 3; ++i) {
@@ -91,7 +91,7 @@ TEST_F(PoseObjectsTest, AreTheMappedOnesOfTheFrame) {
   EXPECT_EQ(found.objects[0].lines.size(), frame_.detections[0].lines.size());
 }
 
-TEST_F(PoseObjectsTest, CompensationTakesTheMisfitOffTheLinesAndOffTheirSigma) {
+TEST_F(PoseObjectsTest, CompensationReducesTheMisfitOfTheLinesAndTheirSigma) {
   const PoseObjects plain = Find(false);
   const PoseObjects compensated = Find(true);
   EXPECT_GT(WorstLine(plain), 2.0);
@@ -103,12 +103,12 @@ TEST_F(PoseObjectsTest, CompensationTakesTheMisfitOffTheLinesAndOffTheirSigma) {
   }
 }
 
-TEST_F(PoseObjectsTest, ResidualsThatTakeNoLinesAreNotCompensated) {
+TEST_F(PoseObjectsTest, IsNotDoneForResidualsWithoutLines) {
   const PoseObjects found = Find(true, ObjectResidual::kOverlap);
   ExpectPlain(found);
 }
 
-TEST_F(PoseObjectsTest, AViewThatKeyframesTellNothingOfIsTakenAsItIs) {
+TEST_F(PoseObjectsTest, AViewFromWhereNoKeyframeSawTheObjectIsNotCompensated) {
   for (uint32_t k = 0; k < table_.size(); ++k) {
     map_.MutableObject(ObjectId(k)).support.clear();
   }

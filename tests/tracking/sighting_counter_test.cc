@@ -8,7 +8,7 @@ namespace {
 
 TEST(SightingCounter, IsEmptyAtFirst) { EXPECT_TRUE(SightingCounter().Take().empty()); }
 
-TEST(SightingCounter, CountsByLandmarkAndComesInOrderOfId) {
+TEST(SightingCounter, CountsPerLandmarkInOrderOfId) {
   SightingCounter counter;
   counter.CountVisible(LandmarkId(900));
   counter.CountVisible(LandmarkId(3));
@@ -28,7 +28,7 @@ TEST(SightingCounter, CountsByLandmarkAndComesInOrderOfId) {
   EXPECT_EQ(sightings[2].found, 1);
 }
 
-TEST(SightingCounter, StartsAnewWhenTaken) {
+TEST(SightingCounter, StartsAgainFromZeroAfterTake) {
   SightingCounter counter;
   counter.CountVisible(LandmarkId(5));
   counter.CountVisible(LandmarkId(1));

@@ -18,7 +18,7 @@ constexpr MapperStatus kIdle;
 
 std::shared_ptr<const Map> Publish(Map& map) { return std::make_shared<const Map>(map.Snapshot()); }
 
-// A frame of the given keypoints of another one.
+// A frame with only the given keypoints of another frame.
 std::shared_ptr<Frame> Select(const Frame& frame, const std::vector<uint32_t>& keypoints) {
   auto selected = std::make_shared<Frame>();
   selected->id = frame.id;
@@ -40,7 +40,7 @@ std::vector<uint32_t> AllKeypoints(const Frame& frame) {
   return all;
 }
 
-// The request for a keyframe that the tracker made; null for none.
+// The request for a keyframe in the tracker's result; null if there is none.
 const KeyframeRequest* RequestOf(const Tracker::Result& result) {
   return result.message ? std::get_if<KeyframeRequest>(&*result.message) : nullptr;
 }
@@ -50,13 +50,13 @@ void ExpectNear(const Rigid3& a, const Rigid3& b, double tolerance) {
   EXPECT_LT(AngularDistance(a.rotation, b.rotation), tolerance);
 }
 
-// Of the 300 points fewer than 100 are close in a frame, so that one with unknown close points asks
-// for a keyframe.
+// Fewer than 100 of the 300 points are close in a frame, so a frame with unknown close points needs
+// a keyframe.
 class TrackerTest : public testing::Test {
  protected:
   TrackerTest() : tracker_(world_.sensor(), options_) {}
 
-  // Initialises on frame 0 and gives the tracker a map in which every point is where it is.
+  // Initialises on frame 0 and gives the tracker a map with the true positions of all points.
   void Begin() {
     ASSERT_EQ(Process(world_.Observe(0).frame).report.tracked.state, TrackingState::kTracked);
     map_ = Publish(made_.map);
@@ -95,12 +95,12 @@ class TrackerTest : public testing::Test {
 
   const SyntheticWorld world_{{.points = 300}};
   SyntheticMap made_ = MakeSyntheticMap(world_, {0, 5, 10});
-  TrackingOptions options_{.keyframe_interval = 0.0};  // a frame may follow at once
+  TrackingOptions options_{.keyframe_interval = 0.0};  // the next frame may be a keyframe
   Tracker tracker_;
   std::shared_ptr<const Map> map_;
 };
 
-TEST_F(TrackerTest, TheFirstFrameWithEnoughDepthBecomesTheWorld) {
+TEST_F(TrackerTest, TheFirstFrameWithEnoughDepthDefinesTheWorldFrame) {
   const auto frame = world_.Observe(0).frame;
   const Tracker::Result result = Process(frame);
   EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked);
@@ -127,7 +127,7 @@ TEST_F(TrackerTest, TheFirstFrameWithEnoughDepthBecomesTheWorld) {
   }
 }
 
-TEST_F(TrackerTest, InitialisesFromExactlyAsManyPointsWithDepthAsAsked) {
+TEST_F(TrackerTest, InitialisesWithExactlyTheRequiredPoints) {
   const auto frame = world_.Observe(0).frame;
   const auto with_depth = std::count_if(frame->features.depth.begin(), frame->features.depth.end(),
                                         [](float z) { return z > 0.0f; });
@@ -143,9 +143,10 @@ TEST_F(TrackerTest, InitialisesFromExactlyAsManyPointsWithDepthAsAsked) {
 }
 
 TEST_F(TrackerTest, InitialisesLaterWhenTheFirstFramesHaveNoDepth) {
-  const SyntheticWorld blind({.points = 300, .depth_share = 0.0});
+  const SyntheticWorld without_depth({.points = 300, .depth_share = 0.0});
   for (uint32_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(Process(blind.Observe(i).frame).report.tracked.state, TrackingState::kNotInitialized);
+    EXPECT_EQ(Process(without_depth.Observe(i).frame).report.tracked.state,
+              TrackingState::kNotInitialized);
   }
   EXPECT_TRUE(Process(world_.Observe(3).frame).message);
 }
@@ -162,7 +163,7 @@ TEST_F(TrackerTest, FindsThePoseOfExactFrames) {
   }
 }
 
-TEST_F(TrackerTest, FollowsAMapThatMovedAsAWhole) {
+TEST_F(TrackerTest, FollowsAMapThatMoved) {
   Begin();
   TrackFrames(1, 5);
   const Rigid3 old_from_new(ExpSo3({0.3, 1.0, -0.4}), {10.0, -20.0, 5.0});
@@ -213,7 +214,7 @@ TEST_F(TrackerTest, FollowsAMapWhoseUnitOfLengthChanged) {
   EXPECT_NEAR(followed.velocity->translation.x(), 0.1, 1e-12);
 }
 
-TEST_F(TrackerTest, AFailedFrameLeavesTheReferenceKeyframeAsItWas) {
+TEST_F(TrackerTest, ALostFrameDoesNotChangeTheReferenceKeyframe) {
   Begin();
   TrackFrames(1, 5);
   const Tracker::Result before = Process(world_.Observe(6).frame);
@@ -242,7 +243,7 @@ TEST_F(TrackerTest, TheReportSaysWhatWasFoundInTheFrame) {
   EXPECT_EQ(found, result.report.tracked.inliers);
 }
 
-TEST_F(TrackerTest, GoesOnWhenItsReferenceKeyframeIsCulled) {
+TEST_F(TrackerTest, ContinuesWhenItsReferenceKeyframeIsCulled) {
   Begin();
   TrackFrames(1, 4);
   const Tracker::Result before = Process(world_.Observe(5).frame);
@@ -257,7 +258,7 @@ TEST_F(TrackerTest, GoesOnWhenItsReferenceKeyframeIsCulled) {
   }
 }
 
-TEST_F(TrackerTest, GoesOnWhenAllItsLandmarksAreReplaced) {
+TEST_F(TrackerTest, ContinuesWhenAllItsLandmarksAreReplaced) {
   Begin();
   TrackFrames(1, 5);
   for (const LandmarkId old : made_.landmarks) {
@@ -279,10 +280,10 @@ TEST_F(TrackerTest, GoesOnWhenAllItsLandmarksAreReplaced) {
   }
 }
 
-// Every corner is found at two levels, four apart, and has a landmark for each.
+// Every corner is found at two levels, which differ by four, and has a landmark for each level.
 class TwinTest : public TrackerTest {
  protected:
-  // The demanding frame with a twin of each of its known keypoints at the end, in their order.
+  // DemandingFrame plus a twin of each of its known keypoints, appended in the same order.
   std::shared_ptr<Frame> FrameWithTwins(uint32_t index) const {
     const auto demanding = DemandingFrame(index);
     auto frame = Select(*demanding, AllKeypoints(*demanding));
@@ -354,7 +355,7 @@ TEST_F(TwinTest, ALandmarkIsFoundAtOneKeypointOnlyAfterItsTwinWasReplaced) {
   ASSERT_TRUE(after.message);
   const std::vector<LandmarkId> found = FoundLandmarks(*RequestOf(after));
   EXPECT_GT(found.size(), 50u);
-  EXPECT_GT(found_before, 3 * found.size() / 2) << "the twins were landmarks of their own";
+  EXPECT_GT(found_before, 3 * found.size() / 2) << "the twins were separate landmarks";
   EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
 }
 
@@ -393,14 +394,15 @@ TEST_F(TrackerTest, TooFewInliersAreLost) {
   EXPECT_EQ(result.report.tracked.inliers, options_.min_inliers);
 }
 
-TEST_F(TrackerTest, AFewLandmarksDoWhereTheyAreSaidToBeEnough) {
+TEST_F(TrackerTest, AFewLandmarksAreEnoughIfTheOptionAllowsIt) {
   options_.min_inliers = 8;
   Tracker tracker(world_.sensor(), options_);
   tracker.Process(world_.Observe(0).frame, nullptr, kIdle);
   const auto map = Publish(made_.map);
   EXPECT_EQ(tracker.Process(FrameWithKnown(1, 7), map, kIdle).report.tracked.state,
             TrackingState::kLost);
-  for (const uint32_t frame : {1U, 2U, 3U}) {  // by the reference keyframe, then by the motion
+  for (const uint32_t frame :
+       {1U, 2U, 3U}) {  // first by the reference keyframe, then by the motion model
     const Tracker::Result result = tracker.Process(FrameWithKnown(frame, 8), map, kIdle);
     EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked) << frame;
     EXPECT_EQ(result.report.tracked.inliers, 8) << frame;
@@ -408,7 +410,7 @@ TEST_F(TrackerTest, AFewLandmarksDoWhereTheyAreSaidToBeEnough) {
   }
 }
 
-TEST_F(TrackerTest, AsksForNoKeyframeWhileTooManyWait) {
+TEST_F(TrackerTest, RequestsNoKeyframeWhileTooManyRequestsWait) {
   Begin();
   EXPECT_FALSE(
       tracker_.Process(DemandingFrame(1), map_, {.is_idle = false, .requests_waiting = 3}).message);
@@ -416,7 +418,7 @@ TEST_F(TrackerTest, AsksForNoKeyframeWhileTooManyWait) {
       tracker_.Process(DemandingFrame(2), map_, {.is_idle = false, .requests_waiting = 2}).message);
 }
 
-TEST_F(TrackerTest, ARequestHoldsThePoseTheLandmarksAndWhatWasSeenSinceTheLast) {
+TEST_F(TrackerTest, ARequestHasThePoseTheLandmarksAndTheSightings) {
   Begin();
   const Tracker::Result first = Process(world_.Observe(1).frame);
   ASSERT_FALSE(first.message);
@@ -430,7 +432,7 @@ TEST_F(TrackerTest, ARequestHoldsThePoseTheLandmarksAndWhatWasSeenSinceTheLast) 
   for (size_t i = 0; i < request.landmarks.size(); ++i) {
     if (request.landmarks[i].IsValid()) {
       ++found;
-      ASSERT_LT(i, view.points.size()) << "the points added are known to nobody";
+      ASSERT_LT(i, view.points.size()) << "the added points are not in the map";
       EXPECT_EQ(request.landmarks[i], made_.landmarks[view.points[i]]);
     }
   }

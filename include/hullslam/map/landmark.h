@@ -18,16 +18,16 @@ struct Observation {
 // A point of the world that keyframes observe.
 struct Landmark {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();           // m, world frame
-  Eigen::Vector3d viewing_direction = Eigen::Vector3d::Zero();  // unit, mean of camera to landmark
-  double min_distance = 0.0;              // m; nearer its patch is coarser than level 0 can tell
-  double max_distance = 0.0;              // m; from here it is seen at level 0
-  Descriptor descriptor{};                // the observed one that is nearest to all others
-  std::vector<Observation> observations;  // by increasing keyframe id, one a keyframe
+  Eigen::Vector3d viewing_direction = Eigen::Vector3d::Zero();  // unit, mean of those from cameras
+  double min_distance = 0.0;              // m; nearer it is too large for the last level
+  double max_distance = 0.0;              // m; at this distance it is seen at level 0
+  Descriptor descriptor{};                // the most typical of the observed ones
+  std::vector<Observation> observations;  // by increasing keyframe id, one per keyframe
   KeyframeId reference;                   // the keyframe that level and distance refer to
   KeyframeId created_by;
-  int support = 0;  // observations, those with depth counted twice
-  int visible = 1;  // frames in which it should have been seen
-  int found = 1;    // frames in which it was
+  int observation_weight = 0;  // number of observations; those with depth count twice
+  int visible = 1;             // number of frames in which it should have been seen
+  int found = 1;               // number of frames in which it was found
 };
 
 }  // namespace hullslam

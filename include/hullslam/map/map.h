@@ -14,11 +14,12 @@
 namespace hullslam {
 
 // Keyframes, landmarks and objects by id, with the observations between them. A map is a value:
-// Snapshot() gives one that nobody else writes. The edits here keep both ends of every observation
-// in step; covisibility, spanning tree and appearance have their own files.
+// Snapshot() returns a copy, which does not change with the original. The functions here keep the
+// two ends of every observation consistent. Covisibility, spanning tree and appearance have their
+// own files.
 class Map {
  public:
-  // A map with the same content that shares its memory until one of the two is written.
+  // A copy of the map. The two share memory until one of them is changed.
   Map Snapshot();
 
   const CowTable<KeyframeId, Keyframe, 1>& keyframes() const { return keyframes_; }
@@ -28,47 +29,47 @@ class Map {
   KeyframeId AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& cam_from_world);
   LandmarkId AddLandmark(const Eigen::Vector3d& position, KeyframeId created_by);
 
-  // False where the keyframe observes the landmark already, or the keypoint another landmark.
+  // False if the keyframe already observes the landmark or the keypoint already shows a landmark.
   bool AddObservation(LandmarkId landmark, KeyframeId keyframe, uint32_t keypoint);
-  // Removes the landmark too when too little holds it: support of 2 or less.
+  // Also removes the landmark if its observation weight is then 2 or less.
   void RemoveObservation(LandmarkId landmark, KeyframeId keyframe);
 
   void EraseLandmark(LandmarkId landmark);
-  // Moves the observations of `landmark` to `by` and redirects its id; where a keyframe observes
-  // both only that of `by` stays.
+  // Moves the observations of `landmark` to `by` and redirects its id. If a keyframe observes both,
+  // only its observation of `by` stays.
   void ReplaceLandmark(LandmarkId landmark, LandmarkId by);
-  // The landmark that now stands for `landmark`; invalid when it is erased.
+  // The landmark that has replaced `landmark`, or `landmark` itself; invalid if that is erased.
   LandmarkId Resolve(LandmarkId landmark) const;
 
-  // A candidate that nobody observes yet.
+  // Adds a candidate without observations.
   ObjectId AddObject();
-  // Adds the detection's vote for its class too. False where the keyframe observes the object
-  // already, or the detection is that of another object.
+  // Also adds the detection's vote for its class. False if the keyframe already observes the object
+  // or the detection already shows an object.
   bool AddObservation(ObjectId object, KeyframeId keyframe, uint32_t detection);
-  // Takes the vote back; the object stays, even without any observation.
+  // Also removes the vote. The object stays, even if it has no observation left.
   void RemoveObservation(ObjectId object, KeyframeId keyframe);
   void EraseObject(ObjectId object);
-  // As ReplaceLandmark; the shape is that of `by`.
+  // Like ReplaceLandmark. The shape is that of `by`.
   void ReplaceObject(ObjectId object, ObjectId by);
   ObjectId Resolve(ObjectId object) const;
 
-  // Joins two keyframes of the map by a loop edge. Nothing changes if they are joined already.
+  // Adds a loop edge between two keyframes of the map, unless they already have one.
   void AddLoop(KeyframeId a, KeyframeId b);
 
-  // Takes a keyframe out of the map. It must have a parent: its children go to their best
-  // relatives. Its loop edges go to its parent: without them a later pose graph could open the
-  // loops again, and an edge of the parent, which is near, closes them as well.
+  // Removes a keyframe from the map. It must have a parent. Its children get new parents (see
+  // DetachFromTree). Its loop edges become edges of its parent: without them a later pose graph
+  // could open the loops again, and the parent is near enough to close them.
   void CullKeyframe(KeyframeId keyframe);
   // What is kept of a culled keyframe; null for any other.
   const CulledKeyframe* FindCulled(KeyframeId keyframe) const { return culled_.Find(keyframe); }
   // The pose of a keyframe, also of a culled one.
   Rigid3 CamFromWorld(KeyframeId keyframe) const;
-  // The pose of a camera in the current map, at the map's current scale.
+  // The pose of a camera in the current map, at the current scale of its reference.
   Rigid3 CamFromWorld(const RelativePose& pose) const;
-  // `cam_from_world`, which is a pose in the current map, relative to a keyframe, also a culled
-  // one.
+  // Converts `cam_from_world`, a pose in the current map, to a pose relative to a keyframe, which
+  // may be culled.
   RelativePose RelativeTo(KeyframeId reference, const Rigid3& cam_from_world) const;
-  // Keyframe::scale, also of a culled keyframe: it has followed the corrections since then.
+  // Keyframe::scale, also of a culled keyframe. It includes the corrections since the culling.
   double ScaleOf(KeyframeId keyframe) const;
   // The keyframe made of this frame, culled or not.
   std::optional<KeyframeId> KeyframeOfFrame(FrameId frame) const;
@@ -83,7 +84,7 @@ class Map {
   void SetPosition(LandmarkId landmark, const Eigen::Vector3d& position);
   void CountSightings(LandmarkId landmark, int visible, int found);
 
-  // For the files of this module that keep derived data in step.
+  // For the files of this module that keep derived data consistent.
   Keyframe& MutableKeyframe(KeyframeId keyframe) { return keyframes_.Mutable(keyframe); }
   CulledKeyframe& MutableCulledKeyframe(KeyframeId keyframe) { return culled_.Mutable(keyframe); }
   Landmark& MutableLandmark(LandmarkId landmark) { return landmarks_.Mutable(landmark); }
@@ -91,7 +92,7 @@ class Map {
   ObjectLandmark& MutableObject(ObjectId object) { return objects_.Mutable(object); }
 
  private:
-  // cam_from_reference with the translation in the map's current unit of length.
+  // cam_from_reference with the translation in the current unit of length of its reference.
   Rigid3 AtCurrentScale(const RelativePose& pose) const;
 
   CowTable<KeyframeId, Keyframe, 1> keyframes_;

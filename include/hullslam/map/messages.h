@@ -37,14 +37,14 @@ struct InitialMap {
   std::vector<Point> points;  // in the order in which their landmarks get ids
 };
 
-// How often a landmark should have been visible and was found since the last message.
+// In how many frames since the last message a landmark should have been visible, and was found.
 struct Sighting {
   LandmarkId landmark;
   int visible = 0;
   int found = 0;
 };
 
-// Asks the mapper to make a keyframe of a tracked frame.
+// A request to the mapper to make a tracked frame a keyframe.
 struct KeyframeRequest {
   std::shared_ptr<const Frame> frame;
   RelativePose pose;
@@ -56,7 +56,7 @@ struct KeyframeRequest {
 // everything that depends on their poses. It was computed from a snapshot of the map; the map may
 // have changed since then. map/correction.h applies it.
 struct MapCorrection {
-  // A pose of the snapshot and what it becomes.
+  // A keyframe's pose in the snapshot and its new pose.
   struct Pose {
     KeyframeId keyframe;
     Rigid3 snapshot_cam_from_world;

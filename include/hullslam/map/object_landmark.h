@@ -13,8 +13,8 @@
 namespace hullslam {
 
 enum class ObjectState {
-  kCandidate,  // seen, but its shape is not held yet: it constrains nothing
-  kMapped,     // valid in all its keyframes
+  kCandidate,  // its shape is not known or not valid: it constrains nothing
+  kMapped,     // its shape is valid in all its keyframes
 };
 
 struct ObjectObservation {
@@ -22,11 +22,11 @@ struct ObjectObservation {
   uint32_t detection = 0;  // index into the frame's detections
 };
 
-// By how much the real object reaches beyond its quadric in one direction, as one line of a
-// keyframe's silhouette tells (objects/misfit.h).
+// How far the real object reaches beyond its quadric in one direction, measured by one line of one
+// keyframe (objects/misfit.h).
 struct SupportSample {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // outwards, object frame, unit
-  double excess = 0.0;                                // m; negative where it is smaller
+  double excess = 0.0;                                // m; negative if it reaches less far
   KeyframeId keyframe;
 };
 
@@ -35,20 +35,20 @@ struct ObjectLandmark {
   ObjectState state = ObjectState::kCandidate;
   bool has_shape = false;  // whether the ellipsoids below are set
   Ellipsoid ellipsoid;     // world frame
-  Ellipsoid start;         // what it was initialised as; holds what silhouettes leave free
+  Ellipsoid start;         // what it was initialised with; centre of the prior in refinement
   std::map<std::string, double> votes;          // sum of scores by class
   std::vector<ObjectObservation> observations;  // by increasing keyframe id, one per keyframe
   // The keyframe with which a correction moves the object: the first that observes it. It stays
   // when no observation is left, and may then be a culled keyframe.
   KeyframeId reference;
-  size_t shaped_views = 0;             // when its shape was last sought or refined
-  double misfit_px = 0.0;              // RMS distance of its lines from the outline
-  double compensated_px = 0.0;         // the same, less what other keyframes predict
-  std::vector<SupportSample> support;  // where its keyframes touch it
-  int visible = 0;  // frames in which it should have been seen since it was mapped
-  int found = 0;    // frames in which it was
+  size_t shaped_views = 0;             // observations when its shape was last sought or refined
+  double misfit_px = 0.0;              // RMS distance of its lines from its projected ellipses
+  double compensated_px = 0.0;         // the same after misfit compensation
+  std::vector<SupportSample> support;  // misfit samples from its keyframes
+  int visible = 0;  // number of frames since it was mapped in which it should have been seen
+  int found = 0;    // number of frames in which it was found
 
-  // The class with most votes, the first in the alphabet of equals.
+  // The class with most votes; ties go to the first in the alphabet.
   const std::string& Label() const;
 };
 

@@ -6,10 +6,10 @@
 namespace hullslam {
 
 struct MappingOptions {
-  int local_keyframes = 20;  // that local bundle adjustment moves, at most
-  int fixed_keyframes = 20;  // that hold it, at most
+  int local_keyframes = 20;  // at most so many move in local bundle adjustment
+  int fixed_keyframes = 20;  // at most so many are fixed in it
   bool cull_keyframes = true;
-  bool final_bundle_adjustment = true;  // of the whole map, at the end
+  bool final_bundle_adjustment = true;  // of the whole map, at the end of the run
 
   void Bind(OptionTable& options);
 };

@@ -13,11 +13,11 @@
 
 namespace hullslam {
 
-// All that can be set for a run. The defaults are those of the structs; the camera has none.
+// All options of a run. The defaults are those of the structs. The camera has no default.
 struct SystemOptions {
   PinholeCamera camera;
   double frames_per_second = 30.0;  // of the camera
-  bool rgb_order = true;            // channels of colour images fed from memory: RGB, else BGR
+  bool rgb_order = true;            // order of channels of colour images from memory: RGB, else BGR
   DepthOptions depth;
   FeatureOptions features;
   TrackingOptions tracking;
@@ -27,8 +27,8 @@ struct SystemOptions {
   // Names every option once; the struct must outlive the table. `Viewer.*` keys of ORB-SLAM2 are
   // accepted and ignored.
   OptionTable Bind();
-  // Throws InputError where options that are each in range do not fit together: a camera without
-  // focal length, levels smaller than a patch.
+  // Throws InputError if the options are in their ranges but cannot be used: a camera without focal
+  // length, or pyramid levels that are smaller than a patch.
   void Validate() const;
 };
 

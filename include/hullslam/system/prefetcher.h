@@ -15,7 +15,7 @@ namespace hullslam {
 template <typename Item>
 class Prefetcher {
  public:
-  // `produce` gives the next item, or nothing at the end; it is called in the other thread only.
+  // `produce` returns the next item, or null at the end. Only the other thread calls it.
   Prefetcher(std::function<std::optional<Item>()> produce, size_t capacity)
       : items_(capacity), thread_([this, produce = std::move(produce)] { Run(produce); }) {}
 
@@ -26,7 +26,7 @@ class Prefetcher {
   Prefetcher(const Prefetcher&) = delete;
   Prefetcher& operator=(const Prefetcher&) = delete;
 
-  // Waits for the next item; nothing at the end. What `produce` throws is thrown here.
+  // Waits for the next item; null at the end. Rethrows what `produce` throws.
   std::optional<Item> Next() {
     std::optional<Item> item = items_.Receive();
     if (!item && failure_) {

@@ -25,8 +25,8 @@ class Pipeline;
 
 enum class PipelineKind {
   kSequential,  // reproducible to the bit
-  kThreaded,    // mapping in a thread of its own; waits for it rather than leave out keyframes
-  kRealtime,    // the same, but never waits: for live cameras
+  kThreaded,    // mapping in a thread of its own; waits for it and leaves out no keyframe
+  kRealtime,    // like kThreaded, but never waits: for live cameras
 };
 
 // What became of the masks of a run.
@@ -47,7 +47,7 @@ struct ObjectCounts {
 //   Trajectory trajectory = system.trajectory();
 class System {
  public:
-  // Throws InputError where the options do not fit together.
+  // Throws InputError if SystemOptions::Validate does.
   System(const SystemOptions& options, PipelineKind kind);
   ~System();
 
@@ -63,18 +63,18 @@ class System {
     frame_callback_ = std::move(callback);
   }
 
-  // Waits for the mapping that is under way, then adjusts the whole map if
-  // mapping.final_bundle_adjustment says so; that ends early, with what it has, when `cancellation`
-  // (may be null) asks. No Track after it.
+  // Waits until all keyframes are in the map. Then it adjusts the whole map if
+  // mapping.final_bundle_adjustment is set. The adjustment ends early with what it has if
+  // `cancellation` (may be null) is requested. Track must not be called after Finish.
   void Finish(const Cancellation* cancellation = nullptr);
 
   // The newest snapshot; null before the first keyframe.
   std::shared_ptr<const Map> map() const;
-  // One entry a call of Track.
+  // One entry per call of Track.
   const std::vector<TrackedFrame>& frames() const { return frames_; }
-  // All tracked frames, in the map as it is now.
+  // All tracked frames in the current map.
   Trajectory trajectory() const;
-  // Durations of the stages; "track" is the whole of Track but mapping. Complete after Finish.
+  // Durations of the stages. "track" is the whole of Track without mapping. Complete after Finish.
   StageTimes times() const;
   // What became of the masks. Complete after Finish.
   ObjectCounts object_counts() const;

@@ -9,16 +9,17 @@ namespace hullslam {
 
 struct TrackingOptions {
   int min_initial_points = 50;  // keypoints with depth in the first frame
-  int min_inliers = 30;         // landmarks found, else a frame counts as lost
-  int local_keyframes = 80;     // against whose landmarks a frame is tracked
+  int min_inliers = 30;         // landmarks that must be found; with fewer a frame is lost
+  int local_keyframes = 80;     // at most so many give the landmarks of the local map
 
-  // A keyframe is due when a frame finds fewer of the reference keyframe's landmarks than this
-  // share.
+  // A keyframe is due if a frame finds a smaller share of the reference keyframe's landmarks.
   double keyframe_ratio = 0.95;
 
-  double keyframe_interval = 0.2;  // s, least time between keyframes unless tracking gets weak fast
+  double keyframe_interval =
+      0.2;  // s, least time between keyframes, unless tracking weakens abruptly
 
-  // Classes, separated by commas, whose masks hide keypoints and are no objects.
+  // Dynamic classes, separated by commas. Keypoints on their masks are removed; they are not
+  // mapped.
   std::string dynamic_classes = "person";
 
   void Bind(OptionTable& options);
