@@ -39,6 +39,6 @@ double MedianDepth(std::span<const Eigen::Vector3d> points);
 // Whether something nearer than the object begins just beyond the line, by the depth image or by
 // the masks of `others`, at half of the places where that is known or more.
 bool IsHidden(const LineOnOutline& line, const DepthView& view, double object_depth,
-              std::span<const Occluder> others);
+              std::span<const Occluder> others, const DetectionOptions& options);
 
 }  // namespace hullslam

@@ -18,8 +18,9 @@ struct Outline {
   Polygon2 hull;      // of all parts; less than three corners where they have no area
 };
 
-// The parts of a mask that are at least a tenth of its largest one, raw; none without an area.
-std::vector<Polygon2> LargeParts(std::span<const Polygon2> outlines);
+// The parts of a mask whose area is at least this share of that of its largest part, raw; none
+// without an area.
+std::vector<Polygon2> LargeParts(std::span<const Polygon2> outlines, double min_share);
 
 Outline UndistortOutline(std::span<const Polygon2> parts, const PinholeCamera& camera);
 

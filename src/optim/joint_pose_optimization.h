@@ -35,7 +35,8 @@ struct JointPoseResult {
 // As OptimizePose, with the outlines of objects beside the points: it minimises
 //   sum over inlier points of rho_Huber(chi^2)
 //   + the outline constraints of the used objects (MakeObjectConstraint), which are held fixed
-//   + |rotation / prior_rotation|^2 + |translation / prior_translation|^2 from the start.
+//   + |rotation / prior_rotation|^2 + |translation / (prior_translation * d)|^2 from the start
+// with d the mean distance of the objects.
 // After each round points are chosen anew, and so are objects: an object is dropped when half of
 // its residuals or more are outliers. With fewer than three inliers and fewer than min_objects used
 // objects the start is given back. Without objects the result is that of OptimizePose to the last

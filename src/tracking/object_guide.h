@@ -7,27 +7,31 @@
 
 #include "hullslam/frame/frame.h"
 #include "hullslam/map/map.h"
+#include "hullslam/objects/object_options.h"
 
 namespace hullslam {
 
-// Where a frame shows a mapped object: its landmarks belong to the keypoints there.
+// A detection that shows a mapped object: the object's landmarks are searched at the keypoints in
+// it.
 struct ObjectGuide {
   std::vector<LandmarkId> landmarks;  // on the object and not known yet, by increasing id
-  std::vector<uint8_t> is_outside;    // one a keypoint: 0 in the detection's hull or near it
+  std::vector<uint8_t> is_outside;    // one per keypoint: 0 in the detection's hull or near it
 };
 
-// The landmarks on an object with a shape: those in its masks in its keyframes (20 of them at most)
-// that lie in its ellipsoid or near it, which those of the background do not. By increasing id,
-// without the known ones (one entry an id).
+// The landmarks on an object with a shape: those in its masks in its keyframes that lie in its
+// ellipsoid or near it (NearSurface), which landmarks of the background do not. By increasing id,
+// without the known ones (one entry per id).
 std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object,
-                                    const std::vector<bool>& is_known);
+                                    const std::vector<bool>& is_known,
+                                    const ObjectOptions& options = {});
 
 // A guide for each detection of the frame that shows an object with landmarks that are not known;
-// `objects` has one entry a detection, invalid for none (FindMappedObjects), or is empty. After
-// VOOM (Wang et al. 2024), where objects bring in the landmarks on them, however few of these their
-// keyframes share with the frame.
+// `objects` has one entry per detection, invalid for none (FindMappedObjects), or is empty. After
+// VOOM (Wang et al. 2024), where objects bring in their landmarks, however few of them the frame
+// shares with the object's keyframes.
 std::vector<ObjectGuide> GuideByObjects(const Map& map, const Frame& frame,
                                         std::span<const ObjectId> objects,
-                                        const std::vector<bool>& is_known);
+                                        const std::vector<bool>& is_known,
+                                        const ObjectOptions& options = {});
 
 }  // namespace hullslam

@@ -10,16 +10,17 @@
 namespace hullslam {
 namespace {
 
-// The lines whose misfit is known, moved by it; empty where these are less than half.
+// The lines whose misfit is known, moved by it; empty where these are less than half of the lines.
 std::vector<SilhouetteLine> KnownLines(const Sensor& sensor, const Rigid3& cam_from_world,
                                        const ObjectLandmark& object,
-                                       std::span<const SilhouetteLine> lines) {
+                                       std::span<const SilhouetteLine> lines,
+                                       const MisfitOptions& options) {
   std::vector<uint8_t> known;
   const std::vector<SilhouetteLine> moved =
-      CompensateLines(sensor.camera, cam_from_world, object, lines, KeyframeId(), known);
+      CompensateLines(sensor.camera, cam_from_world, object, lines, KeyframeId(), known, options);
   std::vector<SilhouetteLine> kept;
   for (size_t i = 0; i < moved.size(); ++i) {
-    // Where the object is cut or hidden its true reach is not seen, so there is nothing to correct.
+    // Where the object is cut or hidden, its extent is not seen, so there is nothing to correct.
     if (known[i] != 0 && !moved[i].is_one_sided) {
       kept.push_back(moved[i]);
     }
@@ -49,7 +50,8 @@ PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& f
     const Detection& detection = frame.detections[i];
     PoseObject pose_object{object.ellipsoid, &detection, {}, object.compensated_px};
     if (options.misfit_compensation && TakesLines(options.pose.constraint.residual)) {
-      pose_object.lines = KnownLines(sensor, cam_from_world, object, detection.lines);
+      pose_object.lines =
+          KnownLines(sensor, cam_from_world, object, detection.lines, options.misfit);
     }
     if (pose_object.lines.empty()) {
       pose_object.lines = detection.lines;

@@ -24,10 +24,10 @@ std::vector<ObjectId> FindMappedObjects(const Map& map, const Sensor& sensor, co
                                         std::span<const LandmarkId> landmarks,
                                         const AssociationOptions& options);
 
-// Detections of a frame with the objects they show (`ids`: one a detection). With misfit
-// compensation the lines are moved by what keyframes tell of the object there; lines of which they
-// tell nothing are left out, unless less than half of a detection's would remain: then it is taken
-// as it is.
+// Detections of a frame with the objects they show (`ids`: one per detection). With misfit
+// compensation the lines are moved by the misfit that the object's keyframes predict, and lines
+// without a prediction are left out. A detection that would keep less than half of its lines is
+// taken as it is.
 PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& frame,
                             const Rigid3& cam_from_world, std::span<const ObjectId> ids,
                             const ObjectOptions& options);

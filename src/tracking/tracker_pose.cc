@@ -157,7 +157,8 @@ std::optional<Tracker::Estimate> Tracker::TrackLocalMap(Estimate estimate) {
   const std::vector<ObjectId> objects = FindObjects(estimate);
   if (object_options_.guided_matching) {
     // What the local map has in sight is known by now: these are landmarks beyond it.
-    for (const ObjectGuide& guide : GuideByObjects(*map_, *frame_, objects, is_known)) {
+    for (const ObjectGuide& guide :
+         GuideByObjects(*map_, *frame_, objects, is_known, object_options_)) {
       SearchLandmarks(guide.landmarks, guide.is_outside, is_known, estimate);
     }
   }

@@ -30,7 +30,7 @@ class PoseObjectsTest : public ::testing::Test {
       // All of them are mapped 10 % too small: what the keyframes see tells.
       object.ellipsoid.half_axes *= 0.9;
       const auto views = CollectViews(map_, object);
-      object.support = MeasureMisfit(sensor_.camera, object.ellipsoid, views);
+      object.misfit_samples = MeasureMisfit(sensor_.camera, object.ellipsoid, views);
       const MisfitSpread spread = MeasureSpread(sensor_.camera, object, views);
       object.misfit_px = spread.plain_px;
       object.compensated_px = spread.compensated_px;
@@ -106,7 +106,7 @@ TEST_F(PoseObjectsTest, ResidualsThatTakeNoLinesAreNotCompensated) {
 
 TEST_F(PoseObjectsTest, AViewThatKeyframesTellNothingOfIsTakenAsItIs) {
   for (uint32_t k = 0; k < table_.size(); ++k) {
-    map_.MutableObject(ObjectId(k)).support.clear();
+    map_.MutableObject(ObjectId(k)).misfit_samples.clear();
   }
   ExpectPlain(Find(true));
 }

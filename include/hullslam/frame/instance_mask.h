@@ -7,6 +7,10 @@
 
 namespace hullslam {
 
+// Keypoints this near to a mask count as in it, px: corners at a silhouette are half background,
+// and masks tend to be too small.
+inline constexpr int kMaskMarginPx = 7;
+
 // What an outline is: that of a mask, or all that is known of a box or an ellipse.
 enum class MaskShape { kContour, kBox, kEllipse };
 

@@ -22,9 +22,9 @@ struct ObjectObservation {
   uint32_t detection = 0;  // index into the frame's detections
 };
 
-// By how much the real object reaches beyond its quadric in one direction, as one line of a
-// keyframe's silhouette tells (objects/misfit.h).
-struct SupportSample {
+// By how much the real object reaches beyond its quadric in one direction, as measured by one line
+// of a keyframe's outline (objects/misfit.h).
+struct MisfitSample {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // outwards, object frame, unit
   double excess = 0.0;                                // m; negative where it is smaller
   KeyframeId keyframe;
@@ -41,7 +41,7 @@ struct ObjectLandmark {
   size_t shaped_views = 0;                      // when its shape was last sought or refined
   double misfit_px = 0.0;                       // RMS distance of its lines from the outline
   double compensated_px = 0.0;                  // the same, less what other keyframes predict
-  std::vector<SupportSample> support;           // where its keyframes touch it
+  std::vector<MisfitSample> misfit_samples;     // one per line of its latest keyframes
   int visible = 0;  // frames in which it should have been seen since it was mapped
   int found = 0;    // frames in which it was
 
