@@ -49,7 +49,7 @@ TEST(PlaneOfLine, IsNoneBehindTheCamera) {
 
 TEST(PredictExcess, IsLinearNearby) {
   const Eigen::Vector3d slope(0.01, -0.02, 0.015);
-  std::vector<SupportSample> samples;
+  std::vector<MisfitSample> samples;
   RandomGeometry random(4);
   for (int i = 0; i < 4000; ++i) {
     const Eigen::Vector3d normal = random.Vector(1.0).normalized();
@@ -64,7 +64,7 @@ TEST(PredictExcess, IsLinearNearby) {
 }
 
 TEST(PredictExcess, LeavesAKeyframeOutAndIsSilentWhereNothingIsNear) {
-  const std::vector<SupportSample> samples(3, {Eigen::Vector3d::UnitX(), 0.01, KeyframeId(5)});
+  const std::vector<MisfitSample> samples(3, {Eigen::Vector3d::UnitX(), 0.01, KeyframeId(5)});
   EXPECT_NEAR(PredictExcess(samples, Eigen::Vector3d::UnitX(), KeyframeId()).value(), 0.01, 1e-9);
   EXPECT_FALSE(PredictExcess(samples, Eigen::Vector3d::UnitX(), KeyframeId(5)));
   EXPECT_FALSE(PredictExcess(samples, Eigen::Vector3d::UnitY(), KeyframeId()));
@@ -85,7 +85,8 @@ class BoxForAnEllipsoid : public ::testing::Test {
     ObjectLandmark& object = map_.MutableObject(id_);
     object.has_shape = true;
     object.ellipsoid = box_.ellipsoid;
-    object.support = MeasureMisfit(sensor_.camera, object.ellipsoid, CollectViews(map_, object));
+    object.misfit_samples =
+        MeasureMisfit(sensor_.camera, object.ellipsoid, CollectViews(map_, object));
   }
 
   // Lines of the box's silhouette in 16 directions.

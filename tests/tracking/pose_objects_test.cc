@@ -30,7 +30,7 @@ class PoseObjectsTest : public ::testing::Test {
       // All of them are mapped 10 % too small. The misfit samples of the keyframes show that.
       object.ellipsoid.half_axes *= 0.9;
       const auto views = CollectViews(map_, object);
-      object.support = MeasureMisfit(sensor_.camera, object.ellipsoid, views);
+      object.misfit_samples = MeasureMisfit(sensor_.camera, object.ellipsoid, views);
       const MisfitSpread spread = MeasureSpread(sensor_.camera, object, views);
       object.misfit_px = spread.plain_px;
       object.compensated_px = spread.compensated_px;
@@ -110,7 +110,7 @@ TEST_F(PoseObjectsTest, IsNotDoneForResidualsWithoutLines) {
 
 TEST_F(PoseObjectsTest, AViewFromWhereNoKeyframeSawTheObjectIsNotCompensated) {
   for (uint32_t k = 0; k < table_.size(); ++k) {
-    map_.MutableObject(ObjectId(k)).support.clear();
+    map_.MutableObject(ObjectId(k)).misfit_samples.clear();
   }
   ExpectPlain(Find(true));
 }
