@@ -190,7 +190,7 @@ void MoveObjects(Map& map, const WorldChanges& changes) {
     ObjectLandmark& moved = map.MutableObject(ObjectId(i));
     moved.ellipsoid = Moved(*change, moved.ellipsoid);
     moved.start = Moved(*change, moved.start);
-    for (auto& sample : moved.support) {
+    for (auto& sample : moved.misfit_samples) {
       sample.excess *= change->scale;
     }
   }

@@ -48,8 +48,6 @@ class JointProblem {
   Vector6d information_;
 };
 
-<<<<<<< HEAD
-=======
 double MeanDistance(const Rigid3& cam_from_world, std::span<const PoseObject> objects) {
   double sum = 0.0;
   for (const PoseObject& object : objects) {
@@ -58,7 +56,6 @@ double MeanDistance(const Rigid3& cam_from_world, std::span<const PoseObject> ob
   return sum / static_cast<double>(objects.size());
 }
 
->>>>>>> obj
 bool IsConstrained(const JointPoseResult& result, const JointPoseOptions& options) {
   return result.points.inlier_count >= 3 || result.used_objects >= options.objects.min_objects;
 }

@@ -11,16 +11,6 @@
 namespace hullslam {
 namespace {
 
-<<<<<<< HEAD
-constexpr size_t kMaxViews = 20;
-// The patch of a corner at the silhouette is half background, and masks tend to be too small.
-constexpr double kMaskMargin = 7.0;  // px
-// A landmark outside the ellipsoid by less than this is on the object, as in the validity check.
-constexpr double kNearSurface = 0.03;      // m
-constexpr double kNearSurfaceShare = 0.2;  // of the mean half axis
-
-=======
->>>>>>> obj
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }

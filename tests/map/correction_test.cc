@@ -60,8 +60,8 @@ void GiveShape(Map& map, ObjectId id, RandomGeometry& random) {
   object.shaped_views = 4;
   object.ellipsoid = RandomEllipsoid(random);
   object.start = RandomEllipsoid(random);
-  object.support.assign(2, {});
-  for (auto& sample : object.support) {
+  object.misfit_samples.assign(2, {});
+  for (auto& sample : object.misfit_samples) {
     sample.normal = random.Vector(1.0).normalized();
     sample.excess = random.Number(-0.02, 0.02);
   }
@@ -122,7 +122,7 @@ std::vector<double> Numbers(const Map& map) {
       add(ellipsoid.world_from_object.ToMatrix());
       add(ellipsoid.half_axes);
     }
-    for (const auto& sample : object.support) {
+    for (const auto& sample : object.misfit_samples) {
       numbers.push_back(sample.excess);
     }
   });
@@ -221,9 +221,10 @@ class LateCorrection : public ::testing::TestWithParam<uint32_t> {
       const ObjectLandmark& moved = map_.objects().At(id);
       ExpectMoved(moved.ellipsoid, object.ellipsoid, change);
       ExpectMoved(moved.start, object.start, change);
-      for (size_t i = 0; i < object.support.size(); ++i) {
-        EXPECT_EQ(moved.support[i].normal, object.support[i].normal);
-        EXPECT_NEAR(moved.support[i].excess, change.scale * object.support[i].excess, 1e-12);
+      for (size_t i = 0; i < object.misfit_samples.size(); ++i) {
+        EXPECT_EQ(moved.misfit_samples[i].normal, object.misfit_samples[i].normal);
+        EXPECT_NEAR(moved.misfit_samples[i].excess, change.scale * object.misfit_samples[i].excess,
+                    1e-12);
       }
     });
   }
@@ -491,7 +492,7 @@ TEST_F(CorrectionByHand, MovesAndScales) {
   GiveShape(map_, object, random);
   map_.MutableObject(object).ellipsoid = {Shift(4.0), {0.1, 0.2, 0.3}};
   map_.MutableObject(object).start = {Shift(5.0), {0.2, 0.3, 0.4}};
-  map_.MutableObject(object).support[0].excess = -0.01;
+  map_.MutableObject(object).misfit_samples[0].excess = -0.01;
   Name(a_, 1.0, 0.0);
   Name(b_, 2.0, 10.0);
   Name(c_, 3.0, -1.0);
@@ -508,7 +509,7 @@ TEST_F(CorrectionByHand, MovesAndScales) {
   EXPECT_DOUBLE_EQ(moved.ellipsoid.half_axes.z(), 0.6);
   EXPECT_DOUBLE_EQ(moved.start.world_from_object.translation.x(), 20.0);
   EXPECT_DOUBLE_EQ(moved.start.half_axes.x(), 0.4);
-  EXPECT_DOUBLE_EQ(moved.support[0].excess, -0.02);
+  EXPECT_DOUBLE_EQ(moved.misfit_samples[0].excess, -0.02);
   EXPECT_EQ(moved.state, ObjectState::kMapped);  // moving a shape keeps it valid
 }
 

@@ -73,7 +73,7 @@ inline void Dump(const ObjectLandmark& object, std::ostream& out) {
     Dump(ellipsoid.world_from_object, out);
     out << ' ' << ellipsoid.half_axes.transpose();
   }
-  for (const auto& sample : object.support) {
+  for (const auto& sample : object.misfit_samples) {
     out << " sample " << sample.normal.transpose() << ' ' << sample.excess << ' '
         << sample.keyframe.value;
   }

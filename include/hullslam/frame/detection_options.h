@@ -6,15 +6,6 @@
 
 namespace hullslam {
 
-<<<<<<< HEAD
-// How masks are turned into detections.
-struct DetectionOptions {
-  ObjectPrimitive primitive = ObjectPrimitive::kSupport;  // which lines constrain the quadrics
-  double epsilon_px = 3.0;     // simplification of the hull or contour (Douglas-Peucker)
-  int uniform_directions = 8;  // of support lines, besides the edges of the simplified hull
-  double min_line_px = 5.0;    // shorter edges give no line
-  double border_px = 5.0;      // nearer to the border of the raw image than this is cut by it
-=======
 // How masks become detections and their lines.
 struct DetectionOptions {
   ObjectPrimitive primitive = ObjectPrimitive::kSupport;  // which lines constrain the quadrics
@@ -25,7 +16,6 @@ struct DetectionOptions {
   int conic_lines = 16;          // tangents of an ellipse
   double min_part_share = 0.1;  // smaller parts of a mask, of the area of the largest, are left out
   double border_px = 5.0;       // nearer to the border of the raw image than this is cut by it
->>>>>>> obj
 
   // Masks beyond these are not used.
   double min_score = 0.0;

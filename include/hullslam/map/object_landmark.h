@@ -41,9 +41,9 @@ struct ObjectLandmark {
   // The keyframe with which a correction moves the object: the first that observes it. It stays
   // when no observation is left, and may then be a culled keyframe.
   KeyframeId reference;
-  size_t shaped_views = 0;             // observations when its shape was last sought or refined
-  double misfit_px = 0.0;              // RMS distance of its lines from its projected ellipses
-  double compensated_px = 0.0;         // the same after misfit compensation
+  size_t shaped_views = 0;      // observations when its shape was last sought or refined
+  double misfit_px = 0.0;       // RMS distance of its lines from its projected ellipses
+  double compensated_px = 0.0;  // the same after misfit compensation
   std::vector<MisfitSample> misfit_samples;  // one per two-sided line of its latest keyframes
   int visible = 0;  // number of frames since it was mapped in which it should have been seen
   int found = 0;    // number of frames in which it was found
