@@ -18,13 +18,6 @@
 namespace hullslam {
 namespace {
 
-// Of two masks the smaller one may also be a fragment of the larger: nearly all of it lies inside,
-// it is not much smaller (else it is a thing of its own in front, as a cup before a monitor), and
-// it is as far away.
-constexpr double kContained = 0.85;     // share of the smaller mask in the larger
-constexpr double kFragmentShare = 0.4;  // area of the smaller mask of that of the larger
-constexpr double kSameDepth = 0.05;     // relative difference of the medians
-
 using Rejections = std::vector<std::optional<DetectionRejection>>;
 
 // A mask for which a detection is being built.
@@ -100,7 +93,7 @@ std::optional<DetectionRejection> Prepare(const InstanceMask& mask, size_t index
   if (mask.score < frame.options.min_score) {
     return DetectionRejection::kLowScore;
   }
-  std::vector<Polygon2> parts = LargeParts(mask.outlines);
+  std::vector<Polygon2> parts = LargeParts(mask.outlines, frame.options.min_part_share);
   Outline outline = UndistortOutline(parts, frame.depth.camera);
   if (const auto rejection = CheckOutline(outline, frame)) {
     return rejection;
@@ -127,25 +120,27 @@ std::optional<DetectionRejection> Prepare(const InstanceMask& mask, size_t index
 
 // Whether two masks show the same object. The classes are not compared, because a real network can
 // report one thing under two classes.
-bool AreOneObject(const Candidate& a, const Candidate& b, double duplicate_iou) {
+bool AreOneObject(const Candidate& a, const Candidate& b, const DetectionOptions& options) {
   const double shared = SharedArea(a.region, b.region);
   const double smaller = std::min(a.region.area(), b.region.area());
   const double larger = std::max(a.region.area(), b.region.area());
   if (shared <= 0.0) {
     return false;
   }
-  if (shared >= duplicate_iou * (smaller + larger - shared)) {
+  if (shared >= options.duplicate_iou * (smaller + larger - shared)) {
     return true;
   }
-  const bool is_fragment = shared >= kContained * smaller && smaller >= kFragmentShare * larger;
-  const bool is_as_far = a.depth > 0.0 && b.depth > 0.0 &&
-                         std::abs(a.depth - b.depth) <= kSameDepth * std::min(a.depth, b.depth);
+  const bool is_fragment =
+      shared >= options.fragment_inside * smaller && smaller >= options.fragment_area * larger;
+  const bool is_as_far =
+      a.depth > 0.0 && b.depth > 0.0 &&
+      std::abs(a.depth - b.depth) <= options.fragment_depth * std::min(a.depth, b.depth);
   return is_fragment && is_as_far;
 }
 
 // When several masks show the same object, keeps the one with the highest score; ties go to the
 // first.
-void RejectDuplicates(double duplicate_iou, std::vector<Candidate>& candidates,
+void RejectDuplicates(const DetectionOptions& options, std::vector<Candidate>& candidates,
                       Rejections& rejections) {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.mask->score > b.mask->score; });
@@ -153,7 +148,7 @@ void RejectDuplicates(double duplicate_iou, std::vector<Candidate>& candidates,
   kept.reserve(candidates.size());
   for (Candidate& candidate : candidates) {
     const bool is_known = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
-      return AreOneObject(candidate, other, duplicate_iou);
+      return AreOneObject(candidate, other, options);
     });
     if (is_known) {
       rejections[candidate.index] = DetectionRejection::kDuplicate;
@@ -182,7 +177,8 @@ bool IsOneSided(const LineOnOutline& line, const FrameView& frame, double depth,
       std::all_of(line.touching.begin(), line.touching.end(), [&](const Eigen::Vector2d& place) {
         return IsAtBorder(place, frame.depth.camera, frame.options.border_px);
       });
-  return is_cut || (!frame.depth.image.empty() && IsHidden(line, frame.depth, depth, others));
+  return is_cut ||
+         (!frame.depth.image.empty() && IsHidden(line, frame.depth, depth, others, frame.options));
 }
 
 void AddLines(const std::vector<Candidate>& candidates, const FrameView& frame,
@@ -230,7 +226,7 @@ DetectionResult DetectionBuilder::Build(std::span<const InstanceMask> masks, con
   for (size_t i = 0; i < masks.size(); ++i) {
     result.rejections.push_back(Prepare(masks[i], i, frame, candidates));
   }
-  RejectDuplicates(options_.duplicate_iou, candidates, result.rejections);
+  RejectDuplicates(options_, candidates, result.rejections);
   for (Candidate& candidate : candidates) {
     AddLines(candidates, frame, candidate);
   }

@@ -15,19 +15,22 @@ constexpr std::array<double, 2> kBeyond{4.0, 8.0};  // px: masks are not exact t
 constexpr double kLargestMargin = 5.0;              // px of the eroded mask
 constexpr double kMarginShare = 0.1;                // of the mask's smaller side
 
-// By how much nearer something is another thing and not the same surface or noise, m.
-double Step(double depth) { return std::max(0.03, 0.04 * depth); }
+// By how much nearer something must be to be another thing, not the same surface or noise, m.
+double Step(double depth, const DetectionOptions& options) {
+  return std::max(options.occlusion_step, options.occlusion_step_share * depth);
+}
 
 enum class Beyond { kUnknown, kNothingNearer, kNearer };
 
 Beyond Look(const Eigen::Vector2d& place, const Eigen::Vector2d& outwards, const DepthView& view,
-            double object_depth, std::span<const Occluder> others) {
+            double object_depth, std::span<const Occluder> others,
+            const DetectionOptions& options) {
   const double inside = view.AtRaw(view.camera.Distort(place - kInside * outwards));
   const double own = inside > 0.0 ? inside : object_depth;
   if (own <= 0.0) {
     return Beyond::kUnknown;
   }
-  const double limit = own - Step(own);
+  const double limit = own - Step(own, options);
   Beyond result = Beyond::kUnknown;
   for (const double distance : kBeyond) {
     const Eigen::Vector2d raw = view.camera.Distort(place + distance * outwards);
@@ -90,11 +93,11 @@ double MedianDepth(std::span<const Eigen::Vector3d> points) {
 }
 
 bool IsHidden(const LineOnOutline& line, const DepthView& view, double object_depth,
-              std::span<const Occluder> others) {
+              std::span<const Occluder> others, const DetectionOptions& options) {
   int known = 0;
   int hidden = 0;
   for (const Eigen::Vector2d& place : line.near) {
-    const Beyond beyond = Look(place, line.line.normal, view, object_depth, others);
+    const Beyond beyond = Look(place, line.line.normal, view, object_depth, others, options);
     known += beyond != Beyond::kUnknown ? 1 : 0;
     hidden += beyond == Beyond::kNearer ? 1 : 0;
   }

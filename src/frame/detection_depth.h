@@ -41,6 +41,6 @@ double MedianDepth(std::span<const Eigen::Vector3d> points);
 // places along the line, with the depth image and the masks of `others`. It must hold at half or
 // more of the places where it is known.
 bool IsHidden(const LineOnOutline& line, const DepthView& view, double object_depth,
-              std::span<const Occluder> others);
+              std::span<const Occluder> others, const DetectionOptions& options);
 
 }  // namespace hullslam

@@ -16,8 +16,6 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kTouch = 1.0;  // px: a corner this near to a line carries it
 constexpr double kNear = 3.0;   // px: about the error of a mask's border
 constexpr size_t kMaxPlaces = 9;
-constexpr int kTangents = 16;            // of an ellipse
-constexpr double kSameDirection = 0.09;  // radians, about 5 degrees
 
 Eigen::Vector2d Direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
@@ -102,7 +100,7 @@ std::vector<Eigen::Vector2d> SupportDirections(const Polygon2& hull,
   std::vector<Eigen::Vector2d> directions;
   const auto add_new = [&](const Eigen::Vector2d& direction) {
     const bool is_new = std::none_of(directions.begin(), directions.end(), [&](const auto& known) {
-      return known.dot(direction) > std::cos(kSameDirection);
+      return known.dot(direction) > std::cos(options.min_line_angle);
     });
     if (is_new) directions.push_back(direction);
   };
@@ -142,10 +140,10 @@ std::vector<LineOnOutline> EdgeLines(const Polygon2& polygon, double min_length)
   return lines;
 }
 
-std::vector<LineOnOutline> TangentLines(const Outline& outline, const Ellipse& ellipse) {
+std::vector<LineOnOutline> TangentLines(const Outline& outline, const Ellipse& ellipse, int count) {
   std::vector<LineOnOutline> lines;
-  for (int i = 0; i < kTangents; ++i) {
-    const Eigen::Vector2d n = Direction(2.0 * kPi * i / kTangents);
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector2d n = Direction(2.0 * kPi * i / count);
     const double reach = n.dot(ellipse.center) + ellipse.HalfExtent(n);
     lines.push_back(LineAlong(outline, {.normal = n, .offset = -reach}));
   }
@@ -170,7 +168,8 @@ std::vector<LineOnOutline> LinesOfOutline(const Outline& outline,
       return SupportLines(outline, directions);
     }
     case ObjectPrimitive::kConic:
-      return ellipse ? TangentLines(outline, *ellipse) : std::vector<LineOnOutline>();
+      return ellipse ? TangentLines(outline, *ellipse, options.conic_lines)
+                     : std::vector<LineOnOutline>();
   }
   return {};
 }

@@ -11,7 +11,6 @@ namespace hullslam {
 namespace {
 
 constexpr double kMinArea = 1.0;       // px^2
-constexpr double kMinPartShare = 0.1;  // of the largest part
 constexpr double kLargestStep = 12.0;  // px between points of a contour
 
 // The undistorted outline, with positive signed area. Points are added on long edges, because an
@@ -35,7 +34,7 @@ Polygon2 UndistortDensely(const Polygon2& outline, const PinholeCamera& camera) 
 
 }  // namespace
 
-std::vector<Polygon2> LargeParts(std::span<const Polygon2> outlines) {
+std::vector<Polygon2> LargeParts(std::span<const Polygon2> outlines, double min_share) {
   double largest = kMinArea;
   for (const Polygon2& outline : outlines) {
     largest = std::max(largest, std::abs(SignedArea(outline)));
@@ -43,7 +42,7 @@ std::vector<Polygon2> LargeParts(std::span<const Polygon2> outlines) {
   std::vector<Polygon2> parts;
   for (const Polygon2& outline : outlines) {
     const double area = std::abs(SignedArea(outline));
-    if (area >= kMinArea && area >= kMinPartShare * largest) {
+    if (area >= kMinArea && area >= min_share * largest) {
       parts.push_back(outline);
     }
   }

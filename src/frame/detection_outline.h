@@ -18,9 +18,9 @@ struct Outline {
   Polygon2 hull;      // convex hull of all parts; fewer than three corners if they have no area
 };
 
-// The parts of a mask that have at least a tenth of the area of its largest part, in raw pixels.
-// Parts without area are left out.
-std::vector<Polygon2> LargeParts(std::span<const Polygon2> outlines);
+// The parts of a mask whose area is at least `min_share` of that of its largest part, in raw
+// pixels. Parts without area are left out.
+std::vector<Polygon2> LargeParts(std::span<const Polygon2> outlines, double min_share);
 
 Outline UndistortOutline(std::span<const Polygon2> parts, const PinholeCamera& camera);
 

@@ -5,12 +5,6 @@
 #include <opencv2/imgproc.hpp>
 
 namespace hullslam {
-namespace {
-
-// Corners at a silhouette are half background, and masks tend to be small.
-constexpr int kMargin = 7;  // px
-
-}  // namespace
 
 std::set<std::string> SplitNames(std::string_view names) {
   std::set<std::string> split;
@@ -51,12 +45,13 @@ cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::str
     return region;
   }
   // Only around what is filled: the rest of the image stays zero.
-  const cv::Rect grown(box.x - kMargin, box.y - kMargin, box.width + 2 * kMargin,
-                       box.height + 2 * kMargin);
+  const cv::Rect grown(box.x - kMaskMarginPx, box.y - kMaskMarginPx, box.width + 2 * kMaskMarginPx,
+                       box.height + 2 * kMaskMarginPx);
   cv::Mat part = region(grown & cv::Rect({}, size));
   if (!part.empty()) {
-    cv::dilate(part, part,
-               cv::getStructuringElement(cv::MORPH_RECT, {2 * kMargin + 1, 2 * kMargin + 1}));
+    cv::dilate(
+        part, part,
+        cv::getStructuringElement(cv::MORPH_RECT, {2 * kMaskMarginPx + 1, 2 * kMaskMarginPx + 1}));
   }
   return region;
 }

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/mask_checks.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdint>
-#include <system_error>
 #include <utility>
 
 #include "geometry/polyline.h"
-#include "hullslam/util/error.h"
 
 namespace hullslam {
 namespace {

@@ -32,7 +32,8 @@ struct CorrectionOutcome {
 // observations were merged, and the loop edge is added. If a landmark, an object or a keyframe that
 // a merge or the loop edge names was replaced or culled since the snapshot, its replacement or
 // nearest ancestor is used. Merges of erased landmarks or objects and positions of missing
-// landmarks are passed over.
+// landmarks are passed over. Scales must be finite and positive, else CheckError is thrown and the
+// map is unchanged.
 CorrectionOutcome ApplyCorrection(Map& map, const MapCorrection& correction,
                                   const ScaleLevels& levels);
 

@@ -14,22 +14,18 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kRecentViews = 5;      // whose points and landmarks tell an object
-constexpr double kMinSimilarity = 0.2;  // below it a detection is rather of no object
-constexpr size_t kCloud = 40;           // points a cloud that the rank-sum test looks at
-
 using Polygon = std::vector<Eigen::Vector2d>;
 
-// What is known of an object, as the camera of now would see it.
+// What is known of an object, as the camera sees it from the frame's pose.
 struct Prediction {
   ObjectId id;
   const ObjectLandmark* object = nullptr;
-  Polygon outline;                         // of the quadric, clipped to the image; empty without
+  Polygon ellipse;                         // projected, clipped to the image; empty without a shape
   Polygon carried;                         // the last hull, carried over at its depth
   std::vector<LandmarkId> landmarks;       // seen on it lately, sorted
-  std::vector<Eigen::Vector3d> cloud;      // m, world; of its last view
+  std::vector<Eigen::Vector3d> cloud;      // world; of its last view
   std::vector<Eigen::Vector3d> centroids;  // of its views with depth
-  double size = 0.0;                       // m, extent of its last cloud
+  double size = 0.0;                       // extent of its last cloud
 };
 
 // A detection with what is compared.
@@ -38,9 +34,10 @@ struct Seen {
   std::vector<LandmarkId> landmarks;  // sorted
   std::vector<Eigen::Vector3d> cloud;
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // of the cloud
+  double noise = 0.0;                                  // of the centroid, in units of the map
 };
 
-// Twice the root of the mean squared distance from the mean: about the half diagonal.
+// Twice the root mean square distance from the mean, which is about half a diagonal.
 double SizeOf(std::span<const Eigen::Vector3d> points) {
   const Eigen::Vector3d mean = MeanOf(points);
   double sum = 0.0;
@@ -84,7 +81,7 @@ class Associator {
       }
     }
     std::vector<ObjectId> objects(frame_.detections.size());
-    const std::vector<int> columns = AssignMinimumCost(cost, 1.0 - kMinSimilarity);
+    const std::vector<int> columns = AssignMinimumCost(cost, 1.0 - options_.min_similarity);
     for (size_t i = 0; i < columns.size(); ++i) {
       if (columns[i] >= 0) {
         objects[i] = predictions[static_cast<size_t>(columns[i])].id;
@@ -101,16 +98,17 @@ class Associator {
     if (object.has_shape) {
       if (const auto ellipse =
               ProjectEllipsoid(sensor_.camera.Matrix(), cam_from_world_, object.ellipsoid)) {
-        prediction.outline = ClipToBox(ellipse->Polygon(32), image_);
+        prediction.ellipse = ClipToBox(ellipse->Polygon(32), image_);
       }
     }
     ObjectLandmark recent = object;
-    if (recent.observations.size() > kRecentViews) {
+    if (recent.observations.size() > static_cast<size_t>(options_.recent_views)) {
       recent.observations.erase(recent.observations.begin(),
-                                recent.observations.end() - kRecentViews);
+                                recent.observations.end() - options_.recent_views);
     }
     const std::vector<ObjectView> views = CollectViews(map_, recent);
-    prediction.cloud = CollectPoints({&views.back(), 1}, kCloud);
+    prediction.cloud =
+        CollectPoints({&views.back(), 1}, static_cast<size_t>(options_.cloud_points));
     prediction.size = SizeOf(prediction.cloud);
     prediction.carried = Carry(views.back());
     for (const ObjectView& view : views) {
@@ -125,8 +123,8 @@ class Associator {
     return prediction;
   }
 
-  // The hull of a former view where its points are in this image: all at the depth of their middle.
-  // Without depth it stays where it was.
+  // The hull of an earlier view, carried over into this image. All its points are given the mean
+  // depth of the view. Without depth the hull stays where it was.
   Polygon Carry(const ObjectView& view) const {
     const Detection& detection = *view.detection;
     Polygon carried = detection.hull;
@@ -149,8 +147,9 @@ class Associator {
     Seen seen;
     seen.detection = &detection;
     const ObjectView view{KeyframeId(), cam_from_world_, &detection};
-    seen.cloud = CollectPoints({&view, 1}, kCloud);
+    seen.cloud = CollectPoints({&view, 1}, static_cast<size_t>(options_.cloud_points));
     seen.centroid = MeanOf(seen.cloud);
+    seen.noise = options_.centroid_noise * (cam_from_world_ * seen.centroid).norm();
     for (const uint32_t keypoint : detection.keypoints) {
       if (keypoint < landmarks_.size()) {
         AddLandmark(landmarks_[keypoint], seen.landmarks);
@@ -170,14 +169,14 @@ class Associator {
     landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
   }
 
-  // Whether depth says that these are two things, one beside or behind the other.
+  // Whether the clouds of depth points are so far apart that they belong to two things.
   bool AreApart(const Seen& seen, const Prediction& prediction) const {
     if (seen.cloud.empty() || prediction.cloud.empty()) {
       return false;
     }
     const double size = std::max(prediction.size, SizeOf(seen.cloud));
     const double offset = (seen.centroid - MeanOf(prediction.cloud)).norm();
-    return offset > options_.max_offset * size + options_.centroid_noise;
+    return offset > options_.max_offset * size + seen.noise;
   }
 
   // Share of the detection's landmarks that were seen on the object too.
@@ -203,30 +202,31 @@ class Associator {
     return total > 0.0 ? same / total : 0.0;
   }
 
-  // 0 (no) to about 1.
+  // 0 for no match, else up to about 1.
   double Similarity(const Seen& seen, const Prediction& prediction) const {
     if (AreApart(seen, prediction)) {
       return 0.0;
     }
     const Polygon& hull = seen.detection->hull;
-    const double outline = IntersectionOverUnion(hull, prediction.outline);
+    const double projected = IntersectionOverUnion(hull, prediction.ellipse);
     const double carried = IntersectionOverUnion(hull, prediction.carried);
     const double shared = SharedLandmarks(seen, prediction);
     const bool one_cloud = MayBeOneCloud(seen.cloud, prediction.cloud, options_.max_rank_sum,
                                          static_cast<size_t>(options_.min_cloud));
     const bool one_centroid =
         !seen.cloud.empty() &&
-        MayBeTheMean(seen.centroid, prediction.centroids, options_.alpha, options_.centroid_noise);
-    const bool is_match = outline >= options_.min_projection_iou ||
-                          carried >= options_.min_carried_iou ||
-                          shared >= options_.min_shared_ratio ||
-                          ((one_cloud || one_centroid) && std::max(outline, carried) > 0.1);
+        MayBeTheMean(seen.centroid, prediction.centroids, options_.alpha, seen.noise);
+    const bool is_match =
+        projected >= options_.min_projection_iou || carried >= options_.min_carried_iou ||
+        shared >= options_.min_shared_ratio ||
+        ((one_cloud || one_centroid) && std::max(projected, carried) > options_.min_depth_iou);
     if (!is_match) {
       return 0.0;
     }
-    const double clouds = (one_cloud ? 0.1 : 0.0) + (one_centroid ? 0.1 : 0.0);
-    return 0.6 * std::max(outline, carried) + 0.2 * shared + clouds +
-           options_.class_weight * ClassShare(seen.detection->label, *prediction.object);
+    const double clouds =
+        (one_cloud ? options_.cloud_weight : 0.0) + (one_centroid ? options_.centroid_weight : 0.0);
+    return options_.iou_weight * std::max(projected, carried) + options_.landmark_weight * shared +
+           clouds + options_.class_weight * ClassShare(seen.detection->label, *prediction.object);
   }
 
   const Map& map_;

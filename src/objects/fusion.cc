@@ -10,12 +10,6 @@
 namespace hullslam {
 namespace {
 
-constexpr double kMinOverlap = 0.25;         // of volumes, for objects never seen together
-constexpr double kMinOverlapTogether = 0.5;  // for those seen together in few keyframes
-constexpr double kMaxSharedKeyframes = 0.2;  // of those of the one seen less
-constexpr double kAlpha = 0.05;
-constexpr double kCentroidNoise = 0.02;  // m
-
 // Whether a world point lies inside.
 bool Contains(const Ellipsoid& ellipsoid, const Eigen::Vector3d& point) {
   return ellipsoid.RadialDistance(point) <= 0.0;
@@ -56,14 +50,27 @@ size_t SharedKeyframes(const ObjectLandmark& a, const ObjectLandmark& b) {
   return shared.size();
 }
 
-std::vector<Eigen::Vector3d> Centroids(const Map& map, const ObjectLandmark& object) {
+std::vector<Eigen::Vector3d> Centroids(std::span<const ObjectView> views) {
   std::vector<Eigen::Vector3d> centroids;
-  for (const ObjectView& view : CollectViews(map, object)) {
+  for (const ObjectView& view : views) {
     if (!view.detection->points.empty()) {
       centroids.push_back(Centroid(view));
     }
   }
   return centroids;
+}
+
+bool MayHaveOneCentroid(const Map& map, const ObjectLandmark& a, const ObjectLandmark& b,
+                        const FusionOptions& options) {
+  const std::vector<ObjectView> views_a = CollectViews(map, a);
+  const std::vector<ObjectView> views_b = CollectViews(map, b);
+  if (views_a.empty() || views_b.empty()) {
+    return false;
+  }
+  const double distance = 0.5 * (MeanDistance(views_a, a.ellipsoid.world_from_object.translation) +
+                                 MeanDistance(views_b, b.ellipsoid.world_from_object.translation));
+  return MayHaveOneMean(Centroids(views_a), Centroids(views_b), options.alpha,
+                        options.centroid_noise * distance);
 }
 
 // Whether their centres are not farther apart than their largest half axes together.
@@ -84,24 +91,24 @@ bool ShouldBeSeenWith(const Map& map, const Sensor& sensor, const ObjectLandmark
   return 2 * inside > seen.observations.size();
 }
 
-bool AreOne(const Map& map, const ObjectLandmark& a, const ObjectLandmark& b) {
+bool AreOne(const Map& map, const ObjectLandmark& a, const ObjectLandmark& b,
+            const FusionOptions& options) {
   if (!a.has_shape || !b.has_shape || !AreNear(a.ellipsoid, b.ellipsoid)) {
     return false;
   }
   const size_t shared = SharedKeyframes(a, b);
   const size_t fewer = std::min(a.observations.size(), b.observations.size());
-  if (static_cast<double>(shared) > kMaxSharedKeyframes * static_cast<double>(fewer)) {
+  if (static_cast<double>(shared) > options.max_shared_keyframes * static_cast<double>(fewer)) {
     return false;
   }
   const double overlap = VolumeOverlap(a.ellipsoid, b.ellipsoid);
   if (shared > 0) {
-    return overlap >= kMinOverlapTogether;
+    return overlap >= options.min_overlap_together;
   }
   const bool in_each_other = Contains(a.ellipsoid, b.ellipsoid.world_from_object.translation) &&
                              Contains(b.ellipsoid, a.ellipsoid.world_from_object.translation);
-  return overlap >= kMinOverlap ||
-         (in_each_other &&
-          MayHaveOneMean(Centroids(map, a), Centroids(map, b), kAlpha, kCentroidNoise));
+  return overlap >= options.min_overlap ||
+         (in_each_other && MayHaveOneCentroid(map, a, b, options));
 }
 
 }  // namespace
@@ -127,7 +134,8 @@ double VolumeOverlap(const Ellipsoid& a, const Ellipsoid& b) {
   return shared / (Volume(a) + Volume(b) - shared);
 }
 
-std::vector<std::pair<ObjectId, ObjectId>> FindDuplicates(const Map& map) {
+std::vector<std::pair<ObjectId, ObjectId>> FindDuplicates(const Map& map,
+                                                          const FusionOptions& options) {
   std::vector<ObjectId> ids;
   map.objects().ForEach([&](ObjectId id, const ObjectLandmark&) { ids.push_back(id); });
   std::vector<std::pair<ObjectId, ObjectId>> pairs;
@@ -136,7 +144,7 @@ std::vector<std::pair<ObjectId, ObjectId>> FindDuplicates(const Map& map) {
     for (size_t j = i + 1; j < ids.size() && !is_taken[i]; ++j) {
       const ObjectLandmark& a = map.objects().At(ids[i]);
       const ObjectLandmark& b = map.objects().At(ids[j]);
-      if (is_taken[j] || !AreOne(map, a, b)) {
+      if (is_taken[j] || !AreOne(map, a, b, options)) {
         continue;
       }
       is_taken[i] = is_taken[j] = true;

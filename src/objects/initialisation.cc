@@ -11,19 +11,18 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kMinPoints = 20;
-constexpr double kLowQuantile = 0.03;
-constexpr double kHighQuantile = 0.97;
-constexpr double kMinHalfAxis = 0.01;        // m; flat things have some thickness
-constexpr double kMinRayInformation = 1e-3;  // least eigenvalue a ray, of the point they meet in
+// Least eigenvalue per ray of the information on the point they meet in; below it they are nearly
+// parallel.
+constexpr double kMinRayInformation = 1e-3;
 
 struct Interval {
   double low = 0.0;
   double high = 0.0;
 };
 
-// Between the 3rd and the 97th percentile of the points along a direction.
-Interval InnerInterval(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& direction) {
+// What the points span along a direction when a share of them is left out at each end.
+Interval InnerInterval(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& direction,
+                       double trimmed) {
   std::vector<double> values;
   values.reserve(points.size());
   for (const Eigen::Vector3d& point : points) {
@@ -31,21 +30,21 @@ Interval InnerInterval(std::span<const Eigen::Vector3d> points, const Eigen::Vec
   }
   std::sort(values.begin(), values.end());
   const auto last = static_cast<double>(values.size() - 1);
-  return {values[static_cast<size_t>(kLowQuantile * last)],
-          values[static_cast<size_t>(kHighQuantile * last)]};
+  return {values[static_cast<size_t>(trimmed * last)],
+          values[static_cast<size_t>((1.0 - trimmed) * last)]};
 }
 
 // The ellipsoid with these axes (columns, right-handed) whose box holds the inner points.
 Ellipsoid FitAlong(std::span<const Eigen::Vector3d> points, const Eigen::Matrix3d& axes,
-                   double inflation) {
+                   double distance, const StartOptions& options) {
   Ellipsoid ellipsoid;
   ellipsoid.world_from_object.rotation = Eigen::Quaterniond(axes).normalized();
   Eigen::Vector3d center;
   for (int axis = 0; axis < 3; ++axis) {
-    const Interval interval = InnerInterval(points, axes.col(axis));
+    const Interval interval = InnerInterval(points, axes.col(axis), options.trimmed);
     center[axis] = 0.5 * (interval.low + interval.high);
-    ellipsoid.half_axes[axis] =
-        std::max(kMinHalfAxis, inflation * 0.5 * (interval.high - interval.low));
+    ellipsoid.half_axes[axis] = std::max(options.min_half_axis * distance,
+                                         options.inflation * 0.5 * (interval.high - interval.low));
   }
   ellipsoid.world_from_object.translation = axes * center;
   return ellipsoid;
@@ -66,11 +65,11 @@ Eigen::Matrix3d PrincipalAxes(std::span<const Eigen::Vector3d> points) {
 
 // The points that lie between the percentiles along each of the axes.
 std::vector<Eigen::Vector3d> InnerPoints(std::span<const Eigen::Vector3d> points,
-                                         const Eigen::Matrix3d& axes) {
+                                         const Eigen::Matrix3d& axes, double trimmed) {
   std::vector<Eigen::Vector3d> inner(points.begin(), points.end());
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d direction = axes.col(axis);
-    const Interval interval = InnerInterval(points, direction);
+    const Interval interval = InnerInterval(points, direction, trimmed);
     std::erase_if(inner, [&](const Eigen::Vector3d& point) {
       const double value = direction.dot(point);
       return value < interval.low || value > interval.high;
@@ -81,24 +80,26 @@ std::vector<Eigen::Vector3d> InnerPoints(std::span<const Eigen::Vector3d> points
 
 }  // namespace
 
-std::vector<Ellipsoid> StartsFromPoints(std::span<const Eigen::Vector3d> points, double inflation) {
-  if (points.size() < kMinPoints) {
+std::vector<Ellipsoid> StartsFromPoints(std::span<const Eigen::Vector3d> points, double distance,
+                                        const StartOptions& options) {
+  if (points.size() < kMinDepthPoints) {
     return {};
   }
   const Eigen::Matrix3d axes = PrincipalAxes(points);
-  const std::vector<Eigen::Vector3d> inner = InnerPoints(points, axes);
-  if (inner.size() < kMinPoints) {
+  const std::vector<Eigen::Vector3d> inner = InnerPoints(points, axes, options.trimmed);
+  if (inner.size() < kMinDepthPoints) {
     return {};
   }
-  std::vector<Ellipsoid> starts = {FitAlong(points, PrincipalAxes(inner), inflation)};
+  std::vector<Ellipsoid> starts = {FitAlong(points, PrincipalAxes(inner), distance, options)};
   if (const std::optional<Eigen::Matrix3d> box = OrientedBoxAxes(inner)) {
-    starts.push_back(FitAlong(points, *box, inflation));
+    starts.push_back(FitAlong(points, *box, distance, options));
   }
   return starts;
 }
 
 std::optional<Ellipsoid> StartFromRays(const PinholeCamera& camera,
-                                       std::span<const ObjectView> views) {
+                                       std::span<const ObjectView> views,
+                                       const StartOptions& options) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
   for (const ObjectView& view : views) {
@@ -124,7 +125,9 @@ std::optional<Ellipsoid> StartFromRays(const PinholeCamera& camera,
     const Eigen::Vector2d sides = view.detection->box.sizes();
     radius += 0.25 * (sides.x() / camera.fx + sides.y() / camera.fy) * depth;
   }
-  sphere.half_axes.setConstant(std::max(kMinHalfAxis, radius / static_cast<double>(views.size())));
+  const double least =
+      options.min_half_axis * MeanDistance(views, sphere.world_from_object.translation);
+  sphere.half_axes.setConstant(std::max(least, radius / static_cast<double>(views.size())));
   return sphere;
 }
 

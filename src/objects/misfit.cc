@@ -10,10 +10,10 @@
 namespace hullslam {
 namespace {
 
-constexpr double kWidth = 4.0 * std::numbers::pi / 180.0;  // rad, of the Gaussian weights
-constexpr double kReach = 3.0 * kWidth;                    // farther samples are not looked at
-constexpr double kMinWeight = 1.0;  // in all: one sample at the place, or some around it
-constexpr double kMinDepth = 1e-3;  // m
+constexpr double kReach = 3.0;      // widths; samples beyond have next to no weight
+constexpr double kMinWeight = 1.0;  // of all samples: one sample at the place, or some around it
+constexpr double kNoSlope = 0.3;    // weight of a prior of no slope
+constexpr double kMinDepth = 1e-3;  // in front of the camera
 
 }  // namespace
 
@@ -54,11 +54,13 @@ std::vector<MisfitSample> MeasureMisfit(const PinholeCamera& camera, const Ellip
 }
 
 std::optional<double> PredictExcess(std::span<const MisfitSample> samples,
-                                    const Eigen::Vector3d& normal, KeyframeId left_out) {
+                                    const Eigen::Vector3d& normal, KeyframeId left_out,
+                                    const MisfitOptions& options) {
+  const double width = options.width * std::numbers::pi / 180.0;
   // Axes of the plane that touches the unit sphere at the normal.
   const Eigen::Vector3d across = normal.unitOrthogonal();
   const Eigen::Vector3d along = normal.cross(across);
-  const double min_cosine = std::cos(kReach);
+  const double min_cosine = std::cos(kReach * width);
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
   for (const MisfitSample& sample : samples) {
@@ -66,18 +68,18 @@ std::optional<double> PredictExcess(std::span<const MisfitSample> samples,
     if (cosine < min_cosine || sample.keyframe == left_out) {
       continue;
     }
-    const Eigen::Vector3d basis(1.0, across.dot(sample.normal) / kWidth,
-                                along.dot(sample.normal) / kWidth);
-    const double weight = std::exp(-(1.0 - cosine) / (kWidth * kWidth));
+    const Eigen::Vector3d basis(1.0, across.dot(sample.normal) / width,
+                                along.dot(sample.normal) / width);
+    const double weight = std::exp(-(1.0 - cosine) / (width * width));
     information += weight * basis * basis.transpose();
     right_side += weight * sample.excess * basis;
   }
   if (information(0, 0) < kMinWeight) {
     return std::nullopt;
   }
-  // A weak prior of no slope: samples on one side alone must not extrapolate.
-  information(1, 1) += 0.3;
-  information(2, 2) += 0.3;
+  // Samples on one side alone must not be extrapolated.
+  information(1, 1) += kNoSlope;
+  information(2, 2) += kNoSlope;
   return information.ldlt().solve(right_side).x();
 }
 
@@ -85,13 +87,15 @@ std::vector<SilhouetteLine> CompensateLines(const PinholeCamera& camera,
                                             const Rigid3& cam_from_world,
                                             const ObjectLandmark& object,
                                             std::span<const SilhouetteLine> lines,
-                                            KeyframeId left_out, std::vector<uint8_t>& known) {
+                                            KeyframeId left_out, std::vector<uint8_t>& known,
+                                            const MisfitOptions& options) {
   std::vector<SilhouetteLine> moved(lines.begin(), lines.end());
   known.assign(lines.size(), 0);
   for (size_t i = 0; i < moved.size(); ++i) {
     const auto plane = PlaneOfLine(camera, cam_from_world, object.ellipsoid, moved[i].line);
-    const auto excess =
-        plane ? PredictExcess(object.misfit_samples, plane->normal, left_out) : std::nullopt;
+    const auto excess = plane
+                            ? PredictExcess(object.misfit_samples, plane->normal, left_out, options)
+                            : std::nullopt;
     if (excess) {
       moved[i].line.offset += *excess * plane->pixels_per_metre;
       known[i] = 1;
@@ -101,7 +105,7 @@ std::vector<SilhouetteLine> CompensateLines(const PinholeCamera& camera,
 }
 
 MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& object,
-                           std::span<const ObjectView> views) {
+                           std::span<const ObjectView> views, const MisfitOptions& options) {
   double plain = 0.0;
   double compensated = 0.0;
   size_t count = 0;
@@ -115,7 +119,8 @@ MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& ob
       }
       const double excess = plane->excess * plane->pixels_per_metre;
       const double predicted =
-          PredictExcess(object.misfit_samples, plane->normal, view.keyframe).value_or(0.0) *
+          PredictExcess(object.misfit_samples, plane->normal, view.keyframe, options)
+              .value_or(0.0) *
           plane->pixels_per_metre;
       plain += excess * excess;
       compensated += (excess - predicted) * (excess - predicted);

@@ -10,20 +10,22 @@
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/geometry/line2.h"
 #include "hullslam/map/object_landmark.h"
+#include "hullslam/objects/object_options.h"
 #include "hullslam/objects/object_view.h"
 
 namespace hullslam {
 
-// A line of a silhouette is the trace of a plane through the camera that touches the convex hull of
-// the real object. So what the object's support function (largest n . x over its points, m) has
-// over that of its quadric is a function of the plane's normal n in the object's frame alone: what
-// one view measures holds for every other that touches the object at the same n. That is the
-// systematic part of an ellipsoid's misfit, and it can be learnt.
+// A line of an outline is the image of a plane through the camera's centre that touches the convex
+// hull of the real object. Let the excess be the support function of that hull (largest n . x over
+// its points, in the object's frame) minus the support function of the quadric. It depends only on
+// the plane's normal n in the object's frame. So what one view measures holds for every other view
+// that touches the object at the same n. The excess is the systematic part of an ellipsoid's
+// misfit, and it can be learnt.
 
 // The plane of a line: unit normal in the object's frame, distances and pixels at one pose.
 struct TangentPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // outwards
-  double excess = 0.0;            // m, support of the plane over that of the quadric
+  double excess = 0.0;            // support function of the hull minus that of the quadric, m
   double pixels_per_metre = 0.0;  // by which the line moves in the image when the plane is shifted
 };
 
@@ -35,26 +37,28 @@ std::optional<TangentPlane> PlaneOfLine(const PinholeCamera& camera, const Rigid
 std::vector<MisfitSample> MeasureMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
                                         std::span<const ObjectView> views);
 
-// The excess at a normal by samples of keyframes other than `left_out`: a locally linear fit with
-// Gaussian weights (4 degrees). Nothing where too few samples are near.
+// The excess at a normal, predicted from the samples of keyframes other than `left_out`: a locally
+// linear fit with Gaussian weights. Nothing where too few samples are near.
 std::optional<double> PredictExcess(std::span<const MisfitSample> samples,
-                                    const Eigen::Vector3d& normal, KeyframeId left_out);
+                                    const Eigen::Vector3d& normal, KeyframeId left_out,
+                                    const MisfitOptions& options = {});
 
-// The lines of a detection moved to where the quadric would touch them if it were the real object.
-// Lines whose misfit is not known stay; `known` gets one entry a line.
+// The lines of a detection, moved to where the quadric would touch them if it were the real object.
+// Lines whose excess cannot be predicted stay; `known` gets one entry per line.
 std::vector<SilhouetteLine> CompensateLines(const PinholeCamera& camera,
                                             const Rigid3& cam_from_world,
                                             const ObjectLandmark& object,
                                             std::span<const SilhouetteLine> lines,
-                                            KeyframeId left_out, std::vector<uint8_t>& known);
+                                            KeyframeId left_out, std::vector<uint8_t>& known,
+                                            const MisfitOptions& options = {});
 
-// RMS of the tangent distances of the views' two-sided lines, px: as they are, and with the
+// RMS of the tangent distances of the views' two-sided lines, px: as they are, and after
 // compensation by the samples of the other views.
 struct MisfitSpread {
   double plain_px = 0.0;
   double compensated_px = 0.0;
 };
 MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& object,
-                           std::span<const ObjectView> views);
+                           std::span<const ObjectView> views, const MisfitOptions& options = {});
 
 }  // namespace hullslam

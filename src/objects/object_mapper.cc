@@ -20,27 +20,13 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kRefinementViews = 20;
-constexpr size_t kMisfitViews = 40;  // the latest
-constexpr size_t kStartPoints = 2000;
-constexpr size_t kMinPoints = 20;             // with fewer an object is treated as without depth
-constexpr uint32_t kCandidateKeyframes = 20;  // a candidate not seen for so long is culled
-constexpr int kMinVisible = 10;               // before a mapped object is judged by its ratio
-constexpr double kMinFoundRatio = 0.25;
+constexpr size_t kFewPoints = 20;  // enough for the middle of an object
 
-// A new view changes the less the more there are, so the shape is sought again when there are an
-// eighth more. (Bundle adjustment moves it with every keyframe.)
+// The more views there are, the less a new one changes, so the shape is sought again when there are
+// an eighth more. (Bundle adjustment moves it with every keyframe.)
 bool IsDue(const ObjectLandmark& object) {
   const size_t views = object.observations.size();
   return views < object.shaped_views || views > object.shaped_views + object.shaped_views / 8;
-}
-
-bool HasDepth(std::span<const ObjectView> views) {
-  size_t points = 0;
-  for (const ObjectView& view : views) {
-    points += view.detection->points.size();
-  }
-  return points >= kMinPoints;
 }
 
 // The last `count` views.
@@ -125,7 +111,8 @@ void ObjectMapper::Update(Map& map, ObjectId id) {
     return;
   }
   map.MutableObject(id).shaped_views = object.observations.size();
-  const std::vector<ObjectView> views = CollectViews(map, object, kRefinementViews);
+  const std::vector<ObjectView> views =
+      CollectViews(map, object, static_cast<size_t>(options_.refinement.max_views));
   if (object.state == ObjectState::kMapped) {
     Refine(map, id, views);
   } else {
@@ -137,13 +124,14 @@ void ObjectMapper::Update(Map& map, ObjectId id) {
 void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> views) {
   const bool has_depth = HasDepth(views);
   const std::optional<Ellipsoid> sphere =
-      has_depth ? std::nullopt : StartFromRays(sensor_.camera, views);
+      has_depth ? std::nullopt : StartFromRays(sensor_.camera, views, options_.start);
   if (!has_depth && !sphere) {
     Reject(map, id, {ObjectRejection::kNoStart, "the rays to it do not meet"});
     return;
   }
-  const double parallax = Parallax(views, sphere ? sphere->world_from_object.translation
-                                                 : MeanOf(CollectPoints(views, kMinPoints)));
+  const Eigen::Vector3d center =
+      sphere ? sphere->world_from_object.translation : MeanOf(CollectPoints(views, kFewPoints));
+  const double parallax = Parallax(views, center);
   const double min_parallax =
       has_depth ? options_.start.min_parallax : options_.start.min_parallax_without_depth;
   if (parallax < min_parallax) {
@@ -153,8 +141,10 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
     return;
   }
   const std::vector<Ellipsoid> starts =
-      has_depth ? StartsFromPoints(CollectPoints(views, kStartPoints), options_.start.inflation)
-                : std::vector<Ellipsoid>{*sphere};
+      has_depth
+          ? StartsFromPoints(CollectPoints(views, static_cast<size_t>(options_.start.max_points)),
+                             MeanDistance(views, center), options_.start)
+          : std::vector<Ellipsoid>{*sphere};
   if (starts.empty()) {
     Reject(map, id, {ObjectRejection::kNoStart, "too few depth points to begin with"});
     return;
@@ -212,10 +202,11 @@ void ObjectMapper::Refine(Map& map, ObjectId id, std::span<const ObjectView> vie
 
 // Measures the misfit of a quadric that is valid.
 void ObjectMapper::Accept(Map& map, ObjectId id, std::span<const ObjectView> views) const {
-  const std::vector<ObjectView> latest = LatestViews(map, map.objects().At(id), kMisfitViews);
+  const std::vector<ObjectView> latest =
+      LatestViews(map, map.objects().At(id), static_cast<size_t>(options_.misfit.views));
   ObjectLandmark& object = map.MutableObject(id);
   object.misfit_samples = MeasureMisfit(sensor_.camera, object.ellipsoid, latest);
-  const MisfitSpread spread = MeasureSpread(sensor_.camera, object, views);
+  const MisfitSpread spread = MeasureSpread(sensor_.camera, object, views, options_.misfit);
   object.misfit_px = spread.plain_px;
   object.compensated_px = spread.compensated_px;
 }
@@ -230,7 +221,8 @@ void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
       Reject(map, id, FewViews(*object));  // the keyframes that saw it have been culled
       continue;
     }
-    const std::vector<ObjectView> views = CollectViews(map, *object, kRefinementViews);
+    const std::vector<ObjectView> views =
+        CollectViews(map, *object, static_cast<size_t>(options_.refinement.max_views));
     if (const auto objection =
             FindObjection(object->ellipsoid, sensor_, views, options_.validity)) {
       Reject(map, id, *objection);
@@ -250,7 +242,7 @@ void ObjectMapper::RefineMerged(Map& map, std::span<const ObjectId> objects) {
 }
 
 void ObjectMapper::FuseDuplicates(Map& map) {
-  for (const auto& [kept, duplicate] : FindDuplicates(map)) {
+  for (const auto& [kept, duplicate] : FindDuplicates(map, options_.fusion)) {
     spdlog::debug("object {} is object {}: fused", duplicate.value, kept.value);
     ++rejections_[ObjectRejection::kFused];
     map.ReplaceObject(duplicate, kept);
@@ -261,15 +253,18 @@ void ObjectMapper::FuseDuplicates(Map& map) {
 }
 
 void ObjectMapper::CullSeldomSeen(Map& map, KeyframeId keyframe) {
+  const CullingOptions& culling = options_.culling;
+  const auto candidate_keyframes = static_cast<uint32_t>(culling.candidate_keyframes);
   std::vector<std::pair<ObjectId, std::string>> culled;
   map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
     if (object.observations.empty()) {
       culled.emplace_back(id, "no keyframe observes it any more");
     } else if (object.state == ObjectState::kCandidate &&
-               object.observations.back().keyframe.value + kCandidateKeyframes < keyframe.value) {
+               object.observations.back().keyframe.value + candidate_keyframes < keyframe.value) {
       culled.emplace_back(
-          id, fmt::format("a candidate not seen for {} keyframes", kCandidateKeyframes));
-    } else if (object.visible >= kMinVisible && object.found < kMinFoundRatio * object.visible) {
+          id, fmt::format("a candidate not seen for {} keyframes", culling.candidate_keyframes));
+    } else if (object.visible >= culling.min_visible &&
+               object.found < culling.min_found_ratio * object.visible) {
       culled.emplace_back(id,
                           fmt::format("seen in {} of {} keyframes", object.found, object.visible));
     }

@@ -46,6 +46,23 @@ std::vector<Eigen::Vector3d> CollectPoints(std::span<const ObjectView> views, si
   return points;
 }
 
+bool HasDepth(std::span<const ObjectView> views) {
+  size_t points = 0;
+  for (const ObjectView& view : views) {
+    points += view.detection->points.size();
+  }
+  return points >= kMinDepthPoints;
+}
+
+double MeanDistance(std::span<const ObjectView> views, const Eigen::Vector3d& point) {
+  Check(!views.empty(), "an object that no keyframe observes has no distance");
+  double sum = 0.0;
+  for (const ObjectView& view : views) {
+    sum += (view.cam_from_world * point).norm();
+  }
+  return sum / static_cast<double>(views.size());
+}
+
 Eigen::Vector3d Centroid(const ObjectView& view) {
   const std::vector<Eigen::Vector3d>& points = view.detection->points;
   Check(!points.empty(), "a view without depth has no centroid");

@@ -17,8 +17,6 @@
 namespace hullslam {
 namespace {
 
-constexpr int kIterations = 20;
-
 // The loss scale in sigmas is the same for every misfit.
 ObjectConstraintOptions ConstraintOf(const ObjectRefinementOptions& options) {
   ObjectConstraintOptions constraint = options.constraint;
@@ -48,7 +46,7 @@ class RefinementProblem {
   }
 
   // Half the sum of squares at the minimum; nothing where the solver failed.
-  std::optional<double> Solve() {
+  std::optional<double> Solve(int iterations) {
     problem_.SetManifold(object_.data(), &manifold_);
     for (PoseBlock& pose : poses_) {
       if (problem_.HasParameterBlock(pose.data())) {
@@ -57,7 +55,7 @@ class RefinementProblem {
     }
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-    solver.max_num_iterations = kIterations;
+    solver.max_num_iterations = iterations;
     solver.function_tolerance = 1e-5;
     solver.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
@@ -98,7 +96,7 @@ Refinement RefineEllipsoid(const Ellipsoid& ellipsoid, const Ellipsoid& start, c
   const double bounded_px = std::clamp(
       misfit_px, std::min(options.min_misfit_px, options.max_misfit_px), options.max_misfit_px);
   RefinementProblem problem(ellipsoid, start, sensor, views, bounded_px, ConstraintOf(options));
-  const std::optional<double> cost = problem.Solve();
+  const std::optional<double> cost = problem.Solve(options.iterations);
   if (!cost) {
     return {ellipsoid, 0.0, false};
   }

@@ -11,19 +11,11 @@
 namespace hullslam {
 namespace {
 
-constexpr double kMinHalfAxis = 0.005;     // m
-constexpr double kMaxHalfAxis = 3.0;       // m
-constexpr double kMaxRelativeAxis = 0.2;   // of the distance from the nearest camera
-constexpr double kNearSurface = 0.03;      // m outside of the quadric, or
-constexpr double kNearSurfaceShare = 0.2;  // of its mean half axis
-constexpr double kMaxStretch = 2.5;        // half axis to half extent of the points along it
-constexpr size_t kMaxPoints = 300;
-constexpr size_t kMinPoints = 20;  // fewer say nothing
+constexpr size_t kMaxPoints = 300;  // that are looked at
 
 std::optional<Objection> CheckPoints(const Ellipsoid& ellipsoid,
-                                     std::span<const Eigen::Vector3d> points,
+                                     std::span<const Eigen::Vector3d> points, double margin,
                                      const ValidityOptions& options) {
-  const double margin = std::max(kNearSurface, kNearSurfaceShare * ellipsoid.half_axes.mean());
   const Rigid3 object_from_world = Inverse(ellipsoid.world_from_object);
   std::array<std::vector<double>, 3> extents;
   size_t near = 0;
@@ -45,22 +37,27 @@ std::optional<Objection> CheckPoints(const Ellipsoid& ellipsoid,
     const auto place = extent.begin() + static_cast<std::ptrdiff_t>(0.9 * extent.size());
     std::nth_element(extent.begin(), place, extent.end());
     const double half = ellipsoid.half_axes[static_cast<Eigen::Index>(axis)];
-    if (half > kMaxStretch * *place + margin) {
-      return Objection{
-          ObjectRejection::kStretched,
-          fmt::format("half axis {:.3f} m where its points reach {:.3f} m", half, *place)};
+    if (half > options.max_stretch * *place + margin) {
+      return Objection{ObjectRejection::kStretched,
+                       fmt::format("half axis {:.3g} where its points reach {:.3g}", half, *place)};
     }
   }
   return std::nullopt;
 }
 
-// Of a box with the outline's box: the outline that touches all sides covers 79 % of it.
-double Overlap(std::span<const Eigen::Vector2d> outline, const Detection& detection) {
-  return detection.is_box ? IntersectionOverUnion(BoundingBox(outline), detection.box)
-                          : IntersectionOverUnion(outline, detection.hull);
+// A box is compared with the box of the projected ellipse: an ellipse that touches all sides of a
+// box covers only 79 % of it.
+double Overlap(std::span<const Eigen::Vector2d> ellipse, const Detection& detection) {
+  return detection.is_box ? IntersectionOverUnion(BoundingBox(ellipse), detection.box)
+                          : IntersectionOverUnion(ellipse, detection.hull);
 }
 
 }  // namespace
+
+double NearSurface(const Ellipsoid& ellipsoid, double distance, const ValidityOptions& options) {
+  return std::max(options.near_surface * distance,
+                  options.near_surface_share * ellipsoid.half_axes.mean());
+}
 
 double MeanOverlap(const Ellipsoid& ellipsoid, const Sensor& sensor,
                    std::span<const ObjectView> views) {
@@ -79,31 +76,31 @@ double MeanOverlap(const Ellipsoid& ellipsoid, const Sensor& sensor,
 std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor& sensor,
                                        std::span<const ObjectView> views,
                                        const ValidityOptions& options) {
-  double distance = std::numeric_limits<double>::infinity();
   for (const ObjectView& view : views) {
     if (!ProjectEllipsoid(sensor.camera.Matrix(), view.cam_from_world, ellipsoid)) {
       return Objection{ObjectRejection::kNotInFront,
                        fmt::format("not in front of keyframe {}", view.keyframe.value)};
     }
-    distance =
-        std::min(distance, (view.cam_from_world * ellipsoid.world_from_object.translation).norm());
   }
-  const double largest = std::max(kMaxHalfAxis, kMaxRelativeAxis * distance);
-  if (!(ellipsoid.half_axes.minCoeff() >= kMinHalfAxis) ||
-      !(ellipsoid.half_axes.maxCoeff() <= largest)) {
+  const double distance = MeanDistance(views, ellipsoid.world_from_object.translation);
+  const double least = options.min_half_axis * distance;
+  const double largest = options.max_half_axis * distance;
+  if (!(ellipsoid.half_axes.minCoeff() >= least) || !(ellipsoid.half_axes.maxCoeff() <= largest)) {
     return Objection{ObjectRejection::kAxesOutOfRange,
-                     fmt::format("half axes {:.3f} to {:.3f} m, expected {} to {:.1f} m",
+                     fmt::format("half axes {:.3g} to {:.3g}, expected {:.3g} to {:.3g}",
                                  ellipsoid.half_axes.minCoeff(), ellipsoid.half_axes.maxCoeff(),
-                                 kMinHalfAxis, largest)};
+                                 least, largest)};
   }
   const double overlap = MeanOverlap(ellipsoid, sensor, views);
   if (!(overlap >= options.min_overlap)) {
     return Objection{ObjectRejection::kLowOverlap,
-                     fmt::format("mean IoU {:.2f} of outline and hull, expected at least {:.2f}",
+                     fmt::format("mean IoU {:.2f} of ellipse and hull, expected at least {:.2f}",
                                  overlap, options.min_overlap)};
   }
   const std::vector<Eigen::Vector3d> points = CollectPoints(views, kMaxPoints);
-  return points.size() >= kMinPoints ? CheckPoints(ellipsoid, points, options) : std::nullopt;
+  return points.size() >= kMinDepthPoints
+             ? CheckPoints(ellipsoid, points, NearSurface(ellipsoid, distance, options), options)
+             : std::nullopt;
 }
 
 }  // namespace hullslam

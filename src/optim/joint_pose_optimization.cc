@@ -13,10 +13,10 @@ using internal::Vector6d;
 class JointProblem {
  public:
   JointProblem(const internal::PointTerms& points, const internal::ObjectTerms& objects,
-               const Rigid3& start, const JointPoseOptions& options)
+               const Rigid3& start, double distance, const ObjectPoseOptions& options)
       : points_(points), objects_(objects), world_from_start_(Inverse(start)) {
-    information_ << Eigen::Vector3d::Constant(1.0 / options.objects.prior_rotation),
-        Eigen::Vector3d::Constant(1.0 / options.objects.prior_translation);
+    information_ << Eigen::Vector3d::Constant(1.0 / options.prior_rotation),
+        Eigen::Vector3d::Constant(1.0 / (options.prior_translation * distance));
     information_ = information_.cwiseAbs2().eval();
   }
 
@@ -48,6 +48,14 @@ class JointProblem {
   Vector6d information_;
 };
 
+double MeanDistance(const Rigid3& cam_from_world, std::span<const PoseObject> objects) {
+  double sum = 0.0;
+  for (const PoseObject& object : objects) {
+    sum += (cam_from_world * object.ellipsoid.world_from_object.translation).norm();
+  }
+  return sum / static_cast<double>(objects.size());
+}
+
 bool IsConstrained(const JointPoseResult& result, const JointPoseOptions& options) {
   return result.points.inlier_count >= 3 || result.used_objects >= options.objects.min_objects;
 }
@@ -65,6 +73,7 @@ JointPoseResult OptimizeJointPose(const PinholeCamera& camera, const Rigid3& cam
     result.points = OptimizePose(camera, cam_from_world, observations, options.points);
     return result;
   }
+  const double distance = MeanDistance(cam_from_world, objects);
   Rigid3& pose = result.points.cam_from_world;
   pose = cam_from_world;
   result.points.is_inlier.assign(observations.size(), 0);
@@ -72,7 +81,7 @@ JointPoseResult OptimizeJointPose(const PinholeCamera& camera, const Rigid3& cam
   for (int round = 0; round < options.points.rounds && IsConstrained(result, options); ++round) {
     const internal::PointTerms points(camera, observations, result.points.is_inlier,
                                       round < options.points.robust_rounds);
-    const JointProblem problem(points, terms, cam_from_world, options);
+    const JointProblem problem(points, terms, cam_from_world, distance, options.objects);
     pose = internal::Minimize(problem, pose, options.points);
     internal::ChooseInliers(camera, observations, internal::InlierRule::kBelowBound, result.points);
     terms.Choose(pose);

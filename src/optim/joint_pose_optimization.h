@@ -35,8 +35,8 @@ struct JointPoseResult {
 // Like OptimizePose, but mapped objects constrain the pose together with the points. It minimises
 //   sum over inlier points of rho_Huber(chi^2)
 //   + the outline constraints of the used objects (MakeObjectConstraint); their quadrics are fixed
-//   + |rotation / prior_rotation|^2 + |translation / prior_translation|^2 of the motion from the
-//     start.
+//   + |rotation / prior_rotation|^2 + |translation / (prior_translation * d)|^2 of the motion from
+//     the start, where d is the mean distance of the objects.
 // After each round the inlier points and the used objects are chosen again. An object is dropped if
 // half of its residuals or more are outliers. With fewer than three inliers and fewer than
 // min_objects used objects the result is the start. Without objects the result is that of

@@ -10,13 +10,11 @@
 namespace hullslam::internal {
 namespace {
 
-constexpr double kMaxAxisChange = 3.0;  // a larger change is a failure, not an adjustment
-
-// Whether the result is finite and no half axis has changed by more than kMaxAxisChange.
-bool IsPlausible(const Ellipsoid& after, const Ellipsoid& before) {
+// Whether the result is finite and no half axis has changed by more than the factor `max_change`.
+bool IsPlausible(const Ellipsoid& after, const Ellipsoid& before, double max_change) {
   const Eigen::Array3d ratio = after.half_axes.array() / before.half_axes.array();
-  return after.world_from_object.ToMatrix().allFinite() && (ratio > 1.0 / kMaxAxisChange).all() &&
-         (ratio < kMaxAxisChange).all();
+  return after.world_from_object.ToMatrix().allFinite() && (ratio > 1.0 / max_change).all() &&
+         (ratio < max_change).all();
 }
 
 }  // namespace
@@ -120,7 +118,7 @@ void ObjectBundle::Write(BundleResult& result) const {
   for (const Object& object : objects_) {
     Ellipsoid after{FromBlock(object.pose.data()), object.log_axes.array().exp()};
     after.world_from_object.rotation.normalize();
-    if (IsPlausible(after, object.before)) {
+    if (IsPlausible(after, object.before, options_.max_axis_change)) {
       result.ellipsoids.emplace_back(object.id, after);
     } else {
       result.failed_objects.push_back(object.id);

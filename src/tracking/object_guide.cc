@@ -4,17 +4,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "hullslam/frame/instance_mask.h"
 #include "hullslam/objects/object_view.h"
+#include "hullslam/objects/validity.h"
 
 namespace hullslam {
 namespace {
-
-constexpr size_t kMaxViews = 20;
-// The patch of a corner at the silhouette is half background, and masks tend to be too small.
-constexpr double kMaskMargin = 7.0;  // px
-// A landmark outside the ellipsoid by less than this is on the object, as in the validity check.
-constexpr double kNearSurface = 0.03;      // m
-constexpr double kNearSurfaceShare = 0.2;  // of the mean half axis
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -38,8 +33,8 @@ std::vector<uint8_t> KeypointsOutside(const Frame& frame, const Detection& detec
   std::vector<uint8_t> is_outside(keypoints.size(), 1);
   for (size_t i = 0; i < keypoints.size(); ++i) {
     const Eigen::Vector2d pixel = keypoints[i].undistorted.cast<double>();
-    if (detection.box.squaredExteriorDistance(pixel) <= kMaskMargin * kMaskMargin &&
-        IsInOrNear(detection.hull, pixel, kMaskMargin)) {
+    if (detection.box.squaredExteriorDistance(pixel) <= kMaskMarginPx * kMaskMarginPx &&
+        IsInOrNear(detection.hull, pixel, kMaskMarginPx)) {
       is_outside[i] = 0;
     }
   }
@@ -49,9 +44,15 @@ std::vector<uint8_t> KeypointsOutside(const Frame& frame, const Detection& detec
 }  // namespace
 
 std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object,
-                                    const std::vector<bool>& is_known) {
+                                    const std::vector<bool>& is_known,
+                                    const ObjectOptions& options) {
+  const std::vector<ObjectView> views =
+      CollectViews(map, object, static_cast<size_t>(options.guide.views));
+  if (views.empty()) {
+    return {};
+  }
   std::vector<LandmarkId> landmarks;
-  for (const ObjectView& view : CollectViews(map, object, kMaxViews)) {
+  for (const ObjectView& view : views) {
     const Keyframe& keyframe = map.keyframes().At(view.keyframe);
     for (const uint32_t keypoint : view.detection->keypoints) {
       const LandmarkId landmark = keyframe.landmarks[keypoint];
@@ -63,7 +64,8 @@ std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object
   std::sort(landmarks.begin(), landmarks.end());
   landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
   const Ellipsoid& ellipsoid = object.ellipsoid;
-  const double margin = std::max(kNearSurface, kNearSurfaceShare * ellipsoid.half_axes.mean());
+  const double margin = NearSurface(
+      ellipsoid, MeanDistance(views, ellipsoid.world_from_object.translation), options.validity);
   std::erase_if(landmarks, [&](LandmarkId id) {
     return ellipsoid.RadialDistance(map.landmarks().At(id).position) > margin;
   });
@@ -72,13 +74,15 @@ std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object
 
 std::vector<ObjectGuide> GuideByObjects(const Map& map, const Frame& frame,
                                         std::span<const ObjectId> objects,
-                                        const std::vector<bool>& is_known) {
+                                        const std::vector<bool>& is_known,
+                                        const ObjectOptions& options) {
   std::vector<ObjectGuide> guides;
   for (size_t i = 0; i < objects.size(); ++i) {
     if (!objects[i].IsValid()) {
       continue;
     }
-    std::vector<LandmarkId> landmarks = LandmarksOn(map, map.objects().At(objects[i]), is_known);
+    std::vector<LandmarkId> landmarks =
+        LandmarksOn(map, map.objects().At(objects[i]), is_known, options);
     if (!landmarks.empty()) {
       guides.push_back({std::move(landmarks), KeypointsOutside(frame, frame.detections[i])});
     }

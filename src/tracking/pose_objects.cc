@@ -13,10 +13,11 @@ namespace {
 // The lines whose excess is known, moved by it. Empty if these are less than half of the lines.
 std::vector<SilhouetteLine> KnownLines(const Sensor& sensor, const Rigid3& cam_from_world,
                                        const ObjectLandmark& object,
-                                       std::span<const SilhouetteLine> lines) {
+                                       std::span<const SilhouetteLine> lines,
+                                       const MisfitOptions& options) {
   std::vector<uint8_t> known;
   const std::vector<SilhouetteLine> moved =
-      CompensateLines(sensor.camera, cam_from_world, object, lines, KeyframeId(), known);
+      CompensateLines(sensor.camera, cam_from_world, object, lines, KeyframeId(), known, options);
   std::vector<SilhouetteLine> kept;
   for (size_t i = 0; i < moved.size(); ++i) {
     // A one-sided line does not show how far the object reaches, so there is nothing to compensate.
@@ -53,7 +54,8 @@ PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& f
     const Detection& detection = frame.detections[i];
     PoseObject pose_object{object.ellipsoid, &detection, {}, object.compensated_px};
     if (options.misfit_compensation && TakesLines(options.pose.constraint.residual)) {
-      pose_object.lines = KnownLines(sensor, cam_from_world, object, detection.lines);
+      pose_object.lines =
+          KnownLines(sensor, cam_from_world, object, detection.lines, options.misfit);
     }
     if (pose_object.lines.empty()) {
       pose_object.lines = detection.lines;

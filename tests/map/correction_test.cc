@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -15,6 +16,7 @@
 
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/system/compose_trajectory.h"
+#include "hullslam/util/check.h"
 #include "map/covisibility.h"
 #include "map/invariants.h"
 #include "map/landmark_edits.h"
@@ -776,6 +778,27 @@ TEST_F(CorrectionByHand, FollowsTheIdsOfMergedObjects) {
   EXPECT_EQ(map_.Resolve(ids[2]), ids[1]);
   EXPECT_EQ(map_.Resolve(ids[4]), ids[5]);
   EXPECT_EQ(map_.objects().size(), 2u);
+}
+
+TEST_F(CorrectionByHand, PassesOverKeyframesThatTheMapNeverHad) {
+  Name(a_, 1.0, 5.0);
+  for (const KeyframeId id : {KeyframeId(99), KeyframeId()}) {
+    correction_.poses.push_back({id, Rigid3(), Sim3(Shift(1.0))});
+  }
+  EXPECT_TRUE(Apply().is_applied);
+  EXPECT_DOUBLE_EQ(CenterX(a_), 6.0);
+}
+
+TEST_F(CorrectionByHand, NeedsPositiveScales) {
+  Name(a_, 2.0, 5.0);
+  Name(b_, 1.0, 0.0);
+  const std::string before = Dump(map_);
+  for (const double scale : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::infinity()}) {
+    correction_.poses.back().corrected_cam_from_world.scale = scale;
+    EXPECT_THROW(Apply(), CheckError);
+    EXPECT_EQ(Dump(map_), before);
+  }
 }
 
 TEST_F(CorrectionByHand, KeepsTheLoopEdgeAtBothEnds) {

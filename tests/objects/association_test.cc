@@ -107,5 +107,12 @@ TEST_F(Association, WithoutDepthTheOutlineTells) {
       (std::vector<ObjectId>{ObjectId(0), ObjectId(1), ObjectId(2)}));
 }
 
+TEST_F(Association, NothingIsSimilarEnoughForAHighThreshold) {
+  const auto table = MakeTable();
+  Build(table, 3, true);
+  EXPECT_TRUE(Associate(table, 0.2, {.min_similarity = 0.2})[0].IsValid());
+  EXPECT_FALSE(Associate(table, 0.2, {.min_similarity = 1.0})[0].IsValid());
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -56,6 +56,24 @@ TEST_F(Duplicates, OfOnePlaceNeverSeenTogetherAreOneAndTheFullerOneStays) {
   EXPECT_EQ(pairs[0].second, a);
 }
 
+TEST_F(Duplicates, NeedTheOverlapThatTheOptionsSay) {
+  Look({cup_, near_}, 6);
+  Add(cup_, {0, 1, 2}, 0);
+  Add(near_, {3, 4, 5}, 1);
+  const double overlap = VolumeOverlap(cup_.ellipsoid, near_.ellipsoid);
+  // The t-test of the centroids must not decide instead.
+  EXPECT_EQ(FindDuplicates(map_, {.min_overlap = overlap - 0.01, .alpha = 1.0}).size(), 1u);
+  EXPECT_TRUE(FindDuplicates(map_, {.min_overlap = overlap + 0.01, .alpha = 1.0}).empty());
+}
+
+TEST_F(Duplicates, SeenTogetherInFewKeyframesMayBeOne) {
+  Look({cup_, cup_}, 9);
+  Add(cup_, {0, 1, 2, 3, 4}, 0);
+  Add(cup_, {4, 5, 6, 7, 8}, 1);
+  EXPECT_EQ(FindDuplicates(map_, {.max_shared_keyframes = 0.2}).size(), 1u);
+  EXPECT_TRUE(FindDuplicates(map_, {.max_shared_keyframes = 0.19}).empty());
+}
+
 TEST_F(Duplicates, AreNotThoseSeenTogether) {
   Look({cup_, near_}, 4);
   Add(cup_, {0, 1, 2, 3}, 0);

@@ -30,7 +30,7 @@ TEST(StartsFromPoints, AreTheBoxOfThePointsInflated) {
   const Rigid3 world_from_box(ExpSo3(Eigen::Vector3d(0.4, -0.3, 0.9)),
                               Eigen::Vector3d(0.5, 0.2, 1.0));
   const Eigen::Vector3d half(0.05, 0.12, 0.25);
-  const auto starts = StartsFromPoints(BoxPoints(world_from_box, half, 3000, 1), 1.2);
+  const auto starts = StartsFromPoints(BoxPoints(world_from_box, half, 3000, 1), 1.0, {});
   ASSERT_EQ(starts.size(), 2u);
   for (const Ellipsoid& start : starts) {
     EXPECT_LT((start.world_from_object.translation - world_from_box.translation).norm(), 0.01);
@@ -47,27 +47,27 @@ TEST(StartsFromPoints, OutliersDoNotStretchThem) {
   for (int i = 0; i < 20; ++i) {
     points.emplace_back(0.0, 0.0, 3.0 + 0.01 * i);
   }
-  for (const Ellipsoid& start : StartsFromPoints(points, 1.0)) {
+  for (const Ellipsoid& start : StartsFromPoints(points, 1.0, {.inflation = 1.0})) {
     EXPECT_LT(start.half_axes.maxCoeff(), 0.16);
   }
 }
 
 TEST(StartsFromPoints, FlatThingsHaveSomeThickness) {
   auto points = BoxPoints(Rigid3(), {0.2, 0.1, 0.0}, 500, 3);
-  for (const Ellipsoid& start : StartsFromPoints(points, 1.2)) {
-    EXPECT_GE(start.half_axes.minCoeff(), 0.01);
+  for (const Ellipsoid& start : StartsFromPoints(points, 2.0, {.min_half_axis = 0.01})) {
+    EXPECT_EQ(start.half_axes.minCoeff(), 0.02);
     EXPECT_TRUE(start.world_from_object.rotation.coeffs().allFinite());
   }
 }
 
 TEST(StartsFromPoints, NeedPoints) {
-  EXPECT_TRUE(StartsFromPoints(BoxPoints(Rigid3(), {0.2, 0.1, 0.1}, 19, 3), 1.2).empty());
+  EXPECT_TRUE(StartsFromPoints(BoxPoints(Rigid3(), {0.2, 0.1, 0.1}, 19, 3), 1.0, {}).empty());
 }
 
 TEST(StartsFromPoints, AreReproducible) {
   const auto points = BoxPoints(Rigid3(), {0.2, 0.1, 0.1}, 300, 4);
-  const auto a = StartsFromPoints(points, 1.2);
-  const auto b = StartsFromPoints(points, 1.2);
+  const auto a = StartsFromPoints(points, 1.0, {});
+  const auto b = StartsFromPoints(points, 1.0, {});
   ASSERT_EQ(a.size(), b.size());
   for (size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].half_axes, b[i].half_axes);
@@ -85,7 +85,7 @@ class Rays : public ::testing::Test {
           AddObserver(map, sensor_, CameraOnCircle(step * i, 1.5, 0.5), {made_});
       map.AddObservation(object, keyframe, 0);
     }
-    return StartFromRays(sensor_.camera, CollectViews(map, map.objects().At(object)));
+    return StartFromRays(sensor_.camera, CollectViews(map, map.objects().At(object)), {});
   }
   Sensor sensor_ = MakeObjectSensor();
   MadeObject made_ = MakeObject("ball", {0.1, 0.05, 0.02}, {0.1, 0.1, 0.1});

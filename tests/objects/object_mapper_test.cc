@@ -116,5 +116,22 @@ TEST_F(Mapping, TwoRunsGiveTheSameBits) {
   });
 }
 
+// Both sides of the number of keyframes after which a candidate is removed.
+TEST_F(Mapping, ACandidateIsRemovedWhenItHasNotBeenSeenForLong) {
+  ObjectOptions options;
+  options.culling.candidate_keyframes = 4;
+  ObjectMapper mapper(sensor_, options);
+  const auto look = [&](const std::vector<MadeObject>& objects, double angle) {
+    mapper.Process(map_, AddObserver(map_, sensor_, CameraOnCircle(angle, 1.5, 0.6), objects));
+  };
+  look({MakeTable()[0]}, 0.0);
+  for (int i = 1; i <= 4; ++i) {
+    look({}, 0.01 * i);
+  }
+  EXPECT_EQ(map_.objects().size(), 1u);
+  look({}, 0.05);
+  EXPECT_TRUE(map_.objects().empty());
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -67,6 +67,11 @@ TEST(ObjectOptions, RefuseWhatIsOutOfRange) {
   EXPECT_THROW(table.Set("objects.residual", "tangents", "test"), InputError);
   EXPECT_THROW(table.Set("objects.sigma", "0", "test"), InputError);
   EXPECT_THROW(table.Set("objects.min_views", "1", "test"), InputError);
+  EXPECT_THROW(table.Set("objects.association.alpha", "0", "test"), InputError);
+  EXPECT_THROW(table.Set("objects.association.recent_views", "0", "test"), InputError);
+  EXPECT_THROW(table.Set("objects.culling.min_found_ratio", "1.5", "test"), InputError);
+  EXPECT_THROW(table.Set("objects.fusion.centroid_noise", "0", "test"), InputError);
+  EXPECT_THROW(table.Set("objects.validity.max_stretch", "0.5", "test"), InputError);
   EXPECT_THROW(table.Set("objects.pose.loss", "l2", "test"), InputError);
   EXPECT_THROW(table.Set("objects.bundle.loss_scale", "0", "test"), InputError);
   EXPECT_THROW(table.Set("objects.refinement.depth_points", "-1", "test"), InputError);

@@ -65,5 +65,21 @@ TEST_F(ObjectViews, ParallaxIsTheLargestAngle) {
   EXPECT_NEAR(Parallax(std::span(views).first(1), Eigen::Vector3d::Zero()), 0.0, 1e-6);
 }
 
+TEST(HasDepth, NeedsEnoughPointsInAllViewsTogether) {
+  Detection detection;
+  detection.points.resize(kMinDepthPoints / 2);
+  const ObjectView view{KeyframeId(0), Rigid3(), &detection};
+  EXPECT_FALSE(HasDepth(std::vector{view}));
+  EXPECT_TRUE(HasDepth(std::vector{view, view}));
+}
+
+TEST(MeanDistance, IsThatFromTheCameras) {
+  const Detection detection;
+  const std::vector<ObjectView> views = {
+      {KeyframeId(0), Rigid3(), &detection},
+      {KeyframeId(1), Rigid3(Eigen::Quaterniond::Identity(), {0.0, 0.0, 2.0}), &detection}};
+  EXPECT_DOUBLE_EQ(MeanDistance(views, {0.0, 0.0, 3.0}), 4.0);
+}
+
 }  // namespace
 }  // namespace hullslam

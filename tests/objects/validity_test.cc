@@ -19,7 +19,7 @@ class Validity : public ::testing::Test {
   }
   std::optional<ObjectRejection> Reason(const Ellipsoid& ellipsoid) const {
     const auto objection =
-        FindObjection(ellipsoid, sensor_, CollectViews(map_, map_.objects().At(id_)), {});
+        FindObjection(ellipsoid, sensor_, CollectViews(map_, map_.objects().At(id_)), options_);
     return objection ? std::optional(objection->reason) : std::nullopt;
   }
   Ellipsoid Scaled(double x, double y, double z) const {
@@ -28,6 +28,7 @@ class Validity : public ::testing::Test {
     return ellipsoid;
   }
   Sensor sensor_ = MakeObjectSensor();
+  ValidityOptions options_;
   MadeObject made_ = MakeObject("cup", Eigen::Vector3d::Zero(), {0.10, 0.08, 0.12});
   Map map_;
   ObjectId id_;
@@ -49,6 +50,47 @@ TEST_F(Validity, NotInFrontOfACamera) {
 
 TEST_F(Validity, AxesOutOfRange) {
   EXPECT_EQ(Reason(Scaled(0.01, 1.0, 1.0)), ObjectRejection::kAxesOutOfRange);
+}
+
+// The cameras are 1.58 m away.
+TEST_F(Validity, BothEndsOfTheRangeOfAxesAreSharesOfTheDistance) {
+  options_.min_half_axis = 0.08 / 1.57;
+  EXPECT_EQ(Reason(made_.ellipsoid), ObjectRejection::kAxesOutOfRange);
+  options_.min_half_axis = 0.08 / 1.60;
+  EXPECT_EQ(Reason(made_.ellipsoid), std::nullopt);
+  options_.max_half_axis = 0.12 / 1.60;
+  EXPECT_EQ(Reason(made_.ellipsoid), ObjectRejection::kAxesOutOfRange);
+  options_.max_half_axis = 0.12 / 1.57;
+  EXPECT_EQ(Reason(made_.ellipsoid), std::nullopt);
+}
+
+TEST_F(Validity, NearTheSurfaceIsTheLargerOfBothShares) {
+  EXPECT_DOUBLE_EQ(NearSurface(made_.ellipsoid, 1.0, {}), 0.03);
+  EXPECT_DOUBLE_EQ(NearSurface(made_.ellipsoid, 2.0, {}), 0.06);
+  EXPECT_DOUBLE_EQ(NearSurface(made_.ellipsoid, 0.1, {}), 0.2 * 0.1);
+}
+
+// A map without metres: ten times larger everything is as valid as it was.
+TEST_F(Validity, DoesNotDependOnTheScaleOfTheMap) {
+  std::vector<Detection> detections;
+  std::vector<ObjectView> views = CollectViews(map_, map_.objects().At(id_));
+  detections.reserve(views.size());
+  for (ObjectView& view : views) {
+    view.cam_from_world.translation *= 10.0;
+    Detection& seen = detections.emplace_back(*view.detection);
+    for (Eigen::Vector3d& point : seen.points) {
+      point *= 10.0;
+    }
+    view.detection = &seen;
+  }
+  for (const double size : {0.04, 0.5, 0.9, 1.0, 1.1, 2.0, 5.0}) {
+    const Ellipsoid ellipsoid = Scaled(size, 1.0, 1.0);
+    Ellipsoid larger = ellipsoid;
+    larger.half_axes *= 10.0;
+    const auto objection = FindObjection(larger, sensor_, views, options_);
+    EXPECT_EQ(objection ? std::optional(objection->reason) : std::nullopt, Reason(ellipsoid))
+        << size;
+  }
 }
 
 TEST_F(Validity, AnOutlineElsewhere) {

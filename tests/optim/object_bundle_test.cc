@@ -55,6 +55,7 @@ class ObjectBundle : public ::testing::Test {
         *world_, {0, 10, 20, 30, 40, 50}, [this](Frame& frame, const Rigid3& cam_from_world) {
           for (size_t i = 0; i < objects_.size(); ++i) {
             frame.detections.push_back(Detect(objects_[i], world_->sensor(), cam_from_world));
+            frame.detections.back().primitive = primitive_;
             Disturb(frame, frame.detections.back());
             if (static_cast<int>(i) == object_without_depth_) {
               frame.detections.back().points.clear();
@@ -144,6 +145,7 @@ class ObjectBundle : public ::testing::Test {
   int shifted_frame_ = -1;
   double line_noise_ = 0.0;        // px
   int object_without_depth_ = -1;  // index of an object
+  ObjectPrimitive primitive_ = ObjectPrimitive::kSupport;
   std::optional<SyntheticWorld> world_;
   std::vector<MadeObject> objects_;
   SyntheticMap made_;
@@ -202,15 +204,16 @@ TEST_F(ObjectBundle, StaysAtTheTruth) {
 }
 
 TEST_F(ObjectBundle, OtherResidualsImproveShapesToo) {
-  PerturbObjects(0.2);
-  const double before = MeanShapeErrorBefore();
   for (const auto& [residual, primitive] :
        {std::pair(ObjectResidual::kAlgebraicPlane, ObjectPrimitive::kSupport),
         {ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour},
         {ObjectResidual::kOverlap, ObjectPrimitive::kHull}}) {
     BundleOptions options = kPrecise;
-    options.objects.residual = residual;
-    options.objects.primitive = primitive;
+    options.objects.constraint.residual = residual;
+    primitive_ = primitive;
+    Make({.points = 300, .depth_share = 0.7});
+    PerturbObjects(0.2);
+    const double before = MeanShapeErrorBefore();
     const BundleResult result = Adjust(Window(), options);
     ASSERT_TRUE(result.is_usable);
     EXPECT_LT(MeanShapeError(result), 0.5 * before) << NameOf(residual);

@@ -7,6 +7,10 @@
 
 namespace hullslam {
 
+// Keypoints this near to a mask count as in it, px. The patch of a corner at a silhouette is half
+// background, and masks tend to be too small.
+inline constexpr int kMaskMarginPx = 7;
+
 // What the outlines of an instance are: those of a mask, or only a bounding box or an ellipse.
 enum class MaskShape { kContour, kBox, kEllipse };
 

@@ -44,7 +44,7 @@ struct ObjectLandmark {
   size_t shaped_views = 0;      // observations when its shape was last sought or refined
   double misfit_px = 0.0;       // RMS distance of its lines from its projected ellipses
   double compensated_px = 0.0;  // the same after misfit compensation
-  std::vector<MisfitSample> misfit_samples;  // measured by its keyframes
+  std::vector<MisfitSample> misfit_samples;  // one per two-sided line of its latest keyframes
   int visible = 0;  // number of frames since it was mapped in which it should have been seen
   int found = 0;    // number of frames in which it was found
 

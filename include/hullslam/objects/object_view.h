@@ -26,6 +26,13 @@ std::vector<ObjectView> CollectViews(const Map& map, const ObjectLandmark& objec
 // Depth points of the views in the world, at most about `max_points`, evenly taken.
 std::vector<Eigen::Vector3d> CollectPoints(std::span<const ObjectView> views, size_t max_points);
 
+// Fewer depth points tell nothing of a shape: the object is treated as one without depth.
+inline constexpr size_t kMinDepthPoints = 20;
+bool HasDepth(std::span<const ObjectView> views);
+
+// Mean distance of a point of the world from the cameras; needs one view at least.
+double MeanDistance(std::span<const ObjectView> views, const Eigen::Vector3d& point);
+
 // Mean of a view's depth points in the world; needs one at least.
 Eigen::Vector3d Centroid(const ObjectView& view);
 

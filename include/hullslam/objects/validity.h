@@ -13,21 +13,25 @@
 
 namespace hullslam {
 
-// Why a quadric is not one of the object that these views show, with the figure that tells.
+// Why a quadric cannot be that of the object which these views show, with the figure that says so.
 struct Objection {
   ObjectRejection reason = ObjectRejection::kFewViews;
   std::string detail;  // "mean IoU 0.31, expected at least 0.40"
 };
 
-// Checks, in this order: in front of every camera; half axes from 5 mm to 3 m (or a fifth of the
-// distance, if that is more); mean IoU of outline and hull; and with depth: most points inside or
-// near the surface, no half axis stretched beyond the points. Nothing for a valid one.
+// How far outside of a quadric a point still counts as near it; `distance` is that of the quadric
+// from the cameras.
+double NearSurface(const Ellipsoid& ellipsoid, double distance, const ValidityOptions& options);
+
+// Checks, in this order: in front of every camera; the range of the half axes; mean IoU of
+// projected ellipse and hull; and with depth: enough points inside or near the surface, no half
+// axis stretched far beyond the points. Nothing for a valid quadric. Needs one view at least.
 std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor& sensor,
                                        std::span<const ObjectView> views,
                                        const ValidityOptions& options);
 
-// Mean over the views of the IoU of the outline, clipped to the image, with the hull, or of their
-// boxes where the mask is a box; 0 where the ellipsoid is not in front of a camera.
+// Mean over the views of the IoU of the projected ellipse, clipped to the image, with the hull, or
+// of their boxes where the mask is a box; 0 where the ellipsoid is not in front of a camera.
 double MeanOverlap(const Ellipsoid& ellipsoid, const Sensor& sensor,
                    std::span<const ObjectView> views);
 
