@@ -9,6 +9,8 @@
 namespace hullslam {
 
 void DepthErrorOptions::Bind(OptionTable& options) {
+  options.Add("depth.pixel_sigma", &pixel_sigma, Range::Between(0.01, 100.0),
+              "error of a keypoint of pyramid level 0, px");
   options.Add("depth.disparity_sigma", &disparity_sigma, Range::Between(0.01, 100.0),
               "error of a depth as disparity Camera.bf / depth, px");
 }

@@ -7,12 +7,13 @@
 
 namespace hullslam {
 
-PointMeasurement PointMeasurement::Create(const Eigen::Vector2d& pixel, double pixel_sigma,
+PointMeasurement PointMeasurement::Create(const Eigen::Vector2d& pixel, double scale,
                                           std::optional<double> disparity,
                                           const DepthErrorOptions& options) {
   PointMeasurement measurement;
   measurement.measured << pixel, disparity.value_or(0.0);
-  measurement.inverse_sigma << 1.0 / pixel_sigma, 1.0 / pixel_sigma,
+  const double inverse_sigma = 1.0 / (options.pixel_sigma * scale);
+  measurement.inverse_sigma << inverse_sigma, inverse_sigma,
       disparity ? 1.0 / options.disparity_sigma : 0.0;
   return measurement;
 }

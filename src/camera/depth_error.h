@@ -44,8 +44,8 @@ struct PointMeasurement {
   // Inverse standard deviations of the three, 1 / px; that of an unknown disparity is 0.
   Eigen::Vector3d inverse_sigma = Eigen::Vector3d(1.0, 1.0, 0.0);
 
-  // `pixel_sigma` in px; no disparity where the depth is unknown.
-  static PointMeasurement Create(const Eigen::Vector2d& pixel, double pixel_sigma,
+  // `scale` is that of the keypoint's pyramid level. No disparity where the depth is unknown.
+  static PointMeasurement Create(const Eigen::Vector2d& pixel, double scale,
                                  std::optional<double> disparity, const DepthErrorOptions& options);
 
   bool has_depth() const { return inverse_sigma.z() > 0.0; }

@@ -9,7 +9,7 @@ namespace hullslam {
 
 // Reprojection error of a landmark seen without depth, in standard deviations: the first two rows
 // of PointResidual at cam_from_world * point,
-//   r = (project(cam_from_world * point) - pixel) / sigma
+//   r = (project(cam_from_world * point) - pixel) / (pixel_sigma * scale of the level)
 // Parameters: cam_from_world (PoseBlock, with PoseManifold), point (m, world frame). Not defined
 // for a point that is not in front of the camera: then Evaluate returns false.
 class ReprojectionCost final : public ceres::SizedCostFunction<2, 7, 3> {

@@ -9,8 +9,7 @@
 
 namespace hullslam {
 
-// What a keypoint of a frame says about its point. The standard deviation of the pixel is 1 px at
-// the keypoint's pyramid level.
+// What a keypoint of a frame says about its point.
 PointMeasurement MeasurePoint(const Sensor& sensor, const FrameFeatures& features,
                               uint32_t keypoint);
 

@@ -57,7 +57,8 @@ TEST(ProjectRgbd, PixelDoesNotChangeAlongTheRayAndDisparityFallsWithDepth) {
 }
 
 PointMeasurement Measure(const Eigen::Vector2d& pixel, std::optional<double> disparity) {
-  return PointMeasurement::Create(pixel, 2.0, disparity, {.disparity_sigma = 0.5});
+  return PointMeasurement::Create(pixel, 4.0, disparity,
+                                  {.pixel_sigma = 0.5, .disparity_sigma = 0.5});
 }
 
 // (1, -0.5, 2) is seen at pixel (570, 140) with a disparity of 20.
@@ -105,12 +106,12 @@ TEST(PointResidual, DerivativeIsTrue) {
 }
 
 // The error of depth does not depend on the pyramid level that the keypoint was found at.
-TEST(PointResidual, ThePixelSigmaDoesNotChangeTheDisparity) {
+TEST(PointResidual, ThePyramidLevelDoesNotChangeTheDisparity) {
   const Eigen::Vector3d point(0.3, 0.2, 1.5);
   const DepthErrorOptions options;
-  const auto residual = [&](double pixel_sigma) {
-    return PointResidual(
-        kCamera, PointMeasurement::Create({400.0, 300.0}, pixel_sigma, 20.0, options), point);
+  const auto residual = [&](double scale) {
+    return PointResidual(kCamera, PointMeasurement::Create({400.0, 300.0}, scale, 20.0, options),
+                         point);
   };
   EXPECT_EQ(residual(1.0).z(), residual(3.0).z());
   EXPECT_NEAR(residual(1.0).x(), 3.0 * residual(3.0).x(), 1e-12);

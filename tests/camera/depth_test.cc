@@ -87,9 +87,12 @@ TEST(DepthErrorOptions, AreBoundWithTheOtherOptionsOfDepth) {
   OptionTable table;
   options.Bind(table);
   table.Set("depth.disparity_sigma", "0.25", "test");
+  table.Set("depth.pixel_sigma", "0.5", "test");
   EXPECT_EQ(options.error.disparity_sigma, 0.25);
+  EXPECT_EQ(options.error.pixel_sigma, 0.5);
   for (const char* value : {"0", "-1", "nan", "x"}) {
     EXPECT_THROW(table.Set("depth.disparity_sigma", value, "test"), InputError) << value;
+    EXPECT_THROW(table.Set("depth.pixel_sigma", value, "test"), InputError) << value;
   }
 }
 

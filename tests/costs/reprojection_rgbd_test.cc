@@ -14,7 +14,7 @@ constexpr PinholeCamera kCamera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240
 
 PointMeasurement Measurement(const Eigen::Vector3d& measured, double pixel_sigma) {
   return PointMeasurement::Create(measured.head<2>(), pixel_sigma, measured.z(),
-                                  {.disparity_sigma = 0.5});
+                                  {.pixel_sigma = 1.0, .disparity_sigma = 0.5});
 }
 
 TEST(RgbdReprojectionCost, ByHand) {

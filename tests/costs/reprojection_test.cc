@@ -15,7 +15,7 @@ namespace {
 constexpr PinholeCamera kCamera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
 
 PointMeasurement Measurement(const Eigen::Vector2d& pixel, double sigma) {
-  return PointMeasurement::Create(pixel, sigma, std::nullopt, {});
+  return PointMeasurement::Create(pixel, sigma, std::nullopt, {.pixel_sigma = 1.0});
 }
 
 TEST(ReprojectionCost, ByHand) {

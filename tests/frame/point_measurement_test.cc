@@ -10,7 +10,7 @@ namespace {
 
 TEST(MeasurePoint, TakesPixelLevelAndDepthOfTheKeypoint) {
   Sensor sensor = SyntheticSensor();
-  sensor.depth_error.disparity_sigma = 0.25;
+  sensor.depth_error = {.pixel_sigma = 0.5, .disparity_sigma = 0.25};
   FrameFeatures features;
   for (const float right_u : {80.0f, -1.0f}) {
     Keypoint& keypoint = features.keypoints.emplace_back();
@@ -19,15 +19,15 @@ TEST(MeasurePoint, TakesPixelLevelAndDepthOfTheKeypoint) {
     keypoint.level = 2;
     features.right_u.push_back(right_u);
   }
-  const double inverse_scale = 1.0 / static_cast<double>(sensor.levels.scale[2]);
+  const double inverse_sigma = 2.0 / static_cast<double>(sensor.levels.scale[2]);
 
   const PointMeasurement with_depth = MeasurePoint(sensor, features, 0);
   EXPECT_EQ(with_depth.measured, Eigen::Vector3d(100.0, 50.0, 20.0));
-  EXPECT_EQ(with_depth.inverse_sigma, Eigen::Vector3d(inverse_scale, inverse_scale, 4.0));
+  EXPECT_EQ(with_depth.inverse_sigma, Eigen::Vector3d(inverse_sigma, inverse_sigma, 4.0));
 
   const PointMeasurement without_depth = MeasurePoint(sensor, features, 1);
   EXPECT_EQ(without_depth.measured.head<2>(), Eigen::Vector2d(100.0, 50.0));
-  EXPECT_EQ(without_depth.inverse_sigma, Eigen::Vector3d(inverse_scale, inverse_scale, 0.0));
+  EXPECT_EQ(without_depth.inverse_sigma, Eigen::Vector3d(inverse_sigma, inverse_sigma, 0.0));
 }
 
 }  // namespace

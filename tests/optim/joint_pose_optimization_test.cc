@@ -65,7 +65,8 @@ class JointPose : public ::testing::Test {
       for (int k = 0; k < 3; ++k) {
         measured[k] += noise * normal_(generator_);
       }
-      observation.measurement = PointMeasurement::Create(measured.head<2>(), 1.0, measured.z(), {});
+      observation.measurement =
+          PointMeasurement::Create(measured.head<2>(), 1.0, measured.z(), {.pixel_sigma = 1.0});
     }
   }
   void AddSpreadPoints(int count, double noise) {

@@ -33,7 +33,8 @@ class PoseOptimization : public ::testing::Test {
       observation.point = Inverse(true_pose_) * in_cam;
       const Eigen::Vector3d measured = ProjectRgbd(kCamera, in_cam);
       observation.measurement = PointMeasurement::Create(
-          measured.head<2>(), 1.0, has_depth ? std::optional(measured.z()) : std::nullopt, {});
+          measured.head<2>(), 1.0, has_depth ? std::optional(measured.z()) : std::nullopt,
+          {.pixel_sigma = 1.0});
     }
     return observations;
   }

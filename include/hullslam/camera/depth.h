@@ -8,13 +8,17 @@
 
 namespace hullslam {
 
-// The model of the error of depth (src/camera/depth_error.h).
+// The error of a point seen with or without depth (src/camera/depth_error.h).
 struct DepthErrorOptions {
-  // Standard deviation of the disparity bf / z, px. Sensors are more precise than the default, but
-  // the pixel that the depth is taken from need not show the landmark.
+  // Standard deviation of the coordinates of a keypoint of level 0 of the image pyramid, px. At
+  // other levels it is multiplied by the scale of the level.
+  double pixel_sigma = 0.7;
+  // Standard deviation of the disparity bf / z, px, the same at all levels. Sensors are more
+  // precise than the default, but the pixel that the depth is taken from need not show the
+  // landmark.
   double disparity_sigma = 1.0;
 
-  // Binds the key `depth.disparity_sigma`.
+  // Binds the keys `depth.pixel_sigma` and `depth.disparity_sigma`.
   void Bind(OptionTable& options);
 };
 
