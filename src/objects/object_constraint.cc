@@ -59,8 +59,10 @@ std::unique_ptr<RobustRowsCost> MakeOutline(const PinholeCamera& camera, const O
 
 std::unique_ptr<RobustRowsCost> MakeDepth(const Detection& detection,
                                           const ObjectDepthOptions& options) {
-  const std::vector<Eigen::Vector3d> points =
-      Thin(detection.points, static_cast<size_t>(options.max_points));
+  const auto count = static_cast<size_t>(options.max_points);
+  const std::vector<Eigen::Vector3d> points = options.choice == PointChoice::kEven
+                                                  ? Thin(detection.points, count)
+                                                  : EveryKth(detection.points, count);
   if (points.empty()) {
     return nullptr;
   }

@@ -19,4 +19,18 @@ std::vector<T> Thin(const std::vector<T>& all, size_t count) {
   return thinned;
 }
 
+// Every k-th element from the first one on, with the least k by which at most `count` are left.
+template <typename T>
+std::vector<T> EveryKth(const std::vector<T>& all, size_t count) {
+  std::vector<T> thinned;
+  if (count == 0) {
+    return thinned;
+  }
+  const size_t step = std::max<size_t>(1, (all.size() + count - 1) / count);
+  for (size_t i = 0; i < all.size(); i += step) {
+    thinned.push_back(all[i]);
+  }
+  return thinned;
+}
+
 }  // namespace hullslam

@@ -99,6 +99,10 @@ TEST_F(ObjectConstraintTest, DepthHasALossAndANumberOfPointsOfItsOwn) {
   const Eigen::VectorXd depth = ObjectResidualsOf(*Make().depth, SphereAhead());
   ASSERT_EQ(depth.size(), 2);
   EXPECT_NEAR(depth.squaredNorm(), 2.0 * std::log(5.0), 1e-9);
+  options_.depth.max_points = 5;
+  EXPECT_EQ(Make().depth->num_residuals(), 5);
+  options_.depth.choice = PointChoice::kEveryKth;  // of six every second
+  EXPECT_EQ(Make().depth->num_residuals(), 3);
   options_.depth.max_points = 0;
   EXPECT_EQ(Make().depth, nullptr);
 }

@@ -21,5 +21,13 @@ TEST(Thin, NoneOfNothing) {
   EXPECT_TRUE(Thin(std::vector<int>(), 3).empty());
 }
 
+TEST(EveryKth, HasEqualSteps) {
+  EXPECT_EQ(EveryKth(std::vector{0, 1, 2, 3, 4, 5, 6}, 3), (std::vector{0, 3, 6}));
+  EXPECT_EQ(EveryKth(std::vector{0, 1, 2, 3, 4}, 4), (std::vector{0, 2, 4}));
+  EXPECT_EQ(EveryKth(std::vector{4, 2}, 9), (std::vector{4, 2}));
+  EXPECT_TRUE(EveryKth(std::vector{4, 2}, 0).empty());
+  EXPECT_TRUE(EveryKth(std::vector<int>(), 3).empty());
+}
+
 }  // namespace
 }  // namespace hullslam

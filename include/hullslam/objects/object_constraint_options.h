@@ -15,10 +15,14 @@ enum class RobustLoss { kNone, kHuber, kCauchy, kTukey };
 // All names in settings, in the order of the enumerators: none, huber, cauchy, tukey.
 std::vector<std::string> RobustLossNames();
 
+// Which of the depth points of a detection are used: as many as allowed, or every k-th.
+enum class PointChoice { kEven, kEveryKth };
+
 // How the depth points of one detection constrain an object.
 struct ObjectDepthOptions {
-  double sigma = 0.10;                // m, of depth points about the surface
-  int max_points = 0;                 // of one detection, evenly chosen; 0: depth is not used
+  double sigma = 0.10;  // m, of depth points about the surface
+  int max_points = 0;   // of one detection; 0: depth is not used
+  PointChoice choice = PointChoice::kEven;
   double max_effective_points = 1.0;  // the points of one detection count as so many at most
   RobustLoss loss = RobustLoss::kCauchy;
   double loss_scale = 2.5;  // sigmas

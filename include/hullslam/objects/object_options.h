@@ -91,7 +91,7 @@ struct ObjectRefinementOptions {
       .sigma_px = 0.0,
       .max_effective_lines = 4.0,
       .loss = RobustLoss::kHuber,
-      .depth = {.max_points = 20, .loss_scale = 1.0},
+      .depth = {.max_points = 20, .choice = PointChoice::kEveryKth, .loss_scale = 1.0},
       // About the start. Its centre and rotation are those of the side that was seen first, so
       // their sigmas are large.
       .prior = {.log_axes = 0.5, .center = 2.0, .rotation = 1.0},
