@@ -7,7 +7,6 @@
 #include <random>
 #include <vector>
 
-#include "camera/rgbd_projection.h"
 #include "objects/made_objects.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
