@@ -26,6 +26,21 @@ TEST(RgbdReprojectionCost, ByHand) {
   EXPECT_LT((residual - Eigen::Vector3d(0.5, -1.0, 6.0)).norm(), 1e-12);
 }
 
+// Bundle adjustment thus judges a point as tracking and mapping do, which use PointResidual itself.
+TEST(RgbdReprojectionCost, IsTheResidualOfThePoint) {
+  RandomGeometry random(4);
+  for (int i = 0; i < 30; ++i) {
+    const Rigid3 cam_from_world = random.Pose(1.0, 1.0);
+    const Eigen::Vector3d in_cam = random.Vector(1.0) + Eigen::Vector3d(0.0, 0.0, 3.0);
+    const PointMeasurement measurement =
+        Measurement({random.Number(0, 640), random.Number(0, 480), random.Number(5, 40)}, 1.44);
+    const Eigen::Vector3d residual =
+        ResidualOf<3>(RgbdReprojectionCost(kCamera, measurement), cam_from_world,
+                      Inverse(cam_from_world) * in_cam);
+    EXPECT_LT((residual - PointResidual(kCamera, measurement, in_cam)).norm(), 1e-8);
+  }
+}
+
 TEST(RgbdReprojectionCost, GradientIsTrue) {
   RandomGeometry random(1);
   for (int i = 0; i < 30; ++i) {

@@ -16,8 +16,9 @@
 namespace hullslam {
 
 // A made-up world with noise like that of real features.
-inline SyntheticWorld NoisyWorld() {
-  return SyntheticWorld({.points = 500, .pixel_noise = 0.2, .depth_share = 0.8, .flipped_bits = 8});
+inline SyntheticWorld NoisyWorld(uint64_t seed = 1) {
+  return SyntheticWorld(
+      {.points = 500, .pixel_noise = 0.2, .depth_share = 0.8, .flipped_bits = 8, .seed = seed});
 }
 
 // The path's frame; every fifth has new close points, so that it should become a keyframe.
