@@ -8,9 +8,17 @@
 
 namespace hullslam {
 
+DepthErrorOptions DepthErrorOptions::ForAdjustment() const {
+  DepthErrorOptions options = *this;
+  options.pixel_sigma = adjustment_pixel_sigma;
+  return options;
+}
+
 void DepthErrorOptions::Bind(OptionTable& options) {
   options.Add("depth.pixel_sigma", &pixel_sigma, Range::Between(0.01, 100.0),
-              "error of a keypoint of pyramid level 0, px");
+              "error of a keypoint of pyramid level 0 in tracking and mapping, px");
+  options.Add("depth.adjustment_pixel_sigma", &adjustment_pixel_sigma, Range::Between(0.01, 100.0),
+              "the same in bundle adjustment, px");
   options.Add("depth.disparity_sigma", &disparity_sigma, Range::Between(0.01, 100.0),
               "error of a depth as disparity Camera.bf / depth, px");
 }

@@ -6,7 +6,7 @@
 namespace hullslam {
 
 PointMeasurement MeasurePoint(const Sensor& sensor, const FrameFeatures& features,
-                              uint32_t keypoint) {
+                              uint32_t keypoint, const DepthErrorOptions& error) {
   const Keypoint& seen = features.keypoints[keypoint];
   const Eigen::Vector2d pixel = seen.undistorted.cast<double>();
   const double right_u = static_cast<double>(features.right_u[keypoint]);
@@ -15,7 +15,7 @@ PointMeasurement MeasurePoint(const Sensor& sensor, const FrameFeatures& feature
     disparity = pixel.x() - right_u;
   }
   const double scale = static_cast<double>(sensor.levels.scale[static_cast<size_t>(seen.level)]);
-  return PointMeasurement::Create(pixel, scale, disparity, sensor.depth_error);
+  return PointMeasurement::Create(pixel, scale, disparity, error);
 }
 
 }  // namespace hullslam

@@ -9,8 +9,9 @@
 
 namespace hullslam {
 
-// What a keypoint of a frame says about its point.
+// What a keypoint of a frame says about its point, with the errors `error`
+// (Sensor::depth_error, or what ForAdjustment makes of it).
 PointMeasurement MeasurePoint(const Sensor& sensor, const FrameFeatures& features,
-                              uint32_t keypoint);
+                              uint32_t keypoint, const DepthErrorOptions& error);
 
 }  // namespace hullslam

@@ -42,7 +42,7 @@ View MakeView(const Keyframe& keyframe, uint32_t keypoint, const Sensor& sensor)
   view.depth = static_cast<double>(features.depth[keypoint]);
   view.scale = static_cast<double>(
       sensor.levels.scale[static_cast<size_t>(features.keypoints[keypoint].level)]);
-  view.measurement = MeasurePoint(sensor, features, keypoint);
+  view.measurement = MeasurePoint(sensor, features, keypoint, sensor.depth_error);
   return view;
 }
 

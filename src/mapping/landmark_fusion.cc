@@ -77,7 +77,8 @@ void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landma
   for (const Match& match : matches) {
     const LandmarkId landmark = map.Resolve(ids[match.query]);
     if (!landmark.IsValid() ||
-        !IsInlier(sensor.camera, MeasurePoint(sensor, frame->features, match.keypoint),
+        !IsInlier(sensor.camera,
+                  MeasurePoint(sensor, frame->features, match.keypoint, sensor.depth_error),
                   points_in_cam[match.query])) {
       continue;
     }

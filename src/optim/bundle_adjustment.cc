@@ -154,7 +154,8 @@ class Bundle {
         continue;
       }
       const PointMeasurement measurement =
-          MeasurePoint(sensor, map.keyframes().At(seen.keyframe).frame->features, seen.keypoint);
+          MeasurePoint(sensor, map.keyframes().At(seen.keyframe).frame->features, seen.keypoint,
+                       sensor.depth_error.ForAdjustment());
       BundleObservation& observation = observations_.emplace_back();
       observation.landmark = landmark;
       observation.keyframe = seen.keyframe;

@@ -15,7 +15,8 @@ PoseEstimate RefinePose(const Frame& frame, const Map& map, const TrackingContex
     if (estimate.landmarks[i].IsValid()) {
       observations.push_back(
           {.point = map.landmarks().At(estimate.landmarks[i]).position,
-           .measurement = MeasurePoint(context.sensor, frame.features, static_cast<uint32_t>(i))});
+           .measurement = MeasurePoint(context.sensor, frame.features, static_cast<uint32_t>(i),
+                                       context.sensor.depth_error)});
       keypoints.push_back(i);
     }
   }

@@ -57,8 +57,9 @@ TEST(ProjectRgbd, PixelDoesNotChangeAlongTheRayAndDisparityFallsWithDepth) {
 }
 
 PointMeasurement Measure(const Eigen::Vector2d& pixel, std::optional<double> disparity) {
-  return PointMeasurement::Create(pixel, 4.0, disparity,
-                                  {.pixel_sigma = 0.5, .disparity_sigma = 0.5});
+  return PointMeasurement::Create(
+      pixel, 4.0, disparity,
+      {.pixel_sigma = 0.5, .adjustment_pixel_sigma = 0.5, .disparity_sigma = 0.5});
 }
 
 // (1, -0.5, 2) is seen at pixel (570, 140) with a disparity of 20.

@@ -13,8 +13,9 @@ namespace {
 constexpr PinholeCamera kCamera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
 
 PointMeasurement Measurement(const Eigen::Vector3d& measured, double pixel_sigma) {
-  return PointMeasurement::Create(measured.head<2>(), pixel_sigma, measured.z(),
-                                  {.pixel_sigma = 1.0, .disparity_sigma = 0.5});
+  return PointMeasurement::Create(
+      measured.head<2>(), pixel_sigma, measured.z(),
+      {.pixel_sigma = 1.0, .adjustment_pixel_sigma = 1.0, .disparity_sigma = 0.5});
 }
 
 TEST(RgbdReprojectionCost, ByHand) {
@@ -24,6 +25,21 @@ TEST(RgbdReprojectionCost, ByHand) {
   const RgbdReprojectionCost cost(kCamera, Measurement({569.0, 142.0, 17.0}, 2.0));
   const Eigen::Vector3d residual = ResidualOf<3>(cost, cam_from_world, {1.0, -0.5, 3.0});
   EXPECT_LT((residual - Eigen::Vector3d(0.5, -1.0, 6.0)).norm(), 1e-12);
+}
+
+// Bundle adjustment thus judges a point as tracking and mapping do, which use PointResidual itself.
+TEST(RgbdReprojectionCost, IsTheResidualOfThePoint) {
+  RandomGeometry random(4);
+  for (int i = 0; i < 30; ++i) {
+    const Rigid3 cam_from_world = random.Pose(1.0, 1.0);
+    const Eigen::Vector3d in_cam = random.Vector(1.0) + Eigen::Vector3d(0.0, 0.0, 3.0);
+    const PointMeasurement measurement =
+        Measurement({random.Number(0, 640), random.Number(0, 480), random.Number(5, 40)}, 1.44);
+    const Eigen::Vector3d residual =
+        ResidualOf<3>(RgbdReprojectionCost(kCamera, measurement), cam_from_world,
+                      Inverse(cam_from_world) * in_cam);
+    EXPECT_LT((residual - PointResidual(kCamera, measurement, in_cam)).norm(), 1e-8);
+  }
 }
 
 TEST(RgbdReprojectionCost, GradientIsTrue) {

@@ -10,7 +10,7 @@ namespace {
 
 TEST(MeasurePoint, TakesPixelLevelAndDepthOfTheKeypoint) {
   Sensor sensor = SyntheticSensor();
-  sensor.depth_error = {.pixel_sigma = 0.5, .disparity_sigma = 0.25};
+  sensor.depth_error = {.pixel_sigma = 0.5, .adjustment_pixel_sigma = 2.0, .disparity_sigma = 0.25};
   FrameFeatures features;
   for (const float right_u : {80.0f, -1.0f}) {
     Keypoint& keypoint = features.keypoints.emplace_back();
@@ -21,13 +21,20 @@ TEST(MeasurePoint, TakesPixelLevelAndDepthOfTheKeypoint) {
   }
   const double inverse_sigma = 2.0 / static_cast<double>(sensor.levels.scale[2]);
 
-  const PointMeasurement with_depth = MeasurePoint(sensor, features, 0);
+  const PointMeasurement with_depth = MeasurePoint(sensor, features, 0, sensor.depth_error);
   EXPECT_EQ(with_depth.measured, Eigen::Vector3d(100.0, 50.0, 20.0));
   EXPECT_EQ(with_depth.inverse_sigma, Eigen::Vector3d(inverse_sigma, inverse_sigma, 4.0));
 
-  const PointMeasurement without_depth = MeasurePoint(sensor, features, 1);
+  const PointMeasurement without_depth = MeasurePoint(sensor, features, 1, sensor.depth_error);
   EXPECT_EQ(without_depth.measured.head<2>(), Eigen::Vector2d(100.0, 50.0));
   EXPECT_EQ(without_depth.inverse_sigma, Eigen::Vector3d(inverse_sigma, inverse_sigma, 0.0));
+}
+
+TEST(MeasurePoint, BundleAdjustmentHasAPixelErrorOfItsOwn) {
+  const DepthErrorOptions options{
+      .pixel_sigma = 0.5, .adjustment_pixel_sigma = 2.0, .disparity_sigma = 0.25};
+  EXPECT_EQ(options.ForAdjustment().pixel_sigma, 2.0);
+  EXPECT_EQ(options.ForAdjustment().disparity_sigma, 0.25);
 }
 
 }  // namespace

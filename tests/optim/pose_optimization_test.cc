@@ -97,7 +97,26 @@ TEST_F(PoseOptimization, AWrongDepthAloneMakesAnOutlier) {
   EXPECT_EQ(result.is_inlier[7], 0);
 }
 
+<<<<<<< HEAD
 TEST_F(PoseOptimization, ErrorsAreMeasuredInSigmas) {
+=======
+// Bundle adjustment and mapping, which use the same error, would choose the same inliers.
+TEST_F(PoseOptimization, InliersAreThoseOfTheErrorOfPoints) {
+  auto observations = Observe(200, true);
+  for (PoseObservation& observation : observations) {
+    observation.measurement.measured += 2.0 * random_.Vector(1.0);
+  }
+  const PoseOptimizationResult result = OptimizePose(kCamera, Start(), observations);
+  EXPECT_LT(result.inlier_count, 200);
+  EXPECT_GT(result.inlier_count, 50);
+  for (size_t i = 0; i < observations.size(); ++i) {
+    const Eigen::Vector3d in_cam = result.cam_from_world * observations[i].point;
+    EXPECT_EQ(result.is_inlier[i] != 0, IsInlier(kCamera, observations[i].measurement, in_cam));
+  }
+}
+
+TEST_F(PoseOptimization, ErrorsCountInSigmas) {
+>>>>>>> depth
   auto observations = Observe(100, false);
   observations[4].measurement.measured.x() += 4.0;
   observations[5].measurement.measured.x() += 4.0;

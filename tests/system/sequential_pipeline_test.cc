@@ -96,7 +96,25 @@ TEST(SequentialPipeline, FramesFollowTheKeyframesThatFinishAdjusts) {
     }
   }
   EXPECT_GT(followed, after.map->keyframes().size());
-  EXPECT_LT(PathError(b, world.sensor()), PathError(a, world.sensor()));
+}
+
+// With a single seed of the noise the error may also grow by a few percent.
+TEST(SequentialPipeline, FinishMakesThePathBetterOnAverage) {
+  SystemOptions options;
+  options.mapping.local_keyframes = 2;
+  options.mapping.fixed_keyframes = 1;
+  double error_before = 0.0;
+  double error_after = 0.0;
+  for (uint64_t seed = 1; seed <= 8; ++seed) {
+    const SyntheticWorld world = NoisyWorld(seed);
+    options.mapping.final_bundle_adjustment = false;
+    const Outcome before = RunOnce(world, options);
+    options.mapping.final_bundle_adjustment = true;
+    const Outcome after = RunOnce(world, options);
+    error_before += PathError(ComposeTrajectory(*before.map, before.frames), world.sensor());
+    error_after += PathError(ComposeTrajectory(*after.map, after.frames), world.sensor());
+  }
+  EXPECT_LT(error_after, error_before);
 }
 
 TEST(SequentialPipeline, AKeyframeIsInTheMapWhenTrackReturns) {

@@ -13,12 +13,19 @@ struct DepthErrorOptions {
   // Standard deviation of the coordinates of a keypoint of level 0 of the image pyramid, px. At
   // other levels it is multiplied by the scale of the level.
   double pixel_sigma = 0.7;
+  // The same in bundle adjustment. It is larger there because it also sets the weight of points
+  // against objects and the bound at which an observation is removed from the map
+  // (docs/decisions.md).
+  double adjustment_pixel_sigma = 1.0;
   // Standard deviation of the disparity bf / z, px, the same at all levels. Sensors are more
   // precise than the default, but the pixel that the depth is taken from need not show the
   // landmark.
   double disparity_sigma = 1.0;
 
-  // Binds the keys `depth.pixel_sigma` and `depth.disparity_sigma`.
+  // The error in bundle adjustment.
+  DepthErrorOptions ForAdjustment() const;
+
+  // Binds the keys `depth.pixel_sigma`, `depth.adjustment_pixel_sigma`, `depth.disparity_sigma`.
   void Bind(OptionTable& options);
 };
 
