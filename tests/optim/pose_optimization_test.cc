@@ -97,9 +97,6 @@ TEST_F(PoseOptimization, AWrongDepthAloneMakesAnOutlier) {
   EXPECT_EQ(result.is_inlier[7], 0);
 }
 
-<<<<<<< HEAD
-TEST_F(PoseOptimization, ErrorsAreMeasuredInSigmas) {
-=======
 // Bundle adjustment and mapping, which use the same error, would choose the same inliers.
 TEST_F(PoseOptimization, InliersAreThoseOfTheErrorOfPoints) {
   auto observations = Observe(200, true);
@@ -115,8 +112,7 @@ TEST_F(PoseOptimization, InliersAreThoseOfTheErrorOfPoints) {
   }
 }
 
-TEST_F(PoseOptimization, ErrorsCountInSigmas) {
->>>>>>> depth
+TEST_F(PoseOptimization, ErrorsAreMeasuredInSigmas) {
   auto observations = Observe(100, false);
   observations[4].measurement.measured.x() += 4.0;
   observations[5].measurement.measured.x() += 4.0;

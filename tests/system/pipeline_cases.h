@@ -15,16 +15,10 @@
 // Parts that the tests of the pipelines have in common.
 namespace hullslam {
 
-<<<<<<< HEAD
-// A synthetic world with noise like that of real features.
-inline SyntheticWorld NoisyWorld() {
-  return SyntheticWorld({.points = 500, .pixel_noise = 0.2, .depth_share = 0.8, .flipped_bits = 8});
-=======
 // A made-up world with noise like that of real features.
 inline SyntheticWorld NoisyWorld(uint64_t seed = 1) {
   return SyntheticWorld(
       {.points = 500, .pixel_noise = 0.2, .depth_share = 0.8, .flipped_bits = 8, .seed = seed});
->>>>>>> depth
 }
 
 // The path's frame; every fifth has new close points, so that it should become a keyframe.
