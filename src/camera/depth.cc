@@ -18,16 +18,16 @@ void DepthErrorOptions::Bind(OptionTable& options) {
   options.Add("depth.pixel_sigma", &pixel_sigma, Range::Between(0.01, 100.0),
               "error of a keypoint of pyramid level 0 in tracking and mapping, px");
   options.Add("depth.adjustment_pixel_sigma", &adjustment_pixel_sigma, Range::Between(0.01, 100.0),
-              "the same in bundle adjustment, px");
+              "error of a keypoint of pyramid level 0 in bundle adjustment, px");
   options.Add("depth.disparity_sigma", &disparity_sigma, Range::Between(0.01, 100.0),
-              "error of a depth as disparity Camera.bf / depth, px");
+              "error of a depth, as an error of the disparity Camera.bf / depth, px");
 }
 
 void DepthOptions::Bind(OptionTable& options) {
   options.Add("DepthMapFactor", &units_per_metre, Range::Positive(),
-              "units of a 16-bit depth image per metre");
+              "units of the 16-bit depth images per metre");
   options.Add("ThDepth", &close_baselines, Range::Positive(),
-              "depths up to this many baselines count as close");
+              "largest distance of a close point, in units of the baseline");
   error.Bind(options);
 }
 

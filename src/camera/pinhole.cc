@@ -47,7 +47,8 @@ void PinholeCamera::Bind(OptionTable& options) {
   options.Add("Camera.k3", &k3, Range::Any(), "radial distortion, sixth order");
   options.Add("Camera.width", &width, Range::Between(16, 16384), "width of the images, px");
   options.Add("Camera.height", &height, Range::Between(16, 16384), "height of the images, px");
-  options.Add("Camera.bf", &bf, Range::Positive(), "virtual stereo baseline (m) times fx (px)");
+  options.Add("Camera.bf", &bf, Range::Positive(),
+              "baseline of the virtual stereo camera (m) times fx (px)");
 }
 
 Eigen::Vector2d PinholeCamera::Distort(const Eigen::Vector2d& undistorted) const {

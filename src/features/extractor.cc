@@ -38,18 +38,18 @@ std::vector<size_t> LevelQuotas(const FeatureOptions& options) {
 
 void FeatureOptions::Bind(OptionTable& options) {
   options.Add("ORBextractor.nFeatures", &feature_count, Range::Between(1, 100000),
-              "number of features per image");
+              "number of features to extract from an image");
   options.Add("ORBextractor.scaleFactor", &scale_factor,
               {.low = 1.0, .high = 2.0, .low_open = true},
               "ratio of the sizes of neighbouring levels of the image pyramid");
   options.Add("ORBextractor.nLevels", &level_count, Range::Between(1, 16),
-              "levels of the image pyramid");
+              "number of levels of the image pyramid");
   options.Add("ORBextractor.iniThFAST", &initial_fast_threshold, Range::Between(1, 255),
               "FAST threshold, grey levels");
   options.Add("ORBextractor.minThFAST", &minimum_fast_threshold, Range::Between(1, 255),
-              "FAST threshold of cells without other corners, grey levels");
+              "FAST threshold in regions without corners at the first threshold, grey levels");
   options.Add("ORBextractor.subpixel", &subpixel,
-              "refine the positions of features to a fraction of a pixel");
+              "refine the positions of features within a pixel of their level");
 }
 
 struct FeatureExtractor::Impl {

@@ -14,35 +14,38 @@ void BindOutline(OptionTable& options, const std::string& use, Range lines,
                  ObjectConstraintOptions& constraint) {
   const std::string prefix = "objects." + use + ".";
   options.AddEnum(prefix + "residual", &constraint.residual, ObjectResidualNames(),
-                  "what is minimised between a quadric and an outline in this use");
+                  "residual that is minimised between a quadric and a detection");
   options.AddEnum(prefix + "loss", &constraint.loss, RobustLossNames(),
-                  "loss of each residual of an outline in this use");
+                  "robust loss of each residual");
   options.Add(prefix + "max_effective_lines", &constraint.max_effective_lines, lines,
-              "lines that one outline counts as in this use, at most");
+              "largest number of effective lines per detection");
 }
 
 void BindSigma(OptionTable& options, const std::string& use, ObjectConstraintOptions& constraint) {
   const std::string prefix = "objects." + use + ".";
   options.Add(prefix + "sigma", &constraint.sigma_px, Range::Between(0.1, 100.0),
-              "error of an outline in this use, beside the object's misfit, px");
+              "standard deviation of a line, in addition to the misfit of the object, px");
   options.Add(prefix + "misfit_factor", &constraint.misfit_factor, Range::Between(0.0, 100.0),
-              "factor of the object's misfit in the error of an outline in this use");
+              "factor of the misfit of the object in the standard deviation of a line");
   options.Add(prefix + "loss_scale", &constraint.loss_scale, Range::Between(0.1, 1000.0),
-              "error from which on the loss of this use takes effect, sigmas");
+              "scale of the robust loss, in standard deviations");
 }
 
 // What the uses have that move the quadric.
 void BindDepthAndPrior(OptionTable& options, const std::string& use,
                        ObjectConstraintOptions& constraint) {
   const std::string prefix = "objects." + use + ".";
-  options.Add(prefix + "depth_sigma", &constraint.depth.sigma, Range::Between(0.001, 100.0),
-              "error of depth points about the surface of a quadric in this use, m");
+  options.Add(
+      prefix + "depth_sigma", &constraint.depth.sigma, Range::Between(0.001, 100.0),
+      "standard deviation of the distance of depth points from the surface of a quadric, m");
   options.Add(prefix + "depth_points", &constraint.depth.max_points, Range::Between(0, 10000),
-              "depth points of one detection that are used, at most");
+              "largest number of depth points that are used per detection");
   options.Add(prefix + "prior_sigma", &constraint.prior.log_axes, Range::Between(0.01, 100.0),
-              "relative error of the half axes of the prior in this use");
+              "standard deviation of the log half axes in the prior about a quadric");
   options.Add(prefix + "prior_sigma_without_depth", &constraint.prior_without_depth.log_axes,
-              Range::Between(0.01, 100.0), "the same for an object without depth");
+              Range::Between(0.01, 100.0),
+              "standard deviation of the log half axes in the prior about a quadric, for an object "
+              "without depth");
 }
 
 void BindAssociation(OptionTable& options, AssociationOptions& association) {
@@ -51,100 +54,113 @@ void BindAssociation(OptionTable& options, AssociationOptions& association) {
   };
   const Range share = Range::Between(0.0, 1.0);
   add("min_projection_iou", &association.min_projection_iou, share,
-      "IoU of hull and projected ellipse from which on they match");
+      "a detection matches an object if the IoU of its hull and the projected ellipse is at least "
+      "this");
   add("min_carried_iou", &association.min_carried_iou, share,
-      "IoU of hull and the object's last hull, carried over, from which on they match");
+      "a detection matches an object if the IoU of its hull and the object's last hull, moved to "
+      "the new pose, is at least this");
   add("min_depth_iou", &association.min_depth_iou, share,
-      "the larger of both from which on they match where depth points agree");
+      "if the depth points agree, a detection matches an object if the larger of the two IoUs is "
+      "above this");
   add("min_shared_landmarks", &association.min_shared_landmarks, Range::Between(1, 1000),
-      "landmarks that a detection and an object must share to count");
+      "if a detection and an object have fewer common landmarks, their share of common landmarks "
+      "counts as 0");
   add("min_shared_ratio", &association.min_shared_ratio, share,
-      "share of landmarks in common from which on they match");
+      "a detection matches an object if their share of common landmarks is at least this");
   add("recent_views", &association.recent_views, Range::Between(1, 1000),
-      "latest keyframes whose landmarks and centroids stand for an object");
+      "number of the latest keyframes whose landmarks and centroids represent an object");
   add("cloud_points", &association.cloud_points, Range::Between(2, 10000),
-      "depth points of a cloud that are compared, at most");
+      "approximate largest number of depth points of a cloud that are compared");
   add("min_cloud", &association.min_cloud, Range::Between(2, 10000),
-      "depth points that the rank-sum test needs");
+      "number of depth points that each cloud needs for the rank-sum test");
   add("max_rank_sum", &association.max_rank_sum, Range::Between(0.0, 100.0),
-      "standard score of the rank-sum test up to which two clouds are one");
+      "two clouds agree if the rank-sum test gives at most this standard score on each axis");
   add("alpha", &association.alpha, Range::Between(1e-9, 1.0),
-      "level of the t-test by which a centroid is one of the object's");
+      "significance level of the t-test whether a centroid belongs to an object");
   add("centroid_noise", &association.centroid_noise, Range::Between(1e-6, 10.0),
-      "error of a centroid as a share of its distance");
+      "standard deviation of a centroid of depth points, as a share of its distance");
   add("max_offset", &association.max_offset, Range::Between(0.0, 1000.0),
-      "distance of the centroids up to which they may match, in sizes of the object");
+      "largest distance between the centroids of a match, in units of the object's size");
   add("iou_weight", &association.iou_weight, share, "weight of the larger IoU in the similarity");
   add("landmark_weight", &association.landmark_weight, share,
-      "weight of the share of landmarks in common in the similarity");
+      "weight of the share of common landmarks in the similarity");
   add("cloud_weight", &association.cloud_weight, share,
-      "weight of one cloud of depth points in the similarity");
+      "weight of agreeing clouds of depth points (rank-sum test) in the similarity");
   add("centroid_weight", &association.centroid_weight, share,
-      "weight of one centroid of depth points in the similarity");
+      "weight of agreeing centroids of depth points (t-test) in the similarity");
   add("class_weight", &association.class_weight, share,
-      "weight of the share of votes for the class in the similarity");
+      "weight of the share of votes for the detection's class in the similarity");
   add("min_similarity", &association.min_similarity, share,
-      "similarity from which on a detection is one of a known object");
+      "least similarity of a detection and an object that are matched");
 }
 
 void BindStart(OptionTable& options, StartOptions& start) {
   options.Add("objects.initial_inflation", &start.inflation, Range::Between(0.5, 3.0),
-              "half axes that a quadric starts with over those of its points' box");
+              "half axes of the start of a quadric in relation to those of the box of its points");
   options.Add("objects.min_views", &start.min_views, Range::Between(2, 1000),
-              "keyframes that an object must be seen in to be mapped");
+              "number of keyframes that must observe an object before it is mapped");
   options.Add("objects.min_parallax", &start.min_parallax, Range::Between(0.0, 180.0),
-              "angle between the views of an object with depth to be mapped, degrees");
+              "least angle between views that an object with depth needs to be mapped, degrees");
   options.Add("objects.min_parallax_blind", &start.min_parallax_without_depth,
-              Range::Between(0.0, 180.0), "the same for an object without depth, degrees");
+              Range::Between(0.0, 180.0),
+              "least angle between views that an object without depth needs to be mapped, degrees");
   options.Add("objects.start.max_points", &start.max_points, Range::Between(20, 1000000),
-              "depth points from which a quadric starts, about, at most");
+              "approximate largest number of depth points from which a start is computed");
   options.Add("objects.start.trimmed", &start.trimmed, Range::Between(0.0, 0.4),
-              "share of the depth points left out at each end of each axis");
+              "share of the depth points that is left out at each end of each axis");
   options.Add("objects.start.min_half_axis", &start.min_half_axis, Range::Between(1e-6, 10.0),
-              "least half axis that a quadric starts with, as a share of its distance");
+              "least half axis of a start, as a share of its distance");
 }
 
 void BindValidity(OptionTable& options, ValidityOptions& validity) {
   options.Add("objects.min_overlap", &validity.min_overlap, Range::Between(0.0, 1.0),
-              "mean IoU of projected ellipse and masks' hulls that a mapped object keeps");
+              "least mean IoU of projected ellipse and hull for a mapped object");
   options.Add("objects.min_points_near", &validity.min_points_near, Range::Between(0.0, 1.0),
-              "share of depth points in or near a mapped object");
+              "least share of depth points inside or near a mapped object");
   options.Add("objects.validity.min_half_axis", &validity.min_half_axis,
               Range::Between(0.0, 1000.0),
               "least half axis of a mapped object as a share of its distance");
   options.Add("objects.validity.max_half_axis", &validity.max_half_axis,
               Range::Between(0.0, 1000.0),
               "largest half axis of a mapped object as a share of its distance");
-  options.Add("objects.validity.near_surface", &validity.near_surface, Range::Between(0.0, 1000.0),
-              "points this far outside of an object are near it, as a share of its distance");
-  options.Add("objects.validity.near_surface_share", &validity.near_surface_share,
-              Range::Between(0.0, 1000.0), "the same as a share of its mean half axis");
-  options.Add("objects.validity.max_stretch", &validity.max_stretch, Range::Between(1.0, 1000.0),
-              "half axis of a mapped object over the reach of its points along it, at most");
+  options.Add(
+      "objects.validity.near_surface", &validity.near_surface, Range::Between(0.0, 1000.0),
+      "points up to this far outside an object are near it, as a share of the object's distance");
+  options.Add(
+      "objects.validity.near_surface_share", &validity.near_surface_share,
+      Range::Between(0.0, 1000.0),
+      "points up to this far outside an object are near it, as a share of its mean half axis");
+  options.Add(
+      "objects.validity.max_stretch", &validity.max_stretch, Range::Between(1.0, 1000.0),
+      "largest ratio of a half axis of a mapped object to the extent of its depth points along it");
 }
 
 void BindFusion(OptionTable& options, FusionOptions& fusion) {
   const Range share = Range::Between(0.0, 1.0);
   options.Add("objects.fusion.min_overlap", &fusion.min_overlap, share,
-              "IoU of the volumes from which on objects never seen together are one");
+              "two objects that were never seen together are fused if the IoU of their volumes is "
+              "at least this");
   options.Add("objects.fusion.min_overlap_together", &fusion.min_overlap_together, share,
-              "the same for objects that few keyframes see together");
-  options.Add("objects.fusion.max_shared_keyframes", &fusion.max_shared_keyframes, share,
-              "share of the keyframes that may see both of two objects that are one");
+              "two objects that few keyframes see together are fused if the IoU of their volumes "
+              "is at least this");
+  options.Add(
+      "objects.fusion.max_shared_keyframes", &fusion.max_shared_keyframes, share,
+      "two objects are not fused if a larger share of the keyframes of either observes both");
   options.Add("objects.fusion.alpha", &fusion.alpha, Range::Between(1e-9, 1.0),
-              "level of the t-test by which two objects have one centroid");
+              "significance level of the t-test whether two objects have the same centroid");
   options.Add("objects.fusion.centroid_noise", &fusion.centroid_noise, Range::Between(1e-6, 10.0),
-              "error of a centroid as a share of its distance");
+              "standard deviation of a centroid of depth points, as a share of its distance");
 }
 
 void BindCulling(OptionTable& options, CullingOptions& culling) {
   options.Add("objects.culling.candidate_keyframes", &culling.candidate_keyframes,
               Range::Between(1, 1000000),
-              "keyframes without a candidate after which it is removed");
+              "a candidate is removed if it was last seen more than this many keyframes ago");
   options.Add("objects.culling.min_visible", &culling.min_visible, Range::Between(1, 1000000),
               "keyframes that should show a mapped object before it can be removed");
   options.Add("objects.culling.min_found_ratio", &culling.min_found_ratio, Range::Between(0.0, 1.0),
-              "share of them in which it must be found");
+              "a mapped object is removed if it is found in a smaller share of the keyframes that "
+              "should show it");
 }
 
 void CheckResidual(const std::string& use, ObjectResidual residual, ObjectPrimitive primitive) {
@@ -159,14 +175,14 @@ void CheckResidual(const std::string& use, ObjectResidual residual, ObjectPrimit
 
 void ObjectOptions::Bind(OptionTable& options) {
   options.Add("objects.enabled", &enabled, "map objects from their masks");
-  options.Add("objects.joint_pose", &joint_pose,
-              "outlines of mapped objects constrain each frame's pose");
+  options.Add("objects.joint_pose", &joint_pose, "mapped objects constrain the pose of each frame");
   options.Add("objects.bundle_adjustment", &bundle_adjustment,
               "adjust quadrics together with poses and landmarks");
   options.Add("objects.misfit_compensation", &misfit_compensation,
-              "correct outlines by what other keyframes tell of the object's true shape");
+              "correct lines by the excess that other keyframes measured");
   options.Add("objects.guided_matching", &guided_matching,
-              "search landmarks on mapped objects that the local map lacks, within their masks");
+              "search landmarks on mapped objects that are not in the local map, inside the hulls "
+              "of their detections");
   detection.Bind(options);
 
   BindOutline(options, "refinement", Range::Between(0.1, 1000.0), refinement.constraint);
@@ -177,64 +193,71 @@ void ObjectOptions::Bind(OptionTable& options) {
   BindDepthAndPrior(options, "refinement", refinement.constraint);
   BindDepthAndPrior(options, "bundle", bundle.constraint);
   options.Add("objects.bundle.min_loss_px", &bundle.constraint.min_loss_px,
-              Range::Between(0.0, 1000.0),
-              "error up to which the loss of this use takes no effect in any case, px");
+              Range::Between(0.0, 1000.0), "least scale of the robust loss, px");
   options.Add("objects.refinement_sigma", &refinement.max_misfit_px, Range::Between(0.1, 100.0),
-              "error of an outline when a quadric is refined, px");
+              "largest standard deviation of a line when a quadric is refined, px");
   options.Add("objects.refinement_huber", &refinement.loss_px, Range::Between(0.1, 1000.0),
-              "from here on errors count linearly in refinement, px at objects.refinement_sigma");
+              "scale of the robust loss in refinement, px, for a line with the standard deviation "
+              "objects.refinement_sigma");
 
   options.AddShared(
       "objects.residual",
       {"objects.refinement.residual", "objects.pose.residual", "objects.bundle.residual"},
-      "what is minimised between a quadric and an outline");
+      "residual that is minimised between a quadric and a detection");
   options.AddShared("objects.sigma", {"objects.pose.sigma", "objects.bundle.sigma"},
-                    "error of an outline in poses, beside the object's misfit, px");
-  options.AddShared("objects.max_effective_lines",
-                    {"objects.pose.max_effective_lines", "objects.bundle.max_effective_lines"},
-                    "lines that one outline counts as in poses, at most");
+                    "standard deviation of a line in joint pose and bundle adjustment, in addition "
+                    "to the misfit of the object, px");
+  options.AddShared(
+      "objects.max_effective_lines",
+      {"objects.pose.max_effective_lines", "objects.bundle.max_effective_lines"},
+      "largest number of effective lines per detection, in joint pose and bundle adjustment");
   options.AddShared("objects.refinement_lines", {"objects.refinement.max_effective_lines"},
-                    "lines that one outline counts as in refinement, at most");
-  options.AddShared("objects.depth_sigma",
-                    {"objects.refinement.depth_sigma", "objects.bundle.depth_sigma"},
-                    "error of depth points about the surface of a quadric, m");
+                    "largest number of effective lines per detection, in refinement");
+  options.AddShared(
+      "objects.depth_sigma", {"objects.refinement.depth_sigma", "objects.bundle.depth_sigma"},
+      "standard deviation of the distance of depth points from the surface of a quadric, m");
   options.AddShared("objects.prior_sigma",
                     {"objects.refinement.prior_sigma", "objects.bundle.prior_sigma"},
-                    "relative error of the half axes that a quadric starts with");
+                    "standard deviation of the log half axes in the prior about a quadric");
   options.AddShared(
       "objects.prior_sigma_blind",
       {"objects.refinement.prior_sigma_without_depth", "objects.bundle.prior_sigma_without_depth"},
-      "the same for an object without depth");
+      "standard deviation of the log half axes in the prior about a quadric, for an object without "
+      "depth");
 
   options.Add("objects.refinement.max_views", &refinement.max_views, Range::Between(2, 10000),
-              "keyframes by which a quadric is refined, at most");
+              "largest number of keyframes that are used to refine a quadric");
   options.Add("objects.refinement.iterations", &refinement.iterations, Range::Between(1, 10000),
-              "steps of the solver in one refinement, at most");
+              "largest number of iterations of the solver per refinement");
   options.Add("objects.refinement.min_misfit_px", &refinement.min_misfit_px,
-              Range::Between(0.1, 100.0), "error of an outline in refinement, at least, px");
+              Range::Between(0.1, 100.0),
+              "least standard deviation of a line when a quadric is refined, px");
   options.Add("objects.pose.prior_rotation", &pose.prior_rotation, Range::Between(1e-4, 100.0),
-              "error of the rotation that a pose with objects starts with, radians");
+              "standard deviation of the prior on the rotation of a pose with objects, radians");
   options.Add("objects.pose.prior_translation", &pose.prior_translation,
               Range::Between(1e-4, 100.0),
-              "error of its position as a share of the objects' mean distance");
+              "standard deviation of the prior on the position of a pose with objects, as a share "
+              "of their mean distance");
   options.Add("objects.pose.min_objects", &pose.min_objects, Range::Between(1, 1000),
-              "objects that determine a pose without landmarks");
+              "number of objects that are enough to determine a pose without landmarks");
   options.Add("objects.bundle.max_outer_views", &bundle.max_outer_views, Range::Between(0, 10000),
-              "keyframes outside of the window that constrain an object, at most");
+              "largest number of keyframes outside the window that constrain an object");
   options.Add("objects.bundle.max_axis_change", &bundle.max_axis_change,
               Range::Between(1.0, 1000.0),
-              "factor by which bundle adjustment may change a half axis");
+              "a quadric is left as it was if bundle adjustment changes a half axis by more than "
+              "this factor");
   BindAssociation(options, association);
   BindStart(options, start);
   BindValidity(options, validity);
   BindFusion(options, fusion);
   BindCulling(options, culling);
   options.Add("objects.misfit.views", &misfit.views, Range::Between(1, 10000),
-              "latest keyframes by which an object's misfit is measured");
+              "number of the latest keyframes that measure the misfit of an object");
   options.Add("objects.misfit.width", &misfit.width, Range::Between(0.1, 45.0),
-              "width of the weights of misfit samples, degrees");
-  options.Add("objects.guide.views", &guide.views, Range::Between(1, 10000),
-              "keyframes by whose masks landmarks on an object are found, at most");
+              "standard deviation of the Gaussian weights of misfit samples, degrees");
+  options.Add(
+      "objects.guide.views", &guide.views, Range::Between(1, 10000),
+      "largest number of keyframes whose masks are used to find the landmarks on an object");
 }
 
 void ObjectOptions::Validate() const {

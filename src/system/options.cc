@@ -12,7 +12,8 @@ OptionTable SystemOptions::Bind() {
   OptionTable table;
   camera.Bind(table);
   table.Add("Camera.fps", &frames_per_second, Range::Positive(), "frame rate of the camera, 1/s");
-  table.Add("Camera.RGB", &rgb_order, "colour images from memory are RGB (else BGR)");
+  table.Add("Camera.RGB", &rgb_order,
+            "colour images that the library receives from memory are RGB (else BGR)");
   depth.Bind(table);
   features.Bind(table);
   tracking.Bind(table);
