@@ -28,7 +28,7 @@ struct Candidate {
   Outline outline;
   MaskRegion region;
   Detection detection;
-  double depth = 0.0;  // m, median of its points; 0 where unknown
+  double depth = 0.0;  // m, median of its points; 0 if unknown
 };
 
 struct FrameView {
@@ -198,7 +198,7 @@ void AddLines(const std::vector<Candidate>& candidates, const FrameView& frame,
 void CheckDepth(const cv::Mat& depth, const PinholeCamera& camera) {
   if (!depth.empty()) {
     Check(depth.size() == cv::Size(camera.width, camera.height),
-          "the depth image is not of the camera's size");
+          "the depth image does not have the camera's size");
     Check(depth.type() == CV_16UC1 || depth.type() == CV_32FC1,
           "the depth image is neither CV_16UC1 nor CV_32FC1");
   }

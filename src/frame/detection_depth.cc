@@ -10,12 +10,13 @@
 namespace hullslam {
 namespace {
 
-constexpr double kInside = 4.0;                     // px from the line to the object
-constexpr std::array<double, 2> kBeyond{4.0, 8.0};  // px: masks are not exact to a few
-constexpr double kLargestMargin = 5.0;              // px of the eroded mask
+constexpr double kInside = 4.0;                     // px, from the line towards the object
+constexpr std::array<double, 2> kBeyond{4.0, 8.0};  // px; two places, because masks are not exact
+constexpr double kLargestMargin = 5.0;              // px, for eroding the mask
 constexpr double kMarginShare = 0.1;                // of the mask's smaller side
 
-// By how much nearer something must be to be another thing, not the same surface or noise, m.
+// Something that is nearer than the object by more than this is another object. A smaller
+// difference can be noise or the object's own surface. m.
 double Step(double depth, const DetectionOptions& options) {
   return std::max(options.occlusion_step, options.occlusion_step_share * depth);
 }

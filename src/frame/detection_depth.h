@@ -28,9 +28,9 @@ struct Occluder {
   double depth = 0.0;  // m, median of its points; 0 if unknown
 };
 
-// Points of the mask in the camera frame, m, at most about `max_points`. They are on a regular grid
-// of raw pixels and keep away from the border of the mask, where depth may be that of the
-// background.
+// Points of the mask in the camera frame, m, about `max_points` at most. They are on a regular grid
+// of raw pixels. Pixels near the border of the mask are left out, because their depth may be that
+// of the background.
 std::vector<Eigen::Vector3d> DepthPoints(const DepthView& view, const MaskRegion& region,
                                          int max_points);
 
@@ -38,8 +38,8 @@ std::vector<Eigen::Vector3d> DepthPoints(const DepthView& view, const MaskRegion
 double MedianDepth(std::span<const Eigen::Vector3d> points);
 
 // Whether something nearer than the object begins just beyond the line. This is tested at several
-// places along the line, with the depth image and the masks of `others`. It must hold at half or
-// more of the places where it is known.
+// places along the line, with the depth image and the masks of `others`. It must be true at half or
+// more of the places where the depths are known.
 bool IsHidden(const LineOnOutline& line, const DepthView& view, double object_depth,
               std::span<const Occluder> others, const DetectionOptions& options);
 

@@ -13,8 +13,8 @@ namespace hullslam {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kTouch = 1.0;  // px: a corner this near to a line carries it
-constexpr double kNear = 3.0;   // px: about the error of a mask's border
+constexpr double kTouch = 1.0;  // px; a point this near to a line touches it
+constexpr double kNear = 3.0;   // px, about the error of a mask's border
 constexpr size_t kMaxPlaces = 9;
 
 Eigen::Vector2d Direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
@@ -27,7 +27,7 @@ double Reach(const Polygon2& points, const Eigen::Vector2d& direction) {
   return reach;
 }
 
-// Of the points with these indices at most kMaxPlaces, evenly chosen.
+// At most kMaxPlaces of the points with these indices, evenly chosen.
 Polygon2 Places(const Polygon2& points, const std::vector<Eigen::Index>& indices) {
   Polygon2 places;
   const size_t used = std::min(kMaxPlaces, indices.size());
@@ -90,8 +90,8 @@ Polygon2 Simplified(const Polygon2& polygon, double epsilon) {
   return simplified.size() >= 3 ? simplified : polygon;
 }
 
-// The directions of the edges are added from the longest to the shortest edge. Of two nearly equal
-// directions this keeps the one of the longer edge, which is more precise.
+// The directions of the edges are added from the longest to the shortest edge. If two directions
+// are nearly equal, the one of the longer edge is kept, because it is more precise.
 std::vector<Eigen::Vector2d> SupportDirections(const Polygon2& hull,
                                                const DetectionOptions& options) {
   std::vector<Edge> edges = EdgesOf(Simplified(hull, options.epsilon_px), options.min_line_px);

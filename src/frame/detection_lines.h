@@ -13,11 +13,11 @@
 
 namespace hullslam {
 
-// A line, with the points of the outline (undistorted px) that decide whether it is one-sided.
+// A line with the points of the outline (undistorted, px) that are used to find out whether it is
+// one-sided.
 struct LineOnOutline {
   Line2 line;
-  Polygon2
-      touching;   // where it touches; the border cuts the line if all of these are at the border
+  Polygon2 touching;  // points on the line; it is one-sided if the image border cuts all of them
   Polygon2 near;  // points along the line, where IsHidden() looks for something nearer beyond it
 };
 

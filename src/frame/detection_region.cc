@@ -9,7 +9,7 @@
 namespace hullslam {
 namespace {
 
-// Far outside of any image, where OpenCV's fixed-point arithmetic does not overflow yet.
+// px. Far outside any image, but OpenCV's fixed-point arithmetic does not overflow there.
 constexpr double kFar = 32000.0;
 
 std::vector<cv::Point> Rounded(std::span<const Eigen::Vector2d> outline) {

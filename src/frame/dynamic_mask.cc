@@ -23,7 +23,7 @@ std::set<std::string> SplitNames(std::string_view names) {
 cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::string>& classes,
                     cv::Size size) {
   cv::Mat region;
-  cv::Rect box;  // of all that is filled
+  cv::Rect box;  // bounding box of the filled pixels
   for (const InstanceMask& mask : masks) {
     if (!classes.contains(mask.label)) {
       continue;
@@ -44,7 +44,7 @@ cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::str
   if (region.empty()) {
     return region;
   }
-  // Only around what is filled: the rest of the image stays zero.
+  // Dilates only around the filled pixels, because the rest of the image is zero.
   const cv::Rect grown(box.x - kMaskMarginPx, box.y - kMaskMarginPx, box.width + 2 * kMaskMarginPx,
                        box.height + 2 * kMaskMarginPx);
   cv::Mat part = region(grown & cv::Rect({}, size));

@@ -44,8 +44,8 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
 std::shared_ptr<const Frame> FrameBuilder::Build(const ImageInput& image, FrameId id) {
   const cv::Size size(sensor_.camera.width, sensor_.camera.height);
   Check(image.grey.type() == CV_8UC1 && image.grey.size() == size,
-        "the grey image is not CV_8UC1 of the camera's size");
-  Check(image.depth.size() == size, "the depth image is not of the camera's size");
+        "the grey image is not CV_8UC1 or does not have the camera's size");
+  Check(image.depth.size() == size, "the depth image does not have the camera's size");
   Check(image.depth.type() == CV_16UC1 || image.depth.type() == CV_32FC1,
         "the depth image is neither CV_16UC1 nor CV_32FC1");
   auto frame = std::make_shared<Frame>();

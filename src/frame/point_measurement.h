@@ -9,8 +9,8 @@
 
 namespace hullslam {
 
-// What a keypoint of a frame says about its point, with the errors `error`
-// (Sensor::depth_error, or what ForAdjustment makes of it).
+// The measurement of a point by a keypoint of a frame. `error` is Sensor::depth_error, or the
+// result of its ForAdjustment() for bundle adjustment.
 PointMeasurement MeasurePoint(const Sensor& sensor, const FrameFeatures& features,
                               uint32_t keypoint, const DepthErrorOptions& error);
 

@@ -16,19 +16,19 @@ namespace {
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
-// What is known of an object, as the camera sees it from the frame's pose.
+// What is expected of an object in the frame.
 struct Prediction {
   ObjectId id;
   const ObjectLandmark* object = nullptr;
   Polygon ellipse;                         // projected, clipped to the image; empty without a shape
-  Polygon carried;                         // the last hull, carried over at its depth
-  std::vector<LandmarkId> landmarks;       // seen on it lately, sorted
-  std::vector<Eigen::Vector3d> cloud;      // world; of its last view
-  std::vector<Eigen::Vector3d> centroids;  // of its views with depth
-  double size = 0.0;                       // extent of its last cloud
+  Polygon carried;                         // the last hull, moved to the frame's pose
+  std::vector<LandmarkId> landmarks;       // that its latest views show, sorted
+  std::vector<Eigen::Vector3d> cloud;      // depth points of its last view, world
+  std::vector<Eigen::Vector3d> centroids;  // one per latest view with depth, world
+  double size = 0.0;                       // of its cloud, see SizeOf
 };
 
-// A detection with what is compared.
+// A detection with everything that is compared.
 struct Seen {
   const Detection* detection = nullptr;
   std::vector<LandmarkId> landmarks;  // sorted
@@ -37,7 +37,8 @@ struct Seen {
   double noise = 0.0;                                  // of the centroid, in units of the map
 };
 
-// Twice the root mean square distance from the mean, which is about half a diagonal.
+// Twice the root mean square distance of the points from their mean. It is about half the diagonal
+// of their box.
 double SizeOf(std::span<const Eigen::Vector3d> points) {
   const Eigen::Vector3d mean = MeanOf(points);
   double sum = 0.0;
@@ -123,8 +124,8 @@ class Associator {
     return prediction;
   }
 
-  // The hull of an earlier view, carried over into this image. All its points are given the mean
-  // depth of the view. Without depth the hull stays where it was.
+  // The hull of an earlier view, moved to the frame's pose. All its corners get the mean depth of
+  // the view. Without depth the hull is not moved.
   Polygon Carry(const ObjectView& view) const {
     const Detection& detection = *view.detection;
     Polygon carried = detection.hull;
@@ -169,7 +170,7 @@ class Associator {
     landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
   }
 
-  // Whether the clouds of depth points are so far apart that they belong to two things.
+  // Whether the clouds of depth points are so far apart that they cannot belong to the same object.
   bool AreApart(const Seen& seen, const Prediction& prediction) const {
     if (seen.cloud.empty() || prediction.cloud.empty()) {
       return false;
@@ -179,7 +180,8 @@ class Associator {
     return offset > options_.max_offset * size + seen.noise;
   }
 
-  // Share of the detection's landmarks that were seen on the object too.
+  // Number of common landmarks over the number of landmarks of the one that has fewer; 0 for few
+  // common landmarks.
   double SharedLandmarks(const Seen& seen, const Prediction& prediction) const {
     std::vector<LandmarkId> shared;
     std::set_intersection(seen.landmarks.begin(), seen.landmarks.end(),
@@ -202,7 +204,7 @@ class Associator {
     return total > 0.0 ? same / total : 0.0;
   }
 
-  // 0 for no match, else up to about 1.
+  // 0 if they do not match, otherwise up to the sum of the weights (1.2 by default).
   double Similarity(const Seen& seen, const Prediction& prediction) const {
     if (AreApart(seen, prediction)) {
       return 0.0;

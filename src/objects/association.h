@@ -13,12 +13,12 @@ namespace hullslam {
 // Which objects detections are associated with.
 enum class AssociationScope { kAll, kMapped };
 
-// For each detection of a frame the object that it shows, invalid for none (Wu et al. 2023). The
-// similarity of a detection and an object combines the IoU with the projected ellipse and with the
-// last hull, shared landmarks, and rank-sum and t-tests of depth points. The assignment with the
-// largest total similarity is chosen. The class is a vote: objects of another class are less
-// similar, not excluded. Clouds that lie too far apart exclude a pair. `landmarks` has one entry
-// per keypoint of the frame (or is empty).
+// Returns the object that each detection of a frame shows; an invalid id if it shows no known
+// object (Wu et al. 2023). The similarity of a detection and an object combines the IoU with the
+// projected ellipse and with the last hull, shared landmarks, rank-sum and t-tests of depth points,
+// and the class. Another class makes a pair less similar but does not exclude it. A pair is
+// excluded if the clouds of depth points are too far apart. The assignment with the largest total
+// similarity is chosen. `landmarks` has one entry per keypoint of the frame, or it is empty.
 std::vector<ObjectId> AssociateDetections(const Map& map, const Sensor& sensor, const Frame& frame,
                                           const Rigid3& cam_from_world,
                                           std::span<const LandmarkId> landmarks,

@@ -10,7 +10,7 @@
 namespace hullslam {
 namespace {
 
-// Whether a world point lies inside.
+// Whether a world point lies inside the ellipsoid.
 bool Contains(const Ellipsoid& ellipsoid, const Eigen::Vector3d& point) {
   return ellipsoid.RadialDistance(point) <= 0.0;
 }
@@ -73,13 +73,13 @@ bool MayHaveOneCentroid(const Map& map, const ObjectLandmark& a, const ObjectLan
                         options.centroid_noise * distance);
 }
 
-// Whether their centres are not farther apart than their largest half axes together.
+// Whether the distance of the centres is at most the sum of the largest half axes.
 bool AreNear(const Ellipsoid& a, const Ellipsoid& b) {
   const Eigen::Vector3d offset = a.world_from_object.translation - b.world_from_object.translation;
   return offset.norm() <= a.half_axes.maxCoeff() + b.half_axes.maxCoeff();
 }
 
-// Whether the image of most of the keyframes that see `seen` holds the centre of `other`.
+// Whether the centre of `other` is in the image of most of the keyframes that observe `seen`.
 bool ShouldBeSeenWith(const Map& map, const Sensor& sensor, const ObjectLandmark& seen,
                       const ObjectLandmark& other) {
   size_t inside = 0;

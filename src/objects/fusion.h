@@ -11,20 +11,23 @@
 
 namespace hullslam {
 
-// Pairs of objects that are the same thing; the first of a pair is the one to keep, which has more
-// observations. Their quadrics overlap enough, or each contains the other's centre and the t-test
-// does not tell their centroids apart; and they were never, or hardly ever, seen together. An
-// object is in one pair at most.
+// Pairs of objects that are the same thing. The first of a pair has more observations and should be
+// kept. Two objects form a pair if few or no keyframes observe both and their quadrics overlap
+// enough. For objects that no keyframe observes together, it is also enough that each quadric
+// contains the centre of the other and the t-test finds no difference between their centroids. Each
+// object is in at most one pair.
 std::vector<std::pair<ObjectId, ObjectId>> FindDuplicates(const Map& map,
                                                           const FusionOptions& options = {});
 
-// The mapped object that `candidate`, which has a shape, is most likely a further part of: of the
-// same class, no farther away than the largest half axes of both together, and never seen together
-// with it although it should have been seen in most of the candidate's keyframes. (A book under
-// another one shows one end in some keyframes and the other end in others.)
+// The mapped object that `candidate`, which has a shape, is probably a part of; nothing if there is
+// none. It has the same class, the distance of the centres is at most the sum of the largest half
+// axes, and no keyframe observes both, although its centre is in the image of most of the
+// candidate's keyframes. (Example: a book that lies under another book shows one end in some
+// keyframes and the other end in others.)
 std::optional<ObjectId> FindWhole(const Map& map, const Sensor& sensor, ObjectId candidate);
 
-// Intersection over union of two ellipsoids' volumes, on a lattice of 16^3 points of each.
+// Intersection over union of the volumes of two ellipsoids, measured on a grid of 16^3 points in
+// the smaller one.
 double VolumeOverlap(const Ellipsoid& a, const Ellipsoid& b);
 
 }  // namespace hullslam

@@ -11,8 +11,8 @@
 namespace hullslam {
 namespace {
 
-// Least eigenvalue per ray of the information on the point they meet in; below it they are nearly
-// parallel.
+// Rays are nearly parallel if the least eigenvalue of the information matrix of the point where
+// they meet, divided by the number of rays, is below this.
 constexpr double kMinRayInformation = 1e-3;
 
 struct Interval {
@@ -20,7 +20,7 @@ struct Interval {
   double high = 0.0;
 };
 
-// What the points span along a direction when a share of them is left out at each end.
+// The interval of the points along a direction, without the share that is trimmed at each end.
 Interval InnerInterval(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& direction,
                        double trimmed) {
   std::vector<double> values;
@@ -34,7 +34,7 @@ Interval InnerInterval(std::span<const Eigen::Vector3d> points, const Eigen::Vec
           values[static_cast<size_t>((1.0 - trimmed) * last)]};
 }
 
-// The ellipsoid with these axes (columns, right-handed) whose box holds the inner points.
+// The ellipsoid with these axes (columns, right-handed) and the inflated box of the inner points.
 Ellipsoid FitAlong(std::span<const Eigen::Vector3d> points, const Eigen::Matrix3d& axes,
                    double distance, const StartOptions& options) {
   Ellipsoid ellipsoid;
@@ -63,7 +63,7 @@ Eigen::Matrix3d PrincipalAxes(std::span<const Eigen::Vector3d> points) {
   return axes;
 }
 
-// The points that lie between the percentiles along each of the axes.
+// The points that are left after trimming along each axis in turn.
 std::vector<Eigen::Vector3d> InnerPoints(std::span<const Eigen::Vector3d> points,
                                          const Eigen::Matrix3d& axes, double trimmed) {
   std::vector<Eigen::Vector3d> inner(points.begin(), points.end());

@@ -13,15 +13,17 @@
 
 namespace hullslam {
 
-// Ellipsoids to refine from, made of depth points (world) at this distance from the cameras:
-// oriented bounding boxes of the points without those trimmed at the ends, inflated. One box lies
-// along the principal axes, one is that of least volume (CGAL). Empty for fewer than
-// kMinDepthPoints.
+// Starts for refinement, computed from depth points in the world frame. `distance` is the distance
+// of the points from the cameras. A share of the points is left out at each end of each axis. The
+// half axes are those of an oriented bounding box of the other points, times the inflation. One
+// start uses the principal axes, the other one the box with the least volume (CGAL). Empty for
+// fewer than kMinDepthPoints points.
 std::vector<Ellipsoid> StartsFromPoints(std::span<const Eigen::Vector3d> points, double distance,
                                         const StartOptions& options);
 
-// A sphere where the rays through the centres of the boxes meet best, of their mean size; for
-// objects without depth. Nothing where the rays do not meet in front of all cameras.
+// The start of an object without depth: a sphere at the point nearest to the rays through the
+// centres of the bounding boxes, with the mean size of the boxes. Nothing if the rays are nearly
+// parallel or do not meet in front of all cameras.
 std::optional<Ellipsoid> StartFromRays(const PinholeCamera& camera,
                                        std::span<const ObjectView> views,
                                        const StartOptions& options);

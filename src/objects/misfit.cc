@@ -10,10 +10,11 @@
 namespace hullslam {
 namespace {
 
-constexpr double kReach = 3.0;      // widths; samples beyond have next to no weight
-constexpr double kMinWeight = 1.0;  // of all samples: one sample at the place, or some around it
-constexpr double kNoSlope = 0.3;    // weight of a prior of no slope
-constexpr double kMinDepth = 1e-3;  // in front of the camera
+constexpr double kReach = 3.0;  // in widths; samples farther away have almost no weight
+constexpr double kMinWeight =
+    1.0;                          // least sum of weights: one sample at the normal or several near
+constexpr double kNoSlope = 0.3;  // weight of the prior that the slope is 0
+constexpr double kMinDepth = 1e-3;  // of the contact point, in units of the map
 
 }  // namespace
 
@@ -57,7 +58,7 @@ std::optional<double> PredictExcess(std::span<const MisfitSample> samples,
                                     const Eigen::Vector3d& normal, KeyframeId left_out,
                                     const MisfitOptions& options) {
   const double width = options.width * std::numbers::pi / 180.0;
-  // Axes of the plane that touches the unit sphere at the normal.
+  // Axes of the tangent plane of the unit sphere at the normal.
   const Eigen::Vector3d across = normal.unitOrthogonal();
   const Eigen::Vector3d along = normal.cross(across);
   const double min_cosine = std::cos(kReach * width);
@@ -77,7 +78,7 @@ std::optional<double> PredictExcess(std::span<const MisfitSample> samples,
   if (information(0, 0) < kMinWeight) {
     return std::nullopt;
   }
-  // Samples on one side alone must not be extrapolated.
+  // The prior prevents extrapolation if all samples are on one side.
   information(1, 1) += kNoSlope;
   information(2, 2) += kNoSlope;
   return information.ldlt().solve(right_side).x();

@@ -15,21 +15,21 @@
 
 namespace hullslam {
 
-// A line of an outline is the image of a plane through the camera's centre that touches the convex
-// hull of the real object. Let the excess be the support function of that hull (largest n . x over
-// its points, in the object's frame) minus the support function of the quadric. It depends only on
-// the plane's normal n in the object's frame. So what one view measures holds for every other view
-// that touches the object at the same n. The excess is the systematic part of an ellipsoid's
-// misfit, and it can be learnt.
+// A line of a detection is the image of a plane through the camera's centre that touches the convex
+// hull of the real object. The excess is the support function of that hull (largest n . x over its
+// points, in the object's frame) minus the support function of the quadric. It depends only on the
+// plane's normal n in the object's frame. So an excess that was measured in one view is valid in
+// every other view that touches the object at the same n. The excess is the systematic part of the
+// misfit, and it can be predicted.
 
 // The plane of a line: unit normal in the object's frame, distances and pixels at one pose.
 struct TangentPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // outwards
   double excess = 0.0;            // support function of the hull minus that of the quadric, m
-  double pixels_per_metre = 0.0;  // by which the line moves in the image when the plane is shifted
+  double pixels_per_metre = 0.0;  // shift of the line in the image per shift of the plane
 };
 
-// Nothing where the quadric is not in front of the camera.
+// Nothing if the quadric is not in front of the camera.
 std::optional<TangentPlane> PlaneOfLine(const PinholeCamera& camera, const Rigid3& cam_from_world,
                                         const Ellipsoid& ellipsoid, const Line2& line);
 
@@ -38,13 +38,14 @@ std::vector<MisfitSample> MeasureMisfit(const PinholeCamera& camera, const Ellip
                                         std::span<const ObjectView> views);
 
 // The excess at a normal, predicted from the samples of keyframes other than `left_out`: a locally
-// linear fit with Gaussian weights. Nothing where too few samples are near.
+// linear fit with Gaussian weights. Nothing if too few samples are near.
 std::optional<double> PredictExcess(std::span<const MisfitSample> samples,
                                     const Eigen::Vector3d& normal, KeyframeId left_out,
                                     const MisfitOptions& options = {});
 
-// The lines of a detection, moved to where the quadric would touch them if it were the real object.
-// Lines whose excess cannot be predicted stay; `known` gets one entry per line.
+// The lines of a detection, moved by the predicted excess. They are where they would be if the real
+// object were the quadric. Lines whose excess cannot be predicted are not moved. `known` gets one
+// entry per line: 1 if it was moved, else 0.
 std::vector<SilhouetteLine> CompensateLines(const PinholeCamera& camera,
                                             const Rigid3& cam_from_world,
                                             const ObjectLandmark& object,
@@ -52,8 +53,8 @@ std::vector<SilhouetteLine> CompensateLines(const PinholeCamera& camera,
                                             KeyframeId left_out, std::vector<uint8_t>& known,
                                             const MisfitOptions& options = {});
 
-// RMS of the tangent distances of the views' two-sided lines, px: as they are, and after
-// compensation by the samples of the other views.
+// RMS of the tangent distances of the views' two-sided lines, px: without compensation, and after
+// compensation with the samples of the other views.
 struct MisfitSpread {
   double plain_px = 0.0;
   double compensated_px = 0.0;

@@ -31,7 +31,7 @@ std::unique_ptr<ceres::LossFunction> MakeLoss(RobustLoss loss, double scale) {
   return nullptr;
 }
 
-// The rows count as `max_effective_rows` at most.
+// The rows count as at most `max_effective_rows` independent rows.
 std::unique_ptr<RobustRowsCost> MakeRobust(std::unique_ptr<ceres::CostFunction> cost,
                                            std::unique_ptr<ceres::LossFunction> loss,
                                            double max_effective_rows) {

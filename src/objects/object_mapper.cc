@@ -20,10 +20,11 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kFewPoints = 20;  // enough for the middle of an object
+constexpr size_t kFewPoints = 20;  // number of points that are averaged for the centre of an object
 
-// The more views there are, the less a new one changes, so the shape is sought again when there are
-// an eighth more. (Bundle adjustment moves it with every keyframe.)
+// Whether the shape should be computed again. The more views there are, the less a new view
+// changes, so this is done when the number of views has grown by an eighth. (Bundle adjustment
+// improves the shape with every keyframe.)
 bool IsDue(const ObjectLandmark& object) {
   const size_t views = object.observations.size();
   return views < object.shaped_views || views > object.shaped_views + object.shaped_views / 8;
@@ -56,7 +57,8 @@ void ObjectMapper::Process(Map& map, KeyframeId keyframe) {
   CullSeldomSeen(map, keyframe);
 }
 
-// Gives each detection of the keyframe its object; a new one where there is none yet.
+// Adds an observation for each detection of the keyframe. A detection of no known object gives a
+// new object.
 void ObjectMapper::Observe(Map& map, KeyframeId keyframe) {
   const Keyframe& observer = map.keyframes().At(keyframe);
   std::vector<ObjectId> objects =
@@ -70,7 +72,8 @@ void ObjectMapper::Observe(Map& map, KeyframeId keyframe) {
   }
 }
 
-// Counts for the mapped objects whether they are seen where they should be: whole in the image.
+// Counts how often mapped objects should be visible, because their whole projected ellipse is in
+// the image, and how often they are then found.
 void ObjectMapper::CountVisible(Map& map, KeyframeId keyframe) const {
   const Keyframe& observer = map.keyframes().At(keyframe);
   std::vector<ObjectId> visible;
@@ -120,13 +123,13 @@ void ObjectMapper::Update(Map& map, ObjectId id) {
   }
 }
 
-// Finds a candidate's shape: the best of several starts, refined.
+// Computes the shape of a candidate: refines several starts and takes the best result.
 void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> views) {
   const bool has_depth = HasDepth(views);
   const std::optional<Ellipsoid> sphere =
       has_depth ? std::nullopt : StartFromRays(sensor_.camera, views, options_.start);
   if (!has_depth && !sphere) {
-    Reject(map, id, {ObjectRejection::kNoStart, "the rays to it do not meet"});
+    Reject(map, id, {ObjectRejection::kNoStart, "the rays to the object do not meet"});
     return;
   }
   const Eigen::Vector3d center =
@@ -135,9 +138,10 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
   const double min_parallax =
       has_depth ? options_.start.min_parallax : options_.start.min_parallax_without_depth;
   if (parallax < min_parallax) {
-    Reject(map, id,
-           {ObjectRejection::kLittleParallax,
-            fmt::format("{:.1f} degrees, expected at least {:.1f}", parallax, min_parallax)});
+    Reject(
+        map, id,
+        {ObjectRejection::kLittleParallax,
+         fmt::format("parallax {:.1f} degrees, expected at least {:.1f}", parallax, min_parallax)});
     return;
   }
   const std::vector<Ellipsoid> starts =
@@ -146,7 +150,7 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
                              MeanDistance(views, center), options_.start)
           : std::vector<Ellipsoid>{*sphere};
   if (starts.empty()) {
-    Reject(map, id, {ObjectRejection::kNoStart, "too few depth points to begin with"});
+    Reject(map, id, {ObjectRejection::kNoStart, "too few depth points for a start"});
     return;
   }
   Refinement best;
@@ -175,13 +179,13 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
   if (const auto whole = FindWhole(map, sensor_, id)) {
     Reject(map, id,
            {ObjectRejection::kPart,
-            fmt::format("never seen together with object {} beside it", whole->value)});
+            fmt::format("near object {} but never seen together with it", whole->value)});
     return;
   }
   object.state = ObjectState::kMapped;
   Accept(map, id, views);
-  spdlog::debug("object {} ({}): mapped from {} keyframes, {:.1f} degrees", id.value,
-                object.Label(), object.observations.size(), parallax);
+  spdlog::debug("object {} ({}): mapped from {} keyframes with {:.1f} degrees of parallax",
+                id.value, object.Label(), object.observations.size(), parallax);
 }
 
 void ObjectMapper::Refine(Map& map, ObjectId id, std::span<const ObjectView> views) {
@@ -200,7 +204,7 @@ void ObjectMapper::Refine(Map& map, ObjectId id, std::span<const ObjectView> vie
   Accept(map, id, views);
 }
 
-// Measures the misfit of a quadric that is valid.
+// Measures the misfit of a valid quadric.
 void ObjectMapper::Accept(Map& map, ObjectId id, std::span<const ObjectView> views) const {
   const std::vector<ObjectView> latest =
       LatestViews(map, map.objects().At(id), static_cast<size_t>(options_.misfit.views));
@@ -218,7 +222,7 @@ void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
       continue;
     }
     if (object->observations.size() < static_cast<size_t>(options_.start.min_views)) {
-      Reject(map, id, FewViews(*object));  // the keyframes that saw it have been culled
+      Reject(map, id, FewViews(*object));  // keyframes that observed it were culled
       continue;
     }
     const std::vector<ObjectView> views =
@@ -226,7 +230,7 @@ void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
     if (const auto objection =
             FindObjection(object->ellipsoid, sensor_, views, options_.validity)) {
       Reject(map, id, *objection);
-      map.MutableObject(id).shaped_views = 0;  // to be sought anew with the next view
+      map.MutableObject(id).shaped_views = 0;  // compute the shape again with the next view
     } else {
       Accept(map, id, views);
     }
@@ -243,7 +247,7 @@ void ObjectMapper::RefineMerged(Map& map, std::span<const ObjectId> objects) {
 
 void ObjectMapper::FuseDuplicates(Map& map) {
   for (const auto& [kept, duplicate] : FindDuplicates(map, options_.fusion)) {
-    spdlog::debug("object {} is object {}: fused", duplicate.value, kept.value);
+    spdlog::debug("object {} fused into object {}", duplicate.value, kept.value);
     ++rejections_[ObjectRejection::kFused];
     map.ReplaceObject(duplicate, kept);
     if (!map.objects().At(kept).observations.empty()) {
@@ -258,15 +262,15 @@ void ObjectMapper::CullSeldomSeen(Map& map, KeyframeId keyframe) {
   std::vector<std::pair<ObjectId, std::string>> culled;
   map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
     if (object.observations.empty()) {
-      culled.emplace_back(id, "no keyframe observes it any more");
+      culled.emplace_back(id, "no keyframe observes the object any more");
     } else if (object.state == ObjectState::kCandidate &&
                object.observations.back().keyframe.value + candidate_keyframes < keyframe.value) {
-      culled.emplace_back(
-          id, fmt::format("a candidate not seen for {} keyframes", culling.candidate_keyframes));
+      culled.emplace_back(id, fmt::format("a candidate that was not seen for {} keyframes",
+                                          culling.candidate_keyframes));
     } else if (object.visible >= culling.min_visible &&
                object.found < culling.min_found_ratio * object.visible) {
-      culled.emplace_back(id,
-                          fmt::format("seen in {} of {} keyframes", object.found, object.visible));
+      culled.emplace_back(id, fmt::format("found in {} of the {} keyframes that should show it",
+                                          object.found, object.visible));
     }
   });
   for (const auto& [id, why] : culled) {

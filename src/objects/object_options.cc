@@ -9,7 +9,7 @@
 namespace hullslam {
 namespace {
 
-// What all three uses have.
+// The keys that all three uses have.
 void BindOutline(OptionTable& options, const std::string& use, Range lines,
                  ObjectConstraintOptions& constraint) {
   const std::string prefix = "objects." + use + ".";
@@ -31,7 +31,7 @@ void BindSigma(OptionTable& options, const std::string& use, ObjectConstraintOpt
               "scale of the robust loss, in standard deviations");
 }
 
-// What the uses have that move the quadric.
+// The keys of the uses that change quadrics.
 void BindDepthAndPrior(OptionTable& options, const std::string& use,
                        ObjectConstraintOptions& constraint) {
   const std::string prefix = "objects." + use + ".";

@@ -53,7 +53,7 @@ Eigen::Vector3d MeanOf(std::span<const Eigen::Vector3d> points) {
 
 double RankSumScore(std::span<const double> a, std::span<const double> b) {
   Check(!a.empty() && !b.empty(), "the rank-sum test needs two samples");
-  std::vector<std::pair<double, bool>> all;  // value, whether it is of a
+  std::vector<std::pair<double, bool>> all;  // value, and whether it belongs to a
   for (const double value : a) {
     all.emplace_back(value, true);
   }
@@ -100,7 +100,7 @@ bool MayBeTheMean(const Eigen::Vector3d& value, std::span<const Eigen::Vector3d>
   const Moments moments = MomentsOf(samples);
   const auto count = static_cast<double>(samples.size());
   for (int axis = 0; axis < 3; ++axis) {
-    // The value is one more sample, not a known mean: its own spread counts too.
+    // The value is one more sample, not a known mean, so its own variance is added.
     const double spread = std::sqrt((moments.variance[axis] + noise * noise) * (1.0 + 1.0 / count));
     if (!IsPlausible((value[axis] - moments.mean[axis]) / spread, count - 1.0, alpha)) {
       return false;

@@ -45,7 +45,7 @@ class RefinementProblem {
                               object_.data(), log_axes_.data());
   }
 
-  // Half the sum of squares at the minimum; nothing where the solver failed.
+  // Half the sum of squares at the minimum; nothing if the solver failed.
   std::optional<double> Solve(int iterations) {
     problem_.SetManifold(object_.data(), &manifold_);
     for (PoseBlock& pose : poses_) {

@@ -13,14 +13,15 @@ namespace hullslam {
 struct Refinement {
   Ellipsoid ellipsoid;
   double cost = 0.0;       // half the sum of squares, robust
-  bool is_usable = false;  // false where the solver failed: the ellipsoid is the one given
+  bool is_usable = false;  // false if the solver failed; then the ellipsoid is the given one
 };
 
-// The ellipsoid that best explains the views, from `ellipsoid`; poses are fixed. Besides the
-// outlines, depth points constrain the surface, and a prior about `start` constrains the shape:
-// outlines over a small angle leave the extent along the view free. The better an object fits an
-// ellipsoid, the more precise its outline is, so `misfit_px`, within the bounds of the options, is
-// the sigma.
+// Returns the ellipsoid that best fits the views. The solver begins with `ellipsoid`; poses are
+// fixed. The lines of the detections constrain the ellipsoid, and depth points constrain its
+// surface. A prior about `start` is needed because views from similar directions do not determine
+// the extent along the viewing direction. The better an object fits an ellipsoid, the more precise
+// its lines are. The misfit measures this, so `misfit_px`, clamped to the bounds of the options, is
+// their sigma.
 Refinement RefineEllipsoid(const Ellipsoid& ellipsoid, const Ellipsoid& start, const Sensor& sensor,
                            std::span<const ObjectView> views, double misfit_px,
                            const ObjectRefinementOptions& options);

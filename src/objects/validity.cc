@@ -11,7 +11,7 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kMaxPoints = 300;  // that are looked at
+constexpr size_t kMaxPoints = 300;  // largest number of depth points that are tested, about
 
 std::optional<Objection> CheckPoints(const Ellipsoid& ellipsoid,
                                      std::span<const Eigen::Vector3d> points, double margin,
@@ -29,7 +29,7 @@ std::optional<Objection> CheckPoints(const Ellipsoid& ellipsoid,
   const double share = static_cast<double>(near) / static_cast<double>(points.size());
   if (share < options.min_points_near) {
     return Objection{ObjectRejection::kOffPoints,
-                     fmt::format("{:.2f} of its points are in it or near, expected at least {:.2f}",
+                     fmt::format("share of points inside or near {:.2f}, expected at least {:.2f}",
                                  share, options.min_points_near)};
   }
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -38,8 +38,9 @@ std::optional<Objection> CheckPoints(const Ellipsoid& ellipsoid,
     std::nth_element(extent.begin(), place, extent.end());
     const double half = ellipsoid.half_axes[static_cast<Eigen::Index>(axis)];
     if (half > options.max_stretch * *place + margin) {
-      return Objection{ObjectRejection::kStretched,
-                       fmt::format("half axis {:.3g} where its points reach {:.3g}", half, *place)};
+      return Objection{
+          ObjectRejection::kStretched,
+          fmt::format("half axis {:.3g}, but the points extend only to {:.3g}", half, *place)};
     }
   }
   return std::nullopt;
@@ -94,7 +95,7 @@ std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor&
   const double overlap = MeanOverlap(ellipsoid, sensor, views);
   if (!(overlap >= options.min_overlap)) {
     return Objection{ObjectRejection::kLowOverlap,
-                     fmt::format("mean IoU {:.2f} of ellipse and hull, expected at least {:.2f}",
+                     fmt::format("mean IoU of ellipse and hull {:.2f}, expected at least {:.2f}",
                                  overlap, options.min_overlap)};
   }
   const std::vector<Eigen::Vector3d> points = CollectPoints(views, kMaxPoints);

@@ -21,12 +21,13 @@ struct Detection {
   std::vector<Eigen::Vector2d> contour;  // outline of the largest part of the mask, closed, px
   std::vector<Eigen::Vector2d> hull;     // convex hull of all parts, positive signed area, px
   Eigen::AlignedBox2d box;               // bounding box of the hull, px
-  // What its residuals are computed from, as DetectionOptions::primitive asks for.
+  // What the residuals are computed from; equal to DetectionOptions::primitive.
   ObjectPrimitive primitive = ObjectPrimitive::kSupport;
   std::vector<SilhouetteLine> lines;  // the lines that constrain the quadric
-  std::optional<Ellipse> ellipse;     // least-squares fit of the contour, if it is needed
-  bool is_cut = false;                // the border of the image cuts the mask
-  bool is_box = false;                // the mask is only a bounding box
+  std::optional<Ellipse>
+      ellipse;          // least-squares fit of the contour; only for ellipse masks and `conic`
+  bool is_cut = false;  // the border of the image cuts the mask
+  bool is_box = false;  // the mask is only a bounding box
   // Points of the depth image inside the eroded mask, m, camera frame; a few hundred at most.
   std::vector<Eigen::Vector3d> points;
   std::vector<uint32_t> keypoints;  // indices of the frame's keypoints inside the mask

@@ -23,7 +23,7 @@ enum class DetectionRejection {
   kTooLarge,      // its hull is too large
   kFewKeypoints,  // too few keypoints are in it
   kDuplicate,     // another mask with a higher score shows the same object
-  kNoSilhouette,  // all its sides are cut by the border of the image or hidden
+  kNoSilhouette,  // all its lines are one-sided
 };
 inline constexpr int kDetectionRejectionCount = 7;
 
@@ -36,11 +36,12 @@ struct DetectionResult {
 };
 
 // Turns the masks of a frame into detections. The outlines are undistorted point by point. The hull
-// encloses all parts of a mask that have at least a tenth of the area of its largest part. The
-// primitive decides which lines are taken. Support lines (`support`, the default) have the
+// encloses all parts of a mask except small ones (DetectionOptions::min_part_share). The primitive
+// determines the lines. Support lines (`support`, the default) have the
 // directions of the edges of the simplified hull and some evenly spread directions. They touch the
-// full hull, while the edges of the simplified hull can cut through it. A mask that is a box always
-// gives its sides, and one that is an ellipse its tangents, whatever the primitive.
+// full hull, while the edges of the simplified hull can cut through it. For every
+// primitive, the lines of a box mask are its sides and the lines of an ellipse mask are its
+// tangents.
 //
 // A line is one-sided if it touches the mask only at the border of the raw image. With depth it is
 // also one-sided if something nearer to the camera begins just beyond it.

@@ -6,34 +6,35 @@
 
 namespace hullslam {
 
-// How masks become detections and their lines.
+// How detections and their lines are made from instance masks.
 struct DetectionOptions {
-  ObjectPrimitive primitive = ObjectPrimitive::kSupport;  // which lines constrain the quadrics
-  double epsilon_px = 3.0;       // simplification of the hull or contour (Douglas-Peucker)
-  int uniform_directions = 8;    // of support lines, besides the edges of the simplified hull
-  double min_line_px = 5.0;      // shorter edges give no line
-  double min_line_angle = 0.09;  // radians between two support lines
-  int conic_lines = 16;          // tangents of an ellipse
-  double min_part_share = 0.1;  // smaller parts of a mask, of the area of the largest, are left out
-  double border_px = 5.0;       // nearer to the border of the raw image than this is cut by it
+  ObjectPrimitive primitive = ObjectPrimitive::kSupport;  // what the lines are made from
+  double epsilon_px = 3.0;       // tolerance for simplifying hull or contour (Douglas-Peucker)
+  int uniform_directions = 8;    // of support lines, in addition to the edges of the hull
+  double min_line_px = 5.0;      // length; shorter edges give no line
+  double min_line_angle = 0.09;  // radians, least angle between two support lines
+  int conic_lines = 16;          // number of tangents of an ellipse
+  double min_part_share = 0.1;   // least area of a part of a mask over that of the largest part
+  double border_px = 5.0;        // a point is cut if it is this near to the border of the raw image
 
-  // Masks beyond these are not used.
+  // A mask that does not satisfy these conditions is rejected.
   double min_score = 0.0;
-  double min_side_px = 10.0;    // of the box around the hull
-  double max_area_share = 0.5;  // of the image, area of the hull
-  int min_keypoints = 0;        // inside
-  double duplicate_iou = 0.6;   // of the masks: at least this much are one object
-  // Of two masks the smaller one may also be a fragment of the larger: nearly all of it lies
-  // inside, it is not much smaller (else it is a thing of its own in front, as a cup before a
-  // monitor), and it is as far away.
-  double fragment_inside = 0.85;  // share of the smaller mask in the larger
-  double fragment_area = 0.4;     // area of the smaller mask over that of the larger
+  double min_side_px = 10.0;    // least width and height of the bounding box of the hull
+  double max_area_share = 0.5;  // largest area of the hull, as a share of the image
+  int min_keypoints = 0;        // inside the mask
+  double duplicate_iou = 0.6;   // masks with at least this IoU show the same object
+  // Two masks also show the same object if the smaller one is a fragment of the larger one. A
+  // fragment lies almost completely inside the larger mask, is not much smaller, and has nearly the
+  // same depth. A much smaller mask is another object in front, such as a cup in front of a
+  // monitor.
+  double fragment_inside = 0.85;  // least share of the smaller mask that is inside the larger
+  double fragment_area = 0.4;     // least area of the smaller mask over that of the larger
   double fragment_depth = 0.05;   // largest relative difference of the median depths
-  int max_depth_points = 200;     // taken of a mask, about
-  // What is nearer than an object by more than both hides it. The first is in metres: it is the
-  // noise of a depth camera, and without depth images it is not used.
+  int max_depth_points = 200;     // per mask, approximately
+  // Something hides an object if it is nearer by more than both steps. The first one is the noise
+  // of a depth camera. Both are used only with depth images.
   double occlusion_step = 0.03;        // m
-  double occlusion_step_share = 0.04;  // of the depth
+  double occlusion_step_share = 0.04;  // of the object's depth
 
   // Binds the keys `objects.primitive`, `objects.epsilon_px` ...
   void Bind(OptionTable& options);

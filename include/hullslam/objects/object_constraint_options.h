@@ -9,37 +9,38 @@
 
 namespace hullslam {
 
-// What a large residual of one line or one point counts (ceres::LossFunction).
+// The robust loss of the residuals of one line or one point (ceres::LossFunction).
 enum class RobustLoss { kNone, kHuber, kCauchy, kTukey };
 
-// All names in settings, in the order of the enumerators: none, huber, cauchy, tukey.
+// The names in settings, in the order of the enumerators: none, huber, cauchy, tukey.
 std::vector<std::string> RobustLossNames();
 
-// Which of the depth points of a detection are used: as many as allowed, or every k-th.
+// How depth points are chosen when a detection has more than the largest number: exactly that
+// number, evenly spread, or every k-th point.
 enum class PointChoice { kEven, kEveryKth };
 
 // How the depth points of one detection constrain an object.
 struct ObjectDepthOptions {
-  double sigma = 0.10;  // m, of depth points about the surface
-  int max_points = 0;   // of one detection; 0: depth is not used
+  double sigma = 0.10;  // m, of the distance of a point from the surface
+  int max_points = 0;   // per detection; 0: depth is not used
   PointChoice choice = PointChoice::kEven;
-  double max_effective_points = 1.0;  // the points of one detection count as so many at most
+  double max_effective_points = 1.0;  // largest number that the points of one detection count as
   RobustLoss loss = RobustLoss::kCauchy;
   double loss_scale = 2.5;  // sigmas
 };
 
-// How one detection constrains an object and the pose it is seen from, and the prior on the object.
+// How one detection constrains an object and the pose of the camera, and the prior of the object.
 struct ObjectConstraintOptions {
   ObjectResidual residual = ObjectResidual::kTangent;
-  // The sigma of an outline is hypot(sigma_px, misfit_factor * misfit of the object), px.
+  // The sigma of a line is hypot(sigma_px, misfit_factor * misfit of the object), px.
   double sigma_px = 0.5;
   double misfit_factor = 1.0;
-  // The errors of the lines of one detection are strongly correlated: they count as so many lines
-  // at most.
+  // The largest number of independent lines that the lines of one detection count as. Their errors
+  // are strongly correlated.
   double max_effective_lines = 8.0;
   RobustLoss loss = RobustLoss::kCauchy;
   double loss_scale = 2.5;   // sigmas
-  double min_loss_px = 0.0;  // the loss scale is at least so many pixels
+  double min_loss_px = 0.0;  // least loss scale, px
   ObjectDepthOptions depth = {};
   QuadricPriorSigmas prior = {};
   QuadricPriorSigmas prior_without_depth = {.log_axes = 0.15};

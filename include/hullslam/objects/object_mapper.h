@@ -12,24 +12,25 @@
 
 namespace hullslam {
 
-// The life of objects in a map, one keyframe after the other: association, candidates,
-// initialisation, refinement, validity, fusion, culling. It moves no pose and no landmark.
+// Maps objects from one keyframe after the other: association, initialisation, refinement, checks
+// of validity, fusion and culling. It changes no pose and no landmark.
 class ObjectMapper {
  public:
   // `sensor` must outlive the mapper.
   ObjectMapper(const Sensor& sensor, const ObjectOptions& options);
 
-  // To be called once a keyframe, when it is in the map with its landmarks.
+  // To be called once per keyframe, after the keyframe and its landmarks were added to the map.
   void Process(Map& map, KeyframeId keyframe);
 
-  // Checks the objects after their quadrics or the poses have been moved, by bundle adjustment say:
-  // what has turned bad goes back to candidate, what is still good has its misfit measured.
+  // Checks objects after their quadrics or the poses were changed, for example by bundle
+  // adjustment. An object that is no longer valid becomes a candidate. The misfit of the others is
+  // measured.
   void Recheck(Map& map, std::span<const ObjectId> objects);
 
-  // Seeks the shapes of objects that others have been merged into (map/correction.h).
+  // Finds the shapes of objects after other objects were merged into them (map/correction.h).
   void RefineMerged(Map& map, std::span<const ObjectId> objects);
 
-  // How often an object was not mapped, or mapped no longer, for each reason.
+  // How often an object was rejected, for each reason.
   const std::map<ObjectRejection, size_t>& rejections() const { return rejections_; }
 
  private:

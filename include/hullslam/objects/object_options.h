@@ -7,84 +7,86 @@
 
 namespace hullslam {
 
-// Lengths are shares of the object's distance from the cameras, so that they mean the same in a map
-// whose scale is not known.
+// Lengths are given as shares of the object's distance from the cameras, so that they also make
+// sense in a map of unknown scale.
 
-// What makes a detection one of an object; see AssociateDetections.
+// When a detection shows an object of the map; see AssociateDetections.
 struct AssociationOptions {
-  double min_projection_iou = 0.25;  // of the hull with the projected ellipse
-  double min_carried_iou = 0.5;      // of the hull with the last one, carried over at its depth
-  double min_depth_iou = 0.1;        // the larger of both, where depth points agree
+  double min_projection_iou = 0.25;  // of hull and projected ellipse
+  double min_carried_iou = 0.5;      // of hull and last hull, moved to the new pose
+  double min_depth_iou = 0.1;        // the larger of both, if the depth points agree
   int min_shared_landmarks = 3;
-  double min_shared_ratio = 0.5;  // of landmarks in the detection
-  int recent_views = 5;           // whose landmarks and centroids stand for an object
-  int cloud_points = 40;          // depth points of a cloud that are compared, at most
-  int min_cloud = 20;             // points for the rank-sum test
+  double min_shared_ratio = 0.5;  // common landmarks over those of the one that has fewer
+  int recent_views = 5;           // number of latest keyframes that represent an object
+  int cloud_points = 40;          // largest number of points of a cloud that are compared, about
+  int min_cloud = 20;             // number of points that the rank-sum test needs
   double max_rank_sum = 1.282;    // standard score
-  double alpha = 0.001;           // of the t-test of centroids
-  double centroid_noise = 0.02;   // of the distance
+  double alpha = 0.001;           // significance level of the t-test of centroids
+  double centroid_noise = 0.02;   // sigma of a centroid, as a share of its distance
   double max_offset = 1.0;        // between centroids, in sizes of the object
-  // Shares of the similarity of a match: the larger IoU, shared landmarks, one cloud, one centroid,
-  // votes for the class.
+  // Weights in the similarity of a match: the larger IoU, shared landmarks, agreeing clouds,
+  // agreeing centroids, votes for the class.
   double iou_weight = 0.6;
   double landmark_weight = 0.2;
   double cloud_weight = 0.1;
   double centroid_weight = 0.1;
   double class_weight = 0.2;
-  double min_similarity = 0.2;  // a detection that is less similar shows no known object
+  double min_similarity = 0.2;  // of a detection and an object that are matched
 };
 
-// When a candidate's shape is sought, and where the search starts.
+// When the shape of a candidate is computed, and from which start.
 struct StartOptions {
   int min_views = 3;                         // keyframes
   double min_parallax = 3.0;                 // degrees between viewing rays, with depth
   double min_parallax_without_depth = 15.0;  // degrees
-  int max_points = 2000;                     // depth points that are taken, about
-  double trimmed = 0.03;        // share of the points left out at each end of each axis
-  double inflation = 1.2;       // of the oriented bounding box of the points
-  double min_half_axis = 0.01;  // of the distance; flat things have some thickness
+  int max_points = 2000;                     // approximate largest number of depth points
+  double trimmed = 0.03;        // share of the points that is left out at each end of each axis
+  double inflation = 1.2;       // factor on the oriented bounding box of the points
+  double min_half_axis = 0.01;  // of the distance, for flat things
 };
 
-// What a mapped object must satisfy; see FindObjection.
+// The conditions that a mapped object must satisfy; see FindObjection.
 struct ValidityOptions {
   double min_half_axis = 0.005;     // of the distance
   double max_half_axis = 3.0;       // of the distance
   double min_overlap = 0.6;         // mean IoU of projected ellipse and hull
-  double min_points_near = 0.4;     // share of depth points in the quadric or near its surface
-  double near_surface = 0.03;       // near: at most this far outside, of the distance,
-  double near_surface_share = 0.2;  // or at most so many mean half axes
-  double max_stretch = 2.5;         // half axis over the reach of the points along it
+  double min_points_near = 0.4;     // share of depth points inside the quadric or near its surface
+  double near_surface = 0.03;       // near: outside by at most this share of the distance
+  double near_surface_share = 0.2;  // or by at most this share of the mean half axis
+  double max_stretch = 2.5;         // half axis over the extent of the points along it
 };
 
-// When two objects are one; see FindDuplicates.
+// When two objects are fused; see FindDuplicates.
 struct FusionOptions {
   double min_overlap = 0.25;          // IoU of the volumes, of objects never seen together
   double min_overlap_together = 0.5;  // of objects seen together in few keyframes
-  double max_shared_keyframes = 0.2;  // of those of the object that fewer keyframes observe
-  double alpha = 0.05;                // of the t-test of centroids
-  double centroid_noise = 0.02;       // of the distance
+  double max_shared_keyframes = 0.2;  // of the object with fewer keyframes
+  double alpha = 0.05;                // significance level of the t-test of centroids
+  double centroid_noise = 0.02;       // sigma of a centroid, as a share of its distance
 };
 
 // When an object is removed.
 struct CullingOptions {
-  int candidate_keyframes = 20;   // a candidate that so many keyframes do not see is removed
-  int min_visible = 10;           // keyframes that should show a mapped object, before
-  double min_found_ratio = 0.25;  // the share of them that do is judged
+  int candidate_keyframes = 20;  // removes candidates last seen more keyframes ago than this
+  // A mapped object is removed if it is found in a smaller share of the keyframes that should show
+  // it. There must be at least `min_visible` of them.
+  int min_visible = 10;
+  double min_found_ratio = 0.25;
 };
 
 // How the misfit of an object is measured; see objects/misfit.h.
 struct MisfitOptions {
-  int views = 40;      // the latest; samples are taken of them
-  double width = 4.0;  // degrees, of the Gaussian weights of the samples
+  int views = 40;      // number of latest keyframes that samples are taken from
+  double width = 4.0;  // degrees, sigma of the Gaussian weights of the samples
 };
 
 // Which landmarks lie on an object, for guided matching.
 struct GuideOptions {
-  int views = 20;  // keyframes whose masks are looked at, at most
+  int views = 20;  // largest number of keyframes whose masks are used
 };
 
-// Refinement: one quadric, poses fixed. The sigma of an outline is the object's misfit, bounded
-// from both sides.
+// Refinement: one quadric is optimised, poses are fixed. The sigma of a line is the object's
+// misfit, clamped to [min_misfit_px, max_misfit_px].
 struct ObjectRefinementOptions {
   // Its loss_scale is not used: see loss_px.
   ObjectConstraintOptions constraint = {
@@ -92,55 +94,56 @@ struct ObjectRefinementOptions {
       .max_effective_lines = 4.0,
       .loss = RobustLoss::kHuber,
       .depth = {.max_points = 20, .choice = PointChoice::kEveryKth, .loss_scale = 1.0},
-      // About the start. Its centre and rotation are those of the side that was seen first, so
-      // their sigmas are large.
+      // The prior is about the start. The start shows only the side that was seen first, so the
+      // sigmas of centre and rotation are large.
       .prior = {.log_axes = 0.5, .center = 2.0, .rotation = 1.0},
       .prior_without_depth = {.log_axes = 0.15, .center = 2.0, .rotation = 1.0}};
-  int max_views = 20;   // evenly chosen
-  int iterations = 20;  // at most
+  int max_views = 20;   // keyframes, evenly chosen
+  int iterations = 20;  // largest number of iterations of the solver
   double min_misfit_px = 1.0;
-  double max_misfit_px = 5.0;  // also that of a start, whose misfit is not known yet
-  double loss_px = 8.0;        // the loss scale, px, of an outline whose sigma is max_misfit_px
+  double max_misfit_px = 5.0;  // also used for a start, whose misfit is not known yet
+  double loss_px = 8.0;        // loss scale of a line whose sigma is max_misfit_px
 };
 
-// Joint pose: the camera moves, objects are fixed. Depth points and the prior of the object are not
-// used.
+// Joint pose estimation: the pose is optimised, objects are fixed. Depth points and the prior of
+// the object are not used.
 struct ObjectPoseOptions {
-  // An object is dropped when half of its residuals are beyond the loss scale.
+  // An object is left out if half of its residuals exceed the loss scale.
   ObjectConstraintOptions constraint = {};
-  // Sigmas of a prior on the pose, about the start, only where there are objects. The prior is weak
-  // compared with one object or a few points. It constrains what outlines leave free: a distance
-  // that all outlines share, the rotation around a single object.
+  // Sigmas of a prior that keeps the pose near its initial value. It is only used if there are
+  // objects, and it is weak compared with one object or a few points. It constrains the motions
+  // that objects alone do not determine, such as the rotation around a single object and the
+  // common distance of all objects.
   double prior_rotation = 0.1;     // radians
   double prior_translation = 0.1;  // of the mean distance of the objects
-  int min_objects = 2;             // that constrain a pose without points
+  int min_objects = 2;             // that are enough to determine a pose without points
 };
 
-// Bundle adjustment: quadrics move together with poses and landmarks. Every detection of an object
-// counts, also those in keyframes outside of the window. The poses of those keyframes are fixed.
-// Without them, what a few new views leave free of a quadric would be lost.
+// Bundle adjustment: quadrics, poses and landmarks are optimised together. Detections in keyframes
+// outside the window are used too, with fixed poses. Without them, a few new views would not
+// determine the whole quadric.
 struct ObjectBundleOptions {
   ObjectConstraintOptions constraint = {
-      // The misfit of an ellipsoid is the same in all similar views.
+      // The misfit of an object is similar in similar views.
       .misfit_factor = 2.0,       .loss = RobustLoss::kTukey, .loss_scale = 6.0,
-      .min_loss_px = 15.0,  // a loss that ignores smaller errors spoils the shape
+      .min_loss_px = 15.0,  // with a smaller scale the shape gets worse
       .depth = {.max_points = 6},
-      // About the quadric as it is when the adjustment begins, so that the prior damps what the
-      // views leave free. A prior about the start, the side that was seen first, would pull the
-      // cameras along.
+      // The prior is about the quadric at the beginning of the adjustment. It damps the parameters
+      // that the views do not determine. A prior about the start, which shows only the side that
+      // was seen first, would bias the poses.
   };
-  int max_outer_views = 5;  // detections outside of the window, evenly chosen
-  // An object that comes out with a half axis changed by a larger factor is left as it was.
+  int max_outer_views = 5;  // keyframes outside the window, evenly chosen
+  // A quadric is left as it was if the adjustment changes a half axis by a larger factor.
   double max_axis_change = 3.0;
 };
 
-// Objects as landmarks: what they take part in, and how their shape is found.
+// All options of objects as landmarks.
 struct ObjectOptions {
   bool enabled = true;
   bool joint_pose = true;         // mapped objects constrain the pose of each frame
-  bool bundle_adjustment = true;  // quadrics are moved together with poses and points
+  bool bundle_adjustment = true;  // quadrics are adjusted together with poses and landmarks
   bool misfit_compensation = true;
-  bool guided_matching = true;  // landmarks on objects that the local map lacks are searched
+  bool guided_matching = true;  // search landmarks on objects that are not in the local map
   DetectionOptions detection;
   AssociationOptions association;
   StartOptions start;
@@ -154,7 +157,7 @@ struct ObjectOptions {
   ObjectBundleOptions bundle;
 
   void Bind(OptionTable& options);
-  // Throws InputError where a use has a residual that cannot be computed from the primitive.
+  // Throws InputError if the residual of a use cannot be computed from the primitive.
   void Validate() const;
 };
 

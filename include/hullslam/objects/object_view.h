@@ -18,25 +18,26 @@ struct ObjectView {
   const Detection* detection = nullptr;  // owned by the keyframe's frame
 };
 
-// The views of an object by increasing keyframe id; at most `max_views`, evenly chosen with the
-// first and the last among them (0: all). Good until the map is written.
+// The views of an object by increasing keyframe id. If there are more than `max_views` (0: no
+// limit), they are evenly chosen and include the first and the last. They are valid until the map
+// changes.
 std::vector<ObjectView> CollectViews(const Map& map, const ObjectLandmark& object,
                                      size_t max_views = 0);
 
-// Depth points of the views in the world, at most about `max_points`, evenly taken.
+// Depth points of the views in the world frame, evenly chosen, about `max_points` at most.
 std::vector<Eigen::Vector3d> CollectPoints(std::span<const ObjectView> views, size_t max_points);
 
-// Fewer depth points tell nothing of a shape: the object is treated as one without depth.
+// An object with fewer depth points is treated as an object without depth.
 inline constexpr size_t kMinDepthPoints = 20;
 bool HasDepth(std::span<const ObjectView> views);
 
-// Mean distance of a point of the world from the cameras; needs one view at least.
+// Mean distance of a world point from the cameras; needs at least one view.
 double MeanDistance(std::span<const ObjectView> views, const Eigen::Vector3d& point);
 
-// Mean of a view's depth points in the world; needs one at least.
+// Mean of a view's depth points in the world frame; needs at least one point.
 Eigen::Vector3d Centroid(const ObjectView& view);
 
-// Largest angle between the rays from the cameras to a point of the world, degrees.
+// Largest angle between the rays from the cameras to a world point, degrees.
 double Parallax(std::span<const ObjectView> views, const Eigen::Vector3d& point);
 
 }  // namespace hullslam

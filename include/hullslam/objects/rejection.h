@@ -5,20 +5,20 @@
 
 namespace hullslam {
 
-// Why an object is not mapped, or is no longer.
+// Why an object is not mapped, or not any more.
 enum class ObjectRejection {
   kFewViews,        // fewer keyframes than needed
   kLittleParallax,  // the rays to it are nearly parallel
   kNoStart,         // too few depth points, or rays that do not meet
   kNotRefined,      // the solver failed
-  kNotInFront,      // of every camera that observes it
-  kAxesOutOfRange,
-  kLowOverlap,  // of outline and hulls
-  kOffPoints,   // depth points are neither in it nor near its surface
-  kStretched,   // it reaches far beyond its points
-  kPart,        // of a mapped object
-  kSeldomSeen,  // culled
-  kFused,       // it was one with another object
+  kNotInFront,      // not in front of every camera that observes it
+  kAxesOutOfRange,  // a half axis is too small or too large
+  kLowOverlap,      // small mean IoU of projected ellipse and hull
+  kOffPoints,       // too few depth points are inside it or near its surface
+  kStretched,       // it reaches far beyond its depth points
+  kPart,            // it is a part of a mapped object
+  kSeldomSeen,      // culled, because few of the keyframes that should see it do
+  kFused,           // it was the same as another object
 };
 inline constexpr int kObjectRejectionCount = 12;
 

@@ -13,25 +13,27 @@
 
 namespace hullslam {
 
-// Why a quadric cannot be that of the object which these views show, with the figure that says so.
+// Why a quadric is not valid for the views of its object, with the measured value.
 struct Objection {
   ObjectRejection reason = ObjectRejection::kFewViews;
   std::string detail;  // "mean IoU 0.31, expected at least 0.40"
 };
 
-// How far outside of a quadric a point still counts as near it; `distance` is that of the quadric
-// from the cameras.
+// The largest distance from the surface at which a point outside a quadric counts as near it.
+// `distance` is the mean distance of the quadric from the cameras. Both in units of the map.
 double NearSurface(const Ellipsoid& ellipsoid, double distance, const ValidityOptions& options);
 
-// Checks, in this order: in front of every camera; the range of the half axes; mean IoU of
-// projected ellipse and hull; and with depth: enough points inside or near the surface, no half
-// axis stretched far beyond the points. Nothing for a valid quadric. Needs one view at least.
+// Checks, in this order: the quadric is in front of every camera; the half axes are in their range;
+// the mean IoU of projected ellipse and hull is large enough; and with depth: enough points are
+// inside or near the surface, and no half axis reaches far beyond the points. Returns nothing for a
+// valid quadric. Needs at least one view.
 std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor& sensor,
                                        std::span<const ObjectView> views,
                                        const ValidityOptions& options);
 
-// Mean over the views of the IoU of the projected ellipse, clipped to the image, with the hull, or
-// of their boxes where the mask is a box; 0 where the ellipsoid is not in front of a camera.
+// Mean over the views of the IoU of hull and projected ellipse, which is clipped to the image. If
+// the mask is a box, the bounding boxes are compared. A view counts as 0 if the ellipsoid is not in
+// front of its camera.
 double MeanOverlap(const Ellipsoid& ellipsoid, const Sensor& sensor,
                    std::span<const ObjectView> views);
 
