@@ -11,9 +11,9 @@ namespace hullslam {
 namespace {
 
 constexpr double kReach = 3.0;  // in widths; samples farther away have almost no weight
-constexpr double kMinWeight =
-    1.0;                          // least sum of weights: one sample at the normal or several near
-constexpr double kNoSlope = 0.3;  // weight of the prior that the slope is 0
+// Least sum of weights: that of one sample at the normal, or of several samples near it.
+constexpr double kMinWeight = 1.0;
+constexpr double kNoSlope = 0.3;    // weight of the prior that the slope is 0
 constexpr double kMinDepth = 1e-3;  // of the contact point, in units of the map
 
 }  // namespace
