@@ -184,36 +184,6 @@ TEST_F(TrackerTest, FollowsAMapThatMoved) {
   }
 }
 
-// A correction may shrink the map: the velocity and the pose relative to the reference shrink too.
-TEST_F(TrackerTest, FollowsAMapWhoseUnitOfLengthChanged) {
-  Begin();
-  TrackFrames(1, 5);
-  constexpr double kScale = 0.25;
-  Map shrunk = made_.map.Snapshot();
-  map_->keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
-    Keyframe& changed = shrunk.MutableKeyframe(id);
-    changed.cam_from_world.translation = kScale * keyframe.cam_from_world.translation;
-    changed.scale = kScale * keyframe.scale;
-  });
-  map_->landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
-    shrunk.SetPosition(id, kScale * landmark.position);
-    UpdateViewingGeometry(shrunk, id, world_.sensor().levels);
-  });
-  map_ = Publish(shrunk);
-  LastFrame last;
-  last.frame = world_.Observe(5).frame;
-  last.landmarks.resize(last.frame->features.size());
-  last.velocity = Rigid3(Eigen::Quaterniond::Identity(), {0.4, 0.0, 0.0});
-  last.pose = made_.map.RelativeTo(KeyframeId(1), SyntheticWorld::CamFromWorld(6));
-  last.reference = KeyframeId(1);
-  last.frame = world_.Observe(6).frame;
-  const LastFrame followed = FollowMap(*map_, last);
-  Rigid3 expected = SyntheticWorld::CamFromWorld(6);
-  expected.translation *= kScale;
-  ExpectNear(followed.cam_from_world, expected, 1e-12);
-  EXPECT_NEAR(followed.velocity->translation.x(), 0.1, 1e-12);
-}
-
 TEST_F(TrackerTest, ALostFrameDoesNotChangeTheReferenceKeyframe) {
   Begin();
   TrackFrames(1, 5);

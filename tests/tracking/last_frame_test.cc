@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tracking/last_frame.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "hullslam/util/check.h"
+#include "map/made_map.h"
+
+namespace hullslam {
+namespace {
+
+Rigid3 Shift(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }
+
+// A keyframe of frame 0 with two landmarks, and a later frame that sees both of them.
+class LastFrameTest : public testing::Test {
+ protected:
+  LastFrameTest() {
+    keyframe_ = map_.AddKeyframe(MakeFrame(0, 2, 2), Shift(1.0));
+    landmarks_ = Share(map_, {keyframe_}, 2);
+    last_.frame = MakeFrame(1, 2);
+    last_.landmarks = landmarks_;
+    last_.pose = map_.RelativeTo(keyframe_, Shift(3.0));
+    last_.reference = keyframe_;
+    last_.velocity = Shift(0.4);
+  }
+
+  Map map_;
+  KeyframeId keyframe_;
+  std::vector<LandmarkId> landmarks_;
+  LastFrame last_;
+};
+
+TEST_F(LastFrameTest, ThePoseFollowsTheReferenceKeyframe) {
+  map_.SetPose(keyframe_, Shift(11.0));
+  const LastFrame followed = FollowMap(map_, last_);
+  EXPECT_EQ(followed.cam_from_world.translation.x(), 13.0);
+  EXPECT_EQ(followed.velocity->translation.x(), 0.4);
+  EXPECT_EQ(followed.landmarks, landmarks_);
+}
+
+// A correction may shrink the map: the pose relative to the reference and the velocity shrink too.
+TEST_F(LastFrameTest, PoseAndVelocityFollowTheUnitOfLength) {
+  map_.MutableKeyframe(keyframe_).cam_from_world = Shift(0.25);
+  map_.MutableKeyframe(keyframe_).scale = 0.25;
+  const LastFrame followed = FollowMap(map_, last_);
+  EXPECT_DOUBLE_EQ(followed.cam_from_world.translation.x(), 0.75);
+  EXPECT_DOUBLE_EQ(followed.velocity->translation.x(), 0.1);
+}
+
+TEST_F(LastFrameTest, AFrameThatBecameAKeyframeHasItsPoseAndLandmarks) {
+  const KeyframeId made = map_.AddKeyframe(MakeFrame(1, 2), Shift(5.0));
+  const LandmarkId landmark = Share(map_, {made})[0];
+  const LastFrame followed = FollowMap(map_, last_);
+  EXPECT_EQ(followed.reference, made);
+  EXPECT_EQ(followed.cam_from_world.translation.x(), 5.0);
+  EXPECT_EQ(followed.landmarks, (std::vector<LandmarkId>{landmark, LandmarkId()}));
+}
+
+TEST_F(LastFrameTest, OfTwoLandmarksThatBecameOneTheFirstKeypointKeepsIt) {
+  map_.ReplaceLandmark(landmarks_[1], landmarks_[0]);
+  const LastFrame followed = FollowMap(map_, last_);
+  EXPECT_EQ(followed.landmarks, (std::vector<LandmarkId>{landmarks_[0], LandmarkId()}));
+}
+
+TEST_F(LastFrameTest, AFrameThatTheMapDoesNotKnowIsRefused) {
+  last_.pose.reset();
+  EXPECT_THROW(FollowMap(map_, last_), CheckError);
+}
+
+}  // namespace
+}  // namespace hullslam
