@@ -14,6 +14,7 @@ int Run(int argc, char** argv) {
   const CLI::App* const trajectory_command = AddTrajectoryCommand(app, trajectory);
   AddObjectsCommand(app, objects);
   app.require_subcommand(1);
+  app.footer("Exit codes: 0 done, 1 the program failed, 2 bad usage or input.");
   if (!ParseCommandLine(app, argc, argv)) {
     return kDone;
   }
