@@ -9,12 +9,13 @@ namespace {
 
 int Run(int argc, char** argv) {
   CLI::App app("Evaluates finished runs.", "evaluate");
+  // Subcommands that are added later have this footer too.
+  app.footer("Exit codes: 0 done, 1 the program failed, 2 bad usage or input.");
   TrajectoryArguments trajectory;
   ObjectsArguments objects;
   const CLI::App* const trajectory_command = AddTrajectoryCommand(app, trajectory);
   AddObjectsCommand(app, objects);
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 done, 1 the program failed, 2 bad usage or input.");
   if (!ParseCommandLine(app, argc, argv)) {
     return kDone;
   }

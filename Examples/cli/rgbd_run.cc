@@ -88,10 +88,15 @@ Prefetcher<LoadedFrame> StartLoading(const TumSequence& sequence, const PinholeC
       kImagesAhead);
 }
 
-// Waits until the time, counted from `start`, at which the camera took the frame.
+// Waits until the time, counted from `start`, at which the camera took the frame, or until the run
+// is interrupted.
 void WaitForStamp(const TumSequence& sequence, double stamp, Clock::time_point start) {
-  const std::chrono::duration<double> due(stamp - sequence.frames.front().timestamp);
-  std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(due));
+  constexpr std::chrono::milliseconds kStep(20);
+  const std::chrono::duration<double> after_start(stamp - sequence.frames.front().timestamp);
+  const auto due = start + std::chrono::duration_cast<Clock::duration>(after_start);
+  while (!IsInterrupted() && Clock::now() < due) {
+    std::this_thread::sleep_until(std::min(due, Clock::now() + kStep));
+  }
 }
 
 const char* Name(TrackingState state) {
@@ -123,6 +128,12 @@ RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
     if (!loaded) {
       break;
     }
+    if (arguments.realtime && loaded->image) {
+      WaitForStamp(sequence, loaded->image->timestamp, start);
+      if (IsInterrupted()) {
+        break;
+      }
+    }
     ++result.given;
     if (!loaded->image) {
       if (arguments.strict) {
@@ -132,9 +143,6 @@ RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
       PrintError("warning: {}; this frame is skipped\n", loaded->error);
       ++result.skipped;
       continue;
-    }
-    if (arguments.realtime) {
-      WaitForStamp(sequence, loaded->image->timestamp, start);
     }
     const TrackedFrame frame = system.Track(*loaded->image);
     progress.Show(result.given, [&] { return DescribeState(frame.state, system); });

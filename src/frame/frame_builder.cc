@@ -56,7 +56,7 @@ std::shared_ptr<const Frame> FrameBuilder::Build(const ImageInput& image, FrameI
   CheckSize("image", image.grey, size);
   CheckSize("depth image", image.depth, size);
   if (image.grey.type() != CV_8UC1) {
-    throw InputError("the image has more than 8 bits or one channel per pixel, expected CV_8UC1");
+    throw InputError("the image is not CV_8UC1");
   }
   if (image.depth.type() != CV_16UC1 && image.depth.type() != CV_32FC1) {
     throw InputError("the depth image is neither CV_16UC1 nor CV_32FC1");

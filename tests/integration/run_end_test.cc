@@ -205,6 +205,10 @@ TEST(Programs, HelpTellsTheExitCodes) {
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.output.find("Exit codes: 0 "), std::string::npos) << program;
   }
+  for (const char* const command : {"trajectory", "objects"}) {
+    const ProgramResult help = RunProgram("evaluate", {command, "--help"});
+    EXPECT_NE(help.output.find("Exit codes: 0 "), std::string::npos) << command;
+  }
 }
 
 // ---- signals
@@ -238,6 +242,15 @@ TEST_F(RunEnd, AnInterruptWritesTheResultsSoFar) {
       EXPECT_EQ(ReadFolder(output_).size(), 4U);
     }
   }
+}
+
+TEST_F(RunEnd, AnInterruptDoesNotWaitForTheNextFrame) {
+  const PlaneSequence slow(3, 1000.0);
+  RunningProgram program("rgbd_tum", {slow.path(), "--realtime", "--output", output_});
+  ASSERT_TRUE(program.ReadLine().starts_with("frame "));
+  program.Send(SIGTERM);
+  EXPECT_EQ(program.Wait(), 1);  // the test's time limit is shorter than the time to the next frame
+  EXPECT_EQ(Summary()["trajectory"]["frames"], 1);
 }
 
 TEST_F(RunEnd, AnIgnoredSignalStaysIgnored) {
