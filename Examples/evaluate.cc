@@ -9,6 +9,8 @@ namespace {
 
 int Run(int argc, char** argv) {
   CLI::App app("Evaluates finished runs.", "evaluate");
+  // Subcommands that are added later have this footer too.
+  app.footer("Exit codes: 0 done, 1 the program failed, 2 bad usage or input.");
   TrajectoryArguments trajectory;
   ObjectsArguments objects;
   const CLI::App* const trajectory_command = AddTrajectoryCommand(app, trajectory);

@@ -93,7 +93,6 @@ def run_once(command, folder, seconds):
         return summary, ""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / RECORD).unlink(missing_ok=True)
-    (folder / "summary.json").unlink(missing_ok=True)
     with (folder / "log.txt").open("w", encoding="utf-8") as log:
         log.write(shlex.join(command) + "\n")
         log.flush()

@@ -38,6 +38,16 @@ std::vector<InstanceMask> SequenceMasks::Read(size_t frame) const {
   return source_ == nullptr ? std::vector<InstanceMask>() : source_->Read(frames_.at(frame)).masks;
 }
 
+std::set<std::string> SequenceMasks::Labels() const {
+  std::set<std::string> labels;
+  for (size_t frame = 0; frame < frames_.size(); ++frame) {
+    for (const InstanceMask& mask : Read(frame)) {
+      labels.insert(mask.label);
+    }
+  }
+  return labels;
+}
+
 std::optional<std::string> SequenceMasks::format() const {
   return source_ == nullptr ? std::nullopt : std::optional(source_->format());
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ class SequenceMasks {
 
   // The masks of the frame with this index. May be called by another thread.
   std::vector<InstanceMask> Read(size_t frame) const;
+  // The classes of all masks of all frames. Reads them all.
+  std::set<std::string> Labels() const;
   std::optional<std::string> format() const;
   std::string Describe() const;  // "masks: PATH (yolo-seg), 0 of 798 frames have none"
 

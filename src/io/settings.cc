@@ -244,7 +244,8 @@ fs::path FindConfigFolder() {
   std::error_code error;
   // Nothing in this library changes the environment, so reading it is safe.
   // NOLINTNEXTLINE(concurrency-mt-unsafe)
-  if (const char* const chosen = std::getenv("HULLSLAM_CONFIG")) {
+  const char* const chosen = std::getenv("HULLSLAM_CONFIG");
+  if (chosen != nullptr && *chosen != '\0') {
     if (!fs::is_directory(chosen, error)) {
       throw InputError(std::string("HULLSLAM_CONFIG: '") + chosen + "' is not a folder");
     }

@@ -165,6 +165,7 @@ TumSequence OpenTumSequence(const fs::path& folder, const TumSequenceOptions& op
   TumSequence sequence = options.associations.empty()
                              ? PairLists(folder, options.need_images)
                              : ReadAssociations(folder, options.associations);
+  sequence.available = sequence.frames.size();
   sequence.frames = Select(folder, std::move(sequence.frames), options.selection);
   if (options.need_images) {
     CheckImagesExist(sequence.frames);

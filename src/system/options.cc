@@ -8,6 +8,13 @@
 
 namespace hullslam {
 
+void RunOptions::Bind(OptionTable& options) {
+  options.Add("run.max_lost_share", &max_lost_share, Range::Between(0.0, 1.0),
+              "the run fails (exit code 1) if a larger share of its frames has no pose");
+  options.Add("run.max_lost_at_end", &max_lost_at_end, Range::AtLeast(0.0),
+              "the run fails (exit code 1) if no frame of a longer time at its end has a pose, s");
+}
+
 OptionTable SystemOptions::Bind() {
   OptionTable table;
   camera.Bind(table);
@@ -19,6 +26,7 @@ OptionTable SystemOptions::Bind() {
   tracking.Bind(table);
   mapping.Bind(table);
   objects.Bind(table);
+  run.Bind(table);
   for (const char* name :
        {"KeyFrameSize", "KeyFrameLineWidth", "GraphLineWidth", "PointSize", "CameraSize",
         "CameraLineWidth", "ViewpointX", "ViewpointY", "ViewpointZ", "ViewpointF"}) {

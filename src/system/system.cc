@@ -9,6 +9,7 @@
 #include "hullslam/frame/dynamic_mask.h"
 #include "hullslam/system/compose_trajectory.h"
 #include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
 #include "system/pipeline.h"
 #include "system/sequential_pipeline.h"
 #include "system/threaded_pipeline.h"
@@ -44,7 +45,7 @@ cv::Mat ToGrey(const cv::Mat& image, bool rgb_order) {
       cv::cvtColor(image, grey, rgb_order ? cv::COLOR_RGBA2GRAY : cv::COLOR_BGRA2GRAY);
       return grey;
     default:
-      throw CheckError("the image must have 8 bits per channel and 1, 3 or 4 channels");
+      throw InputError("the image must have 8 bits per channel and 1, 3 or 4 channels");
   }
 }
 
@@ -86,6 +87,7 @@ TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat
 TrackedFrame System::Track(const ImageInput& image) {
   Check(std::isfinite(image.timestamp), "the time stamp is not a number");
   Check(frames_.empty() || image.timestamp > frames_.back().timestamp, "time stamps must increase");
+  ValidateMasks(image.masks, options_.camera.width, options_.camera.height);
   const FrameId id(static_cast<uint32_t>(frames_.size()));
   std::shared_ptr<const Frame> frame;
   {

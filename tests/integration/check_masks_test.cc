@@ -84,7 +84,7 @@ TEST_F(CheckMasks, DrawsThePicturesAskedFor) {
   for (const fs::directory_entry& file : fs::directory_iterator(out)) {
     names.insert(file.path().filename());
   }
-  EXPECT_EQ(names, (std::set<std::string>{"00.png", "02.png"}));
+  EXPECT_EQ(names, (std::set<std::string>{"00.png", "02.png", "pictures.json"}));
   const cv::Mat picture = cv::imread(out / "00.png", cv::IMREAD_COLOR);
   ASSERT_EQ(picture.size(), cv::Size(1280, 960));
   // The cup's left side is at x = 160 and y = 120 to 240 of the image. It is two-sided, so it is

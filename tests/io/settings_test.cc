@@ -223,6 +223,8 @@ TEST_F(Settings, TheSettingsOfKnownCamerasAreFoundAndRead) {
   }
   ::setenv("HULLSLAM_CONFIG", "/no/such/folder", 1);
   ExpectInputError([] { FindConfigFolder(); }, {"HULLSLAM_CONFIG", "/no/such/folder"});
+  ::setenv("HULLSLAM_CONFIG", "", 1);
+  EXPECT_NO_THROW(FindConfigFolder()) << "an empty variable counts as not set";
   ::unsetenv("HULLSLAM_CONFIG");
   // NOLINTEND(concurrency-mt-unsafe)
   EXPECT_TRUE(std::filesystem::exists(FindConfigFolder() / "TUM1.yaml"));

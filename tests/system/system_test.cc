@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
 #include "map/invariants.h"
 #include "support/expect_error.h"
 
@@ -220,19 +221,41 @@ TEST(System, ImagesOfAnotherTypeOrSizeAreRefused) {
   const cv::Mat image = TheWall().Photograph(0);
   const cv::Mat depth = Wall::Depth(0);
   for (const int type : {CV_8UC2, CV_16UC1, CV_32FC1, CV_32FC3}) {
-    EXPECT_THROW(system.Track(1.0, cv::Mat(480, 640, type, cv::Scalar::all(9)), depth), CheckError)
+    EXPECT_THROW(system.Track(1.0, cv::Mat(480, 640, type, cv::Scalar::all(9)), depth), InputError)
         << type;
   }
   for (const int type : {CV_8UC1, CV_16SC1, CV_64FC1, CV_16UC3}) {
-    EXPECT_THROW(system.Track(1.0, image, cv::Mat(480, 640, type, cv::Scalar::all(9))), CheckError)
+    EXPECT_THROW(system.Track(1.0, image, cv::Mat(480, 640, type, cv::Scalar::all(9))), InputError)
         << type;
   }
-  EXPECT_THROW(system.Track(1.0, cv::Mat(), depth), CheckError);
-  EXPECT_THROW(system.Track(1.0, image, cv::Mat()), CheckError);
-  EXPECT_THROW(system.Track(1.0, image(cv::Rect(0, 0, 320, 240)), depth), CheckError);
-  EXPECT_THROW(system.Track(1.0, image, depth(cv::Rect(0, 0, 320, 240))), CheckError);
+  EXPECT_THROW(system.Track(1.0, cv::Mat(), depth), InputError);
+  EXPECT_THROW(system.Track(1.0, image, cv::Mat()), InputError);
+  ExpectInputError([&] { system.Track(1.0, image(cv::Rect(0, 0, 320, 240)), depth); },
+                   {"320x240", "640x480", "Camera.width"});
+  ExpectInputError([&] { system.Track(1.0, image, depth(cv::Rect(0, 0, 320, 240))); },
+                   {"depth", "320x240", "640x480"});
   EXPECT_TRUE(system.frames().empty());
   EXPECT_EQ(system.Track(1.0, image, depth).state, TrackingState::kTracked);
+}
+
+TEST(System, MasksThatCannotBeUsedAreRefused) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  const cv::Mat image = TheWall().Photograph(0);
+  const cv::Mat depth = Wall::Depth(0);
+  const InstanceMask good = {
+      .label = "cup",
+      .outlines = {{{100.0, 100.0}, {200.0, 100.0}, {200.0, 200.0}, {100.0, 200.0}}}};
+  const auto refuse = [&](const auto& change, const std::vector<std::string>& parts) {
+    InstanceMask mask = good;
+    change(mask);
+    ExpectInputError([&] { system.Track(1.0, image, depth, {good, mask}); }, parts);
+  };
+  refuse([](InstanceMask& mask) { mask.label.clear(); }, {"mask 1", "label"});
+  refuse([](InstanceMask& mask) { mask.score = 7.0; }, {"mask 1", "score is 7"});
+  refuse([](InstanceMask& mask) { mask.outlines[0].resize(1); }, {"mask 1", "1 point"});
+  refuse([](InstanceMask& mask) { mask.outlines[0][2].x() = std::nan(""); }, {"mask 1", "nan"});
+  EXPECT_TRUE(system.frames().empty());
+  EXPECT_EQ(system.Track(1.0, image, depth, {good}).state, TrackingState::kTracked);
 }
 
 // The features of the first keyframe, which is made from one image.

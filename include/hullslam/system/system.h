@@ -52,8 +52,12 @@ class System {
   ~System();
 
   // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order that Camera.RGB says; `depth` as in
-  // ImageInput. Time stamps (s) must increase. Throws CheckError otherwise.
-  // `masks` are those of the objects in the image, in its raw pixels.
+  // ImageInput. `masks` are those of the objects in the image, in its raw pixels. Throws InputError
+  // for images of another type or size and for masks that ValidateMasks() refuses. Time stamps (s)
+  // must increase; throws CheckError otherwise. A refused frame changes nothing.
+  //
+  // If mapping fails, this call or a later one throws its exception, and so do all calls of Track
+  // and Finish after it. map() and trajectory() then give what was published before.
   TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
                      std::vector<InstanceMask> masks = {});
   TrackedFrame Track(const ImageInput& image);
@@ -74,9 +78,10 @@ class System {
   const std::vector<TrackedFrame>& frames() const { return frames_; }
   // All tracked frames in the current map.
   Trajectory trajectory() const;
-  // Durations of the stages. "track" is the whole of Track without mapping. Complete after Finish.
+  // Durations of the stages. "track" is the whole of Track without mapping. May be called at any
+  // time by the thread that calls Track; complete after Finish.
   StageTimes times() const;
-  // What became of the masks. Complete after Finish.
+  // What became of the masks. May be called like times().
   ObjectCounts object_counts() const;
 
  private:
