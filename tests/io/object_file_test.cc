@@ -159,13 +159,16 @@ TEST(ObjectFile, BrokenValuesAreReportedWithTheirPath) {
   ExpectRefusal("/camera/fx", 0, {"objects.json: camera.fx is 0"});
   ExpectRefusal("/camera/width", 0, {"camera.width is 0", "1 to 16384"});
   ExpectRefusal("/camera/height", 1e6, {"camera.height"});
+  ExpectRefusal("/camera/fx", 1e300, {"camera.fx is 1e+300"});
+  ExpectRefusal("/camera/fx", 1e-300, {"camera is {", "Camera.fx is '1e-300'"});
+  ExpectRefusal("/camera/k1", -5, {"camera is {", "Camera.k1 is '-5'"});
   ExpectRefusal("/candidates", -1, {"candidates is -1"});
   ExpectRefusal("/objects", "none", {"objects is \"none\"", "an array"});
   ExpectRefusal(object + "id", "x", {"objects[1].id is \"x\""});
   ExpectRefusal(object + "state", "lost", {"objects[1].state is \"lost\"", "mapped"});
   ExpectRefusal(object + "class", 3, {"objects[1].class is 3", "a string"});
   ExpectRefusal(object + "votes", {{"cup", "many"}}, {"objects[1].votes.cup is \"many\""});
-  ExpectRefusal(object + "world_from_object", {0, 0, 0, 0, 0, 0, 0}, {"length zero"});
+  ExpectRefusal(object + "world_from_object", {0, 0, 0, 0, 0, 0, 0}, {"a quaternion of length 1"});
   ExpectRefusal(object + "half_axes", {1, 0, 1}, {"objects[1].half_axes is [1,0,1]", "> 0"});
   ExpectRefusal(object + "half_axes", {1, 1}, {"objects[1].half_axes"});
   ExpectRefusal(object + "siou", "good", {"objects[1].siou is \"good\""});
