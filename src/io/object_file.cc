@@ -187,7 +187,7 @@ ReportedView ReadView(const JsonNode& node) {
   view.timestamp = node.At("timestamp").Number(kMostSeconds);
   view.cam_from_world = node.At("cam_from_world").Pose();
   view.label = node.At("class").Text();
-  view.score = node.At("score").Number();
+  view.score = node.At("score").Number(1.0);
   view.is_cut = node.At("cut").Flag();
   view.is_box = node.At("box").Flag();
   view.hull = node.At("hull").Points();
@@ -208,15 +208,16 @@ ObjectState ReadState(const JsonNode& node) {
 }
 
 std::map<std::string, double> ReadVotes(const JsonNode& node) {
+  constexpr double kMostVotes = 1e9;
   std::map<std::string, double> votes;
   for (const auto& [label, score] : node.Members()) {
-    votes[label] = score.Number();
+    votes[label] = score.Number(kMostVotes);
   }
   return votes;
 }
 
-std::optional<double> ReadOptional(const JsonNode& node, const char* key) {
-  return node.Has(key) ? std::optional(node.At(key).Number()) : std::nullopt;
+std::optional<double> ReadOptional(const JsonNode& node, const char* key, double most) {
+  return node.Has(key) ? std::optional(node.At(key).Number(most)) : std::nullopt;
 }
 
 ReportedObject ReadObject(const JsonNode& node) {
@@ -231,10 +232,10 @@ ReportedObject ReadObject(const JsonNode& node) {
   for (const JsonNode& view : node.At("observations").Elements()) {
     object.views.push_back(ReadView(view));
   }
-  object.fit.siou = ReadOptional(node, "siou");
-  object.fit.siou_mask = ReadOptional(node, "siou_mask");
-  object.fit.mtd_m2 = ReadOptional(node, "mtd_m2");
-  object.fit.tangent_px = ReadOptional(node, "tangent_px");
+  object.fit.siou = ReadOptional(node, "siou", 1.0);
+  object.fit.siou_mask = ReadOptional(node, "siou_mask", 1.0);
+  object.fit.mtd_m2 = ReadOptional(node, "mtd_m2", kMostMetres);
+  object.fit.tangent_px = ReadOptional(node, "tangent_px", kMostPixels);
   return object;
 }
 
