@@ -173,6 +173,8 @@ TEST(ObjectFile, BrokenValuesAreReportedWithTheirPath) {
   ExpectRefusal(object + "half_axes", {1, 1}, {"objects[1].half_axes"});
   ExpectRefusal(object + "siou", "good", {"objects[1].siou is \"good\""});
   ExpectRefusal(view + "keyframe", 1.5, {at + "keyframe is 1.5"});
+  ExpectRefusal(view + "score", 1e308, {at + "score is 1e+308", "from -1 to 1"});
+  ExpectRefusal(object + "votes", {{"cup", 1e308}}, {"objects[1].votes.cup is 1e+308"});
   ExpectRefusal(view + "timestamp", nullptr, {at + "timestamp is null"});
   ExpectRefusal(view + "cam_from_world", "I", {at + "cam_from_world is \"I\""});
   ExpectRefusal(view + "cut", 1, {at + "cut is 1", "true or false"});
