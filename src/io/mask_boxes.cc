@@ -5,6 +5,7 @@
 
 #include "io/mask_checks.h"
 #include "io/mask_text.h"
+#include "io/plausible.h"
 
 namespace hullslam {
 namespace {
@@ -22,8 +23,8 @@ class BoxMasks : public TextMasks {
       row.Fail(fmt::format("{} column(s), expected {}: class x y width height score",
                            row.columns.size(), kColumns));
     }
-    const double x = row.Number(1, "x");
-    const double y = row.Number(2, "y");
+    const double x = row.Number(1, "x", kMostPixels);
+    const double y = row.Number(2, "y", kMostPixels);
     const double width = Length(row, 3, "width");
     const double height = Length(row, 4, "height");
     return {.label = ClassName(row, 0),
@@ -33,7 +34,7 @@ class BoxMasks : public TextMasks {
   }
 
   static double Length(const TextRow& row, size_t column, const char* name) {
-    const double value = row.Number(column, name);
+    const double value = row.Number(column, name, kMostPixels);
     if (value < 0.0) {
       row.Fail(fmt::format("{} is '{}', expected a number >= 0 (px)", name, value));
     }

@@ -46,8 +46,7 @@ void ProbeFolder(MaskProbe& probe) {
 
 void ProbeFile(MaskProbe& probe) {
   constexpr std::array<std::string_view, 3> kKeys = {"annotations", "image_id", "detections"};
-  CheckFileSize(probe.path, kMostJsonFileBytes);
-  const std::string text = ReadFile(probe.path);
+  const std::string text = ReadFile(probe.path, kMostJsonFileBytes);
   size_t first = std::string::npos;
   for (const std::string_view key : kKeys) {
     const size_t at = text.find('"' + std::string(key) + '"');
@@ -68,6 +67,10 @@ MaskProbe ProbeMasks(const fs::path& path) {
     throw InputError(path.string() + ": no such folder or file, expected masks");
   }
   probe.is_folder = fs::is_directory(path, error);
+  if (!probe.is_folder && !fs::is_regular_file(path, error)) {
+    throw InputError(path.string() +
+                     ": is neither a folder nor a file; give --masks-format to read it");
+  }
   if (probe.is_folder) {
     ProbeFolder(probe);
   } else {

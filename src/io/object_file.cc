@@ -7,6 +7,7 @@
 #include "hullslam/util/check.h"
 #include "io/json_file.h"
 #include "io/json_node.h"
+#include "io/plausible.h"
 
 namespace hullslam {
 namespace {
@@ -140,16 +141,16 @@ std::string FormatObject(const ReportedObject& object) {
 
 PinholeCamera ReadCamera(const JsonNode& node) {
   PinholeCamera camera;
-  camera.fx = node.At("fx").PositiveNumber();
-  camera.fy = node.At("fy").PositiveNumber();
-  camera.cx = node.At("cx").Number();
-  camera.cy = node.At("cy").Number();
+  camera.fx = node.At("fx").PositiveNumber(kMostPixels);
+  camera.fy = node.At("fy").PositiveNumber(kMostPixels);
+  camera.cx = node.At("cx").Number(kMostPixels);
+  camera.cy = node.At("cy").Number(kMostPixels);
   camera.k1 = node.At("k1").Number();
   camera.k2 = node.At("k2").Number();
   camera.p1 = node.At("p1").Number();
   camera.p2 = node.At("p2").Number();
   camera.k3 = node.At("k3").Number();
-  camera.bf = node.At("bf").Number();
+  camera.bf = node.At("bf").PositiveNumber(kMostPixels);
   constexpr uint32_t kLargest = 16384;
   const auto size = [&](const char* key) {
     const uint32_t value = node.At(key).Count();
@@ -160,6 +161,9 @@ PinholeCamera ReadCamera(const JsonNode& node) {
   };
   camera.width = size("width");
   camera.height = size("height");
+  if (const std::string fault = camera.FindFault(); !fault.empty()) {
+    node.Fail("a camera; " + fault);
+  }
   return camera;
 }
 
@@ -169,7 +173,7 @@ std::vector<SilhouetteLine> ReadLines(const JsonNode& node) {
   for (const JsonNode& entry : node.Elements()) {
     const std::vector<double> values = entry.Numbers(4);
     const Eigen::Vector2d normal(values[0], values[1]);
-    if (std::abs(normal.norm() - 1.0) > kTolerance) {
+    if (!(std::abs(normal.norm() - 1.0) <= kTolerance && std::abs(values[2]) <= kMostPixels)) {
       entry.Fail("nx, ny of unit length, then c and 1 or 0");
     }
     lines.push_back({{normal.normalized(), values[2]}, values[3] != 0.0});
@@ -180,10 +184,10 @@ std::vector<SilhouetteLine> ReadLines(const JsonNode& node) {
 ReportedView ReadView(const JsonNode& node) {
   ReportedView view;
   view.keyframe = KeyframeId(node.At("keyframe").Count());
-  view.timestamp = node.At("timestamp").Number();
+  view.timestamp = node.At("timestamp").Number(kMostSeconds);
   view.cam_from_world = node.At("cam_from_world").Pose();
   view.label = node.At("class").Text();
-  view.score = node.At("score").Number();
+  view.score = node.At("score").Number(1.0);
   view.is_cut = node.At("cut").Flag();
   view.is_box = node.At("box").Flag();
   view.hull = node.At("hull").Points();
@@ -204,15 +208,16 @@ ObjectState ReadState(const JsonNode& node) {
 }
 
 std::map<std::string, double> ReadVotes(const JsonNode& node) {
+  constexpr double kMostVotes = 1e9;
   std::map<std::string, double> votes;
   for (const auto& [label, score] : node.Members()) {
-    votes[label] = score.Number();
+    votes[label] = score.Number(kMostVotes);
   }
   return votes;
 }
 
-std::optional<double> ReadOptional(const JsonNode& node, const char* key) {
-  return node.Has(key) ? std::optional(node.At(key).Number()) : std::nullopt;
+std::optional<double> ReadOptional(const JsonNode& node, const char* key, double most) {
+  return node.Has(key) ? std::optional(node.At(key).Number(most)) : std::nullopt;
 }
 
 ReportedObject ReadObject(const JsonNode& node) {
@@ -222,19 +227,15 @@ ReportedObject ReadObject(const JsonNode& node) {
   object.label = node.At("class").Text();
   object.votes = ReadVotes(node.At("votes"));
   object.ellipsoid.world_from_object = node.At("world_from_object").Pose();
-  const std::vector<double> axes = node.At("half_axes").Numbers(3);
-  object.ellipsoid.half_axes = {axes[0], axes[1], axes[2]};
-  if (!(object.ellipsoid.half_axes.minCoeff() > 0.0)) {
-    node.At("half_axes").Fail("three numbers > 0");
-  }
-  object.misfit_px = node.At("misfit_px").Number();
+  object.ellipsoid.half_axes = node.At("half_axes").Lengths();
+  object.misfit_px = node.At("misfit_px").Number(kMostPixels);
   for (const JsonNode& view : node.At("observations").Elements()) {
     object.views.push_back(ReadView(view));
   }
-  object.fit.siou = ReadOptional(node, "siou");
-  object.fit.siou_mask = ReadOptional(node, "siou_mask");
-  object.fit.mtd_m2 = ReadOptional(node, "mtd_m2");
-  object.fit.tangent_px = ReadOptional(node, "tangent_px");
+  object.fit.siou = ReadOptional(node, "siou", 1.0);
+  object.fit.siou_mask = ReadOptional(node, "siou_mask", 1.0);
+  object.fit.mtd_m2 = ReadOptional(node, "mtd_m2", kMostMetres);
+  object.fit.tangent_px = ReadOptional(node, "tangent_px", kMostPixels);
   return object;
 }
 

@@ -18,7 +18,10 @@
 #include <vector>
 
 #include "hullslam/util/error.h"
+#include "io/read_file.h"
 #include "io/text_rows.h"
+#include "io/yaml_nesting.h"
+#include "util/shown_text.h"
 
 namespace hullslam {
 namespace {
@@ -71,7 +74,7 @@ WrittenValues ScanLines(const fs::path& file, std::string_view text) {
         key, WrittenValue{number, std::string(Trim(value.substr(0, value.find('#'))))});
     if (!is_new) {
       throw InputError(fmt::format("{}: key '{}' was given before, in line {}", Place(file, number),
-                                   key, it->second.line));
+                                   ShowText(key), it->second.line));
     }
   }
   return values;
@@ -79,15 +82,15 @@ WrittenValues ScanLines(const fs::path& file, std::string_view text) {
 
 // A byte order mark, which editors on Windows add, is accepted.
 std::string ReadYamlText(const fs::path& file) {
-  constexpr size_t kLargest = 1 << 20;
-  std::string text = ReadFile(file);
+  constexpr size_t kLargest = 1'000'000;
+  std::string text = ReadFile(file, kLargest);
   if (text.starts_with("\xEF\xBB\xBF")) {
     text.erase(0, 3);
   }
   if (!text.starts_with("%YAML")) {
     throw InputError(Place(file, 1) + ": expected a settings file with '%YAML:1.0' as first line");
   }
-  if (text.size() > kLargest || text.find('\0') != std::string::npos) {
+  if (text.find('\0') != std::string::npos) {
     throw InputError(file.string() + ": is not a text file with settings");
   }
   return text;
@@ -129,7 +132,8 @@ std::string ScalarText(const cv::FileNode& node, const WrittenValue& written,
     const std::string text = node.string();
     return ParseFinite(text, value) ? '"' + text + '"' : text;
   }
-  throw InputError(fmt::format("{}: {} is {}, expected a single value", place, node.name(),
+  throw InputError(fmt::format("{}: {} is {}, expected a single value", place,
+                               ShowText(node.name()),
                                node.isMap()   ? "a map"
                                : node.isSeq() ? "a list"
                                               : "empty"));
@@ -142,7 +146,7 @@ void ApplyNodes(const fs::path& file, const cv::FileNode& root, const WrittenVal
     const auto it = written.find(key);
     if (it == written.end()) {
       throw InputError(fmt::format("{}: '{}' is not on a line of its own, expected 'key: value'",
-                                   file.string(), key));
+                                   file.string(), ShowText(key)));
     }
     const std::string place = Place(file, it->second.line);
     if (!table.Contains(key)) {
@@ -155,6 +159,7 @@ void ApplyNodes(const fs::path& file, const cv::FileNode& root, const WrittenVal
 
 void ApplyFile(const fs::path& file, OptionTable& table, std::set<std::string>& given) {
   const std::string text = ReadYamlText(file);
+  CheckYamlNesting(file, text);
   const cv::FileStorage storage = ParseYaml(file, text);
   try {
     const cv::FileNode root = storage.root();
@@ -172,7 +177,7 @@ void ApplyOverrides(std::span<const std::string> overrides, OptionTable& table,
   for (const std::string_view assignment : overrides) {
     const size_t equals = assignment.find('=');
     if (equals == std::string::npos) {
-      throw InputError(fmt::format("--set: '{}', expected key=value", assignment));
+      throw InputError(fmt::format("--set: '{}', expected key=value", ShowText(assignment)));
     }
     const std::string key(Trim(assignment.substr(0, equals)));
     table.Set(key, std::string(Trim(assignment.substr(equals + 1))), "--set");

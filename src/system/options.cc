@@ -39,6 +39,9 @@ void SystemOptions::Validate() const {
   if (camera.fx <= 0.0 || camera.fy <= 0.0) {
     throw InputError("settings: Camera.fx and Camera.fy are not given, expected numbers > 0");
   }
+  if (const std::string fault = camera.FindFault(); !fault.empty()) {
+    throw InputError("settings: " + fault);
+  }
   const double top_scale = std::pow(features.scale_factor, features.level_count - 1);
   const double smallest_side = std::min(camera.width, camera.height) / top_scale;
   if (smallest_side < 64.0) {

@@ -56,6 +56,8 @@ TEST_F(BoxesTest, MalformedLinesAreRefused) {
   ExpectRefusedLine("73 nan 138 46 70 0.5", {"x is 'nan'"});
   ExpectRefusedLine("73 173 138 -46 70 0.5", {"width is '-46'", ">= 0"});
   ExpectRefusedLine("73 173 138 46 -1 0.5", {"height is '-1'", ">= 0"});
+  ExpectRefusedLine("73 1e300 138 46 70 0.5", {"x is '1e300'", "from -1e+06 to 1e+06"});
+  ExpectRefusedLine("73 173 138 46 1e308 0.5", {"height is '1e308'", "1e+06"});
   ExpectRefusedLine("73 173 138 46 70 50", {"confidence is '50'", "from 0 to 1"});
 }
 
