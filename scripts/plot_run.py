@@ -182,7 +182,7 @@ def draw_error(plot, run):
     plot.plot(seconds, 1e3 * run.errors, color=ESTIMATE, linewidth=1)
     plot.axhline(1e3 * run.ate(), color=MARK, linewidth=1, linestyle="--",
                  label=f"RMSE {1e3 * run.ate():.1f} mm")
-    plot.set_ylim(bottom=0)
+    plot.set_ylim(0, max(1.05e3 * run.errors.max(), 0.1))  # below 0.1 mm it is rounding
     plot.legend(loc="upper right")
     plot.grid(alpha=0.25)
 
