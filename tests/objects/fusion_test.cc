@@ -74,6 +74,18 @@ TEST_F(Duplicates, SeenTogetherInFewKeyframesMayBeOne) {
   EXPECT_TRUE(FindDuplicates(map_, {.max_shared_keyframes = 0.19}).empty());
 }
 
+TEST_F(Duplicates, SeenTogetherNeedTheOverlapThatTheOptionsSay) {
+  Look({cup_, near_}, 9);
+  Add(cup_, {0, 1, 2, 3, 4}, 0);
+  Add(near_, {4, 5, 6, 7, 8}, 1);
+  const double overlap = VolumeOverlap(cup_.ellipsoid, near_.ellipsoid);
+  FusionOptions options{.min_overlap = 0.0, .max_shared_keyframes = 0.2};
+  options.min_overlap_together = overlap - 0.01;
+  EXPECT_EQ(FindDuplicates(map_, options).size(), 1u);
+  options.min_overlap_together = overlap + 0.01;
+  EXPECT_TRUE(FindDuplicates(map_, options).empty());
+}
+
 TEST_F(Duplicates, AreNotThoseSeenTogether) {
   Look({cup_, near_}, 4);
   Add(cup_, {0, 1, 2, 3}, 0);

@@ -133,5 +133,27 @@ TEST_F(Mapping, ACandidateIsRemovedWhenItHasNotBeenSeenForLong) {
   EXPECT_TRUE(map_.objects().empty());
 }
 
+// Found in 2 of 14 keyframes that should show it, but 20 are needed for a judgement.
+TEST_F(Mapping, AnObjectIsJudgedOnlyAfterEnoughKeyframesThatShouldShowIt) {
+  ObjectOptions options;
+  options.culling.min_visible = 20;
+  ObjectMapper mapper(sensor_, options);
+  const auto look = [&](const std::vector<MadeObject>& objects, double angle) {
+    mapper.Process(map_, AddObserver(map_, sensor_, CameraOnCircle(angle, 1.5, 0.6), objects));
+  };
+  for (int i = 0; i < 5; ++i) {
+    look({MakeTable()[0]}, 0.1 * i);
+  }
+  ASSERT_EQ(Mapped().size(), 1u);
+  for (int i = 0; i < 12; ++i) {
+    look({}, 0.02 * i);
+  }
+  EXPECT_EQ(Mapped().size(), 1u);
+  for (int i = 0; i < 12; ++i) {
+    look({}, 0.02 * i);
+  }
+  EXPECT_TRUE(Mapped().empty());
+}
+
 }  // namespace
 }  // namespace hullslam
