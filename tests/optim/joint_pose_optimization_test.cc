@@ -261,7 +261,7 @@ TEST_F(JointPose, ThePriorDoesNotDependOnTheScaleOfTheWorld) {
   MakeScene(9);
   AddObjects(2);
   const Rigid3 start = Start();
-  const ObjectPoseOptions options{.prior_rotation = 0.01, .prior_translation = 0.001};
+  const ObjectPoseOptions options{.prior_rotation = 0.1, .prior_translation = 0.01};
   const Rigid3 small = Optimize(start, 1.5, options).points.cam_from_world;
   for (Ellipsoid& ellipsoid : ellipsoids_) {
     ellipsoid.world_from_object.translation *= 10.0;

@@ -356,8 +356,8 @@ TEST_F(TrackerTest, AFrameWithoutKeypointsIsLost) {
 }
 
 // Only the motion model can find a frame that shows no landmark of the reference keyframe. After a
-// lost frame the motion is that of several frames, so it must not be used.
-TEST_F(TrackerTest, TheMotionModelIsNotUsedAfterALostFrame) {
+// lost or missing frame the motion is that of several frames, so it must not be used.
+TEST_F(TrackerTest, TheMotionModelIsNotUsedAfterALostOrMissingFrame) {
   // Points whose landmarks only the last two keyframes observe. These observe few others, so none
   // of them becomes the reference.
   made_ = MakeSyntheticMap(world_, {0, 5, 10, 15});
@@ -400,21 +400,27 @@ TEST_F(TrackerTest, TheMotionModelIsNotUsedAfterALostFrame) {
     RebuildGrid(world_.sensor(), *frame);
     return frame;
   };
-  for (const bool is_interrupted : {false, true}) {
+  struct Case {
+    std::vector<uint32_t> frames;  // tracked
+    bool has_lost_frame = false;   // after them
+    TrackingState expected = TrackingState::kLost;
+  };
+  for (const Case& given : {Case{{0, 1, 2, 3, 4}, false, TrackingState::kTracked},
+                            Case{{0, 1, 2, 3, 4}, true}, Case{{0, 1, 2, 4}, false}}) {
     Tracker tracker(world_.sensor(), options_);
     const auto track = [&](std::shared_ptr<const Frame> frame) {
       const bool is_first = frame->id.value == 0;
       return tracker.Process(std::move(frame), is_first ? nullptr : Publish(made_.map), kIdle)
           .report.tracked.state;
     };
-    for (uint32_t i = 0; i <= 4; ++i) {
+    for (const uint32_t i : given.frames) {
       ASSERT_EQ(track(world_.Observe(i).frame), TrackingState::kTracked) << i;
     }
-    if (is_interrupted) {
+    if (given.has_lost_frame) {
       ASSERT_EQ(track(Select(*world_.Observe(5).frame, {})), TrackingState::kLost);
     }
-    EXPECT_EQ(track(show(is_interrupted ? 6 : 5)),
-              is_interrupted ? TrackingState::kLost : TrackingState::kTracked);
+    EXPECT_EQ(track(show(given.has_lost_frame ? 6 : 5)), given.expected)
+        << given.frames.size() << given.has_lost_frame;
   }
 }
 
