@@ -141,5 +141,25 @@ TEST_F(Validity, AnAxisAlongTheViewThatNothingHolds) {
   EXPECT_TRUE(reason == ObjectRejection::kStretched || reason == ObjectRejection::kLowOverlap);
 }
 
+// The cameras look along the x axis, so the outlines hardly show how long it is. The points extend
+// to 0.1 m, the half axis of 0.5 m is nearly five times as long.
+TEST_F(Validity, AHalfAxisMayExceedThePointsByTheFactorOfTheOptions) {
+  Map map;
+  const ObjectId id = map.AddObject();
+  for (int i = 0; i < 4; ++i) {
+    map.AddObservation(id, AddObserver(map, sensor_, CameraOnCircle(0.01 * i, 1.5, 0.0), {made_}),
+                       0);
+  }
+  const auto views = CollectViews(map, map.objects().At(id));
+  const Ellipsoid stretched = Scaled(5.0, 1.0, 1.0);
+  EXPECT_GT(MeanOverlap(stretched, sensor_, views), 0.8);
+  options_.max_stretch = 6.0;
+  EXPECT_FALSE(FindObjection(stretched, sensor_, views, options_));
+  options_.max_stretch = 4.0;
+  const auto objection = FindObjection(stretched, sensor_, views, options_);
+  ASSERT_TRUE(objection);
+  EXPECT_EQ(objection->reason, ObjectRejection::kStretched);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -220,6 +220,31 @@ TEST_F(BundleAdjustment, FindsExactlyTheWrongObservations) {
   EXPECT_LT(WorstPointError(result), 1e-4);
 }
 
+// The bound is 2.4 (without depth) or 2.8 standard deviations of the error that remains.
+TEST_F(BundleAdjustment, AnObservationIsAnOutlierFromAFewStandardDeviationsOn) {
+  constexpr uint32_t kShifted = 20;  // keypoint
+  for (const float deviations : {1.5f, 6.0f}) {
+    made_ = MakeSyntheticMap(world_, {0, 10, 20, 30, 40, 50}, [&](Frame& frame, const Rigid3&) {
+      if (frame.id.value == 30) {
+        Keypoint& keypoint = frame.features.keypoints[kShifted];
+        const auto level = static_cast<size_t>(keypoint.level);
+        keypoint.undistorted.y() += deviations * world_.sensor().levels.scale[level];
+      }
+    });
+    const BundleResult result =
+        AdjustBundle(made_.map, world_.sensor(), Window(), kPrecise, nullptr);
+    ASSERT_TRUE(result.is_usable);
+    if (deviations < 2.0f) {
+      EXPECT_TRUE(result.outliers.empty());
+    } else {
+      ASSERT_EQ(result.outliers.size(), 1u);
+      EXPECT_EQ(result.outliers[0].first,
+                made_.map.keyframes().At(KeyframeId(3)).landmarks[kShifted]);
+      EXPECT_EQ(result.outliers[0].second, KeyframeId(3));
+    }
+  }
+}
+
 TEST_F(BundleAdjustment, APointBehindACameraIsAnOutlierThere) {
   const LandmarkId id = Window().landmarks[5];
   const Landmark& landmark = made_.map.landmarks().At(id);

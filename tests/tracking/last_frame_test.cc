@@ -49,6 +49,14 @@ TEST_F(LastFrameTest, PoseAndVelocityFollowTheUnitOfLength) {
   EXPECT_DOUBLE_EQ(followed.velocity->translation.x(), 0.1);
 }
 
+// Only the change since the frame was tracked counts: the reference had been shrunk before.
+TEST_F(LastFrameTest, TheVelocityTakesTheQuotientOfTheScales) {
+  map_.MutableKeyframe(keyframe_).scale = 0.5;
+  last_.pose = map_.RelativeTo(keyframe_, Shift(3.0));
+  map_.MutableKeyframe(keyframe_).scale = 0.25;
+  EXPECT_DOUBLE_EQ(FollowMap(map_, last_).velocity->translation.x(), 0.2);
+}
+
 TEST_F(LastFrameTest, AFrameThatBecameAKeyframeHasItsPoseAndLandmarks) {
   const KeyframeId made = map_.AddKeyframe(MakeFrame(1, 2), Shift(5.0));
   const LandmarkId landmark = Share(map_, {made})[0];

@@ -355,6 +355,75 @@ TEST_F(TrackerTest, AFrameWithoutKeypointsIsLost) {
   EXPECT_EQ(Process(world_.Observe(2).frame).report.tracked.state, TrackingState::kTracked);
 }
 
+// Only the motion model can find a frame that shows no landmark of the reference keyframe. After a
+// lost or missing frame the motion is that of several frames, so it must not be used.
+TEST_F(TrackerTest, TheMotionModelIsNotUsedAfterALostOrMissingFrame) {
+  // Points whose landmarks only the last two keyframes observe. These observe few others, so none
+  // of them becomes the reference.
+  made_ = MakeSyntheticMap(world_, {0, 5, 10, 15});
+  std::vector<uint32_t> chosen;
+  const auto remove = [&](LandmarkId landmark, uint32_t first) {
+    for (const uint32_t keyframe : {first, first + 1}) {
+      if (made_.map.landmarks().Contains(landmark)) {
+        made_.map.RemoveObservation(landmark, KeyframeId(keyframe));
+      }
+    }
+  };
+  const std::vector<uint32_t> points = made_.views[3].points;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const LandmarkId landmark = made_.landmarks[points[i]];
+    if (!landmark.IsValid() || made_.map.landmarks().At(landmark).observations.size() != 4) {
+      continue;
+    }
+    if (chosen.size() < 60) {
+      remove(landmark, 0);
+      if (made_.map.landmarks().Contains(landmark)) {
+        chosen.push_back(points[i]);
+      }
+    } else if (i % 8 != 0) {
+      remove(landmark, 2);
+    }
+  }
+  ASSERT_EQ(chosen.size(), 60u);
+  for (uint32_t i = 0; i < 4; ++i) {
+    UpdateCovisibility(made_.map, KeyframeId(i));
+  }
+  const auto show = [&](uint32_t index) {
+    const SyntheticView view = world_.Observe(index);
+    std::vector<uint32_t> keypoints;
+    for (uint32_t i = 0; i < view.points.size(); ++i) {
+      if (std::find(chosen.begin(), chosen.end(), view.points[i]) != chosen.end()) {
+        keypoints.push_back(i);
+      }
+    }
+    auto frame = Select(*view.frame, keypoints);
+    RebuildGrid(world_.sensor(), *frame);
+    return frame;
+  };
+  struct Case {
+    std::vector<uint32_t> frames;  // tracked
+    bool has_lost_frame = false;   // after them
+    TrackingState expected = TrackingState::kLost;
+  };
+  for (const Case& given : {Case{{0, 1, 2, 3, 4}, false, TrackingState::kTracked},
+                            Case{{0, 1, 2, 3, 4}, true}, Case{{0, 1, 2, 4}, false}}) {
+    Tracker tracker(world_.sensor(), options_);
+    const auto track = [&](std::shared_ptr<const Frame> frame) {
+      const bool is_first = frame->id.value == 0;
+      return tracker.Process(std::move(frame), is_first ? nullptr : Publish(made_.map), kIdle)
+          .report.tracked.state;
+    };
+    for (const uint32_t i : given.frames) {
+      ASSERT_EQ(track(world_.Observe(i).frame), TrackingState::kTracked) << i;
+    }
+    if (given.has_lost_frame) {
+      ASSERT_EQ(track(Select(*world_.Observe(5).frame, {})), TrackingState::kLost);
+    }
+    EXPECT_EQ(track(show(given.has_lost_frame ? 6 : 5)), given.expected)
+        << given.frames.size() << given.has_lost_frame;
+  }
+}
+
 TEST_F(TrackerTest, TooFewInliersAreLost) {
   Begin();
   const size_t enough = static_cast<size_t>(options_.min_inliers);
