@@ -58,9 +58,9 @@ class Tracker {
   const KeyframePolicy policy_;
   StageTimes times_;
 
-  LastFrame last_;                // only valid if there is a map
-  FrameId last_requested_frame_;  // the frame of the last message
-  SightingCounter sightings_;     // since the last request
+  LastFrame last_;                  // only valid if there is a map
+  double last_request_time_ = 0.0;  // s, time stamp of the frame of the last message
+  SightingCounter sightings_;       // since the last request
 };
 
 }  // namespace hullslam

@@ -89,7 +89,27 @@ TEST(LocalWindow, AKeyframeIsAlwaysFixed) {
   const BundleWindow window = LocalWindow(map, KeyframeId(2), 20, 40);
   EXPECT_EQ(window.moving, Ids({2}));
   EXPECT_EQ(window.fixed, Ids({1}));
-  EXPECT_EQ(LocalWindow(MakeChain(10), KeyframeId(9), 20, 0).fixed, Ids({7}));
+}
+
+// Each of 60 keyframes shares landmarks with the last one. Without their observations, the
+// landmarks would leave the place where these keyframes saw them.
+TEST(LocalWindow, WithoutALimitAllObserversAreFixed) {
+  Map map;
+  for (uint32_t i = 0; i < 60; ++i) {
+    AddKeyframe(map, 1000);
+  }
+  for (uint32_t i = 0; i < 59; ++i) {
+    Share(map, Ids({i, 59}), 15);
+    UpdateCovisibility(map, KeyframeId(i));
+    if (i > 0) {
+      SetParent(map, KeyframeId(i), KeyframeId(0));
+    }
+  }
+  UpdateCovisibility(map, KeyframeId(59));
+  const BundleWindow window = LocalWindow(map, KeyframeId(59), 20, 0);
+  EXPECT_EQ(window.moving.size(), 20u);
+  EXPECT_EQ(window.fixed.size(), 40u);
+  EXPECT_EQ(LocalWindow(map, KeyframeId(59), 20, 30).fixed.size(), 30u);
 }
 
 TEST(GlobalWindow, MovesAllButTheRoot) {

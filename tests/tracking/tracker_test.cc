@@ -8,8 +8,10 @@
 #include <variant>
 
 #include "map/covisibility.h"
+#include "objects/made_objects.h"
 #include "support/synthetic_world.h"
 #include "support/unknown_points.h"
+#include "tracking/pose_source.h"
 
 namespace hullslam {
 namespace {
@@ -530,6 +532,115 @@ TEST(Tracker, NoiseMovesThePoseByLittle) {
     ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked);
     ExpectNear(result.report.tracked.cam_from_world, SyntheticWorld::CamFromWorld(i), 1e-2);
   }
+}
+
+// Keyframes are at least 0.2 s apart, whatever the frame rate is.
+TEST_F(TrackerTest, TheIntervalOfKeyframesIsATime) {
+  options_.keyframe_interval = 0.2;
+  for (const uint32_t rate : {10U, 30U}) {
+    Tracker tracker(world_.sensor(), options_);
+    tracker.Process(world_.Observe(0).frame, nullptr, kIdle);
+    const auto map = Publish(made_.map);
+    uint32_t first_request = 0;
+    for (uint32_t i = 1; i <= 10 && first_request == 0; ++i) {
+      auto frame = std::make_shared<Frame>(*DemandingFrame(i));
+      frame->timestamp = static_cast<double>(i) / rate;
+      first_request = tracker.Process(frame, map, kIdle).message ? i : 0;
+    }
+    EXPECT_EQ(first_request, rate / 5);
+  }
+}
+
+// The camera turns by 4 degrees in 1/30 s, which moves keypoints by 35 px.
+TEST_F(TrackerTest, TheMotionModelCountsTheTimeBetweenFrames) {
+  const Rigid3 turn(ExpSo3({0.0, 0.07, 0.0}), Eigen::Vector3d::Zero());
+  const SyntheticView view = world_.Observe(FrameId(1), turn);
+  LastFrame last;
+  last.frame = view.frame;
+  for (const uint32_t point : view.points) {
+    last.landmarks.push_back(made_.landmarks[point]);
+  }
+  last.reference = KeyframeId(0);
+  last.cam_from_world = turn;
+  last.motion = CameraMotion{turn, 1.0 / 30.0};
+  const auto found = [&](double time_step) {
+    Frame next = *world_.Observe(FrameId(2), turn * turn * turn * turn).frame;
+    next.timestamp = last.frame->timestamp + time_step;
+    const auto estimate =
+        PoseByMotionModel(next, made_.map, {world_.sensor(), options_, ObjectOptions()}, last);
+    return estimate ? estimate->inliers : 0;
+  };
+  EXPECT_GT(found(3.0 / 30.0), 50);
+  EXPECT_LT(found(1.0 / 30.0), found(3.0 / 30.0) / 2);
+}
+
+// The synthetic world with six balls, which all keyframes and frames detect.
+class ObjectTrackerTest : public TrackerTest {
+ protected:
+  ObjectTrackerTest() {
+    made_ = MakeSyntheticMap(world_, {0, 5, 10}, [this](Frame& frame, const Rigid3& camera) {
+      AddDetections(frame, camera);
+    });
+    for (uint32_t k = 0; k < balls_.size(); ++k) {
+      const ObjectId id = made_.map.AddObject();
+      for (uint32_t keyframe = 0; keyframe < 3; ++keyframe) {
+        EXPECT_TRUE(made_.map.AddObservation(id, KeyframeId(keyframe), k));
+      }
+      ObjectLandmark& object = made_.map.MutableObject(id);
+      object.state = ObjectState::kMapped;
+      object.has_shape = true;
+      object.ellipsoid = balls_[k].ellipsoid;
+      object.misfit_px = 1.0;
+    }
+  }
+  void AddDetections(Frame& frame, const Rigid3& cam_from_world) const {
+    for (const MadeObject& ball : balls_) {
+      frame.detections.push_back(Detect(ball, world_.sensor(), cam_from_world));
+    }
+  }
+  std::shared_ptr<const Frame> WithDetections(const Frame& frame) const {
+    auto changed = std::make_shared<Frame>(frame);
+    AddDetections(*changed, SyntheticWorld::CamFromWorld(frame.id.value));
+    return changed;
+  }
+  // A frame that shows no landmark, but all balls and many new close points.
+  std::shared_ptr<const Frame> FrameWithoutLandmarks(uint32_t index) const {
+    auto frame = Select(*world_.Observe(index).frame, {});
+    AddUnknownPoints(world_.sensor(), 200, 0, *frame);
+    return WithDetections(*frame);
+  }
+
+  const std::vector<MadeObject> balls_ = {MakeObject("ball", {-1.0, -0.6, 4.0}, {0.25, 0.25, 0.25}),
+                                          MakeObject("ball", {0.0, -0.6, 4.0}, {0.25, 0.25, 0.25}),
+                                          MakeObject("ball", {1.0, -0.6, 4.0}, {0.25, 0.25, 0.25}),
+                                          MakeObject("ball", {-1.0, 0.6, 4.0}, {0.25, 0.25, 0.25}),
+                                          MakeObject("ball", {0.0, 0.6, 4.0}, {0.25, 0.25, 0.25}),
+                                          MakeObject("ball", {1.0, 0.6, 4.0}, {0.25, 0.25, 0.25})};
+};
+
+// Such a keyframe would have no edge to the others, and its new landmarks would be a second map.
+TEST_F(ObjectTrackerTest, AFrameThatOnlyObjectsLocateIsNoKeyframe) {
+  Begin();
+  for (uint32_t i = 1; i <= 2; ++i) {
+    Process(WithDetections(*world_.Observe(i).frame));
+  }
+  const Tracker::Result result = Process(FrameWithoutLandmarks(3));
+  EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked);
+  EXPECT_EQ(result.report.tracked.inliers, 0);
+  ExpectNear(result.report.tracked.cam_from_world, SyntheticWorld::CamFromWorld(3), 1e-2);
+  EXPECT_FALSE(result.message);
+}
+
+TEST_F(ObjectTrackerTest, FindsLandmarksAgainAfterAFrameWithoutThem) {
+  Begin();
+  for (uint32_t i = 1; i <= 2; ++i) {
+    Process(WithDetections(*world_.Observe(i).frame));
+  }
+  Process(FrameWithoutLandmarks(3));
+  const Tracker::Result result = Process(WithDetections(*world_.Observe(4).frame));
+  EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked);
+  EXPECT_GT(result.report.tracked.inliers, 100);
+  ExpectNear(result.report.tracked.cam_from_world, SyntheticWorld::CamFromWorld(4), 1e-3);
 }
 
 }  // namespace
