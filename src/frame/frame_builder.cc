@@ -81,6 +81,9 @@ std::shared_ptr<const Frame> FrameBuilder::Build(const ImageInput& image, FrameI
   if (detection_builder_ && !image.masks.empty()) {
     frame->detections = Detect(image, features.keypoints);
   }
+  if (detection_builder_ && counts_.frames_with_masks > 0) {
+    frame->depth = DepthGrid(image.depth, depth_.units_per_metre);
+  }
   return frame;
 }
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/polyline.h"
+
 namespace hullslam {
 namespace {
 
@@ -130,6 +132,26 @@ MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& ob
   }
   const auto mean = static_cast<double>(std::max<size_t>(1, count));
   return {std::sqrt(plain / mean), std::sqrt(compensated / mean)};
+}
+
+double RelativeMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
+                      std::span<const ObjectView> views) {
+  double sum = 0.0;
+  size_t count = 0;
+  for (const ObjectView& view : views) {
+    const double area = SignedArea(view.detection->hull);
+    for (const SilhouetteLine& line : view.detection->lines) {
+      const auto plane = line.is_one_sided
+                             ? std::nullopt
+                             : PlaneOfLine(camera, view.cam_from_world, ellipsoid, line.line);
+      if (plane) {
+        const double pixels = plane->excess * plane->pixels_per_metre;
+        sum += pixels * pixels / area;
+        ++count;
+      }
+    }
+  }
+  return std::sqrt(sum / static_cast<double>(std::max<size_t>(1, count)));
 }
 
 }  // namespace hullslam

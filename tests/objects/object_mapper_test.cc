@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "map/invariants.h"
+#include "map/spanning_tree.h"
 #include "objects/fusion.h"
 #include "objects/initialisation.h"
 #include "objects/made_objects.h"
@@ -102,6 +103,31 @@ TEST_F(Mapping, AnObjectThatTurnsBadIsACandidateAgain) {
   EXPECT_EQ(map_.objects().At(ObjectId(1)).state, ObjectState::kCandidate);
   See(table, 0.5);  // and is found anew
   EXPECT_EQ(Mapped().size(), 3u);
+}
+
+// Keyframes are culled after the objects of the window were checked.
+TEST_F(Mapping, AnObjectWhoseKeyframesWereAllCulledIsNoLongerMapped) {
+  const auto table = MakeTable();
+  for (int i = 0; i < 4; ++i) {
+    See({table[0]}, 0.1 * i);
+  }
+  ASSERT_EQ(Mapped().size(), 1u);
+  See({}, 0.4);
+  for (uint32_t i = 1; i < 5; ++i) {
+    SetParent(map_, KeyframeId(i), KeyframeId(i - 1));
+  }
+  for (uint32_t i = 1; i < 4; ++i) {
+    map_.CullKeyframe(KeyframeId(i));
+  }
+  map_.RemoveObservation(ObjectId(0), KeyframeId(0));
+  EXPECT_TRUE(Mapped().empty());
+  // Other objects of its class can be mapped beside it.
+  MadeObject other = table[0];
+  other.ellipsoid.world_from_object.translation.x() += 0.05;
+  for (int i = 5; i < 9; ++i) {
+    See({other}, 0.1 * i);
+  }
+  EXPECT_EQ(Mapped().size(), 1u);
 }
 
 TEST_F(Mapping, TwoRunsGiveTheSameBits) {
