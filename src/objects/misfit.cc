@@ -136,22 +136,21 @@ MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& ob
 
 double RelativeMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
                       std::span<const ObjectView> views) {
-  double sum = 0.0;
-  size_t count = 0;
+  double squared_misfit = 0.0;
+  double squared_size = 0.0;  // of the mask of each line
   for (const ObjectView& view : views) {
-    const double area = SignedArea(view.detection->hull);
     for (const SilhouetteLine& line : view.detection->lines) {
       const auto plane = line.is_one_sided
                              ? std::nullopt
                              : PlaneOfLine(camera, view.cam_from_world, ellipsoid, line.line);
       if (plane) {
         const double pixels = plane->excess * plane->pixels_per_metre;
-        sum += pixels * pixels / area;
-        ++count;
+        squared_misfit += pixels * pixels;
+        squared_size += SignedArea(view.detection->hull);
       }
     }
   }
-  return std::sqrt(sum / static_cast<double>(std::max<size_t>(1, count)));
+  return squared_size > 0.0 ? std::sqrt(squared_misfit / squared_size) : 0.0;
 }
 
 }  // namespace hullslam
