@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tracking/keyframe_policy.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace hullslam {
 
 bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
@@ -17,10 +20,19 @@ bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
   const double ratio = evidence.keyframes < 2 ? young_reference_ratio : min_reference_ratio;
   const bool is_weak =
       lacks_close_points || evidence.inliers < ratio * evidence.reference_landmarks;
-  const bool lacks_objects = evidence.unknown_objects > 0 && time >= time_for_objects;
+  const double time_factor =
+      std::min(max_time_factor, std::exp2(evidence.fruitless_requests - patient_requests + 1));
+  const bool lacks_objects =
+      evidence.unknown_objects > 0 && time >= time_for_objects * std::max(1.0, time_factor);
   const bool is_overdue = time >= max_time_between;
   const bool is_urgent = is_overdue || is_abrupt || lacks_close_points;
   return (is_weak || lacks_objects) && (evidence.mapper_is_idle || is_urgent);
+}
+
+bool KeyframePolicy::NeedsKeyframeForObjects(KeyframeEvidence evidence) const {
+  const bool is_needed = NeedsKeyframe(evidence);
+  evidence.unknown_objects = 0;
+  return is_needed && !NeedsKeyframe(evidence);
 }
 
 }  // namespace hullslam

@@ -14,6 +14,7 @@ struct KeyframeEvidence {
   int close_tracked = 0;             // close keypoints (with precise depth) that show a landmark
   int close_untracked = 0;           // close keypoints that do not
   int unknown_objects = 0;           // detections that show no mapped object
+  int fruitless_requests = 0;        // for objects alone, since an object was last mapped
   size_t keyframes = 0;
   bool mapper_is_idle = true;
   int requests_waiting = 0;
@@ -24,6 +25,10 @@ struct KeyframePolicy {
   double min_time_between = 0.2;  // s, unless tracking has weakened abruptly
   double max_time_between = 1.0;  // s; after this time, also if the mapper is busy
   double time_for_objects = 1.0 / 3.0;  // s; after this time, also for objects that are not mapped
+  // Some detections can never be mapped. From this number of fruitless requests on, each further
+  // one doubles the time for objects, up to the largest factor.
+  int patient_requests = 4;
+  double max_time_factor = 16.0;
   // s; a time that is reached within this tolerance counts as reached. Half the time between two
   // frames, because time stamps are not exactly regular.
   double time_tolerance = 1.0 / 60.0;
@@ -45,6 +50,8 @@ struct KeyframePolicy {
   // pose. Covisibility and bundle adjustment could not connect it with the others, and its new
   // landmarks would be second copies of landmarks that the map already has.
   bool NeedsKeyframe(const KeyframeEvidence& evidence) const;
+  // Whether a keyframe is needed only because of objects.
+  bool NeedsKeyframeForObjects(KeyframeEvidence evidence) const;
 };
 
 }  // namespace hullslam

@@ -132,8 +132,13 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   const RelativePose pose = map.RelativeTo(tracking.reference, estimate.cam_from_world);
 
   Result result;
-  if (policy_.NeedsKeyframe(
-          GatherEvidence(*frame, map, sensor_, tracking, last_request_time_, mapper))) {
+  KeyframeEvidence evidence =
+      GatherEvidence(*frame, map, sensor_, tracking, last_request_time_, mapper);
+  evidence.fruitless_requests = object_requests_.CountFruitless(map);
+  if (policy_.NeedsKeyframe(evidence)) {
+    if (policy_.NeedsKeyframeForObjects(evidence)) {
+      object_requests_.AddRequest();
+    }
     result.message = MakeRequest(frame, tracking, pose);
   }
   result.report = {.tracked = {.frame = frame->id,

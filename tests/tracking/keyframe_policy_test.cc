@@ -132,6 +132,39 @@ TEST(KeyframePolicy, AsksForObjectsThatAreNotMappedYet) {
   });
 }
 
+TEST(KeyframePolicy, WaitsLongerForObjectsAfterFruitlessRequests) {
+  const auto after = [](int fruitless, int frames) {
+    return With([=](auto& e) {
+      e.unknown_objects = 1;
+      e.fruitless_requests = fruitless;
+      e.time_since_keyframe = Frames(frames);
+    });
+  };
+  ExpectDecisions({
+      {"3 fruitless requests, 10 frames after the last keyframe", after(3, 10), true},
+      {"4 fruitless requests, 19 frames after", after(4, 19), false},
+      {"4 fruitless requests, 20 frames after", after(4, 20), true},
+      {"6 fruitless requests, 79 frames after", after(6, 79), false},
+      {"6 fruitless requests, 80 frames after", after(6, 80), true},
+      {"100 fruitless requests, 159 frames after", after(100, 159), false},
+      {"100 fruitless requests, 160 frames after", after(100, 160), true},
+  });
+}
+
+TEST(KeyframePolicy, TellsWhetherAKeyframeIsNeededForObjectsAlone) {
+  const auto evidence = [](int unknown, int inliers) {
+    return With([=](auto& e) {
+      e.unknown_objects = unknown;
+      e.inliers = inliers;
+      e.time_since_keyframe = Frames(12);
+    });
+  };
+  const KeyframePolicy policy;
+  EXPECT_TRUE(policy.NeedsKeyframeForObjects(evidence(1, 200)));
+  EXPECT_FALSE(policy.NeedsKeyframeForObjects(evidence(0, 200)));  // not needed at all
+  EXPECT_FALSE(policy.NeedsKeyframeForObjects(evidence(1, 150)));  // tracking needs it too
+}
+
 // Time stamps of cameras jitter by some milliseconds.
 TEST(KeyframePolicy, ATimeIsReachedHalfAFrameEarlier) {
   const auto after = [](double seconds) {
