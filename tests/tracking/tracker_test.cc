@@ -102,6 +102,25 @@ class TrackerTest : public testing::Test {
   std::shared_ptr<const Map> map_;
 };
 
+// A camera stands still before something that is detected but can never be mapped.
+TEST_F(TrackerTest, AnObjectThatIsNeverMappedAsksForKeyframesMoreAndMoreSeldom) {
+  Begin();
+  const SyntheticView view = world_.Observe(10);
+  std::vector<uint32_t> requests;
+  for (uint32_t i = 1; i <= 600; ++i) {
+    auto frame = Select(*view.frame, AllKeypoints(*view.frame));
+    frame->id = FrameId(i);
+    frame->timestamp = i / 30.0;
+    frame->detections.emplace_back().hull = {{10.0, 10.0}, {60.0, 10.0}, {60.0, 60.0}};
+    const Tracker::Result result = Process(frame);
+    ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked) << i;
+    if (result.message) {
+      requests.push_back(i);
+    }
+  }
+  EXPECT_EQ(requests, (std::vector<uint32_t>{10, 20, 30, 40, 60, 100, 180, 340, 500}));
+}
+
 TEST_F(TrackerTest, TheFirstFrameWithEnoughDepthDefinesTheWorldFrame) {
   const auto frame = world_.Observe(0).frame;
   const Tracker::Result result = Process(frame);
