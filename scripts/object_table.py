@@ -4,7 +4,8 @@
 number of observations, the largest angle between two views of the object, the half axes (longest
 first), SIoU and tangent distance.
 
-RUN_DIR is an output folder of rgbd_tum or map_objects. Its objects.json is read.
+RUN_DIR is an output folder of rgbd_tum or map_objects. Its objects.json and
+objects_observations.json are read.
 """
 
 import argparse
@@ -14,6 +15,7 @@ import sys
 
 import numpy as np
 
+from object_entries import attach_observations
 from run_objects import InputError, rotation
 
 HEADER = ("| run | id | class | views | angle ° | half axes m | SIoU | SIoU mask | tangent px |\n"
@@ -49,7 +51,9 @@ def rows(run_dir, min_angle):
     """The rows of the objects whose largest angle is at least `min_angle` degrees."""
     path = run_dir / "objects.json"
     try:
-        entries = json.loads(path.read_text(encoding="utf-8"))["objects"]
+        content = json.loads(path.read_text(encoding="utf-8"))
+        attach_observations(path, content)
+        entries = content["objects"]
         return [row(run_dir.resolve().name, entry) for entry in entries
                 if entry["state"] == "mapped" and largest_angle(entry) >= min_angle]
     except (OSError, ValueError, KeyError, TypeError, IndexError) as error:

@@ -7,6 +7,8 @@ import pathlib
 import matplotlib.pyplot as plt
 import numpy as np
 
+from object_entries import attach_observations
+
 TURN = np.linspace(0.0, 2.0 * np.pi, 65)
 CIRCLE = np.stack([np.cos(TURN), np.sin(TURN)])
 
@@ -79,6 +81,7 @@ def read_objects(path):
         return {}, []
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
+        attach_observations(path, content)
         return content["camera"], [Object(entry) for entry in content["objects"]]
     except (OSError, ValueError, KeyError, TypeError, IndexError, np.linalg.LinAlgError) as error:
         reason = f"no key {error}" if isinstance(error, KeyError) else error

@@ -37,6 +37,8 @@ ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& 
 std::vector<FileContent> ObjectFiles(const std::filesystem::path& folder,
                                      const ObjectReport& report) {
   return {{folder / "objects.json", FormatObjects(report)},
+          {folder / "objects_observations.json", FormatObservations(report)},
+          {folder / "objects.csv", FormatObjectsCsv(report)},
           {folder / "objects.ply", FormatObjectsPly(report.objects)}};
 }
 
