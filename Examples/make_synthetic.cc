@@ -11,6 +11,7 @@
 #include <string>
 
 #include "cli/program.h"
+#include "cli/version.h"
 #include "synthetic/sequence_writer.h"
 
 namespace {
@@ -44,6 +45,7 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_flag("--force", arguments.options.force, "replace an earlier synthetic sequence in OUT");
   app.add_flag("--quiet", arguments.quiet, "print nothing but errors");
+  hullslam::AddVersionAndExitCodes(app, "done", "the program failed or was interrupted");
 }
 
 // Blocks SIGINT and SIGTERM, so that they stay pending and do not end the program.
