@@ -1,6 +1,8 @@
 # cmake -D BUILD_DIR=build/release -D WORK_DIR=... -P run.cmake
 # Installs BUILD_DIR into a new folder and moves that folder, then builds and runs the consumer
 # project against it.
+cmake_minimum_required(VERSION 3.23)
+
 function(run)
   execute_process(COMMAND ${ARGV} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
