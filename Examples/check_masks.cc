@@ -11,6 +11,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "cli/interrupt.h"
@@ -19,6 +20,7 @@
 #include "cli/messages.h"
 #include "cli/program.h"
 #include "cli/progress.h"
+#include "cli/version.h"
 #include "hullslam/frame/detection_builder.h"
 #include "hullslam/io/image_file.h"
 #include "hullslam/io/mask_source.h"
@@ -55,6 +57,9 @@ struct ClassCount {
 struct Counts {
   size_t frames = 0;
   size_t missing = 0;
+  size_t without_masks = 0;
+  size_t without_image = 0;
+  size_t without_depth = 0;
   size_t instances = 0;
   size_t crowds = 0;
   size_t without_area = 0;
@@ -69,7 +74,10 @@ struct Counts {
 };
 
 void AddOptions(CLI::App& app, Arguments& arguments) {
-  app.add_option("SEQUENCE", arguments.sequence, "folder with rgb.txt and depth.txt")->required();
+  app.add_option("SEQUENCE", arguments.sequence,
+                 "folder with rgb.txt (the images themselves may be missing) and, to use depth, "
+                 "depth.txt with its images")
+      ->required();
   app.add_option("MASKS", arguments.masks,
                  "masks of the sequence: a folder or a JSON file (docs/masks.md)")
       ->required();
@@ -93,9 +101,9 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(size_t{1}, size_t{1'000'000'000}).description(""))
       ->capture_default_str();
   app.add_flag("--quiet", arguments.quiet, "do not show the progress");
-  app.footer(
-      "Exit codes: 0 all masks and images can be read, 1 the program failed or was interrupted, 2 "
-      "some of them cannot be read, or bad usage.");
+  AddVersionAndExitCodes(app, "all masks and images can be read",
+                         "the program failed or was interrupted",
+                         "some of them cannot be read, or bad usage");
 }
 
 void CountDetections(const FrameMasks& frame, const DetectionResult& result, Counts& counts) {
@@ -119,6 +127,13 @@ void CountDetections(const FrameMasks& frame, const DetectionResult& result, Cou
   }
 }
 
+// The image, or a grey area of its size if the file is missing.
+cv::Mat Background(const fs::path& image, const PinholeCamera& camera) {
+  std::error_code error;
+  return fs::exists(image, error) ? ReadGreyImage(image)
+                                  : cv::Mat(camera.height, camera.width, CV_8UC1, cv::Scalar(96));
+}
+
 void DrawFrame(const std::string& name, const cv::Mat& grey, const PinholeCamera& camera,
                const FrameMasks& frame, const DetectionResult& result, OutputFolder& output) {
   std::vector<uchar> bytes;
@@ -133,20 +148,24 @@ void CheckFrame(const Arguments& arguments, const SystemOptions& options, const 
                 Counts& counts) {
   const bool is_drawn = output != nullptr && counts.frames % arguments.every == 0;
   ++counts.frames;
+  std::error_code error;
+  counts.without_image += fs::exists(paths.rgb, error) ? 0 : 1;
+  counts.without_depth += paths.depth.empty() ? 1 : 0;
   try {
     const FrameMasks frame = source.Read(names);
     counts.missing += frame.is_missing ? 1 : 0;
+    counts.without_masks += frame.masks.empty() ? 1 : 0;
     counts.instances += frame.masks.size() + frame.without_area + frame.crowds;
     counts.without_area += frame.without_area;
     counts.crowds += frame.crowds;
-    const cv::Mat depth = ReadDepthImage(paths.depth);
+    const cv::Mat depth = paths.depth.empty() ? cv::Mat() : ReadDepthImage(paths.depth);
     const DetectionBuilder builder(options.camera, options.depth.units_per_metre,
                                    options.objects.detection);
     const DetectionResult result = builder.Build(frame.masks, depth, {});
     CountDetections(frame, result, counts);
     if (is_drawn) {
-      DrawFrame(names.stem + ".png", ReadGreyImage(paths.rgb), options.camera, frame, result,
-                *output);
+      DrawFrame(names.stem + ".png", Background(paths.rgb, options.camera), options.camera, frame,
+                result, *output);
       ++counts.pictures;
     }
   } catch (const InputError& error) {
@@ -168,7 +187,10 @@ void PrintCounts(const Arguments& arguments, const MaskSource& source, const Cou
   };
   Print("{} ({})\n", arguments.masks.string(), source.format());
   print("frames", counts.frames);
-  print("without file", counts.missing);
+  print("without image", counts.without_image);
+  print("without depth", counts.without_depth);
+  print("without masks", counts.without_masks);
+  print("  without file", counts.missing);
   print("malformed", counts.faults.size());
   print("instances", counts.instances);
   print("kept", counts.detections);
@@ -227,6 +249,7 @@ int Run(int argc, char** argv) {
                                 : arguments.settings;
   SystemOptions options = ReadSettings(settings, arguments.overrides);
   options.objects.detection.min_keypoints = 0;  // no keypoints are extracted here
+  arguments.tum.need_images = false;
   const TumSequence sequence = OpenTumSequence(arguments.sequence, arguments.tum);
   const std::vector<MaskFrame> frames = MaskFrames(sequence);
   const auto source = OpenMasks(

@@ -11,6 +11,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/program.h"
+#include "cli/version.h"
 #include "synthetic/sequence_writer.h"
 
 namespace {
@@ -44,10 +45,8 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_flag("--force", arguments.options.force, "replace an earlier synthetic sequence in OUT");
   app.add_flag("--quiet", arguments.quiet, "print nothing but errors");
-  app.footer(
-      "Exit codes: 0 done, 1 interrupted or failed (then nothing is written), 2 bad usage or an "
-      "OUT "
-      "that may not be written.");
+  hullslam::AddVersionAndExitCodes(app, "done", "interrupted or failed (then nothing is written)",
+                                   "bad usage or an OUT that may not be written");
 }
 
 int Render(Arguments& arguments) {

@@ -22,6 +22,7 @@
 #include "cli/object_outputs.h"
 #include "cli/program.h"
 #include "cli/progress.h"
+#include "cli/version.h"
 #include "hullslam/frame/detection_builder.h"
 #include "hullslam/frame/dynamic_mask.h"
 #include "hullslam/io/image_file.h"
@@ -82,11 +83,9 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
   app.add_flag("--without-depth", arguments.without_depth, "do not use the depth images");
   AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
-  app.set_version_flag("--version", HULLSLAM_VERSION);
-  app.footer(
-      "Exit codes: 0 done; 1 the run failed or was interrupted (the results up to then are "
-      "written, "
-      "and summary.json says so); 2 bad usage or input.");
+  AddVersionAndExitCodes(app, "done",
+                         "the run failed or was interrupted (the results up to then are written, "
+                         "and summary.json says so)");
 }
 
 SystemOptions LoadOptions(const Arguments& arguments) {
@@ -157,8 +156,6 @@ class ObjectRun {
     auto frame = std::make_shared<Frame>();
     frame->id = FrameId(map_.keyframes().NextId().value);
     frame->timestamp = timestamp;
-    counts_.frames_with_masks += masks.empty() ? 0 : 1;
-    counts_.frames_without_masks += masks.empty() ? 1 : 0;
     std::erase_if(masks,
                   [&](const InstanceMask& mask) { return dynamic_classes_.contains(mask.label); });
     DetectionResult result = builder_.Build(masks, depth, {});
@@ -310,7 +307,10 @@ int Run(int argc, char** argv) {
 
   const ObjectReport report = CollectObjects(run.map(), camera, arguments.sequence);
   RunSummary summary = Summarize(arguments, inputs, masks, run, without_pose);
-  summary.objects = SummarizeObjects(report, run.counts());
+  ObjectCounts counts = run.counts();
+  counts.frames_without_masks = masks.without_masks();
+  counts.frames_with_masks = frames.size() - masks.without_masks();
+  summary.objects = SummarizeObjects(report, counts);
   summary.timing.total_s = seconds.count();
   summary.provenance.interrupted = !is_complete;
   WriteOutputs(output, run, report, summary);

@@ -4,7 +4,8 @@
 number of observations, the largest angle between two views of the object, the half axes (longest
 first), SIoU and tangent distance.
 
-RUN_DIR is an output folder of rgbd_tum or map_objects. Its objects.json is read.
+RUN_DIR is an output folder of rgbd_tum or map_objects. Its objects.json and
+objects_observations.json are read.
 """
 
 import argparse
@@ -13,6 +14,7 @@ import sys
 
 import numpy as np
 
+from object_entries import attach_observations
 from run_files import InputError, one_line, read_json
 from run_objects import rotation
 
@@ -49,7 +51,9 @@ def rows(run_dir, min_angle):
     """The rows of the objects whose largest angle is at least `min_angle` degrees."""
     path = run_dir / "objects.json"
     try:
-        entries = read_json(path)["objects"]
+        content = read_json(path)
+        attach_observations(path, content)
+        entries = content["objects"]
         return [row(run_dir.resolve().name, entry) for entry in entries
                 if entry["state"] == "mapped" and largest_angle(entry) >= min_angle]
     except (ValueError, KeyError, TypeError, IndexError, AttributeError) as error:

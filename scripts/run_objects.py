@@ -6,6 +6,7 @@ import pathlib
 import matplotlib.pyplot as plt
 import numpy as np
 
+from object_entries import attach_observations
 from plot_labels import Label, class_colours, draw_labels
 from run_files import LARGEST, InputError, number, numbers, one_line, pose, read_json
 
@@ -91,6 +92,7 @@ def read_objects(path):
         camera = read_camera(content["camera"])
         if not isinstance(content["objects"], list):
             raise ValueError("objects: expected a list")
+        attach_observations(path, content)
         objects = []
         for i, entry in enumerate(content["objects"]):
             place = f"objects[{i}]: "

@@ -32,13 +32,14 @@ class SequenceMasks {
   // The classes of all masks of all frames. Reads them all.
   std::set<std::string> Labels() const;
   std::optional<std::string> format() const;
-  std::string Describe() const;  // "masks: PATH (yolo-seg), 0 of 798 frames have none"
+  size_t without_masks() const { return counts_.without_masks; }  // frames
+  std::string Describe() const;  // "masks: PATH (yolo-seg), 6 of 798 frames have none, ..."
 
  private:
   std::string path_;
   std::vector<MaskFrame> frames_;
   std::unique_ptr<const MaskSource> source_;
-  size_t missing_ = 0;
+  MaskCounts counts_;
 };
 
 }  // namespace hullslam

@@ -36,6 +36,8 @@ ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& 
 
 std::vector<FileContent> ObjectFiles(const ObjectReport& report) {
   return {{"objects.json", FormatObjects(report)},
+          {"objects_observations.json", FormatObservations(report)},
+          {"objects.csv", FormatObjectsCsv(report)},
           {"objects.ply", FormatObjectsPly(report.objects)}};
 }
 

@@ -20,8 +20,8 @@ ObjectReport CollectObjects(const Map& map, const PinholeCamera& camera,
 
 ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& counts);
 
-// The contents of objects.json and objects.ply, so that they can be written together with the other
-// files of a run.
+// The contents of objects.json, objects_observations.json, objects.csv and objects.ply, so that
+// they can be written together with the other files of a run.
 std::vector<FileContent> ObjectFiles(const ObjectReport& report);
 
 // The number with this many decimals; "-" if there is none.

@@ -3,6 +3,7 @@
 
 #include "cli/logging.h"
 #include "cli/mask_arguments.h"
+#include "cli/version.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
@@ -66,12 +67,11 @@ void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::st
                "stop at an image that cannot be read instead of skipping the frame");
   AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
-  app.set_version_flag("--version", HULLSLAM_VERSION);
-  app.footer(
-      "Exit codes: 0 done; 1 the run failed, was interrupted (the results up to then are written, "
-      "and summary.json says so), lost too many frames (run.max_lost_share, run.max_lost_at_end), "
-      "or "
-      "could not print its report; 2 bad usage or input.");
+  AddVersionAndExitCodes(
+      app, "done",
+      "the run failed, was interrupted (the results up to then are written, and summary.json says "
+      "so), lost too many frames (run.max_lost_share, run.max_lost_at_end), or could not print its "
+      "report");
 }
 
 void FinishArguments(const std::vector<std::string>& positional, RunArguments& arguments) {

@@ -309,9 +309,6 @@ class CocoMasks : public MaskSource {
     return result;
   }
 
-  void Check(const MaskFrame& /*frame*/) const override {
-  }  // everything was checked when the file was read
-
  private:
   using Images = std::map<std::string, CocoImage>;  // by stem
 

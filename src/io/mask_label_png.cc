@@ -147,14 +147,6 @@ class LabelPngMasks : public MaskSource {
     return result;
   }
 
-  void Check(const MaskFrame& frame) const override {
-    if (Contains(frame)) {
-      for (const auto& [number, box] : FindInstances(Load(frame))) {
-        ClassOf(frame, number);
-      }
-    }
-  }
-
  private:
   std::filesystem::path Path(const MaskFrame& frame) const {
     return request_.path / (frame.stem + ".png");

@@ -217,9 +217,6 @@ class OaSlamMasks : public MaskSource {
     return result;
   }
 
-  void Check(const MaskFrame& /*frame*/) const override {
-  }  // everything was checked when the file was read
-
  private:
   MaskRequest request_;
   OaSlamImages images_;

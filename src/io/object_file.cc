@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/io/object_file.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <map>
 
 #include "geometry/polyline.h"
 #include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
 #include "io/json_file.h"
 #include "io/json_node.h"
 #include "io/plausible.h"
@@ -14,9 +18,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
+constexpr const char* kObservationsFile = "objects_observations.json";
 constexpr double kPixel = 1e-2;
 constexpr double kMetre = 1e-9;
+constexpr double kAngle = 1e-4;  // degrees; also for shares
 
 // Rounds `value` to a multiple of `unit` (1 over a power of ten). Never returns -0.
 double Rounded(double value, double unit) {
@@ -74,14 +80,19 @@ Json QuadricJson(const Ellipsoid& ellipsoid) {
   return rows;
 }
 
+const char* ToString(ObjectState state) {
+  return state == ObjectState::kMapped ? "mapped" : "candidate";
+}
+
 Json ToJson(const PinholeCamera& camera) {
   return {{"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx},       {"cy", camera.cy},
           {"k1", camera.k1}, {"k2", camera.k2}, {"p1", camera.p1},       {"p2", camera.p2},
           {"k3", camera.k3}, {"bf", camera.bf}, {"width", camera.width}, {"height", camera.height}};
 }
 
-Json ToJson(const ReportedView& view) {
-  return {{"keyframe", view.keyframe.value},
+Json ToJson(ObjectId object, const ReportedView& view) {
+  return {{"object", object.value},
+          {"keyframe", view.keyframe.value},
           {"timestamp", Rounded(view.timestamp, kMetre)},
           {"cam_from_world", PoseJson(view.cam_from_world)},
           {"class", view.label},
@@ -103,7 +114,7 @@ Json ToJson(const ReportedObject& object) {
   return {{"id", object.id.value},
           {"class", object.label},
           {"votes", votes},
-          {"state", object.state == ObjectState::kMapped ? "mapped" : "candidate"},
+          {"state", ToString(object.state)},
           {"world_from_object", PoseJson(object.ellipsoid.world_from_object)},
           {"half_axes",
            {Rounded(axes.x(), kMetre), Rounded(axes.y(), kMetre), Rounded(axes.z(), kMetre)}},
@@ -112,7 +123,10 @@ Json ToJson(const ReportedObject& object) {
           {"siou_mask", OrNull(object.fit.siou_mask)},
           {"mtd_m2", OrNull(object.fit.mtd_m2)},
           {"tangent_px", OrNull(object.fit.tangent_px)},
-          {"misfit_px", Rounded(object.misfit_px, kMetre)}};
+          {"misfit_px", Rounded(object.misfit_px, kMetre)},
+          {"parallax_deg", Rounded(ParallaxOf(object), kAngle)},
+          {"quality", Rounded(QualityOf(object), kAngle)},
+          {"observations", object.views.size()}};
 }
 
 // Labels come from the files of users and may contain any bytes.
@@ -120,23 +134,32 @@ std::string Dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// Joins the texts, each on its own line, with commas between them.
-std::string Join(const std::vector<std::string>& texts, const char* indent) {
-  std::string joined;
-  for (const std::string& text : texts) {
-    joined += (joined.empty() ? "\n" : ",\n") + (indent + text);
+// The head, and then a member with the entries, each on its own line.
+std::string WithEntries(const Json& head, const char* name,
+                        const std::vector<std::string>& entries) {
+  std::string text = Dump(head);
+  text.pop_back();
+  text += fmt::format(",\"{}\":[", name);
+  for (const std::string& entry : entries) {
+    text += (&entry == &entries.front() ? "\n " : ",\n ") + entry;
   }
-  return joined;
+  return text + "\n]}\n";
 }
 
-std::string FormatObject(const ReportedObject& object) {
-  std::vector<std::string> views;
-  for (const ReportedView& view : object.views) {
-    views.push_back(Dump(ToJson(view)));
+// A field of a CSV file by RFC 4180: in quotes if it contains a quote, a comma or a line end.
+std::string CsvField(const std::string& text) {
+  if (text.find_first_of("\",\r\n") == std::string::npos) {
+    return text;
   }
-  std::string text = Dump(ToJson(object));
-  text.pop_back();
-  return text + ",\"observations\":[" + Join(views, "  ") + "\n ]}";
+  std::string quoted = "\"";
+  for (const char c : text) {
+    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  }
+  return quoted + '"';
+}
+
+std::string CsvNumber(const std::optional<double>& value) {
+  return value ? fmt::format("{}", Rounded(*value, kMetre)) : std::string();
 }
 
 PinholeCamera ReadCamera(const JsonNode& node) {
@@ -229,14 +252,45 @@ ReportedObject ReadObject(const JsonNode& node) {
   object.ellipsoid.world_from_object = node.At("world_from_object").Pose();
   object.ellipsoid.half_axes = node.At("half_axes").Lengths();
   object.misfit_px = node.At("misfit_px").Number(kMostPixels);
-  for (const JsonNode& view : node.At("observations").Elements()) {
-    object.views.push_back(ReadView(view));
-  }
   object.fit.siou = ReadOptional(node, "siou", 1.0);
   object.fit.siou_mask = ReadOptional(node, "siou_mask", 1.0);
   object.fit.mtd_m2 = ReadOptional(node, "mtd_m2", kMostMetres);
   object.fit.tangent_px = ReadOptional(node, "tangent_px", kMostPixels);
   return object;
+}
+
+void CheckVersion(const JsonNode& top) {
+  if (top.At("version").Count() != kVersion) {
+    top.At("version").Fail("2, which this version of HullSLAM writes");
+  }
+}
+
+// Adds the observations to their objects, which must have `counts` observations.
+void ReadObservations(const std::filesystem::path& path, const std::vector<uint32_t>& counts,
+                      ObjectReport& report) {
+  const nlohmann::json json = ReadJson(path);
+  const JsonNode top(path, json);
+  CheckVersion(top);
+  std::map<uint32_t, ReportedObject*> objects;
+  for (ReportedObject& object : report.objects) {
+    objects[object.id.value] = &object;
+  }
+  for (const JsonNode& view : top.At("observations").Elements()) {
+    const auto object = objects.find(view.At("object").Count());
+    if (object == objects.end()) {
+      view.At("object").Fail("the id of an object in objects.json");
+    }
+    object->second->views.push_back(ReadView(view));
+  }
+  for (size_t i = 0; i < counts.size(); ++i) {
+    const ReportedObject& object = report.objects[i];
+    if (object.views.size() != counts[i]) {
+      throw InputError(fmt::format(
+          "{}: has {} observations of object {}, expected {} as in objects.json; both files must "
+          "be of the same run",
+          path.string(), object.views.size(), object.id.value, counts[i]));
+    }
+  }
 }
 
 }  // namespace
@@ -248,27 +302,67 @@ std::string FormatObjects(const ObjectReport& report) {
                      {"candidates", report.candidates}};
   std::vector<std::string> objects;
   for (const ReportedObject& object : report.objects) {
-    objects.push_back(FormatObject(object));
+    objects.push_back(Dump(ToJson(object)));
   }
-  std::string text = Dump(head);
-  text.pop_back();
-  return text + ",\"objects\":[" + Join(objects, " ") + "\n]}\n";
+  return WithEntries(head, "objects", objects);
 }
 
-ObjectReport ReadObjects(const std::filesystem::path& path) {
+std::string FormatObservations(const ObjectReport& report) {
+  std::vector<std::string> views;
+  for (const ReportedObject& object : report.objects) {
+    for (const ReportedView& view : object.views) {
+      views.push_back(Dump(ToJson(object.id, view)));
+    }
+  }
+  return WithEntries({{"version", kVersion}}, "observations", views);
+}
+
+std::string FormatObjectsCsv(const ObjectReport& report) {
+  std::string text =
+      "id,class,state,observations,tx,ty,tz,qx,qy,qz,qw,half_axis_x,half_axis_y,half_axis_z,"
+      "siou,siou_mask,mtd_m2,tangent_px,misfit_px,parallax_deg,quality\n";
+  for (const ReportedObject& object : report.objects) {
+    text += fmt::format("{},{},{},{}", object.id.value, CsvField(object.label),
+                        ToString(object.state), object.views.size());
+    const Rigid3& pose = object.ellipsoid.world_from_object;
+    for (const auto& values :
+         {Eigen::VectorXd(pose.translation), Eigen::VectorXd(pose.rotation.coeffs()),
+          Eigen::VectorXd(object.ellipsoid.half_axes)}) {
+      for (const double value : values) {
+        text += ',' + CsvNumber(value);
+      }
+    }
+    for (const std::optional<double>& value :
+         {object.fit.siou, object.fit.siou_mask, object.fit.mtd_m2, object.fit.tangent_px,
+          std::optional(object.misfit_px)}) {
+      text += ',' + CsvNumber(value);
+    }
+    text += fmt::format(",{},{}\n", Rounded(ParallaxOf(object), kAngle),
+                        Rounded(QualityOf(object), kAngle));
+  }
+  return text;
+}
+
+ObjectReport ReadObjects(const std::filesystem::path& path,
+                         const std::filesystem::path& observations) {
   const nlohmann::json json = ReadJson(path);
   const JsonNode top(path, json);
-  if (top.At("version").Count() != kVersion) {
-    top.At("version").Fail("1");
-  }
+  CheckVersion(top);
   ObjectReport report;
   report.sequence = top.At("sequence").Text();
   report.camera = ReadCamera(top.At("camera"));
   report.candidates = top.At("candidates").Count();
+  std::vector<uint32_t> counts;
   for (const JsonNode& object : top.At("objects").Elements()) {
     report.objects.push_back(ReadObject(object));
+    counts.push_back(object.At("observations").Count());
   }
+  ReadObservations(observations, counts, report);
   return report;
+}
+
+ObjectReport ReadObjects(const std::filesystem::path& path) {
+  return ReadObjects(path, path.parent_path() / kObservationsFile);
 }
 
 }  // namespace hullslam

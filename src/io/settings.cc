@@ -2,6 +2,7 @@
 #include "hullslam/io/settings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +13,7 @@
 #include <cstdlib>
 #include <map>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -19,6 +21,7 @@
 
 #include "hullslam/util/error.h"
 #include "io/read_file.h"
+#include "io/settings_orb_slam3.h"
 #include "io/text_rows.h"
 #include "io/yaml_nesting.h"
 #include "util/shown_text.h"
@@ -139,23 +142,147 @@ std::string ScalarText(const cv::FileNode& node, const WrittenValue& written,
                                               : "empty"));
 }
 
-void ApplyNodes(const fs::path& file, const cv::FileNode& root, const WrittenValues& written,
-                OptionTable& table, std::set<std::string>& given) {
-  for (const cv::FileNode& node : root) {
-    const std::string key = node.name();
-    const auto it = written.find(key);
-    if (it == written.end()) {
-      throw InputError(fmt::format("{}: '{}' is not on a line of its own, expected 'key: value'",
-                                   file.string(), ShowText(key)));
+// Applies the nodes of a settings file, of ORB-SLAM2 or ORB-SLAM3, to the table.
+class NodeReader {
+ public:
+  NodeReader(const fs::path& file, const WrittenValues& written, OptionTable& table,
+             std::set<std::string>& given)
+      : file_(file), written_(written), table_(table), given_(given) {}
+
+  void Apply(const cv::FileNode& root) {
+    for (const cv::FileNode& node : root) {
+      const std::string key = node.name();
+      const auto it = written_.find(key);
+      if (it == written_.end()) {
+        throw InputError(fmt::format("{}: '{}' is not on a line of its own, expected 'key: value'",
+                                     file_.string(), ShowText(key)));
+      }
+      const std::string place = Place(file_, it->second.line);
+      if (const auto setting = FindOrb3Setting(key)) {
+        ApplyOrb3(*setting, key, node, it->second, place);
+        continue;
+      }
+      if (!table_.Contains(key)) {
+        table_.Set(key, "", place);  // throws and suggests the most similar known key
+      }
+      Set(key, ScalarText(node, it->second, place), place, key);
     }
-    const std::string place = Place(file, it->second.line);
-    if (!table.Contains(key)) {
-      table.Set(key, "", place);  // throws and suggests the most similar known key
-    }
-    table.Set(key, ScalarText(node, it->second, place), place);
-    given.insert(key);
+    ApplyBaseline();
+    CheckSizes();
+    CheckRectified();
   }
-}
+
+ private:
+  // A setting of ORB-SLAM3 whose value can only be used when all settings are known.
+  struct Waiting {
+    std::string name;
+    std::string key;
+    double value = 0.0;
+    std::string place;
+  };
+
+  // `name` is the name of the setting in the file.
+  void Set(const std::string& key, const std::string& value, const std::string& place,
+           const std::string& name) {
+    if (!given_.insert(key).second) {
+      throw InputError(fmt::format("{}: {} was given before under another name", place, name));
+    }
+    table_.Set(key, value, name == key ? place : fmt::format("{}: {}", place, name));
+  }
+
+  void ApplyOrb3(const Orb3Setting& setting, const std::string& name, const cv::FileNode& node,
+                 const WrittenValue& written, const std::string& place) {
+    switch (setting.kind) {
+      case Orb3Setting::Kind::kIgnored:
+        return;
+      case Orb3Setting::Kind::kRefused:
+        throw InputError(
+            fmt::format("{}: {} of ORB-SLAM3 cannot be translated: {}", place, name, setting.why));
+      case Orb3Setting::Kind::kVersion:
+        ExpectText(node, name, written, {"1.0"}, place, "");
+        return;
+      case Orb3Setting::Kind::kModel:
+        ExpectText(node, name, written, {"PinHole", "Rectified"}, place,
+                   "; HullSLAM has no other camera model");
+        is_rectified_ = node.string() == "Rectified";
+        return;
+      case Orb3Setting::Kind::kRenamed:
+        Set(setting.key, ScalarText(node, written, place), place, name);
+        return;
+      case Orb3Setting::Kind::kBaseline:
+        baseline_ = {name, "Camera.bf", Number(node, written, name, place), place};
+        return;
+      case Orb3Setting::Kind::kSize:
+        sizes_.push_back({name, setting.key, Number(node, written, name, place), place});
+        return;
+    }
+  }
+
+  static void ExpectText(const cv::FileNode& node, const std::string& name,
+                         const WrittenValue& written, const std::vector<std::string>& choices,
+                         const std::string& place, const char* reason) {
+    const std::string text = node.isString() ? node.string() : written.text;
+    if (std::find(choices.begin(), choices.end(), text) == choices.end()) {
+      throw InputError(fmt::format("{}: {} is '{}', expected \"{}\"{}", place, name, text,
+                                   fmt::join(choices, "\" or \""), reason));
+    }
+  }
+
+  static double Number(const cv::FileNode& node, const WrittenValue& written,
+                       const std::string& name, const std::string& place) {
+    const std::string text = ScalarText(node, written, place);
+    double value = 0.0;
+    if (!ParseFinite(text, value) || value <= 0.0) {
+      throw InputError(fmt::format("{}: {} is '{}', expected a number > 0", place, name, text));
+    }
+    return value;
+  }
+
+  double Value(const std::string& key) const {
+    for (const OptionTable::Entry& entry : table_.Entries()) {
+      if (entry.key == key) {
+        return std::stod(entry.value);
+      }
+    }
+    return 0.0;
+  }
+
+  // Without Camera.fx the file is refused later.
+  void ApplyBaseline() {
+    if (baseline_ && given_.contains("Camera.fx")) {
+      Set("Camera.bf", fmt::format("{}", baseline_->value * Value("Camera.fx")), baseline_->place,
+          baseline_->name);
+    }
+  }
+
+  void CheckSizes() const {
+    for (const Waiting& size : sizes_) {
+      if (size.value != Value(size.key)) {
+        throw InputError(
+            fmt::format("{}: {} is '{}', expected {}, '{}': HullSLAM does not resize images",
+                        size.place, size.name, size.value, size.key, Value(size.key)));
+      }
+    }
+  }
+
+  void CheckRectified() const {
+    for (const char* const key :
+         {"Camera.k1", "Camera.k2", "Camera.p1", "Camera.p2", "Camera.k3"}) {
+      if (is_rectified_ && Value(key) != 0.0) {
+        throw InputError(fmt::format("{}: {} is '{}', expected 0 with Camera.type \"Rectified\"",
+                                     file_.string(), key, Value(key)));
+      }
+    }
+  }
+
+  const fs::path& file_;
+  const WrittenValues& written_;
+  OptionTable& table_;
+  std::set<std::string>& given_;
+  std::optional<Waiting> baseline_;
+  std::vector<Waiting> sizes_;
+  bool is_rectified_ = false;
+};
 
 void ApplyFile(const fs::path& file, OptionTable& table, std::set<std::string>& given) {
   const std::string text = ReadYamlText(file);
@@ -166,7 +293,8 @@ void ApplyFile(const fs::path& file, OptionTable& table, std::set<std::string>& 
     if (!root.isMap()) {
       throw InputError(file.string() + ": has no settings, expected lines of 'key: value'");
     }
-    ApplyNodes(file, root, ScanLines(file, text), table, given);
+    const WrittenValues written = ScanLines(file, text);
+    NodeReader(file, written, table, given).Apply(root);
   } catch (const cv::Exception& error) {
     FailParsing(file, error);
   }

@@ -73,6 +73,7 @@ std::unique_ptr<FrameBuilder> MakeFrameBuilder(const Sensor& sensor, const Syste
 
 System::System(const SystemOptions& options, PipelineKind kind)
     : options_(Validated(options)),
+      kind_(kind),
       sensor_(MakeSensor(options_)),
       frame_builder_(MakeFrameBuilder(sensor_, options_)),
       pipeline_(MakePipeline(kind, sensor_, options_)) {}
@@ -103,6 +104,14 @@ TrackedFrame System::Track(const ImageInput& image) {
 }
 
 void System::Finish(const Cancellation* cancellation) { pipeline_->Finish(cancellation); }
+
+void System::Reset() {
+  auto frame_builder = MakeFrameBuilder(sensor_, options_);
+  pipeline_ = MakePipeline(kind_, sensor_, options_);  // the old one ends its threads
+  frame_builder_ = std::move(frame_builder);
+  frames_.clear();
+  times_ = {};
+}
 
 std::shared_ptr<const Map> System::map() const { return pipeline_->map(); }
 

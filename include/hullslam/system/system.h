@@ -45,6 +45,9 @@ struct ObjectCounts {
 //   for each frame: TrackedFrame tracked = system.Track(timestamp, image, depth);
 //   system.Finish();
 //   Trajectory trajectory = system.trajectory();
+//
+// Its functions are called by one thread at a time. Only map() may be called by other threads
+// meanwhile, if the pipeline is threaded. docs/library.md has more about threads.
 class System {
  public:
   // Throws InputError if SystemOptions::Validate does.
@@ -62,7 +65,9 @@ class System {
                      std::vector<InstanceMask> masks = {});
   TrackedFrame Track(const ImageInput& image);
 
-  // `callback` is called at the end of every Track, in the same thread.
+  // `callback` is called at the end of every Track, in the thread that called Track. It may call
+  // the const functions of this object; frames() contains the frame already. An exception from it
+  // is thrown by Track; the frame has been tracked then. Reset() keeps the callback.
   void SetFrameCallback(std::function<void(const FrameReport&)> callback) {
     frame_callback_ = std::move(callback);
   }
@@ -71,6 +76,11 @@ class System {
   // mapping.final_bundle_adjustment is set. The adjustment ends early with what it has if
   // `cancellation` (may be null) is requested. Track must not be called after Finish.
   void Finish(const Cancellation* cancellation = nullptr);
+
+  // Makes the system as it was after its construction: without a map, frames, times and counts, and
+  // ready for Track, also after Finish. Ids begin again, and time stamps may. Waits until the
+  // mapper has ended. Snapshots that were taken before are not changed.
+  void Reset();
 
   // The newest snapshot; null before the first keyframe.
   std::shared_ptr<const Map> map() const;
@@ -86,6 +96,7 @@ class System {
 
  private:
   const SystemOptions options_;
+  const PipelineKind kind_;
   const Sensor sensor_;
   std::unique_ptr<FrameBuilder> frame_builder_;
   std::unique_ptr<Pipeline> pipeline_;
