@@ -121,7 +121,7 @@ std::string DescribeMisfit(const MaskProbe& probe) {
   if (probe.is_folder) {
     return DescribeFolderMisfit(probe);
   }
-  ReadJson(probe.path, kMostJsonFileBytes);  // throws where the JSON breaks off
+  ReadJson(probe.path, {.most_bytes = kMostJsonFileBytes});  // throws where the JSON breaks off
   return "is JSON, but has none of the keys 'annotations', 'image_id' (coco) and 'detections' "
          "(oa-slam)";
 }

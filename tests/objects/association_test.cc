@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "geometry/polygon_overlap.h"
 #include "objects/made_objects.h"
@@ -193,6 +194,53 @@ TEST_F(Association, AFewCommonLandmarksAreNotEnough) {
   EXPECT_EQ(associate(), ObjectId(0));
   landmarks[2] = LandmarkId();
   EXPECT_FALSE(associate().IsValid());
+}
+
+// A camera without depth that moves sideways past a cup, 0.06 m wide and 1 m away. The first view
+// does not tell how far the cup is.
+class UnknownDepth : public Association {
+ protected:
+  static Rigid3 Sideways(double x) { return {Eigen::Quaterniond::Identity(), {-x, 0.0, 0.0}}; }
+  Frame See(const MadeObject& object, double x) const {
+    Frame frame;
+    frame.detections.push_back(Detect(object, sensor_, Sideways(x)));
+    frame.detections.back().points.clear();
+    return frame;
+  }
+  ObjectId Associate(const MadeObject& object, double x) {
+    return AssociateDetections(map_, sensor_, See(object, x), Sideways(x), {},
+                               AssociationScope::kAll, {})[0];
+  }
+  void Add(double x) {
+    const KeyframeId keyframe =
+        map_.AddKeyframe(std::make_shared<Frame>(See(cup_, x)), Sideways(x));
+    map_.AddObservation(ObjectId(0), keyframe, 0);
+  }
+  MadeObject cup_ = MakeObject("cup", {0.0, 0.0, 1.0}, {0.03, 0.03, 0.03});
+};
+
+TEST_F(UnknownDepth, TheHullMayHaveMovedAlongTheEpipolarLine) {
+  map_.AddObject();
+  Add(0.0);
+  EXPECT_EQ(Associate(cup_, 0.01), ObjectId(0));
+  EXPECT_EQ(Associate(cup_, 0.05), ObjectId(0));  // 26 px, nearly its size
+  EXPECT_FALSE(Associate(cup_, 0.12).IsValid());  // more than its size
+  MadeObject bowl = cup_;
+  bowl.label = "bowl";
+  EXPECT_FALSE(Associate(bowl, 0.05).IsValid());
+  MadeObject above = cup_;
+  above.ellipsoid.world_from_object.translation.y() = -0.05;  // off the epipolar line
+  EXPECT_FALSE(Associate(above, 0.05).IsValid());
+}
+
+TEST_F(UnknownDepth, TwoViewsTellTheDepth) {
+  map_.AddObject();
+  Add(0.0);
+  Add(0.15);
+  EXPECT_EQ(Associate(cup_, 0.3), ObjectId(0));
+  MadeObject bowl = cup_;
+  bowl.label = "bowl";
+  EXPECT_EQ(Associate(bowl, 0.3), ObjectId(0));  // where the cup must be
 }
 
 }  // namespace

@@ -50,11 +50,11 @@ TEST_F(LastFrameTest, PoseAndMotionFollowTheUnitOfLength) {
 }
 
 // Only the change since the frame was tracked counts: the reference had been shrunk before.
-TEST_F(LastFrameTest, TheVelocityTakesTheQuotientOfTheScales) {
+TEST_F(LastFrameTest, TheMotionTakesTheQuotientOfTheScales) {
   map_.MutableKeyframe(keyframe_).scale = 0.5;
   last_.pose = map_.RelativeTo(keyframe_, Shift(3.0));
   map_.MutableKeyframe(keyframe_).scale = 0.25;
-  EXPECT_DOUBLE_EQ(FollowMap(map_, last_).velocity->translation.x(), 0.2);
+  EXPECT_DOUBLE_EQ(FollowMap(map_, last_).motion->cam_from_last_cam.translation.x(), 0.2);
 }
 
 TEST_F(LastFrameTest, AFrameThatBecameAKeyframeHasItsPoseAndLandmarks) {
