@@ -73,7 +73,8 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
                  "folder for the result files; replaces the former run in it")
       ->capture_default_str();
   app.add_option("--min-distance", arguments.min_distance,
-                 "a frame is used if the camera has moved this far since the last used frame, m")
+                 "a frame is used if the camera has moved this far since the last used frame, m; a "
+                 "quarter of it is enough if a mask has moved by half of its size")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_option("--min-angle", arguments.min_angle,
@@ -113,24 +114,67 @@ struct Views {
   size_t without_pose = 0;  // frames
 };
 
-bool HasMoved(const Arguments& arguments, const Rigid3& last, const Rigid3& pose) {
-  const double angle = AngularDistance(last.rotation, pose.rotation);
-  return (pose.translation - last.translation).norm() >= arguments.min_distance ||
-         angle * 180.0 / std::numbers::pi >= arguments.min_angle;
+// Whether the camera has moved by this share of the distance or the angle of the arguments.
+bool HasMoved(const Arguments& arguments, const Rigid3& last, const Rigid3& pose, double share) {
+  const double angle = AngularDistance(last.rotation, pose.rotation) * 180.0 / std::numbers::pi;
+  return (pose.translation - last.translation).norm() >= share * arguments.min_distance ||
+         angle >= share * arguments.min_angle;
+}
+
+struct LabelledBox {
+  std::string label;
+  Eigen::AlignedBox2d box;  // raw px
+};
+
+std::vector<LabelledBox> BoxesOf(const std::vector<InstanceMask>& masks) {
+  std::vector<LabelledBox> boxes;
+  for (const InstanceMask& mask : masks) {
+    LabelledBox& labelled = boxes.emplace_back();
+    labelled.label = mask.label;
+    for (const auto& outline : mask.outlines) {
+      for (const Eigen::Vector2d& point : outline) {
+        labelled.box.extend(point);
+      }
+    }
+  }
+  return boxes;
+}
+
+// Whether a mask has moved by more than half of its size, or is new.
+bool HasMaskMoved(const std::vector<LabelledBox>& last, const std::vector<LabelledBox>& boxes) {
+  constexpr double kMostMoved = 0.5;
+  return std::any_of(boxes.begin(), boxes.end(), [&](const LabelledBox& now) {
+    return std::none_of(last.begin(), last.end(), [&](const LabelledBox& then) {
+      return now.label == then.label && (now.box.center() - then.box.center()).norm() <=
+                                            kMostMoved * now.box.sizes().minCoeff();
+    });
+  });
 }
 
 // Chooses the frames to use: each one at which the camera has moved enough since the one before.
-// Throws InputError if no frame has a pose.
+// Where a mask has moved by more than half of its size, a quarter of that motion is enough: small
+// things that are seen for a short time need enough views, and a view must resemble the one before
+// to be recognised. Throws InputError if no frame has a pose.
 Views ChooseViews(const Arguments& arguments, const std::vector<RgbdFramePaths>& frames,
-                  const Trajectory& poses) {
+                  const Trajectory& poses, const SequenceMasks& masks) {
+  constexpr double kSmallMotion = 0.25;
   Views chosen;
+  std::vector<LabelledBox> last_boxes;
   for (size_t i = 0; i < frames.size(); ++i) {
     const auto pose = InterpolatePose(poses, frames[i].timestamp, kMaxPoseGap);
     if (!pose) {
       ++chosen.without_pose;
-    } else if (chosen.views.empty() ||
-               HasMoved(arguments, chosen.views.back().world_from_cam, *pose)) {
+      continue;
+    }
+    const Rigid3* const last = chosen.views.empty() ? nullptr : &chosen.views.back().world_from_cam;
+    if (last != nullptr && !HasMoved(arguments, *last, *pose, kSmallMotion)) {
+      continue;
+    }
+    std::vector<LabelledBox> boxes = BoxesOf(masks.Read(i));
+    if (last == nullptr || HasMoved(arguments, *last, *pose, 1.0) ||
+        HasMaskMoved(last_boxes, boxes)) {
       chosen.views.push_back({i, *pose});
+      last_boxes = std::move(boxes);
     }
   }
   if (chosen.views.empty()) {
@@ -293,7 +337,7 @@ int Run(int argc, char** argv) {
   const SequenceMasks masks({arguments.masks, arguments.masks_format, camera.width, camera.height},
                             MaskFrames(inputs.sequence));
   const auto& frames = inputs.sequence.frames;
-  const auto [views, without_pose] = ChooseViews(arguments, frames, inputs.poses);
+  const auto [views, without_pose] = ChooseViews(arguments, frames, inputs.poses, masks);
   CatchInterrupts();
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments));
   WarnOfUnknownClasses(inputs.options.tracking, masks);

@@ -135,7 +135,7 @@ TEST_F(SettingsOrbSlam3, WhatCannotBeTranslatedIsNamed) {
 
 TEST_F(SettingsOrbSlam3, BadValuesAreReportedByTheNameInTheFile) {
   ExpectError("Camera1.fx", "Camera1.fx: -5",
-              {"camera.yaml:5: Camera1.fx: Camera.fx is '-5'", "> 0"});
+              {"camera.yaml:5: Camera1.fx: Camera.fx is '-5'", "from 10"});
   ExpectError("Camera1.fx", "Camera1.fx: \"5\"", {"Camera1.fx: Camera.fx is '\"5\"'"});
   ExpectError("Stereo.b", "Stereo.b: 0", {"Stereo.b is '0'", "> 0"});
   ExpectError("Stereo.b", "Stereo.b: [1, 2]", {"Stereo.b is a list"});

@@ -109,7 +109,7 @@ TEST_F(TrackerTest, AnObjectThatIsNeverMappedAsksForKeyframesMoreAndMoreSeldom) 
   std::vector<uint32_t> requests;
   for (uint32_t i = 1; i <= 600; ++i) {
     auto frame = Select(*view.frame, AllKeypoints(*view.frame));
-    frame->id = FrameId(i);
+    frame->id = FrameId(100 + i);  // not that of a keyframe
     frame->timestamp = i / 30.0;
     frame->detections.emplace_back().hull = {{10.0, 10.0}, {60.0, 10.0}, {60.0, 60.0}};
     const Tracker::Result result = Process(frame);
