@@ -6,17 +6,22 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
+#include "cli/interrupt.h"
 #include "cli/mask_arguments.h"
 #include "cli/mask_overlay.h"
+#include "cli/messages.h"
 #include "cli/program.h"
 #include "cli/progress.h"
+#include "cli/version.h"
 #include "hullslam/frame/detection_builder.h"
-#include "hullslam/io/atomic_file.h"
 #include "hullslam/io/image_file.h"
 #include "hullslam/io/mask_source.h"
 #include "hullslam/io/output_folder.h"
@@ -52,6 +57,9 @@ struct ClassCount {
 struct Counts {
   size_t frames = 0;
   size_t missing = 0;
+  size_t without_masks = 0;
+  size_t without_image = 0;
+  size_t without_depth = 0;
   size_t instances = 0;
   size_t crowds = 0;
   size_t without_area = 0;
@@ -66,7 +74,10 @@ struct Counts {
 };
 
 void AddOptions(CLI::App& app, Arguments& arguments) {
-  app.add_option("SEQUENCE", arguments.sequence, "folder with rgb.txt and depth.txt")->required();
+  app.add_option("SEQUENCE", arguments.sequence,
+                 "folder with rgb.txt (the images themselves may be missing) and, to use depth, "
+                 "depth.txt with its images")
+      ->required();
   app.add_option("MASKS", arguments.masks,
                  "masks of the sequence: a folder or a JSON file (docs/masks.md)")
       ->required();
@@ -82,15 +93,17 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "key=value: overrides one setting; can be given several times")
       ->take_all()
       ->allow_extra_args(false);
-  app.add_option("--output", arguments.output,
-                 "folder for the pictures (default: no pictures are drawn)");
+  app.add_option(
+      "--output", arguments.output,
+      "folder for the pictures; replaces the former pictures in it (default: no pictures "
+      "are drawn)");
   app.add_option("--every", arguments.every, "draw the first frame and every n-th frame after it")
       ->check(CLI::Range(size_t{1}, size_t{1'000'000'000}).description(""))
       ->capture_default_str();
   app.add_flag("--quiet", arguments.quiet, "do not show the progress");
-  app.footer(
-      "Exit codes: 0 all masks and images can be read, 1 the program failed, 2 some of them cannot "
-      "be read, or bad usage.");
+  AddVersionAndExitCodes(app, "all masks and images can be read",
+                         "the program failed or was interrupted",
+                         "some of them cannot be read, or bad usage");
 }
 
 void CountDetections(const FrameMasks& frame, const DetectionResult& result, Counts& counts) {
@@ -114,32 +127,45 @@ void CountDetections(const FrameMasks& frame, const DetectionResult& result, Cou
   }
 }
 
-void DrawFrame(const fs::path& path, const cv::Mat& grey, const PinholeCamera& camera,
-               const FrameMasks& frame, const DetectionResult& result) {
+// The image, or a grey area of its size if the file is missing.
+cv::Mat Background(const fs::path& image, const PinholeCamera& camera) {
+  std::error_code error;
+  return fs::exists(image, error) ? ReadGreyImage(image)
+                                  : cv::Mat(camera.height, camera.width, CV_8UC1, cv::Scalar(96));
+}
+
+void DrawFrame(const std::string& name, const cv::Mat& grey, const PinholeCamera& camera,
+               const FrameMasks& frame, const DetectionResult& result, OutputFolder& output) {
   std::vector<uchar> bytes;
   cv::imencode(".png", DrawMasks(grey, camera, frame.masks, result), bytes);
-  WriteFileAtomically(path, std::string(bytes.begin(), bytes.end()));
+  output.Write({name, std::string(bytes.begin(), bytes.end())});
 }
 
 // Counts and draws one frame. If its masks or images cannot be read, this is recorded as a fault.
+// Without `output` nothing is drawn.
 void CheckFrame(const Arguments& arguments, const SystemOptions& options, const MaskSource& source,
-                const RgbdFramePaths& paths, const MaskFrame& names, Counts& counts) {
-  const bool is_drawn = !arguments.output.empty() && counts.frames % arguments.every == 0;
+                const RgbdFramePaths& paths, const MaskFrame& names, OutputFolder* output,
+                Counts& counts) {
+  const bool is_drawn = output != nullptr && counts.frames % arguments.every == 0;
   ++counts.frames;
+  std::error_code error;
+  counts.without_image += fs::exists(paths.rgb, error) ? 0 : 1;
+  counts.without_depth += paths.depth.empty() ? 1 : 0;
   try {
     const FrameMasks frame = source.Read(names);
     counts.missing += frame.is_missing ? 1 : 0;
+    counts.without_masks += frame.masks.empty() ? 1 : 0;
     counts.instances += frame.masks.size() + frame.without_area + frame.crowds;
     counts.without_area += frame.without_area;
     counts.crowds += frame.crowds;
-    const cv::Mat depth = ReadDepthImage(paths.depth);
+    const cv::Mat depth = paths.depth.empty() ? cv::Mat() : ReadDepthImage(paths.depth);
     const DetectionBuilder builder(options.camera, options.depth.units_per_metre,
                                    options.objects.detection);
     const DetectionResult result = builder.Build(frame.masks, depth, {});
     CountDetections(frame, result, counts);
     if (is_drawn) {
-      DrawFrame(arguments.output / (names.stem + ".png"), ReadGreyImage(paths.rgb), options.camera,
-                frame, result);
+      DrawFrame(names.stem + ".png", Background(paths.rgb, options.camera), options.camera, frame,
+                result, *output);
       ++counts.pictures;
     }
   } catch (const InputError& error) {
@@ -148,20 +174,23 @@ void CheckFrame(const Arguments& arguments, const SystemOptions& options, const 
 }
 
 void PrintClasses(const Counts& counts) {
-  fmt::print("\n{:<20}{:>10}{:>10}{:>12}\n", "class", "instances", "kept", "mean score");
+  Print("\n{:<20}{:>10}{:>10}{:>12}\n", "class", "instances", "kept", "mean score");
   for (const auto& [label, of_class] : counts.classes) {
-    fmt::print("{:<20}{:>10}{:>10}{:>12.2f}\n", label, of_class.instances, of_class.kept,
-               of_class.score_sum / static_cast<double>(of_class.instances));
+    Print("{:<20}{:>10}{:>10}{:>12.2f}\n", label, of_class.instances, of_class.kept,
+          of_class.score_sum / static_cast<double>(of_class.instances));
   }
 }
 
 void PrintCounts(const Arguments& arguments, const MaskSource& source, const Counts& counts) {
   const auto print = [](const std::string& name, size_t count) {
-    fmt::print("{:<20}{:>10}\n", name, count);
+    Print("{:<20}{:>10}\n", name, count);
   };
-  fmt::print("{} ({})\n", arguments.masks.string(), source.format());
+  Print("{} ({})\n", arguments.masks.string(), source.format());
   print("frames", counts.frames);
-  print("without file", counts.missing);
+  print("without image", counts.without_image);
+  print("without depth", counts.without_depth);
+  print("without masks", counts.without_masks);
+  print("  without file", counts.missing);
   print("malformed", counts.faults.size());
   print("instances", counts.instances);
   print("kept", counts.detections);
@@ -174,18 +203,36 @@ void PrintCounts(const Arguments& arguments, const MaskSource& source, const Cou
   print("lines", counts.lines);
   print("  one-sided", counts.one_sided);
   if (!arguments.output.empty()) {
-    fmt::print("{} pictures are in {}\n", counts.pictures, arguments.output.string());
+    Print("{} pictures are in {}\n", counts.pictures, arguments.output.string());
   }
   PrintClasses(counts);
 }
 
 void PrintFaults(const std::vector<std::string>& faults) {
   for (size_t i = 0; i < faults.size() && i < kMostFaultsShown; ++i) {
-    fmt::print(stderr, "error: {}\n", faults[i]);
+    PrintError("error: {}\n", faults[i]);
   }
   if (faults.size() > kMostFaultsShown) {
-    fmt::print(stderr, "error: {} more frames cannot be read\n", faults.size() - kMostFaultsShown);
+    PrintError("error: {} more frames cannot be read\n", faults.size() - kMostFaultsShown);
   }
+}
+
+// Null if no pictures are to be drawn.
+std::unique_ptr<OutputFolder> OpenOutput(const Arguments& arguments) {
+  if (arguments.output.empty()) {
+    return nullptr;
+  }
+  const std::vector<fs::path> inputs = {arguments.sequence, arguments.masks, arguments.settings,
+                                        arguments.tum.associations};
+  return std::make_unique<OutputFolder>(arguments.output, "pictures.json", inputs);
+}
+
+void FinishOutput(OutputFolder& output) {
+  const nlohmann::ordered_json index = {{"files", output.names()}};
+  output.Write(
+      {"pictures.json",
+       index.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n'});
+  output.Commit();
 }
 
 int Run(int argc, char** argv) {
@@ -202,20 +249,28 @@ int Run(int argc, char** argv) {
                                 : arguments.settings;
   SystemOptions options = ReadSettings(settings, arguments.overrides);
   options.objects.detection.min_keypoints = 0;  // no keypoints are extracted here
+  arguments.tum.need_images = false;
   const TumSequence sequence = OpenTumSequence(arguments.sequence, arguments.tum);
   const std::vector<MaskFrame> frames = MaskFrames(sequence);
   const auto source = OpenMasks(
       {arguments.masks, arguments.format, options.camera.width, options.camera.height}, frames);
-  if (!arguments.output.empty()) {
-    PrepareOutputFolder(arguments.output);
-  }
+  CatchInterrupts();
+  const auto output = OpenOutput(arguments);
   Counts counts;
   Progress progress(frames.size(), arguments.quiet);
-  for (size_t i = 0; i < frames.size(); ++i) {
-    CheckFrame(arguments, options, *source, sequence.frames[i], frames[i], counts);
+  for (size_t i = 0; i < frames.size() && !IsInterrupted(); ++i) {
+    CheckFrame(arguments, options, *source, sequence.frames[i], frames[i], output.get(), counts);
     progress.Show(i + 1);
   }
   progress.Clear();
+  if (counts.frames < frames.size()) {
+    PrintFailure(fmt::format("interrupted after {} of {} frames; no pictures were written",
+                             counts.frames, frames.size()));
+    return kFailed;
+  }
+  if (output != nullptr) {
+    FinishOutput(*output);
+  }
   PrintCounts(arguments, *source, counts);
   PrintFaults(counts.faults);
   return counts.faults.empty() ? kDone : kBadInput;

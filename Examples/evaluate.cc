@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Evaluates finished runs: the error of a trajectory against ground truth, and the mapped objects.
 #include "cli/program.h"
+#include "cli/version.h"
 #include "evaluate/objects_command.h"
 #include "evaluate/trajectory_command.h"
 
@@ -9,6 +10,7 @@ namespace {
 
 int Run(int argc, char** argv) {
   CLI::App app("Evaluates finished runs.", "evaluate");
+  AddVersionAndExitCodes(app);
   TrajectoryArguments trajectory;
   ObjectsArguments objects;
   const CLI::App* const trajectory_command = AddTrajectoryCommand(app, trajectory);

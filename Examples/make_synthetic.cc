@@ -4,13 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
 
+#include "cli/interrupt.h"
 #include "cli/program.h"
+#include "cli/version.h"
 #include "synthetic/sequence_writer.h"
 
 namespace {
@@ -44,23 +45,8 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_flag("--force", arguments.options.force, "replace an earlier synthetic sequence in OUT");
   app.add_flag("--quiet", arguments.quiet, "print nothing but errors");
-}
-
-// Blocks SIGINT and SIGTERM, so that they stay pending and do not end the program.
-// SignalIsPending() asks for them after each frame, so that no half-written sequence is left.
-void HoldSignals() {
-  sigset_t held;
-  sigemptyset(&held);
-  sigaddset(&held, SIGINT);
-  sigaddset(&held, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &held, nullptr);
-}
-
-bool SignalIsPending() {
-  sigset_t pending;
-  sigemptyset(&pending);
-  sigpending(&pending);
-  return sigismember(&pending, SIGINT) == 1 || sigismember(&pending, SIGTERM) == 1;
+  hullslam::AddVersionAndExitCodes(app, "done", "interrupted or failed (then nothing is written)",
+                                   "bad usage or an OUT that may not be written");
 }
 
 int Render(Arguments& arguments) {
@@ -77,7 +63,7 @@ int Render(Arguments& arguments) {
       std::fprintf(stderr, "%s%d/%d frames, %.1f frames/s%s", terminal ? "\r" : "", done,
                    options.frames, done / seconds(), terminal ? "" : "\n");
     }
-    return !SignalIsPending();
+    return !hullslam::IsInterrupted();
   };
   const bool finished = hullslam::synthetic::WriteSequence(arguments.folder, options, progress);
   if (!arguments.quiet && terminal) {
@@ -105,7 +91,7 @@ int Run(int argc, char** argv) {
   if (!hullslam::ParseCommandLine(app, argc, argv)) {
     return kDone;
   }
-  HoldSignals();
+  hullslam::CatchInterrupts();  // so that no half-written sequence is left
   return Render(arguments);
 }
 

@@ -11,13 +11,18 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "cli/input_warnings.h"
+#include "cli/interrupt.h"
 #include "cli/logging.h"
 #include "cli/mask_arguments.h"
+#include "cli/messages.h"
 #include "cli/object_outputs.h"
 #include "cli/program.h"
 #include "cli/progress.h"
+#include "cli/version.h"
 #include "hullslam/frame/detection_builder.h"
 #include "hullslam/frame/dynamic_mask.h"
 #include "hullslam/io/image_file.h"
@@ -41,9 +46,9 @@ struct Arguments {
   std::string masks_format;
   std::filesystem::path settings;
   std::vector<std::string> overrides;
-  std::filesystem::path output = "out";
-  double min_distance = 0.05;  // m
-  double min_angle = 5.0;      // degrees
+  std::filesystem::path output = "out_objects";  // not that of rgbd_tum, whose poses may be in it
+  double min_distance = 0.05;                    // m
+  double min_angle = 5.0;                        // degrees
   bool without_depth = false;
   bool quiet = false;
 };
@@ -64,10 +69,12 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
                  "key=value: overrides one setting; can be given several times")
       ->take_all()
       ->allow_extra_args(false);
-  app.add_option("--output", arguments.output, "folder for the result files")
+  app.add_option("--output", arguments.output,
+                 "folder for the result files; replaces the former run in it")
       ->capture_default_str();
   app.add_option("--min-distance", arguments.min_distance,
-                 "a frame is used if the camera has moved this far since the last used frame, m")
+                 "a frame is used if the camera has moved this far since the last used frame, m; a "
+                 "quarter of it is enough if a mask has moved by half of its size")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_option("--min-angle", arguments.min_angle,
@@ -77,7 +84,9 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
   app.add_flag("--without-depth", arguments.without_depth, "do not use the depth images");
   AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
-  app.set_version_flag("--version", HULLSLAM_VERSION);
+  AddVersionAndExitCodes(app, "done",
+                         "the run failed or was interrupted (the results up to then are written, "
+                         "and summary.json says so)");
 }
 
 SystemOptions LoadOptions(const Arguments& arguments) {
@@ -105,24 +114,67 @@ struct Views {
   size_t without_pose = 0;  // frames
 };
 
-bool HasMoved(const Arguments& arguments, const Rigid3& last, const Rigid3& pose) {
-  const double angle = AngularDistance(last.rotation, pose.rotation);
-  return (pose.translation - last.translation).norm() >= arguments.min_distance ||
-         angle * 180.0 / std::numbers::pi >= arguments.min_angle;
+// Whether the camera has moved by this share of the distance or the angle of the arguments.
+bool HasMoved(const Arguments& arguments, const Rigid3& last, const Rigid3& pose, double share) {
+  const double angle = AngularDistance(last.rotation, pose.rotation) * 180.0 / std::numbers::pi;
+  return (pose.translation - last.translation).norm() >= share * arguments.min_distance ||
+         angle >= share * arguments.min_angle;
+}
+
+struct LabelledBox {
+  std::string label;
+  Eigen::AlignedBox2d box;  // raw px
+};
+
+std::vector<LabelledBox> BoxesOf(const std::vector<InstanceMask>& masks) {
+  std::vector<LabelledBox> boxes;
+  for (const InstanceMask& mask : masks) {
+    LabelledBox& labelled = boxes.emplace_back();
+    labelled.label = mask.label;
+    for (const auto& outline : mask.outlines) {
+      for (const Eigen::Vector2d& point : outline) {
+        labelled.box.extend(point);
+      }
+    }
+  }
+  return boxes;
+}
+
+// Whether a mask has moved by more than half of its size, or is new.
+bool HasMaskMoved(const std::vector<LabelledBox>& last, const std::vector<LabelledBox>& boxes) {
+  constexpr double kMostMoved = 0.5;
+  return std::any_of(boxes.begin(), boxes.end(), [&](const LabelledBox& now) {
+    return std::none_of(last.begin(), last.end(), [&](const LabelledBox& then) {
+      return now.label == then.label && (now.box.center() - then.box.center()).norm() <=
+                                            kMostMoved * now.box.sizes().minCoeff();
+    });
+  });
 }
 
 // Chooses the frames to use: each one at which the camera has moved enough since the one before.
-// Throws InputError if no frame has a pose.
+// Where a mask has moved by more than half of its size, a quarter of that motion is enough: small
+// things that are seen for a short time need enough views, and a view must resemble the one before
+// to be recognised. Throws InputError if no frame has a pose.
 Views ChooseViews(const Arguments& arguments, const std::vector<RgbdFramePaths>& frames,
-                  const Trajectory& poses) {
+                  const Trajectory& poses, const SequenceMasks& masks) {
+  constexpr double kSmallMotion = 0.25;
   Views chosen;
+  std::vector<LabelledBox> last_boxes;
   for (size_t i = 0; i < frames.size(); ++i) {
     const auto pose = InterpolatePose(poses, frames[i].timestamp, kMaxPoseGap);
     if (!pose) {
       ++chosen.without_pose;
-    } else if (chosen.views.empty() ||
-               HasMoved(arguments, chosen.views.back().world_from_cam, *pose)) {
+      continue;
+    }
+    const Rigid3* const last = chosen.views.empty() ? nullptr : &chosen.views.back().world_from_cam;
+    if (last != nullptr && !HasMoved(arguments, *last, *pose, kSmallMotion)) {
+      continue;
+    }
+    std::vector<LabelledBox> boxes = BoxesOf(masks.Read(i));
+    if (last == nullptr || HasMoved(arguments, *last, *pose, 1.0) ||
+        HasMaskMoved(last_boxes, boxes)) {
       chosen.views.push_back({i, *pose});
+      last_boxes = std::move(boxes);
     }
   }
   if (chosen.views.empty()) {
@@ -148,8 +200,6 @@ class ObjectRun {
     auto frame = std::make_shared<Frame>();
     frame->id = FrameId(map_.keyframes().NextId().value);
     frame->timestamp = timestamp;
-    counts_.frames_with_masks += masks.empty() ? 0 : 1;
-    counts_.frames_without_masks += masks.empty() ? 1 : 0;
     std::erase_if(masks,
                   [&](const InstanceMask& mask) { return dynamic_classes_.contains(mask.label); });
     DetectionResult result = builder_.Build(masks, depth, {});
@@ -182,8 +232,8 @@ class ObjectRun {
 };
 
 void PrintTable(const ObjectRun& run, const ObjectReport& report) {
-  fmt::print("{:>4} {:<14} {:>5} {:>8} {:>20} {:>6} {:>6} {:>7}\n", "id", "class", "views",
-             "parallax", "half axes (m)", "SIoU", "mask", "misfit");
+  Print("{:>4} {:<14} {:>5} {:>8} {:>20} {:>6} {:>6} {:>7}\n", "id", "class", "views", "parallax",
+        "half axes (m)", "SIoU", "mask", "misfit");
   for (const ReportedObject& object : report.objects) {
     if (object.state != ObjectState::kMapped) {
       continue;
@@ -192,10 +242,10 @@ void PrintTable(const ObjectRun& run, const ObjectReport& report) {
     const double parallax =
         Parallax(CollectViews(run.map(), landmark), object.ellipsoid.world_from_object.translation);
     const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
-    fmt::print("{:>4} {:<14} {:>5} {:>7.0f}° {:>6.3f} {:>6.3f} {:>6.3f} {:>6} {:>6} {:>5.1f}px\n",
-               object.id.value, object.label, object.views.size(), parallax, axes.x(), axes.y(),
-               axes.z(), FormatFigure(object.fit.siou, 3), FormatFigure(object.fit.siou_mask, 3),
-               object.misfit_px);
+    Print("{:>4} {:<14} {:>5} {:>7.0f}° {:>6.3f} {:>6.3f} {:>6.3f} {:>6} {:>6} {:>5.1f}px\n",
+          object.id.value, object.label, object.views.size(), parallax, axes.x(), axes.y(),
+          axes.z(), FormatFigure(object.fit.siou, 3), FormatFigure(object.fit.siou_mask, 3),
+          object.misfit_px);
   }
 }
 
@@ -213,17 +263,28 @@ Inputs OpenInputs(const Arguments& arguments) {
   return inputs;
 }
 
-void MapAll(const Arguments& arguments, const std::vector<RgbdFramePaths>& frames,
-            const std::vector<View>& views, const SequenceMasks& masks, ObjectRun& run) {
+// Returns false if a signal ended it early.
+bool MapAll(const Arguments& arguments, const SystemOptions& options,
+            const std::vector<RgbdFramePaths>& frames, const std::vector<View>& views,
+            const SequenceMasks& masks, ObjectRun& run) {
   Progress progress(frames.size(), arguments.quiet);
+  bool is_depth_checked = false;
   for (const View& view : views) {
+    if (IsInterrupted()) {
+      progress.Clear();
+      return false;
+    }
     const RgbdFramePaths& frame = frames[view.frame];
     const bool has_depth = !arguments.without_depth && !frame.depth.empty();
-    run.AddView(frame.timestamp, view.world_from_cam, masks.Read(view.frame),
-                has_depth ? ReadDepthImage(frame.depth) : cv::Mat());
+    const cv::Mat depth = has_depth ? ReadDepthImage(frame.depth) : cv::Mat();
+    if (has_depth && !std::exchange(is_depth_checked, true)) {
+      WarnOfImplausibleDepth(frame.depth, depth, options.depth);
+    }
+    run.AddView(frame.timestamp, view.world_from_cam, masks.Read(view.frame), depth);
     progress.Show(view.frame + 1);
   }
   progress.Clear();
+  return true;
 }
 
 RunSummary Summarize(const Arguments& arguments, const Inputs& inputs, const SequenceMasks& masks,
@@ -232,6 +293,8 @@ RunSummary Summarize(const Arguments& arguments, const Inputs& inputs, const Seq
   summary.trajectory.frames = inputs.sequence.frames.size();
   summary.trajectory.tracked = inputs.sequence.frames.size() - without_pose;
   summary.trajectory.lost = without_pose;
+  summary.trajectory.coverage = static_cast<double>(summary.trajectory.tracked) /
+                                static_cast<double>(summary.trajectory.frames);
   summary.trajectory.alignment = "none";
   summary.peak_memory_mb = PeakMemoryMb();
   summary.map.keyframes = run.map().keyframes().size();
@@ -243,15 +306,22 @@ RunSummary Summarize(const Arguments& arguments, const Inputs& inputs, const Seq
   return summary;
 }
 
-void WriteOutputs(const Arguments& arguments, const ObjectRun& run, const ObjectReport& report,
-                  const RunSummary& summary) {
-  std::vector<FileContent> files = ObjectFiles(arguments.output, report);
+void WriteOutputs(OutputFolder& output, const ObjectRun& run, const ObjectReport& report,
+                  RunSummary summary) {
+  for (const FileContent& file : ObjectFiles(report)) {
+    output.Write(file);
+  }
   // The poses of the views, because evaluate and plot_run expect these files in every run's folder.
   const std::string poses = FormatTrajectory(KeyframeTrajectory(run.map()));
-  files.push_back({arguments.output / "trajectory.txt", poses});
-  files.push_back({arguments.output / "keyframes.txt", poses});
-  files.push_back({arguments.output / "summary.json", FormatSummary(summary)});
-  WriteFilesAtomically(files);
+  output.Write({"trajectory.txt", poses});
+  output.Write({"keyframes.txt", poses});
+  summary.files = output.names();
+  output.Write({"summary.json", FormatSummary(summary)});
+  output.Commit();
+}
+
+std::vector<std::filesystem::path> InputsOf(const Arguments& arguments) {
+  return {arguments.sequence, arguments.poses, arguments.masks, arguments.settings};
 }
 
 int Run(int argc, char** argv) {
@@ -267,26 +337,39 @@ int Run(int argc, char** argv) {
   const SequenceMasks masks({arguments.masks, arguments.masks_format, camera.width, camera.height},
                             MaskFrames(inputs.sequence));
   const auto& frames = inputs.sequence.frames;
-  const auto [views, without_pose] = ChooseViews(arguments, frames, inputs.poses);
-  PrepareOutputFolder(arguments.output);
+  const auto [views, without_pose] = ChooseViews(arguments, frames, inputs.poses, masks);
+  CatchInterrupts();
+  OutputFolder output(arguments.output, "summary.json", InputsOf(arguments));
+  WarnOfUnknownClasses(inputs.options.tracking, masks);
   if (!arguments.quiet) {
-    fmt::print("{}\n", masks.Describe());
+    Print("{}\n", masks.Describe());
   }
   const auto start = std::chrono::steady_clock::now();
   ObjectRun run(inputs.options);
-  MapAll(arguments, frames, views, masks, run);
+  const bool is_complete = MapAll(arguments, inputs.options, frames, views, masks, run);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
 
   const ObjectReport report = CollectObjects(run.map(), camera, arguments.sequence);
   RunSummary summary = Summarize(arguments, inputs, masks, run, without_pose);
-  summary.objects = SummarizeObjects(report, run.counts());
+  ObjectCounts counts = run.counts();
+  counts.frames_without_masks = masks.without_masks();
+  counts.frames_with_masks = frames.size() - masks.without_masks();
+  summary.objects = SummarizeObjects(report, counts);
   summary.timing.total_s = seconds.count();
-  WriteOutputs(arguments, run, report, summary);
+  summary.provenance.interrupted = !is_complete;
+  WriteOutputs(output, run, report, summary);
   if (!arguments.quiet) {
     PrintTable(run, report);
-    fmt::print("{} views of {} frames ({} without a pose) in {:.1f} s\n{}\nresults are in {}\n",
-               summary.map.keyframes, summary.trajectory.frames, without_pose, seconds.count(),
-               DescribeObjects(*summary.objects), arguments.output.string());
+    Print("{} views of {} frames ({} without a pose) in {:.1f} s\n{}\nresults are in {}\n",
+          summary.map.keyframes, summary.trajectory.frames, without_pose, seconds.count(),
+          DescribeObjects(*summary.objects), arguments.output.string());
+  }
+  if (!is_complete) {
+    PrintFailure(
+        fmt::format("the run was interrupted after {} of {} views; the results so far were "
+                    "written",
+                    summary.map.keyframes, views.size()));
+    return kFailed;
   }
   return kDone;
 }

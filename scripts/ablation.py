@@ -51,9 +51,9 @@ class InputError(Exception):
 def parse_variant(text):
     """The name and the arguments that NAME:KEY=VALUE,... stands for."""
     name, colon, settings = text.partition(":")
-    if not colon or not re.fullmatch(r"[\w.+-]+", name):
+    if not colon or not re.fullmatch(r"[\w+-][\w.+-]*", name):
         raise InputError(f"--variant is '{text}', expected NAME:KEY=VALUE,... with a name of "
-                         "letters, digits and . _ + -")
+                         "letters, digits and . _ + - that does not begin with a dot")
     arguments = []
     for item in filter(None, re.split(r"(?<!\\),", settings)):
         item = item.replace("\\,", ",")
@@ -64,6 +64,29 @@ def parse_variant(text):
         else:
             raise InputError(f"--variant {name}: '{item}', expected KEY=VALUE")
     return name, arguments
+
+
+def parse_common(text):
+    """The arguments that the text of --common stands for."""
+    try:
+        return shlex.split(text)
+    except ValueError as error:
+        raise InputError(f"--common is '{text}': {error}") from error
+
+
+def name_of(sequence):
+    """The name of a sequence in the tables, and of the folder of its runs."""
+    return sequence.resolve().name.replace("-{seed}", "").replace("{seed}", "") or "sequence"
+
+
+def check_names(sequences):
+    """Each sequence needs a name of its own: its runs are stored under it."""
+    known = {}
+    for sequence in sequences:
+        other = known.setdefault(name_of(sequence), sequence)
+        if other is not sequence:
+            raise InputError(f"{other} and {sequence} have the same name '{name_of(sequence)}'; use "
+                             "another --out for one of them")
 
 
 def fingerprint(command):
@@ -77,7 +100,7 @@ def read_json(path):
     """The JSON object in a file; None if the file cannot be read or contains something else."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return None
     return content if isinstance(content, dict) else None
 
@@ -93,7 +116,6 @@ def run_once(command, folder, seconds):
         return summary, ""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / RECORD).unlink(missing_ok=True)
-    (folder / "summary.json").unlink(missing_ok=True)
     with (folder / "log.txt").open("w", encoding="utf-8") as log:
         log.write(shlex.join(command) + "\n")
         log.flush()
@@ -173,12 +195,12 @@ def write(path, text):
 def run_variant(arguments, sequence, name, settings):
     """Makes all runs of a variant on a sequence and returns their result."""
     summaries, failures = [], []
-    title = sequence.resolve().name.replace("-{seed}", "").replace("{seed}", "") or "sequence"
+    title = name_of(sequence)
     for seed in range(arguments.first_seed, arguments.first_seed + arguments.seeds):
         folder = arguments.out / title / name / f"seed-{seed}"
         path = str(sequence).replace("{seed}", str(seed))
         given = [item.replace("{seed}", str(seed)).replace("{sequence}", path)
-                 for item in [*shlex.split(arguments.common), *settings]]
+                 for item in [*arguments.common, *settings]]
         command = [str(arguments.program), path, *given, "--seed", str(seed), "--quiet",
                    "--output", str(folder)]
         summary, failure = run_once(command, folder, arguments.timeout)
@@ -226,6 +248,8 @@ def parse_arguments():
     arguments = parser.parse_args()
     if arguments.seeds < 1 or arguments.first_seed < 0:
         parser.error("--seeds must be 1 or more, --first-seed 0 or more")
+    if not 0.0 < arguments.timeout < 1e9:
+        parser.error("--timeout must be a number of seconds")
     return arguments
 
 
@@ -237,6 +261,8 @@ def main():
         names = [name for name, _ in variants]
         if len(set(names)) != len(names):
             raise InputError(f"two variants have the same name: {', '.join(names)}")
+        check_names(arguments.sequence)
+        arguments.common = parse_common(arguments.common)
         results = []
         for sequence in arguments.sequence:
             for name, settings in variants:

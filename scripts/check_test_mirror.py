@@ -6,7 +6,7 @@
 2. Every tests/<module>/<file>_test.cc is named after such a header or after a private header
    src/<module>/<file>.h, and contains at least one test.
 
-The folders integration, support, consumer and scripts of tests/ are not checked.
+The folders integration, support, consumer, fuzz and scripts of tests/ are not checked.
 """
 
 import argparse
@@ -14,7 +14,7 @@ import pathlib
 import re
 import sys
 
-FREE = {"integration", "support", "consumer", "scripts"}
+FREE = {"integration", "support", "consumer", "fuzz", "scripts"}
 TEST = re.compile(r"^\s*(TYPED_)?TEST(_F|_P)?\s*\(", re.MULTILINE)
 
 

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# shellcheck shell=bash
 # Functions for messages, help texts and named steps; the other shell scripts source this file.
 
+# With CDPATH set, `cd` may go to another folder, and it prints the folder's name.
+unset CDPATH
+# shellcheck disable=SC2034  # the scripts that source this file use it
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 fail() {

@@ -4,17 +4,19 @@
 number of observations, the largest angle between two views of the object, the half axes (longest
 first), SIoU and tangent distance.
 
-RUN_DIR is an output folder of rgbd_tum or map_objects. Its objects.json is read.
+RUN_DIR is an output folder of rgbd_tum or map_objects. Its objects.json and
+objects_observations.json are read.
 """
 
 import argparse
-import json
 import pathlib
 import sys
 
 import numpy as np
 
-from run_objects import InputError, rotation
+from object_entries import attach_observations
+from run_files import InputError, one_line, read_json
+from run_objects import rotation
 
 HEADER = ("| run | id | class | views | angle ° | half axes m | SIoU | SIoU mask | tangent px |\n"
           "|---|---|---|---|---|---|---|---|---|")
@@ -49,11 +51,13 @@ def rows(run_dir, min_angle):
     """The rows of the objects whose largest angle is at least `min_angle` degrees."""
     path = run_dir / "objects.json"
     try:
-        entries = json.loads(path.read_text(encoding="utf-8"))["objects"]
+        content = read_json(path)
+        attach_observations(path, content)
+        entries = content["objects"]
         return [row(run_dir.resolve().name, entry) for entry in entries
                 if entry["state"] == "mapped" and largest_angle(entry) >= min_angle]
-    except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
-        reason = f"no key {error}" if isinstance(error, KeyError) else error
+    except (ValueError, KeyError, TypeError, IndexError, AttributeError) as error:
+        reason = f"no key {error}" if isinstance(error, KeyError) else one_line(error)
         raise InputError(f"{path}: not a valid objects.json: {reason}") from error
 
 

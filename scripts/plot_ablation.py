@@ -19,7 +19,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
-from run_objects import InputError  # noqa: E402
+from plot_labels import plain  # noqa: E402
+from run_files import InputError, one_line  # noqa: E402
 
 COMPLETE = 0.99  # a variant that tracks at least this share of the best one's frames
 
@@ -42,8 +43,8 @@ def read_points(folder):
             is_complete = not result["failed"] and tracked >= COMPLETE * most[result["sequence"]]
             curves.setdefault(result["sequence"], {}).setdefault(name[1], []).append(
                 (float(name[2]), 1000.0 * ate["mean"], 1000.0 * ate["sd"], is_complete))
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        reason = f"no key {error}" if isinstance(error, KeyError) else error
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        reason = f"no key {error}" if isinstance(error, KeyError) else one_line(error)
         raise InputError(f"{path}: not a valid ablation.json: {reason}") from error
     if not curves:
         raise InputError(f"{path}: no variant named NAME-NUMBER has a trajectory error")
@@ -54,7 +55,7 @@ def read_points(folder):
 def draw_panel(axes, sequence, curves, x_label):
     for name, points in curves.items():
         numbers, errors, deviations, complete = zip(*points)
-        line = axes.errorbar(numbers, errors, yerr=deviations, capsize=3, label=name)
+        line = axes.errorbar(numbers, errors, yerr=deviations, capsize=3, label=plain(name))
         colour = line[0].get_color()
         for number, error, is_complete in zip(numbers, errors, complete):
             axes.plot(number, error, "o", color=colour, ms=6,
@@ -65,7 +66,7 @@ def draw_panel(axes, sequence, curves, x_label):
     axes.minorticks_off()
     axes.invert_xaxis()
     axes.set_ylim(bottom=0.0)
-    axes.set_title(sequence)
+    axes.set_title(plain(sequence))
     axes.set_xlabel(x_label)
     axes.set_ylabel("ATE RMSE, mm")
     axes.grid(alpha=0.3)

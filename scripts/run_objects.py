@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads the objects of a finished run from objects.json and draws them for plot_run.py."""
 
-import json
 import pathlib
 
 import matplotlib.pyplot as plt
 import numpy as np
 
+from object_entries import attach_observations
+from plot_labels import Label, class_colours, draw_labels
+from run_files import LARGEST, InputError, number, numbers, one_line, pose, read_json
+
 TURN = np.linspace(0.0, 2.0 * np.pi, 65)
 CIRCLE = np.stack([np.cos(TURN), np.sin(TURN)])
-
-
-class InputError(Exception):
-    """An error that the user can correct. The message names the file."""
 
 
 def rotation(quaternion):
@@ -23,33 +22,36 @@ def rotation(quaternion):
                      [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
 
 
-def colour_of(label):
-    """The colour that the class has in objects.ply; its hue is a hash (FNV-1a) of the name."""
-    number = 2166136261
-    for byte in label.encode("utf-8", "surrogateescape"):
-        number = (number ^ byte) * 16777619 % 2**32
-    hue = 6 * ((number >> 16) % 360) / 360
-    away = [abs((hue - 2 * channel + 3) % 6 - 3) for channel in range(3)]
-    return tuple((40 + 200 * min(max(2 - distance, 0), 1)) / 255 for distance in away)
-
-
 def ellipse_points(centre, shape):
     """A closed polygon (65 x 2) on the ellipse (p - centre)^T shape^-1 (p - centre) = 1."""
-    return centre + (np.linalg.cholesky(shape) @ CIRCLE).T
+    squares, axes = np.linalg.eigh(shape)
+    return centre + (axes @ (np.sqrt(np.maximum(squares, 0.0))[:, None] * CIRCLE)).T
 
 
 class Object:
     """An ellipsoid in the world frame; `shape` is R diag(a^2, b^2, c^2) R^T."""
 
     def __init__(self, entry):
-        pose = np.array(entry["world_from_object"], dtype=float)
-        axes = rotation(pose[3:]) @ np.diag(np.array(entry["half_axes"], dtype=float))
-        self.name, self.label = f"{entry['class']} {entry['id']}", entry["class"]
-        self.is_mapped = entry["state"] == "mapped"
-        self.centre, self.shape = pose[:3], axes @ axes.T
-        self.views = {float(view["timestamp"]): view for view in entry["observations"]}
-        if not (np.isfinite(self.shape).all() and np.linalg.det(self.shape) > 0):
-            raise ValueError(f"half_axes of object {entry['id']}")
+        """`entry` is an element of `objects` in objects.json. It is checked."""
+        number(entry["id"], "id", 0, 2**53)
+        if not isinstance(entry["class"], str) or not isinstance(entry["state"], str):
+            raise ValueError("class and state: expected texts")
+        self.label, self.is_mapped = entry["class"], entry["state"] == "mapped"
+        self.name = f"{self.label} {entry['id']}"
+        world_from_object = pose(entry["world_from_object"], "world_from_object")
+        half_axes = numbers(entry["half_axes"], 3, "half_axes", 1e-9)
+        axes = rotation(world_from_object[3:]) @ np.diag(half_axes)
+        self.centre, self.shape = world_from_object[:3], axes @ axes.T
+        self.colour = (0.0, 0.0, 0.0)
+        if not isinstance(entry["observations"], list):
+            raise ValueError("observations: expected a list")
+        self.views = {}  # by stamp: pose of the camera and hull
+        for view in entry["observations"]:
+            stamp = number(view["timestamp"], "timestamp", 0, 1e12)
+            hull = [numbers(corner, 2, "hull") for corner in view["hull"]]
+            if len(hull) < 3:
+                raise ValueError("hull: expected three or more corners")
+            self.views[stamp] = (pose(view["cam_from_world"], "cam_from_world"), np.array(hull))
 
     def move(self, turn, shift):
         self.centre = turn @ self.centre + shift
@@ -64,7 +66,7 @@ class Object:
         turn = rotation(cam_from_world[3:])
         centre = turn @ self.centre + cam_from_world[:3]
         shape = turn @ self.shape @ turn.T
-        if centre[2] <= np.sqrt(shape[2, 2]):
+        if centre[2] <= 1.001 * np.sqrt(shape[2, 2]):
             return None
         k = np.array([[camera["fx"], 0, camera["cx"]], [0, camera["fy"], camera["cy"]], [0, 0, 1]])
         conic = k @ (shape - np.outer(centre, centre)) @ k.T
@@ -73,26 +75,43 @@ class Object:
         return ellipse_points(middle, conic[:2, :2] + np.outer(middle, middle))
 
 
+def read_camera(entry):
+    camera = {key: number(entry[key], f"camera.{key}", 1.0) for key in ("fx", "fy")}
+    camera.update({key: number(entry[key], f"camera.{key}") for key in ("cx", "cy")})
+    camera.update({key: number(entry[key], f"camera.{key}", -1e3, 1e3)
+                   for key in ("k1", "k2", "p1", "p2", "k3") if key in entry})
+    return camera
+
+
 def read_objects(path):
     """The camera and the objects of objects.json; ({}, []) if the file does not exist."""
     if not path.exists():
         return {}, []
+    content, place = read_json(path), ""
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-        return content["camera"], [Object(entry) for entry in content["objects"]]
-    except (OSError, ValueError, KeyError, TypeError, IndexError, np.linalg.LinAlgError) as error:
+        camera = read_camera(content["camera"])
+        if not isinstance(content["objects"], list):
+            raise ValueError("objects: expected a list")
+        attach_observations(path, content)
+        objects = []
+        for i, entry in enumerate(content["objects"]):
+            place = f"objects[{i}]: "
+            objects.append(Object(entry))
+    except (ValueError, KeyError, TypeError) as error:
         reason = f"no key {error}" if isinstance(error, KeyError) else error
-        raise InputError(f"{path}: not a valid objects.json: {reason}") from error
+        raise InputError(f"{path}: not a valid objects.json: {place}{one_line(reason)}") from error
+    colours = class_colours(item.label for item in objects)
+    for item in objects:
+        item.colour = colours[item.label]
+    return camera, objects
 
 
 def draw_from_afar(plot, objects, axes):
-    """Draws the mapped objects as they look along the third axis."""
-    for item in objects:
-        if item.is_mapped:
-            colour = colour_of(item.label)
-            plot.plot(*item.seen_along(axes).T, color=colour, linewidth=1.4)
-            plot.text(*item.centre[axes], item.name, fontsize=7, ha="center", va="center",
-                      bbox={"color": "white", "alpha": 0.5, "pad": 0.5}, clip_on=True)
+    """Draws the mapped objects as they look along the third axis. Returns their labels."""
+    mapped = [item for item in objects if item.is_mapped]
+    for item in mapped:
+        plot.plot(*item.seen_along(axes).T, color=item.colour, linewidth=1.4)
+    return [Label(item.name, item.centre[axes], item.colour) for item in mapped]
 
 
 def distort(points, camera):
@@ -117,7 +136,9 @@ def image_list(sequence):
         files = [path.parent / row[1] for row in rows]
     except (OSError, ValueError, IndexError) as error:
         raise InputError(f"{path}: not a list of images with one line `stamp file` per image: "
-                         f"{error}; give the folder of the images by --sequence") from error
+                         f"{one_line(error)}; give the folder of the images by --sequence") from error
+    if not np.isfinite(stamps).all():
+        raise InputError(f"{path}: a time stamp is not finite")
     if not files:
         raise InputError(f"{path}: lists no images")
     return stamps, files
@@ -131,27 +152,41 @@ def choose_evenly(stamps, count):
 
 
 def draw_overlay(plot, image, stamp, camera, objects):
-    """Draws the projected ellipses of the mapped objects and the observed hulls on one image."""
+    """Draws the projected ellipses of the mapped objects and the observed hulls on one image.
+
+    Returns the labels of the ellipses.
+    """
     plot.imshow(image, cmap="gray")
-    pose = next(np.array(item.views[stamp]["cam_from_world"], dtype=float) for item in objects
-                if stamp in item.views)
+    camera_pose = next(item.views[stamp][0] for item in objects if stamp in item.views)
+    labels = []
     for item in objects:
-        ellipse = item.seen_from(camera, pose) if item.is_mapped else None
-        view, colour = item.views.get(stamp), colour_of(item.label)
-        if view:
-            hull = distort(np.array(view["hull"] + view["hull"][:1], dtype=float), camera)
+        ellipse = item.seen_from(camera, camera_pose) if item.is_mapped else None
+        if stamp in item.views:
+            hull = item.views[stamp][1]
+            hull = distort(np.vstack([hull, hull[:1]]), camera)
             plot.plot(*hull.T, color="white", linewidth=2.0)
-            plot.plot(*hull.T, color=colour, linewidth=1.0, linestyle=":")
-        if ellipse is not None:
+            plot.plot(*hull.T, color=item.colour, linewidth=1.0, linestyle=":")
+        if ellipse is not None and np.abs(ellipse).max() < LARGEST:
             ellipse = distort(ellipse, camera)
-            plot.plot(*ellipse.T, color=colour, linewidth=1.6, linestyle="-" if view else "--")
-            plot.text(*ellipse.mean(axis=0), item.name, color="white", fontsize=7, ha="center",
-                      bbox={"color": colour, "alpha": 0.6, "pad": 1}, clip_on=True)
+            plot.plot(*ellipse.T, color=item.colour, linewidth=1.6,
+                      linestyle="-" if stamp in item.views else "--")
+            labels.append(Label(item.name, ellipse.mean(axis=0), item.colour))
     height, width = image.shape[:2]
     plot.set_xlim(-0.5, width - 0.5)
     plot.set_ylim(height - 0.5, -0.5)
     plot.set_title(f"{stamp:.6f}", fontsize=9)
     plot.axis("off")
+    return labels
+
+
+def read_image(path):
+    try:
+        image = plt.imread(path)
+    except Exception as error:  # noqa: BLE001: the decoders raise errors of many types
+        raise InputError(f"{path}: not an image: {one_line(error)}") from error
+    if image.ndim == 3 and image.shape[2] == 2:  # grey with transparency
+        image = image[:, :, 0]
+    return image
 
 
 def draw_overlays(path, sequence, camera, objects, count):
@@ -163,10 +198,10 @@ def draw_overlays(path, sequence, camera, objects, count):
     if not chosen:
         return 0
     stamps, files = image_list(sequence)
-    columns = min(3, len(chosen))
+    columns, labels = min(3, len(chosen)), []
     rows = -(-len(chosen) // columns)
     figure, plots = plt.subplots(rows, columns, figsize=(6.4 * columns, 5.1 * rows), squeeze=False,
-                                 constrained_layout=True)
+                                 constrained_layout=True, dpi=100)
     for plot in plots.flat[len(chosen):]:
         plot.axis("off")
     for plot, stamp in zip(plots.flat, chosen):
@@ -174,11 +209,11 @@ def draw_overlays(path, sequence, camera, objects, count):
         if abs(stamps[nearest] - stamp) > 1e-3:
             raise InputError(f"{sequence}/rgb.txt: no image of {stamp:.6f}; "
                              "is it the sequence of the run?")
-        try:
-            image = plt.imread(files[nearest])
-        except (OSError, SyntaxError, ValueError) as error:
-            raise InputError(f"{files[nearest]}: not an image: {error}") from error
-        draw_overlay(plot, image, stamp, camera, objects)
-    figure.savefig(path, dpi=100)
+        labels.append(draw_overlay(plot, read_image(files[nearest]), stamp, camera, objects))
+    figure.canvas.draw()
+    figure.set_layout_engine("none")
+    for plot, of_plot in zip(plots.flat, labels):
+        draw_labels(plot, of_plot)
+    figure.savefig(path)
     plt.close(figure)
     return len(chosen)

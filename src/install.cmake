@@ -1,13 +1,30 @@
-# Installs the public headers, the library, the settings of known cameras, and a CMake package for
-# find_package(hullslam). Examples/CMakeLists.txt installs the programs.
+# Installs the public headers, the library, the settings of known cameras, the scripts that draw
+# runs, and a CMake package for find_package(hullslam). Examples/CMakeLists.txt installs the
+# programs.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(HULLSLAM_INSTALL_CONFIGDIR ${CMAKE_INSTALL_DATADIR}/hullslam/config)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hullslam)
 
+# hullslam_install_link(NAME FILE): installs bin/NAME as a relative link to FILE of the installation.
+function(hullslam_install_link name file)
+  file(RELATIVE_PATH target /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${file})
+  set(link ${PROJECT_BINARY_DIR}/links/${name})
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/links)
+  file(CREATE_LINK ${target} ${link} SYMBOLIC)
+  install(FILES ${link} DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()
+
 install(TARGETS hullslam EXPORT hullslamTargets)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/hullslam TYPE INCLUDE FILES_MATCHING PATTERN *.h)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${HULLSLAM_INSTALL_CONFIGDIR})
+file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/plot_*.py
+                                   ${PROJECT_SOURCE_DIR}/scripts/run_*.py
+                                   ${PROJECT_SOURCE_DIR}/scripts/object_*.py)
+install(PROGRAMS ${scripts} DESTINATION ${CMAKE_INSTALL_DATADIR}/hullslam/scripts)
+foreach(script plot_run plot_ablation object_table)
+  hullslam_install_link(hullslam-${script} ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/${script}.py)
+endforeach()
 install(EXPORT hullslamTargets NAMESPACE hullslam:: DESTINATION ${package_dir})
 
 configure_package_config_file(

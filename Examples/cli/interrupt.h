@@ -5,8 +5,9 @@
 
 namespace hullslam {
 
-// From now on SIGINT and SIGTERM do not end the program, but request that it stops early. A second
-// signal of the same kind ends it.
+// From now on SIGINT, SIGTERM and SIGHUP do not end the program, but request that it stops early
+// and writes what it has. Further signals change nothing, so they cannot destroy the results while
+// they are written. A signal that the caller of the program ignores, as nohup does, stays ignored.
 void CatchInterrupts();
 // The request that the signals make.
 const Cancellation& Interruption();

@@ -27,7 +27,7 @@ SequenceMasks::SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> 
     : path_(request.path.string()), frames_(std::move(frames)) {
   if (!request.path.empty()) {
     source_ = OpenMasks(request, frames_);
-    missing_ = CheckMasks(*source_, frames_);
+    counts_ = CheckMasks(*source_, frames_);
   } else if (!request.format.empty()) {
     throw InputError(fmt::format("--masks-format is '{}' without --masks, expected both or neither",
                                  request.format));
@@ -38,14 +38,26 @@ std::vector<InstanceMask> SequenceMasks::Read(size_t frame) const {
   return source_ == nullptr ? std::vector<InstanceMask>() : source_->Read(frames_.at(frame)).masks;
 }
 
+std::set<std::string> SequenceMasks::Labels() const {
+  std::set<std::string> labels;
+  for (size_t frame = 0; frame < frames_.size(); ++frame) {
+    for (const InstanceMask& mask : Read(frame)) {
+      labels.insert(mask.label);
+    }
+  }
+  return labels;
+}
+
 std::optional<std::string> SequenceMasks::format() const {
   return source_ == nullptr ? std::nullopt : std::optional(source_->format());
 }
 
 std::string SequenceMasks::Describe() const {
-  return source_ == nullptr ? std::string("no masks")
-                            : fmt::format("masks: {} ({}), {} of {} frames have none", path_,
-                                          source_->format(), missing_, frames_.size());
+  return source_ == nullptr
+             ? std::string("no masks")
+             : fmt::format("masks: {} ({}), {} of {} frames have none, {} of them no file or entry",
+                           path_, source_->format(), counts_.without_masks, frames_.size(),
+                           counts_.missing);
 }
 
 }  // namespace hullslam

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,14 +29,17 @@ class SequenceMasks {
 
   // The masks of the frame with this index. May be called by another thread.
   std::vector<InstanceMask> Read(size_t frame) const;
+  // The classes of all masks of all frames. Reads them all.
+  std::set<std::string> Labels() const;
   std::optional<std::string> format() const;
-  std::string Describe() const;  // "masks: PATH (yolo-seg), 0 of 798 frames have none"
+  size_t without_masks() const { return counts_.without_masks; }  // frames
+  std::string Describe() const;  // "masks: PATH (yolo-seg), 6 of 798 frames have none, ..."
 
  private:
   std::string path_;
   std::vector<MaskFrame> frames_;
   std::unique_ptr<const MaskSource> source_;
-  size_t missing_ = 0;
+  MaskCounts counts_;
 };
 
 }  // namespace hullslam

@@ -34,10 +34,11 @@ ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& 
   return summary;
 }
 
-std::vector<FileContent> ObjectFiles(const std::filesystem::path& folder,
-                                     const ObjectReport& report) {
-  return {{folder / "objects.json", FormatObjects(report)},
-          {folder / "objects.ply", FormatObjectsPly(report.objects)}};
+std::vector<FileContent> ObjectFiles(const ObjectReport& report) {
+  return {{"objects.json", FormatObjects(report)},
+          {"objects_observations.json", FormatObservations(report)},
+          {"objects.csv", FormatObjectsCsv(report)},
+          {"objects.ply", FormatObjectsPly(report.objects)}};
 }
 
 std::string FormatFigure(const std::optional<double>& figure, int decimals) {

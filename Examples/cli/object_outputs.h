@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
-#include "hullslam/io/atomic_file.h"
+#include "hullslam/io/output_folder.h"
 #include "hullslam/io/summary.h"
 #include "hullslam/report/object_report.h"
 #include "hullslam/system/system.h"
@@ -20,10 +20,9 @@ ObjectReport CollectObjects(const Map& map, const PinholeCamera& camera,
 
 ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& counts);
 
-// The contents of objects.json and objects.ply, so that they can be written together with the other
-// files of a run.
-std::vector<FileContent> ObjectFiles(const std::filesystem::path& folder,
-                                     const ObjectReport& report);
+// The contents of objects.json, objects_observations.json, objects.csv and objects.ply, so that
+// they can be written together with the other files of a run.
+std::vector<FileContent> ObjectFiles(const ObjectReport& report);
 
 // The number with this many decimals; "-" if there is none.
 std::string FormatFigure(const std::optional<double>& figure, int decimals);

@@ -5,7 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
+
+#include "cli/messages.h"
 
 namespace hullslam {
 namespace {
@@ -39,17 +40,16 @@ void Progress::Show(size_t done, const std::function<std::string()>& state) {
       fmt::format("frame {}/{}  {:.1f} frames/s  {:.0f} s left{}", done, frames_, rate,
                   static_cast<double>(frames_ - done) / rate, state ? "  " + state() : "");
   if (is_terminal_) {
-    fmt::print(stderr, "\r[{}] {}\033[K", Bar(done, frames_), facts);
+    PrintError("\r[{}] {}\033[K", Bar(done, frames_), facts);
     is_line_open_ = true;
   } else {
-    fmt::print(stderr, "{}\n", facts);
+    PrintError("{}\n", facts);
   }
-  std::fflush(stderr);
 }
 
 void Progress::Clear() {
   if (is_line_open_) {
-    fmt::print(stderr, "\n");
+    PrintError("\n");
     is_line_open_ = false;
   }
 }

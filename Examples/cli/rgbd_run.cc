@@ -5,19 +5,20 @@
 
 #include <algorithm>
 #include <chrono>
-#include <iterator>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
+#include "cli/input_warnings.h"
 #include "cli/interrupt.h"
 #include "cli/mask_arguments.h"
+#include "cli/messages.h"
 #include "cli/object_outputs.h"
 #include "cli/program.h"
 #include "cli/progress.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/eval/rpe.h"
-#include "hullslam/io/atomic_file.h"
 #include "hullslam/io/output_folder.h"
 #include "hullslam/io/ply_file.h"
 #include "hullslam/io/settings.h"
@@ -32,7 +33,6 @@ namespace hullslam {
 namespace {
 
 constexpr size_t kImagesAhead = 4;
-constexpr size_t kLostForGood = 30;  // the run has failed if the last 30 frames or more are lost
 
 using Clock = std::chrono::steady_clock;
 
@@ -88,10 +88,15 @@ Prefetcher<LoadedFrame> StartLoading(const TumSequence& sequence, const PinholeC
       kImagesAhead);
 }
 
-// Waits until the time, counted from `start`, at which the camera took the frame.
+// Waits until the time, counted from `start`, at which the camera took the frame, or until the run
+// is interrupted.
 void WaitForStamp(const TumSequence& sequence, double stamp, Clock::time_point start) {
-  const std::chrono::duration<double> due(stamp - sequence.frames.front().timestamp);
-  std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(due));
+  constexpr std::chrono::milliseconds kStep(20);
+  const std::chrono::duration<double> after_start(stamp - sequence.frames.front().timestamp);
+  const auto due = start + std::chrono::duration_cast<Clock::duration>(after_start);
+  while (!IsInterrupted() && Clock::now() < due) {
+    std::this_thread::sleep_until(std::min(due, Clock::now() + kStep));
+  }
 }
 
 const char* Name(TrackingState state) {
@@ -123,25 +128,28 @@ RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
     if (!loaded) {
       break;
     }
+    if (arguments.realtime && loaded->image) {
+      WaitForStamp(sequence, loaded->image->timestamp, start);
+      if (IsInterrupted()) {
+        break;
+      }
+    }
     ++result.given;
     if (!loaded->image) {
       if (arguments.strict) {
         throw InputError(loaded->error);
       }
       progress.Clear();
-      fmt::print(stderr, "warning: {}; this frame is skipped\n", loaded->error);
+      PrintError("warning: {}; this frame is skipped\n", loaded->error);
       ++result.skipped;
       continue;
-    }
-    if (arguments.realtime) {
-      WaitForStamp(sequence, loaded->image->timestamp, start);
     }
     const TrackedFrame frame = system.Track(*loaded->image);
     progress.Show(result.given, [&] { return DescribeState(frame.state, system); });
   }
   progress.Clear();
   if (!arguments.quiet && !IsInterrupted()) {
-    fmt::print(stderr, "finishing the map\n");  // the bundle adjustment of the whole map is slow
+    PrintError("finishing the map\n");  // the bundle adjustment of the whole map is slow
   }
   system.Finish(&Interruption());
   result.was_interrupted = IsInterrupted();
@@ -153,13 +161,12 @@ void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory,
               TrajectorySummary& summary) {
   const AteReport ate = EvaluateAte(groundtruth, trajectory);
   if (!ate.ok()) {
-    fmt::print(stderr, "warning: the trajectory error cannot be computed: {}\n", ate.failure);
+    PrintError("warning: the trajectory error cannot be computed: {}\n", ate.failure);
     return;
   }
   summary.ate_rmse_m = ate.errors.rmse;
   summary.scale = ate.reference_from_estimate.scale;
   summary.pairs = ate.pairs;
-  summary.coverage = ate.coverage;
   const RpeReport rpe = EvaluateRpe(groundtruth, trajectory);
   if (rpe.ok()) {
     summary.rpe_rmse_m = rpe.translation.rmse;
@@ -181,6 +188,8 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
   summary.trajectory.unpaired = sequence.unpaired;
   summary.trajectory.lost = CountLost(system);
   summary.trajectory.tracked = system.frames().size() - summary.trajectory.lost;
+  summary.trajectory.coverage =
+      static_cast<double>(summary.trajectory.tracked) / static_cast<double>(sequence.frames.size());
 
   summary.timing.stages_ms = SummarizeStages(system.times());
   summary.timing.track_ms = summary.timing.stages_ms["track"];
@@ -199,6 +208,7 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
   summary.provenance.seed = arguments.seed;
   summary.provenance.pipeline = arguments.threaded ? "threaded" : "sequential";
   summary.provenance.sequence = arguments.sequence.string();
+  summary.provenance.interrupted = result.was_interrupted;
   return summary;
 }
 
@@ -214,75 +224,106 @@ std::string MapPly(const Map& map, const Trajectory& keyframes) {
 }
 
 // The files of objects are only written if the run has masks.
-void WriteOutputs(const std::filesystem::path& folder, const Map& map, const Trajectory& trajectory,
-                  const RunSummary& summary, const ObjectReport& objects) {
+void WriteOutputs(OutputFolder& output, const Map& map, const Trajectory& trajectory,
+                  RunSummary summary, const ObjectReport& objects) {
   const Trajectory keyframes = KeyframeTrajectory(map);
-  std::vector<FileContent> files = {{folder / "trajectory.txt", FormatTrajectory(trajectory)},
-                                    {folder / "keyframes.txt", FormatTrajectory(keyframes)},
-                                    {folder / "map.ply", MapPly(map, keyframes)},
-                                    {folder / "summary.json", FormatSummary(summary)}};
+  output.Write({"trajectory.txt", FormatTrajectory(trajectory)});
+  output.Write({"keyframes.txt", FormatTrajectory(keyframes)});
+  output.Write({"map.ply", MapPly(map, keyframes)});
   if (summary.objects) {
-    std::ranges::move(ObjectFiles(folder, objects), std::back_inserter(files));
+    for (const FileContent& file : ObjectFiles(objects)) {
+      output.Write(file);
+    }
   }
-  WriteFilesAtomically(files);
+  summary.files = output.names();
+  output.Write({"summary.json", FormatSummary(summary)});
+  output.Commit();
 }
 
 void PrintReport(const RunArguments& arguments, const RunSummary& summary) {
   const TrajectorySummary& trajectory = summary.trajectory;
-  fmt::print("{} frames: {} tracked, {} lost, {} skipped; {} images without depth\n",
-             trajectory.frames, trajectory.tracked, trajectory.lost, trajectory.skipped,
-             trajectory.unpaired);
+  Print("{} frames: {} tracked, {} lost, {} skipped; {} images without depth\n", trajectory.frames,
+        trajectory.tracked, trajectory.lost, trajectory.skipped, trajectory.unpaired);
   if (trajectory.ate_rmse_m) {
-    fmt::print("ATE RMSE {:.4f} m ({} alignment, {} pairs of poses, coverage {:.1f} %)\n",
-               *trajectory.ate_rmse_m, trajectory.alignment, trajectory.pairs,
-               100.0 * trajectory.coverage.value_or(0.0));
+    Print(
+        "ATE RMSE {:.4f} m ({} alignment, {} pairs of poses, coverage {:.1f} % of the sequence)\n",
+        *trajectory.ate_rmse_m, trajectory.alignment, trajectory.pairs,
+        100.0 * trajectory.coverage.value_or(0.0));
   }
   if (trajectory.rpe_rmse_m && trajectory.rpe_rmse_deg) {
-    fmt::print("RPE RMSE {:.4f} m, {:.3f} degrees over 1 s\n", *trajectory.rpe_rmse_m,
-               *trajectory.rpe_rmse_deg);
+    Print("RPE RMSE {:.4f} m, {:.3f} degrees over 1 s\n", *trajectory.rpe_rmse_m,
+          *trajectory.rpe_rmse_deg);
   }
-  fmt::print("{} keyframes, {} landmarks\n", summary.map.keyframes, summary.map.landmarks);
+  Print("{} keyframes, {} landmarks\n", summary.map.keyframes, summary.map.landmarks);
   if (summary.objects) {
-    fmt::print("{}\n", DescribeObjects(*summary.objects));
+    Print("{}\n", DescribeObjects(*summary.objects));
   }
-  fmt::print(
+  Print(
       "tracking {:.1f} ms per frame (median; mean {:.1f}, p95 {:.1f}); {:.1f} frames/s overall; "
       "peak memory {:.0f} MB\n",
       summary.timing.track_ms.median, summary.timing.track_ms.mean, summary.timing.track_ms.p95,
       summary.timing.frames_per_second, summary.peak_memory_mb);
-  fmt::print("results are in {}\n", arguments.output.string());
+  Print("results are in {}\n", arguments.output.string());
 }
 
-bool IsLostForGood(const System& system) {
+// Why the run has failed although it came to its end; empty if it has not.
+std::string DescribeLoss(const RunOptions& options, const TumSequence& sequence,
+                         const RunSummary& summary, const System& system) {
+  const TrajectorySummary& trajectory = summary.trajectory;
+  const std::string found =
+      fmt::format("{} of {} frames have a pose", trajectory.tracked, sequence.frames.size());
+  const auto all = static_cast<double>(sequence.frames.size());
+  if (all - static_cast<double>(trajectory.tracked) > options.max_lost_share * all) {
+    return fmt::format("too many frames were lost: {} (run.max_lost_share {:g})", found,
+                       options.max_lost_share);
+  }
   const std::vector<TrackedFrame>& frames = system.frames();
   const auto last_tracked = std::find_if(
       frames.rbegin(), frames.rend(),
       [](const TrackedFrame& frame) { return frame.state == TrackingState::kTracked; });
-  return last_tracked == frames.rend() ||
-         static_cast<size_t>(last_tracked - frames.rbegin()) >= kLostForGood;
+  if (last_tracked != frames.rend() &&
+      frames.back().timestamp - last_tracked->timestamp > options.max_lost_at_end) {
+    return fmt::format(
+        "tracking was lost and did not recover before the end: {} (run.max_lost_at_end {:g} s)",
+        found, options.max_lost_at_end);
+  }
+  return {};
+}
+
+std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
+  return {arguments.sequence, arguments.masks, arguments.settings, arguments.tum.associations,
+          arguments.vocabulary};
 }
 
 }  // namespace
 
 int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
   const SystemOptions options = LoadOptions(arguments);
-  LoadRgbd(sequence.frames.front(), options.camera);  // finds images of a wrong type or size early
+  // Finds images of a wrong type or size early.
+  const ImageInput first = LoadRgbd(sequence.frames.front(), options.camera);
   const std::optional<Trajectory> groundtruth =
       sequence.groundtruth ? std::optional(ReadTrajectory(*sequence.groundtruth)) : std::nullopt;
   const SequenceMasks masks(
       {arguments.masks, arguments.masks_format, options.camera.width, options.camera.height},
       MaskFrames(sequence));
-  PrepareOutputFolder(arguments.output);
+  CatchInterrupts();
+  OutputFolder output(arguments.output, "summary.json", InputsOf(arguments));
+  WarnOfImplausibleDepth(sequence.frames.front().depth, first.depth, options.depth);
+  WarnOfUnknownClasses(options.tracking, masks);
+  WarnOfLastFrame(arguments.tum.selection, sequence);
   if (!arguments.quiet && masks.format()) {
-    fmt::print("{}\n", masks.Describe());
+    Print("{}\n", masks.Describe());
   }
   if (!arguments.vocabulary.empty()) {
-    fmt::print(stderr, "warning: {}: this version does not use the vocabulary\n",
+    PrintError("warning: {}: this version does not use the vocabulary\n",
                arguments.vocabulary.string());
   }
-  CatchInterrupts();
   System system(options, ChoosePipeline(arguments));
   const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system);
+  if (result.was_interrupted && result.given == 0) {
+    PrintFailure("the run was interrupted before the first frame; nothing was written");
+    return kFailed;
+  }
 
   RunSummary summary = Summarize(arguments, options, sequence, result, system);
   summary.provenance.masks_format = masks.format();
@@ -296,18 +337,19 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
   if (masks.format()) {
     summary.objects = SummarizeObjects(objects, system.object_counts());
   }
-  WriteOutputs(arguments.output, *map, trajectory, summary, objects);
-  if (result.was_interrupted) {
-    fmt::print(stderr, "warning: the run was interrupted after {} of {} frames\n", result.given,
-               sequence.frames.size());
-  }
+  WriteOutputs(output, *map, trajectory, summary, objects);
   if (!arguments.quiet) {
     PrintReport(arguments, summary);
   }
-  if (!result.was_interrupted && IsLostForGood(system)) {
-    fmt::print(stderr,
-               "error: tracking was lost and did not recover: {} of {} frames have a pose\n",
-               summary.trajectory.tracked, summary.trajectory.frames);
+  const std::string failure =
+      result.was_interrupted
+          ? fmt::format(
+                "the run was interrupted after {} of {} frames; the results so far were "
+                "written",
+                result.given, sequence.frames.size())
+          : DescribeLoss(options.run, sequence, summary, system);
+  if (!failure.empty()) {
+    PrintFailure(failure);
     return kFailed;
   }
   return kDone;

@@ -3,18 +3,22 @@
 
 #include "cli/logging.h"
 #include "cli/mask_arguments.h"
+#include "cli/version.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
 namespace {
 
-// Without this check CLI11 would turn -1 into the largest unsigned number.
-CLI::Validator WholeNumber() {
+// Without this check CLI11 would turn -1 into the largest unsigned number. `least` is 0 or 1.
+CLI::Validator WholeNumber(int least) {
   return CLI::Validator(
-      [](const std::string& text) {
+      [least](const std::string& text) {
         const bool is_whole =
             !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-        return is_whole ? std::string() : "'" + text + "', expected an integer >= 0";
+        const bool is_zero = text.find_first_not_of('0') == std::string::npos;
+        return is_whole && (least == 0 || !is_zero)
+                   ? std::string()
+                   : "'" + text + "', expected an integer >= " + std::to_string(least);
       },
       "");
 }
@@ -39,7 +43,8 @@ void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::st
                  "key=value: overrides one setting; can be given several times")
       ->take_all()
       ->allow_extra_args(false);  // else it would also take the positional arguments after it
-  app.add_option("--output", arguments.output, "folder for the result files")
+  app.add_option("--output", arguments.output,
+                 "folder for the result files; replaces the former run in it")
       ->capture_default_str();
   app.add_flag("--threaded", arguments.threaded,
                "run mapping in its own thread: faster, but results differ a little between runs");
@@ -47,25 +52,26 @@ void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::st
                "process the images no faster than the camera took them, by their stamps");
   app.add_option("--seed", arguments.seed,
                  "has no effect yet: nothing in a run is random. It is only copied to summary.json")
-      ->check(WholeNumber())
+      ->check(WholeNumber(0))
       ->capture_default_str();
   app.add_option("--first", arguments.tum.selection.first,
                  "number of the first frame, counted from 0 (default: 0)")
-      ->check(WholeNumber());
+      ->check(WholeNumber(0));
   app.add_option("--last", arguments.tum.selection.last,
                  "number of the last frame, inclusive (default: last of the sequence)")
-      ->check(WholeNumber());
+      ->check(WholeNumber(0));
   app.add_option("--stride", arguments.tum.selection.stride,
                  "use every n-th frame only (default: 1)")
-      ->check(WholeNumber());
+      ->check(WholeNumber(1));
   app.add_flag("--strict", arguments.strict,
                "stop at an image that cannot be read instead of skipping the frame");
   AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
-  app.set_version_flag("--version", HULLSLAM_VERSION);
-  app.footer(
-      "Exit codes: 0 done (also if interrupted: the results up to then are written), 1 the run "
-      "failed (tracking was lost and did not recover), 2 bad usage or input.");
+  AddVersionAndExitCodes(
+      app, "done",
+      "the run failed, was interrupted (the results up to then are written, and summary.json says "
+      "so), lost too many frames (run.max_lost_share, run.max_lost_at_end), or could not print its "
+      "report");
 }
 
 void FinishArguments(const std::vector<std::string>& positional, RunArguments& arguments) {

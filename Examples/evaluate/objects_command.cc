@@ -6,11 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "cli/object_outputs.h"
 #include "evaluate/objects_truth.h"
 #include "hullslam/eval/object_metrics.h"
 #include "hullslam/io/object_file.h"
+#include "hullslam/util/error.h"
 
 namespace hullslam {
 namespace {
@@ -81,6 +83,17 @@ void PrintText(const ObjectReport& report) {
       FormatFigure(fit.mean.mtd_m2, 6), FormatFigure(fit.mean.tangent_px, 2));
 }
 
+void CheckHasObjects(const std::filesystem::path& run) {
+  std::error_code error;
+  if (!std::filesystem::exists(run / "objects.json", error) &&
+      std::filesystem::exists(run / "summary.json", error)) {
+    throw InputError(
+        run.string() +
+        ": this run had no masks, so it has no objects (objects.json); give the program "
+        "that makes the run --masks");
+  }
+}
+
 }  // namespace
 
 CLI::App* AddObjectsCommand(CLI::App& app, ObjectsArguments& arguments) {
@@ -100,6 +113,7 @@ CLI::App* AddObjectsCommand(CLI::App& app, ObjectsArguments& arguments) {
 }
 
 void RunObjectsCommand(const ObjectsArguments& arguments) {
+  CheckHasObjects(arguments.run);
   ObjectReport report = ReadObjects(arguments.run / "objects.json");
   MeasureObjects(report);
   std::optional<TruthEvaluation> truth;

@@ -104,6 +104,35 @@ void PrintTrueObject(const TruthEvaluation& evaluation, size_t index) {
   }
 }
 
+// The distance at which errors of orientation count (m): the mean distance of the mapped objects
+// from the keyframes that observe them. 1 if no object is mapped.
+double MeanDistance(const ObjectReport& report) {
+  double sum = 0.0;
+  size_t count = 0;
+  for (const ReportedObject& object : report.objects) {
+    if (object.state == ObjectState::kMapped) {
+      for (const ReportedView& view : object.views) {
+        sum += (view.cam_from_world * object.ellipsoid.world_from_object.translation).norm();
+        ++count;
+      }
+    }
+  }
+  return sum > 0.0 ? sum / static_cast<double>(count) : 1.0;
+}
+
+// Maps the world of the run to the true one. Positions alone would not determine the rotation of a
+// run whose camera hardly moved.
+Rigid3 AlignWorlds(const Trajectory& groundtruth, const Trajectory& run, double lever) {
+  std::vector<Rigid3> truths;
+  std::vector<Rigid3> estimates;
+  for (const auto& [truth, estimate] :
+       PairPoses(groundtruth, run, PairingRule::kTum, DefaultMaxDifference(PairingRule::kTum))) {
+    truths.push_back(groundtruth[truth].world_from_cam);
+    estimates.push_back(run[estimate].world_from_cam);
+  }
+  return AlignPoses(estimates, truths, lever);
+}
+
 }  // namespace
 
 TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectReport& report) {
@@ -117,8 +146,8 @@ TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectRep
   TruthEvaluation evaluation;
   evaluation.truths = ReadTrueObjects(arguments.groundtruth);
   evaluation.sightings = ReadSightings(folder, evaluation.truths, report.camera, groundtruth, run);
-  evaluation.comparison =
-      CompareWithTruth(evaluation.truths, report, ate.reference_from_estimate.target_from_source);
+  evaluation.comparison = CompareWithTruth(evaluation.truths, report,
+                                           AlignWorlds(groundtruth, run, MeanDistance(report)));
   evaluation.counts = CountMapped(evaluation.truths, evaluation.comparison, evaluation.sightings,
                                   arguments.min_masks);
   evaluation.ate_rmse_m = ate.errors.rmse;
@@ -127,7 +156,7 @@ TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectRep
 }
 
 void PrintTruth(const TruthEvaluation& evaluation) {
-  fmt::print("\ntrue objects, after alignment of the trajectories (ATE RMSE {:.4f} m)\n",
+  fmt::print("\ntrue objects, after alignment of the poses (ATE RMSE of the run {:.4f} m)\n",
              evaluation.ate_rmse_m);
   fmt::print("{:>4} {:<14} {:<12} {:>5}  {:>4}  {:>6} {:>6}  {:<17}  {}\n", "id", "class", "shape",
              "masks", "id", "mm", "% size", "axes, mapped/true", "extents, mapped/true");

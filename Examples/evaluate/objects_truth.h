@@ -16,7 +16,7 @@ struct TruthEvaluation {
   std::vector<size_t> sightings;  // masks of each true object; empty if the sequence has no masks
   GroundtruthComparison comparison;
   TruthCounts counts;
-  double ate_rmse_m = 0.0;  // of the trajectory that aligns the two worlds
+  double ate_rmse_m = 0.0;  // of the run, aligned by positions
   size_t min_masks = 0;
 };
 

@@ -3,10 +3,21 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <optional>
+#include <sstream>
 
 namespace hullslam {
 namespace {
+
+// With up to six digits.
+std::string Print(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
 
 struct Distortion {
   Eigen::Vector2d point;
@@ -33,13 +44,90 @@ Distortion DistortNormalized(const PinholeCamera& camera, const Eigen::Vector2d&
   return result;
 }
 
+constexpr double kLeastFocalLength = 10.0;  // px
+constexpr double kMostFocalLength = 1e5;
+constexpr double kMostPrincipalPoint = 1e5;
+constexpr double kLeastBaselineTimesFx = 1e-3;  // m px
+constexpr double kMostBaselineTimesFx = 1e6;
+
+std::string Describe(const char* key, double value, const Range& range) {
+  return range.Contains(value) ? std::string()
+                               : std::string(key) + " is '" + Print(value) +
+                                     "', expected a number " + range.ToString();
+}
+
+// The coefficient that moves a raw pixel most.
+std::string NameCoefficient(const PinholeCamera& camera, const Eigen::Vector2d& raw) {
+  const double r = std::hypot((raw.x() - camera.cx) / camera.fx, (raw.y() - camera.cy) / camera.fy);
+  struct Term {
+    const char* key;
+    double coefficient;
+    double factor;
+  };
+  const std::array<Term, 5> terms = {{{"Camera.k1", camera.k1, std::pow(r, 2)},
+                                      {"Camera.k2", camera.k2, std::pow(r, 4)},
+                                      {"Camera.k3", camera.k3, std::pow(r, 6)},
+                                      {"Camera.p1", camera.p1, r},
+                                      {"Camera.p2", camera.p2, r}}};
+  const auto largest =
+      std::max_element(terms.begin(), terms.end(), [](const auto& a, const auto& b) {
+        return std::abs(a.coefficient) * a.factor < std::abs(b.coefficient) * b.factor;
+      });
+  return std::string(largest->key) + " is '" + Print(largest->coefficient) + "': ";
+}
+
+// A pixel of the image at which the distortion has no inverse.
+std::optional<Eigen::Vector2d> FindFold(const PinholeCamera& camera) {
+  constexpr int kSteps = 16;
+  constexpr double kMostError = 0.1;  // px
+  constexpr double kSmallestSlope = 1e-3;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; j <= kSteps; ++j) {
+      const Eigen::Vector2d raw(static_cast<double>(camera.width) * j / kSteps,
+                                static_cast<double>(camera.height) * i / kSteps);
+      const Eigen::Vector2d p = camera.Undistort(raw);
+      const Distortion distortion = DistortNormalized(
+          camera, {(p.x() - camera.cx) / camera.fx, (p.y() - camera.cy) / camera.fy});
+      // The comparisons are written so that a NaN is a fold.
+      const bool has_inverse = (camera.Distort(p) - raw).norm() <= kMostError &&
+                               distortion.jacobian.determinant() >= kSmallestSlope;
+      if (!has_inverse) {
+        return raw;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::string FindDistortionFault(const PinholeCamera& camera) {
+  if (const std::optional<Eigen::Vector2d> fold = FindFold(camera)) {
+    return NameCoefficient(camera, *fold) + "the distortion cannot be undone at pixel (" +
+           Print(fold->x()) + ", " + Print(fold->y()) + "), expected the coefficients of a lens";
+  }
+  constexpr double kMostStretch = 4.0;
+  const PinholeCamera::Bounds bounds = camera.UndistortedBounds();
+  const double stretch_x = (bounds.max_x - bounds.min_x) / camera.width;
+  const double stretch_y = (bounds.max_y - bounds.min_y) / camera.height;
+  const Range range = Range::Between(1.0 / kMostStretch, kMostStretch);
+  if (!range.Contains(stretch_x) || !range.Contains(stretch_y)) {
+    return NameCoefficient(camera, Eigen::Vector2d::Zero()) + "the undistorted image would have " +
+           Print(stretch_x) + " times the width and " + Print(stretch_y) +
+           " times the height of the image, expected " + range.ToString();
+  }
+  return {};
+}
+
 }  // namespace
 
 void PinholeCamera::Bind(OptionTable& options) {
-  options.Add("Camera.fx", &fx, Range::Positive(), "focal length in x, px");
-  options.Add("Camera.fy", &fy, Range::Positive(), "focal length in y, px");
-  options.Add("Camera.cx", &cx, Range::Any(), "principal point in x, px");
-  options.Add("Camera.cy", &cy, Range::Any(), "principal point in y, px");
+  options.Add("Camera.fx", &fx, Range::Between(kLeastFocalLength, kMostFocalLength),
+              "focal length in x, px");
+  options.Add("Camera.fy", &fy, Range::Between(kLeastFocalLength, kMostFocalLength),
+              "focal length in y, px");
+  options.Add("Camera.cx", &cx, Range::Between(-kMostPrincipalPoint, kMostPrincipalPoint),
+              "principal point in x, px");
+  options.Add("Camera.cy", &cy, Range::Between(-kMostPrincipalPoint, kMostPrincipalPoint),
+              "principal point in y, px");
   options.Add("Camera.k1", &k1, Range::Any(), "radial distortion, second order");
   options.Add("Camera.k2", &k2, Range::Any(), "radial distortion, fourth order");
   options.Add("Camera.p1", &p1, Range::Any(), "tangential distortion");
@@ -47,7 +135,7 @@ void PinholeCamera::Bind(OptionTable& options) {
   options.Add("Camera.k3", &k3, Range::Any(), "radial distortion, sixth order");
   options.Add("Camera.width", &width, Range::Between(16, 16384), "width of the images, px");
   options.Add("Camera.height", &height, Range::Between(16, 16384), "height of the images, px");
-  options.Add("Camera.bf", &bf, Range::Positive(),
+  options.Add("Camera.bf", &bf, Range::Between(kLeastBaselineTimesFx, kMostBaselineTimesFx),
               "baseline of the virtual stereo camera (m) times fx (px)");
 }
 
@@ -102,6 +190,34 @@ PinholeCamera::Bounds PinholeCamera::UndistortedBounds() const {
     include(width, y);
   }
   return bounds;
+}
+
+std::string PinholeCamera::FindFault() const {
+  const Range focal_length = Range::Between(kLeastFocalLength, kMostFocalLength);
+  const Range principal_point = Range::Between(-kMostPrincipalPoint, kMostPrincipalPoint);
+  struct Number {
+    const char* key;
+    double value;
+    Range range;
+  };
+  const std::array<Number, 10> numbers = {
+      {{"Camera.fx", fx, focal_length},
+       {"Camera.fy", fy, focal_length},
+       {"Camera.cx", cx, principal_point},
+       {"Camera.cy", cy, principal_point},
+       {"Camera.bf", bf, Range::Between(kLeastBaselineTimesFx, kMostBaselineTimesFx)},
+       {"Camera.k1", k1, Range::Any()},
+       {"Camera.k2", k2, Range::Any()},
+       {"Camera.k3", k3, Range::Any()},
+       {"Camera.p1", p1, Range::Any()},
+       {"Camera.p2", p2, Range::Any()}}};
+  for (const Number& number : numbers) {
+    std::string fault = Describe(number.key, number.value, number.range);
+    if (!fault.empty()) {
+      return fault;
+    }
+  }
+  return IsDistorted() ? FindDistortionFault(*this) : std::string();
 }
 
 }  // namespace hullslam

@@ -104,7 +104,7 @@ void MaximaOfRow(const uint8_t* above, const uint8_t* row, const uint8_t* below,
         std::max(std::max(below[x - 1], below[x]), std::max(below[x + 1], row[x + 1]));
     const uint8_t lowest = std::max(after, threshold);
     const uint8_t score = row[x];
-    maxima[x] = (score > before) & (score >= lowest) ? score : 0;
+    maxima[x] = ((score > before) & (score >= lowest)) ? score : 0;
   }
 }
 

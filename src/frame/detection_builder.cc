@@ -106,6 +106,8 @@ std::optional<DetectionRejection> Prepare(const InstanceMask& mask, size_t index
   }
   if (!frame.depth.image.empty()) {
     detection.points = DepthPoints(frame.depth, region, frame.options.max_depth_points);
+    RemoveFarFromMedian(frame.depth.camera, detection.box.sizes().maxCoeff(),
+                        frame.options.max_depth_offset, detection.points);
   }
   const double depth = MedianDepth(detection.points);
   candidates.push_back({.index = index,
@@ -172,7 +174,7 @@ std::vector<LineOnOutline> LinesOf(const Candidate& candidate, const FrameView& 
 }
 
 bool IsOneSided(const LineOnOutline& line, const FrameView& frame, double depth,
-                std::span<const Occluder> others) {
+                std::span<const MaskRegion* const> others) {
   const bool is_cut =
       std::all_of(line.touching.begin(), line.touching.end(), [&](const Eigen::Vector2d& place) {
         return IsAtBorder(place, frame.depth.camera, frame.options.border_px);
@@ -183,10 +185,10 @@ bool IsOneSided(const LineOnOutline& line, const FrameView& frame, double depth,
 
 void AddLines(const std::vector<Candidate>& candidates, const FrameView& frame,
               Candidate& candidate) {
-  std::vector<Occluder> others;
+  std::vector<const MaskRegion*> others;
   for (const Candidate& other : candidates) {
     if (other.index != candidate.index) {
-      others.push_back({.region = &other.region, .depth = other.depth});
+      others.push_back(&other.region);
     }
   }
   for (const LineOnOutline& line : LinesOf(candidate, frame)) {

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kInside = 4.0;                     // px, from the line towards the object
 constexpr std::array<double, 2> kBeyond{4.0, 8.0};  // px; two places, because masks are not exact
+constexpr double kFarthestInMask = 32.0;            // px beyond the line
 constexpr double kLargestMargin = 5.0;              // px, for eroding the mask
 constexpr double kMarginShare = 0.1;                // of the mask's smaller side
 
@@ -23,31 +24,64 @@ double Step(double depth, const DetectionOptions& options) {
 
 enum class Beyond { kUnknown, kNothingNearer, kNearer };
 
-Beyond Look(const Eigen::Vector2d& place, const Eigen::Vector2d& outwards, const DepthView& view,
-            double object_depth, std::span<const Occluder> others,
-            const DetectionOptions& options) {
-  const double inside = view.AtRaw(view.camera.Distort(place - kInside * outwards));
+// A place on a line and the direction away from the object, both undistorted.
+struct Border {
+  Eigen::Vector2d place;
+  Eigen::Vector2d outwards;
+};
+
+// Depth at a distance (px) beyond the line, m; 0 if it is unknown. If the image has no depth there
+// but another mask contains the place, this is the first known depth of that mask further out, so
+// that it is the other object's depth along this border and not that of its middle.
+double DepthBeyond(const Border& border, double distance, const DepthView& view,
+                   std::span<const MaskRegion* const> others) {
+  const auto raw_at = [&](double beyond) {
+    return view.camera.Distort(border.place + beyond * border.outwards);
+  };
+  const Eigen::Vector2d raw = raw_at(distance);
+  const double depth = view.AtRaw(raw);
+  if (depth > 0.0) {
+    return depth;
+  }
+  for (const MaskRegion* other : others) {
+    for (double beyond = distance; beyond <= kFarthestInMask; beyond += kBeyond[0]) {
+      const Eigen::Vector2d further = raw_at(beyond);
+      if (!other->Contains(further)) {
+        break;
+      }
+      if (const double further_depth = view.AtRaw(further); further_depth > 0.0) {
+        return further_depth;
+      }
+    }
+  }
+  return 0.0;
+}
+
+// Whether a surface that is nearer than the object begins at the line. The surface that the object
+// stands on also comes nearer with the distance from the line, but it meets the object there. So
+// the depths at the two places are continued as a straight line to the place inside the object.
+bool BeginsNearer(double own, double near, double far, double step) {
+  if (near <= 0.0 || far <= 0.0) {
+    return std::max(near, far) > 0.0 && std::max(near, far) < own - step;
+  }
+  if (near >= own - step) {  // the mask is too small: the other surface begins between the two
+    return far < own - step && far < near - step;
+  }
+  const double slope = (near - far) / (kBeyond[1] - kBeyond[0]);  // m per px
+  return near + std::max(0.0, slope) * (kBeyond[0] + kInside) < own - step;
+}
+
+Beyond Look(const Border& border, const DepthView& view, double object_depth,
+            std::span<const MaskRegion* const> others, const DetectionOptions& options) {
+  const double inside = view.AtRaw(view.camera.Distort(border.place - kInside * border.outwards));
   const double own = inside > 0.0 ? inside : object_depth;
-  if (own <= 0.0) {
+  const double near = DepthBeyond(border, kBeyond[0], view, others);
+  const double far = DepthBeyond(border, kBeyond[1], view, others);
+  if (own <= 0.0 || (near <= 0.0 && far <= 0.0)) {
     return Beyond::kUnknown;
   }
-  const double limit = own - Step(own, options);
-  Beyond result = Beyond::kUnknown;
-  for (const double distance : kBeyond) {
-    const Eigen::Vector2d raw = view.camera.Distort(place + distance * outwards);
-    const double depth = view.AtRaw(raw);
-    const bool in_nearer_mask =
-        std::any_of(others.begin(), others.end(), [&](const Occluder& other) {
-          return other.depth > 0.0 && other.depth < limit && other.region->Contains(raw);
-        });
-    if (in_nearer_mask || (depth > 0.0 && depth < limit)) {
-      return Beyond::kNearer;
-    }
-    if (depth > 0.0) {
-      result = Beyond::kNothingNearer;
-    }
-  }
-  return result;
+  return BeginsNearer(own, near, far, Step(own, options)) ? Beyond::kNearer
+                                                          : Beyond::kNothingNearer;
 }
 
 }  // namespace
@@ -93,12 +127,19 @@ double MedianDepth(std::span<const Eigen::Vector3d> points) {
   return *middle;
 }
 
+void RemoveFarFromMedian(const PinholeCamera& camera, double side, double max_offset,
+                         std::vector<Eigen::Vector3d>& points) {
+  const double median = MedianDepth(points);
+  const double limit = max_offset * side / camera.fx * median;
+  std::erase_if(points, [&](const auto& point) { return std::abs(point.z() - median) > limit; });
+}
+
 bool IsHidden(const LineOnOutline& line, const DepthView& view, double object_depth,
-              std::span<const Occluder> others, const DetectionOptions& options) {
+              std::span<const MaskRegion* const> others, const DetectionOptions& options) {
   int known = 0;
   int hidden = 0;
   for (const Eigen::Vector2d& place : line.near) {
-    const Beyond beyond = Look(place, line.line.normal, view, object_depth, others, options);
+    const Beyond beyond = Look({place, line.line.normal}, view, object_depth, others, options);
     known += beyond != Beyond::kUnknown ? 1 : 0;
     hidden += beyond == Beyond::kNearer ? 1 : 0;
   }

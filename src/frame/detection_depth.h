@@ -22,12 +22,6 @@ struct DepthView {
   double AtRaw(const Eigen::Vector2d& raw) const;
 };
 
-// An object of the frame that may hide others.
-struct Occluder {
-  const MaskRegion* region = nullptr;
-  double depth = 0.0;  // m, median of its points; 0 if unknown
-};
-
 // Points of the mask in the camera frame, m, about `max_points` at most. They are on a regular grid
 // of raw pixels. Pixels near the border of the mask are left out, because their depth may be that
 // of the background.
@@ -37,10 +31,16 @@ std::vector<Eigen::Vector3d> DepthPoints(const DepthView& view, const MaskRegion
 // Median of z; 0 for no points.
 double MedianDepth(std::span<const Eigen::Vector3d> points);
 
+// Removes the points whose z differs from the median by more than `max_offset` times the size that
+// `side` (px) has at the median depth.
+void RemoveFarFromMedian(const PinholeCamera& camera, double side, double max_offset,
+                         std::vector<Eigen::Vector3d>& points);
+
 // Whether something nearer than the object begins just beyond the line. This is tested at several
-// places along the line, with the depth image and the masks of `others`. It must be true at half or
-// more of the places where the depths are known.
+// places along the line, with the depth image. Where it has no depth, the nearest known depth of
+// the mask there is used (`others`: the frame's other masks). It must be true at half or more of
+// the places where the depths are known.
 bool IsHidden(const LineOnOutline& line, const DepthView& view, double object_depth,
-              std::span<const Occluder> others, const DetectionOptions& options);
+              std::span<const MaskRegion* const> others, const DetectionOptions& options);
 
 }  // namespace hullslam

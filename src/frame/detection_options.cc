@@ -45,6 +45,9 @@ void DetectionOptions::Bind(OptionTable& options) {
               "share of its depth");
   options.Add("objects.max_depth_points", &max_depth_points, Range::Between(1, 10000),
               "approximate largest number of depth points per mask");
+  options.Add("objects.max_depth_offset", &max_depth_offset, Range::Between(0.0, 1000.0),
+              "depth points farther than this from the median depth of their mask are left out, as "
+              "a share of the larger side of the mask at that depth");
 }
 
 }  // namespace hullslam

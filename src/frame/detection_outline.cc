@@ -12,16 +12,27 @@ namespace {
 
 constexpr double kMinArea = 1.0;       // px^2
 constexpr double kLargestStep = 12.0;  // px between points of a contour
+constexpr double kMostAddedPoints = 20'000.0;
+
+double Perimeter(const Polygon2& outline) {
+  double perimeter = 0.0;
+  for (size_t i = 0; i < outline.size(); ++i) {
+    perimeter += (outline[(i + 1) % outline.size()] - outline[i]).norm();
+  }
+  return perimeter;
+}
 
 // The undistorted outline, with positive signed area. Points are added on long edges, because an
-// edge that is straight in the raw image is curved in the undistorted image.
+// edge that is straight in the raw image is curved in the undistorted image. The number of added
+// points is bounded, however long the edges are.
 Polygon2 UndistortDensely(const Polygon2& outline, const PinholeCamera& camera) {
+  const double largest_step = std::max(kLargestStep, Perimeter(outline) / kMostAddedPoints);
   Polygon2 contour;
   contour.reserve(2 * outline.size());
   for (size_t i = 0; i < outline.size(); ++i) {
     const Eigen::Vector2d& from = outline[i];
     const Eigen::Vector2d step = outline[(i + 1) % outline.size()] - from;
-    const int pieces = std::max(1, static_cast<int>(std::ceil(step.norm() / kLargestStep)));
+    const int pieces = std::max(1, static_cast<int>(std::ceil(step.norm() / largest_step)));
     for (int k = 0; k < pieces; ++k) {
       contour.push_back(camera.Undistort(from + step * (static_cast<double>(k) / pieces)));
     }

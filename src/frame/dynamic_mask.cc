@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/frame/dynamic_mask.h"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -35,7 +36,10 @@ cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::str
       std::vector<cv::Point> polygon;
       polygon.reserve(outline.size());
       for (const Eigen::Vector2d& point : outline) {
-        polygon.emplace_back(cvRound(point.x()), cvRound(point.y()));
+        // Far outside any image, but OpenCV's fixed-point arithmetic does not overflow there.
+        constexpr double kFar = 32000.0;
+        polygon.emplace_back(cvRound(std::clamp(point.x(), -kFar, kFar)),
+                             cvRound(std::clamp(point.y(), -kFar, kFar)));
       }
       cv::fillPoly(region, std::vector{polygon}, cv::Scalar(255));
       box |= cv::boundingRect(polygon);

@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "frame/frame_builder.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "hullslam/frame/dynamic_mask.h"
-#include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
 
 namespace hullslam {
 namespace {
+
+void CheckSize(const char* name, const cv::Mat& image, const cv::Size& size) {
+  if (image.size() != size) {
+    throw InputError(
+        fmt::format("the {} is {}x{} px, expected Camera.width x Camera.height, {}x{} px", name,
+                    image.cols, image.rows, size.width, size.height));
+  }
+}
 
 void Undistort(const PinholeCamera& camera, std::vector<Keypoint>& keypoints) {
   for (Keypoint& keypoint : keypoints) {
@@ -43,11 +53,14 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
 
 std::shared_ptr<const Frame> FrameBuilder::Build(const ImageInput& image, FrameId id) {
   const cv::Size size(sensor_.camera.width, sensor_.camera.height);
-  Check(image.grey.type() == CV_8UC1 && image.grey.size() == size,
-        "the grey image is not CV_8UC1 or does not have the camera's size");
-  Check(image.depth.size() == size, "the depth image does not have the camera's size");
-  Check(image.depth.type() == CV_16UC1 || image.depth.type() == CV_32FC1,
-        "the depth image is neither CV_16UC1 nor CV_32FC1");
+  CheckSize("image", image.grey, size);
+  CheckSize("depth image", image.depth, size);
+  if (image.grey.type() != CV_8UC1) {
+    throw InputError("the image is not CV_8UC1");
+  }
+  if (image.depth.type() != CV_16UC1 && image.depth.type() != CV_32FC1) {
+    throw InputError("the depth image is neither CV_16UC1 nor CV_32FC1");
+  }
   auto frame = std::make_shared<Frame>();
   frame->id = id;
   frame->timestamp = image.timestamp;
@@ -67,6 +80,9 @@ std::shared_ptr<const Frame> FrameBuilder::Build(const ImageInput& image, FrameI
   counts_.frames_with_masks += image.masks.empty() ? 0 : 1;
   if (detection_builder_ && !image.masks.empty()) {
     frame->detections = Detect(image, features.keypoints);
+  }
+  if (detection_builder_ && counts_.frames_with_masks > 0) {
+    frame->depth = DepthGrid(image.depth, depth_.units_per_metre);
   }
   return frame;
 }

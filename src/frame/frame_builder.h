@@ -27,8 +27,8 @@ class FrameBuilder {
                const std::optional<DetectionOptions>& detection = DetectionOptions(),
                std::set<std::string> dynamic_classes = {});
 
-  // Throws CheckError if an image does not have the size of the camera or a type that ImageInput
-  // allows.
+  // Throws InputError if an image does not have the size of the camera or a type that ImageInput
+  // allows. The masks must pass ValidateMasks().
   std::shared_ptr<const Frame> Build(const ImageInput& image, FrameId id);
 
   struct Counts {

@@ -2,6 +2,7 @@
 #include "hullslam/geometry/alignment.h"
 
 #include <Eigen/Dense>
+#include <vector>
 
 #include "hullslam/util/check.h"
 
@@ -16,6 +17,18 @@ Points ToMatrix(std::span<const Eigen::Vector3d> points) {
     matrix.col(i) = points[i];
   }
   return matrix;
+}
+
+std::vector<Eigen::Vector3d> PointsOnAxes(std::span<const Rigid3> poses, double lever) {
+  std::vector<Eigen::Vector3d> points;
+  for (const Rigid3& pose : poses) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double distance : {lever, -lever}) {
+        points.push_back(pose * Eigen::Vector3d(distance * Eigen::Vector3d::Unit(axis)));
+      }
+    }
+  }
+  return points;
 }
 
 bool HasSpread(const Points& points) {
@@ -54,6 +67,13 @@ PointAlignment AlignPoints(std::span<const Eigen::Vector3d> source,
       Eigen::Quaterniond(Eigen::Matrix3d(scaled_rotation / alignment.scale)).normalized();
   alignment.target_from_source.translation = matrix.topRightCorner<3, 1>();
   return alignment;
+}
+
+Rigid3 AlignPoses(std::span<const Rigid3> source, std::span<const Rigid3> target, double lever) {
+  Check(!source.empty() && source.size() == target.size() && lever > 0.0,
+        "the alignment needs as many source poses as target poses, and a positive lever");
+  return AlignPoints(PointsOnAxes(source, lever), PointsOnAxes(target, lever), AlignmentKind::kSe3)
+      .target_from_source;
 }
 
 }  // namespace hullslam

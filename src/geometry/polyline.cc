@@ -96,6 +96,18 @@ double SignedArea(std::span<const Eigen::Vector2d> polygon) {
   return 0.5 * twice;
 }
 
+bool IsInOrNearConvex(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& point,
+                      double margin) {
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d edge = polygon[(i + 1) % polygon.size()] - polygon[i];
+    const Eigen::Vector2d offset = point - polygon[i];
+    if (edge.x() * offset.y() - edge.y() * offset.x() < -margin * edge.norm()) {
+      return false;
+    }
+  }
+  return true;
+}
+
 Eigen::AlignedBox2d BoundingBox(std::span<const Eigen::Vector2d> points) {
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& point : points) {

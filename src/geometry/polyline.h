@@ -16,6 +16,11 @@ std::vector<Eigen::Vector2d> SimplifyPolygon(std::span<const Eigen::Vector2d> po
 // Signed area by the shoelace formula, px^2.
 double SignedArea(std::span<const Eigen::Vector2d> polygon);
 
+// Whether a point is in a convex polygon of positive signed area, or at most `margin` (px) outside
+// of each of the lines that bound it.
+bool IsInOrNearConvex(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& point,
+                      double margin);
+
 // The smallest axis-aligned box that contains the points; empty if there are none.
 Eigen::AlignedBox2d BoundingBox(std::span<const Eigen::Vector2d> points);
 

@@ -4,6 +4,22 @@
 #include <cmath>
 
 namespace hullslam {
+namespace {
+
+// The integral of the rotations by t * omega over t from 0 to 1 (V in Barfoot's "State Estimation
+// for Robotics", the left Jacobian of SO(3)).
+Eigen::Matrix3d VelocityIntegral(const Eigen::Vector3d& omega) {
+  const double angle = omega.norm();
+  const double square = angle * angle;
+  const bool is_small = angle < 1e-4;  // the first terms of the series are exact enough
+  const double first = is_small ? 0.5 - square / 24.0 : (1.0 - std::cos(angle)) / square;
+  const double second =
+      is_small ? 1.0 / 6.0 - square / 120.0 : (angle - std::sin(angle)) / (square * angle);
+  const Eigen::Matrix3d skew = Skew(omega);
+  return Eigen::Matrix3d::Identity() + first * skew + second * skew * skew;
+}
+
+}  // namespace
 
 Eigen::Matrix<double, 3, 4> Rigid3::ToMatrix() const {
   Eigen::Matrix<double, 3, 4> matrix;
@@ -45,6 +61,14 @@ Eigen::Matrix3d Skew(const Eigen::Vector3d& a) {
   Eigen::Matrix3d matrix;
   matrix << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
   return matrix;
+}
+
+Rigid3 PartOfMotion(const Rigid3& motion, double share) {
+  const Eigen::Vector3d omega = LogSo3(motion.rotation);
+  // A motion with angular velocity w and linear velocity v moves the origin by V(w) v in the
+  // time 1.
+  const Eigen::Vector3d velocity = VelocityIntegral(omega).inverse() * motion.translation;
+  return {ExpSo3(share * omega), VelocityIntegral(share * omega) * (share * velocity)};
 }
 
 Rigid3 Retract(const Rigid3& b_from_a, const Eigen::Matrix<double, 6, 1>& delta) {

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "hullslam/util/error.h"
-#include "io/text_rows.h"
+#include "io/read_file.h"
 
 namespace hullslam {
 namespace {
@@ -60,8 +60,12 @@ ImageState CheckPngChunks(std::string_view bytes) {
   return ImageState::kCutOff;
 }
 
+// Zeros if the first chunk is no header.
 ImageSize PngSize(std::string_view bytes) {
   constexpr size_t kWidth = 16;  // after the signature and the length and type of the header chunk
+  if (bytes.size() < kWidth + 8 || bytes.substr(kWidth - 4, 4) != "IHDR") {
+    return {};
+  }
   return {BigEndian(bytes, kWidth, 4), BigEndian(bytes, kWidth + 4, 4)};
 }
 
@@ -73,16 +77,28 @@ ImageState CheckJpegEnd(std::string_view bytes) {
   return has_end ? ImageState::kGood : ImageState::kCutOff;
 }
 
-// Size in the frame header (SOF0 to SOF15 without the tables DHT, JPG and DAC); zeros if there is
-// none.
+// Size in the frame header (SOF0 to SOF15 without the tables DHT, JPG and DAC). Zeros if no frame
+// header comes before the first scan, or if something else than segments comes before it: a decoder
+// might skip that, and then find another header than this function.
 ImageSize JpegSize(std::string_view bytes) {
-  for (size_t at = 2; at + 9 <= bytes.size();) {
-    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
-    const bool is_table = marker == 0xc4 || marker == 0xc8 || marker == 0xcc;
-    if (marker >= 0xc0 && marker <= 0xcf && !is_table) {
-      return {BigEndian(bytes, at + 7, 2), BigEndian(bytes, at + 5, 2)};
+  constexpr unsigned char kStartOfScan = 0xda;
+  constexpr unsigned char kEndOfImage = 0xd9;
+  for (size_t at = 2; at < bytes.size() && bytes[at] == '\xff';) {
+    at = bytes.find_first_not_of('\xff', at);  // fill bytes before the marker's code are legal
+    constexpr size_t kHeader = 8;              // code, length, precision, height, width
+    if (at == std::string_view::npos || at + kHeader > bytes.size()) {
+      return {};
     }
-    at += 2 + BigEndian(bytes, at + 2, 2);
+    const auto marker = static_cast<unsigned char>(bytes[at]);
+    const bool is_table = marker == 0xc4 || marker == 0xc8 || marker == 0xcc;
+    const bool is_alone = marker == 0x01 || (marker >= 0xd0 && marker <= 0xd7);  // without length
+    if (marker >= 0xc0 && marker <= 0xcf && !is_table) {
+      return {BigEndian(bytes, at + 6, 2), BigEndian(bytes, at + 4, 2)};
+    }
+    if (marker == kStartOfScan || marker == kEndOfImage) {
+      return {};
+    }
+    at += is_alone ? 1 : 1 + BigEndian(bytes, at + 1, 2);
   }
   return {};
 }
@@ -105,6 +121,9 @@ void CheckBytes(const std::filesystem::path& path, std::string_view bytes) {
   }
   constexpr uint64_t kMostPixels = 64'000'000;
   const ImageSize size = is_png ? PngSize(bytes) : JpegSize(bytes);
+  if (size.width == 0 && size.height == 0) {
+    Fail(path, "is broken, the header with the size of the image is missing");
+  }
   if (size.width == 0 || size.height == 0 || size.width > kMostPixels ||
       size.width * size.height > kMostPixels) {
     Fail(path, fmt::format("has a size of {}x{} px, expected up to {} million px", size.width,
@@ -116,7 +135,9 @@ void CheckBytes(const std::filesystem::path& path, std::string_view bytes) {
 }
 
 cv::Mat Decode(const std::filesystem::path& path, int flags) {
-  std::string bytes = ReadFile(path);
+  // An image of 64 million px with 4 channels of 16 bits, not compressed, has 512 MB.
+  constexpr size_t kMostBytes = 512'000'000;
+  std::string bytes = ReadFile(path, kMostBytes);
   CheckBytes(path, bytes);
   const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data());
   cv::Mat image;

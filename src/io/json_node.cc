@@ -9,6 +9,8 @@
 
 #include "hullslam/util/error.h"
 #include "io/json_file.h"
+#include "io/plausible.h"
+#include "util/shown_text.h"
 
 namespace hullslam {
 namespace {
@@ -35,7 +37,8 @@ JsonNode JsonNode::At(const std::string& key) const {
     throw InputError(fmt::format("{}: {}{}\"{}\" is missing", file_->string(), place_,
                                  place_.empty() ? "" : ": ", key));
   }
-  return {*this, *found, place_.empty() ? key : place_ + '.' + key};
+  const std::string shown = ShowText(key);  // a key may be a name of the user
+  return {*this, *found, place_.empty() ? shown : place_ + '.' + shown};
 }
 
 bool JsonNode::Has(const std::string& key) const {
@@ -86,11 +89,19 @@ double JsonNode::Number() const {
   return value_->get<double>();
 }
 
-double JsonNode::PositiveNumber() const {
-  if (!IsFiniteNumber(*value_) || !(value_->get<double>() > 0.0)) {
-    Fail("a finite number > 0");
+double JsonNode::Number(double most) const {
+  if (!IsFiniteNumber(*value_) || !(std::abs(value_->get<double>()) <= most)) {
+    Fail(fmt::format("a number from {:g} to {:g}", -most, most));
   }
   return value_->get<double>();
+}
+
+double JsonNode::PositiveNumber(double most) const {
+  const double value = IsFiniteNumber(*value_) ? value_->get<double>() : 0.0;
+  if (!(value > 0.0 && value <= most)) {
+    Fail(fmt::format("a number > 0, up to {:g}", most));
+  }
+  return value;
 }
 
 uint32_t JsonNode::Count() const {
@@ -108,12 +119,25 @@ std::vector<double> JsonNode::Numbers(size_t count) const {
   return value_->get<std::vector<double>>();
 }
 
+Eigen::Vector3d JsonNode::Lengths() const {
+  const bool good =
+      AreNumbers(*value_, 3) && std::all_of(value_->begin(), value_->end(), [](const Json& length) {
+        return length.get<double>() > 0.0 && length.get<double>() <= kMostMetres;
+      });
+  if (!good) {
+    Fail(fmt::format("three numbers > 0, up to {:g} m", kMostMetres));
+  }
+  return {value_->at(0).get<double>(), value_->at(1).get<double>(), value_->at(2).get<double>()};
+}
+
 std::vector<Eigen::Vector2d> JsonNode::Points() const {
   const bool good =
-      value_->is_array() && std::all_of(value_->begin(), value_->end(),
-                                        [](const Json& point) { return AreNumbers(point, 2); });
+      value_->is_array() && std::all_of(value_->begin(), value_->end(), [](const Json& point) {
+        return AreNumbers(point, 2) && std::abs(point[0].get<double>()) <= kMostPixels &&
+               std::abs(point[1].get<double>()) <= kMostPixels;
+      });
   if (!good) {
-    Fail("points [x, y] of finite numbers");
+    Fail(fmt::format("points [x, y] of numbers from {:g} to {:g} px", -kMostPixels, kMostPixels));
   }
   std::vector<Eigen::Vector2d> points;
   points.reserve(value_->size());
@@ -125,14 +149,16 @@ std::vector<Eigen::Vector2d> JsonNode::Points() const {
 
 Rigid3 JsonNode::Pose() const {
   constexpr size_t kNumbers = 7;
-  constexpr double kShortest = 1e-6;
   if (!AreNumbers(*value_, kNumbers)) {
     Fail("tx, ty, tz, qx, qy, qz, qw");
   }
   const std::vector<double> v = Numbers(kNumbers);
   Rigid3 pose(Eigen::Quaterniond(v[6], v[3], v[4], v[5]), {v[0], v[1], v[2]});
-  if (!(pose.rotation.norm() > kShortest)) {
-    Fail("a quaternion that is not of length zero");
+  if (!(pose.translation.cwiseAbs().maxCoeff() <= kMostMetres)) {
+    Fail(fmt::format("a position from {:g} to {:g} m", -kMostMetres, kMostMetres));
+  }
+  if (!IsPlausibleRotation(pose.rotation)) {
+    Fail("a quaternion of length 1");
   }
   pose.rotation.normalize();
   return pose;

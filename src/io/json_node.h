@@ -31,14 +31,17 @@ class JsonNode {
 
   std::string Text() const;
   bool Flag() const;
-  double Number() const;          // finite
-  double PositiveNumber() const;  // finite, > 0
-  uint32_t Count() const;         // 0 to 2^32 - 2
+  double Number() const;                     // finite
+  double Number(double most) const;          // from -most to most
+  double PositiveNumber(double most) const;  // > 0, up to `most`
+  uint32_t Count() const;                    // 0 to 2^32 - 2
   // An array of exactly `count` finite numbers.
   std::vector<double> Numbers(size_t count) const;
-  // An array of points [x, y].
+  // An array of three numbers > 0, in metres.
+  Eigen::Vector3d Lengths() const;
+  // An array of points [x, y], in pixels.
   std::vector<Eigen::Vector2d> Points() const;
-  // [tx, ty, tz, qx, qy, qz, qw]; the rotation is normalised.
+  // [tx, ty, tz, qx, qy, qz, qw], in metres; the rotation is normalised.
   Rigid3 Pose() const;
 
   [[noreturn]] void Fail(std::string_view expected) const;

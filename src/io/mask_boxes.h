@@ -8,8 +8,13 @@
 
 namespace hullslam {
 
-// Format boxes: `<stem>.txt` with one line `class x y width height score` per box, in pixels; x and
-// y are the upper left corner. EAO-SLAM (Wu et al. 2020) reads these files.
+// Format boxes: `<stem>.txt` with one line per box, in one of two forms. The first box of the
+// folder decides which.
+// - `class x y width height score` in pixels; x and y are the upper left corner. EAO-SLAM (Wu et
+// al.
+//   2020) reads these files.
+// - `class x y width height [confidence]` in shares of the image; x and y are the centre. YOLO
+//   (Ultralytics, save_txt) writes these files for detections.
 bool IsBoxes(const MaskProbe& probe);
 std::unique_ptr<MaskSource> OpenBoxes(const MaskRequest& request);
 

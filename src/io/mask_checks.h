@@ -12,7 +12,8 @@
 
 namespace hullslam {
 
-constexpr size_t kMostInstances = 10'000;           // limit for one frame
+constexpr size_t kMostInstances = 1'000;            // limit for one frame
+constexpr size_t kMostOutlinePoints = 100'000;      // limit for one polygon
 constexpr size_t kMostFrameFileBytes = 16'000'000;  // limit for the text file of one frame
 constexpr size_t kMostJsonFileBytes = 512'000'000;  // limit for a JSON file of all frames
 constexpr double kMostBeyondImage = 1.0;  // px; how far an outline may extend beyond the border

@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "hullslam/util/error.h"
-#include "io/text_rows.h"
+#include "io/read_file.h"
 
 namespace hullslam {
 namespace {
@@ -81,8 +81,7 @@ std::vector<std::string> ReadClasses(const std::filesystem::path& folder) {
   if (!std::filesystem::exists(path, error)) {
     return CocoClasses();
   }
-  CheckFileSize(path, kMostBytes);
-  std::vector<std::string> names = SplitLines(ReadFile(path));
+  std::vector<std::string> names = SplitLines(ReadFile(path, kMostBytes));
   while (!names.empty() && names.back().empty()) {
     names.pop_back();
   }

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -15,6 +17,8 @@
 #include "io/mask_classes.h"
 #include "io/mask_json.h"
 #include "io/mask_rle.h"
+#include "io/plausible.h"
+#include "util/shown_text.h"
 
 namespace hullslam {
 namespace {
@@ -99,8 +103,24 @@ class CocoReader {
     if (!annotation.is_crowd) {
       annotation.instance.mask.score = ScoreOf(record, record.value, "score");
       ReadShape(record, annotation.instance);
+      CountBytes(record, annotation.instance);
     }
     annotations_.push_back(std::move(annotation));
+  }
+
+  // A number of one digit in the file takes eight bytes here.
+  void CountBytes(const JsonRecord& record, const CocoInstance& instance) {
+    constexpr size_t kMostBytes = 512'000'000;
+    bytes_ += instance.runs.size() * sizeof(uint32_t);
+    for (const auto& outline : instance.mask.outlines) {
+      bytes_ += sizeof(outline) + outline.size() * sizeof(Eigen::Vector2d);
+    }
+    if (bytes_ > kMostBytes) {
+      record.Fail(
+          fmt::format("the masks up to here take more than {} MB; a format with one file "
+                      "per frame needs less memory",
+                      kMostBytes / 1'000'000));
+    }
   }
 
   void ReadShape(const JsonRecord& record, CocoInstance& instance) const {
@@ -132,6 +152,10 @@ class CocoReader {
                       numbers.size()));
     }
     std::vector<Eigen::Vector2d> outline(numbers.size() / 2);
+    if (outline.size() > kMostOutlinePoints) {
+      record.Fail(fmt::format("a polygon of segmentation has {} points, expected at most {}",
+                              outline.size(), kMostOutlinePoints));
+    }
     for (size_t i = 0; i < outline.size(); ++i) {
       outline[i] = {numbers[2 * i] - 0.5, numbers[2 * i + 1] - 0.5};
       if (!IsNearImage(outline[i], request_)) {
@@ -145,8 +169,11 @@ class CocoReader {
 
   std::vector<Eigen::Vector2d> ReadBox(const JsonRecord& record) const {
     const std::vector<double> box = Numbers(record, Member(record, record.value, "bbox"), "bbox");
-    if (box.size() != 4 || box[2] < 0.0 || box[3] < 0.0) {
-      record.Fail("bbox is " + ShowJson(record.value["bbox"]) + ", expected x, y, width, height");
+    const bool is_plausible = std::all_of(
+        box.begin(), box.end(), [](double number) { return std::abs(number) <= kMostPixels; });
+    if (box.size() != 4 || !is_plausible || box[2] < 0.0 || box[3] < 0.0) {
+      record.Fail(fmt::format("bbox is {}, expected x, y, width, height up to {:g} px",
+                              ShowJson(record.value["bbox"]), kMostPixels));
     }
     return BoxOutline(box[0], box[1], box[0] + box[2], box[1] + box[3], request_);
   }
@@ -193,7 +220,7 @@ class CocoReader {
         request_.path, stems_.empty() ? "" : "annotations", annotation.index, {}};
     const auto stem = stems_.find(annotation.image);
     if (!stems_.empty() && stem == stems_.end()) {
-      place.Fail("image_id " + annotation.image + " is in no entry of 'images'");
+      place.Fail("image_id " + ShowText(annotation.image) + " is in no entry of 'images'");
     }
     CocoImage& image = images[stem == stems_.end() ? annotation.image : stem->second];
     annotation.instance.mask.label = Label(place, annotation.category);
@@ -230,7 +257,10 @@ class CocoReader {
 
   static int64_t Integer(const JsonRecord& record, const char* name) {
     const Json& value = Member(record, record.value, name);
-    if (!value.is_number_integer()) {
+    const bool is_too_large =
+        value.is_number_unsigned() &&
+        value.get<uint64_t>() > static_cast<uint64_t>(std::numeric_limits<int64_t>::max());
+    if (!value.is_number_integer() || is_too_large) {
       record.Fail(fmt::format("{} is {}, expected an integer", name, ShowJson(value)));
     }
     return value.get<int64_t>();
@@ -249,6 +279,7 @@ class CocoReader {
   std::map<std::string, std::string> stems_;  // by the image's id
   std::map<int64_t, std::string> categories_;
   std::vector<CocoAnnotation> annotations_;
+  size_t bytes_ = 0;  // of all outlines and runs
 };
 
 class CocoMasks : public MaskSource {
@@ -277,9 +308,6 @@ class CocoMasks : public MaskSource {
     }
     return result;
   }
-
-  void Check(const MaskFrame& /*frame*/) const override {
-  }  // everything was checked when the file was read
 
  private:
   using Images = std::map<std::string, CocoImage>;  // by stem

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -30,7 +32,7 @@ class RecordTaker {
 
   // Returns false if the value is not to be kept.
   bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
-    Count(depth);
+    Count();
     if (depth == 0 && event == Json::parse_event_t::object_start) {
       records_depth_ = 2;
     } else if (depth == 1 && event == Json::parse_event_t::key) {
@@ -47,14 +49,10 @@ class RecordTaker {
   }
 
  private:
-  void Count(int depth) {
+  void Count() {
     if (++values_ > kMostValues) {
       throw InputError(fmt::format("{}: more than {} values in one record or outside of records",
                                    path_.string(), kMostValues));
-    }
-    if (depth > kMostDepth) {
-      throw InputError(
-          fmt::format("{}: lists nested more than {} deep", path_.string(), kMostDepth));
     }
   }
 
@@ -76,7 +74,11 @@ void JsonRecord::Fail(const std::string& what) const {
 void ForEachJsonRecord(const std::filesystem::path& path,
                        const std::function<void(const JsonRecord& record)>& visit) {
   RecordTaker taker(path, visit);
-  ReadJson(path, kMostJsonFileBytes, std::ref(taker));
+  // The values are counted by the taker: the limit is one for each record.
+  const JsonLimits limits = {.most_bytes = kMostJsonFileBytes,
+                             .most_values = std::numeric_limits<size_t>::max(),
+                             .most_depth = kMostDepth};
+  ReadJson(path, limits, std::ref(taker));
 }
 
 const Json& Member(const JsonRecord& record, const Json& object, const char* name) {

@@ -16,6 +16,7 @@
 #include "io/mask_outline.h"
 #include "io/mask_text.h"
 #include "io/text_rows.h"
+#include "util/shown_text.h"
 
 namespace hullslam {
 namespace {
@@ -43,7 +44,7 @@ class ClassesReader {
   explicit ClassesReader(std::filesystem::path path) : path_(std::move(path)) {}
 
   LabelClasses Read() const {
-    const Json json = ReadJson(path_, kMostClassesBytes);
+    const Json json = ReadJson(path_, {.most_bytes = kMostClassesBytes});
     CheckObject(json, "the file");
     LabelClasses classes;
     for (const auto& [key, value] : json.items()) {
@@ -53,7 +54,7 @@ class ClassesReader {
       }
       CheckObject(value, "frames");
       for (const auto& [stem, instances] : value.items()) {
-        CheckObject(instances, "frames." + stem);
+        CheckObject(instances, "frames." + ShowText(stem));
         for (const auto& [instance, entry] : instances.items()) {
           Add(instance, entry, classes.of_frame[stem]);
         }
@@ -75,7 +76,7 @@ class ClassesReader {
     if (!ParseFinite(key, number) || !(number >= 1.0 && number <= 65535.0) ||
         number != static_cast<int>(number)) {
       throw InputError(fmt::format("{}: key '{}', expected the number of an instance, 1 to 65535",
-                                   path_.string(), key.substr(0, 40)));
+                                   path_.string(), ShowText(key)));
     }
     InstanceClass& entry = classes[static_cast<int>(number)];
     const Json& label = value.is_object() && value.contains("class") ? value["class"] : value;
@@ -83,7 +84,7 @@ class ClassesReader {
       throw InputError(
           fmt::format("{}: instance {} is {}, expected \"cup\" or {{\"class\": \"cup\", "
                       "\"score\": 0.9}}",
-                      path_.string(), key, ShowJson(value)));
+                      path_.string(), ShowText(key), ShowJson(value)));
     }
     entry.label = label.get<std::string>();
     if (value.is_object() && value.contains("score")) {
@@ -91,7 +92,7 @@ class ClassesReader {
       if (!(entry.score >= 0.0 && entry.score <= 1.0)) {
         throw InputError(
             fmt::format("{}: score of instance {} is {}, expected a number from 0 to 1",
-                        path_.string(), key, ShowJson(value["score"])));
+                        path_.string(), ShowText(key), ShowJson(value["score"])));
       }
     }
   }
@@ -144,14 +145,6 @@ class LabelPngMasks : public MaskSource {
       }
     }
     return result;
-  }
-
-  void Check(const MaskFrame& frame) const override {
-    if (Contains(frame)) {
-      for (const auto& [number, box] : FindInstances(Load(frame))) {
-        ClassOf(frame, number);
-      }
-    }
   }
 
  private:

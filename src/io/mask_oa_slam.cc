@@ -15,6 +15,7 @@
 #include "io/mask_checks.h"
 #include "io/mask_classes.h"
 #include "io/mask_json.h"
+#include "io/plausible.h"
 
 namespace hullslam {
 namespace {
@@ -82,6 +83,12 @@ std::vector<Eigen::Vector2d> EllipseOutline(const std::array<double, 5>& ellipse
   return outline;
 }
 
+template <size_t kCount>
+bool AreUpTo(double most, const std::array<double, kCount>& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(),
+                     [&](double number) { return std::abs(number) <= most; });
+}
+
 class OaSlamReader {
  public:
   explicit OaSlamReader(const MaskRequest& request)
@@ -103,6 +110,10 @@ class OaSlamReader {
     for (const Json& json : list) {
       detections.push_back(ReadDetection(record, json));
     }
+    detections_ += list.size();
+    if (detections_ > kMostDetections) {
+      record.Fail(fmt::format("more than {} detections in the file", kMostDetections));
+    }
     if (detections.size() > kMostInstances) {
       record.Fail(fmt::format("too many instances, expected at most {} per frame", kMostInstances));
     }
@@ -114,16 +125,34 @@ class OaSlamReader {
     detection.score = ScoreOf(record, json, "detection_score");
     detection.box = Take<4>(record, Member(record, json, "bbox"), "bbox", "x1, y1, x2, y2");
     const auto& [left, top, right, bottom] = detection.box;
-    if (left > right || top > bottom) {
-      record.Fail("bbox is " + ShowJson(json["bbox"]) + ", expected x1 <= x2 and y1 <= y2");
+    if (!AreUpTo(kMostPixels, detection.box) || left > right || top > bottom) {
+      record.Fail(fmt::format("bbox is {}, expected x1 <= x2 and y1 <= y2, up to {:g} px",
+                              ShowJson(json["bbox"]), kMostPixels));
     }
     if (json.contains("ellipse")) {
       detection.ellipse = Take<5>(record, json["ellipse"], "ellipse", "cx, cy, a, b, angle");
-      if ((*detection.ellipse)[2] <= 0.0 || (*detection.ellipse)[3] <= 0.0) {
-        record.Fail("ellipse is " + ShowJson(json["ellipse"]) + ", expected axes > 0");
-      }
+      CheckEllipse(record, json["ellipse"], *detection.ellipse);
     }
     return detection;
+  }
+
+  // An ellipse may extend beyond the image, because an object may do so, but an ellipse that is
+  // much larger than the image is an error of the file.
+  void CheckEllipse(const JsonRecord& record, const Json& json,
+                    const std::array<double, 5>& ellipse) const {
+    constexpr double kMostDiagonals = 4.0;
+    constexpr double kMostAngle = 360.0;
+    const auto& [x, y, a, b, angle] = ellipse;
+    if (a <= 0.0 || b <= 0.0) {
+      record.Fail("ellipse is " + ShowJson(json) + ", expected axes > 0");
+    }
+    const double most = std::ceil(kMostDiagonals * std::hypot(request_.width, request_.height));
+    if (!AreUpTo(most, std::array{x, y, a, b}) || !(std::abs(angle) <= kMostAngle)) {
+      record.Fail(
+          fmt::format("ellipse is {}, expected a centre and axes up to {:g} px for an image of "
+                      "{}x{} px, and an angle up to {:g}",
+                      ShowJson(json), most, request_.width, request_.height, kMostAngle));
+    }
   }
 
   template <size_t kCount>
@@ -151,9 +180,12 @@ class OaSlamReader {
     return classes_[category.get<size_t>()];
   }
 
+  static constexpr size_t kMostDetections = 1'000'000;
+
   const MaskRequest& request_;
   std::vector<std::string> classes_;
   OaSlamImages images_;
+  size_t detections_ = 0;
 };
 
 class OaSlamMasks : public MaskSource {
@@ -184,9 +216,6 @@ class OaSlamMasks : public MaskSource {
     }
     return result;
   }
-
-  void Check(const MaskFrame& /*frame*/) const override {
-  }  // everything was checked when the file was read
 
  private:
   MaskRequest request_;

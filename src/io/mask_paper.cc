@@ -32,6 +32,10 @@ class PaperMasks : public TextMasks {
                       "label confidence x1 y1 ... xn yn",
                       columns));
     }
+    if ((columns - kColumnsBeforePolygon) / 2 > kMostOutlinePoints) {
+      row.Fail(fmt::format("a polygon of {} points, expected at most {}",
+                           (columns - kColumnsBeforePolygon) / 2, kMostOutlinePoints));
+    }
     row.Number(0, "instance");
     row.Number(1, "track");
     double number = 0.0;

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/mask_probe.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
-#include <fstream>
+#include <set>
 #include <string_view>
 #include <system_error>
 
 #include "hullslam/util/error.h"
+#include "io/json_file.h"
 #include "io/mask_checks.h"
 #include "io/mask_text.h"
 #include "io/text_rows.h"
@@ -37,17 +41,50 @@ void ProbeFolder(MaskProbe& probe) {
   probe.has_images = !ListFiles(probe.path, ".png").empty();
   probe.has_classes_json = fs::exists(probe.path / "classes.json", error);
   probe.has_paper_folder = fs::is_directory(probe.path / "segmentation_txt", error);
-  for (const std::string& name : ListFiles(probe.path, ".txt")) {
-    if (name != "classes" && ProbeRow(probe.path / (name + ".txt"), probe)) {
+  std::set<std::string> json = ListFiles(probe.path, ".json");
+  json.erase("classes");
+  probe.has_json = !json.empty();
+  std::set<std::string> texts = ListFiles(probe.path, ".txt");
+  texts.erase("classes");
+  probe.texts = texts.size();
+  for (const std::string& name : texts) {
+    if (ProbeRow(probe.path / (name + ".txt"), probe)) {
+      probe.row_file = name + ".txt";
       return;
     }
   }
 }
 
+std::string DescribeFolderMisfit(const MaskProbe& probe) {
+  std::error_code error;
+  if (fs::is_empty(probe.path, error)) {
+    return "the folder is empty, expected masks";
+  }
+  if (probe.columns > 0) {
+    constexpr size_t kColumnsShown = 8;
+    const size_t shown = std::min(probe.row.size(), kColumnsShown);
+    return fmt::format(
+        "'{}{}' in {} fits no format of masks, expected one that docs/masks.md shows",
+        fmt::join(probe.row.begin(), probe.row.begin() + static_cast<ptrdiff_t>(shown), " "),
+        probe.columns > shown ? " ..." : "", probe.row_file);
+  }
+  if (probe.texts > 0) {
+    return fmt::format(
+        "all {} text files are empty, so their format cannot be detected; give --masks-format",
+        probe.texts);
+  }
+  if (probe.has_images) {
+    return "has PNG files but no classes.json, which the format label-png needs";
+  }
+  if (probe.has_json) {
+    return "has JSON files but no text files; give the path of the JSON file";
+  }
+  return "has neither text files nor PNG files, expected masks";
+}
+
 void ProbeFile(MaskProbe& probe) {
   constexpr std::array<std::string_view, 3> kKeys = {"annotations", "image_id", "detections"};
-  CheckFileSize(probe.path, kMostJsonFileBytes);
-  const std::string text = ReadFile(probe.path);
+  const std::string text = ReadFile(probe.path, kMostJsonFileBytes);
   size_t first = std::string::npos;
   for (const std::string_view key : kKeys) {
     const size_t at = text.find('"' + std::string(key) + '"');
@@ -68,12 +105,25 @@ MaskProbe ProbeMasks(const fs::path& path) {
     throw InputError(path.string() + ": no such folder or file, expected masks");
   }
   probe.is_folder = fs::is_directory(path, error);
+  if (!probe.is_folder && !fs::is_regular_file(path, error)) {
+    throw InputError(path.string() +
+                     ": is neither a folder nor a file; give --masks-format to read it");
+  }
   if (probe.is_folder) {
     ProbeFolder(probe);
   } else {
     ProbeFile(probe);
   }
   return probe;
+}
+
+std::string DescribeMisfit(const MaskProbe& probe) {
+  if (probe.is_folder) {
+    return DescribeFolderMisfit(probe);
+  }
+  ReadJson(probe.path, {.most_bytes = kMostJsonFileBytes});  // throws where the JSON breaks off
+  return "is JSON, but has none of the keys 'annotations', 'image_id' (coco) and 'detections' "
+         "(oa-slam)";
 }
 
 bool IsNormalized(const MaskProbe& probe, size_t column) {

@@ -15,7 +15,10 @@ struct MaskProbe {
   // many as are read), and the total number of columns.
   std::vector<std::string> row;
   size_t columns = 0;
+  size_t texts = 0;         // text files other than classes.txt
+  std::string row_file;     // the name of the text file with that line
   bool has_images = false;  // has PNG files
+  bool has_json = false;    // has JSON files other than classes.json
   bool has_classes_json = false;
   bool has_paper_folder = false;  // has a folder segmentation_txt
   // For a file: the first of the keys "annotations", "image_id" and "detections" that occurs in it.
@@ -24,6 +27,10 @@ struct MaskProbe {
 
 // Throws InputError if the path does not exist or cannot be read.
 MaskProbe ProbeMasks(const std::filesystem::path& path);
+
+// Why no format fits, and what to do about it; a sentence without its first capital letter. Throws
+// InputError if the file is not JSON.
+std::string DescribeMisfit(const MaskProbe& probe);
 
 // Whether all numbers of the row from `column` on are between 0 and 1, up to rounding.
 bool IsNormalized(const MaskProbe& probe, size_t column);

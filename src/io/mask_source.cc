@@ -55,12 +55,13 @@ const MaskFormat& DetectFormat(const std::filesystem::path& path) {
       names.push_back(format.name);
     }
   }
-  if (fitting.size() != 1) {
+  if (fitting.empty()) {
+    throw InputError(fmt::format("{}: {}", path.string(), DescribeMisfit(probe)));
+  }
+  if (fitting.size() > 1) {
     throw InputError(
-        fmt::format("{}: the format of the masks is not clear, {}; give --masks-format, one of: {}",
-                    path.string(),
-                    names.empty() ? "none fits" : fmt::format("{} fit", fmt::join(names, " and ")),
-                    fmt::join(MaskFormatNames(), ", ")));
+        fmt::format("{}: the format of the masks is not clear, {} fit; give --masks-format",
+                    path.string(), fmt::join(names, " and ")));
   }
   return *fitting.front();
 }
@@ -107,13 +108,14 @@ std::unique_ptr<const MaskSource> OpenMasks(const MaskRequest& request,
   return source;
 }
 
-size_t CheckMasks(const MaskSource& source, std::span<const MaskFrame> frames) {
-  size_t missing = 0;
+MaskCounts CheckMasks(const MaskSource& source, std::span<const MaskFrame> frames) {
+  MaskCounts counts;
   for (const MaskFrame& frame : frames) {
-    source.Check(frame);
-    missing += source.Contains(frame) ? 0 : 1;
+    const FrameMasks masks = source.Read(frame);
+    counts.missing += masks.is_missing ? 1 : 0;
+    counts.without_masks += masks.masks.empty() ? 1 : 0;
   }
-  return missing;
+  return counts;
 }
 
 }  // namespace hullslam

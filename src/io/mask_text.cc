@@ -55,13 +55,13 @@ FrameMasks TextMasks::Read(const MaskFrame& frame) const {
     return result;
   }
   const fs::path path = request_.path / (FileName(frame) + std::string(kExtension));
-  CheckFileSize(path, kMostFrameFileBytes);
-  ForEachRow(path, [&](const TextRow& row) {
+  const auto add = [&](const TextRow& row) {
     AddInstance(Parse(row), result);
     if (HasTooMany(result)) {
       row.Fail(fmt::format("too many instances, expected at most {} per frame", kMostInstances));
     }
-  });
+  };
+  ForEachRow(path, add, kMostFrameFileBytes);
   return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "io/mask_checks.h"
 #include "io/mask_text.h"
 
 namespace hullslam {
@@ -29,6 +30,10 @@ class YoloSegMasks : public TextMasks {
           fmt::format("{} column(s), expected a polygon of 3 points or more: class x1 y1 ... "
                       "xn yn [confidence]",
                       row.columns.size()));
+    }
+    if (points > kMostOutlinePoints) {
+      row.Fail(
+          fmt::format("a polygon of {} points, expected at most {}", points, kMostOutlinePoints));
     }
     InstanceMask instance{.label = ClassName(row, 0), .outlines = {}};
     std::vector<Eigen::Vector2d> outline(points);

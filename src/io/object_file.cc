@@ -1,21 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/io/object_file.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <map>
 
 #include "geometry/polyline.h"
 #include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
 #include "io/json_file.h"
 #include "io/json_node.h"
+#include "io/plausible.h"
 
 namespace hullslam {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
+constexpr const char* kObservationsFile = "objects_observations.json";
 constexpr double kPixel = 1e-2;
 constexpr double kMetre = 1e-9;
+constexpr double kAngle = 1e-4;  // degrees; also for shares
 
 // Rounds `value` to a multiple of `unit` (1 over a power of ten). Never returns -0.
 double Rounded(double value, double unit) {
@@ -73,14 +80,19 @@ Json QuadricJson(const Ellipsoid& ellipsoid) {
   return rows;
 }
 
+const char* ToString(ObjectState state) {
+  return state == ObjectState::kMapped ? "mapped" : "candidate";
+}
+
 Json ToJson(const PinholeCamera& camera) {
   return {{"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx},       {"cy", camera.cy},
           {"k1", camera.k1}, {"k2", camera.k2}, {"p1", camera.p1},       {"p2", camera.p2},
           {"k3", camera.k3}, {"bf", camera.bf}, {"width", camera.width}, {"height", camera.height}};
 }
 
-Json ToJson(const ReportedView& view) {
-  return {{"keyframe", view.keyframe.value},
+Json ToJson(ObjectId object, const ReportedView& view) {
+  return {{"object", object.value},
+          {"keyframe", view.keyframe.value},
           {"timestamp", Rounded(view.timestamp, kMetre)},
           {"cam_from_world", PoseJson(view.cam_from_world)},
           {"class", view.label},
@@ -102,7 +114,7 @@ Json ToJson(const ReportedObject& object) {
   return {{"id", object.id.value},
           {"class", object.label},
           {"votes", votes},
-          {"state", object.state == ObjectState::kMapped ? "mapped" : "candidate"},
+          {"state", ToString(object.state)},
           {"world_from_object", PoseJson(object.ellipsoid.world_from_object)},
           {"half_axes",
            {Rounded(axes.x(), kMetre), Rounded(axes.y(), kMetre), Rounded(axes.z(), kMetre)}},
@@ -111,7 +123,10 @@ Json ToJson(const ReportedObject& object) {
           {"siou_mask", OrNull(object.fit.siou_mask)},
           {"mtd_m2", OrNull(object.fit.mtd_m2)},
           {"tangent_px", OrNull(object.fit.tangent_px)},
-          {"misfit_px", Rounded(object.misfit_px, kMetre)}};
+          {"misfit_px", Rounded(object.misfit_px, kMetre)},
+          {"parallax_deg", Rounded(ParallaxOf(object), kAngle)},
+          {"quality", Rounded(QualityOf(object), kAngle)},
+          {"observations", object.views.size()}};
 }
 
 // Labels come from the files of users and may contain any bytes.
@@ -119,37 +134,46 @@ std::string Dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// Joins the texts, each on its own line, with commas between them.
-std::string Join(const std::vector<std::string>& texts, const char* indent) {
-  std::string joined;
-  for (const std::string& text : texts) {
-    joined += (joined.empty() ? "\n" : ",\n") + (indent + text);
+// The head, and then a member with the entries, each on its own line.
+std::string WithEntries(const Json& head, const char* name,
+                        const std::vector<std::string>& entries) {
+  std::string text = Dump(head);
+  text.pop_back();
+  text += fmt::format(",\"{}\":[", name);
+  for (const std::string& entry : entries) {
+    text += (&entry == &entries.front() ? "\n " : ",\n ") + entry;
   }
-  return joined;
+  return text + "\n]}\n";
 }
 
-std::string FormatObject(const ReportedObject& object) {
-  std::vector<std::string> views;
-  for (const ReportedView& view : object.views) {
-    views.push_back(Dump(ToJson(view)));
+// A field of a CSV file by RFC 4180: in quotes if it contains a quote, a comma or a line end.
+std::string CsvField(const std::string& text) {
+  if (text.find_first_of("\",\r\n") == std::string::npos) {
+    return text;
   }
-  std::string text = Dump(ToJson(object));
-  text.pop_back();
-  return text + ",\"observations\":[" + Join(views, "  ") + "\n ]}";
+  std::string quoted = "\"";
+  for (const char c : text) {
+    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  }
+  return quoted + '"';
+}
+
+std::string CsvNumber(const std::optional<double>& value) {
+  return value ? fmt::format("{}", Rounded(*value, kMetre)) : std::string();
 }
 
 PinholeCamera ReadCamera(const JsonNode& node) {
   PinholeCamera camera;
-  camera.fx = node.At("fx").PositiveNumber();
-  camera.fy = node.At("fy").PositiveNumber();
-  camera.cx = node.At("cx").Number();
-  camera.cy = node.At("cy").Number();
+  camera.fx = node.At("fx").PositiveNumber(kMostPixels);
+  camera.fy = node.At("fy").PositiveNumber(kMostPixels);
+  camera.cx = node.At("cx").Number(kMostPixels);
+  camera.cy = node.At("cy").Number(kMostPixels);
   camera.k1 = node.At("k1").Number();
   camera.k2 = node.At("k2").Number();
   camera.p1 = node.At("p1").Number();
   camera.p2 = node.At("p2").Number();
   camera.k3 = node.At("k3").Number();
-  camera.bf = node.At("bf").Number();
+  camera.bf = node.At("bf").PositiveNumber(kMostPixels);
   constexpr uint32_t kLargest = 16384;
   const auto size = [&](const char* key) {
     const uint32_t value = node.At(key).Count();
@@ -160,6 +184,9 @@ PinholeCamera ReadCamera(const JsonNode& node) {
   };
   camera.width = size("width");
   camera.height = size("height");
+  if (const std::string fault = camera.FindFault(); !fault.empty()) {
+    node.Fail("a camera; " + fault);
+  }
   return camera;
 }
 
@@ -169,7 +196,7 @@ std::vector<SilhouetteLine> ReadLines(const JsonNode& node) {
   for (const JsonNode& entry : node.Elements()) {
     const std::vector<double> values = entry.Numbers(4);
     const Eigen::Vector2d normal(values[0], values[1]);
-    if (std::abs(normal.norm() - 1.0) > kTolerance) {
+    if (!(std::abs(normal.norm() - 1.0) <= kTolerance && std::abs(values[2]) <= kMostPixels)) {
       entry.Fail("nx, ny of unit length, then c and 1 or 0");
     }
     lines.push_back({{normal.normalized(), values[2]}, values[3] != 0.0});
@@ -180,10 +207,10 @@ std::vector<SilhouetteLine> ReadLines(const JsonNode& node) {
 ReportedView ReadView(const JsonNode& node) {
   ReportedView view;
   view.keyframe = KeyframeId(node.At("keyframe").Count());
-  view.timestamp = node.At("timestamp").Number();
+  view.timestamp = node.At("timestamp").Number(kMostSeconds);
   view.cam_from_world = node.At("cam_from_world").Pose();
   view.label = node.At("class").Text();
-  view.score = node.At("score").Number();
+  view.score = node.At("score").Number(1.0);
   view.is_cut = node.At("cut").Flag();
   view.is_box = node.At("box").Flag();
   view.hull = node.At("hull").Points();
@@ -204,15 +231,16 @@ ObjectState ReadState(const JsonNode& node) {
 }
 
 std::map<std::string, double> ReadVotes(const JsonNode& node) {
+  constexpr double kMostVotes = 1e9;
   std::map<std::string, double> votes;
   for (const auto& [label, score] : node.Members()) {
-    votes[label] = score.Number();
+    votes[label] = score.Number(kMostVotes);
   }
   return votes;
 }
 
-std::optional<double> ReadOptional(const JsonNode& node, const char* key) {
-  return node.Has(key) ? std::optional(node.At(key).Number()) : std::nullopt;
+std::optional<double> ReadOptional(const JsonNode& node, const char* key, double most) {
+  return node.Has(key) ? std::optional(node.At(key).Number(most)) : std::nullopt;
 }
 
 ReportedObject ReadObject(const JsonNode& node) {
@@ -222,20 +250,47 @@ ReportedObject ReadObject(const JsonNode& node) {
   object.label = node.At("class").Text();
   object.votes = ReadVotes(node.At("votes"));
   object.ellipsoid.world_from_object = node.At("world_from_object").Pose();
-  const std::vector<double> axes = node.At("half_axes").Numbers(3);
-  object.ellipsoid.half_axes = {axes[0], axes[1], axes[2]};
-  if (!(object.ellipsoid.half_axes.minCoeff() > 0.0)) {
-    node.At("half_axes").Fail("three numbers > 0");
-  }
-  object.misfit_px = node.At("misfit_px").Number();
-  for (const JsonNode& view : node.At("observations").Elements()) {
-    object.views.push_back(ReadView(view));
-  }
-  object.fit.siou = ReadOptional(node, "siou");
-  object.fit.siou_mask = ReadOptional(node, "siou_mask");
-  object.fit.mtd_m2 = ReadOptional(node, "mtd_m2");
-  object.fit.tangent_px = ReadOptional(node, "tangent_px");
+  object.ellipsoid.half_axes = node.At("half_axes").Lengths();
+  object.misfit_px = node.At("misfit_px").Number(kMostPixels);
+  object.fit.siou = ReadOptional(node, "siou", 1.0);
+  object.fit.siou_mask = ReadOptional(node, "siou_mask", 1.0);
+  object.fit.mtd_m2 = ReadOptional(node, "mtd_m2", kMostMetres);
+  object.fit.tangent_px = ReadOptional(node, "tangent_px", kMostPixels);
   return object;
+}
+
+void CheckVersion(const JsonNode& top) {
+  if (top.At("version").Count() != kVersion) {
+    top.At("version").Fail("2, which this version of HullSLAM writes");
+  }
+}
+
+// Adds the observations to their objects, which must have `counts` observations.
+void ReadObservations(const std::filesystem::path& path, const std::vector<uint32_t>& counts,
+                      ObjectReport& report) {
+  const nlohmann::json json = ReadJson(path);
+  const JsonNode top(path, json);
+  CheckVersion(top);
+  std::map<uint32_t, ReportedObject*> objects;
+  for (ReportedObject& object : report.objects) {
+    objects[object.id.value] = &object;
+  }
+  for (const JsonNode& view : top.At("observations").Elements()) {
+    const auto object = objects.find(view.At("object").Count());
+    if (object == objects.end()) {
+      view.At("object").Fail("the id of an object in objects.json");
+    }
+    object->second->views.push_back(ReadView(view));
+  }
+  for (size_t i = 0; i < counts.size(); ++i) {
+    const ReportedObject& object = report.objects[i];
+    if (object.views.size() != counts[i]) {
+      throw InputError(fmt::format(
+          "{}: has {} observations of object {}, expected {} as in objects.json; both files must "
+          "be of the same run",
+          path.string(), object.views.size(), object.id.value, counts[i]));
+    }
+  }
 }
 
 }  // namespace
@@ -247,27 +302,67 @@ std::string FormatObjects(const ObjectReport& report) {
                      {"candidates", report.candidates}};
   std::vector<std::string> objects;
   for (const ReportedObject& object : report.objects) {
-    objects.push_back(FormatObject(object));
+    objects.push_back(Dump(ToJson(object)));
   }
-  std::string text = Dump(head);
-  text.pop_back();
-  return text + ",\"objects\":[" + Join(objects, " ") + "\n]}\n";
+  return WithEntries(head, "objects", objects);
 }
 
-ObjectReport ReadObjects(const std::filesystem::path& path) {
+std::string FormatObservations(const ObjectReport& report) {
+  std::vector<std::string> views;
+  for (const ReportedObject& object : report.objects) {
+    for (const ReportedView& view : object.views) {
+      views.push_back(Dump(ToJson(object.id, view)));
+    }
+  }
+  return WithEntries({{"version", kVersion}}, "observations", views);
+}
+
+std::string FormatObjectsCsv(const ObjectReport& report) {
+  std::string text =
+      "id,class,state,observations,tx,ty,tz,qx,qy,qz,qw,half_axis_x,half_axis_y,half_axis_z,"
+      "siou,siou_mask,mtd_m2,tangent_px,misfit_px,parallax_deg,quality\n";
+  for (const ReportedObject& object : report.objects) {
+    text += fmt::format("{},{},{},{}", object.id.value, CsvField(object.label),
+                        ToString(object.state), object.views.size());
+    const Rigid3& pose = object.ellipsoid.world_from_object;
+    for (const auto& values :
+         {Eigen::VectorXd(pose.translation), Eigen::VectorXd(pose.rotation.coeffs()),
+          Eigen::VectorXd(object.ellipsoid.half_axes)}) {
+      for (const double value : values) {
+        text += ',' + CsvNumber(value);
+      }
+    }
+    for (const std::optional<double>& value :
+         {object.fit.siou, object.fit.siou_mask, object.fit.mtd_m2, object.fit.tangent_px,
+          std::optional(object.misfit_px)}) {
+      text += ',' + CsvNumber(value);
+    }
+    text += fmt::format(",{},{}\n", Rounded(ParallaxOf(object), kAngle),
+                        Rounded(QualityOf(object), kAngle));
+  }
+  return text;
+}
+
+ObjectReport ReadObjects(const std::filesystem::path& path,
+                         const std::filesystem::path& observations) {
   const nlohmann::json json = ReadJson(path);
   const JsonNode top(path, json);
-  if (top.At("version").Count() != kVersion) {
-    top.At("version").Fail("1");
-  }
+  CheckVersion(top);
   ObjectReport report;
   report.sequence = top.At("sequence").Text();
   report.camera = ReadCamera(top.At("camera"));
   report.candidates = top.At("candidates").Count();
+  std::vector<uint32_t> counts;
   for (const JsonNode& object : top.At("objects").Elements()) {
     report.objects.push_back(ReadObject(object));
+    counts.push_back(object.At("observations").Count());
   }
+  ReadObservations(observations, counts, report);
   return report;
+}
+
+ObjectReport ReadObjects(const std::filesystem::path& path) {
+  return ReadObjects(path, path.parent_path() / kObservationsFile);
 }
 
 }  // namespace hullslam

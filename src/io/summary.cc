@@ -78,7 +78,8 @@ Json ToJson(const ProvenanceSummary& summary) {
           {"seed", summary.seed},
           {"pipeline", summary.pipeline},
           {"masks_format", OrNull(summary.masks_format)},
-          {"sequence", OrNull(summary.sequence)}};
+          {"sequence", OrNull(summary.sequence)},
+          {"interrupted", summary.interrupted}};
 }
 
 }  // namespace
@@ -89,7 +90,8 @@ std::string FormatSummary(const RunSummary& summary) {
                      {"timing", ToJson(summary.timing)},
                      {"memory", {{"peak_mb", summary.peak_memory_mb}}},
                      {"map", ToJson(summary.map)},
-                     {"provenance", ToJson(summary.provenance)}};
+                     {"provenance", ToJson(summary.provenance)},
+                     {"files", summary.files}};
   constexpr int kIndent = 2;
   // The name of a folder may contain any bytes; those that are not UTF-8 are replaced.
   return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + '\n';

@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
-#include <fstream>
 #include <system_error>
 
 #include "hullslam/util/error.h"
+#include "io/plausible.h"
+#include "util/shown_text.h"
 
 namespace hullslam {
 namespace {
@@ -32,46 +31,12 @@ void SplitColumns(std::string_view line, std::vector<std::string_view>& columns)
   }
 }
 
-// A text as shown in messages: it may be long or binary, so it is cut and cleaned.
-std::string Printable(std::string_view text) {
+std::string Shown(std::string_view column) {
   constexpr size_t kLongest = 40;
-  std::string shown(text.substr(0, kLongest));
-  std::replace_if(
-      shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text.size() > kLongest ? shown + "..." : shown;
+  return ShowText(column, kLongest);
 }
 
 }  // namespace
-
-std::string ReadFile(const std::filesystem::path& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    throw InputError(path.string() + ": is a folder, expected a file");
-  }
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    throw InputError(path.string() + ": " + std::generic_category().message(errno));
-  }
-  std::string bytes;
-  const uintmax_t size = std::filesystem::file_size(path, error);
-  bytes.resize(error ? 0 : size);
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(file.gcount());
-  if (file.bad()) {
-    throw InputError(path.string() + ": cannot be read");
-  }
-  return bytes;
-}
-
-void CheckFileSize(const std::filesystem::path& path, size_t most_bytes) {
-  std::error_code error;
-  const uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > most_bytes) {
-    throw InputError(fmt::format("{}: {} bytes, expected at most {} MB", path.string(), size,
-                                 most_bytes / 1'000'000));
-  }
-}
 
 bool ParseFinite(std::string_view text, double& value) {
   if (text.starts_with('+')) {
@@ -88,19 +53,41 @@ void TextRow::Fail(const std::string& what) const {
 double TextRow::Number(size_t column, std::string_view name) const {
   double value = 0.0;
   if (!ParseFinite(columns.at(column), value)) {
-    Fail(std::string(name) + " is '" + Printable(columns[column]) + "', expected a finite number");
+    Fail(fmt::format("{} is '{}', expected a finite number", name, Shown(columns[column])));
+  }
+  return value;
+}
+
+double TextRow::Number(size_t column, std::string_view name, double most) const {
+  const double value = Number(column, name);
+  if (std::abs(value) > most) {
+    Fail(fmt::format("{} is '{}', expected a number from {:g} to {:g}", name,
+                     Shown(columns[column]), -most, most));
+  }
+  return value;
+}
+
+double TextRow::Stamp(size_t column, std::string_view name) const {
+  const double value = Number(column, name);
+  if (std::abs(value) > kMostSeconds) {
+    Fail(fmt::format("{} is '{}', expected a time in seconds, up to {:g}", name,
+                     Shown(columns[column]), kMostSeconds));
   }
   return value;
 }
 
 void ForEachRow(const std::filesystem::path& path,
-                const std::function<void(const TextRow& row)>& visit) {
-  const std::string bytes = ReadFile(path);
+                const std::function<void(const TextRow& row)>& visit, size_t most_bytes) {
+  const std::string bytes = ReadFile(path, most_bytes);
   const std::string_view text = bytes;
   TextRow row{.path = path, .line = 0, .columns = {}};
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = std::min(text.find('\n', begin), text.size());
     ++row.line;
+    if (end - begin > kMostLineBytes) {
+      row.Fail(fmt::format("a line of {} bytes, expected at most {} MB", end - begin,
+                           kMostLineBytes / 1'000'000));
+    }
     SplitColumns(text.substr(begin, end - begin), row.columns);
     if (!row.columns.empty() && !row.columns[0].starts_with('#')) {
       visit(row);

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/read_file.h"
+
 namespace hullslam {
 
-// All bytes of a file. Throws InputError with the name of the file and the reason if it is missing,
-// is a folder, or cannot be read.
-std::string ReadFile(const std::filesystem::path& path);
-
-// Throws InputError if the file has more bytes. (If the size cannot be read, the error is left to
-// the reader of the file.)
-void CheckFileSize(const std::filesystem::path& path, size_t most_bytes);
+constexpr size_t kMostLineBytes = 1'000'000;  // limit for a line of a text file
 
 // Parses `text` as a finite number. Returns false if it is none or if characters are left over.
 bool ParseFinite(std::string_view text, double& value);
@@ -30,11 +27,17 @@ struct TextRow {
   [[noreturn]] void Fail(const std::string& what) const;
   // The finite number in a column; throws InputError with its `name` for anything else.
   double Number(size_t column, std::string_view name) const;
+  // The same for a number that may not be larger than `most`, nor smaller than its negative.
+  double Number(size_t column, std::string_view name, double most) const;
+  // A time stamp, s.
+  double Stamp(size_t column, std::string_view name = "timestamp") const;
 };
 
 // Visits the lines with data in order. Columns are separated by blanks, tabs or commas. Empty lines
-// and lines that start with '#' are skipped; CRLF line ends are accepted.
+// and lines that start with '#' are skipped; CRLF line ends are accepted. Throws InputError for a
+// file that ReadFile() refuses, and for a line of more than kMostLineBytes.
 void ForEachRow(const std::filesystem::path& path,
-                const std::function<void(const TextRow& row)>& visit);
+                const std::function<void(const TextRow& row)>& visit,
+                size_t most_bytes = kMostTextFileBytes);
 
 }  // namespace hullslam

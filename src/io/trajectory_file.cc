@@ -7,6 +7,7 @@
 
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
+#include "io/plausible.h"
 #include "io/text_rows.h"
 
 namespace hullslam {
@@ -19,15 +20,16 @@ StampedPose ParsePose(const TextRow& row) {
         fmt::format("{} columns, expected 8: timestamp tx ty tz qx qy qz qw", row.columns.size()));
   }
   StampedPose pose;
-  pose.timestamp = row.Number(0, "timestamp");
+  pose.timestamp = row.Stamp(0);
   Rigid3& world_from_cam = pose.world_from_cam;
-  world_from_cam.translation = {row.Number(1, "tx"), row.Number(2, "ty"), row.Number(3, "tz")};
+  world_from_cam.translation = {row.Number(1, "tx", kMostMetres), row.Number(2, "ty", kMostMetres),
+                                row.Number(3, "tz", kMostMetres)};
   // The order of Eigen: w, x, y, z. A comma initialiser would abort if a column throws.
   world_from_cam.rotation = Eigen::Quaterniond(row.Number(7, "qw"), row.Number(4, "qx"),
                                                row.Number(5, "qy"), row.Number(6, "qz"));
-  constexpr double kShortest = 1e-6;
-  if (!(world_from_cam.rotation.norm() > kShortest)) {
-    row.Fail("the quaternion has length zero, expected a rotation");
+  if (!IsPlausibleRotation(world_from_cam.rotation)) {
+    row.Fail(fmt::format("the quaternion has length {:g}, expected a rotation (length 1)",
+                         world_from_cam.rotation.norm()));
   }
   world_from_cam.rotation.normalize();
   return pose;

@@ -14,11 +14,7 @@ TrueObject ReadTrueObject(const JsonNode& node) {
   object.shape = node.At("shape").Text();
   object.is_dynamic = node.At("dynamic").Flag();
   object.world_from_object = node.At("world_from_object").Pose();
-  const std::vector<double> extents = node.At("half_extents").Numbers(3);
-  object.half_extents = {extents[0], extents[1], extents[2]};
-  if (!(object.half_extents.minCoeff() > 0.0)) {
-    node.At("half_extents").Fail("three numbers > 0");
-  }
+  object.half_extents = node.At("half_extents").Lengths();
   return object;
 }
 

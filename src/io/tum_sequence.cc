@@ -31,6 +31,23 @@ void CheckColumns(const TextRow& row, size_t count, const char* names) {
   }
 }
 
+// The file of an image, which the list in `folder` names in a column.
+fs::path ImageFile(const TextRow& row, size_t column, const fs::path& folder) {
+  constexpr size_t kLongest = 1000;
+  if (row.columns[column].size() > kLongest) {
+    row.Fail(fmt::format("the name of the file has {} bytes, expected at most {}",
+                         row.columns[column].size(), kLongest));
+  }
+  return folder / row.columns[column];
+}
+
+void CheckCount(const TextRow& row, size_t count) {
+  constexpr size_t kMostImages = 1'000'000;
+  if (count > kMostImages) {
+    row.Fail(fmt::format("more than {} images", kMostImages));
+  }
+}
+
 void CheckIncreasing(const TextRow& row, double stamp, const double* former) {
   if (former != nullptr && stamp <= *former) {
     row.Fail(fmt::format("time stamp {:.6f} does not come after the previous one, {:.6f}", stamp,
@@ -43,10 +60,11 @@ ImageList ReadImageList(const fs::path& folder, const char* name) {
   ImageList list;
   ForEachRow(path, [&](const TextRow& row) {
     CheckColumns(row, 2, "timestamp file");
-    const double stamp = row.Number(0, "timestamp");
+    const double stamp = row.Stamp(0);
     CheckIncreasing(row, stamp, list.stamps.empty() ? nullptr : &list.stamps.back());
     list.stamps.push_back(stamp);
-    list.files.push_back(folder / row.columns[1]);
+    list.files.push_back(ImageFile(row, 1, folder));
+    CheckCount(row, list.files.size());
   });
   if (list.stamps.empty()) {
     throw InputError(path.string() + ": has no images");
@@ -91,12 +109,13 @@ TumSequence ReadAssociations(const fs::path& folder, const fs::path& path) {
   TumSequence sequence;
   ForEachRow(path, [&](const TextRow& row) {
     CheckColumns(row, 4, "timestamp rgb timestamp depth");
-    RgbdFramePaths frame{row.Number(0, "timestamp of rgb"), folder / row.columns[1],
-                         folder / row.columns[3], sequence.frames.size()};
-    row.Number(2, "timestamp of depth");
+    RgbdFramePaths frame{row.Stamp(0, "timestamp of rgb"), ImageFile(row, 1, folder),
+                         ImageFile(row, 3, folder), sequence.frames.size()};
+    row.Stamp(2, "timestamp of depth");
     CheckIncreasing(row, frame.timestamp,
                     sequence.frames.empty() ? nullptr : &sequence.frames.back().timestamp);
     sequence.frames.push_back(std::move(frame));
+    CheckCount(row, sequence.frames.size());
   });
   if (sequence.frames.empty()) {
     throw InputError(path.string() + ": has no images");
@@ -165,6 +184,7 @@ TumSequence OpenTumSequence(const fs::path& folder, const TumSequenceOptions& op
   TumSequence sequence = options.associations.empty()
                              ? PairLists(folder, options.need_images)
                              : ReadAssociations(folder, options.associations);
+  sequence.available = sequence.frames.size();
   sequence.frames = Select(folder, std::move(sequence.frames), options.selection);
   if (options.need_images) {
     CheckImagesExist(sequence.frames);

@@ -78,6 +78,9 @@ void CheckObject(const Map& map, ObjectId id, const ObjectLandmark& object,
   if (object.state == ObjectState::kMapped && !object.has_shape) {
     violations.push_back(Name(id) + " is mapped without a shape");
   }
+  if (object.state == ObjectState::kMapped && object.observations.empty()) {
+    violations.push_back(Name(id) + " is mapped although no keyframe observes it");
+  }
   if (!object.observations.empty() && object.reference != object.observations.front().keyframe) {
     violations.push_back(Name(id) + " has a reference that is not the first to observe it");
   }

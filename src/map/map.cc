@@ -162,7 +162,9 @@ void Map::RemoveObservation(ObjectId object, KeyframeId keyframe) {
   Keyframe& observer = keyframes_.Mutable(keyframe);
   observer.objects[it->detection] = ObjectId();
   changed.observations.erase(it);
-  if (!changed.observations.empty()) {
+  if (changed.observations.empty()) {
+    changed.state = ObjectState::kCandidate;
+  } else {
     changed.reference = changed.observations.front().keyframe;
   }
   // Counted again, because subtracting the score would leave a rounding error.

@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mapping/culling.h"
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "hullslam/objects/object_view.h"
+#include "objects/point_statistics.h"
 
 namespace hullslam {
 namespace {
@@ -11,6 +18,13 @@ constexpr uint32_t kTrialKeyframes = 2;  // from this age on a small weight is a
 constexpr int kMaxWeakWeight = 3;
 constexpr int kOtherObservers = 3;
 constexpr double kRedundantShare = 0.9;
+// With fewer landmarks, a share says little about how redundant a keyframe is.
+constexpr int kMinLandmarks = 20;
+// With fewer close landmarks, the far ones are judged too: the pose of the keyframe depends on them
+// (the bound of Mur-Artal and Tardos 2017 for a frame that lacks close points).
+constexpr int kMinCloseLandmarks = 100;
+constexpr double kMaxSimilarCos = 0.985;  // about 10 degrees
+constexpr size_t kCenterPoints = 20;      // depth points that are averaged for an object's centre
 
 bool IsSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId id, int level) {
   int others = 0;
@@ -27,21 +41,78 @@ bool IsSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId id, int
   return false;
 }
 
+// How many landmarks of a keyframe others see too.
+struct Redundancy {
+  int landmarks = 0;
+  int redundant = 0;
+
+  void Count(bool is_redundant) {
+    ++landmarks;
+    redundant += is_redundant ? 1 : 0;
+  }
+  bool MostAreRedundant() const {
+    return landmarks == 0 || redundant > kRedundantShare * landmarks;
+  }
+};
+
 bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor) {
   const Keyframe& keyframe = map.keyframes().At(id);
   const FrameFeatures& features = keyframe.frame->features;
-  int close = 0;
-  int redundant = 0;
+  Redundancy close;
+  Redundancy all;
   for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
-    const double depth = static_cast<double>(features.depth[i]);
-    if (!keyframe.landmarks[i].IsValid() || depth <= 0.0 || depth > sensor.close_depth) {
+    if (!keyframe.landmarks[i].IsValid()) {
       continue;
     }
-    ++close;
     const Landmark& landmark = map.landmarks().At(keyframe.landmarks[i]);
-    redundant += IsSeenByOthers(map, landmark, id, features.keypoints[i].level) ? 1 : 0;
+    const bool is_redundant = IsSeenByOthers(map, landmark, id, features.keypoints[i].level);
+    const double depth = static_cast<double>(features.depth[i]);
+    all.Count(is_redundant);
+    if (depth > 0.0 && depth <= sensor.close_depth) {
+      close.Count(is_redundant);
+    }
   }
-  return redundant > kRedundantShare * close;
+  const bool has_many_close = close.landmarks >= kMinCloseLandmarks;
+  return all.landmarks >= kMinLandmarks && close.MostAreRedundant() &&
+         (has_many_close || all.MostAreRedundant());
+}
+
+Eigen::Vector3d RayTo(const Rigid3& cam_from_world, const Eigen::Vector3d& center) {
+  return (center - Inverse(cam_from_world).translation).normalized();
+}
+
+// Where the object is, as far as that is known: null for a candidate without shape and depth.
+std::optional<Eigen::Vector3d> CenterOf(const ObjectLandmark& object,
+                                        std::span<const ObjectView> views) {
+  if (object.has_shape) {
+    return object.ellipsoid.world_from_object.translation;
+  }
+  const std::vector<Eigen::Vector3d> points = CollectPoints(views, kCenterPoints);
+  return points.empty() ? std::nullopt : std::optional(MeanOf(points));
+}
+
+// Whether no other keyframe sees the object from a similar direction.
+bool IsNewDirection(const Map& map, KeyframeId id, const ObjectLandmark& object) {
+  const std::vector<ObjectView> views = CollectViews(map, object);
+  const std::optional<Eigen::Vector3d> center = CenterOf(object, views);
+  if (!center) {
+    return false;
+  }
+  const Eigen::Vector3d ray = RayTo(map.CamFromWorld(id), *center);
+  return std::none_of(views.begin(), views.end(), [&](const ObjectView& view) {
+    return view.keyframe != id && RayTo(view.cam_from_world, *center).dot(ray) >= kMaxSimilarCos;
+  });
+}
+
+bool IsNeededByAnObject(const Map& map, KeyframeId id, size_t min_views) {
+  const std::vector<ObjectId>& objects = map.keyframes().At(id).objects;
+  return std::any_of(objects.begin(), objects.end(), [&](ObjectId observed) {
+    if (!observed.IsValid()) {
+      return false;
+    }
+    const ObjectLandmark& object = map.objects().At(observed);
+    return object.observations.size() <= min_views || IsNewDirection(map, id, object);
+  });
 }
 
 }  // namespace
@@ -63,13 +134,14 @@ void CullRecentLandmarks(Map& map, KeyframeId current, std::vector<LandmarkId>& 
   });
 }
 
-int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor) {
+int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views) {
   int culled = 0;
   const std::vector<Covisible> candidates = map.keyframes().At(current).covisible;
   for (const Covisible& candidate : candidates) {
     const Keyframe* keyframe = map.keyframes().Find(candidate.keyframe);
     const bool is_root = keyframe == nullptr || !keyframe->parent.IsValid();
-    if (!is_root && IsRedundant(map, candidate.keyframe, sensor)) {
+    if (!is_root && IsRedundant(map, candidate.keyframe, sensor) &&
+        !IsNeededByAnObject(map, candidate.keyframe, min_object_views)) {
       map.CullKeyframe(candidate.keyframe);
       ++culled;
     }

@@ -99,6 +99,14 @@ std::vector<uint32_t> FreeKeypoints(const Keyframe& keyframe) {
   return free;
 }
 
+// Where the line through both camera centres meets the image plane of b, px. It is far outside the
+// image if the line is parallel to the plane.
+Eigen::Vector2d EpipoleOf(const Rigid3& b_from_a, const PinholeCamera& camera) {
+  const Eigen::Vector3d& center = b_from_a.translation;
+  const bool is_parallel = std::abs(center.z()) <= 1e-6 * center.norm();
+  return is_parallel ? Eigen::Vector2d::Constant(-1e6) : camera.Project(center);
+}
+
 std::vector<Match> FindPairs(const Keyframe& a, const Keyframe& b, const Sensor& sensor) {
   const Rigid3 b_from_a = b.cam_from_world * Inverse(a.cam_from_world);
   if (b_from_a.translation.norm() < sensor.baseline()) {
@@ -109,12 +117,10 @@ std::vector<Match> FindPairs(const Keyframe& a, const Keyframe& b, const Sensor&
   calibration(1, 1) = sensor.camera.fy;
   calibration(0, 2) = sensor.camera.cx;
   calibration(1, 2) = sensor.camera.cy;
-  const Eigen::Vector2d epipole = b_from_a.translation.z() > 0.0
-                                      ? sensor.camera.Project(b_from_a.translation)
-                                      : Eigen::Vector2d::Constant(-1e6);
-  return MatchForTriangulation(
-      a.frame->features, FreeKeypoints(a), b.frame->features, FreeKeypoints(b),
-      FundamentalFromPose(b_from_a, calibration, calibration), epipole, sensor.levels, {});
+  return MatchForTriangulation(a.frame->features, FreeKeypoints(a), b.frame->features,
+                               FreeKeypoints(b),
+                               FundamentalFromPose(b_from_a, calibration, calibration),
+                               EpipoleOf(b_from_a, sensor.camera), sensor.levels, {});
 }
 
 std::optional<Eigen::Vector3d> LocateAndVerify(const View& a, const View& b, const Sensor& sensor) {

@@ -72,14 +72,17 @@ void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landma
     ids.push_back(id);
     points_in_cam.push_back(view->point_in_cam);
   }
-  const std::vector<Match> matches =
-      MatchByProjection(frame->features, projections, {}, {.max_distance = kMaxDistance});
+  // Of the keypoints where the landmark may be, the one with the most similar descriptor is taken.
+  const auto reprojects = [&](uint32_t query, uint32_t keypoint) {
+    return IsInlier(sensor.camera,
+                    MeasurePoint(sensor, frame->features, keypoint, sensor.depth_error),
+                    points_in_cam[query]);
+  };
+  const std::vector<Match> matches = MatchByProjection(
+      frame->features, projections, {}, {.max_distance = kMaxDistance, .may_match = reprojects});
   for (const Match& match : matches) {
     const LandmarkId landmark = map.Resolve(ids[match.query]);
-    if (!landmark.IsValid() ||
-        !IsInlier(sensor.camera,
-                  MeasurePoint(sensor, frame->features, match.keypoint, sensor.depth_error),
-                  points_in_cam[match.query])) {
+    if (!landmark.IsValid()) {
       continue;
     }
     const LandmarkId other = map.keyframes().At(target).landmarks[match.keypoint];

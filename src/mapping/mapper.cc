@@ -84,7 +84,7 @@ void Mapper::ExtendMap(KeyframeId keyframe, const Cancellation* hurry) {
     AdjustNeighbourhood(keyframe, hurry);
     if (options_.cull_keyframes) {
       const ScopedTimer timer(times_, "cull_keyframes");
-      CullKeyframes(map_, keyframe, sensor_);
+      CullKeyframes(map_, keyframe, sensor_, static_cast<size_t>(object_options_.start.min_views));
     }
   }
   PublishSnapshot();

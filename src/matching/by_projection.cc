@@ -78,6 +78,10 @@ std::vector<Match> MatchByProjection(const FrameFeatures& features,
     candidates.clear();
     features.grid.FindNear(features.keypoints, projection.pixel, projection.radius,
                            projection.min_level, projection.max_level, candidates);
+    if (search.may_match) {
+      std::erase_if(candidates,
+                    [&](uint32_t keypoint) { return !search.may_match(query, keypoint); });
+    }
     const Best best = FindBest(features, projection, taken, candidates);
     if (best.distance <= search.max_distance && !IsAmbiguous(best, search.max_ratio)) {
       matches.push_back({query, best.keypoint, best.distance});

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,9 @@ struct ProjectionSearch {
   // test.
   double max_ratio = 1.0;
   bool compare_rotation = false;
+  // Decides whether a projection (index) may be matched to a keypoint (index) of its window. It is
+  // asked before descriptors are compared. Empty: all may be matched.
+  std::function<bool(uint32_t, uint32_t)> may_match = {};
 };
 
 // Finds for each projection the keypoint in its window with the most similar descriptor. A keypoint

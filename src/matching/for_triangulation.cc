@@ -52,10 +52,10 @@ std::vector<Match> MatchForTriangulation(
       const Eigen::Vector2d pixel_b = b.keypoints[keypoint].undistorted.cast<double>();
       const auto level = static_cast<size_t>(b.keypoints[keypoint].level);
       const bool has_depth = a.right_u[query] >= 0.0f || b.right_u[keypoint] >= 0.0f;
-      const double epipole_bound = search.min_epipole_distance * search.min_epipole_distance *
-                                   static_cast<double>(levels.scale[level]);
+      const double epipole_bound =
+          search.min_epipole_distance * static_cast<double>(levels.scale[level]);
       if (distance >= best.distance ||
-          (!has_depth && (pixel_b - epipole).squaredNorm() < epipole_bound) ||
+          (!has_depth && (pixel_b - epipole).squaredNorm() < epipole_bound * epipole_bound) ||
           !(SquaredLineDistance(line, pixel_b) <=
             search.max_epipolar_chi2 * static_cast<double>(levels.sigma2[level]))) {
         continue;

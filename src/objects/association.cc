@@ -9,6 +9,7 @@
 #include "geometry/convex_hull.h"
 #include "geometry/polygon_overlap.h"
 #include "hullslam/objects/object_view.h"
+#include "objects/initialisation.h"
 #include "objects/point_statistics.h"
 
 namespace hullslam {
@@ -16,12 +17,14 @@ namespace {
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
+constexpr int kDepthSteps = 4;  // between the places of a carried hull of unknown depth
+
 // What is expected of an object in the frame.
 struct Prediction {
   ObjectId id;
   const ObjectLandmark* object = nullptr;
   Polygon ellipse;                         // projected, clipped to the image; empty without a shape
-  Polygon carried;                         // the last hull, moved to the frame's pose
+  std::vector<Polygon> carried;            // the last hull, moved to the frame's pose
   std::vector<LandmarkId> landmarks;       // that its latest views show, sorted
   std::vector<Eigen::Vector3d> cloud;      // depth points of its last view, world
   std::vector<Eigen::Vector3d> centroids;  // one per latest view with depth, world
@@ -111,7 +114,7 @@ class Associator {
     prediction.cloud =
         CollectPoints({&views.back(), 1}, static_cast<size_t>(options_.cloud_points));
     prediction.size = SizeOf(prediction.cloud);
-    prediction.carried = Carry(views.back());
+    prediction.carried = Carry(views);
     for (const ObjectView& view : views) {
       if (!view.detection->points.empty()) {
         prediction.centroids.push_back(Centroid(view));
@@ -124,24 +127,61 @@ class Associator {
     return prediction;
   }
 
-  // The hull of an earlier view, moved to the frame's pose. All its corners get the mean depth of
-  // the view. Without depth the hull is not moved.
-  Polygon Carry(const ObjectView& view) const {
-    const Detection& detection = *view.detection;
-    Polygon carried = detection.hull;
-    if (!detection.points.empty()) {
-      const double depth = MeanOf(detection.points).z();
-      const Rigid3 now_from_then = cam_from_world_ * Inverse(view.cam_from_world);
-      for (Eigen::Vector2d& corner : carried) {
-        const Eigen::Vector3d point = now_from_then * sensor_.camera.Unproject(corner, depth);
-        if (point.z() <= 0.0) {
-          return {};
-        }
-        corner = sensor_.camera.Project(point);
-      }
-      carried = ConvexHull(carried);
+  // The last hull of an object, moved to the frame's pose. All its corners get one inverse depth
+  // (1 / m): that of the depth points, or that of the place where the rays to the object meet. If
+  // neither is known, there is one hull per possible inverse depth.
+  std::vector<Polygon> Carry(std::span<const ObjectView> views) const {
+    const ObjectView& last = views.back();
+    std::vector<Polygon> carried;
+    for (const double inverse_depth : InverseDepths(views)) {
+      carried.push_back(Move(last, inverse_depth));
     }
-    return ClipToBox(carried, image_);
+    return carried;
+  }
+
+  std::vector<double> InverseDepths(std::span<const ObjectView> views) const {
+    const ObjectView& last = views.back();
+    if (!last.detection->points.empty()) {
+      return {1.0 / MeanOf(last.detection->points).z()};
+    }
+    if (const auto sphere = StartFromRays(sensor_.camera, views, {})) {
+      return {1.0 / (last.cam_from_world * sphere->world_from_object.translation).z()};
+    }
+    // From infinitely far to as near that the hull moves by its own size.
+    const Rigid3 now_from_then = cam_from_world_ * Inverse(last.cam_from_world);
+    const Eigen::Vector3d ray = sensor_.camera.Unproject(last.detection->box.center(), 1.0);
+    const Eigen::Vector3d far = now_from_then.rotation * ray;
+    if (far.z() <= 0.0) {
+      return {};
+    }
+    // Derivative of the pixel by the inverse depth where it is 0.
+    const Eigen::Vector2d slope =
+        Eigen::Vector2d(sensor_.camera.fx, sensor_.camera.fy)
+            .cwiseProduct(now_from_then.translation.head<2>() / far.z() -
+                          far.head<2>() * now_from_then.translation.z() / (far.z() * far.z()));
+    const double size = last.detection->box.sizes().minCoeff();
+    std::vector<double> inverse_depths = {0.0};
+    if (slope.norm() > 1.0) {  // px m; a smaller one moves nothing
+      for (int i = 1; i <= kDepthSteps; ++i) {
+        inverse_depths.push_back(i * size / (kDepthSteps * slope.norm()));
+      }
+    }
+    return inverse_depths;
+  }
+
+  // The hull of a view, moved to the frame's pose; empty if it is not in front of the camera.
+  Polygon Move(const ObjectView& view, double inverse_depth) const {
+    const Rigid3 now_from_then = cam_from_world_ * Inverse(view.cam_from_world);
+    Polygon moved;
+    for (const Eigen::Vector2d& corner : view.detection->hull) {
+      const Eigen::Vector3d point = now_from_then.rotation * sensor_.camera.Unproject(corner, 1.0) +
+                                    inverse_depth * now_from_then.translation;
+      if (point.z() <= 0.0) {
+        return {};
+      }
+      moved.push_back(sensor_.camera.Project(point));
+    }
+    return ClipToBox(ConvexHull(moved), image_);
   }
 
   Seen Look(const Detection& detection) const {
@@ -204,6 +244,19 @@ class Associator {
     return total > 0.0 ? same / total : 0.0;
   }
 
+  // The largest IoU with a carried hull. Where the depth of the object is not known, a hull can be
+  // carried to many places, so the class must agree too.
+  double CarriedOverlap(const Seen& seen, const Prediction& prediction) const {
+    if (prediction.carried.size() > 1 && seen.detection->label != prediction.object->Label()) {
+      return 0.0;
+    }
+    double overlap = 0.0;
+    for (const Polygon& carried : prediction.carried) {
+      overlap = std::max(overlap, IntersectionOverUnion(seen.detection->hull, carried));
+    }
+    return overlap;
+  }
+
   // 0 if they do not match, otherwise up to the sum of the weights (1.2 by default).
   double Similarity(const Seen& seen, const Prediction& prediction) const {
     if (AreApart(seen, prediction)) {
@@ -211,7 +264,7 @@ class Associator {
     }
     const Polygon& hull = seen.detection->hull;
     const double projected = IntersectionOverUnion(hull, prediction.ellipse);
-    const double carried = IntersectionOverUnion(hull, prediction.carried);
+    const double carried = CarriedOverlap(seen, prediction);
     const double shared = SharedLandmarks(seen, prediction);
     const bool one_cloud = MayBeOneCloud(seen.cloud, prediction.cloud, options_.max_rank_sum,
                                          static_cast<size_t>(options_.min_cloud));

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/polyline.h"
+
 namespace hullslam {
 namespace {
 
@@ -130,6 +132,25 @@ MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& ob
   }
   const auto mean = static_cast<double>(std::max<size_t>(1, count));
   return {std::sqrt(plain / mean), std::sqrt(compensated / mean)};
+}
+
+double RelativeMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
+                      std::span<const ObjectView> views) {
+  double squared_misfit = 0.0;
+  double squared_size = 0.0;  // of the mask of each line
+  for (const ObjectView& view : views) {
+    for (const SilhouetteLine& line : view.detection->lines) {
+      const auto plane = line.is_one_sided
+                             ? std::nullopt
+                             : PlaneOfLine(camera, view.cam_from_world, ellipsoid, line.line);
+      if (plane) {
+        const double pixels = plane->excess * plane->pixels_per_metre;
+        squared_misfit += pixels * pixels;
+        squared_size += SignedArea(view.detection->hull);
+      }
+    }
+  }
+  return squared_size > 0.0 ? std::sqrt(squared_misfit / squared_size) : 0.0;
 }
 
 }  // namespace hullslam

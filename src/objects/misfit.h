@@ -62,4 +62,9 @@ struct MisfitSpread {
 MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& object,
                            std::span<const ObjectView> views, const MisfitOptions& options = {});
 
+// RMS of the tangent distances of the views' two-sided lines over the RMS of the sizes of their
+// masks (the square root of the area of the hull). 0 if there is no two-sided line.
+double RelativeMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
+                      std::span<const ObjectView> views);
+
 }  // namespace hullslam

@@ -16,6 +16,7 @@
 #include "objects/misfit.h"
 #include "objects/point_statistics.h"
 #include "objects/refinement.h"
+#include "objects/visibility.h"
 
 namespace hullslam {
 namespace {
@@ -72,26 +73,20 @@ void ObjectMapper::Observe(Map& map, KeyframeId keyframe) {
   }
 }
 
-// Counts how often mapped objects should be visible, because their whole projected ellipse is in
-// the image, and how often they are then found.
+// Counts in how many keyframes each mapped object should be seen, and in how many it is found.
 void ObjectMapper::CountVisible(Map& map, KeyframeId keyframe) const {
-  const Keyframe& observer = map.keyframes().At(keyframe);
-  std::vector<ObjectId> visible;
+  const std::vector<ObjectId>& observed = map.keyframes().At(keyframe).objects;
+  std::vector<std::pair<ObjectId, bool>> visible;  // and whether it is found
   map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
     if (object.state != ObjectState::kMapped) {
       return;
     }
-    const auto ellipse =
-        ProjectEllipsoid(sensor_.camera.Matrix(), observer.cam_from_world, object.ellipsoid);
-    const bool is_inside = ellipse && sensor_.bounds.Contains(ellipse->Bounds().min()) &&
-                           sensor_.bounds.Contains(ellipse->Bounds().max());
-    if (is_inside) {
-      visible.push_back(id);
+    const bool is_found = std::find(observed.begin(), observed.end(), id) != observed.end();
+    if (is_found || ShouldShow(map, sensor_, keyframe, object, options_)) {
+      visible.emplace_back(id, is_found);
     }
   });
-  for (const ObjectId id : visible) {
-    const bool is_found =
-        std::find(observer.objects.begin(), observer.objects.end(), id) != observer.objects.end();
+  for (const auto& [id, is_found] : visible) {
     ObjectLandmark& object = map.MutableObject(id);
     ++object.visible;
     object.found += is_found ? 1 : 0;

@@ -133,6 +133,17 @@ void BindValidity(OptionTable& options, ValidityOptions& validity) {
   options.Add(
       "objects.validity.max_stretch", &validity.max_stretch, Range::Between(1.0, 1000.0),
       "largest ratio of a half axis of a mapped object to the extent of its depth points along it");
+  options.Add(
+      "objects.validity.max_misfit", &validity.max_misfit, Range::Between(0.0, 100.0),
+      "largest RMS distance of the outlines of a mapped object from its projected ellipses, "
+      "as a share of the size of its masks");
+  options.Add("objects.validity.max_elongation", &validity.max_elongation,
+              Range::Between(1.0, 1000.0),
+              "a mapped object that is longer along the view than across it by a larger factor "
+              "needs more parallax");
+  options.Add("objects.validity.elongation_parallax", &validity.elongation_parallax,
+              Range::Between(0.0, 180.0),
+              "angle between the views that such an object needs, degrees per elongation");
 }
 
 void BindFusion(OptionTable& options, FusionOptions& fusion) {
@@ -161,6 +172,11 @@ void BindCulling(OptionTable& options, CullingOptions& culling) {
   options.Add("objects.culling.min_found_ratio", &culling.min_found_ratio, Range::Between(0.0, 1.0),
               "a mapped object is removed if it is found in a smaller share of the keyframes that "
               "should show it");
+  options.Add("objects.culling.max_range", &culling.max_range, Range::Between(0.0, 1000.0),
+              "a keyframe should show an object only up to this many times the largest distance at "
+              "which the object was observed");
+  options.Add("objects.culling.max_hidden", &culling.max_hidden, Range::Between(0.0, 1.0),
+              "a keyframe should show an object only if at most this share of it is hidden");
 }
 
 void CheckResidual(const std::string& use, ObjectResidual residual, ObjectPrimitive primitive) {

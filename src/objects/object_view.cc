@@ -63,6 +63,14 @@ double MeanDistance(std::span<const ObjectView> views, const Eigen::Vector3d& po
   return sum / static_cast<double>(views.size());
 }
 
+double FarthestView(std::span<const ObjectView> views, const Eigen::Vector3d& point) {
+  double farthest = 0.0;
+  for (const ObjectView& view : views) {
+    farthest = std::max(farthest, (view.cam_from_world * point).norm());
+  }
+  return farthest;
+}
+
 Eigen::Vector3d Centroid(const ObjectView& view) {
   const std::vector<Eigen::Vector3d>& points = view.detection->points;
   Check(!points.empty(), "a view without depth has no centroid");

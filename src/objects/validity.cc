@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/polygon_overlap.h"
 #include "geometry/polyline.h"
+#include "objects/misfit.h"
 
 namespace hullslam {
 namespace {
@@ -46,6 +48,24 @@ std::optional<Objection> CheckPoints(const Ellipsoid& ellipsoid,
   return std::nullopt;
 }
 
+std::optional<Objection> CheckElongation(const Ellipsoid& ellipsoid,
+                                         std::span<const ObjectView> views,
+                                         const ValidityOptions& options) {
+  const double elongation = Elongation(ellipsoid, views);
+  if (elongation <= options.max_elongation) {
+    return std::nullopt;
+  }
+  const double needed = options.elongation_parallax * elongation;
+  const double parallax = Parallax(views, ellipsoid.world_from_object.translation);
+  if (parallax >= needed) {
+    return std::nullopt;
+  }
+  return Objection{
+      ObjectRejection::kElongated,
+      fmt::format("elongation {:.1f} along the view needs a parallax of {:.1f} degrees, has {:.1f}",
+                  elongation, needed, parallax)};
+}
+
 // A box is compared with the box of the projected ellipse: an ellipse that touches all sides of a
 // box covers only 79 % of it.
 double Overlap(std::span<const Eigen::Vector2d> ellipse, const Detection& detection) {
@@ -58,6 +78,21 @@ double Overlap(std::span<const Eigen::Vector2d> ellipse, const Detection& detect
 double NearSurface(const Ellipsoid& ellipsoid, double distance, const ValidityOptions& options) {
   return std::max(options.near_surface * distance,
                   options.near_surface_share * ellipsoid.half_axes.mean());
+}
+
+double Elongation(const Ellipsoid& ellipsoid, std::span<const ObjectView> views) {
+  const Eigen::Vector3d& center = ellipsoid.world_from_object.translation;
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  for (const ObjectView& view : views) {
+    direction += (center - Inverse(view.cam_from_world).translation).normalized();
+  }
+  direction.normalize();
+  const Eigen::Vector3d in_object = ellipsoid.world_from_object.rotation.conjugate() * direction;
+  const Eigen::Vector3d& axes = ellipsoid.half_axes;
+  const double along = axes.cwiseProduct(in_object).norm();
+  // Radius of the circle with the area of the ellipsoid's orthogonal projection.
+  const double across = std::sqrt(axes.prod() * in_object.cwiseQuotient(axes).norm());
+  return std::max(along / across, 0.25 * across / along);
 }
 
 double MeanOverlap(const Ellipsoid& ellipsoid, const Sensor& sensor,
@@ -97,6 +132,15 @@ std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor&
     return Objection{ObjectRejection::kLowOverlap,
                      fmt::format("mean IoU of ellipse and hull {:.2f}, expected at least {:.2f}",
                                  overlap, options.min_overlap)};
+  }
+  const double misfit = RelativeMisfit(sensor.camera, ellipsoid, views);
+  if (!(misfit <= options.max_misfit)) {
+    return Objection{ObjectRejection::kLargeMisfit,
+                     fmt::format("misfit {:.2f} of the size of the masks, expected at most {:.2f}",
+                                 misfit, options.max_misfit)};
+  }
+  if (const auto objection = CheckElongation(ellipsoid, views, options)) {
+    return objection;
   }
   const std::vector<Eigen::Vector3d> points = CollectPoints(views, kMaxPoints);
   return points.size() >= kMinDepthPoints

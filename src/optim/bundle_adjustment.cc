@@ -26,6 +26,8 @@ namespace {
 // core.
 constexpr size_t kMaxDensePoses = 60;
 
+constexpr size_t kNoPose = std::numeric_limits<size_t>::max();
+
 struct BundleObservation {
   LandmarkId landmark;
   KeyframeId keyframe;
@@ -64,7 +66,9 @@ class Bundle {
          const ObjectBundleOptions& options)
       : window_(window), keyframes_(window.moving), objects_(map, sensor.camera, window, options) {
     keyframes_.insert(keyframes_.end(), window.fixed.begin(), window.fixed.end());
+    index_of_pose_.assign(map.keyframes().NextId().value, kNoPose);
     for (const KeyframeId id : keyframes_) {
+      index_of_pose_[id.value] = poses_.size();
       poses_.push_back(ToBlock(map.keyframes().At(id).cam_from_world));
     }
     for (size_t i = 0; i < window.landmarks.size(); ++i) {
@@ -149,8 +153,8 @@ class Bundle {
   void AddObservations(const Map& map, const Sensor& sensor, size_t point_index) {
     const LandmarkId landmark = window_.landmarks[point_index];
     for (const Observation& seen : map.landmarks().At(landmark).observations) {
-      const auto keyframe = std::find(keyframes_.begin(), keyframes_.end(), seen.keyframe);
-      if (keyframe == keyframes_.end()) {
+      const size_t pose_index = index_of_pose_[seen.keyframe.value];
+      if (pose_index == kNoPose) {
         continue;
       }
       const PointMeasurement measurement =
@@ -160,7 +164,7 @@ class Bundle {
       observation.landmark = landmark;
       observation.keyframe = seen.keyframe;
       observation.point_index = point_index;
-      observation.pose_index = static_cast<size_t>(keyframe - keyframes_.begin());
+      observation.pose_index = pose_index;
       observation.bound = OutlierBound(measurement);
       observation.cost = MakeCost(sensor.camera, measurement);
     }
@@ -200,6 +204,7 @@ class Bundle {
   const BundleWindow& window_;
   std::vector<KeyframeId> keyframes_;  // the moving ones, then the fixed ones
   std::vector<PoseBlock> poses_;
+  std::vector<size_t> index_of_pose_;  // by keyframe id; kNoPose outside the window
   std::vector<Eigen::Vector3d> points_;
   std::vector<BundleObservation> observations_;
   internal::ObjectBundle objects_;

@@ -24,9 +24,10 @@ struct BundleWindow {
 
 // The keyframe `center` and those it shares most landmarks with (at most `max_moving` in all) move.
 // The window has all landmarks that they observe. Of the other keyframes, those that observe most
-// of these landmarks are fixed (at most `max_fixed`). The root of the spanning tree never moves. If
-// no keyframe would be fixed, the oldest one is. With WindowObjects::kMapped the window also has
-// the mapped objects that the moving keyframes observe.
+// of these landmarks are fixed (at most `max_fixed`; 0: all, so that no observation of a landmark
+// is ignored while it moves). The root of the spanning tree never moves. If no keyframe would be
+// fixed, the oldest one is. With WindowObjects::kMapped the window also has the mapped objects that
+// the moving keyframes observe.
 enum class WindowObjects { kNone, kMapped };
 BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, size_t max_fixed,
                          WindowObjects objects = WindowObjects::kNone);

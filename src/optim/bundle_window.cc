@@ -9,8 +9,8 @@
 namespace hullslam {
 namespace {
 
-// At most `count` keyframes that observe the landmarks and are not in `inside` (sorted), those with
-// most observations first.
+// At most `count` keyframes (0: all) that observe the landmarks and are not in `inside` (sorted),
+// those with most observations first.
 std::vector<KeyframeId> OuterObservers(const Map& map, const std::vector<LandmarkId>& landmarks,
                                        const std::vector<KeyframeId>& inside, size_t count) {
   std::map<KeyframeId, int> shared;
@@ -27,7 +27,9 @@ std::vector<KeyframeId> OuterObservers(const Map& map, const std::vector<Landmar
   }
   std::stable_sort(outer.begin(), outer.end(),
                    [](const Covisible& a, const Covisible& b) { return a.shared > b.shared; });
-  outer.resize(std::min(outer.size(), count));
+  if (count > 0) {
+    outer.resize(std::min(outer.size(), count));
+  }
   std::vector<KeyframeId> ids;
   ids.reserve(outer.size());
   for (const Covisible& keyframe : outer) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/report/object_report.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "hullslam/objects/object_view.h"
 
 namespace hullslam {
 namespace {
@@ -38,6 +41,22 @@ ReportedObject MakeObject(const Map& map, ObjectId id, const ObjectLandmark& obj
 }
 
 }  // namespace
+
+double ParallaxOf(const ReportedObject& object) {
+  std::vector<ObjectView> views;
+  views.reserve(object.views.size());
+  for (const ReportedView& view : object.views) {
+    views.push_back({.keyframe = view.keyframe, .cam_from_world = view.cam_from_world});
+  }
+  return Parallax(views, object.ellipsoid.world_from_object.translation);
+}
+
+double QualityOf(const ReportedObject& object) {
+  constexpr double kFullParallax = 20.0;  // degrees
+  constexpr double kFullViews = 10.0;
+  return object.fit.siou.value_or(0.0) * std::min(1.0, ParallaxOf(object) / kFullParallax) *
+         std::min(1.0, static_cast<double>(object.views.size()) / kFullViews);
+}
 
 ObjectReport ReportObjects(const Map& map, const PinholeCamera& camera) {
   ObjectReport report;

@@ -2,7 +2,6 @@
 #include "synthetic/output_swap.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,11 +11,14 @@
 #include <system_error>
 
 #include "hullslam/util/error.h"
+#include "util/staging_folder.h"
 
 namespace hullslam::synthetic {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kFormer = "former";  // the sequence that is replaced, in the staging folder
 
 bool IsFormerSequence(const fs::path& folder) {
   constexpr std::array<std::string_view, 8> kWritten = {
@@ -54,9 +56,20 @@ void CheckReplaceable(const fs::path& folder, bool force) {
   }
 }
 
-fs::path Beside(const fs::path& folder, const std::string& what) {
-  return folder.parent_path() /
-         fmt::format(".{}.{}-{}", folder.filename().string(), what, getpid());
+// Staging folders of an output folder have names with this prefix, in the folder beside it.
+std::string Prefix(const fs::path& folder) {
+  return fmt::format(".{}.partial-", folder.filename().string());
+}
+
+// Removes what killed processes have left. If one was killed between the two moves of Commit(), its
+// sequence is complete and is moved to its place.
+void CleanUp(const fs::path& folder) {
+  for (const StagingFolder& abandoned :
+       StagingFolder::Abandoned(folder.parent_path(), Prefix(folder))) {
+    if (fs::exists(abandoned.path() / kFormer) && !fs::exists(folder)) {
+      fs::rename(abandoned.content(), folder);
+    }
+  }
 }
 
 }  // namespace
@@ -67,19 +80,17 @@ OutputSwap::OutputSwap(const fs::path& folder, bool force) {
     if (folder_.filename().empty()) {
       folder_ = folder_.parent_path();  // the path ended in a slash
     }
+    CleanUp(folder_);
     CheckReplaceable(folder_, force);
-    working_ = Beside(folder_, "partial");
-    fs::remove_all(working_);
-    fs::create_directories(working_);
+    fs::create_directories(folder_.parent_path());
+    staging_ = std::make_unique<StagingFolder>(folder_.parent_path(), Prefix(folder_));
+    working_ = staging_->content();
   } catch (const fs::filesystem_error& error) {
     throw InputError(folder.string() + ": cannot be written: " + error.code().message());
   }
 }
 
-OutputSwap::~OutputSwap() {
-  std::error_code ignored;  // after Commit() there is nothing to remove
-  fs::remove_all(working_, ignored);
-}
+OutputSwap::~OutputSwap() = default;
 
 void OutputSwap::WriteFile(const fs::path& relative, const std::string& content) const {
   const fs::path path = working_ / relative;
@@ -92,7 +103,7 @@ void OutputSwap::WriteFile(const fs::path& relative, const std::string& content)
 }
 
 void OutputSwap::Commit() {
-  const fs::path former = Beside(folder_, "former");
+  const fs::path former = staging_->path() / kFormer;
   const bool replaces = fs::exists(folder_);
   std::error_code error;
   if (replaces) {
@@ -108,9 +119,7 @@ void OutputSwap::Commit() {
   if (error) {
     throw InputError(folder_.string() + ": cannot be moved to its place: " + error.message());
   }
-  if (replaces) {
-    fs::remove_all(former, error);
-  }
+  staging_.reset();  // removes the former sequence
 }
 
 }  // namespace hullslam::synthetic

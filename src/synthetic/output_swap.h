@@ -2,7 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
+
+namespace hullslam {
+class StagingFolder;
+}  // namespace hullslam
 
 namespace hullslam::synthetic {
 
@@ -26,6 +31,7 @@ class OutputSwap {
  private:
   std::filesystem::path folder_;
   std::filesystem::path working_;
+  std::unique_ptr<StagingFolder> staging_;
 };
 
 }  // namespace hullslam::synthetic

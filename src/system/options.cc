@@ -8,6 +8,13 @@
 
 namespace hullslam {
 
+void RunOptions::Bind(OptionTable& options) {
+  options.Add("run.max_lost_share", &max_lost_share, Range::Between(0.0, 1.0),
+              "the run fails (exit code 1) if a larger share of its frames has no pose");
+  options.Add("run.max_lost_at_end", &max_lost_at_end, Range::AtLeast(0.0),
+              "the run fails (exit code 1) if no frame of a longer time at its end has a pose, s");
+}
+
 OptionTable SystemOptions::Bind() {
   OptionTable table;
   camera.Bind(table);
@@ -19,6 +26,7 @@ OptionTable SystemOptions::Bind() {
   tracking.Bind(table);
   mapping.Bind(table);
   objects.Bind(table);
+  run.Bind(table);
   for (const char* name :
        {"KeyFrameSize", "KeyFrameLineWidth", "GraphLineWidth", "PointSize", "CameraSize",
         "CameraLineWidth", "ViewpointX", "ViewpointY", "ViewpointZ", "ViewpointF"}) {
@@ -30,6 +38,9 @@ OptionTable SystemOptions::Bind() {
 void SystemOptions::Validate() const {
   if (camera.fx <= 0.0 || camera.fy <= 0.0) {
     throw InputError("settings: Camera.fx and Camera.fy are not given, expected numbers > 0");
+  }
+  if (const std::string fault = camera.FindFault(); !fault.empty()) {
+    throw InputError("settings: " + fault);
   }
   const double top_scale = std::pow(features.scale_factor, features.level_count - 1);
   const double smallest_side = std::min(camera.width, camera.height) / top_scale;

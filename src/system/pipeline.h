@@ -17,7 +17,10 @@ class Pipeline {
  public:
   virtual ~Pipeline() = default;
 
-  // Frames come in order of time. Throws what a stage throws, and CheckError after Finish.
+  // Frames come in order of time. Throws what a stage throws, and CheckError after Finish. After
+  // mapping has thrown an exception, its live map may be half edited. So nothing more is mapped,
+  // all later calls of Track and Finish throw the same exception, and map() stays as it was
+  // published.
   virtual FrameReport Track(std::shared_ptr<const Frame> frame) = 0;
   // Waits until all keyframes are in the map. Then it adjusts the whole map if
   // mapping.final_bundle_adjustment is set. That ends early if `cancellation` (may be null) is
@@ -26,7 +29,8 @@ class Pipeline {
   void Finish() { Finish(nullptr); }
   // The newest snapshot; null before the first keyframe.
   virtual std::shared_ptr<const Map> map() const = 0;
-  // Durations of the stages; complete after Finish.
+  // Durations of the stages; complete after Finish. These two may be called at any time by the
+  // thread that calls Track.
   virtual StageTimes times() const = 0;
   // How often an object was not mapped, by reason; complete after Finish.
   virtual std::map<ObjectRejection, size_t> object_rejections() const = 0;

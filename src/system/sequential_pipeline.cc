@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "system/sequential_pipeline.h"
 
+#include <exception>
 #include <utility>
 
 #include "hullslam/util/check.h"
@@ -19,16 +20,18 @@ class SequentialPipeline final : public Pipeline {
 
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(!is_finished_, "Track after Finish");
+    RethrowFailure();
     Tracker::Result result = tracker_.Process(std::move(frame), map_, MapperStatus());
     if (result.message) {
-      mapper_.Process(*result.message, nullptr);
+      EditMap([&] { mapper_.Process(*result.message, nullptr); });
     }
     return std::move(result.report);
   }
 
   void Finish(const Cancellation* cancellation) override {
+    RethrowFailure();
     if (!std::exchange(is_finished_, true)) {
-      mapper_.Finish(cancellation);
+      EditMap([&] { mapper_.Finish(cancellation); });
     }
   }
 
@@ -45,9 +48,27 @@ class SequentialPipeline final : public Pipeline {
   }
 
  private:
+  // Calls `edit`, which changes the live map, and remembers its exception.
+  template <typename Edit>
+  void EditMap(const Edit& edit) {
+    try {
+      edit();
+    } catch (...) {
+      failure_ = std::current_exception();
+      throw;
+    }
+  }
+
+  void RethrowFailure() const {
+    if (failure_) {
+      std::rethrow_exception(failure_);
+    }
+  }
+
   std::shared_ptr<const Map> map_;
   Tracker tracker_;
   Mapper mapper_;
+  std::exception_ptr failure_;
   bool is_finished_ = false;
 };
 

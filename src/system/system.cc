@@ -9,6 +9,7 @@
 #include "hullslam/frame/dynamic_mask.h"
 #include "hullslam/system/compose_trajectory.h"
 #include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
 #include "system/pipeline.h"
 #include "system/sequential_pipeline.h"
 #include "system/threaded_pipeline.h"
@@ -44,7 +45,7 @@ cv::Mat ToGrey(const cv::Mat& image, bool rgb_order) {
       cv::cvtColor(image, grey, rgb_order ? cv::COLOR_RGBA2GRAY : cv::COLOR_BGRA2GRAY);
       return grey;
     default:
-      throw CheckError("the image must have 8 bits per channel and 1, 3 or 4 channels");
+      throw InputError("the image must have 8 bits per channel and 1, 3 or 4 channels");
   }
 }
 
@@ -72,6 +73,7 @@ std::unique_ptr<FrameBuilder> MakeFrameBuilder(const Sensor& sensor, const Syste
 
 System::System(const SystemOptions& options, PipelineKind kind)
     : options_(Validated(options)),
+      kind_(kind),
       sensor_(MakeSensor(options_)),
       frame_builder_(MakeFrameBuilder(sensor_, options_)),
       pipeline_(MakePipeline(kind, sensor_, options_)) {}
@@ -86,6 +88,7 @@ TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat
 TrackedFrame System::Track(const ImageInput& image) {
   Check(std::isfinite(image.timestamp), "the time stamp is not a number");
   Check(frames_.empty() || image.timestamp > frames_.back().timestamp, "time stamps must increase");
+  ValidateMasks(image.masks, options_.camera.width, options_.camera.height);
   const FrameId id(static_cast<uint32_t>(frames_.size()));
   std::shared_ptr<const Frame> frame;
   {
@@ -101,6 +104,14 @@ TrackedFrame System::Track(const ImageInput& image) {
 }
 
 void System::Finish(const Cancellation* cancellation) { pipeline_->Finish(cancellation); }
+
+void System::Reset() {
+  auto frame_builder = MakeFrameBuilder(sensor_, options_);
+  pipeline_ = MakePipeline(kind_, sensor_, options_);  // the old one ends its threads
+  frame_builder_ = std::move(frame_builder);
+  frames_.clear();
+  times_ = {};
+}
 
 std::shared_ptr<const Map> System::map() const { return pipeline_->map(); }
 

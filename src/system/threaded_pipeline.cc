@@ -52,8 +52,9 @@ class ThreadedPipeline final : public Pipeline {
     const bool is_first = mapping_thread_.joinable();
     Stop();
     RethrowFailure();
-    if (is_first) {
-      mapper_.Finish(cancellation);  // its thread has ended
+    if (is_first) {  // the mapper's thread has ended
+      EditMap([&] { mapper_.Finish(cancellation); });
+      RethrowFailure();
     }
   }
 
@@ -61,12 +62,14 @@ class ThreadedPipeline final : public Pipeline {
 
   StageTimes times() const override {
     StageTimes times = tracker_.times();
-    times.Merge(mapper_.times());
+    const std::lock_guard lock(mutex_);
+    times.Merge(mapper_times_);
     return times;
   }
 
   std::map<ObjectRejection, size_t> object_rejections() const override {
-    return mapper_.object_rejections();
+    const std::lock_guard lock(mutex_);
+    return object_rejections_;
   }
 
  private:
@@ -108,15 +111,32 @@ class ThreadedPipeline final : public Pipeline {
   void RunMapping() {
     while (const std::optional<MapMessage> message = messages_.Receive()) {
       SetBusy(true);
-      try {
-        mapper_.Process(*message, &hurry_);
-      } catch (...) {
-        const std::lock_guard lock(mutex_);
-        failure_ = std::current_exception();
-        changed_.notify_all();
+      if (!EditMap([&] { mapper_.Process(*message, &hurry_); })) {
+        messages_.Close();
+        return;
       }
       SetBusy(false);
     }
+  }
+
+  // Calls `edit`, which changes the live map, and copies what other threads may ask of the mapper.
+  // Returns false if there was an exception.
+  template <typename Edit>
+  bool EditMap(const Edit& edit) {
+    std::exception_ptr failure;
+    try {
+      edit();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    StageTimes times = mapper_.times();
+    std::map<ObjectRejection, size_t> rejections = mapper_.object_rejections();
+    const std::lock_guard lock(mutex_);
+    mapper_times_ = std::move(times);
+    object_rejections_ = std::move(rejections);
+    failure_ = failure;
+    changed_.notify_all();
+    return failure == nullptr;
   }
 
   void SetBusy(bool is_busy) {
@@ -141,7 +161,7 @@ class ThreadedPipeline final : public Pipeline {
   void RethrowFailure() {
     const std::lock_guard lock(mutex_);
     if (failure_) {
-      std::rethrow_exception(std::exchange(failure_, nullptr));
+      std::rethrow_exception(failure_);
     }
   }
 
@@ -152,12 +172,14 @@ class ThreadedPipeline final : public Pipeline {
   Mailbox<MapMessage> messages_;
   Cancellation hurry_;
 
-  std::mutex mutex_;  // guards the members below
+  mutable std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   bool is_busy_ = false;
   int waiting_ = 0;
   int published_ = 0;
-  std::exception_ptr failure_;
+  std::exception_ptr failure_;  // the first exception of the mapper, which then stops
+  StageTimes mapper_times_;
+  std::map<ObjectRejection, size_t> object_rejections_;
 
   std::thread mapping_thread_;  // last member, because the thread uses the others
 };

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tracking/keyframe_policy.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace hullslam {
 
 bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
-  if (evidence.requests_waiting >= max_requests_waiting) {
+  if (evidence.requests_waiting >= max_requests_waiting || evidence.inliers < min_landmarks) {
     return false;
   }
+  const double time = evidence.time_since_keyframe + time_tolerance;
   const bool is_abrupt = evidence.inliers < abrupt_ratio * evidence.reference_landmarks;
-  if (evidence.frames_since_keyframe < min_frames_between && !is_abrupt) {
+  if (time < min_time_between && !is_abrupt) {
     return false;
   }
   const bool lacks_close_points =
@@ -16,11 +20,19 @@ bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
   const double ratio = evidence.keyframes < 2 ? young_reference_ratio : min_reference_ratio;
   const bool is_weak =
       lacks_close_points || evidence.inliers < ratio * evidence.reference_landmarks;
+  const double time_factor =
+      std::min(max_time_factor, std::exp2(evidence.fruitless_requests - patient_requests + 1));
   const bool lacks_objects =
-      evidence.unknown_objects > 0 && evidence.frames_since_keyframe >= frames_for_objects;
-  const bool is_overdue = evidence.frames_since_keyframe >= max_frames_between;
+      evidence.unknown_objects > 0 && time >= time_for_objects * std::max(1.0, time_factor);
+  const bool is_overdue = time >= max_time_between;
   const bool is_urgent = is_overdue || is_abrupt || lacks_close_points;
   return (is_weak || lacks_objects) && (evidence.mapper_is_idle || is_urgent);
+}
+
+bool KeyframePolicy::NeedsKeyframeForObjects(KeyframeEvidence evidence) const {
+  const bool is_needed = NeedsKeyframe(evidence);
+  evidence.unknown_objects = 0;
+  return is_needed && !NeedsKeyframe(evidence);
 }
 
 }  // namespace hullslam

@@ -8,21 +8,30 @@ namespace hullslam {
 
 // What the decision for a new keyframe is based on.
 struct KeyframeEvidence {
-  uint32_t frames_since_keyframe = 0;
-  int inliers = 0;              // landmarks found in the frame
-  int reference_landmarks = 0;  // of the reference keyframe, with enough observations
-  int close_tracked = 0;        // close keypoints (with precise depth) that show a landmark
-  int close_untracked = 0;      // close keypoints that do not
-  int unknown_objects = 0;      // detections that show no mapped object
+  double time_since_keyframe = 0.0;  // s
+  int inliers = 0;                   // landmarks found in the frame
+  int reference_landmarks = 0;       // of the reference keyframe, with enough observations
+  int close_tracked = 0;             // close keypoints (with precise depth) that show a landmark
+  int close_untracked = 0;           // close keypoints that do not
+  int unknown_objects = 0;           // detections that show no mapped object
+  int fruitless_requests = 0;        // for objects alone, since an object was last mapped
   size_t keyframes = 0;
   bool mapper_is_idle = true;
   int requests_waiting = 0;
 };
 
 struct KeyframePolicy {
-  uint32_t min_frames_between = 6;     // unless tracking has weakened abruptly
-  uint32_t max_frames_between = 30;    // after so many, also if the mapper is busy
-  uint32_t frames_for_objects = 10;    // after so many, also for objects that are not mapped
+  int min_landmarks = 15;         // that the frame must find, so that the keyframe is connected
+  double min_time_between = 0.2;  // s, unless tracking has weakened abruptly
+  double max_time_between = 1.0;  // s; after this time, also if the mapper is busy
+  double time_for_objects = 1.0 / 3.0;  // s; after this time, also for objects that are not mapped
+  // Some detections can never be mapped. From this number of fruitless requests on, each further
+  // one doubles the time for objects, up to the largest factor.
+  int patient_requests = 4;
+  double max_time_factor = 16.0;
+  // s; a time that is reached within this tolerance counts as reached. Half the time between two
+  // frames, because time stamps are not exactly regular.
+  double time_tolerance = 1.0 / 60.0;
   double min_reference_ratio = 0.9;    // of inliers to reference landmarks
   double young_reference_ratio = 0.4;  // the same while the map has a single keyframe
   double abrupt_ratio = 0.5;           // below it at once, however recent the last keyframe is
@@ -36,7 +45,13 @@ struct KeyframePolicy {
   // smaller loss of landmarks is enough, but there is a least time between keyframes
   // (docs/decisions.md). Objects that are not mapped yet are another, less urgent reason, because
   // objects are mapped from keyframes.
+  //
+  // A frame with fewer than `min_landmarks` landmarks is never a keyframe, even if objects give its
+  // pose. Covisibility and bundle adjustment could not connect it with the others, and its new
+  // landmarks would be second copies of landmarks that the map already has.
   bool NeedsKeyframe(const KeyframeEvidence& evidence) const;
+  // Whether a keyframe is needed only because of objects.
+  bool NeedsKeyframeForObjects(KeyframeEvidence evidence) const;
 };
 
 }  // namespace hullslam

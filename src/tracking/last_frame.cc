@@ -6,6 +6,8 @@
 namespace hullslam {
 namespace {
 
+constexpr double kMaxExtrapolation = 4.0;  // time step over that of the measured motion
+
 // Replaces each landmark by the one that has replaced it. If two of them have become one, only the
 // first keypoint keeps it: a frame observes a landmark at one keypoint.
 void ResolveAll(const Map& map, std::vector<LandmarkId>& landmarks) {
@@ -26,8 +28,9 @@ void ResolveAll(const Map& map, std::vector<LandmarkId>& landmarks) {
 }  // namespace
 
 LastFrame FollowMap(const Map& map, LastFrame last) {
-  if (last.pose && last.velocity) {
-    last.velocity->translation *= map.ScaleOf(last.pose->reference) / last.pose->reference_scale;
+  if (last.pose && last.motion) {
+    last.motion->cam_from_last_cam.translation *=
+        map.ScaleOf(last.pose->reference) / last.pose->reference_scale;
   }
   const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(last.frame->id);
   if (keyframe && map.keyframes().Contains(*keyframe)) {
@@ -40,6 +43,17 @@ LastFrame FollowMap(const Map& map, LastFrame last) {
   ResolveAll(map, last.landmarks);
   last.cam_from_world = map.CamFromWorld(*last.pose);
   return last;
+}
+
+std::optional<Rigid3> PredictMotion(const LastFrame& last, double timestamp) {
+  if (!last.motion) {
+    return std::nullopt;
+  }
+  const double time_step = timestamp - last.frame->timestamp;
+  if (time_step > kMaxExtrapolation * last.motion->duration) {
+    return std::nullopt;
+  }
+  return PartOfMotion(last.motion->cam_from_last_cam, time_step / last.motion->duration);
 }
 
 }  // namespace hullslam

@@ -11,6 +11,12 @@
 
 namespace hullslam {
 
+// The motion from one tracked frame to the next.
+struct CameraMotion {
+  Rigid3 cam_from_last_cam;
+  double duration = 0.0;  // s
+};
+
 // What tracking remembers of the frame that was tracked last.
 struct LastFrame {
   std::shared_ptr<const Frame> frame;
@@ -19,13 +25,18 @@ struct LastFrame {
   std::optional<RelativePose> pose;
   // The keyframe that shares most landmarks with the frame.
   KeyframeId reference;
-  Rigid3 cam_from_world;           // in the map that FollowMap was given
-  std::optional<Rigid3> velocity;  // cam_from_last_cam over one frame; absent after lost frames
+  Rigid3 cam_from_world;               // in the map that FollowMap was given
+  std::optional<CameraMotion> motion;  // that led to this frame; absent after lost frames
 };
 
-// Brings the last frame up to date with the current map: its pose, the scale of its velocity, its
+// Brings the last frame up to date with the current map: its pose, the scale of its motion, its
 // reference keyframe and its landmarks. If the frame has become a keyframe, it gets the landmarks
 // of that keyframe. Throws CheckError if the map knows neither the frame nor its reference.
 LastFrame FollowMap(const Map& map, LastFrame last);
+
+// The motion from the last frame to a frame at `timestamp` (s), if the camera keeps its velocity.
+// Null if the velocity is not known, or if the time step is so much longer than that in which the
+// velocity was measured that it says little about the new motion.
+std::optional<Rigid3> PredictMotion(const LastFrame& last, double timestamp);
 
 }  // namespace hullslam

@@ -93,17 +93,18 @@ std::vector<LandmarkId> LandmarksOf(const Map& map, const std::vector<KeyframeId
 }  // namespace
 
 LocalMap SelectLocalMap(const Map& map, std::span<const LandmarkId> landmarks,
-                        size_t max_keyframes) {
-  const std::vector<Covisible> observers = CountObservers(map, landmarks);
+                        KeyframeId last_reference, size_t max_keyframes) {
+  std::vector<Covisible> observers = CountObservers(map, landmarks);
+  if (observers.empty()) {
+    observers.push_back({last_reference, 0});
+  }
   KeyframeSet set(map, max_keyframes);
   for (const Covisible& observer : observers) {
     set.Add(observer.keyframe);
   }
   AddNeighbours(map, set);
   LocalMap local;
-  if (!observers.empty()) {
-    local.reference = observers.front().keyframe;
-  }
+  local.reference = observers.front().keyframe;
   local.keyframes = set.members();
   std::sort(local.keyframes.begin(), local.keyframes.end());
   local.landmarks = LandmarksOf(map, local.keyframes);

@@ -112,10 +112,10 @@ class LandmarkSearch {
 }  // namespace
 
 LocalTracking TrackLocalMap(const Frame& frame, const Map& map, const TrackingContext& context,
-                            PoseEstimate start) {
+                            KeyframeId last_reference, PoseEstimate start) {
   LocalTracking tracking;
-  const LocalMap local =
-      SelectLocalMap(map, start.landmarks, static_cast<size_t>(context.options.local_keyframes));
+  const LocalMap local = SelectLocalMap(map, start.landmarks, last_reference,
+                                        static_cast<size_t>(context.options.local_keyframes));
   tracking.reference = local.reference;
   LandmarkSearch search(frame, map, context.sensor, start);
   search.Run(local.landmarks, {}, start.landmarks);

@@ -13,7 +13,8 @@ namespace hullslam {
 // A frame tracked against its local map.
 struct LocalTracking {
   PoseEstimate estimate;
-  // The keyframe that shares most landmarks with the frame; invalid if none shares any.
+  // The keyframe that shares most landmarks with the frame, or the last reference if none shares
+  // any.
   KeyframeId reference;
   std::vector<ObjectId> objects;    // one per detection; invalid where it shows no mapped object
   std::vector<LandmarkId> visible;  // landmarks that should be in the image, found or not
@@ -23,8 +24,10 @@ struct LocalTracking {
 
 // Improves a first pose: searches the landmarks of the local map in the frame, then those on mapped
 // objects that the local map lacks (objects.guided_matching), and optimises the pose with all
-// landmarks found and all mapped objects (objects.joint_pose).
+// landmarks found and all mapped objects (objects.joint_pose). `last_reference` is the reference
+// keyframe of the last frame; it tells which part of the map is local if the first pose comes
+// without landmarks.
 LocalTracking TrackLocalMap(const Frame& frame, const Map& map, const TrackingContext& context,
-                            PoseEstimate start);
+                            KeyframeId last_reference, PoseEstimate start);
 
 }  // namespace hullslam

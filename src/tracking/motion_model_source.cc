@@ -70,12 +70,13 @@ Expected ExpectLandmarks(const Map& map, const Sensor& sensor, const LastFrame& 
 std::optional<PoseEstimate> PoseByMotionModel(const Frame& frame, const Map& map,
                                               const TrackingContext& context,
                                               const LastFrame& last) {
-  if (!last.velocity) {
+  const std::optional<Rigid3> motion = PredictMotion(last, frame.timestamp);
+  if (!motion) {
     return std::nullopt;
   }
   PoseEstimate estimate;
-  estimate.cam_from_world = *last.velocity * last.cam_from_world;
-  const double forward = Inverse(*last.velocity).translation.z();
+  estimate.cam_from_world = *motion * last.cam_from_world;
+  const double forward = Inverse(*motion).translation.z();
   Expected expected = ExpectLandmarks(map, context.sensor, last, estimate.cam_from_world, forward);
   const ProjectionSearch search{.max_distance = 100, .compare_rotation = true};
   std::vector<Match> matches = MatchByProjection(frame.features, expected.projections, {}, search);

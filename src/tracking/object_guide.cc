@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/polyline.h"
 #include "hullslam/frame/instance_mask.h"
 #include "hullslam/objects/object_view.h"
 #include "hullslam/objects/validity.h"
@@ -11,30 +12,13 @@
 namespace hullslam {
 namespace {
 
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-// Whether a point is in a convex polygon of positive signed area, or within `margin` (px) of all
-// the lines that bound it.
-bool IsInOrNear(std::span<const Eigen::Vector2d> hull, const Eigen::Vector2d& point,
-                double margin) {
-  for (size_t i = 0; i < hull.size(); ++i) {
-    const Eigen::Vector2d edge = hull[(i + 1) % hull.size()] - hull[i];
-    if (Cross(edge, point - hull[i]) < -margin * edge.norm()) {
-      return false;
-    }
-  }
-  return true;
-}
-
 std::vector<uint8_t> KeypointsOutside(const Frame& frame, const Detection& detection) {
   const std::vector<Keypoint>& keypoints = frame.features.keypoints;
   std::vector<uint8_t> is_outside(keypoints.size(), 1);
   for (size_t i = 0; i < keypoints.size(); ++i) {
     const Eigen::Vector2d pixel = keypoints[i].undistorted.cast<double>();
     if (detection.box.squaredExteriorDistance(pixel) <= kMaskMarginPx * kMaskMarginPx &&
-        IsInOrNear(detection.hull, pixel, kMaskMarginPx)) {
+        IsInOrNearConvex(detection.hull, pixel, kMaskMarginPx)) {
       is_outside[i] = 0;
     }
   }

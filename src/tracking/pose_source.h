@@ -18,8 +18,8 @@ using PoseSource = std::optional<PoseEstimate>(const Frame& frame, const Map& ma
                                                const TrackingContext& context,
                                                const LastFrame& last);
 
-// The last frame's landmarks are searched at the pose that its velocity predicts. Null without a
-// velocity (motion_model_source.cc).
+// The last frame's landmarks are searched at the pose that a constant velocity predicts. Null
+// without a prediction (PredictMotion, motion_model_source.cc).
 PoseSource PoseByMotionModel;
 
 // Keypoints are compared with those of the last frame's reference keyframe by descriptor alone,

@@ -13,10 +13,9 @@ namespace {
 KeyframePolicy MakePolicy(const Sensor& sensor, const TrackingOptions& options) {
   KeyframePolicy policy;
   policy.min_reference_ratio = options.keyframe_ratio;
-  policy.min_frames_between =
-      static_cast<uint32_t>(std::lround(options.keyframe_interval * sensor.frames_per_second));
-  policy.frames_for_objects = static_cast<uint32_t>(std::max(1.0, sensor.frames_per_second / 3.0));
-  policy.max_frames_between = static_cast<uint32_t>(std::max(1.0, sensor.frames_per_second));
+  policy.min_landmarks = options.min_inliers / 2;
+  policy.min_time_between = options.keyframe_interval;
+  policy.time_tolerance = 0.5 / sensor.frames_per_second;
   return policy;
 }
 
@@ -67,10 +66,10 @@ int CountReferenceLandmarks(const Map& map, KeyframeId reference) {
 }
 
 KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor& sensor,
-                                const LocalTracking& tracking, FrameId last_requested_frame,
+                                const LocalTracking& tracking, double last_request_time,
                                 const MapperStatus& mapper) {
   const PoseEstimate& estimate = tracking.estimate;
-  return {.frames_since_keyframe = frame.id.value - last_requested_frame.value,
+  return {.time_since_keyframe = frame.timestamp - last_request_time,
           .inliers = estimate.inliers,
           .reference_landmarks = CountReferenceLandmarks(map, tracking.reference),
           .close_tracked = CountCloseKeypoints(frame, sensor, estimate.landmarks, true),
@@ -112,7 +111,7 @@ Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
   result.message = MakeInitialMap(frame, sensor_.camera, with_depth);
   last_ = LastFrame();
   last_.frame = std::move(frame);
-  last_requested_frame_ = last_.frame->id;
+  last_request_time_ = last_.frame->timestamp;
   return result;
 }
 
@@ -123,20 +122,23 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   if (!start) {
     return Lose(std::move(frame));
   }
-  LocalTracking tracking = TrackLocalMap(*frame, map, Context(), std::move(*start));
+  const LocalTracking tracking =
+      TrackLocalMap(*frame, map, Context(), last_.reference, std::move(*start));
   CountSightings(tracking);
   if (tracking.estimate.EffectiveInliers() < options_.min_inliers) {
     return Lose(std::move(frame));
-  }
-  if (!tracking.reference.IsValid()) {
-    tracking.reference = last_.reference;
   }
   const PoseEstimate& estimate = tracking.estimate;
   const RelativePose pose = map.RelativeTo(tracking.reference, estimate.cam_from_world);
 
   Result result;
-  if (policy_.NeedsKeyframe(
-          GatherEvidence(*frame, map, sensor_, tracking, last_requested_frame_, mapper))) {
+  KeyframeEvidence evidence =
+      GatherEvidence(*frame, map, sensor_, tracking, last_request_time_, mapper);
+  evidence.fruitless_requests = object_requests_.CountFruitless(map);
+  if (policy_.NeedsKeyframe(evidence)) {
+    if (policy_.NeedsKeyframeForObjects(evidence)) {
+      object_requests_.AddRequest();
+    }
     result.message = MakeRequest(frame, tracking, pose);
   }
   result.report = {.tracked = {.frame = frame->id,
@@ -148,21 +150,24 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
                    .frame = frame,
                    .landmarks = estimate.landmarks,
                    .objects = tracking.objects};
-  // After lost frames, the motion since the last tracked frame is that of several frames.
-  const bool is_next = frame->id.value == last_.frame->id.value + 1;
+  // The last tracked frame may be long ago if frames were lost in between. The motion since then
+  // says little about the velocity now.
+  std::optional<CameraMotion> motion;
+  if (frame->id.value == last_.frame->id.value + 1) {
+    motion = CameraMotion{estimate.cam_from_world * Inverse(last_.cam_from_world),
+                          frame->timestamp - last_.frame->timestamp};
+  }
   last_ = {.frame = std::move(frame),
            .landmarks = estimate.landmarks,
            .pose = pose,
            .reference = tracking.reference,
            .cam_from_world = estimate.cam_from_world,
-           .velocity = is_next
-                           ? std::optional(estimate.cam_from_world * Inverse(last_.cam_from_world))
-                           : std::nullopt};
+           .motion = motion};
   return result;
 }
 
 Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame) {
-  last_.velocity.reset();
+  last_.motion.reset();
   Result result;
   result.report.tracked.frame = frame->id;
   result.report.tracked.timestamp = frame->timestamp;
@@ -186,7 +191,7 @@ void Tracker::CountSightings(const LocalTracking& tracking) {
 
 KeyframeRequest Tracker::MakeRequest(std::shared_ptr<const Frame> frame,
                                      const LocalTracking& tracking, const RelativePose& pose) {
-  last_requested_frame_ = frame->id;
+  last_request_time_ = frame->timestamp;
   return {.frame = std::move(frame),
           .pose = pose,
           .landmarks = tracking.estimate.landmarks,

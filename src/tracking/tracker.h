@@ -13,6 +13,7 @@
 #include "tracking/keyframe_policy.h"
 #include "tracking/last_frame.h"
 #include "tracking/local_map_tracking.h"
+#include "tracking/request_memory.h"
 #include "tracking/sighting_counter.h"
 #include "tracking/tracking_context.h"
 
@@ -58,9 +59,10 @@ class Tracker {
   const KeyframePolicy policy_;
   StageTimes times_;
 
-  LastFrame last_;                // only valid if there is a map
-  FrameId last_requested_frame_;  // the frame of the last message
-  SightingCounter sightings_;     // since the last request
+  LastFrame last_;                  // only valid if there is a map
+  double last_request_time_ = 0.0;  // s, time stamp of the frame of the last message
+  SightingCounter sightings_;       // since the last request
+  RequestMemory object_requests_;
 };
 
 }  // namespace hullslam

@@ -11,6 +11,7 @@
 
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
+#include "util/shown_text.h"
 
 namespace hullslam {
 namespace {
@@ -210,20 +211,23 @@ bool OptionTable::Contains(std::string_view key) const {
 }
 
 void OptionTable::Set(const std::string& key, const std::string& value, const std::string& origin) {
+  constexpr size_t kLongestKey = 100;
   const auto it = options_.find(key);
   if (it == options_.end()) {
+    const std::string compared = key.substr(0, kLongestKey);
     const auto nearest =
         std::min_element(options_.begin(), options_.end(), [&](const auto& a, const auto& b) {
-          return EditDistance(key, a.first) < EditDistance(key, b.first);
+          return EditDistance(compared, a.first) < EditDistance(compared, b.first);
         });
-    std::string message = origin + ": unknown key '" + key + "'";
+    std::string message = origin + ": unknown key '" + ShowText(key) + "'";
     if (nearest != options_.end()) {
       message += "; did you mean '" + nearest->first + "'?";
     }
     throw InputError(message);
   }
   if (!it->second.parse(value)) {
-    throw InputError(origin + ": " + key + " is '" + value + "', expected " + it->second.expected);
+    throw InputError(origin + ": " + key + " is '" + ShowText(value) + "', expected " +
+                     it->second.expected);
   }
 }
 

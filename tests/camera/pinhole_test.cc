@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
+#include <string>
 #include <vector>
 
 #include "hullslam/util/error.h"
@@ -145,6 +147,37 @@ TEST(PinholeCamera, BoundsAreHalfOpen) {
   EXPECT_FALSE(bounds.Contains({10.0, 0.0}));
   EXPECT_FALSE(bounds.Contains({5.0, 5.0}));
   EXPECT_FALSE(bounds.Contains({-0.001, 0.0}));
+}
+
+TEST(PinholeCamera, RealCamerasHaveNoFault) {
+  EXPECT_EQ(Tum1().FindFault(), "");
+  PinholeCamera wide = Tum1();  // strong barrel distortion, as of the cameras of EuRoC
+  wide.k1 = -0.28340811;
+  wide.k2 = 0.07395907;
+  wide.p1 = 0.00019359;
+  wide.p2 = 1.76187114e-05;
+  wide.k3 = 0.0;
+  EXPECT_EQ(wide.FindFault(), "");
+}
+
+TEST(PinholeCamera, AFaultNamesTheKey) {
+  const auto expect = [](double PinholeCamera::*field, double value, const char* part) {
+    PinholeCamera camera = Tum1();
+    camera.k1 = camera.k2 = camera.p1 = camera.p2 = camera.k3 = 0.0;
+    camera.*field = value;
+    EXPECT_NE(camera.FindFault().find(part), std::string::npos)
+        << camera.FindFault() << " does not contain " << part;
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  expect(&PinholeCamera::fx, 1e-300, "Camera.fx is '1e-300', expected");
+  expect(&PinholeCamera::fx, 1e300, "Camera.fx is '1e+300'");
+  expect(&PinholeCamera::fy, kNan, "Camera.fy is 'nan'");
+  expect(&PinholeCamera::cx, 1e9, "Camera.cx is '1e+09'");
+  expect(&PinholeCamera::k2, kNan, "Camera.k2 is 'nan'");
+  expect(&PinholeCamera::k1, -5.0, "Camera.k1 is '-5': the distortion cannot be undone");
+  expect(&PinholeCamera::k1, -1e300, "Camera.k1 is '-1e+300': the distortion cannot be undone");
+  expect(&PinholeCamera::p1, 3.0, "Camera.p1 is '3': the distortion cannot be undone");
+  expect(&PinholeCamera::k3, 1e6, "Camera.k3 is '1e+06': the undistorted image would have");
 }
 
 TEST(PinholeCamera, BindsTheKeysOfOrbSlam2) {

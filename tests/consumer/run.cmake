@@ -1,6 +1,8 @@
 # cmake -D BUILD_DIR=build/release -D WORK_DIR=... -P run.cmake
 # Installs BUILD_DIR into a new folder and moves that folder, then builds and runs the consumer
 # project against it.
+cmake_minimum_required(VERSION 3.23)
+
 function(run)
   execute_process(COMMAND ${ARGV} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
@@ -13,3 +15,19 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK_DIR}/build -G Ninja
     -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${prefix})
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run(${WORK_DIR}/build/consumer)
+
+# The installed programs work from the moved folder, and their names do not collide with those of
+# other programs.
+file(GLOB programs RELATIVE ${prefix}/bin ${prefix}/bin/*)
+foreach(name IN LISTS programs)
+  if(NOT name MATCHES "^hullslam-")
+    message(FATAL_ERROR "bin/${name} is installed without the prefix hullslam-")
+  endif()
+  run(${prefix}/bin/${name} --help OUTPUT_QUIET)
+endforeach()
+foreach(name rgbd_tum map_objects evaluate check_masks make_synthetic plot_run plot_ablation
+        object_table)
+  if(NOT "hullslam-${name}" IN_LIST programs)
+    message(FATAL_ERROR "bin/hullslam-${name} is missing")
+  endif()
+endforeach()

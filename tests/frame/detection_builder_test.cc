@@ -269,6 +269,44 @@ TEST(DetectionBuilder, ANearerMaskThatTouchesASideHidesIt) {
   EXPECT_EQ(SidesOneSided(result.detections[1]), (std::vector<bool>{false, false, false, false}));
 }
 
+// A table under a cup: seen at a slant, its surface comes nearer below the cup, but it meets the
+// cup there.
+TEST(DetectionBuilder, TheSurfaceThatAnObjectStandsOnDoesNotHideIt) {
+  const InstanceMask cup = RectangleMask(280.0, 200.0, 79.0, 99.0, "cup");
+  const InstanceMask table = RectangleMask(100.0, 180.0, 439.0, 280.0, "dining table", 0.5);
+  cv::Mat depth(480, 640, CV_16UC1, cv::Scalar(3000));
+  for (int y = 180; y < 460; ++y) {
+    depth.row(y).colRange(100, 540) = 2000 - 12 * (y - 300);  // 12 mm nearer with each row
+  }
+  depth(cv::Rect(280, 200, 80, 100)) = 2000;
+  EXPECT_EQ(SidesOneSided(BuildOne(cup, PlainCamera(), {}, depth)),
+            (std::vector<bool>{false, false, false, false}));
+  // Its mask has a nearer median depth than the cup, and the depth along the border is unknown.
+  depth(cv::Rect(270, 190, 10, 120)) = 0;
+  depth(cv::Rect(360, 190, 10, 120)) = 0;
+  const DetectionResult result = Build({cup, table}, PlainCamera(), {}, depth);
+  ASSERT_EQ(result.detections.size(), 2U);
+  EXPECT_EQ(SidesOneSided(result.detections[0]), (std::vector<bool>{false, false, false, false}));
+}
+
+TEST(DetectionBuilder, DepthOfTheBackgroundIsLeftOut) {
+  const InstanceMask mask = RectangleMask(200.0, 150.0, 100.0, 60.0, "chair");
+  cv::Mat depth(480, 640, CV_16UC1, cv::Scalar(2000));
+  depth(cv::Rect(260, 100, 100, 200)) = 2250;  // at 500 px of focal length 100 px are 0.4 m
+  EXPECT_GT(BuildOne(mask, PlainCamera(), {}, depth).points.size(), 100U);
+  size_t far = 0;
+  const auto count_far = [&] {
+    far = 0;
+    for (const Eigen::Vector3d& point : BuildOne(mask, PlainCamera(), {}, depth).points) {
+      far += point.z() > 2.1 ? 1 : 0;
+    }
+    return far;
+  };
+  EXPECT_GT(count_far(), 20U);
+  depth(cv::Rect(260, 100, 100, 200)) = 2350;
+  EXPECT_EQ(count_far(), 0U);
+}
+
 TEST(DetectionBuilder, PartsAreOneHullButForSmallOnes) {
   InstanceMask mask = RectangleMask(100.0, 100.0, 60.0, 80.0);
   mask.outlines.push_back(Rectangle(200.0, 110.0, 40.0, 60.0));

@@ -10,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
+#include "support/expect_error.h"
 #include "support/square_mask.h"
 
 namespace hullslam {
@@ -226,22 +227,22 @@ TEST_F(FrameBuilderTest, CountsAreOfAllFrames) {
 TEST_F(FrameBuilderTest, ImagesOfAnotherSizeAreRefused) {
   ImageInput image = MakeImage();
   image.grey = image.grey(cv::Rect(0, 0, kWidth - 1, kHeight));
-  EXPECT_THROW(Build(image), CheckError);
+  ExpectInputError([&] { Build(image); }, {"319x240", "320x240"});
   image = MakeImage();
   image.depth = image.depth(cv::Rect(0, 0, kWidth, kHeight - 1));
-  EXPECT_THROW(Build(image), CheckError);
+  ExpectInputError([&] { Build(image); }, {"depth", "320x239", "320x240"});
   image.depth = cv::Mat();
-  EXPECT_THROW(Build(image), CheckError);
+  EXPECT_THROW(Build(image), InputError);
 }
 
 TEST_F(FrameBuilderTest, ImagesOfAnotherTypeAreRefusedWhateverTheyShow) {
   ImageInput image = MakeImage();
   image.grey.convertTo(image.grey, CV_16UC1);
-  EXPECT_THROW(Build(image), CheckError);
+  EXPECT_THROW(Build(image), InputError);
   image = MakeImage();
   image.grey.setTo(128);  // without keypoints no depth is looked up
   image.depth.convertTo(image.depth, CV_8UC1);
-  EXPECT_THROW(Build(image), CheckError);
+  EXPECT_THROW(Build(image), InputError);
 }
 
 }  // namespace

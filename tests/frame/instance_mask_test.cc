@@ -3,6 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "support/expect_error.h"
+
 namespace hullslam {
 namespace {
 
@@ -11,6 +17,49 @@ TEST(InstanceMask, IsACertainContourUnlessSaidOtherwise) {
   EXPECT_EQ(mask.shape, MaskShape::kContour);
   EXPECT_EQ(mask.score, 1.0);
   EXPECT_TRUE(mask.outlines.empty());
+}
+
+constexpr int kWidth = 640;
+constexpr int kHeight = 480;
+
+InstanceMask GoodMask() {
+  return {.label = "cup", .score = 0.5, .outlines = {{{-1.0, 0.0}, {640.0, 0.0}, {320.0, 480.0}}}};
+}
+
+void ExpectRefusal(const InstanceMask& mask, const std::vector<std::string>& parts) {
+  const std::vector<InstanceMask> masks = {GoodMask(), mask};
+  ExpectInputError([&] { ValidateMasks(masks, kWidth, kHeight); }, parts);
+}
+
+TEST(InstanceMask, GoodMasksAreAccepted) {
+  const std::vector<InstanceMask> masks = {
+      GoodMask(), {.label = "box", .score = 0.0, .shape = MaskShape::kBox, .outlines = {}}};
+  EXPECT_NO_THROW(ValidateMasks(masks, kWidth, kHeight));
+}
+
+TEST(InstanceMask, AMaskThatCannotBeUsedIsRefusedWithItsNumber) {
+  InstanceMask mask = GoodMask();
+  mask.label = "";
+  ExpectRefusal(mask, {"mask 1", "label is empty"});
+  for (const double score : {7.0, -0.1, std::numeric_limits<double>::quiet_NaN()}) {
+    mask = GoodMask();
+    mask.score = score;
+    ExpectRefusal(mask, {"mask 1 ('cup')", "score", "from 0 to 1"});
+  }
+  for (const size_t points : {0U, 1U, 2U}) {
+    mask = GoodMask();
+    mask.outlines.emplace_back(points, Eigen::Vector2d(1.0, 1.0));
+    ExpectRefusal(mask, {"mask 1 ('cup')", std::to_string(points) + " point", "at least 3"});
+  }
+  for (const double value : {std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::infinity(), 1e9, -641.0, 1281.0}) {
+    mask = GoodMask();
+    mask.outlines[0][1].x() = value;
+    ExpectRefusal(mask, {"mask 1 ('cup')", "point", "640x480"});
+    mask = GoodMask();
+    mask.outlines[0][1].y() = value;
+    ExpectRefusal(mask, {"mask 1 ('cup')", "point", "640x480"});
+  }
 }
 
 }  // namespace

@@ -125,5 +125,71 @@ TEST(Alignment, FailsWithAReason) {
   EXPECT_THROW(AlignPoints(two, spread, AlignmentKind::kSe3), CheckError);
 }
 
+// ---- Poses
+
+std::vector<Rigid3> RandomPoses(int count, unsigned seed) {
+  const Points values = RandomPoints(2 * count, seed);
+  std::vector<Rigid3> poses;
+  for (size_t i = 0; i < values.size(); i += 2) {
+    poses.emplace_back(ExpSo3(values[i]), values[i + 1]);
+  }
+  return poses;
+}
+
+std::vector<Rigid3> Apply(const Rigid3& motion, const std::vector<Rigid3>& poses) {
+  std::vector<Rigid3> moved;
+  for (const Rigid3& pose : poses) {
+    moved.push_back(motion * pose);
+  }
+  return moved;
+}
+
+TEST(AlignPoses, RecoversAMotionEvenFromOnePose) {
+  const Rigid3 truth(ExpSo3({0.3, -2.0, 1.0}), {5.0, -1.0, 100.0});
+  for (const int count : {1, 2, 20}) {
+    const std::vector<Rigid3> source = RandomPoses(count, 1);
+    const Rigid3 found = AlignPoses(source, Apply(truth, source), 2.0);
+    EXPECT_LT(AngularDistance(found.rotation, truth.rotation), 1e-7) << count;
+    EXPECT_LT((found.translation - truth.translation).norm(), 1e-9) << count;
+  }
+}
+
+// Positions alone do not determine the rotation of a camera that moves by the noise only.
+TEST(AlignPoses, OrientationsDetermineTheRotationOfAnAlmostStillCamera) {
+  const Points noise = RandomPoints(30, 2);
+  std::vector<Rigid3> source;
+  for (const Eigen::Vector3d& error : noise) {
+    source.emplace_back(Eigen::Quaterniond::Identity(), 1e-3 * error);
+  }
+  const std::vector<Rigid3> target(source.size());
+  EXPECT_LT(
+      AngularDistance(AlignPoses(source, target, 1.0).rotation, Eigen::Quaterniond::Identity()),
+      1e-3);
+}
+
+// With a short lever positions count more, with a long one orientations.
+TEST(AlignPoses, TheLeverWeighsOrientationsAgainstPositions) {
+  const std::vector<Rigid3> source = RandomPoses(10, 3);
+  const Rigid3 of_positions(ExpSo3({0.0, 0.0, 0.2}), Eigen::Vector3d::Zero());
+  std::vector<Rigid3> target = source;  // the orientations do not turn
+  for (Rigid3& pose : target) {
+    pose.translation = of_positions * pose.translation;
+  }
+  const auto angle = [&](double lever) {
+    return AngularDistance(AlignPoses(source, target, lever).rotation,
+                           Eigen::Quaterniond::Identity());
+  };
+  EXPECT_NEAR(angle(1e-3), 0.2, 1e-3);
+  EXPECT_NEAR(angle(1e3), 0.0, 1e-3);
+  EXPECT_GT(angle(0.5), angle(2.0));
+}
+
+TEST(AlignPoses, NothingToAlignIsRefused) {
+  const std::vector<Rigid3> poses(2);
+  EXPECT_THROW(AlignPoses({}, {}, 1.0), CheckError);
+  EXPECT_THROW(AlignPoses(poses, RandomPoses(3, 1), 1.0), CheckError);
+  EXPECT_THROW(AlignPoses(poses, poses, 0.0), CheckError);
+}
+
 }  // namespace
 }  // namespace hullslam

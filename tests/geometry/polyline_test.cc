@@ -108,6 +108,15 @@ TEST(SignedArea, MatchesHandComputedValuesAndChangesSignWithTheOrder) {
   EXPECT_EQ(SignedArea(Polygon{{1.0, 2.0}, {3.0, 4.0}}), 0.0);
 }
 
+TEST(IsInOrNearConvex, AcceptsPointsUpToTheMargin) {
+  const Polygon square{{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}, {0.0, 10.0}};
+  EXPECT_TRUE(IsInOrNearConvex(square, {5.0, 5.0}, 0.0));
+  EXPECT_FALSE(IsInOrNearConvex(square, {11.0, 5.0}, 0.9));
+  EXPECT_TRUE(IsInOrNearConvex(square, {11.0, 5.0}, 1.1));
+  EXPECT_FALSE(IsInOrNearConvex(square, {5.0, -1.0}, 0.9));
+  EXPECT_TRUE(IsInOrNearConvex(square, {5.0, -1.0}, 1.1));
+}
+
 TEST(BoundingBox, ContainsThePoints) {
   const std::vector<Eigen::Vector2d> points{{1.0, 5.0}, {-2.0, 3.0}, {0.0, 7.0}};
   const Eigen::AlignedBox2d box = BoundingBox(points);

@@ -153,5 +153,33 @@ TEST(AngularDistance, IsTheAngleBetween) {
   }
 }
 
+TEST(Rigid3, PartsOfAMotionAddUp) {
+  Random random;
+  for (int i = 0; i < 50; ++i) {
+    const Rigid3 motion(ExpSo3(1.5 * random.Vector()), random.Vector());
+    const double a = 2.0 * random.Number();
+    const double b = 2.0 * random.Number();
+    EXPECT_LT(Distance(PartOfMotion(motion, 1.0), motion), 1e-12);
+    EXPECT_LT(Distance(PartOfMotion(motion, 0.0), Rigid3()), 1e-12);
+    EXPECT_LT(
+        Distance(PartOfMotion(motion, a) * PartOfMotion(motion, b), PartOfMotion(motion, a + b)),
+        1e-12);
+  }
+}
+
+TEST(Rigid3, PartOfAMotionAsComputedByHand) {
+  const Rigid3 shift(Eigen::Quaterniond::Identity(), {1.0, -2.0, 3.0});
+  EXPECT_LT(Distance(PartOfMotion(shift, 0.5),
+                     {Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.5, -1.0, 1.5)}),
+            1e-15);
+  // Half a turn around (0, 1, 0) by quarters: the origin moves on a circle around that point.
+  const Rigid3 quarter(ExpSo3({0.0, 0.0, kPi / 2.0}), {1.0, 1.0, 0.0});
+  EXPECT_LT(Distance(PartOfMotion(quarter, 2.0),
+                     {ExpSo3({0.0, 0.0, kPi}), Eigen::Vector3d(0.0, 2.0, 0.0)}),
+            1e-12);
+  const Rigid3 small(ExpSo3({0.0, 0.0, 2e-5}), {1.0, 0.0, 0.0});
+  EXPECT_LT(Distance(PartOfMotion(small, 3.0), small * small * small), 1e-13);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -55,7 +55,10 @@ TEST_F(CheckMasks, CountsFramesInstancesAndClasses) {
   EXPECT_EQ(result.errors, "");
   EXPECT_NE(result.output.find("(yolo-seg)"), std::string::npos) << result.output;
   EXPECT_EQ(Count(result, "frames"), "4");
-  EXPECT_EQ(Count(result, "without file"), "2");
+  EXPECT_EQ(Count(result, "without image"), "0");
+  EXPECT_EQ(Count(result, "without depth"), "0");
+  EXPECT_EQ(Count(result, "without masks"), "2");
+  EXPECT_EQ(Count(result, "  without file"), "2");
   EXPECT_EQ(Count(result, "malformed"), "0");
   EXPECT_EQ(Count(result, "instances"), "4");
   EXPECT_EQ(Count(result, "kept"), "3");
@@ -84,7 +87,7 @@ TEST_F(CheckMasks, DrawsThePicturesAskedFor) {
   for (const fs::directory_entry& file : fs::directory_iterator(out)) {
     names.insert(file.path().filename());
   }
-  EXPECT_EQ(names, (std::set<std::string>{"00.png", "02.png"}));
+  EXPECT_EQ(names, (std::set<std::string>{"00.png", "02.png", "pictures.json"}));
   const cv::Mat picture = cv::imread(out / "00.png", cv::IMREAD_COLOR);
   ASSERT_EQ(picture.size(), cv::Size(1280, 960));
   // The cup's left side is at x = 160 and y = 120 to 240 of the image. It is two-sided, so it is
@@ -104,6 +107,29 @@ TEST_F(CheckMasks, ListsAllMalformedFiles) {
   EXPECT_NE(result.errors.find("03.txt:2: y is 'nan'"), std::string::npos) << result.errors;
   EXPECT_EQ(Count(result, "malformed"), "2");
   EXPECT_EQ(Count(result, "kept"), "3");  // in the other files
+}
+
+TEST_F(CheckMasks, NeedsNeitherDepthNorImages) {
+  fs::remove(sequence_.path() / "depth.txt");
+  fs::remove_all(sequence_.path() / "depth");
+  fs::remove_all(sequence_.path() / "rgb");
+  const fs::path out = folder_.path() / "pictures";
+  const ProgramResult result = Run({"--output", out, "--every", "1"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(Count(result, "frames"), "4");
+  EXPECT_EQ(Count(result, "without image"), "4");
+  EXPECT_EQ(Count(result, "without depth"), "4");
+  EXPECT_EQ(Count(result, "kept"), "3");
+  EXPECT_EQ(cv::imread(out / "00.png", cv::IMREAD_COLOR).size(), cv::Size(1280, 960));
+}
+
+TEST_F(CheckMasks, AcceptsBoxesOfYolo) {
+  folder_.Write("boxes/00.txt", "41 0.5 0.5 0.1 0.1\n");
+  const ProgramResult result =
+      RunProgram("check_masks", {sequence_.path(), folder_.path() / "boxes"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("(boxes)"), std::string::npos) << result.output;
+  EXPECT_EQ(Count(result, "kept"), "1");
 }
 
 TEST_F(CheckMasks, RefusesBadArguments) {
@@ -140,13 +166,16 @@ TEST(CheckMasksData, RealMasksAreAllReadable) {
 // ---- The option --masks of the programs that run SLAM
 
 TEST_F(CheckMasks, RunsReportTheFormatAndTheFramesWithoutMasks) {
+  folder_.Write("masks/03.txt", "");
   const fs::path out = folder_.path() / "out";
   const std::vector<std::string> arguments = {sequence_.path(), "--output", out, "--masks",
                                               folder_.path() / "masks"};
   const ProgramResult result = RunProgram("rgbd_tum", arguments);
   EXPECT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NE(result.output.find("(yolo-seg), 2 of 4 frames have none"), std::string::npos)
+  EXPECT_NE(result.output.find("(yolo-seg), 2 of 4 frames have none, 1 of them no file"),
+            std::string::npos)
       << result.output;
+  EXPECT_NE(ReadFile(out / "summary.json").find("\"frames_without_masks\": 2,"), std::string::npos);
   EXPECT_NE(ReadFile(out / "summary.json").find("\"masks_format\": \"yolo-seg\""),
             std::string::npos);
 }

@@ -122,7 +122,10 @@ class EvaluateObjects : public Evaluate {
     WriteSequence();
   }
 
-  void WriteRun() { folder_.Write("run/objects.json", FormatObjects(report_)); }
+  void WriteRun() {
+    folder_.Write("run/objects.json", FormatObjects(report_));
+    folder_.Write("run/objects_observations.json", FormatObservations(report_));
+  }
 
   // The world frame of the run differs from the true one by a rotation and a translation.
   void WriteSequence() {
@@ -199,6 +202,29 @@ TEST_F(EvaluateObjects, ComparesWithTheTruth) {
   EXPECT_EQ(truth["without_truth"].size(), 0U);
 }
 
+// The camera of a short run moves by less than the error of its positions. An alignment by
+// positions alone would turn the world by any angle.
+TEST_F(EvaluateObjects, AShortRunIsAlignedByItsOrientationsToo) {
+  Trajectory run;
+  Trajectory truth;
+  const Rigid3 truth_from_map(ExpSo3({0.0, 0.0, 0.3}), {1.0, 2.0, 3.0});
+  for (int i = 0; i < 40; ++i) {
+    const double t = 0.1 * i;
+    const Eigen::Vector3d true_position(1e-3 * std::sin(t), 0.0, 0.0);
+    const Eigen::Vector3d error(0.0, 1e-3 * std::cos(2.0 * t), 1e-3 * std::sin(t));
+    run.push_back({t, Rigid3(Eigen::Quaterniond::Identity(), true_position + error)});
+    truth.push_back({t, truth_from_map * Rigid3(Eigen::Quaterniond::Identity(), true_position)});
+  }
+  WriteFileAtomically(folder_.path() / "groundtruth.txt", FormatTrajectory(truth));
+  WriteFileAtomically(folder_.path() / "run" / "trajectory.txt", FormatTrajectory(run));
+  const ProgramResult result =
+      RunProgram("evaluate", {"objects", run_, "--groundtruth", truth_file_, "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto mapped = nlohmann::json::parse(result.output)["groundtruth"]["each"][0]["mapped"];
+  ASSERT_EQ(mapped.size(), 1U);
+  EXPECT_LT(mapped[0]["center_m"].get<double>(), 0.002);
+}
+
 TEST_F(EvaluateObjects, PrintsTables) {
   const ProgramResult result =
       RunProgram("evaluate", {"objects", run_, "--groundtruth", truth_file_, "--min-masks", "41"});
@@ -228,7 +254,7 @@ TEST_F(EvaluateObjects, BadInputIsRefusedWithOneLine) {
   ExpectRefusal({"objects", run_, "--groundtruth", truth_file_}, "7.txt:1");
   folder_.Write("run/trajectory.txt", "900 0 0 0 0 0 0 1\n");
   ExpectRefusal({"objects", run_, "--groundtruth", truth_file_}, "run/trajectory.txt: no pose");
-  folder_.Write("run/objects.json", "{\"version\": 1}");
+  folder_.Write("run/objects.json", "{\"version\": 2}");
   ExpectRefusal({"objects", run_}, "objects.json: \"sequence\" is missing");
 }
 

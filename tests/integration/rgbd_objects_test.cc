@@ -72,7 +72,9 @@ TEST_F(RgbdObjects, AreWrittenWithTheSameBytesInEveryRun) {
   EXPECT_EQ(summary["objects"]["count"], mapped);
 
   const fs::path second = Run("second", {"--masks", masks_});
-  ExpectSameBytes(first, second, {"trajectory.txt", "objects.json", "objects.ply", "map.ply"});
+  ExpectSameBytes(first, second,
+                  {"trajectory.txt", "objects.json", "objects_observations.json", "objects.csv",
+                   "objects.ply", "map.ply"});
 }
 
 TEST_F(RgbdObjects, SwitchedOffLeaveNoTrace) {

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -15,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -325,7 +318,7 @@ TEST_F(RgbdTumRefuses, BadSettings) {
     return text.replace(text.find(from), from.size(), to);
   };
   ExpectRefusalOf("camera.yaml", replace("fx: 500.0", "fx: 0.0"),
-                  {path_ + "/camera.yaml:2: ", "Camera.fx is '0'", "> 0"});
+                  {path_ + "/camera.yaml:2: ", "Camera.fx is '0'", "from 10"});
   ExpectRefusalOf("camera.yaml", replace("nFeatures: 600", "nFeatures: -600"),
                   {path_ + "/camera.yaml:12: ", "ORBextractor.nFeatures is '-600'"});
   ExpectRefusalOf("camera.yaml", replace("Camera.fx: 500.0\n", ""),
@@ -386,7 +379,7 @@ TEST_F(RgbdTumRefuses, BadUsage) {
   ExpectRefusal({path_, "--colour"}, {"--colour"});
   Expect({path_, "--set"}, {"--set"});
   ExpectRefusal({path_, "--stride", "0"}, {"--stride", "'0'", ">= 1"});
-  ExpectRefusal({path_, "--stride", "-1"}, {"--stride", "'-1'"});
+  ExpectRefusal({path_, "--stride", "-1"}, {"--stride", "'-1'", ">= 1"});
   ExpectRefusal({path_, "--first", "-1"}, {"--first", "'-1'", ">= 0"});
   ExpectRefusal({path_, "--first", "many"}, {"--first", "'many'"});
   ExpectRefusal({path_, "--first", "12"}, {"--first", "'12'", "12 frames"});
@@ -404,7 +397,7 @@ TEST_F(RgbdTumRefuses, OutputThatCannotBeWritten) {
 // trajectory.txt is smaller than the limit, but map.ply is larger. No former file may be replaced.
 TEST_F(RgbdTumRefuses, FilesThatMayNotGrow) {
   ExpectRefusal({path_, "--quiet"}, {(output_ / "map.ply").string(), "cannot be written"},
-                "trap '' XFSZ; ulimit -f 4; ");
+                "ulimit -f 4; ");
 }
 
 // Mounts a small disk at a folder, so that a test can fill it.
@@ -503,75 +496,6 @@ TEST_F(RgbdTum, LostForGoodIsAFailure) {
     ExpectParts(result.errors.substr(at), {"lost", std::to_string(good) + " of"});
     EXPECT_EQ(Summary()["trajectory"]["tracked"], good);
     EXPECT_EQ(Summary()["trajectory"]["lost"], 40);
-  }
-}
-
-// rgbd_tum in a process of its own, whose output the test can read line by line while it runs.
-class RunningProgram {
- public:
-  explicit RunningProgram(Arguments arguments) {
-    std::array<int, 2> pipe{};
-    if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
-      throw std::runtime_error("cannot create a pipe");
-    }
-    arguments.insert(arguments.begin(), std::string(HULLSLAM_BIN_DIR) + "/rgbd_tum");
-    std::vector<char*> words;
-    for (std::string& argument : arguments) {
-      words.push_back(argument.data());
-    }
-    words.push_back(nullptr);
-    process_ = ::fork();
-    if (process_ == 0) {
-      ::dup2(pipe[1], STDERR_FILENO);
-      ::dup2(pipe[1], STDOUT_FILENO);
-      ::execv(words[0], words.data());
-      ::_exit(127);
-    }
-    ::close(pipe[1]);
-    errors_ = ::fdopen(pipe[0], "r");
-  }
-  ~RunningProgram() { std::fclose(errors_); }
-  RunningProgram(const RunningProgram&) = delete;
-  RunningProgram& operator=(const RunningProgram&) = delete;
-
-  // The next line of its output; empty at the end.
-  std::string ReadLine() {
-    std::array<char, 1000> line{};
-    return std::fgets(line.data(), line.size(), errors_) != nullptr ? line.data() : "";
-  }
-
-  // Sends SIGINT, waits until the program has ended and returns the exit code; -1 if a signal ended
-  // it.
-  int Interrupt() {
-    ::kill(process_, SIGINT);
-    while (!ReadLine().empty()) {
-    }
-    int status = 0;
-    ::waitpid(process_, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-
- private:
-  pid_t process_ = -1;
-  std::FILE* errors_ = nullptr;
-};
-
-TEST_F(RgbdTum, AnInterruptWritesTheResultsSoFar) {
-  const PlaneSequence slow(12, 0.5);
-  for (const Arguments& more : {Arguments{}, Arguments{"--threaded"}}) {
-    RunningProgram program(Arguments{slow.path(), "--realtime", "--output", output_} + more);
-    const std::string line = program.ReadLine();
-    ASSERT_TRUE(line.starts_with("frame ")) << line;
-    EXPECT_EQ(program.Interrupt(), 0);
-    const Trajectory poses = Poses();
-    ASSERT_GE(poses.size(), 1U);
-    EXPECT_LT(poses.size(), 12U);
-    for (size_t i = 0; i < poses.size(); ++i) {
-      EXPECT_NEAR(poses[i].timestamp, slow.Stamp(static_cast<int>(i)), 1e-6);
-      EXPECT_NEAR(poses[i].world_from_cam.translation.x(), 0.01 * static_cast<double>(i), 0.003);
-    }
-    EXPECT_EQ(Summary()["trajectory"]["frames"], poses.size());
-    EXPECT_EQ(ReadFolder(output_).size(), 4U);
   }
 }
 

@@ -2,38 +2,18 @@
 #include "hullslam/io/atomic_file.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <array>
-#include <csignal>
 #include <iterator>
 #include <string>
+#include <thread>
 
 #include "io/text_rows.h"
 #include "support/expect_error.h"
+#include "support/file_size_limit.h"
 #include "support/temporary_folder.h"
 
 namespace hullslam {
 namespace {
-
-// Simulates a full disk: as long as the object exists, writing more than `bytes` to a file fails.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : former_handler_(::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &former_);
-    rlimit limit = former_;
-    limit.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &former_);
-    ::signal(SIGXFSZ, former_handler_);
-  }
-
- private:
-  sighandler_t former_handler_;
-  rlimit former_{};
-};
 
 long CountFiles(const std::filesystem::path& folder) {
   return std::distance(std::filesystem::directory_iterator(folder), {});
@@ -61,24 +41,20 @@ TEST(AtomicFile, AFullDiskLeavesTheOldFile) {
   EXPECT_EQ(CountFiles(folder.path()), 1);
 }
 
-TEST(AtomicFile, FilesThatBelongTogetherAreAllReplacedOrAllUnchanged) {
+TEST(AtomicFile, TwoWritersDoNotDisturbEachOther) {
   const TemporaryFolder folder;
-  const auto first = folder.Write("first.txt", "good");
-  const auto second = folder.Write("second.txt", "good too");
-  std::array<FileContent, 2> files = {{{first, "new"}, {second, std::string(100000, 'x')}}};
-  {
-    const FileSizeLimit limit(4096);
-    ExpectInputError([&] { WriteFilesAtomically(files); }, {second.string(), "File too large"});
-  }
-  EXPECT_EQ(ReadFile(first), "good");
-  EXPECT_EQ(ReadFile(second), "good too");
-  EXPECT_EQ(CountFiles(folder.path()), 2);
-  WriteFilesAtomically(files);
-  EXPECT_EQ(ReadFile(first), "new");
-  EXPECT_EQ(ReadFile(second), files[1].content);
-  files[1].path = folder.path();
-  ExpectInputError([&] { WriteFilesAtomically(files); }, {"not a regular file"});
-  EXPECT_EQ(CountFiles(folder.path()), 2);
+  const auto path = folder.path() / "out.txt";
+  const auto write = [&](char letter) {
+    for (int i = 0; i < 50; ++i) {
+      WriteFileAtomically(path, std::string(10'000, letter));
+    }
+  };
+  std::thread other([&] { write('a'); });  // has the same process id
+  write('b');
+  other.join();
+  const std::string content = ReadFile(path);
+  EXPECT_TRUE(content == std::string(10'000, 'a') || content == std::string(10'000, 'b'));
+  EXPECT_EQ(CountFiles(folder.path()), 1);
 }
 
 TEST(AtomicFile, UnusableFoldersAreReported) {

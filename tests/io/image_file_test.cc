@@ -100,5 +100,47 @@ TEST(ImageFile, AHugeSizeIsRefusedBeforeMemoryIsAllocated) {
                    {"huge.jpg", "65535x65535 px"});
 }
 
+// Such a file is not read: its size is checked first.
+TEST(ImageFile, AHugeFileIsRefusedBeforeItIsRead) {
+  const TemporaryFolder folder;
+  const auto path = folder.Write("sparse.png", "\x89PNG");
+  std::filesystem::resize_file(path, 100'000'000'000);
+  ExpectInputError([&] { ReadGreyImage(path); },
+                   {"sparse.png: 100000000000 bytes, expected at most 512 MB"});
+}
+
+TEST(ImageFile, FillBytesBeforeTheMarkersOfAJpegAreAccepted) {
+  const TemporaryFolder folder;
+  std::string jpeg = Encode(".jpg", Ramp(CV_8UC1));
+  const size_t frame = jpeg.find("\xff\xc0");
+  jpeg.insert(frame, 3, '\xff');
+  jpeg.insert(2, 2, '\xff');
+  EXPECT_EQ(ReadGreyImage(folder.Write("fill.jpg", jpeg)).size(), cv::Size(64, 48));
+}
+
+// A decoder that skips the bytes before the second frame header would find another size there.
+TEST(ImageFile, OtherBytesBetweenTheSegmentsOfAJpegAreRefused) {
+  const TemporaryFolder folder;
+  std::string jpeg = Encode(".jpg", Ramp(CV_8UC1));
+  const size_t frame = jpeg.find("\xff\xc0");
+  ASSERT_NE(frame, std::string::npos);
+  const std::string decoy("\x01\xc0\x00\x0b\x08\x00\x10\x00\x10\x01\x01\x11\x00", 13);
+  jpeg.replace(frame + 5, 4, "\x7f\xff\x7f\xff");
+  jpeg.insert(frame, decoy);
+  ExpectInputError([&] { ReadGreyImage(folder.Write("decoy.jpg", jpeg)); },
+                   {"decoy.jpg", "the header with the size of the image is missing"});
+  jpeg.erase(frame, decoy.size());
+  ExpectInputError([&] { ReadGreyImage(folder.Write("large.jpg", jpeg)); },
+                   {"large.jpg", "32767x32767 px"});
+}
+
+TEST(ImageFile, APngWithoutHeaderIsRefused) {
+  const TemporaryFolder folder;
+  const std::string png = Encode(".png", Ramp(CV_8UC1));
+  const std::string end = png.substr(png.size() - 12);
+  ExpectInputError([&] { ReadGreyImage(folder.Write("end.png", png.substr(0, 8) + end)); },
+                   {"end.png", "the header with the size of the image is missing"});
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -36,7 +36,35 @@ TEST(JsonFile, UnreadableAndTooLargeFilesAreReported) {
   const TemporaryFolder folder;
   ExpectInputError([&] { ReadJson(folder.path() / "none.json"); }, {"none.json: No such file"});
   const auto path = folder.Write("file.json", "[1, 2, 3]");
-  ExpectInputError([&] { ReadJson(path, 5); }, {"file.json: 9 bytes"});
+  ExpectInputError([&] { ReadJson(path, {.most_bytes = 5}); }, {"file.json: 9 bytes"});
+  ExpectInputError([&] { ReadJson(path, {.most_values = 4}); }, {"file.json: ", "4 values"});
+}
+
+// The library's dump() calls itself for each level, so such a value must not even exist.
+TEST(JsonFile, DeepNestingIsRefused) {
+  const TemporaryFolder folder;
+  for (const char* const opening : {"[", "{\"a\":"}) {
+    std::string text;
+    for (int i = 0; i < 200'000; ++i) {
+      text += opening;
+    }
+    const auto path = folder.Write("deep.json", text);
+    ExpectInputError([&] { ReadJson(path); }, {"deep.json: is nested more than 32 deep"});
+  }
+  const std::string allowed = std::string(32, '[') + std::string(32, ']');
+  EXPECT_TRUE(ReadJson(folder.Write("allowed.json", allowed)).is_array());
+}
+
+TEST(JsonFile, MessagesShowOnlyTheBeginningOfLargeValues) {
+  nlohmann::json deep;
+  for (int i = 0; i < 100'000; ++i) {
+    nlohmann::json outer = nlohmann::json::array();
+    outer.push_back(std::move(deep));
+    deep = std::move(outer);
+  }
+  EXPECT_EQ(ShowJson(deep), std::string(120, '[') + "...");
+  EXPECT_EQ(ShowJson(nlohmann::json::parse(R"({"a": [1, 2.5, null], "b": {}})")),
+            R"({"a":[1,2.5,null],"b":{}})");
 }
 
 TEST(JsonFile, MessagesShowValuesInAsciiAndShortened) {

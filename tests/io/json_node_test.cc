@@ -32,7 +32,7 @@ TEST_F(JsonNodeTest, ReturnsTheValues) {
   EXPECT_EQ(node.At("a").At("t").Text(), "x");
   EXPECT_TRUE(node.At("a").At("f").Flag());
   EXPECT_EQ(node.At("a").At("n").Count(), 7U);
-  EXPECT_EQ(node.At("a").At("n").PositiveNumber(), 7.0);
+  EXPECT_EQ(node.At("a").At("n").PositiveNumber(7.0), 7.0);
   EXPECT_EQ(node.At("b").Numbers(3), (std::vector<double>{1.0, 2.5, -3.0}));
   EXPECT_EQ(node.At("b").Elements()[1].Number(), 2.5);
   EXPECT_EQ(node.At("p").Points()[1], Eigen::Vector2d(3, 4));
@@ -59,16 +59,38 @@ TEST_F(JsonNodeTest, RefusesOtherTypes) {
   ExpectRefusal("1", [](const JsonNode& node) { node.Flag(); }, {"true or false"});
   ExpectRefusal("1", [](const JsonNode& node) { node.Elements(); }, {"an array"});
   ExpectRefusal("1", [](const JsonNode& node) { node.Members(); }, {"an object"});
-  ExpectRefusal("0", [](const JsonNode& node) { node.PositiveNumber(); }, {"> 0"});
+  ExpectRefusal("0", [](const JsonNode& node) { node.PositiveNumber(1e3); }, {"> 0"});
   ExpectRefusal("-1", [](const JsonNode& node) { node.Count(); }, {"is -1", "integer"});
   ExpectRefusal("1.5", [](const JsonNode& node) { node.Count(); }, {"is 1.5", "integer"});
   ExpectRefusal("4294967295", [](const JsonNode& node) { node.Count(); }, {"4294967294"});
   ExpectRefusal("[1, null]", [](const JsonNode& node) { node.Numbers(2); }, {"2 finite numbers"});
   ExpectRefusal("[1]", [](const JsonNode& node) { node.Numbers(2); }, {"2 finite numbers"});
   ExpectRefusal("[[1, 2], [3]]", [](const JsonNode& node) { node.Points(); }, {"points [x, y]"});
+  ExpectRefusal("[[1e7, 2]]", [](const JsonNode& node) { node.Points(); }, {"1e+06 px"});
+  ExpectRefusal("1e4", [](const JsonNode& node) { node.PositiveNumber(1e3); }, {"up to 1000"});
+  ExpectRefusal("-1e4", [](const JsonNode& node) { node.Number(1e3); }, {"from -1000 to 1000"});
+  ExpectRefusal("[1, 1e155, 1]", [](const JsonNode& node) { node.Lengths(); }, {"up to 1e+08 m"});
+  ExpectRefusal("[1e155, 0, 0, 0, 0, 0, 1]", [](const JsonNode& node) { node.Pose(); },
+                {"a position from -1e+08 to 1e+08 m"});
+  ExpectRefusal("[0, 0, 0, 0, 0, 0, 1e200]", [](const JsonNode& node) { node.Pose(); },
+                {"a quaternion of length 1"});
   ExpectRefusal("[0, 0, 0, 0, 0, 0, 0]", [](const JsonNode& node) { node.Pose(); },
-                {"length zero"});
+                {"a quaternion of length 1"});
   ExpectRefusal("[0, 0, 0]", [](const JsonNode& node) { node.Pose(); }, {"qx, qy, qz, qw"});
+}
+
+TEST_F(JsonNodeTest, LongKeysAreCutInMessages) {
+  const std::string text = "{\"" + std::string(900'000, 'k') + "\": 1}";
+  ExpectRefusal(text.c_str(),
+                [](const JsonNode& node) {
+                  try {
+                    node.Members()[0].second.Text();
+                  } catch (const std::exception& error) {
+                    EXPECT_LT(std::string(error.what()).size(), 200U);
+                    throw;
+                  }
+                },
+                {"kkk... is 1"});
 }
 
 TEST_F(JsonNodeTest, LongValuesAreCutInMessages) {

@@ -56,15 +56,54 @@ TEST_F(BoxesTest, MalformedLinesAreRefused) {
   ExpectRefusedLine("73 nan 138 46 70 0.5", {"x is 'nan'"});
   ExpectRefusedLine("73 173 138 -46 70 0.5", {"width is '-46'", ">= 0"});
   ExpectRefusedLine("73 173 138 46 -1 0.5", {"height is '-1'", ">= 0"});
+  ExpectRefusedLine("73 1e300 138 46 70 0.5", {"x is '1e300'", "from -1e+06 to 1e+06"});
+  ExpectRefusedLine("73 173 138 46 1e308 0.5", {"height is '1e308'", "1e+06"});
   ExpectRefusedLine("73 173 138 46 70 50", {"confidence is '50'", "from 0 to 1"});
 }
 
-TEST_F(BoxesTest, AreDistinguishedFromFractionsOfTheImage) {
+TEST_F(BoxesTest, BothFormsAreDetected) {
   format_ = "";
   Write("1.5.txt", "73 173 138 46 70 0.5789\n");
   EXPECT_EQ(Open()->format(), "boxes");
   Write("1.5.txt", "73 0.5 0.5 0.1 0.1 0.5789\n");
-  ExpectRefusal({"none fits"});
+  EXPECT_EQ(Open()->format(), "boxes");
+  Write("1.5.txt", "73 0.5 0.5 0.1 0.1\n");
+  EXPECT_EQ(Open()->format(), "boxes");
+}
+
+TEST_F(BoxesTest, BoxesOfYoloAreSharesOfTheImageAroundTheirCentre) {
+  Write("1.5.txt", "41 0.5 0.25 0.1 0.5 0.75\n0 0.95 0.9 0.2 0.4\n");
+  const FrameMasks frame = ReadFrame(0);
+  ASSERT_EQ(frame.masks.size(), 2U);
+  EXPECT_EQ(frame.masks[0].label, "cup");
+  EXPECT_EQ(frame.masks[0].score, 0.75);
+  EXPECT_EQ(frame.masks[0].shape, MaskShape::kBox);
+  // From 288 to 352 and from 0 to 240 between the edges of pixels.
+  const auto& outline = frame.masks[0].outlines.at(0);
+  EXPECT_NEAR((outline.at(0) - Eigen::Vector2d(287.5, -0.5)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((outline.at(2) - Eigen::Vector2d(351.5, 239.5)).norm(), 0.0, 1e-9);
+  // Without a confidence the score is 1. The box is clipped at the border.
+  EXPECT_EQ(frame.masks[1].score, 1.0);
+  const auto& clipped = frame.masks[1].outlines.at(0);
+  EXPECT_NEAR((clipped.at(0) - Eigen::Vector2d(543.5, 335.5)).norm(), 0.0, 1e-9);
+  EXPECT_EQ(clipped.at(2), Eigen::Vector2d(639.5, 479.5));
+}
+
+TEST_F(BoxesTest, TheFirstBoxDecidesTheFormOfAll) {
+  Write("1.5.txt", "");
+  Write("2.5.txt", "41 0.5 0.5 0.1 0.1\n41 300 200 20 10 0.5\n");
+  ExpectRefusal({Path("2.5.txt").string() + ":2: ", "x is '300'", "from 0 to 1", "the first box"});
+  Write("2.5.txt", "41 300 200 20 10 0.5\n41 0 0 1 1 0.5\n");
+  EXPECT_EQ(ReadFrame(1).masks.size(), 2U) << "the second box is a single pixel";
+}
+
+TEST_F(BoxesTest, MalformedLinesOfYoloAreRefused) {
+  ExpectRefusedLine("41 0.5 0.5 0.1 0.1 nan", {"confidence"});
+  Write("1.5.txt", "");
+  Write("2.5.txt", "41 0.5 0.5 0.1 0.1\n41 0.5 0.5 0.1\n");
+  ExpectRefusal({"2.5.txt:2: 4 column(s), expected 5 or 6"});
+  Write("2.5.txt", "41 0.5 0.5 0.1 0.1\n41 0.5 0.5 -0.1 0.1\n");
+  ExpectRefusal({"2.5.txt:2: width is '-0.1'"});
 }
 
 TEST(BoxesData, RealBoxesAreRead) {

@@ -146,11 +146,14 @@ TEST_F(CocoTest, BrokenAnnotationsAreRefused) {
   ExpectRefusedMember(R"("segmentation": [[1, 2, 700, 4, 5, 6]])", {"(700, 4)", "640x480 px"});
   ExpectRefusedMember(R"("bbox": [1, 2, -3, 4])", {"bbox is [1,2,-3,4]"});
   ExpectRefusedMember(R"("bbox": [1, 2, 3])", {"bbox is [1,2,3]"});
+  ExpectRefusedMember(R"("bbox": [1e300, 2, 3, 4])", {"bbox is [1e+300,", "up to 1e+06 px"});
   ExpectRefusedMember(R"("id": 7)", {"has no 'bbox'"});
   ExpectRefusedMember(R"("bbox": [1, 2, 3, 4], "score": 1.5)", {"score is 1.5", "from 0 to 1"});
   ExpectRefusedMember(R"("bbox": [1, 2, 3, 4], "score": "high")", {"score is \"high\""});
   ExpectRefusedMember(R"("bbox": [1, 2, 3, 4], "category_id": 12)", {"category_id is 12"});
   ExpectRefusedMember(R"("bbox": [1, 2, 3, 4], "category_id": "cup")", {"category_id is \"cup\""});
+  ExpectRefusedMember(R"("bbox": [1, 2, 3, 4], "category_id": 18446744073709551615)",
+                      {"category_id is 18446744073709551615", "an integer"});
   ExpectRefusedJson(R"([{"bbox": [1, 2, 3, 4]}])", {"has no 'image_id'"});
   ExpectRefusedJson(R"([{"image_id": 1.5, "bbox": [1, 2, 3, 4]}])", {"image_id is 1.5"});
 }
@@ -181,17 +184,34 @@ TEST_F(CocoTest, FilesThatAreNotJsonAreRefused) {
 
 TEST_F(CocoTest, HugeFilesAreRefused) {
   std::string many = "[";
-  for (int i = 0; i < 10'001; ++i) {
+  for (int i = 0; i < 1'001; ++i) {
     many += R"({"image_id": "1.5", "bbox": [1, 2, 3, 4]},)";
   }
   many.back() = ']';
-  ExpectRefusedJson(many, {"[10000]: too many instances", "10000"});
+  ExpectRefusedJson(many, {"[1000]: too many instances", "1000"});
   many = R"([{"image_id": "1.5", "segmentation": [[)";
   for (int i = 0; i < 2'000'000; ++i) {
     many += "1,";
   }
   many.back() = ']';
   ExpectRefusedJson(many + "]}]", {"more than 2000000 values"});
+  many = R"([{"image_id": "1.5", "segmentation": [[)";
+  for (int i = 0; i < 200'002; ++i) {
+    many += "1,";
+  }
+  many.back() = ']';
+  ExpectRefusedJson(many + "]}]", {"[0]: ", "100001 points", "at most 100000"});
+}
+
+// Runs of one pixel are one character each in the file and four bytes in memory.
+TEST_F(CocoTest, MasksThatTakeTooMuchMemoryAreRefused) {
+  const std::string runs = "\"111" + std::string(307'197, '0') + "\"";
+  std::string many = "[";
+  for (int i = 0; i < 420; ++i) {
+    many += R"({"image_id": "1.5", "segmentation": {"size": [480, 640], "counts": )" + runs + "}},";
+  }
+  many.back() = ']';
+  ExpectRefusedJson(many, {"[416]: the masks up to here take more than 512 MB"});
 }
 
 }  // namespace

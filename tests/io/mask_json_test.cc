@@ -49,7 +49,7 @@ TEST_F(MaskJson, ReportsWhereAFileIsNotJson) {
 }
 
 TEST_F(MaskJson, RefusesTooLargeFiles) {
-  ExpectRefusal(std::string(100'000, '['), {"more than 16 deep"});
+  ExpectRefusal(std::string(100'000, '['), {"nested more than 16 deep"});
   std::string many = "[";
   for (int i = 0; i < 2'000'000; ++i) {
     many += "1,";

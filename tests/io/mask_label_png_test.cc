@@ -114,7 +114,7 @@ TEST_F(LabelPngTest, TooManyInstancesAreRefused) {
   }
   Write("1.5.png", EncodePng(labels_));
   Write("classes.json", classes + ", \"300\": \"tv\"}");
-  ExpectInputError([&] { ReadFrame(0); }, {Path("1.5.png"), "too many instances", "10000"});
+  ExpectInputError([&] { ReadFrame(0); }, {Path("1.5.png"), "too many instances", "1000"});
 }
 
 }  // namespace

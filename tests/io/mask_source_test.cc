@@ -38,7 +38,7 @@ TEST_F(MaskSourceTest, FormatIsDetectedFromTheFirstLineOfAnyFile) {
 TEST_F(MaskSourceTest, MissingAndEmptyPathsAreRefused) {
   ExpectRefusal({Path("none").string(), "no such"}, "none");
   std::filesystem::create_directories(Path());
-  ExpectRefusal({Path().string(), "is not clear, none fits", "--masks-format", "yolo-seg"});
+  ExpectRefusal({Path().string(), "the folder is empty"});
   format_ = "yolo-seg";
   ExpectRefusal({Path().string(), "there is nothing", "'1.5'"});
 }
@@ -50,9 +50,48 @@ TEST_F(MaskSourceTest, SeveralFormatsInOneFolderAreRefused) {
   ExpectRefusal({"is not clear, yolo-seg and label-png fit", "--masks-format"});
 }
 
-TEST_F(MaskSourceTest, FilesOfOtherKindsAreRefused) {
+TEST_F(MaskSourceTest, AFolderWithoutMasksIsDescribed) {
+  Write("notes.md", "");
+  ExpectRefusal({Path().string(), "has neither text files nor PNG files"});
+  Write("masks.json", "{}");
+  ExpectRefusal({"has JSON files but no text files", "give the path of the JSON file"});
+  Write("1.5.png", "");
+  ExpectRefusal({"PNG files but no classes.json", "label-png"});
+  Write("classes.txt", "cup");
+  Write("1.5.txt", "");
+  Write("2.5.txt", "# nothing\n");
+  ExpectRefusal({"all 2 text files are empty", "--masks-format"});
+}
+
+TEST_F(MaskSourceTest, LinesOfNoFormatAreShown) {
+  Write("1.5.txt", "");
+  Write("2.5.txt", "41 17 300\n");
+  ExpectRefusal({Path().string(), "'41 17 300' in 2.5.txt fits no format of masks"});
+  Write("2.5.txt", "a b c d e f g h i j\n");
+  ExpectRefusal({"'a b c d e f g h ...' in 2.5.txt"});
+}
+
+TEST_F(MaskSourceTest, FilesThatAreNoMasksAreDescribed) {
   folder_.Write("masks/file", "some text");
-  ExpectRefusal({Path("file").string(), "none fits"}, "file");
+  ExpectRefusal({Path("file").string(), "is no valid JSON", "line 1"}, "file");
+  folder_.Write("masks/empty.json", "");
+  ExpectRefusal({"is no valid JSON"}, "empty.json");
+  folder_.Write("masks/cut.json", "[{\"image_");
+  ExpectRefusal({Path("cut.json").string(), "is no valid JSON", "column 10"}, "cut.json");
+  folder_.Write("masks/cut_later.json", "[{\"image_id\": \"1.5\", \"category");
+  ExpectRefusal({"is no valid JSON"}, "cut_later.json");
+  folder_.Write("masks/other.json", "{\"objects\": []}");
+  ExpectRefusal({"is JSON, but has none of the keys", "'annotations'", "'detections'"},
+                "other.json");
+}
+
+TEST_F(MaskSourceTest, FramesWithoutMasksAreCounted) {
+  Write("1.5.txt", "");
+  Write("3.5.txt", kYoloSeg);
+  frames_ = {{"1.5", 0}, {"2.5", 1}, {"3.5", 2}};
+  const MaskCounts counts = CheckMasks(*Open(), frames_);
+  EXPECT_EQ(counts.missing, 1U);
+  EXPECT_EQ(counts.without_masks, 2U) << "one has no file, the other an empty one";
 }
 
 TEST_F(MaskSourceTest, EveryFormatIsNamed) {

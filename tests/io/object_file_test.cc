@@ -55,7 +55,7 @@ ObjectReport MakeReport() {
 
 TEST(ObjectFile, HasTheKeysOfTheFormat) {
   const Json json = Json::parse(FormatObjects(MakeReport()));
-  EXPECT_EQ(json["version"], 1);
+  EXPECT_EQ(json["version"], 2);
   EXPECT_EQ(json["sequence"], "data/fr1_xyz");
   EXPECT_EQ(json["camera"]["fx"], 517.3);
   EXPECT_EQ(json["candidates"], 4);
@@ -71,7 +71,13 @@ TEST(ObjectFile, HasTheKeysOfTheFormat) {
   EXPECT_EQ(object["mtd_m2"], 1.25e-3);
   EXPECT_TRUE(object["tangent_px"].is_null());
   EXPECT_EQ(object["misfit_px"], 3.5);
-  const Json& view = object["observations"][1];
+  EXPECT_EQ(object["observations"], 2);
+
+  const Json observations = Json::parse(FormatObservations(MakeReport()));
+  EXPECT_EQ(observations["version"], 2);
+  ASSERT_EQ(observations["observations"].size(), 4U);
+  const Json& view = observations["observations"][1];
+  EXPECT_EQ(view["object"], 7);
   EXPECT_EQ(view["keyframe"], 5);
   EXPECT_EQ(view["class"], "cup");
   EXPECT_EQ(view["cut"], true);
@@ -94,11 +100,38 @@ TEST(ObjectFile, TheQuadricMatchesPoseAndAxes) {
   }
 }
 
-TEST(ObjectFile, ReadingAndWritingGivesTheSameBytes) {
+// Writes both files of a report and reads them.
+ObjectReport WriteAndRead(const ObjectReport& report) {
   const TemporaryFolder folder;
-  const std::string text = FormatObjects(MakeReport());
-  const ObjectReport read = ReadObjects(folder.Write("objects.json", text));
-  EXPECT_EQ(FormatObjects(read), text);
+  folder.Write("objects_observations.json", FormatObservations(report));
+  return ReadObjects(folder.Write("objects.json", FormatObjects(report)));
+}
+
+TEST(ObjectFile, TheListOfObjectsStaysSmall) {
+  ObjectReport report = MakeReport();
+  const size_t few = FormatObjects(report).size();
+  report.objects[0].views.assign(2000, MakeView(3));
+  EXPECT_LT(FormatObjects(report).size(), few + 10);
+}
+
+TEST(ObjectFile, TheTableHasOneLinePerObject) {
+  ObjectReport report = MakeReport();
+  report.objects[0].ellipsoid.world_from_object =
+      Rigid3(Eigen::Quaterniond::Identity(), {0.5, -0.25, 1.5});
+  report.objects[1].label = "a \"b\", c";
+  report.objects[1].ellipsoid = report.objects[0].ellipsoid;
+  EXPECT_EQ(FormatObjectsCsv(report),
+            "id,class,state,observations,tx,ty,tz,qx,qy,qz,qw,half_axis_x,half_axis_y,half_axis_z,"
+            "siou,siou_mask,mtd_m2,tangent_px,misfit_px,parallax_deg,quality\n"
+            "7,cup,mapped,2,0.5,-0.25,1.5,0,0,0,1,0.04,0.05,0.06,0.8,,0.00125,,3.5,0,0\n"
+            "9,\"a \"\"b\"\", c\",candidate,2,0.5,-0.25,1.5,0,0,0,1,0.04,0.05,0.06,0.8,,0.00125,,"
+            "3.5,0,0\n");
+}
+
+TEST(ObjectFile, ReadingAndWritingGivesTheSameBytes) {
+  const ObjectReport read = WriteAndRead(MakeReport());
+  EXPECT_EQ(FormatObjects(read), FormatObjects(MakeReport()));
+  EXPECT_EQ(FormatObservations(read), FormatObservations(MakeReport()));
   EXPECT_EQ(read.candidates, 4U);
   EXPECT_EQ(read.camera.k1, 0.2624);
   ASSERT_EQ(read.objects.size(), 2U);
@@ -116,10 +149,9 @@ TEST(ObjectFile, ReadingAndWritingGivesTheSameBytes) {
 }
 
 TEST(ObjectFile, AMapWithoutObjectsGivesAValidFile) {
-  const TemporaryFolder folder;
   ObjectReport empty;
   empty.camera = MakeReport().camera;
-  const ObjectReport read = ReadObjects(folder.Write("objects.json", FormatObjects(empty)));
+  const ObjectReport read = WriteAndRead(empty);
   EXPECT_TRUE(read.objects.empty());
   EXPECT_EQ(read.candidates, 0U);
 }
@@ -137,39 +169,52 @@ TEST(ObjectFile, NonFiniteValuesAreNeverWritten) {
   EXPECT_THROW(FormatObjects(report), CheckError);
   report = MakeReport();
   report.objects[1].views[0].hull[0].x() = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(FormatObjects(report), CheckError);
+  EXPECT_THROW(FormatObservations(report), CheckError);
 }
 
-// Expects that the file is refused when the value at `pointer` is replaced by `value`, or removed.
+// Expects that the files are refused when the value at `pointer` of one of them is replaced.
 void ExpectRefusal(const std::string& pointer, const Json& value,
                    const std::vector<std::string>& parts) {
-  Json json = Json::parse(FormatObjects(MakeReport()));
-  json[Json::json_pointer(pointer)] = value;
+  Json objects = Json::parse(FormatObjects(MakeReport()));
+  Json observations = Json::parse(FormatObservations(MakeReport()));
+  const bool is_observation = pointer.starts_with("/observations");
+  (is_observation ? observations : objects)[Json::json_pointer(pointer)] = value;
   const TemporaryFolder folder;
-  const auto path = folder.Write("objects.json", json.dump());
+  folder.Write("objects_observations.json", observations.dump());
+  const auto path = folder.Write("objects.json", objects.dump());
   SCOPED_TRACE(pointer);
   ExpectInputError([&] { ReadObjects(path); }, parts);
 }
 
 TEST(ObjectFile, BrokenValuesAreReportedWithTheirPath) {
   const std::string object = "/objects/1/";
-  const std::string view = object + "observations/0/";
-  const std::string at = "objects[1].observations[0].";
-  ExpectRefusal("/version", 2, {"version is 2", "expected 1"});
+  const std::string view = "/observations/2/";
+  const std::string at = "objects_observations.json: observations[2].";
+  ExpectRefusal("/version", 1, {"version is 1", "expected 2"});
   ExpectRefusal("/camera/fx", 0, {"objects.json: camera.fx is 0"});
   ExpectRefusal("/camera/width", 0, {"camera.width is 0", "1 to 16384"});
   ExpectRefusal("/camera/height", 1e6, {"camera.height"});
+  ExpectRefusal("/camera/fx", 1e300, {"camera.fx is 1e+300"});
+  ExpectRefusal("/camera/fx", 1e-300, {"camera is {", "Camera.fx is '1e-300'"});
+  ExpectRefusal("/camera/k1", -5, {"camera is {", "Camera.k1 is '-5'"});
   ExpectRefusal("/candidates", -1, {"candidates is -1"});
   ExpectRefusal("/objects", "none", {"objects is \"none\"", "an array"});
   ExpectRefusal(object + "id", "x", {"objects[1].id is \"x\""});
   ExpectRefusal(object + "state", "lost", {"objects[1].state is \"lost\"", "mapped"});
   ExpectRefusal(object + "class", 3, {"objects[1].class is 3", "a string"});
   ExpectRefusal(object + "votes", {{"cup", "many"}}, {"objects[1].votes.cup is \"many\""});
-  ExpectRefusal(object + "world_from_object", {0, 0, 0, 0, 0, 0, 0}, {"length zero"});
+  ExpectRefusal(object + "world_from_object", {0, 0, 0, 0, 0, 0, 0}, {"a quaternion of length 1"});
   ExpectRefusal(object + "half_axes", {1, 0, 1}, {"objects[1].half_axes is [1,0,1]", "> 0"});
   ExpectRefusal(object + "half_axes", {1, 1}, {"objects[1].half_axes"});
   ExpectRefusal(object + "siou", "good", {"objects[1].siou is \"good\""});
+  ExpectRefusal(object + "observations", -1, {"objects[1].observations is -1"});
+  ExpectRefusal(
+      object + "observations", 3,
+      {"objects_observations.json: has 2 observations of object 9, expected 3", "same run"});
+  ExpectRefusal(view + "object", 8, {at + "object is 8", "in objects.json"});
   ExpectRefusal(view + "keyframe", 1.5, {at + "keyframe is 1.5"});
+  ExpectRefusal(view + "score", 1e308, {at + "score is 1e+308", "from -1 to 1"});
+  ExpectRefusal(object + "votes", {{"cup", 1e308}}, {"objects[1].votes.cup is 1e+308"});
   ExpectRefusal(view + "timestamp", nullptr, {at + "timestamp is null"});
   ExpectRefusal(view + "cam_from_world", "I", {at + "cam_from_world is \"I\""});
   ExpectRefusal(view + "cut", 1, {at + "cut is 1", "true or false"});
@@ -187,6 +232,11 @@ TEST(ObjectFile, TruncatedAndMissingFilesAreRefused) {
     const auto path = folder.Write("objects.json", text.substr(0, length));
     ExpectInputError([&] { ReadObjects(path); }, {"objects.json: is no valid JSON"});
   }
+  const auto path = folder.Write("objects.json", text);
+  ExpectInputError([&] { ReadObjects(path); }, {"objects_observations.json: No such file"});
+  const std::string observations = FormatObservations(MakeReport());
+  folder.Write("objects_observations.json", observations.substr(0, observations.size() / 2));
+  ExpectInputError([&] { ReadObjects(path); }, {"objects_observations.json: is no valid JSON"});
   ExpectInputError([&] { ReadObjects(folder.Write("empty.json", "{}")); },
                    {"empty.json: \"version\" is missing"});
   ExpectInputError([&] { ReadObjects(folder.path() / "none.json"); }, {"none.json"});

@@ -123,7 +123,7 @@ TEST_F(Settings, OverridesReplaceValuesOfTheFile) {
 }
 
 TEST_F(Settings, OverridesCanGiveMissingIntrinsics) {
-  const std::string text = "%YAML:1.0\nCamera.fx: 5\nCamera.fy: 5\nCamera.cx: 5\n";
+  const std::string text = "%YAML:1.0\nCamera.fx: 50\nCamera.fy: 50\nCamera.cx: 5\n";
   EXPECT_EQ(Read(text, {"Camera.cy=7"}).camera.cy, 7.0);
   ExpectError(text, {"camera.yaml", "Camera.cy is not given"});
 }
@@ -144,7 +144,56 @@ TEST_F(Settings, BrokenValuesAreReportedWithLineKeyAndExpectation) {
 }
 
 TEST_F(Settings, AZeroFocalLengthIsRefused) {
-  ExpectError("%YAML:1.0\nCamera.fx: 0.0\n", {"camera.yaml:2: ", "Camera.fx is '0'", "> 0"});
+  ExpectError("%YAML:1.0\nCamera.fx: 0.0\n",
+              {"camera.yaml:2: ", "Camera.fx is '0'", "from 10 to 1e+05"});
+}
+
+TEST_F(Settings, ImpossibleCamerasAreRefusedWithTheirKey) {
+  for (const char* const value : {"1e-300", "1e300", "1e9"}) {
+    ExpectError(std::string("%YAML:1.0\nCamera.fx: ") + value + "\n",
+                {"camera.yaml:2: ", "Camera.fx is ", "from 10 to 1e+05"});
+  }
+  ExpectError(kMinimal, {"Camera.k1 is '-5'", "cannot be undone"}, {"Camera.k1=-5"});
+  ExpectError(kMinimal, {"Camera.k3 is '1e+06'", "times the width"}, {"Camera.k3=1000000"});
+}
+
+// OpenCV's parser calls itself for each level.
+TEST_F(Settings, DeepNestingIsRefused) {
+  const auto repeat = [](const std::string& text, size_t bytes) {
+    std::string repeated;
+    while (repeated.size() < bytes) {
+      repeated += text;
+    }
+    return repeated;
+  };
+  for (const char* const opening :
+       {"[", "{a: ", "- ", "a: ", "? ", "-\n", "[\r", "!!map ", "&a "}) {
+    try {
+      Read(std::string(kMinimal) + "Camera.k1: " + repeat(opening, 900'000));
+      ADD_FAILURE() << opening;
+    } catch (const InputError& error) {
+      EXPECT_LT(std::string(error.what()).size(), 400U) << opening;
+    }
+  }
+  std::string indented = kMinimal;
+  for (size_t depth = 0; depth < 1300; ++depth) {
+    indented += std::string(depth, ' ') + "a:\n";
+  }
+  ExpectError(indented, {"camera.yaml:", "nested too deep"});
+}
+
+TEST_F(Settings, LongKeysAndValuesAreCutInMessages) {
+  const std::string text(900'000, 'k');
+  for (const std::string& line : {text + ": 1\n", "Camera.fps: " + text + "\n"}) {
+    try {
+      Read(kMinimal + line);
+      ADD_FAILURE();
+    } catch (const InputError& error) {
+      EXPECT_LT(std::string(error.what()).size(), 400U);
+      EXPECT_NE(std::string(error.what()).find("kkk"), std::string::npos);
+    }
+  }
+  ExpectError(kMinimal + text + text, {"camera.yaml: 1800073 bytes", "at most 1 MB"});
 }
 
 TEST_F(Settings, FilesThatAreNotYamlAreRefused) {
@@ -223,6 +272,8 @@ TEST_F(Settings, TheSettingsOfKnownCamerasAreFoundAndRead) {
   }
   ::setenv("HULLSLAM_CONFIG", "/no/such/folder", 1);
   ExpectInputError([] { FindConfigFolder(); }, {"HULLSLAM_CONFIG", "/no/such/folder"});
+  ::setenv("HULLSLAM_CONFIG", "", 1);
+  EXPECT_NO_THROW(FindConfigFolder()) << "an empty variable counts as not set";
   ::unsetenv("HULLSLAM_CONFIG");
   // NOLINTEND(concurrency-mt-unsafe)
   EXPECT_TRUE(std::filesystem::exists(FindConfigFolder() / "TUM1.yaml"));

@@ -26,7 +26,7 @@ std::vector<std::string> Keys(const Json& json) {
 TEST(Summary, HasTheKeysOfTheFormatInOrder) {
   const Json json = Json::parse(FormatSummary({}));
   EXPECT_EQ(Keys(json), (std::vector<std::string>{"trajectory", "objects", "timing", "memory",
-                                                  "map", "provenance"}));
+                                                  "map", "provenance", "files"}));
   EXPECT_EQ(Keys(json["trajectory"]),
             (std::vector<std::string>{"ate_rmse_m", "alignment", "scale", "pairs", "frames",
                                       "tracked", "lost", "poses", "pairing", "coverage",
@@ -39,7 +39,7 @@ TEST(Summary, HasTheKeysOfTheFormatInOrder) {
   EXPECT_EQ(Keys(json["map"]), (std::vector<std::string>{"keyframes", "landmarks", "loops"}));
   EXPECT_EQ(Keys(json["provenance"]),
             (std::vector<std::string>{"version", "git", "settings_hash", "preset", "seed",
-                                      "pipeline", "masks_format", "sequence"}));
+                                      "pipeline", "masks_format", "sequence", "interrupted"}));
 }
 
 TEST(Summary, HasTheKeysOfObjectsInOrder) {

@@ -45,20 +45,28 @@ TEST(TextRows, ErrorsReportFileLineAndColumn) {
   ExpectInputError(read, {"bad.txt:3: ", "timestamp is 'n?m'", "finite number"});
 }
 
-TEST(TextRows, UnreadableFilesAreReportedByName) {
+TEST(TextRows, LimitsAreReported) {
   const TemporaryFolder folder;
-  const auto file = folder.Write("file", "x");
-  const auto missing = folder.path() / "none.txt";
-  ExpectInputError([&] { ReadFile(missing); }, {missing.string(), "No such file"});
-  ExpectInputError([&] { ReadFile(folder.path()); }, {folder.path().string(), "is a folder"});
-  ExpectInputError([&] { ReadFile(file / "below"); }, {"file/below", "Not a directory"});
+  const auto long_line = folder.Write("long.txt", "1\n" + std::string(1'000'001, '1') + "\n");
+  const auto visit = [](const TextRow&) {};
+  ExpectInputError([&] { ForEachRow(long_line, visit); },
+                   {"long.txt:2: a line of 1000001 bytes, expected at most 1 MB"});
+  ExpectInputError([&] { ForEachRow(long_line, visit, 1'000'000); },
+                   {"long.txt: 1000004 bytes, expected at most 1 MB"});
+  const auto huge = folder.Write("huge.txt", "");
+  std::filesystem::resize_file(huge, 1'000'000'000);
+  ExpectInputError([&] { ForEachRow(huge, visit); }, {"huge.txt: 1000000000 bytes"});
 }
 
-TEST(TextRows, ReadsAllBytes) {
+TEST(TextRows, NumbersAndStampsHaveBounds) {
   const TemporaryFolder folder;
-  const std::string bytes("a\0b\r\n", 5);
-  EXPECT_EQ(ReadFile(folder.Write("bytes", bytes)), bytes);
-  EXPECT_EQ(ReadFile(folder.Write("empty", "")), "");
+  const auto path = folder.Write("row.txt", "-5 1e12\n");
+  ForEachRow(path, [](const TextRow& row) {
+    EXPECT_EQ(row.Number(0, "x", 5.0), -5.0);
+    EXPECT_EQ(row.Stamp(0), -5.0);
+    ExpectInputError([&] { row.Number(0, "x", 4.0); }, {"row.txt:1: x is '-5'", "from -4 to 4"});
+    ExpectInputError([&] { row.Stamp(1); }, {"row.txt:1: timestamp is '1e12'", "seconds"});
+  });
 }
 
 }  // namespace

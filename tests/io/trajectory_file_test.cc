@@ -77,8 +77,12 @@ TEST(TrajectoryFile, BrokenLinesAreReported) {
   expect("inf 0 0 0 0 0 0 1", {"bad.txt:3:", "timestamp is 'inf'"});
   expect("2.0 0 0 0 0 0 1", {"bad.txt:3:", "7 columns", "expected 8"});
   expect("2.0 0 0 0 0 0 0 1 5", {"bad.txt:3:", "9 columns"});
-  expect("2.0 0 0 0 0 0 0 0", {"bad.txt:3:", "length zero"});
+  expect("2.0 0 0 0 0 0 0 0", {"bad.txt:3:", "length 0", "a rotation"});
   expect("1.4 0 0 0 0 0 0 1", {"bad.txt:3:", "1.400000", "before", "1.500000"});
+  expect("2.0 0 0 0 0 0 0 1e200", {"bad.txt:3:", "length inf"});
+  expect("2.0 0 0 0 0 1e-9 0 0", {"bad.txt:3:", "length 1e-09"});
+  expect("2.0 0 1e155 0 0 0 0 1", {"bad.txt:3:", "ty is '1e155'", "from -1e+08 to 1e+08"});
+  expect("1305031102175304 0 0 0 0 0 0 1", {"bad.txt:3:", "a time in seconds"});
   expect("2.0 0 0 a 0 0 0 1", {"bad.txt:3:", "tz is 'a'"});
 }
 

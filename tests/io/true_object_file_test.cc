@@ -54,7 +54,8 @@ TEST(TrueObjectFile, BrokenValuesAreReportedWithTheirPath) {
   expect("dynamic", 1, "true or false");
   expect("world_from_object", {1, 2, 3}, "qx");
   expect("half_extents", {1, 2, 0}, "> 0");
-  expect("half_extents", {1, 2}, "3 finite numbers");
+  expect("half_extents", {1, 2, 1e155}, "up to 1e+08 m");
+  expect("half_extents", {1, 2}, "three numbers > 0");
 }
 
 TEST(TrueObjectFile, OtherFilesAreRefused) {

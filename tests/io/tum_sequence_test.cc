@@ -65,6 +65,15 @@ TEST_F(TumSequenceTest, WithoutImagesReturnsStampsAndExistingDepthImages) {
   EXPECT_EQ(none.frames[3].timestamp, 1.09);
 }
 
+TEST_F(TumSequenceTest, LongLinesAndNamesAreRefused) {
+  WriteRgb("1.00 " + std::string(2'000, 'a') + "\n");
+  ExpectError({"rgb.txt:2: ", "the name of the file has 2000 bytes"});
+  WriteRgb("1.00 " + std::string(2'000'000, 'a') + "\n");
+  ExpectError({"rgb.txt:2: ", "a line of 2000005 bytes"});
+  WriteRgb("1e300 rgb/a.png\n");
+  ExpectError({"rgb.txt:2: ", "timestamp is '1e300'", "in seconds"});
+}
+
 TEST_F(TumSequenceTest, SelectsFrames) {
   const auto stamps = [&](const FrameSelection& selection) {
     std::vector<double> result;

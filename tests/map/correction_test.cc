@@ -56,7 +56,7 @@ Ellipsoid RandomEllipsoid(RandomGeometry& random) {
 void GiveShape(Map& map, ObjectId id, RandomGeometry& random) {
   ObjectLandmark& object = map.MutableObject(id);
   object.has_shape = true;
-  object.state = ObjectState::kMapped;
+  object.state = object.observations.empty() ? ObjectState::kCandidate : ObjectState::kMapped;
   object.shaped_views = 4;
   object.ellipsoid = RandomEllipsoid(random);
   object.start = RandomEllipsoid(random);
@@ -736,11 +736,11 @@ TEST_F(CorrectionByHand, MergedObjectsAreCandidatesWithAllVotes) {
   std::vector<ObjectId> ids;
   for (int i = 0; i < 6; ++i) {
     ids.push_back(map_.AddObject());
-    GiveShape(map_, ids.back(), random);
   }
   ASSERT_TRUE(map_.AddObservation(ids[0], a_, 0));  // a cup of score 0.3
   ASSERT_TRUE(map_.AddObservation(ids[1], b_, 2));  // a cup of score 0.5
   ASSERT_TRUE(map_.AddObservation(ids[2], c_, 1));  // a book of score 0.4
+  GiveShapes(map_, random);
   const ObjectLandmark untouched = map_.objects().At(ids[5]);
   const Ellipsoid shape = map_.objects().At(ids[1]).ellipsoid;
   map_.EraseObject(ids[4]);

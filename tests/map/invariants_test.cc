@@ -203,8 +203,20 @@ TEST_F(Invariants, FindAScaleThatIsNotPositive) {
   }
 }
 
+TEST_F(Invariants, FindAMappedObjectThatNoKeyframeObserves) {
+  const ObjectId object = map_.AddObject();
+  ASSERT_TRUE(map_.AddObservation(object, a_, 0));
+  map_.MutableObject(object).has_shape = true;
+  map_.MutableObject(object).state = ObjectState::kMapped;
+  map_.RemoveObservation(object, a_);  // makes it a candidate
+  EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
+  map_.MutableObject(object).state = ObjectState::kMapped;
+  ExpectViolation("object 0 is mapped although no keyframe observes it");
+}
+
 TEST_F(Invariants, FindAMissingOrInvalidShape) {
   const ObjectId object = map_.AddObject();
+  ASSERT_TRUE(map_.AddObservation(object, a_, 0));
   map_.MutableObject(object).state = ObjectState::kMapped;
   ExpectViolation("object 0 is mapped without a shape");
   map_.MutableObject(object).has_shape = true;

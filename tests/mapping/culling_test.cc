@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 #include <string>
 
 #include "map/invariants.h"
@@ -79,14 +81,24 @@ TEST_F(RecentLandmarksTest, ThatNoLongerExistLeaveTheList) {
   EXPECT_EQ(recent, std::vector{by});
 }
 
-// Keyframes so close together that they see the same points at the same levels.
-SyntheticMap NearbyKeyframes(const SyntheticWorld& world, uint32_t count) {
+constexpr size_t kMinObjectViews = 3;
+
+int Cull(Map& map, KeyframeId current, const Sensor& sensor) {
+  return CullKeyframes(map, current, sensor, kMinObjectViews);
+}
+
+// Keyframes so close together that they see the same points at the same levels. Each has a
+// detection, which shows no object yet. Keyframe i is i * `step` metres to the right of the first.
+SyntheticMap NearbyKeyframes(const SyntheticWorld& world, uint32_t count, double step = 0.0) {
   SyntheticMap made;
   std::vector<LandmarkId>& landmarks = made.landmarks;
   landmarks.resize(world.points().size());
   for (uint32_t i = 0; i < count; ++i) {
-    const SyntheticView view = world.Observe(FrameId(i), Rigid3());
-    const KeyframeId id = made.map.AddKeyframe(view.frame, Rigid3());
+    const Rigid3 cam_from_world(Eigen::Quaterniond::Identity(), {-step * i, 0.0, 0.0});
+    const SyntheticView view = world.Observe(FrameId(i), cam_from_world);
+    auto frame = std::make_shared<Frame>(*view.frame);
+    frame->detections.emplace_back().label = "cup";
+    const KeyframeId id = made.map.AddKeyframe(frame, cam_from_world);
     for (uint32_t k = 0; k < view.points.size(); ++k) {
       LandmarkId& landmark = landmarks[view.points[k]];
       if (!landmark.IsValid()) {
@@ -104,7 +116,7 @@ TEST(CullKeyframes, RemovesKeyframesWhileThreeOthersSeeTheirLandmarks) {
   const SyntheticWorld world;
   SyntheticMap made = NearbyKeyframes(world, 5);
   const auto landmarks = made.map.landmarks().size();
-  EXPECT_EQ(CullKeyframes(made.map, KeyframeId(4), world.sensor()), 2);
+  EXPECT_EQ(Cull(made.map, KeyframeId(4), world.sensor()), 2);
   EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
   EXPECT_FALSE(made.map.keyframes().Contains(KeyframeId(1)));
   EXPECT_FALSE(made.map.keyframes().Contains(KeyframeId(2)));
@@ -115,7 +127,7 @@ TEST(CullKeyframes, RemovesKeyframesWhileThreeOthersSeeTheirLandmarks) {
 TEST(CullKeyframes, KeepsTheRootAndTheCurrentKeyframe) {
   const SyntheticWorld world;
   SyntheticMap made = NearbyKeyframes(world, 8);
-  EXPECT_EQ(CullKeyframes(made.map, KeyframeId(7), world.sensor()), 5);
+  EXPECT_EQ(Cull(made.map, KeyframeId(7), world.sensor()), 5);
   EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
   EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(0)));
   EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(7)));
@@ -124,19 +136,110 @@ TEST(CullKeyframes, KeepsTheRootAndTheCurrentKeyframe) {
 TEST(CullKeyframes, RemovesNoneOfThreeKeyframes) {
   const SyntheticWorld world;
   SyntheticMap made = NearbyKeyframes(world, 3);
-  EXPECT_EQ(CullKeyframes(made.map, KeyframeId(2), world.sensor()), 0);
+  EXPECT_EQ(Cull(made.map, KeyframeId(2), world.sensor()), 0);
 }
 
-TEST(CullKeyframes, OnlyCloseLandmarksCount) {
-  const SyntheticWorld world;
-  SyntheticMap made = NearbyKeyframes(world, 6);
+// Removes all observations of keyframe `id`'s landmarks by keyframes from `first` on, but those of
+// landmarks that `keep` selects by their depth.
+void SeeAlone(SyntheticMap& made, KeyframeId id, uint32_t first,
+              const std::function<bool(double)>& keep) {
+  const Keyframe keyframe = made.map.keyframes().At(id);
+  for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
+    if (keep(static_cast<double>(keyframe.frame->features.depth[i]))) {
+      continue;
+    }
+    for (uint32_t other = first; other < made.map.keyframes().NextId().value; ++other) {
+      const std::vector<LandmarkId>& seen = made.map.keyframes().At(KeyframeId(other)).landmarks;
+      if (std::find(seen.begin(), seen.end(), keyframe.landmarks[i]) != seen.end()) {
+        made.map.RemoveObservation(keyframe.landmarks[i], KeyframeId(other));
+      }
+    }
+  }
+}
+
+TEST(CullKeyframes, ManyCloseLandmarksAreJudgedAlone) {
+  const SyntheticWorld world({.points = 1200});
+  SyntheticMap made = NearbyKeyframes(world, 5);
+  SeeAlone(made, KeyframeId(1), 2, [&](double depth) { return depth <= 3.2; });
+  Cull(made.map, KeyframeId(4), world.sensor());
+  EXPECT_FALSE(made.map.keyframes().Contains(KeyframeId(1)));
+}
+
+TEST(CullKeyframes, FewCloseLandmarksAreJudgedTogetherWithFarOnes) {
+  const SyntheticWorld world({.points = 1200});
   Sensor sensor = world.sensor();
+  sensor.close_depth = 2.2;
+  SyntheticMap made = NearbyKeyframes(world, 5);
+  SeeAlone(made, KeyframeId(1), 2, [&](double depth) { return depth <= sensor.close_depth; });
+  const size_t landmarks = made.map.landmarks().size();
+  Cull(made.map, KeyframeId(4), sensor);
+  EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(1))) << "it alone sees the far ones";
+  EXPECT_EQ(made.map.landmarks().size(), landmarks);
+
+  SyntheticMap far = NearbyKeyframes(world, 5);
   sensor.close_depth = 0.5;
-  EXPECT_EQ(CullKeyframes(made.map, KeyframeId(5), sensor), 0) << "none is close";
+  EXPECT_EQ(Cull(far.map, KeyframeId(4), sensor), 2) << "none is close, but others see all of them";
+}
+
+TEST(CullKeyframes, FewCloseLandmarksThatAreSeenAloneKeepAKeyframe) {
+  const SyntheticWorld world({.points = 1200});
+  Sensor sensor = world.sensor();
+  sensor.close_depth = 2.2;
+  SyntheticMap made = NearbyKeyframes(world, 5);
+  SeeAlone(made, KeyframeId(1), 2, [&](double depth) { return depth > sensor.close_depth; });
+  Cull(made.map, KeyframeId(4), sensor);
+  EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(1)));
+}
+
+TEST(CullKeyframes, AFewLandmarksAreNoReasonForCulling) {
+  const SyntheticWorld many({.points = 70});
+  const SyntheticWorld few({.points = 20});
+  SyntheticMap enough = NearbyKeyframes(many, 5);
+  SyntheticMap too_few = NearbyKeyframes(few, 5);
+  ASSERT_GE(enough.map.landmarks().size(), 20u);
+  ASSERT_LT(too_few.map.landmarks().size(), 20u);
+  ASSERT_GT(too_few.map.landmarks().size(), 0u);
+  EXPECT_EQ(Cull(enough.map, KeyframeId(4), many.sensor()), 2);
+  EXPECT_EQ(Cull(too_few.map, KeyframeId(4), few.sensor()), 0);
+}
+
+TEST(CullKeyframes, AnObjectKeepsTheViewsThatItNeeds) {
+  const SyntheticWorld world;
+  for (const uint32_t views : {2U, 3U, 4U}) {
+    SyntheticMap made = NearbyKeyframes(world, 8);
+    const ObjectId object = made.map.AddObject();
+    for (uint32_t i = 1; i <= views; ++i) {
+      ASSERT_TRUE(made.map.AddObservation(object, KeyframeId(i), 0));
+    }
+    Cull(made.map, KeyframeId(7), world.sensor());
+    EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
+    EXPECT_EQ(made.map.objects().At(object).observations.size(), std::min(views, 3U));
+    EXPECT_FALSE(made.map.keyframes().Contains(KeyframeId(6))) << "it sees no object";
+  }
+}
+
+TEST(CullKeyframes, AnObjectKeepsAViewFromANewDirection) {
+  const SyntheticWorld world({.points = 1500});
+  const auto views_left = [&](double distance, bool is_mapped) {
+    SyntheticMap made = NearbyKeyframes(world, 8, 0.02);
+    const ObjectId id = made.map.AddObject();
+    for (uint32_t i = 1; i <= 6; ++i) {
+      EXPECT_TRUE(made.map.AddObservation(id, KeyframeId(i), 0));
+    }
+    ObjectLandmark& object = made.map.MutableObject(id);
+    object.has_shape = is_mapped;
+    object.ellipsoid.world_from_object.translation = {0.07, 0.0, distance};
+    Cull(made.map, KeyframeId(7), world.sensor());
+    return made.map.objects().At(id).observations.size();
+  };
+  EXPECT_EQ(views_left(0.08, true), 6u) << "more than 11 degrees between the views";
+  EXPECT_EQ(views_left(3.0, true), 3u);
+  EXPECT_EQ(views_left(0.08, false), 3u)
+      << "without shape and depth nothing is known of directions";
 }
 
 TEST(CullKeyframes, MoreThanNineTenthsMustBeSeenByOthers) {
-  const SyntheticWorld world;
+  const SyntheticWorld world({.points = 1200});
   const auto is_culled_with_share_alone = [&](double share) {
     SyntheticMap made = NearbyKeyframes(world, 5);
     const Keyframe keyframe = made.map.keyframes().At(KeyframeId(1));
@@ -152,7 +255,7 @@ TEST(CullKeyframes, MoreThanNineTenthsMustBeSeenByOthers) {
       made.map.RemoveObservation(close[i], KeyframeId(3));
       made.map.RemoveObservation(close[i], KeyframeId(4));
     }
-    CullKeyframes(made.map, KeyframeId(4), world.sensor());
+    Cull(made.map, KeyframeId(4), world.sensor());
     return !made.map.keyframes().Contains(KeyframeId(1));
   };
   EXPECT_TRUE(is_culled_with_share_alone(0.08));
@@ -180,7 +283,7 @@ TEST(CullKeyframes, ObserversAtACoarserLevelDoNotCount) {
     }
     UpdateCovisibility(made.map, id);
   }
-  CullKeyframes(made.map, KeyframeId(4), world.sensor());
+  Cull(made.map, KeyframeId(4), world.sensor());
   EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(1)));
   EXPECT_FALSE(made.map.keyframes().Contains(KeyframeId(2)))
       << "keyframe 1 sees its landmarks at a finer level";

@@ -188,5 +188,31 @@ TEST(LandmarkCreation, AKeyframeWithoutNeighboursMakesNoLandmark) {
   EXPECT_TRUE(map.landmarks().empty());
 }
 
+// When the camera moves along its viewing direction, points near the epipole have little parallax,
+// whether the new keyframe is in front of the old one or behind it.
+TEST(LandmarkCreation, KeypointsNearTheEpipoleGiveNoLandmark) {
+  const SyntheticWorld world({.points = 3000, .depth_share = 0.0});
+  const Sensor& sensor = world.sensor();
+  for (const double z : {-1.9, 1.0}) {
+    const Eigen::Vector3d center(0.0, 0.0, z);
+    TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead(center));
+    const std::vector<LandmarkId> created = CreateLandmarks(pair.map, KeyframeId(1), sensor);
+    // px in keyframe 0 over the least distance
+    const auto epipole_distance = [&](const Eigen::Vector3d& point, int level) {
+      return (sensor.camera.Project(point) - Eigen::Vector2d(sensor.camera.cx, sensor.camera.cy))
+                 .norm() /
+             (10.0 * static_cast<double>(sensor.levels.scale[static_cast<size_t>(level)]));
+    };
+    for (const LandmarkId id : created) {
+      const Landmark& landmark = pair.map.landmarks().At(id);
+      const Observation& seen = landmark.observations.front();
+      ASSERT_EQ(seen.keyframe, KeyframeId(0));
+      const int level = pair.a.frame->features.keypoints[seen.keypoint].level;
+      EXPECT_GT(epipole_distance(landmark.position, level), 0.99) << z;
+    }
+    EXPECT_GT(created.size(), 100u) << z;
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -7,6 +7,7 @@
 
 #include "map/invariants.h"
 #include "support/synthetic_world.h"
+#include "support/unknown_points.h"
 
 namespace hullslam {
 namespace {
@@ -141,6 +142,42 @@ TEST_F(LandmarkFusionTest, DoesNotMergePointsFarFromTheKeypoint) {
   Fuse(newest_);
   for (const LandmarkId twin : twins) {
     EXPECT_TRUE(made_.map.landmarks().Contains(twin));
+  }
+}
+
+// Near each keypoint of the third keyframe there is another one with a more similar descriptor, but
+// too far away to be the landmark.
+TEST(LandmarkFusion, TakesTheMostSimilarKeypointAmongThoseWhereTheLandmarkMayBe) {
+  const SyntheticWorld world;
+  const KeyframeId newest(2);
+  SyntheticMap made = MakeSyntheticMap(world, {0, 5, 10}, [&](Frame& frame, const Rigid3&) {
+    FrameFeatures& features = frame.features;
+    const size_t count = frame.id == FrameId(10) ? features.size() : 0;
+    for (size_t i = 0; i < count; ++i) {
+      Keypoint decoy = features.keypoints[i];
+      const float shift = 2.8f * world.sensor().levels.scale[static_cast<size_t>(decoy.level)];
+      decoy.undistorted += Eigen::Vector2f(shift, shift);
+      const float right_u = features.right_u[i];
+      features.keypoints.push_back(decoy);
+      features.descriptors.push_back(features.descriptors[i]);
+      features.depth.push_back(features.depth[i]);
+      features.right_u.push_back(right_u < 0.0f ? right_u : right_u + shift);
+      features.descriptors[i][0] ^= 0xfffff;  // 20 bits
+    }
+    RebuildGrid(world.sensor(), frame);
+  });
+  std::vector<std::pair<LandmarkId, uint32_t>> forgotten;
+  for (uint32_t i = 0; i < made.views[2].points.size(); i += 3) {
+    const LandmarkId landmark = made.landmarks[made.views[2].points[i]];
+    if (landmark.IsValid() && made.map.landmarks().At(landmark).observation_weight == 6) {
+      made.map.RemoveObservation(landmark, newest);
+      forgotten.emplace_back(landmark, i);
+    }
+  }
+  ASSERT_GT(forgotten.size(), 20u);
+  FuseLandmarks(made.map, newest, world.sensor());
+  for (const auto& [landmark, keypoint] : forgotten) {
+    EXPECT_EQ(made.map.keyframes().At(newest).landmarks[keypoint], landmark);
   }
 }
 

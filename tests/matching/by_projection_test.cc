@@ -42,6 +42,21 @@ TEST(MatchByProjection, TakesTheMostSimilarDescriptorInTheWindow) {
   EXPECT_EQ(matches[0].distance, 20);
 }
 
+TEST(MatchByProjection, TakesTheMostSimilarOfTheKeypointsThatMayMatch) {
+  const FrameFeatures features = MakeFeatures({{.pixel = {100.0f, 100.0f}, .bits = 0},
+                                               {.pixel = {101.0f, 100.0f}, .bits = 20},
+                                               {.pixel = {102.0f, 100.0f}, .bits = 10}});
+  const std::vector<Projection> projections = {At(100.0f, 100.0f), At(100.0f, 100.0f)};
+  // The second projection may match nothing, the first all but the most similar keypoint.
+  const auto may_match = [](uint32_t query, uint32_t keypoint) {
+    return query == 0 && keypoint != 0;
+  };
+  const auto matches = MatchByProjection(features, projections, {}, {.may_match = may_match});
+  ASSERT_EQ(matches.size(), 1u);
+  EXPECT_EQ(matches[0].query, 0u);
+  EXPECT_EQ(matches[0].keypoint, 2u);
+}
+
 TEST(MatchByProjection, SearchesOnlyTheGivenLevels) {
   const FrameFeatures features = MakeFeatures({{.pixel = {100.0f, 100.0f}, .bits = 0, .level = 1},
                                                {.pixel = {100.0f, 100.0f}, .bits = 5, .level = 2},

@@ -77,6 +77,18 @@ TEST(MatchForTriangulation, WithoutDepthLeavesOutKeypointsNearTheEpipole) {
   EXPECT_EQ(count(280.0f, {.pixel = {296.0f, 100.0f}}), 1u);
 }
 
+// A keypoint at level 5 is 2.49 times less precise than one at level 0.
+TEST(MatchForTriangulation, TheDistanceToTheEpipoleGrowsWithTheScale) {
+  const auto count = [](float x) {
+    return MatchAll(MakeFeatures({{.pixel = {300.0f, 100.0f}}}),
+                    MakeFeatures({{.pixel = {x, 100.0f}, .level = 5}}), SideBySide(),
+                    Eigen::Vector2d(305.0, 100.0))
+        .size();
+  };
+  EXPECT_EQ(count(305.0f - 24.8f), 0u);
+  EXPECT_EQ(count(305.0f - 25.0f), 1u);
+}
+
 TEST(MatchForTriangulation, AKeypointIsMatchedToTheMostSimilarQuery) {
   const FrameFeatures a = MakeFeatures({{.pixel = {300.0f, 100.0f}, .bits = 8},
                                         {.pixel = {310.0f, 100.0f}, .bits = 2},

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 
+#include "geometry/polygon_overlap.h"
 #include "objects/made_objects.h"
 
 namespace hullslam {
@@ -112,6 +114,133 @@ TEST_F(Association, NothingIsSimilarEnoughForAHighThreshold) {
   Build(table, 3, true);
   EXPECT_TRUE(Associate(table, 0.2, {.min_similarity = 0.2})[0].IsValid());
   EXPECT_FALSE(Associate(table, 0.2, {.min_similarity = 1.0})[0].IsValid());
+}
+
+// A thing that is seen beside the place of an object, without depth, so that only the outlines can
+// tell whether they are one.
+class Beside : public Association {
+ protected:
+  std::vector<ObjectId> AssociateBeside(const AssociationOptions& options) {
+    Frame frame;
+    frame.detections.push_back(Detect(beside_, sensor_, CameraOnCircle(0.0, 1.5, 0.6)));
+    frame.detections.back().points.clear();
+    return AssociateDetections(map_, sensor_, frame, CameraOnCircle(0.0, 1.5, 0.6), {},
+                               AssociationScope::kAll, options);
+  }
+  double Overlap() const {
+    const Rigid3 pose = CameraOnCircle(0.0, 1.5, 0.6);
+    return IntersectionOverUnion(Detect(cup_, sensor_, pose).hull,
+                                 Detect(beside_, sensor_, pose).hull);
+  }
+  static constexpr double kNever = 1.1;  // an IoU that nothing has
+  MadeObject cup_ = MakeObject("cup", Eigen::Vector3d::Zero(), {0.08, 0.08, 0.08});
+  MadeObject beside_ = MakeObject("cup", {0.0, 0.04, 0.0}, {0.08, 0.08, 0.08});
+};
+
+TEST_F(Beside, TheProjectedEllipseMustOverlapAsTheOptionsSay) {
+  Build({cup_}, 1, true);
+  AssociationOptions options{.min_carried_iou = kNever, .min_similarity = 0.01};
+  options.min_projection_iou = Overlap() - 0.02;
+  EXPECT_EQ(AssociateBeside(options)[0], ObjectId(0));
+  options.min_projection_iou = Overlap() + 0.02;
+  EXPECT_FALSE(AssociateBeside(options)[0].IsValid());
+}
+
+TEST_F(Beside, TheLastHullMustOverlapAsTheOptionsSay) {
+  Build({cup_}, 1, false);
+  AssociationOptions options{.min_projection_iou = kNever, .min_similarity = 0.01};
+  options.min_carried_iou = Overlap() - 0.02;
+  EXPECT_EQ(AssociateBeside(options)[0], ObjectId(0));
+  options.min_carried_iou = Overlap() + 0.02;
+  EXPECT_FALSE(AssociateBeside(options)[0].IsValid());
+}
+
+TEST_F(Beside, DepthThatAgreesNeedsSomeOverlap) {
+  Build({cup_}, 1, true);
+  AssociationOptions options{.min_projection_iou = kNever, .min_carried_iou = kNever};
+  options.min_depth_iou = 0.9;
+  EXPECT_EQ(Associate({cup_}, 0.0, options)[0], ObjectId(0));
+  options.min_depth_iou = 1.0;
+  EXPECT_FALSE(Associate({cup_}, 0.0, options)[0].IsValid());
+}
+
+// All landmarks on the thing are those of the object, but these must be three or more.
+TEST_F(Association, AFewCommonLandmarksAreNotEnough) {
+  auto frame = std::make_shared<Frame>();
+  frame->features.keypoints.resize(3);
+  frame->features.descriptors.resize(3);
+  frame->features.depth.resize(3, 0.0f);
+  frame->features.right_u.resize(3, -1.0f);
+  const Rigid3 pose = CameraOnCircle(0.0, 1.5, 0.6);
+  const auto table = MakeTable();
+  frame->detections.push_back(Detect(table[0], sensor_, pose));
+  frame->detections.back().keypoints = {0, 1, 2};
+  const KeyframeId keyframe = map_.AddKeyframe(frame, pose);
+  map_.AddObservation(map_.AddObject(), keyframe, 0);
+  std::vector<LandmarkId> landmarks;
+  for (uint32_t i = 0; i < 3; ++i) {
+    landmarks.push_back(map_.AddLandmark(Eigen::Vector3d::Zero(), keyframe));
+    map_.AddObservation(landmarks.back(), keyframe, i);
+  }
+  Frame next;
+  next.features = frame->features;
+  next.detections.push_back(Detect(table[1], sensor_, pose));  // elsewhere in the image
+  next.detections.back().keypoints = {0, 1, 2};
+  next.detections.back().points.clear();
+  const auto associate = [&] {
+    return AssociateDetections(map_, sensor_, next, pose, landmarks, AssociationScope::kAll,
+                               {.min_similarity = 0.01})[0];
+  };
+  EXPECT_EQ(associate(), ObjectId(0));
+  landmarks[2] = LandmarkId();
+  EXPECT_FALSE(associate().IsValid());
+}
+
+// A camera without depth that moves sideways past a cup, 0.06 m wide and 1 m away. The first view
+// does not tell how far the cup is.
+class UnknownDepth : public Association {
+ protected:
+  static Rigid3 Sideways(double x) { return {Eigen::Quaterniond::Identity(), {-x, 0.0, 0.0}}; }
+  Frame See(const MadeObject& object, double x) const {
+    Frame frame;
+    frame.detections.push_back(Detect(object, sensor_, Sideways(x)));
+    frame.detections.back().points.clear();
+    return frame;
+  }
+  ObjectId Associate(const MadeObject& object, double x) {
+    return AssociateDetections(map_, sensor_, See(object, x), Sideways(x), {},
+                               AssociationScope::kAll, {})[0];
+  }
+  void Add(double x) {
+    const KeyframeId keyframe =
+        map_.AddKeyframe(std::make_shared<Frame>(See(cup_, x)), Sideways(x));
+    map_.AddObservation(ObjectId(0), keyframe, 0);
+  }
+  MadeObject cup_ = MakeObject("cup", {0.0, 0.0, 1.0}, {0.03, 0.03, 0.03});
+};
+
+TEST_F(UnknownDepth, TheHullMayHaveMovedAlongTheEpipolarLine) {
+  map_.AddObject();
+  Add(0.0);
+  EXPECT_EQ(Associate(cup_, 0.01), ObjectId(0));
+  EXPECT_EQ(Associate(cup_, 0.05), ObjectId(0));  // 26 px, nearly its size
+  EXPECT_FALSE(Associate(cup_, 0.12).IsValid());  // more than its size
+  MadeObject bowl = cup_;
+  bowl.label = "bowl";
+  EXPECT_FALSE(Associate(bowl, 0.05).IsValid());
+  MadeObject above = cup_;
+  above.ellipsoid.world_from_object.translation.y() = -0.05;  // off the epipolar line
+  EXPECT_FALSE(Associate(above, 0.05).IsValid());
+}
+
+TEST_F(UnknownDepth, TwoViewsTellTheDepth) {
+  map_.AddObject();
+  Add(0.0);
+  Add(0.15);
+  EXPECT_EQ(Associate(cup_, 0.3), ObjectId(0));
+  MadeObject bowl = cup_;
+  bowl.label = "bowl";
+  EXPECT_EQ(Associate(bowl, 0.3), ObjectId(0));  // where the cup must be
 }
 
 }  // namespace

@@ -74,6 +74,18 @@ TEST_F(Duplicates, SeenTogetherInFewKeyframesMayBeOne) {
   EXPECT_TRUE(FindDuplicates(map_, {.max_shared_keyframes = 0.19}).empty());
 }
 
+TEST_F(Duplicates, SeenTogetherNeedTheOverlapThatTheOptionsSay) {
+  Look({cup_, near_}, 9);
+  Add(cup_, {0, 1, 2, 3, 4}, 0);
+  Add(near_, {4, 5, 6, 7, 8}, 1);
+  const double overlap = VolumeOverlap(cup_.ellipsoid, near_.ellipsoid);
+  FusionOptions options{.min_overlap = 0.0, .max_shared_keyframes = 0.2};
+  options.min_overlap_together = overlap - 0.01;
+  EXPECT_EQ(FindDuplicates(map_, options).size(), 1u);
+  options.min_overlap_together = overlap + 0.01;
+  EXPECT_TRUE(FindDuplicates(map_, options).empty());
+}
+
 TEST_F(Duplicates, AreNotThoseSeenTogether) {
   Look({cup_, near_}, 4);
   Add(cup_, {0, 1, 2, 3}, 0);
@@ -138,6 +150,41 @@ TEST_F(Parts, AreNotThoseThatNoImageCouldShowTogether) {
   sensor_.bounds.max_x = 10.0;
   AddMapped(left_, {0, 1, 2, 3, 4}, 0);
   EXPECT_FALSE(FindWhole(map_, sensor_, Add(right_, {5, 6, 7}, 1)).has_value());
+}
+
+// Half of the keyframes that show the part is not enough.
+TEST_F(Parts, AreOfAWholeThatMostOfTheirImagesCouldShow) {
+  const ObjectId left = AddMapped(left_, {0, 1, 2, 3, 4}, 0);
+  const ObjectId right = Add(right_, {5, 6, 7}, 1);
+  const auto column = [&](uint32_t keyframe) {
+    return sensor_.camera
+        .Project(map_.keyframes().At(KeyframeId(keyframe)).cam_from_world *
+                 left_.ellipsoid.world_from_object.translation)
+        .x();
+  };
+  ASSERT_LT(column(5), column(6));
+  ASSERT_LT(column(6), column(7));
+  sensor_.bounds.max_x = 0.5 * (column(5) + column(6));
+  EXPECT_FALSE(FindWhole(map_, sensor_, right).has_value());
+  sensor_.bounds.max_x = 0.5 * (column(6) + column(7));
+  EXPECT_EQ(FindWhole(map_, sensor_, right), left);
+}
+
+// Their centroids agree within the noise. With little overlap, each centre must be in the other
+// one.
+TEST_F(Duplicates, OfOneCentroidMustContainEachOthersCentre) {
+  const MadeObject ball = MakeObject("ball", Eigen::Vector3d::Zero(), {0.1, 0.1, 0.1});
+  const MadeObject equal = MakeObject("ball", {0.09, 0.0, 0.0}, {0.1, 0.1, 0.1});
+  const MadeObject smaller = MakeObject("ball", {0.09, 0.0, 0.0}, {0.05, 0.05, 0.05});
+  const FusionOptions options{.min_overlap = 0.25, .centroid_noise = 1.0};
+  for (const MadeObject& other : {equal, smaller}) {
+    map_ = Map();
+    ASSERT_LT(VolumeOverlap(ball.ellipsoid, other.ellipsoid), options.min_overlap);
+    Look({ball, other}, 6);
+    Add(ball, {0, 1, 2}, 0);
+    Add(other, {3, 4, 5}, 1);
+    EXPECT_EQ(FindDuplicates(map_, options).size(), other.ellipsoid.half_axes.x() > 0.09 ? 1u : 0u);
+  }
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
+#include <utility>
 
 #include "objects/made_objects.h"
 #include "support/random_geometry.h"
@@ -101,6 +103,38 @@ TEST_F(Rays, MeetAtTheCentreOfASphere) {
 }
 
 TEST_F(Rays, ThatAreParallelGiveNothing) { EXPECT_FALSE(Start(0.0)); }
+
+// The least angle between two rays is about 3.6 degrees.
+TEST_F(Rays, NeedAnAngle) {
+  made_ = MakeObject("ball", Eigen::Vector3d::Zero(), {0.1, 0.1, 0.1});
+  const auto start = [&](double degrees) {
+    Map map;
+    const ObjectId object = map.AddObject();
+    for (const double angle : {0.0, degrees * std::numbers::pi / 180.0}) {
+      map.AddObservation(object,
+                         AddObserver(map, sensor_, CameraOnCircle(angle, 1.5, 0.0), {made_}), 0);
+    }
+    return StartFromRays(sensor_.camera, CollectViews(map, map.objects().At(object)), {});
+  };
+  EXPECT_FALSE(start(3.4));
+  EXPECT_TRUE(start(3.8));
+}
+
+// One camera sees the object at its left, the other one, to the right of it, at its right.
+TEST_F(Rays, ThatMeetBehindTheCamerasGiveNothing) {
+  std::vector<Detection> detections(2);
+  std::vector<ObjectView> views;
+  for (int i = 0; i < 2; ++i) {
+    const double side = i == 0 ? -1.0 : 1.0;
+    const Eigen::Vector2d center(sensor_.camera.cx + 100.0 * side, sensor_.camera.cy);
+    detections[i].box = {center.array() - 20.0, center.array() + 20.0};
+    views.push_back(
+        {KeyframeId(), {Eigen::Quaterniond::Identity(), {-0.2 * side, 0.0, 0.0}}, &detections[i]});
+  }
+  EXPECT_FALSE(StartFromRays(sensor_.camera, views, {}));
+  std::swap(views[0].detection, views[1].detection);
+  EXPECT_TRUE(StartFromRays(sensor_.camera, views, {}));
+}
 
 }  // namespace
 }  // namespace hullslam

@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "geometry/convex_hull.h"
 #include "objects/made_objects.h"
@@ -68,6 +70,42 @@ TEST(PredictExcess, LeavesAKeyframeOutAndIsSilentWhereNothingIsNear) {
   EXPECT_NEAR(PredictExcess(samples, Eigen::Vector3d::UnitX(), KeyframeId()).value(), 0.01, 1e-9);
   EXPECT_FALSE(PredictExcess(samples, Eigen::Vector3d::UnitX(), KeyframeId(5)));
   EXPECT_FALSE(PredictExcess(samples, Eigen::Vector3d::UnitY(), KeyframeId()));
+}
+
+// Samples at one and at two widths, all to one side. Without a prior of the slope their line would
+// be extrapolated to 0. By hand: weights 1.213 and 0.271, slope prior 0.3, so 0.68.
+TEST(PredictExcess, DoesNotExtrapolateTheSlopeOfSamplesOnOneSide) {
+  const Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d across = normal.unitOrthogonal();
+  for (const Eigen::Vector3d& side : {across, normal.cross(across).eval()}) {
+    std::vector<MisfitSample> samples;
+    for (const double widths : {1.0, 1.0, 2.0, 2.0}) {
+      const double angle = widths * 4.0 * std::numbers::pi / 180.0;
+      samples.push_back({std::cos(angle) * normal + std::sin(angle) * side, widths, KeyframeId(0)});
+    }
+    const auto excess = PredictExcess(samples, normal, KeyframeId());
+    ASSERT_TRUE(excess);
+    EXPECT_NEAR(*excess, 0.68, 0.03);
+  }
+}
+
+// How far an object reaches beyond a one-sided line is not known.
+TEST(MeasureMisfit, LeavesOutOneSidedLines) {
+  const Sensor sensor = MakeObjectSensor();
+  const MadeObject object = MakeObject("cup", Eigen::Vector3d::Zero(), {0.05, 0.1, 0.2});
+  const Rigid3 camera = CameraOnCircle(0.2, 1.5, 0.4);
+  Detection detection = Detect(object, sensor, camera);
+  const std::vector<ObjectView> views = {{KeyframeId(0), camera, &detection}};
+  EXPECT_EQ(MeasureMisfit(sensor.camera, object.ellipsoid, views).size(), 16u);
+  for (size_t i = 0; i < 5; ++i) {
+    detection.lines[i].is_one_sided = true;
+    detection.lines[i].line.offset += 30.0;
+  }
+  const auto samples = MeasureMisfit(sensor.camera, object.ellipsoid, views);
+  EXPECT_EQ(samples.size(), 11u);
+  ObjectLandmark landmark;
+  landmark.ellipsoid = object.ellipsoid;
+  EXPECT_NEAR(MeasureSpread(sensor.camera, landmark, views, {}).plain_px, 0.0, 1e-6);
 }
 
 // The law that the compensation rests on: what views of a box about an ellipsoid teach holds for a

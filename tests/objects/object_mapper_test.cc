@@ -6,8 +6,12 @@
 #include <algorithm>
 
 #include "map/invariants.h"
+#include "map/spanning_tree.h"
 #include "objects/fusion.h"
+#include "objects/initialisation.h"
 #include "objects/made_objects.h"
+#include "objects/point_statistics.h"
+#include "objects/refinement.h"
 
 namespace hullslam {
 namespace {
@@ -101,6 +105,31 @@ TEST_F(Mapping, AnObjectThatTurnsBadIsACandidateAgain) {
   EXPECT_EQ(Mapped().size(), 3u);
 }
 
+// Keyframes are culled after the objects of the window were checked.
+TEST_F(Mapping, AnObjectWhoseKeyframesWereAllCulledIsNoLongerMapped) {
+  const auto table = MakeTable();
+  for (int i = 0; i < 4; ++i) {
+    See({table[0]}, 0.1 * i);
+  }
+  ASSERT_EQ(Mapped().size(), 1u);
+  See({}, 0.4);
+  for (uint32_t i = 1; i < 5; ++i) {
+    SetParent(map_, KeyframeId(i), KeyframeId(i - 1));
+  }
+  for (uint32_t i = 1; i < 4; ++i) {
+    map_.CullKeyframe(KeyframeId(i));
+  }
+  map_.RemoveObservation(ObjectId(0), KeyframeId(0));
+  EXPECT_TRUE(Mapped().empty());
+  // Other objects of its class can be mapped beside it.
+  MadeObject other = table[0];
+  other.ellipsoid.world_from_object.translation.x() += 0.05;
+  for (int i = 5; i < 9; ++i) {
+    See({other}, 0.1 * i);
+  }
+  EXPECT_EQ(Mapped().size(), 1u);
+}
+
 TEST_F(Mapping, TwoRunsGiveTheSameBits) {
   const auto table = MakeTable();
   for (int i = 0; i < 8; ++i) {
@@ -131,6 +160,88 @@ TEST_F(Mapping, ACandidateIsRemovedWhenItHasNotBeenSeenForLong) {
   EXPECT_EQ(map_.objects().size(), 1u);
   look({}, 0.05);
   EXPECT_TRUE(map_.objects().empty());
+}
+
+// Found in 2 of 14 keyframes that should show it, but 20 are needed for a judgement.
+TEST_F(Mapping, AnObjectIsJudgedOnlyAfterEnoughKeyframesThatShouldShowIt) {
+  ObjectOptions options;
+  options.culling.min_visible = 20;
+  ObjectMapper mapper(sensor_, options);
+  const auto look = [&](const std::vector<MadeObject>& objects, double angle) {
+    mapper.Process(map_, AddObserver(map_, sensor_, CameraOnCircle(angle, 1.5, 0.6), objects));
+  };
+  for (int i = 0; i < 5; ++i) {
+    look({MakeTable()[0]}, 0.1 * i);
+  }
+  ASSERT_EQ(Mapped().size(), 1u);
+  for (int i = 0; i < 12; ++i) {
+    look({}, 0.02 * i);
+  }
+  EXPECT_EQ(Mapped().size(), 1u);
+  for (int i = 0; i < 12; ++i) {
+    look({}, 0.02 * i);
+  }
+  EXPECT_TRUE(Mapped().empty());
+}
+
+// When the views have grown by an eighth: from 10 views on, with every second one.
+TEST_F(Mapping, TheShapeIsComputedAgainAsTheViewsGrow) {
+  const auto table = MakeTable();
+  for (int i = 0; i < 12; ++i) {
+    See({table[0]}, 0.05 * i);
+  }
+  ASSERT_EQ(Mapped().size(), 1u);
+  EXPECT_EQ(Mapped()[0].observations.size(), 12u);
+  EXPECT_GE(Mapped()[0].shaped_views, 11u);
+}
+
+// A shape of 16 views is computed again with the 19th view, but a rejected one with the next view.
+TEST_F(Mapping, ARejectedShapeIsComputedAgainWithTheNextView) {
+  const auto table = MakeTable();
+  for (int i = 0; i < 16; ++i) {
+    See({table[0]}, 0.05 * i);
+  }
+  ASSERT_EQ(Mapped().size(), 1u);
+  ASSERT_EQ(Mapped()[0].shaped_views, 16u);
+  map_.MutableObject(ObjectId(0)).ellipsoid.half_axes *= 4.0;
+  const std::vector<ObjectId> all = {ObjectId(0)};
+  mapper_.Recheck(map_, all);
+  ASSERT_TRUE(Mapped().empty());
+  See({table[0]}, 0.8);
+  EXPECT_EQ(Mapped().size(), 1u);
+}
+
+// Each start is refined; the one with the smallest cost is kept.
+TEST_F(Mapping, TheBestOfSeveralStartsIsKept) {
+  size_t best_is_first = 0;
+  size_t best_is_last = 0;
+  const ObjectOptions options;
+  for (int trial = 0; trial < 12; ++trial) {
+    const MadeObject made = MakeObject("thing", {0.02 * trial, 0.0, 0.0},
+                                       {0.05 + 0.01 * trial, 0.08, 0.06}, 0.3 * trial);
+    map_ = Map();
+    for (int i = 0; i < 3; ++i) {
+      See({made}, 0.1 * i);
+    }
+    ASSERT_EQ(Mapped().size(), 1u);
+    const auto views = CollectViews(map_, map_.objects().At(ObjectId(0)));
+    const double distance = MeanDistance(views, MeanOf(CollectPoints(views, 20)));
+    const auto starts = StartsFromPoints(
+        CollectPoints(views, static_cast<size_t>(options.start.max_points)), distance, {});
+    std::vector<double> costs;
+    for (const Ellipsoid& start : starts) {
+      costs.push_back(RefineEllipsoid(start, start, sensor_, views,
+                                      options.refinement.max_misfit_px, options.refinement)
+                          .cost);
+    }
+    const auto best =
+        static_cast<size_t>(std::min_element(costs.begin(), costs.end()) - costs.begin());
+    EXPECT_EQ(Mapped()[0].start.half_axes, starts[best].half_axes) << trial;
+    best_is_first += best == 0 ? 1 : 0;
+    best_is_last += best + 1 == starts.size() ? 1 : 0;
+  }
+  EXPECT_GT(best_is_first, 0u);
+  EXPECT_GT(best_is_last, 0u);
 }
 
 }  // namespace

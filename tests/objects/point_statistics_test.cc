@@ -65,6 +65,9 @@ TEST(Clouds, MayBeOneWhereTheyAreAndMayNotWhereTheyAreApart) {
   EXPECT_TRUE(MayBeOneCloud(here, here, 1.282, 20));
   EXPECT_FALSE(MayBeOneCloud(here, there, 1.282, 20));
   EXPECT_FALSE(MayBeOneCloud(here, here, 1.282, 61));  // too few to say
+  EXPECT_FALSE(MayBeOneCloud(here, std::span(here).first(19), 100.0, 20));
+  EXPECT_FALSE(MayBeOneCloud(std::span(here).first(19), here, 100.0, 20));
+  EXPECT_TRUE(MayBeOneCloud(std::span(here).first(20), here, 100.0, 20));
 }
 
 TEST(Means, AreTestedWithTheNoiseOfTheSensor) {
@@ -76,6 +79,16 @@ TEST(Means, AreTestedWithTheNoiseOfTheSensor) {
   const std::vector<Eigen::Vector3d> equal(5, Eigen::Vector3d(0.0, 0.0, 1.0));
   EXPECT_TRUE(MayBeTheMean({0.01, 0.0, 1.0}, equal, 0.001, 0.02));
   EXPECT_FALSE(MayBeTheMean({0.0, 0.0, 1.0}, std::span(equal).first(2), 0.001, 0.02));
+}
+
+// Mean 0, variance 4/3, n = 4: the bound is 3.182 * sqrt(4/3 * 5/4) = 4.108 (3.182: Student's t of
+// 3 degrees of freedom at 5 %).
+TEST(Means, AValueVariesAsMuchAsASample) {
+  const std::vector<Eigen::Vector3d> samples = {
+      Eigen::Vector3d::Constant(-1.0), Eigen::Vector3d::Constant(1.0),
+      Eigen::Vector3d::Constant(-1.0), Eigen::Vector3d::Constant(1.0)};
+  EXPECT_TRUE(MayBeTheMean({4.05, 0.0, 0.0}, samples, 0.05, 0.0));
+  EXPECT_FALSE(MayBeTheMean({4.15, 0.0, 0.0}, samples, 0.05, 0.0));
 }
 
 TEST(Means, OfTwoSamplesAreOneOrNot) {

@@ -85,6 +85,27 @@ TEST_F(RefinementTest, OneBadMaskAmongManyDoesLittle) {
   EXPECT_LT(AxisError(refined.ellipsoid, made_.ellipsoid), 0.1);
 }
 
+// The loss acts in standard deviations, so only the quotient of loss_px and max_misfit_px counts if
+// the misfit itself is not clamped.
+TEST_F(RefinementTest, TheLossIsThatOfALineWithTheLargestMisfit) {
+  Look(0.3, 12);
+  auto bad = std::make_shared<Frame>(*map_.keyframes().At(KeyframeId(4)).frame);
+  for (SilhouetteLine& line : bad->detections[0].lines) {
+    line.line.offset -= 60.0 * std::max(0.0, line.line.normal.x());
+  }
+  std::vector<ObjectView> views = Views();
+  views[4].detection = &bad->detections[0];
+  const auto refine = [&](double loss_px, double max_misfit_px) {
+    ObjectRefinementOptions options;
+    options.loss_px = loss_px;
+    options.max_misfit_px = max_misfit_px;
+    return RefineEllipsoid(Start(), made_.ellipsoid, sensor_, views, 4.0, options).ellipsoid;
+  };
+  const Ellipsoid ellipsoid = refine(8.0, 5.0);
+  EXPECT_LT(AxisError(refine(16.0, 10.0), ellipsoid), 1e-9);
+  EXPECT_GT(AxisError(refine(16.0, 5.0), ellipsoid), 1e-4);
+}
+
 TEST_F(RefinementTest, BehindAllCamerasNothingIsMoved) {
   Look(0.05, 3);
   Ellipsoid behind = made_.ellipsoid;

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "objects/made_objects.h"
+#include "objects/misfit.h"
 
 namespace hullslam {
 namespace {
@@ -139,6 +142,71 @@ TEST_F(Validity, AnAxisAlongTheViewThatNothingHolds) {
   const Ellipsoid stretched = Scaled(5.0, 1.0, 1.0);
   const auto reason = Reason(stretched);
   EXPECT_TRUE(reason == ObjectRejection::kStretched || reason == ObjectRejection::kLowOverlap);
+}
+
+// The cameras look along the x axis, so the outlines hardly show how long it is. The points extend
+// to 0.1 m, the half axis of 0.5 m is nearly five times as long.
+TEST_F(Validity, AHalfAxisMayExceedThePointsByTheFactorOfTheOptions) {
+  Map map;
+  const ObjectId id = map.AddObject();
+  for (int i = 0; i < 4; ++i) {
+    map.AddObservation(id, AddObserver(map, sensor_, CameraOnCircle(0.01 * i, 1.5, 0.0), {made_}),
+                       0);
+  }
+  const auto views = CollectViews(map, map.objects().At(id));
+  const Ellipsoid stretched = Scaled(5.0, 1.0, 1.0);
+  EXPECT_GT(MeanOverlap(stretched, sensor_, views), 0.8);
+  options_.max_elongation = 10.0;
+  options_.max_stretch = 6.0;
+  EXPECT_FALSE(FindObjection(stretched, sensor_, views, options_));
+  options_.max_stretch = 4.0;
+  const auto objection = FindObjection(stretched, sensor_, views, options_);
+  ASSERT_TRUE(objection);
+  EXPECT_EQ(objection->reason, ObjectRejection::kStretched);
+}
+
+TEST_F(Validity, ElongationIsAlongTheViewOverAcross) {
+  const auto views = CollectViews(map_, map_.objects().At(id_));
+  Ellipsoid ball = made_.ellipsoid;
+  ball.half_axes = Eigen::Vector3d::Constant(0.1);
+  EXPECT_NEAR(Elongation(ball, views), 1.0, 1e-9);
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  for (const ObjectView& view : views) {
+    direction -= Inverse(view.cam_from_world).translation.normalized();
+  }
+  ball.world_from_object.rotation =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), direction);
+  ball.half_axes = {0.3, 0.05, 0.2};  // across: sqrt(0.05 * 0.2)
+  EXPECT_NEAR(Elongation(ball, views), 3.0, 1e-9);
+  ball.half_axes = {0.01, 0.1, 0.1};
+  EXPECT_NEAR(Elongation(ball, views), 0.25 * 10.0, 1e-9);
+}
+
+// The cameras see the object from directions that are up to 22 degrees apart.
+TEST_F(Validity, AnElongatedQuadricNeedsParallax) {
+  const auto views = CollectViews(map_, map_.objects().At(id_));
+  const double elongation = Elongation(made_.ellipsoid, views);
+  const double parallax = Parallax(views, Eigen::Vector3d::Zero());
+  options_.max_elongation = elongation - 0.01;
+  options_.elongation_parallax = parallax / elongation - 0.1;
+  EXPECT_EQ(Reason(made_.ellipsoid), std::nullopt);
+  options_.elongation_parallax = parallax / elongation + 0.1;
+  EXPECT_EQ(Reason(made_.ellipsoid), ObjectRejection::kElongated);
+  options_.max_elongation = elongation + 0.01;
+  EXPECT_EQ(Reason(made_.ellipsoid), std::nullopt);
+}
+
+TEST_F(Validity, TheMisfitIsComparedWithTheSizeOfTheMasks) {
+  options_.min_overlap = 0.0;
+  const Ellipsoid larger = Scaled(1.2, 1.2, 1.2);
+  const auto views = CollectViews(map_, map_.objects().At(id_));
+  const double misfit = RelativeMisfit(sensor_.camera, larger, views);
+  // 0.2 of a radius, whose square is 1 / pi of the area
+  EXPECT_NEAR(misfit, 0.2 / std::sqrt(std::numbers::pi), 0.01);
+  options_.max_misfit = misfit - 0.001;
+  EXPECT_EQ(Reason(larger), ObjectRejection::kLargeMisfit);
+  options_.max_misfit = misfit + 0.001;
+  EXPECT_EQ(Reason(larger), std::nullopt);
 }
 
 }  // namespace

@@ -89,7 +89,27 @@ TEST(LocalWindow, AKeyframeIsAlwaysFixed) {
   const BundleWindow window = LocalWindow(map, KeyframeId(2), 20, 40);
   EXPECT_EQ(window.moving, Ids({2}));
   EXPECT_EQ(window.fixed, Ids({1}));
-  EXPECT_EQ(LocalWindow(MakeChain(10), KeyframeId(9), 20, 0).fixed, Ids({7}));
+}
+
+// Each of 60 keyframes shares landmarks with the last one. Without their observations, the
+// landmarks would leave the place where these keyframes saw them.
+TEST(LocalWindow, WithoutALimitAllObserversAreFixed) {
+  Map map;
+  for (uint32_t i = 0; i < 60; ++i) {
+    AddKeyframe(map, 1000);
+  }
+  for (uint32_t i = 0; i < 59; ++i) {
+    Share(map, Ids({i, 59}), 15);
+    UpdateCovisibility(map, KeyframeId(i));
+    if (i > 0) {
+      SetParent(map, KeyframeId(i), KeyframeId(0));
+    }
+  }
+  UpdateCovisibility(map, KeyframeId(59));
+  const BundleWindow window = LocalWindow(map, KeyframeId(59), 20, 0);
+  EXPECT_EQ(window.moving.size(), 20u);
+  EXPECT_EQ(window.fixed.size(), 40u);
+  EXPECT_EQ(LocalWindow(map, KeyframeId(59), 20, 30).fixed.size(), 30u);
 }
 
 TEST(GlobalWindow, MovesAllButTheRoot) {
@@ -218,6 +238,31 @@ TEST_F(BundleAdjustment, FindsExactlyTheWrongObservations) {
       planted);
   EXPECT_LT(WorstPoseError(result), 1e-5);
   EXPECT_LT(WorstPointError(result), 1e-4);
+}
+
+// The bound is 2.4 (without depth) or 2.8 standard deviations of the error that remains.
+TEST_F(BundleAdjustment, AnObservationIsAnOutlierFromAFewStandardDeviationsOn) {
+  constexpr uint32_t kShifted = 20;  // keypoint
+  for (const float deviations : {1.5f, 6.0f}) {
+    made_ = MakeSyntheticMap(world_, {0, 10, 20, 30, 40, 50}, [&](Frame& frame, const Rigid3&) {
+      if (frame.id.value == 30) {
+        Keypoint& keypoint = frame.features.keypoints[kShifted];
+        const auto level = static_cast<size_t>(keypoint.level);
+        keypoint.undistorted.y() += deviations * world_.sensor().levels.scale[level];
+      }
+    });
+    const BundleResult result =
+        AdjustBundle(made_.map, world_.sensor(), Window(), kPrecise, nullptr);
+    ASSERT_TRUE(result.is_usable);
+    if (deviations < 2.0f) {
+      EXPECT_TRUE(result.outliers.empty());
+    } else {
+      ASSERT_EQ(result.outliers.size(), 1u);
+      EXPECT_EQ(result.outliers[0].first,
+                made_.map.keyframes().At(KeyframeId(3)).landmarks[kShifted]);
+      EXPECT_EQ(result.outliers[0].second, KeyframeId(3));
+    }
+  }
 }
 
 TEST_F(BundleAdjustment, APointBehindACameraIsAnOutlierThere) {

@@ -244,6 +244,37 @@ TEST_F(JointPose, OneObjectAloneIsTooFewForAPose) {
   EXPECT_GT(Distance(Optimize(start, 1.5, {.min_objects = 1}).points.cam_from_world, start), 0.0);
 }
 
+TEST_F(JointPose, OneObjectAndTwoPointsAreTooFewForAPose) {
+  for (const int points : {2, 3}) {
+    MakeScene(5);
+    AddObjects(1);
+    AddSpreadPoints(points, 0.0);
+    const Rigid3 start = Start();
+    const double motion = Distance(Optimize(start, 1.5).points.cam_from_world, start);
+    EXPECT_EQ(motion > 0.0, points == 3) << points;
+  }
+}
+
+// The prior of the translation is a share of the distance, so in a world that is ten times as large
+// the motion is ten times as large.
+TEST_F(JointPose, ThePriorDoesNotDependOnTheScaleOfTheWorld) {
+  MakeScene(9);
+  AddObjects(2);
+  const Rigid3 start = Start();
+  const ObjectPoseOptions options{.prior_rotation = 0.1, .prior_translation = 0.01};
+  const Rigid3 small = Optimize(start, 1.5, options).points.cam_from_world;
+  for (Ellipsoid& ellipsoid : ellipsoids_) {
+    ellipsoid.world_from_object.translation *= 10.0;
+    ellipsoid.half_axes *= 10.0;
+  }
+  Rigid3 far_start = start;
+  far_start.translation *= 10.0;
+  const Rigid3 large = Optimize(far_start, 1.5, options).points.cam_from_world;
+  const double motion = Distance(small, start);
+  ASSERT_GT(motion, 1e-3);
+  EXPECT_LT(Distance({large.rotation, 0.1 * large.translation}, small), 0.01 * motion);
+}
+
 // The outlines are random and fit no object. The pose must stay near its start nevertheless.
 TEST_F(JointPose, StaysNearTheStartWithoutPoints) {
   for (uint32_t seed = 1; seed <= 50; ++seed) {

@@ -386,5 +386,31 @@ TEST_F(ObjectBundle, ApplyingWritesShapesAndPassesOverWhatNoLongerExists) {
   EXPECT_FALSE(made_.map.objects().Contains(ids_[2]));
 }
 
+// A misfit of 1.5 px counts twice, so it is the same as a sigma of 3 px more.
+TEST_F(ObjectBundle, TheMisfitOfAnObjectCountsTwiceInTheSigmaOfItsLines) {
+  line_noise_ = 3.0;
+  Make({.points = 50, .depth_share = 0.7});
+  PerturbObjects(0.05);
+  BundleOptions options = kPrecise;
+  const double plain_sigma = options.objects.constraint.sigma_px;
+  const auto adjust = [&](double sigma_px, double misfit_px) {
+    for (const ObjectId id : ids_) {
+      made_.map.MutableObject(id).misfit_px = misfit_px;
+    }
+    options.objects.constraint.sigma_px = sigma_px;
+    return Adjust(Window(), options).ellipsoids;
+  };
+  const auto by_misfit = adjust(plain_sigma, 1.5);
+  const auto by_sigma = adjust(std::hypot(plain_sigma, 3.0), 0.0);
+  const auto by_half = adjust(std::hypot(plain_sigma, 1.5), 0.0);
+  ASSERT_EQ(by_misfit.size(), ids_.size());
+  ASSERT_EQ(by_sigma.size(), ids_.size());
+  ASSERT_EQ(by_half.size(), ids_.size());
+  for (size_t i = 0; i < ids_.size(); ++i) {
+    EXPECT_LT(ShapeError(by_misfit[i].second, by_sigma[i].second), 1e-9);
+    EXPECT_GT(ShapeError(by_half[i].second, by_sigma[i].second), 1e-5);
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -87,6 +87,19 @@ TEST_F(PoseOptimization, FlagsThirtyPercentOfOutliers) {
   }
 }
 
+// All outliers are on one side, so squares would move the pose until no observation fits.
+TEST_F(PoseOptimization, TheFirstRoundsAreRobust) {
+  auto observations = Observe(100, true);
+  for (size_t i = 0; i < 30; ++i) {
+    observations[3 * i].measurement.measured += Eigen::Vector3d(random_.Number(40, 60), 0.0, 0.0);
+  }
+  const Rigid3 start = Start();
+  EXPECT_LT(Distance(OptimizePose(kCamera, start, observations).cam_from_world, true_pose_), 1e-9);
+  const PoseOptimizationResult plain =
+      OptimizePose(kCamera, start, observations, {.robust_rounds = 0});
+  EXPECT_GT(Distance(plain.cam_from_world, true_pose_), 1e-3);
+}
+
 TEST_F(PoseOptimization, AWrongDepthAloneMakesAnOutlier) {
   auto observations = Observe(50, true);
   observations[7].measurement.measured.z() -= 10.0;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <numbers>
 
 namespace hullslam {
 namespace {
@@ -81,6 +82,30 @@ TEST(ObjectReport, IsEmptyForAnEmptyMap) {
   const ObjectReport report = ReportObjects(Map(), PinholeCamera());
   EXPECT_TRUE(report.objects.empty());
   EXPECT_EQ(report.candidates, 0U);
+}
+
+// Cameras at a distance of 1 m whose rays to the centre are up to `degrees` apart.
+ReportedObject SeenFrom(size_t views, double degrees) {
+  ReportedObject object;
+  object.fit.siou = 0.8;
+  for (size_t i = 0; i < views; ++i) {
+    const double angle = degrees * static_cast<double>(i) / (static_cast<double>(views) - 1.0);
+    const Eigen::Quaterniond turn(
+        Eigen::AngleAxisd(angle * std::numbers::pi / 180.0, Eigen::Vector3d::UnitY()));
+    object.views.emplace_back().cam_from_world = Rigid3(turn, {0.0, 0.0, 1.0});
+  }
+  return object;
+}
+
+TEST(Quality, GrowsWithOverlapParallaxAndViews) {
+  EXPECT_NEAR(ParallaxOf(SeenFrom(5, 12.0)), 12.0, 1e-6);
+  EXPECT_NEAR(QualityOf(SeenFrom(10, 20.0)), 0.8, 1e-6);
+  EXPECT_NEAR(QualityOf(SeenFrom(30, 60.0)), 0.8, 1e-6);
+  EXPECT_NEAR(QualityOf(SeenFrom(10, 5.0)), 0.2, 1e-6);
+  EXPECT_NEAR(QualityOf(SeenFrom(5, 20.0)), 0.4, 1e-6);
+  ReportedObject unknown = SeenFrom(10, 20.0);
+  unknown.fit.siou.reset();
+  EXPECT_EQ(QualityOf(unknown), 0.0);
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ class VariantTest(unittest.TestCase):
         self.assertEqual(ablation.parse_variant("c:list=a\\,b"), ("c", ["--set", "list=a,b"]))
 
     def test_malformed_variants_are_refused(self):
-        for text in ("a", ":x=1", "a/b:x=1", "a:x", "a:=1", "a:x="):
+        for text in ("a", ":x=1", "a/b:x=1", "a:x", "a:=1", "a:x=", "..:x=1", ".:", ".a:x=1"):
             with self.subTest(text), self.assertRaises(ablation.InputError):
                 ablation.parse_variant(text)
 
@@ -121,6 +121,14 @@ class AblationTest(unittest.TestCase):
         self.assertIn("| room | v | 2 |", result.stdout)
         self.assertTrue((self.dir / "out" / "room" / "v" / "seed-1" / "summary.json").exists())
 
+    def test_two_sequences_of_one_name_are_refused(self):
+        """Their runs would share a folder, and the table would compare one with the other."""
+        for other in ("other/desk", "desk-{seed}", "desk"):
+            with self.subTest(other):
+                result = self.run_script("--sequence", self.dir / other, "--variant", "v:")
+                self.assert_refused(result, "have the same name 'desk'")
+        self.assertEqual(self.calls(), [])
+
     def test_runs_without_masks(self):
         result = self.run_script("--seeds", "1", "--variant", "none:--no-masks")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -166,6 +174,14 @@ class AblationTest(unittest.TestCase):
         self.assert_refused(self.run_script("--variant", "v"), "NAME:KEY=VALUE")
         self.assert_refused(self.run_script("--variant", "v:", "--variant", "v:x=1"), "same name")
         self.assert_refused(self.run_script("--seeds", "0", "--variant", "v:"), "--seeds")
+        for common in ("--masks 'a", '"', "a\\"):
+            with self.subTest(common):
+                self.assert_refused(self.run_script(f"--common={common}", "--variant", "v:"),
+                                    "--common")
+        self.assert_refused(self.run_script("--variant", "..:"), "does not begin with a dot")
+        for timeout in ("0", "-1", "nan"):
+            self.assert_refused(self.run_script("--variant", "v:", f"--timeout={timeout}"),
+                                "--timeout")
         self.program.unlink()
         self.assert_refused(self.run_script("--variant", "v:"), "no such program")
         self.assertEqual(self.calls(), [])

@@ -3,8 +3,10 @@
 """Tests of scripts/download_tum.sh with a local file server that can resume downloads."""
 
 import functools
+import hashlib
 import http.server
 import io
+import os
 import pathlib
 import random
 import subprocess
@@ -81,10 +83,10 @@ class DownloadTumTest(unittest.TestCase):
     def serve(self, data):
         (self.served / f"{FOLDER}.tgz").write_bytes(data)
 
-    def download(self, name="freiburg1_xyz"):
+    def download(self, name="freiburg1_xyz", *options, to=None, **settings):
         base = f"http://127.0.0.1:{self.server.server_port}/"
-        return subprocess.run([DOWNLOAD, "--to", self.to, "--base", base, name],
-                              capture_output=True, text=True, check=False, timeout=60)
+        return subprocess.run([DOWNLOAD, "--to", to or self.to, "--base", base, *options, name],
+                              capture_output=True, text=True, check=False, timeout=60, **settings)
 
     def assert_whole(self, result):
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -96,6 +98,15 @@ class DownloadTumTest(unittest.TestCase):
         self.assertEqual(result.returncode, 1, result.stdout)
         self.assertIn(message, result.stderr)
         self.assertFalse((self.to / FOLDER).exists())
+        self.assertFalse((self.to / f"{FOLDER}.unpacking").exists())
+
+    def assert_refused_and_kept(self, result, message):
+        """The message says that the archive was kept, and what to do about it."""
+        self.assert_refused(result, message)
+        self.assertEqual(len(result.stderr.splitlines()), 1)
+        self.assertIn(f"{FOLDER}.tgz", result.stderr)
+        self.assertIn("not unpacked. The archive is kept: delete it to download", result.stderr)
+        self.assertTrue((self.to / f"{FOLDER}.tgz").exists())
 
     def test_downloads_and_unpacks(self):
         self.serve(archive(sequence()))
@@ -151,15 +162,62 @@ class DownloadTumTest(unittest.TestCase):
             with self.subTest(name):
                 (self.to / f"{FOLDER}.tgz").unlink(missing_ok=True)
                 self.serve(archive({**sequence(), name: "bad"}))
-                self.assert_refused(self.download(), "not unpacked")
+                self.assert_refused_and_kept(self.download(), "outside")
 
     def test_links(self):
         self.serve(archive(sequence(), links=[(f"{FOLDER}/link", "/etc")]))
-        self.assert_refused(self.download(), "contains links")
+        self.assert_refused_and_kept(self.download(), "contains links")
 
     def test_no_sequence_inside(self):
         self.serve(archive(sequence(**{"depth.txt": ""})))
-        self.assert_refused(self.download(), f"no {FOLDER}/depth.txt")
+        self.assert_refused_and_kept(self.download(), f"no {FOLDER}/depth.txt")
+
+    def test_an_archive_that_would_be_too_large(self):
+        self.serve(archive(sequence(**{"big.txt": "x" * 3_000_000})))
+        self.assert_refused_and_kept(self.download("fr1_xyz", "--max-size", "0.002"),
+                                     "it would take more than 0.002 GB")
+        self.assertEqual(self.download("fr1_xyz", "--max-size", "0.004").returncode, 0)
+        for size in ("-1", "x", "1e3", ""):
+            with self.subTest(size):
+                self.assertEqual(self.download("fr1_xyz", "--max-size", size).returncode, 2)
+
+    def test_names_with_blanks(self):
+        self.serve(archive(sequence(**{"a b  c.txt": "x", "elsewhere x.txt": "x"})))
+        self.assert_whole(self.download())
+        self.to.joinpath(FOLDER).rename(self.root / "old")
+        self.serve(archive({**sequence(), f"x {FOLDER}/a.txt": "bad"}))
+        self.assert_refused_and_kept(self.download(), "outside")
+
+    def test_an_empty_archive(self):
+        data = io.BytesIO()
+        tarfile.open(fileobj=data, mode="w:gz").close()
+        self.serve(data.getvalue())
+        self.assert_refused_and_kept(self.download(), "empty")
+
+    def test_known_checksums_are_compared(self):
+        data = archive(sequence())
+        sums = self.root / "sums"
+        self.serve(data)
+        sums.write_text(f"{'0' * 64}  {FOLDER}.tgz\n")
+        self.assert_refused_and_kept(self.download("fr1_xyz", "--checksums", sums),
+                                     f"SHA-256 is {hashlib.sha256(data).hexdigest()}, but {sums}")
+        sums.write_text(f"# a comment\n{hashlib.sha256(data).hexdigest()}  {FOLDER}.tgz\n")
+        self.assert_whole(self.download("fr1_xyz", "--checksums", sums))
+
+    def test_unknown_checksums_are_recorded(self):
+        data = archive(sequence())
+        self.serve(data)
+        result = self.download("fr1_xyz", "--checksums", "sums", cwd=self.root)
+        self.assert_whole(result)
+        line = f"{hashlib.sha256(data).hexdigest()}  {FOLDER}.tgz\n"
+        self.assertEqual((self.root / "sums").read_text(), line)
+        self.assertIn("No checksum", result.stdout)
+
+    def test_cdpath_does_not_change_the_folder(self):
+        self.serve(archive(sequence()))
+        (self.root / "other" / "to").mkdir(parents=True)
+        environment = {**os.environ, "CDPATH": str(self.root / "other")}
+        self.assert_whole(self.download("fr1_xyz", to="to", cwd=self.root, env=environment))
 
     def test_bad_names(self):
         for name in ("kitti_00", "freiburg9_xyz", "../freiburg1_xyz", "freiburg1_xyz;true", "--x"):

@@ -3,8 +3,10 @@
 """Tests of scripts/plot_run.py: alignment and pairing, small complete runs, and broken files."""
 
 import contextlib
+import copy
 import io
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -15,7 +17,9 @@ import numpy as np
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "plot_run.py"
 sys.path.insert(0, str(SCRIPT.parent))
+import plot_labels  # noqa: E402
 import plot_run  # noqa: E402
+import run_files  # noqa: E402
 import run_objects  # noqa: E402
 
 PLY_HEADER = ("ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\n"
@@ -87,9 +91,47 @@ class ObjectTest(unittest.TestCase):
         self.assertEqual(run_objects.choose_evenly({1, 2}, 6), [1, 2])
         self.assertEqual(run_objects.choose_evenly(set(), 6), [])
 
-    def test_a_class_has_one_colour(self):
-        self.assertEqual(run_objects.colour_of("cup"), run_objects.colour_of("cup"))
-        self.assertNotEqual(run_objects.colour_of("cup"), run_objects.colour_of("keyboard"))
+
+class LabelTest(unittest.TestCase):
+    def test_every_class_has_a_colour_of_its_own(self):
+        names = [f"class {i}" for i in range(80)]
+        colours = plot_labels.class_colours(names * 2)
+        self.assertEqual(len(set(colours.values())), 80)
+        few = np.array(list(plot_labels.class_colours(names[:20]).values()))
+        distances = np.linalg.norm(few[:, None] - few, axis=2) + 9 * np.eye(20)
+        self.assertGreater(distances.min(), 0.15)
+
+    def test_text_is_drawn_as_it_is(self):
+        for text in ("a$b$", "$\\frac{1}{", "\\$x$", "line\nbreak", "\ud800", "x" * 500):
+            with self.subTest(text):
+                figure, plot = plot_run.plt.subplots()
+                plot.text(0.5, 0.5, plot_labels.plain(text))
+                figure.canvas.draw()
+                plot_run.plt.close(figure)
+        self.assertLess(len(plot_labels.plain("x" * 500)), 50)
+
+    def test_labels_do_not_overlap(self):
+        figure, plot = plot_run.plt.subplots()
+        self.addCleanup(plot_run.plt.close, figure)
+        figure.canvas.draw()
+        labels = [plot_labels.Label(f"keyboard {i}", (0.5, 0.5)) for i in range(20)]
+        labels += [plot_labels.Label("outside", (1.5, 0.5)), plot_labels.Label("nan", (np.nan, 0))]
+        self.assertEqual(plot_labels.draw_labels(plot, labels), 20)
+        boxes = [text.get_window_extent() for text in plot.texts]
+        self.assertEqual(len(boxes), 20)
+        for i, box in enumerate(boxes):
+            self.assertTrue(plot.get_window_extent().containsx(box.x0))
+            for other in boxes[:i]:
+                self.assertFalse(box.overlaps(other))
+
+    def test_labels_without_room_are_left_out(self):
+        figure, plot = plot_run.plt.subplots(figsize=(2, 2))
+        self.addCleanup(plot_run.plt.close, figure)
+        figure.canvas.draw()
+        labels = [plot_labels.Label(f"keyboard {i}", (0.5, 0.5)) for i in range(200)]
+        count = plot_labels.draw_labels(plot, labels)
+        self.assertLess(count, 200)
+        self.assertEqual(len(plot.texts), count)
 
 
 class AlignTest(unittest.TestCase):
@@ -166,6 +208,7 @@ class PlotRunTest(unittest.TestCase):
         result = subprocess.run([SCRIPT, self.dir], capture_output=True, text=True, check=False,
                                 timeout=60)
         self.assert_drawn(result, self.dir / "run.png")
+        self.assertEqual(result.stderr, "")
 
     def test_trajectory_alone(self):
         result = self.plot()
@@ -177,13 +220,99 @@ class PlotRunTest(unittest.TestCase):
                    '{"median": null, "p95": null}, "stages_ms": null}}')
         self.assert_drawn(self.plot(), self.dir / "run.png")
 
+    def test_output_of_map_objects(self):
+        """Nothing is tracked, so all times are 0. They are not shown, and there is no warning."""
+        zeros = {"median": 0.0, "mean": 0.0, "p95": 0.0, "max": 0.0}
+        self.write("summary.json", json.dumps(
+            {"trajectory": {"frames": 300, "tracked": 300, "lost": 0},
+             "timing": {"track_ms": zeros, "stages_ms": {}, "frames_per_second": 0.0},
+             "provenance": {"pipeline": "objects"}}))
+        result = subprocess.run([SCRIPT, self.dir], capture_output=True, text=True, check=False,
+                                timeout=60)
+        self.assert_drawn(result, self.dir / "run.png")
+        self.assertEqual(result.stderr, "")
+        self.assertIn("frames           300, tracked 300, lost 0", result.stdout)
+        self.assertNotIn("0.0", result.stdout)
+
+    def views(self, path=None):
+        run = plot_run.Run(self.dir)
+        if path:
+            run.align_to(path)
+        return [view.title for view in plot_run.views_of(run)]
+
+    def test_up_is_known_only_with_ground_truth(self):
+        self.assertEqual(self.views(self.truth), ["from above", "from the side"])
+        self.assertEqual(self.views(), ["x and y of the run's world", "x and z of the run's world"])
+        self.write("trajectory.txt", trajectory_text([0, 1, 2, 3], np.eye(4)[:, 1:]))
+        self.assertEqual(self.views(), ["x and z of the first camera", "x and y of the first camera"])
+
+    def test_views_are_not_mirrored(self):
+        self.write("trajectory.txt", trajectory_text([0, 1, 2, 3], np.eye(4)[:, 1:]))
+        for view in plot_run.views_of(plot_run.Run(self.dir)):
+            figure, plot = plot_run.plt.subplots()
+            self.addCleanup(plot_run.plt.close, figure)
+            plot_run.draw_view(plot, plot_run.Run(self.dir), view)
+            turns = plot.transData.transform(np.eye(2)) - plot.transData.transform([[0, 0], [0, 0]])
+            # Seen along +y the order is x to the right and z up, along +z x to the right, y down.
+            self.assertEqual(np.linalg.det(turns) > 0, view.axes == [0, 2])
+
+    def write_summary(self, sequence):
+        self.write("summary.json", json.dumps({"provenance": {"sequence": str(sequence)}}))
+
+    def test_finds_the_ground_truth_of_the_sequence(self):
+        self.write("rgb.txt", "")
+        self.write_summary(self.dir)
+        result = self.plot()
+        self.assertIn("0.0100 m (SE3", result.stdout)
+        self.assertNotIn("ATE", self.plot("--no-groundtruth").stdout)
+        self.write_summary("elsewhere")
+        self.assertNotIn("ATE", self.plot().stdout)
+        self.assertIn("0.0100 m (SE3", self.plot("--sequence", self.dir).stdout)
+
+    def test_unsuitable_ground_truth_of_the_sequence_is_not_used(self):
+        self.write("rgb.txt", "")
+        self.write_summary(self.dir)
+        for text in ("1 2 3\n", trajectory_text([1.0, 2.0], [[0, 0, 0], [1, 0, 0]])):
+            self.write("groundtruth.txt", text)
+            result = self.plot()
+            self.assert_drawn(result, self.dir / "run.png")
+            self.assertIn("note: drawn without ground truth", result.stderr)
+            self.assertEqual(len(result.stderr.splitlines()), 1)
+
+    def test_relative_path_of_the_sequence(self):
+        sequence = self.dir.parent / f"{self.dir.name}-data"
+        sequence.mkdir()
+        self.addCleanup(sequence.rmdir)
+        (sequence / "rgb.txt").write_text("")
+        self.addCleanup((sequence / "rgb.txt").unlink)
+        found = run_files.find_folder(sequence.name, self.dir / "out")
+        self.assertEqual(found.resolve(), sequence.resolve())
+        before = os.getcwd()
+        self.addCleanup(os.chdir, before)
+        os.chdir(sequence.parent)
+        found = run_files.find_folder(sequence.name, pathlib.Path("/nowhere"))
+        self.assertEqual(found.resolve(), sequence.resolve())
+        self.assertIsNone(run_files.find_folder("none", self.dir))
+        self.assertIsNone(run_files.find_folder("x" * 5000, self.dir))
+
+    def test_dollars_and_other_characters_in_names(self):
+        content = objects_file([1000.0])
+        content["objects"][0]["class"] = "a$b_{$ \\frac \u0000 \ud800"
+        self.write_objects([1000.0])
+        self.write("objects.json", json.dumps(content))
+        self.write("summary.json", json.dumps(
+            {"timing": {"stages_ms": {"a$b$_{": {"median": 1, "p95": 2}}}}))
+        result = self.plot("--overlay", "1", "--sequence", self.dir / "sequence")
+        self.assert_drawn(result, self.dir / "run.png")
+        self.assertEqual(result.stderr, "")
+
     def test_empty_map(self):
         self.write("map.ply", ply_bytes([]))
         self.assert_drawn(self.plot(), self.dir / "run.png")
 
     def test_reads_points_and_colours(self):
         self.write("map.ply", ply_bytes([[1, 2, 3], [4, 5, 6]]))
-        points, colours = plot_run.read_map(self.dir / "map.ply")
+        points, colours = run_files.read_map(self.dir / "map.ply", 100)
         np.testing.assert_array_equal(points, [[1, 2, 3], [4, 5, 6]])
         np.testing.assert_allclose(colours[1], np.array([10, 20, 30]) / 255)
 
@@ -272,10 +401,88 @@ class PlotRunTest(unittest.TestCase):
                 self.assert_refused(self.plot(), "map.ply", part)
 
     def test_broken_summary(self):
-        for text in ("{", "[]"):
-            with self.subTest(text):
+        texts = ["{", "[]", "[" * 100000, "\xff", '{"timing": 1}', '{"timing": {"stages_ms": []}}',
+                 '{"timing": {"stages_ms": {"a": 5}}}', '{"timing": {"track_ms": "fast"}}',
+                 '{"timing": {"track_ms": {"median": "9", "p95": 1}}}',
+                 '{"timing": {"track_ms": {"median": 1, "p95": NaN}}}',
+                 '{"timing": {"frames_per_second": [1]}}', '{"trajectory": {"frames": "many"}}',
+                 '{"trajectory": {"frames": 1e400}}', '{"objects": {"count": {}}}',
+                 '{"provenance": "x"}', '{"provenance": {"sequence": 7}}',
+                 '{"provenance": {"sequence": "a\\u0000b"}}']
+        for text in texts:
+            with self.subTest(text[:50]):
                 self.write("summary.json", text)
                 self.assert_refused(self.plot(), "summary.json")
+
+    def test_values_that_objects_cannot_have(self):
+        good = objects_file([1000.0])
+        changes = [(["camera"], None), (["camera", "fx"], 0), (["camera", "cy"], "24"),
+                   (["camera", "k1"], 1e200), (["objects"], {}), (["objects", 0], 5),
+                   (["objects", 0, "id"], "x"), (["objects", 0, "class"], None),
+                   (["objects", 0, "state"], 3), (["objects", 0, "half_axes"], [1, 1]),
+                   (["objects", 0, "half_axes"], [1, -1, 1]),
+                   (["objects", 0, "half_axes"], [1, float("inf"), 1]),
+                   (["objects", 0, "half_axes"], [1e-200, 1, 1]),
+                   (["objects", 0, "half_axes", 0], 10**400),
+                   (["objects", 0, "world_from_object"], [0] * 7),
+                   (["objects", 0, "world_from_object", 0], float("nan")),
+                   (["objects", 0, "world_from_object", 6], 1e300),
+                   (["objects", 0, "world_from_object"], "0000000"),
+                   (["objects", 0, "observations"], 3), (["objects", 0, "observations", 0], []),
+                   (["objects", 0, "observations", 0, "timestamp"], "now"),
+                   (["objects", 0, "observations", 0, "timestamp"], float("nan")),
+                   (["objects", 0, "observations", 0, "hull"], 1),
+                   (["objects", 0, "observations", 0, "hull"], []),
+                   (["objects", 0, "observations", 0, "hull", 1], [1]),
+                   (["objects", 0, "observations", 0, "hull", 1, 1], 1e300),
+                   (["objects", 0, "observations", 0, "cam_from_world"], [0, 0, 0, 1]),
+                   (["objects", 0, "observations", 0, "cam_from_world", 0], True)]
+        for place, value in changes:
+            with self.subTest(place=place, value=str(value)[:20]):
+                content = copy.deepcopy(good)
+                parent = content
+                for key in place[:-1]:
+                    parent = parent[key]
+                parent[place[-1]] = value
+                self.write("objects.json", json.dumps(content))
+                self.assert_refused(self.plot(), "objects.json")
+        self.write("objects.json", "[" * 100000)
+        self.assert_refused(self.plot(), "objects.json", "nested too deeply")
+
+    def test_maps_that_are_not_possible(self):
+        good = ply_bytes([[1, 2, 3], [4, 5, 6]])
+        header = good[:good.index(b"end_header")]
+        broken = [header, header + b"x\n" * 100000, good.replace(b"vertex 2", b"vertex " + b"9" * 18),
+                  good.replace(b"vertex 2", b"vertex " + b"9" * 9000),
+                  good.replace(b"float y", b"float x"), good.replace(b"float y", b"float w"),
+                  good.replace(b"element vertex", b"element face 1\nelement vertex"),
+                  ply_bytes([[np.nan, 0, 0]]), ply_bytes([[np.inf, 0, 0]]), ply_bytes([[1e30, 0, 0]]),
+                  good.replace(b"uchar red", b"float red")]
+        for i, data in enumerate(broken):
+            with self.subTest(i):
+                self.write("map.ply", data)
+                self.assert_refused(self.plot(), "map.ply")
+
+    def test_folders_and_other_bytes_in_the_place_of_files(self):
+        for name in ("map.ply", "keyframes.txt", "summary.json", "objects.json"):
+            with self.subTest(name):
+                (self.dir / name).mkdir()
+                self.assert_refused(self.plot(), name)
+                (self.dir / name).rmdir()
+                self.write(name, b"\x00\xff\xfe" * 100)
+                self.assert_refused(self.plot(), name)
+                (self.dir / name).unlink()
+        for line in ("1 1e155 0 0 0 0 0 1", "1e300 0 0 0 0 0 0 1"):
+            self.write("trajectory.txt", line + "\n")
+            self.assert_refused(self.plot(), "trajectory.txt:1", "too large")
+
+    def test_images_of_other_kinds(self):
+        self.write_objects()
+        self.write("sequence/rgb/0.png", (self.dir / "sequence/rgb/1.png").read_bytes()[:-30])
+        overlay = ["--overlay", "2", "--sequence", self.dir / "sequence"]
+        self.assert_refused(self.plot(*overlay), "0.png")
+        self.write("sequence/rgb.txt", "nan rgb/0.png\n")
+        self.assert_refused(self.plot(*overlay), "rgb.txt")
 
 
 if __name__ == "__main__":

@@ -56,6 +56,33 @@ class StepsTest(unittest.TestCase):
                                     "build/demo/desk/groundtruth.txt --overlay 6 "
                                     "--sequence build/demo/desk")
 
+    def test_cdpath_does_not_matter(self):
+        """With CDPATH, `cd scripts/..` prints a path, and may even go elsewhere."""
+        for path in SCRIPTS.glob("*.sh"):
+            shutil.copy(path, self.top / "scripts")
+        (self.top / ".ci").mkdir()
+        shutil.copy(SCRIPTS.parent / ".ci" / "run", self.top / ".ci")
+        (self.top / "elsewhere" / "scripts").mkdir(parents=True)
+        path = f"{self.top / 'path'}:{os.environ['PATH']}"
+        for cdpath in (".", str(self.top / "elsewhere")):
+            environment = {**os.environ, "CDPATH": cdpath, "PATH": path}
+            for script in sorted(self.top.glob("scripts/*.sh")):
+                if script.name == "common.sh":
+                    continue
+                with self.subTest(cdpath=cdpath, script=script.name):
+                    result = subprocess.run([f"scripts/{script.name}", "--help"], cwd=self.top,
+                                            env=environment, capture_output=True, text=True,
+                                            check=False)
+                    self.assertEqual(result.returncode, 0, result.stderr)
+                    self.assertTrue(result.stdout.startswith("Usage: scripts/"), result.stdout)
+            self.stand_in("scripts/setup.sh")
+            for words in (["scripts/test.sh"], ["scripts/demo.sh"], [".ci/run"]):
+                with self.subTest(cdpath=cdpath, words=words):
+                    result = subprocess.run(words, cwd=self.top, env=environment, check=False,
+                                            capture_output=True, text=True)
+                    self.assertEqual(result.returncode, 0, result.stderr)
+            shutil.copy(SCRIPTS / "setup.sh", self.top / "scripts")
+
     def test_demo_renders_once(self):
         self.run_script("demo.sh")
         result, calls = self.run_script("demo.sh")

@@ -20,6 +20,17 @@ struct ProgramResult {
   std::string errors;  // of stderr
 };
 
+inline std::filesystem::path ProgramPath(const std::string& name) {
+  return std::filesystem::path(HULLSLAM_BIN_DIR) / name;
+}
+
+// Runs a command of the shell and returns its exit code; -1 if a signal ended it.
+inline int RunShell(const std::string& command) {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): tests run programs one after the other
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
 // Runs a program of this build and waits for it to end. `setup` holds shell commands to run before
 // it, such as "ulimit -f 8;".
 inline ProgramResult RunProgram(const std::string& name, const std::vector<std::string>& arguments,
@@ -29,16 +40,14 @@ inline ProgramResult RunProgram(const std::string& name, const std::vector<std::
     std::ifstream stream(folder.path() / file, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(stream), {});
   };
-  std::string command =
-      setup + '\'' + (std::filesystem::path(HULLSLAM_BIN_DIR) / name).string() + '\'';
+  std::string command = setup + '\'' + ProgramPath(name).string() + '\'';
   for (const std::string& argument : arguments) {
     command += " '" + argument + '\'';
   }
   command +=
       " >'" + (folder.path() / "out").string() + "' 2>'" + (folder.path() / "err").string() + '\'';
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): tests run programs one after the other
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out"), read("err")};
+  const int exit_code = RunShell(command);
+  return {exit_code, read("out"), read("err")};
 }
 
 }  // namespace hullslam

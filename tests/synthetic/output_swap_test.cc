@@ -2,7 +2,10 @@
 #include "synthetic/output_swap.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 #include <iterator>
 
@@ -89,6 +92,42 @@ TEST_F(OutputSwapTest, AnEarlierSequenceIsOnlyReplacedWithForce) {
   EXPECT_EQ(Get(root_ / "out" / "rgb.txt"), "new");
   EXPECT_FALSE(fs::exists(root_ / "out" / "groundtruth_objects.json"));
   EXPECT_EQ(Entries(), 1);
+}
+
+TEST_F(OutputSwapTest, TwoAtOnceDoNotDisturbEachOther) {
+  OutputSwap first(root_ / "out", true);
+  OutputSwap second(root_ / "out", true);
+  first.WriteFile("groundtruth_objects.json", R"({"generator": "make_synthetic"})");
+  second.WriteFile("groundtruth_objects.json", R"({"generator": "make_synthetic"})");
+  first.WriteFile("rgb.txt", "first");
+  second.WriteFile("rgb.txt", "second");
+  first.Commit();
+  EXPECT_EQ(Get(root_ / "out" / "rgb.txt"), "first");
+  second.Commit();
+  EXPECT_EQ(Get(root_ / "out" / "rgb.txt"), "second");
+  EXPECT_EQ(Entries(), 1);
+}
+
+TEST_F(OutputSwapTest, WhatAKilledProcessLeavesIsCleanedUp) {
+  for (const bool is_moving : {false, true}) {
+    PutFormerSequence(root_ / "out");
+    const pid_t process = ::fork();
+    if (process == 0) {
+      OutputSwap swap(root_ / "out", true);
+      swap.WriteFile("groundtruth_objects.json", R"({"generator": "make_synthetic"})");
+      swap.WriteFile("rgb.txt", "new");
+      if (is_moving) {  // killed between the two moves of Commit()
+        fs::rename(root_ / "out", swap.working_folder().parent_path() / "former");
+      }
+      ::raise(SIGKILL);
+    }
+    int status = 0;
+    ::waitpid(process, &status, 0);
+    EXPECT_EQ(Entries(), is_moving ? 1 : 2);
+    { const OutputSwap next(root_ / "out", true); }
+    EXPECT_EQ(Get(root_ / "out" / "rgb.txt"), is_moving ? "new" : "old");
+    EXPECT_EQ(Entries(), 1);
+  }
 }
 
 TEST_F(OutputSwapTest, AnExistingFileIsAnError) {

@@ -170,6 +170,27 @@ TEST_P(PipelineTest, AnExceptionInMappingReachesTheCaller) {
       CheckError);
 }
 
+TEST_P(PipelineTest, AfterAnExceptionInMappingTheRunIsOverAndItsMapUsable) {
+  const FailingMapping failing;
+  const auto pipeline = GetParam().make(failing.sensor, options_);
+  std::vector<TrackedFrame> frames = {pipeline->Track(failing.first).tracked};
+  EXPECT_THROW(
+      {
+        frames.push_back(pipeline->Track(failing.second).tracked);
+        pipeline->Finish();
+      },
+      CheckError);
+  const auto map = pipeline->map();
+  EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
+  EXPECT_EQ(ComposeTrajectory(*map, frames).size(), frames.size());
+  auto third = std::make_shared<Frame>(*failing.second);
+  third->id = FrameId(2);
+  EXPECT_THROW(pipeline->Track(third), CheckError);
+  EXPECT_THROW(pipeline->Finish(), CheckError);
+  EXPECT_THROW(pipeline->Finish(), CheckError);
+  EXPECT_EQ(pipeline->map(), map) << "a half-edited map must not be published";
+}
+
 TEST_P(PipelineTest, AnExceptionThatIsNeverRethrownDoesNoHarm) {
   const FailingMapping failing;
   const auto pipeline = GetParam().make(failing.sensor, options_);

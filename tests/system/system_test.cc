@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
 #include "map/invariants.h"
 #include "support/expect_error.h"
 
@@ -172,6 +173,37 @@ TEST_P(SystemTest, ABlankFirstImageOnlyDelaysTheStart) {
   EXPECT_EQ(system.trajectory().size(), 2u);
 }
 
+TEST_P(SystemTest, ResetGivesAnEmptySystem) {
+  System system(Wall::Options(), GetParam());
+  size_t reports = 0;
+  system.SetFrameCallback([&](const FrameReport&) { ++reports; });
+  for (int i = 0; i < 6; ++i) {
+    TrackFrame(system, i);
+  }
+  const std::shared_ptr<const Map> before = system.map();
+  const size_t landmarks = before->landmarks().size();
+  for (const bool is_finished : {false, true}) {
+    if (is_finished) {
+      system.Finish();
+    }
+    system.Reset();
+    EXPECT_EQ(system.map(), nullptr);
+    EXPECT_TRUE(system.frames().empty());
+    EXPECT_TRUE(system.trajectory().empty());
+    EXPECT_TRUE(system.times().samples().empty());
+    EXPECT_EQ(system.object_counts().frames_without_masks, 0u);
+    for (int i = 0; i < 6; ++i) {  // the time stamps begin again
+      const TrackedFrame frame = TrackFrame(system, i);
+      EXPECT_EQ(frame.state, TrackingState::kTracked) << i;
+      EXPECT_EQ(frame.frame, FrameId(static_cast<uint32_t>(i)));
+    }
+  }
+  EXPECT_EQ(before->landmarks().size(), landmarks) << "an old snapshot is not changed";
+  EXPECT_EQ(reports, 18u) << "the callback is kept";
+  system.Finish();
+  EXPECT_LT(MaxError(system.trajectory()), 0.01);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, SystemTest,
                          testing::Values(PipelineKind::kSequential, PipelineKind::kThreaded,
                                          PipelineKind::kRealtime));
@@ -193,6 +225,45 @@ TEST(System, TheSameImagesGiveTheSameBits) {
     EXPECT_EQ(a[i].world_from_cam.rotation.coeffs(), b[i].world_from_cam.rotation.coeffs());
     EXPECT_EQ(a[i].world_from_cam.translation, b[i].world_from_cam.translation);
   }
+}
+
+// A square in front of the wall, so that objects are part of the comparison.
+std::vector<InstanceMask> SquareMask() {
+  return {{.label = "cup",
+           .outlines = {{{250.0, 180.0}, {390.0, 180.0}, {390.0, 300.0}, {250.0, 300.0}}}}};
+}
+
+TEST(System, ARunAfterResetGivesTheBitsOfANewSystem) {
+  const auto run = [](System& system, int first) {
+    for (int i = first; i < first + 10; ++i) {
+      system.Track(Time(i), TheWall().Photograph(i), Wall::Depth(i), SquareMask());
+    }
+    system.Finish();
+  };
+  System fresh(Wall::Options(), PipelineKind::kSequential);
+  run(fresh, 0);
+  System used(Wall::Options(), PipelineKind::kSequential);
+  run(used, 20);
+  used.Reset();
+  run(used, 0);
+  const Trajectory expected = fresh.trajectory();
+  const Trajectory trajectory = used.trajectory();
+  ASSERT_EQ(trajectory.size(), expected.size());
+  for (size_t i = 0; i < trajectory.size(); ++i) {
+    EXPECT_EQ(trajectory[i].timestamp, expected[i].timestamp);
+    EXPECT_EQ(trajectory[i].world_from_cam.ToMatrix(), expected[i].world_from_cam.ToMatrix());
+  }
+  ASSERT_EQ(used.map()->landmarks().size(), fresh.map()->landmarks().size());
+  for (const auto& [id, landmark] : fresh.map()->landmarks()) {
+    EXPECT_EQ(used.map()->landmarks().At(id).position, landmark.position);
+  }
+  ASSERT_EQ(used.map()->objects().size(), fresh.map()->objects().size());
+  EXPECT_FALSE(fresh.map()->objects().empty());
+  for (const auto& [id, object] : fresh.map()->objects()) {
+    EXPECT_EQ(used.map()->objects().At(id).ellipsoid.half_axes, object.ellipsoid.half_axes);
+  }
+  EXPECT_EQ(used.object_counts().detections, fresh.object_counts().detections);
+  EXPECT_EQ(used.object_counts().rejections, fresh.object_counts().rejections);
 }
 
 TEST(System, OptionsThatDoNotFitTogetherAreRefused) {
@@ -220,19 +291,41 @@ TEST(System, ImagesOfAnotherTypeOrSizeAreRefused) {
   const cv::Mat image = TheWall().Photograph(0);
   const cv::Mat depth = Wall::Depth(0);
   for (const int type : {CV_8UC2, CV_16UC1, CV_32FC1, CV_32FC3}) {
-    EXPECT_THROW(system.Track(1.0, cv::Mat(480, 640, type, cv::Scalar::all(9)), depth), CheckError)
+    EXPECT_THROW(system.Track(1.0, cv::Mat(480, 640, type, cv::Scalar::all(9)), depth), InputError)
         << type;
   }
   for (const int type : {CV_8UC1, CV_16SC1, CV_64FC1, CV_16UC3}) {
-    EXPECT_THROW(system.Track(1.0, image, cv::Mat(480, 640, type, cv::Scalar::all(9))), CheckError)
+    EXPECT_THROW(system.Track(1.0, image, cv::Mat(480, 640, type, cv::Scalar::all(9))), InputError)
         << type;
   }
-  EXPECT_THROW(system.Track(1.0, cv::Mat(), depth), CheckError);
-  EXPECT_THROW(system.Track(1.0, image, cv::Mat()), CheckError);
-  EXPECT_THROW(system.Track(1.0, image(cv::Rect(0, 0, 320, 240)), depth), CheckError);
-  EXPECT_THROW(system.Track(1.0, image, depth(cv::Rect(0, 0, 320, 240))), CheckError);
+  EXPECT_THROW(system.Track(1.0, cv::Mat(), depth), InputError);
+  EXPECT_THROW(system.Track(1.0, image, cv::Mat()), InputError);
+  ExpectInputError([&] { system.Track(1.0, image(cv::Rect(0, 0, 320, 240)), depth); },
+                   {"320x240", "640x480", "Camera.width"});
+  ExpectInputError([&] { system.Track(1.0, image, depth(cv::Rect(0, 0, 320, 240))); },
+                   {"depth", "320x240", "640x480"});
   EXPECT_TRUE(system.frames().empty());
   EXPECT_EQ(system.Track(1.0, image, depth).state, TrackingState::kTracked);
+}
+
+TEST(System, MasksThatCannotBeUsedAreRefused) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  const cv::Mat image = TheWall().Photograph(0);
+  const cv::Mat depth = Wall::Depth(0);
+  const InstanceMask good = {
+      .label = "cup",
+      .outlines = {{{100.0, 100.0}, {200.0, 100.0}, {200.0, 200.0}, {100.0, 200.0}}}};
+  const auto refuse = [&](const auto& change, const std::vector<std::string>& parts) {
+    InstanceMask mask = good;
+    change(mask);
+    ExpectInputError([&] { system.Track(1.0, image, depth, {good, mask}); }, parts);
+  };
+  refuse([](InstanceMask& mask) { mask.label.clear(); }, {"mask 1", "label"});
+  refuse([](InstanceMask& mask) { mask.score = 7.0; }, {"mask 1", "score is 7"});
+  refuse([](InstanceMask& mask) { mask.outlines[0].resize(1); }, {"mask 1", "1 point"});
+  refuse([](InstanceMask& mask) { mask.outlines[0][2].x() = std::nan(""); }, {"mask 1", "nan"});
+  EXPECT_TRUE(system.frames().empty());
+  EXPECT_EQ(system.Track(1.0, image, depth, {good}).state, TrackingState::kTracked);
 }
 
 // The features of the first keyframe, which is made from one image.

@@ -9,9 +9,12 @@
 namespace hullslam {
 namespace {
 
+// The time of so many frames at 30 frames/s, s.
+double Frames(int count) { return count / 30.0; }
+
 // Healthy tracking in a grown map: no reason for a keyframe.
 KeyframeEvidence Healthy() {
-  return {.frames_since_keyframe = 10,
+  return {.time_since_keyframe = Frames(10),
           .inliers = 180,
           .reference_landmarks = 200,
           .close_tracked = 150,
@@ -69,16 +72,16 @@ TEST(KeyframePolicy, AsksWhenClosePointsWouldBeLost) {
 
 TEST(KeyframePolicy, TimeAloneIsNoReasonForAKeyframe) {
   ExpectDecisions({
-      {"overdue but healthy", With([](auto& e) { e.frames_since_keyframe = 1000; }), false},
+      {"overdue but healthy", With([](auto& e) { e.time_since_keyframe = Frames(1000); }), false},
   });
 }
 
 TEST(KeyframePolicy, ABusyMapperIsAskedOnlyWhenOverdueOrUrgent) {
-  const auto busy = [](int inliers, uint32_t frames) {
+  const auto busy = [](int inliers, int frames) {
     return With([=](auto& e) {
       e.mapper_is_idle = false;
       e.inliers = inliers;
-      e.frames_since_keyframe = frames;
+      e.time_since_keyframe = Frames(frames);
     });
   };
   ExpectDecisions({
@@ -96,8 +99,8 @@ TEST(KeyframePolicy, ABusyMapperIsAskedOnlyWhenOverdueOrUrgent) {
 }
 
 TEST(KeyframePolicy, LeavesTimeBetweenKeyframesUnlessTrackingWeakensAbruptly) {
-  const auto after = [](uint32_t frames, int inliers) {
-    return With([=](auto& e) { e.frames_since_keyframe = frames, e.inliers = inliers; });
+  const auto after = [](int frames, int inliers) {
+    return With([=](auto& e) { e.time_since_keyframe = Frames(frames), e.inliers = inliers; });
   };
   ExpectDecisions({
       {"weak, but 5 frames after the last", after(5, 150), false},
@@ -105,7 +108,7 @@ TEST(KeyframePolicy, LeavesTimeBetweenKeyframesUnlessTrackingWeakensAbruptly) {
       {"half of the reference, one frame after", after(1, 100), false},
       {"less than half, one frame after", after(1, 99), true},
       {"close points would be lost, one frame after", With([](auto& e) {
-         e.frames_since_keyframe = 1;
+         e.time_since_keyframe = Frames(1);
          e.close_tracked = 99;
          e.close_untracked = 71;
        }),
@@ -114,10 +117,10 @@ TEST(KeyframePolicy, LeavesTimeBetweenKeyframesUnlessTrackingWeakensAbruptly) {
 }
 
 TEST(KeyframePolicy, AsksForObjectsThatAreNotMappedYet) {
-  const auto after = [](uint32_t frames, bool is_idle) {
+  const auto after = [](int frames, bool is_idle) {
     return With([=](auto& e) {
       e.unknown_objects = 1;
-      e.frames_since_keyframe = frames;
+      e.time_since_keyframe = Frames(frames);
       e.mapper_is_idle = is_idle;
     });
   };
@@ -126,6 +129,62 @@ TEST(KeyframePolicy, AsksForObjectsThatAreNotMappedYet) {
       {"10 frames after", after(10, true), true},
       {"10 frames after, the mapper is busy", after(10, false), false},
       {"long after, the mapper is busy", after(30, false), true},
+  });
+}
+
+TEST(KeyframePolicy, WaitsLongerForObjectsAfterFruitlessRequests) {
+  const auto after = [](int fruitless, int frames) {
+    return With([=](auto& e) {
+      e.unknown_objects = 1;
+      e.fruitless_requests = fruitless;
+      e.time_since_keyframe = Frames(frames);
+    });
+  };
+  ExpectDecisions({
+      {"3 fruitless requests, 10 frames after the last keyframe", after(3, 10), true},
+      {"4 fruitless requests, 19 frames after", after(4, 19), false},
+      {"4 fruitless requests, 20 frames after", after(4, 20), true},
+      {"6 fruitless requests, 79 frames after", after(6, 79), false},
+      {"6 fruitless requests, 80 frames after", after(6, 80), true},
+      {"100 fruitless requests, 159 frames after", after(100, 159), false},
+      {"100 fruitless requests, 160 frames after", after(100, 160), true},
+  });
+}
+
+TEST(KeyframePolicy, TellsWhetherAKeyframeIsNeededForObjectsAlone) {
+  const auto evidence = [](int unknown, int inliers) {
+    return With([=](auto& e) {
+      e.unknown_objects = unknown;
+      e.inliers = inliers;
+      e.time_since_keyframe = Frames(12);
+    });
+  };
+  const KeyframePolicy policy;
+  EXPECT_TRUE(policy.NeedsKeyframeForObjects(evidence(1, 200)));
+  EXPECT_FALSE(policy.NeedsKeyframeForObjects(evidence(0, 200)));  // not needed at all
+  EXPECT_FALSE(policy.NeedsKeyframeForObjects(evidence(1, 150)));  // tracking needs it too
+}
+
+// Time stamps of cameras jitter by some milliseconds.
+TEST(KeyframePolicy, ATimeIsReachedHalfAFrameEarlier) {
+  const auto after = [](double seconds) {
+    return With([=](auto& e) { e.time_since_keyframe = seconds, e.inliers = 150; });
+  };
+  ExpectDecisions({
+      {"more than half a frame too early", after(0.183), false},
+      {"less than half a frame too early", after(0.184), true},
+  });
+  KeyframePolicy policy;
+  policy.time_tolerance = 0.05;  // 10 frames/s
+  EXPECT_FALSE(policy.NeedsKeyframe(after(0.149)));
+  EXPECT_TRUE(policy.NeedsKeyframe(after(0.151)));
+}
+
+TEST(KeyframePolicy, AFrameWithTooFewLandmarksIsNoKeyframe) {
+  ExpectDecisions({
+      {"15 landmarks", With([](auto& e) { e.inliers = 15; }), true},
+      {"14 landmarks", With([](auto& e) { e.inliers = 14; }), false},
+      {"objects alone", With([](auto& e) { e.inliers = 0, e.unknown_objects = 3; }), false},
   });
 }
 
@@ -138,7 +197,7 @@ TEST(KeyframePolicy, NeverAsksWhileTooManyRequestsWait) {
 
 TEST(KeyframePolicy, BoundsAreThoseOfTheFields) {
   KeyframePolicy policy;
-  policy.min_frames_between = 11;
+  policy.min_time_between = 0.4;
   EXPECT_FALSE(policy.NeedsKeyframe(With([](auto& e) { e.inliers = 149; })));
   policy = KeyframePolicy();
   policy.min_reference_ratio = 0.95;

@@ -23,7 +23,7 @@ class LastFrameTest : public testing::Test {
     last_.landmarks = landmarks_;
     last_.pose = map_.RelativeTo(keyframe_, Shift(3.0));
     last_.reference = keyframe_;
-    last_.velocity = Shift(0.4);
+    last_.motion = CameraMotion{Shift(0.4), 0.1};
   }
 
   Map map_;
@@ -36,17 +36,25 @@ TEST_F(LastFrameTest, ThePoseFollowsTheReferenceKeyframe) {
   map_.SetPose(keyframe_, Shift(11.0));
   const LastFrame followed = FollowMap(map_, last_);
   EXPECT_EQ(followed.cam_from_world.translation.x(), 13.0);
-  EXPECT_EQ(followed.velocity->translation.x(), 0.4);
+  EXPECT_EQ(followed.motion->cam_from_last_cam.translation.x(), 0.4);
   EXPECT_EQ(followed.landmarks, landmarks_);
 }
 
-// A correction may shrink the map: the pose relative to the reference and the velocity shrink too.
-TEST_F(LastFrameTest, PoseAndVelocityFollowTheUnitOfLength) {
+// A correction may shrink the map: the pose relative to the reference and the motion shrink too.
+TEST_F(LastFrameTest, PoseAndMotionFollowTheUnitOfLength) {
   map_.MutableKeyframe(keyframe_).cam_from_world = Shift(0.25);
   map_.MutableKeyframe(keyframe_).scale = 0.25;
   const LastFrame followed = FollowMap(map_, last_);
   EXPECT_DOUBLE_EQ(followed.cam_from_world.translation.x(), 0.75);
-  EXPECT_DOUBLE_EQ(followed.velocity->translation.x(), 0.1);
+  EXPECT_DOUBLE_EQ(followed.motion->cam_from_last_cam.translation.x(), 0.1);
+}
+
+// Only the change since the frame was tracked counts: the reference had been shrunk before.
+TEST_F(LastFrameTest, TheMotionTakesTheQuotientOfTheScales) {
+  map_.MutableKeyframe(keyframe_).scale = 0.5;
+  last_.pose = map_.RelativeTo(keyframe_, Shift(3.0));
+  map_.MutableKeyframe(keyframe_).scale = 0.25;
+  EXPECT_DOUBLE_EQ(FollowMap(map_, last_).motion->cam_from_last_cam.translation.x(), 0.2);
 }
 
 TEST_F(LastFrameTest, AFrameThatBecameAKeyframeHasItsPoseAndLandmarks) {
@@ -67,6 +75,21 @@ TEST_F(LastFrameTest, OfTwoLandmarksThatBecameOneTheFirstKeypointKeepsIt) {
 TEST_F(LastFrameTest, AFrameThatTheMapDoesNotKnowIsRefused) {
   last_.pose.reset();
   EXPECT_THROW(FollowMap(map_, last_), CheckError);
+}
+
+// The last frame is at 0 s, and the camera moved 0.4 m in the 0.1 s before it.
+TEST_F(LastFrameTest, ThePredictedMotionIsProportionalToTheTimeStep) {
+  ASSERT_EQ(last_.frame->timestamp, 0.0);
+  EXPECT_NEAR(PredictMotion(last_, 0.1)->translation.x(), 0.4, 1e-12);
+  EXPECT_NEAR(PredictMotion(last_, 0.05)->translation.x(), 0.2, 1e-12);
+  EXPECT_NEAR(PredictMotion(last_, 0.3)->translation.x(), 1.2, 1e-12);
+}
+
+TEST_F(LastFrameTest, NothingIsPredictedAfterALongGapOrWithoutAMotion) {
+  EXPECT_TRUE(PredictMotion(last_, 0.399));
+  EXPECT_FALSE(PredictMotion(last_, 0.401));
+  last_.motion.reset();
+  EXPECT_FALSE(PredictMotion(last_, 0.1));
 }
 
 }  // namespace

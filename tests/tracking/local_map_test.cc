@@ -66,13 +66,16 @@ std::vector<KeyframeId> Ids(const std::vector<uint32_t>& numbers) {
   return ids;
 }
 
-TEST(LocalMap, IsEmptyWithoutLandmarks) {
-  PlantedMap planted(3);
-  planted.AddLandmark({0, 1});
-  const LocalMap local = SelectLocalMap(planted.map, {}, 10);
-  EXPECT_FALSE(local.reference.IsValid());
-  EXPECT_TRUE(local.keyframes.empty());
-  EXPECT_TRUE(local.landmarks.empty());
+TEST(LocalMap, WithoutLandmarksItSurroundsTheLastReference) {
+  PlantedMap planted(4);
+  const LandmarkId a = planted.AddLandmark({0, 1});
+  const LandmarkId b = planted.AddLandmark({2});
+  planted.AddLandmark({3});
+  planted.AddEdge(1, 2, 20);
+  const LocalMap local = SelectLocalMap(planted.map, {}, KeyframeId(1), 10);
+  EXPECT_EQ(local.reference, KeyframeId(1));
+  EXPECT_EQ(local.keyframes, Ids({1, 2}));
+  EXPECT_EQ(local.landmarks, (std::vector{a, b}));
 }
 
 TEST(LocalMap, TheReferenceSharesMostLandmarks) {
@@ -80,7 +83,7 @@ TEST(LocalMap, TheReferenceSharesMostLandmarks) {
   const LandmarkId a = planted.AddLandmark({0, 2});
   const LandmarkId b = planted.AddLandmark({2, 3});
   const LandmarkId c = planted.AddLandmark({2, 3});
-  const LocalMap local = SelectLocalMap(planted.map, std::vector{a, b, c}, 10);
+  const LocalMap local = SelectLocalMap(planted.map, std::vector{a, b, c}, KeyframeId(1), 10);
   EXPECT_EQ(local.reference, KeyframeId(2));
   EXPECT_EQ(local.keyframes, Ids({0, 2, 3})) << "keyframe 1 observes none of them";
 }
@@ -88,7 +91,8 @@ TEST(LocalMap, TheReferenceSharesMostLandmarks) {
 TEST(LocalMap, ATieGoesToTheOldestKeyframe) {
   PlantedMap planted(3);
   const LandmarkId a = planted.AddLandmark({1, 2});
-  EXPECT_EQ(SelectLocalMap(planted.map, std::vector{a}, 10).reference, KeyframeId(1));
+  EXPECT_EQ(SelectLocalMap(planted.map, std::vector{a}, KeyframeId(0), 10).reference,
+            KeyframeId(1));
 }
 
 TEST(LocalMap, ContainsAllLandmarksOfItsKeyframesOnceAndInOrder) {
@@ -97,7 +101,7 @@ TEST(LocalMap, ContainsAllLandmarksOfItsKeyframesOnceAndInOrder) {
   const LandmarkId elsewhere = planted.AddLandmark({2});
   const LandmarkId b = planted.AddLandmark({1});
   const LandmarkId c = planted.AddLandmark({0});
-  const LocalMap local = SelectLocalMap(planted.map, std::vector{a}, 10);
+  const LocalMap local = SelectLocalMap(planted.map, std::vector{a}, KeyframeId(0), 10);
   EXPECT_EQ(local.landmarks, (std::vector{a, b, c}));
   EXPECT_NE(elsewhere, a);
 }
@@ -107,7 +111,8 @@ TEST(LocalMap, InvalidAndErasedLandmarksHaveNoVote) {
   const LandmarkId a = planted.AddLandmark({0});
   const LandmarkId erased = planted.AddLandmark({1});
   planted.map.EraseLandmark(erased);
-  const LocalMap local = SelectLocalMap(planted.map, std::vector{LandmarkId(), a, erased}, 10);
+  const LocalMap local =
+      SelectLocalMap(planted.map, std::vector{LandmarkId(), a, erased}, KeyframeId(0), 10);
   EXPECT_EQ(local.keyframes, Ids({0}));
   EXPECT_EQ(local.landmarks, std::vector{a});
 }
@@ -120,7 +125,7 @@ TEST(LocalMap, ContainsNeighboursInCovisibilityAndTree) {
   SetParent(planted.map, KeyframeId(5), KeyframeId(2));
   SetParent(planted.map, KeyframeId(1), KeyframeId(0));
   planted.AddEdge(4, 3, 20);
-  const LocalMap local = SelectLocalMap(planted.map, std::vector{a}, 10);
+  const LocalMap local = SelectLocalMap(planted.map, std::vector{a}, KeyframeId(0), 10);
   EXPECT_EQ(local.keyframes, Ids({0, 2, 4, 5})) << "neighbours of neighbours are not added";
 }
 
@@ -130,7 +135,7 @@ TEST(LocalMap, ContainsOnlyTheTenBestNeighbours) {
   for (uint32_t i = 1; i <= 12; ++i) {
     planted.AddEdge(0, i, 100 + static_cast<int>(i));
   }
-  const LocalMap local = SelectLocalMap(planted.map, std::vector{a}, 80);
+  const LocalMap local = SelectLocalMap(planted.map, std::vector{a}, KeyframeId(0), 80);
   EXPECT_EQ(local.keyframes, Ids({0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
 }
 
@@ -145,11 +150,11 @@ TEST(LocalMap, TheLimitKeepsTheKeyframesThatShareMost) {
   }
   landmarks.push_back(planted.AddLandmark({0}));
   planted.AddEdge(4, 3, 90);
-  const LocalMap two = SelectLocalMap(planted.map, landmarks, 2);
+  const LocalMap two = SelectLocalMap(planted.map, landmarks, KeyframeId(0), 2);
   EXPECT_EQ(two.reference, KeyframeId(4));
   EXPECT_EQ(two.keyframes, Ids({1, 4}));
-  EXPECT_EQ(SelectLocalMap(planted.map, landmarks, 3).keyframes, Ids({0, 1, 4}));
-  EXPECT_EQ(SelectLocalMap(planted.map, landmarks, 4).keyframes, Ids({0, 1, 3, 4}));
+  EXPECT_EQ(SelectLocalMap(planted.map, landmarks, KeyframeId(0), 3).keyframes, Ids({0, 1, 4}));
+  EXPECT_EQ(SelectLocalMap(planted.map, landmarks, KeyframeId(0), 4).keyframes, Ids({0, 1, 3, 4}));
 }
 
 }  // namespace

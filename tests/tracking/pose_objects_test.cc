@@ -115,5 +115,28 @@ TEST_F(PoseObjectsTest, AViewFromWhereNoKeyframeSawTheObjectIsNotCompensated) {
   ExpectPlain(Find(true));
 }
 
+// One-sided lines cannot be compensated. At least half of the 16 lines must be left.
+TEST_F(PoseObjectsTest, HalfOfTheLinesMustBeTwoSidedForCompensation) {
+  for (const size_t one_sided : {8u, 9u}) {
+    for (Detection& detection : frame_.detections) {
+      for (size_t i = 0; i < one_sided; ++i) {
+        detection.lines[i].is_one_sided = true;
+      }
+    }
+    const PoseObjects found = Find(true);
+    if (one_sided == 9) {
+      ExpectPlain(found);
+      continue;
+    }
+    ASSERT_EQ(found.objects.size(), 3u);
+    for (const PoseObject& object : found.objects) {
+      EXPECT_EQ(object.lines.size(), 8u);
+      for (const SilhouetteLine& line : object.lines) {
+        EXPECT_FALSE(line.is_one_sided);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

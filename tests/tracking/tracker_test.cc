@@ -8,8 +8,10 @@
 #include <variant>
 
 #include "map/covisibility.h"
+#include "objects/made_objects.h"
 #include "support/synthetic_world.h"
 #include "support/unknown_points.h"
+#include "tracking/pose_source.h"
 
 namespace hullslam {
 namespace {
@@ -99,6 +101,25 @@ class TrackerTest : public testing::Test {
   Tracker tracker_;
   std::shared_ptr<const Map> map_;
 };
+
+// A camera stands still before something that is detected but can never be mapped.
+TEST_F(TrackerTest, AnObjectThatIsNeverMappedAsksForKeyframesMoreAndMoreSeldom) {
+  Begin();
+  const SyntheticView view = world_.Observe(10);
+  std::vector<uint32_t> requests;
+  for (uint32_t i = 1; i <= 600; ++i) {
+    auto frame = Select(*view.frame, AllKeypoints(*view.frame));
+    frame->id = FrameId(100 + i);  // not that of a keyframe
+    frame->timestamp = i / 30.0;
+    frame->detections.emplace_back().hull = {{10.0, 10.0}, {60.0, 10.0}, {60.0, 60.0}};
+    const Tracker::Result result = Process(frame);
+    ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked) << i;
+    if (result.message) {
+      requests.push_back(i);
+    }
+  }
+  EXPECT_EQ(requests, (std::vector<uint32_t>{10, 20, 30, 40, 60, 100, 180, 340, 500}));
+}
 
 TEST_F(TrackerTest, TheFirstFrameWithEnoughDepthDefinesTheWorldFrame) {
   const auto frame = world_.Observe(0).frame;
@@ -355,6 +376,75 @@ TEST_F(TrackerTest, AFrameWithoutKeypointsIsLost) {
   EXPECT_EQ(Process(world_.Observe(2).frame).report.tracked.state, TrackingState::kTracked);
 }
 
+// Only the motion model can find a frame that shows no landmark of the reference keyframe. After a
+// lost or missing frame the motion is that of several frames, so it must not be used.
+TEST_F(TrackerTest, TheMotionModelIsNotUsedAfterALostOrMissingFrame) {
+  // Points whose landmarks only the last two keyframes observe. These observe few others, so none
+  // of them becomes the reference.
+  made_ = MakeSyntheticMap(world_, {0, 5, 10, 15});
+  std::vector<uint32_t> chosen;
+  const auto remove = [&](LandmarkId landmark, uint32_t first) {
+    for (const uint32_t keyframe : {first, first + 1}) {
+      if (made_.map.landmarks().Contains(landmark)) {
+        made_.map.RemoveObservation(landmark, KeyframeId(keyframe));
+      }
+    }
+  };
+  const std::vector<uint32_t> points = made_.views[3].points;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const LandmarkId landmark = made_.landmarks[points[i]];
+    if (!landmark.IsValid() || made_.map.landmarks().At(landmark).observations.size() != 4) {
+      continue;
+    }
+    if (chosen.size() < 60) {
+      remove(landmark, 0);
+      if (made_.map.landmarks().Contains(landmark)) {
+        chosen.push_back(points[i]);
+      }
+    } else if (i % 8 != 0) {
+      remove(landmark, 2);
+    }
+  }
+  ASSERT_EQ(chosen.size(), 60u);
+  for (uint32_t i = 0; i < 4; ++i) {
+    UpdateCovisibility(made_.map, KeyframeId(i));
+  }
+  const auto show = [&](uint32_t index) {
+    const SyntheticView view = world_.Observe(index);
+    std::vector<uint32_t> keypoints;
+    for (uint32_t i = 0; i < view.points.size(); ++i) {
+      if (std::find(chosen.begin(), chosen.end(), view.points[i]) != chosen.end()) {
+        keypoints.push_back(i);
+      }
+    }
+    auto frame = Select(*view.frame, keypoints);
+    RebuildGrid(world_.sensor(), *frame);
+    return frame;
+  };
+  struct Case {
+    std::vector<uint32_t> frames;  // tracked
+    bool has_lost_frame = false;   // after them
+    TrackingState expected = TrackingState::kLost;
+  };
+  for (const Case& given : {Case{{0, 1, 2, 3, 4}, false, TrackingState::kTracked},
+                            Case{{0, 1, 2, 3, 4}, true}, Case{{0, 1, 2, 4}, false}}) {
+    Tracker tracker(world_.sensor(), options_);
+    const auto track = [&](std::shared_ptr<const Frame> frame) {
+      const bool is_first = frame->id.value == 0;
+      return tracker.Process(std::move(frame), is_first ? nullptr : Publish(made_.map), kIdle)
+          .report.tracked.state;
+    };
+    for (const uint32_t i : given.frames) {
+      ASSERT_EQ(track(world_.Observe(i).frame), TrackingState::kTracked) << i;
+    }
+    if (given.has_lost_frame) {
+      ASSERT_EQ(track(Select(*world_.Observe(5).frame, {})), TrackingState::kLost);
+    }
+    EXPECT_EQ(track(show(given.has_lost_frame ? 6 : 5)), given.expected)
+        << given.frames.size() << given.has_lost_frame;
+  }
+}
+
 TEST_F(TrackerTest, TooFewInliersAreLost) {
   Begin();
   const size_t enough = static_cast<size_t>(options_.min_inliers);
@@ -461,6 +551,115 @@ TEST(Tracker, NoiseMovesThePoseByLittle) {
     ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked);
     ExpectNear(result.report.tracked.cam_from_world, SyntheticWorld::CamFromWorld(i), 1e-2);
   }
+}
+
+// Keyframes are at least 0.2 s apart, whatever the frame rate is.
+TEST_F(TrackerTest, TheIntervalOfKeyframesIsATime) {
+  options_.keyframe_interval = 0.2;
+  for (const uint32_t rate : {10U, 30U}) {
+    Tracker tracker(world_.sensor(), options_);
+    tracker.Process(world_.Observe(0).frame, nullptr, kIdle);
+    const auto map = Publish(made_.map);
+    uint32_t first_request = 0;
+    for (uint32_t i = 1; i <= 10 && first_request == 0; ++i) {
+      auto frame = std::make_shared<Frame>(*DemandingFrame(i));
+      frame->timestamp = static_cast<double>(i) / rate;
+      first_request = tracker.Process(frame, map, kIdle).message ? i : 0;
+    }
+    EXPECT_EQ(first_request, rate / 5);
+  }
+}
+
+// The camera turns by 4 degrees in 1/30 s, which moves keypoints by 35 px.
+TEST_F(TrackerTest, TheMotionModelCountsTheTimeBetweenFrames) {
+  const Rigid3 turn(ExpSo3({0.0, 0.07, 0.0}), Eigen::Vector3d::Zero());
+  const SyntheticView view = world_.Observe(FrameId(1), turn);
+  LastFrame last;
+  last.frame = view.frame;
+  for (const uint32_t point : view.points) {
+    last.landmarks.push_back(made_.landmarks[point]);
+  }
+  last.reference = KeyframeId(0);
+  last.cam_from_world = turn;
+  last.motion = CameraMotion{turn, 1.0 / 30.0};
+  const auto found = [&](double time_step) {
+    Frame next = *world_.Observe(FrameId(2), turn * turn * turn * turn).frame;
+    next.timestamp = last.frame->timestamp + time_step;
+    const auto estimate =
+        PoseByMotionModel(next, made_.map, {world_.sensor(), options_, ObjectOptions()}, last);
+    return estimate ? estimate->inliers : 0;
+  };
+  EXPECT_GT(found(3.0 / 30.0), 50);
+  EXPECT_LT(found(1.0 / 30.0), found(3.0 / 30.0) / 2);
+}
+
+// The synthetic world with six balls, which all keyframes and frames detect.
+class ObjectTrackerTest : public TrackerTest {
+ protected:
+  ObjectTrackerTest() {
+    made_ = MakeSyntheticMap(world_, {0, 5, 10}, [this](Frame& frame, const Rigid3& camera) {
+      AddDetections(frame, camera);
+    });
+    for (uint32_t k = 0; k < balls_.size(); ++k) {
+      const ObjectId id = made_.map.AddObject();
+      for (uint32_t keyframe = 0; keyframe < 3; ++keyframe) {
+        EXPECT_TRUE(made_.map.AddObservation(id, KeyframeId(keyframe), k));
+      }
+      ObjectLandmark& object = made_.map.MutableObject(id);
+      object.state = ObjectState::kMapped;
+      object.has_shape = true;
+      object.ellipsoid = balls_[k].ellipsoid;
+      object.misfit_px = 1.0;
+    }
+  }
+  void AddDetections(Frame& frame, const Rigid3& cam_from_world) const {
+    for (const MadeObject& ball : balls_) {
+      frame.detections.push_back(Detect(ball, world_.sensor(), cam_from_world));
+    }
+  }
+  std::shared_ptr<const Frame> WithDetections(const Frame& frame) const {
+    auto changed = std::make_shared<Frame>(frame);
+    AddDetections(*changed, SyntheticWorld::CamFromWorld(frame.id.value));
+    return changed;
+  }
+  // A frame that shows no landmark, but all balls and many new close points.
+  std::shared_ptr<const Frame> FrameWithoutLandmarks(uint32_t index) const {
+    auto frame = Select(*world_.Observe(index).frame, {});
+    AddUnknownPoints(world_.sensor(), 200, 0, *frame);
+    return WithDetections(*frame);
+  }
+
+  const std::vector<MadeObject> balls_ = {MakeObject("ball", {-1.0, -0.6, 4.0}, {0.25, 0.25, 0.25}),
+                                          MakeObject("ball", {0.0, -0.6, 4.0}, {0.25, 0.25, 0.25}),
+                                          MakeObject("ball", {1.0, -0.6, 4.0}, {0.25, 0.25, 0.25}),
+                                          MakeObject("ball", {-1.0, 0.6, 4.0}, {0.25, 0.25, 0.25}),
+                                          MakeObject("ball", {0.0, 0.6, 4.0}, {0.25, 0.25, 0.25}),
+                                          MakeObject("ball", {1.0, 0.6, 4.0}, {0.25, 0.25, 0.25})};
+};
+
+// Such a keyframe would have no edge to the others, and its new landmarks would be a second map.
+TEST_F(ObjectTrackerTest, AFrameThatOnlyObjectsLocateIsNoKeyframe) {
+  Begin();
+  for (uint32_t i = 1; i <= 2; ++i) {
+    Process(WithDetections(*world_.Observe(i).frame));
+  }
+  const Tracker::Result result = Process(FrameWithoutLandmarks(3));
+  EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked);
+  EXPECT_EQ(result.report.tracked.inliers, 0);
+  ExpectNear(result.report.tracked.cam_from_world, SyntheticWorld::CamFromWorld(3), 1e-2);
+  EXPECT_FALSE(result.message);
+}
+
+TEST_F(ObjectTrackerTest, FindsLandmarksAgainAfterAFrameWithoutThem) {
+  Begin();
+  for (uint32_t i = 1; i <= 2; ++i) {
+    Process(WithDetections(*world_.Observe(i).frame));
+  }
+  Process(FrameWithoutLandmarks(3));
+  const Tracker::Result result = Process(WithDetections(*world_.Observe(4).frame));
+  EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked);
+  EXPECT_GT(result.report.tracked.inliers, 100);
+  ExpectNear(result.report.tracked.cam_from_world, SyntheticWorld::CamFromWorld(4), 1e-3);
 }
 
 }  // namespace

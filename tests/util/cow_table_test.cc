@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <random>
@@ -167,6 +168,40 @@ TEST(CowTable, MovingATableDoesNotMoveItsValues) {
   const Table moved = std::move(table);
   EXPECT_EQ(moved.Find(LandmarkId(4)), value);
   EXPECT_EQ(moved.size(), 5u);
+}
+
+TEST(CowTable, ARangeForVisitsTheValuesInTheOrderOfTheirIds) {
+  const Table empty;
+  EXPECT_TRUE(empty.begin() == empty.end());
+  Table table = MakeTable(200);  // several chunks
+  for (uint32_t i = 0; i < 200; ++i) {
+    if (i % 7 != 0 && i != 199) {
+      table.Erase(LandmarkId(i));
+    }
+  }
+  for (uint32_t i = 70; i < 133; i += 7) {
+    table.Erase(LandmarkId(i));  // now a whole chunk is empty
+  }
+  std::vector<uint32_t> ids;
+  for (const auto& [id, value] : table) {
+    EXPECT_EQ(&value, table.Find(id)) << "the value itself, not a copy";
+    ids.push_back(id.value);
+  }
+  std::vector<uint32_t> visited;
+  table.ForEach([&](LandmarkId id, const std::string&) { visited.push_back(id.value); });
+  EXPECT_EQ(ids, visited);
+  EXPECT_EQ(ids.size(), table.size());
+  EXPECT_EQ(ids.front(), 0u);
+  EXPECT_EQ(ids.back(), 199u);
+  EXPECT_TRUE(std::is_sorted(ids.begin(), ids.end()));
+}
+
+TEST(CowTable, WorksWithTheAlgorithmsForRanges) {
+  const Table table = MakeTable(5);
+  static_assert(std::ranges::input_range<const Table>);
+  EXPECT_EQ(
+      std::ranges::count_if(table, [](const auto& entry) { return entry.first == LandmarkId(3); }),
+      1);
 }
 
 // The writer continues while a reader reads a snapshot and releases it; ThreadSanitizer checks

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <string>
 
 #include "hullslam/util/option_table.h"
 
@@ -63,6 +64,11 @@ struct PinholeCamera {
     }
   };
   Bounds UndistortedBounds() const;
+
+  // Why this cannot be the camera of a real image, with the key in question: a number that is not
+  // finite or out of range, a distortion that has no inverse at a pixel of the image, or an
+  // undistorted image of a very different size. Empty if there is nothing wrong.
+  std::string FindFault() const;
 };
 
 }  // namespace hullslam

@@ -31,6 +31,9 @@ struct DetectionOptions {
   double fragment_area = 0.4;     // least area of the smaller mask over that of the larger
   double fragment_depth = 0.05;   // largest relative difference of the median depths
   int max_depth_points = 200;     // per mask, approximately
+  // Depth points farther than this from the median depth of the mask are left out: they show the
+  // background. As a share of the larger side of the mask, at the median depth.
+  double max_depth_offset = 0.75;
   // Something hides an object if it is nearer by more than both steps. The first one is the noise
   // of a depth camera. Both are used only with depth images.
   double occlusion_step = 0.03;        // m

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hullslam/features/frame_features.h"
+#include "hullslam/frame/depth_grid.h"
 #include "hullslam/frame/detection.h"
 #include "hullslam/util/id.h"
 
@@ -16,6 +17,7 @@ struct Frame {
   double timestamp = 0.0;  // seconds
   FrameFeatures features;
   std::vector<Detection> detections;
+  DepthGrid depth;  // empty without depth, and before the first masks
 };
 
 }  // namespace hullslam

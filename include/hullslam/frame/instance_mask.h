@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,5 +25,10 @@ struct InstanceMask {
   // three points. A box has one outline with its four corners; an ellipse has one with 64 points.
   std::vector<std::vector<Eigen::Vector2d>> outlines;
 };
+
+// Throws InputError, with the number of the mask and what is wrong, for a mask without a label, a
+// score that is not between 0 and 1, an outline of fewer than three points, and a point that is not
+// finite or is farther outside the image (width x height px) than the image is wide or high.
+void ValidateMasks(std::span<const InstanceMask> masks, int width, int height);
 
 }  // namespace hullslam

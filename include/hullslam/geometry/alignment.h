@@ -35,4 +35,12 @@ struct PointAlignment {
 PointAlignment AlignPoints(std::span<const Eigen::Vector3d> source,
                            std::span<const Eigen::Vector3d> target, AlignmentKind kind);
 
+// Returns the rigid motion that best maps the source poses to the target poses (of cameras, world
+// from camera), both positions and orientations. It has the least sum of squared distances between
+// target and aligned source points, where each pose counts by six points: those at the distance
+// `lever` (m, > 0) from its position on both sides of each of its axes. So an error of the
+// orientation counts by what it moves at this distance. One pose is enough. Both lists have the
+// same length, which is not 0.
+Rigid3 AlignPoses(std::span<const Rigid3> source, std::span<const Rigid3> target, double lever);
+
 }  // namespace hullslam

@@ -34,6 +34,10 @@ Eigen::Vector3d LogSo3(const Eigen::Quaterniond& rotation);
 // The matrix of the cross product: Skew(a) * b = a x b.
 Eigen::Matrix3d Skew(const Eigen::Vector3d& a);
 
+// The part `share` of a motion with constant linear and angular velocity: 0 gives the identity, 1
+// the motion itself, 2 the motion twice. The rotation must be less than pi.
+Rigid3 PartOfMotion(const Rigid3& motion, double share);
+
 // Applies a small motion on the left, after `b_from_a`: x_b is rotated by delta[0..2] (radians) and
 // then moved by delta[3..5]. The derivative at zero is dx_b / ddelta = [-Skew(x_b), I].
 Rigid3 Retract(const Rigid3& b_from_a, const Eigen::Matrix<double, 6, 1>& delta);

@@ -7,8 +7,8 @@
 namespace hullslam {
 
 // All functions throw InputError with the file and the reason if the file is missing, empty, cut
-// off, neither PNG nor JPEG, larger than 64 million pixels, or cannot be decoded. (Flipped bits
-// inside a JPEG cannot be detected.)
+// off, neither PNG nor JPEG, larger than 512 MB or 64 million pixels, or cannot be decoded.
+// (Flipped bits inside a JPEG cannot be detected.)
 
 // The luma of a PNG or JPEG image, CV_8UC1. An orientation in the EXIF data is ignored, because the
 // calibration of the camera refers to the pixels as stored.

@@ -44,8 +44,6 @@ class MaskSource {
   virtual std::string Example() const = 0;
   // Throws InputError that names the file, and the line or entry, of malformed data.
   virtual FrameMasks Read(const MaskFrame& frame) const = 0;
-  // Throws the same errors as Read(), but may be faster.
-  virtual void Check(const MaskFrame& frame) const { Read(frame); }
 };
 
 struct MaskRequest {
@@ -58,13 +56,18 @@ struct MaskRequest {
 // yolo-seg, coco, label-png, paper, oa-slam, boxes (docs/masks.md).
 std::vector<std::string> MaskFormatNames();
 
-// Throws InputError if the format is unknown, if none or several formats fit, or if no frame has an
-// entry. The last message shows the name of one entry and the name of one frame. `frames` must not
-// be empty.
+// Throws InputError if the format is unknown, if none or several formats fit (the message says what
+// was found), or if no frame has an entry. The last message shows the name of one entry and the
+// name of one frame. `frames` must not be empty.
 std::unique_ptr<const MaskSource> OpenMasks(const MaskRequest& request,
                                             std::span<const MaskFrame> frames);
 
-// Checks all frames and throws the first error. Returns how many frames are missing.
-size_t CheckMasks(const MaskSource& source, std::span<const MaskFrame> frames);
+struct MaskCounts {
+  size_t without_masks = 0;  // frames; the missing ones, and those whose file or entry has no mask
+  size_t missing = 0;        // frames without a file or entry
+};
+
+// Reads the masks of all frames and throws the first error.
+MaskCounts CheckMasks(const MaskSource& source, std::span<const MaskFrame> frames);
 
 }  // namespace hullslam

@@ -8,14 +8,25 @@
 
 namespace hullslam {
 
-// The text of `objects.json` (docs/outputs.md). It has everything that is needed to judge the
-// shapes of the objects, so that they can be judged again from this file alone. Pixels are rounded
-// to 0.01, metres to 1e-9. The same report gives the same bytes. Throws CheckError for values that
-// are not finite.
-std::string FormatObjects(const ObjectReport& report);
+// The objects of a run are in two files, so that the list of the objects stays small
+// (docs/outputs.md). Together they have everything that is needed to judge the shapes of the
+// objects again. Pixels are rounded to 0.01, metres to 1e-9. The same report gives the same bytes.
+// All functions throw CheckError for values that are not finite.
 
-// Reads a file that FormatObjects() wrote. For anything else it throws InputError with the name of
-// the file and the path of the key.
+// The text of `objects.json`: the camera and the objects, without their observations.
+std::string FormatObjects(const ObjectReport& report);
+// The text of `objects_observations.json`: the observations of all objects.
+std::string FormatObservations(const ObjectReport& report);
+// The text of `objects.csv`: a table with one line per object.
+std::string FormatObjectsCsv(const ObjectReport& report);
+
+// Reads `objects.json`, whose path this is, and `objects_observations.json` from the same folder.
+// Throws InputError with the name of the file and the path of the key for anything that
+// FormatObjects() and FormatObservations() did not write, and if the two files do not belong
+// together.
 ObjectReport ReadObjects(const std::filesystem::path& path);
+// The same with the path of the file of observations. Both may be the same file.
+ObjectReport ReadObjects(const std::filesystem::path& path,
+                         const std::filesystem::path& observations);
 
 }  // namespace hullslam

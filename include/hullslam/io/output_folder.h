@@ -2,13 +2,63 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
 
 namespace hullslam {
 
-// Creates the folder and its parents if they are missing, and checks that files can be written
-// there. Existing files are left alone. Throws InputError with the folder and the reason of the
-// system. Call this before the first frame, so that no run is lost because its results cannot be
-// written.
-void PrepareOutputFolder(const std::filesystem::path& folder);
+class StagingFolder;
+
+// A file of a run, by its name in the output folder.
+struct FileContent {
+  std::string name;
+  std::string content;
+};
+
+// The folder that a run writes its files to. The files of a run are put in place together at its
+// end, and the files of the former run are removed, so the folder never mixes two runs. A run is
+// known by its index: a JSON file with the names of all its other files in the list "files".
+//
+// Until the end the files are in a staging folder inside the output folder. Several runs may have
+// the same output folder at once; the one that ends last leaves its files. If a process is killed
+// while it puts files in place, the next run finishes that. If it is killed before, the next run
+// removes what it left.
+class OutputFolder {
+ public:
+  // Creates the folder if it does not exist. `index` is the name of the index, "summary.json" or
+  // "pictures.json". `inputs` are the files and folders that the run reads; empty paths are
+  // ignored.
+  //
+  // Throws InputError if the folder is inside an input folder or contains an input; if it contains
+  // files that are not from a former run with an index of the same name; or if files cannot be
+  // written there. Then nothing is changed. Files of the names that KeptNames() gives do no harm.
+  OutputFolder(const std::filesystem::path& folder, std::string index,
+               std::span<const std::filesystem::path> inputs);
+  // Removes the files that were not put in place.
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  const std::filesystem::path& path() const { return folder_; }
+
+  // Writes a file to the staging folder. Throws InputError if this fails.
+  void Write(const FileContent& file);
+  // The names of the files that were written, for the index.
+  const std::vector<std::string>& names() const { return names_; }
+  // Puts all files in place, the index last. To be called once, after the index was written. Throws
+  // InputError if the system refuses this; the message says where the files are.
+  void Commit();
+
+  // Files that the user or a script may keep beside the results. No run writes or removes them.
+  static std::vector<std::string> KeptNames();
+
+ private:
+  std::filesystem::path folder_;
+  std::string index_;
+  std::vector<std::string> names_;
+  std::unique_ptr<StagingFolder> staging_;
+};
 
 }  // namespace hullslam

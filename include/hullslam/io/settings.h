@@ -10,9 +10,10 @@
 namespace hullslam {
 
 // Reads a settings file in the format of ORB-SLAM2 (OpenCV YAML: `key: value` lines after a first
-// line `%YAML:1.0`), then applies `overrides` of the form `key=value`, then validates the result.
-// Missing keys keep their defaults; Camera.fx, fy, cx and cy have no default. Throws InputError
-// that names file, line, key, value and what was expected.
+// line `%YAML:1.0`) or of ORB-SLAM3 (format 1.0, docs/settings.md), then applies `overrides` of the
+// form `key=value`, then validates the result. Missing keys keep their defaults; Camera.fx, fy, cx
+// and cy have no default. Throws InputError that names file, line, key, value and what was
+// expected.
 SystemOptions ReadSettings(const std::filesystem::path& file,
                            std::span<const std::string> overrides = {});
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hullslam/util/stage_timer.h"
 
@@ -17,13 +18,14 @@ struct TrajectorySummary {
   std::optional<double> ate_rmse_m = std::nullopt;
   std::string alignment = "se3";  // none, se3 or sim3
   std::optional<double> scale = std::nullopt;
-  size_t pairs = 0;                               // pairs of an estimated and a true pose
-  size_t frames = 0;                              // frames given to the run
-  size_t tracked = 0;                             // frames with a pose
-  size_t lost = 0;                                // decoded frames without a pose
-  std::string poses = "all frames";               // poses that the errors refer to, or "keyframes"
-  std::string pairing = "tum";                    // the rule that pairs poses: tum or evo
-  std::optional<double> coverage = std::nullopt;  // share of the poses that are in a pair
+  size_t pairs = 0;                  // pairs of an estimated and a true pose
+  size_t frames = 0;                 // frames given to the run
+  size_t tracked = 0;                // frames with a pose
+  size_t lost = 0;                   // decoded frames without a pose
+  std::string poses = "all frames";  // poses that the errors refer to, or "keyframes"
+  std::string pairing = "tum";       // the rule that pairs poses: tum or evo
+  // Share of the sequence's frames (those that the run was asked for) that have a pose.
+  std::optional<double> coverage = std::nullopt;
   std::optional<double> rpe_rmse_m = std::nullopt;  // over one second
   std::optional<double> rpe_rmse_deg = std::nullopt;
   size_t skipped = 0;   // frames with a broken image
@@ -68,6 +70,7 @@ struct ProvenanceSummary {
   std::string pipeline = "sequential";  // or "threaded"
   std::optional<std::string> masks_format = std::nullopt;
   std::optional<std::string> sequence = std::nullopt;
+  bool interrupted = false;  // a signal ended the run before its end
 };
 
 struct RunSummary {
@@ -77,6 +80,7 @@ struct RunSummary {
   double peak_memory_mb = 0.0;
   MapSummary map;
   ProvenanceSummary provenance;
+  std::vector<std::string> files = {};  // names of the other files of the run
 };
 
 // JSON with the keys in the order of the structs, with a final line feed.

@@ -10,9 +10,9 @@ namespace hullslam {
 
 // Reads a trajectory in TUM's format: one line `timestamp tx ty tz qx qy qz qw` per pose (s, m,
 // world from camera). Throws InputError with file and line for a line without eight finite numbers,
-// for a quaternion of zero length, for decreasing time stamps, and for a file without poses. If
-// poses have the same stamp, as in TUM's own ground truth, the last one is used (as in TUM's
-// tools).
+// for a position beyond 1e8 m, for a quaternion whose length is not between 0.001 and 1000, for
+// decreasing time stamps, and for a file without poses. If poses have the same stamp, as in TUM's
+// own ground truth, the last one is used (as in TUM's tools).
 Trajectory ReadTrajectory(const std::filesystem::path& path);
 
 // The trajectory in TUM's format: stamps with 6 decimals, values with 9, qw not negative. The same

@@ -36,7 +36,8 @@ struct TumSequenceOptions {
 
 struct TumSequence {
   std::vector<RgbdFramePaths> frames;  // the selected frames, in order of time
-  size_t unpaired = 0;  // colour images of the whole sequence without depth within 0.02 s
+  size_t available = 0;  // frames of the whole sequence, of which `frames` is the selection
+  size_t unpaired = 0;   // colour images of the whole sequence without depth within 0.02 s
   std::optional<std::filesystem::path> groundtruth;  // groundtruth.txt if it exists
 };
 

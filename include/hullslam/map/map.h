@@ -46,7 +46,7 @@ class Map {
   // Also adds the detection's vote for its class. False if the keyframe already observes the object
   // or the detection already shows an object.
   bool AddObservation(ObjectId object, KeyframeId keyframe, uint32_t detection);
-  // Also removes the vote. The object stays, even if it has no observation left.
+  // Also removes the vote. An object that has no observation left stays, as a candidate.
   void RemoveObservation(ObjectId object, KeyframeId keyframe);
   void EraseObject(ObjectId object);
   // Like ReplaceLandmark. The shape is that of `by`.

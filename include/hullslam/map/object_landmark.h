@@ -45,8 +45,8 @@ struct ObjectLandmark {
   double misfit_px = 0.0;       // RMS distance of its lines from its projected ellipses
   double compensated_px = 0.0;  // the same after misfit compensation
   std::vector<MisfitSample> misfit_samples;  // one per two-sided line of its latest keyframes
-  int visible = 0;  // number of frames since it was mapped in which it should have been seen
-  int found = 0;    // number of frames in which it was found
+  int visible = 0;  // number of keyframes since it was mapped that found or should have shown it
+  int found = 0;    // number of these that found it
 
   // The class with most votes; ties go to the first in the alphabet.
   const std::string& Label() const;

@@ -54,6 +54,13 @@ struct ValidityOptions {
   double near_surface = 0.03;       // near: outside by at most this share of the distance
   double near_surface_share = 0.2;  // or by at most this share of the mean half axis
   double max_stretch = 2.5;         // half axis over the extent of the points along it
+  double max_misfit = 0.25;         // RMS distance of lines from the ellipse over the mask's size
+  // The elongation of a quadric is how much longer it is along the mean viewing direction than
+  // across it. Flat quadrics are common, so their elongation is a quarter of how much shorter they
+  // are. An elongation above `max_elongation` is valid only if the angle between the views is
+  // large enough to observe it: this many degrees per elongation.
+  double max_elongation = 1.5;
+  double elongation_parallax = 6.0;
 };
 
 // When two objects are fused; see FindDuplicates.
@@ -72,6 +79,10 @@ struct CullingOptions {
   // it. There must be at least `min_visible` of them.
   int min_visible = 10;
   double min_found_ratio = 0.25;
+  // A keyframe should show an object only if the object is at most this many times as far away as
+  // in the farthest keyframe that observes it, and if at most this share of it is hidden.
+  double max_range = 1.25;
+  double max_hidden = 0.3;
 };
 
 // How the misfit of an object is measured; see objects/misfit.h.

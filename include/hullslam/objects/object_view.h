@@ -34,6 +34,9 @@ bool HasDepth(std::span<const ObjectView> views);
 // Mean distance of a world point from the cameras; needs at least one view.
 double MeanDistance(std::span<const ObjectView> views, const Eigen::Vector3d& point);
 
+// Largest distance of a world point from the cameras; 0 without views.
+double FarthestView(std::span<const ObjectView> views, const Eigen::Vector3d& point);
+
 // Mean of a view's depth points in the world frame; needs at least one point.
 Eigen::Vector3d Centroid(const ObjectView& view);
 

@@ -16,11 +16,13 @@ enum class ObjectRejection {
   kLowOverlap,      // small mean IoU of projected ellipse and hull
   kOffPoints,       // too few depth points are inside it or near its surface
   kStretched,       // it reaches far beyond its depth points
+  kLargeMisfit,     // its projected ellipses are far from its outlines, for its size
+  kElongated,       // long or flat along the view, which needs more parallax
   kPart,            // it is a part of a mapped object
   kSeldomSeen,      // culled, because few of the keyframes that should see it do
   kFused,           // it was the same as another object
 };
-inline constexpr int kObjectRejectionCount = 12;
+inline constexpr int kObjectRejectionCount = 14;
 
 // As in summary.json: "few_views".
 std::string ToString(ObjectRejection reason);

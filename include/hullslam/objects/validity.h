@@ -24,12 +24,17 @@ struct Objection {
 double NearSurface(const Ellipsoid& ellipsoid, double distance, const ValidityOptions& options);
 
 // Checks, in this order: the quadric is in front of every camera; the half axes are in their range;
-// the mean IoU of projected ellipse and hull is large enough; and with depth: enough points are
-// inside or near the surface, and no half axis reaches far beyond the points. Returns nothing for a
-// valid quadric. Needs at least one view.
+// the mean IoU of projected ellipse and hull is large enough; the misfit is not too large for the
+// size of the masks; the parallax is large enough for its elongation; and with depth: enough points
+// are inside or near the surface, and no half axis reaches far beyond the points. Returns nothing
+// for a valid quadric. Needs at least one view.
 std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor& sensor,
                                        std::span<const ObjectView> views,
                                        const ValidityOptions& options);
+
+// How much longer a quadric is along the mean viewing direction than across it, or a quarter of how
+// much shorter it is, whichever is larger (ValidityOptions::max_elongation). At least 0.5.
+double Elongation(const Ellipsoid& ellipsoid, std::span<const ObjectView> views);
 
 // Mean over the views of the IoU of hull and projected ellipse, which is clipped to the image. If
 // the mask is a box, the bounding boxes are compared. A view counts as 0 if the ellipsoid is not in

@@ -51,6 +51,14 @@ struct ReportedObject {
   ObjectFit fit;
 };
 
+// The largest angle between the rays from the cameras of the views to the centre, degrees.
+double ParallaxOf(const ReportedObject& object);
+
+// How far the shape can be trusted, from 0 to 1: the mean SIoU times the shares that the parallax
+// has of 20 degrees and the number of views of 10, both at most 1. 0 if the SIoU is unknown. Masks
+// from one side agree with many shapes, so the SIoU alone says little about the shape.
+double QualityOf(const ReportedObject& object);
+
 // What a run reports about its objects. It does not refer to the map that it was made from.
 struct ObjectReport {
   std::string sequence;  // the folder of the sequence

@@ -13,6 +13,15 @@
 
 namespace hullslam {
 
+// When a run counts as failed because too many frames were lost.
+struct RunOptions {
+  double max_lost_share = 0.1;   // largest share of the frames without a pose
+  double max_lost_at_end = 1.0;  // s, longest time without a pose at the end
+
+  // Binds the keys `run.max_lost_share` and `run.max_lost_at_end`.
+  void Bind(OptionTable& options);
+};
+
 // All options of a run. The defaults are those of the structs. The camera has no default.
 struct SystemOptions {
   PinholeCamera camera;
@@ -23,6 +32,7 @@ struct SystemOptions {
   TrackingOptions tracking;
   MappingOptions mapping;
   ObjectOptions objects;
+  RunOptions run;
 
   // Names every option once; the struct must outlive the table. `Viewer.*` keys of ORB-SLAM2 are
   // accepted and ignored.

@@ -45,6 +45,9 @@ struct ObjectCounts {
 //   for each frame: TrackedFrame tracked = system.Track(timestamp, image, depth);
 //   system.Finish();
 //   Trajectory trajectory = system.trajectory();
+//
+// Its functions are called by one thread at a time. Only map() may be called by other threads
+// meanwhile, if the pipeline is threaded. docs/library.md has more about threads.
 class System {
  public:
   // Throws InputError if SystemOptions::Validate does.
@@ -52,13 +55,19 @@ class System {
   ~System();
 
   // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order that Camera.RGB says; `depth` as in
-  // ImageInput. Time stamps (s) must increase. Throws CheckError otherwise.
-  // `masks` are those of the objects in the image, in its raw pixels.
+  // ImageInput. `masks` are those of the objects in the image, in its raw pixels. Throws InputError
+  // for images of another type or size and for masks that ValidateMasks() refuses. Time stamps (s)
+  // must increase; throws CheckError otherwise. A refused frame changes nothing.
+  //
+  // If mapping fails, this call or a later one throws its exception, and so do all calls of Track
+  // and Finish after it. map() and trajectory() then give what was published before.
   TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
                      std::vector<InstanceMask> masks = {});
   TrackedFrame Track(const ImageInput& image);
 
-  // `callback` is called at the end of every Track, in the same thread.
+  // `callback` is called at the end of every Track, in the thread that called Track. It may call
+  // the const functions of this object; frames() contains the frame already. An exception from it
+  // is thrown by Track; the frame has been tracked then. Reset() keeps the callback.
   void SetFrameCallback(std::function<void(const FrameReport&)> callback) {
     frame_callback_ = std::move(callback);
   }
@@ -68,19 +77,26 @@ class System {
   // `cancellation` (may be null) is requested. Track must not be called after Finish.
   void Finish(const Cancellation* cancellation = nullptr);
 
+  // Makes the system as it was after its construction: without a map, frames, times and counts, and
+  // ready for Track, also after Finish. Ids begin again, and time stamps may. Waits until the
+  // mapper has ended. Snapshots that were taken before are not changed.
+  void Reset();
+
   // The newest snapshot; null before the first keyframe.
   std::shared_ptr<const Map> map() const;
   // One entry per call of Track.
   const std::vector<TrackedFrame>& frames() const { return frames_; }
   // All tracked frames in the current map.
   Trajectory trajectory() const;
-  // Durations of the stages. "track" is the whole of Track without mapping. Complete after Finish.
+  // Durations of the stages. "track" is the whole of Track without mapping. May be called at any
+  // time by the thread that calls Track; complete after Finish.
   StageTimes times() const;
-  // What became of the masks. Complete after Finish.
+  // What became of the masks. May be called like times().
   ObjectCounts object_counts() const;
 
  private:
   const SystemOptions options_;
+  const PipelineKind kind_;
   const Sensor sensor_;
   std::unique_ptr<FrameBuilder> frame_builder_;
   std::unique_ptr<Pipeline> pipeline_;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -20,9 +21,47 @@ namespace hullslam {
 // erased id stays empty. A chunk without values is freed.
 //
 // A table has one writer. Other threads may read a snapshot, or write to it as their own table.
+//
+//   for (const auto& [id, value] : table) { ... }
 template <typename IdType, typename Value, size_t kChunkSize = 64>
 class CowTable {
  public:
+  // Visits the values in the order of their ids. Like the pointer of Find(), it is valid until the
+  // next write. What it points to is a pair that is made on the spot, so it has no operator->.
+  class Iterator {
+   public:
+    using iterator_category = std::input_iterator_tag;
+    using value_type = std::pair<IdType, const Value&>;
+    using difference_type = std::ptrdiff_t;
+    using pointer = void;
+    using reference = value_type;
+
+    Iterator() = default;
+    value_type operator*() const {
+      return {IdType(static_cast<uint32_t>(index_)), *table_->ValueAt(index_)};
+    }
+    Iterator& operator++() {
+      index_ = table_->NextUsed(index_ + 1);
+      return *this;
+    }
+    Iterator operator++(int) {
+      const Iterator before = *this;
+      ++*this;
+      return before;
+    }
+    bool operator==(const Iterator&) const = default;
+    bool operator==(std::default_sentinel_t) const {
+      return index_ >= kChunkSize * table_->chunks_.size();
+    }
+
+   private:
+    friend class CowTable;
+    Iterator(const CowTable* table, size_t index) : table_(table), index_(index) {}
+
+    const CowTable* table_ = nullptr;
+    size_t index_ = 0;
+  };
+
   CowTable() = default;
   CowTable(CowTable&&) noexcept = default;
   CowTable& operator=(CowTable&&) noexcept = default;
@@ -74,14 +113,7 @@ class CowTable {
   }
 
   // Null if the id was never used or was erased. The pointer is valid until the next write.
-  const Value* Find(IdType id) const {
-    const size_t chunk = id.value / kChunkSize;
-    if (chunk >= chunks_.size() || chunks_[chunk] == nullptr) {
-      return nullptr;
-    }
-    const std::optional<Value>& slot = chunks_[chunk]->slots[id.value % kChunkSize];
-    return slot ? &*slot : nullptr;
-  }
+  const Value* Find(IdType id) const { return ValueAt(id.value); }
 
   bool Contains(IdType id) const { return Find(id) != nullptr; }
 
@@ -111,18 +143,14 @@ class CowTable {
     --size_;
   }
 
+  Iterator begin() const { return {this, NextUsed(0)}; }
+  std::default_sentinel_t end() const { return {}; }
+
   // Calls visit(id, const Value&) in the order of the ids.
   template <typename Visitor>
   void ForEach(Visitor&& visit) const {
-    for (size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
-      if (chunks_[chunk] == nullptr) {
-        continue;
-      }
-      for (size_t slot = 0; slot < kChunkSize; ++slot) {
-        if (const auto& value = chunks_[chunk]->slots[slot]) {
-          visit(IdType(static_cast<uint32_t>(chunk * kChunkSize + slot)), *value);
-        }
-      }
+    for (const auto& [id, value] : *this) {
+      visit(id, value);
     }
   }
 
@@ -131,6 +159,33 @@ class CowTable {
     std::array<std::optional<Value>, kChunkSize> slots;
     size_t used = 0;
   };
+
+  // Null if there is no value under the id with this number.
+  const Value* ValueAt(size_t index) const {
+    const size_t chunk = index / kChunkSize;
+    if (chunk >= chunks_.size() || chunks_[chunk] == nullptr) {
+      return nullptr;
+    }
+    const std::optional<Value>& slot = chunks_[chunk]->slots[index % kChunkSize];
+    return slot ? &*slot : nullptr;
+  }
+
+  // The first number from `index` on under which there is a value; beyond all chunks if there is
+  // none.
+  size_t NextUsed(size_t index) const {
+    const size_t end = kChunkSize * chunks_.size();
+    while (index < end) {
+      const auto& chunk = chunks_[index / kChunkSize];
+      if (chunk == nullptr) {
+        index = (index / kChunkSize + 1) * kChunkSize;  // skips the whole chunk
+      } else if (chunk->slots[index % kChunkSize]) {
+        return index;
+      } else {
+        ++index;
+      }
+    }
+    return end;
+  }
 
   Chunk& WritableChunk(size_t chunk) {
     if (!owned_[chunk]) {

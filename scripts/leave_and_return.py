@@ -1,0 +1,199 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes a sequence whose camera leaves the scene for N frames and then goes on where it was.
+
+The first half of SEQUENCE is followed by N frames that show something else, then by its second
+half. The frames in between are blank, or the first N frames of --other. Stamps go on without a gap:
+the second half is later by N frame intervals. groundtruth.txt knows only the frames of SEQUENCE.
+This shows whether a map keeps its objects while they are not seen.
+
+SEQUENCE is a folder in TUM's format with PNG images, such as one of make_synthetic. Its masks
+(format yolo-seg) are taken over too. Frames in between have those of --other, or empty ones. OUT
+gets links to the files of SEQUENCE, so SEQUENCE must stay where it is. OUT must not exist, or be an
+empty folder.
+
+Exit codes: 0 done, 2 bad usage or input.
+"""
+
+import argparse
+import pathlib
+import shutil
+import struct
+import sys
+import zlib
+
+import numpy as np
+
+from run_files import InputError
+
+
+def read_rows(path):
+    """Stamp and the other words of each line of a TUM list."""
+    rows = []
+    for count, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        words = line.split()
+        if not words or words[0].startswith("#"):
+            continue
+        try:
+            rows.append((float(words[0]), words[1:]))
+        except ValueError as error:
+            raise InputError(f"{path}:{count}: expected a time stamp") from error
+        if len(words) < 2 or not np.isfinite(rows[-1][0]):
+            raise InputError(f"{path}:{count}: expected a time stamp and more")
+    if not rows:
+        raise InputError(f"{path}: no lines")
+    return rows
+
+
+def png_size(path):
+    with path.open("rb") as file:
+        head = file.read(24)
+    if head[:8] != b"\x89PNG\r\n\x1a\n" or len(head) < 24:
+        raise InputError(f"{path}: not a PNG image")
+    return struct.unpack(">II", head[16:24])
+
+
+def write_png(path, size, bits, channels, value):
+    """An image of one colour."""
+    row = b"\0" + value.to_bytes(bits // 8, "big") * channels * size[0]
+
+    def chunk(name, data):
+        return (struct.pack(">I", len(data)) + name + data
+                + struct.pack(">I", zlib.crc32(name + data)))
+
+    header = struct.pack(">IIBBBBB", *size, bits, 2 if channels == 3 else 0, 0, 0, 0)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header)
+                     + chunk(b"IDAT", zlib.compress(row * size[1])) + chunk(b"IEND", b""))
+
+
+def link(source, target):
+    """A link; a copy where the file system has no links."""
+    source = source.resolve(strict=True)
+    try:
+        target.symlink_to(source)
+    except OSError:
+        shutil.copy(source, target)
+
+
+class Writer:
+    """Adds frames to the new sequence."""
+
+    def __init__(self, out):
+        self.out, self.lists = out, {"rgb": [], "depth": []}
+        for name in ("rgb", "depth", "masks"):
+            (out / name).mkdir(parents=True)
+
+    def add_image(self, kind, stamp, source):
+        name = f"{kind}/{stamp:.6f}.png"
+        link(source, self.out / name)
+        self.lists[kind].append(f"{stamp:.6f} {name}\n")
+
+    def add_masks(self, stamp, source):
+        """Without a source, or if it does not exist, the frame has no masks."""
+        target = self.out / "masks" / f"{stamp:.6f}.txt"
+        if source is not None and source.exists():
+            link(source, target)
+        else:
+            target.write_text("")
+
+    def add_frames(self, sequence, rows, shift):
+        """`rows` are those of rgb.txt."""
+        for stamp, words in rows:
+            self.add_image("rgb", stamp + shift, sequence / words[0])
+            self.add_masks(stamp + shift,
+                           sequence / "masks" / (pathlib.PurePath(words[0]).stem + ".txt"))
+
+    def add_depth(self, sequence, rows, shift):
+        for stamp, words in rows:
+            self.add_image("depth", stamp + shift, sequence / words[0])
+
+    def finish(self):
+        for kind, lines in self.lists.items():
+            (self.out / f"{kind}.txt").write_text("# timestamp filename\n" + "".join(lines))
+
+
+def add_blank_frames(writer, stamps, size):
+    write_png(writer.out / "blank_rgb.png", size, 8, 3, 128)
+    write_png(writer.out / "blank_depth.png", size, 16, 1, 0)
+    for stamp in stamps:
+        writer.add_image("rgb", stamp, writer.out / "blank_rgb.png")
+        writer.add_image("depth", stamp, writer.out / "blank_depth.png")
+        writer.add_masks(stamp, None)
+
+
+def add_other_frames(writer, stamps, other):
+    """The first frames of another sequence with the given stamps."""
+    rows, depth = read_rows(other / "rgb.txt"), read_rows(other / "depth.txt")
+    times = np.array([stamp for stamp, _ in depth])
+    for new, (stamp, words) in zip(stamps, rows):
+        writer.add_frames(other, [(stamp, words)], new - stamp)
+        nearest = int(np.argmin(np.abs(times - stamp)))
+        if abs(times[nearest] - stamp) < 0.02:
+            writer.add_image("depth", new, other / depth[nearest][1][0])
+
+
+def make(arguments):
+    sequence, out, count = arguments.sequence, arguments.out, arguments.blank
+    rows, depth = read_rows(sequence / "rgb.txt"), read_rows(sequence / "depth.txt")
+    at = len(rows) // 2 if arguments.at is None else arguments.at
+    if not 2 <= at <= len(rows) - 1:
+        raise InputError(f"--at is {at}, expected 2 to {len(rows) - 1}")
+    stamps = np.array([stamp for stamp, _ in rows])
+    interval = float(np.median(np.diff(stamps)))
+    if not interval > 0.0:
+        raise InputError(f"{sequence / 'rgb.txt'}: the time stamps do not increase")
+    leave, shift = (stamps[at - 1] + stamps[at]) / 2, count * interval
+    if out.exists() and any(out.iterdir()):
+        raise InputError(f"{out}: is not empty")
+    if arguments.other and len(read_rows(arguments.other / "rgb.txt")) < count:
+        raise InputError(f"{arguments.other}: has fewer than {count} frames")
+    writer = Writer(out)
+    writer.add_frames(sequence, rows[:at], 0.0)
+    writer.add_depth(sequence, [row for row in depth if row[0] < leave], 0.0)
+    between = stamps[at - 1] + interval * np.arange(1, count + 1)
+    if arguments.other:
+        add_other_frames(writer, between, arguments.other)
+    else:
+        add_blank_frames(writer, between, png_size(sequence / rows[0][1][0]))
+    writer.add_frames(sequence, rows[at:], shift)
+    writer.add_depth(sequence, [row for row in depth if row[0] >= leave], shift)
+    writer.finish()
+    for name in ("camera.yaml", "groundtruth_objects.json"):
+        if (sequence / name).exists():
+            link(sequence / name, out / name)
+    if (sequence / "groundtruth.txt").exists():
+        lines = []
+        for stamp, words in read_rows(sequence / "groundtruth.txt"):
+            # Nothing near the frames in between, which would be paired with them.
+            if stamp < stamps[at - 1] + interval / 4 or stamp > stamps[at] - interval / 4:
+                new = stamp if stamp < leave else stamp + shift
+                lines.append(f"{new:.6f} {' '.join(words)}\n")
+        (out / "groundtruth.txt").write_text("".join(lines))
+    return at, len(rows) - at
+
+
+def main(words=None):
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sequence", type=pathlib.Path, metavar="SEQUENCE")
+    parser.add_argument("out", type=pathlib.Path, metavar="OUT")
+    parser.add_argument("--blank", type=int, default=200, metavar="N",
+                        help="number of frames in between (default 200)")
+    parser.add_argument("--other", type=pathlib.Path, metavar="SEQUENCE",
+                        help="sequence whose first frames come in between (default: blank images)")
+    parser.add_argument("--at", type=int, metavar="FRAME",
+                        help="index of the first frame after the return (default: the middle)")
+    arguments = parser.parse_args(words)
+    if arguments.blank < 1:
+        parser.error("--blank must be 1 or more")
+    try:
+        before, after = make(arguments)
+    except (InputError, OSError, ValueError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    print(f"{arguments.out}: {before} frames, {arguments.blank} of something else, {after} frames")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

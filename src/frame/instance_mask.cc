@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/frame/instance_mask.h"
+
+#include <fmt/format.h>
+
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+// What is wrong with the mask; empty if nothing is.
+std::string FindFault(const InstanceMask& mask, int width, int height) {
+  if (mask.label.empty()) {
+    return "the label is empty, expected the name of a class";
+  }
+  // The comparisons are written so that NaN does not fulfil them.
+  if (!(mask.score >= 0.0 && mask.score <= 1.0)) {
+    return fmt::format("the score is {}, expected a number from 0 to 1", mask.score);
+  }
+  const auto is_near = [](double value, int size) { return value >= -size && value <= 2.0 * size; };
+  for (const std::vector<Eigen::Vector2d>& outline : mask.outlines) {
+    if (outline.size() < 3) {
+      return fmt::format("an outline has {} point(s), expected at least 3", outline.size());
+    }
+    for (const Eigen::Vector2d& point : outline) {
+      if (!is_near(point.x(), width) || !is_near(point.y(), height)) {
+        return fmt::format("an outline has the point ({}, {}), expected pixels of the {}x{} image",
+                           point.x(), point.y(), width, height);
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+void ValidateMasks(std::span<const InstanceMask> masks, int width, int height) {
+  for (size_t i = 0; i < masks.size(); ++i) {
+    if (const std::string fault = FindFault(masks[i], width, height); !fault.empty()) {
+      throw InputError(fmt::format("mask {} ('{}'): {}", i, masks[i].label, fault));
+    }
+  }
+}
+
+}  // namespace hullslam

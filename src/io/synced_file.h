@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace hullslam {
+
+// Throws InputError: "PATH: cannot be written: REASON", with the system's text for this error code.
+[[noreturn]] void FailWriting(const std::filesystem::path& path, int code);
+
+// Writes a new file and waits until the disk has it, because some disks only then report that they
+// are full. Throws InputError like FailWriting(), with the path `shown` in the message. Then the
+// file is removed again.
+void WriteSyncedFile(const std::filesystem::path& path, std::string_view content,
+                     const std::filesystem::path& shown);
+
+}  // namespace hullslam

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "objects/visibility.h"
+
+#include <algorithm>
+
+#include "geometry/polyline.h"
+#include "hullslam/objects/object_view.h"
+#include "hullslam/objects/validity.h"
+
+namespace hullslam {
+namespace {
+
+constexpr int kFewSamples = 3;  // fewer samples on an object say nothing about what hides it
+
+// Counts how many of the samples on a projected ellipse are nearer than a depth.
+class HiddenCounter {
+ public:
+  HiddenCounter(const Ellipse& ellipse, double depth)
+      : center_(ellipse.center), inverse_shape_(ellipse.shape.inverse()), depth_(depth) {}
+
+  // A sample at an undistorted pixel, at depth z (m).
+  void Add(const Eigen::Vector2d& pixel, double z) {
+    const Eigen::Vector2d offset = pixel - center_;
+    if (offset.dot(inverse_shape_ * offset) <= 1.0) {
+      ++samples_;
+      nearer_ += z < depth_ ? 1 : 0;
+    }
+  }
+
+  bool IsHidden(double max_hidden) const {
+    return samples_ >= kFewSamples && nearer_ > max_hidden * samples_;
+  }
+
+ private:
+  Eigen::Vector2d center_;
+  Eigen::Matrix2d inverse_shape_;
+  double depth_;
+  int samples_ = 0;
+  int nearer_ = 0;
+};
+
+void AddDepthGrid(const DepthGrid& grid, const PinholeCamera& camera,
+                  const Eigen::AlignedBox2d& bounds, HiddenCounter& counter) {
+  // Distortion moves the corners of the box, but a sample that is missed at its rim does no harm.
+  const Eigen::Vector2d first = camera.Distort(bounds.min()) / DepthGrid::kStep;
+  const Eigen::Vector2d last = camera.Distort(bounds.max()) / DepthGrid::kStep;
+  const int last_column = std::min(grid.columns() - 1, static_cast<int>(last.x()));
+  const int last_row = std::min(grid.rows() - 1, static_cast<int>(last.y()));
+  for (int row = std::max(0, static_cast<int>(first.y())); row <= last_row; ++row) {
+    for (int column = std::max(0, static_cast<int>(first.x())); column <= last_column; ++column) {
+      if (const double z = grid.At(column, row); z > 0.0) {
+        counter.Add(camera.Undistort(DepthGrid::RawPixel(column, row)), z);
+      }
+    }
+  }
+}
+
+void AddLandmarks(const Map& map, const Keyframe& keyframe, HiddenCounter& counter) {
+  for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
+    if (keyframe.landmarks[i].IsValid()) {
+      const Eigen::Vector3d& position = map.landmarks().At(keyframe.landmarks[i]).position;
+      counter.Add(keyframe.frame->features.keypoints[i].undistorted.cast<double>(),
+                  (keyframe.cam_from_world * position).z());
+    }
+  }
+}
+
+// Depths (z, m) of the nearest and of the farthest point of an ellipsoid.
+struct DepthRange {
+  double nearest;
+  double farthest;
+};
+
+DepthRange DepthsOf(const Ellipsoid& in_cam) {
+  const Eigen::Vector3d axes = in_cam.half_axes.cwiseProduct(
+      in_cam.world_from_object.rotation.conjugate() * Eigen::Vector3d::UnitZ());
+  const double center = in_cam.world_from_object.translation.z();
+  return {center - axes.norm(), center + axes.norm()};
+}
+
+// Whether the keyframe observes a mapped object that covers the centre of the ellipse and is
+// nearer than `depth` as a whole.
+bool IsBehindObject(const Map& map, const Keyframe& keyframe, const Ellipse& ellipse,
+                    double depth) {
+  for (size_t i = 0; i < keyframe.objects.size(); ++i) {
+    const ObjectLandmark* other = map.objects().Find(keyframe.objects[i]);
+    if (other == nullptr || other->state != ObjectState::kMapped) {
+      continue;
+    }
+    if (DepthsOf(keyframe.cam_from_world * other->ellipsoid).farthest < depth &&
+        IsInOrNearConvex(keyframe.frame->detections[i].hull, ellipse.center, 0.0)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool ShouldShow(const Map& map, const Sensor& sensor, KeyframeId keyframe,
+                const ObjectLandmark& object, const ObjectOptions& options) {
+  const Keyframe& observer = map.keyframes().At(keyframe);
+  const auto ellipse =
+      ProjectEllipsoid(sensor.camera.Matrix(), observer.cam_from_world, object.ellipsoid);
+  if (!ellipse || !sensor.bounds.Contains(ellipse->Bounds().min()) ||
+      !sensor.bounds.Contains(ellipse->Bounds().max())) {
+    return false;
+  }
+  const Ellipsoid in_cam = observer.cam_from_world * object.ellipsoid;
+  const double distance = in_cam.world_from_object.translation.norm();
+  const double farthest =
+      FarthestView(CollectViews(map, object), object.ellipsoid.world_from_object.translation);
+  if (distance > options.culling.max_range * farthest) {
+    return false;
+  }
+  // What is nearer by less may be the object's own surface.
+  const double depth =
+      DepthsOf(in_cam).nearest - NearSurface(object.ellipsoid, distance, options.validity);
+  HiddenCounter counter(*ellipse, depth);
+  if (observer.frame->depth.empty()) {
+    AddLandmarks(map, observer, counter);
+  } else {
+    AddDepthGrid(observer.frame->depth, sensor.camera, ellipse->Bounds(), counter);
+  }
+  return !counter.IsHidden(options.culling.max_hidden) &&
+         !IsBehindObject(map, observer, *ellipse, depth);
+}
+
+}  // namespace hullslam

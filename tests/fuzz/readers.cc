@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fuzz/readers.h"
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <string>
+#include <system_error>
+
+#include "hullslam/frame/detection_builder.h"
+#include "hullslam/io/image_file.h"
+#include "hullslam/io/mask_source.h"
+#include "hullslam/io/object_file.h"
+#include "hullslam/io/settings.h"
+#include "hullslam/io/trajectory_file.h"
+#include "hullslam/io/true_object_file.h"
+#include "hullslam/io/tum_sequence.h"
+#include "hullslam/util/error.h"
+#include "io/mask_classes.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void Finding(const std::string& what) {
+  std::fprintf(stderr, "finding: %s\n", what.c_str());
+  std::abort();
+}
+
+void Expect(bool good, const std::string& what) {
+  if (!good) {
+    Finding(what);
+  }
+}
+
+// A file in memory. Its content is replaced for each input.
+class MemoryFile {
+ public:
+  MemoryFile() : descriptor_(::memfd_create("input", MFD_CLOEXEC)) {
+    Expect(descriptor_ >= 0, "memfd_create");
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  fs::path path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+
+  void Write(std::string_view bytes) const {
+    Expect(::ftruncate(descriptor_, 0) == 0, "ftruncate");
+    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), 0);
+    Expect(written == static_cast<ssize_t>(bytes.size()), "pwrite");
+  }
+
+ private:
+  int descriptor_;
+};
+
+// A temporary folder in which the file `name` is the input. `other` is a file of the folder `given`
+// that is there too.
+class InputFolder {
+ public:
+  explicit InputFolder(const std::string& name, const std::string& other = "") {
+    std::string folder = fs::temp_directory_path() / "hullslam_fuzz_XXXXXX";
+    Expect(::mkdtemp(folder.data()) != nullptr, "mkdtemp");
+    path_ = folder;
+    fs::create_symlink(file_.path(), path_ / name);
+    if (!other.empty()) {
+      fs::copy_file(fs::path(HULLSLAM_FUZZ_FOLDER) / "given" / other, path_ / other);
+    }
+  }
+  ~InputFolder() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+  InputFolder(const InputFolder&) = delete;
+  InputFolder& operator=(const InputFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+  void Write(std::string_view bytes) const { file_.Write(bytes); }
+
+ private:
+  MemoryFile file_;
+  fs::path path_;
+};
+
+// Runs a reader on its input.
+template <typename Read>
+void Try(const Read& read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    const std::string_view message = error.what();
+    Expect(message.find('\n') == std::string_view::npos, "a message of several lines");
+    Expect(message.size() < 2000, "a message of " + std::to_string(message.size()) + " bytes");
+  } catch (const std::exception& error) {
+    Finding(std::string("another exception than InputError: ") + error.what());
+  }
+}
+
+template <typename Read>
+void TryFile(std::string_view bytes, const Read& read) {
+  static const MemoryFile file;
+  file.Write(bytes);
+  Try([&] { read(file.path()); });
+}
+
+void FuzzTrajectory(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const Trajectory trajectory = ReadTrajectory(path);
+    const std::string text = FormatTrajectory(trajectory);
+    Expect(text.find("nan") == std::string::npos && text.find("inf") == std::string::npos,
+           "a pose that is not finite");
+    for (const StampedPose& pose : trajectory) {
+      Expect(std::abs(pose.world_from_cam.rotation.norm() - 1.0) < 1e-9, "not normalised");
+    }
+  });
+}
+
+void FuzzSettings(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const SystemOptions options = ReadSettings(path);
+    Expect(options.camera.FindFault().empty(), "a camera with a fault");
+    Expect(!FormatSettings(options).empty(), "no settings");
+  });
+}
+
+void FuzzSequence(std::string_view bytes) {
+  static const InputFolder folder("rgb.txt");
+  folder.Write(bytes);
+  Try([] { OpenTumSequence(folder.path(), {.need_images = false}); });
+}
+
+void FuzzAssociations(std::string_view bytes) {
+  static const InputFolder folder("associations.txt");
+  folder.Write(bytes);
+  Try([] {
+    OpenTumSequence(folder.path(),
+                    {.associations = folder.path() / "associations.txt", .need_images = false});
+  });
+}
+
+void FuzzGreyImage(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const cv::Mat image = ReadGreyImage(path);
+    Expect(image.type() == CV_8UC1 && !image.empty() && image.total() <= 64'000'000, "the image");
+  });
+}
+
+void FuzzDepthImage(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const cv::Mat image = ReadDepthImage(path);
+    Expect(image.type() == CV_16UC1 && !image.empty() && image.total() <= 64'000'000, "the image");
+  });
+}
+
+void FuzzObjects(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const ObjectReport report = ReadObjects(path, path);
+    const std::string text = FormatObjects(report) + FormatObservations(report);
+    Expect(text.find("null,null,null") == std::string::npos, "a number that is not finite");
+  });
+}
+
+void FuzzTrueObjects(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    for (const TrueObject& object : ReadTrueObjects(path)) {
+      Expect(std::isfinite(object.Size()) && object.Size() > 0.0, "the size of an object");
+    }
+  });
+}
+
+constexpr int kWidth = 64;
+constexpr int kHeight = 48;
+const std::array<MaskFrame, 1> kFrames = {{{"1.5", 0}}};
+
+// Reads the masks of a frame as a run does, and makes detections of them.
+void TryMasks(const fs::path& path, const std::string& format) {
+  Try([&] {
+    const auto source =
+        OpenMasks({.path = path, .format = format, .width = kWidth, .height = kHeight}, kFrames);
+    CheckMasks(*source, kFrames);
+    const FrameMasks frame = source->Read(kFrames[0]);
+    const PinholeCamera camera{
+        .fx = 50.0, .fy = 50.0, .cx = 32.0, .cy = 24.0, .width = kWidth, .height = kHeight};
+    DetectionOptions options;
+    options.min_keypoints = 0;
+    const DetectionResult result =
+        DetectionBuilder(camera, 5000.0, options).Build(frame.masks, cv::Mat(), {});
+    Expect(result.rejections.size() == frame.masks.size(), "masks without a result");
+  });
+}
+
+void TryMaskFile(std::string_view bytes, const std::string& format) {
+  static const InputFolder folder("masks.json");
+  folder.Write(bytes);
+  TryMasks(folder.path() / "masks.json", format);
+}
+
+void TryMaskFolder(std::string_view bytes, const std::string& name, const std::string& format) {
+  static const InputFolder folder(name);  // a process runs one reader, so there is one name
+  folder.Write(bytes);
+  TryMasks(folder.path(), format);
+}
+
+// The file of a frame, without the name of a format.
+void FuzzMaskProbe(std::string_view bytes) {
+  TryMaskFile(bytes, "");
+  TryMaskFolder(bytes, "1.5.txt", "");
+}
+
+void FuzzClasses(std::string_view bytes) {
+  static const InputFolder folder("classes.txt");
+  folder.Write(bytes);
+  Try([] { Expect(!ReadClasses(folder.path()).empty(), "no classes"); });
+}
+
+void FuzzYoloSeg(std::string_view bytes) { TryMaskFolder(bytes, "1.5.txt", "yolo-seg"); }
+void FuzzPaper(std::string_view bytes) { TryMaskFolder(bytes, "000000.txt", "paper"); }
+void FuzzBoxes(std::string_view bytes) { TryMaskFolder(bytes, "1.5.txt", "boxes"); }
+void FuzzCoco(std::string_view bytes) { TryMaskFile(bytes, "coco"); }
+void FuzzOaSlam(std::string_view bytes) { TryMaskFile(bytes, "oa-slam"); }
+
+void FuzzLabelPng(std::string_view bytes) {
+  static const InputFolder folder("1.5.png", "classes.json");
+  folder.Write(bytes);
+  TryMasks(folder.path(), "label-png");
+}
+
+// The classes of a label image with the instances 1 and 2.
+void FuzzClassesJson(std::string_view bytes) {
+  static const InputFolder folder("classes.json", "1.5.png");
+  folder.Write(bytes);
+  TryMasks(folder.path(), "label-png");
+}
+
+constexpr std::array<FuzzedReader, 17> kReaders = {{{"trajectory", FuzzTrajectory},
+                                                    {"settings", FuzzSettings},
+                                                    {"sequence", FuzzSequence},
+                                                    {"associations", FuzzAssociations},
+                                                    {"grey_image", FuzzGreyImage},
+                                                    {"depth_image", FuzzDepthImage},
+                                                    {"objects", FuzzObjects},
+                                                    {"true_objects", FuzzTrueObjects},
+                                                    {"mask_probe", FuzzMaskProbe},
+                                                    {"classes", FuzzClasses},
+                                                    {"yolo_seg", FuzzYoloSeg},
+                                                    {"paper", FuzzPaper},
+                                                    {"boxes", FuzzBoxes},
+                                                    {"coco", FuzzCoco},
+                                                    {"oa_slam", FuzzOaSlam},
+                                                    {"label_png", FuzzLabelPng},
+                                                    {"classes_json", FuzzClassesJson}}};
+
+}  // namespace
+
+const FuzzedReader& FindFuzzedReader(std::string_view name) {
+  const auto* const found =
+      std::find_if(kReaders.begin(), kReaders.end(),
+                   [&](const FuzzedReader& reader) { return reader.name == name; });
+  Expect(found != kReaders.end(), "no reader " + std::string(name));
+  return *found;
+}
+
+}  // namespace hullslam

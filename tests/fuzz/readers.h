@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string_view>
+
+namespace hullslam {
+
+// A reader of files under arbitrary input. `read` gives the bytes to the reader as its file. The
+// reader may accept or refuse them with an InputError whose message is one short line; anything
+// else ends the program: another exception, a crash, or a value that was read but cannot be used.
+struct FuzzedReader {
+  std::string_view name;
+  void (*read)(std::string_view bytes);
+};
+
+// Ends the program if there is no reader of this name.
+const FuzzedReader& FindFuzzedReader(std::string_view name);
+
+}  // namespace hullslam

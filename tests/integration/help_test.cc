@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cctype>
+#include <string>
+
+#include "support/run_program.h"
+
+namespace hullslam {
+namespace {
+
+class Help : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Help, NamesTheExitCodes) {
+  const ProgramResult result = RunProgram(GetParam(), {"--help"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.output.find("Exit codes: 0 "), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("--version"), std::string::npos) << result.output;
+}
+
+TEST_P(Help, TheVersionIsPrinted) {
+  const ProgramResult result = RunProgram(GetParam(), {"--version"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(result.errors, "");
+  EXPECT_TRUE(std::isdigit(static_cast<unsigned char>(result.output[0]))) << result.output;
+  EXPECT_NE(result.output.find('.'), std::string::npos) << result.output;
+}
+
+INSTANTIATE_TEST_SUITE_P(Programs, Help,
+                         ::testing::Values("rgbd_tum", "map_objects", "evaluate", "check_masks",
+                                           "make_synthetic"),
+                         [](const auto& info) { return info.param; });
+
+TEST(HelpOfSubcommands, NamesTheExitCodes) {
+  for (const char* const command : {"trajectory", "objects"}) {
+    const ProgramResult result = RunProgram("evaluate", {command, "--help"});
+    EXPECT_NE(result.output.find("Exit codes: 0 "), std::string::npos) << result.output;
+  }
+}
+
+}  // namespace
+}  // namespace hullslam

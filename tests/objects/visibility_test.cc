@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "objects/visibility.h"
+
+#include <gtest/gtest.h>
+
+#include "objects/made_objects.h"
+
+namespace hullslam {
+namespace {
+
+// A cup that a camera at the world's origin sees 1 m ahead.
+class Visibility : public ::testing::Test {
+ protected:
+  Visibility() {
+    cup_.world_from_object.translation = {0.0, 0.0, 1.0};
+    cup_.half_axes = {0.05, 0.05, 0.06};
+    const KeyframeId first = AddObserver(map_, sensor_, Rigid3(), {{"cup", cup_}});
+    id_ = map_.AddObject();
+    map_.AddObservation(id_, first, 0);
+    SetMapped(id_, cup_);
+  }
+  void SetMapped(ObjectId id, const Ellipsoid& ellipsoid) {
+    ObjectLandmark& object = map_.MutableObject(id);
+    object.state = ObjectState::kMapped;
+    object.has_shape = true;
+    object.ellipsoid = ellipsoid;
+  }
+  KeyframeId Add(const Rigid3& cam_from_world, std::shared_ptr<Frame> frame) {
+    return map_.AddKeyframe(std::move(frame), cam_from_world);
+  }
+  // A keyframe that sees nothing but a depth image.
+  KeyframeId Look(const Rigid3& cam_from_world, const cv::Mat& depth = {}) {
+    auto frame = std::make_shared<Frame>();
+    frame->depth = DepthGrid(depth, 1000.0);
+    return Add(cam_from_world, std::move(frame));
+  }
+  bool Shows(KeyframeId keyframe) const {
+    return ShouldShow(map_, sensor_, keyframe, map_.objects().At(id_), options_);
+  }
+  static Rigid3 Back(double metres) { return {Eigen::Quaterniond::Identity(), {0, 0, metres}}; }
+  static cv::Mat Wall(int millimetres) {
+    return cv::Mat(480, 640, CV_16UC1, cv::Scalar(millimetres));
+  }
+
+  Sensor sensor_ = MakeObjectSensor();
+  ObjectOptions options_;
+  Map map_;
+  Ellipsoid cup_;
+  ObjectId id_;
+};
+
+TEST_F(Visibility, IsExpectedInTheImageUpToTheRange) {
+  EXPECT_TRUE(Shows(Look(Rigid3())));
+  EXPECT_TRUE(Shows(Look(Back(0.24))));  // max_range is 1.25
+  EXPECT_FALSE(Shows(Look(Back(0.26))));
+  EXPECT_FALSE(Shows(Look(Back(-2.0))));  // behind the camera
+  Rigid3 aside;
+  aside.translation.x() = 0.6;  // cut by the border of the image
+  EXPECT_FALSE(Shows(Look(aside)));
+}
+
+TEST_F(Visibility, IsNotExpectedBehindANearerSurface) {
+  EXPECT_TRUE(Shows(Look(Rigid3(), Wall(3000))));  // a wall behind it
+  EXPECT_TRUE(Shows(Look(Rigid3(), Wall(0))));     // unknown depth hides nothing
+  EXPECT_FALSE(Shows(Look(Rigid3(), Wall(500))));  // a wall before it
+  EXPECT_TRUE(Shows(Look(Rigid3(), Wall(930))));   // its own surface, a little nearer
+  cv::Mat half = Wall(3000);
+  half(cv::Rect(0, 0, 310, 480)) = 500;
+  EXPECT_FALSE(Shows(Look(Rigid3(), half)));  // 40 % of it are hidden
+  cv::Mat rim = Wall(3000);
+  rim(cv::Rect(0, 0, 300, 480)) = 500;
+  EXPECT_TRUE(Shows(Look(Rigid3(), rim)));
+}
+
+TEST_F(Visibility, WithoutDepthLandmarksTellWhatIsNearer) {
+  const auto look = [&](double z) {
+    auto frame = std::make_shared<Frame>();
+    const std::vector<Eigen::Vector2f> pixels = {{320, 240}, {330, 240}, {320, 250}, {20, 20}};
+    for (const Eigen::Vector2f& pixel : pixels) {
+      frame->features.keypoints.push_back({.raw = pixel, .undistorted = pixel});
+      frame->features.descriptors.emplace_back();
+      frame->features.right_u.push_back(-1.0f);
+      frame->features.depth.push_back(0.0f);
+    }
+    const KeyframeId keyframe = Add(Rigid3(), std::move(frame));
+    for (uint32_t i = 0; i < pixels.size(); ++i) {
+      const LandmarkId id =
+          map_.AddLandmark(sensor_.camera.Unproject(pixels[i].cast<double>(), z), keyframe);
+      map_.AddObservation(id, keyframe, i);
+    }
+    return keyframe;
+  };
+  EXPECT_FALSE(Shows(look(0.5)));
+  EXPECT_TRUE(Shows(look(2.0)));
+}
+
+TEST_F(Visibility, IsNotExpectedBehindANearerObject) {
+  Ellipsoid box;
+  box.world_from_object.translation = {0.0, 0.0, 0.6};
+  box.half_axes = {0.1, 0.1, 0.1};
+  const KeyframeId keyframe = AddObserver(map_, sensor_, Rigid3(), {{"box", box}});
+  const ObjectId other = map_.AddObject();
+  map_.AddObservation(other, keyframe, 0);
+  EXPECT_TRUE(Shows(keyframe));  // a candidate hides nothing
+  SetMapped(other, box);
+  EXPECT_FALSE(Shows(keyframe));
+  box.world_from_object.translation = {0.0, 0.0, 0.98};  // not nearer as a whole
+  SetMapped(other, box);
+  EXPECT_TRUE(Shows(keyframe));
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tracking/request_memory.h"
+
+#include <gtest/gtest.h>
+
+namespace hullslam {
+namespace {
+
+TEST(RequestMemory, CountsRequestsUntilAnObjectIsMappedForTheFirstTime) {
+  Map map;
+  RequestMemory memory;
+  EXPECT_EQ(memory.CountFruitless(map), 0);
+  const ObjectId first = map.AddObject();
+  memory.AddRequest();
+  memory.AddRequest();
+  EXPECT_EQ(memory.CountFruitless(map), 2);  // a candidate is no success
+  map.MutableObject(first).state = ObjectState::kMapped;
+  EXPECT_EQ(memory.CountFruitless(map), 0);
+  memory.AddRequest();
+  EXPECT_EQ(memory.CountFruitless(map), 1);
+  map.MutableObject(first).state = ObjectState::kCandidate;
+  EXPECT_EQ(memory.CountFruitless(map), 1);
+  map.MutableObject(first).state = ObjectState::kMapped;  // again
+  EXPECT_EQ(memory.CountFruitless(map), 1);
+  map.MutableObject(map.AddObject()).state = ObjectState::kMapped;
+  EXPECT_EQ(memory.CountFruitless(map), 0);
+}
+
+}  // namespace
+}  // namespace hullslam
