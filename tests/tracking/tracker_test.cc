@@ -102,6 +102,45 @@ class TrackerTest : public testing::Test {
   std::shared_ptr<const Map> map_;
 };
 
+// Every keyframe has as many landmarks that only it observes as common ones. The frame shows the
+// common ones, so it needs no keyframe if the others do not count.
+TEST_F(TrackerTest, LandmarksOfASingleObservationAreNotExpected) {
+  std::vector<uint32_t> common;  // points
+  for (uint32_t point = 0; point < made_.landmarks.size(); ++point) {
+    const LandmarkId id = made_.landmarks[point];
+    if (!id.IsValid()) {
+      continue;
+    }
+    const std::vector<Observation> observations = made_.map.landmarks().At(id).observations;
+    if (observations.size() == 3 && point % 2 == 0) {
+      common.push_back(point);
+      continue;
+    }
+    made_.map.EraseLandmark(id);
+    for (const Observation& observation : observations) {
+      const LandmarkId weak = made_.map.AddLandmark(world_.points()[point], observation.keyframe);
+      made_.map.AddObservation(weak, observation.keyframe, observation.keypoint);
+    }
+  }
+  for (uint32_t i = 0; i < 3; ++i) {
+    UpdateCovisibility(made_.map, KeyframeId(i));
+  }
+  Begin();
+  const SyntheticView view = world_.Observe(11);
+  std::vector<uint32_t> keypoints;
+  for (uint32_t i = 0; i < view.points.size(); ++i) {
+    if (std::find(common.begin(), common.end(), view.points[i]) != common.end()) {
+      keypoints.push_back(i);
+    }
+  }
+  ASSERT_GT(keypoints.size(), 60u);
+  auto frame = Select(*view.frame, keypoints);
+  RebuildGrid(world_.sensor(), *frame);
+  const Tracker::Result result = Process(frame);
+  ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked);
+  EXPECT_EQ(RequestOf(result), nullptr);
+}
+
 // A camera stands still before something that is detected but can never be mapped.
 TEST_F(TrackerTest, AnObjectThatIsNeverMappedAsksForKeyframesMoreAndMoreSeldom) {
   Begin();
