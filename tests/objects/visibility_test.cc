@@ -101,6 +101,8 @@ TEST_F(Visibility, IsNotExpectedBehindANearerObject) {
   const KeyframeId keyframe = AddObserver(map_, sensor_, Rigid3(), {{"box", box}});
   const ObjectId other = map_.AddObject();
   map_.AddObservation(other, keyframe, 0);
+  map_.MutableObject(other).has_shape = true;
+  map_.MutableObject(other).ellipsoid = box;
   EXPECT_TRUE(Shows(keyframe));  // a candidate hides nothing
   SetMapped(other, box);
   EXPECT_FALSE(Shows(keyframe));
