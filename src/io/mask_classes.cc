@@ -8,6 +8,7 @@
 
 #include "hullslam/util/error.h"
 #include "io/read_file.h"
+#include "io/text_rows.h"
 
 namespace hullslam {
 namespace {
@@ -15,19 +16,11 @@ namespace {
 // The identifiers between 1 and 90 that the annotations of COCO never use.
 constexpr std::array<int64_t, 10> kGaps = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};
 
-std::string Trimmed(std::string_view line) {
-  const size_t begin = line.find_first_not_of(" \t\r");
-  if (begin == std::string_view::npos) {
-    return {};
-  }
-  return std::string(line.substr(begin, line.find_last_not_of(" \t\r") - begin + 1));
-}
-
 std::vector<std::string> SplitLines(std::string_view text) {
   std::vector<std::string> lines;
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = std::min(text.find('\n', begin), text.size());
-    lines.push_back(Trimmed(text.substr(begin, end - begin)));
+    lines.emplace_back(Trim(text.substr(begin, end - begin)));
     begin = end + 1;
   }
   return lines;

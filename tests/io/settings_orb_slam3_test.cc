@@ -114,7 +114,7 @@ TEST_F(SettingsOrbSlam3, TheBaselineMayComeBeforeTheFocalLength) {
 
 TEST_F(SettingsOrbSlam3, RectifiedImagesHaveNoDistortion) {
   ExpectError("Camera.type", "Camera.type: \"Rectified\"",
-              {"Camera.k1 is '0.262383'", "Rectified"});
+              {"camera.yaml:9: Camera1.k1 is '0.262383'", "Rectified"});
   EXPECT_FALSE(Read("%YAML:1.0\nFile.version: \"1.0\"\nCamera.type: \"Rectified\"\n"
                     "Camera1.fx: 400.0\nCamera1.fy: 400.0\nCamera1.cx: 320.0\nCamera1.cy: 240.0\n")
                    .camera.IsDistorted());

@@ -69,5 +69,12 @@ TEST(TextRows, NumbersAndStampsHaveBounds) {
   });
 }
 
+TEST(TextRows, TrimRemovesBlanksAtBothEnds) {
+  EXPECT_EQ(Trim(" \ta b\r"), "a b");
+  EXPECT_EQ(Trim("a"), "a");
+  EXPECT_EQ(Trim(" \t"), "");
+  EXPECT_EQ(Trim(""), "");
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/yaml_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <opencv2/core.hpp>
+#include <string_view>
+
+#include "hullslam/util/error.h"
+#include "io/read_file.h"
+#include "io/text_rows.h"
+#include "io/yaml_nesting.h"
+#include "util/shown_text.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A `key: value` line as it is written in the file. OpenCV's nodes have no line numbers, do not
+// notice repeated keys, and cannot represent integers above 32 bits.
+struct WrittenValue {
+  int line = 0;
+  std::string text;
+};
+using WrittenValues = std::map<std::string, WrittenValue, std::less<>>;
+
+std::string Place(const fs::path& file, int line) {
+  return fmt::format("{}:{}", file.string(), line);
+}
+
+bool HoldsKey(std::string_view line) {
+  return !line.empty() && line[0] != ' ' && line[0] != '\t' && line[0] != '\r' && line[0] != '#' &&
+         line[0] != '%' && line.find(':') != std::string_view::npos;
+}
+
+WrittenValues ScanLines(const fs::path& file, std::string_view text) {
+  WrittenValues values;
+  int number = 0;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    begin = end + 1;
+    ++number;
+    if (!HoldsKey(line)) {
+      continue;
+    }
+    const size_t colon = line.find(':');
+    const std::string key(Trim(line.substr(0, colon)));
+    const std::string_view value = line.substr(colon + 1);
+    const auto [it, is_new] = values.try_emplace(
+        key, WrittenValue{number, std::string(Trim(value.substr(0, value.find('#'))))});
+    if (!is_new) {
+      throw InputError(fmt::format("{}: key '{}' was given before, in line {}", Place(file, number),
+                                   ShowText(key), it->second.line));
+    }
+  }
+  return values;
+}
+
+// A byte order mark, which editors on Windows add, is accepted.
+std::string ReadYamlText(const fs::path& file) {
+  constexpr size_t kLargest = 1'000'000;
+  std::string text = ReadFile(file, kLargest);
+  if (text.starts_with("\xEF\xBB\xBF")) {
+    text.erase(0, 3);
+  }
+  if (!text.starts_with("%YAML")) {
+    throw InputError(Place(file, 1) + ": expected a settings file with '%YAML:1.0' as first line");
+  }
+  if (text.find('\0') != std::string::npos) {
+    throw InputError(file.string() + ": is not a text file with settings");
+  }
+  return text;
+}
+
+// OpenCV's parser puts "(line): message" into the field for the name of the function.
+[[noreturn]] void FailParsing(const fs::path& file, const cv::Exception& error) {
+  int line = 0;
+  char reason[200] = "is not valid YAML";
+  if (std::sscanf(error.func.c_str(), "(%d): %199[^\n]", &line, reason) >= 1) {
+    throw InputError(Place(file, line) + ": " + reason);
+  }
+  throw InputError(file.string() + ": is not valid YAML");
+}
+
+cv::FileStorage ParseYaml(const fs::path& file, const std::string& text) {
+  try {
+    return cv::FileStorage(
+        text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
+  } catch (const cv::Exception& error) {
+    FailParsing(file, error);
+  }
+}
+
+// The text of a single value; see WrittenSetting.
+std::string SingleText(const cv::FileNode& node, const WrittenValue& written) {
+  if (node.isString()) {
+    double value = 0.0;
+    const std::string text = node.string();
+    return ParseFinite(text, value) ? '"' + text + '"' : text;
+  }
+  double value = 0.0;
+  const bool is_plain = ParseFinite(written.text, value);
+  const bool is_whole = is_plain && std::abs(value) < 1e15 && value == std::trunc(value);
+  const bool has_exponent_or_point = written.text.find_first_of(".eE") != std::string::npos;
+  // OpenCV writes a whole number as "1000.".
+  return is_whole && has_exponent_or_point ? fmt::format("{:.0f}", value) : written.text;
+}
+
+WrittenSetting ToSetting(const cv::FileNode& node, const WrittenValue& written,
+                         const fs::path& file) {
+  WrittenSetting setting{
+      .key = node.name(), .name = node.name(), .place = Place(file, written.line)};
+  if (node.isInt() || node.isReal() || node.isString()) {
+    setting.text = SingleText(node, written);
+  } else {
+    setting.no_value = node.isMap() ? "a map" : node.isSeq() ? "a list" : "empty";
+  }
+  return setting;
+}
+
+std::vector<WrittenSetting> CollectSettings(const fs::path& file, const std::string& text,
+                                            const cv::FileNode& root) {
+  if (!root.isMap()) {
+    throw InputError(file.string() + ": has no settings, expected lines of 'key: value'");
+  }
+  const WrittenValues written = ScanLines(file, text);
+  std::vector<WrittenSetting> settings;
+  for (const cv::FileNode& node : root) {
+    const auto it = written.find(node.name());
+    if (it == written.end()) {
+      throw InputError(fmt::format("{}: '{}' is not on a line of its own, expected 'key: value'",
+                                   file.string(), ShowText(node.name())));
+    }
+    settings.push_back(ToSetting(node, it->second, file));
+  }
+  return settings;
+}
+
+}  // namespace
+
+std::vector<WrittenSetting> ReadYamlSettings(const fs::path& file) {
+  const std::string text = ReadYamlText(file);
+  CheckYamlNesting(file, text);
+  const cv::FileStorage storage = ParseYaml(file, text);
+  try {
+    return CollectSettings(file, text, storage.root());
+  } catch (const cv::Exception& error) {
+    FailParsing(file, error);
+  }
+}
+
+const std::string& SingleValue(const WrittenSetting& setting) {
+  if (!setting.no_value.empty()) {
+    throw InputError(fmt::format("{}: {} is {}, expected a single value", setting.place,
+                                 ShowText(setting.name), setting.no_value));
+  }
+  return setting.text;
+}
+
+}  // namespace hullslam
