@@ -18,8 +18,9 @@ namespace {
 
 class Mapping : public ::testing::Test {
  protected:
-  void See(const std::vector<MadeObject>& objects, double angle) {
-    mapper_.Process(map_, AddObserver(map_, sensor_, CameraOnCircle(angle, 1.5, 0.6), objects));
+  void See(const std::vector<MadeObject>& objects, double angle) { See(mapper_, objects, angle); }
+  void See(ObjectMapper& mapper, const std::vector<MadeObject>& objects, double angle) {
+    mapper.Process(map_, AddObserver(map_, sensor_, CameraOnCircle(angle, 1.5, 0.6), objects));
     ASSERT_EQ(FindViolations(map_), std::vector<std::string>());
   }
   std::vector<ObjectLandmark> Mapped() const {
@@ -150,15 +151,12 @@ TEST_F(Mapping, ACandidateIsRemovedWhenItHasNotBeenSeenForLong) {
   ObjectOptions options;
   options.culling.candidate_keyframes = 4;
   ObjectMapper mapper(sensor_, options);
-  const auto look = [&](const std::vector<MadeObject>& objects, double angle) {
-    mapper.Process(map_, AddObserver(map_, sensor_, CameraOnCircle(angle, 1.5, 0.6), objects));
-  };
-  look({MakeTable()[0]}, 0.0);
+  See(mapper, {MakeTable()[0]}, 0.0);
   for (int i = 1; i <= 4; ++i) {
-    look({}, 0.01 * i);
+    See(mapper, {}, 0.01 * i);
   }
   EXPECT_EQ(map_.objects().size(), 1u);
-  look({}, 0.05);
+  See(mapper, {}, 0.05);
   EXPECT_TRUE(map_.objects().empty());
 }
 
@@ -167,19 +165,16 @@ TEST_F(Mapping, AnObjectIsJudgedOnlyAfterEnoughKeyframesThatShouldShowIt) {
   ObjectOptions options;
   options.culling.min_visible = 20;
   ObjectMapper mapper(sensor_, options);
-  const auto look = [&](const std::vector<MadeObject>& objects, double angle) {
-    mapper.Process(map_, AddObserver(map_, sensor_, CameraOnCircle(angle, 1.5, 0.6), objects));
-  };
   for (int i = 0; i < 5; ++i) {
-    look({MakeTable()[0]}, 0.1 * i);
+    See(mapper, {MakeTable()[0]}, 0.1 * i);
   }
   ASSERT_EQ(Mapped().size(), 1u);
   for (int i = 0; i < 12; ++i) {
-    look({}, 0.02 * i);
+    See(mapper, {}, 0.02 * i);
   }
   EXPECT_EQ(Mapped().size(), 1u);
   for (int i = 0; i < 12; ++i) {
-    look({}, 0.02 * i);
+    See(mapper, {}, 0.02 * i);
   }
   EXPECT_TRUE(Mapped().empty());
 }

@@ -19,6 +19,16 @@ class RefinementTest : public ::testing::Test {
     }
   }
   std::vector<ObjectView> Views() const { return CollectViews(map_, map_.objects().At(id_)); }
+  // In one view, the right side of the mask is 60 px too far to the right.
+  std::vector<ObjectView> ViewsWithABadMask() {
+    bad_ = *map_.keyframes().At(KeyframeId(4)).frame;
+    for (SilhouetteLine& line : bad_.detections[0].lines) {
+      line.line.offset -= 60.0 * std::max(0.0, line.line.normal.x());
+    }
+    std::vector<ObjectView> views = Views();
+    views[4].detection = &bad_.detections[0];
+    return views;
+  }
   Ellipsoid Start() const {
     Ellipsoid start = made_.ellipsoid;
     start.world_from_object = {
@@ -31,6 +41,7 @@ class RefinementTest : public ::testing::Test {
   MadeObject made_ = MakeObject("cup", {0.05, -0.1, 0.0}, {0.12, 0.08, 0.05}, 0.6);
   Map map_;
   ObjectId id_;
+  Frame bad_;
 };
 
 double AxisError(const Ellipsoid& a, const Ellipsoid& b) {
@@ -74,12 +85,7 @@ TEST_F(RefinementTest, OverASmallAngleDepthAndPriorHoldWhatOutlinesLeaveFree) {
 
 TEST_F(RefinementTest, OneBadMaskAmongManyDoesLittle) {
   Look(0.3, 12);
-  auto bad = std::make_shared<Frame>(*map_.keyframes().At(KeyframeId(4)).frame);
-  for (SilhouetteLine& line : bad->detections[0].lines) {
-    line.line.offset -= 60.0 * std::max(0.0, line.line.normal.x());
-  }
-  std::vector<ObjectView> views = Views();
-  views[4].detection = &bad->detections[0];
+  const std::vector<ObjectView> views = ViewsWithABadMask();
   const Refinement refined = RefineEllipsoid(Start(), made_.ellipsoid, sensor_, views, 5.0, {});
   ASSERT_TRUE(refined.is_usable);
   EXPECT_LT(AxisError(refined.ellipsoid, made_.ellipsoid), 0.1);
@@ -89,12 +95,7 @@ TEST_F(RefinementTest, OneBadMaskAmongManyDoesLittle) {
 // the misfit itself is not clamped.
 TEST_F(RefinementTest, TheLossIsThatOfALineWithTheLargestMisfit) {
   Look(0.3, 12);
-  auto bad = std::make_shared<Frame>(*map_.keyframes().At(KeyframeId(4)).frame);
-  for (SilhouetteLine& line : bad->detections[0].lines) {
-    line.line.offset -= 60.0 * std::max(0.0, line.line.normal.x());
-  }
-  std::vector<ObjectView> views = Views();
-  views[4].detection = &bad->detections[0];
+  const std::vector<ObjectView> views = ViewsWithABadMask();
   const auto refine = [&](double loss_px, double max_misfit_px) {
     ObjectRefinementOptions options;
     options.loss_px = loss_px;

@@ -25,6 +25,15 @@ class Validity : public ::testing::Test {
         FindObjection(ellipsoid, sensor_, CollectViews(map_, map_.objects().At(id_)), options_);
     return objection ? std::optional(objection->reason) : std::nullopt;
   }
+  // Four views from cameras 1.5 m away that are 1.5 cm apart. They belong to `map`.
+  std::vector<ObjectView> ViewsFromOneSide(Map& map, double height) const {
+    const ObjectId id = map.AddObject();
+    for (int i = 0; i < 4; ++i) {
+      const Rigid3 camera = CameraOnCircle(0.01 * i, 1.5, height);
+      map.AddObservation(id, AddObserver(map, sensor_, camera, {made_}), 0);
+    }
+    return CollectViews(map, map.objects().At(id));
+  }
   Ellipsoid Scaled(double x, double y, double z) const {
     Ellipsoid ellipsoid = made_.ellipsoid;
     ellipsoid.half_axes = ellipsoid.half_axes.cwiseProduct(Eigen::Vector3d(x, y, z));
@@ -121,12 +130,7 @@ TEST_F(Validity, ABoxIsComparedWithTheBoxOfTheOutline) {
 // Farther along the view and larger: the outlines are right all the same.
 TEST_F(Validity, ADriftAlongTheViewThatOutlinesDoNotShow) {
   Map map;
-  const ObjectId id = map.AddObject();
-  for (int i = 0; i < 4; ++i) {
-    map.AddObservation(id, AddObserver(map, sensor_, CameraOnCircle(0.01 * i, 1.5, 0.5), {made_}),
-                       0);
-  }
-  const auto views = CollectViews(map, map.objects().At(id));
+  const auto views = ViewsFromOneSide(map, 0.5);
   const Eigen::Vector3d camera = Inverse(views[1].cam_from_world).translation;
   Ellipsoid drifted = made_.ellipsoid;
   drifted.world_from_object.translation = -0.35 * camera;
@@ -148,12 +152,7 @@ TEST_F(Validity, AnAxisAlongTheViewThatNothingHolds) {
 // to 0.1 m, the half axis of 0.5 m is nearly five times as long.
 TEST_F(Validity, AHalfAxisMayExceedThePointsByTheFactorOfTheOptions) {
   Map map;
-  const ObjectId id = map.AddObject();
-  for (int i = 0; i < 4; ++i) {
-    map.AddObservation(id, AddObserver(map, sensor_, CameraOnCircle(0.01 * i, 1.5, 0.0), {made_}),
-                       0);
-  }
-  const auto views = CollectViews(map, map.objects().At(id));
+  const auto views = ViewsFromOneSide(map, 0.0);
   const Ellipsoid stretched = Scaled(5.0, 1.0, 1.0);
   EXPECT_GT(MeanOverlap(stretched, sensor_, views), 0.8);
   options_.max_elongation = 10.0;
