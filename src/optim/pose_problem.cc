@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optim/pose_problem.h"
 
-#include <cmath>
 #include <limits>
 
 #include "optim/robust.h"
@@ -12,10 +11,6 @@ namespace {
 double Chi2(const PinholeCamera& camera, const PoseObservation& observation,
             const Rigid3& cam_from_world) {
   return PointChi2(camera, observation.measurement, cam_from_world * observation.point);
-}
-
-double HuberCost(double chi2, double bound) {
-  return chi2 <= bound ? chi2 : 2.0 * std::sqrt(bound * chi2) - bound;
 }
 
 }  // namespace

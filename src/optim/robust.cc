@@ -5,6 +5,10 @@
 
 namespace hullslam {
 
+double HuberCost(double chi2, double bound) {
+  return chi2 <= bound ? chi2 : 2.0 * std::sqrt(bound * chi2) - bound;
+}
+
 double HuberWeight(double chi2, double bound) {
   return chi2 <= bound ? 1.0 : std::sqrt(bound / chi2);
 }

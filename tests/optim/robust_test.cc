@@ -9,6 +9,22 @@
 namespace hullslam {
 namespace {
 
+TEST(HuberCost, IsSquareInsideAndLinearInTheErrorOutside) {
+  EXPECT_EQ(HuberCost(0.0, 4.0), 0.0);
+  EXPECT_EQ(HuberCost(4.0, 4.0), 4.0);
+  EXPECT_EQ(HuberCost(16.0, 4.0), 12.0);
+  EXPECT_EQ(HuberCost(64.0, 4.0), 28.0);
+  EXPECT_EQ(HuberCost(std::numeric_limits<double>::infinity(), 4.0),
+            std::numeric_limits<double>::infinity());
+}
+
+TEST(HuberCost, HasTheWeightAsDerivative) {
+  for (const double chi2 : {1.0, 3.9, 4.1, 100.0}) {
+    EXPECT_NEAR((HuberCost(chi2 + 1e-6, 4.0) - HuberCost(chi2 - 1e-6, 4.0)) / 2e-6,
+                HuberWeight(chi2, 4.0), 1e-7);
+  }
+}
+
 TEST(HuberWeight, IsOneInsideAndFallsAsTheErrorGrows) {
   EXPECT_EQ(HuberWeight(0.0, 4.0), 1.0);
   EXPECT_EQ(HuberWeight(4.0, 4.0), 1.0);

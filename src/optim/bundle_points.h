@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "camera/depth_error.h"
+
+namespace hullslam::internal {
+
+// The points of a bundle adjustment, and where its poses see them.
+class BundlePoints {
+ public:
+  struct View {
+    PointMeasurement measurement;
+    size_t pose = 0;  // index of the pose
+    bool is_inlier = true;
+  };
+
+  // `position`: m, world frame. Its views are added next.
+  void AddPoint(const Eigen::Vector3d& position) {
+    positions_.push_back(position);
+    ends_.push_back(views_.size());
+  }
+  // Of the point that was added last.
+  void AddView(const PointMeasurement& measurement, size_t pose) {
+    views_.push_back({measurement, pose, true});
+    ends_.back() = views_.size();
+  }
+
+  size_t size() const { return positions_.size(); }
+  std::vector<Eigen::Vector3d>& positions() { return positions_; }
+  const std::vector<Eigen::Vector3d>& positions() const { return positions_; }
+  std::span<View> ViewsOf(size_t point) {
+    return std::span(views_).subspan(Begin(point), ends_[point] - Begin(point));
+  }
+  std::span<const View> ViewsOf(size_t point) const {
+    return std::span(views_).subspan(Begin(point), ends_[point] - Begin(point));
+  }
+
+ private:
+  size_t Begin(size_t point) const { return point == 0 ? 0 : ends_[point - 1]; }
+
+  std::vector<Eigen::Vector3d> positions_;
+  std::vector<View> views_;  // those of the first point, then those of the second, and so on
+  std::vector<size_t> ends_;
+};
+
+}  // namespace hullslam::internal

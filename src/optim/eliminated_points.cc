@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "optim/eliminated_points.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "optim/robust.h"
+
+namespace hullslam::internal {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+// Levenberg-Marquardt of a single point. A second step is worth its time only if the first one was
+// expected to lower the cost of the point by more than kWorthwhile; one that is expected to lower
+// it by less than kNegligible is lost in rounding.
+constexpr int kMostSteps = 2;
+constexpr int kMostTrials = 6;
+constexpr double kWorthwhile = 1e-3;
+constexpr double kNegligible = 1e-9;
+constexpr double kLeastDamping = 1e-6;  // relative to the diagonal
+constexpr double kFailedDamping = 1e-4;
+
+Eigen::Matrix3d DampedInverse(Eigen::Matrix3d hessian, double damping) {
+  // A point in a single view without depth is free along its ray. The second term holds it.
+  const double floor = 1e-9 * hessian.trace();
+  hessian.diagonal() += damping * hessian.diagonal() + Eigen::Vector3d::Constant(floor);
+  return hessian.inverse();
+}
+
+}  // namespace
+
+EliminatedPoints::EliminatedPoints(const PinholeCamera& camera, BundlePoints& points, size_t moving,
+                                   bool robust)
+    : camera_(camera),
+      points_(points),
+      moving_(moving),
+      robust_(robust),
+      moved_(points.positions()),
+      damping_(points.size(), kLeastDamping) {}
+
+double EliminatedPoints::Loss(double chi2, const PointMeasurement& measurement) const {
+  return 0.5 * (robust_ ? HuberCost(chi2, OutlierBound(measurement)) : chi2);
+}
+
+double EliminatedPoints::CostOf(size_t point, const Eigen::Vector3d& position) const {
+  double cost = 0.0;
+  for (const BundlePoints::View& view : std::as_const(points_).ViewsOf(point)) {
+    if (view.is_inlier) {
+      const Pose& pose = poses_[view.pose];
+      const Eigen::Vector3d in_camera = pose.rotation * position + pose.translation;
+      cost += Loss(PointChi2(camera_, view.measurement, in_camera), view.measurement);
+    }
+  }
+  return cost;
+}
+
+bool EliminatedPoints::Evaluate(const BundlePoints::View& view, const Eigen::Vector3d& position,
+                                ViewSystem& system) const {
+  const Pose& pose = poses_[view.pose];
+  system.in_camera = pose.rotation * position + pose.translation;
+  if (system.in_camera.z() < kMinDepth) {
+    return false;
+  }
+  const Eigen::Vector3d residual = PointResidual(camera_, view.measurement, system.in_camera);
+  const Eigen::Matrix3d jacobian =
+      PointResidualJacobian(camera_, view.measurement, system.in_camera);
+  const double chi2 = residual.squaredNorm();
+  const double weight = robust_ ? HuberWeight(chi2, OutlierBound(view.measurement)) : 1.0;
+  system.cost = Loss(chi2, view.measurement);
+  system.hessian.noalias() = weight * jacobian.transpose() * jacobian;
+  system.gradient.noalias() = weight * jacobian.transpose() * residual;
+  return true;
+}
+
+EliminatedPoints::PointSystem EliminatedPoints::SystemOf(size_t point,
+                                                         const Eigen::Vector3d& position) const {
+  PointSystem sum;
+  ViewSystem system;
+  for (const BundlePoints::View& view : std::as_const(points_).ViewsOf(point)) {
+    if (!view.is_inlier) {
+      continue;
+    }
+    if (!Evaluate(view, position, system)) {
+      sum.cost = kInfinite;
+      return sum;
+    }
+    const Eigen::Matrix3d& rotation = poses_[view.pose].rotation;
+    sum.cost += system.cost;
+    sum.hessian += rotation.transpose() * system.hessian * rotation;
+    sum.gradient += rotation.transpose() * system.gradient;
+  }
+  return sum;
+}
+
+double EliminatedPoints::MovePoint(size_t point, Eigen::Vector3d& position, double& damping) const {
+  PointSystem here = SystemOf(point, position);
+  int steps = 0;
+  for (int trial = 0; trial < kMostTrials && here.cost < kInfinite; ++trial) {
+    const Eigen::Vector3d step = -DampedInverse(here.hessian, damping) * here.gradient;
+    const double expected = -here.gradient.dot(step);
+    const Eigen::Vector3d next = position + step;
+    const double cost = CostOf(point, next);
+    if (!(cost < here.cost)) {
+      if (expected < kNegligible * here.cost) {
+        break;
+      }
+      damping = 100.0 * std::max(damping, kFailedDamping);
+      continue;
+    }
+    position = next;
+    damping = std::max(0.1 * damping, kLeastDamping);
+    here.cost = cost;
+    if (++steps == kMostSteps || expected < kWorthwhile * cost) {
+      break;
+    }
+    here = SystemOf(point, position);
+  }
+  return here.cost;
+}
+
+double EliminatedPoints::Follow(std::span<const Rigid3> poses) {
+  poses_.clear();
+  for (const Rigid3& pose : poses) {
+    poses_.push_back({pose.rotation.toRotationMatrix(), pose.translation});
+  }
+  double cost = 0.0;
+  for (size_t i = 0; i < points_.size(); ++i) {
+    moved_[i] = points_.positions()[i];
+    cost += MovePoint(i, moved_[i], damping_[i]);
+  }
+  return cost;
+}
+
+void EliminatedPoints::Accept() { points_.positions() = moved_; }
+
+// A step (w, v) of a pose moves a point x of the camera frame by -[x]_x w + v.
+void EliminatedPoints::AddView(const BundlePoints::View& view, const Eigen::Vector3d& position,
+                               PointSystem& point, Eigen::MatrixXd& hessian,
+                               Eigen::VectorXd& gradient) {
+  ViewSystem system;
+  if (!Evaluate(view, position, system)) {
+    return;
+  }
+  const Eigen::Matrix3d& rotation = poses_[view.pose].rotation;
+  const Eigen::Matrix3d by_point = system.hessian * rotation;
+  point.hessian.noalias() += rotation.transpose() * by_point;
+  point.gradient.noalias() += rotation.transpose() * system.gradient;
+  if (view.pose >= moving_) {
+    return;
+  }
+  const Eigen::Index at = 6 * static_cast<Eigen::Index>(view.pose);
+  const Eigen::Matrix3d skew = Skew(system.in_camera);
+  const Eigen::Matrix3d skew_hessian = skew * system.hessian;
+  hessian.block<3, 3>(at, at).noalias() -= skew_hessian * skew;
+  hessian.block<3, 3>(at + 3, at).noalias() += skew_hessian.transpose();
+  hessian.block<3, 3>(at + 3, at + 3) += system.hessian;
+  gradient.segment<3>(at) += system.in_camera.cross(system.gradient);
+  gradient.segment<3>(at + 3) += system.gradient;
+  Coupling& coupling = couplings_.emplace_back();
+  coupling.pose = at;
+  coupling.block.topRows<3>().noalias() = skew * by_point;
+  coupling.block.bottomRows<3>() = by_point;
+}
+
+void EliminatedPoints::Eliminate(const PointSystem& point, double damping, Eigen::MatrixXd& hessian,
+                                 Eigen::VectorXd& gradient) const {
+  const Eigen::Matrix3d inverse = DampedInverse(point.hessian, damping);
+  for (const Coupling& row : couplings_) {
+    const Eigen::Matrix<double, 6, 3> solved = row.block * inverse;
+    gradient.segment<6>(row.pose).noalias() -= solved * point.gradient;
+    for (const Coupling& column : couplings_) {
+      if (column.pose <= row.pose) {
+        hessian.block<6, 6>(row.pose, column.pose).noalias() -= solved * column.block.transpose();
+      }
+    }
+  }
+}
+
+void EliminatedPoints::Linearize(Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient) {
+  const auto size = static_cast<Eigen::Index>(6 * moving_);
+  hessian.setZero(size, size);
+  gradient.setZero(size);
+  for (size_t i = 0; i < points_.size(); ++i) {
+    PointSystem point;
+    couplings_.clear();
+    for (const BundlePoints::View& view : std::as_const(points_).ViewsOf(i)) {
+      if (view.is_inlier) {
+        AddView(view, points_.positions()[i], point, hessian, gradient);
+      }
+    }
+    if (!couplings_.empty()) {
+      Eliminate(point, damping_[i], hessian, gradient);
+    }
+  }
+}
+
+}  // namespace hullslam::internal
