@@ -15,28 +15,20 @@
 #include "costs/reprojection_rgbd.h"
 #include "frame/point_measurement.h"
 #include "map/landmark_edits.h"
+#include "optim/bundle_points.h"
+#include "optim/eliminated_points.h"
 #include "optim/object_bundle.h"
+#include "optim/reduced_points_cost.h"
 #include "util/chi_square.h"
 
 namespace hullslam {
 namespace {
 
-// Up to this number, nearly all poses share points, so the reduced system is nearly full and a
-// dense solver is faster. CHOLMOD would also start threads, which take time from the tracker's
-// core.
-constexpr size_t kMaxDensePoses = 60;
+// Up to this number, nearly all poses share points, so the system that is left without the points
+// is nearly full, and own elimination with a dense solver is faster (docs/performance.md).
+constexpr size_t kMostDensePoses = 140;
 
 constexpr size_t kNoPose = std::numeric_limits<size_t>::max();
-
-struct BundleObservation {
-  LandmarkId landmark;
-  KeyframeId keyframe;
-  size_t point_index = 0;
-  size_t pose_index = 0;
-  double bound = 0.0;  // chi-square
-  std::unique_ptr<ceres::CostFunction> cost;
-  bool is_inlier = true;
-};
 
 class StopOnRequest final : public ceres::IterationCallback {
  public:
@@ -59,39 +51,167 @@ std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
   return std::make_unique<ReprojectionCost>(camera, measurement);
 }
 
-// The parameter blocks and the observations that connect them.
+// The parameter blocks and what connects them.
 class Bundle {
  public:
   Bundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
-         const ObjectBundleOptions& options)
-      : window_(window), keyframes_(window.moving), objects_(map, sensor.camera, window, options) {
+         const BundleOptions& options)
+      : camera_(sensor.camera),
+        window_(window),
+        options_(options),
+        keyframes_(window.moving),
+        objects_(map, sensor.camera, window, options.objects) {
     keyframes_.insert(keyframes_.end(), window.fixed.begin(), window.fixed.end());
-    index_of_pose_.assign(map.keyframes().NextId().value, kNoPose);
+    std::vector<size_t> index_of_pose(map.keyframes().NextId().value, kNoPose);
     for (const KeyframeId id : keyframes_) {
-      index_of_pose_[id.value] = poses_.size();
+      index_of_pose[id.value] = poses_.size();
       poses_.push_back(ToBlock(map.keyframes().At(id).cam_from_world));
     }
-    for (size_t i = 0; i < window.landmarks.size(); ++i) {
-      points_.push_back(map.landmarks().At(window.landmarks[i]).position);
-      AddObservations(map, sensor, i);
+    for (const LandmarkId id : window.landmarks) {
+      AddPoint(map, sensor, map.landmarks().At(id), index_of_pose);
     }
   }
 
-  bool Solve(const BundleOptions& options, int iterations, bool robust,
-             const Cancellation* cancellation, BundleResult& result) {
+  // Leaves out views without a residual at the start: their points are not in front of the camera.
+  void ExcludeUndefined() {
+    ForEachView([](View& view, double chi2, size_t) { view.is_inlier = std::isfinite(chi2); });
+  }
+
+  // Decides again which views are inliers.
+  void Classify() {
+    ForEachView([](View& view, double chi2, size_t) {
+      view.is_inlier = chi2 <= OutlierBound(view.measurement);
+    });
+  }
+
+  bool Solve(int iterations, bool robust, const Cancellation* cancellation, BundleResult& result) {
+    const size_t moving = window_.moving.size();
+    const bool eliminates = moving > 0 && moving <= kMostDensePoses;
+    return eliminates ? SolveEliminated(iterations, robust, cancellation, result)
+                      : SolveSparse(iterations, robust, cancellation, result);
+  }
+
+  void Write(BundleResult& result) {
+    for (size_t i = 0; i < window_.moving.size(); ++i) {
+      result.poses.emplace_back(window_.moving[i], FromBlock(poses_[i].data()));
+    }
+    for (size_t i = 0; i < points_.size(); ++i) {
+      result.positions.emplace_back(window_.landmarks[i], points_.positions()[i]);
+    }
+    ForEachView([&](const View& view, double, size_t point) {
+      if (!view.is_inlier) {
+        result.outliers.emplace_back(window_.landmarks[point], keyframes_[view.pose]);
+      }
+    });
+    objects_.Write(result);
+  }
+
+ private:
+  using View = internal::BundlePoints::View;
+
+  void AddPoint(const Map& map, const Sensor& sensor, const Landmark& landmark,
+                const std::vector<size_t>& index_of_pose) {
+    points_.AddPoint(landmark.position);
+    for (const Observation& seen : landmark.observations) {
+      const size_t pose = index_of_pose[seen.keyframe.value];
+      if (pose != kNoPose) {
+        const FrameFeatures& features = map.keyframes().At(seen.keyframe).frame->features;
+        points_.AddView(
+            MeasurePoint(sensor, features, seen.keypoint, sensor.depth_error.ForAdjustment()),
+            pose);
+      }
+    }
+  }
+
+  // Calls visit(view, its PointChi2, index of its point).
+  template <typename Visitor>
+  void ForEachView(Visitor&& visit) {
+    std::vector<Rigid3> cam_from_world;
+    for (const PoseBlock& pose : poses_) {
+      cam_from_world.push_back(FromBlock(pose.data()));
+    }
+    for (size_t i = 0; i < points_.size(); ++i) {
+      for (View& view : points_.ViewsOf(i)) {
+        const Eigen::Vector3d in_camera = cam_from_world[view.pose] * points_.positions()[i];
+        visit(view, PointChi2(camera_, view.measurement, in_camera), i);
+      }
+    }
+  }
+
+  static ceres::Problem::Options ProblemOptions() {
+    ceres::Problem::Options options;
+    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.disable_all_safety_checks = true;
+    return options;
+  }
+
+  // Own code eliminates the points, and Ceres solves for the poses and the objects.
+  bool SolveEliminated(int iterations, bool robust, const Cancellation* cancellation,
+                       BundleResult& result) {
+    internal::EliminatedPoints eliminated(camera_, points_, window_.moving.size(), robust);
+    internal::ReducedPointsCost cost(eliminated, poses_);
+    ceres::Problem::Options problem_options = ProblemOptions();
+    problem_options.evaluation_callback = &cost;
+    ceres::Problem problem(problem_options);
+    std::vector<double*> moving;
+    for (size_t i = 0; i < window_.moving.size(); ++i) {
+      moving.push_back(poses_[i].data());
+    }
+    problem.AddResidualBlock(&cost, nullptr, moving);
+    ceres::Solver::Options solver;
+    // With objects, their half axes are eliminated by Ceres.
+    solver.linear_solver_type =
+        window_.objects.empty() ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_SCHUR;
+    const bool is_usable = Run(problem, solver, 0, iterations, cancellation, result);
+    result.residuals += points_.CountInliers() - 1;  // one cost stands for all of them
+    return is_usable;
+  }
+
+  // Ceres eliminates the points. The system that is left is sparse.
+  bool SolveSparse(int iterations, bool robust, const Cancellation* cancellation,
+                   BundleResult& result) {
+    ceres::HuberLoss without_depth(std::sqrt(Chi2Bound(2)));
+    ceres::HuberLoss with_depth(std::sqrt(Chi2Bound(3)));
+    std::vector<std::unique_ptr<ceres::CostFunction>> costs;
     ceres::Problem problem(ProblemOptions());
+    for (size_t i = 0; i < points_.size(); ++i) {
+      for (const View& view : points_.ViewsOf(i)) {
+        if (view.is_inlier) {
+          ceres::LossFunction* const loss =
+              view.measurement.has_depth() ? &with_depth : &without_depth;
+          costs.push_back(MakeCost(camera_, view.measurement));
+          problem.AddResidualBlock(costs.back().get(), robust ? loss : nullptr,
+                                   poses_[view.pose].data(), points_.positions()[i].data());
+        }
+      }
+    }
     ceres::Solver::Options solver;
     solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-    AddResiduals(problem, robust);
-    objects_.AddResiduals(problem, poses_);
-    AddParameters(problem, *solver.linear_solver_ordering);
-    objects_.AddParameters(problem, manifold_, *solver.linear_solver_ordering);
-    solver.linear_solver_type =
-        window_.moving.size() <= kMaxDensePoses ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
+    for (Eigen::Vector3d& point : points_.positions()) {
+      if (problem.HasParameterBlock(point.data())) {
+        solver.linear_solver_ordering->AddElementToGroup(point.data(), 0);
+      }
+    }
+    solver.linear_solver_type = ceres::SPARSE_SCHUR;
     solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+    return Run(problem, solver, 2, iterations, cancellation, result);
+  }
+
+  // Adds objects and poses to the problem and solves it. `axes_group`: the place of the half axes
+  // of the objects in the order of elimination.
+  bool Run(ceres::Problem& problem, ceres::Solver::Options& solver, int axes_group, int iterations,
+           const Cancellation* cancellation, BundleResult& result) {
+    if (solver.linear_solver_ordering == nullptr) {
+      solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    }
+    objects_.AddResiduals(problem, poses_);
+    AddPoses(problem, *solver.linear_solver_ordering);
+    objects_.AddParameters(problem, manifold_, axes_group, *solver.linear_solver_ordering);
     solver.max_num_iterations = iterations;
-    solver.function_tolerance = options.function_tolerance;
-    solver.num_threads = options.threads;
+    solver.function_tolerance = options_.function_tolerance;
+    solver.num_threads = options_.threads;
     solver.logging_type = ceres::SILENT;
     StopOnRequest stop(cancellation);
     solver.callbacks.push_back(&stop);
@@ -102,92 +222,7 @@ class Bundle {
     return summary.IsSolutionUsable();
   }
 
-  // Leaves out observations without a residual at the start: their points are not in front of the
-  // camera.
-  void ExcludeUndefined() {
-    for (BundleObservation& observation : observations_) {
-      observation.is_inlier = Chi2(observation) < std::numeric_limits<double>::infinity();
-    }
-  }
-
-  // Decides again which observations are inliers.
-  void Classify() {
-    for (BundleObservation& observation : observations_) {
-      observation.is_inlier = Chi2(observation) <= observation.bound;
-    }
-  }
-
-  void Write(BundleResult& result) const {
-    for (size_t i = 0; i < window_.moving.size(); ++i) {
-      result.poses.emplace_back(window_.moving[i], FromBlock(poses_[i].data()));
-    }
-    for (size_t i = 0; i < points_.size(); ++i) {
-      result.positions.emplace_back(window_.landmarks[i], points_[i]);
-    }
-    for (const BundleObservation& observation : observations_) {
-      if (!observation.is_inlier) {
-        result.outliers.emplace_back(observation.landmark, observation.keyframe);
-      }
-    }
-    objects_.Write(result);
-  }
-
- private:
-  static ceres::Problem::Options ProblemOptions() {
-    ceres::Problem::Options options;
-    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.disable_all_safety_checks = true;
-    return options;
-  }
-
-  double Chi2(const BundleObservation& observation) const {
-    const double* parameters[] = {poses_[observation.pose_index].data(),
-                                  points_[observation.point_index].data()};
-    Eigen::Vector3d residual = Eigen::Vector3d::Zero();
-    const bool is_defined = observation.cost->Evaluate(parameters, residual.data(), nullptr);
-    return is_defined ? residual.squaredNorm() : std::numeric_limits<double>::infinity();
-  }
-
-  void AddObservations(const Map& map, const Sensor& sensor, size_t point_index) {
-    const LandmarkId landmark = window_.landmarks[point_index];
-    for (const Observation& seen : map.landmarks().At(landmark).observations) {
-      const size_t pose_index = index_of_pose_[seen.keyframe.value];
-      if (pose_index == kNoPose) {
-        continue;
-      }
-      const PointMeasurement measurement =
-          MeasurePoint(sensor, map.keyframes().At(seen.keyframe).frame->features, seen.keypoint,
-                       sensor.depth_error.ForAdjustment());
-      BundleObservation& observation = observations_.emplace_back();
-      observation.landmark = landmark;
-      observation.keyframe = seen.keyframe;
-      observation.point_index = point_index;
-      observation.pose_index = pose_index;
-      observation.bound = OutlierBound(measurement);
-      observation.cost = MakeCost(sensor.camera, measurement);
-    }
-  }
-
-  void AddResiduals(ceres::Problem& problem, bool robust) {
-    for (BundleObservation& observation : observations_) {
-      if (observation.is_inlier) {
-        ceres::LossFunction* loss =
-            observation.cost->num_residuals() == 3 ? &huber_with_depth_ : &huber_without_depth_;
-        problem.AddResidualBlock(observation.cost.get(), robust ? loss : nullptr,
-                                 poses_[observation.pose_index].data(),
-                                 points_[observation.point_index].data());
-      }
-    }
-  }
-
-  void AddParameters(ceres::Problem& problem, ceres::ParameterBlockOrdering& ordering) {
-    for (Eigen::Vector3d& point : points_) {
-      if (problem.HasParameterBlock(point.data())) {
-        ordering.AddElementToGroup(point.data(), 0);
-      }
-    }
+  void AddPoses(ceres::Problem& problem, ceres::ParameterBlockOrdering& ordering) {
     for (size_t i = 0; i < poses_.size(); ++i) {
       double* pose = poses_[i].data();
       if (!problem.HasParameterBlock(pose)) {
@@ -201,30 +236,28 @@ class Bundle {
     }
   }
 
+  const PinholeCamera& camera_;
   const BundleWindow& window_;
+  const BundleOptions& options_;
   std::vector<KeyframeId> keyframes_;  // the moving ones, then the fixed ones
   std::vector<PoseBlock> poses_;
-  std::vector<size_t> index_of_pose_;  // by keyframe id; kNoPose outside the window
-  std::vector<Eigen::Vector3d> points_;
-  std::vector<BundleObservation> observations_;
+  internal::BundlePoints points_;
   internal::ObjectBundle objects_;
   PoseManifold manifold_;
-  ceres::HuberLoss huber_without_depth_{std::sqrt(Chi2Bound(2))};
-  ceres::HuberLoss huber_with_depth_{std::sqrt(Chi2Bound(3))};
 };
 
 BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& window,
                     const BundleOptions& options, const Cancellation* cancellation) {
   BundleResult result;
-  Bundle bundle(map, sensor, window, options.objects);
+  Bundle bundle(map, sensor, window, options);
   bundle.ExcludeUndefined();
-  if (!bundle.Solve(options, options.robust_iterations, true, cancellation, result)) {
+  if (!bundle.Solve(options.robust_iterations, true, cancellation, result)) {
     return result;
   }
   // After a cancelled round the errors are not minimal, so they do not tell which are outliers.
   if (cancellation == nullptr || !cancellation->IsRequested()) {
     bundle.Classify();
-    if (!bundle.Solve(options, options.final_iterations, false, cancellation, result)) {
+    if (!bundle.Solve(options.final_iterations, false, cancellation, result)) {
       return result;
     }
     bundle.Classify();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -38,6 +39,10 @@ class BundlePoints {
   }
   std::span<const View> ViewsOf(size_t point) const {
     return std::span(views_).subspan(Begin(point), ends_[point] - Begin(point));
+  }
+  int CountInliers() const {
+    return static_cast<int>(
+        std::count_if(views_.begin(), views_.end(), [](const View& view) { return view.is_inlier; }));
   }
 
  private:

@@ -21,8 +21,9 @@ constexpr int kMostSteps = 2;
 constexpr int kMostTrials = 6;
 constexpr double kWorthwhile = 1e-3;
 constexpr double kNegligible = 1e-9;
-constexpr double kLeastDamping = 1e-6;  // relative to the diagonal
-constexpr double kFailedDamping = 1e-4;
+constexpr double kLeastDamping = 1e-8;   // relative to the diagonal
+constexpr double kFailedDamping = 1e-2;  // after the first step that failed
+constexpr double kMostDamping = 1e6;
 
 Eigen::Matrix3d DampedInverse(Eigen::Matrix3d hessian, double damping) {
   // A point in a single view without depth is free along its ray. The second term holds it.
@@ -108,7 +109,7 @@ double EliminatedPoints::MovePoint(size_t point, Eigen::Vector3d& position, doub
       if (expected < kNegligible * here.cost) {
         break;
       }
-      damping = 100.0 * std::max(damping, kFailedDamping);
+      damping = std::clamp(100.0 * damping, kFailedDamping, kMostDamping);
       continue;
     }
     position = next;

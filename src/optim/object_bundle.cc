@@ -96,7 +96,7 @@ void ObjectBundle::AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>&
   }
 }
 
-void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold,
+void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold, int axes_group,
                                  ceres::ParameterBlockOrdering& ordering) {
   // Ceres sorts the blocks of a group by address. Each group has the blocks of one vector only, so
   // they stay in the order of the vector. With blocks of two vectors the order would depend on
@@ -104,7 +104,7 @@ void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold
   for (Object& object : objects_) {
     problem.SetManifold(object.pose.data(), &manifold);
     ordering.AddElementToGroup(object.pose.data(), 2);
-    ordering.AddElementToGroup(object.log_axes.data(), 2);
+    ordering.AddElementToGroup(object.log_axes.data(), axes_group);
   }
   for (PoseBlock& pose : outer_poses_) {
     if (problem.HasParameterBlock(pose.data())) {

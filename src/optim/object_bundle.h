@@ -25,8 +25,9 @@ class ObjectBundle {
   // `poses` are those of the window's keyframes, the moving ones before the fixed ones. They and
   // this object must outlive the problem.
   void AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>& poses);
-  // Puts the objects into group 2 of the ordering and the poses outside of the window into group 3.
-  void AddParameters(ceres::Problem& problem, PoseManifold& manifold,
+  // Puts the half axes of the objects into `axes_group` of the ordering, their poses into group 2
+  // and the poses outside of the window into group 3.
+  void AddParameters(ceres::Problem& problem, PoseManifold& manifold, int axes_group,
                      ceres::ParameterBlockOrdering& ordering);
   void Write(BundleResult& result) const;
 

@@ -10,10 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "frame/point_measurement.h"
 #include "map/covisibility.h"
 #include "map/invariants.h"
 #include "map/made_map.h"
 #include "map/spanning_tree.h"
+#include "optim/robust.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
 
@@ -174,6 +176,19 @@ class BundleAdjustment : public ::testing::Test {
       planted.insert({slots[b], keyframe});
     }
     return planted;
+  }
+  // Of a landmark at this position in the keyframes of the map, with the loss of the first round.
+  double SquaredError(LandmarkId id, const Eigen::Vector3d& position) const {
+    double sum = 0.0;
+    for (const Observation& seen : made_.map.landmarks().At(id).observations) {
+      const Keyframe& keyframe = made_.map.keyframes().At(seen.keyframe);
+      const Sensor& sensor = world_.sensor();
+      const PointMeasurement measurement = MeasurePoint(
+          sensor, keyframe.frame->features, seen.keypoint, sensor.depth_error.ForAdjustment());
+      sum += HuberCost(PointChi2(sensor.camera, measurement, keyframe.cam_from_world * position),
+                       OutlierBound(measurement));
+    }
+    return sum;
   }
   double WorstPoseError(const BundleResult& result) const {
     double worst = 0.0;
@@ -342,8 +357,10 @@ TEST_F(BundleAdjustment, CancelledAtOnceItReturnsTheStartWithoutOutliers) {
   for (const auto& [id, pose] : result.poses) {
     EXPECT_LT(Distance(pose, made_.map.keyframes().At(id).cam_from_world), 1e-14);
   }
+  // Points may have moved to where the poses of the start see them.
   for (const auto& [id, position] : result.positions) {
-    EXPECT_EQ(position, made_.map.landmarks().At(id).position);
+    EXPECT_LE(SquaredError(id, position),
+              SquaredError(id, made_.map.landmarks().At(id).position) * (1.0 + 1e-9));
   }
 }
 

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "optim/bundle_points.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+namespace hullslam::internal {
+namespace {
+
+TEST(BundlePoints, KeepsTheViewsOfEachPoint) {
+  BundlePoints points;
+  points.AddPoint({1.0, 2.0, 3.0});
+  points.AddView({}, 4);
+  points.AddView({}, 5);
+  points.AddPoint({0.0, 0.0, 1.0});
+  points.AddPoint({4.0, 5.0, 6.0});
+  points.AddView({}, 6);
+  ASSERT_EQ(points.size(), 3u);
+  EXPECT_EQ(points.positions()[2], Eigen::Vector3d(4.0, 5.0, 6.0));
+  ASSERT_EQ(std::as_const(points).ViewsOf(0).size(), 2u);
+  EXPECT_EQ(points.ViewsOf(0)[1].pose, 5u);
+  EXPECT_TRUE(points.ViewsOf(1).empty());
+  ASSERT_EQ(points.ViewsOf(2).size(), 1u);
+  EXPECT_EQ(points.ViewsOf(2)[0].pose, 6u);
+}
+
+TEST(BundlePoints, ViewsAreInliersUntilTheyAreLeftOut) {
+  BundlePoints points;
+  points.AddPoint({1.0, 2.0, 3.0});
+  points.AddView({}, 0);
+  points.AddView({}, 1);
+  EXPECT_EQ(points.CountInliers(), 2);
+  points.ViewsOf(0)[0].is_inlier = false;
+  EXPECT_EQ(points.CountInliers(), 1);
+}
+
+}  // namespace
+}  // namespace hullslam::internal

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "optim/eliminated_points.h"
+
+#include <ceres/crs_matrix.h>
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "costs/pose_manifold.h"
+#include "costs/reprojection.h"
+#include "costs/reprojection_rgbd.h"
+#include "optim/made_points.h"
+#include "util/chi_square.h"
+
+namespace hullslam::internal {
+namespace {
+
+// The same points with the costs and the loss that Ceres sees without elimination.
+class CeresPoints {
+ public:
+  CeresPoints(MadePoints& made, bool robust) : positions_(made.points.positions()) {
+    for (const Rigid3& pose : made.poses) {
+      poses_.push_back(ToBlock(pose));
+    }
+    for (PoseBlock& pose : poses_) {
+      problem_.AddParameterBlock(pose.data(), 7, new PoseManifold);
+      blocks_.push_back(pose.data());
+    }
+    for (size_t i = 0; i < positions_.size(); ++i) {
+      problem_.AddParameterBlock(positions_[i].data(), 3);
+      blocks_.push_back(positions_[i].data());
+      for (const BundlePoints::View& view : made.points.ViewsOf(i)) {
+        AddView(made.camera, view, i, robust);
+      }
+    }
+  }
+
+  double Cost() {
+    double cost = 0.0;
+    problem_.Evaluate({}, &cost, nullptr, nullptr, nullptr);
+    return cost;
+  }
+  // J^T J and J^T r, with 6 columns a pose, then 3 a point.
+  void Normal(Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient) {
+    ceres::Problem::EvaluateOptions options;
+    options.parameter_blocks = blocks_;
+    std::vector<double> by_parameter;
+    ceres::CRSMatrix rows;
+    problem_.Evaluate(options, nullptr, nullptr, &by_parameter, &rows);
+    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(rows.num_rows, rows.num_cols);
+    for (int row = 0; row < rows.num_rows; ++row) {
+      for (int k = rows.rows[row]; k < rows.rows[row + 1]; ++k) {
+        jacobian(row, rows.cols[k]) = rows.values[k];
+      }
+    }
+    hessian = jacobian.transpose() * jacobian;
+    gradient = Eigen::Map<Eigen::VectorXd>(by_parameter.data(), rows.num_cols);
+  }
+
+ private:
+  void AddView(const PinholeCamera& camera, const BundlePoints::View& view, size_t point,
+               bool robust) {
+    if (!view.is_inlier) {
+      return;
+    }
+    const bool has_depth = view.measurement.has_depth();
+    ceres::CostFunction* cost = nullptr;
+    if (has_depth) {
+      cost = new RgbdReprojectionCost(camera, view.measurement);
+    } else {
+      cost = new ReprojectionCost(camera, view.measurement);
+    }
+    ceres::LossFunction* loss =
+        robust ? new ceres::HuberLoss(std::sqrt(Chi2Bound(has_depth ? 3 : 2))) : nullptr;
+    problem_.AddResidualBlock(cost, loss, poses_[view.pose].data(), positions_[point].data());
+  }
+
+  std::vector<PoseBlock> poses_;
+  std::vector<Eigen::Vector3d> positions_;
+  std::vector<double*> blocks_;
+  ceres::Problem problem_;
+};
+
+// Follow() until the points do not move any more.
+double Settle(EliminatedPoints& eliminated, const std::vector<Rigid3>& poses) {
+  double cost = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    cost = eliminated.Follow(poses);
+    eliminated.Accept();
+  }
+  return cost;
+}
+
+class EliminatedPointsTest : public ::testing::TestWithParam<bool> {
+ protected:
+  bool robust() const { return GetParam(); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Losses, EliminatedPointsTest, ::testing::Values(false, true),
+                         [](const auto& test) { return test.param ? "Huber" : "Squared"; });
+
+TEST_P(EliminatedPointsTest, TheCostIsThatOfCeresAtTheMovedPoints) {
+  MadePoints made(5);
+  const double before = CeresPoints(made, robust()).Cost();
+  EliminatedPoints eliminated(made.camera, made.points, 5, robust());
+  const double cost = eliminated.Follow(made.poses);
+  EXPECT_LT(cost, before);
+  EXPECT_EQ(CeresPoints(made, robust()).Cost(), before);  // not accepted yet
+  eliminated.Accept();
+  EXPECT_NEAR(CeresPoints(made, robust()).Cost(), cost, 1e-9 * cost);
+}
+
+// The Schur complement of the points in the normal equations of all parameters.
+TEST_P(EliminatedPointsTest, TheSystemIsTheSchurComplementOfThatOfCeres) {
+  MadePoints made(5);
+  constexpr Eigen::Index kMoving = 3;
+  EliminatedPoints eliminated(made.camera, made.points, kMoving, robust());
+  Settle(eliminated, made.poses);
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+  eliminated.Linearize(hessian, gradient);
+
+  Eigen::MatrixXd all;
+  Eigen::VectorXd all_gradient;
+  CeresPoints(made, robust()).Normal(all, all_gradient);
+  const Eigen::Index first = 6 * 5;
+  const Eigen::Index points = all.rows() - first;
+  const Eigen::MatrixXd coupling = all.block(0, first, 6 * kMoving, points);
+  const Eigen::MatrixXd inverse = all.bottomRightCorner(points, points).inverse();
+  const Eigen::MatrixXd expected =
+      all.topLeftCorner(6 * kMoving, 6 * kMoving) - coupling * inverse * coupling.transpose();
+  const Eigen::VectorXd expected_gradient =
+      all_gradient.head(6 * kMoving) - coupling * inverse * all_gradient.tail(points);
+  ASSERT_EQ(hessian.rows(), 6 * kMoving);
+  // The damping of the points changes it a little.
+  const Eigen::MatrixXd difference = (hessian - expected).triangularView<Eigen::Lower>();
+  EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-5 * expected.cwiseAbs().maxCoeff());
+  EXPECT_LT((gradient - expected_gradient).cwiseAbs().maxCoeff(),
+            1e-5 * expected_gradient.cwiseAbs().maxCoeff());
+}
+
+// The derivative of the cost at the best places of the points.
+TEST_P(EliminatedPointsTest, TheGradientIsTheDerivativeOfTheCost) {
+  MadePoints made(4);
+  EliminatedPoints eliminated(made.camera, made.points, 3, robust());
+  Settle(eliminated, made.poses);
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+  eliminated.Follow(made.poses);
+  eliminated.Linearize(hessian, gradient);
+  constexpr double kStep = 1e-5;
+  for (Eigen::Index i = 0; i < gradient.size(); ++i) {
+    std::array<double, 2> costs = {};
+    for (const int side : {0, 1}) {
+      std::vector<Rigid3> poses = made.poses;
+      Eigen::Matrix<double, 6, 1> delta = Eigen::Matrix<double, 6, 1>::Zero();
+      delta[i % 6] = side == 0 ? -kStep : kStep;
+      Rigid3& pose = poses[static_cast<size_t>(i / 6)];
+      pose = Retract(pose, delta);
+      costs.at(static_cast<size_t>(side)) = Settle(eliminated, poses);
+    }
+    EXPECT_NEAR((costs[1] - costs[0]) / (2.0 * kStep), gradient[i],
+                1e-3 * gradient.cwiseAbs().maxCoeff())
+        << i;
+  }
+}
+
+TEST(EliminatedPoints, ViewsThatAreNoInliersHaveNoInfluence) {
+  MadePoints made(4);
+  MadePoints other(4);
+  for (size_t i = 0; i < other.points.size(); ++i) {
+    made.points.ViewsOf(i)[0].is_inlier = false;
+    other.points.ViewsOf(i)[0].is_inlier = false;
+    other.points.ViewsOf(i)[0].measurement.measured.setConstant(1e5);
+  }
+  EliminatedPoints first(made.camera, made.points, 4, true);
+  EliminatedPoints second(other.camera, other.points, 4, true);
+  EXPECT_EQ(first.Follow(made.poses), second.Follow(other.poses));
+  first.Accept();
+  second.Accept();
+  Eigen::MatrixXd hessian;
+  Eigen::MatrixXd other_hessian;
+  Eigen::VectorXd gradient;
+  Eigen::VectorXd other_gradient;
+  first.Linearize(hessian, gradient);
+  second.Linearize(other_hessian, other_gradient);
+  EXPECT_EQ(hessian, other_hessian);
+  EXPECT_EQ(gradient, other_gradient);
+  EXPECT_EQ(made.points.positions(), other.points.positions());
+}
+
+TEST(EliminatedPoints, APointBehindACameraHasAnInfiniteCost) {
+  MadePoints made(3);
+  std::vector<Rigid3> turned = made.poses;
+  turned[1].rotation = Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0);
+  EliminatedPoints eliminated(made.camera, made.points, 3, true);
+  EXPECT_EQ(eliminated.Follow(turned), std::numeric_limits<double>::infinity());
+  EXPECT_LT(eliminated.Follow(made.poses), 1e9);  // and the next poses start where it was before
+}
+
+// A single view without depth leaves the distance free.
+TEST(EliminatedPoints, APointInASingleViewWithoutDepthStaysFinite) {
+  MadePoints made(1, 1);
+  made.points = {};
+  made.points.AddPoint({0.1, 0.2, 3.0});
+  made.points.AddView({.measured = {330.0, 260.0, 0.0}, .inverse_sigma = {1.0, 1.0, 0.0}}, 0);
+  EliminatedPoints eliminated(made.camera, made.points, 1, true);
+  EXPECT_LT(Settle(eliminated, made.poses), 1e-6);
+  EXPECT_LT((made.points.positions()[0] - Eigen::Vector3d(0.1, 0.2, 3.0)).norm(), 0.5);
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+  eliminated.Linearize(hessian, gradient);
+  EXPECT_TRUE(hessian.allFinite());
+  EXPECT_TRUE(gradient.allFinite());
+}
+
+}  // namespace
+}  // namespace hullslam::internal
