@@ -41,8 +41,8 @@ class BundlePoints {
     return std::span(views_).subspan(Begin(point), ends_[point] - Begin(point));
   }
   int CountInliers() const {
-    return static_cast<int>(
-        std::count_if(views_.begin(), views_.end(), [](const View& view) { return view.is_inlier; }));
+    return static_cast<int>(std::count_if(views_.begin(), views_.end(),
+                                          [](const View& view) { return view.is_inlier; }));
   }
 
  private:

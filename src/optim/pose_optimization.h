@@ -19,10 +19,11 @@ struct PoseObservation {
 };
 
 struct PoseOptimizationOptions {
-  int rounds = 4;                       // after each of them the inliers are chosen again
-  int robust_rounds = 3;                // the first ones use Huber's loss
-  int iterations = 10;                  // at most, per round
-  double min_relative_decrease = 1e-5;  // of the cost; a smaller one ends the round
+  int rounds = 4;         // after each of them the inliers are chosen again
+  int robust_rounds = 3;  // the first ones use Huber's loss
+  int iterations = 10;    // at most, per round
+  double min_relative_decrease =
+      1e-5;  // of the cost at the start of a round; a smaller one ends it
 };
 
 struct PoseOptimizationResult {

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <Eigen/Cholesky>
+#include <ceres/tiny_solver.h>
+
 #include <Eigen/Core>
-#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "hullslam/geometry/rigid3.h"
 #include "optim/pose_optimization.h"
+#include "optim/square_root_form.h"
 
 namespace hullslam::internal {
 
@@ -42,37 +44,68 @@ enum class InlierRule { kBelowBound, kInFront };
 void ChooseInliers(const PinholeCamera& camera, std::span<const PoseObservation> observations,
                    InlierRule rule, PoseOptimizationResult& result);
 
-// Levenberg-Marquardt on the six parameters of Retract. A Problem has functions Cost and Linearize
-// like those of PointTerms.
+// A problem as ceres::TinySolver wants it: six residuals, the SquareRootForm of the normal
+// equations, and one that makes their squared norm the cost. A Problem has functions Cost and
+// Linearize like those of PointTerms.
+//
+// TinySolver adds steps to its parameters and knows no manifold. So the parameters are only a sum
+// of steps: a pose is that of the last linearisation, moved by the steps since then with Retract.
+// The derivatives are then those that Linearize gives.
 template <typename Problem>
-Rigid3 Minimize(const Problem& problem, Rigid3 pose, const PoseOptimizationOptions& options) {
-  Matrix6d hessian;
-  Vector6d gradient;
-  double damping = 1e-5;  // relative to the diagonal
-  double cost = problem.Cost(pose);
-  for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    problem.Linearize(pose, hessian, gradient);
-    Matrix6d damped = hessian;
-    damped.diagonal() += damping * hessian.diagonal() + Vector6d::Constant(1e-12);
-    const Vector6d step = damped.ldlt().solve(-gradient);
-    if (!step.allFinite()) {
-      break;
+class TinyPoseFunction {
+ public:
+  using Scalar = double;
+  enum { NUM_RESIDUALS = 7, NUM_PARAMETERS = 6 };
+
+  TinyPoseFunction(const Problem& problem, const Rigid3& start) : problem_(problem), pose_(start) {}
+
+  Rigid3 PoseAt(const Vector6d& parameters) const { return Retract(pose_, parameters - steps_); }
+
+  // `jacobian`: 7 x 6, by columns; may be null.
+  bool operator()(const double* parameters, double* residuals, double* jacobian) const {
+    const Vector6d steps = Eigen::Map<const Vector6d>(parameters);
+    const Rigid3 pose = PoseAt(steps);
+    const double cost = problem_.Cost(pose);
+    Eigen::Map<Eigen::Matrix<double, 7, 1>> all(residuals);
+    all.setZero();
+    all[6] = std::sqrt(cost);
+    if (jacobian == nullptr) {
+      return true;
     }
-    const Rigid3 moved = Retract(pose, step);
-    const double moved_cost = problem.Cost(moved);
-    if (!(moved_cost < cost)) {
-      damping *= 10.0;
-      continue;
+    pose_ = pose;
+    steps_ = steps;
+    Matrix6d hessian;
+    Vector6d gradient;
+    problem_.Linearize(pose, hessian, gradient);
+    Eigen::Map<Eigen::Matrix<double, 7, 6>> by_parameters(jacobian);
+    by_parameters.setZero();
+    // Without a form the derivative is zero, and the solver stays where it is.
+    if (form_.Compute(hessian, gradient)) {
+      all << form_.residual(), form_.LastResidual(cost);
+      by_parameters.topRows<6>() = Matrix6d(form_.jacobian());
     }
-    const double decrease = (cost - moved_cost) / cost;
-    pose = moved;
-    cost = moved_cost;
-    damping = std::max(damping * 0.1, 1e-9);
-    if (decrease < options.min_relative_decrease) {
-      break;
-    }
+    return true;
   }
-  return pose;
+
+ private:
+  const Problem& problem_;
+  mutable Rigid3 pose_;  // of the last linearisation
+  mutable Vector6d steps_ = Vector6d::Zero();
+  mutable SquareRootForm<6> form_;
+};
+
+// The pose with the least cost, by Levenberg-Marquardt from `pose` on.
+template <typename Problem>
+Rigid3 Minimize(const Problem& problem, const Rigid3& pose,
+                const PoseOptimizationOptions& options) {
+  const TinyPoseFunction<Problem> function(problem, pose);
+  ceres::TinySolver<TinyPoseFunction<Problem>> solver;
+  solver.options.max_num_iterations = options.iterations + 1;  // it counts from one
+  // In units of the squared norm of the residuals, which is the cost.
+  solver.options.function_tolerance = options.min_relative_decrease * problem.Cost(pose);
+  Vector6d steps = Vector6d::Zero();
+  solver.Solve(function, &steps);
+  return function.PoseAt(steps);
 }
 
 }  // namespace hullslam::internal

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optim/reduced_points_cost.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hullslam::internal {
@@ -27,17 +26,9 @@ void ReducedPointsCost::PrepareForEvaluation(bool evaluate_jacobians, bool new_e
       points_.Accept();
       has_moved_ = false;
     }
-    Linearize();
+    points_.Linearize(hessian_, gradient_);
+    has_form_ = form_.Compute(hessian_, gradient_);
   }
-}
-
-void ReducedPointsCost::Linearize() {
-  points_.Linearize(hessian_, residual_);
-  // Where a pose has no inlier left, or rounding has eaten a small eigenvalue, the factor would not
-  // exist.
-  hessian_.diagonal().array() += 1e-12 * hessian_.diagonal().maxCoeff();
-  factor_.compute(hessian_);
-  factor_.matrixL().solveInPlace(residual_);
 }
 
 bool ReducedPointsCost::Evaluate(double const* const* /*parameters*/, double* residuals,
@@ -52,11 +43,11 @@ bool ReducedPointsCost::Evaluate(double const* const* /*parameters*/, double* re
     all[size] = std::sqrt(2.0 * cost_);
     return true;
   }
-  if (factor_.info() != Eigen::Success) {
+  if (!has_form_) {
     return false;
   }
-  all.head(size) = residual_;
-  all[size] = std::sqrt(std::max(0.0, 2.0 * cost_ - residual_.squaredNorm()));
+  all << form_.residual(), form_.LastResidual(2.0 * cost_);
+  const Eigen::MatrixXd jacobian = form_.jacobian();
   for (size_t i = 0; i < points_.moving(); ++i) {
     if (jacobians[i] == nullptr) {
       continue;
@@ -64,12 +55,7 @@ bool ReducedPointsCost::Evaluate(double const* const* /*parameters*/, double* re
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 7, Eigen::RowMajor>> by_pose(jacobians[i],
                                                                                   size + 1, 7);
     by_pose.setZero();
-    // The rows of L that belong to this pose are the columns of L^T.
-    const Eigen::Index first = 6 * static_cast<Eigen::Index>(i);
-    for (Eigen::Index row = first; row < first + 6; ++row) {
-      by_pose.col(row - first).head(row + 1) =
-          factor_.matrixLLT().row(row).head(row + 1).transpose();
-    }
+    by_pose.topLeftCorner(size, 6) = jacobian.middleCols(6 * static_cast<Eigen::Index>(i), 6);
   }
   return true;
 }

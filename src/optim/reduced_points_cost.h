@@ -4,22 +4,20 @@
 #include <ceres/cost_function.h>
 #include <ceres/evaluation_callback.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <vector>
 
 #include "costs/pose_manifold.h"
 #include "optim/eliminated_points.h"
+#include "optim/square_root_form.h"
 
 namespace hullslam::internal {
 
 // What EliminatedPoints leaves of the points, as one cost on all moving poses, which Ceres can
 // solve together with other costs on these poses.
 //
-// Ceres wants residuals r and their Jacobian J. With the Cholesky factor S = L L^T of the reduced
-// Hessian and the reduced gradient g,
-//   r = L^-1 g and J = L^T give J^T J = S and J^T r = g.
-// One more residual, sqrt(2 cost - |r|^2), has no derivative and makes 1/2 |r|^2 the true cost.
+// Its residuals are the SquareRootForm of the normal equations, six for each moving pose, and one
+// more that makes half of their squared norm the true cost.
 //
 // The problem must have this object as its evaluation callback too: that is how it learns when
 // Ceres tries other poses and when it keeps them.
@@ -35,16 +33,15 @@ class ReducedPointsCost final : public ceres::CostFunction, public ceres::Evalua
                 double** jacobians) const override;
 
  private:
-  void Linearize();
-
   EliminatedPoints& points_;
   const std::vector<PoseBlock>& poses_;
   std::vector<Rigid3> cam_from_world_;
   double cost_ = 0.0;
   bool has_moved_ = false;  // since the points were accepted
   Eigen::MatrixXd hessian_;
-  Eigen::VectorXd residual_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  Eigen::VectorXd gradient_;
+  SquareRootForm<Eigen::Dynamic> form_;
+  bool has_form_ = false;
 };
 
 }  // namespace hullslam::internal
