@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Extraction of ORB features, and each of its stages, on IMAGE or, without it, on a drawn image:
-//   extraction_bench [IMAGE] [benchmark options]
+// Extraction of ORB features beside that of OpenCV, and each of its stages, on the given images or,
+// without them, on a drawn image. The stages use the first image only.
+//   extraction_bench [IMAGE...] [benchmark options]
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <opencv2/core.hpp>
+#include <opencv2/features2d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "features/blur.h"
 #include "features/corners.h"
 #include "features/orb_descriptor.h"
 #include "features/pyramid.h"
@@ -31,6 +36,41 @@ cv::Mat MakeImage() {
   random.fill(noise, cv::RNG::NORMAL, 0.0, 4.0);
   cv::add(image, noise, image, cv::noArray(), CV_8UC1);
   return image;
+}
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Milliseconds.
+template <typename Function>
+double Time(const Function& function) {
+  const auto begin = std::chrono::steady_clock::now();
+  function();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
+      .count();
+}
+
+// The yardstick: OpenCV's ORB with 1000 features on the same images, in turn with ours, so that
+// both suffer from the same other work. Prints the medians and their ratio. OpenCV uses one thread.
+void BesideOrb(benchmark::State& state, const std::vector<cv::Mat>& images) {
+  FeatureExtractor extractor(FeatureOptions{});
+  const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000);
+  std::vector<cv::KeyPoint> keypoints;
+  cv::Mat descriptors;
+  std::vector<double> ours;
+  std::vector<double> theirs;
+  for (auto _ : state) {
+    const cv::Mat& image = images[ours.size() % images.size()];
+    ours.push_back(Time([&] { benchmark::DoNotOptimize(extractor.Extract(image)); }));
+    theirs.push_back(
+        Time([&] { orb->detectAndCompute(image, cv::noArray(), keypoints, descriptors); }));
+  }
+  state.counters["ours_ms"] = Median(ours);
+  state.counters["orb_ms"] = Median(theirs);
+  state.counters["ratio"] = Median(ours) / Median(theirs);
 }
 
 void Extraction(benchmark::State& state, const cv::Mat& image) {
@@ -82,10 +122,10 @@ void Selection(benchmark::State& state, const cv::Mat& image) {
 void Blur(benchmark::State& state, const cv::Mat& image) {
   ImagePyramid pyramid(ScaleLevels::Create(8, 1.2));
   pyramid.Build(image);
-  cv::Mat blurred;
+  OrbBlur blur;
   for (auto _ : state) {
     for (int l = 0; l < 8; ++l) {
-      cv::GaussianBlur(pyramid.level(l), blurred, cv::Size(7, 7), 2.0, 2.0);
+      benchmark::DoNotOptimize(blur.Blur(pyramid.level(l)).data);
     }
   }
 }
@@ -136,7 +176,12 @@ void FindNear(benchmark::State& state, const cv::Mat& image) {
   }
 }
 
-void Register(const cv::Mat& image) {
+void Register(const std::vector<cv::Mat>& images) {
+  const cv::Mat& image = images.front();
+  benchmark::RegisterBenchmark("BesideOrb",
+                               [images](benchmark::State& state) { BesideOrb(state, images); })
+      ->Unit(benchmark::kMillisecond)
+      ->MinTime(3.0);
   using Function = void (*)(benchmark::State&, const cv::Mat&);
   const std::vector<std::pair<const char*, Function>> all = {{"Extraction", Extraction},
                                                              {"Pyramid", Pyramid},
@@ -159,13 +204,18 @@ void Register(const cv::Mat& image) {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   cv::setNumThreads(1);
-  const cv::Mat image =
-      argc > 1 ? cv::imread(argv[1], cv::IMREAD_GRAYSCALE) : hullslam::MakeImage();
-  if (image.empty()) {
-    std::fprintf(stderr, "error: %s: the file cannot be read as an image\n", argv[1]);
-    return 2;
+  std::vector<cv::Mat> images;
+  for (int i = 1; i < argc; ++i) {
+    images.push_back(cv::imread(argv[i], cv::IMREAD_GRAYSCALE));
+    if (images.back().empty()) {
+      std::fprintf(stderr, "error: %s: the file cannot be read as an image\n", argv[i]);
+      return 2;
+    }
   }
-  hullslam::Register(image);
+  if (images.empty()) {
+    images.push_back(hullslam::MakeImage());
+  }
+  hullslam::Register(images);
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }

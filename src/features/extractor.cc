@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
+#include "features/blur.h"
 #include "features/corners.h"
 #include "features/orb_descriptor.h"
 #include "features/pyramid.h"
@@ -52,59 +52,99 @@ void FeatureOptions::Bind(OptionTable& options) {
               "refine the positions of features within a pixel of their level");
 }
 
-struct FeatureExtractor::Impl {
-  explicit Impl(const FeatureOptions& options)
-      : levels(ScaleLevels::Create(options.level_count, options.scale_factor)),
-        quotas(LevelQuotas(options)),
-        pyramid(levels),
-        detector(options.initial_fast_threshold, options.minimum_fast_threshold),
-        subpixel(options.subpixel) {}
+namespace {
 
-  // Appends the features of level l.
-  void ExtractLevel(int l, ExtractedFeatures& features);
-  void Describe(const Corner& corner, int l, ExtractedFeatures& features) const;
+// Extracts the features of one level. Keeps its buffers from image to image.
+class LevelExtractor {
+ public:
+  LevelExtractor(const FeatureOptions& options, int level, size_t quota)
+      : level_(level),
+        quota_(quota),
+        subpixel_(options.subpixel),
+        detector_(options.initial_fast_threshold, options.minimum_fast_threshold) {}
 
-  ScaleLevels levels;
-  std::vector<size_t> quotas;
-  ImagePyramid pyramid;
-  CornerDetector detector;
-  bool subpixel;
-  QuadtreeSelection selection;
-  std::vector<Corner> corners;
-  std::vector<Corner> selected;
-  cv::Mat blurred;
+  void Extract(const ImagePyramid& pyramid);
+  const ExtractedFeatures& features() const { return features_; }
+
+ private:
+  void Describe(const Corner& corner, const ImagePyramid& pyramid, const cv::Mat& blurred);
+
+  int level_;
+  size_t quota_;
+  bool subpixel_;
+  CornerDetector detector_;
+  QuadtreeSelection selection_;
+  OrbBlur blur_;
+  std::vector<Corner> corners_;
+  std::vector<Corner> selected_;
+  ExtractedFeatures features_;
 };
 
-void FeatureExtractor::Impl::ExtractLevel(int l, ExtractedFeatures& features) {
-  const cv::Mat& image = pyramid.level(l);
-  detector.Detect(image, kPatchReach, corners);
-  selection.Select(corners, image.size(), quotas[static_cast<size_t>(l)], selected);
-  if (selected.empty()) {
+void LevelExtractor::Extract(const ImagePyramid& pyramid) {
+  features_.keypoints.clear();
+  features_.descriptors.clear();
+  const cv::Mat& image = pyramid.level(level_);
+  detector_.Detect(image, kPatchReach, corners_);
+  selection_.Select(corners_, image.size(), quota_, selected_);
+  if (selected_.empty()) {
     return;
   }
-  cv::GaussianBlur(image, blurred, cv::Size(7, 7), 2.0, 2.0, cv::BORDER_REFLECT_101);
-  for (const Corner& corner : selected) {
-    Describe(corner, l, features);
+  const cv::Mat& blurred = blur_.Blur(image);
+  for (const Corner& corner : selected_) {
+    Describe(corner, pyramid, blurred);
   }
 }
 
-void FeatureExtractor::Impl::Describe(const Corner& corner, int l,
-                                      ExtractedFeatures& features) const {
+void LevelExtractor::Describe(const Corner& corner, const ImagePyramid& pyramid,
+                              const cv::Mat& blurred) {
   const cv::Point center(corner.x, corner.y);
-  const Orientation orientation = ComputeOrientation(pyramid.level(l), center);
+  const Orientation orientation = ComputeOrientation(pyramid.level(level_), center);
   Keypoint keypoint;
   Eigen::Vector2f position(corner.x, corner.y);
-  if (subpixel) {
+  if (subpixel_) {
     position += SubpixelOffset(corner);
   }
-  keypoint.raw = pyramid.ToLevelZero(position, l);
+  keypoint.raw = pyramid.ToLevelZero(position, level_);
   keypoint.undistorted = keypoint.raw;
   keypoint.angle = orientation.Angle();
   keypoint.response = corner.score;
-  keypoint.level = l;
-  features.keypoints.push_back(keypoint);
-  features.descriptors.push_back(ComputeDescriptor(blurred, center, orientation));
+  keypoint.level = level_;
+  features_.keypoints.push_back(keypoint);
+  features_.descriptors.push_back(ComputeDescriptor(blurred, center, orientation));
 }
+
+// The features of all levels, in the order of the levels.
+ExtractedFeatures Join(const std::vector<LevelExtractor>& levels) {
+  size_t count = 0;
+  for (const LevelExtractor& level : levels) {
+    count += level.features().keypoints.size();
+  }
+  ExtractedFeatures all;
+  all.keypoints.reserve(count);
+  all.descriptors.reserve(count);
+  for (const LevelExtractor& level : levels) {
+    const auto& [keypoints, descriptors] = level.features();
+    all.keypoints.insert(all.keypoints.end(), keypoints.begin(), keypoints.end());
+    all.descriptors.insert(all.descriptors.end(), descriptors.begin(), descriptors.end());
+  }
+  return all;
+}
+
+}  // namespace
+
+struct FeatureExtractor::Impl {
+  explicit Impl(const FeatureOptions& options)
+      : levels(ScaleLevels::Create(options.level_count, options.scale_factor)), pyramid(levels) {
+    const std::vector<size_t> quotas = LevelQuotas(options);
+    for (int l = 0; l < options.level_count; ++l) {
+      extractors.emplace_back(options, l, quotas[static_cast<size_t>(l)]);
+    }
+  }
+
+  ScaleLevels levels;
+  ImagePyramid pyramid;
+  std::vector<LevelExtractor> extractors;  // one per level
+};
 
 FeatureExtractor::FeatureExtractor(const FeatureOptions& options)
     : impl_(std::make_unique<Impl>(options)) {}
@@ -115,20 +155,18 @@ FeatureExtractor& FeatureExtractor::operator=(FeatureExtractor&&) noexcept = def
 const ScaleLevels& FeatureExtractor::levels() const { return impl_->levels; }
 
 ExtractedFeatures FeatureExtractor::Extract(const cv::Mat& grey) {
+  SerialRunner runner;
+  return Extract(grey, runner);
+}
+
+ExtractedFeatures FeatureExtractor::Extract(const cv::Mat& grey, TaskRunner& runner) {
   Check(grey.type() == CV_8UC1, "the image is not CV_8UC1");
   Check(std::min(grey.cols, grey.rows) >= kSmallestSide, "the image is smaller than 64 x 64 px");
   impl_->pyramid.Build(grey);
-  ExtractedFeatures features;
-  size_t expected = 0;
-  for (const size_t quota : impl_->quotas) {
-    expected += quota + 2;
-  }
-  features.keypoints.reserve(expected);
-  features.descriptors.reserve(expected);
-  for (int l = 0; l < impl_->levels.count(); ++l) {
-    impl_->ExtractLevel(l, features);
-  }
-  return features;
+  // The largest level comes first, so that all threads end at about the same time.
+  runner.Run(impl_->extractors.size(),
+             [this](size_t l) { impl_->extractors[l].Extract(impl_->pyramid); });
+  return Join(impl_->extractors);
 }
 
 }  // namespace hullslam

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "features/pyramid.h"
 
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 
 #include "hullslam/util/check.h"
 
 namespace hullslam {
 
 ImagePyramid::ImagePyramid(const ScaleLevels& levels)
-    : scale_(levels.scale), images_(levels.scale.size()) {}
+    : scale_(levels.scale), images_(levels.scale.size()), shrinkers_(levels.scale.size()) {}
 
 void ImagePyramid::Build(const cv::Mat& grey) {
   Check(grey.type() == CV_8UC1, "the image is not CV_8UC1");
@@ -16,7 +16,7 @@ void ImagePyramid::Build(const cv::Mat& grey) {
   for (size_t l = 1; l < images_.size(); ++l) {
     const cv::Size size(cvRound(grey.cols / scale_[l]), cvRound(grey.rows / scale_[l]));
     Check(size.width > 0 && size.height > 0, "the image is too small for the pyramid");
-    cv::resize(images_[l - 1], images_[l], size, 0.0, 0.0, cv::INTER_LINEAR_EXACT);
+    shrinkers_[l].Shrink(images_[l - 1], size, images_[l]);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "features/resize.h"
 #include "hullslam/features/feature_set.h"
 
 namespace hullslam {
@@ -29,6 +30,7 @@ class ImagePyramid {
  private:
   std::vector<float> scale_;
   std::vector<cv::Mat> images_;
+  std::vector<ImageShrinker> shrinkers_;  // one per level; the first is not used
 };
 
 }  // namespace hullslam

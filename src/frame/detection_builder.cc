@@ -86,10 +86,10 @@ Detection DetectionOf(const InstanceMask& mask, const Outline& outline, const Fr
   return detection;
 }
 
-// Appends a candidate, unless the mask alone is a reason to reject it.
+// Makes the candidate, unless the mask alone is a reason to reject it.
 std::optional<DetectionRejection> Prepare(const InstanceMask& mask, size_t index,
                                           const FrameView& frame,
-                                          std::vector<Candidate>& candidates) {
+                                          std::optional<Candidate>& candidate) {
   if (mask.score < frame.options.min_score) {
     return DetectionRejection::kLowScore;
   }
@@ -110,14 +110,31 @@ std::optional<DetectionRejection> Prepare(const InstanceMask& mask, size_t index
                         frame.options.max_depth_offset, detection.points);
   }
   const double depth = MedianDepth(detection.points);
-  candidates.push_back({.index = index,
+  candidate = Candidate{.index = index,
                         .mask = &mask,
                         .parts = std::move(parts),
                         .outline = std::move(outline),
                         .region = std::move(region),
                         .detection = std::move(detection),
-                        .depth = depth});
+                        .depth = depth};
   return std::nullopt;
+}
+
+// The candidates of all masks that are not rejected, in the order of the masks.
+std::vector<Candidate> PrepareAll(std::span<const InstanceMask> masks, const FrameView& frame,
+                                  TaskRunner& runner, Rejections& rejections) {
+  std::vector<std::optional<Candidate>> prepared(masks.size());
+  rejections.resize(masks.size());
+  runner.Run(masks.size(),
+             [&](size_t i) { rejections[i] = Prepare(masks[i], i, frame, prepared[i]); });
+  std::vector<Candidate> candidates;
+  candidates.reserve(masks.size());
+  for (std::optional<Candidate>& candidate : prepared) {
+    if (candidate) {
+      candidates.push_back(std::move(*candidate));
+    }
+  }
+  return candidates;
 }
 
 // Whether two masks show the same object. The classes are not compared, because a real network can
@@ -217,21 +234,22 @@ std::string ToString(DetectionRejection reason) {
 
 DetectionResult DetectionBuilder::Build(std::span<const InstanceMask> masks, const cv::Mat& depth,
                                         std::span<const Keypoint> keypoints) const {
+  SerialRunner runner;
+  return Build(masks, depth, keypoints, runner);
+}
+
+DetectionResult DetectionBuilder::Build(std::span<const InstanceMask> masks, const cv::Mat& depth,
+                                        std::span<const Keypoint> keypoints,
+                                        TaskRunner& runner) const {
   CheckDepth(depth, camera_);
   const FrameView frame{
       .options = options_,
       .depth = {.camera = camera_, .image = depth, .units_per_metre = units_per_metre_},
       .keypoints = keypoints};
   DetectionResult result;
-  std::vector<Candidate> candidates;
-  candidates.reserve(masks.size());
-  for (size_t i = 0; i < masks.size(); ++i) {
-    result.rejections.push_back(Prepare(masks[i], i, frame, candidates));
-  }
+  std::vector<Candidate> candidates = PrepareAll(masks, frame, runner, result.rejections);
   RejectDuplicates(options_, candidates, result.rejections);
-  for (Candidate& candidate : candidates) {
-    AddLines(candidates, frame, candidate);
-  }
+  runner.Run(candidates.size(), [&](size_t i) { AddLines(candidates, frame, candidates[i]); });
   for (Candidate& candidate : candidates) {
     const std::vector<SilhouetteLine>& lines = candidate.detection.lines;
     const bool is_held = std::any_of(lines.begin(), lines.end(),

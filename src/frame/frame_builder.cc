@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <utility>
 
 #include "hullslam/frame/dynamic_mask.h"
@@ -51,7 +52,8 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
   }
 }
 
-std::shared_ptr<const Frame> FrameBuilder::Build(const ImageInput& image, FrameId id) {
+BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
+  using Clock = std::chrono::steady_clock;
   const cv::Size size(sensor_.camera.width, sensor_.camera.height);
   CheckSize("image", image.grey, size);
   CheckSize("depth image", image.depth, size);
@@ -61,14 +63,29 @@ std::shared_ptr<const Frame> FrameBuilder::Build(const ImageInput& image, FrameI
   if (image.depth.type() != CV_16UC1 && image.depth.type() != CV_32FC1) {
     throw InputError("the depth image is neither CV_16UC1 nor CV_32FC1");
   }
-  auto frame = std::make_shared<Frame>();
-  frame->id = id;
-  frame->timestamp = image.timestamp;
-  ExtractedFeatures extracted = extractor_.Extract(image.grey);
-  FrameFeatures& features = frame->features;
+  BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = Clock::now()};
+  built.frame->timestamp = image.timestamp;
+  AddFeatures(image, runner, built.frame->features);
+  built.masks.frames_with_masks = image.masks.empty() ? 0 : 1;
+  has_seen_masks_ |= !image.masks.empty();
+  if (detection_builder_ && !image.masks.empty()) {
+    AddDetections(image, runner, built);
+  }
+  if (detection_builder_ && has_seen_masks_) {
+    built.frame->depth = DepthGrid(image.depth, depth_.units_per_metre);
+  }
+  built.milliseconds =
+      std::chrono::duration<double, std::milli>(Clock::now() - built.begin).count();
+  return built;
+}
+
+void FrameBuilder::AddFeatures(const ImageInput& image, TaskRunner& runner,
+                               FrameFeatures& features) {
+  ExtractedFeatures extracted = extractor_.Extract(image.grey, runner);
   features.keypoints = std::move(extracted.keypoints);
   features.descriptors = std::move(extracted.descriptors);
-  if (const cv::Mat mask = DynamicMask(image.masks, dynamic_classes_, size); !mask.empty()) {
+  if (const cv::Mat mask = DynamicMask(image.masks, dynamic_classes_, image.grey.size());
+      !mask.empty()) {
     RemoveMasked(mask, features.keypoints, features.descriptors);
   }
   Undistort(sensor_.camera, features.keypoints);
@@ -77,29 +94,22 @@ std::shared_ptr<const Frame> FrameBuilder::Build(const ImageInput& image, FrameI
   features.grid =
       FeatureGrid(features.keypoints, Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
                   Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
-  counts_.frames_with_masks += image.masks.empty() ? 0 : 1;
-  if (detection_builder_ && !image.masks.empty()) {
-    frame->detections = Detect(image, features.keypoints);
-  }
-  if (detection_builder_ && counts_.frames_with_masks > 0) {
-    frame->depth = DepthGrid(image.depth, depth_.units_per_metre);
-  }
-  return frame;
 }
 
-std::vector<Detection> FrameBuilder::Detect(const ImageInput& image,
-                                            const std::vector<Keypoint>& keypoints) {
+void FrameBuilder::AddDetections(const ImageInput& image, TaskRunner& runner,
+                                 BuiltFrame& built) const {
   std::vector<InstanceMask> masks = image.masks;
   std::erase_if(masks,
                 [&](const InstanceMask& mask) { return dynamic_classes_.contains(mask.label); });
-  DetectionResult result = detection_builder_->Build(masks, image.depth, keypoints);
+  DetectionResult result =
+      detection_builder_->Build(masks, image.depth, built.frame->features.keypoints, runner);
   for (const std::optional<DetectionRejection>& rejection : result.rejections) {
     if (rejection) {
-      ++counts_.rejections[*rejection];
+      ++built.masks.rejections[*rejection];
     }
   }
-  counts_.detections += result.detections.size();
-  return std::move(result.detections);
+  built.masks.detections = result.detections.size();
+  built.frame->detections = std::move(result.detections);
 }
 
 }  // namespace hullslam

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -10,10 +8,11 @@
 
 #include "hullslam/camera/depth.h"
 #include "hullslam/features/extractor.h"
+#include "hullslam/frame/built_frame.h"
 #include "hullslam/frame/detection_builder.h"
-#include "hullslam/frame/frame.h"
 #include "hullslam/frame/image_input.h"
 #include "hullslam/frame/sensor.h"
+#include "hullslam/util/task_runner.h"
 
 namespace hullslam {
 
@@ -29,25 +28,18 @@ class FrameBuilder {
 
   // Throws InputError if an image does not have the size of the camera or a type that ImageInput
   // allows. The masks must pass ValidateMasks().
-  std::shared_ptr<const Frame> Build(const ImageInput& image, FrameId id);
-
-  struct Counts {
-    size_t detections = 0;
-    size_t frames_with_masks = 0;
-    std::map<DetectionRejection, size_t> rejections;  // masks that gave no detection, by the reason
-  };
-  // The counts over all frames that were built.
-  const Counts& counts() const { return counts_; }
+  BuiltFrame Build(const ImageInput& image, TaskRunner& runner);
 
  private:
-  std::vector<Detection> Detect(const ImageInput& image, const std::vector<Keypoint>& keypoints);
+  void AddFeatures(const ImageInput& image, TaskRunner& runner, FrameFeatures& features);
+  void AddDetections(const ImageInput& image, TaskRunner& runner, BuiltFrame& built) const;
 
   const Sensor& sensor_;
   DepthOptions depth_;
   FeatureExtractor extractor_;
   std::optional<DetectionBuilder> detection_builder_;
   std::set<std::string> dynamic_classes_;
-  Counts counts_;
+  bool has_seen_masks_ = false;
 };
 
 }  // namespace hullslam

@@ -37,6 +37,8 @@ class SequentialPipeline final : public Pipeline {
 
   std::shared_ptr<const Map> map() const override { return map_; }
 
+  bool is_mapping() const override { return false; }
+
   StageTimes times() const override {
     StageTimes times = tracker_.times();
     times.Merge(mapper_.times());

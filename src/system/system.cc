@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/system/system.h"
 
+#include <chrono>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <thread>
 #include <utility>
 
 #include "frame/frame_builder.h"
@@ -10,6 +12,8 @@
 #include "hullslam/system/compose_trajectory.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
+#include "hullslam/util/task_runner.h"
+#include "system/idle_core_runner.h"
 #include "system/pipeline.h"
 #include "system/sequential_pipeline.h"
 #include "system/threaded_pipeline.h"
@@ -69,6 +73,18 @@ std::unique_ptr<FrameBuilder> MakeFrameBuilder(const Sensor& sensor, const Syste
       SplitNames(options.tracking.dynamic_classes));
 }
 
+// Sets a flag as long as it lives.
+class ScopedFlag {
+ public:
+  explicit ScopedFlag(std::atomic<bool>& flag) : flag_(flag) { flag_ = true; }
+  ~ScopedFlag() { flag_ = false; }
+  ScopedFlag(const ScopedFlag&) = delete;
+  ScopedFlag& operator=(const ScopedFlag&) = delete;
+
+ private:
+  std::atomic<bool>& flag_;
+};
+
 }  // namespace
 
 System::System(const SystemOptions& options, PipelineKind kind)
@@ -76,7 +92,8 @@ System::System(const SystemOptions& options, PipelineKind kind)
       kind_(kind),
       sensor_(MakeSensor(options_)),
       frame_builder_(MakeFrameBuilder(sensor_, options_)),
-      pipeline_(MakePipeline(kind, sensor_, options_)) {}
+      pipeline_(MakePipeline(kind, sensor_, options_)),
+      runner_(MakeRunner()) {}
 
 System::~System() = default;
 
@@ -86,21 +103,51 @@ TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat
 }
 
 TrackedFrame System::Track(const ImageInput& image) {
-  Check(std::isfinite(image.timestamp), "the time stamp is not a number");
-  Check(frames_.empty() || image.timestamp > frames_.back().timestamp, "time stamps must increase");
+  CheckStamp(image.timestamp);
+  return Track(Build(image));
+}
+
+BuiltFrame System::Build(const ImageInput& image) {
   ValidateMasks(image.masks, options_.camera.width, options_.camera.height);
-  const FrameId id(static_cast<uint32_t>(frames_.size()));
-  std::shared_ptr<const Frame> frame;
-  {
-    const ScopedTimer timer(times_, "frame");
-    frame = frame_builder_->Build(image, id);
+  return frame_builder_->Build(image, *runner_);
+}
+
+TrackedFrame System::Track(BuiltFrame built) {
+  CheckStamp(built.frame->timestamp);
+  built.frame->id = FrameId(static_cast<uint32_t>(frames_.size()));
+  times_.Add("frame", built.milliseconds);
+  mask_counts_.Add(built.masks);
+  const FrameReport report = [&] {
+    const ScopedFlag flag(is_tracking_);
+    return pipeline_->Track(std::move(built.frame));
+  }();
+  if (kind_ == PipelineKind::kRealtime) {
+    times_.Add("track", std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() -
+                                                                  built.begin)
+                            .count());
   }
-  const FrameReport report = pipeline_->Track(std::move(frame));
   frames_.push_back(report.tracked);
   if (frame_callback_) {
     frame_callback_(report);
   }
   return frames_.back();
+}
+
+void System::CheckStamp(double timestamp) const {
+  Check(std::isfinite(timestamp), "the time stamp is not a number");
+  Check(frames_.empty() || timestamp > frames_.back().timestamp, "time stamps must increase");
+}
+
+// Only a camera that waits for its poses gains by a second thread. A run that is as fast as it can
+// be uses all cores already.
+std::unique_ptr<TaskRunner> System::MakeRunner() {
+  if (kind_ != PipelineKind::kRealtime) {
+    return std::make_unique<SerialRunner>();
+  }
+  return std::make_unique<IdleCoreRunner>([this] {
+    const unsigned busy = 1u + (is_tracking_ ? 1u : 0u) + (pipeline_->is_mapping() ? 1u : 0u);
+    return busy < std::thread::hardware_concurrency();
+  });
 }
 
 void System::Finish(const Cancellation* cancellation) { pipeline_->Finish(cancellation); }
@@ -109,6 +156,7 @@ void System::Reset() {
   auto frame_builder = MakeFrameBuilder(sensor_, options_);
   pipeline_ = MakePipeline(kind_, sensor_, options_);  // the old one ends its threads
   frame_builder_ = std::move(frame_builder);
+  mask_counts_ = {};
   frames_.clear();
   times_ = {};
 }
@@ -127,7 +175,7 @@ StageTimes System::times() const {
   const auto frame = samples.find("frame");
   const auto pose = samples.find("pose");
   StageTimes all = times;
-  if (frame != samples.end() && pose != samples.end()) {
+  if (kind_ != PipelineKind::kRealtime && frame != samples.end() && pose != samples.end()) {
     for (size_t i = 0; i < std::min(frame->second.size(), pose->second.size()); ++i) {
       all.Add("track", frame->second[i] + pose->second[i]);
     }
@@ -137,10 +185,10 @@ StageTimes System::times() const {
 
 ObjectCounts System::object_counts() const {
   ObjectCounts counts;
-  counts.detections = frame_builder_->counts().detections;
-  counts.frames_with_masks = frame_builder_->counts().frames_with_masks;
+  counts.detections = mask_counts_.detections;
+  counts.frames_with_masks = mask_counts_.frames_with_masks;
   counts.frames_without_masks = frames_.size() - counts.frames_with_masks;
-  for (const auto& [reason, count] : frame_builder_->counts().rejections) {
+  for (const auto& [reason, count] : mask_counts_.rejections) {
     counts.rejections["mask_" + ToString(reason)] = count;
   }
   for (const auto& [reason, count] : pipeline_->object_rejections()) {

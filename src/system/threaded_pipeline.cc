@@ -60,6 +60,11 @@ class ThreadedPipeline final : public Pipeline {
 
   std::shared_ptr<const Map> map() const override { return map_.Get(); }
 
+  bool is_mapping() const override {
+    const std::lock_guard lock(mutex_);
+    return is_busy_ || waiting_ > 0;
+  }
+
   StageTimes times() const override {
     StageTimes times = tracker_.times();
     const std::lock_guard lock(mutex_);

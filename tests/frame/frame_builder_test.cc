@@ -80,16 +80,16 @@ std::vector<uint32_t> KeypointsInside(const Frame& frame, double left, double to
 
 class FrameBuilderTest : public testing::Test {
  protected:
-  std::shared_ptr<const Frame> Build(const ImageInput& image) {
-    return FrameBuilder(sensor_, DepthOptions(), FewFeatures()).Build(image, FrameId(3));
+  std::unique_ptr<const Frame> Build(const ImageInput& image) {
+    return FrameBuilder(sensor_, DepthOptions(), FewFeatures()).Build(image, runner_).frame;
   }
 
+  SerialRunner runner_;
   const Sensor sensor_ = DistortedSensor();
 };
 
 TEST_F(FrameBuilderTest, HasOneEntryPerKeypointAndItsStamp) {
   const auto frame = Build(MakeImage());
-  EXPECT_EQ(frame->id, FrameId(3));
   EXPECT_EQ(frame->timestamp, 12.5);
   const FrameFeatures& features = frame->features;
   ASSERT_GT(features.size(), 100u);
@@ -191,7 +191,8 @@ TEST_F(FrameBuilderTest, DynamicThingsHideTheirKeypointsAndAreNoDetections) {
   image.masks = {Square("person", 200, 60, 80), Square("cup", 20, 160, 50)};
   const auto frame =
       FrameBuilder(sensor_, DepthOptions(), FewFeatures(), DetectionOptions(), {"person"})
-          .Build(image, FrameId(3));
+          .Build(image, runner_)
+          .frame;
   EXPECT_TRUE(KeypointsInside(*frame, 200.0, 60.0, 80.0).empty());
   EXPECT_GT(frame->features.size(), all->features.size() / 2);
   EXPECT_EQ(frame->features.descriptors.size(), frame->features.size());
@@ -204,24 +205,62 @@ TEST_F(FrameBuilderTest, WithoutObjectsThereAreNoDetectionsButDynamicThingsStill
   ImageInput image = MakeImage();
   image.masks = {Square("person", 200, 60, 80), Square("cup", 20, 160, 50)};
   FrameBuilder builder(sensor_, DepthOptions(), FewFeatures(), std::nullopt, {"person"});
-  const auto frame = builder.Build(image, FrameId(3));
-  EXPECT_TRUE(frame->detections.empty());
-  EXPECT_TRUE(KeypointsInside(*frame, 200.0, 60.0, 80.0).empty());
-  EXPECT_EQ(builder.counts().detections, 0u);
+  const BuiltFrame built = builder.Build(image, runner_);
+  EXPECT_TRUE(built.frame->detections.empty());
+  EXPECT_TRUE(KeypointsInside(*built.frame, 200.0, 60.0, 80.0).empty());
+  EXPECT_EQ(built.masks.detections, 0u);
+  EXPECT_EQ(built.masks.frames_with_masks, 1u);
 }
 
-TEST_F(FrameBuilderTest, CountsAreOfAllFrames) {
+TEST_F(FrameBuilderTest, CountsAreOfTheFrame) {
   FrameBuilder builder(sensor_, DepthOptions(), FewFeatures(), DetectionOptions(), {"person"});
   ImageInput image = MakeImage();
-  builder.Build(image, FrameId(0));
+  EXPECT_EQ(builder.Build(image, runner_).masks.frames_with_masks, 0u);
   image.masks = {Square("cup", 20, 160, 50), Square("mouse", 100, 100, 4)};
-  builder.Build(image, FrameId(1));
-  image.masks.push_back(Square("person", 200, 60, 80));
-  builder.Build(image, FrameId(2));
-  EXPECT_EQ(builder.counts().frames_with_masks, 2u);
-  EXPECT_EQ(builder.counts().detections, 2u);
-  EXPECT_EQ(builder.counts().rejections,
-            (std::map<DetectionRejection, size_t>{{DetectionRejection::kTooSmall, 2u}}));
+  for (int i = 0; i < 2; ++i) {
+    const BuiltFrame built = builder.Build(image, runner_);
+    EXPECT_EQ(built.masks.frames_with_masks, 1u);
+    EXPECT_EQ(built.masks.detections, 1u);
+    EXPECT_EQ(built.masks.rejections,
+              (std::map<DetectionRejection, size_t>{{DetectionRejection::kTooSmall, 1u}}));
+    image.masks.push_back(Square("person", 200, 60, 80));
+  }
+}
+
+// Runs the tasks from the last to the first, as a second thread might.
+class BackwardRunner final : public TaskRunner {
+ public:
+  void Run(size_t count, const std::function<void(size_t)>& task) override {
+    for (size_t i = count; i > 0; --i) {
+      task(i - 1);
+    }
+  }
+};
+
+TEST_F(FrameBuilderTest, TheOrderOfTheTasksDoesNotMatter) {
+  ImageInput image = MakeImage();
+  image.masks = {Square("cup", 20, 160, 50), Square("mouse", 100, 100, 4),
+                 Square("book", 22, 158, 50), Square("bowl", 180, 40, 60)};
+  FrameBuilder builder(sensor_, DepthOptions(), FewFeatures());
+  const BuiltFrame forward = builder.Build(image, runner_);
+  BackwardRunner backward_runner;
+  const BuiltFrame backward = builder.Build(image, backward_runner);
+  const Frame& expected = *forward.frame;
+  const Frame& frame = *backward.frame;
+  ASSERT_EQ(frame.features.descriptors, expected.features.descriptors);
+  EXPECT_EQ(frame.features.depth, expected.features.depth);
+  for (size_t i = 0; i < frame.features.size(); ++i) {
+    EXPECT_EQ(frame.features.keypoints[i].raw, expected.features.keypoints[i].raw);
+    EXPECT_EQ(frame.features.keypoints[i].level, expected.features.keypoints[i].level);
+  }
+  EXPECT_EQ(backward.masks.rejections, forward.masks.rejections);
+  ASSERT_EQ(frame.detections.size(), 2u);
+  ASSERT_EQ(expected.detections.size(), 2u);
+  for (size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(frame.detections[i].label, expected.detections[i].label);
+    EXPECT_EQ(frame.detections[i].points, expected.detections[i].points);
+    EXPECT_EQ(frame.detections[i].lines.size(), expected.detections[i].lines.size());
+  }
 }
 
 TEST_F(FrameBuilderTest, ImagesOfAnotherSizeAreRefused) {

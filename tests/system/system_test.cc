@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
+#include "hullslam/system/prefetcher.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 #include "map/invariants.h"
@@ -264,6 +267,74 @@ TEST(System, ARunAfterResetGivesTheBitsOfANewSystem) {
   }
   EXPECT_EQ(used.object_counts().detections, fresh.object_counts().detections);
   EXPECT_EQ(used.object_counts().rejections, fresh.object_counts().rejections);
+}
+
+ImageInput GreyInput(int index) {
+  ImageInput input{Time(index), {}, Wall::Depth(index), SquareMask()};
+  cv::cvtColor(TheWall().Photograph(index), input.grey, cv::COLOR_RGB2GRAY);
+  return input;
+}
+
+TEST(System, FramesBuiltAheadByAnotherThreadGiveTheSameBits) {
+  constexpr int kFrames = 10;
+  System plain(Wall::Options(), PipelineKind::kSequential);
+  for (int i = 0; i < kFrames; ++i) {
+    plain.Track(GreyInput(i));
+  }
+  plain.Finish();
+  System ahead(Wall::Options(), PipelineKind::kSequential);
+  {
+    Prefetcher<BuiltFrame> frames(
+        [&ahead, next = 0]() mutable {
+          return next < kFrames ? std::optional(ahead.Build(GreyInput(next++))) : std::nullopt;
+        },
+        4);
+    while (std::optional<BuiltFrame> frame = frames.Next()) {
+      ahead.Track(std::move(*frame));
+    }
+  }
+  ahead.Finish();
+  const Trajectory expected = plain.trajectory();
+  const Trajectory trajectory = ahead.trajectory();
+  ASSERT_EQ(trajectory.size(), expected.size());
+  for (size_t i = 0; i < trajectory.size(); ++i) {
+    EXPECT_EQ(trajectory[i].timestamp, expected[i].timestamp);
+    EXPECT_EQ(trajectory[i].world_from_cam.ToMatrix(), expected[i].world_from_cam.ToMatrix());
+  }
+  EXPECT_EQ(ahead.object_counts().detections, plain.object_counts().detections);
+  EXPECT_EQ(ahead.object_counts().frames_with_masks, static_cast<size_t>(kFrames));
+}
+
+TEST(System, AFrameThatIsOnlyBuiltChangesNothing) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  system.Build(GreyInput(0));
+  EXPECT_TRUE(system.frames().empty());
+  EXPECT_TRUE(system.times().samples().empty());
+  EXPECT_EQ(system.object_counts().frames_with_masks, 0u);
+  EXPECT_EQ(system.Track(system.Build(GreyInput(1))).frame, FrameId(0));
+  EXPECT_EQ(system.object_counts().frames_with_masks, 1u);
+  EXPECT_THROW(system.Track(system.Build(GreyInput(1))), CheckError) << "the same time stamp";
+}
+
+// In real time the user also waits while a frame that is built waits to be tracked. Otherwise it
+// may have been built long ago.
+TEST(System, TrackTimesCountWaitingOnlyInRealTime) {
+  constexpr std::chrono::milliseconds kWait(50);
+  for (const PipelineKind kind : {PipelineKind::kThreaded, PipelineKind::kRealtime}) {
+    System system(Wall::Options(), kind);
+    BuiltFrame built = system.Build(GreyInput(0));
+    built.begin -= kWait;
+    system.Track(std::move(built));
+    system.Finish();
+    const auto times = system.times();
+    const auto sample = [&](const char* stage) { return times.samples().at(stage).at(0); };
+    const double work = sample("frame") + sample("pose");
+    if (kind == PipelineKind::kRealtime) {
+      EXPECT_GE(sample("track"), work + kWait.count());
+    } else {
+      EXPECT_EQ(sample("track"), work);
+    }
+  }
 }
 
 TEST(System, OptionsThatDoNotFitTogetherAreRefused) {

@@ -7,6 +7,7 @@
 
 #include "hullslam/features/feature_set.h"
 #include "hullslam/util/option_table.h"
+#include "hullslam/util/task_runner.h"
 
 namespace hullslam {
 
@@ -43,6 +44,8 @@ class FeatureExtractor {
   // Throws CheckError unless `grey` is CV_8UC1 and at least 64 x 64 px. Returns about feature_count
   // features, or fewer if the image has fewer corners.
   ExtractedFeatures Extract(const cv::Mat& grey);
+  // The same features, with one task per level of the pyramid.
+  ExtractedFeatures Extract(const cv::Mat& grey, TaskRunner& runner);
 
  private:
   struct Impl;

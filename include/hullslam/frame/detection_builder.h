@@ -12,6 +12,7 @@
 #include "hullslam/frame/detection.h"
 #include "hullslam/frame/detection_options.h"
 #include "hullslam/frame/instance_mask.h"
+#include "hullslam/util/task_runner.h"
 
 namespace hullslam {
 
@@ -56,6 +57,9 @@ class DetectionBuilder {
   // for a depth image of another size or type.
   DetectionResult Build(std::span<const InstanceMask> masks, const cv::Mat& depth,
                         std::span<const Keypoint> keypoints) const;
+  // The same detections, with one task per mask.
+  DetectionResult Build(std::span<const InstanceMask> masks, const cv::Mat& depth,
+                        std::span<const Keypoint> keypoints, TaskRunner& runner) const;
 
  private:
   PinholeCamera camera_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "hullslam/frame/built_frame.h"
 #include "hullslam/frame/image_input.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/trajectory.h"
@@ -22,6 +24,7 @@ namespace hullslam {
 
 class FrameBuilder;
 class Pipeline;
+class TaskRunner;
 
 enum class PipelineKind {
   kSequential,  // reproducible to the bit
@@ -46,8 +49,9 @@ struct ObjectCounts {
 //   system.Finish();
 //   Trajectory trajectory = system.trajectory();
 //
-// Its functions are called by one thread at a time. Only map() may be called by other threads
-// meanwhile, if the pipeline is threaded. docs/library.md has more about threads.
+// Its functions are called by one thread at a time, with two exceptions: Build() may be called by
+// another thread meanwhile, and map() by any thread if the pipeline is threaded. docs/library.md
+// has more about threads.
 class System {
  public:
   // Throws InputError if SystemOptions::Validate does.
@@ -64,6 +68,13 @@ class System {
   TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
                      std::vector<InstanceMask> masks = {});
   TrackedFrame Track(const ImageInput& image);
+
+  // The two halves of Track(image). Building needs no map, so one other thread may build the next
+  // frames while this one tracks, but not during Reset(). Frames must be tracked in the order in
+  // which they were built; the results are then the same bits as those of Track(image). Both throw
+  // as Track(image) does.
+  BuiltFrame Build(const ImageInput& image);
+  TrackedFrame Track(BuiltFrame built);
 
   // `callback` is called at the end of every Track, in the thread that called Track. It may call
   // the const functions of this object; frames() contains the frame already. An exception from it
@@ -88,18 +99,26 @@ class System {
   const std::vector<TrackedFrame>& frames() const { return frames_; }
   // All tracked frames in the current map.
   Trajectory trajectory() const;
-  // Durations of the stages. "track" is the whole of Track without mapping. May be called at any
-  // time by the thread that calls Track; complete after Finish.
+  // Durations of the stages. "frame" is building a frame, "pose" is tracking it. With kRealtime,
+  // "track" is the time from the begin of building to the pose, with all waiting in between. Else
+  // frames may be built long before they are tracked, and "track" is the sum of the two. May be
+  // called at any time by the thread that calls Track; complete after Finish.
   StageTimes times() const;
   // What became of the masks. May be called like times().
   ObjectCounts object_counts() const;
 
  private:
+  std::unique_ptr<TaskRunner> MakeRunner();
+  void CheckStamp(double timestamp) const;
+
   const SystemOptions options_;
   const PipelineKind kind_;
   const Sensor sensor_;
   std::unique_ptr<FrameBuilder> frame_builder_;
   std::unique_ptr<Pipeline> pipeline_;
+  std::atomic<bool> is_tracking_ = false;
+  std::unique_ptr<TaskRunner> runner_;  // for building frames
+  DetectionCounts mask_counts_;         // of the frames that were tracked
   std::function<void(const FrameReport&)> frame_callback_;
   std::vector<TrackedFrame> frames_;
   StageTimes times_;

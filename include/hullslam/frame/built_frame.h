@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <memory>
+
+#include "hullslam/frame/detection_builder.h"
+#include "hullslam/frame/frame.h"
+
+namespace hullslam {
+
+// What became of the masks of one or more frames.
+struct DetectionCounts {
+  size_t detections = 0;
+  size_t frames_with_masks = 0;
+  std::map<DetectionRejection, size_t> rejections;  // masks that gave no detection, by the reason
+
+  void Add(const DetectionCounts& other);
+};
+
+// A frame that is not tracked yet. Building it needs no map, so it can be done ahead of tracking.
+struct BuiltFrame {
+  std::unique_ptr<Frame> frame;  // its id is set when it is tracked
+  DetectionCounts masks;
+  std::chrono::steady_clock::time_point begin;  // when building began
+  double milliseconds = 0.0;                    // how long building took
+};
+
+}  // namespace hullslam
