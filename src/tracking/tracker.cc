@@ -124,7 +124,7 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   }
   const LocalTracking tracking =
       TrackLocalMap(*frame, map, Context(), last_.reference, std::move(*start));
-  CountSightings(tracking);
+  CountSightings(map, tracking);
   if (tracking.estimate.EffectiveInliers() < options_.min_inliers) {
     return Lose(std::move(frame));
   }
@@ -178,7 +178,8 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame) {
   return result;
 }
 
-void Tracker::CountSightings(const LocalTracking& tracking) {
+void Tracker::CountSightings(const Map& map, const LocalTracking& tracking) {
+  first_sighting_revision_ = first_sighting_revision_.value_or(map.revision());
   for (const LandmarkId landmark : tracking.visible) {
     sightings_.CountVisible(landmark);
   }
@@ -195,7 +196,8 @@ KeyframeRequest Tracker::MakeRequest(std::shared_ptr<const Frame> frame,
   return {.frame = std::move(frame),
           .pose = pose,
           .landmarks = tracking.estimate.landmarks,
-          .sightings = sightings_.Take()};
+          .sightings = sightings_.Take(),
+          .oldest_revision = std::exchange(first_sighting_revision_, std::nullopt).value_or(0)};
 }
 
 }  // namespace hullslam

@@ -49,7 +49,7 @@ class Tracker {
   Result Initialize(std::shared_ptr<const Frame> frame);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
   Result Lose(std::shared_ptr<const Frame> frame);
-  void CountSightings(const LocalTracking& tracking);
+  void CountSightings(const Map& map, const LocalTracking& tracking);
   KeyframeRequest MakeRequest(std::shared_ptr<const Frame> frame, const LocalTracking& tracking,
                               const RelativePose& pose);
 
@@ -62,6 +62,8 @@ class Tracker {
   LastFrame last_;                  // only valid if there is a map
   double last_request_time_ = 0.0;  // s, time stamp of the frame of the last message
   SightingCounter sightings_;       // since the last request
+  // Map::revision() of the first map in which they were counted; absent if there are none.
+  std::optional<uint32_t> first_sighting_revision_;
   RequestMemory object_requests_;
 };
 
