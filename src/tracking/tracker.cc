@@ -118,6 +118,9 @@ Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
 Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& map,
                                const MapperStatus& mapper) {
   last_ = FollowMap(map, std::move(last_));
+  if (!frame->detections.empty()) {
+    object_index_.Follow(map, sensor_.camera);
+  }
   std::optional<PoseEstimate> start = FirstPose(*frame, map, Context(), last_);
   if (!start) {
     return Lose(std::move(frame));

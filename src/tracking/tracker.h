@@ -45,7 +45,7 @@ class Tracker {
   const StageTimes& times() const { return times_; }
 
  private:
-  TrackingContext Context() const { return {sensor_, options_, object_options_}; }
+  TrackingContext Context() const { return {sensor_, options_, object_options_, object_index_}; }
   Result Initialize(std::shared_ptr<const Frame> frame);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
   Result Lose(std::shared_ptr<const Frame> frame);
@@ -65,6 +65,7 @@ class Tracker {
   // Map::revision() of the first map in which they were counted; absent if there are none.
   std::optional<uint32_t> first_sighting_revision_;
   RequestMemory object_requests_;
+  ObjectIndex object_index_;  // of the map of the last frame
 };
 
 }  // namespace hullslam

@@ -640,8 +640,8 @@ TEST_F(TrackerTest, TheMotionModelCountsTheTimeBetweenFrames) {
   const auto found = [&](double time_step) {
     Frame next = *world_.Observe(FrameId(2), turn * turn * turn * turn).frame;
     next.timestamp = last.frame->timestamp + time_step;
-    const auto estimate =
-        PoseByMotionModel(next, made_.map, {world_.sensor(), options_, ObjectOptions()}, last);
+    const auto estimate = PoseByMotionModel(
+        next, made_.map, {world_.sensor(), options_, ObjectOptions(), ObjectIndex()}, last);
     return estimate ? estimate->inliers : 0;
   };
   EXPECT_GT(found(3.0 / 30.0), 50);
