@@ -11,6 +11,7 @@
 #include "hullslam/util/check.h"
 #include "map/covisibility.h"
 #include "map/landmark_edits.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 namespace {
@@ -162,14 +163,14 @@ std::vector<MapCorrection::Position> NewPositions(const Map& map, const MapCorre
 
 void MoveLandmarks(Map& map, const MapCorrection& correction, const WorldChanges& changes,
                    const ScaleLevels& levels) {
-  std::vector<bool> is_moved(map.landmarks().NextId().value, false);
+  IdSet<LandmarkId> moved;
   for (const auto& [id, position] : NewPositions(map, correction, changes)) {
     map.SetPosition(id, position);
-    is_moved[id.value] = true;
+    moved.Insert(id);
   }
   std::vector<LandmarkId> seen_anew;
   map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
-    if (is_moved[id.value] ||
+    if (moved.Contains(id) ||
         std::any_of(landmark.observations.begin(), landmark.observations.end(),
                     [&](const Observation& o) { return changes.Find(o.keyframe) != nullptr; })) {
       seen_anew.push_back(id);

@@ -49,14 +49,16 @@ void HandOverLoops(Map& map, KeyframeId id, const Keyframe& keyframe) {
 }  // namespace
 
 Map Map::Snapshot() {
+  ++revision_;
   Map copy;
   copy.keyframes_ = keyframes_.Snapshot();
   copy.landmarks_ = landmarks_.Snapshot();
   copy.objects_ = objects_.Snapshot();
-  copy.replaced_by_ = replaced_by_.Snapshot();
-  copy.object_replaced_by_ = object_replaced_by_.Snapshot();
+  copy.replaced_landmarks_ = replaced_landmarks_;
+  copy.replaced_objects_ = replaced_objects_;
   copy.culled_ = culled_.Snapshot();
   copy.correction_count_ = correction_count_;
+  copy.revision_ = revision_;
   return copy;
 }
 
@@ -124,12 +126,12 @@ void Map::ReplaceLandmark(LandmarkId landmark, LandmarkId by) {
     AddObservation(by, observation.keyframe, observation.keypoint);
   }
   CountSightings(by, old.visible, old.found);
-  replaced_by_.Put(landmark, by);
+  replaced_landmarks_.Add(landmark, by, revision_);
 }
 
 LandmarkId Map::Resolve(LandmarkId landmark) const {
   while (landmark.IsValid() && !landmarks_.Contains(landmark)) {
-    const LandmarkId* next = replaced_by_.Find(landmark);
+    const LandmarkId* next = replaced_landmarks_.Find(landmark);
     landmark = next != nullptr ? *next : LandmarkId();
   }
   return landmark;
@@ -192,15 +194,20 @@ void Map::ReplaceObject(ObjectId object, ObjectId by) {
   ObjectLandmark& changed = objects_.Mutable(by);
   changed.visible += old.visible;
   changed.found += old.found;
-  object_replaced_by_.Put(object, by);
+  replaced_objects_.Add(object, by, revision_);
 }
 
 ObjectId Map::Resolve(ObjectId object) const {
   while (object.IsValid() && !objects_.Contains(object)) {
-    const ObjectId* next = object_replaced_by_.Find(object);
+    const ObjectId* next = replaced_objects_.Find(object);
     object = next != nullptr ? *next : ObjectId();
   }
   return object;
+}
+
+void Map::ForgetReplaced(uint32_t revision) {
+  replaced_landmarks_.Forget(revision);
+  replaced_objects_.Forget(revision);
 }
 
 void Map::AddLoop(KeyframeId a, KeyframeId b) {
@@ -267,16 +274,21 @@ double Map::ScaleOf(KeyframeId keyframe) const {
 }
 
 std::optional<KeyframeId> Map::KeyframeOfFrame(FrameId frame) const {
-  // Keyframes are made in the order of their frames. Most calls ask for one of the newest.
-  for (uint32_t number = keyframes_.NextId().value; number-- > 0;) {
-    const KeyframeId id(number);
-    const Keyframe* keyframe = keyframes_.Find(id);
-    const FrameId candidate = keyframe != nullptr ? keyframe->frame->id : culled_.At(id).frame;
+  // Keyframes are made in the order of their frames, and every id is that of a keyframe, culled or
+  // not. So this is a binary search.
+  uint32_t first = 0;
+  uint32_t last = keyframes_.NextId().value;
+  while (first < last) {
+    const KeyframeId middle(first + (last - first) / 2);
+    const Keyframe* keyframe = keyframes_.Find(middle);
+    const FrameId candidate = keyframe != nullptr ? keyframe->frame->id : culled_.At(middle).frame;
     if (candidate == frame) {
-      return id;
+      return middle;
     }
     if (candidate < frame) {
-      break;
+      first = middle.value + 1;
+    } else {
+      last = middle.value;
     }
   }
   return std::nullopt;

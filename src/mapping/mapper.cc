@@ -53,6 +53,7 @@ void Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
   {
     const ScopedTimer timer(times_, "map_insert");
     keyframe = InsertKeyframe(map_, request, sensor_, recent_);
+    map_.ForgetReplaced(request.oldest_revision);
     PublishSnapshot();
   }
   ExtendMap(keyframe, hurry);
@@ -99,7 +100,14 @@ void Mapper::MapObjects(KeyframeId keyframe) {
   }
 }
 
-void Mapper::PublishSnapshot() { publish_(std::make_shared<const Map>(map_.Snapshot())); }
+void Mapper::PublishSnapshot() {
+  std::shared_ptr<const Map> snapshot;
+  {
+    const ScopedTimer timer(times_, "map_snapshot");
+    snapshot = std::make_shared<const Map>(map_.Snapshot());
+  }
+  publish_(std::move(snapshot));
+}
 
 void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry) {
   BundleWindow window;

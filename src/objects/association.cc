@@ -10,7 +10,9 @@
 #include "geometry/polygon_overlap.h"
 #include "hullslam/objects/object_view.h"
 #include "objects/initialisation.h"
+#include "objects/latest_views.h"
 #include "objects/point_statistics.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 namespace {
@@ -53,10 +55,11 @@ double SizeOf(std::span<const Eigen::Vector3d> points) {
 
 class Associator {
  public:
-  Associator(const Map& map, const Sensor& sensor, const Frame& frame, const Rigid3& cam_from_world,
-             std::span<const LandmarkId> landmarks, AssociationScope scope,
-             const AssociationOptions& options)
+  Associator(const Map& map, const ObjectIndex& index, const Sensor& sensor, const Frame& frame,
+             const Rigid3& cam_from_world, std::span<const LandmarkId> landmarks,
+             AssociationScope scope, const AssociationOptions& options)
       : map_(map),
+        index_(index),
         sensor_(sensor),
         frame_(frame),
         cam_from_world_(cam_from_world),
@@ -67,21 +70,18 @@ class Associator {
                Eigen::Vector2d(sensor.bounds.max_x, sensor.bounds.max_y)) {}
 
   std::vector<ObjectId> Run() const {
-    std::vector<Prediction> predictions;
-    map_.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
-      const bool is_wanted =
-          scope_ == AssociationScope::kAll || object.state == ObjectState::kMapped;
-      if (is_wanted && !object.observations.empty()) {
-        predictions.push_back(Predict(id, object));
-      }
-    });
-    const auto rows = static_cast<Eigen::Index>(frame_.detections.size());
-    Eigen::MatrixXd cost =
-        Eigen::MatrixXd::Ones(rows, static_cast<Eigen::Index>(predictions.size()));
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      const Seen seen = Look(frame_.detections[static_cast<size_t>(i)]);
+    std::vector<Seen> seen;
+    seen.reserve(frame_.detections.size());
+    for (const Detection& detection : frame_.detections) {
+      seen.push_back(Look(detection));
+    }
+    const std::vector<Prediction> predictions = PredictAll(seen);
+    Eigen::MatrixXd cost(static_cast<Eigen::Index>(seen.size()),
+                         static_cast<Eigen::Index>(predictions.size()));
+    for (Eigen::Index i = 0; i < cost.rows(); ++i) {
       for (Eigen::Index j = 0; j < cost.cols(); ++j) {
-        cost(i, j) = 1.0 - Similarity(seen, predictions[static_cast<size_t>(j)]);
+        cost(i, j) =
+            1.0 - Similarity(seen[static_cast<size_t>(i)], predictions[static_cast<size_t>(j)]);
       }
     }
     std::vector<ObjectId> objects(frame_.detections.size());
@@ -95,25 +95,75 @@ class Associator {
   }
 
  private:
-  Prediction Predict(ObjectId id, const ObjectLandmark& object) const {
+  // Predictions of all objects that any of the detections can show, by increasing id.
+  std::vector<Prediction> PredictAll(std::span<const Seen> seen) const {
+    std::vector<Prediction> predictions;
+    for (const ObjectId id : FindCandidates()) {
+      const ObjectLandmark& object = map_.objects().At(id);
+      const bool is_wanted =
+          scope_ == AssociationScope::kAll || object.state == ObjectState::kMapped;
+      if (!is_wanted || object.observations.empty()) {
+        continue;
+      }
+      const std::vector<ObjectView> views =
+          LatestViews(map_, object, static_cast<size_t>(options_.recent_views));
+      Prediction prediction = Locate(id, object, views.back());
+      const bool is_elsewhere = std::all_of(
+          seen.begin(), seen.end(), [&](const Seen& one) { return AreApart(one, prediction); });
+      if (!is_elsewhere) {
+        Predict(views, prediction);
+        predictions.push_back(std::move(prediction));
+      }
+    }
+    return predictions;
+  }
+
+  // A detection can only show an object whose prediction reaches into the image, or one that shares
+  // landmarks with it. Such an object is observed by a keyframe that observes the landmarks.
+  std::vector<ObjectId> FindCandidates() const {
+    std::vector<ObjectId> candidates = index_.FindVisible(sensor_, cam_from_world_);
+    IdSet<KeyframeId> observers;
+    for (const Detection& detection : frame_.detections) {
+      for (const uint32_t keypoint : detection.keypoints) {
+        const Landmark* landmark =
+            keypoint < landmarks_.size() ? map_.landmarks().Find(landmarks_[keypoint]) : nullptr;
+        if (landmark == nullptr) {
+          continue;
+        }
+        for (const Observation& observation : landmark->observations) {
+          observers.Insert(observation.keyframe);
+        }
+      }
+    }
+    for (const KeyframeId observer : observers.Sorted()) {
+      for (const ObjectId object : map_.keyframes().At(observer).objects) {
+        if (object.IsValid()) {
+          candidates.push_back(object);
+        }
+      }
+    }
+    SortUnique(candidates);
+    return candidates;
+  }
+
+  // A prediction with the cloud only.
+  Prediction Locate(ObjectId id, const ObjectLandmark& object, const ObjectView& last) const {
     Prediction prediction;
     prediction.id = id;
     prediction.object = &object;
-    if (object.has_shape) {
-      if (const auto ellipse =
-              ProjectEllipsoid(sensor_.camera.Matrix(), cam_from_world_, object.ellipsoid)) {
+    prediction.cloud = CollectPoints({&last, 1}, static_cast<size_t>(options_.cloud_points));
+    prediction.size = SizeOf(prediction.cloud);
+    return prediction;
+  }
+
+  // Completes a prediction from the latest views of the object.
+  void Predict(std::span<const ObjectView> views, Prediction& prediction) const {
+    if (prediction.object->has_shape) {
+      if (const auto ellipse = ProjectEllipsoid(sensor_.camera.Matrix(), cam_from_world_,
+                                                prediction.object->ellipsoid)) {
         prediction.ellipse = ClipToBox(ellipse->Polygon(32), image_);
       }
     }
-    ObjectLandmark recent = object;
-    if (recent.observations.size() > static_cast<size_t>(options_.recent_views)) {
-      recent.observations.erase(recent.observations.begin(),
-                                recent.observations.end() - options_.recent_views);
-    }
-    const std::vector<ObjectView> views = CollectViews(map_, recent);
-    prediction.cloud =
-        CollectPoints({&views.back(), 1}, static_cast<size_t>(options_.cloud_points));
-    prediction.size = SizeOf(prediction.cloud);
     prediction.carried = Carry(views);
     for (const ObjectView& view : views) {
       if (!view.detection->points.empty()) {
@@ -124,7 +174,6 @@ class Associator {
       }
     }
     SortUnique(prediction.landmarks);
-    return prediction;
   }
 
   // The last hull of an object, moved to the frame's pose. All its corners get one inverse depth
@@ -205,9 +254,10 @@ class Associator {
       landmarks.push_back(landmark);
     }
   }
-  static void SortUnique(std::vector<LandmarkId>& landmarks) {
-    std::sort(landmarks.begin(), landmarks.end());
-    landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  template <typename IdType>
+  static void SortUnique(std::vector<IdType>& ids) {
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   }
 
   // Whether the clouds of depth points are so far apart that they cannot belong to the same object.
@@ -285,6 +335,7 @@ class Associator {
   }
 
   const Map& map_;
+  const ObjectIndex& index_;
   const Sensor& sensor_;
   const Frame& frame_;
   const Rigid3& cam_from_world_;
@@ -296,12 +347,13 @@ class Associator {
 
 }  // namespace
 
-std::vector<ObjectId> AssociateDetections(const Map& map, const Sensor& sensor, const Frame& frame,
+std::vector<ObjectId> AssociateDetections(const Map& map, const ObjectIndex& index,
+                                          const Sensor& sensor, const Frame& frame,
                                           const Rigid3& cam_from_world,
                                           std::span<const LandmarkId> landmarks,
                                           AssociationScope scope,
                                           const AssociationOptions& options) {
-  return Associator(map, sensor, frame, cam_from_world, landmarks, scope, options).Run();
+  return Associator(map, index, sensor, frame, cam_from_world, landmarks, scope, options).Run();
 }
 
 }  // namespace hullslam

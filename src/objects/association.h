@@ -7,6 +7,7 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/objects/object_options.h"
+#include "objects/object_index.h"
 
 namespace hullslam {
 
@@ -19,7 +20,9 @@ enum class AssociationScope { kAll, kMapped };
 // and the class. Another class makes a pair less similar but does not exclude it. A pair is
 // excluded if the clouds of depth points are too far apart. The assignment with the largest total
 // similarity is chosen. `landmarks` has one entry per keypoint of the frame, or it is empty.
-std::vector<ObjectId> AssociateDetections(const Map& map, const Sensor& sensor, const Frame& frame,
+// `index` is that of the map; the map may have more objects.
+std::vector<ObjectId> AssociateDetections(const Map& map, const ObjectIndex& index,
+                                          const Sensor& sensor, const Frame& frame,
                                           const Rigid3& cam_from_world,
                                           std::span<const LandmarkId> landmarks,
                                           AssociationScope scope,

@@ -6,6 +6,7 @@
 
 #include "hullslam/objects/object_view.h"
 #include "objects/point_statistics.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 namespace {
@@ -111,6 +112,40 @@ bool AreOne(const Map& map, const ObjectLandmark& a, const ObjectLandmark& b,
          (in_each_other && MayHaveOneCentroid(map, a, b, options));
 }
 
+// An object with a shape, as far as AreNear needs it.
+struct Ball {
+  ObjectId id;
+  Eigen::Vector3d center;
+  double radius = 0.0;
+};
+
+// The pairs of near objects of which at least one is in `changed`: the smaller id first, the pairs
+// in increasing order. Every changed object is compared with a short record of every other one.
+std::vector<std::pair<ObjectId, ObjectId>> FindNearPairs(const Map& map,
+                                                         std::span<const ObjectId> changed) {
+  std::vector<Ball> balls;
+  for (const auto& [id, object] : map.objects()) {
+    if (object.has_shape) {
+      balls.push_back({id, object.ellipsoid.world_from_object.translation,
+                       object.ellipsoid.half_axes.maxCoeff()});
+    }
+  }
+  std::vector<std::pair<ObjectId, ObjectId>> pairs;
+  for (const Ball& one : balls) {
+    if (!std::binary_search(changed.begin(), changed.end(), one.id)) {
+      continue;
+    }
+    for (const Ball& other : balls) {
+      if (one.id != other.id && (one.center - other.center).norm() <= one.radius + other.radius) {
+        pairs.push_back(std::minmax(one.id, other.id));
+      }
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
 }  // namespace
 
 std::optional<ObjectId> FindWhole(const Map& map, const Sensor& sensor, ObjectId candidate) {
@@ -118,7 +153,7 @@ std::optional<ObjectId> FindWhole(const Map& map, const Sensor& sensor, ObjectId
   std::optional<ObjectId> whole;
   map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
     if (!whole && id != candidate && object.state == ObjectState::kMapped &&
-        object.Label() == part.Label() && AreNear(part.ellipsoid, object.ellipsoid) &&
+        AreNear(part.ellipsoid, object.ellipsoid) && object.Label() == part.Label() &&
         SharedKeyframes(part, object) == 0 && ShouldBeSeenWith(map, sensor, part, object)) {
       whole = id;
     }
@@ -136,21 +171,26 @@ double VolumeOverlap(const Ellipsoid& a, const Ellipsoid& b) {
 
 std::vector<std::pair<ObjectId, ObjectId>> FindDuplicates(const Map& map,
                                                           const FusionOptions& options) {
-  std::vector<ObjectId> ids;
-  map.objects().ForEach([&](ObjectId id, const ObjectLandmark&) { ids.push_back(id); });
+  std::vector<ObjectId> all;
+  map.objects().ForEach([&](ObjectId id, const ObjectLandmark&) { all.push_back(id); });
+  return FindDuplicates(map, all, options);
+}
+
+std::vector<std::pair<ObjectId, ObjectId>> FindDuplicates(const Map& map,
+                                                          std::span<const ObjectId> changed,
+                                                          const FusionOptions& options) {
   std::vector<std::pair<ObjectId, ObjectId>> pairs;
-  std::vector<bool> is_taken(ids.size(), false);
-  for (size_t i = 0; i < ids.size(); ++i) {
-    for (size_t j = i + 1; j < ids.size() && !is_taken[i]; ++j) {
-      const ObjectLandmark& a = map.objects().At(ids[i]);
-      const ObjectLandmark& b = map.objects().At(ids[j]);
-      if (is_taken[j] || !AreOne(map, a, b, options)) {
-        continue;
-      }
-      is_taken[i] = is_taken[j] = true;
-      const bool keep_first = a.observations.size() >= b.observations.size();
-      pairs.emplace_back(keep_first ? ids[i] : ids[j], keep_first ? ids[j] : ids[i]);
+  IdSet<ObjectId> taken;
+  for (const auto& [first, second] : FindNearPairs(map, changed)) {
+    const ObjectLandmark& a = map.objects().At(first);
+    const ObjectLandmark& b = map.objects().At(second);
+    if (taken.Contains(first) || taken.Contains(second) || !AreOne(map, a, b, options)) {
+      continue;
     }
+    taken.Insert(first);
+    taken.Insert(second);
+    const bool keep_first = a.observations.size() >= b.observations.size();
+    pairs.emplace_back(keep_first ? first : second, keep_first ? second : first);
   }
   return pairs;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,10 @@ namespace hullslam {
 // contains the centre of the other and the t-test finds no difference between their centroids. Each
 // object is in at most one pair.
 std::vector<std::pair<ObjectId, ObjectId>> FindDuplicates(const Map& map,
+                                                          const FusionOptions& options = {});
+// The same, but only pairs with at least one of the objects `changed` (by increasing id).
+std::vector<std::pair<ObjectId, ObjectId>> FindDuplicates(const Map& map,
+                                                          std::span<const ObjectId> changed,
                                                           const FusionOptions& options = {});
 
 // The mapped object that `candidate`, which has a shape, is probably a part of; nothing if there is

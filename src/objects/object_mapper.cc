@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "objects/association.h"
 #include "objects/fusion.h"
 #include "objects/initialisation.h"
+#include "objects/latest_views.h"
 #include "objects/misfit.h"
 #include "objects/point_statistics.h"
 #include "objects/refinement.h"
@@ -31,39 +33,31 @@ bool IsDue(const ObjectLandmark& object) {
   return views < object.shaped_views || views > object.shaped_views + object.shaped_views / 8;
 }
 
-// The last `count` views.
-std::vector<ObjectView> LatestViews(const Map& map, const ObjectLandmark& object, size_t count) {
-  std::vector<ObjectView> views = CollectViews(map, object);
-  if (views.size() > count) {
-    views.erase(views.begin(), views.end() - static_cast<std::ptrdiff_t>(count));
-  }
-  return views;
-}
-
 }  // namespace
 
 ObjectMapper::ObjectMapper(const Sensor& sensor, const ObjectOptions& options)
     : sensor_(sensor), options_(options) {}
 
 void ObjectMapper::Process(Map& map, KeyframeId keyframe) {
-  Observe(map, keyframe);
-  CountVisible(map, keyframe);
+  const ObjectIndex index(map, sensor_.camera);
+  Observe(map, index, keyframe);
+  CountVisible(map, index, keyframe);
   const std::vector<ObjectId> observed = map.keyframes().At(keyframe).objects;
   for (const ObjectId id : observed) {
     if (id.IsValid()) {
       Update(map, id);
     }
   }
-  FuseDuplicates(map);
+  FuseDuplicates(map, keyframe);
   CullSeldomSeen(map, keyframe);
 }
 
 // Adds an observation for each detection of the keyframe. A detection of no known object gives a
 // new object.
-void ObjectMapper::Observe(Map& map, KeyframeId keyframe) {
+void ObjectMapper::Observe(Map& map, const ObjectIndex& index, KeyframeId keyframe) {
   const Keyframe& observer = map.keyframes().At(keyframe);
   std::vector<ObjectId> objects =
-      AssociateDetections(map, sensor_, *observer.frame, observer.cam_from_world,
+      AssociateDetections(map, index, sensor_, *observer.frame, observer.cam_from_world,
                           observer.landmarks, AssociationScope::kAll, options_.association);
   for (uint32_t i = 0; i < objects.size(); ++i) {
     if (!objects[i].IsValid()) {
@@ -74,18 +68,24 @@ void ObjectMapper::Observe(Map& map, KeyframeId keyframe) {
 }
 
 // Counts in how many keyframes each mapped object should be seen, and in how many it is found.
-void ObjectMapper::CountVisible(Map& map, KeyframeId keyframe) const {
-  const std::vector<ObjectId>& observed = map.keyframes().At(keyframe).objects;
+void ObjectMapper::CountVisible(Map& map, const ObjectIndex& index, KeyframeId keyframe) const {
+  const Keyframe& observer = map.keyframes().At(keyframe);
+  const std::vector<ObjectId>& observed = observer.objects;
+  std::vector<ObjectId> candidates = index.FindVisible(sensor_, observer.cam_from_world);
+  candidates.insert(candidates.end(), observed.begin(), observed.end());
+  std::sort(candidates.begin(), candidates.end());
+  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
   std::vector<std::pair<ObjectId, bool>> visible;  // and whether it is found
-  map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
-    if (object.state != ObjectState::kMapped) {
-      return;
+  for (const ObjectId id : candidates) {
+    const ObjectLandmark* object = map.objects().Find(id);
+    if (object == nullptr || object->state != ObjectState::kMapped) {
+      continue;
     }
     const bool is_found = std::find(observed.begin(), observed.end(), id) != observed.end();
-    if (is_found || ShouldShow(map, sensor_, keyframe, object, options_)) {
+    if (is_found || ShouldShow(map, sensor_, keyframe, *object, options_)) {
       visible.emplace_back(id, is_found);
     }
-  });
+  }
   for (const auto& [id, is_found] : visible) {
     ObjectLandmark& object = map.MutableObject(id);
     ++object.visible;
@@ -100,6 +100,7 @@ Objection ObjectMapper::FewViews(const ObjectLandmark& object) const {
 }
 
 void ObjectMapper::Update(Map& map, ObjectId id) {
+  changed_.push_back(id);
   const ObjectLandmark& object = map.objects().At(id);
   if (object.observations.size() < static_cast<size_t>(options_.start.min_views)) {
     Reject(map, id, FewViews(object));
@@ -211,6 +212,7 @@ void ObjectMapper::Accept(Map& map, ObjectId id, std::span<const ObjectView> vie
 }
 
 void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
+  changed_.insert(changed_.end(), objects.begin(), objects.end());
   for (const ObjectId id : objects) {
     const ObjectLandmark* object = map.objects().Find(id);
     if (object == nullptr || object->state != ObjectState::kMapped) {
@@ -233,6 +235,7 @@ void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
 }
 
 void ObjectMapper::RefineMerged(Map& map, std::span<const ObjectId> objects) {
+  may_all_have_changed_ = true;
   for (const ObjectId id : objects) {
     if (map.objects().Contains(id) && !map.objects().At(id).observations.empty()) {
       Update(map, id);
@@ -240,8 +243,29 @@ void ObjectMapper::RefineMerged(Map& map, std::span<const ObjectId> objects) {
   }
 }
 
-void ObjectMapper::FuseDuplicates(Map& map) {
-  for (const auto& [kept, duplicate] : FindDuplicates(map, options_.fusion)) {
+// The objects that may have changed since the last call: those that this class changed, and those
+// of the neighbourhood, where local bundle adjustment moves keyframes. By increasing id.
+std::vector<ObjectId> ObjectMapper::TakeChanged(const Map& map, KeyframeId keyframe) {
+  std::vector<ObjectId> changed = std::exchange(changed_, {});
+  if (std::exchange(may_all_have_changed_, false)) {
+    map.objects().ForEach([&](ObjectId id, const ObjectLandmark&) { changed.push_back(id); });
+  }
+  const auto add_objects_of = [&](const Keyframe& observer) {
+    std::copy_if(observer.objects.begin(), observer.objects.end(), std::back_inserter(changed),
+                 [](ObjectId id) { return id.IsValid(); });
+  };
+  add_objects_of(map.keyframes().At(keyframe));
+  for (const Covisible& neighbour : map.keyframes().At(keyframe).covisible) {
+    add_objects_of(map.keyframes().At(neighbour.keyframe));
+  }
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  return changed;
+}
+
+void ObjectMapper::FuseDuplicates(Map& map, KeyframeId keyframe) {
+  const std::vector<ObjectId> changed = TakeChanged(map, keyframe);
+  for (const auto& [kept, duplicate] : FindDuplicates(map, changed, options_.fusion)) {
     spdlog::debug("object {} fused into object {}", duplicate.value, kept.value);
     ++rejections_[ObjectRejection::kFused];
     map.ReplaceObject(duplicate, kept);

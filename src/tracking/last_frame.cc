@@ -2,6 +2,7 @@
 #include "tracking/last_frame.h"
 
 #include "hullslam/util/check.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 namespace {
@@ -11,16 +12,11 @@ constexpr double kMaxExtrapolation = 4.0;  // time step over that of the measure
 // Replaces each landmark by the one that has replaced it. If two of them have become one, only the
 // first keypoint keeps it: a frame observes a landmark at one keypoint.
 void ResolveAll(const Map& map, std::vector<LandmarkId>& landmarks) {
-  std::vector<bool> is_taken(map.landmarks().NextId().value, false);
+  IdSet<LandmarkId> taken;
   for (LandmarkId& landmark : landmarks) {
     landmark = map.Resolve(landmark);
-    if (!landmark.IsValid()) {
-      continue;
-    }
-    if (is_taken[landmark.value]) {
+    if (landmark.IsValid() && !taken.Insert(landmark)) {
       landmark = LandmarkId();
-    } else {
-      is_taken[landmark.value] = true;
     }
   }
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "map/covisibility.h"
+#include "util/id_map.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 namespace {
@@ -12,35 +14,32 @@ constexpr size_t kNeighbours = 10;
 
 // The keyframes that observe any of the given landmarks, those that observe most first.
 std::vector<Covisible> CountObservers(const Map& map, std::span<const LandmarkId> landmarks) {
-  std::vector<int> votes(map.keyframes().NextId().value, 0);
+  IdMap<KeyframeId, int> votes;
   for (const LandmarkId id : landmarks) {
     const Landmark* landmark = map.landmarks().Find(id);
     if (landmark == nullptr) {
       continue;
     }
     for (const Observation& observation : landmark->observations) {
-      ++votes[observation.keyframe.value];
+      ++votes[observation.keyframe];
     }
   }
   std::vector<Covisible> observers;
-  for (uint32_t i = 0; i < votes.size(); ++i) {
-    if (votes[i] > 0) {
-      observers.push_back({KeyframeId(i), votes[i]});
-    }
+  for (const auto& [id, shared] : votes.entries()) {
+    observers.push_back({id, shared});
   }
-  std::stable_sort(observers.begin(), observers.end(),
-                   [](const Covisible& a, const Covisible& b) { return a.shared > b.shared; });
+  std::sort(observers.begin(), observers.end(), [](const Covisible& a, const Covisible& b) {
+    return a.shared != b.shared ? a.shared > b.shared : a.keyframe < b.keyframe;
+  });
   return observers;
 }
 
 // A set of keyframes that keeps the order in which they were added.
 class KeyframeSet {
  public:
-  KeyframeSet(const Map& map, size_t capacity)
-      : is_member_(map.keyframes().NextId().value, false), capacity_(capacity) {}
+  explicit KeyframeSet(size_t capacity) : capacity_(capacity) {}
   void Add(KeyframeId id) {
-    if (id.IsValid() && !IsFull() && !is_member_[id.value]) {
-      is_member_[id.value] = true;
+    if (id.IsValid() && !IsFull() && ids_.Insert(id)) {
       members_.push_back(id);
     }
   }
@@ -48,7 +47,7 @@ class KeyframeSet {
   const std::vector<KeyframeId>& members() const { return members_; }
 
  private:
-  std::vector<bool> is_member_;
+  IdSet<KeyframeId> ids_;
   std::vector<KeyframeId> members_;
   size_t capacity_;
 };
@@ -70,24 +69,18 @@ void AddNeighbours(const Map& map, KeyframeSet& set) {
   }
 }
 
-// The same as ObservedLandmarks, but with a bit per landmark instead of sorting. This is faster for
-// the 80 keyframes of every frame.
+// The same as ObservedLandmarks, but with a set of bits instead of sorting. This is faster for the
+// 80 keyframes of every frame.
 std::vector<LandmarkId> LandmarksOf(const Map& map, const std::vector<KeyframeId>& keyframes) {
-  std::vector<bool> is_local(map.landmarks().NextId().value, false);
+  IdSet<LandmarkId> local;
   for (const KeyframeId id : keyframes) {
     for (const LandmarkId landmark : map.keyframes().At(id).landmarks) {
       if (landmark.IsValid()) {
-        is_local[landmark.value] = true;
+        local.Insert(landmark);
       }
     }
   }
-  std::vector<LandmarkId> landmarks;
-  for (uint32_t i = 0; i < is_local.size(); ++i) {
-    if (is_local[i]) {
-      landmarks.push_back(LandmarkId(i));
-    }
-  }
-  return landmarks;
+  return local.Sorted();
 }
 
 }  // namespace
@@ -98,7 +91,7 @@ LocalMap SelectLocalMap(const Map& map, std::span<const LandmarkId> landmarks,
   if (observers.empty()) {
     observers.push_back({last_reference, 0});
   }
-  KeyframeSet set(map, max_keyframes);
+  KeyframeSet set(max_keyframes);
   for (const Covisible& observer : observers) {
     set.Add(observer.keyframe);
   }

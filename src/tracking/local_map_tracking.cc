@@ -12,6 +12,7 @@
 #include "tracking/object_guide.h"
 #include "tracking/pose_objects.h"
 #include "tracking/pose_refinement.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 namespace {
@@ -49,11 +50,7 @@ class LandmarkSearch {
   // The landmarks of the estimate count as searched.
   LandmarkSearch(const Frame& frame, const Map& map, const Sensor& sensor,
                  const PoseEstimate& estimate)
-      : frame_(frame),
-        map_(map),
-        sensor_(sensor),
-        cam_from_world_(estimate.cam_from_world),
-        is_known_(map.landmarks().NextId().value, false) {
+      : frame_(frame), map_(map), sensor_(sensor), cam_from_world_(estimate.cam_from_world) {
     for (const LandmarkId id : estimate.landmarks) {
       if (id.IsValid()) {
         MarkVisible(id);
@@ -69,7 +66,7 @@ class LandmarkSearch {
     std::vector<Projection> projections;
     std::vector<LandmarkId> ids;
     for (const LandmarkId id : candidates) {
-      if (is_known_[id.value]) {
+      if (known_.Contains(id)) {
         continue;
       }
       if (const auto projection =
@@ -91,13 +88,13 @@ class LandmarkSearch {
     }
   }
 
-  // By landmark id: whether it was searched or found before.
-  const std::vector<bool>& is_known() const { return is_known_; }
+  // The landmarks that were searched or found before.
+  const IdSet<LandmarkId>& known() const { return known_; }
   std::vector<LandmarkId> TakeVisible() { return std::move(visible_); }
 
  private:
   void MarkVisible(LandmarkId id) {
-    is_known_[id.value] = true;
+    known_.Insert(id);
     visible_.push_back(id);
   }
 
@@ -105,7 +102,7 @@ class LandmarkSearch {
   const Map& map_;
   const Sensor& sensor_;
   const Rigid3 cam_from_world_;
-  std::vector<bool> is_known_;
+  IdSet<LandmarkId> known_;
   std::vector<LandmarkId> visible_;
 };
 
@@ -121,8 +118,7 @@ LocalTracking TrackLocalMap(const Frame& frame, const Map& map, const TrackingCo
   search.Run(local.landmarks, {}, start.landmarks);
   tracking.objects = FindMappedObjects(frame, map, context, start);
   if (context.objects.guided_matching) {
-    for (const ObjectGuide& guide :
-         GuideByObjects(map, frame, tracking.objects, search.is_known())) {
+    for (const ObjectGuide& guide : GuideByObjects(map, frame, tracking.objects, search.known())) {
       search.Run(guide.landmarks, guide.is_outside, start.landmarks);
     }
   }

@@ -28,8 +28,7 @@ std::vector<uint8_t> KeypointsOutside(const Frame& frame, const Detection& detec
 }  // namespace
 
 std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object,
-                                    const std::vector<bool>& is_known,
-                                    const ObjectOptions& options) {
+                                    const IdSet<LandmarkId>& known, const ObjectOptions& options) {
   const std::vector<ObjectView> views =
       CollectViews(map, object, static_cast<size_t>(options.guide.views));
   if (views.empty()) {
@@ -40,7 +39,7 @@ std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object
     const Keyframe& keyframe = map.keyframes().At(view.keyframe);
     for (const uint32_t keypoint : view.detection->keypoints) {
       const LandmarkId landmark = keyframe.landmarks[keypoint];
-      if (landmark.IsValid() && !is_known[landmark.value]) {
+      if (landmark.IsValid() && !known.Contains(landmark)) {
         landmarks.push_back(landmark);
       }
     }
@@ -58,7 +57,7 @@ std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object
 
 std::vector<ObjectGuide> GuideByObjects(const Map& map, const Frame& frame,
                                         std::span<const ObjectId> objects,
-                                        const std::vector<bool>& is_known,
+                                        const IdSet<LandmarkId>& known,
                                         const ObjectOptions& options) {
   std::vector<ObjectGuide> guides;
   for (size_t i = 0; i < objects.size(); ++i) {
@@ -66,7 +65,7 @@ std::vector<ObjectGuide> GuideByObjects(const Map& map, const Frame& frame,
       continue;
     }
     std::vector<LandmarkId> landmarks =
-        LandmarksOn(map, map.objects().At(objects[i]), is_known, options);
+        LandmarksOn(map, map.objects().At(objects[i]), known, options);
     if (!landmarks.empty()) {
       guides.push_back({std::move(landmarks), KeypointsOutside(frame, frame.detections[i])});
     }

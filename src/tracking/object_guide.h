@@ -8,6 +8,7 @@
 #include "hullslam/frame/frame.h"
 #include "hullslam/map/map.h"
 #include "hullslam/objects/object_options.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 
@@ -20,9 +21,9 @@ struct ObjectGuide {
 
 // The landmarks on an object with a shape: those in its masks in its keyframes that lie in its
 // ellipsoid or near it (NearSurface), which landmarks of the background do not. By increasing id,
-// without the known ones (one entry per id).
+// without the known ones.
 std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object,
-                                    const std::vector<bool>& is_known,
+                                    const IdSet<LandmarkId>& known,
                                     const ObjectOptions& options = {});
 
 // A guide for each detection of the frame that shows an object with landmarks that are not known;
@@ -31,7 +32,7 @@ std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object
 // shares with the object's keyframes.
 std::vector<ObjectGuide> GuideByObjects(const Map& map, const Frame& frame,
                                         std::span<const ObjectId> objects,
-                                        const std::vector<bool>& is_known,
+                                        const IdSet<LandmarkId>& known,
                                         const ObjectOptions& options = {});
 
 }  // namespace hullslam

@@ -38,8 +38,9 @@ std::vector<ObjectId> FindMappedObjects(const Frame& frame, const Map& map,
   if (!is_wanted || frame.detections.empty() || map.objects().empty()) {
     return std::vector<ObjectId>(frame.detections.size());
   }
-  return AssociateDetections(map, context.sensor, frame, estimate.cam_from_world,
-                             estimate.landmarks, AssociationScope::kMapped, objects.association);
+  return AssociateDetections(map, context.object_index, context.sensor, frame,
+                             estimate.cam_from_world, estimate.landmarks, AssociationScope::kMapped,
+                             objects.association);
 }
 
 PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& frame,

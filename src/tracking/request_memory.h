@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <set>
 
 #include "hullslam/map/map.h"
@@ -11,12 +13,14 @@ namespace hullslam {
 class RequestMemory {
  public:
   // The number of requests since an object was last mapped that had never been mapped before. (An
-  // object that is rejected and mapped again is no success.)
+  // object that is rejected and mapped again is no success.) Looks through the objects only if the
+  // map has another revision than before.
   int CountFruitless(const Map& map);
   void AddRequest() { ++requests_; }
 
  private:
-  std::set<ObjectId> mapped_;  // all that were ever mapped
+  std::set<ObjectId> mapped_;         // all that were ever mapped
+  std::optional<uint32_t> revision_;  // of the map that was looked at last
   int requests_ = 0;
 };
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "hullslam/map/messages.h"
+#include "util/id_map.h"
 
 namespace hullslam {
 
@@ -12,18 +12,18 @@ namespace hullslam {
 // between two messages to the mapper.
 class SightingCounter {
  public:
-  void CountVisible(LandmarkId landmark) { ++Slot(landmark).visible; }
-  void CountFound(LandmarkId landmark) { ++Slot(landmark).found; }
+  void CountVisible(LandmarkId landmark) { ++counts_[landmark].visible; }
+  void CountFound(LandmarkId landmark) { ++counts_[landmark].found; }
 
   // The counts since the last call, by increasing id. Counting starts again from zero.
   std::vector<Sighting> Take();
 
  private:
-  Sighting& Slot(LandmarkId landmark);
-
-  static constexpr uint32_t kNone = UINT32_MAX;
-  std::vector<uint32_t> index_;  // by landmark id, into sightings_
-  std::vector<Sighting> sightings_;
+  struct Counts {
+    int visible = 0;
+    int found = 0;
+  };
+  IdMap<LandmarkId, Counts> counts_;
 };
 
 }  // namespace hullslam

@@ -118,13 +118,16 @@ Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
 Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& map,
                                const MapperStatus& mapper) {
   last_ = FollowMap(map, std::move(last_));
+  if (!frame->detections.empty()) {
+    object_index_.Follow(map, sensor_.camera);
+  }
   std::optional<PoseEstimate> start = FirstPose(*frame, map, Context(), last_);
   if (!start) {
     return Lose(std::move(frame));
   }
   const LocalTracking tracking =
       TrackLocalMap(*frame, map, Context(), last_.reference, std::move(*start));
-  CountSightings(tracking);
+  CountSightings(map, tracking);
   if (tracking.estimate.EffectiveInliers() < options_.min_inliers) {
     return Lose(std::move(frame));
   }
@@ -178,7 +181,8 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame) {
   return result;
 }
 
-void Tracker::CountSightings(const LocalTracking& tracking) {
+void Tracker::CountSightings(const Map& map, const LocalTracking& tracking) {
+  first_sighting_revision_ = first_sighting_revision_.value_or(map.revision());
   for (const LandmarkId landmark : tracking.visible) {
     sightings_.CountVisible(landmark);
   }
@@ -195,7 +199,8 @@ KeyframeRequest Tracker::MakeRequest(std::shared_ptr<const Frame> frame,
   return {.frame = std::move(frame),
           .pose = pose,
           .landmarks = tracking.estimate.landmarks,
-          .sightings = sightings_.Take()};
+          .sightings = sightings_.Take(),
+          .oldest_revision = std::exchange(first_sighting_revision_, std::nullopt).value_or(0)};
 }
 
 }  // namespace hullslam

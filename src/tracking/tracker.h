@@ -45,11 +45,11 @@ class Tracker {
   const StageTimes& times() const { return times_; }
 
  private:
-  TrackingContext Context() const { return {sensor_, options_, object_options_}; }
+  TrackingContext Context() const { return {sensor_, options_, object_options_, object_index_}; }
   Result Initialize(std::shared_ptr<const Frame> frame);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
   Result Lose(std::shared_ptr<const Frame> frame);
-  void CountSightings(const LocalTracking& tracking);
+  void CountSightings(const Map& map, const LocalTracking& tracking);
   KeyframeRequest MakeRequest(std::shared_ptr<const Frame> frame, const LocalTracking& tracking,
                               const RelativePose& pose);
 
@@ -62,7 +62,10 @@ class Tracker {
   LastFrame last_;                  // only valid if there is a map
   double last_request_time_ = 0.0;  // s, time stamp of the frame of the last message
   SightingCounter sightings_;       // since the last request
+  // Map::revision() of the first map in which they were counted; absent if there are none.
+  std::optional<uint32_t> first_sighting_revision_;
   RequestMemory object_requests_;
+  ObjectIndex object_index_;  // of the map of the last frame
 };
 
 }  // namespace hullslam

@@ -6,6 +6,7 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/objects/object_options.h"
 #include "hullslam/tracking/tracking_options.h"
+#include "objects/object_index.h"
 
 namespace hullslam {
 
@@ -14,6 +15,7 @@ struct TrackingContext {
   const Sensor& sensor;
   const TrackingOptions& options;
   const ObjectOptions& objects;
+  const ObjectIndex& object_index;  // of the map
 
   // Bounds of Mur-Artal and Tardos 2017, as shares of tracking.min_inliers: with its default of 30
   // they are 20 and 15 matches and 10 inliers.

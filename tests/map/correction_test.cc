@@ -332,7 +332,7 @@ TEST_P(LateCorrection, IsRefusedIfTheMapWasCorrectedSince) {
 TEST_P(LateCorrection, KeepsTheMapConsistent) {
   MapCorrection correction = MakeLateCorrection(2.0);
   const uint32_t keyframes = map_.keyframes().NextId().value;
-  const uint32_t landmarks = map_.landmarks().NextId().value + 1;
+  const uint32_t landmarks = static_cast<uint32_t>(map_.landmarks().slots()) + 1;
   const uint32_t objects = map_.objects().NextId().value + 1;
   for (int i = 0; i < 40; ++i) {
     correction.landmarks.push_back(

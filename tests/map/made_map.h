@@ -132,8 +132,10 @@ inline std::string Dump(const Map& map) {
     out << "\nlandmark " << id.value;
     Dump(landmark, out);
   });
-  for (uint32_t i = 0; i < map.landmarks().NextId().value; ++i) {
-    out << ' ' << map.Resolve(LandmarkId(i)).value;
+  for (uint32_t slot = 0; slot < map.landmarks().slots(); ++slot) {
+    for (uint32_t generation = 0; generation < 4; ++generation) {
+      out << ' ' << map.Resolve(LandmarkId(slot, generation)).value;
+    }
   }
   for (uint32_t i = 0; i < map.objects().NextId().value; ++i) {
     out << ' ' << map.Resolve(ObjectId(i)).value;

@@ -139,6 +139,62 @@ TEST(Map, ResolveFollowsAChainOfReplacements) {
   EXPECT_FALSE(map.Resolve(LandmarkId(99)).IsValid());
 }
 
+TEST(Map, AnErasedLandmarkStaysAbsentWhenItsSlotIsUsedAgain) {
+  Map map;
+  const KeyframeId keyframe = AddKeyframe(map, 5);
+  const LandmarkId old = map.AddLandmark({1.0, 0.0, 0.0}, keyframe);
+  Map snapshot = map.Snapshot();
+  map.EraseLandmark(old);
+  const LandmarkId later = map.AddLandmark({2.0, 0.0, 0.0}, keyframe);
+  EXPECT_EQ(later.slot(), old.slot());
+  EXPECT_FALSE(map.landmarks().Contains(old));
+  EXPECT_FALSE(map.Resolve(old).IsValid());
+  EXPECT_FALSE(snapshot.landmarks().Contains(later));
+  EXPECT_EQ(snapshot.landmarks().At(old).position.x(), 1.0);
+}
+
+// A slot is used again while messages still have the ids of earlier landmarks in it.
+TEST(Map, ReplacedIdsOfOneSlotDoNotMixUp) {
+  Map map;
+  const KeyframeId keyframe = AddKeyframe(map, 5);
+  const LandmarkId a = map.AddLandmark({}, keyframe);
+  const LandmarkId b = map.AddLandmark({}, keyframe);
+  const LandmarkId first = map.AddLandmark({}, keyframe);
+  map.ReplaceLandmark(first, a);
+  const LandmarkId second = map.AddLandmark({}, keyframe);
+  ASSERT_EQ(second.slot(), first.slot());
+  map.ReplaceLandmark(second, b);
+  EXPECT_EQ(map.Resolve(first), a);
+  EXPECT_EQ(map.Resolve(second), b);
+}
+
+TEST(Map, ForgetsReplacementsThatAreOlderThanASnapshot) {
+  Map map;
+  const KeyframeId keyframe = AddKeyframe(map, 5);
+  std::vector<LandmarkId> ids;
+  for (int i = 0; i < 4; ++i) {
+    ids.push_back(map.AddLandmark({}, keyframe));
+  }
+  EXPECT_EQ(map.revision(), 0u);
+  const Map first = map.Snapshot();
+  EXPECT_EQ(first.revision(), 1u);
+  EXPECT_EQ(map.revision(), 1u);
+  map.ReplaceLandmark(ids[0], ids[3]);
+  const Map second = map.Snapshot();
+  map.ReplaceLandmark(ids[1], ids[3]);
+  const ObjectId object = map.AddObject();
+  const ObjectId other = map.AddObject();
+  map.ReplaceObject(object, other);
+  map.ForgetReplaced(first.revision());
+  EXPECT_EQ(map.replaced_count(), 3u) << "the first snapshot has all of the replaced landmarks";
+  map.ForgetReplaced(second.revision());
+  EXPECT_EQ(map.replaced_count(), 2u);
+  EXPECT_FALSE(map.Resolve(ids[0]).IsValid());
+  EXPECT_EQ(map.Resolve(ids[1]), ids[3]);
+  EXPECT_EQ(map.Resolve(object), other);
+  EXPECT_EQ(second.Resolve(ids[0]), ids[3]) << "the snapshot keeps what it knows";
+}
+
 // A root and three keyframes, each the child of the one before, at random poses.
 class CulledKeyframes : public ::testing::Test {
  protected:

@@ -236,6 +236,31 @@ TEST_F(MapperTest, ARequestMayReferToWhatNoLongerExists) {
   EXPECT_LT(error.translation.norm(), 0.02);
 }
 
+TEST_F(MapperTest, RemembersReplacedIdsOnlyWhileRequestsMayHaveThem) {
+  const auto run = [&](bool is_current) {
+    Restart({});
+    for (uint32_t index = 0; index <= 24; index += 3) {
+      if (published_.empty()) {
+        ProcessFrame(index);
+        continue;
+      }
+      KeyframeId newest;
+      map().keyframes().ForEach([&](KeyframeId id, const Keyframe&) { newest = id; });
+      KeyframeRequest request = Request(index, newest);
+      request.oldest_revision = is_current ? map().revision() : 1;
+      // A tracker that misses landmarks: they are made again from depth, and then fused.
+      for (size_t i = 0; i < request.landmarks.size(); i += 2) {
+        request.landmarks[i] = LandmarkId();
+      }
+      Process(request);
+    }
+    return map().replaced_count();
+  };
+  const size_t all = run(false);
+  ASSERT_GT(all, 0u) << "nothing was replaced, so the test shows nothing";
+  EXPECT_LT(run(true), all);
+}
+
 // A correction moves the whole map. A keyframe that was tracked before the correction follows it.
 // The scale stays 1 because the depths of the frames are metric.
 TEST_F(MapperTest, ACorrectionIsAppliedAndPublished) {

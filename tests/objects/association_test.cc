@@ -37,7 +37,8 @@ class Association : public ::testing::Test {
     for (const MadeObject& object : seen) {
       frame.detections.push_back(Detect(object, sensor_, cam_from_world));
     }
-    return AssociateDetections(map_, sensor_, frame, cam_from_world, {}, scope, options);
+    return AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, frame,
+                               cam_from_world, {}, scope, options);
   }
   Sensor sensor_ = MakeObjectSensor();
   Map map_;
@@ -104,9 +105,9 @@ TEST_F(Association, WithoutDepthTheOutlineTells) {
     frame.detections.push_back(Detect(object, sensor_, cam_from_world));
     frame.detections.back().points.clear();
   }
-  EXPECT_EQ(
-      AssociateDetections(map_, sensor_, frame, cam_from_world, {}, AssociationScope::kAll, {}),
-      (std::vector<ObjectId>{ObjectId(0), ObjectId(1), ObjectId(2)}));
+  EXPECT_EQ(AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, frame,
+                                cam_from_world, {}, AssociationScope::kAll, {}),
+            (std::vector<ObjectId>{ObjectId(0), ObjectId(1), ObjectId(2)}));
 }
 
 TEST_F(Association, NothingIsSimilarEnoughForAHighThreshold) {
@@ -124,8 +125,8 @@ class Beside : public Association {
     Frame frame;
     frame.detections.push_back(Detect(beside_, sensor_, CameraOnCircle(0.0, 1.5, 0.6)));
     frame.detections.back().points.clear();
-    return AssociateDetections(map_, sensor_, frame, CameraOnCircle(0.0, 1.5, 0.6), {},
-                               AssociationScope::kAll, options);
+    return AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, frame,
+                               CameraOnCircle(0.0, 1.5, 0.6), {}, AssociationScope::kAll, options);
   }
   double Overlap() const {
     const Rigid3 pose = CameraOnCircle(0.0, 1.5, 0.6);
@@ -188,8 +189,8 @@ TEST_F(Association, AFewCommonLandmarksAreNotEnough) {
   next.detections.back().keypoints = {0, 1, 2};
   next.detections.back().points.clear();
   const auto associate = [&] {
-    return AssociateDetections(map_, sensor_, next, pose, landmarks, AssociationScope::kAll,
-                               {.min_similarity = 0.01})[0];
+    return AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, next, pose,
+                               landmarks, AssociationScope::kAll, {.min_similarity = 0.01})[0];
   };
   EXPECT_EQ(associate(), ObjectId(0));
   landmarks[2] = LandmarkId();
@@ -208,8 +209,8 @@ class UnknownDepth : public Association {
     return frame;
   }
   ObjectId Associate(const MadeObject& object, double x) {
-    return AssociateDetections(map_, sensor_, See(object, x), Sideways(x), {},
-                               AssociationScope::kAll, {})[0];
+    return AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, See(object, x),
+                               Sideways(x), {}, AssociationScope::kAll, {})[0];
   }
   void Add(double x) {
     const KeyframeId keyframe =

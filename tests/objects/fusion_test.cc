@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "objects/made_objects.h"
 
 namespace hullslam {
@@ -54,6 +56,20 @@ TEST_F(Duplicates, OfOnePlaceNeverSeenTogetherAreOneAndTheFullerOneStays) {
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_EQ(pairs[0].first, b);
   EXPECT_EQ(pairs[0].second, a);
+}
+
+TEST_F(Duplicates, AreSoughtForChangedObjectsOnly) {
+  Look({cup_, near_, far_}, 9);
+  const ObjectId a = Add(cup_, {0, 1, 2}, 0);
+  const ObjectId b = Add(near_, {3, 4, 5, 6}, 1);
+  const ObjectId c = Add(far_, {7, 8}, 2);
+  const auto all = FindDuplicates(map_);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(FindDuplicates(map_, std::vector{a}), all);
+  EXPECT_EQ(FindDuplicates(map_, std::vector{b}), all);
+  EXPECT_EQ(FindDuplicates(map_, std::vector{a, b, c}), all);
+  EXPECT_TRUE(FindDuplicates(map_, std::vector{c}).empty());
+  EXPECT_TRUE(FindDuplicates(map_, std::vector<ObjectId>()).empty());
 }
 
 TEST_F(Duplicates, NeedTheOverlapThatTheOptionsSay) {

@@ -104,7 +104,7 @@ class ObjectGuideTest : public testing::Test {
   SyntheticMap made_ = MakeSyntheticMap(
       world_, {0, 4, 8, 12, 16},
       [this](Frame& frame, const Rigid3& cam_from_world) { AddDetection(frame, cam_from_world); });
-  std::vector<bool> known_ = std::vector<bool>(made_.map.landmarks().NextId().value, false);
+  IdSet<LandmarkId> known_;
 };
 
 TEST_F(ObjectGuideTest, LandmarksBehindAnObjectAreNotOnIt) {
@@ -155,10 +155,12 @@ TEST_F(ObjectGuideTest, LeavesOutTheLandmarksThatAreKnown) {
   AddDetection(frame, SyntheticWorld::CamFromWorld(19));
   const std::vector<ObjectId> objects{ObjectId(0)};
   std::vector<LandmarkId> on_ball = LandmarksOn(made_.map, object(), known_);
-  known_[on_ball.front().value] = true;
+  known_.Insert(on_ball.front());
   on_ball.erase(on_ball.begin());
   EXPECT_EQ(GuideByObjects(made_.map, frame, objects, known_).at(0).landmarks, on_ball);
-  known_.assign(known_.size(), true);
+  for (const auto& [id, landmark] : made_.map.landmarks()) {
+    known_.Insert(id);
+  }
   EXPECT_TRUE(GuideByObjects(made_.map, frame, objects, known_).empty());
 }
 

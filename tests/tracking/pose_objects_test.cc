@@ -46,8 +46,8 @@ class PoseObjectsTest : public ::testing::Test {
     const TrackingOptions tracking;
     PoseEstimate estimate;
     estimate.cam_from_world = camera_;
-    const std::vector<ObjectId> ids =
-        FindMappedObjects(frame_, map_, {sensor_, tracking, options}, estimate);
+    const std::vector<ObjectId> ids = FindMappedObjects(
+        frame_, map_, {sensor_, tracking, options, ObjectIndex(map_, sensor_.camera)}, estimate);
     return MakePoseObjects(map_, sensor_, frame_, camera_, ids, options);
   }
   // Expects all three objects with the original lines of their detections and the whole misfit.

@@ -26,5 +26,18 @@ TEST(RequestMemory, CountsRequestsUntilAnObjectIsMappedForTheFirstTime) {
   EXPECT_EQ(memory.CountFruitless(map), 0);
 }
 
+TEST(RequestMemory, LooksAtEverySnapshot) {
+  Map map;
+  RequestMemory memory;
+  memory.AddRequest();
+  const ObjectId object = map.AddObject();
+  EXPECT_EQ(memory.CountFruitless(map.Snapshot()), 1);
+  map.MutableObject(object).state = ObjectState::kMapped;
+  const Map snapshot = map.Snapshot();
+  EXPECT_EQ(memory.CountFruitless(snapshot), 0);
+  memory.AddRequest();
+  EXPECT_EQ(memory.CountFruitless(snapshot), 1);
+}
+
 }  // namespace
 }  // namespace hullslam

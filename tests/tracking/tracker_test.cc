@@ -550,6 +550,22 @@ TEST_F(TrackerTest, ARequestHasThePoseTheLandmarksAndTheSightings) {
   }
 }
 
+// The mapper forgets what was replaced before the oldest snapshot that requests still refer to.
+TEST_F(TrackerTest, ARequestNamesTheOldestSnapshotOfItsIds) {
+  Begin();
+  const uint32_t oldest = map_->revision();
+  EXPECT_FALSE(Process(world_.Observe(1).frame).message);
+  map_ = Publish(made_.map);
+  ASSERT_GT(map_->revision(), oldest);
+  const Tracker::Result second = Process(DemandingFrame(2));
+  ASSERT_TRUE(second.message);
+  EXPECT_EQ(RequestOf(second)->oldest_revision, oldest) << "it has sightings of the first map";
+  const uint32_t newest = map_->revision();
+  const Tracker::Result third = Process(DemandingFrame(3));
+  ASSERT_TRUE(third.message);
+  EXPECT_EQ(RequestOf(third)->oldest_revision, newest);
+}
+
 TEST(Tracker, SameFramesGiveTheSameBits) {
   const SyntheticWorld world({.points = 400, .pixel_noise = 0.5, .flipped_bits = 10});
   SyntheticMap made = MakeSyntheticMap(world, {0, 8, 16});
@@ -624,8 +640,8 @@ TEST_F(TrackerTest, TheMotionModelCountsTheTimeBetweenFrames) {
   const auto found = [&](double time_step) {
     Frame next = *world_.Observe(FrameId(2), turn * turn * turn * turn).frame;
     next.timestamp = last.frame->timestamp + time_step;
-    const auto estimate =
-        PoseByMotionModel(next, made_.map, {world_.sensor(), options_, ObjectOptions()}, last);
+    const auto estimate = PoseByMotionModel(
+        next, made_.map, {world_.sensor(), options_, ObjectOptions(), ObjectIndex()}, last);
     return estimate ? estimate->inliers : 0;
   };
   EXPECT_GT(found(3.0 / 30.0), 50);

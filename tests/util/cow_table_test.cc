@@ -162,6 +162,43 @@ TEST(CowTable, FreesAChunkWithoutValues) {
   EXPECT_EQ(*table.At(LandmarkId(1)), 11);
 }
 
+// A snapshot copies pointers to blocks of 64 chunks. Two writes to one block clone it once, and the
+// other chunks of the block stay shared.
+TEST(CowTable, SharesWhatIsNotWrittenAcrossBlocks) {
+  constexpr uint32_t kBlock = 64 * kChunk;
+  Table table = MakeTable(3 * kBlock + 1);
+  const auto before = Content(table);
+  const Table snapshot = table.Snapshot();
+  table.Mutable(LandmarkId(kBlock)) = "changed";
+  table.Mutable(LandmarkId(2 * kBlock - 1)) = "changed";
+  table.Erase(LandmarkId(3 * kBlock));
+  table.Put(LandmarkId(9 * kBlock), "far away");
+  size_t shared = 0;
+  for (uint32_t i = 0; i < 3 * kBlock; ++i) {
+    shared += table.Find(LandmarkId(i)) == snapshot.Find(LandmarkId(i)) ? 1 : 0;
+  }
+  EXPECT_EQ(shared, 3 * kBlock - 2 * kChunk);
+  EXPECT_EQ(Content(snapshot), before);
+  EXPECT_EQ(table.size(), 3 * kBlock + 1);
+  EXPECT_EQ(Content(table).rbegin()->second, "far away") << "empty blocks in between are skipped";
+  EXPECT_EQ(table.Find(LandmarkId(5 * kBlock)), nullptr);
+}
+
+TEST(CowTable, AnErasedBlockCanBeFilledAgain) {
+  constexpr uint32_t kBlock = 64 * kChunk;
+  Table table = MakeTable(kBlock);
+  const Table snapshot = table.Snapshot();
+  for (uint32_t i = 0; i < kBlock; ++i) {
+    table.Erase(LandmarkId(i));
+  }
+  EXPECT_TRUE(table.empty());
+  EXPECT_TRUE(Content(table).empty());
+  table.Put(LandmarkId(5), "five");
+  EXPECT_EQ(Content(table), (std::map<uint32_t, std::string>{{5, "five"}}));
+  EXPECT_EQ(snapshot.size(), kBlock);
+  EXPECT_EQ(snapshot.At(LandmarkId(5)), "5");
+}
+
 TEST(CowTable, MovingATableDoesNotMoveItsValues) {
   Table table = MakeTable(5);
   const std::string* value = table.Find(LandmarkId(4));

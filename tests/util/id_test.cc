@@ -22,6 +22,25 @@ TEST(Id, ComparesByNumber) {
   EXPECT_LT(LandmarkId(4000000000u), LandmarkId()) << "the invalid id is above all others";
 }
 
+TEST(Id, OfARecycledKindHasASlotAndAGeneration) {
+  const LandmarkId id(7, 3);
+  EXPECT_EQ(id.slot(), 7u);
+  EXPECT_EQ(id.generation(), 3u);
+  EXPECT_NE(id, LandmarkId(7));
+  EXPECT_EQ(LandmarkId(7).slot(), 7u);
+  EXPECT_EQ(LandmarkId(7).generation(), 0u);
+  EXPECT_EQ(LandmarkId(LandmarkId::kMaxSlot, LandmarkId::kMaxGeneration), LandmarkId());
+  EXPECT_EQ(KeyframeId(4000000000u).slot(), 4000000000u) << "other ids are their own slots";
+}
+
+TEST(Id, OfARecycledKindIsOrderedBySlotThenGeneration) {
+  EXPECT_LT(LandmarkId(7, 3), LandmarkId(8, 0));
+  EXPECT_LT(LandmarkId(7, 200), LandmarkId(8, 3));
+  EXPECT_LT(LandmarkId(7, 2), LandmarkId(7, 3));
+  EXPECT_LT(LandmarkId(LandmarkId::kMaxSlot - 1, 255), LandmarkId());
+  EXPECT_LT(KeyframeId(0x00000001), KeyframeId(0x01000000)) << "other ids by their numbers";
+}
+
 TEST(Id, DoesNotConvert) {
   EXPECT_FALSE((std::is_convertible_v<KeyframeId, LandmarkId>));
   EXPECT_FALSE((std::is_constructible_v<KeyframeId, LandmarkId>));

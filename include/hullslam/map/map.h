@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -8,8 +9,10 @@
 #include "hullslam/map/keyframe.h"
 #include "hullslam/map/landmark.h"
 #include "hullslam/map/object_landmark.h"
+#include "hullslam/map/replacements.h"
 #include "hullslam/util/cow_table.h"
 #include "hullslam/util/id.h"
+#include "hullslam/util/recycling_table.h"
 
 namespace hullslam {
 
@@ -21,9 +24,11 @@ class Map {
  public:
   // A copy of the map. The two share memory until one of them is changed.
   Map Snapshot();
+  // The number of snapshots that were taken of this map. Of a snapshot: its own number, from 1.
+  uint32_t revision() const { return revision_; }
 
   const CowTable<KeyframeId, Keyframe, 1>& keyframes() const { return keyframes_; }
-  const CowTable<LandmarkId, Landmark>& landmarks() const { return landmarks_; }
+  const RecyclingTable<LandmarkId, Landmark>& landmarks() const { return landmarks_; }
   const CowTable<ObjectId, ObjectLandmark, 4>& objects() const { return objects_; }
 
   KeyframeId AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& cam_from_world);
@@ -38,7 +43,8 @@ class Map {
   // Moves the observations of `landmark` to `by` and redirects its id. If a keyframe observes both,
   // only its observation of `by` stays.
   void ReplaceLandmark(LandmarkId landmark, LandmarkId by);
-  // The landmark that has replaced `landmark`, or `landmark` itself; invalid if that is erased.
+  // The landmark that has replaced `landmark`, or `landmark` itself; invalid if that is erased, or
+  // if the replacement was forgotten.
   LandmarkId Resolve(LandmarkId landmark) const;
 
   // Adds a candidate without observations.
@@ -52,6 +58,12 @@ class Map {
   // Like ReplaceLandmark. The shape is that of `by`.
   void ReplaceObject(ObjectId object, ObjectId by);
   ObjectId Resolve(ObjectId object) const;
+
+  // Forgets which landmarks and objects were replaced before the snapshot of this revision was
+  // taken. To be called when nobody will ask any more for ids of older snapshots.
+  void ForgetReplaced(uint32_t revision);
+  // How many replaced ids are remembered.
+  size_t replaced_count() const { return replaced_landmarks_.size() + replaced_objects_.size(); }
 
   // Adds a loop edge between two keyframes of the map, unless they already have one.
   void AddLoop(KeyframeId a, KeyframeId b);
@@ -96,12 +108,13 @@ class Map {
   Rigid3 AtCurrentScale(const RelativePose& pose) const;
 
   CowTable<KeyframeId, Keyframe, 1> keyframes_;
-  CowTable<LandmarkId, Landmark> landmarks_;
+  RecyclingTable<LandmarkId, Landmark> landmarks_;
   CowTable<ObjectId, ObjectLandmark, 4> objects_;
-  CowTable<LandmarkId, LandmarkId> replaced_by_;
-  CowTable<ObjectId, ObjectId, 16> object_replaced_by_;
+  Replacements<LandmarkId> replaced_landmarks_;
+  Replacements<ObjectId> replaced_objects_;
   CowTable<KeyframeId, CulledKeyframe> culled_;
   uint32_t correction_count_ = 0;
+  uint32_t revision_ = 0;
 };
 
 }  // namespace hullslam

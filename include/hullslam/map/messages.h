@@ -50,6 +50,9 @@ struct KeyframeRequest {
   RelativePose pose;
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
   std::vector<Sighting> sightings;    // one per landmark
+  // Map::revision() of the oldest snapshot that the ids were taken from. Later requests have no
+  // older one, so the mapper forgets what was replaced before it.
+  uint32_t oldest_revision = 0;
 };
 
 // Moves keyframes to where a loop closure or a global bundle adjustment has put them, and with them

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <span>
+#include <vector>
 
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
@@ -11,6 +12,8 @@
 #include "hullslam/objects/validity.h"
 
 namespace hullslam {
+
+class ObjectIndex;
 
 // Maps objects from one keyframe after the other: association, initialisation, refinement, checks
 // of validity, fusion and culling. It changes no pose and no landmark.
@@ -27,27 +30,32 @@ class ObjectMapper {
   // measured.
   void Recheck(Map& map, std::span<const ObjectId> objects);
 
-  // Finds the shapes of objects after other objects were merged into them (map/correction.h).
+  // To be called after a correction of the map (map/correction.h). Finds the shapes of the objects
+  // that other objects were merged into.
   void RefineMerged(Map& map, std::span<const ObjectId> objects);
 
   // How often an object was rejected, for each reason.
   const std::map<ObjectRejection, size_t>& rejections() const { return rejections_; }
 
  private:
-  void Observe(Map& map, KeyframeId keyframe);
-  void CountVisible(Map& map, KeyframeId keyframe) const;
+  void Observe(Map& map, const ObjectIndex& index, KeyframeId keyframe);
+  void CountVisible(Map& map, const ObjectIndex& index, KeyframeId keyframe) const;
   void Update(Map& map, ObjectId id);
   void Start(Map& map, ObjectId id, std::span<const ObjectView> views);
   void Refine(Map& map, ObjectId id, std::span<const ObjectView> views);
   void Accept(Map& map, ObjectId id, std::span<const ObjectView> views) const;
   Objection FewViews(const ObjectLandmark& object) const;
-  void FuseDuplicates(Map& map);
+  void FuseDuplicates(Map& map, KeyframeId keyframe);
+  std::vector<ObjectId> TakeChanged(const Map& map, KeyframeId keyframe);
   void CullSeldomSeen(Map& map, KeyframeId keyframe);
   void Reject(Map& map, ObjectId id, const Objection& objection);
 
   const Sensor& sensor_;
   ObjectOptions options_;
   std::map<ObjectRejection, size_t> rejections_;
+  // The objects that may have changed since duplicates were last sought, in any order.
+  std::vector<ObjectId> changed_;
+  bool may_all_have_changed_ = true;
 };
 
 }  // namespace hullslam

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -15,10 +16,12 @@
 
 namespace hullslam {
 
-// A table from ids to values, stored in chunks that are copied on write. Snapshot() shares all
-// chunks with the original table and costs one pointer copy per chunk. The first write to a shared
-// chunk clones that chunk only. Iteration is in the order of ids. Ids are never reused, so an
-// erased id stays empty. A chunk without values is freed.
+// A table from ids to values, stored in chunks that are copied on write. Each group of kFan chunks
+// has a block with pointers to them. Snapshot() shares all blocks with the original table and costs
+// one pointer copy per block. The first write to a shared chunk clones that chunk and the block
+// with its pointers only. Iteration is in the order of ids. Ids are never reused, so an erased id
+// stays empty (util/recycling_table.h uses ids again). A chunk without values is freed, and so is a
+// block without chunks.
 //
 // A table has one writer. Other threads may read a snapshot, or write to it as their own table.
 //
@@ -50,9 +53,7 @@ class CowTable {
       return before;
     }
     bool operator==(const Iterator&) const = default;
-    bool operator==(std::default_sentinel_t) const {
-      return index_ >= kChunkSize * table_->chunks_.size();
-    }
+    bool operator==(std::default_sentinel_t) const { return index_ >= table_->Capacity(); }
 
    private:
     friend class CowTable;
@@ -71,9 +72,9 @@ class CowTable {
   // Returns a table with the same values. After this call a write to either table clones the shared
   // chunk first.
   CowTable Snapshot() {
-    owned_.assign(chunks_.size(), false);
+    owned_.assign(blocks_.size(), false);
     CowTable copy;
-    copy.chunks_ = chunks_;
+    copy.blocks_ = blocks_;
     copy.owned_ = owned_;
     copy.size_ = size_;
     copy.next_id_ = next_id_;
@@ -96,18 +97,16 @@ class CowTable {
   // Stores a value under an id that has none. Later ids from Insert() are larger.
   void Put(IdType id, Value value) {
     Check(id.IsValid() && !Contains(id), "the id is invalid or has a value");
-    const size_t chunk = id.value / kChunkSize;
-    if (chunk >= chunks_.size()) {
-      chunks_.resize(chunk + 1);
-      owned_.resize(chunk + 1, false);
+    Block& block = WritableBlock(id.value / kBlockSize);
+    const size_t place = PlaceInBlock(id.value);
+    if (block.chunks[place] == nullptr) {
+      block.chunks[place] = std::make_shared<Chunk>();
+      block.owned.set(place);
+      ++block.used;
     }
-    if (chunks_[chunk] == nullptr) {
-      chunks_[chunk] = std::make_shared<Chunk>();
-      owned_[chunk] = true;
-    }
-    Chunk& writable = WritableChunk(chunk);
-    writable.slots[id.value % kChunkSize].emplace(std::move(value));
-    ++writable.used;
+    Chunk& chunk = WritableChunk(block, place);
+    chunk.slots[id.value % kChunkSize].emplace(std::move(value));
+    ++chunk.used;
     ++size_;
     next_id_ = std::max(next_id_, id.value + 1);
   }
@@ -127,18 +126,23 @@ class CowTable {
   // The value for writing. Clones its chunk if a snapshot shares it. Throws like At().
   Value& Mutable(IdType id) {
     Check(Find(id) != nullptr, "no value with this id");
-    return *WritableChunk(id.value / kChunkSize).slots[id.value % kChunkSize];
+    Block& block = WritableBlock(id.value / kBlockSize);
+    return *WritableChunk(block, PlaceInBlock(id.value)).slots[id.value % kChunkSize];
   }
 
   void Erase(IdType id) {
     Check(Find(id) != nullptr, "no value with this id");
-    const size_t chunk = id.value / kChunkSize;
-    if (chunks_[chunk]->used == 1) {
-      chunks_[chunk] = nullptr;
+    Block& block = WritableBlock(id.value / kBlockSize);
+    const size_t place = PlaceInBlock(id.value);
+    if (block.chunks[place]->used > 1) {
+      Chunk& chunk = WritableChunk(block, place);
+      chunk.slots[id.value % kChunkSize].reset();
+      --chunk.used;
+    } else if (block.used > 1) {
+      block.chunks[place] = nullptr;
+      --block.used;
     } else {
-      Chunk& writable = WritableChunk(chunk);
-      writable.slots[id.value % kChunkSize].reset();
-      --writable.used;
+      blocks_[id.value / kBlockSize] = nullptr;
     }
     --size_;
   }
@@ -155,27 +159,49 @@ class CowTable {
   }
 
  private:
+  static constexpr size_t kFan = 64;
+  static constexpr size_t kBlockSize = kFan * kChunkSize;
+
   struct Chunk {
     std::array<std::optional<Value>, kChunkSize> slots;
     size_t used = 0;
   };
 
+  struct Block {
+    std::array<std::shared_ptr<Chunk>, kFan> chunks;
+    // The chunks that were created after the last snapshot; no other table can see them. The use
+    // count of the shared pointers would not do: reading it races with readers that release a
+    // snapshot. Only the table that owns the block reads this.
+    std::bitset<kFan> owned;
+    size_t used = 0;  // chunks that exist
+  };
+
+  static size_t PlaceInBlock(size_t index) { return index / kChunkSize % kFan; }
+  size_t Capacity() const { return kBlockSize * blocks_.size(); }
+
   // Null if there is no value under the id with this number.
   const Value* ValueAt(size_t index) const {
-    const size_t chunk = index / kChunkSize;
-    if (chunk >= chunks_.size() || chunks_[chunk] == nullptr) {
+    if (index >= Capacity()) {
       return nullptr;
     }
-    const std::optional<Value>& slot = chunks_[chunk]->slots[index % kChunkSize];
+    const Block* block = blocks_[index / kBlockSize].get();
+    const Chunk* chunk = block != nullptr ? block->chunks[PlaceInBlock(index)].get() : nullptr;
+    if (chunk == nullptr) {
+      return nullptr;
+    }
+    const std::optional<Value>& slot = chunk->slots[index % kChunkSize];
     return slot ? &*slot : nullptr;
   }
 
-  // The first number from `index` on under which there is a value; beyond all chunks if there is
-  // none.
+  // The first number from `index` on under which there is a value; Capacity() if there is none.
   size_t NextUsed(size_t index) const {
-    const size_t end = kChunkSize * chunks_.size();
-    while (index < end) {
-      const auto& chunk = chunks_[index / kChunkSize];
+    while (index < Capacity()) {
+      const Block* block = blocks_[index / kBlockSize].get();
+      if (block == nullptr) {
+        index = (index / kBlockSize + 1) * kBlockSize;  // skips the whole block
+        continue;
+      }
+      const Chunk* chunk = block->chunks[PlaceInBlock(index)].get();
       if (chunk == nullptr) {
         index = (index / kChunkSize + 1) * kChunkSize;  // skips the whole chunk
       } else if (chunk->slots[index % kChunkSize]) {
@@ -184,22 +210,37 @@ class CowTable {
         ++index;
       }
     }
-    return end;
+    return Capacity();
   }
 
-  Chunk& WritableChunk(size_t chunk) {
-    if (!owned_[chunk]) {
-      chunks_[chunk] = std::make_shared<Chunk>(*chunks_[chunk]);
-      owned_[chunk] = true;
+  // The block with this number. Makes it if there is none, and clones it if a snapshot shares it.
+  Block& WritableBlock(size_t number) {
+    if (number >= blocks_.size()) {
+      blocks_.resize(number + 1);
+      owned_.resize(number + 1, false);
     }
-    return *chunks_[chunk];
+    std::shared_ptr<Block>& block = blocks_[number];
+    if (block == nullptr) {
+      block = std::make_shared<Block>();
+    } else if (!owned_[number]) {
+      block = std::make_shared<Block>(*block);
+      block->owned.reset();
+    }
+    owned_[number] = true;
+    return *block;
   }
 
-  std::vector<std::shared_ptr<Chunk>> chunks_;
-  // True for chunks that were created after the last snapshot; no other table can see them. The use
-  // count of the shared pointers would not do: reading it races with readers that release a
-  // snapshot.
-  std::vector<bool> owned_;
+  // A chunk of a block that this table owns.
+  static Chunk& WritableChunk(Block& block, size_t place) {
+    if (!block.owned[place]) {
+      block.chunks[place] = std::make_shared<Chunk>(*block.chunks[place]);
+      block.owned.set(place);
+    }
+    return *block.chunks[place];
+  }
+
+  std::vector<std::shared_ptr<Block>> blocks_;
+  std::vector<bool> owned_;  // one per block: whether it was created after the last snapshot
   size_t size_ = 0;
   uint32_t next_id_ = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <bit>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -9,18 +10,59 @@
 
 namespace hullslam {
 
+// Whether the ids of this kind of entity are used again after an entity was erased
+// (util/recycling_table.h).
+template <typename Tag>
+inline constexpr bool kIsRecycled = false;
+template <>
+inline constexpr bool kIsRecycled<struct LandmarkTag> = true;
+
 // The number of an entity. Ids of different kinds of entities do not convert into each other. The
-// default value is invalid. Ids are assigned in increasing order and are never reused.
+// default value is invalid.
+//
+// Most ids are assigned in increasing order and are never used again. An id of a recycled kind
+// consists of a slot, which is used again, and of a generation, which counts how often it was. So
+// the id of an erased entity never equals that of a later one. Ids of a recycled kind are ordered
+// by their slots and say nothing about age.
 template <typename Tag>
 struct Id {
+  static constexpr bool kHasGeneration = kIsRecycled<Tag>;
   static constexpr uint32_t kInvalid = std::numeric_limits<uint32_t>::max();
+  static constexpr int kSlotBits = 24;  // of recycled kinds: the lower bits of `value`
+  static constexpr uint32_t kMaxSlot = (uint32_t{1} << kSlotBits) - 1;
+  static constexpr uint32_t kMaxGeneration = kInvalid >> kSlotBits;
 
   uint32_t value = kInvalid;
 
   constexpr Id() = default;
   constexpr explicit Id(uint32_t number) : value(number) {}
+  constexpr Id(uint32_t slot, uint32_t generation) requires kIsRecycled<Tag>
+      : value(generation << kSlotBits | slot) {}
   constexpr bool IsValid() const { return value != kInvalid; }
-  friend constexpr auto operator<=>(const Id&, const Id&) = default;
+
+  // The number of the place where a table keeps the entity.
+  constexpr uint32_t slot() const {
+    if constexpr (kIsRecycled<Tag>) {
+      return value & kMaxSlot;
+    } else {
+      return value;
+    }
+  }
+  constexpr uint32_t generation() const requires kIsRecycled<Tag> { return value >> kSlotBits; }
+
+  friend constexpr bool operator==(const Id&, const Id&) = default;
+  friend constexpr std::strong_ordering operator<=>(const Id& a, const Id& b) {
+    return a.Rank() <=> b.Rank();
+  }
+
+ private:
+  constexpr uint32_t Rank() const {
+    if constexpr (kIsRecycled<Tag>) {
+      return std::rotl(value, 32 - kSlotBits);  // the slot first, then the generation
+    } else {
+      return value;
+    }
+  }
 };
 
 using FrameId = Id<struct FrameTag>;

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What grows with the map: a long walk along a made-up corridor through the whole sequential
+// pipeline. Prints, at 10, 25, 50 and 100 % of the way, what a frame and a keyframe cost at that
+// point and how much memory the map takes.
+#include <fmt/format.h>
+#include <malloc.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "made_corridor.h"
+#include "made_map.h"
+#include "system/sequential_pipeline.h"
+
+namespace hullslam {
+namespace {
+
+// Parts of what a keyframe costs, besides local bundle adjustment.
+constexpr std::array kOtherStages = {"map_insert", "map_landmarks", "map_objects", "check_objects",
+                                     "cull_keyframes"};
+constexpr size_t kWindowShare = 20;  // times are those of the last twentieth of all frames
+
+// Milliseconds of processor time that this program has used. Unlike the time on a clock, it hardly
+// depends on what else the computer does.
+double ProcessorMs() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+size_t HeapBytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+size_t LandmarkBytes(const Map& map) {
+  size_t bytes = 0;
+  for (const auto& [id, landmark] : map.landmarks()) {
+    bytes += sizeof(Landmark) + landmark.observations.capacity() * sizeof(Observation);
+  }
+  return bytes;
+}
+
+// The samples of a stage since `before`.
+std::vector<double> Since(const StageTimes& before, const StageTimes& now, std::string_view stage) {
+  const auto all = now.samples().find(stage);
+  if (all == now.samples().end()) {
+    return {};
+  }
+  const auto old = before.samples().find(stage);
+  const size_t skipped = old != before.samples().end() ? old->second.size() : 0;
+  return {all->second.begin() + static_cast<std::ptrdiff_t>(skipped), all->second.end()};
+}
+
+double Sum(const std::vector<double>& samples) {
+  double sum = 0.0;
+  for (const double sample : samples) {
+    sum += sample;
+  }
+  return sum;
+}
+
+// The processor times of frames in a window, ms.
+struct FrameTimes {
+  std::vector<double> tracked;   // of frames that are only tracked
+  std::vector<double> inserted;  // of frames that become keyframes, with all that follows
+};
+
+double PerKeyframe(const FrameTimes& times) {
+  return times.inserted.empty() ? 0.0
+                                : Summarize(times.inserted).mean - Summarize(times.tracked).mean;
+}
+
+void PrintHeader() {
+  fmt::print("{:>7} {:>9} {:>9} {:>7} {:>9} {:>12} {:>12} {:>12} {:>9} {:>9}\n", "frames",
+             "keyframes", "landmarks", "objects", "frame, ms", "keyframe, ms", "besides BA",
+             "snapshot, us", "kB/keyfr.", "heap, MB");
+}
+
+void PrintLine(size_t frames, const Map& map, const FrameTimes& times, const StageTimes& before,
+               const StageTimes& now, size_t heap) {
+  double others = 0.0;
+  for (const char* stage : kOtherStages) {
+    others += Sum(Since(before, now, stage));
+  }
+  const size_t without_landmarks = heap - std::min(heap, LandmarkBytes(map));
+  fmt::print(
+      "{:>7} {:>9} {:>9} {:>7} {:>9.2f} {:>12.1f} {:>12.2f} {:>12.1f} {:>9.1f} {:>9.1f}\n", frames,
+      map.keyframes().size(), map.landmarks().size(), map.objects().size(),
+      Summarize(times.tracked).median, PerKeyframe(times),
+      others / static_cast<double>(std::max<size_t>(1, times.inserted.size())),
+      1e3 * Summarize(Since(before, now, "map_snapshot")).mean,
+      1e-3 * static_cast<double>(without_landmarks) / static_cast<double>(map.keyframes().size()),
+      1e-6 * static_cast<double>(heap));
+  std::fflush(stdout);
+}
+
+void Run(size_t frames) {
+  const Sensor sensor = BenchSensor();
+  SystemOptions options;
+  options.camera = sensor.camera;
+  const MadeCorridor corridor(frames, sensor);
+  const std::unique_ptr<Pipeline> pipeline = MakeSequentialPipeline(sensor, options);
+  const size_t heap_before = HeapBytes();
+  size_t lost = 0;
+  double total_ms = 0.0;
+  FrameTimes times;
+  StageTimes stages_before;
+  PrintHeader();
+  for (size_t done = 1; done <= frames; ++done) {
+    std::shared_ptr<const Frame> frame = corridor.MakeFrame(static_cast<uint32_t>(done - 1));
+    const std::shared_ptr<const Map> map_before = pipeline->map();
+    const double start = ProcessorMs();
+    const FrameReport report = pipeline->Track(std::move(frame));
+    const double spent = ProcessorMs() - start;
+    total_ms += spent;
+    lost += report.tracked.state == TrackingState::kTracked ? 0 : 1;
+    (pipeline->map() == map_before ? times.tracked : times.inserted).push_back(spent);
+    for (const size_t percent : {10, 25, 50, 100}) {
+      const size_t end = frames * percent / 100;
+      if (done == end - frames / kWindowShare) {
+        times = {};
+        stages_before = pipeline->times();
+      } else if (done == end) {
+        PrintLine(done, *pipeline->map(), times, stages_before, pipeline->times(),
+                  HeapBytes() - heap_before);
+      }
+    }
+  }
+  fmt::print(
+      "{:.1f} s of processor time for {} frames, {} lost; {} keyframes were made; {} replaced "
+      "ids are remembered\n",
+      1e-3 * total_ms, frames, lost, pipeline->map()->keyframes().NextId().value,
+      pipeline->map()->replaced_count());
+}
+
+}  // namespace
+}  // namespace hullslam
+
+int main(int argc, char** argv) {
+  size_t frames = 10000;
+  if (argc == 3 && std::string_view(argv[1]) == "--frames") {
+    frames = static_cast<size_t>(std::strtoul(argv[2], nullptr, 10));
+  } else if (argc != 1) {
+    frames = 0;
+  }
+  if (frames < 100) {
+    fmt::print(stderr, "usage: scale_bench [--frames N]    N at least 100, 10000 by default\n");
+    return 2;
+  }
+  hullslam::Run(frames);
+  return 0;
+}

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace hullslam {
+
+// Remembers which ids were replaced by which, for messages with ids of older snapshots of a map.
+// Each replacement has the revision of the map at the time: the number of the last snapshot in
+// which the replaced id was still in use. There are few, because those that are older than all
+// messages are forgotten.
+template <typename IdType>
+class Replacements {
+ public:
+  // `revision` does not decrease from call to call. An id is replaced at most once.
+  void Add(IdType replaced, IdType by, uint32_t revision) {
+    entries_.insert(PlaceOf(replaced), {replaced, by, revision});
+  }
+
+  // The id that has replaced `replaced`, null for none.
+  const IdType* Find(IdType replaced) const {
+    const auto it = PlaceOf(replaced);
+    return it != entries_.end() && it->replaced == replaced ? &it->by : nullptr;
+  }
+
+  // Forgets replacements with an older revision.
+  void Forget(uint32_t revision) {
+    std::erase_if(entries_, [&](const Entry& entry) { return entry.revision < revision; });
+  }
+
+  size_t size() const { return entries_.size(); }
+
+ private:
+  struct Entry {
+    IdType replaced;
+    IdType by;
+    uint32_t revision = 0;
+  };
+
+  auto PlaceOf(IdType id) const {
+    return std::lower_bound(
+        entries_.begin(), entries_.end(), id,
+        [](const Entry& entry, IdType wanted) { return entry.replaced < wanted; });
+  }
+
+  std::vector<Entry> entries_;  // by increasing replaced id
+};
+
+}  // namespace hullslam
