@@ -35,7 +35,8 @@ class MotionModel : public testing::Test {
     }
     LastFrame last = LastFrameAtKeyframe(motion);
     frame->timestamp = last.frame->timestamp + last.motion->duration;
-    return PoseByMotionModel(*frame, made_.map, {world_.sensor(), options_, objects_}, last);
+    return PoseByMotionModel(*frame, made_.map, {world_.sensor(), options_, objects_, index_},
+                             last);
   }
   static Rigid3 Forward(double metres) {
     return {Eigen::Quaterniond::Identity(), {0.0, 0.0, -metres}};
@@ -45,6 +46,7 @@ class MotionModel : public testing::Test {
   SyntheticMap made_ = MakeSyntheticMap(world_, {0, 5});
   TrackingOptions options_;
   ObjectOptions objects_;
+  const ObjectIndex index_;
 };
 
 // Patches grow and shrink by several levels of the pyramid when the camera moves by metres.
