@@ -57,13 +57,14 @@ struct BundleResult {
   int iterations = 0;
 };
 
-// Minimises the reprojection errors of the window's landmarks in its keyframes, with Ceres and a
-// Schur complement on the points. Each object of the window adds the constraints of its detections
-// (MakeObjectConstraint) and a prior (MakeObjectPrior) at the shape that it has at the beginning.
-// If the solver fails, the adjustment is repeated without objects, and all objects are reported as
-// failed. If `cancellation` (may be null) is requested, the adjustment ends early and returns what
-// it has. If that happens in the first round, the only outliers are observations of points that are
-// not in front of the camera.
+// Minimises the reprojection errors of the window's landmarks in its keyframes. Ceres solves for
+// poses and objects. In a window with up to 140 moving keyframes, own code eliminates the landmarks
+// (EliminatedPoints); in a larger one, Ceres does so. Each object of the window adds the
+// constraints of its detections (MakeObjectConstraint) and a prior (MakeObjectPrior) at the shape
+// that it has at the beginning. If the solver fails, the adjustment is repeated without objects,
+// and all objects are reported as failed. If `cancellation` (may be null) is requested, the
+// adjustment ends early and returns what it has. If that happens in the first round, the only
+// outliers are observations of points that are not in front of the camera.
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& options, const Cancellation* cancellation);
 

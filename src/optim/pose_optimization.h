@@ -32,9 +32,9 @@ struct PoseOptimizationResult {
   int inlier_count = 0;
 };
 
-// The pose that explains the observations best: Levenberg-Marquardt on the six parameters of
-// Retract, while the points are fixed (Mur-Artal and Tardos 2017, section III.C). With fewer than
-// three inliers the result is the start.
+// The pose that explains the observations best: Levenberg-Marquardt (ceres::TinySolver) on the six
+// parameters of Retract, while the points are fixed (Mur-Artal and Tardos 2017, section III.C).
+// With fewer than three inliers the result is the start.
 PoseOptimizationResult OptimizePose(const PinholeCamera& camera, const Rigid3& cam_from_world,
                                     std::span<const PoseObservation> observations,
                                     const PoseOptimizationOptions& options = {});
