@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
-#include <semaphore>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
+#include "cli/frame_source.h"
 #include "cli/input_warnings.h"
 #include "cli/interrupt.h"
 #include "cli/mask_arguments.h"
@@ -27,30 +26,13 @@
 #include "hullslam/io/summary.h"
 #include "hullslam/io/trajectory_file.h"
 #include "hullslam/system/compose_trajectory.h"
-#include "hullslam/system/prefetcher.h"
 #include "hullslam/system/system.h"
-#include "hullslam/util/cancellation.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
 namespace {
 
-constexpr size_t kImagesAhead = 4;
-constexpr size_t kFramesAhead = 4;
-
 using Clock = std::chrono::steady_clock;
-
-// An image, or the reason why it could not be loaded.
-struct LoadedImage {
-  std::optional<ImageInput> image;
-  std::string error;
-};
-
-// A frame that can be tracked, or the reason why its image could not be loaded.
-struct LoadedFrame {
-  std::optional<BuiltFrame> frame;
-  std::string error;
-};
 
 struct RunResult {
   size_t given = 0;    // frames that were loaded or skipped before the run ended
@@ -72,103 +54,6 @@ PipelineKind ChoosePipeline(const RunArguments& arguments) {
   }
   return arguments.realtime ? PipelineKind::kRealtime : PipelineKind::kThreaded;
 }
-
-// An image that cannot be read is reported in LoadedImage, so that the frame can be skipped. Masks
-// that cannot be read end the run, because a frame without its masks would look like a frame
-// without objects.
-LoadedImage LoadImage(const TumSequence& sequence, const PinholeCamera& camera,
-                      const SequenceMasks& masks, size_t frame) {
-  LoadedImage loaded;
-  try {
-    loaded.image = LoadRgbd(sequence.frames[frame], camera);
-  } catch (const InputError& error) {
-    loaded.error = error.what();
-  }
-  if (loaded.image) {
-    loaded.image->masks = masks.Read(frame);
-  }
-  return loaded;
-}
-
-// Loads the images in one thread and builds their frames in another one, ahead of tracking. In real
-// time a frame is not built before the time at which the camera took it, and an image is only
-// loaded when the last frame has been tracked, so that loading takes no core from tracking.
-class FrameSource {
- public:
-  FrameSource(const RunArguments& arguments, const TumSequence& sequence,
-              const PinholeCamera& camera, const SequenceMasks& masks, System& system)
-      : is_realtime_(arguments.realtime),
-        first_stamp_(sequence.frames.front().timestamp),
-        system_(system),
-        images_(
-            [&sequence, &camera, &masks, this, next = size_t{0}]() mutable {
-              return next < sequence.frames.size() && MayLoad()
-                         ? std::optional(LoadImage(sequence, camera, masks, next++))
-                         : std::nullopt;
-            },
-            kImagesAhead),
-        frames_([this] { return BuildNext(); }, kFramesAhead) {}
-  ~FrameSource() {
-    end_.Request();
-    loads_.release();
-  }
-  FrameSource(const FrameSource&) = delete;
-  FrameSource& operator=(const FrameSource&) = delete;
-
-  // The next frame; null at the end, and in real time also after an interruption. The frames before
-  // it have been tracked.
-  std::optional<LoadedFrame> Next() {
-    if (is_realtime_) {
-      loads_.release();
-    }
-    return frames_.Next();
-  }
-
- private:
-  // Waits until another image may be loaded. Returns false if the run ends before.
-  bool MayLoad() {
-    if (is_realtime_) {
-      loads_.acquire();
-    }
-    return !end_.IsRequested();
-  }
-
-  std::optional<LoadedFrame> BuildNext() {
-    std::optional<LoadedImage> loaded = images_.Next();
-    if (!loaded) {
-      return std::nullopt;
-    }
-    if (!loaded->image) {
-      return LoadedFrame{.frame = std::nullopt, .error = std::move(loaded->error)};
-    }
-    if (is_realtime_ && !WaitFor(loaded->image->timestamp)) {
-      return std::nullopt;
-    }
-    return LoadedFrame{.frame = system_.Build(*loaded->image), .error = {}};
-  }
-
-  // Waits until the time, counted from the start, at which the camera took the frame. Returns false
-  // if the run ends before.
-  bool WaitFor(double stamp) const {
-    constexpr std::chrono::milliseconds kStep(20);
-    const std::chrono::duration<double> after_start(stamp - first_stamp_);
-    const auto due = start_ + std::chrono::duration_cast<Clock::duration>(after_start);
-    const auto is_over = [this] { return IsInterrupted() || end_.IsRequested(); };
-    while (!is_over() && Clock::now() < due) {
-      std::this_thread::sleep_until(std::min(due, Clock::now() + kStep));
-    }
-    return !is_over();
-  }
-
-  const bool is_realtime_;
-  const double first_stamp_;
-  const Clock::time_point start_ = Clock::now();
-  Cancellation end_;
-  std::counting_semaphore<> loads_{kImagesAhead};  // how many images may be loaded in real time
-  System& system_;
-  Prefetcher<LoadedImage> images_;
-  Prefetcher<LoadedFrame> frames_;  // last, because its thread uses the others
-};
 
 const char* Name(TrackingState state) {
   switch (state) {
@@ -193,7 +78,8 @@ RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
   RunResult result;
   Progress progress(sequence.frames.size(), arguments.quiet);
   const Clock::time_point start = Clock::now();
-  FrameSource frames(arguments, sequence, camera, masks, system);
+  FrameSource frames(arguments.realtime ? Pace::kRealtime : Pace::kFast, sequence, camera, masks,
+                     system);
   while (!IsInterrupted()) {
     std::optional<LoadedFrame> loaded = frames.Next();
     if (!loaded) {

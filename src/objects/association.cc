@@ -10,7 +10,6 @@
 #include "geometry/polygon_overlap.h"
 #include "hullslam/objects/object_view.h"
 #include "objects/initialisation.h"
-#include "objects/latest_views.h"
 #include "objects/point_statistics.h"
 #include "util/id_set.h"
 

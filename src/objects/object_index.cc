@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "objects/latest_views.h"
+#include "hullslam/objects/object_view.h"
 #include "objects/point_statistics.h"
 
 namespace hullslam {

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "hullslam/objects/object_view.h"
 #include "objects/association.h"
 #include "objects/fusion.h"
 #include "objects/initialisation.h"
-#include "objects/latest_views.h"
 #include "objects/misfit.h"
 #include "objects/point_statistics.h"
 #include "objects/refinement.h"

@@ -9,6 +9,15 @@
 #include "objects/point_statistics.h"
 
 namespace hullslam {
+namespace {
+
+ObjectView MakeView(const Map& map, const ObjectObservation& observation) {
+  const Keyframe& keyframe = map.keyframes().At(observation.keyframe);
+  return {observation.keyframe, keyframe.cam_from_world,
+          &keyframe.frame->detections[observation.detection]};
+}
+
+}  // namespace
 
 std::vector<ObjectView> CollectViews(const Map& map, const ObjectLandmark& object,
                                      size_t max_views) {
@@ -18,10 +27,17 @@ std::vector<ObjectView> CollectViews(const Map& map, const ObjectLandmark& objec
   views.reserve(taken);
   for (size_t i = 0; i < taken; ++i) {
     const size_t index = taken == 1 ? count - 1 : i * (count - 1) / (taken - 1);
-    const ObjectObservation& observation = object.observations[index];
-    const Keyframe& keyframe = map.keyframes().At(observation.keyframe);
-    views.push_back({observation.keyframe, keyframe.cam_from_world,
-                     &keyframe.frame->detections[observation.detection]});
+    views.push_back(MakeView(map, object.observations[index]));
+  }
+  return views;
+}
+
+std::vector<ObjectView> LatestViews(const Map& map, const ObjectLandmark& object, size_t count) {
+  const size_t total = object.observations.size();
+  std::vector<ObjectView> views;
+  views.reserve(std::min(count, total));
+  for (size_t i = total - std::min(count, total); i < total; ++i) {
+    views.push_back(MakeView(map, object.observations[i]));
   }
   return views;
 }

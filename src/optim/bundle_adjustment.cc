@@ -28,8 +28,6 @@ namespace {
 // is nearly full, and own elimination with a dense solver is faster (docs/performance.md).
 constexpr size_t kMostDensePoses = 140;
 
-constexpr size_t kNoPose = std::numeric_limits<size_t>::max();
-
 class StopOnRequest final : public ceres::IterationCallback {
  public:
   explicit StopOnRequest(const Cancellation* cancellation) : cancellation_(cancellation) {}
@@ -59,16 +57,13 @@ class Bundle {
       : camera_(sensor.camera),
         window_(window),
         options_(options),
-        keyframes_(window.moving),
-        objects_(map, sensor.camera, window, options.objects) {
-    keyframes_.insert(keyframes_.end(), window.fixed.begin(), window.fixed.end());
-    std::vector<size_t> index_of_pose(map.keyframes().NextId().value, kNoPose);
-    for (const KeyframeId id : keyframes_) {
-      index_of_pose[id.value] = poses_.size();
+        pose_indices_(internal::IndexPoses(window)),
+        objects_(map, sensor.camera, window, pose_indices_, options.objects) {
+    for (const auto& [id, index] : pose_indices_.entries()) {
       poses_.push_back(ToBlock(map.keyframes().At(id).cam_from_world));
     }
     for (const LandmarkId id : window.landmarks) {
-      AddPoint(map, sensor, map.landmarks().At(id), index_of_pose);
+      AddPoint(map, sensor, map.landmarks().At(id));
     }
   }
 
@@ -100,7 +95,8 @@ class Bundle {
     }
     ForEachView([&](const View& view, double, size_t point) {
       if (!view.is_inlier) {
-        result.outliers.emplace_back(window_.landmarks[point], keyframes_[view.pose]);
+        result.outliers.emplace_back(window_.landmarks[point],
+                                     pose_indices_.entries()[view.pose].first);
       }
     });
     objects_.Write(result);
@@ -109,16 +105,14 @@ class Bundle {
  private:
   using View = internal::BundlePoints::View;
 
-  void AddPoint(const Map& map, const Sensor& sensor, const Landmark& landmark,
-                const std::vector<size_t>& index_of_pose) {
+  void AddPoint(const Map& map, const Sensor& sensor, const Landmark& landmark) {
     points_.AddPoint(landmark.position);
     for (const Observation& seen : landmark.observations) {
-      const size_t pose = index_of_pose[seen.keyframe.value];
-      if (pose != kNoPose) {
+      if (const size_t* const pose = pose_indices_.Find(seen.keyframe)) {
         const FrameFeatures& features = map.keyframes().At(seen.keyframe).frame->features;
         points_.AddView(
             MeasurePoint(sensor, features, seen.keypoint, sensor.depth_error.ForAdjustment()),
-            pose);
+            *pose);
       }
     }
   }
@@ -239,7 +233,7 @@ class Bundle {
   const PinholeCamera& camera_;
   const BundleWindow& window_;
   const BundleOptions& options_;
-  std::vector<KeyframeId> keyframes_;  // the moving ones, then the fixed ones
+  const internal::PoseIndices pose_indices_;
   std::vector<PoseBlock> poses_;
   internal::BundlePoints points_;
   internal::ObjectBundle objects_;

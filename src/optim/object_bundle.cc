@@ -19,19 +19,26 @@ bool IsPlausible(const Ellipsoid& after, const Ellipsoid& before, double max_cha
 
 }  // namespace
 
+PoseIndices IndexPoses(const BundleWindow& window) {
+  PoseIndices indices;
+  for (const auto* ids : {&window.moving, &window.fixed}) {
+    for (const KeyframeId id : *ids) {
+      const size_t index = indices.entries().size();
+      indices[id] = index;
+    }
+  }
+  return indices;
+}
+
 ObjectBundle::ObjectBundle(const Map& map, const PinholeCamera& camera, const BundleWindow& window,
-                           const ObjectBundleOptions& options)
-    : camera_(camera), options_(options) {
-  std::vector<KeyframeId> keyframes = window.moving;
-  keyframes.insert(keyframes.end(), window.fixed.begin(), window.fixed.end());
-  window_poses_ = keyframes.size();
+                           const PoseIndices& pose_indices, const ObjectBundleOptions& options)
+    : camera_(camera), options_(options), window_poses_(pose_indices.entries().size()) {
   for (const ObjectId id : window.objects) {
-    AddObject(map, id, keyframes);
+    AddObject(map, id, pose_indices);
   }
 }
 
-void ObjectBundle::AddObject(const Map& map, ObjectId id,
-                             const std::vector<KeyframeId>& keyframes) {
+void ObjectBundle::AddObject(const Map& map, ObjectId id, const PoseIndices& pose_indices) {
   const ObjectLandmark& landmark = map.objects().At(id);
   Object& object = objects_.emplace_back();
   object.id = id;
@@ -40,12 +47,11 @@ void ObjectBundle::AddObject(const Map& map, ObjectId id,
   object.log_axes = landmark.ellipsoid.half_axes.array().log();
   std::vector<ObjectObservation> outer;
   for (const ObjectObservation& seen : landmark.observations) {
-    const auto place = std::find(keyframes.begin(), keyframes.end(), seen.keyframe);
-    if (place == keyframes.end()) {
+    if (const size_t* const pose = pose_indices.Find(seen.keyframe)) {
+      AddView(map, seen, landmark.misfit_px, *pose);
+    } else {
       outer.push_back(seen);
-      continue;
     }
-    AddView(map, seen, landmark.misfit_px, static_cast<size_t>(place - keyframes.begin()));
   }
   for (const ObjectObservation& seen : Thin(outer, static_cast<size_t>(options_.max_outer_views))) {
     outer_poses_.push_back(ToBlock(map.keyframes().At(seen.keyframe).cam_from_world));

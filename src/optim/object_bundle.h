@@ -12,15 +12,21 @@
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/map/map.h"
 #include "optim/bundle_adjustment.h"
+#include "util/id_map.h"
 
 namespace hullslam::internal {
+
+// The places of the keyframes of a window among its poses: the moving ones come before the fixed
+// ones.
+using PoseIndices = IdMap<KeyframeId, size_t>;
+PoseIndices IndexPoses(const BundleWindow& window);
 
 // The objects of a bundle adjustment: their parameters, their priors, and the constraints between
 // them and the poses that their detections give.
 class ObjectBundle {
  public:
   ObjectBundle(const Map& map, const PinholeCamera& camera, const BundleWindow& window,
-               const ObjectBundleOptions& options);
+               const PoseIndices& pose_indices, const ObjectBundleOptions& options);
 
   // `poses` are those of the window's keyframes, the moving ones before the fixed ones. They and
   // this object must outlive the problem.
@@ -47,7 +53,7 @@ class ObjectBundle {
     std::unique_ptr<ceres::CostFunction> cost;
   };
 
-  void AddObject(const Map& map, ObjectId id, const std::vector<KeyframeId>& keyframes);
+  void AddObject(const Map& map, ObjectId id, const PoseIndices& pose_indices);
   // `pose` is an index as in Term.
   void AddView(const Map& map, const ObjectObservation& seen, double misfit_px, size_t pose);
   void AddTerm(const Rigid3& cam_from_world, size_t pose,

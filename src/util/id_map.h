@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -18,24 +18,17 @@ class IdMap {
  public:
   // The value of an id. It is added if there is none. Valid until the next one is added.
   Value& operator[](IdType id) {
-    if (2 * (entries_.size() + 1) > places_.size()) {
-      Grow();
-    }
-    uint32_t& place = places_[PlaceOf(id)];
-    if (place == kNone) {
-      place = static_cast<uint32_t>(entries_.size());
+    const auto [it, is_new] = places_.try_emplace(id, entries_.size());
+    if (is_new) {
       entries_.emplace_back(id, Value());
     }
-    return entries_[place].second;
+    return entries_[it->second].second;
   }
 
   // Null if the id has no value.
   const Value* Find(IdType id) const {
-    if (entries_.empty()) {
-      return nullptr;
-    }
-    const uint32_t place = places_[PlaceOf(id)];
-    return place != kNone ? &entries_[place].second : nullptr;
+    const auto it = places_.find(id);
+    return it != places_.end() ? &entries_[it->second].second : nullptr;
   }
 
   const std::vector<std::pair<IdType, Value>>& entries() const { return entries_; }
@@ -47,28 +40,7 @@ class IdMap {
   }
 
  private:
-  static constexpr uint32_t kNone = UINT32_MAX;
-  static constexpr size_t kFirstPlaces = 64;
-
-  // Where the index of the id's entry is or should be. The number of places is a power of two, and
-  // at least half of them are free.
-  size_t PlaceOf(IdType id) const {
-    const size_t last = places_.size() - 1;
-    size_t place = (id.value * uint64_t{0x9E3779B97F4A7C15}) >> 32 & last;  // Fibonacci hashing
-    while (places_[place] != kNone && entries_[places_[place]].first != id) {
-      place = (place + 1) & last;
-    }
-    return place;
-  }
-
-  void Grow() {
-    places_.assign(places_.empty() ? kFirstPlaces : 2 * places_.size(), kNone);
-    for (uint32_t i = 0; i < entries_.size(); ++i) {
-      places_[PlaceOf(entries_[i].first)] = i;
-    }
-  }
-
-  std::vector<uint32_t> places_;  // indices into entries_
+  std::unordered_map<IdType, size_t> places_;  // indices into entries_
   std::vector<std::pair<IdType, Value>> entries_;
 };
 

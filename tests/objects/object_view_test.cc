@@ -39,6 +39,16 @@ TEST_F(ObjectViews, AreThoseOfAllKeyframesOrEvenlyChosen) {
   EXPECT_EQ(CollectViews(map_, object(), 1).front().keyframe, KeyframeId(6));
 }
 
+TEST_F(ObjectViews, TheLatestAreThoseOfTheLastKeyframes) {
+  const auto latest = LatestViews(map_, object(), 2);
+  ASSERT_EQ(latest.size(), 2u);
+  EXPECT_EQ(latest[0].keyframe, KeyframeId(5));
+  EXPECT_EQ(latest[1].keyframe, KeyframeId(6));
+  EXPECT_EQ(latest[1].detection, CollectViews(map_, object()).back().detection);
+  EXPECT_EQ(LatestViews(map_, object(), 100).size(), 7u);
+  EXPECT_TRUE(LatestViews(map_, object(), 0).empty());
+}
+
 TEST_F(ObjectViews, PointsAreInTheWorld) {
   const auto points = CollectPoints(CollectViews(map_, object()), 100);
   EXPECT_GT(points.size(), 80u);

@@ -24,6 +24,9 @@ struct ObjectView {
 std::vector<ObjectView> CollectViews(const Map& map, const ObjectLandmark& object,
                                      size_t max_views = 0);
 
+// The last `count` of them, or all if there are fewer.
+std::vector<ObjectView> LatestViews(const Map& map, const ObjectLandmark& object, size_t count);
+
 // Depth points of the views in the world frame, evenly chosen, about `max_points` at most.
 std::vector<Eigen::Vector3d> CollectPoints(std::span<const ObjectView> views, size_t max_points);
 
