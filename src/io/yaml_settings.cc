@@ -116,10 +116,13 @@ WrittenSetting ToSetting(const cv::FileNode& node, const WrittenValue& written,
                          const fs::path& file) {
   WrittenSetting setting{
       .key = node.name(), .name = node.name(), .place = Place(file, written.line)};
-  if (node.isInt() || node.isReal() || node.isString()) {
-    setting.text = SingleText(node, written);
+  // If the last key of a file has no value, OpenCV takes the mark of the end, "...", for it.
+  if (written.text.empty() && node.isString() && node.string() == "...") {
+    setting.no_value = "empty";
+  } else if (node.isMap() || node.isSeq()) {
+    setting.no_value = node.isMap() ? "a map" : "a list";
   } else {
-    setting.no_value = node.isMap() ? "a map" : node.isSeq() ? "a list" : "empty";
+    setting.text = SingleText(node, written);
   }
   return setting;
 }
