@@ -73,6 +73,21 @@ std::string DescribeState(TrackingState state, const System& system) {
                      map != nullptr ? map->landmarks().size() : 0);
 }
 
+// The bundle adjustment of the whole map is slow if the map is large. So its progress is shown.
+void FinishMap(bool is_quiet, System& system) {
+  constexpr std::chrono::seconds kStep(2);
+  if (!is_quiet && !IsInterrupted()) {
+    PrintError("finishing the map\n");
+  }
+  Clock::time_point shown = Clock::now();
+  system.Finish(&Interruption(), [&](int done, int most) {
+    if (!is_quiet && Clock::now() - shown > kStep) {
+      shown = Clock::now();
+      PrintError("finishing the map: iteration {} of at most {}\n", done, most);
+    }
+  });
+}
+
 RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
                    const PinholeCamera& camera, const SequenceMasks& masks, System& system) {
   RunResult result;
@@ -99,10 +114,7 @@ RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
     progress.Show(result.given, [&] { return DescribeState(frame.state, system); });
   }
   progress.Clear();
-  if (!arguments.quiet && !IsInterrupted()) {
-    PrintError("finishing the map\n");  // the bundle adjustment of the whole map is slow
-  }
-  system.Finish(&Interruption());
+  FinishMap(arguments.quiet, system);
   result.was_interrupted = IsInterrupted();
   result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return result;

@@ -120,7 +120,7 @@ void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry)
   RecheckObjects(window.objects);
 }
 
-void Mapper::Finish(const Cancellation* cancellation) {
+void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
   const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
   if (!options_.final_bundle_adjustment || is_cancelled || map_.keyframes().size() < 2) {
     return;
@@ -129,15 +129,16 @@ void Mapper::Finish(const Cancellation* cancellation) {
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
     window = GlobalWindow(map_, ObjectsToAdjust());
-    Adjust(window, ForWholeMap({.objects = object_options_.bundle}), cancellation);
+    Adjust(window, ForWholeMap({.objects = object_options_.bundle}), cancellation, on_progress);
   }
   RecheckObjects(window.objects);
   PublishSnapshot();
 }
 
 void Mapper::Adjust(const BundleWindow& window, const BundleOptions& options,
-                    const Cancellation* cancellation) {
-  const BundleResult result = AdjustBundle(map_, sensor_, window, options, cancellation);
+                    const Cancellation* cancellation, const ProgressCallback& on_progress) {
+  const BundleResult result =
+      AdjustBundle(map_, sensor_, window, options, cancellation, on_progress);
   if (result.is_usable) {
     ApplyBundle(map_, result, sensor_.levels);
   }

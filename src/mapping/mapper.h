@@ -34,7 +34,7 @@ class Mapper {
 
   // To be called once, at the end. Adjusts the whole map if mapping.final_bundle_adjustment is set,
   // and publishes it. If `cancellation` (may be null) is requested, it ends early with what it has.
-  void Finish(const Cancellation* cancellation);
+  void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress = {});
 
   const StageTimes& times() const { return times_; }
   const std::map<ObjectRejection, size_t>& object_rejections() const {
@@ -50,7 +50,7 @@ class Mapper {
   void MapObjects(KeyframeId keyframe);
   void AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry);
   void Adjust(const BundleWindow& window, const BundleOptions& options,
-              const Cancellation* cancellation);
+              const Cancellation* cancellation, const ProgressCallback& on_progress = {});
   void RecheckObjects(const std::vector<ObjectId>& objects);
   WindowObjects ObjectsToAdjust() const;
 

@@ -28,17 +28,25 @@ namespace {
 // is nearly full, and own elimination with a dense solver is faster (docs/performance.md).
 constexpr size_t kMostDensePoses = 140;
 
-class StopOnRequest final : public ceres::IterationCallback {
+// Tells the caller how far the adjustment is, and ends it when that is requested.
+class Supervision final : public ceres::IterationCallback {
  public:
-  explicit StopOnRequest(const Cancellation* cancellation) : cancellation_(cancellation) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return cancellation_ != nullptr && cancellation_->IsRequested()
-               ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
-               : ceres::SOLVER_CONTINUE;
+  Supervision(const Cancellation* cancellation, const ProgressCallback& on_progress, int most)
+      : cancellation_(cancellation), on_progress_(on_progress), most_(most) {}
+
+  bool IsCancelled() const { return cancellation_ != nullptr && cancellation_->IsRequested(); }
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (on_progress_ && summary.iteration > 0) {  // number 0 is the start
+      on_progress_(++done_, most_);
+    }
+    return IsCancelled() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
   const Cancellation* cancellation_;
+  const ProgressCallback& on_progress_;
+  int most_;
+  int done_ = 0;
 };
 
 std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
@@ -79,11 +87,11 @@ class Bundle {
     });
   }
 
-  bool Solve(int iterations, bool robust, const Cancellation* cancellation, BundleResult& result) {
+  bool Solve(int iterations, bool robust, Supervision& supervision, BundleResult& result) {
     const size_t moving = window_.moving.size();
     const bool eliminates = moving > 0 && moving <= kMostDensePoses;
-    return eliminates ? SolveEliminated(iterations, robust, cancellation, result)
-                      : SolveSparse(iterations, robust, cancellation, result);
+    return eliminates ? SolveEliminated(iterations, robust, supervision, result)
+                      : SolveSparse(iterations, robust, supervision, result);
   }
 
   void Write(BundleResult& result) {
@@ -142,30 +150,23 @@ class Bundle {
   }
 
   // Own code eliminates the points, and Ceres solves for the poses and the objects.
-  bool SolveEliminated(int iterations, bool robust, const Cancellation* cancellation,
+  bool SolveEliminated(int iterations, bool robust, Supervision& supervision,
                        BundleResult& result) {
     internal::EliminatedPoints eliminated(camera_, points_, window_.moving.size(), robust);
     internal::ReducedPointsCost cost(eliminated, poses_);
     ceres::Problem::Options problem_options = ProblemOptions();
     problem_options.evaluation_callback = &cost;
     ceres::Problem problem(problem_options);
-    std::vector<double*> moving;
-    for (size_t i = 0; i < window_.moving.size(); ++i) {
-      moving.push_back(poses_[i].data());
-    }
-    problem.AddResidualBlock(&cost, nullptr, moving);
+    cost.AddResiduals(problem);
     ceres::Solver::Options solver;
     // With objects, their half axes are eliminated by Ceres.
     solver.linear_solver_type =
         window_.objects.empty() ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_SCHUR;
-    const bool is_usable = Run(problem, solver, 0, iterations, cancellation, result);
-    result.residuals += points_.CountInliers() - 1;  // one cost stands for all of them
-    return is_usable;
+    return Run(problem, solver, 0, iterations, supervision, result);
   }
 
   // Ceres eliminates the points. The system that is left is sparse.
-  bool SolveSparse(int iterations, bool robust, const Cancellation* cancellation,
-                   BundleResult& result) {
+  bool SolveSparse(int iterations, bool robust, Supervision& supervision, BundleResult& result) {
     ceres::HuberLoss without_depth(std::sqrt(Chi2Bound(2)));
     ceres::HuberLoss with_depth(std::sqrt(Chi2Bound(3)));
     std::vector<std::unique_ptr<ceres::CostFunction>> costs;
@@ -190,13 +191,13 @@ class Bundle {
     }
     solver.linear_solver_type = ceres::SPARSE_SCHUR;
     solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
-    return Run(problem, solver, 2, iterations, cancellation, result);
+    return Run(problem, solver, 2, iterations, supervision, result);
   }
 
   // Adds objects and poses to the problem and solves it. `axes_group`: the place of the half axes
   // of the objects in the order of elimination.
   bool Run(ceres::Problem& problem, ceres::Solver::Options& solver, int axes_group, int iterations,
-           const Cancellation* cancellation, BundleResult& result) {
+           Supervision& supervision, BundleResult& result) {
     if (solver.linear_solver_ordering == nullptr) {
       solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     }
@@ -207,11 +208,10 @@ class Bundle {
     solver.function_tolerance = options_.function_tolerance;
     solver.num_threads = options_.threads;
     solver.logging_type = ceres::SILENT;
-    StopOnRequest stop(cancellation);
-    solver.callbacks.push_back(&stop);
+    solver.callbacks.push_back(&supervision);
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
-    result.residuals = problem.NumResidualBlocks();
+    result.residuals = points_.CountInliers() + static_cast<int>(objects_.CountCosts());
     result.iterations += static_cast<int>(summary.iterations.size());
     return summary.IsSolutionUsable();
   }
@@ -241,17 +241,17 @@ class Bundle {
 };
 
 BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& window,
-                    const BundleOptions& options, const Cancellation* cancellation) {
+                    const BundleOptions& options, Supervision& supervision) {
   BundleResult result;
   Bundle bundle(map, sensor, window, options);
   bundle.ExcludeUndefined();
-  if (!bundle.Solve(options.robust_iterations, true, cancellation, result)) {
+  if (!bundle.Solve(options.robust_iterations, true, supervision, result)) {
     return result;
   }
   // After a cancelled round the errors are not minimal, so they do not tell which are outliers.
-  if (cancellation == nullptr || !cancellation->IsRequested()) {
+  if (!supervision.IsCancelled()) {
     bundle.Classify();
-    if (!bundle.Solve(options.final_iterations, false, cancellation, result)) {
+    if (!bundle.Solve(options.final_iterations, false, supervision, result)) {
       return result;
     }
     bundle.Classify();
@@ -264,14 +264,18 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
 }  // namespace
 
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
-                          const BundleOptions& options, const Cancellation* cancellation) {
-  BundleResult result = Adjust(map, sensor, window, options, cancellation);
+                          const BundleOptions& options, const Cancellation* cancellation,
+                          const ProgressCallback& on_progress) {
+  const int most = options.robust_iterations + options.final_iterations;
+  Supervision supervision(cancellation, on_progress, most);
+  BundleResult result = Adjust(map, sensor, window, options, supervision);
   if (result.is_usable || window.objects.empty()) {
     return result;
   }
   BundleWindow points_only = window;
   points_only.objects.clear();
-  result = Adjust(map, sensor, points_only, options, cancellation);
+  Supervision again(cancellation, on_progress, most);
+  result = Adjust(map, sensor, points_only, options, again);
   result.failed_objects = window.objects;
   return result;
 }

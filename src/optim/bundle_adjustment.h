@@ -53,7 +53,7 @@ struct BundleResult {
   // three. They keep the shape that they had and should be checked.
   std::vector<ObjectId> failed_objects;
   bool is_usable = false;  // false if the solver failed; then there is no result to apply
-  int residuals = 0;
+  int residuals = 0;       // views of landmarks, and costs on objects
   int iterations = 0;
 };
 
@@ -64,9 +64,11 @@ struct BundleResult {
 // that it has at the beginning. If the solver fails, the adjustment is repeated without objects,
 // and all objects are reported as failed. If `cancellation` (may be null) is requested, the
 // adjustment ends early and returns what it has. If that happens in the first round, the only
-// outliers are observations of points that are not in front of the camera.
+// outliers are observations of points that are not in front of the camera. `on_progress` is called
+// after each iteration.
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
-                          const BundleOptions& options, const Cancellation* cancellation);
+                          const BundleOptions& options, const Cancellation* cancellation,
+                          const ProgressCallback& on_progress = {});
 
 // Writes the result into the map that it was computed from. The map may have changed since then:
 // what no longer exists is passed over.

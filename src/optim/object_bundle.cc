@@ -17,6 +17,14 @@ bool IsPlausible(const Ellipsoid& after, const Ellipsoid& before, double max_cha
          (ratio < max_change).all();
 }
 
+// Where a cost is not defined at the start, the solver would fail.
+bool IsDefined(const ceres::CostFunction& cost, const PoseBlock& camera, const PoseBlock& object,
+               const Eigen::Vector3d& log_axes) {
+  const double* parameters[] = {camera.data(), object.data(), log_axes.data()};
+  Eigen::VectorXd residuals(cost.num_residuals());
+  return cost.Evaluate(parameters, residuals.data(), nullptr) && residuals.allFinite();
+}
+
 }  // namespace
 
 PoseIndices IndexPoses(const BundleWindow& window) {
@@ -32,7 +40,7 @@ PoseIndices IndexPoses(const BundleWindow& window) {
 
 ObjectBundle::ObjectBundle(const Map& map, const PinholeCamera& camera, const BundleWindow& window,
                            const PoseIndices& pose_indices, const ObjectBundleOptions& options)
-    : camera_(camera), options_(options), window_poses_(pose_indices.entries().size()) {
+    : camera_(camera), options_(options), moving_poses_(window.moving.size()) {
   for (const ObjectId id : window.objects) {
     AddObject(map, id, pose_indices);
   }
@@ -45,59 +53,67 @@ void ObjectBundle::AddObject(const Map& map, ObjectId id, const PoseIndices& pos
   object.before = landmark.ellipsoid;
   object.pose = ToBlock(landmark.ellipsoid.world_from_object);
   object.log_axes = landmark.ellipsoid.half_axes.array().log();
+  object.fixed_part = std::make_unique<ObjectSumCost>(ObjectSumCost::Camera::kNone);
   std::vector<ObjectObservation> outer;
   for (const ObjectObservation& seen : landmark.observations) {
     if (const size_t* const pose = pose_indices.Find(seen.keyframe)) {
-      AddView(map, seen, landmark.misfit_px, *pose);
+      AddView(map, seen, landmark.misfit_px, *pose < moving_poses_ ? pose : nullptr);
     } else {
       outer.push_back(seen);
     }
   }
   for (const ObjectObservation& seen : Thin(outer, static_cast<size_t>(options_.max_outer_views))) {
-    outer_poses_.push_back(ToBlock(map.keyframes().At(seen.keyframe).cam_from_world));
-    AddView(map, seen, landmark.misfit_px, window_poses_ + outer_poses_.size() - 1);
+    AddView(map, seen, landmark.misfit_px, nullptr);
   }
-  object.prior = MakeObjectPrior(landmark.ellipsoid, object.has_depth, options_.constraint);
+  object.fixed_part->AddPrior(
+      MakeObjectPrior(landmark.ellipsoid, object.has_depth, options_.constraint));
 }
 
 void ObjectBundle::AddView(const Map& map, const ObjectObservation& seen, double misfit_px,
-                           size_t pose) {
+                           const size_t* pose) {
   const Keyframe& keyframe = map.keyframes().At(seen.keyframe);
   const Detection& detection = keyframe.frame->detections[seen.detection];
   const ObjectView view{seen.keyframe, keyframe.cam_from_world, &detection};
+  const PoseBlock camera = ToBlock(keyframe.cam_from_world);
   Object& object = objects_.back();
+  object.has_depth |= !detection.points.empty();
   ObjectConstraint constraint = MakeObjectConstraint(camera_, view, detection.lines, object.before,
                                                      misfit_px, options_.constraint);
-  AddTerm(keyframe.cam_from_world, pose, std::move(constraint.outline));
-  AddTerm(keyframe.cam_from_world, pose, std::move(constraint.depth));
-  object.has_depth |= !detection.points.empty();
+  auto moving_part = std::make_unique<ObjectSumCost>(ObjectSumCost::Camera::kMoving);
+  for (auto* const cost : {&constraint.outline, &constraint.depth}) {
+    if (*cost == nullptr || !IsDefined(**cost, camera, object.pose, object.log_axes)) {
+      continue;
+    }
+    if (pose != nullptr) {
+      moving_part->Add(std::move(*cost));
+    } else {
+      object.fixed_part->Add(std::move(*cost), camera);
+    }
+  }
+  if (moving_part->size() > 0) {
+    views_.push_back({objects_.size() - 1, *pose, std::move(moving_part)});
+  }
 }
 
-// Adds the term, unless it is null or not defined at the start: there the solver would fail.
-void ObjectBundle::AddTerm(const Rigid3& cam_from_world, size_t pose,
-                           std::unique_ptr<ceres::CostFunction> cost) {
-  if (cost == nullptr) {
-    return;
+size_t ObjectBundle::CountCosts() const {
+  size_t count = 0;
+  for (const Object& object : objects_) {
+    count += object.fixed_part->size();
   }
-  const PoseBlock camera = ToBlock(cam_from_world);
-  const Object& object = objects_.back();
-  const double* parameters[] = {camera.data(), object.pose.data(), object.log_axes.data()};
-  Eigen::VectorXd residuals(cost->num_residuals());
-  if (cost->Evaluate(parameters, residuals.data(), nullptr) && residuals.allFinite()) {
-    terms_.push_back({objects_.size() - 1, pose, std::move(cost)});
+  for (const View& view : views_) {
+    count += view.cost->size();
   }
+  return count;
 }
 
 void ObjectBundle::AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>& poses) {
   for (Object& object : objects_) {
-    problem.AddResidualBlock(object.prior.get(), nullptr, object.pose.data(),
+    problem.AddResidualBlock(object.fixed_part.get(), nullptr, object.pose.data(),
                              object.log_axes.data());
   }
-  for (Term& term : terms_) {
-    PoseBlock& pose =
-        term.pose < window_poses_ ? poses[term.pose] : outer_poses_[term.pose - window_poses_];
-    Object& object = objects_[term.object];
-    problem.AddResidualBlock(term.cost.get(), nullptr, pose.data(), object.pose.data(),
+  for (View& view : views_) {
+    Object& object = objects_[view.object];
+    problem.AddResidualBlock(view.cost.get(), nullptr, poses[view.pose].data(), object.pose.data(),
                              object.log_axes.data());
   }
 }
@@ -111,12 +127,6 @@ void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold
     problem.SetManifold(object.pose.data(), &manifold);
     ordering.AddElementToGroup(object.pose.data(), 2);
     ordering.AddElementToGroup(object.log_axes.data(), axes_group);
-  }
-  for (PoseBlock& pose : outer_poses_) {
-    if (problem.HasParameterBlock(pose.data())) {
-      problem.SetParameterBlockConstant(pose.data());
-      ordering.AddElementToGroup(pose.data(), 3);
-    }
   }
 }
 

@@ -12,6 +12,7 @@
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/map/map.h"
 #include "optim/bundle_adjustment.h"
+#include "optim/object_sum_cost.h"
 #include "util/id_map.h"
 
 namespace hullslam::internal {
@@ -28,11 +29,13 @@ class ObjectBundle {
   ObjectBundle(const Map& map, const PinholeCamera& camera, const BundleWindow& window,
                const PoseIndices& pose_indices, const ObjectBundleOptions& options);
 
+  // Priors, outlines, and depth points of detections.
+  size_t CountCosts() const;
   // `poses` are those of the window's keyframes, the moving ones before the fixed ones. They and
   // this object must outlive the problem.
   void AddResiduals(ceres::Problem& problem, std::vector<PoseBlock>& poses);
-  // Puts the half axes of the objects into `axes_group` of the ordering, their poses into group 2
-  // and the poses outside of the window into group 3.
+  // Puts the half axes of the objects into `axes_group` of the ordering and their poses into
+  // group 2.
   void AddParameters(ceres::Problem& problem, PoseManifold& manifold, int axes_group,
                      ceres::ParameterBlockOrdering& ordering);
   void Write(BundleResult& result) const;
@@ -44,27 +47,25 @@ class ObjectBundle {
     PoseBlock pose{};  // world_from_object
     Eigen::Vector3d log_axes = Eigen::Vector3d::Zero();
     bool has_depth = false;  // whether a view has depth points on it
-    std::unique_ptr<ceres::CostFunction> prior;
+    // The prior and the views from keyframes that do not move.
+    std::unique_ptr<ObjectSumCost> fixed_part;
   };
-  // The residuals of one detection: those of its outline or those of its depth points.
-  struct Term {
+  // The outline and the depth points of one detection in a moving keyframe.
+  struct View {
     size_t object = 0;
-    size_t pose = 0;  // index into the window's poses followed by outer_poses_
-    std::unique_ptr<ceres::CostFunction> cost;
+    size_t pose = 0;  // index into the window's poses
+    std::unique_ptr<ObjectSumCost> cost;
   };
 
   void AddObject(const Map& map, ObjectId id, const PoseIndices& pose_indices);
-  // `pose` is an index as in Term.
-  void AddView(const Map& map, const ObjectObservation& seen, double misfit_px, size_t pose);
-  void AddTerm(const Rigid3& cam_from_world, size_t pose,
-               std::unique_ptr<ceres::CostFunction> cost);
+  // `pose` is the index of a moving pose of the window, or null.
+  void AddView(const Map& map, const ObjectObservation& seen, double misfit_px, const size_t* pose);
 
   PinholeCamera camera_;
   ObjectBundleOptions options_;
+  size_t moving_poses_;
   std::vector<Object> objects_;
-  std::vector<Term> terms_;
-  size_t window_poses_ = 0;
-  std::vector<PoseBlock> outer_poses_;  // of keyframes outside of the window
+  std::vector<View> views_;
 };
 
 }  // namespace hullslam::internal

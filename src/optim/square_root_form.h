@@ -37,8 +37,15 @@ class SquareRootForm {
   double LastResidual(double squared_norm) const {
     return std::sqrt(std::max(0.0, squared_norm - residual_.squaredNorm()));
   }
-  // L^T.
+  // J = L^T.
   auto jacobian() const { return factor_.matrixU(); }
+  // The block of J that begins at (row, column), which must not lie below the diagonal.
+  template <int kBlock>
+  Eigen::Matrix<double, kBlock, kBlock> JacobianBlock(Eigen::Index row, Eigen::Index column) const {
+    const Eigen::Matrix<double, kBlock, kBlock> block =
+        factor_.matrixLLT().template block<kBlock, kBlock>(column, row).transpose();
+    return row == column ? block.template triangularView<Eigen::Upper>().toDenseMatrix() : block;
+  }
 
  private:
   Eigen::LLT<Matrix> factor_;

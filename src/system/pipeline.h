@@ -24,9 +24,9 @@ class Pipeline {
   virtual FrameReport Track(std::shared_ptr<const Frame> frame) = 0;
   // Waits until all keyframes are in the map. Then it adjusts the whole map if
   // mapping.final_bundle_adjustment is set. That ends early if `cancellation` (may be null) is
-  // requested.
-  virtual void Finish(const Cancellation* cancellation) = 0;
-  void Finish() { Finish(nullptr); }
+  // requested. `on_progress` is called after each of its iterations.
+  virtual void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) = 0;
+  void Finish() { Finish(nullptr, {}); }
   // The newest snapshot; null before the first keyframe.
   virtual std::shared_ptr<const Map> map() const = 0;
   // Whether another thread than that of Track is mapping now. May be called by any thread.

@@ -28,10 +28,10 @@ class SequentialPipeline final : public Pipeline {
     return std::move(result.report);
   }
 
-  void Finish(const Cancellation* cancellation) override {
+  void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) override {
     RethrowFailure();
     if (!std::exchange(is_finished_, true)) {
-      EditMap([&] { mapper_.Finish(cancellation); });
+      EditMap([&] { mapper_.Finish(cancellation, on_progress); });
     }
   }
 

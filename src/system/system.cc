@@ -150,7 +150,9 @@ std::unique_ptr<TaskRunner> System::MakeRunner() {
   });
 }
 
-void System::Finish(const Cancellation* cancellation) { pipeline_->Finish(cancellation); }
+void System::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
+  pipeline_->Finish(cancellation, on_progress);
+}
 
 void System::Reset() {
   auto frame_builder = MakeFrameBuilder(sensor_, options_);

@@ -48,12 +48,12 @@ class ThreadedPipeline final : public Pipeline {
     return std::move(result.report);
   }
 
-  void Finish(const Cancellation* cancellation) override {
+  void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) override {
     const bool is_first = mapping_thread_.joinable();
     Stop();
     RethrowFailure();
     if (is_first) {  // the mapper's thread has ended
-      EditMap([&] { mapper_.Finish(cancellation); });
+      EditMap([&] { mapper_.Finish(cancellation, on_progress); });
       RethrowFailure();
     }
   }

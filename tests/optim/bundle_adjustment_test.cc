@@ -366,6 +366,24 @@ TEST_F(BundleAdjustment, CancelledAtOnceItReturnsTheStartWithoutOutliers) {
   }
 }
 
+TEST_F(BundleAdjustment, TellsAfterEachIterationHowManyAreDone) {
+  Perturb(0.01, 0.03);
+  std::vector<int> done;
+  const BundleOptions options;
+  const int most = options.robust_iterations + options.final_iterations;
+  const BundleResult result = AdjustBundle(made_.map, world_.sensor(), Window(), options, nullptr,
+                                           [&](int iteration, int of) {
+                                             EXPECT_EQ(of, most);
+                                             done.push_back(iteration);
+                                           });
+  ASSERT_FALSE(done.empty());
+  for (size_t i = 0; i < done.size(); ++i) {
+    EXPECT_EQ(done[i], static_cast<int>(i) + 1);
+  }
+  EXPECT_EQ(done.back(), result.iterations - 2);  // which counts the two starts too
+  EXPECT_LE(done.back(), most);
+}
+
 TEST_F(BundleAdjustment, ACancellationThatIsNotRequestedChangesNothing) {
   Perturb(0.01, 0.03);
   const Cancellation cancellation;

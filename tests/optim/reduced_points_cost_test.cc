@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optim/reduced_points_cost.h"
 
+#include <ceres/crs_matrix.h>
+#include <ceres/problem.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,49 +23,56 @@ class ReducedPointsCostTest : public ::testing::Test {
       poses_.push_back(ToBlock(pose));
     }
   }
-  // Residuals and, if asked for, the Jacobian with 7 columns a pose.
+  // Residuals and, if asked for, the Jacobian by the six parameters of each moving pose.
   bool Evaluate(Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) {
-    std::vector<const double*> parameters;
-    std::vector<Eigen::Matrix<double, Eigen::Dynamic, 7, Eigen::RowMajor>> by_pose(kMoving);
-    std::vector<double*> jacobians;
+    ceres::Problem::Options options;
+    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.evaluation_callback = &cost_;
+    ceres::Problem problem(options);
+    cost_.AddResiduals(problem);
+    ceres::Problem::EvaluateOptions order;
     for (size_t i = 0; i < kMoving; ++i) {
-      parameters.push_back(poses_[i].data());
-      by_pose[i].resize(kSize + 1, 7);
-      jacobians.push_back(by_pose[i].data());
+      problem.SetManifold(poses_[i].data(), &manifold_);
+      order.parameter_blocks.push_back(poses_[i].data());
     }
-    residuals.resize(kSize + 1);
-    const bool is_defined = cost_.Evaluate(parameters.data(), residuals.data(),
-                                           jacobian == nullptr ? nullptr : jacobians.data());
+    std::vector<double> values;
+    ceres::CRSMatrix by_pose;
+    if (!problem.Evaluate(order, nullptr, &values, nullptr,
+                          jacobian == nullptr ? nullptr : &by_pose)) {
+      return false;
+    }
+    residuals = Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<int>(values.size()));
     if (jacobian != nullptr) {
-      jacobian->resize(kSize + 1, kSize);
-      for (size_t i = 0; i < kMoving; ++i) {
-        jacobian->middleCols(6 * static_cast<Eigen::Index>(i), 6) = by_pose[i].leftCols<6>();
-        EXPECT_TRUE(by_pose[i].col(6).isZero(0.0));
+      jacobian->setZero(by_pose.num_rows, by_pose.num_cols);
+      for (int row = 0; row < by_pose.num_rows; ++row) {
+        for (int i = by_pose.rows[row]; i < by_pose.rows[row + 1]; ++i) {
+          (*jacobian)(row, by_pose.cols[i]) = by_pose.values[i];
+        }
       }
     }
-    return is_defined;
+    return true;
   }
 
   MadePoints made_{5};
   std::vector<PoseBlock> poses_;
+  PoseManifold manifold_;
   EliminatedPoints points_{made_.camera, made_.points, kMoving, true};
   ReducedPointsCost cost_{points_, poses_};
 };
 
 TEST_F(ReducedPointsCostTest, HalfTheSquaredResidualIsTheCost) {
-  cost_.PrepareForEvaluation(false, true);
   const double expected = points_.Follow(made_.poses);
   Eigen::VectorXd residuals;
   ASSERT_TRUE(Evaluate(residuals, nullptr));
   EXPECT_NEAR(0.5 * residuals.squaredNorm(), expected, 1e-9 * expected);
-  cost_.PrepareForEvaluation(true, true);
   Eigen::MatrixXd jacobian;
   ASSERT_TRUE(Evaluate(residuals, &jacobian));
+  EXPECT_EQ(residuals.size(), kSize + 1);
   EXPECT_NEAR(0.5 * residuals.squaredNorm(), expected, 1e-9 * expected);
 }
 
 TEST_F(ReducedPointsCostTest, GivesTheNormalEquationsOfThePoses) {
-  cost_.PrepareForEvaluation(true, true);
   Eigen::VectorXd residuals;
   Eigen::MatrixXd jacobian;
   ASSERT_TRUE(Evaluate(residuals, &jacobian));
@@ -90,7 +99,6 @@ TEST_F(ReducedPointsCostTest, PointsAreAcceptedWithTheDerivativesOnly) {
 
 TEST_F(ReducedPointsCostTest, IsNotDefinedForAPointBehindACamera) {
   poses_[1] = ToBlock({Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0), Eigen::Vector3d::Zero()});
-  cost_.PrepareForEvaluation(true, true);
   Eigen::VectorXd residuals;
   EXPECT_FALSE(Evaluate(residuals, nullptr));
 }
@@ -101,7 +109,6 @@ TEST_F(ReducedPointsCostTest, APoseWithoutInliersHasNoDerivative) {
       view.is_inlier = view.pose != 1;
     }
   }
-  cost_.PrepareForEvaluation(true, true);
   Eigen::VectorXd residuals;
   Eigen::MatrixXd jacobian;
   ASSERT_TRUE(Evaluate(residuals, &jacobian));

@@ -25,6 +25,15 @@ TEST(SquareRootForm, GivesTheNormalEquationsBack) {
   EXPECT_LT((jacobian.transpose() * form.residual() - gradient).norm(), 1e-12);
 }
 
+TEST(SquareRootForm, ABlockOfTheJacobianIsAPartOfIt) {
+  SquareRootForm<Eigen::Dynamic> form;
+  const Eigen::MatrixXd root = Eigen::MatrixXd::Identity(6, 6) + Eigen::MatrixXd::Ones(6, 6);
+  ASSERT_TRUE(form.Compute(root, Eigen::VectorXd::Ones(6)));
+  const Eigen::MatrixXd jacobian = form.jacobian();
+  EXPECT_EQ(form.JacobianBlock<2>(2, 2), (jacobian.block<2, 2>(2, 2)));
+  EXPECT_EQ(form.JacobianBlock<2>(0, 4), (jacobian.block<2, 2>(0, 4)));
+}
+
 TEST(SquareRootForm, TheLastResidualCompletesTheNorm) {
   Form form;
   ASSERT_TRUE(form.Compute(SomeHessian(), {1.0, -2.0, 0.5}));

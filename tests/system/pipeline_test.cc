@@ -110,7 +110,7 @@ TEST_P(PipelineTest, ACancelledFinishDoesNotAdjust) {
   TrackPath(*pipeline, world_, 0, 30);
   Cancellation cancellation;
   cancellation.Request();
-  pipeline->Finish(&cancellation);
+  pipeline->Finish(&cancellation, {});
   EXPECT_FALSE(pipeline->times().samples().contains("global_bundle_adjustment"));
   EXPECT_EQ(FindViolations(*pipeline->map()), std::vector<std::string>());
 }
@@ -121,7 +121,7 @@ TEST_P(PipelineTest, FinishMayBeCancelledWhileItRuns) {
   const std::vector<TrackedFrame> frames = TrackPath(*pipeline, world_, 0, 60);
   Cancellation cancellation;
   std::thread other([&] { cancellation.Request(); });
-  pipeline->Finish(&cancellation);
+  pipeline->Finish(&cancellation, {});
   other.join();
   EXPECT_EQ(FindViolations(*pipeline->map()), std::vector<std::string>());
   EXPECT_LT(PathError(ComposeTrajectory(*pipeline->map(), frames), world_.sensor()), 0.02);

@@ -85,8 +85,9 @@ class System {
 
   // Waits until all keyframes are in the map. Then it adjusts the whole map if
   // mapping.final_bundle_adjustment is set. The adjustment ends early with what it has if
-  // `cancellation` (may be null) is requested. Track must not be called after Finish.
-  void Finish(const Cancellation* cancellation = nullptr);
+  // `cancellation` (may be null) is requested. `on_progress` is called after each of its
+  // iterations, in this thread. Track must not be called after Finish.
+  void Finish(const Cancellation* cancellation = nullptr, const ProgressCallback& on_progress = {});
 
   // Makes the system as it was after its construction: without a map, frames, times and counts, and
   // ready for Track, also after Finish. Ids begin again, and time stamps may. Waits until the

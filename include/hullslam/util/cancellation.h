@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 
 namespace hullslam {
 
@@ -15,5 +16,9 @@ class Cancellation {
  private:
   std::atomic<bool> requested_{false};
 };
+
+// Is told how far a long computation is: the number of iterations that are done, and the largest
+// number that there may be. The computation may end before it.
+using ProgressCallback = std::function<void(int done, int most)>;
 
 }  // namespace hullslam
