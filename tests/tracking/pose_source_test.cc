@@ -46,7 +46,7 @@ class MotionModel : public testing::Test {
   SyntheticMap made_ = MakeSyntheticMap(world_, {0, 5});
   TrackingOptions options_;
   ObjectOptions objects_;
-  const ObjectIndex index_;
+  const ObjectIndex index_{};
 };
 
 // Patches grow and shrink by several levels of the pyramid when the camera moves by metres.
