@@ -155,9 +155,11 @@ void SceneBuilder::AddShelf(Wall wall, double along, const Palette& palette) {
     while (board < 5 && x < half_width - 0.10) {
       const double half_thick = random_.Uniform(0.012, 0.032);
       const double half_high = random_.Uniform(0.10, 0.15);
-      const Vector3f tint =
-          Vector3d(random_.Uniform(0.3, 1.2), random_.Uniform(0.3, 1.2), random_.Uniform(0.3, 1.2))
-              .cast<float>();
+      // One after the other: the order of the arguments of a call is not specified.
+      const double blue = random_.Uniform(0.3, 1.2);
+      const double green = random_.Uniform(0.3, 1.2);
+      const double red = random_.Uniform(0.3, 1.2);
+      const Vector3f tint = Vector3d(red, green, blue).cast<float>();
       AddBackground(
           Shape::Box({half_thick, 0.1, half_high}),
           Repeat(palette.pages[static_cast<size_t>(board) % palette.pages.size()], 0.25, tint),

@@ -12,6 +12,14 @@
 namespace hullslam::synthetic {
 namespace {
 
+// In the functions below each number is drawn in a statement of its own: in which order a compiler
+// evaluates the arguments of a call is not specified, and the images shall not depend on it.
+cv::Point RandomPixel(RandomStream& random, int size) {
+  const int y = random.Index(size);
+  const int x = random.Index(size);
+  return {x, y};
+}
+
 cv::Scalar RandomColour(RandomStream& random, double low, double high) {
   // Printed colours are not pure, so each is halfway to grey.
   const double grey = 0.5 * random.Uniform(low, high);
@@ -82,7 +90,9 @@ void WriteText(RandomStream& random, const cv::Rect& box, int height, const cv::
 void DrawFigure(RandomStream& random, double reach, cv::Mat& image) {
   const int size = image.rows;
   const cv::Scalar colour = RandomColour(random, 15.0, 240.0);
-  const cv::Point2d centre(random.Uniform(0.0, size), random.Uniform(0.0, size));
+  const double centre_y = random.Uniform(0.0, size);
+  const double centre_x = random.Uniform(0.0, size);
+  const cv::Point2d centre(centre_x, centre_y);
   const double radius = reach * size;
   const int corners = 2 + random.Index(4);
   if (corners == 2) {
@@ -150,7 +160,7 @@ cv::Mat PaintPlaster(uint64_t seed, int size, const cv::Scalar& colour) {
   RandomStream random(seed);
   cv::Mat image = Canvas(size, colour);
   for (int i = 0; i < 320; ++i) {
-    const cv::Point at(random.Index(size), random.Index(size));
+    const cv::Point at = RandomPixel(random, size);
     const double radius = size * 0.006 * std::pow(random.Uniform(0.05, 1.0), 2.5);
     const cv::Size axes(static_cast<int>(1.0 + radius * random.Uniform(0.6, 3.0)),
                         static_cast<int>(1.0 + radius));
@@ -207,8 +217,10 @@ cv::Mat PaintWood(uint64_t seed, int size, const cv::Scalar& colour) {
     }
   }
   for (int i = 0; i < 90; ++i) {  // knots, stains and scratches
-    const cv::Point at(random.Index(size), random.Index(size));
-    const cv::Size axes(2 + random.Index(size / 50), 1 + random.Index(size / 120));
+    const cv::Point at = RandomPixel(random, size);
+    const int height = 1 + random.Index(size / 120);
+    const int width = 2 + random.Index(size / 50);
+    const cv::Size axes(width, height);
     const cv::Scalar dark = colour * random.Uniform(0.4, 0.75);
     Tiled(size, [&](const cv::Point& offset) {
       cv::ellipse(image, at + offset, axes, 0.0, 0.0, 360.0, dark, cv::FILLED, cv::LINE_AA);
@@ -222,7 +234,7 @@ cv::Mat PaintFabric(uint64_t seed, int size, const cv::Scalar& colour) {
   RandomStream random(seed);
   cv::Mat image = Canvas(size, colour);
   for (int i = 0; i < 160; ++i) {
-    const cv::Point at(random.Index(size), random.Index(size));
+    const cv::Point at = RandomPixel(random, size);
     const int width = 3 + random.Index(size / 14);
     const int height = 3 + random.Index(size / 14);
     const cv::Scalar patch = colour * random.Uniform(0.5, 1.5);
@@ -238,7 +250,7 @@ cv::Mat PaintSpeckle(uint64_t seed, int size, const cv::Scalar& colour) {
   RandomStream random(seed);
   cv::Mat image = Canvas(size, colour);
   for (int i = 0; i < 500; ++i) {
-    const cv::Point at(random.Index(size), random.Index(size));
+    const cv::Point at = RandomPixel(random, size);
     const int radius = 1 + static_cast<int>(size * 0.03 * std::pow(random.Uniform(0.1, 1.0), 3.0));
     const cv::Scalar spot = colour * random.Uniform(0.35, 1.55);
     Tiled(size, [&](const cv::Point& offset) {
@@ -272,13 +284,16 @@ cv::Mat PaintPoster(uint64_t seed, int size) {
   }
   for (int i = 0; i < 4; ++i) {
     const int height = size / 40 + random.Index(size / 16);
-    const cv::Rect box(random.Index(size / 2), random.Index(size * 7 / 8), size / 2, height + 2);
+    const int top = random.Index(size * 7 / 8);
+    const int left = random.Index(size / 2);
+    const cv::Rect box(left, top, size / 2, height + 2);
     WriteText(random, box, height, RandomColour(random, 0.0, 255.0), image);
   }
   for (int i = 0; i < 120; ++i) {
-    const cv::Point at(random.Index(size), random.Index(size));
-    cv::circle(image, at, 2 + random.Index(5), RandomColour(random, 0.0, 255.0), cv::FILLED,
-               cv::LINE_AA);
+    const cv::Point at = RandomPixel(random, size);
+    const cv::Scalar dot = RandomColour(random, 0.0, 255.0);
+    const int radius = 2 + random.Index(5);
+    cv::circle(image, at, radius, dot, cv::FILLED, cv::LINE_AA);
   }
   AddNoise(seed, 16, 5, 9.0, image);
   cv::rectangle(image, cv::Rect(0, 0, size, size), cv::Scalar(235, 238, 240), size / 24);

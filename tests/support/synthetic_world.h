@@ -61,7 +61,11 @@ class SyntheticWorld {
       return std::uniform_real_distribution<double>(low, high)(random);
     };
     for (int i = 0; i < options.points; ++i) {
-      points_.emplace_back(number(-2.5, 2.5), number(-1.8, 1.8), number(2.0, 6.0));
+      // One after the other: the order of the arguments of a call is not specified.
+      const double z = number(2.0, 6.0);
+      const double y = number(-1.8, 1.8);
+      const double x = number(-2.5, 2.5);
+      points_.emplace_back(x, y, z);
       Patch& patch = patches_.emplace_back();
       patch.descriptor = {random(), random(), random(), random()};
       patch.angle = static_cast<float>(number(0.0, 2.0 * std::numbers::pi));
