@@ -70,6 +70,9 @@ TEST_F(Visibility, IsNotExpectedBehindANearerSurface) {
   cv::Mat rim = Wall(3000);
   rim(cv::Rect(0, 0, 300, 480)) = 500;
   EXPECT_TRUE(Shows(Look(Rigid3(), rim)));
+  cv::Mat corner = Wall(3000);
+  corner(cv::Rect(0, 0, 310, 236)) = 500;  // hides some of it
+  EXPECT_TRUE(Shows(Look(Rigid3(), corner)));
 }
 
 TEST_F(Visibility, WithoutDepthLandmarksTellWhatIsNearer) {

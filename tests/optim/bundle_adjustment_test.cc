@@ -255,6 +255,21 @@ TEST_F(BundleAdjustment, FindsExactlyTheWrongObservations) {
   EXPECT_LT(WorstPointError(result), 1e-4);
 }
 
+// Without moving poses Ceres eliminates the points, as in windows with very many of them. Without
+// the robust loss of the first round, a wrong observation would make others of its point wrong too.
+TEST_F(BundleAdjustment, FindsExactlyTheWrongObservationsOfFixedPosesToo) {
+  const auto planted = PlantOutliers(KeyframeId(3), 10);
+  BundleWindow window = Window();
+  window.fixed.insert(window.fixed.end(), window.moving.begin(), window.moving.end());
+  window.moving.clear();
+  const BundleResult result = AdjustBundle(made_.map, world_.sensor(), window, kPrecise, nullptr);
+  ASSERT_TRUE(result.is_usable);
+  EXPECT_EQ(
+      (std::set<std::pair<LandmarkId, KeyframeId>>(result.outliers.begin(), result.outliers.end())),
+      planted);
+  EXPECT_LT(WorstPointError(result), 1e-4);
+}
+
 // The bound is 2.4 (without depth) or 2.8 standard deviations of the error that remains.
 TEST_F(BundleAdjustment, AnObservationIsAnOutlierFromAFewStandardDeviationsOn) {
   constexpr uint32_t kShifted = 20;  // keypoint
