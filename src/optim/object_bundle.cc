@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optim/object_bundle.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "objects/object_constraint.h"
