@@ -13,9 +13,9 @@
 namespace hullslam::internal {
 
 // The sum of costs on one object as one cost with few residuals: the SquareRootForm of the sum of
-// their normal equations, and one residual more that makes the squared norm the true one. A hull
-// with fifty lines is then 16 rows to Ceres, and all views of an object from keyframes that do not
-// move are ten rows together.
+// their normal equations, and one residual more that makes the squared norm the true one. A view
+// of an object is then 16 rows to Ceres, however many lines its hull has, and all views from
+// keyframes that do not move are ten rows together.
 class ObjectSumCost final : public ceres::CostFunction {
  public:
   // What the cost depends on, besides the object.

@@ -24,7 +24,8 @@ struct ObjectView {
 std::vector<ObjectView> CollectViews(const Map& map, const ObjectLandmark& object,
                                      size_t max_views = 0);
 
-// The last `count` of them, or all if there are fewer.
+// The last `count` views by increasing keyframe id, or all if there are fewer. Valid until the map
+// changes.
 std::vector<ObjectView> LatestViews(const Map& map, const ObjectLandmark& object, size_t count);
 
 // Depth points of the views in the world frame, evenly chosen, about `max_points` at most.
