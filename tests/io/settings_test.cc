@@ -9,6 +9,7 @@
 
 #include "io/text_rows.h"
 #include "support/expect_error.h"
+#include "support/paths.h"
 #include "support/temporary_folder.h"
 
 namespace hullslam {
@@ -264,9 +265,9 @@ TEST_F(Settings, AFileInTheSequenceTakesPrecedence) {
 
 TEST_F(Settings, TheSettingsOfKnownCamerasAreFoundAndRead) {
   // NOLINTBEGIN(concurrency-mt-unsafe): this test has one thread
-  ::setenv("HULLSLAM_CONFIG", HULLSLAM_SOURCE_DIR "/config", 1);
+  ::setenv("HULLSLAM_CONFIG", (SourceFolder() / "config").c_str(), 1);
   const std::filesystem::path folder = FindConfigFolder();
-  EXPECT_EQ(folder, HULLSLAM_SOURCE_DIR "/config");
+  EXPECT_EQ(folder, SourceFolder() / "config");
   for (const char* const name : {"fr1_xyz", "fr2_desk", "fr3_office"}) {
     EXPECT_GT(ReadSettings(FindDefaultSettings(name, folder)).camera.fx, 500.0);
   }
@@ -281,7 +282,7 @@ TEST_F(Settings, TheSettingsOfKnownCamerasAreFoundAndRead) {
 
 // docs/settings.md must list every key and what is expected of its value.
 TEST_F(Settings, EveryKeyIsDocumented) {
-  const std::string docs = ReadFile(HULLSLAM_SOURCE_DIR "/docs/settings.md");
+  const std::string docs = ReadFile(SourceFolder() / "docs/settings.md");
   SystemOptions options;
   for (const OptionTable::Entry& entry : options.Bind().Entries()) {
     const size_t begin = docs.find("| `" + entry.key + "` |");

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "support/paths.h"
 #include "support/temporary_folder.h"
 
 namespace hullslam {
@@ -20,9 +21,7 @@ struct ProgramResult {
   std::string errors;  // of stderr
 };
 
-inline std::filesystem::path ProgramPath(const std::string& name) {
-  return std::filesystem::path(HULLSLAM_BIN_DIR) / name;
-}
+inline std::filesystem::path ProgramPath(const std::string& name) { return ProgramFolder() / name; }
 
 // Runs a command of the shell and returns its exit code; -1 if a signal ended it.
 inline int RunShell(const std::string& command) {

@@ -143,10 +143,8 @@ class SyntheticWorld {
     const double right_u =
         pixel.x() - sensor_.camera.bf / point_in_cam.z() + options_.pixel_noise * normal(random);
     Keypoint& keypoint = features.keypoints.emplace_back();
-    keypoint.raw = pixel.cast<float>();
-    keypoint.undistorted = keypoint.raw;
+    keypoint.undistorted = pixel.cast<float>();
     keypoint.angle = patch.angle;
-    keypoint.response = 50.0f;
     keypoint.level = level;
     Descriptor& descriptor = features.descriptors.emplace_back(patch.descriptor);
     for (int i = 0; i < options_.flipped_bits; ++i) {

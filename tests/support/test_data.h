@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "support/paths.h"
+
 namespace hullslam {
 
 // Finds a file or folder of the real sequences and golden trajectories. They are in $HULLSLAM_DATA
@@ -18,7 +20,7 @@ inline std::optional<std::filesystem::path> FindTestData(const std::string& rela
     const fs::path path = fs::path(folder) / relative;
     return fs::exists(path) ? std::optional(path) : std::nullopt;
   }
-  const fs::path source = fs::path(HULLSLAM_SOURCE_DIR);
+  const fs::path source = SourceFolder();
   for (fs::path parent = source; parent != parent.root_path(); parent = parent.parent_path()) {
     const fs::path path = parent.parent_path() / "shared" / "data" / relative;
     if (fs::exists(path)) {

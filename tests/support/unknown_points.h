@@ -25,13 +25,13 @@ inline void AddUnknownPoints(const Sensor& sensor, int count, int level, Frame& 
   std::uniform_real_distribution<float> v(50.0f, 430.0f);
   for (int i = 0; i < count; ++i) {
     Keypoint& keypoint = frame.features.keypoints.emplace_back();
-    keypoint.raw.x() = u(random);
-    keypoint.raw.y() = v(random);
-    keypoint.undistorted = keypoint.raw;
+    keypoint.undistorted.x() = u(random);
+    keypoint.undistorted.y() = v(random);
     keypoint.level = level;
     frame.features.descriptors.push_back({random(), random(), random(), random()});
     frame.features.depth.push_back(1.0f);
-    frame.features.right_u.push_back(keypoint.raw.x() - static_cast<float>(sensor.camera.bf));
+    frame.features.right_u.push_back(keypoint.undistorted.x() -
+                                     static_cast<float>(sensor.camera.bf));
   }
   RebuildGrid(sensor, frame);
 }
