@@ -51,7 +51,7 @@ void Build(benchmark::State& state) {
   const DetectionBuilder builder(BenchCamera(), 5000.0, options);
   const std::vector<InstanceMask> masks = BenchMasks();
   const cv::Mat depth(480, 640, CV_16UC1, cv::Scalar(7500));
-  std::vector<Keypoint> keypoints(1000);
+  std::vector<RawKeypoint> keypoints(1000);
   for (size_t i = 0; i < keypoints.size(); ++i) {
     keypoints[i].raw = {static_cast<float>(i % 640), static_cast<float>(i * 37 % 480)};
   }

@@ -164,13 +164,17 @@ void Descriptors(benchmark::State& state, const cv::Mat& image) {
 
 void FindNear(benchmark::State& state, const cv::Mat& image) {
   FeatureExtractor extractor(FeatureOptions{});
-  const std::vector<Keypoint> keypoints = extractor.Extract(image).keypoints;
+  std::vector<Keypoint> keypoints;
+  for (const RawKeypoint& keypoint : extractor.Extract(image).keypoints) {
+    keypoints.push_back({.undistorted = keypoint.raw, .level = keypoint.level});
+  }
   const FeatureGrid grid(keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});
   std::vector<uint32_t> found;
   for (auto _ : state) {
     for (const Keypoint& keypoint : keypoints) {
       found.clear();
-      grid.FindNear(keypoints, keypoint.raw, 15.0f, keypoint.level - 1, keypoint.level, found);
+      grid.FindNear(keypoints, keypoint.undistorted, 15.0f, keypoint.level - 1, keypoint.level,
+                    found);
       benchmark::DoNotOptimize(found.data());
     }
   }

@@ -168,8 +168,8 @@ class MadeCorridor {
   }
 
   static void Outline(const Ellipse& ellipse, Detection& detection) {
-    detection.contour = ellipse.Polygon(64);
-    detection.hull = detection.contour;
+    detection.hull = ellipse.Polygon(64);
+    detection.contour = detection.hull;
     detection.box = ellipse.Bounds();
     for (int k = 0; k < 16; ++k) {
       const double angle = k * std::numbers::pi / 8.0;
@@ -181,10 +181,11 @@ class MadeCorridor {
 
   static void AddPointsOn(const Ellipsoid& object, const Rigid3& cam_from_world,
                           Detection& detection) {
+    std::vector<Eigen::Vector3d> points;
     for (int i = 0; i < 100; ++i) {
-      const Eigen::Vector3d point = FrontPoint(object, i % 10 / 4.5 - 1.0, i / 10 / 4.5 - 1.0);
-      detection.points.push_back(cam_from_world * point);
+      points.push_back(cam_from_world * FrontPoint(object, i % 10 / 4.5 - 1.0, i / 10 / 4.5 - 1.0));
     }
+    detection.points = points;
   }
 
   static void AddKeypointsIn(const Ellipse& ellipse, const Ellipsoid& object,

@@ -30,7 +30,7 @@ CostPointer MakeOverlap(const PinholeCamera& camera, const Detection& detection,
     return OverlapWithRegion(camera, detection.hull, sigma);
   }
   if (primitive == ObjectPrimitive::kContour) {
-    return OverlapWithRegion(camera, detection.contour, sigma);
+    return OverlapWithRegion(camera, detection.contour.Unpack(), sigma);
   }
   if (primitive == ObjectPrimitive::kConic && detection.ellipse.has_value()) {
     return OverlapWithRegion(camera, detection.ellipse->Polygon(kConicVertices), sigma);
@@ -71,8 +71,8 @@ CostPointer MakeObjectCost(ObjectResidual residual, const PinholeCamera& camera,
     case ObjectResidual::kAlgebraicPlane:
       return std::make_unique<AlgebraicPlaneCost>(camera, lines, sigma);
     case ObjectResidual::kAlgebraicPoint:
-      return std::make_unique<AlgebraicPointCost>(camera, Thin(detection.contour, kMaxPoints),
-                                                  sigma);
+      return std::make_unique<AlgebraicPointCost>(
+          camera, Thin(detection.contour.Unpack(), kMaxPoints), sigma);
     case ObjectResidual::kDistribution:
       return std::make_unique<DistributionCost>(camera, detection.ellipse.value(), sigma);
     case ObjectResidual::kOverlap:

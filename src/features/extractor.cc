@@ -37,7 +37,7 @@ std::vector<size_t> LevelQuotas(const FeatureOptions& options) {
 }  // namespace
 
 void FeatureOptions::Bind(OptionTable& options) {
-  options.Add("ORBextractor.nFeatures", &feature_count, Range::Between(1, 100000),
+  options.Add("ORBextractor.nFeatures", &feature_count, Range::Between(1, 50000),
               "number of features to extract from an image");
   options.Add("ORBextractor.scaleFactor", &scale_factor,
               {.low = 1.0, .high = 2.0, .low_open = true},
@@ -99,13 +99,12 @@ void LevelExtractor::Describe(const Corner& corner, const ImagePyramid& pyramid,
                               const cv::Mat& blurred) {
   const cv::Point center(corner.x, corner.y);
   const Orientation orientation = ComputeOrientation(pyramid.level(level_), center);
-  Keypoint keypoint;
+  RawKeypoint keypoint;
   Eigen::Vector2f position(corner.x, corner.y);
   if (subpixel_) {
     position += SubpixelOffset(corner);
   }
   keypoint.raw = pyramid.ToLevelZero(position, level_);
-  keypoint.undistorted = keypoint.raw;
   keypoint.angle = orientation.Angle();
   keypoint.response = corner.score;
   keypoint.level = level_;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/features/feature_grid.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "hullslam/util/check.h"
 
@@ -20,31 +23,38 @@ int ClampedCell(float cells, int count) {
 
 }  // namespace
 
+int FeatureGrid::Column(float x) const {
+  return ClampedCell((x - min_.x()) * cells_per_pixel_.x(), kColumns);
+}
+
+int FeatureGrid::Row(float y) const {
+  return ClampedCell((y - min_.y()) * cells_per_pixel_.y(), kRows);
+}
+
 FeatureGrid::FeatureGrid(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_min,
                          const Eigen::Vector2f& box_max)
     : min_(box_min) {
   Check((box_max.array() > box_min.array()).all(), "the box of the image is empty");
+  Check(keypoints.size() <= std::numeric_limits<uint16_t>::max(), "too many keypoints for a grid");
   cells_per_pixel_ = Eigen::Array2f(kColumns, kRows) / (box_max - box_min).array();
-  std::vector<uint32_t> cells;
+  std::vector<int> cells;
   cells.reserve(keypoints.size());
+  std::vector<int> in_column(kColumns, 0);
   for (const Keypoint& keypoint : keypoints) {
-    const Eigen::Array2f position =
-        (keypoint.undistorted - min_).array() * cells_per_pixel_.array();
-    cells.push_back(static_cast<uint32_t>(ClampedCell(position.x(), kColumns) * kRows +
-                                          ClampedCell(position.y(), kRows)));
+    const int column = Column(keypoint.undistorted.x());
+    cells.push_back(column * kRows + Row(keypoint.undistorted.y()));
+    ++in_column[static_cast<size_t>(column)];
   }
-  cell_start_.assign(kColumns * kRows + 1, 0);
-  for (const uint32_t cell : cells) {
-    ++cell_start_[cell + 1];
-  }
-  for (size_t c = 1; c < cell_start_.size(); ++c) {
-    cell_start_[c] += cell_start_[c - 1];
-  }
-  std::vector<uint32_t> next(cell_start_.begin(), cell_start_.end() - 1);
   order_.resize(keypoints.size());
-  for (size_t i = 0; i < cells.size(); ++i) {
-    order_[next[cells[i]]++] = static_cast<uint32_t>(i);
+  std::iota(order_.begin(), order_.end(), uint16_t{0});
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](uint16_t a, uint16_t b) { return cells[a] < cells[b]; });
+  rows_.reserve(order_.size());
+  for (const uint16_t index : order_) {
+    rows_.push_back(static_cast<uint8_t>(cells[index] % kRows));
   }
+  column_start_.assign(kColumns + 1, 0);
+  std::partial_sum(in_column.begin(), in_column.end(), column_start_.begin() + 1);
 }
 
 void FeatureGrid::FindNear(std::span<const Keypoint> keypoints, const Eigen::Vector2f& center,
@@ -53,23 +63,20 @@ void FeatureGrid::FindNear(std::span<const Keypoint> keypoints, const Eigen::Vec
   if (order_.empty()) {
     return;
   }
-  const Eigen::Array2f low = (center - min_).array() - radius;
-  const Eigen::Array2f high = (center - min_).array() + radius;
-  const int first_column = ClampedCell(low.x() * cells_per_pixel_.x(), kColumns);
-  const int last_column = ClampedCell(high.x() * cells_per_pixel_.x(), kColumns);
-  const int first_row = ClampedCell(low.y() * cells_per_pixel_.y(), kRows);
-  const int last_row = ClampedCell(high.y() * cells_per_pixel_.y(), kRows);
-  for (int column = first_column; column <= last_column; ++column) {
-    // The cells of a column are stored one after another, so the wanted rows form one contiguous
-    // range.
-    const uint32_t begin = cell_start_[static_cast<size_t>(column * kRows + first_row)];
-    const uint32_t end = cell_start_[static_cast<size_t>(column * kRows + last_row + 1)];
-    for (uint32_t i = begin; i < end; ++i) {
-      const Keypoint& keypoint = keypoints[order_[i]];
+  const int last_column = Column(center.x() + radius);
+  const int first_row = Row(center.y() - radius);
+  const int last_row = Row(center.y() + radius);
+  for (int column = Column(center.x() - radius); column <= last_column; ++column) {
+    const auto start = column_start_.begin() + column;
+    const auto column_end = rows_.begin() + start[1];
+    auto row = std::lower_bound(rows_.begin() + start[0], column_end, first_row);
+    for (; row != column_end && *row <= last_row; ++row) {
+      const uint16_t index = order_[static_cast<size_t>(row - rows_.begin())];
+      const Keypoint& keypoint = keypoints[index];
       if (keypoint.level >= min_level && keypoint.level <= max_level &&
           std::abs(keypoint.undistorted.x() - center.x()) < radius &&
           std::abs(keypoint.undistorted.y() - center.y()) < radius) {
-        found.push_back(order_[i]);
+        found.push_back(index);
       }
     }
   }

@@ -34,7 +34,7 @@ struct Candidate {
 struct FrameView {
   const DetectionOptions& options;
   DepthView depth;
-  std::span<const Keypoint> keypoints;
+  std::span<const RawKeypoint> keypoints;
 };
 
 bool IsAtBorder(const Eigen::Vector2d& undistorted, const PinholeCamera& camera, double border) {
@@ -57,7 +57,8 @@ std::optional<DetectionRejection> CheckOutline(const Outline& outline, const Fra
   return std::nullopt;
 }
 
-std::vector<uint32_t> KeypointsIn(const MaskRegion& region, std::span<const Keypoint> keypoints) {
+std::vector<uint32_t> KeypointsIn(const MaskRegion& region,
+                                  std::span<const RawKeypoint> keypoints) {
   std::vector<uint32_t> inside;
   for (size_t i = 0; i < keypoints.size(); ++i) {
     if (region.Contains(keypoints[i].raw.cast<double>())) {
@@ -104,12 +105,15 @@ std::optional<DetectionRejection> Prepare(const InstanceMask& mask, size_t index
   if (detection.keypoints.size() < static_cast<size_t>(frame.options.min_keypoints)) {
     return DetectionRejection::kFewKeypoints;
   }
+  double depth = 0.0;
   if (!frame.depth.image.empty()) {
-    detection.points = DepthPoints(frame.depth, region, frame.options.max_depth_points);
+    std::vector<Eigen::Vector3d> points =
+        DepthPoints(frame.depth, region, frame.options.max_depth_points);
     RemoveFarFromMedian(frame.depth.camera, detection.box.sizes().maxCoeff(),
-                        frame.options.max_depth_offset, detection.points);
+                        frame.options.max_depth_offset, points);
+    depth = MedianDepth(points);
+    detection.points = points;
   }
-  const double depth = MedianDepth(detection.points);
   candidate = Candidate{.index = index,
                         .mask = &mask,
                         .parts = std::move(parts),
@@ -233,13 +237,13 @@ std::string ToString(DetectionRejection reason) {
 }
 
 DetectionResult DetectionBuilder::Build(std::span<const InstanceMask> masks, const cv::Mat& depth,
-                                        std::span<const Keypoint> keypoints) const {
+                                        std::span<const RawKeypoint> keypoints) const {
   SerialRunner runner;
   return Build(masks, depth, keypoints, runner);
 }
 
 DetectionResult DetectionBuilder::Build(std::span<const InstanceMask> masks, const cv::Mat& depth,
-                                        std::span<const Keypoint> keypoints,
+                                        std::span<const RawKeypoint> keypoints,
                                         TaskRunner& runner) const {
   CheckDepth(depth, camera_);
   const FrameView frame{

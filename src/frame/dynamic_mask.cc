@@ -60,7 +60,7 @@ cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::str
   return region;
 }
 
-void RemoveMasked(const cv::Mat& mask, std::vector<Keypoint>& keypoints,
+void RemoveMasked(const cv::Mat& mask, std::vector<RawKeypoint>& keypoints,
                   std::vector<Descriptor>& descriptors) {
   size_t kept = 0;
   for (size_t i = 0; i < keypoints.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <span>
 #include <utility>
 
 #include "hullslam/frame/dynamic_mask.h"
@@ -20,20 +21,19 @@ void CheckSize(const char* name, const cv::Mat& image, const cv::Size& size) {
   }
 }
 
-void Undistort(const PinholeCamera& camera, std::vector<Keypoint>& keypoints) {
-  for (Keypoint& keypoint : keypoints) {
-    keypoint.undistorted = camera.Undistort(keypoint.raw.cast<double>()).cast<float>();
-  }
-}
-
-void AddDepth(const Sensor& sensor, const cv::Mat& depth, double units_per_metre,
-              FrameFeatures& features) {
-  features.depth.reserve(features.size());
-  features.right_u.reserve(features.size());
-  for (const Keypoint& keypoint : features.keypoints) {
+// Adds the undistorted keypoints and their depths.
+void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& camera,
+                  const cv::Mat& depth, double units_per_metre, FrameFeatures& features) {
+  features.keypoints.reserve(keypoints.size());
+  features.depth.reserve(keypoints.size());
+  features.right_u.reserve(keypoints.size());
+  for (const RawKeypoint& keypoint : keypoints) {
+    const Eigen::Vector2f undistorted = camera.Undistort(keypoint.raw.cast<double>()).cast<float>();
     const float z = SampleDepth(depth, keypoint.raw, units_per_metre);
+    features.keypoints.push_back(
+        {.undistorted = undistorted, .angle = keypoint.angle, .level = keypoint.level});
     features.depth.push_back(z);
-    features.right_u.push_back(VirtualRight(keypoint.undistorted.x(), z, sensor.camera.bf));
+    features.right_u.push_back(VirtualRight(undistorted.x(), z, camera.bf));
   }
 }
 
@@ -65,11 +65,11 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
   }
   BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = Clock::now()};
   built.frame->timestamp = image.timestamp;
-  AddFeatures(image, runner, built.frame->features);
+  const std::vector<RawKeypoint> keypoints = AddFeatures(image, runner, built.frame->features);
   built.masks.frames_with_masks = image.masks.empty() ? 0 : 1;
   has_seen_masks_ |= !image.masks.empty();
   if (detection_builder_ && !image.masks.empty()) {
-    AddDetections(image, runner, built);
+    AddDetections(image, keypoints, runner, built);
   }
   if (detection_builder_ && has_seen_masks_) {
     built.frame->depth = DepthGrid(image.depth, depth_.units_per_metre);
@@ -79,30 +79,28 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
   return built;
 }
 
-void FrameBuilder::AddFeatures(const ImageInput& image, TaskRunner& runner,
-                               FrameFeatures& features) {
+std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, TaskRunner& runner,
+                                                   FrameFeatures& features) {
   ExtractedFeatures extracted = extractor_.Extract(image.grey, runner);
-  features.keypoints = std::move(extracted.keypoints);
-  features.descriptors = std::move(extracted.descriptors);
   if (const cv::Mat mask = DynamicMask(image.masks, dynamic_classes_, image.grey.size());
       !mask.empty()) {
-    RemoveMasked(mask, features.keypoints, features.descriptors);
+    RemoveMasked(mask, extracted.keypoints, extracted.descriptors);
   }
-  Undistort(sensor_.camera, features.keypoints);
-  AddDepth(sensor_, image.depth, depth_.units_per_metre, features);
+  features.descriptors = std::move(extracted.descriptors);
+  AddKeypoints(extracted.keypoints, sensor_.camera, image.depth, depth_.units_per_metre, features);
   const PinholeCamera::Bounds& bounds = sensor_.bounds;
   features.grid =
       FeatureGrid(features.keypoints, Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
                   Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
+  return std::move(extracted.keypoints);
 }
 
-void FrameBuilder::AddDetections(const ImageInput& image, TaskRunner& runner,
-                                 BuiltFrame& built) const {
+void FrameBuilder::AddDetections(const ImageInput& image, std::span<const RawKeypoint> keypoints,
+                                 TaskRunner& runner, BuiltFrame& built) const {
   std::vector<InstanceMask> masks = image.masks;
   std::erase_if(masks,
                 [&](const InstanceMask& mask) { return dynamic_classes_.contains(mask.label); });
-  DetectionResult result =
-      detection_builder_->Build(masks, image.depth, built.frame->features.keypoints, runner);
+  DetectionResult result = detection_builder_->Build(masks, image.depth, keypoints, runner);
   for (const std::optional<DetectionRejection>& rejection : result.rejections) {
     if (rejection) {
       ++built.masks.rejections[*rejection];

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,11 @@ class FrameBuilder {
   BuiltFrame Build(const ImageInput& image, TaskRunner& runner);
 
  private:
-  void AddFeatures(const ImageInput& image, TaskRunner& runner, FrameFeatures& features);
-  void AddDetections(const ImageInput& image, TaskRunner& runner, BuiltFrame& built) const;
+  // Returns the keypoints as they are in the raw image.
+  std::vector<RawKeypoint> AddFeatures(const ImageInput& image, TaskRunner& runner,
+                                       FrameFeatures& features);
+  void AddDetections(const ImageInput& image, std::span<const RawKeypoint> keypoints,
+                     TaskRunner& runner, BuiltFrame& built) const;
 
   const Sensor& sensor_;
   DepthOptions depth_;

@@ -190,7 +190,7 @@ class Associator {
   std::vector<double> InverseDepths(std::span<const ObjectView> views) const {
     const ObjectView& last = views.back();
     if (!last.detection->points.empty()) {
-      return {1.0 / MeanOf(last.detection->points).z()};
+      return {1.0 / MeanOf(last.detection->points.Unpack()).z()};
     }
     if (const auto sphere = StartFromRays(sensor_.camera, views, {})) {
       return {1.0 / (last.cam_from_world * sphere->world_from_object.translation).z()};

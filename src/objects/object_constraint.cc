@@ -61,8 +61,8 @@ std::unique_ptr<RobustRowsCost> MakeDepth(const Detection& detection,
                                           const ObjectDepthOptions& options) {
   const auto count = static_cast<size_t>(options.max_points);
   const std::vector<Eigen::Vector3d> points = options.choice == PointChoice::kEven
-                                                  ? Thin(detection.points, count)
-                                                  : EveryKth(detection.points, count);
+                                                  ? Thin(detection.points.Unpack(), count)
+                                                  : EveryKth(detection.points.Unpack(), count);
   if (points.empty()) {
     return nullptr;
   }

@@ -75,7 +75,7 @@ void ObjectIndex::Add(const Map& map, const PinholeCamera& camera, ObjectId id,
     return;
   }
   // The hull at the depth of its points, as association carries it to another frame.
-  const double depth = MeanOf(last.detection->points).z();
+  const double depth = MeanOf(last.detection->points.Unpack()).z();
   const auto unproject = [&](const Eigen::Vector2d& pixel) {
     return camera.Unproject(pixel, depth);
   };

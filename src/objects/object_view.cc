@@ -53,7 +53,7 @@ std::vector<Eigen::Vector3d> CollectPoints(std::span<const ObjectView> views, si
   size_t index = 0;
   for (const ObjectView& view : views) {
     const Rigid3 world_from_cam = Inverse(view.cam_from_world);
-    for (const Eigen::Vector3d& point : view.detection->points) {
+    for (const Eigen::Vector3d& point : view.detection->points.Unpack()) {
       if (index++ % step == 0) {
         points.push_back(world_from_cam * point);
       }
@@ -88,9 +88,8 @@ double FarthestView(std::span<const ObjectView> views, const Eigen::Vector3d& po
 }
 
 Eigen::Vector3d Centroid(const ObjectView& view) {
-  const std::vector<Eigen::Vector3d>& points = view.detection->points;
-  Check(!points.empty(), "a view without depth has no centroid");
-  return Inverse(view.cam_from_world) * MeanOf(points);
+  Check(!view.detection->points.empty(), "a view without depth has no centroid");
+  return Inverse(view.cam_from_world) * MeanOf(view.detection->points.Unpack());
 }
 
 double Parallax(std::span<const ObjectView> views, const Eigen::Vector3d& point) {

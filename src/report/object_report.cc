@@ -21,7 +21,7 @@ ReportedView MakeView(const Map& map, const ObjectObservation& observation) {
   view.is_cut = seen.is_cut;
   view.is_box = seen.is_box;
   view.hull = seen.hull;
-  view.contour = seen.contour;
+  view.contour = seen.contour.Unpack();
   view.lines = seen.lines;
   return view;
 }

@@ -68,7 +68,8 @@ TEST_F(MakeObjectCostTest, OneRowALineOrAPoint) {
   EXPECT_EQ(Make(ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour)->num_residuals(), 64);
   EXPECT_EQ(Make(ObjectResidual::kDistribution, ObjectPrimitive::kConic)->num_residuals(), 1);
   EXPECT_EQ(Make(ObjectResidual::kOverlap, ObjectPrimitive::kBox)->num_residuals(), 1);
-  detection_.contour.resize(10);
+  contour_.resize(10);
+  detection_.contour = contour_;
   EXPECT_EQ(Make(ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour)->num_residuals(), 10);
 }
 

@@ -47,7 +47,7 @@ TEST(ResidualOfPixelError, IsTheSizeOfTheResiduals) {
   const std::vector<Eigen::Vector2d> contour = wrong.Polygon(720);
   Detection detection;
   detection.contour = wrong.Polygon(720);
-  detection.hull = detection.contour;
+  detection.hull = contour;
   detection.ellipse = wrong;
   detection.lines = {{{{1.0, 0.0}, -320.0 - radius - error_px}, false},
                      {{{0.6, 0.8}, -0.6 * 320.0 - 0.8 * 240.0 - radius - error_px}, false}};

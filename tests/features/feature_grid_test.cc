@@ -21,7 +21,6 @@ std::vector<Keypoint> MakeKeypoints(size_t count) {
   std::vector<Keypoint> keypoints(count);
   for (Keypoint& keypoint : keypoints) {
     keypoint.undistorted = {x(random), y(random)};
-    keypoint.raw = {0.0f, 0.0f};
     keypoint.level = static_cast<int>(random() % 8);
   }
   return keypoints;
@@ -118,6 +117,15 @@ TEST(FeatureGrid, AcceptsCentersThatAreFarAwayOrNotFinite) {
     grid.FindNear(keypoints, {100.0f, far}, 20.0f, 0, 7, found);
   }
   EXPECT_TRUE(found.empty());
+}
+
+TEST(FeatureGrid, RejectsMoreKeypointsThanAnIndexOf16BitsCanCount) {
+  std::vector<Keypoint> keypoints = MakeKeypoints(65535);
+  std::vector<uint32_t> found;
+  MakeGrid(keypoints).FindNear(keypoints, keypoints.back().undistorted, 0.5f, 0, 7, found);
+  EXPECT_EQ(std::count(found.begin(), found.end(), 65534u), 1);
+  keypoints.emplace_back();
+  EXPECT_THROW(MakeGrid(keypoints), CheckError);
 }
 
 TEST(FeatureGrid, RejectsAnEmptyBox) {

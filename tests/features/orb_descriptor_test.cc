@@ -22,7 +22,7 @@ struct Described {
   std::vector<Descriptor> descriptors;
 };
 
-cv::Point LevelPixel(const Keypoint& keypoint, const cv::Mat& image, const cv::Mat& level) {
+cv::Point LevelPixel(const RawKeypoint& keypoint, const cv::Mat& image, const cv::Mat& level) {
   const float ratio_x = static_cast<float>(level.cols) / static_cast<float>(image.cols);
   const float ratio_y = static_cast<float>(level.rows) / static_cast<float>(image.rows);
   return {cvRound((keypoint.raw.x() + 0.5f) * ratio_x - 0.5f),
@@ -58,7 +58,7 @@ Described DescribeBy(const cv::Mat& image, int level_count, const Blur& blur) {
   }
   Described result;
   for (size_t i = 0; i < features.keypoints.size(); ++i) {
-    const Keypoint& keypoint = features.keypoints[i];
+    const RawKeypoint& keypoint = features.keypoints[i];
     const auto l = static_cast<size_t>(keypoint.level);
     const cv::Mat& level = pyramid.level(keypoint.level);
     const cv::Point pixel = LevelPixel(keypoint, image, level);

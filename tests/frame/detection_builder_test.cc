@@ -122,7 +122,7 @@ TEST(DetectionBuilder, LongEdgesAreUndistortedAllAlong) {
   const Detection detection = BuildOne(RectangleMask(20.0, 20.0, 400.0, 160.0), camera);
   const Eigen::Vector2d middle = camera.Undistort({220.0, 20.0});
   double nearest = 1e9;
-  for (const Eigen::Vector2d& p : detection.contour) {
+  for (const Eigen::Vector2d& p : detection.contour.Unpack()) {
     nearest = std::min(nearest, std::abs((p - middle).norm()));
   }
   EXPECT_LT(nearest, 6.1);
@@ -297,7 +297,7 @@ TEST(DetectionBuilder, DepthOfTheBackgroundIsLeftOut) {
   size_t far = 0;
   const auto count_far = [&] {
     far = 0;
-    for (const Eigen::Vector3d& point : BuildOne(mask, PlainCamera(), {}, depth).points) {
+    for (const Eigen::Vector3d& point : BuildOne(mask, PlainCamera(), {}, depth).points.Unpack()) {
       far += point.z() > 2.1 ? 1 : 0;
     }
     return far;
@@ -314,7 +314,7 @@ TEST(DetectionBuilder, PartsAreOneHullButForSmallOnes) {
   const Detection detection = BuildOne(mask, PlainCamera());
   EXPECT_EQ(detection.box.min(), Eigen::Vector2d(100.0, 100.0));
   EXPECT_EQ(detection.box.max(), Eigen::Vector2d(240.0, 180.0));
-  EXPECT_NEAR(SignedArea(detection.contour), 60.0 * 80.0, 1e-9);
+  EXPECT_NEAR(SignedArea(detection.contour.Unpack()), 60.0 * 80.0, 1e-9);
   EXPECT_EQ(detection.hull, ConvexHull(std::vector<Eigen::Vector2d>{{100.0, 100.0},
                                                                     {160.0, 100.0},
                                                                     {100.0, 180.0},
@@ -530,7 +530,7 @@ TEST(DetectionBuilder, DepthPointsAreInsideTheErodedMaskOnAGrid) {
   EXPECT_GT(detection.points.size(), 100U);
   EXPECT_LE(detection.points.size(), 200U);
   std::set<int> columns;
-  for (const Eigen::Vector3d& point : detection.points) {
+  for (const Eigen::Vector3d& point : detection.points.Unpack()) {
     EXPECT_NEAR(point.z(), 2.0, 1e-6);
     const Eigen::Vector2d raw = camera.Distort(camera.Project(point));
     EXPECT_LT((raw - raw.array().round().matrix()).norm(), 1e-5);
@@ -553,7 +553,7 @@ TEST(DetectionBuilder, UnknownDepthGivesNoPoints) {
   const Detection detection =
       BuildOne(RectangleMask(200.0, 150.0, 119.0, 99.0), PlainCamera(), {}, depth);
   EXPECT_FALSE(detection.points.empty());
-  for (const Eigen::Vector3d& point : detection.points) {
+  for (const Eigen::Vector3d& point : detection.points.Unpack()) {
     EXPECT_GE(PlainCamera().Project(point).x(), 259.9);
   }
 }
@@ -561,7 +561,7 @@ TEST(DetectionBuilder, UnknownDepthGivesNoPoints) {
 TEST(DetectionBuilder, KeypointsAreThoseInAnyPartOfTheMask) {
   InstanceMask mask = RectangleMask(100.0, 100.0, 60.0, 80.0);
   mask.outlines.push_back(Rectangle(200.0, 110.0, 40.0, 60.0));
-  std::vector<Keypoint> keypoints(5);
+  std::vector<RawKeypoint> keypoints(5);
   keypoints[0].raw = {50.0f, 50.0f};
   keypoints[1].raw = {120.0f, 150.0f};
   keypoints[2].raw = {180.0f, 140.0f};  // in the hull, between the parts

@@ -48,7 +48,7 @@ TEST(DynamicMask, GrowsBySevenPixelsToEverySideAndUpToTheBorder) {
 TEST(RemoveMasked, TakesKeypointsOutWithTheirDescriptors) {
   const cv::Mat mask =
       DynamicMask(std::vector{Square("person", 40, 40, 20)}, {"person"}, {100, 100});
-  std::vector<Keypoint> keypoints(3);
+  std::vector<RawKeypoint> keypoints(3);
   std::vector<Descriptor> descriptors(3);
   keypoints[0].raw = {10.0f, 10.0f};
   keypoints[1].raw = {50.0f, 50.0f};

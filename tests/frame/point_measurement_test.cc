@@ -14,7 +14,6 @@ TEST(MeasurePoint, TakesPixelLevelAndDepthOfTheKeypoint) {
   FrameFeatures features;
   for (const float right_u : {80.0f, -1.0f}) {
     Keypoint& keypoint = features.keypoints.emplace_back();
-    keypoint.raw = {90.0f, 40.0f};
     keypoint.undistorted = {100.0f, 50.0f};
     keypoint.level = 2;
     features.right_u.push_back(right_u);

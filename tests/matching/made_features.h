@@ -33,7 +33,6 @@ inline FrameFeatures MakeFeatures(const std::vector<MadeKeypoint>& keypoints) {
   FrameFeatures features;
   for (const MadeKeypoint& made : keypoints) {
     Keypoint& keypoint = features.keypoints.emplace_back();
-    keypoint.raw = made.pixel;
     keypoint.undistorted = made.pixel;
     keypoint.level = made.level;
     keypoint.angle = made.angle;

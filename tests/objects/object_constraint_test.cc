@@ -20,7 +20,7 @@ class ObjectConstraintTest : public ::testing::Test {
     detection_.lines = {{{{1.0, 0.0}, -695.0}, false},
                         {{{1.0, 0.0}, -694.0}, false},
                         {{{-1.0, 0.0}, -71.0}, false}};
-    detection_.points.assign(6, {0.0, 0.0, 0.1});
+    detection_.points = std::vector<Eigen::Vector3d>(6, {0.0, 0.0, 0.1});
     options_.sigma_px = 2.0;
     options_.misfit_factor = 0.0;
     options_.loss = RobustLoss::kNone;
@@ -142,12 +142,12 @@ TEST_F(ObjectConstraintTest, HasTrueDerivatives) {
       for (SilhouetteLine& line : detection_.lines) {
         line.line.offset -= 20.0;
       }
-      detection_.points.clear();
+      std::vector<Eigen::Vector3d> points;
       for (int k = 0; k < 6; ++k) {
-        detection_.points.push_back(state.cam_from_world *
-                                        state.ellipsoid.world_from_object.translation +
-                                    random.Vector(1.0).normalized());
+        points.push_back(state.cam_from_world * state.ellipsoid.world_from_object.translation +
+                         random.Vector(1.0).normalized());
       }
+      detection_.points = points;
       const ObjectConstraint constraint =
           MakeObjectConstraint(kObjectCamera, {KeyframeId(), state.cam_from_world, &detection_},
                                detection_.lines, state.ellipsoid, 0.0, options_);

@@ -77,7 +77,7 @@ TEST_F(ObjectViews, ParallaxIsTheLargestAngle) {
 
 TEST(HasDepth, NeedsEnoughPointsInAllViewsTogether) {
   Detection detection;
-  detection.points.resize(kMinDepthPoints / 2);
+  detection.points = std::vector<Eigen::Vector3d>(kMinDepthPoints / 2);
   const ObjectView view{KeyframeId(0), Rigid3(), &detection};
   EXPECT_FALSE(HasDepth(std::vector{view}));
   EXPECT_TRUE(HasDepth(std::vector{view, view}));

@@ -90,9 +90,11 @@ TEST_F(Validity, DoesNotDependOnTheScaleOfTheMap) {
   for (ObjectView& view : views) {
     view.cam_from_world.translation *= 10.0;
     Detection& seen = detections.emplace_back(*view.detection);
-    for (Eigen::Vector3d& point : seen.points) {
+    std::vector<Eigen::Vector3d> points = seen.points.Unpack();
+    for (Eigen::Vector3d& point : points) {
       point *= 10.0;
     }
+    seen.points = points;
     view.detection = &seen;
   }
   for (const double size : {0.04, 0.5, 0.9, 1.0, 1.1, 2.0, 5.0}) {

@@ -80,7 +80,7 @@ TEST_F(Visibility, WithoutDepthLandmarksTellWhatIsNearer) {
     auto frame = std::make_shared<Frame>();
     const std::vector<Eigen::Vector2f> pixels = {{320, 240}, {330, 240}, {320, 250}, {20, 20}};
     for (const Eigen::Vector2f& pixel : pixels) {
-      frame->features.keypoints.push_back({.raw = pixel, .undistorted = pixel});
+      frame->features.keypoints.push_back({.undistorted = pixel});
       frame->features.descriptors.emplace_back();
       frame->features.right_u.push_back(-1.0f);
       frame->features.depth.push_back(0.0f);

@@ -27,7 +27,7 @@ struct FeatureOptions {
 };
 
 struct ExtractedFeatures {
-  std::vector<Keypoint> keypoints;      // `undistorted` equals `raw`; ordered by level
+  std::vector<RawKeypoint> keypoints;   // ordered by level
   std::vector<Descriptor> descriptors;  // one per keypoint
 };
 

@@ -10,28 +10,34 @@
 
 namespace hullslam {
 
-// Keypoints sorted into cells of the image, to find the keypoints near a pixel.
+// Keypoints sorted into cells of the image, to find the keypoints near a pixel. Every keyframe
+// keeps one, so it is small: three bytes per keypoint and two per column of cells.
 class FeatureGrid {
  public:
   FeatureGrid() = default;
   // Sorts by `undistorted`. The box is that of the undistorted image, in px. Keypoints outside it
-  // are put into the nearest cell.
+  // are put into the nearest cell. Throws CheckError if the box is empty, or if there are more than
+  // 65535 keypoints.
   FeatureGrid(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_min,
               const Eigen::Vector2f& box_max);
 
   // Appends to `found` the indices of all keypoints with |dx| < radius, |dy| < radius and a level
-  // from min_level to max_level. Cells are visited one after the other; within a cell the indices
-  // are in increasing order.
+  // from min_level to max_level. `keypoints` are those of the constructor. Cells are visited one
+  // after the other; within a cell the indices are in increasing order.
   void FindNear(std::span<const Keypoint> keypoints, const Eigen::Vector2f& center, float radius,
                 int min_level, int max_level, std::vector<uint32_t>& found) const;
 
  private:
+  int Column(float x) const;
+  int Row(float y) const;
+
   static constexpr int kColumns = 64;
   static constexpr int kRows = 48;
   Eigen::Vector2f min_ = Eigen::Vector2f::Zero();
   Eigen::Vector2f cells_per_pixel_ = Eigen::Vector2f::Zero();
-  std::vector<uint32_t> cell_start_;  // kColumns * kRows + 1, into order_
-  std::vector<uint32_t> order_;       // keypoint indices, cell by cell, column-major
+  std::vector<uint16_t> column_start_;  // kColumns + 1, into order_
+  std::vector<uint16_t> order_;         // keypoint indices, cell by cell, column-major
+  std::vector<uint8_t> rows_;           // row of each of them
 };
 
 }  // namespace hullslam

@@ -21,12 +21,19 @@ inline int HammingDistance(const Descriptor& a, const Descriptor& b) {
   return distance;
 }
 
+// What a keyframe keeps of a keypoint.
 struct Keypoint {
-  Eigen::Vector2f raw;          // px in the image as read
   Eigen::Vector2f undistorted;  // px after undistortion
   float angle = 0.0f;           // radians, clockwise from +x in the image (y down), 0 to 2 pi
-  float response = 0.0f;        // FAST score
   int level = 0;                // level of the pyramid
+};
+
+// A keypoint in the image as read.
+struct RawKeypoint {
+  Eigen::Vector2f raw;    // px
+  float angle = 0.0f;     // as in Keypoint
+  float response = 0.0f;  // FAST score
+  int level = 0;          // level of the pyramid
 };
 
 // Geometry of the image pyramid: level l is smaller than level 0 by the factor scale[l] = factor^l.

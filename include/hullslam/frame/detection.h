@@ -11,6 +11,7 @@
 #include "hullslam/frame/object_primitive.h"
 #include "hullslam/geometry/conic.h"
 #include "hullslam/geometry/line2.h"
+#include "hullslam/geometry/packed_points.h"
 
 namespace hullslam {
 
@@ -18,9 +19,9 @@ namespace hullslam {
 struct Detection {
   std::string label;
   double score = 1.0;
-  std::vector<Eigen::Vector2d> contour;  // outline of the largest part of the mask, closed, px
-  std::vector<Eigen::Vector2d> hull;     // convex hull of all parts, positive signed area, px
-  Eigen::AlignedBox2d box;               // bounding box of the hull, px
+  PackedPoints<2> contour;            // outline of the largest part of the mask, closed, px
+  std::vector<Eigen::Vector2d> hull;  // convex hull of all parts, positive signed area, px
+  Eigen::AlignedBox2d box;            // bounding box of the hull, px
   // What the residuals are computed from; equal to DetectionOptions::primitive.
   ObjectPrimitive primitive = ObjectPrimitive::kSupport;
   std::vector<SilhouetteLine> lines;  // the lines that constrain the quadric
@@ -29,7 +30,7 @@ struct Detection {
   bool is_cut = false;  // the border of the image cuts the mask
   bool is_box = false;  // the mask is only a bounding box
   // Points of the depth image inside the eroded mask, m, camera frame; a few hundred at most.
-  std::vector<Eigen::Vector3d> points;
+  PackedPoints<3> points;
   std::vector<uint32_t> keypoints;  // indices of the frame's keypoints inside the mask
 };
 

@@ -56,10 +56,10 @@ class DetectionBuilder {
   // have no points and no occlusion is found. `keypoints` are those of the frame. Throws CheckError
   // for a depth image of another size or type.
   DetectionResult Build(std::span<const InstanceMask> masks, const cv::Mat& depth,
-                        std::span<const Keypoint> keypoints) const;
+                        std::span<const RawKeypoint> keypoints) const;
   // The same detections, with one task per mask.
   DetectionResult Build(std::span<const InstanceMask> masks, const cv::Mat& depth,
-                        std::span<const Keypoint> keypoints, TaskRunner& runner) const;
+                        std::span<const RawKeypoint> keypoints, TaskRunner& runner) const;
 
  private:
   PinholeCamera camera_;

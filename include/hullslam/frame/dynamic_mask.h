@@ -23,7 +23,7 @@ cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::str
                     cv::Size size);
 
 // Removes the keypoints whose raw position is in the mask, and their descriptors.
-void RemoveMasked(const cv::Mat& mask, std::vector<Keypoint>& keypoints,
+void RemoveMasked(const cv::Mat& mask, std::vector<RawKeypoint>& keypoints,
                   std::vector<Descriptor>& descriptors);
 
 }  // namespace hullslam
