@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Local bundle adjustment around the newest keyframe of a synthetic map, with as many keyframes as
-// mapping uses by default, and with fewer.
+// mapping uses by default, and with fewer. Each problem is also solved by Ceres alone
+// (ceres_alone:1), which then eliminates the points itself.
 #include <benchmark/benchmark.h>
 
 #include "hullslam/mapping/mapping_options.h"
@@ -10,6 +11,14 @@
 namespace hullslam {
 namespace {
 
+BundleOptions Solver(const benchmark::State& state) {
+  BundleOptions options;
+  if (state.range(1) != 0) {
+    options.max_eliminated = 0;
+  }
+  return options;
+}
+
 void LocalBundleAdjustment(benchmark::State& state) {
   const Sensor sensor = BenchSensor();
   const Map map = MakeBenchMap(60, sensor);
@@ -17,7 +26,7 @@ void LocalBundleAdjustment(benchmark::State& state) {
                                           static_cast<size_t>(MappingOptions().fixed_keyframes));
   BundleResult result;
   for (auto _ : state) {
-    result = AdjustBundle(map, sensor, window, {}, nullptr);
+    result = AdjustBundle(map, sensor, window, Solver(state), nullptr);
   }
   state.counters["moving"] = static_cast<double>(window.moving.size());
   state.counters["fixed"] = static_cast<double>(window.fixed.size());
@@ -26,9 +35,8 @@ void LocalBundleAdjustment(benchmark::State& state) {
   state.counters["iterations"] = result.iterations;
 }
 BENCHMARK(LocalBundleAdjustment)
-    ->ArgName("max_moving")
-    ->Arg(5)
-    ->Arg(MappingOptions().local_keyframes)
+    ->ArgNames({"max_moving", "ceres_alone"})
+    ->ArgsProduct({{5, MappingOptions().local_keyframes}, {0, 1}})
     ->Unit(benchmark::kMillisecond);
 
 // The same with objects, of which each image shows about range(0).
@@ -42,16 +50,15 @@ void ObjectBundleAdjustment(benchmark::State& state) {
                   static_cast<size_t>(options.fixed_keyframes), WindowObjects::kMapped);
   BundleResult result;
   for (auto _ : state) {
-    result = AdjustBundle(map, sensor, window, {}, nullptr);
+    result = AdjustBundle(map, sensor, window, Solver(state), nullptr);
   }
   state.counters["objects"] = static_cast<double>(window.objects.size());
   state.counters["residuals"] = result.residuals;
   state.counters["iterations"] = result.iterations;
 }
 BENCHMARK(ObjectBundleAdjustment)
-    ->ArgName("in_view")
-    ->Arg(4)
-    ->Arg(10)
+    ->ArgNames({"in_view", "ceres_alone"})
+    ->ArgsProduct({{4, 10}, {0, 1}})
     ->Unit(benchmark::kMillisecond);
 
 void Window(benchmark::State& state) {

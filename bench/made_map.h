@@ -84,10 +84,11 @@ inline std::vector<Detection> DetectBenchObjects(const Sensor& sensor, const Rig
           {{normal, -normal.dot(ellipse->center) - ellipse->HalfExtent(normal)}, false});
     }
     const Eigen::Vector3d center = cam_from_world * objects[i].world_from_object.translation;
+    std::vector<Eigen::Vector3d> points;
     for (int k = 0; k < 100; ++k) {
-      detection.points.push_back(center +
-                                 Eigen::Vector3d(0.05 * std::cos(k), 0.05 * std::sin(k), -0.1));
+      points.push_back(center + Eigen::Vector3d(0.05 * std::cos(k), 0.05 * std::sin(k), -0.1));
     }
+    detection.points = points;
     seen.push_back(i);
   }
   return detections;

@@ -23,10 +23,6 @@
 namespace hullslam {
 namespace {
 
-// Up to this number, nearly all poses share points, so the system that is left without the points
-// is nearly full, and own elimination with a dense solver is faster (docs/performance.md).
-constexpr size_t kMostDensePoses = 140;
-
 // Tells the caller how far the adjustment is, and ends it when that is requested.
 class Supervision final : public ceres::IterationCallback {
  public:
@@ -88,7 +84,7 @@ class Bundle {
 
   bool Solve(int iterations, bool robust, Supervision& supervision, BundleResult& result) {
     const size_t moving = window_.moving.size();
-    const bool eliminates = moving > 0 && moving <= kMostDensePoses;
+    const bool eliminates = moving > 0 && moving <= options_.max_eliminated;
     return eliminates ? SolveEliminated(iterations, robust, supervision, result)
                       : SolveSparse(iterations, robust, supervision, result);
   }

@@ -41,6 +41,10 @@ struct BundleOptions {
   int final_iterations = 10;  // without Huber's loss, inliers only
   double function_tolerance = 1e-4;
   int threads = 1;  // with more than one, the last bits differ from run to run
+  // With up to this number of moving keyframes, own code eliminates the landmarks; with more, Ceres
+  // does. Nearly all of 140 poses share landmarks, so the system that is left without the landmarks
+  // is nearly full, and a dense solver is faster (docs/performance.md).
+  size_t max_eliminated = 140;
   ObjectBundleOptions objects = {};
 };
 
@@ -58,8 +62,8 @@ struct BundleResult {
 };
 
 // Minimises the reprojection errors of the window's landmarks in its keyframes. Ceres solves for
-// poses and objects. In a window with up to 140 moving keyframes, own code eliminates the landmarks
-// (EliminatedPoints); in a larger one, Ceres does so. Each object of the window adds the
+// poses and objects. In a small window own code eliminates the landmarks (EliminatedPoints); in a
+// large one, Ceres does so (BundleOptions::max_eliminated). Each object of the window adds the
 // constraints of its detections (MakeObjectConstraint) and a prior (MakeObjectPrior) at the shape
 // that it has at the beginning. If the solver fails, the adjustment is repeated without objects,
 // and all objects are reported as failed. If `cancellation` (may be null) is requested, the

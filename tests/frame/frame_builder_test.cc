@@ -123,11 +123,12 @@ TEST_F(FrameBuilderTest, DepthIsThatOfTheRawPixel) {
   const ImageInput image = MakeImage();
   const auto frame = Build(image);
   const FrameFeatures& features = frame->features;
+  const std::vector<RawKeypoint> extracted =
+      FeatureExtractor(FewFeatures()).Extract(image.grey).keypoints;
+  ASSERT_EQ(features.size(), extracted.size());
   int unknown = 0;
   for (size_t i = 0; i < features.size(); ++i) {
-    // Positions of keypoints of level 0 are whole numbers, those of higher levels rarely end in
-    // one half, so the small error of RawPixel does not lead to another pixel.
-    const Eigen::Vector2d raw = RawPixel(features.keypoints[i]);
+    const Eigen::Vector2f raw = extracted[i].raw;
     const auto units = image.depth.at<uint16_t>(static_cast<int>(std::round(raw.y())),
                                                 static_cast<int>(std::round(raw.x())));
     EXPECT_FLOAT_EQ(features.depth[i], static_cast<float>(units) / 5000.0f);

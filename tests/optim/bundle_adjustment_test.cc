@@ -360,6 +360,29 @@ TEST_F(BundleAdjustment, WithManyPosesRecoversTheTruthAndGivesTheSameBits) {
   }
 }
 
+TEST_F(BundleAdjustment, CeresAloneComesToTheSameResult) {
+#ifdef __SANITIZE_THREAD__
+  GTEST_SKIP() << "the thread sanitizer cannot follow the OpenMP threads of CHOLMOD";
+#endif
+  const SyntheticWorld world({.points = 300, .pixel_noise = 1.0, .depth_share = 0.7});
+  const SyntheticMap made = MakeSyntheticMap(world, {0, 10, 20, 30, 40, 50});
+  const BundleWindow window = GlobalWindow(made.map);
+  BundleOptions options = kPrecise;
+  const BundleResult own = AdjustBundle(made.map, world.sensor(), window, options, nullptr);
+  options.max_eliminated = window.moving.size() - 1;
+  const BundleResult ceres = AdjustBundle(made.map, world.sensor(), window, options, nullptr);
+  ASSERT_EQ(own.poses.size(), ceres.poses.size());
+  double moved = 0.0;
+  for (size_t i = 0; i < own.poses.size(); ++i) {
+    EXPECT_LT(Distance(own.poses[i].second, ceres.poses[i].second), 1e-6);
+    moved +=
+        Distance(own.poses[i].second, made.map.keyframes().At(own.poses[i].first).cam_from_world);
+  }
+  EXPECT_GT(moved, 1e-3);
+  EXPECT_EQ(own.outliers, ceres.outliers);
+  EXPECT_NE(own.positions, ceres.positions) << "the last bits show that the solvers differ";
+}
+
 // Errors that were not minimised do not tell which observations are outliers.
 TEST_F(BundleAdjustment, CancelledAtOnceItReturnsTheStartWithoutOutliers) {
   Perturb(0.01, 0.03);

@@ -18,7 +18,7 @@ KeyframeId AddView(Map& map, uint32_t frame_id, const std::string& label) {
   detection.score = 0.5;
   detection.is_cut = true;
   detection.hull = {{0, 0}, {4, 0}, {4, 4}};
-  detection.contour = {{0, 0}, {4, 0}, {4, 4}, {3, 2}};
+  detection.contour = std::vector<Eigen::Vector2d>{{0, 0}, {4, 0}, {4, 4}, {3, 2}};
   detection.lines = {{{Eigen::Vector2d::UnitY(), -4.0}, true}};
   frame->detections = {Detection(), detection};
   return map.AddKeyframe(frame, Rigid3(Eigen::Quaterniond::Identity(), {1.0 * frame_id, 0, 0}));
