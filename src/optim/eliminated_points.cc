@@ -51,8 +51,7 @@ double EliminatedPoints::CostOf(size_t point, const Eigen::Vector3d& position) c
   double cost = 0.0;
   for (const BundlePoints::View& view : std::as_const(points_).ViewsOf(point)) {
     if (view.is_inlier) {
-      const Pose& pose = poses_[view.pose];
-      const Eigen::Vector3d in_camera = pose.rotation * position + pose.translation;
+      const Eigen::Vector3d in_camera = poses_[view.pose] * position;
       cost += Loss(PointChi2(camera_, view.measurement, in_camera), view.measurement);
     }
   }
@@ -61,8 +60,7 @@ double EliminatedPoints::CostOf(size_t point, const Eigen::Vector3d& position) c
 
 bool EliminatedPoints::Evaluate(const BundlePoints::View& view, const Eigen::Vector3d& position,
                                 ViewSystem& system) const {
-  const Pose& pose = poses_[view.pose];
-  system.in_camera = pose.rotation * position + pose.translation;
+  system.in_camera = poses_[view.pose] * position;
   if (system.in_camera.z() < kMinDepth) {
     return false;
   }
@@ -126,7 +124,7 @@ double EliminatedPoints::MovePoint(size_t point, Eigen::Vector3d& position, doub
 double EliminatedPoints::Follow(std::span<const Rigid3> poses) {
   poses_.clear();
   for (const Rigid3& pose : poses) {
-    poses_.push_back({pose.rotation.toRotationMatrix(), pose.translation});
+    poses_.emplace_back(pose);
   }
   double cost = 0.0;
   for (size_t i = 0; i < points_.size(); ++i) {

@@ -9,6 +9,7 @@
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/rigid3.h"
 #include "optim/bundle_points.h"
+#include "optim/matrix_pose.h"
 
 namespace hullslam::internal {
 
@@ -42,10 +43,6 @@ class EliminatedPoints {
   void Linearize(Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient);
 
  private:
-  struct Pose {
-    Eigen::Matrix3d rotation;
-    Eigen::Vector3d translation;
-  };
   // The cost of one point and its derivatives by the point.
   struct PointSystem {
     double cost = 0.0;
@@ -80,7 +77,7 @@ class EliminatedPoints {
   BundlePoints& points_;
   size_t moving_;
   bool robust_;
-  std::vector<Pose> poses_;
+  std::vector<MatrixPose> poses_;
   std::vector<Eigen::Vector3d> moved_;  // the places of the last Follow()
   // A point whose steps failed keeps its damping, and the Schur complement uses it too: such a
   // point does not move as far as the undamped equations say.

@@ -1,25 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optim/pose_problem.h"
 
+#include <Eigen/Geometry>
 #include <limits>
 
+#include "optim/matrix_pose.h"
 #include "optim/robust.h"
 
 namespace hullslam::internal {
 namespace {
-
-// A pose whose rotation is a matrix, because it moves many points.
-struct MatrixPose {
-  explicit MatrixPose(const Rigid3& pose)
-      : rotation(pose.rotation.toRotationMatrix()), translation(pose.translation) {}
-
-  Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
-    return rotation * point + translation;
-  }
-
-  Eigen::Matrix3d rotation;
-  Eigen::Vector3d translation;
-};
 
 double Chi2(const PinholeCamera& camera, const PoseObservation& observation,
             const MatrixPose& cam_from_world) {
@@ -41,9 +30,9 @@ double PointTerms::Cost(const Rigid3& pose) const {
 }
 
 void PointTerms::Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& gradient) const {
-  // A step (w, v) of the pose moves a point x of the camera frame by -[x]_x w + v. So the parts of
-  // hessian and gradient follow from those by the point, H and g: -[x]_x H [x]_x, -H [x]_x, H; and
-  // x x g, g. Only sums of 3x3 matrices are needed.
+  // A step (w, v) of the pose moves a point x of the camera frame by -[x]_x w + v. So if H and g are
+  // the Hessian and the gradient by x, those by (w, v) have the parts -[x]_x H [x]_x, [x]_x H and H,
+  // and the parts [x]_x g and g. Only 3x3 matrices are summed up.
   Eigen::Matrix3d by_rotation = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d mixed = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d by_translation = Eigen::Matrix3d::Zero();
@@ -64,16 +53,9 @@ void PointTerms::Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& grad
     point_hessian.noalias() = by_point.transpose() * (weight * by_point);
     Eigen::Vector3d point_gradient;
     point_gradient.noalias() = by_point.transpose() * (weight * residual);
-    // [x]_x H, column by column; H is symmetric, so its transpose is -H [x]_x.
-    Eigen::Matrix3d skew_hessian;
-    for (int column = 0; column < 3; ++column) {
-      skew_hessian.col(column) = point_in_cam.cross(point_hessian.col(column));
-    }
+    const Eigen::Matrix3d skew_hessian = -point_hessian.colwise().cross(point_in_cam);
+    by_rotation -= skew_hessian.rowwise().cross(point_in_cam.transpose());
     mixed += skew_hessian;
-    // -[x]_x H [x]_x, row by row.
-    for (int row = 0; row < 3; ++row) {
-      by_rotation.col(row) += point_in_cam.cross(skew_hessian.row(row).transpose());
-    }
     by_translation += point_hessian;
     gradient.head<3>() += point_in_cam.cross(point_gradient);
     gradient.tail<3>() += point_gradient;
