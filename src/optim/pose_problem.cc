@@ -30,9 +30,9 @@ double PointTerms::Cost(const Rigid3& pose) const {
 }
 
 void PointTerms::Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& gradient) const {
-  // A step (w, v) of the pose moves a point x of the camera frame by -[x]_x w + v. So if H and g are
-  // the Hessian and the gradient by x, those by (w, v) have the parts -[x]_x H [x]_x, [x]_x H and H,
-  // and the parts [x]_x g and g. Only 3x3 matrices are summed up.
+  // A step (w, v) of the pose moves a point x of the camera frame by -[x]_x w + v. So if H and g
+  // are the Hessian and the gradient by x, those by (w, v) have the parts -[x]_x H [x]_x, [x]_x H
+  // and H, and the parts [x]_x g and g. Only 3x3 matrices are summed up.
   Eigen::Matrix3d by_rotation = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d mixed = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d by_translation = Eigen::Matrix3d::Zero();
