@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <span>
 #include <utility>
@@ -23,18 +24,25 @@ void CheckSize(const char* name, const cv::Mat& image, const cv::Size& size) {
 
 // Adds the undistorted keypoints and their depths.
 void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& camera,
-                  const cv::Mat& depth, double units_per_metre, FrameFeatures& features) {
-  features.keypoints.reserve(keypoints.size());
-  features.depth.reserve(keypoints.size());
-  features.right_u.reserve(keypoints.size());
-  for (const RawKeypoint& keypoint : keypoints) {
-    const Eigen::Vector2f undistorted = camera.Undistort(keypoint.raw.cast<double>()).cast<float>();
-    const float z = SampleDepth(depth, keypoint.raw, units_per_metre);
-    features.keypoints.push_back(
-        {.undistorted = undistorted, .angle = keypoint.angle, .level = keypoint.level});
-    features.depth.push_back(z);
-    features.right_u.push_back(VirtualRight(undistorted.x(), z, camera.bf));
-  }
+                  const cv::Mat& depth, double units_per_metre, TaskRunner& runner,
+                  FrameFeatures& features) {
+  constexpr size_t kInTask = 256;
+  const size_t count = keypoints.size();
+  features.keypoints.resize(count);
+  features.depth.resize(count);
+  features.right_u.resize(count);
+  runner.Run((count + kInTask - 1) / kInTask, [&](size_t task) {
+    for (size_t i = task * kInTask; i < std::min(count, (task + 1) * kInTask); ++i) {
+      const RawKeypoint& keypoint = keypoints[i];
+      const Eigen::Vector2f undistorted =
+          camera.Undistort(keypoint.raw.cast<double>()).cast<float>();
+      const float z = SampleDepth(depth, keypoint.raw, units_per_metre);
+      features.keypoints[i] = {
+          .undistorted = undistorted, .angle = keypoint.angle, .level = keypoint.level};
+      features.depth[i] = z;
+      features.right_u[i] = VirtualRight(undistorted.x(), z, camera.bf);
+    }
+  });
 }
 
 }  // namespace
@@ -87,7 +95,8 @@ std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, Task
     RemoveMasked(mask, extracted.keypoints, extracted.descriptors);
   }
   features.descriptors = std::move(extracted.descriptors);
-  AddKeypoints(extracted.keypoints, sensor_.camera, image.depth, depth_.units_per_metre, features);
+  AddKeypoints(extracted.keypoints, sensor_.camera, image.depth, depth_.units_per_metre, runner,
+               features);
   const PinholeCamera::Bounds& bounds = sensor_.bounds;
   features.grid =
       FeatureGrid(features.keypoints, Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),

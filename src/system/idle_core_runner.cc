@@ -1,11 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "system/idle_core_runner.h"
 
-#include <atomic>
+#include <pthread.h>
+
+#include <chrono>
 #include <exception>
 #include <utility>
 
 namespace hullslam {
+namespace {
+
+constexpr std::chrono::microseconds kPatience(300);
+
+// Looks for a short time whether the condition holds.
+template <typename Condition>
+void Await(const Condition& condition) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (!condition() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::yield();
+  }
+}
+
+}  // namespace
 
 // The tasks of one call of Run. Each thread that works takes the next task that is not begun.
 class IdleCoreRunner::Tasks {
@@ -41,7 +57,11 @@ class IdleCoreRunner::Tasks {
 };
 
 IdleCoreRunner::IdleCoreRunner(std::function<bool()> has_idle_core)
-    : has_idle_core_(std::move(has_idle_core)), helper_([this] { RunHelper(); }) {}
+    : has_idle_core_(std::move(has_idle_core)), helper_([this] { RunHelper(); }) {
+  if (sched_getaffinity(0, sizeof(cores_), &cores_) != 0) {
+    CPU_ZERO(&cores_);
+  }
+}
 
 IdleCoreRunner::~IdleCoreRunner() {
   {
@@ -50,6 +70,20 @@ IdleCoreRunner::~IdleCoreRunner() {
   }
   changed_.notify_all();
   helper_.join();
+}
+
+// The scheduler may wake the helper on the core of the thread that wakes it. There it would take
+// the place of that thread while the other core stays idle.
+void IdleCoreRunner::KeepHelperOffThisCore() {
+  const int core = sched_getcpu();
+  if (core < 0 || core == avoided_core_) {
+    return;
+  }
+  cpu_set_t others = cores_;
+  CPU_CLR(core, &others);
+  // If no other core is allowed, this fails, and the helper stays where it is.
+  pthread_setaffinity_np(helper_.native_handle(), sizeof(others), &others);
+  avoided_core_ = core;
 }
 
 void IdleCoreRunner::Run(size_t count, const std::function<void(size_t)>& task) {
@@ -62,24 +96,32 @@ void IdleCoreRunner::Run(size_t count, const std::function<void(size_t)>& task) 
     const std::lock_guard lock(mutex_);
     offered_ = &tasks;
   }
+  KeepHelperOffThisCore();
   changed_.notify_all();
   tasks.Work();
   {
     std::unique_lock lock(mutex_);
     offered_ = nullptr;  // the helper may have been too late
-    changed_.wait(lock, [this] { return !is_helping_; });
+  }
+  const auto has_helped = [this] { return !is_helping_; };
+  Await(has_helped);
+  {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, has_helped);
   }
   tasks.RethrowFailure();
 }
 
 void IdleCoreRunner::RunHelper() {
-  std::unique_lock lock(mutex_);
+  const auto is_wanted = [this] { return is_closed_ || offered_ != nullptr; };
   while (true) {
-    changed_.wait(lock, [this] { return is_closed_ || offered_ != nullptr; });
+    Await(is_wanted);
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, is_wanted);
     if (is_closed_) {
       return;
     }
-    Tasks* const tasks = std::exchange(offered_, nullptr);
+    Tasks* const tasks = offered_.exchange(nullptr);
     is_helping_ = true;
     lock.unlock();
     tasks->Work();

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <sched.h>
+
+#include <atomic>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -12,6 +15,9 @@ namespace hullslam {
 
 // Runs tasks in the calling thread. If another core is idle when Run is called, a second thread
 // helps. Run is called by one thread at a time.
+//
+// To wake a sleeping thread takes about as long as the lines of a mask. So both threads look for a
+// fraction of a millisecond whether there is something to do before they sleep.
 class IdleCoreRunner final : public TaskRunner {
  public:
   // `has_idle_core` is called once per Run, by its thread.
@@ -24,14 +30,17 @@ class IdleCoreRunner final : public TaskRunner {
 
  private:
   class Tasks;
+  void KeepHelperOffThisCore();
   void RunHelper();
 
   const std::function<bool()> has_idle_core_;
-  std::mutex mutex_;  // guards the members below
+  cpu_set_t cores_{};      // those that the process may use
+  int avoided_core_ = -1;  // where the helper must not run; used by the thread that calls Run
+  std::mutex mutex_;       // held when one of the members below is written
   std::condition_variable changed_;
-  Tasks* offered_ = nullptr;  // what the helper may begin to work on
-  bool is_helping_ = false;
-  bool is_closed_ = false;
+  std::atomic<Tasks*> offered_ = nullptr;  // what the helper may begin to work on
+  std::atomic<bool> is_helping_ = false;
+  std::atomic<bool> is_closed_ = false;
   std::thread helper_;  // last member, because the thread uses the others
 };
 

@@ -144,9 +144,10 @@ std::unique_ptr<TaskRunner> System::MakeRunner() {
   if (kind_ != PipelineKind::kRealtime) {
     return std::make_unique<SerialRunner>();
   }
-  return std::make_unique<IdleCoreRunner>([this] {
+  // Asking for the number of cores reads a file, which takes too long for every frame.
+  return std::make_unique<IdleCoreRunner>([this, cores = std::thread::hardware_concurrency()] {
     const unsigned busy = 1u + (is_tracking_ ? 1u : 0u) + (pipeline_->is_mapping() ? 1u : 0u);
-    return busy < std::thread::hardware_concurrency();
+    return busy < cores;
   });
 }
 

@@ -2,6 +2,7 @@
 #include "system/idle_core_runner.h"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <atomic>
 #include <latch>
@@ -29,6 +30,32 @@ TEST(IdleCoreRunner, TwoTasksRunAtTheSameTimeIfACoreIsIdle) {
   std::latch both(2);
   runner.Run(2, [&](size_t) { both.arrive_and_wait(); });
   EXPECT_TRUE(both.try_wait());
+}
+
+TEST(IdleCoreRunner, TheSecondThreadRunsOnAnotherCore) {
+  cpu_set_t allowed;
+  ASSERT_EQ(sched_getaffinity(0, sizeof(allowed), &allowed), 0);
+  if (CPU_COUNT(&allowed) < 2) {
+    GTEST_SKIP() << "this process may use one core only";
+  }
+  IdleCoreRunner runner([] { return true; });
+  for (int core = 0; core < CPU_SETSIZE; ++core) {
+    if (!CPU_ISSET(core, &allowed)) {
+      continue;
+    }
+    cpu_set_t only;
+    CPU_ZERO(&only);
+    CPU_SET(core, &only);
+    ASSERT_EQ(sched_setaffinity(0, sizeof(only), &only), 0);
+    std::latch both(2);
+    std::atomic<int> here{0};
+    runner.Run(2, [&](size_t) {
+      both.arrive_and_wait();
+      here += sched_getcpu() == core ? 1 : 0;
+    });
+    EXPECT_EQ(here, 1) << "core " << core;
+  }
+  ASSERT_EQ(sched_setaffinity(0, sizeof(allowed), &allowed), 0);
 }
 
 TEST(IdleCoreRunner, TheCallerWorksAloneIfNoCoreIsIdle) {
