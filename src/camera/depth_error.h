@@ -3,10 +3,12 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include "hullslam/camera/depth.h"
 #include "hullslam/camera/pinhole.h"
+#include "util/chi_square.h"
 
 // The error of a point that a keypoint shows, with or without depth. Depth z counts as the
 // disparity bf / z of a virtual stereo pair, in which a sensor of structured light has about the
@@ -69,15 +71,22 @@ inline Eigen::Matrix3d PointResidualJacobian(const PinholeCamera& camera,
 }
 
 // Squared norm of PointResidual; infinite for a point nearer than kMinDepth or behind the camera.
-double PointChi2(const PinholeCamera& camera, const PointMeasurement& measurement,
-                 const Eigen::Vector3d& point);
+inline double PointChi2(const PinholeCamera& camera, const PointMeasurement& measurement,
+                        const Eigen::Vector3d& point) {
+  return point.z() < kMinDepth ? std::numeric_limits<double>::infinity()
+                               : PointResidual(camera, measurement, point).squaredNorm();
+}
 
 // The bound on PointChi2 above which the measurement is an outlier: the 95 % quantile for its
 // degrees of freedom.
-double OutlierBound(const PointMeasurement& measurement);
+inline double OutlierBound(const PointMeasurement& measurement) {
+  return Chi2Bound(measurement.degrees_of_freedom());
+}
 
 // Whether PointChi2 is within OutlierBound.
-bool IsInlier(const PinholeCamera& camera, const PointMeasurement& measurement,
-              const Eigen::Vector3d& point);
+inline bool IsInlier(const PinholeCamera& camera, const PointMeasurement& measurement,
+                     const Eigen::Vector3d& point) {
+  return PointChi2(camera, measurement, point) <= OutlierBound(measurement);
+}
 
 }  // namespace hullslam

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -65,10 +66,14 @@ class TinyPoseFunction {
   bool operator()(const double* parameters, double* residuals, double* jacobian) const {
     const Vector6d steps = Eigen::Map<const Vector6d>(parameters);
     const Rigid3 pose = PoseAt(steps);
-    const double cost = problem_.Cost(pose);
+    // TinySolver asks for the derivatives at the parameters whose cost it has just been told.
+    if (steps != cost_steps_) {
+      cost_ = problem_.Cost(pose);
+      cost_steps_ = steps;
+    }
     Eigen::Map<Eigen::Matrix<double, 7, 1>> all(residuals);
     all.setZero();
-    all[6] = std::sqrt(cost);
+    all[6] = std::sqrt(cost_);
     if (jacobian == nullptr) {
       return true;
     }
@@ -81,7 +86,7 @@ class TinyPoseFunction {
     by_parameters.setZero();
     // Without a form the derivative is zero, and the solver stays where it is.
     if (form_.Compute(hessian, gradient)) {
-      all << form_.residual(), form_.LastResidual(cost);
+      all << form_.residual(), form_.LastResidual(cost_);
       by_parameters.topRows<6>() = Matrix6d(form_.jacobian());
     }
     return true;
@@ -91,6 +96,9 @@ class TinyPoseFunction {
   const Problem& problem_;
   mutable Rigid3 pose_;  // of the last linearisation
   mutable Vector6d steps_ = Vector6d::Zero();
+  mutable double cost_ = 0.0;
+  // The parameters that cost_ belongs to. NaN at first, which no parameters are equal to.
+  mutable Vector6d cost_steps_ = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
   mutable SquareRootForm<6> form_;
 };
 
