@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "hullslam/util/option_table.h"
+
+namespace hullslam {
+
+// Loop closing: when the camera comes back to a place that it has seen before, and when the
+// correction of the map is believed.
+struct LoopOptions {
+  bool enabled = true;
+
+  // Candidates must also look like the surroundings of so many of the keyframes that see what the
+  // query sees (temporal and covisibility consistency, Mur-Artal and Tardos 2017: three in a row).
+  int min_supporters = 2;
+  // Landmarks that must agree: with the candidate alone, and with its neighbourhood.
+  int min_matches = 20;
+  int min_landmarks = 40;
+
+  // The drift budget (as in OKVIS2, Leutenegger 2022): how much a correction may move and turn the
+  // query, relative to what the camera has travelled and turned since the candidate.
+  double drift_base = 0.2;             // m
+  double drift_per_metre = 0.05;       // m
+  double drift_per_radian = 0.02;      // m
+  double turn_base = 0.1;              // radians
+  double turn_per_metre = 0.02;        // radians
+  double turn_per_radian = 0.03;       // radians
+  bool global_adjustment = true;       // adjust the whole map after a loop was closed
+
+  void Bind(OptionTable& options);
+};
+
+}  // namespace hullslam
