@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "hullslam/util/task_runner.h"
+#include "util/shared_tasks.h"
 
 namespace hullslam {
 
@@ -23,13 +24,12 @@ class IdleCoreRunner final : public TaskRunner {
   void Run(size_t count, const std::function<void(size_t)>& task) override;
 
  private:
-  class Tasks;
   void RunHelper();
 
   const std::function<bool()> has_idle_core_;
   std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
-  Tasks* offered_ = nullptr;  // what the helper may begin to work on
+  SharedTasks* offered_ = nullptr;  // what the helper may begin to work on
   bool is_helping_ = false;
   bool is_closed_ = false;
   std::thread helper_;  // last member, because the thread uses the others
