@@ -9,6 +9,7 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(spdlog 1.10 REQUIRED)
 find_package(Boost 1.74 REQUIRED)  # headers only: CRC, Student's t-distribution
+find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # only the header of libxxhash-dev 0.8 is used
 if(HULLSLAM_BUILD_EXAMPLES OR HULLSLAM_BUILD_TESTS)
   find_package(CLI11 2.1 REQUIRED)
   find_package(embree 3.13 REQUIRED)

@@ -18,6 +18,7 @@
 #include "cli/object_outputs.h"
 #include "cli/program.h"
 #include "cli/progress.h"
+#include "cli/vocabulary_loading.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/eval/rpe.h"
 #include "hullslam/io/output_folder.h"
@@ -261,7 +262,8 @@ std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
 }  // namespace
 
 int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
-  const SystemOptions options = LoadOptions(arguments);
+  SystemOptions options = LoadOptions(arguments);
+  options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
   // Finds images of a wrong type or size early.
   const ImageInput first = LoadRgbd(sequence.frames.front(), options.camera);
   const std::optional<Trajectory> groundtruth =
@@ -276,10 +278,6 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
   WarnOfLastFrame(arguments.tum.selection, sequence);
   if (!arguments.quiet && masks.format()) {
     Print("{}\n", masks.Describe());
-  }
-  if (!arguments.vocabulary.empty()) {
-    PrintError("warning: {}: this version does not use the vocabulary\n",
-               arguments.vocabulary.string());
   }
   System system(options, ChoosePipeline(arguments));
   const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system);

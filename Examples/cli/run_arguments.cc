@@ -33,7 +33,8 @@ void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::st
                  "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
                  "that fits the folder's name, such as TUM1.yaml for freiburg1)");
   app.add_option("--vocabulary", arguments.vocabulary,
-                 "vocabulary file (this version does not use it)");
+                 "vocabulary of visual words: a binary file, a text file of ORB-SLAM2, or none "
+                 "(default: the one that comes with HullSLAM)");
   app.add_option(
       "--associations", arguments.tum.associations,
       "file with one pair of images per line: stamp rgb stamp depth (default: images are "

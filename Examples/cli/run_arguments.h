@@ -15,7 +15,7 @@ namespace hullslam {
 struct RunArguments {
   std::filesystem::path sequence;
   std::filesystem::path settings;    // empty: chosen by FindDefaultSettings()
-  std::filesystem::path vocabulary;  // empty: none
+  std::filesystem::path vocabulary;  // empty: the default one; "none": none
   TumSequenceOptions tum;
   std::filesystem::path masks;         // empty: none
   std::string masks_format;            // empty: detected

@@ -50,11 +50,13 @@ void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& c
 FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
                            const FeatureOptions& features,
                            const std::optional<DetectionOptions>& detection,
-                           std::set<std::string> dynamic_classes)
+                           std::set<std::string> dynamic_classes,
+                           std::shared_ptr<const Vocabulary> vocabulary)
     : sensor_(sensor),
       depth_(depth),
       extractor_(features),
-      dynamic_classes_(std::move(dynamic_classes)) {
+      dynamic_classes_(std::move(dynamic_classes)),
+      vocabulary_(std::move(vocabulary)) {
   if (detection) {
     detection_builder_.emplace(sensor.camera, depth.units_per_metre, *detection);
   }
@@ -74,6 +76,9 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
   BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = Clock::now()};
   built.frame->timestamp = image.timestamp;
   const std::vector<RawKeypoint> keypoints = AddFeatures(image, runner, built.frame->features);
+  if (vocabulary_ != nullptr) {
+    built.frame->words = vocabulary_->WordsOf(built.frame->features.descriptors);
+  }
   built.masks.frames_with_masks = image.masks.empty() ? 0 : 1;
   has_seen_masks_ |= !image.masks.empty();
   if (detection_builder_ && !image.masks.empty()) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "hullslam/bow/vocabulary.h"
 #include "hullslam/camera/depth.h"
 #include "hullslam/features/extractor.h"
 #include "hullslam/frame/built_frame.h"
@@ -19,13 +21,16 @@ namespace hullslam {
 
 // Turns images into frames: extracts and undistorts keypoints, looks up their depths and virtual
 // right coordinates, builds the grid, and makes the detections of objects. Things of the dynamic
-// classes give no detections, and the keypoints on them are removed.
+// classes give no detections, and the keypoints on them are removed. With a vocabulary it looks up
+// the word of each keypoint.
 class FrameBuilder {
  public:
   // `sensor` must outlive the builder. If `detection` is empty, frames have no detections.
+  // If `vocabulary` is null, they have no words.
   FrameBuilder(const Sensor& sensor, const DepthOptions& depth, const FeatureOptions& features,
                const std::optional<DetectionOptions>& detection = DetectionOptions(),
-               std::set<std::string> dynamic_classes = {});
+               std::set<std::string> dynamic_classes = {},
+               std::shared_ptr<const Vocabulary> vocabulary = nullptr);
 
   // Throws InputError if an image does not have the size of the camera or a type that ImageInput
   // allows. The masks must pass ValidateMasks().
@@ -43,6 +48,7 @@ class FrameBuilder {
   FeatureExtractor extractor_;
   std::optional<DetectionBuilder> detection_builder_;
   std::set<std::string> dynamic_classes_;
+  std::shared_ptr<const Vocabulary> vocabulary_;
   bool has_seen_masks_ = false;
 };
 

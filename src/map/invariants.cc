@@ -185,6 +185,38 @@ void CheckAncestors(const Map& map, KeyframeId id, std::vector<std::string>& vio
   }
 }
 
+// Each keyframe has the entries of its words, and there are no others.
+void CheckIndex(const Map& map, std::vector<std::string>& violations) {
+  size_t expected = 0;
+  map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    const BowVector vector = map.VectorOf(*keyframe.frame);
+    expected += vector.size();
+    const bool is_indexed =
+        std::all_of(vector.begin(), vector.end(), [&](const WeightedWord& weighted) {
+          const std::vector<Posting>* const postings = map.index().postings().Find(weighted.word);
+          return postings != nullptr && std::find(postings->begin(), postings->end(),
+                                                  Posting{id, weighted.weight}) != postings->end();
+        });
+    if (!is_indexed) {
+      violations.push_back(Name(id) + " has words that the index does not have");
+    }
+  });
+  size_t count = 0;
+  map.index().postings().ForEach([&](WordId word, const std::vector<Posting>& postings) {
+    count += postings.size();
+    if (postings.empty() ||
+        !std::is_sorted(postings.begin(), postings.end(), [](const Posting& a, const Posting& b) {
+          return a.keyframe < b.keyframe;
+        })) {
+      violations.push_back("word " + std::to_string(word.value) + " has entries out of order");
+    }
+  });
+  if (count != expected) {
+    violations.push_back("the index has " + std::to_string(count) + " entries, expected " +
+                         std::to_string(expected));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> FindViolations(const Map& map) {
@@ -207,6 +239,7 @@ std::vector<std::string> FindViolations(const Map& map) {
     CheckLoops(map, id, keyframe, violations);
     CheckAncestors(map, id, violations);
   });
+  CheckIndex(map, violations);
   return violations;
 }
 

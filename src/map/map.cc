@@ -54,6 +54,8 @@ Map Map::Snapshot() {
   copy.keyframes_ = keyframes_.Snapshot();
   copy.landmarks_ = landmarks_.Snapshot();
   copy.objects_ = objects_.Snapshot();
+  copy.vocabulary_ = vocabulary_;
+  copy.index_ = index_.Snapshot();
   copy.replaced_landmarks_ = replaced_landmarks_;
   copy.replaced_objects_ = replaced_objects_;
   copy.culled_ = culled_.Snapshot();
@@ -62,13 +64,20 @@ Map Map::Snapshot() {
   return copy;
 }
 
+BowVector Map::VectorOf(const Frame& frame) const {
+  return vocabulary_ != nullptr ? vocabulary_->VectorOf(frame.words) : BowVector();
+}
+
 KeyframeId Map::AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& cam_from_world) {
   Check(frame != nullptr, "a keyframe needs a frame");
+  Check(frame->words.empty() || frame->words.size() == frame->features.size(),
+        "the frame does not have one word per keypoint");
   Keyframe keyframe;
   keyframe.landmarks.resize(frame->features.size());
   keyframe.objects.resize(frame->detections.size());
   keyframe.frame = std::move(frame);
   keyframe.cam_from_world = cam_from_world;
+  index_.Add(keyframes_.NextId(), VectorOf(*keyframe.frame));
   return keyframes_.Insert(std::move(keyframe));
 }
 
@@ -233,6 +242,7 @@ void Map::CullKeyframe(KeyframeId id) {
   HandOverLoops(*this, id, keyframe);
   DetachFromTree(*this, id);
   DetachCovisibility(*this, id);
+  index_.Remove(id, VectorOf(*keyframe.frame));
   keyframes_.Erase(id);
   culled_.Put(id, {.frame = keyframe.frame->id,
                    .pose = RelativeTo(keyframe.parent, keyframe.cam_from_world),

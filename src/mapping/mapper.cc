@@ -25,12 +25,13 @@ BundleOptions ForWholeMap(BundleOptions options) {
 }  // namespace
 
 Mapper::Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
-               Publish publish)
+               Publish publish, std::shared_ptr<const Vocabulary> vocabulary)
     : sensor_(sensor),
       options_(options),
       object_options_(objects),
       publish_(std::move(publish)),
-      object_mapper_(sensor, objects) {}
+      object_mapper_(sensor, objects),
+      map_(std::move(vocabulary)) {}
 
 void Mapper::Process(const MapMessage& message, const Cancellation* hurry) {
   std::visit([&](const auto& content) { Apply(content, hurry); }, message);

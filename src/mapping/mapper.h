@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "hullslam/bow/vocabulary.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
@@ -23,9 +24,9 @@ class Mapper {
   using Publish = std::function<void(std::shared_ptr<const Map>)>;
 
   // `sensor` must outlive the mapper. `publish` is called with every snapshot that others
-  // should see.
+  // should see. `vocabulary` is that of the words of the frames; null if they have none.
   Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
-         Publish publish);
+         Publish publish, std::shared_ptr<const Vocabulary> vocabulary = nullptr);
 
   // Does what the message asks for. `hurry` (may be null) is requested while another message waits.
   // The mapper then leaves out what is not necessary. Throws CheckError for an initial map if the

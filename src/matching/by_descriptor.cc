@@ -30,15 +30,6 @@ TwoBest FindTwoBest(const Descriptor& query, std::span<const Descriptor> descrip
   return result;
 }
 
-std::vector<float> Angles(const FrameFeatures& features) {
-  std::vector<float> angles;
-  angles.reserve(features.size());
-  for (const Keypoint& keypoint : features.keypoints) {
-    angles.push_back(keypoint.angle);
-  }
-  return angles;
-}
-
 }  // namespace
 
 std::vector<Match> MatchByDescriptor(const FrameFeatures& queries,
@@ -53,7 +44,7 @@ std::vector<Match> MatchByDescriptor(const FrameFeatures& queries,
     }
   }
   KeepBestPerKeypoint(matches);
-  KeepConsistentRotations(Angles(queries), Angles(features), matches);
+  KeepConsistentRotations(queries, features, matches);
   return matches;
 }
 

@@ -36,6 +36,15 @@ std::array<bool, kBins> FrequentBins(const std::array<int, kBins>& counts) {
   return frequent;
 }
 
+std::vector<float> Angles(const FrameFeatures& features) {
+  std::vector<float> angles;
+  angles.reserve(features.size());
+  for (const Keypoint& keypoint : features.keypoints) {
+    angles.push_back(keypoint.angle);
+  }
+  return angles;
+}
+
 }  // namespace
 
 void KeepBestPerKeypoint(std::vector<Match>& matches) {
@@ -61,6 +70,11 @@ void KeepConsistentRotations(std::span<const float> query_angles,
   }
   const std::array<bool, kBins> frequent = FrequentBins(counts);
   std::erase_if(matches, [&](const Match& match) { return !frequent[bin_of(match)]; });
+}
+
+void KeepConsistentRotations(const FrameFeatures& queries, const FrameFeatures& features,
+                             std::vector<Match>& matches) {
+  KeepConsistentRotations(Angles(queries), Angles(features), matches);
 }
 
 }  // namespace hullslam

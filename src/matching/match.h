@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "hullslam/features/frame_features.h"
+
 namespace hullslam {
 
 struct Match {
@@ -23,5 +25,8 @@ void KeepBestPerKeypoint(std::vector<Match>& matches);
 // by keypoint.
 void KeepConsistentRotations(std::span<const float> query_angles,
                              std::span<const float> keypoint_angles, std::vector<Match>& matches);
+// The same for queries that are the keypoints of an image.
+void KeepConsistentRotations(const FrameFeatures& queries, const FrameFeatures& features,
+                             std::vector<Match>& matches);
 
 }  // namespace hullslam

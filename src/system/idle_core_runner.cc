@@ -4,7 +4,6 @@
 #include <pthread.h>
 
 #include <chrono>
-#include <exception>
 #include <utility>
 
 namespace hullslam {
@@ -22,39 +21,6 @@ void Await(const Condition& condition) {
 }
 
 }  // namespace
-
-// The tasks of one call of Run. Each thread that works takes the next task that is not begun.
-class IdleCoreRunner::Tasks {
- public:
-  Tasks(size_t count, const std::function<void(size_t)>& task) : count_(count), task_(task) {}
-
-  // Returns when all tasks have begun and those of this thread have ended.
-  void Work() {
-    for (size_t i = next_++; i < count_; i = next_++) {
-      try {
-        task_(i);
-      } catch (...) {
-        next_ = count_;
-        const std::lock_guard lock(mutex_);
-        failure_ = std::current_exception();
-      }
-    }
-  }
-
-  // Called when no thread works any more.
-  void RethrowFailure() const {
-    if (failure_) {
-      std::rethrow_exception(failure_);
-    }
-  }
-
- private:
-  const size_t count_;
-  const std::function<void(size_t)>& task_;
-  std::atomic<size_t> next_{0};
-  std::mutex mutex_;
-  std::exception_ptr failure_;
-};
 
 IdleCoreRunner::IdleCoreRunner(std::function<bool()> has_idle_core)
     : has_idle_core_(std::move(has_idle_core)), helper_([this] { RunHelper(); }) {
@@ -91,7 +57,7 @@ void IdleCoreRunner::Run(size_t count, const std::function<void(size_t)>& task) 
     SerialRunner().Run(count, task);
     return;
   }
-  Tasks tasks(count, task);
+  SharedTasks tasks(count, task);
   {
     const std::lock_guard lock(mutex_);
     offered_ = &tasks;
@@ -121,7 +87,7 @@ void IdleCoreRunner::RunHelper() {
     if (is_closed_) {
       return;
     }
-    Tasks* const tasks = offered_.exchange(nullptr);
+    SharedTasks* const tasks = offered_.exchange(nullptr);
     is_helping_ = true;
     lock.unlock();
     tasks->Work();

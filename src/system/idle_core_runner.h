@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "hullslam/util/task_runner.h"
+#include "util/shared_tasks.h"
 
 namespace hullslam {
 
@@ -29,7 +30,6 @@ class IdleCoreRunner final : public TaskRunner {
   void Run(size_t count, const std::function<void(size_t)>& task) override;
 
  private:
-  class Tasks;
   void KeepHelperOffThisCore();
   void RunHelper();
 
@@ -38,7 +38,7 @@ class IdleCoreRunner final : public TaskRunner {
   int avoided_core_ = -1;  // where the helper must not run; used by the thread that calls Run
   std::mutex mutex_;       // held when one of the members below is written
   std::condition_variable changed_;
-  std::atomic<Tasks*> offered_ = nullptr;  // what the helper may begin to work on
+  std::atomic<SharedTasks*> offered_ = nullptr;  // what the helper may begin to work on
   std::atomic<bool> is_helping_ = false;
   std::atomic<bool> is_closed_ = false;
   std::thread helper_;  // last member, because the thread uses the others

@@ -15,8 +15,10 @@ class SequentialPipeline final : public Pipeline {
  public:
   SequentialPipeline(const Sensor& sensor, const SystemOptions& options)
       : tracker_(sensor, options.tracking, options.objects),
-        mapper_(sensor, options.mapping, options.objects,
-                [this](std::shared_ptr<const Map> map) { map_ = std::move(map); }) {}
+        mapper_(
+            sensor, options.mapping, options.objects,
+            [this](std::shared_ptr<const Map> map) { map_ = std::move(map); }, options.vocabulary) {
+  }
 
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(!is_finished_, "Track after Finish");

@@ -70,7 +70,7 @@ std::unique_ptr<FrameBuilder> MakeFrameBuilder(const Sensor& sensor, const Syste
   return std::make_unique<FrameBuilder>(
       sensor, options.depth, options.features,
       objects.enabled ? std::optional(objects.detection) : std::nullopt,
-      SplitNames(options.tracking.dynamic_classes));
+      SplitNames(options.tracking.dynamic_classes), options.vocabulary);
 }
 
 // Sets a flag as long as it lives.

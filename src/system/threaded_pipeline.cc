@@ -25,8 +25,10 @@ class ThreadedPipeline final : public Pipeline {
   ThreadedPipeline(const Sensor& sensor, const SystemOptions& options, Pace pace)
       : pace_(pace),
         tracker_(sensor, options.tracking, options.objects),
-        mapper_(sensor, options.mapping, options.objects,
-                [this](std::shared_ptr<const Map> map) { Publish(std::move(map)); }),
+        mapper_(
+            sensor, options.mapping, options.objects,
+            [this](std::shared_ptr<const Map> map) { Publish(std::move(map)); },
+            options.vocabulary),
         messages_(kMailboxCapacity),
         mapping_thread_([this] { RunMapping(); }) {}
 

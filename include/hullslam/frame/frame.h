@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "hullslam/bow/bow_vector.h"
 #include "hullslam/features/frame_features.h"
 #include "hullslam/frame/depth_grid.h"
 #include "hullslam/frame/detection.h"
@@ -16,6 +17,7 @@ struct Frame {
   FrameId id;
   double timestamp = 0.0;  // seconds
   FrameFeatures features;
+  std::vector<WordId> words;  // one per keypoint; empty without a vocabulary
   std::vector<Detection> detections;
   DepthGrid depth;  // empty without depth, and before the first masks
 };

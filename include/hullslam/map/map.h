@@ -5,7 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
+#include "hullslam/bow/inverted_index.h"
+#include "hullslam/bow/vocabulary.h"
 #include "hullslam/map/keyframe.h"
 #include "hullslam/map/landmark.h"
 #include "hullslam/map/object_landmark.h"
@@ -22,6 +25,11 @@ namespace hullslam {
 // own files.
 class Map {
  public:
+  // A map whose keyframes are not indexed by their words.
+  Map() = default;
+  // `vocabulary` is the one that the words of all frames are from; null: the index stays empty.
+  explicit Map(std::shared_ptr<const Vocabulary> vocabulary) : vocabulary_(std::move(vocabulary)) {}
+
   // A copy of the map. The two share memory until one of them is changed.
   Map Snapshot();
   // The number of snapshots that were taken of this map. Of a snapshot: its own number, from 1.
@@ -31,6 +39,15 @@ class Map {
   const RecyclingTable<LandmarkId, Landmark>& landmarks() const { return landmarks_; }
   const CowTable<ObjectId, ObjectLandmark, 4>& objects() const { return objects_; }
 
+  // The keyframes by the words of their frames, for place recognition.
+  const InvertedIndex& index() const { return index_; }
+  // Null without one.
+  const std::shared_ptr<const Vocabulary>& vocabulary() const { return vocabulary_; }
+  // The bag of words of a frame; empty without a vocabulary.
+  BowVector VectorOf(const Frame& frame) const;
+
+  // Also adds the words of the frame to the index. Throws CheckError if the frame has words, but
+  // not one per keypoint.
   KeyframeId AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& cam_from_world);
   LandmarkId AddLandmark(const Eigen::Vector3d& position, KeyframeId created_by);
 
@@ -68,9 +85,9 @@ class Map {
   // Adds a loop edge between two keyframes of the map, unless they already have one.
   void AddLoop(KeyframeId a, KeyframeId b);
 
-  // Removes a keyframe from the map. It must have a parent. Its children get new parents (see
-  // DetachFromTree). Its loop edges become edges of its parent: without them a later pose graph
-  // could open the loops again, and the parent is near enough to close them.
+  // Removes a keyframe from the map and from the index. It must have a parent. Its children get new
+  // parents (see DetachFromTree). Its loop edges become edges of its parent: without them a later
+  // pose graph could open the loops again, and the parent is near enough to close them.
   void CullKeyframe(KeyframeId keyframe);
   // What is kept of a culled keyframe; null for any other.
   const CulledKeyframe* FindCulled(KeyframeId keyframe) const { return culled_.Find(keyframe); }
@@ -110,6 +127,8 @@ class Map {
   CowTable<KeyframeId, Keyframe, 1> keyframes_;
   RecyclingTable<LandmarkId, Landmark> landmarks_;
   CowTable<ObjectId, ObjectLandmark, 4> objects_;
+  std::shared_ptr<const Vocabulary> vocabulary_;
+  InvertedIndex index_;
   Replacements<LandmarkId> replaced_landmarks_;
   Replacements<ObjectId> replaced_objects_;
   CowTable<KeyframeId, CulledKeyframe> culled_;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
+#include "hullslam/bow/vocabulary.h"
 #include "hullslam/camera/depth.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/features/extractor.h"
@@ -33,6 +35,9 @@ struct SystemOptions {
   MappingOptions mapping;
   ObjectOptions objects;
   RunOptions run;
+  // For the words of frames and the index of the map. Null: frames have no words. It is not a
+  // setting of the table; see ReadVocabulary() and FindDefaultVocabulary().
+  std::shared_ptr<const Vocabulary> vocabulary;
 
   // Names every option once; the struct must outlive the table. `Viewer.*` keys of ORB-SLAM2 are
   // accepted and ignored.

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hullslam/bow/bow_vector.h"
+#include "hullslam/util/cow_table.h"
+#include "hullslam/util/id.h"
+
+namespace hullslam {
+
+// A keyframe that contains a word.
+struct Posting {
+  KeyframeId keyframe;
+  float weight = 0.0f;  // of the word in the vector of the keyframe
+
+  friend bool operator==(const Posting&, const Posting&) = default;
+};
+
+// A keyframe that looks like a queried image.
+struct SimilarKeyframe {
+  KeyframeId keyframe;
+  uint32_t common_words = 0;  // at least 1
+  double score = 0.0;         // of the two vectors, 0 to 1; see Score()
+};
+
+// For each word the keyframes that contain it. Like the map, it is a value whose snapshots share
+// memory until one of them is changed.
+class InvertedIndex {
+ public:
+  // Words are scattered over the whole table, so that larger chunks would be copied for one change.
+  using Table = CowTable<WordId, std::vector<Posting>, 1>;
+
+  InvertedIndex Snapshot();
+
+  // Throws CheckError if the keyframe has one of the words already.
+  void Add(KeyframeId keyframe, const BowVector& vector);
+  // `vector` is the one that was added. Throws CheckError if the keyframe lacks one of its words.
+  void Remove(KeyframeId keyframe, const BowVector& vector);
+
+  // All keyframes that have a word in common with `vector`: the highest score first, equal scores
+  // by increasing id.
+  std::vector<SimilarKeyframe> Query(const BowVector& vector) const;
+
+  // The keyframes of each word, by increasing id. Words without keyframes have no entry.
+  const Table& postings() const { return postings_; }
+
+ private:
+  Table postings_;
+  uint32_t keyframe_end_ = 0;  // above the numbers of all keyframes that were added
+};
+
+}  // namespace hullslam

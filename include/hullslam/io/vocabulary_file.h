@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+#include "hullslam/bow/vocabulary.h"
+#include "hullslam/util/cancellation.h"
+
+namespace hullslam {
+
+// Reads a vocabulary in the binary form of HullSLAM, which is mapped into memory, or in the text
+// format of DBoW2 and ORB-SLAM2 (docs/vocabulary.md). The content tells which of the two it is.
+// Reading text takes seconds; `on_progress` is told how many MB are done. Throws InputError that
+// names the file, the line, and what was expected.
+Vocabulary ReadVocabulary(const std::filesystem::path& path,
+                          const ProgressCallback& on_progress = {});
+
+enum class VocabularyForm { kBinary, kText };
+
+// Writes like WriteFileAtomically(): the file is complete or not there at all. Reading it gives a
+// vocabulary with the same hash.
+void WriteVocabulary(const std::filesystem::path& path, const Vocabulary& vocabulary,
+                     VocabularyForm form);
+
+// The vocabulary that comes with HullSLAM: $HULLSLAM_VOCABULARY, else the file
+// ../Vocabulary/hullslam.bow beside $HULLSLAM_CONFIG, else that of the installation, else that of
+// the source tree. Throws InputError if there is none of them.
+std::filesystem::path FindDefaultVocabulary();
+
+}  // namespace hullslam
