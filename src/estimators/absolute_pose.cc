@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "estimators/determination.h"
 #include "estimators/p3p.h"
@@ -15,13 +16,6 @@ namespace {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-bool IsUsable(const PoseObservation& match) {
-  const PointMeasurement& measurement = match.measurement;
-  return match.point.allFinite() && measurement.measured.allFinite() &&
-         measurement.inverse_sigma.allFinite() &&
-         measurement.inverse_sigma.head<2>().minCoeff() > 0.0;
-}
-
 // For Ransac().
 class PoseProblem {
  public:
@@ -31,7 +25,7 @@ class PoseProblem {
   PoseProblem(const PinholeCamera& camera, std::span<const PoseObservation> matches)
       : camera_(camera) {
     for (size_t i = 0; i < matches.size(); ++i) {
-      if (IsUsable(matches[i])) {
+      if (matches[i].point.allFinite() && matches[i].measurement.IsValid()) {
         matches_.push_back(matches[i]);
         indices_.push_back(i);
         inverse_bounds_.push_back(1.0 / OutlierBound(matches[i].measurement));
@@ -57,8 +51,8 @@ class PoseProblem {
   }
 
   double Error(const Rigid3& cam_from_world, size_t match) const {
-    return inverse_bounds_[match] * PointChi2(camera_, matches_[match].measurement,
-                                              cam_from_world * matches_[match].point);
+    return inverse_bounds_[match] *
+           PointChi2(camera_, matches_[match].measurement, cam_from_world * matches_[match].point);
   }
 
   // A Gauss-Newton step.
@@ -84,7 +78,7 @@ class PoseProblem {
           JacobianAt(cam_from_world * matches_[i].point, i);
       informations.emplace_back(jacobian.transpose() * jacobian);
     }
-    return internal::DeterminesAngles<3>(informations);
+    return internal::DetermineParameters(informations, {0, 1, 2});
   }
 
  private:

@@ -5,19 +5,21 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <vector>
 
 namespace hullslam::internal {
 
-// Whether the matches of an estimate determine its first kAngles parameters (radians), and not one
-// match alone does: without the match that says most, their standard deviations are still below 0.1
-// rad. `informations`: for each match its part of the Hessian, J^T J with J in 1 / sigmas. This is
-// false for points on a line with a single point beside it, which all agree on a wrong rotation if
-// that point is an outlier.
-template <int kAngles, int kSize>
-bool DeterminesAngles(const std::vector<Eigen::Matrix<double, kSize, kSize>>& informations) {
+// Whether the matches of an estimate determine some of its parameters, which are angles (radians)
+// or logarithms of scales, and not one match alone does: without the match that says most, the
+// standard deviations of these parameters are still below 0.1. `informations`: for each match its
+// part of the Hessian, J^T J with J in 1 / sigmas. The result is false for points on a line with a
+// single point beside it. If that point is an outlier, they all agree on a wrong rotation.
+template <int kSize>
+bool DetermineParameters(const std::vector<Eigen::Matrix<double, kSize, kSize>>& informations,
+                         std::initializer_list<int> parameters) {
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
-  constexpr double kMaxSigma = 0.1;  // rad
+  constexpr double kMaxSigma = 0.1;
   Matrix hessian = Matrix::Zero();
   for (const Matrix& information : informations) {
     hessian += information;
@@ -39,7 +41,7 @@ bool DeterminesAngles(const std::vector<Eigen::Matrix<double, kSize, kSize>>& in
     return false;
   }
   const Matrix of_rest = covariance(hessian - informations[strongest]);
-  for (int i = 0; i < kAngles; ++i) {
+  for (const int i : parameters) {
     const double variance = of_rest(i, i);
     if (!(variance > 0.0 && variance < kMaxSigma * kMaxSigma)) {
       return false;

@@ -173,7 +173,7 @@ RansacResult<typename Problem::Model> Ransac(const Problem& problem, const Ransa
   if (problem.size() < least) {
     RansacResult<typename Problem::Model> result;
     result.failure = "there are only " + std::to_string(problem.size()) +
-                     " matches with finite numbers, expected at least " + std::to_string(least);
+                     " usable matches, expected at least " + std::to_string(least);
     return result;
   }
   return internal::RansacSearch<Problem>(problem, least, options).Run();

@@ -20,9 +20,9 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
 PointMeasurement Measure(const Eigen::Vector3d& pixel_and_disparity, bool has_depth) {
-  return PointMeasurement::Create(
-      pixel_and_disparity.head<2>(), 1.0,
-      has_depth ? std::optional(pixel_and_disparity.z()) : std::nullopt, {.pixel_sigma = 1.0});
+  return PointMeasurement::Create(pixel_and_disparity.head<2>(), 1.0,
+                                  has_depth ? std::optional(pixel_and_disparity.z()) : std::nullopt,
+                                  {.pixel_sigma = 1.0});
 }
 
 // Matches of random points. The first ones, a share of `outliers`, are wrong: they have a random
@@ -195,7 +195,7 @@ TEST(AbsolutePose, PassesOverMatchesThatAreNotFinite) {
     match.point.x() = kNan;
   }
   EXPECT_EQ(EstimateAbsolutePose(kCamera, matches, {}).failure,
-            "there are only 0 matches with finite numbers, expected at least 10");
+            "there are only 0 usable matches, expected at least 10");
 }
 
 TEST(AbsolutePose, PointsBehindTheCameraAreOutliers) {
@@ -215,8 +215,7 @@ TEST(AbsolutePose, FewMatchesAreAFailure) {
   Matches made(9);
   const auto matches = made.Make(12, 0.0, 0.0, false);
   for (const size_t count : {0, 1, 2, 3, 9}) {
-    const AbsolutePose result =
-        EstimateAbsolutePose(kCamera, std::span(matches).first(count), {});
+    const AbsolutePose result = EstimateAbsolutePose(kCamera, std::span(matches).first(count), {});
     EXPECT_NE(result.failure.find("there are only " + std::to_string(count)), std::string::npos);
   }
   EXPECT_TRUE(EstimateAbsolutePose(kCamera, std::span(matches).first(4), {.min_inliers = 4}).ok());

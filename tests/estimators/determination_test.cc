@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-using internal::DeterminesAngles;
+using internal::DetermineParameters;
 
 // One match that measures the angle and the length with these sigmas.
 Eigen::Matrix2d Information(double angle_sigma, double length_sigma) {
@@ -16,29 +16,29 @@ Eigen::Matrix2d Information(double angle_sigma, double length_sigma) {
       .asDiagonal();
 }
 
-TEST(DeterminesAngles, ByTheSigmaWithoutTheStrongestMatch) {
+TEST(DetermineParameters, ByTheSigmaWithoutTheStrongestMatch) {
   // Two matches of sigma 0.13 have 0.13 / sqrt(2) = 0.092 together.
   const Eigen::Matrix2d weak = Information(0.13, 1.0);
-  EXPECT_TRUE(DeterminesAngles<1>(std::vector{weak, weak, weak}));
-  EXPECT_FALSE(DeterminesAngles<1>(std::vector{weak, weak}));
-  EXPECT_FALSE(DeterminesAngles<1>(std::vector{weak, Information(0.001, 1.0)}));
-  EXPECT_FALSE(DeterminesAngles<1>(std::vector{weak, Information(0.001, 100.0)}));
+  EXPECT_TRUE(DetermineParameters(std::vector{weak, weak, weak}, {0}));
+  EXPECT_FALSE(DetermineParameters(std::vector{weak, weak}, {0}));
+  EXPECT_FALSE(DetermineParameters(std::vector{weak, Information(0.001, 1.0)}, {0}));
+  EXPECT_FALSE(DetermineParameters(std::vector{weak, Information(0.001, 100.0)}, {0}));
 }
 
-TEST(DeterminesAngles, TheOtherParametersMayBeUncertain) {
+TEST(DetermineParameters, TheOtherParametersMayBeUncertain) {
   const Eigen::Matrix2d match = Information(0.01, 100.0);
-  EXPECT_TRUE(DeterminesAngles<1>(std::vector{match, match, match}));
-  EXPECT_FALSE(DeterminesAngles<2>(std::vector{match, match, match}));
+  EXPECT_TRUE(DetermineParameters(std::vector{match, match, match}, {0}));
+  EXPECT_FALSE(DetermineParameters(std::vector{match, match, match}, {0, 1}));
 }
 
-TEST(DeterminesAngles, SingularSumsDetermineNothing) {
-  EXPECT_FALSE(DeterminesAngles<1>(std::vector<Eigen::Matrix2d>()));
-  EXPECT_FALSE(DeterminesAngles<1>(std::vector<Eigen::Matrix2d>(5, Eigen::Matrix2d::Zero())));
+TEST(DetermineParameters, SingularSumsDetermineNothing) {
+  EXPECT_FALSE(DetermineParameters(std::vector<Eigen::Matrix2d>(), {0}));
+  EXPECT_FALSE(DetermineParameters(std::vector<Eigen::Matrix2d>(5, Eigen::Matrix2d::Zero()), {0}));
   // The angle cannot be told from the length.
-  EXPECT_FALSE(DeterminesAngles<1>(std::vector<Eigen::Matrix2d>(5, Eigen::Matrix2d::Ones())));
+  EXPECT_FALSE(DetermineParameters(std::vector<Eigen::Matrix2d>(5, Eigen::Matrix2d::Ones()), {0}));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(
-      DeterminesAngles<1>(std::vector<Eigen::Matrix2d>(5, Eigen::Matrix2d::Constant(nan))));
+      DetermineParameters(std::vector<Eigen::Matrix2d>(5, Eigen::Matrix2d::Constant(nan)), {0}));
 }
 
 }  // namespace

@@ -74,15 +74,15 @@ TEST(Ransac, EndsEarlyWhenThereAreFewOutliers) {
 TEST(Ransac, FailuresHaveAReason) {
   const CenterProblem problem({1.0, 1.0, 1.0, 9.0});
   EXPECT_EQ(Ransac(problem, {.min_inliers = 5}).failure,
-            "there are only 4 matches with finite numbers, expected at least 5");
+            "there are only 4 usable matches, expected at least 5");
   EXPECT_EQ(Ransac(problem, {.min_inliers = 4}).failure,
             "only 3 of 4 matches agree, expected at least 4");
   EXPECT_EQ(Ransac(CenterProblem({}), {}).failure,
-            "there are only 0 matches with finite numbers, expected at least 10");
-  EXPECT_EQ(Ransac(CenterProblem(std::vector<double>(4, CenterProblem::kDegenerate)),
-                   {.min_inliers = 2})
-                .failure,
-            "no sample of the matches determines a model");
+            "there are only 0 usable matches, expected at least 10");
+  EXPECT_EQ(
+      Ransac(CenterProblem(std::vector<double>(4, CenterProblem::kDegenerate)), {.min_inliers = 2})
+          .failure,
+      "no sample of the matches determines a model");
 }
 
 // A sample always agrees with its own model, so one inlier more is needed in any case.
