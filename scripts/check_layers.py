@@ -18,8 +18,8 @@ import sys
 LEVELS = {
     "util": 0,
     "geometry": 1,
-    "camera": 2, "features": 2, "estimators": 2,
-    "bow": 3,
+    "camera": 2, "features": 2,
+    "bow": 3, "estimators": 3,
     "frame": 4,
     "costs": 5, "matching": 5,
     "map": 6,

@@ -51,6 +51,11 @@ struct PointMeasurement {
                                  std::optional<double> disparity, const DepthErrorOptions& options);
 
   bool has_depth() const { return inverse_sigma.z() > 0.0; }
+  // Whether all numbers are finite and the pixel has a weight.
+  bool IsValid() const {
+    return measured.allFinite() && inverse_sigma.allFinite() &&
+           inverse_sigma.head<2>().minCoeff() > 0.0 && inverse_sigma.z() >= 0.0;
+  }
   // The number of residuals: two for the pixel, and one for the disparity if it is known.
   size_t degrees_of_freedom() const { return has_depth() ? 3 : 2; }
 };

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "camera/depth_error.h"
+#include "camera/pose_observation.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/rigid3.h"
 
 namespace hullslam {
-
-// A landmark found in the image.
-struct PoseObservation {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // m, world frame
-  PointMeasurement measurement;
-};
 
 struct PoseOptimizationOptions {
   int rounds = 4;         // after each of them the inliers are chosen again

@@ -94,6 +94,46 @@ TEST(Sim3, AgreesWithRigid3AtScale1) {
   }
 }
 
+TEST(Sim3, RetractByHand) {
+  const Sim3 b_from_a(3.0, Eigen::Quaterniond::Identity(), {1.0, 0.0, 0.0});
+  Eigen::Matrix<double, 7, 1> delta;
+  delta << 0.0, 0.0, std::numbers::pi / 2.0, 5.0, 6.0, 7.0, std::log(2.0);
+  const Sim3 moved = Retract(b_from_a, delta);
+  EXPECT_DOUBLE_EQ(moved.scale, 6.0);
+  // (1, 1, 0) is at (4, 3, 0) in b, turned to (-3, 4, 0), doubled and moved.
+  EXPECT_LT((moved * Eigen::Vector3d(1.0, 1.0, 0.0) - Eigen::Vector3d(-1.0, 14.0, 7.0)).norm(),
+            1e-12);
+}
+
+TEST(Sim3, RetractHasTheStatedDerivative) {
+  RandomGeometry random(6);
+  for (int i = 0; i < 20; ++i) {
+    const Sim3 b_from_a = RandomSim3(random);
+    const Eigen::Vector3d point = random.Vector(3.0);
+    const Eigen::Vector3d in_b = b_from_a * point;
+    Eigen::Matrix<double, 3, 7> derivative;
+    derivative << -Skew(in_b), Eigen::Matrix3d::Identity(), in_b;
+    for (int k = 0; k < 7; ++k) {
+      const Eigen::Matrix<double, 7, 1> step = 1e-6 * Eigen::Matrix<double, 7, 1>::Unit(k);
+      const Eigen::Vector3d slope =
+          (Retract(b_from_a, step) * point - Retract(b_from_a, -step) * point) / 2e-6;
+      EXPECT_LT((slope - derivative.col(k)).norm(), 1e-8);
+    }
+  }
+}
+
+TEST(Sim3, RetractWithoutScaleIsThatOfRigid3) {
+  RandomGeometry random(7);
+  const Rigid3 rigid = random.Pose(1.0, 2.0);
+  Eigen::Matrix<double, 7, 1> delta;
+  delta << random.Vector(0.5), random.Vector(0.5), 0.0;
+  const Sim3 moved = Retract(Sim3(rigid), delta);
+  const Rigid3 expected = Retract(rigid, Eigen::Matrix<double, 6, 1>(delta.head<6>()));
+  EXPECT_EQ(moved.scale, 1.0);
+  EXPECT_EQ(moved.rotation.coeffs(), expected.rotation.coeffs());
+  EXPECT_EQ(moved.translation, expected.translation);
+}
+
 TEST(Sim3, LongProductsKeepUnitRotations) {
   RandomGeometry random(5);
   Sim3 product;

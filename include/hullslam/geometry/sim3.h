@@ -31,4 +31,9 @@ Sim3 operator*(const Sim3& c_from_b, const Sim3& b_from_a);
 
 Sim3 Inverse(const Sim3& b_from_a);
 
+// Applies a small similarity on the left, after `b_from_a`: x_b is rotated by delta[0..2]
+// (radians), multiplied by exp(delta[6]) and then moved by delta[3..5]. The derivative at zero is
+// dx_b / ddelta = [-Skew(x_b), I, x_b]. With delta[6] = 0 the scale stays the same to the last bit.
+Sim3 Retract(const Sim3& b_from_a, const Eigen::Matrix<double, 7, 1>& delta);
+
 }  // namespace hullslam

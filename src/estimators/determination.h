@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <initializer_list>
+#include <vector>
+
+namespace hullslam::internal {
+
+// Whether the matches of an estimate determine some of its parameters, which are angles (radians)
+// or logarithms of scales, and not one match alone does: without the match that says most, the
+// standard deviations of these parameters are still below 0.1. `informations`: for each match its
+// part of the Hessian, J^T J with J in 1 / sigmas. The result is false for points on a line with a
+// single point beside it. If that point is an outlier, they all agree on a wrong rotation.
+template <int kSize>
+bool DetermineParameters(const std::vector<Eigen::Matrix<double, kSize, kSize>>& informations,
+                         std::initializer_list<int> parameters) {
+  using Matrix = Eigen::Matrix<double, kSize, kSize>;
+  constexpr double kMaxSigma = 0.1;
+  Matrix hessian = Matrix::Zero();
+  for (const Matrix& information : informations) {
+    hessian += information;
+  }
+  const auto covariance = [](const Matrix& sum) -> Matrix {
+    return sum.ldlt().solve(Matrix::Identity());
+  };
+  const Matrix of_all = covariance(hessian);
+  size_t strongest = 0;
+  double most = -1.0;
+  for (size_t i = 0; i < informations.size(); ++i) {
+    const double leverage = of_all.cwiseProduct(informations[i]).sum();  // trace of the product
+    if (leverage > most) {
+      most = leverage;
+      strongest = i;
+    }
+  }
+  if (!(most > 0.0)) {
+    return false;
+  }
+  const Matrix of_rest = covariance(hessian - informations[strongest]);
+  for (const int i : parameters) {
+    const double variance = of_rest(i, i);
+    if (!(variance > 0.0 && variance < kMaxSigma * kMaxSigma)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace hullslam::internal
