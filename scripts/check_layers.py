@@ -23,7 +23,7 @@ LEVELS = {
     "frame": 4,
     "costs": 5, "matching": 5,
     "map": 6,
-    "objects": 7,
+    "objects": 7, "places": 7,
     "optim": 8,
     "tracking": 9, "mapping": 9, "loop": 9,
     "system": 10,

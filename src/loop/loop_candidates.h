@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "hullslam/bow/vocabulary.h"
 #include "hullslam/map/map.h"
 
 namespace hullslam {
@@ -16,7 +15,7 @@ namespace hullslam {
 // keyframes, and at least `min_supporters` of the keyframes that are most covisible with the query
 // also look like the candidate or one of its neighbours (Mur-Artal and Tardos 2017 ask for three
 // queries in a row; this asks the neighbours of one query, so that nothing has to be remembered).
-std::vector<KeyframeId> FindLoopCandidates(const Map& map, const Vocabulary& vocabulary,
-                                           KeyframeId query, int min_supporters);
+// The map must have a vocabulary.
+std::vector<KeyframeId> FindLoopCandidates(const Map& map, KeyframeId query, int min_supporters);
 
 }  // namespace hullslam

@@ -11,19 +11,6 @@
 #include "mapping/landmark_fusion.h"
 
 namespace hullslam {
-namespace {
-
-// A step that changes the cost by less than the tolerance is not taken. In a global adjustment the
-// terms that correct drift are a small share of the cost, so the tolerance must be small.
-BundleOptions ForWholeMap(BundleOptions options) {
-  options.robust_iterations = 10;
-  options.final_iterations = 20;
-  options.function_tolerance = 1e-6;
-  return options;
-}
-
-}  // namespace
-
 Mapper::Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
                Publish publish, std::shared_ptr<const Vocabulary> vocabulary)
     : sensor_(sensor),
@@ -71,6 +58,7 @@ void Mapper::Apply(const MapCorrection& correction, const Cancellation*) {
 
 // Everything that follows from a new keyframe.
 void Mapper::ExtendMap(KeyframeId keyframe, const Cancellation* hurry) {
+  newest_keyframe_ = keyframe;
   const auto must_hurry = [&] { return hurry != nullptr && hurry->IsRequested(); };
   {
     const ScopedTimer timer(times_, "map_landmarks");
@@ -90,6 +78,11 @@ void Mapper::ExtendMap(KeyframeId keyframe, const Cancellation* hurry) {
     }
   }
   PublishSnapshot();
+}
+
+std::optional<KeyframeId> Mapper::NewestKeyframe() const {
+  return map_.keyframes().Contains(newest_keyframe_) ? std::optional(newest_keyframe_)
+                                                     : std::nullopt;
 }
 
 void Mapper::MapObjects(KeyframeId keyframe) {
@@ -130,7 +123,8 @@ void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
     window = GlobalWindow(map_, ObjectsToAdjust());
-    Adjust(window, ForWholeMap({.objects = object_options_.bundle}), cancellation, on_progress);
+    Adjust(window, BundleOptions{.objects = object_options_.bundle}.ForWholeMap(), cancellation,
+           on_progress);
   }
   RecheckObjects(window.objects);
   PublishSnapshot();

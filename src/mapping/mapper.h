@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "hullslam/bow/vocabulary.h"
@@ -37,6 +38,11 @@ class Mapper {
   // and publishes it. If `cancellation` (may be null) is requested, it ends early with what it has.
   void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress = {});
 
+  // A snapshot of the live map for a stage that needs one of its own, and the keyframe that was
+  // added last, unless it has been culled.
+  Map Snapshot() { return map_.Snapshot(); }
+  std::optional<KeyframeId> NewestKeyframe() const;
+
   const StageTimes& times() const { return times_; }
   const std::map<ObjectRejection, size_t>& object_rejections() const {
     return object_mapper_.rejections();
@@ -62,6 +68,7 @@ class Mapper {
   StageTimes times_;
   ObjectMapper object_mapper_;
   Map map_;
+  KeyframeId newest_keyframe_;
   std::vector<LandmarkId> recent_;  // new landmarks that CullRecentLandmarks checks
 };
 

@@ -258,6 +258,14 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
 
 }  // namespace
 
+BundleOptions BundleOptions::ForWholeMap() const {
+  BundleOptions options = *this;
+  options.robust_iterations = 10;
+  options.final_iterations = 20;
+  options.function_tolerance = 1e-6;
+  return options;
+}
+
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& options, const Cancellation* cancellation,
                           const ProgressCallback& on_progress) {

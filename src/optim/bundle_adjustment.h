@@ -46,6 +46,11 @@ struct BundleOptions {
   // is nearly full, and a dense solver is faster (docs/performance.md).
   size_t max_eliminated = 140;
   ObjectBundleOptions objects = {};
+
+  // These options for a whole map. A step that changes the cost by less than the tolerance is not
+  // taken. In a global adjustment the terms that correct drift are a small share of the cost, so
+  // the tolerance must be small.
+  BundleOptions ForWholeMap() const;
 };
 
 struct BundleResult {

@@ -26,6 +26,7 @@ OptionTable SystemOptions::Bind() {
   tracking.Bind(table);
   mapping.Bind(table);
   objects.Bind(table);
+  loop.Bind(table);
   run.Bind(table);
   for (const char* name :
        {"KeyFrameSize", "KeyFrameLineWidth", "GraphLineWidth", "PointSize", "CameraSize",

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hullslam/util/check.h"
+#include "loop/loop_closer.h"
 #include "mapping/mapper.h"
 #include "tracking/tracker.h"
 
@@ -14,18 +15,21 @@ namespace {
 class SequentialPipeline final : public Pipeline {
  public:
   SequentialPipeline(const Sensor& sensor, const SystemOptions& options)
-      : tracker_(sensor, options.tracking, options.objects),
+      : tracker_(sensor, options.tracking, options.objects, options.seed),
         mapper_(
             sensor, options.mapping, options.objects,
-            [this](std::shared_ptr<const Map> map) { map_ = std::move(map); }, options.vocabulary) {
-  }
+            [this](std::shared_ptr<const Map> map) { map_ = std::move(map); }, options.vocabulary),
+        loop_closer_(sensor, options.loop, options.objects, options.seed) {}
 
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(!is_finished_, "Track after Finish");
     RethrowFailure();
     Tracker::Result result = tracker_.Process(std::move(frame), map_, MapperStatus());
     if (result.message) {
-      EditMap([&] { mapper_.Process(*result.message, nullptr); });
+      EditMap([&] {
+        mapper_.Process(*result.message, nullptr);
+        CloseLoop();
+      });
     }
     return std::move(result.report);
   }
@@ -44,6 +48,7 @@ class SequentialPipeline final : public Pipeline {
   StageTimes times() const override {
     StageTimes times = tracker_.times();
     times.Merge(mapper_.times());
+    times.Merge(loop_closer_.times());
     return times;
   }
 
@@ -52,6 +57,20 @@ class SequentialPipeline final : public Pipeline {
   }
 
  private:
+  // Looks for a loop at the newest keyframe. After it has been closed, the whole map is adjusted.
+  void CloseLoop() {
+    const std::optional<KeyframeId> keyframe = mapper_.NewestKeyframe();
+    if (!loop_closer_.is_enabled() || !keyframe) {
+      return;
+    }
+    if (const auto loop = loop_closer_.Process({mapper_.Snapshot(), *keyframe})) {
+      mapper_.Process(*loop, nullptr);
+      if (const auto adjustment = loop_closer_.AdjustWholeMap(*map_, nullptr)) {
+        mapper_.Process(*adjustment, nullptr);
+      }
+    }
+  }
+
   // Calls `edit`, which changes the live map, and remembers its exception.
   template <typename Edit>
   void EditMap(const Edit& edit) {
@@ -72,6 +91,7 @@ class SequentialPipeline final : public Pipeline {
   std::shared_ptr<const Map> map_;
   Tracker tracker_;
   Mapper mapper_;
+  LoopCloser loop_closer_;
   std::exception_ptr failure_;
   bool is_finished_ = false;
 };

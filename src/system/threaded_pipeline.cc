@@ -24,7 +24,7 @@ class ThreadedPipeline final : public Pipeline {
  public:
   ThreadedPipeline(const Sensor& sensor, const SystemOptions& options, Pace pace)
       : pace_(pace),
-        tracker_(sensor, options.tracking, options.objects),
+        tracker_(sensor, options.tracking, options.objects, options.seed),
         mapper_(
             sensor, options.mapping, options.objects,
             [this](std::shared_ptr<const Map> map) { Publish(std::move(map)); },

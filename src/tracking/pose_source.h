@@ -26,8 +26,13 @@ PoseSource PoseByMotionModel;
 // starting from the last frame's pose (reference_keyframe_source.cc).
 PoseSource PoseByReferenceKeyframe;
 
+// Keyframes that look like the frame by their words give matches with their landmarks, from which
+// RANSAC finds a pose; then all landmarks of that place are searched. The last frame is not used
+// (Mur-Artal and Tardos 2017; relocalisation_source.cc).
+PoseSource PoseByRelocalisation;
+
 // All sources, in the order in which they are tried.
-inline constexpr std::array<PoseSource*, 2> kPoseSources = {&PoseByMotionModel,
-                                                            &PoseByReferenceKeyframe};
+inline constexpr std::array<PoseSource*, 3> kPoseSources = {
+    &PoseByMotionModel, &PoseByReferenceKeyframe, &PoseByRelocalisation};
 
 }  // namespace hullslam

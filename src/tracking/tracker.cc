@@ -34,16 +34,6 @@ InitialMap MakeInitialMap(std::shared_ptr<const Frame> frame, const PinholeCamer
   return initial;
 }
 
-std::optional<PoseEstimate> FirstPose(const Frame& frame, const Map& map,
-                                      const TrackingContext& context, const LastFrame& last) {
-  for (PoseSource* source : kPoseSources) {
-    if (std::optional<PoseEstimate> estimate = source(frame, map, context, last)) {
-      return estimate;
-    }
-  }
-  return std::nullopt;
-}
-
 int CountCloseKeypoints(const Frame& frame, const Sensor& sensor,
                         const std::vector<LandmarkId>& landmarks, bool tracked) {
   int count = 0;
@@ -82,10 +72,12 @@ KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor
 
 }  // namespace
 
-Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects)
+Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects,
+                 uint64_t seed)
     : sensor_(sensor),
       options_(options),
       object_options_(objects),
+      seed_(seed),
       policy_(MakePolicy(sensor, options)) {}
 
 Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
@@ -121,16 +113,12 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   if (!frame->detections.empty()) {
     object_index_.Follow(map, sensor_.camera);
   }
-  std::optional<PoseEstimate> start = FirstPose(*frame, map, Context(), last_);
-  if (!start) {
+  const std::optional<LocalTracking> found = FindPose(*frame, map);
+  if (!found) {
     return Lose(std::move(frame));
   }
-  const LocalTracking tracking =
-      TrackLocalMap(*frame, map, Context(), last_.reference, std::move(*start));
+  const LocalTracking& tracking = *found;
   CountSightings(map, tracking);
-  if (tracking.estimate.EffectiveInliers() < options_.min_inliers) {
-    return Lose(std::move(frame));
-  }
   const PoseEstimate& estimate = tracking.estimate;
   const RelativePose pose = map.RelativeTo(tracking.reference, estimate.cam_from_world);
 
@@ -167,6 +155,20 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
            .cam_from_world = estimate.cam_from_world,
            .motion = motion};
   return result;
+}
+
+// The first pose that the local map confirms. Null if there is none.
+std::optional<LocalTracking> Tracker::FindPose(const Frame& frame, const Map& map) const {
+  for (PoseSource* source : kPoseSources) {
+    if (std::optional<PoseEstimate> start = source(frame, map, Context(), last_)) {
+      LocalTracking tracking =
+          TrackLocalMap(frame, map, Context(), last_.reference, std::move(*start));
+      if (tracking.estimate.EffectiveInliers() >= options_.min_inliers) {
+        return tracking;
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame) {

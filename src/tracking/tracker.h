@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -30,8 +31,9 @@ struct MapperStatus {
 // frame to the next.
 class Tracker {
  public:
-  // `sensor` must outlive the tracker.
-  Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects = {});
+  // `sensor` must outlive the tracker. `seed` is that of the run.
+  Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects = {},
+          uint64_t seed = 0);
 
   struct Result {
     FrameReport report;
@@ -45,9 +47,12 @@ class Tracker {
   const StageTimes& times() const { return times_; }
 
  private:
-  TrackingContext Context() const { return {sensor_, options_, object_options_, object_index_}; }
+  TrackingContext Context() const {
+    return {sensor_, options_, object_options_, object_index_, seed_};
+  }
   Result Initialize(std::shared_ptr<const Frame> frame);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
+  std::optional<LocalTracking> FindPose(const Frame& frame, const Map& map) const;
   Result Lose(std::shared_ptr<const Frame> frame);
   void CountSightings(const Map& map, const LocalTracking& tracking);
   KeyframeRequest MakeRequest(std::shared_ptr<const Frame> frame, const LocalTracking& tracking,
@@ -56,6 +61,7 @@ class Tracker {
   const Sensor& sensor_;
   const TrackingOptions options_;
   const ObjectOptions object_options_;
+  const uint64_t seed_;
   const KeyframePolicy policy_;
   StageTimes times_;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "hullslam/frame/sensor.h"
 #include "hullslam/objects/object_options.h"
@@ -16,12 +17,14 @@ struct TrackingContext {
   const TrackingOptions& options;
   const ObjectOptions& objects;
   const ObjectIndex& object_index;  // of the map
+  uint64_t seed = 0;                // of the run
 
   // Bounds of Mur-Artal and Tardos 2017, as shares of tracking.min_inliers: with its default of 30
-  // they are 20 and 15 matches and 10 inliers.
+  // they are 20 and 15 matches, 10 inliers, and 50 inliers after the tracker was lost.
   size_t min_motion_matches() const { return static_cast<size_t>(options.min_inliers) * 2 / 3; }
   size_t min_reference_matches() const { return static_cast<size_t>(options.min_inliers) / 2; }
   int min_start_inliers() const { return options.min_inliers / 3; }
+  int min_relocalisation_inliers() const { return options.min_inliers * 5 / 3; }
 };
 
 }  // namespace hullslam

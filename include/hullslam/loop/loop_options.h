@@ -19,13 +19,13 @@ struct LoopOptions {
 
   // The drift budget (as in OKVIS2, Leutenegger 2022): how much a correction may move and turn the
   // query, relative to what the camera has travelled and turned since the candidate.
-  double drift_base = 0.2;             // m
-  double drift_per_metre = 0.05;       // m
-  double drift_per_radian = 0.02;      // m
-  double turn_base = 0.1;              // radians
-  double turn_per_metre = 0.02;        // radians
-  double turn_per_radian = 0.03;       // radians
-  bool global_adjustment = true;       // adjust the whole map after a loop was closed
+  double drift_base = 0.2;         // m
+  double drift_per_metre = 0.05;   // m
+  double drift_per_radian = 0.02;  // m
+  double turn_base = 0.1;          // radians
+  double turn_per_metre = 0.02;    // radians
+  double turn_per_radian = 0.03;   // radians
+  bool global_adjustment = true;   // adjust the whole map after a loop was closed
 
   void Bind(OptionTable& options);
 };

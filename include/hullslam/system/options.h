@@ -8,6 +8,7 @@
 #include "hullslam/camera/depth.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/features/extractor.h"
+#include "hullslam/loop/loop_options.h"
 #include "hullslam/mapping/mapping_options.h"
 #include "hullslam/objects/object_options.h"
 #include "hullslam/tracking/tracking_options.h"
@@ -34,10 +35,12 @@ struct SystemOptions {
   TrackingOptions tracking;
   MappingOptions mapping;
   ObjectOptions objects;
+  LoopOptions loop;
   RunOptions run;
   // For the words of frames and the index of the map. Null: frames have no words. It is not a
   // setting of the table; see ReadVocabulary() and FindDefaultVocabulary().
   std::shared_ptr<const Vocabulary> vocabulary;
+  uint64_t seed = 0;  // of all random choices
 
   // Names every option once; the struct must outlive the table. `Viewer.*` keys of ORB-SLAM2 are
   // accepted and ignored.

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "hullslam/frame/sensor.h"
+#include "hullslam/loop/loop_options.h"
+#include "hullslam/map/map.h"
+#include "hullslam/map/messages.h"
+#include "hullslam/objects/object_options.h"
+#include "hullslam/util/cancellation.h"
+#include "hullslam/util/stage_timer.h"
+
+namespace hullslam {
+
+// A snapshot of the map for the loop closer alone, and the keyframe at which a loop is sought.
+struct LoopQuery {
+  Map map;
+  KeyframeId keyframe;
+};
+
+// Finds loops in snapshots of the map and says how they correct it. It does not change the map but
+// sends corrections to the mapper.
+class LoopCloser {
+ public:
+  // `sensor` must outlive the loop closer. `seed` is that of the run.
+  LoopCloser(const Sensor& sensor, const LoopOptions& options, const ObjectOptions& objects,
+             uint64_t seed);
+
+  bool is_enabled() const { return options_.enabled; }
+
+  // Looks for a loop at the keyframe of the query. Null if there is none. Maps without a vocabulary
+  // have no loops.
+  std::optional<MapCorrection> Process(LoopQuery query);
+
+  // Bundle adjustment of the whole map, to be called with the corrected map after a loop. Null if
+  // the options do not ask for it, if `cancellation` (may be null) was requested, or if the solver
+  // failed.
+  std::optional<MapCorrection> AdjustWholeMap(const Map& map, const Cancellation* cancellation);
+
+  const StageTimes& times() const { return times_; }
+
+ private:
+  std::optional<MapCorrection> Close(LoopQuery& query, KeyframeId candidate,
+                                     std::string& refusal) const;
+
+  const Sensor& sensor_;
+  const LoopOptions options_;
+  const ObjectOptions object_options_;
+  const uint64_t seed_;
+  KeyframeId last_loop_;  // the newer end of the loop that was closed last
+  StageTimes times_;
+};
+
+}  // namespace hullslam

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "loop/loop_correction.h"
+
+#include <algorithm>
+#include <map>
+
+#include "map/covisibility.h"
+#include "objects/fusion.h"
+#include "optim/pose_graph.h"
+
+namespace hullslam {
+namespace {
+
+constexpr int kStrong = 100;  // shared landmarks of an edge of the essential graph
+// The weight of a loop's edge against the others, so that it is not pulled open again by the many
+// edges that lead along the way between its ends.
+constexpr double kLoopWeight = 10.0;
+
+KeyframeId RootOf(const Map& map, KeyframeId keyframe) {
+  while (map.keyframes().At(keyframe).parent.IsValid()) {
+    keyframe = map.keyframes().At(keyframe).parent;
+  }
+  return keyframe;
+}
+
+// The graph of all keyframes with edges as the map measures them.
+class EssentialGraph {
+ public:
+  explicit EssentialGraph(const Map& map) : map_(map) {
+    for (const auto& [id, keyframe] : map.keyframes()) {
+      index_.emplace(id, ids_.size());
+      ids_.push_back(id);
+      graph_.nodes.push_back({.cam_from_world = Sim3(keyframe.cam_from_world)});
+    }
+    for (const auto& [id, keyframe] : map.keyframes()) {
+      AddEdgesOf(id, keyframe);
+    }
+  }
+
+  void Fix(KeyframeId id) { graph_.nodes[index_.at(id)].is_fixed = true; }
+  void Start(KeyframeId id, const Sim3& cam_from_world) {
+    graph_.nodes[index_.at(id)].cam_from_world = cam_from_world;
+  }
+  void AddEdge(KeyframeId a, KeyframeId b, const Sim3& b_from_a, double weight) {
+    PoseGraph::Edge& edge = graph_.edges.emplace_back();
+    edge.a = index_.at(a);
+    edge.b = index_.at(b);
+    edge.b_from_a = b_from_a;
+    edge.inverse_sigma.setConstant(weight);
+  }
+  const PoseGraph& graph() const { return graph_; }
+  const std::vector<KeyframeId>& ids() const { return ids_; }  // one per node
+
+ private:
+  // The edges to older keyframes, and to the parent.
+  void AddEdgesOf(KeyframeId id, const Keyframe& keyframe) {
+    if (keyframe.parent.IsValid()) {
+      AddMeasured(keyframe.parent, id, 1.0);
+    }
+    for (const Covisible& other : keyframe.covisible) {
+      const bool is_in_tree =
+          other.keyframe == keyframe.parent ||
+          std::binary_search(keyframe.children.begin(), keyframe.children.end(), other.keyframe);
+      if (other.keyframe < id && other.shared >= kStrong && !is_in_tree) {
+        AddMeasured(other.keyframe, id, 1.0);
+      }
+    }
+    for (const KeyframeId other : keyframe.loops) {
+      if (other < id) {
+        AddMeasured(other, id, kLoopWeight);
+      }
+    }
+  }
+
+  void AddMeasured(KeyframeId a, KeyframeId b, double weight) {
+    const Rigid3 b_from_a =
+        map_.keyframes().At(b).cam_from_world * Inverse(map_.keyframes().At(a).cam_from_world);
+    AddEdge(a, b, Sim3(b_from_a), weight);
+  }
+
+  const Map& map_;
+  std::map<KeyframeId, size_t> index_;
+  std::vector<KeyframeId> ids_;
+  PoseGraph graph_;
+};
+
+void AddLandmarkMerges(const Map& corrected, const Sensor& sensor, const Loop& loop,
+                       MapCorrection& correction) {
+  const std::vector<LandmarkId> kept =
+      ObservedLandmarks(corrected, KeyframesAround(corrected, loop.candidate));
+  IdSet<LandmarkId> at_candidate;
+  for (const LandmarkId id : kept) {
+    at_candidate.Insert(id);
+  }
+  IdSet<LandmarkId> merged;
+  const auto add = [&](KeyframeId keyframe, const std::vector<FoundLandmark>& found) {
+    for (const FoundLandmark& sighting : found) {
+      const LandmarkId own = corrected.keyframes().At(keyframe).landmarks[sighting.keypoint];
+      if (own.IsValid() && !at_candidate.Contains(own) && merged.Insert(own)) {
+        correction.landmarks.push_back({.duplicate = own, .kept = sighting.landmark});
+      }
+    }
+  };
+  add(loop.query, loop.landmarks);
+  for (const KeyframeId keyframe : KeyframesAround(corrected, loop.query)) {
+    add(keyframe, FindLandmarks(corrected, sensor, *corrected.keyframes().At(keyframe).frame,
+                                corrected.keyframes().At(keyframe).cam_from_world, kept));
+  }
+}
+
+}  // namespace
+
+std::vector<KeyframeId> KeyframesAround(const Map& map, KeyframeId keyframe) {
+  std::vector<KeyframeId> around{keyframe};
+  for (const Covisible& other : map.keyframes().At(keyframe).covisible) {
+    around.push_back(other.keyframe);
+  }
+  std::sort(around.begin(), around.end());
+  return around;
+}
+
+MapCorrection SpreadLoopError(const Map& map, const Loop& loop, bool fix_scale) {
+  const Rigid3 world_from_query = Inverse(map.keyframes().At(loop.query).cam_from_world);
+  const Sim3 corrected_query =
+      loop.query_from_candidate * Sim3(map.keyframes().At(loop.candidate).cam_from_world);
+  EssentialGraph graph(map);
+  graph.Fix(RootOf(map, loop.candidate));
+  for (const KeyframeId id : KeyframesAround(map, loop.query)) {
+    graph.Start(id,
+                Sim3(map.keyframes().At(id).cam_from_world * world_from_query) * corrected_query);
+  }
+  graph.AddEdge(loop.candidate, loop.query, loop.query_from_candidate, kLoopWeight);
+
+  const PoseGraphResult result = OptimizePoseGraph(graph.graph(), {.fix_scale = fix_scale});
+  MapCorrection correction;
+  correction.snapshot_corrections = map.correction_count();
+  correction.loop = MapCorrection::LoopEdge{loop.candidate, loop.query};
+  if (result.is_usable) {
+    for (size_t i = 0; i < graph.ids().size(); ++i) {
+      correction.poses.push_back({graph.ids()[i], map.keyframes().At(graph.ids()[i]).cam_from_world,
+                                  result.cam_from_world[i]});
+    }
+  }
+  return correction;
+}
+
+void AddMerges(const Map& corrected, const Sensor& sensor, const Loop& loop,
+               const FusionOptions& fusion, MapCorrection& correction) {
+  AddLandmarkMerges(corrected, sensor, loop, correction);
+  std::vector<ObjectId> objects;
+  for (const KeyframeId keyframe : KeyframesAround(corrected, loop.query)) {
+    for (const ObjectId id : corrected.keyframes().At(keyframe).objects) {
+      if (id.IsValid()) {
+        objects.push_back(id);
+      }
+    }
+  }
+  std::sort(objects.begin(), objects.end());
+  objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
+  for (const auto& [kept, duplicate] : FindDuplicates(corrected, objects, fusion)) {
+    correction.objects.push_back({.duplicate = duplicate, .kept = kept});
+  }
+}
+
+}  // namespace hullslam

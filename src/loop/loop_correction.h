@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "hullslam/frame/sensor.h"
+#include "hullslam/map/map.h"
+#include "hullslam/map/messages.h"
+#include "hullslam/objects/object_options.h"
+#include "loop/loop_verification.h"
+#include "util/id_set.h"
+
+namespace hullslam {
+
+// The keyframe and all that are covisible with it, by increasing id.
+std::vector<KeyframeId> KeyframesAround(const Map& map, KeyframeId keyframe);
+
+// The poses of all keyframes after a pose graph has spread the error of the loop over them, and the
+// loop's edge. The graph has the edges of the spanning tree, of strong covisibility, of earlier
+// loops and of this one (the essential graph, Mur-Artal and Tardos 2014). The root of the
+// candidate's spanning tree stays where it is. The correction has no poses if the graph could not
+// be solved.
+MapCorrection SpreadLoopError(const Map& map, const Loop& loop, bool fix_scale);
+
+// Adds to `correction` what is one thing although it was mapped at both ends of the loop. Landmarks
+// around the candidate are searched in the keyframes around the query; objects around the query are
+// compared with all others. `corrected` is the map with the correction.
+void AddMerges(const Map& corrected, const Sensor& sensor, const Loop& loop,
+               const FusionOptions& fusion, MapCorrection& correction);
+
+}  // namespace hullslam

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "loop/object_votes.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "loop/loop_correction.h"
+#include "objects/visibility.h"
+
+namespace hullslam {
+namespace {
+
+// The mapped objects that the keyframe and its neighbours observe, by increasing id.
+std::vector<ObjectId> MappedAround(const Map& map, KeyframeId keyframe) {
+  std::vector<ObjectId> objects;
+  for (const KeyframeId observer : KeyframesAround(map, keyframe)) {
+    for (const ObjectId id : map.keyframes().At(observer).objects) {
+      if (id.IsValid() && map.objects().At(id).state == ObjectState::kMapped) {
+        objects.push_back(id);
+      }
+    }
+  }
+  std::sort(objects.begin(), objects.end());
+  objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
+  return objects;
+}
+
+// Whether each of the quadrics, blown up by half, contains the centre of the other.
+bool AreAtOnePlace(const Ellipsoid& a, const Ellipsoid& b) {
+  const auto reaches = [](Ellipsoid from, const Ellipsoid& to) {
+    from.half_axes *= 1.5;
+    return from.RadialDistance(to.world_from_object.translation) <= 0.0;
+  };
+  return reaches(a, b) && reaches(b, a);
+}
+
+// Whether any detection of one was given a class that a detection of the other was given.
+bool ShareClass(const ObjectLandmark& a, const ObjectLandmark& b) {
+  return std::any_of(a.votes.begin(), a.votes.end(),
+                     [&](const auto& vote) { return b.votes.contains(vote.first); });
+}
+
+enum class Vote { kNone, kAgree, kDisagree };
+
+// What an object of one end says, compared with the objects of the other end.
+Vote VoteOf(const Map& map, const Sensor& sensor, const ObjectLandmark& object,
+            const std::vector<ObjectId>& others, KeyframeId other_end,
+            const ObjectOptions& options) {
+  bool is_place_taken = false;
+  for (const ObjectId id : others) {
+    const ObjectLandmark& other = map.objects().At(id);
+    if (AreAtOnePlace(object.ellipsoid, other.ellipsoid)) {
+      if (ShareClass(object, other)) {
+        return Vote::kAgree;
+      }
+      is_place_taken = true;
+    }
+  }
+  const bool is_missing = is_place_taken || ShouldShow(map, sensor, other_end, object, options);
+  return is_missing ? Vote::kDisagree : Vote::kNone;
+}
+
+}  // namespace
+
+ObjectVotes CountObjectVotes(const Map& corrected, const Sensor& sensor, KeyframeId query,
+                             KeyframeId candidate, const ObjectOptions& options) {
+  const std::vector<ObjectId> at_query = MappedAround(corrected, query);
+  const std::vector<ObjectId> at_candidate = MappedAround(corrected, candidate);
+  ObjectVotes votes;
+  const auto count = [&](const std::vector<ObjectId>& objects, const std::vector<ObjectId>& others,
+                         KeyframeId other_end, bool counts_agreement) {
+    for (const ObjectId id : objects) {
+      const Vote vote =
+          VoteOf(corrected, sensor, corrected.objects().At(id), others, other_end, options);
+      votes.agree += vote == Vote::kAgree && counts_agreement ? 1 : 0;
+      votes.disagree += vote == Vote::kDisagree ? 1 : 0;
+    }
+  };
+  count(at_query, at_candidate, candidate, true);
+  count(at_candidate, at_query, query, false);
+  return votes;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "places/landmark_search.h"
+
+#include <optional>
+
+#include "frame/point_measurement.h"
+#include "map/landmark_projection.h"
+#include "matching/by_projection.h"
+#include "matching/by_words.h"
+
+namespace hullslam {
+namespace {
+
+constexpr float kRadius = 8.0f;    // px at level 0
+constexpr int kMaxDistance = 100;  // Hamming
+// The level of the vocabulary at which keypoints are compared. Below a node are then about a
+// hundred words of a vocabulary with ten branches: with fewer, too many matches are lost.
+constexpr int kNodeLevel = 2;
+
+}  // namespace
+
+std::vector<FoundLandmark> FindLandmarks(const Map& map, const Sensor& sensor, const Frame& frame,
+                                         const Rigid3& cam_from_world,
+                                         const std::vector<LandmarkId>& landmarks) {
+  std::vector<Projection> projections;
+  std::vector<LandmarkId> ids;
+  std::vector<Eigen::Vector3d> points_in_cam;
+  for (const LandmarkId id : landmarks) {
+    const Landmark& landmark = map.landmarks().At(id);
+    const std::optional<LandmarkView> view = ViewLandmark(sensor, cam_from_world, landmark);
+    if (!view) {
+      continue;
+    }
+    Projection& projection = projections.emplace_back();
+    projection.pixel = view->pixel.cast<float>();
+    projection.radius = kRadius * sensor.levels.scale[static_cast<size_t>(view->level)];
+    projection.min_level = view->level - 1;
+    projection.max_level = view->level;
+    projection.descriptor = landmark.descriptor;
+    ids.push_back(id);
+    points_in_cam.push_back(view->point_in_cam);
+  }
+  const auto reprojects = [&](uint32_t query, uint32_t keypoint) {
+    return IsInlier(sensor.camera,
+                    MeasurePoint(sensor, frame.features, keypoint, sensor.depth_error),
+                    points_in_cam[query]);
+  };
+  std::vector<FoundLandmark> found;
+  for (const Match& match :
+       MatchByProjection(frame.features, projections, {},
+                         {.max_distance = kMaxDistance, .may_match = reprojects})) {
+    found.push_back({match.keypoint, ids[match.query]});
+  }
+  return found;
+}
+
+std::vector<FoundLandmark> MatchLandmarksByWords(const Map& map, const Frame& frame,
+                                                 KeyframeId keyframe,
+                                                 const std::vector<uint8_t>& is_asked) {
+  const Vocabulary& vocabulary = *map.vocabulary();
+  const Keyframe& known = map.keyframes().At(keyframe);
+  std::vector<VocabularyNodeId> asked = vocabulary.NodesOf(frame.words, kNodeLevel);
+  for (size_t i = 0; i < is_asked.size(); ++i) {
+    if (is_asked[i] == 0) {
+      asked[i] = VocabularyNodeId();
+    }
+  }
+  std::vector<VocabularyNodeId> nodes = vocabulary.NodesOf(known.frame->words, kNodeLevel);
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    if (!known.landmarks[i].IsValid()) {
+      nodes[i] = VocabularyNodeId();
+    }
+  }
+  std::vector<FoundLandmark> found;
+  for (const Match& match : MatchByWords(frame.features, asked, known.frame->features, nodes, {})) {
+    found.push_back({match.query, known.landmarks[match.keypoint]});
+  }
+  return found;
+}
+
+}  // namespace hullslam

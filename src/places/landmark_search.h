@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hullslam/frame/frame.h"
+#include "hullslam/frame/sensor.h"
+#include "hullslam/map/map.h"
+
+namespace hullslam {
+
+// A keypoint of a frame and the landmark that it shows.
+struct FoundLandmark {
+  uint32_t keypoint = 0;
+  LandmarkId landmark;
+};
+
+// Searches landmarks in a frame as seen from `cam_from_world`, a pose that a place of the map gives
+// and that may differ from the pose of tracking. Each keypoint and each landmark is found at most
+// once, and where a landmark is found it agrees with the keypoint (IsInlier).
+std::vector<FoundLandmark> FindLandmarks(const Map& map, const Sensor& sensor, const Frame& frame,
+                                         const Rigid3& cam_from_world,
+                                         const std::vector<LandmarkId>& landmarks);
+
+// Keypoints of a frame and the landmarks of a keyframe that they may show, by the words of their
+// descriptors alone. If `is_asked` is not empty, it has one entry per keypoint of the frame, and
+// keypoints whose entry is 0 are left out. The map must have a vocabulary.
+std::vector<FoundLandmark> MatchLandmarksByWords(const Map& map, const Frame& frame,
+                                                 KeyframeId keyframe,
+                                                 const std::vector<uint8_t>& is_asked);
+
+}  // namespace hullslam

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "estimators/absolute_pose.h"
+#include "frame/point_measurement.h"
+#include "map/covisibility.h"
+#include "places/landmark_search.h"
+#include "places/similar_places.h"
+#include "tracking/pose_refinement.h"
+#include "tracking/pose_source.h"
+#include "util/id_set.h"
+#include "util/random_seed.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kMostPlaces = 8;  // that are tried for a frame
+
+// The keyframes that look like the frame, one per place.
+std::vector<KeyframeId> FindPlaces(const Frame& frame, const Map& map) {
+  std::vector<SimilarKeyframe> similar = map.index().Query(map.VectorOf(frame));
+  KeepMostCommon(similar);
+  std::vector<KeyframeId> places = BestOfPlaces(map, similar);
+  places.resize(std::min(places.size(), kMostPlaces));
+  return places;
+}
+
+// The pose from matches by words with the landmarks of one keyframe. Null if too few agree.
+std::optional<PoseEstimate> PoseByWords(const Frame& frame, const Map& map,
+                                        const TrackingContext& context, KeyframeId keyframe) {
+  const std::vector<FoundLandmark> matches = MatchLandmarksByWords(map, frame, keyframe, {});
+  std::vector<PoseObservation> observations;
+  for (const auto& [keypoint, landmark] : matches) {
+    observations.push_back({.point = map.landmarks().At(landmark).position,
+                            .measurement = MeasurePoint(context.sensor, frame.features, keypoint,
+                                                        context.sensor.depth_error)});
+  }
+  RansacOptions ransac;
+  ransac.seed = HashSeed(context.seed, frame.id.value, "relocalisation");
+  ransac.min_inliers = context.min_reference_matches();
+  const AbsolutePose pose = EstimateAbsolutePose(context.sensor.camera, observations, ransac);
+  if (!pose.ok()) {
+    return std::nullopt;
+  }
+  PoseEstimate estimate;
+  estimate.cam_from_world = pose.cam_from_world;
+  estimate.landmarks.resize(frame.features.size());
+  for (const size_t inlier : pose.inliers) {
+    estimate.landmarks[matches[inlier].keypoint] = matches[inlier].landmark;
+  }
+  return RefinePose(frame, map, context, {}, std::move(estimate));
+}
+
+// Adds landmarks of the place that are seen from the estimated pose, and refines the pose.
+PoseEstimate SeeWholePlace(const Frame& frame, const Map& map, const TrackingContext& context,
+                           KeyframeId keyframe, PoseEstimate estimate) {
+  IdSet<LandmarkId> known;
+  for (const LandmarkId id : estimate.landmarks) {
+    if (id.IsValid()) {
+      known.Insert(id);
+    }
+  }
+  for (const auto& [keypoint, landmark] :
+       FindLandmarks(map, context.sensor, frame, estimate.cam_from_world,
+                     ObservedLandmarks(map, PlaceOf(map, keyframe)))) {
+    if (!estimate.landmarks[keypoint].IsValid() && known.Insert(landmark)) {
+      estimate.landmarks[keypoint] = landmark;
+    }
+  }
+  return RefinePose(frame, map, context, {}, std::move(estimate));
+}
+
+}  // namespace
+
+std::optional<PoseEstimate> PoseByRelocalisation(const Frame& frame, const Map& map,
+                                                 const TrackingContext& context,
+                                                 const LastFrame& /*last*/) {
+  if (map.vocabulary() == nullptr || frame.words.empty()) {
+    return std::nullopt;
+  }
+  for (const KeyframeId keyframe : FindPlaces(frame, map)) {
+    std::optional<PoseEstimate> estimate = PoseByWords(frame, map, context, keyframe);
+    if (!estimate || estimate->inliers < context.min_start_inliers()) {
+      continue;
+    }
+    *estimate = SeeWholePlace(frame, map, context, keyframe, std::move(*estimate));
+    if (estimate->inliers >= context.min_relocalisation_inliers()) {
+      return estimate;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace hullslam
