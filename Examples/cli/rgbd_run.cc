@@ -264,6 +264,7 @@ std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
 int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
   SystemOptions options = LoadOptions(arguments);
   options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
+  options.seed = arguments.seed;
   // Finds images of a wrong type or size early.
   const ImageInput first = LoadRgbd(sequence.frames.front(), options.camera);
   const std::optional<Trajectory> groundtruth =
