@@ -18,31 +18,13 @@
 #include "optim/eliminated_points.h"
 #include "optim/object_bundle.h"
 #include "optim/reduced_points_cost.h"
+#include "optim/supervision.h"
 #include "util/chi_square.h"
 
 namespace hullslam {
 namespace {
 
-// Tells the caller how far the adjustment is, and ends it when that is requested.
-class Supervision final : public ceres::IterationCallback {
- public:
-  Supervision(const Cancellation* cancellation, const ProgressCallback& on_progress, int most)
-      : cancellation_(cancellation), on_progress_(on_progress), most_(most) {}
-
-  bool IsCancelled() const { return cancellation_ != nullptr && cancellation_->IsRequested(); }
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    if (on_progress_ && summary.iteration > 0) {  // number 0 is the start
-      on_progress_(++done_, most_);
-    }
-    return IsCancelled() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const Cancellation* cancellation_;
-  const ProgressCallback& on_progress_;
-  int most_;
-  int done_ = 0;
-};
+using internal::Supervision;
 
 std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
                                               const PointMeasurement& measurement) {

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "hullslam/geometry/rigid3.h"
+#include "hullslam/geometry/sim3.h"
 #include "optim/pose_optimization.h"
 #include "optim/square_root_form.h"
 
@@ -51,59 +53,64 @@ void ChooseInliers(const PinholeCamera& camera, std::span<const PoseObservation>
 // TinySolver adds steps to its parameters and knows no manifold. So the parameters are only a sum
 // of steps: a pose is that of the last linearisation, moved by the steps since then with Retract.
 // The derivatives are then those that Linearize gives.
-template <typename Problem>
+//
+// A Pose may also be a Sim3, which has seven parameters; there is one residual more then.
+template <typename Problem, typename Pose = Rigid3>
 class TinyPoseFunction {
  public:
+  static constexpr int kSize = std::is_same_v<Pose, Sim3> ? 7 : 6;
   using Scalar = double;
-  enum { NUM_RESIDUALS = 7, NUM_PARAMETERS = 6 };
+  using Vector = Eigen::Matrix<double, kSize, 1>;
+  using Matrix = Eigen::Matrix<double, kSize, kSize>;
+  enum { NUM_RESIDUALS = kSize + 1, NUM_PARAMETERS = kSize };
 
-  TinyPoseFunction(const Problem& problem, const Rigid3& start) : problem_(problem), pose_(start) {}
+  TinyPoseFunction(const Problem& problem, const Pose& start) : problem_(problem), pose_(start) {}
 
-  Rigid3 PoseAt(const Vector6d& parameters) const { return Retract(pose_, parameters - steps_); }
+  Pose PoseAt(const Vector& parameters) const { return Retract(pose_, parameters - steps_); }
 
-  // `jacobian`: 7 x 6, by columns; may be null.
+  // `jacobian`: NUM_RESIDUALS x NUM_PARAMETERS, by columns; may be null.
   bool operator()(const double* parameters, double* residuals, double* jacobian) const {
-    const Vector6d steps = Eigen::Map<const Vector6d>(parameters);
-    const Rigid3 pose = PoseAt(steps);
+    const Vector steps = Eigen::Map<const Vector>(parameters);
+    const Pose pose = PoseAt(steps);
     const double cost = problem_.Cost(pose);
-    Eigen::Map<Eigen::Matrix<double, 7, 1>> all(residuals);
+    Eigen::Map<Eigen::Matrix<double, kSize + 1, 1>> all(residuals);
     all.setZero();
-    all[6] = std::sqrt(cost);
+    all[kSize] = std::sqrt(cost);
     if (jacobian == nullptr) {
       return true;
     }
     pose_ = pose;
     steps_ = steps;
-    Matrix6d hessian;
-    Vector6d gradient;
+    Matrix hessian;
+    Vector gradient;
     problem_.Linearize(pose, hessian, gradient);
-    Eigen::Map<Eigen::Matrix<double, 7, 6>> by_parameters(jacobian);
+    Eigen::Map<Eigen::Matrix<double, kSize + 1, kSize>> by_parameters(jacobian);
     by_parameters.setZero();
     // Without a form the derivative is zero, and the solver stays where it is.
     if (form_.Compute(hessian, gradient)) {
       all << form_.residual(), form_.LastResidual(cost);
-      by_parameters.topRows<6>() = Matrix6d(form_.jacobian());
+      by_parameters.template topRows<kSize>() = Matrix(form_.jacobian());
     }
     return true;
   }
 
  private:
   const Problem& problem_;
-  mutable Rigid3 pose_;  // of the last linearisation
-  mutable Vector6d steps_ = Vector6d::Zero();
-  mutable SquareRootForm<6> form_;
+  mutable Pose pose_;  // of the last linearisation
+  mutable Vector steps_ = Vector::Zero();
+  mutable SquareRootForm<kSize> form_;
 };
 
-// The pose with the least cost, by Levenberg-Marquardt from `pose` on.
-template <typename Problem>
-Rigid3 Minimize(const Problem& problem, const Rigid3& pose,
-                const PoseOptimizationOptions& options) {
-  const TinyPoseFunction<Problem> function(problem, pose);
-  ceres::TinySolver<TinyPoseFunction<Problem>> solver;
+// The pose (Rigid3 or Sim3) with the least cost, by Levenberg-Marquardt from `pose` on.
+template <typename Problem, typename Pose>
+Pose Minimize(const Problem& problem, const Pose& pose, const PoseOptimizationOptions& options) {
+  using Function = TinyPoseFunction<Problem, Pose>;
+  const Function function(problem, pose);
+  ceres::TinySolver<Function> solver;
   solver.options.max_num_iterations = options.iterations + 1;  // it counts from one
   // In units of the squared norm of the residuals, which is the cost.
   solver.options.function_tolerance = options.min_relative_decrease * problem.Cost(pose);
-  Vector6d steps = Vector6d::Zero();
+  typename Function::Vector steps = Function::Vector::Zero();
   solver.Solve(function, &steps);
   return function.PoseAt(steps);
 }
