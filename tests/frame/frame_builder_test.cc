@@ -12,6 +12,7 @@
 
 #include "hullslam/util/error.h"
 #include "support/expect_error.h"
+#include "support/made_vocabulary.h"
 #include "support/square_mask.h"
 
 namespace hullslam {
@@ -100,6 +101,15 @@ TEST_F(FrameBuilderTest, HasOneEntryPerKeypointAndItsStamp) {
   EXPECT_EQ(features.descriptors.size(), features.size());
   EXPECT_EQ(features.depth.size(), features.size());
   EXPECT_EQ(features.right_u.size(), features.size());
+}
+
+TEST_F(FrameBuilderTest, HasOneWordPerKeypointWithAVocabulary) {
+  EXPECT_TRUE(Build(MakeImage())->words.empty());
+  const auto vocabulary = SharedVocabulary();
+  FrameBuilder builder(sensor_, DepthOptions(), FewFeatures(), std::nullopt, {}, vocabulary);
+  const auto frame = builder.Build(MakeImage(), runner_).frame;
+  ASSERT_GT(frame->features.size(), 100u);
+  EXPECT_EQ(frame->words, vocabulary->WordsOf(frame->features.descriptors));
 }
 
 TEST_F(FrameBuilderTest, KeypointsAreUndistorted) {

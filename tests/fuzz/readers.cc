@@ -10,12 +10,14 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <string>
 #include <system_error>
 
+#include "bow/vocabulary_layout.h"
 #include "hullslam/frame/detection_builder.h"
 #include "hullslam/io/image_file.h"
 #include "hullslam/io/mask_source.h"
@@ -24,8 +26,10 @@
 #include "hullslam/io/trajectory_file.h"
 #include "hullslam/io/true_object_file.h"
 #include "hullslam/io/tum_sequence.h"
+#include "hullslam/io/vocabulary_file.h"
 #include "hullslam/util/error.h"
 #include "io/mask_classes.h"
+#include "io/vocabulary_text.h"
 
 namespace hullslam {
 namespace {
@@ -242,7 +246,35 @@ void FuzzClassesJson(std::string_view bytes) {
   TryMasks(folder.path(), "label-png");
 }
 
-constexpr std::array<FuzzedReader, 17> kReaders = {{{"trajectory", FuzzTrajectory},
+// Uses every part of a vocabulary that was read.
+void UseVocabulary(const Vocabulary& vocabulary) {
+  const std::vector<WordId> words = vocabulary.WordsOf(vocabulary.descriptors());
+  for (const WordId word : words) {
+    Expect(word.value < vocabulary.word_count(), "a word that does not exist");
+  }
+  const BowVector vector = vocabulary.VectorOf(words);
+  Expect(std::isfinite(Score(vector, vector)), "a score that is not finite");
+  vocabulary.NodesOf(words, vocabulary.levels() - 1);
+  const std::string text = FormatVocabularyText(vocabulary);
+  Expect(ParseVocabularyText(text, "again", {}).hash() == vocabulary.hash(),
+         "another vocabulary after writing and reading");
+}
+
+// The hash is made to fit, so that the search gets past it.
+void FuzzVocabularyBinary(std::string_view bytes) {
+  std::string content(bytes);
+  if (content.size() >= sizeof(VocabularyHeader)) {
+    const uint64_t hash = HashVocabulary(std::as_bytes(std::span(content)));
+    std::memcpy(content.data() + offsetof(VocabularyHeader, hash), &hash, sizeof(hash));
+  }
+  TryFile(content, [](const fs::path& path) { UseVocabulary(ReadVocabulary(path)); });
+}
+
+void FuzzVocabularyText(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) { UseVocabulary(ReadVocabulary(path)); });
+}
+
+constexpr std::array<FuzzedReader, 19> kReaders = {{{"trajectory", FuzzTrajectory},
                                                     {"settings", FuzzSettings},
                                                     {"sequence", FuzzSequence},
                                                     {"associations", FuzzAssociations},
@@ -258,7 +290,9 @@ constexpr std::array<FuzzedReader, 17> kReaders = {{{"trajectory", FuzzTrajector
                                                     {"coco", FuzzCoco},
                                                     {"oa_slam", FuzzOaSlam},
                                                     {"label_png", FuzzLabelPng},
-                                                    {"classes_json", FuzzClassesJson}}};
+                                                    {"classes_json", FuzzClassesJson},
+                                                    {"vocabulary_binary", FuzzVocabularyBinary},
+                                                    {"vocabulary_text", FuzzVocabularyText}}};
 
 }  // namespace
 

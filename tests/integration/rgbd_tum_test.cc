@@ -14,7 +14,9 @@
 #include <vector>
 
 #include "hullslam/io/trajectory_file.h"
+#include "hullslam/io/vocabulary_file.h"
 #include "io/text_rows.h"
+#include "support/made_vocabulary.h"
 #include "support/plane_sequence.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
@@ -176,12 +178,39 @@ TEST_F(RgbdTum, ThreadedRunIsAsGood) {
 }
 
 TEST_F(RgbdTum, TakesTheFourArgumentsOfOrbSlam2) {
-  const ProgramResult result = RunWell({folder_.path() / "ORBvoc.txt", path_ + "/camera.yaml",
-                                        path_, path_ + "/associations.txt", "--quiet"});
-  EXPECT_TRUE(result.errors.starts_with("warning: ")) << result.errors;
-  EXPECT_TRUE(IsOneLine(result.errors)) << result.errors;
-  ExpectParts(result.errors, {"ORBvoc.txt"});
+  const fs::path vocabulary = folder_.path() / "ORBvoc.txt";
+  WriteVocabulary(vocabulary, MadeVocabulary(), VocabularyForm::kText);
+  const ProgramResult result =
+      RunWell({vocabulary, path_ + "/camera.yaml", path_, path_ + "/associations.txt", "--quiet"});
+  EXPECT_EQ(result.errors, "");
   EXPECT_EQ(Poses().size(), 12U);
+}
+
+TEST_F(RgbdTum, TheVocabularyIsTheDefaultOrAFileOrNone) {
+  const fs::path file = folder_.path() / "small.bow";
+  WriteVocabulary(file, MadeVocabulary(), VocabularyForm::kBinary);
+  RunWell({path_, "--last", "5"});
+  const std::string poses = ReadFile(output_ / "trajectory.txt");
+  for (const std::string& vocabulary : {file.string(), std::string("none")}) {
+    RunWell({path_, "--last", "5", "--vocabulary", vocabulary});
+    EXPECT_EQ(ReadFile(output_ / "trajectory.txt"), poses) << "nothing uses the words yet";
+  }
+}
+
+TEST_F(RgbdTum, ABrokenVocabularyIsRefused) {
+  const auto refuse = [&](const std::string& vocabulary, const std::string& why) {
+    const ProgramResult result =
+        RunProgram("rgbd_tum", {path_, "--vocabulary", vocabulary, "--output", output_});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(IsOneLine(result.errors)) << result.errors;
+    ExpectParts(result.errors, {vocabulary, why});
+    EXPECT_FALSE(fs::exists(output_));
+  };
+  refuse(folder_.path() / "none.bow", "No such file");
+  refuse(folder_.Write("empty.bow", ""), "is empty");
+  refuse(folder_.Write("cut.bow", BytesOf(MadeVocabulary()).substr(0, 99)), "cut off");
+  refuse(path_ + "/camera.yaml", "is not a vocabulary");
+  refuse(folder_.Write("voc.txt", "10 6 0 0\n0 1 5\n"), "voc.txt:2: ");
 }
 
 TEST_F(RgbdTum, SetOverridesASettingBeforeAndAfterTheSequence) {

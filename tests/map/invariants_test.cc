@@ -13,6 +13,7 @@
 #include "map/made_map.h"
 #include "map/random_edits.h"
 #include "map/spanning_tree.h"
+#include "support/made_vocabulary.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
@@ -223,6 +224,28 @@ TEST_F(Invariants, FindAMissingOrInvalidShape) {
   EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
   map_.MutableObject(object).ellipsoid.half_axes.x() = kNan;
   ExpectViolation("object 0 has no finite shape");
+}
+
+// Frames are shared as constants, but these tests made them.
+Frame& FrameOf(Map& map, KeyframeId id) {
+  return const_cast<Frame&>(*map.keyframes().At(id).frame);
+}
+
+TEST(InvariantsOfTheIndex, FindWordsThatTheIndexDoesNotHave) {
+  Map map(SharedVocabulary());
+  const KeyframeId id = AddKeyframe(map, 40, 10);
+  EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+  FrameOf(map, id).words[0] = WordId(63);
+  const std::vector<std::string> violations = FindViolations(map);
+  ASSERT_FALSE(violations.empty());
+  EXPECT_EQ(violations[0], "keyframe 0 has words that the index does not have");
+}
+
+TEST(InvariantsOfTheIndex, FindEntriesOfNoKeyframe) {
+  Map map(SharedVocabulary());
+  const KeyframeId id = AddKeyframe(map, 1);
+  FrameOf(map, id).words.clear();
+  EXPECT_EQ(FindViolations(map), std::vector<std::string>{"the index has 1 entries, expected 0"});
 }
 
 }  // namespace

@@ -39,11 +39,19 @@ inline std::shared_ptr<Frame> MakeFrame(uint32_t id, size_t keypoints, size_t wi
   return frame;
 }
 
-// Adds a keyframe. Only every third frame number is used.
+// Adds a keyframe. Only every third frame number is used. If the map has a vocabulary, the frame
+// has words.
 inline KeyframeId AddKeyframe(Map& map, size_t keypoints, size_t with_depth = 0,
                               const Rigid3& cam_from_world = {}) {
-  const uint32_t frame = kFramesPerKeyframe * map.keyframes().NextId().value;
-  return map.AddKeyframe(MakeFrame(frame, keypoints, with_depth), cam_from_world);
+  const uint32_t number = kFramesPerKeyframe * map.keyframes().NextId().value;
+  const auto frame = MakeFrame(number, keypoints, with_depth);
+  if (map.vocabulary() != nullptr) {
+    for (uint32_t i = 0; i < keypoints; ++i) {
+      const auto word_count = static_cast<uint32_t>(map.vocabulary()->word_count());
+      frame->words.push_back(WordId((number + i * i) % word_count));
+    }
+  }
+  return map.AddKeyframe(frame, cam_from_world);
 }
 
 // Adds landmarks that all these keyframes observe, each keyframe at its first free keypoint.

@@ -380,5 +380,56 @@ TEST(MapSnapshot, CanBeWrittenWithoutChangingTheLiveMap) {
   EXPECT_EQ(Dump(live), before);
 }
 
+TEST(MapIndex, FindsKeyframesByTheirWords) {
+  Map map(SharedVocabulary());
+  const KeyframeId a = AddKeyframe(map, 40, 10);
+  const KeyframeId b = AddKeyframe(map, 40, 10);
+  SetParent(map, b, a);
+  const Frame& frame = *map.keyframes().At(b).frame;
+  const std::vector<SimilarKeyframe> similar = map.index().Query(map.VectorOf(frame));
+  ASSERT_EQ(similar.size(), 2u);
+  EXPECT_EQ(similar[0].keyframe, b);
+  EXPECT_NEAR(similar[0].score, 1.0, 1e-6);
+  EXPECT_LT(similar[1].score, 0.9);
+
+  const Map before = map.Snapshot();
+  EXPECT_EQ(before.vocabulary(), map.vocabulary());
+  const BowVector vector = map.VectorOf(frame);
+  map.CullKeyframe(b);
+  ASSERT_EQ(map.index().Query(vector).size(), 1u);
+  EXPECT_EQ(map.index().Query(vector)[0].keyframe, a);
+  EXPECT_EQ(before.index().Query(vector).size(), 2u);
+  EXPECT_TRUE(FindViolations(before).empty());
+}
+
+TEST(MapIndex, IsEmptyWithoutAVocabulary) {
+  Map map;
+  const auto frame = MakeFrame(0, 3);
+  frame->words = {WordId(1), WordId(2), WordId(3)};
+  map.AddKeyframe(frame, {});
+  EXPECT_TRUE(map.VectorOf(*frame).empty());
+  EXPECT_TRUE(map.index().postings().empty());
+}
+
+TEST(MapIndex, AFrameHasOneWordPerKeypointOrNone) {
+  Map map(SharedVocabulary());
+  const auto frame = MakeFrame(0, 3);
+  frame->words = {WordId(1)};
+  EXPECT_THROW(map.AddKeyframe(frame, {}), CheckError);
+  frame->words.clear();
+  map.AddKeyframe(frame, {});
+  EXPECT_TRUE(map.index().postings().empty());
+}
+
+TEST(MapIndex, StaysConsistentUnderRandomEdits) {
+  Map map(SharedVocabulary());
+  RandomEdits edits(5);
+  for (int i = 0; i < 400; ++i) {
+    edits.Edit(map);
+  }
+  EXPECT_GT(map.index().postings().size(), 20u);
+  EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+}
+
 }  // namespace
 }  // namespace hullslam
