@@ -12,7 +12,6 @@
 #include "loop/loop_verification.h"
 #include "loop/object_votes.h"
 #include "map/correction.h"
-#include "optim/bundle_adjustment.h"
 
 namespace hullslam {
 namespace {
@@ -38,10 +37,9 @@ std::optional<MapCorrection> LoopCloser::Process(LoopQuery query) {
   const KeyframeId keyframe = query.keyframe;
   const bool is_soon =
       last_loop_.IsValid() && keyframe.value < last_loop_.value + kKeyframesAfterLoop;
-  if (!is_enabled() || map.vocabulary() == nullptr || is_soon) {
+  if (!options_.enabled || map.vocabulary() == nullptr || is_soon) {
     return std::nullopt;
   }
-  const ScopedTimer timer(times_, "loop_detection");
   for (const KeyframeId candidate : FindLoopCandidates(map, keyframe, options_.min_supporters)) {
     std::string refusal;
     if (std::optional<MapCorrection> correction = Close(query, candidate, refusal)) {
@@ -94,33 +92,6 @@ std::optional<MapCorrection> LoopCloser::Close(LoopQuery& query, KeyframeId cand
     return std::nullopt;
   }
   AddMerges(corrected, sensor_, loop, object_options_.fusion, correction);
-  return correction;
-}
-
-std::optional<MapCorrection> LoopCloser::AdjustWholeMap(const Map& map,
-                                                        const Cancellation* cancellation) {
-  if (!options_.global_adjustment) {
-    return std::nullopt;
-  }
-  const ScopedTimer timer(times_, "loop_adjustment");
-  const WindowObjects objects = object_options_.enabled && object_options_.bundle_adjustment
-                                    ? WindowObjects::kMapped
-                                    : WindowObjects::kNone;
-  const BundleResult result =
-      AdjustBundle(map, sensor_, GlobalWindow(map, objects),
-                   BundleOptions{.objects = object_options_.bundle}.ForWholeMap(), cancellation);
-  const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
-  if (!result.is_usable || is_cancelled) {
-    return std::nullopt;
-  }
-  MapCorrection correction;
-  correction.snapshot_corrections = map.correction_count();
-  for (const auto& [id, pose] : result.poses) {
-    correction.poses.push_back({id, map.keyframes().At(id).cam_from_world, Sim3(pose)});
-  }
-  for (const auto& [id, position] : result.positions) {
-    correction.positions.push_back({id, position});
-  }
   return correction;
 }
 

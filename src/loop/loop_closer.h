@@ -10,8 +10,6 @@
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
 #include "hullslam/objects/object_options.h"
-#include "hullslam/util/cancellation.h"
-#include "hullslam/util/stage_timer.h"
 
 namespace hullslam {
 
@@ -29,18 +27,9 @@ class LoopCloser {
   LoopCloser(const Sensor& sensor, const LoopOptions& options, const ObjectOptions& objects,
              uint64_t seed);
 
-  bool is_enabled() const { return options_.enabled; }
-
   // Looks for a loop at the keyframe of the query. Null if there is none. Maps without a vocabulary
   // have no loops.
   std::optional<MapCorrection> Process(LoopQuery query);
-
-  // Bundle adjustment of the whole map, to be called with the corrected map after a loop. Null if
-  // the options do not ask for it, if `cancellation` (may be null) was requested, or if the solver
-  // failed.
-  std::optional<MapCorrection> AdjustWholeMap(const Map& map, const Cancellation* cancellation);
-
-  const StageTimes& times() const { return times_; }
 
  private:
   std::optional<MapCorrection> Close(LoopQuery& query, KeyframeId candidate,
@@ -51,7 +40,6 @@ class LoopCloser {
   const ObjectOptions object_options_;
   const uint64_t seed_;
   KeyframeId last_loop_;  // the newer end of the loop that was closed last
-  StageTimes times_;
 };
 
 }  // namespace hullslam

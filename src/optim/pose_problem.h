@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -72,10 +73,14 @@ class TinyPoseFunction {
   bool operator()(const double* parameters, double* residuals, double* jacobian) const {
     const Vector steps = Eigen::Map<const Vector>(parameters);
     const Pose pose = PoseAt(steps);
-    const double cost = problem_.Cost(pose);
+    // TinySolver asks for the derivatives at the parameters whose cost it has just been told.
+    if (steps != cost_steps_) {
+      cost_ = problem_.Cost(pose);
+      cost_steps_ = steps;
+    }
     Eigen::Map<Eigen::Matrix<double, kSize + 1, 1>> all(residuals);
     all.setZero();
-    all[kSize] = std::sqrt(cost);
+    all[kSize] = std::sqrt(cost_);
     if (jacobian == nullptr) {
       return true;
     }
@@ -88,7 +93,7 @@ class TinyPoseFunction {
     by_parameters.setZero();
     // Without a form the derivative is zero, and the solver stays where it is.
     if (form_.Compute(hessian, gradient)) {
-      all << form_.residual(), form_.LastResidual(cost);
+      all << form_.residual(), form_.LastResidual(cost_);
       by_parameters.template topRows<kSize>() = Matrix(form_.jacobian());
     }
     return true;
@@ -98,6 +103,9 @@ class TinyPoseFunction {
   const Problem& problem_;
   mutable Pose pose_;  // of the last linearisation
   mutable Vector steps_ = Vector::Zero();
+  mutable double cost_ = 0.0;
+  // The parameters that cost_ belongs to. NaN at first, which no parameters are equal to.
+  mutable Vector cost_steps_ = Vector::Constant(std::numeric_limits<double>::quiet_NaN());
   mutable SquareRootForm<kSize> form_;
 };
 

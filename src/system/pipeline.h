@@ -29,8 +29,8 @@ class Pipeline {
   void Finish() { Finish(nullptr, {}); }
   // The newest snapshot; null before the first keyframe.
   virtual std::shared_ptr<const Map> map() const = 0;
-  // Whether another thread than that of Track is mapping now. May be called by any thread.
-  virtual bool is_mapping() const = 0;
+  // How many other threads than that of Track work on the map now. May be called by any thread.
+  virtual int busy_threads() const = 0;
   // Durations of the stages; complete after Finish. These two may be called at any time by the
   // thread that calls Track.
   virtual StageTimes times() const = 0;

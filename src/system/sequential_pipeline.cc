@@ -6,6 +6,7 @@
 
 #include "hullslam/util/check.h"
 #include "loop/loop_closer.h"
+#include "loop/whole_map_adjustment.h"
 #include "mapping/mapper.h"
 #include "tracking/tracker.h"
 
@@ -15,7 +16,9 @@ namespace {
 class SequentialPipeline final : public Pipeline {
  public:
   SequentialPipeline(const Sensor& sensor, const SystemOptions& options)
-      : tracker_(sensor, options.tracking, options.objects, options.seed),
+      : sensor_(sensor),
+        options_(options),
+        tracker_(sensor, options.tracking, options.objects, options.seed),
         mapper_(
             sensor, options.mapping, options.objects,
             [this](std::shared_ptr<const Map> map) { map_ = std::move(map); }, options.vocabulary),
@@ -43,12 +46,12 @@ class SequentialPipeline final : public Pipeline {
 
   std::shared_ptr<const Map> map() const override { return map_; }
 
-  bool is_mapping() const override { return false; }
+  int busy_threads() const override { return 0; }
 
   StageTimes times() const override {
     StageTimes times = tracker_.times();
     times.Merge(mapper_.times());
-    times.Merge(loop_closer_.times());
+    times.Merge(loop_times_);
     return times;
   }
 
@@ -60,14 +63,31 @@ class SequentialPipeline final : public Pipeline {
   // Looks for a loop at the newest keyframe. After it has been closed, the whole map is adjusted.
   void CloseLoop() {
     const std::optional<KeyframeId> keyframe = mapper_.NewestKeyframe();
-    if (!loop_closer_.is_enabled() || !keyframe) {
+    if (!options_.loop.enabled || options_.vocabulary == nullptr || !keyframe) {
       return;
     }
-    if (const auto loop = loop_closer_.Process({mapper_.Snapshot(), *keyframe})) {
+    std::optional<MapCorrection> loop;
+    {
+      const ScopedTimer timer(loop_times_, "loop_detection");
+      loop = loop_closer_.Process({mapper_.Snapshot(), *keyframe});
+    }
+    if (loop) {
       mapper_.Process(*loop, nullptr);
-      if (const auto adjustment = loop_closer_.AdjustWholeMap(*map_, nullptr)) {
-        mapper_.Process(*adjustment, nullptr);
-      }
+      AdjustMap();
+    }
+  }
+
+  void AdjustMap() {
+    if (!options_.loop.global_adjustment) {
+      return;
+    }
+    std::optional<MapCorrection> adjustment;
+    {
+      const ScopedTimer timer(loop_times_, "loop_adjustment");
+      adjustment = AdjustWholeMap(*map_, sensor_, options_.objects, nullptr);
+    }
+    if (adjustment) {
+      mapper_.Process(*adjustment, nullptr);
     }
   }
 
@@ -88,10 +108,13 @@ class SequentialPipeline final : public Pipeline {
     }
   }
 
+  const Sensor& sensor_;
+  const SystemOptions options_;
   std::shared_ptr<const Map> map_;
   Tracker tracker_;
   Mapper mapper_;
   LoopCloser loop_closer_;
+  StageTimes loop_times_;
   std::exception_ptr failure_;
   bool is_finished_ = false;
 };

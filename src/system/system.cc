@@ -146,8 +146,8 @@ std::unique_ptr<TaskRunner> System::MakeRunner() {
   }
   // Asking for the number of cores reads a file, which takes too long for every frame.
   return std::make_unique<IdleCoreRunner>([this, cores = std::thread::hardware_concurrency()] {
-    const unsigned busy = 1u + (is_tracking_ ? 1u : 0u) + (pipeline_->is_mapping() ? 1u : 0u);
-    return busy < cores;
+    const int busy = 1 + (is_tracking_ ? 1 : 0) + pipeline_->busy_threads();
+    return busy < static_cast<int>(cores);
   });
 }
 

@@ -12,6 +12,7 @@
 #include "hullslam/util/check.h"
 #include "hullslam/util/mailbox.h"
 #include "mapping/mapper.h"
+#include "system/loop_threads.h"
 #include "tracking/tracker.h"
 #include "util/published.h"
 
@@ -23,13 +24,15 @@ constexpr size_t kMailboxCapacity = 8;  // more than the keyframe policy lets wa
 class ThreadedPipeline final : public Pipeline {
  public:
   ThreadedPipeline(const Sensor& sensor, const SystemOptions& options, Pace pace)
-      : pace_(pace),
+      : options_(options),
+        pace_(pace),
         tracker_(sensor, options.tracking, options.objects, options.seed),
         mapper_(
             sensor, options.mapping, options.objects,
             [this](std::shared_ptr<const Map> map) { Publish(std::move(map)); },
             options.vocabulary),
         messages_(kMailboxCapacity),
+        loops_(sensor, options, [this](MapCorrection correction) { Post(std::move(correction)); }),
         mapping_thread_([this] { RunMapping(); }) {}
 
   ~ThreadedPipeline() override { Stop(); }
@@ -52,6 +55,9 @@ class ThreadedPipeline final : public Pipeline {
 
   void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) override {
     const bool is_first = mapping_thread_.joinable();
+    if (is_first) {
+      CloseLastLoops(cancellation);
+    }
     Stop();
     RethrowFailure();
     if (is_first) {  // the mapper's thread has ended
@@ -62,15 +68,13 @@ class ThreadedPipeline final : public Pipeline {
 
   std::shared_ptr<const Map> map() const override { return map_.Get(); }
 
-  bool is_mapping() const override {
-    const std::lock_guard lock(mutex_);
-    return is_busy_ || waiting_ > 0;
-  }
+  int busy_threads() const override { return (IsMapping() ? 1 : 0) + loops_.busy_threads(); }
 
   StageTimes times() const override {
     StageTimes times = tracker_.times();
     const std::lock_guard lock(mutex_);
     times.Merge(mapper_times_);
+    times.Merge(loops_.times());
     return times;
   }
 
@@ -80,6 +84,27 @@ class ThreadedPipeline final : public Pipeline {
   }
 
  private:
+  bool IsMapping() const {
+    const std::lock_guard lock(mutex_);
+    return is_busy_ || waiting_ > 0;
+  }
+
+  void WaitForMapper() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return (!is_busy_ && waiting_ == 0) || failure_; });
+  }
+
+  // Waits until a loop at one of the last keyframes is in the map. The adjustment of the whole map
+  // after it is left to the final one, if there is one.
+  void CloseLastLoops(const Cancellation* cancellation) {
+    const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
+    const bool is_adjusted_later = options_.mapping.final_bundle_adjustment || is_cancelled;
+    WaitForMapper();
+    while (loops_.Settle(is_adjusted_later)) {
+      WaitForMapper();
+    }
+  }
+
   MapperStatus Status() {
     const std::lock_guard lock(mutex_);
     return {.is_idle = !is_busy_ && waiting_ == 0, .requests_waiting = waiting_};
@@ -99,8 +124,8 @@ class ThreadedPipeline final : public Pipeline {
   // Waits until the mapper is done with all earlier messages, posts this one, and returns when its
   // keyframe is in the map.
   void PostAndWait(MapMessage message) {
+    WaitForMapper();
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return (!is_busy_ && waiting_ == 0) || failure_; });
     const int before = published_;
     lock.unlock();
     Post(std::move(message));
@@ -122,7 +147,22 @@ class ThreadedPipeline final : public Pipeline {
         messages_.Close();
         return;
       }
+      TellLoops(*message);
       SetBusy(false);
+    }
+  }
+
+  // After a new keyframe, a loop is sought; after a loop was closed, the whole map is adjusted.
+  void TellLoops(const MapMessage& message) {
+    if (!loops_.is_enabled()) {
+      return;
+    }
+    if (const auto* correction = std::get_if<MapCorrection>(&message)) {
+      if (correction->loop) {
+        loops_.Adjust(map_.Get());
+      }
+    } else if (const std::optional<KeyframeId> keyframe = mapper_.NewestKeyframe()) {
+      loops_.Seek({mapper_.Snapshot(), *keyframe});
     }
   }
 
@@ -166,12 +206,14 @@ class ThreadedPipeline final : public Pipeline {
   }
 
   void RethrowFailure() {
+    loops_.RethrowFailure();
     const std::lock_guard lock(mutex_);
     if (failure_) {
       std::rethrow_exception(failure_);
     }
   }
 
+  const SystemOptions options_;
   const Pace pace_;
   Published<Map> map_;
   Tracker tracker_;
@@ -188,6 +230,7 @@ class ThreadedPipeline final : public Pipeline {
   StageTimes mapper_times_;
   std::map<ObjectRejection, size_t> object_rejections_;
 
+  LoopThreads loops_;
   std::thread mapping_thread_;  // last member, because the thread uses the others
 };
 

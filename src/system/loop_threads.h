@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+
+#include "hullslam/frame/sensor.h"
+#include "hullslam/map/map.h"
+#include "hullslam/map/messages.h"
+#include "hullslam/system/options.h"
+#include "hullslam/util/cancellation.h"
+#include "hullslam/util/stage_timer.h"
+#include "loop/loop_closer.h"
+#include "util/latest_worker.h"
+
+namespace hullslam {
+
+// Seeks loops in one thread, and adjusts the whole map after them in another one.
+class LoopThreads {
+ public:
+  // `sensor` must outlive this object. `send` is called by both threads with corrections for the
+  // mapper.
+  LoopThreads(const Sensor& sensor, const SystemOptions& options,
+              std::function<void(MapCorrection)> send);
+  ~LoopThreads();
+
+  bool is_enabled() const { return options_.loop.enabled && options_.vocabulary != nullptr; }
+
+  // Seeks a loop at a new keyframe. A query that still waits is dropped.
+  void Seek(LoopQuery query);
+  // Adjusts the whole map, to be called with the map in which a loop was closed. When the next loop
+  // is found, the adjustment is given up.
+  void Adjust(std::shared_ptr<const Map> corrected);
+
+  // Waits until all queries are done and, unless `give_up_adjustment`, the adjustment. Returns
+  // whether a correction was sent since the last call.
+  bool Settle(bool give_up_adjustment);
+
+  int busy_threads() const;
+  StageTimes times() const;
+  // Throws what one of the threads has thrown.
+  void RethrowFailure() const;
+
+ private:
+  struct Adjustment {
+    std::shared_ptr<const Map> map;
+    std::shared_ptr<const Cancellation> cancellation;
+  };
+  void SeekNow(LoopQuery query);
+  void AdjustNow(const Adjustment& adjustment);
+  void Send(MapCorrection correction);
+  void GiveUpAdjustment();
+
+  const Sensor& sensor_;
+  const SystemOptions options_;
+  const std::function<void(MapCorrection)> send_;
+  LoopCloser closer_;  // used by the first thread only
+
+  mutable std::mutex mutex_;                    // guards the next three
+  std::shared_ptr<Cancellation> cancellation_;  // of the newest adjustment
+  StageTimes times_;
+  bool has_sent_ = false;
+
+  LatestWorker<LoopQuery> seeker_;  // these two are last, because their threads use the others
+  LatestWorker<Adjustment> adjuster_;
+};
+
+}  // namespace hullslam

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace hullslam {
+
+// Works in a thread of its own on the newest of the tasks that it is given: a task that waits is
+// dropped when another one comes.
+template <typename Task>
+class LatestWorker {
+ public:
+  // After `work` has thrown an exception, no task is worked on any more.
+  explicit LatestWorker(std::function<void(Task)> work)
+      : work_(std::move(work)), thread_([this] { Run(); }) {}
+
+  ~LatestWorker() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_closed_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+  }
+  LatestWorker(const LatestWorker&) = delete;
+  LatestWorker& operator=(const LatestWorker&) = delete;
+
+  void Post(Task task) {
+    const std::lock_guard lock(mutex_);
+    next_ = std::move(task);
+    changed_.notify_all();
+  }
+
+  // Whether a task waits or is being worked on.
+  bool IsBusy() const {
+    const std::lock_guard lock(mutex_);
+    return IsBusyLocked();
+  }
+
+  void WaitUntilIdle() const {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return !IsBusyLocked(); });
+  }
+
+  // Throws what `work` has thrown.
+  void RethrowFailure() const {
+    const std::lock_guard lock(mutex_);
+    if (failure_) {
+      std::rethrow_exception(failure_);
+    }
+  }
+
+ private:
+  bool IsBusyLocked() const { return !failure_ && (is_working_ || next_.has_value()); }
+
+  void Run() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+      changed_.wait(lock, [this] { return is_closed_ || next_.has_value(); });
+      if (is_closed_) {
+        return;
+      }
+      Task task = std::move(*next_);
+      next_.reset();
+      is_working_ = true;
+      lock.unlock();
+      std::exception_ptr failure;
+      try {
+        work_(std::move(task));
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      lock.lock();
+      is_working_ = false;
+      failure_ = failure;
+      changed_.notify_all();
+      if (failure_) {
+        return;
+      }
+    }
+  }
+
+  const std::function<void(Task)> work_;
+  mutable std::mutex mutex_;  // guards the members below
+  mutable std::condition_variable changed_;
+  std::optional<Task> next_;
+  bool is_working_ = false;
+  bool is_closed_ = false;
+  std::exception_ptr failure_;
+  std::thread thread_;  // last member, because the thread uses the others
+};
+
+}  // namespace hullslam
