@@ -158,5 +158,25 @@ TEST(IsInlier, APointBehindTheCameraIsNone) {
   }
 }
 
+TEST(PointMeasurement, IsValidWithFiniteNumbersAndAWeight) {
+  const PointMeasurement valid = PointMeasurement::Create({1.0, 2.0}, 1.0, 3.0, {});
+  EXPECT_TRUE(valid.IsValid());
+  EXPECT_TRUE(PointMeasurement::Create({1.0, 2.0}, 1.0, std::nullopt, {}).IsValid());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i < 3; ++i) {
+    PointMeasurement broken = valid;
+    broken.measured[i] = nan;
+    EXPECT_FALSE(broken.IsValid());
+    broken = valid;
+    broken.inverse_sigma[i] = nan;
+    EXPECT_FALSE(broken.IsValid());
+    broken.inverse_sigma[i] = -1.0;
+    EXPECT_FALSE(broken.IsValid());
+  }
+  PointMeasurement weightless = valid;
+  weightless.inverse_sigma.x() = 0.0;
+  EXPECT_FALSE(weightless.IsValid());
+}
+
 }  // namespace
 }  // namespace hullslam
