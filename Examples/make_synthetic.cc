@@ -32,13 +32,17 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("OUT", arguments.folder,
                  "folder to create, with a TUM sequence and its ground truth")
       ->required();
-  app.add_option("--scene", arguments.scene, "scene: desk, room, lowtexture or dynamic")
-      ->check(CLI::IsMember({"desk", "room", "lowtexture", "dynamic"}))
+  app.add_option("--scene", arguments.scene, "scene")
+      ->check(CLI::IsMember({"desk", "room", "lowtexture", "dynamic", "house", "twins"}))
       ->capture_default_str();
-  app.add_option("--frames", arguments.frames, "number of frames (default: 300; 600 for room)")
+  app.add_option("--frames", arguments.frames,
+                 "number of frames (default: 300; 600 for room, 1800 for house, 930 for twins)")
       ->check(CLI::Range(1, 100000));
   app.add_option("--seed", arguments.options.seed, "seed of textures, hand motion and noise")
       ->capture_default_str();
+  app.add_option("--rearranged", arguments.options.rearranged,
+                 "a later visit of desk, room or house: some objects were moved, taken away and "
+                 "added, chosen by this seed");
   app.add_option("--threads", arguments.options.threads,
                  "number of threads, 0 for one per core; does not change the output")
       ->check(CLI::Range(0, 256))

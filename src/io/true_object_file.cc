@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/io/true_object_file.h"
 
+#include <set>
+#include <string>
+
 #include "io/json_file.h"
 #include "io/json_node.h"
 
@@ -18,15 +21,54 @@ TrueObject ReadTrueObject(const JsonNode& node) {
   return object;
 }
 
+void ReadStatus(const JsonNode& node, TrueObject& object) {
+  const JsonNode status = node.At("status");
+  const std::string text = status.Text();
+  if (text == "unchanged") {
+    object.status = TrueObjectStatus::kUnchanged;
+  } else if (text == "new") {
+    object.status = TrueObjectStatus::kNew;
+  } else if (text == "moved") {
+    object.status = TrueObjectStatus::kMoved;
+    object.former_world_from_object = node.At("former_world_from_object").Pose();
+  } else {
+    status.Fail("unchanged, moved or new");
+  }
+}
+
+// Reads an object whose id is not yet in `ids`, and adds the id.
+TrueObject ReadNextObject(const JsonNode& node, std::set<uint32_t>& ids) {
+  TrueObject object = ReadTrueObject(node);
+  if (!ids.insert(object.id).second) {
+    node.At("id").Fail("an id that no other object has");
+  }
+  return object;
+}
+
 }  // namespace
 
-std::vector<TrueObject> ReadTrueObjects(const std::filesystem::path& path) {
+TrueScene ReadTrueScene(const std::filesystem::path& path) {
   const nlohmann::json json = ReadJson(path);
-  std::vector<TrueObject> objects;
-  for (const JsonNode& node : JsonNode(path, json).At("objects").Elements()) {
-    objects.push_back(ReadTrueObject(node));
+  const JsonNode file(path, json);
+  TrueScene scene;
+  scene.is_rearranged = file.Has("rearranged");
+  std::set<uint32_t> ids;
+  for (const JsonNode& node : file.At("objects").Elements()) {
+    scene.objects.push_back(ReadNextObject(node, ids));
+    if (scene.is_rearranged) {
+      ReadStatus(node, scene.objects.back());
+    }
   }
-  return objects;
+  if (scene.is_rearranged) {
+    for (const JsonNode& node : file.At("gone").Elements()) {
+      scene.gone.push_back(ReadNextObject(node, ids));
+    }
+  }
+  return scene;
+}
+
+std::vector<TrueObject> ReadTrueObjects(const std::filesystem::path& path) {
+  return ReadTrueScene(path).objects;
 }
 
 }  // namespace hullslam

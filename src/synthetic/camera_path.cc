@@ -2,10 +2,12 @@
 #include "synthetic/camera_path.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "hullslam/util/check.h"
 #include "synthetic/hash_noise.h"
 
 namespace hullslam::synthetic {
@@ -67,6 +69,52 @@ Rigid3 LoopPath::WorldFromCam(double time) const {
   const Vector3d eye(radius.x() * std::cos(angle), radius.y() * std::sin(angle), height);
   const Vector3d outwards(std::cos(angle), std::sin(angle), -0.22);
   return LookAt(eye, eye + outwards);
+}
+
+WaypointPath::WaypointPath(const std::vector<Waypoint>& waypoints, double walking, double turning) {
+  Check(waypoints.size() >= 2, "a path needs at least two waypoints");
+  constexpr double kRadians = std::numbers::pi / 180.0;
+  double time = 0.0;
+  for (size_t i = 0; i < waypoints.size(); ++i) {
+    const Waypoint& here = waypoints[i];
+    if (i > 0) {
+      const Waypoint& last = waypoints[i - 1];
+      const double walk = (here.eye - last.eye).norm() / walking;
+      const double turn =
+          std::max(std::abs(here.yaw - last.yaw), std::abs(here.pitch - last.pitch)) / turning;
+      time += std::max({walk, turn, here.seconds});
+      Check(time > times_.back(), "neighbouring waypoints are the same");
+    }
+    times_.push_back(time);
+    values_.emplace_back();
+    values_.back() << here.eye, kRadians * here.yaw, kRadians * here.pitch;
+  }
+}
+
+WaypointPath::Values WaypointPath::Slope(size_t index) const {
+  if (index == 0 || index + 1 == values_.size()) {
+    return Values::Zero();  // the camera starts and stops gently
+  }
+  const double before = times_[index] - times_[index - 1];
+  const double after = times_[index + 1] - times_[index];
+  const Values slope_before = (values_[index] - values_[index - 1]) / before;
+  const Values slope_after = (values_[index + 1] - values_[index]) / after;
+  return (after * slope_before + before * slope_after) / (before + after);
+}
+
+Rigid3 WaypointPath::WorldFromCam(double time) const {
+  const double inside = std::clamp(time, 0.0, times_.back());
+  const auto next = std::upper_bound(times_.begin() + 1, times_.end() - 1, inside);
+  const auto end = static_cast<size_t>(next - times_.begin());
+  const double span = times_[end] - times_[end - 1];
+  const double t = (inside - times_[end - 1]) / span;
+  const double blend = t * t * (3.0 - 2.0 * t);
+  const Values at = (1.0 - blend) * values_[end - 1] + blend * values_[end] +
+                    span * t * (1.0 - t) * ((1.0 - t) * Slope(end - 1) - t * Slope(end));
+  const Vector3d eye = at.head<3>();
+  const Vector3d forward(std::cos(at[4]) * std::cos(at[3]), std::cos(at[4]) * std::sin(at[3]),
+                         std::sin(at[4]));
+  return LookAt(eye, eye + forward);
 }
 
 }  // namespace hullslam::synthetic

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <vector>
 
 #include "hullslam/geometry/rigid3.h"
 
@@ -43,6 +44,35 @@ struct LoopPath {
   double start_angle = 1.2;  // radians from +x
   double duration = 20.0;    // seconds
   Rigid3 WorldFromCam(double time) const;
+};
+
+// A place that the camera passes, and where it looks there.
+struct Waypoint {
+  Eigen::Vector3d eye = Eigen::Vector3d::Zero();
+  double yaw = 0.0;      // degrees from +x towards +y; turns by the difference, however large it is
+  double pitch = 0.0;    // degrees, negative to look down
+  double seconds = 0.0;  // the least time from the waypoint before; for the first: without meaning
+};
+
+// A smooth walk through waypoints. Between neighbours each coordinate is a cubic polynomial whose
+// slopes at the waypoints come from the parabola through three neighbours (cubic Hermite spline).
+class WaypointPath {
+ public:
+  // `walking` in metres per second and `turning` in degrees per second are the speeds that the mean
+  // between two waypoints does not exceed. Throws CheckError for fewer than two waypoints.
+  WaypointPath(const std::vector<Waypoint>& waypoints, double walking, double turning);
+
+  // Seconds until the last waypoint.
+  double duration() const { return times_.back(); }
+  // Before the first and after the last waypoint the camera rests there.
+  Rigid3 WorldFromCam(double time) const;
+
+ private:
+  using Values = Eigen::Matrix<double, 5, 1>;  // x, y, z in metres, yaw and pitch in radians
+  Values Slope(size_t index) const;
+
+  std::vector<double> times_;
+  std::vector<Values> values_;
 };
 
 }  // namespace hullslam::synthetic

@@ -72,10 +72,14 @@ float Lambert(const Scene& scene, const Vector3f& point, const Vector3f& normal,
   float light = scene.ambient * ambient;
   for (const PointLight& source : scene.lights) {
     const Vector3f offset = source.position - point;
+    const float towards = normal.dot(offset);
+    if (towards <= 0.0F) {
+      continue;
+    }
     const float squared = offset.squaredNorm();
-    const float facing = normal.dot(offset) / std::sqrt(squared);
+    const float facing = towards / std::sqrt(squared);
     // Lamps have a size: the light falls off as if the lamps were a metre farther away.
-    light += std::max(0.0F, facing) * source.strength / (1.0F + squared) * (0.4F + 0.6F * ambient);
+    light += facing * source.strength / (1.0F + squared) * (0.4F + 0.6F * ambient);
   }
   return light;
 }

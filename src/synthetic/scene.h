@@ -29,8 +29,12 @@ struct Part {
   Rigid3 owner_from_part;
 };
 
+// What a rearrangement did with an object.
+enum class ObjectStatus { kUnchanged, kMoved, kNew };
+
 // An object that a segmentation network would find.
 struct SceneObject {
+  int id = 0;              // the same before and after a rearrangement
   std::string class_name;  // name of COCO
   int class_id = 0;        // id of COCO, counted from 0
   std::string shape;       // "ellipsoid", "box", "superquadric" or "compound"
@@ -40,6 +44,8 @@ struct SceneObject {
   Rigid3 world_from_object;     // at time 0
   // Pose of a moving object at a time in seconds; empty for a static object.
   std::function<Rigid3(double)> motion;
+  ObjectStatus status = ObjectStatus::kUnchanged;
+  Rigid3 former_world_from_object;  // of a moved object: where it was before the rearrangement
 
   bool IsDynamic() const { return static_cast<bool>(motion); }
   Rigid3 WorldFromObject(double time) const { return motion ? motion(time) : world_from_object; }
@@ -50,12 +56,21 @@ struct PointLight {
   float strength = 1.0F;  // on a surface at a distance of 1 m that faces the light
 };
 
+// A horizontal rectangle on which objects can stand: a floor or the top of a table. Metres.
+struct Support {
+  Eigen::Vector2d min = Eigen::Vector2d::Zero();
+  Eigen::Vector2d max = Eigen::Vector2d::Zero();
+  double height = 0.0;  // 0 for a floor
+};
+
 // A closed room (every ray hits something) with objects, and the path of the camera in it. The
 // world frame has z up, in metres.
 struct Scene {
   std::vector<Texture> textures;
   std::vector<Part> background;
+  std::vector<Support> supports;
   std::vector<SceneObject> objects;
+  std::vector<SceneObject> gone;  // what a rearrangement took away, with its former pose
   std::vector<PointLight> lights;
   float ambient = 0.5F;
   std::function<Rigid3(double)> world_from_cam;  // as a function of the time in seconds

@@ -2,6 +2,7 @@
 #include "synthetic/scene_builder.h"
 
 #include <numbers>
+#include <utility>
 
 #include "synthetic/texture_painter.h"
 #include "util/random_seed.h"
@@ -49,6 +50,17 @@ Palette SceneBuilder::AddRichPalette() {
   return palette;
 }
 
+Palette SceneBuilder::AddRoomPalette(Palette palette, uint32_t room, const cv::Scalar& wall_bgr) {
+  const auto seed = [&](uint32_t index) { return HashSeed(seed_, 100 * room + index, "room"); };
+  palette.wall = AddTexture(PaintPlain(seed(0), 512, wall_bgr, 12.0));
+  palette.floor = AddTexture(PaintPlain(seed(1), 512, 0.6 * wall_bgr, 12.0));
+  for (uint32_t i = 0; i < 6; ++i) {
+    palette.posters.push_back(AddTexture(PaintPoster(seed(20 + i), 512)));
+  }
+  palette.posters.erase(palette.posters.begin(), palette.posters.end() - 6);
+  return palette;
+}
+
 Palette SceneBuilder::AddBarePalette() {
   const auto plain = [this](uint32_t index, const cv::Scalar& colour) {
     return AddTexture(PaintPlain(HashSeed(seed_, index, "texture"), 256, colour, 2.0));
@@ -87,6 +99,11 @@ void SceneBuilder::AddBackground(const Shape& shape, const Material& material,
   scene_.background.push_back({shape, material, world_from_part});
 }
 
+void SceneBuilder::AddObject(SceneObject object) {
+  object.id = static_cast<int>(scene_.objects.size());
+  scene_.objects.push_back(std::move(object));
+}
+
 Rigid3 SceneBuilder::WorldFromWall(Wall wall) const {
   const bool across = wall == Wall::kBack || wall == Wall::kFront;
   const Rigid3 turn = TurnAboutZ(-kHalfPi * static_cast<double>(wall), Vector3d::Zero());
@@ -101,6 +118,8 @@ void SceneBuilder::AddRoom(const RoomSize& size, const Palette& palette) {
   room_ = size;
   const double t = kWallThickness / 2.0;
   const double h = size.height / 2.0;
+  scene_.supports.push_back(
+      {.min = {-size.half_x, -size.half_y}, .max = {size.half_x, size.half_y}});
   const Shape slab = Shape::Box({size.half_x + 2.0 * t, size.half_y + 2.0 * t, t});
   AddBackground(slab, Repeat(palette.floor, 2.0), Shift(0.0, 0.0, -t));
   AddBackground(slab, Repeat(palette.ceiling, 2.5), Shift(0.0, 0.0, size.height + t));
@@ -141,7 +160,10 @@ void SceneBuilder::AddPosters(const Palette& palette) {
 }
 
 void SceneBuilder::AddShelf(Wall wall, double along, const Palette& palette) {
-  const Rigid3 world_from_shelf = WorldFromWall(wall) * Shift(along, -0.16, 0.0);
+  AddShelf(WorldFromWall(wall) * Shift(along, -0.16, 0.0), palette);
+}
+
+void SceneBuilder::AddShelf(const Rigid3& world_from_shelf, const Palette& palette) {
   const double half_width = 0.5;
   const Material wood = Repeat(palette.wood, 0.7);
   for (const double side : {-half_width, half_width}) {
@@ -172,6 +194,7 @@ void SceneBuilder::AddShelf(Wall wall, double along, const Palette& palette) {
 
 void SceneBuilder::AddTable(const Vector2d& centre, const Vector2d& half, double height,
                             const Palette& palette) {
+  scene_.supports.push_back({.min = centre - half, .max = centre + half, .height = height});
   const Rigid3 world_from_table = Shift(centre.x(), centre.y(), 0.0);
   AddBackground(Shape::Box({half.x(), half.y(), 0.015}), Repeat(palette.table, 1.8),
                 world_from_table * Shift(0.0, 0.0, height - 0.015));

@@ -48,6 +48,10 @@ class SceneBuilder {
   // Rich: textures with detail everywhere. Bare: textures with almost no detail.
   Palette AddRichPalette();
   Palette AddBarePalette();
+  // The palette with painted walls, a carpet and posters of its own, for one room of several. Paint
+  // and carpet have little detail. `room` counts the rooms, and `wall_bgr` is the colour of the
+  // paint.
+  Palette AddRoomPalette(Palette palette, uint32_t room, const cv::Scalar& wall_bgr);
 
   // A material that shows the texture exactly once on each side of a box with these half extents.
   Material Fit(int texture, const Eigen::Vector3d& half) const;
@@ -64,11 +68,14 @@ class SceneBuilder {
   void AddPosters(const Palette& palette);
   // Adds an open shelf full of books with its back against the wall.
   void AddShelf(Wall wall, double along, const Palette& palette);
+  // The same anywhere. The shelf's x goes along the wall, and its back is 0.16 m towards +y.
+  void AddShelf(const Rigid3& world_from_shelf, const Palette& palette);
   // Adds a table with its top at z = `height`.
   void AddTable(const Eigen::Vector2d& centre, const Eigen::Vector2d& half, double height,
                 const Palette& palette);
   void AddBackground(const Shape& shape, const Material& material, const Rigid3& world_from_part);
-  void AddObject(SceneObject object) { scene_.objects.push_back(std::move(object)); }
+  // Adds an object and numbers it.
+  void AddObject(SceneObject object);
 
   RandomStream& random() { return random_; }
   Scene& scene() { return scene_; }

@@ -7,10 +7,15 @@
 #include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "hullslam/util/error.h"
 #include "synthetic/camera_path.h"
+#include "synthetic/catalogue.h"
+#include "synthetic/house.h"
+#include "synthetic/rearrangement.h"
 #include "synthetic/scene_builder.h"
+#include "synthetic/twins.h"
 #include "util/random_seed.h"
 
 namespace hullslam::synthetic {
@@ -19,22 +24,18 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::array<std::pair<std::string_view, SceneKind>, 4> kSceneNames = {
+constexpr std::array<std::pair<std::string_view, SceneKind>, 6> kSceneNames = {
     {{"desk", SceneKind::kDesk},
      {"room", SceneKind::kRoom},
      {"lowtexture", SceneKind::kLowTexture},
-     {"dynamic", SceneKind::kDynamic}}};
+     {"dynamic", SceneKind::kDynamic},
+     {"house", SceneKind::kHouse},
+     {"twins", SceneKind::kTwins}}};
 constexpr double kFramesPerSecond = 30.0;
 constexpr double kTableHeight = 0.75;
+constexpr int kHouseFrames = 1800;
+constexpr int kTwinsFrames = 930;
 constexpr double kPi = std::numbers::pi;
-
-// Tints in the order blue, green, red.
-Vector3f Red() { return {0.35F, 0.35F, 1.1F}; }
-Vector3f Green() { return {0.45F, 0.95F, 0.45F}; }
-Vector3f Blue() { return {1.1F, 0.65F, 0.4F}; }
-Vector3f Yellow() { return {0.35F, 1.0F, 1.15F}; }
-Vector3f Dark() { return {0.28F, 0.28F, 0.28F}; }
-Vector3f White() { return {1.3F, 1.3F, 1.3F}; }
 
 Vector3d OnTable(double x, double y) { return {x, y, kTableHeight}; }
 
@@ -140,21 +141,43 @@ void FurnishDesk(SceneBuilder& builder, const Palette& palette, const RoomSize& 
   AddDeskLights(builder);
 }
 
-void SetOrbit(SceneBuilder& builder, const OrbitPath& orbit, uint64_t seed) {
-  const HandMotion hand(HashSeed(seed, 0, "hand"));
-  builder.scene().world_from_cam = [orbit, hand](double time) {
-    return hand.Apply(orbit.WorldFromCam(time), time);
+// Adds the shaking of a hand, which differs from visit to visit, to the path of the camera.
+template <typename Path>
+void SetPath(const Path& path, uint64_t visit, Scene& scene) {
+  const HandMotion hand(HashSeed(visit, 0, "hand"));
+  scene.world_from_cam = [path, hand](double time) {
+    return hand.Apply(path.WorldFromCam(time), time);
   };
 }
 
-Scene BuildDesk(uint64_t seed) {
+OrbitPath DeskPath() { return {.target = {0.0, 0.0, kTableHeight + 0.12}}; }
+
+// A loop of fewer than 300 frames is cut off instead of run faster, because a hand cannot turn
+// faster.
+LoopPath RoomPath(int frames) { return {.duration = std::max(frames - 1, 299) / kFramesPerSecond}; }
+
+// A walk that takes longer than planned.
+struct SlowWalk {
+  WaypointPath path;
+  double pace = 1.0;  // of the planned speed
+  Rigid3 WorldFromCam(double time) const { return path.WorldFromCam(pace * time); }
+};
+
+// The whole walk in the given number of frames. A walk of fewer frames than the usual number is cut
+// off instead of run faster.
+SlowWalk FitWalk(const WaypointPath& path, int frames, SceneKind kind) {
+  const double seconds = (std::max(frames, DefaultFrames(kind)) - 1) / kFramesPerSecond;
+  return {path, path.duration() / seconds};
+}
+
+Scene BuildDesk(uint64_t seed, uint64_t visit) {
   SceneBuilder builder(HashSeed(seed, 0, "desk"));
   const Palette palette = builder.AddRichPalette();
   const RoomSize room{.half_x = 2.9, .half_y = 2.6, .height = 2.6};
   FurnishDesk(builder, palette, room);
   builder.AddPosters(palette);
   builder.AddShelf(Wall::kBack, -1.1, palette);
-  SetOrbit(builder, {.target = {0.0, 0.0, kTableHeight + 0.12}}, seed);
+  SetPath(DeskPath(), visit, builder.scene());
   return builder.Finish();
 }
 
@@ -186,7 +209,7 @@ Scene BuildLowTexture(uint64_t seed) {
   const RoomSize room{.half_x = 2.9, .half_y = 2.6, .height = 2.6};
   FurnishDesk(builder, palette, room);
   EvenOutBrightness(builder.scene(), builder.random());
-  SetOrbit(builder, {.target = {0.0, 0.0, kTableHeight + 0.12}}, seed);
+  SetPath(DeskPath(), seed, builder.scene());
   return builder.Finish();
 }
 
@@ -218,7 +241,7 @@ Scene BuildDynamic(uint64_t seed) {
   walker.motion = [orbit, half](double time) { return WalkerPose(orbit, half.z(), time); };
   walker.world_from_object = walker.motion(0.0);
   builder.AddObject(std::move(walker));
-  SetOrbit(builder, orbit, seed);
+  SetPath(orbit, seed, builder.scene());
   return builder.Finish();
 }
 
@@ -288,7 +311,7 @@ void FurnishLeftWall(SceneBuilder& builder, const Palette& palette) {
                         .Build({-1.9, 0.6, 0.0}, 0.0));
 }
 
-Scene BuildRoom(int frames, uint64_t seed) {
+Scene BuildRoom(int frames, uint64_t seed, uint64_t visit) {
   SceneBuilder builder(HashSeed(seed, 0, "room"));
   const Palette palette = builder.AddRichPalette();
   builder.AddRoom({.half_x = 3.0, .half_y = 2.5, .height = 2.6}, palette);
@@ -299,44 +322,107 @@ Scene BuildRoom(int frames, uint64_t seed) {
   FurnishLeftWall(builder, palette);
   builder.scene().lights = {{.position = {-1.0F, -0.5F, 2.5F}, .strength = 1.9F},
                             {.position = {1.2F, 0.6F, 2.5F}, .strength = 1.7F}};
-  // A loop of fewer than 300 frames is cut off instead of run faster, because a hand cannot turn
-  // faster.
-  const LoopPath loop{.duration = std::max(frames - 1, 299) / kFramesPerSecond};
-  const HandMotion hand(HashSeed(seed, 0, "hand"));
-  builder.scene().world_from_cam = [loop, hand](double time) {
-    return hand.Apply(loop.WorldFromCam(time), time);
-  };
+  SetPath(RoomPath(frames), visit, builder.scene());
   return builder.Finish();
+}
+
+Scene BuildHouse(int frames, uint64_t seed, uint64_t visit) {
+  SceneBuilder builder(HashSeed(seed, 0, "house"));
+  FurnishHouse(builder);
+  SetPath(FitWalk(HousePath(), frames, SceneKind::kHouse), visit, builder.scene());
+  return builder.Finish();
+}
+
+Scene BuildTwins(int frames, uint64_t seed) {
+  SceneBuilder builder(HashSeed(seed, 0, "twins"));
+  FurnishTwins(builder);
+  SetPath(FitWalk(TwinsPath(), frames, SceneKind::kTwins), seed, builder.scene());
+  return builder.Finish();
+}
+
+Scene BuildVisit(SceneKind kind, int frames, uint64_t seed, uint64_t visit) {
+  switch (kind) {
+    case SceneKind::kDesk:
+      return BuildDesk(seed, visit);
+    case SceneKind::kRoom:
+      return BuildRoom(frames, seed, visit);
+    case SceneKind::kLowTexture:
+      return BuildLowTexture(seed);
+    case SceneKind::kDynamic:
+      return BuildDynamic(seed);
+    case SceneKind::kHouse:
+      return BuildHouse(frames, seed, visit);
+    case SceneKind::kTwins:
+      return BuildTwins(frames, seed);
+  }
+  throw InputError("unknown scene");
+}
+
+template <typename Path>
+std::vector<Rigid3> SampleViews(const Path& path, double duration) {
+  std::vector<Rigid3> views;
+  for (double time = 0.0; time <= duration; time += 0.2) {
+    views.push_back(path.WorldFromCam(time));
+  }
+  return views;
+}
+
+// Where the camera passes, five views per second, without the shaking of the hand.
+std::vector<Rigid3> SteadyViews(SceneKind kind) {
+  const double duration = (DefaultFrames(kind) - 1) / kFramesPerSecond;
+  switch (kind) {
+    case SceneKind::kDesk:
+      return SampleViews(DeskPath(), duration);
+    case SceneKind::kRoom:
+      return SampleViews(RoomPath(DefaultFrames(kind)), duration);
+    case SceneKind::kHouse:
+      return SampleViews(FitWalk(HousePath(), 0, kind), duration);
+    default:
+      throw InputError("only the scenes desk, room and house can be rearranged, not " +
+                       std::string(SceneName(kind)));
+  }
 }
 
 }  // namespace
 
 SceneKind ParseSceneKind(std::string_view name) {
+  std::string expected;
   for (const auto& [known, kind] : kSceneNames) {
     if (known == name) {
       return kind;
     }
+    expected += (expected.empty() ? "" : ", ") + std::string(known);
   }
-  throw InputError("unknown scene '" + std::string(name) +
-                   "': expected desk, room, lowtexture or dynamic");
+  throw InputError("unknown scene '" + std::string(name) + "': expected one of " + expected);
 }
 
 std::string_view SceneName(SceneKind kind) { return kSceneNames[static_cast<size_t>(kind)].first; }
 
-int DefaultFrames(SceneKind kind) { return kind == SceneKind::kRoom ? 600 : 300; }
-
-Scene BuildScene(SceneKind kind, int frames, uint64_t seed) {
+int DefaultFrames(SceneKind kind) {
   switch (kind) {
-    case SceneKind::kDesk:
-      return BuildDesk(seed);
     case SceneKind::kRoom:
-      return BuildRoom(frames, seed);
-    case SceneKind::kLowTexture:
-      return BuildLowTexture(seed);
-    case SceneKind::kDynamic:
-      return BuildDynamic(seed);
+      return 600;
+    case SceneKind::kHouse:
+      return kHouseFrames;
+    case SceneKind::kTwins:
+      return kTwinsFrames;
+    default:
+      return 300;
   }
-  throw InputError("unknown scene");
+}
+
+uint64_t VisitSeed(uint64_t seed, const std::optional<uint64_t>& rearranged) {
+  return rearranged ? CounterHash(HashSeed(seed, 0, "visit"), *rearranged) : seed;
+}
+
+Scene BuildScene(SceneKind kind, int frames, uint64_t seed,
+                 const std::optional<uint64_t>& rearranged) {
+  const std::vector<Rigid3> views = rearranged ? SteadyViews(kind) : std::vector<Rigid3>();
+  Scene scene = BuildVisit(kind, frames, seed, VisitSeed(seed, rearranged));
+  if (rearranged) {
+    Rearrange(views, *rearranged, scene);
+  }
+  return scene;
 }
 
 }  // namespace hullslam::synthetic

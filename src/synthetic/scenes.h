@@ -2,23 +2,32 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "synthetic/scene.h"
 
 namespace hullslam::synthetic {
 
-enum class SceneKind { kDesk, kRoom, kLowTexture, kDynamic };
+enum class SceneKind { kDesk, kRoom, kLowTexture, kDynamic, kHouse, kTwins };
 
-// The kind with the name "desk", "room", "lowtexture" or "dynamic"; another name throws InputError.
+// The kind with a name such as "desk" or "lowtexture". Throws InputError for an unknown name.
 SceneKind ParseSceneKind(std::string_view name);
 std::string_view SceneName(SceneKind kind);
 
 // The number of frames of the sequence that the scene was designed for, at 30 frames per second.
 int DefaultFrames(SceneKind kind);
 
+// The seed of everything that differs between two visits of the same place: the motion of the hand
+// and the noise of the sensor. It is `seed` itself for the visit before any rearrangement.
+uint64_t VisitSeed(uint64_t seed, const std::optional<uint64_t>& rearranged);
+
 // The whole scene with the path of its camera. Layout and path are the same for every seed except
-// for small changes; the textures differ. `frames` determines how fast `room` closes its loop.
-Scene BuildScene(SceneKind kind, int frames, uint64_t seed);
+// for small changes; the textures differ. `frames` determines how fast `room`, `house` and `twins`
+// are walked through. With a seed in `rearranged`, some of the objects were moved, taken away or
+// added since the first visit, see Rearrange; throws InputError unless the scene is desk, room or
+// house.
+Scene BuildScene(SceneKind kind, int frames, uint64_t seed,
+                 const std::optional<uint64_t>& rearranged = std::nullopt);
 
 }  // namespace hullslam::synthetic

@@ -92,31 +92,60 @@ nlohmann::ordered_json PoseJson(const Rigid3& pose) {
   return {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
 }
 
+nlohmann::ordered_json ObjectJson(const SceneObject& object) {
+  return {{"id", object.id},
+          {"class", object.class_name},
+          {"class_id", object.class_id},
+          {"shape", object.shape},
+          {"dynamic", object.IsDynamic()},
+          {"world_from_object", PoseJson(object.world_from_object)},
+          {"half_extents",
+           {object.half_extents.x(), object.half_extents.y(), object.half_extents.z()}}};
+}
+
+// What the rearrangement did with the object.
+void AddStatus(const SceneObject& object, nlohmann::ordered_json& entry) {
+  switch (object.status) {
+    case ObjectStatus::kUnchanged:
+      entry["status"] = "unchanged";
+      return;
+    case ObjectStatus::kMoved:
+      entry["status"] = "moved";
+      entry["former_world_from_object"] = PoseJson(object.former_world_from_object);
+      return;
+    case ObjectStatus::kNew:
+      entry["status"] = "new";
+      return;
+  }
+}
+
 std::string ObjectsJson(const Scene& scene, const SequenceOptions& options) {
-  nlohmann::ordered_json objects = nlohmann::ordered_json::array();
-  for (size_t i = 0; i < scene.objects.size(); ++i) {
-    const SceneObject& object = scene.objects[i];
-    nlohmann::ordered_json entry = {
-        {"id", i},
-        {"class", object.class_name},
-        {"class_id", object.class_id},
-        {"shape", object.shape},
-        {"dynamic", object.IsDynamic()},
-        {"world_from_object", PoseJson(object.world_from_object)},
-        {"half_extents",
-         {object.half_extents.x(), object.half_extents.y(), object.half_extents.z()}}};
+  nlohmann::ordered_json file = {{"generator", "make_synthetic"},
+                                 {"scene", SceneName(options.scene)},
+                                 {"seed", options.seed},
+                                 {"frames", options.frames}};
+  if (options.rearranged) {
+    file["rearranged"] = *options.rearranged;
+  }
+  file["objects"] = nlohmann::ordered_json::array();
+  for (const SceneObject& object : scene.objects) {
+    nlohmann::ordered_json entry = ObjectJson(object);
+    if (options.rearranged) {
+      AddStatus(object, entry);
+    }
     for (int frame = 0; object.IsDynamic() && frame < options.frames; ++frame) {
       entry["poses"].push_back(
           {{"timestamp", FrameStamp(frame)},
            {"world_from_object", PoseJson(object.WorldFromObject(FrameTime(frame)))}});
     }
-    objects.push_back(std::move(entry));
+    file["objects"].push_back(std::move(entry));
   }
-  const nlohmann::ordered_json file = {{"generator", "make_synthetic"},
-                                       {"scene", SceneName(options.scene)},
-                                       {"seed", options.seed},
-                                       {"frames", options.frames},
-                                       {"objects", objects}};
+  if (options.rearranged) {
+    file["gone"] = nlohmann::ordered_json::array();
+    for (const SceneObject& object : scene.gone) {
+      file["gone"].push_back(ObjectJson(object));
+    }
+  }
   return file.dump(1) + "\n";
 }
 
@@ -181,10 +210,10 @@ bool WriteSequence(const std::filesystem::path& folder, const SequenceOptions& o
                    const std::function<bool(int)>& progress) {
   Check(options.frames > 0 && options.threads >= 0, "a sequence needs at least one frame");
   OutputSwap output(folder, options.force);
-  const Scene scene = BuildScene(options.scene, options.frames, options.seed);
+  const Scene scene = BuildScene(options.scene, options.frames, options.seed, options.rearranged);
   const PinholeCamera camera = SyntheticCamera();
   const Renderer renderer(scene, camera);
-  const Sensor sensor({.noise = options.noise}, options.seed);
+  const Sensor sensor({.noise = options.noise}, VisitSeed(options.seed, options.rearranged));
   for (const char* name : {"rgb", "depth", "masks"}) {
     std::filesystem::create_directory(output.working_folder() / name);
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "hullslam/camera/pinhole.h"
 #include "synthetic/scenes.h"
@@ -14,9 +15,10 @@ struct SequenceOptions {
   SceneKind scene = SceneKind::kDesk;
   int frames = 300;
   uint64_t seed = 0;
-  bool force = false;  // allows replacing a folder that an earlier run wrote
-  bool noise = true;   // whether the sensor has noise
-  int threads = 0;     // 0: as many as the CPU supports
+  std::optional<uint64_t> rearranged;  // seed of a rearrangement of the objects (BuildScene)
+  bool force = false;                  // allows replacing a folder that an earlier run wrote
+  bool noise = true;                   // whether the sensor has noise
+  int threads = 0;                     // 0: as many as the CPU supports
 };
 
 // A camera with 640x480 px, the intrinsics of TUM freiburg3, and no distortion.
@@ -32,7 +34,8 @@ double FrameStamp(int frame);
 //
 // `progress` is called after each frame with the number of finished frames, by one thread at a
 // time; it returns false to stop. Returns whether the sequence was completed. Throws InputError if
-// `folder` exists and may not be replaced, or if it cannot be written.
+// `folder` exists and may not be replaced, if it cannot be written, or if the scene cannot be
+// rearranged.
 bool WriteSequence(const std::filesystem::path& folder, const SequenceOptions& options,
                    const std::function<bool(int)>& progress);
 

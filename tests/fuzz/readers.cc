@@ -176,8 +176,10 @@ void FuzzObjects(std::string_view bytes) {
 
 void FuzzTrueObjects(std::string_view bytes) {
   TryFile(bytes, [](const fs::path& path) {
-    for (const TrueObject& object : ReadTrueObjects(path)) {
+    const TrueScene scene = ReadTrueScene(path);
+    for (const TrueObject& object : scene.objects) {
       Expect(std::isfinite(object.Size()) && object.Size() > 0.0, "the size of an object");
+      Expect(object.status.has_value() == scene.is_rearranged, "the status of an object");
     }
   });
 }

@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
+#include "hullslam/util/check.h"
+
 namespace hullslam::synthetic {
 namespace {
 
@@ -60,6 +65,54 @@ TEST(HandMotion, IsSmallSmoothAndSeeded) {
     difference += (other.Apply({}, time).translation - motion.translation).norm();
   }
   EXPECT_GT(difference, 0.1);
+}
+
+// Walks 1 m in 2 s, turns by 90 degrees in 3 s, and then rests for a second more than it needs.
+WaypointPath TestWalk() {
+  return {{{.eye = {0.0, 0.0, 1.4}, .yaw = 0.0, .pitch = 0.0},
+           {.eye = {1.0, 0.0, 1.4}, .yaw = 0.0, .pitch = -10.0},
+           {.eye = {1.0, 0.5, 1.4}, .yaw = 90.0, .pitch = -10.0},
+           {.eye = {1.0, 1.0, 1.3}, .yaw = 90.0, .pitch = 0.0, .seconds = 2.5}},
+          0.5,
+          30.0};
+}
+
+TEST(WaypointPath, PassesItsWaypointsInTimeAndRestsAtTheEnds) {
+  const WaypointPath walk = TestWalk();
+  EXPECT_NEAR(walk.duration(), 2.0 + 3.0 + 2.5, 1e-12);
+  const auto expect = [&](double time, const Vector3d& eye, double yaw, double pitch) {
+    const Rigid3 pose = walk.WorldFromCam(time);
+    EXPECT_LT((pose.translation - eye).norm(), 1e-12) << time;
+    const double y = yaw * std::numbers::pi / 180.0;
+    const double p = pitch * std::numbers::pi / 180.0;
+    const Vector3d forward(std::cos(p) * std::cos(y), std::cos(p) * std::sin(y), std::sin(p));
+    EXPECT_LT((pose.rotation * Vector3d::UnitZ() - forward).norm(), 1e-12) << time;
+  };
+  expect(-1.0, {0.0, 0.0, 1.4}, 0.0, 0.0);
+  expect(0.0, {0.0, 0.0, 1.4}, 0.0, 0.0);
+  expect(2.0, {1.0, 0.0, 1.4}, 0.0, -10.0);
+  expect(5.0, {1.0, 0.5, 1.4}, 90.0, -10.0);
+  expect(7.5, {1.0, 1.0, 1.3}, 90.0, 0.0);
+  expect(100.0, {1.0, 1.0, 1.3}, 90.0, 0.0);
+}
+
+TEST(WaypointPath, HasNoJumpsInPlaceOrVelocity) {
+  const WaypointPath walk = TestWalk();
+  constexpr double kStep = 1e-4;
+  const auto velocity = [&](double time) -> Vector3d {
+    return (walk.WorldFromCam(time + kStep).translation - walk.WorldFromCam(time).translation) /
+           kStep;
+  };
+  for (double time = -0.5; time < walk.duration() + 0.5; time += 0.01) {
+    EXPECT_LT(velocity(time).norm(), 1.0) << time;
+    EXPECT_LT((velocity(time + 0.01) - velocity(time)).norm(), 0.04) << time;
+  }
+}
+
+TEST(WaypointPath, NeedsTwoDifferentWaypoints) {
+  const Waypoint here{.eye = {0.0, 0.0, 1.4}};
+  EXPECT_THROW(WaypointPath({here}, 0.5, 30.0), CheckError);
+  EXPECT_THROW(WaypointPath({here, here}, 0.5, 30.0), CheckError);
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr SceneKind kAll[] = {SceneKind::kDesk, SceneKind::kRoom, SceneKind::kLowTexture,
-                              SceneKind::kDynamic};
+constexpr SceneKind kAll[] = {SceneKind::kDesk,    SceneKind::kRoom,  SceneKind::kLowTexture,
+                              SceneKind::kDynamic, SceneKind::kHouse, SceneKind::kTwins};
 
 PinholeCamera SmallCamera() {
   return {.fx = 133.85, .fy = 134.8, .cx = 80.0, .cy = 61.9, .width = 160, .height = 120};
@@ -53,20 +53,47 @@ double LargestMotion(const Scene& scene, const RenderedFrame& frame, double time
   return largest;
 }
 
+void ExpectClosedFurnishedAndSlowEnoughToTrack(SceneKind kind, int step) {
+  const int frames = DefaultFrames(kind);
+  const Scene scene = BuildScene(kind, frames, 1);
+  const Renderer renderer(scene, SmallCamera());
+  EXPECT_GE(scene.objects.size(), 15U);
+  for (int i = 0; i < frames; i += step) {
+    const double time = i / 30.0;
+    const RenderedFrame frame = renderer.Render(time);
+    EXPECT_LT(LargestMotion(scene, frame, time), 25.0) << "frame " << i;
+    double nearest = 0.0;
+    cv::minMaxLoc(frame.depth, &nearest, nullptr);
+    EXPECT_GT(nearest, 0.3) << "frame " << i;
+  }
+}
+
 TEST(Scenes, AreClosedFurnishedAndSlowEnoughToTrack) {
-  for (const SceneKind kind : kAll) {
-    const int frames = DefaultFrames(kind);
-    const Scene scene = BuildScene(kind, frames, 1);
-    const Renderer renderer(scene, SmallCamera());
-    EXPECT_GE(scene.objects.size(), 15U) << SceneName(kind);
-    for (int i = 0; i < frames; i += 20) {
-      const double time = i / 30.0;
-      const RenderedFrame frame = renderer.Render(time);
-      EXPECT_LT(LargestMotion(scene, frame, time), 25.0) << SceneName(kind) << " frame " << i;
-      double nearest = 0.0;
-      cv::minMaxLoc(frame.depth, &nearest, nullptr);
-      EXPECT_GT(nearest, 0.3) << SceneName(kind) << " frame " << i;
-    }
+  for (const SceneKind kind :
+       {SceneKind::kDesk, SceneKind::kRoom, SceneKind::kLowTexture, SceneKind::kDynamic}) {
+    SCOPED_TRACE(SceneName(kind));
+    ExpectClosedFurnishedAndSlowEnoughToTrack(kind, 20);
+  }
+}
+
+TEST(Scenes, HouseIsClosedFurnishedAndSlowEnoughToTrack) {
+  ExpectClosedFurnishedAndSlowEnoughToTrack(SceneKind::kHouse, 20);
+}
+
+TEST(Scenes, TwinsIsClosedFurnishedAndSlowEnoughToTrack) {
+  ExpectClosedFurnishedAndSlowEnoughToTrack(SceneKind::kTwins, 30);
+}
+
+TEST(VisitSeed, IsTheSeedOfTheSceneUnlessItIsRearranged) {
+  EXPECT_EQ(VisitSeed(7, {}), 7U);
+  EXPECT_NE(VisitSeed(7, 0), 7U);
+  EXPECT_NE(VisitSeed(7, 0), VisitSeed(7, 1));
+  EXPECT_NE(VisitSeed(7, 0), VisitSeed(8, 0));
+}
+
+TEST(Scenes, OnlySomeCanBeRearranged) {
+  for (const SceneKind kind : {SceneKind::kLowTexture, SceneKind::kDynamic, SceneKind::kTwins}) {
+    EXPECT_THROW(BuildScene(kind, 10, 1, 1), InputError) << SceneName(kind);
   }
 }
 

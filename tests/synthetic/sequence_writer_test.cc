@@ -13,6 +13,7 @@
 #include <sstream>
 #include <string>
 
+#include "hullslam/io/true_object_file.h"
 #include "hullslam/util/error.h"
 #include "support/temporary_folder.h"
 #include "synthetic/object_models.h"
@@ -135,6 +136,43 @@ TEST_F(SequenceWriterTest, MasksAreValidPolygonsOfListedClasses) {
     }
   }
   EXPECT_GE(instances, 10);
+}
+
+TEST_F(SequenceWriterTest, ARearrangedSceneTellsWhatHappenedToItsObjects) {
+  const fs::path before = Write("before", {.frames = 1, .seed = 3});
+  const fs::path after = Write("after", {.frames = 1, .seed = 3, .rearranged = 1});
+  const TrueScene original = ReadTrueScene(before / "groundtruth_objects.json");
+  const TrueScene changed = ReadTrueScene(after / "groundtruth_objects.json");
+  EXPECT_FALSE(original.is_rearranged);
+  ASSERT_TRUE(changed.is_rearranged);
+  std::map<uint32_t, TrueObject> former;
+  for (const TrueObject& object : original.objects) {
+    former[object.id] = object;
+  }
+  for (const TrueObject& object : changed.gone) {
+    EXPECT_EQ(object.label, former.at(object.id).label);
+    EXPECT_EQ(object.world_from_object.translation,
+              former.at(object.id).world_from_object.translation);
+    former.erase(object.id);
+  }
+  std::map<TrueObjectStatus, int> counts;
+  for (const TrueObject& object : changed.objects) {
+    ++counts[*object.status];
+    EXPECT_EQ(former.contains(object.id), object.status != TrueObjectStatus::kNew);
+    if (object.status == TrueObjectStatus::kNew) {
+      continue;
+    }
+    const Rigid3 place = object.former_world_from_object.value_or(object.world_from_object);
+    EXPECT_EQ(place.translation, former.at(object.id).world_from_object.translation);
+    EXPECT_EQ(object.label, former.at(object.id).label);
+  }
+  EXPECT_EQ(counts[TrueObjectStatus::kMoved], 3);
+  EXPECT_EQ(counts[TrueObjectStatus::kNew], 3);
+  EXPECT_EQ(changed.gone.size(), 3U);
+  EXPECT_NE(Read(before / "groundtruth.txt"), Read(after / "groundtruth.txt"));
+  EXPECT_THROW(Write("twins", {.scene = SceneKind::kTwins, .frames = 1, .rearranged = 1}),
+               InputError);
+  EXPECT_FALSE(fs::exists(root_ / "twins"));
 }
 
 // Number of features that ORB of OpenCV finds in the first frame.

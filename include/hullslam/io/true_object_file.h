@@ -8,8 +8,12 @@
 
 namespace hullslam {
 
-// Reads `groundtruth_objects.json` (docs/synthetic.md). Throws InputError with the name of the file
-// and the path of the key for missing keys and for values of another type.
+// Reads `groundtruth_objects.json` (docs/synthetic.md) of a scene as it was built or of a
+// rearranged one. Throws InputError with the name of the file and the path of the key for missing
+// keys, for values of another type, and if two objects have the same id.
+TrueScene ReadTrueScene(const std::filesystem::path& path);
+
+// The objects that are in the scene. Throws the same errors.
 std::vector<TrueObject> ReadTrueObjects(const std::filesystem::path& path);
 
 }  // namespace hullslam
