@@ -10,12 +10,7 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kNeighbours = 10;
 constexpr size_t kSupporters = 5;  // keyframes that may support a candidate
-
-BowVector VectorOf(const Map& map, KeyframeId keyframe) {
-  return map.VectorOf(*map.keyframes().At(keyframe).frame);
-}
 
 // Everything within two steps of the covisibility graph.
 IdSet<KeyframeId> ConnectedTo(const Map& map, KeyframeId keyframe) {
@@ -30,14 +25,19 @@ IdSet<KeyframeId> ConnectedTo(const Map& map, KeyframeId keyframe) {
   return connected;
 }
 
-// What a keyframe looks like, other than what it is connected to.
+// What a keyframe looks like, other than what it is connected to: at least as much as the least
+// similar of its covisible keyframes.
 std::vector<SimilarKeyframe> FindSimilar(const Map& map, KeyframeId query) {
-  const BowVector vector = VectorOf(map, query);
-  double least = 1.0;
-  for (const KeyframeId neighbour : BestCovisible(map.keyframes().At(query), kNeighbours)) {
-    least = std::min(least, Score(vector, VectorOf(map, neighbour)));
+  const Keyframe& keyframe = map.keyframes().At(query);
+  std::vector<SimilarKeyframe> similar = map.index().Query(map.VectorOf(*keyframe.frame));
+  IdSet<KeyframeId> covisible;
+  for (const Covisible& other : keyframe.covisible) {
+    covisible.Insert(other.keyframe);
   }
-  std::vector<SimilarKeyframe> similar = map.index().Query(vector);
+  double least = 1.0;
+  for (const SimilarKeyframe& one : similar) {
+    least = covisible.Contains(one.keyframe) ? std::min(least, one.score) : least;
+  }
   const IdSet<KeyframeId> connected = ConnectedTo(map, query);
   std::erase_if(similar, [&](const SimilarKeyframe& one) {
     return one.score < least || connected.Contains(one.keyframe);
