@@ -32,6 +32,21 @@ Mapper::Mapper(const Sensor& sensor, const MappingOptions& options, const Object
       publish_(std::move(publish)),
       object_mapper_(sensor, objects) {}
 
+void Mapper::Begin(Map map, Session session) {
+  map_ = std::move(map);
+  recent_ = FindRecentLandmarks(map_);
+  session_ = std::move(session);
+  if (!map_.keyframes().empty()) {
+    PublishSnapshot();
+  }
+}
+
+void Mapper::BeginSession() {
+  if (session_) {
+    map_.BeginSession(*std::exchange(session_, std::nullopt));
+  }
+}
+
 void Mapper::Process(const MapMessage& message, const Cancellation* hurry) {
   std::visit([&](const auto& content) { Apply(content, hurry); }, message);
 }
@@ -40,6 +55,7 @@ void Mapper::Apply(const InitialMap& initial, const Cancellation* hurry) {
   std::vector<KeyframeId> keyframes;
   {
     const ScopedTimer timer(times_, "map_insert");
+    BeginSession();
     keyframes = InsertInitialMap(map_, initial, sensor_, recent_);
     PublishSnapshot();
   }
@@ -52,6 +68,7 @@ void Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
   KeyframeId keyframe;
   {
     const ScopedTimer timer(times_, "map_insert");
+    BeginSession();
     keyframe = InsertKeyframe(map_, request, sensor_, recent_);
     map_.ForgetReplaced(request.oldest_revision);
     PublishSnapshot();

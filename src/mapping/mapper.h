@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "hullslam/frame/sensor.h"
@@ -27,6 +28,11 @@ class Mapper {
   Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
          Publish publish);
 
+  // Begins with a map of earlier sessions, and publishes it if it has keyframes. The keyframes of
+  // the messages belong to `session`, which is added to the map with the first of them. To be
+  // called at most once, before all other functions.
+  void Begin(Map map, Session session);
+
   // Does what the message asks for. `hurry` (may be null) is requested while another message waits.
   // The mapper then leaves out what is not necessary. Throws CheckError for an initial map if the
   // map is not empty.
@@ -45,6 +51,7 @@ class Mapper {
   void Apply(const InitialMap& initial, const Cancellation* hurry);
   void Apply(const KeyframeRequest& request, const Cancellation* hurry);
   void Apply(const MapCorrection& correction, const Cancellation* hurry);
+  void BeginSession();
   void ExtendMap(KeyframeId keyframe, const Cancellation* hurry);
   void PublishSnapshot();
   void MapObjects(KeyframeId keyframe);
@@ -62,6 +69,7 @@ class Mapper {
   ObjectMapper object_mapper_;
   Map map_;
   std::vector<LandmarkId> recent_;  // new landmarks that CullRecentLandmarks checks
+  std::optional<Session> session_;  // until its first keyframe
 };
 
 }  // namespace hullslam

@@ -18,6 +18,12 @@ class SequentialPipeline final : public Pipeline {
         mapper_(sensor, options.mapping, options.objects,
                 [this](std::shared_ptr<const Map> map) { map_ = std::move(map); }) {}
 
+  void Begin(PipelineStart start) override {
+    tracker_.Begin(std::move(start.relocalise), start.localization_only);
+    is_map_fixed_ = start.localization_only;
+    EditMap([&] { mapper_.Begin(std::move(start.map), std::move(start.session)); });
+  }
+
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(!is_finished_, "Track after Finish");
     RethrowFailure();
@@ -30,7 +36,7 @@ class SequentialPipeline final : public Pipeline {
 
   void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) override {
     RethrowFailure();
-    if (!std::exchange(is_finished_, true)) {
+    if (!std::exchange(is_finished_, true) && !is_map_fixed_) {
       EditMap([&] { mapper_.Finish(cancellation, on_progress); });
     }
   }
@@ -72,6 +78,7 @@ class SequentialPipeline final : public Pipeline {
   Mapper mapper_;
   std::exception_ptr failure_;
   bool is_finished_ = false;
+  bool is_map_fixed_ = false;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 
 #include "hullslam/frame/frame.h"
@@ -25,6 +26,12 @@ PoseSource PoseByMotionModel;
 // Keypoints are compared with those of the last frame's reference keyframe by descriptor alone,
 // starting from the last frame's pose (reference_keyframe_source.cc).
 PoseSource PoseByReferenceKeyframe;
+
+// A way to get a first pose of a frame from the map alone. It is asked when the other sources find
+// no pose, or when there is no last frame because the map is that of an earlier session. The
+// estimate names landmarks that keyframes of the map observe. Null if it finds too little.
+using Relocalise = std::function<std::optional<PoseEstimate>(const Frame& frame, const Map& map,
+                                                             const TrackingContext& context)>;
 
 // All sources, in the order in which they are tried.
 inline constexpr std::array<PoseSource*, 2> kPoseSources = {&PoseByMotionModel,

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "tracking/pose_source.h"
-
 namespace hullslam {
 namespace {
 
@@ -35,13 +33,16 @@ InitialMap MakeInitialMap(std::shared_ptr<const Frame> frame, const PinholeCamer
 }
 
 std::optional<PoseEstimate> FirstPose(const Frame& frame, const Map& map,
-                                      const TrackingContext& context, const LastFrame& last) {
-  for (PoseSource* source : kPoseSources) {
-    if (std::optional<PoseEstimate> estimate = source(frame, map, context, last)) {
-      return estimate;
+                                      const TrackingContext& context, const LastFrame& last,
+                                      const Relocalise& relocalise) {
+  if (last.frame != nullptr) {
+    for (PoseSource* source : kPoseSources) {
+      if (std::optional<PoseEstimate> estimate = source(frame, map, context, last)) {
+        return estimate;
+      }
     }
   }
-  return std::nullopt;
+  return relocalise ? relocalise(frame, map, context) : std::nullopt;
 }
 
 int CountCloseKeypoints(const Frame& frame, const Sensor& sensor,
@@ -88,6 +89,11 @@ Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const Obj
       object_options_(objects),
       policy_(MakePolicy(sensor, options)) {}
 
+void Tracker::Begin(Relocalise relocalise, bool localization_only) {
+  relocalise_ = std::move(relocalise);
+  is_localizing_only_ = localization_only;
+}
+
 Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
                                  const MapperStatus& mapper) {
   const ScopedTimer timer(times_, "pose");
@@ -117,17 +123,21 @@ Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
 
 Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& map,
                                const MapperStatus& mapper) {
-  last_ = FollowMap(map, std::move(last_));
+  if (last_.frame != nullptr) {
+    last_ = FollowMap(map, std::move(last_));
+  }
   if (!frame->detections.empty()) {
     object_index_.Follow(map, sensor_.camera);
   }
-  std::optional<PoseEstimate> start = FirstPose(*frame, map, Context(), last_);
+  std::optional<PoseEstimate> start = FirstPose(*frame, map, Context(), last_, relocalise_);
   if (!start) {
     return Lose(std::move(frame));
   }
   const LocalTracking tracking =
       TrackLocalMap(*frame, map, Context(), last_.reference, std::move(*start));
-  CountSightings(map, tracking);
+  if (!is_localizing_only_) {
+    CountSightings(map, tracking);
+  }
   if (tracking.estimate.EffectiveInliers() < options_.min_inliers) {
     return Lose(std::move(frame));
   }
@@ -135,13 +145,7 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   const RelativePose pose = map.RelativeTo(tracking.reference, estimate.cam_from_world);
 
   Result result;
-  KeyframeEvidence evidence =
-      GatherEvidence(*frame, map, sensor_, tracking, last_request_time_, mapper);
-  evidence.fruitless_requests = object_requests_.CountFruitless(map);
-  if (policy_.NeedsKeyframe(evidence)) {
-    if (policy_.NeedsKeyframeForObjects(evidence)) {
-      object_requests_.AddRequest();
-    }
+  if (!is_localizing_only_ && NeedsKeyframe(*frame, map, tracking, mapper)) {
     result.message = MakeRequest(frame, tracking, pose);
   }
   result.report = {.tracked = {.frame = frame->id,
@@ -156,7 +160,7 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   // The last tracked frame may be long ago if frames were lost in between. The motion since then
   // says little about the velocity now.
   std::optional<CameraMotion> motion;
-  if (frame->id.value == last_.frame->id.value + 1) {
+  if (last_.frame != nullptr && frame->id.value == last_.frame->id.value + 1) {
     motion = CameraMotion{estimate.cam_from_world * Inverse(last_.cam_from_world),
                           frame->timestamp - last_.frame->timestamp};
   }
@@ -167,6 +171,21 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
            .cam_from_world = estimate.cam_from_world,
            .motion = motion};
   return result;
+}
+
+bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,
+                            const MapperStatus& mapper) {
+  last_request_time_ = last_request_time_.value_or(frame.timestamp);
+  KeyframeEvidence evidence =
+      GatherEvidence(frame, map, sensor_, tracking, *last_request_time_, mapper);
+  evidence.fruitless_requests = object_requests_.CountFruitless(map);
+  if (!policy_.NeedsKeyframe(evidence)) {
+    return false;
+  }
+  if (policy_.NeedsKeyframeForObjects(evidence)) {
+    object_requests_.AddRequest();
+  }
+  return true;
 }
 
 Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame) {

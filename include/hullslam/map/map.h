@@ -5,11 +5,14 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "hullslam/map/keyframe.h"
 #include "hullslam/map/landmark.h"
+#include "hullslam/map/map_tables.h"
 #include "hullslam/map/object_landmark.h"
 #include "hullslam/map/replacements.h"
+#include "hullslam/map/session.h"
 #include "hullslam/util/cow_table.h"
 #include "hullslam/util/id.h"
 #include "hullslam/util/recycling_table.h"
@@ -22,6 +25,10 @@ namespace hullslam {
 // own files.
 class Map {
  public:
+  Map() = default;
+  // A map that was stored. The tables are not checked; map/restored_map.h does this.
+  explicit Map(MapTables tables);
+
   // A copy of the map. The two share memory until one of them is changed.
   Map Snapshot();
   // The number of snapshots that were taken of this map. Of a snapshot: its own number, from 1.
@@ -30,6 +37,16 @@ class Map {
   const CowTable<KeyframeId, Keyframe, 1>& keyframes() const { return keyframes_; }
   const RecyclingTable<LandmarkId, Landmark>& landmarks() const { return landmarks_; }
   const CowTable<ObjectId, ObjectLandmark, 4>& objects() const { return objects_; }
+  const CowTable<KeyframeId, CulledKeyframe>& culled() const { return culled_; }
+
+  // The runs that added keyframes, in the order in which they began. Empty for a map that was not
+  // made by a run.
+  const std::vector<Session>& sessions() const { return sessions_; }
+  // Frames from session.first_frame on belong to a new session. Throws CheckError unless this is
+  // later than all frames of the map and the begin of the last session.
+  void BeginSession(Session session);
+  // The id after the largest id of a frame in the map, culled keyframes included.
+  FrameId NextFrame() const;
 
   KeyframeId AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& cam_from_world);
   LandmarkId AddLandmark(const Eigen::Vector3d& position, KeyframeId created_by);
@@ -88,6 +105,10 @@ class Map {
   // The keyframe itself or, if it is culled, the nearest ancestor that is not.
   KeyframeId NearestAlive(KeyframeId keyframe) const;
 
+  // How much the observation of a landmark at this keypoint counts: an observation with depth
+  // constrains all three coordinates, like two observations without depth.
+  static int ObservationWeight(const Frame& frame, uint32_t keypoint);
+
   // How many corrections have been applied (map/correction.h).
   uint32_t correction_count() const { return correction_count_; }
   void CountCorrection() { ++correction_count_; }
@@ -113,6 +134,7 @@ class Map {
   Replacements<LandmarkId> replaced_landmarks_;
   Replacements<ObjectId> replaced_objects_;
   CowTable<KeyframeId, CulledKeyframe> culled_;
+  std::vector<Session> sessions_;
   uint32_t correction_count_ = 0;
   uint32_t revision_ = 0;
 };
