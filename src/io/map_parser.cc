@@ -153,8 +153,9 @@ MapTables ReadTables(const MapHeader& header, RecordReader& records) {
 StoredMap ParseMap(std::istream& in, uint64_t size, const std::string& name,
                    const MapSettings* expected) {
   RecordReader records(in, size, name);
-  const MapHeader header = ReadHeader(records.Record());
-  records.Record().ExpectEnd();
+  ByteReader& first = records.Record();
+  const MapHeader header = ReadHeader(first);
+  first.ExpectEnd();
   if (expected != nullptr) {
     RequireSettings(header.settings, *expected, name);
   }

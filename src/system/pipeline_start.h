@@ -8,8 +8,8 @@ namespace hullslam {
 
 // What a pipeline begins with.
 struct PipelineStart {
-  Map map;          // of earlier sessions; without keyframes: a new map
-  Session session;  // that the keyframes of the run will belong to
+  Map map = {};          // of earlier sessions; without keyframes: a new map
+  Session session = {};  // that the keyframes of the run will belong to
   // Nothing in the map is changed: there are no keyframe requests, and Finish adjusts nothing.
   bool localization_only = false;
   Relocalise relocalise = nullptr;  // asked while tracking is lost; may be null

@@ -8,14 +8,15 @@
 
 #include <array>
 #include <csignal>
-#include <cstring>
 #include <filesystem>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "io/made_map_file.h"
+#include "io/map_parser.h"
 #include "io/read_file.h"
 #include "map/invariants.h"
 #include "map/random_edits.h"
@@ -198,7 +199,7 @@ TEST_F(MapFile, OtherSettingsAreRefused) {
   refuse([](MapSettings& s) { s.camera.fy = 502.0; },
          {path_.string(), "Camera.fy 501", "the settings say 502"});
   refuse([](MapSettings& s) { s.camera.width = 320; }, {"Camera.width 640", "320"});
-  refuse([](MapSettings& s) { s.camera.k2 = 1e-4; }, {"Camera.k2", "0.0001"});
+  refuse([](MapSettings& s) { s.camera.k2 = 1e-4; }, {"Camera.k2 0", "1e-04"});
   refuse([](MapSettings& s) { s.level_count = 7; }, {"ORBextractor.nLevels 8", "7"});
   refuse([](MapSettings& s) { s.scale_factor = 1.3; }, {"ORBextractor.scaleFactor 1.2", "1.3"});
   refuse([](MapSettings& s) { s.vocabulary = 9; }, {"vocabulary", "0000000000000009"});
@@ -207,11 +208,9 @@ TEST_F(MapFile, OtherSettingsAreRefused) {
 TEST_F(MapFile, EveryFlippedByteIsRefused) {
   const std::string good = Written(SmallMap());
   for (size_t i = 0; i < good.size(); ++i) {
-    for (const int flip : {1, 255}) {
-      std::string bad = good;
-      bad[i] = static_cast<char>(bad[i] ^ flip);
-      ExpectRefusal(bad);
-    }
+    std::string bad = good;
+    bad[i] = static_cast<char>(bad[i] ^ (1 << i % 8));
+    ExpectRefusal(bad);
   }
 }
 
@@ -253,16 +252,17 @@ TEST_F(MapFile, AMapWithoutKeyframesIsRefused) {
 }
 
 // A wrong byte that the checksum does not tell must not crash either. Most change only a number.
-TEST_F(MapFile, AnyBytesWithARightChecksumAreReadOrRefused) {
-  const std::string good = Written(SmallMap());
+TEST_F(MapFile, AnyBytesBelowTheChecksumAreReadOrRefused) {
+  const std::string file = Written(SmallMap());
+  const std::string good = file.substr(14, file.size() - 14 - 4);
   RandomGeometry random(1);
   int refused = 0;
-  for (size_t i = 14; i + 4 < good.size(); ++i) {
+  for (size_t i = 0; i < 4 * good.size(); ++i) {
     std::string bad = good;
-    bad[i] = static_cast<char>(random.Index(256));
-    folder_.Write("other.map", WithChecksum(bad));
+    bad[i / 4] = static_cast<char>(random.Index(256));
+    std::istringstream in(bad);
     try {
-      const Map map = ReadMap(folder_.path() / "other.map").map;
+      const Map map = ParseMap(in, bad.size(), "map", nullptr).map;
       EXPECT_EQ(FindViolations(map), std::vector<std::string>());
     } catch (const InputError&) {
       ++refused;

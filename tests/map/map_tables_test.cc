@@ -12,10 +12,18 @@ namespace {
 
 TEST(MapTables, AMapOfTablesHasWhatIsInThem) {
   MapTables tables;
-  tables.keyframes.Put(KeyframeId(1), {.frame = MakeFrame(3, 5)});
-  tables.culled.Put(KeyframeId(0), {.frame = FrameId(0), .pose = {.reference = KeyframeId(1)}});
-  tables.landmarks.Put(LandmarkId(4, 2), {.position = {1.0, 2.0, 3.0}});
-  tables.objects.Put(ObjectId(6), {.misfit_px = 2.0});
+  Keyframe keyframe;
+  keyframe.frame = MakeFrame(3, 5);
+  tables.keyframes.Put(KeyframeId(1), keyframe);
+  CulledKeyframe culled;
+  culled.pose.reference = KeyframeId(1);
+  tables.culled.Put(KeyframeId(0), culled);
+  Landmark landmark;
+  landmark.position = {1.0, 2.0, 3.0};
+  tables.landmarks.Put(LandmarkId(4, 2), landmark);
+  ObjectLandmark object;
+  object.misfit_px = 2.0;
+  tables.objects.Put(ObjectId(6), object);
   tables.sessions = {{"first", FrameId(0)}};
   tables.correction_count = 9;
   const Map map(std::move(tables));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -83,6 +84,13 @@ Map MadeMap() {
   return map;
 }
 
+CulledKeyframe Culled(uint32_t frame, uint32_t reference) {
+  CulledKeyframe culled;
+  culled.frame = FrameId(frame);
+  culled.pose.reference = KeyframeId(reference);
+  return culled;
+}
+
 // Expects that the tables of MadeMap() are refused after a change.
 void ExpectRefusal(const std::function<void(MapTables&)>& change,
                    const std::vector<std::string>& parts) {
@@ -97,7 +105,7 @@ TEST(RestoreMap, AcceptsWhatAMapConsistsOf) {
 
 TEST(RestoreMap, RefusesKeyframesThatAreMissingOrOutOfOrder) {
   ExpectRefusal([](MapTables& t) { t.culled.Erase(KeyframeId(2)); }, {"keyframe 2", "missing"});
-  ExpectRefusal([](MapTables& t) { t.culled.Put(KeyframeId(3), {.frame = FrameId(9)}); },
+  ExpectRefusal([](MapTables& t) { t.culled.Put(KeyframeId(3), Culled(9, 0)); },
                 {"keyframe 3", "twice"});
   ExpectRefusal([](MapTables& t) { t.culled.Mutable(KeyframeId(2)).frame = FrameId(3); },
                 {"keyframe 2", "frame", "not later"});
@@ -124,7 +132,7 @@ TEST(RestoreMap, RefusesCulledKeyframesWithoutAPose) {
   ExpectRefusal(refer(UINT32_MAX), {"does not exist"});
   ExpectRefusal(
       [](MapTables& t) {
-        t.culled.Put(KeyframeId(5), {.frame = FrameId(30), .pose = {.reference = KeyframeId(2)}});
+        t.culled.Put(KeyframeId(5), Culled(30, 2));
         t.culled.Mutable(KeyframeId(2)).pose.reference = KeyframeId(5);
       },
       {"itself"});
@@ -140,7 +148,7 @@ TEST(RestoreMap, RefusesReferencesToWhatDoesNotExist) {
                 {"object 0", "keyframe that does not exist"});
   ExpectRefusal(
       [](MapTables& t) {
-        t.objects.Mutable(ObjectId(0)).misfit_samples.push_back({.keyframe = KeyframeId(8)});
+        t.objects.Mutable(ObjectId(0)).misfit_samples.emplace_back().keyframe = KeyframeId(8);
       },
       {"object 0", "keyframe that does not exist"});
   ExpectRefusal([](MapTables& t) { t.keyframes.Mutable(KeyframeId(1)).parent = KeyframeId(2); },
