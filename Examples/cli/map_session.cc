@@ -11,7 +11,6 @@
 #include "hullslam/io/atomic_file.h"
 #include "hullslam/io/map_file.h"
 #include "hullslam/system/compose_trajectory.h"
-#include "util/shown_text.h"
 
 namespace hullslam {
 namespace {
@@ -28,11 +27,11 @@ fs::path Canonical(const fs::path& path) {
 
 // The name of the sequence's folder, also if the path ends in a slash.
 std::string SessionName(const fs::path& sequence) {
-  return ShowText(Canonical(sequence).filename().string());
+  return Canonical(sequence).filename().string();
 }
 
 std::string Title(size_t number, const std::string& name) {
-  return fmt::format("session {}: {}", number, ShowText(name));
+  return fmt::format("session {}: {}", number, name);
 }
 
 bool IsSameOrInside(const fs::path& path, const fs::path& folder) {

@@ -9,6 +9,7 @@
 #include "hullslam/util/error.h"
 #include "io/plausible.h"
 #include "io/text_rows.h"
+#include "util/shown_text.h"
 
 namespace hullslam {
 namespace {
@@ -79,7 +80,7 @@ std::string FormatTrajectory(std::span<const TrajectoryPart> parts) {
   std::string text = "# timestamp tx ty tz qx qy qz qw\n";
   for (const TrajectoryPart& part : parts) {
     if (!part.title.empty()) {
-      text += "# " + part.title + '\n';
+      text += "# " + ShowText(part.title) + '\n';
     }
     AppendPoses(part.poses, text);
   }

@@ -116,9 +116,9 @@ TEST(TrajectoryFile, PartsHaveATitle) {
   const std::string head = "# timestamp tx ty tz qx qy qz qw\n";
   EXPECT_EQ(FormatTrajectory(one), head + line);
   const std::vector<TrajectoryPart> parts = {
-      {{}, one}, {"session 1: desk", one}, {"session 2: room", {}}};
+      {{}, one}, {"session 1: desk", one}, {"session 2: a\nroom", {}}};
   EXPECT_EQ(FormatTrajectory(parts),
-            head + line + "# session 1: desk\n" + line + "# session 2: room\n");
+            head + line + "# session 1: desk\n" + line + "# session 2: a?room\n");
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ std::string FormatTrajectory(const Trajectory& trajectory);
 
 // A part of the poses in a file. Time stamps may begin again from part to part.
 struct TrajectoryPart {
-  std::string title;  // printable ASCII on one line; empty: none
+  std::string title;  // written in printable ASCII, and cut if it is long; empty: none
   Trajectory poses;
 };
 // The same with a comment line "# TITLE" before each part that has a title. Readers skip it.
