@@ -11,6 +11,7 @@
 #include "hullslam/io/atomic_file.h"
 #include "hullslam/io/map_file.h"
 #include "hullslam/system/compose_trajectory.h"
+#include "hullslam/util/error.h"
 
 namespace hullslam {
 namespace {
