@@ -139,7 +139,9 @@ void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry)
 
 void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
   const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
-  if (!options_.final_bundle_adjustment || is_cancelled || map_.keyframes().size() < 2) {
+  const bool is_unchanged = session_.has_value();  // the run has added no keyframe
+  if (!options_.final_bundle_adjustment || is_cancelled || is_unchanged ||
+      map_.keyframes().size() < 2) {
     return;
   }
   BundleWindow window;

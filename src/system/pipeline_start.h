@@ -10,7 +10,7 @@ namespace hullslam {
 struct PipelineStart {
   Map map = {};          // of earlier sessions; without keyframes: a new map
   Session session = {};  // that the keyframes of the run will belong to
-  // Nothing in the map is changed: there are no keyframe requests, and Finish adjusts nothing.
+  // There are no keyframe requests, so nothing in the map is changed.
   bool localization_only = false;
   Relocalise relocalise = nullptr;  // asked while tracking is lost; may be null
 };

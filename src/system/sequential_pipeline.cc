@@ -20,7 +20,6 @@ class SequentialPipeline final : public Pipeline {
 
   void Begin(PipelineStart start) override {
     tracker_.Begin(std::move(start.relocalise), start.localization_only);
-    is_map_fixed_ = start.localization_only;
     EditMap([&] { mapper_.Begin(std::move(start.map), std::move(start.session)); });
   }
 
@@ -36,7 +35,7 @@ class SequentialPipeline final : public Pipeline {
 
   void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) override {
     RethrowFailure();
-    if (!std::exchange(is_finished_, true) && !is_map_fixed_) {
+    if (!std::exchange(is_finished_, true)) {
       EditMap([&] { mapper_.Finish(cancellation, on_progress); });
     }
   }
@@ -78,7 +77,6 @@ class SequentialPipeline final : public Pipeline {
   Mapper mapper_;
   std::exception_ptr failure_;
   bool is_finished_ = false;
-  bool is_map_fixed_ = false;
 };
 
 }  // namespace

@@ -35,7 +35,6 @@ class ThreadedPipeline final : public Pipeline {
   // The mapper's thread waits for its first message meanwhile.
   void Begin(PipelineStart start) override {
     tracker_.Begin(std::move(start.relocalise), start.localization_only);
-    is_map_fixed_ = start.localization_only;
     mapper_.Begin(std::move(start.map), std::move(start.session));
   }
 
@@ -59,7 +58,7 @@ class ThreadedPipeline final : public Pipeline {
     const bool is_first = mapping_thread_.joinable();
     Stop();
     RethrowFailure();
-    if (is_first && !is_map_fixed_) {  // the mapper's thread has ended
+    if (is_first) {  // the mapper's thread has ended
       EditMap([&] { mapper_.Finish(cancellation, on_progress); });
       RethrowFailure();
     }
@@ -178,7 +177,6 @@ class ThreadedPipeline final : public Pipeline {
   }
 
   const Pace pace_;
-  bool is_map_fixed_ = false;
   Published<Map> map_;
   Tracker tracker_;
   Mapper mapper_;

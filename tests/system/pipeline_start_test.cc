@@ -100,7 +100,8 @@ TEST_P(PipelineStartTest, ASecondSessionGoesOnWithTheMap) {
   EXPECT_EQ(Dump(first), before) << "the map that it began with is not changed";
 }
 
-TEST_P(PipelineStartTest, WithoutASourceARunStaysLostAndAddsNothing) {
+TEST_P(PipelineStartTest, WithoutASourceARunStaysLostAndChangesNothing) {
+  options_.mapping.final_bundle_adjustment = true;
   Map first = FirstSession();
   const auto pipeline = MakePipeline();
   pipeline->Begin(
@@ -109,6 +110,7 @@ TEST_P(PipelineStartTest, WithoutASourceARunStaysLostAndAddsNothing) {
     EXPECT_EQ(frame.state, TrackingState::kLost);
     EXPECT_FALSE(frame.pose);
   }
+  pipeline->Finish();
   EXPECT_EQ(Dump(*pipeline->map()), Dump(first));
   EXPECT_EQ(pipeline->map()->sessions().size(), 1u);
 }
