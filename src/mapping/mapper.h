@@ -39,7 +39,8 @@ class Mapper {
   void Process(const MapMessage& message, const Cancellation* hurry);
 
   // To be called once, at the end. Adjusts the whole map if mapping.final_bundle_adjustment is set,
-  // and publishes it; but not a map of earlier sessions to which no keyframe was added. If `cancellation` (may be null) is requested, it ends early with what it has.
+  // and publishes it; but not a map of earlier sessions to which no keyframe was added. If
+  // `cancellation` (may be null) is requested, it ends early with what it has.
   void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress = {});
 
   const StageTimes& times() const { return times_; }
