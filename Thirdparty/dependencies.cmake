@@ -8,6 +8,7 @@ find_package(CGAL 5.5 REQUIRED)  # headers only: convex hulls, oriented boxes; n
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(spdlog 1.10 REQUIRED)
+find_package(ZLIB 1.2 REQUIRED)  # checksum of map files
 find_package(Boost 1.74 REQUIRED)  # headers only: CRC, Student's t-distribution
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # only the header of libxxhash-dev 0.8 is used
 if(HULLSLAM_BUILD_EXAMPLES OR HULLSLAM_BUILD_TESTS)

@@ -13,6 +13,7 @@
 #include "cli/frame_source.h"
 #include "cli/input_warnings.h"
 #include "cli/interrupt.h"
+#include "cli/map_session.h"
 #include "cli/mask_arguments.h"
 #include "cli/messages.h"
 #include "cli/object_outputs.h"
@@ -165,6 +166,7 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
   if (const auto map = system.map()) {
     summary.map.keyframes = map->keyframes().size();
     summary.map.landmarks = map->landmarks().size();
+    summary.map.sessions = map->sessions().size();
   }
   summary.provenance.version = HULLSLAM_VERSION;
   summary.provenance.git = HULLSLAM_GIT;
@@ -188,12 +190,12 @@ std::string MapPly(const Map& map, const Trajectory& keyframes) {
 }
 
 // The files of objects are only written if the run has masks.
-void WriteOutputs(OutputFolder& output, const Map& map, const Trajectory& trajectory,
-                  RunSummary summary, const ObjectReport& objects) {
-  const Trajectory keyframes = KeyframeTrajectory(map);
-  output.Write({"trajectory.txt", FormatTrajectory(trajectory)});
+void WriteOutputs(OutputFolder& output, const Map& map, const std::vector<TrajectoryPart>& poses,
+                  const std::vector<TrajectoryPart>& keyframes, RunSummary summary,
+                  const ObjectReport& objects) {
+  output.Write({"trajectory.txt", FormatTrajectory(poses)});
   output.Write({"keyframes.txt", FormatTrajectory(keyframes)});
-  output.Write({"map.ply", MapPly(map, keyframes)});
+  output.Write({"map.ply", MapPly(map, KeyframeTrajectory(map))});
   if (summary.objects) {
     for (const FileContent& file : ObjectFiles(objects)) {
       output.Write(file);
@@ -231,9 +233,14 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary) {
 }
 
 // Why the run has failed although it came to its end; empty if it has not.
-std::string DescribeLoss(const RunOptions& options, const TumSequence& sequence,
-                         const RunSummary& summary, const System& system) {
+std::string DescribeLoss(const RunArguments& arguments, const RunOptions& options,
+                         const TumSequence& sequence, const RunSummary& summary,
+                         const System& system) {
   const TrajectorySummary& trajectory = summary.trajectory;
+  if (!arguments.load_map.empty() && trajectory.tracked == 0) {
+    return fmt::format("{}: no frame was found in this map, so none of {} frames has a pose",
+                       arguments.load_map.string(), sequence.frames.size());
+  }
   const std::string found =
       fmt::format("{} of {} frames have a pose", trajectory.tracked, sequence.frames.size());
   const auto all = static_cast<double>(sequence.frames.size());
@@ -255,8 +262,8 @@ std::string DescribeLoss(const RunOptions& options, const TumSequence& sequence,
 }
 
 std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
-  return {arguments.sequence, arguments.masks, arguments.settings, arguments.tum.associations,
-          arguments.vocabulary};
+  return {arguments.sequence,         arguments.masks,      arguments.settings,
+          arguments.tum.associations, arguments.vocabulary, arguments.load_map};
 }
 
 }  // namespace
@@ -273,6 +280,9 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
       {arguments.masks, arguments.masks_format, options.camera.width, options.camera.height},
       MaskFrames(sequence));
   CatchInterrupts();
+  CheckSavedMap(arguments);
+  SystemStart start = LoadStart(arguments, options);
+  const size_t earlier_sessions = start.map.sessions().size();
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments));
   WarnOfImplausibleDepth(sequence.frames.front().depth, first.depth, options.depth);
   WarnOfUnknownClasses(options.tracking, masks);
@@ -280,7 +290,7 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
   if (!arguments.quiet && masks.format()) {
     Print("{}\n", masks.Describe());
   }
-  System system(options, ChoosePipeline(arguments));
+  System system(options, ChoosePipeline(arguments), std::move(start));
   const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system);
   if (result.was_interrupted && result.given == 0) {
     PrintFailure("the run was interrupted before the first frame; nothing was written");
@@ -299,7 +309,9 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
   if (masks.format()) {
     summary.objects = SummarizeObjects(objects, system.object_counts());
   }
-  WriteOutputs(output, *map, trajectory, summary, objects);
+  WriteOutputs(output, *map, RunParts(arguments, earlier_sessions, trajectory),
+               KeyframeParts(arguments, *map), summary, objects);
+  SaveMap(arguments, options, *map);
   if (!arguments.quiet) {
     PrintReport(arguments, summary);
   }
@@ -309,7 +321,7 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
                 "the run was interrupted after {} of {} frames; the results so far were "
                 "written",
                 result.given, sequence.frames.size())
-          : DescribeLoss(options.run, sequence, summary, system);
+          : DescribeLoss(arguments, options.run, sequence, summary, system);
   if (!failure.empty()) {
     PrintFailure(failure);
     return kFailed;

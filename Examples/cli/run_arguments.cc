@@ -47,6 +47,15 @@ void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::st
   app.add_option("--output", arguments.output,
                  "folder for the result files; replaces the former run in it")
       ->capture_default_str();
+  app.add_option("--save-map", arguments.save_map,
+                 "file for the map at the end of the run; replaces an earlier one");
+  auto* const load_map = app.add_option(
+      "--load-map", arguments.load_map,
+      "file of --save-map: the run goes on with this map, as a new session. Tracking "
+      "is lost until a frame is found in it (this version cannot find one yet)");
+  app.add_flag("--localization", arguments.localization,
+               "only find the poses in the map of --load-map; nothing in it is changed")
+      ->needs(load_map);
   app.add_flag("--threaded", arguments.threaded,
                "run mapping in its own thread: faster, but results differ a little between runs");
   app.add_flag("--realtime", arguments.realtime,

@@ -21,6 +21,9 @@ struct RunArguments {
   std::string masks_format;            // empty: detected
   std::vector<std::string> overrides;  // key=value
   std::filesystem::path output = "out";
+  std::filesystem::path save_map;  // empty: not saved
+  std::filesystem::path load_map;  // empty: a new map
+  bool localization = false;
   bool threaded = false;
   bool realtime = false;
   bool strict = false;

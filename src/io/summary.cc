@@ -66,8 +66,10 @@ Json ToJson(const TimingSummary& summary) {
 }
 
 Json ToJson(const MapSummary& summary) {
-  return {
-      {"keyframes", summary.keyframes}, {"landmarks", summary.landmarks}, {"loops", summary.loops}};
+  return {{"keyframes", summary.keyframes},
+          {"landmarks", summary.landmarks},
+          {"loops", summary.loops},
+          {"sessions", summary.sessions}};
 }
 
 Json ToJson(const ProvenanceSummary& summary) {

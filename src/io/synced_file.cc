@@ -11,9 +11,7 @@
 #include "hullslam/util/error.h"
 
 namespace hullslam {
-namespace {
 
-// Returns false with the reason in errno.
 bool WriteAll(int descriptor, std::string_view content) {
   while (!content.empty()) {
     const ssize_t written = ::write(descriptor, content.data(), content.size());
@@ -23,10 +21,8 @@ bool WriteAll(int descriptor, std::string_view content) {
       return false;
     }
   }
-  return ::fsync(descriptor) == 0;
+  return true;
 }
-
-}  // namespace
 
 void FailWriting(const std::filesystem::path& path, int code) {
   throw InputError(path.string() + ": cannot be written: " + std::generic_category().message(code));
@@ -38,7 +34,7 @@ void WriteSyncedFile(const std::filesystem::path& path, std::string_view content
   if (descriptor < 0) {
     FailWriting(shown, errno);
   }
-  int failure = WriteAll(descriptor, content) ? 0 : errno;
+  int failure = WriteAll(descriptor, content) && ::fsync(descriptor) == 0 ? 0 : errno;
   if (::close(descriptor) != 0 && failure == 0) {
     failure = errno;
   }

@@ -9,6 +9,9 @@ namespace hullslam {
 // Throws InputError: "PATH: cannot be written: REASON", with the system's text for this error code.
 [[noreturn]] void FailWriting(const std::filesystem::path& path, int code);
 
+// Writes all bytes to an open file. Returns false with the reason in errno if the system refuses.
+bool WriteAll(int descriptor, std::string_view content);
+
 // Writes a new file and waits until the disk has it, because some disks only then report that they
 // are full. Throws InputError like FailWriting(), with the path `shown` in the message. Then the
 // file is removed again.

@@ -9,6 +9,7 @@
 #include "hullslam/util/error.h"
 #include "io/plausible.h"
 #include "io/text_rows.h"
+#include "util/shown_text.h"
 
 namespace hullslam {
 namespace {
@@ -35,6 +36,20 @@ StampedPose ParsePose(const TextRow& row) {
   return pose;
 }
 
+void AppendPoses(const Trajectory& trajectory, std::string& text) {
+  for (const StampedPose& pose : trajectory) {
+    const Eigen::Vector3d& t = pose.world_from_cam.translation;
+    Eigen::Vector4d q = pose.world_from_cam.rotation.normalized().coeffs();
+    Check(t.allFinite() && q.allFinite(), "a number of a pose is not finite");
+    if (q.w() < 0.0) {
+      q = -q;
+    }
+    fmt::format_to(std::back_inserter(text),
+                   "{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", pose.timestamp,
+                   t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+  }
+}
+
 }  // namespace
 
 Trajectory ReadTrajectory(const std::filesystem::path& path) {
@@ -57,17 +72,17 @@ Trajectory ReadTrajectory(const std::filesystem::path& path) {
 }
 
 std::string FormatTrajectory(const Trajectory& trajectory) {
+  const TrajectoryPart part{.title = {}, .poses = trajectory};
+  return FormatTrajectory({&part, 1});
+}
+
+std::string FormatTrajectory(std::span<const TrajectoryPart> parts) {
   std::string text = "# timestamp tx ty tz qx qy qz qw\n";
-  for (const StampedPose& pose : trajectory) {
-    const Eigen::Vector3d& t = pose.world_from_cam.translation;
-    Eigen::Vector4d q = pose.world_from_cam.rotation.normalized().coeffs();
-    Check(t.allFinite() && q.allFinite(), "a number of a pose is not finite");
-    if (q.w() < 0.0) {
-      q = -q;
+  for (const TrajectoryPart& part : parts) {
+    if (!part.title.empty()) {
+      text += "# " + ShowText(part.title) + '\n';
     }
-    fmt::format_to(std::back_inserter(text),
-                   "{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", pose.timestamp,
-                   t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+    AppendPoses(part.poses, text);
   }
   return text;
 }

@@ -39,7 +39,7 @@ void CheckLandmark(const Map& map, LandmarkId id, const Landmark& landmark,
       violations.push_back(Name(id) + " is not observed by " + Name(observation.keyframe));
       continue;
     }
-    weight += keyframe->frame->features.right_u[observation.keypoint] >= 0.0f ? 2 : 1;
+    weight += Map::ObservationWeight(*keyframe->frame, observation.keypoint);
   }
   if (weight != landmark.observation_weight) {
     violations.push_back(Name(id) + " has a wrong observation weight");
@@ -135,7 +135,11 @@ void CheckDetections(const Map& map, KeyframeId id, const Keyframe& keyframe,
 
 void CheckLinks(const Map& map, KeyframeId id, const Keyframe& keyframe,
                 std::vector<std::string>& violations) {
-  for (const Covisible& edge : keyframe.covisible) {
+  for (size_t i = 0; i < keyframe.covisible.size(); ++i) {
+    const Covisible& edge = keyframe.covisible[i];
+    if (i > 0 && !(keyframe.covisible[i - 1].keyframe < edge.keyframe)) {
+      violations.push_back(Name(id) + " has edges out of order");
+    }
     const Keyframe* other = map.keyframes().Find(edge.keyframe);
     const Covisible* back = other != nullptr ? FindEdge(*other, id) : nullptr;
     if (back == nullptr || back->shared != edge.shared) {

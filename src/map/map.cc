@@ -11,12 +11,6 @@
 namespace hullslam {
 namespace {
 
-// An observation with depth constrains all three coordinates of a landmark, like two observations
-// without depth.
-int ObservationWeight(const Keyframe& keyframe, uint32_t keypoint) {
-  return keyframe.frame->features.right_u[keypoint] >= 0.0f ? 2 : 1;
-}
-
 // The position of the observation by `keyframe`, or where it would be inserted.
 auto PlaceOfObservation(auto& observations, KeyframeId keyframe) {
   return std::lower_bound(
@@ -48,6 +42,19 @@ void HandOverLoops(Map& map, KeyframeId id, const Keyframe& keyframe) {
 
 }  // namespace
 
+Map::Map(MapTables tables, std::shared_ptr<const Vocabulary> vocabulary)
+    : keyframes_(std::move(tables.keyframes)),
+      landmarks_(std::move(tables.landmarks)),
+      objects_(std::move(tables.objects)),
+      vocabulary_(std::move(vocabulary)),
+      culled_(std::move(tables.culled)),
+      sessions_(std::move(tables.sessions)),
+      correction_count_(tables.correction_count) {
+  for (const auto& [id, keyframe] : keyframes_) {
+    index_.Add(id, VectorOf(*keyframe.frame));
+  }
+}
+
 Map Map::Snapshot() {
   ++revision_;
   Map copy;
@@ -59,6 +66,7 @@ Map Map::Snapshot() {
   copy.replaced_landmarks_ = replaced_landmarks_;
   copy.replaced_objects_ = replaced_objects_;
   copy.culled_ = culled_.Snapshot();
+  copy.sessions_ = sessions_;
   copy.correction_count_ = correction_count_;
   copy.revision_ = revision_;
   return copy;
@@ -66,6 +74,27 @@ Map Map::Snapshot() {
 
 BowVector Map::VectorOf(const Frame& frame) const {
   return vocabulary_ != nullptr ? vocabulary_->VectorOf(frame.words) : BowVector();
+}
+
+void Map::BeginSession(Session session) {
+  Check(session.first_frame.IsValid() && !(session.first_frame < NextFrame()) &&
+            (sessions_.empty() || sessions_.back().first_frame < session.first_frame),
+        "a session begins after all others");
+  sessions_.push_back(std::move(session));
+}
+
+FrameId Map::NextFrame() const {
+  const uint32_t count = keyframes_.NextId().value;
+  if (count == 0) {
+    return FrameId(0);
+  }
+  const KeyframeId last(count - 1);  // keyframes are made in the order of their frames
+  const Keyframe* keyframe = keyframes_.Find(last);
+  return FrameId((keyframe != nullptr ? keyframe->frame->id : culled_.At(last).frame).value + 1);
+}
+
+int Map::ObservationWeight(const Frame& frame, uint32_t keypoint) {
+  return frame.features.right_u[keypoint] >= 0.0f ? 2 : 1;
 }
 
 KeyframeId Map::AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& cam_from_world) {
@@ -100,7 +129,7 @@ bool Map::AddObservation(LandmarkId landmark, KeyframeId keyframe, uint32_t keyp
   Landmark& changed = landmarks_.Mutable(landmark);
   changed.observations.insert(PlaceOfObservation(changed.observations, keyframe),
                               {keyframe, keypoint});
-  changed.observation_weight += ObservationWeight(observer, keypoint);
+  changed.observation_weight += ObservationWeight(*observer.frame, keypoint);
   keyframes_.Mutable(keyframe).landmarks[keypoint] = landmark;
   return true;
 }
@@ -111,7 +140,7 @@ void Map::RemoveObservation(LandmarkId landmark, KeyframeId keyframe) {
   Check(it != changed.observations.end(), "the keyframe does not observe the landmark");
   Keyframe& observer = keyframes_.Mutable(keyframe);
   observer.landmarks[it->keypoint] = LandmarkId();
-  changed.observation_weight -= ObservationWeight(observer, it->keypoint);
+  changed.observation_weight -= ObservationWeight(*observer.frame, it->keypoint);
   changed.observations.erase(it);
   if (changed.observation_weight <= 2) {
     EraseLandmark(landmark);

@@ -134,6 +134,17 @@ void CullRecentLandmarks(Map& map, KeyframeId current, std::vector<LandmarkId>& 
   });
 }
 
+std::vector<LandmarkId> FindRecentLandmarks(const Map& map) {
+  std::vector<LandmarkId> recent;
+  map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+    const uint32_t age_at_next = map.keyframes().NextId().value - landmark.created_by.value;
+    if (age_at_next <= kTrialKeyframes + 1) {
+      recent.push_back(id);
+    }
+  });
+  return recent;
+}
+
 int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views) {
   int culled = 0;
   const std::vector<Covisible> candidates = map.keyframes().At(current).covisible;

@@ -14,6 +14,10 @@ namespace hullslam {
 // longer exist or that are three keyframes old leave the list.
 void CullRecentLandmarks(Map& map, KeyframeId current, std::vector<LandmarkId>& recent);
 
+// The landmarks of a map of an earlier session that CullRecentLandmarks has to check, by increasing
+// id: those that were not three keyframes old at its end.
+std::vector<LandmarkId> FindRecentLandmarks(const Map& map);
+
 // Removes redundant keyframes among those covisible with `current`. A keyframe is redundant if more
 // than nine tenths of its close landmarks are each seen by at least three others, at most one level
 // coarser than it sees them (section VI.E). If it has fewer than 100 close landmarks, the same must

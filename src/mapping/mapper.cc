@@ -20,6 +20,21 @@ Mapper::Mapper(const Sensor& sensor, const MappingOptions& options, const Object
       object_mapper_(sensor, objects),
       map_(std::move(vocabulary)) {}
 
+void Mapper::Begin(Map map, Session session) {
+  session_ = std::move(session);
+  if (!map.keyframes().empty()) {
+    map_ = std::move(map);
+    recent_ = FindRecentLandmarks(map_);
+    PublishSnapshot();
+  }
+}
+
+void Mapper::BeginSession() {
+  if (session_) {
+    map_.BeginSession(*std::exchange(session_, std::nullopt));
+  }
+}
+
 void Mapper::Process(const MapMessage& message, const Cancellation* hurry) {
   std::visit([&](const auto& content) { Apply(content, hurry); }, message);
 }
@@ -28,6 +43,7 @@ void Mapper::Apply(const InitialMap& initial, const Cancellation* hurry) {
   std::vector<KeyframeId> keyframes;
   {
     const ScopedTimer timer(times_, "map_insert");
+    BeginSession();
     keyframes = InsertInitialMap(map_, initial, sensor_, recent_);
     PublishSnapshot();
   }
@@ -40,6 +56,7 @@ void Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
   KeyframeId keyframe;
   {
     const ScopedTimer timer(times_, "map_insert");
+    BeginSession();
     keyframe = InsertKeyframe(map_, request, sensor_, recent_);
     map_.ForgetReplaced(request.oldest_revision);
     PublishSnapshot();
@@ -116,7 +133,9 @@ void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry)
 
 void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
   const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
-  if (!options_.final_bundle_adjustment || is_cancelled || map_.keyframes().size() < 2) {
+  const bool is_unchanged = session_.has_value();  // the run has added no keyframe
+  if (!options_.final_bundle_adjustment || is_cancelled || is_unchanged ||
+      map_.keyframes().size() < 2) {
     return;
   }
   BundleWindow window;

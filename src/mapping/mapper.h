@@ -29,13 +29,19 @@ class Mapper {
   Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
          Publish publish, std::shared_ptr<const Vocabulary> vocabulary = nullptr);
 
+  // Begins with a map of earlier sessions, and publishes it if it has keyframes. The keyframes of
+  // the messages belong to `session`, which is added to the map with the first of them. To be
+  // called at most once, before all other functions.
+  void Begin(Map map, Session session);
+
   // Does what the message asks for. `hurry` (may be null) is requested while another message waits.
   // The mapper then leaves out what is not necessary. Throws CheckError for an initial map if the
   // map is not empty.
   void Process(const MapMessage& message, const Cancellation* hurry);
 
   // To be called once, at the end. Adjusts the whole map if mapping.final_bundle_adjustment is set,
-  // and publishes it. If `cancellation` (may be null) is requested, it ends early with what it has.
+  // and publishes it; but not a map of earlier sessions to which no keyframe was added. If
+  // `cancellation` (may be null) is requested, it ends early with what it has.
   void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress = {});
 
   // A snapshot of the live map for a stage that needs one of its own, and the keyframe that was
@@ -52,6 +58,7 @@ class Mapper {
   void Apply(const InitialMap& initial, const Cancellation* hurry);
   void Apply(const KeyframeRequest& request, const Cancellation* hurry);
   void Apply(const MapCorrection& correction, const Cancellation* hurry);
+  void BeginSession();
   void ExtendMap(KeyframeId keyframe, const Cancellation* hurry);
   void PublishSnapshot();
   void MapObjects(KeyframeId keyframe);
@@ -70,6 +77,7 @@ class Mapper {
   Map map_;
   KeyframeId newest_keyframe_;
   std::vector<LandmarkId> recent_;  // new landmarks that CullRecentLandmarks checks
+  std::optional<Session> session_;  // until its first keyframe
 };
 
 }  // namespace hullslam

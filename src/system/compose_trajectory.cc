@@ -28,4 +28,14 @@ Trajectory KeyframeTrajectory(const Map& map) {
   return trajectory;
 }
 
+Trajectory KeyframeTrajectory(const Map& map, size_t session) {
+  Trajectory trajectory;
+  map.keyframes().ForEach([&](KeyframeId, const Keyframe& keyframe) {
+    if (SessionNumber(map.sessions(), keyframe.frame->id) == session) {
+      trajectory.push_back({keyframe.frame->timestamp, Inverse(keyframe.cam_from_world)});
+    }
+  });
+  return trajectory;
+}
+
 }  // namespace hullslam

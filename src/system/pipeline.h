@@ -9,6 +9,7 @@
 #include "hullslam/objects/rejection.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
+#include "system/pipeline_start.h"
 
 namespace hullslam {
 
@@ -17,6 +18,9 @@ class Pipeline {
  public:
   virtual ~Pipeline() = default;
 
+  // To be called at most once, before the first Track. Without this call the map is new and its
+  // keyframes belong to no session.
+  virtual void Begin(PipelineStart start) = 0;
   // Frames come in order of time. Throws what a stage throws, and CheckError after Finish. After
   // mapping has thrown an exception, its live map may be half edited. So nothing more is mapped,
   // all later calls of Track and Finish throw the same exception, and map() stays as it was

@@ -24,6 +24,11 @@ class SequentialPipeline final : public Pipeline {
             [this](std::shared_ptr<const Map> map) { map_ = std::move(map); }, options.vocabulary),
         loop_closer_(sensor, options.loop, options.objects, options.seed) {}
 
+  void Begin(PipelineStart start) override {
+    tracker_.Begin(std::move(start.relocalise), start.localization_only);
+    EditMap([&] { mapper_.Begin(std::move(start.map), std::move(start.session)); });
+  }
+
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(!is_finished_, "Track after Finish");
     RethrowFailure();

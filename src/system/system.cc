@@ -87,15 +87,28 @@ class ScopedFlag {
 
 }  // namespace
 
-System::System(const SystemOptions& options, PipelineKind kind)
+System::System(const SystemOptions& options, PipelineKind kind, SystemStart start)
     : options_(Validated(options)),
       kind_(kind),
+      start_(std::move(start)),
       sensor_(MakeSensor(options_)),
       frame_builder_(MakeFrameBuilder(sensor_, options_)),
-      pipeline_(MakePipeline(kind, sensor_, options_)),
+      pipeline_(BeginPipeline()),
       runner_(MakeRunner()) {}
 
 System::~System() = default;
+
+std::unique_ptr<Pipeline> System::BeginPipeline() {
+  Check(!start_.localization_only || !start_.map.keyframes().empty(),
+        "localization needs a map with keyframes");
+  Check(start_.map.keyframes().empty() || start_.map.vocabulary() == options_.vocabulary,
+        "the map's vocabulary is not that of the options");
+  auto pipeline = MakePipeline(kind_, sensor_, options_);
+  pipeline->Begin({.map = start_.map.Snapshot(),
+                   .session = {.name = start_.session_name, .first_frame = start_.map.NextFrame()},
+                   .localization_only = start_.localization_only});
+  return pipeline;
+}
 
 TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
                            std::vector<InstanceMask> masks) {
@@ -114,7 +127,7 @@ BuiltFrame System::Build(const ImageInput& image) {
 
 TrackedFrame System::Track(BuiltFrame built) {
   CheckStamp(built.frame->timestamp);
-  built.frame->id = FrameId(static_cast<uint32_t>(frames_.size()));
+  built.frame->id = FrameId(start_.map.NextFrame().value + static_cast<uint32_t>(frames_.size()));
   times_.Add("frame", built.milliseconds);
   mask_counts_.Add(built.masks);
   const FrameReport report = [&] {
@@ -157,7 +170,7 @@ void System::Finish(const Cancellation* cancellation, const ProgressCallback& on
 
 void System::Reset() {
   auto frame_builder = MakeFrameBuilder(sensor_, options_);
-  pipeline_ = MakePipeline(kind_, sensor_, options_);  // the old one ends its threads
+  pipeline_ = BeginPipeline();  // the old one ends its threads
   frame_builder_ = std::move(frame_builder);
   mask_counts_ = {};
   frames_.clear();

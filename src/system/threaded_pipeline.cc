@@ -37,6 +37,12 @@ class ThreadedPipeline final : public Pipeline {
 
   ~ThreadedPipeline() override { Stop(); }
 
+  // The mapper's thread waits for its first message meanwhile.
+  void Begin(PipelineStart start) override {
+    tracker_.Begin(std::move(start.relocalise), start.localization_only);
+    mapper_.Begin(std::move(start.map), std::move(start.session));
+  }
+
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(mapping_thread_.joinable(), "Track after Finish");
     RethrowFailure();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 
 #include "hullslam/frame/frame.h"
@@ -30,6 +31,11 @@ PoseSource PoseByReferenceKeyframe;
 // RANSAC finds a pose; then all landmarks of that place are searched. The last frame is not used
 // (Mur-Artal and Tardos 2017; relocalisation_source.cc).
 PoseSource PoseByRelocalisation;
+
+// A source of the caller, which is asked when all others find nothing. The estimate names landmarks
+// that keyframes of the map observe. Null if it finds too little.
+using Relocalise = std::function<std::optional<PoseEstimate>(const Frame& frame, const Map& map,
+                                                             const TrackingContext& context)>;
 
 // All sources, in the order in which they are tried.
 inline constexpr std::array<PoseSource*, 3> kPoseSources = {

@@ -8,6 +8,9 @@ namespace hullslam {
 std::optional<PoseEstimate> PoseByReferenceKeyframe(const Frame& frame, const Map& map,
                                                     const TrackingContext& context,
                                                     const LastFrame& last) {
+  if (last.frame == nullptr) {
+    return std::nullopt;
+  }
   const Keyframe& reference = map.keyframes().At(last.reference);
   std::vector<uint32_t> indices;
   for (uint32_t i = 0; i < reference.landmarks.size(); ++i) {

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "tracking/pose_source.h"
-
 namespace hullslam {
 namespace {
 
@@ -80,6 +78,11 @@ Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const Obj
       seed_(seed),
       policy_(MakePolicy(sensor, options)) {}
 
+void Tracker::Begin(Relocalise relocalise, bool localization_only) {
+  relocalise_ = std::move(relocalise);
+  is_localizing_only_ = localization_only;
+}
+
 Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
                                  const MapperStatus& mapper) {
   const ScopedTimer timer(times_, "pose");
@@ -109,7 +112,9 @@ Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
 
 Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& map,
                                const MapperStatus& mapper) {
-  last_ = FollowMap(map, std::move(last_));
+  if (last_.frame != nullptr) {
+    last_ = FollowMap(map, std::move(last_));
+  }
   if (!frame->detections.empty()) {
     object_index_.Follow(map, sensor_.camera);
   }
@@ -118,18 +123,14 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
     return Lose(std::move(frame));
   }
   const LocalTracking& tracking = *found;
-  CountSightings(map, tracking);
+  if (!is_localizing_only_) {
+    CountSightings(map, tracking);
+  }
   const PoseEstimate& estimate = tracking.estimate;
   const RelativePose pose = map.RelativeTo(tracking.reference, estimate.cam_from_world);
 
   Result result;
-  KeyframeEvidence evidence =
-      GatherEvidence(*frame, map, sensor_, tracking, last_request_time_, mapper);
-  evidence.fruitless_requests = object_requests_.CountFruitless(map);
-  if (policy_.NeedsKeyframe(evidence)) {
-    if (policy_.NeedsKeyframeForObjects(evidence)) {
-      object_requests_.AddRequest();
-    }
+  if (!is_localizing_only_ && NeedsKeyframe(*frame, map, tracking, mapper)) {
     result.message = MakeRequest(frame, tracking, pose);
   }
   result.report = {.tracked = {.frame = frame->id,
@@ -144,7 +145,7 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   // The last tracked frame may be long ago if frames were lost in between. The motion since then
   // says little about the velocity now.
   std::optional<CameraMotion> motion;
-  if (frame->id.value == last_.frame->id.value + 1) {
+  if (last_.frame != nullptr && frame->id.value == last_.frame->id.value + 1) {
     motion = CameraMotion{estimate.cam_from_world * Inverse(last_.cam_from_world),
                           frame->timestamp - last_.frame->timestamp};
   }
@@ -159,16 +160,37 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
 
 // The first pose that the local map confirms. Null if there is none.
 std::optional<LocalTracking> Tracker::FindPose(const Frame& frame, const Map& map) const {
-  for (PoseSource* source : kPoseSources) {
-    if (std::optional<PoseEstimate> start = source(frame, map, Context(), last_)) {
-      LocalTracking tracking =
-          TrackLocalMap(frame, map, Context(), last_.reference, std::move(*start));
-      if (tracking.estimate.EffectiveInliers() >= options_.min_inliers) {
-        return tracking;
+  const auto confirm = [&](std::optional<PoseEstimate> start) {
+    std::optional<LocalTracking> tracking;
+    if (start) {
+      tracking = TrackLocalMap(frame, map, Context(), last_.reference, std::move(*start));
+      if (tracking->estimate.EffectiveInliers() < options_.min_inliers) {
+        tracking.reset();
       }
     }
+    return tracking;
+  };
+  for (PoseSource* source : kPoseSources) {
+    if (std::optional<LocalTracking> found = confirm(source(frame, map, Context(), last_))) {
+      return found;
+    }
   }
-  return std::nullopt;
+  return relocalise_ ? confirm(relocalise_(frame, map, Context())) : std::nullopt;
+}
+
+bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,
+                            const MapperStatus& mapper) {
+  last_request_time_ = last_request_time_.value_or(frame.timestamp);
+  KeyframeEvidence evidence =
+      GatherEvidence(frame, map, sensor_, tracking, *last_request_time_, mapper);
+  evidence.fruitless_requests = object_requests_.CountFruitless(map);
+  if (!policy_.NeedsKeyframe(evidence)) {
+    return false;
+  }
+  if (policy_.NeedsKeyframeForObjects(evidence)) {
+    object_requests_.AddRequest();
+  }
+  return true;
 }
 
 Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame) {

@@ -14,6 +14,7 @@
 #include "tracking/keyframe_policy.h"
 #include "tracking/last_frame.h"
 #include "tracking/local_map_tracking.h"
+#include "tracking/pose_source.h"
 #include "tracking/request_memory.h"
 #include "tracking/sighting_counter.h"
 #include "tracking/tracking_context.h"
@@ -35,12 +36,17 @@ class Tracker {
   Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects = {},
           uint64_t seed = 0);
 
+  // To be called at most once, before the first frame. `relocalise` may be null. With
+  // `localization_only` no keyframe is requested; the frames then come with a map.
+  void Begin(Relocalise relocalise, bool localization_only);
+
   struct Result {
     FrameReport report;
     std::optional<MapMessage> message;  // for the mapper: an InitialMap or a KeyframeRequest
   };
 
-  // Frames come in order of time. `map` is the newest snapshot, null before there is one.
+  // Frames come in order of time. `map` is the newest snapshot, null before there is one. If the
+  // first map is there before the first frame, tracking is lost until `relocalise` finds a frame.
   Result Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
                  const MapperStatus& mapper);
 
@@ -54,6 +60,8 @@ class Tracker {
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
   std::optional<LocalTracking> FindPose(const Frame& frame, const Map& map) const;
   Result Lose(std::shared_ptr<const Frame> frame);
+  bool NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,
+                     const MapperStatus& mapper);
   void CountSightings(const Map& map, const LocalTracking& tracking);
   KeyframeRequest MakeRequest(std::shared_ptr<const Frame> frame, const LocalTracking& tracking,
                               const RelativePose& pose);
@@ -65,9 +73,14 @@ class Tracker {
   const KeyframePolicy policy_;
   StageTimes times_;
 
-  LastFrame last_;                  // only valid if there is a map
-  double last_request_time_ = 0.0;  // s, time stamp of the frame of the last message
-  SightingCounter sightings_;       // since the last request
+  Relocalise relocalise_;  // may be null
+  bool is_localizing_only_ = false;
+
+  LastFrame last_;  // has no frame before the first frame with a pose
+  // s, time stamp of the frame of the last message; of the first frame with a pose if there is no
+  // message yet.
+  std::optional<double> last_request_time_;
+  SightingCounter sightings_;  // since the last request
   // Map::revision() of the first map in which they were counted; absent if there are none.
   std::optional<uint32_t> first_sighting_revision_;
   RequestMemory object_requests_;

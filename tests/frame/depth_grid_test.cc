@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "hullslam/util/check.h"
+
 namespace hullslam {
 namespace {
 
@@ -38,6 +40,17 @@ TEST(DepthGrid, IsEmptyWithoutDepth) {
   EXPECT_TRUE(DepthGrid().empty());
   EXPECT_TRUE(DepthGrid(cv::Mat(), 5000.0).empty());
   EXPECT_EQ(DepthGrid().rows(), 0);
+}
+
+TEST(DepthGrid, IsMadeAgainFromItsSamples) {
+  const DepthGrid grid(cv::Mat(100, 130, CV_32FC1, cv::Scalar(1.5)), 5000.0);
+  const DepthGrid copy(grid.columns(), grid.samples());
+  EXPECT_EQ(copy.columns(), DepthGrid::CountAlong(130));
+  EXPECT_EQ(copy.rows(), DepthGrid::CountAlong(100));
+  EXPECT_EQ(copy.At(3, 2), grid.At(3, 2));
+  EXPECT_EQ(copy.samples(), grid.samples());
+  EXPECT_THROW(DepthGrid(4, std::vector<uint16_t>(10)), CheckError);
+  EXPECT_THROW(DepthGrid(0, std::vector<uint16_t>(10)), CheckError);
 }
 
 }  // namespace

@@ -13,13 +13,17 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <opencv2/core.hpp>
+#include <sstream>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "bow/vocabulary_layout.h"
 #include "hullslam/frame/detection_builder.h"
 #include "hullslam/io/image_file.h"
+#include "hullslam/io/map_file.h"
 #include "hullslam/io/mask_source.h"
 #include "hullslam/io/object_file.h"
 #include "hullslam/io/settings.h"
@@ -28,8 +32,12 @@
 #include "hullslam/io/tum_sequence.h"
 #include "hullslam/io/vocabulary_file.h"
 #include "hullslam/util/error.h"
+#include "io/map_parser.h"
 #include "io/mask_classes.h"
 #include "io/vocabulary_text.h"
+#include "io/read_file.h"
+#include "map/covisibility.h"
+#include "map/invariants.h"
 
 namespace hullslam {
 namespace {
@@ -276,7 +284,56 @@ void FuzzVocabularyText(std::string_view bytes) {
   TryFile(bytes, [](const fs::path& path) { UseVocabulary(ReadVocabulary(path)); });
 }
 
-constexpr std::array<FuzzedReader, 19> kReaders = {{{"trajectory", FuzzTrajectory},
+// Edits a map as a new session does.
+void UseMap(Map& map) {
+  map.BeginSession({"next", map.NextFrame()});
+  auto frame = std::make_shared<Frame>();
+  frame->id = map.NextFrame();
+  const KeyframeId added = map.AddKeyframe(frame, {});
+  Expect(map.KeyframeOfFrame(frame->id) == added, "a frame that is not found");
+  std::vector<KeyframeId> keyframes;
+  map.keyframes().ForEach([&](KeyframeId id, const Keyframe&) { keyframes.push_back(id); });
+  map.culled().ForEach([&](KeyframeId id, const CulledKeyframe&) {
+    map.CamFromWorld(id);
+    map.ScaleOf(id);
+  });
+  for (const KeyframeId id : keyframes) {
+    UpdateCovisibility(map, id);
+    if (map.keyframes().At(id).parent.IsValid()) {
+      map.CullKeyframe(id);
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    map.AddLandmark({0.0, 0.0, 1.0}, added);
+    map.AddObject();
+  }
+  Expect(FindViolations(map).empty(), "an inconsistent map after edits");
+}
+
+// Map files below the checksum: the bytes are those of a map file, of which the prefix and the
+// checksum are not looked at. A map that is accepted must be usable, and give the same bytes again.
+void FuzzMap(std::string_view bytes) {
+  constexpr size_t kPrefix = 14;
+  constexpr size_t kChecksum = 4;
+  if (bytes.size() < kPrefix + kChecksum) {
+    return;
+  }
+  Try([&] {
+    const std::string content(bytes.substr(kPrefix, bytes.size() - kPrefix - kChecksum));
+    std::istringstream in(content);
+    StoredMap stored = ParseMap(in, content.size(), "map", nullptr);
+    Expect(FindViolations(stored.map).empty(), "an inconsistent map");
+    static const InputFolder folder("unused");
+    WriteMap(folder.path() / "first", stored.map, stored.settings);
+    const StoredMap again = ReadMap(folder.path() / "first");
+    WriteMap(folder.path() / "second", again.map, again.settings);
+    Expect(ReadFile(folder.path() / "first") == ReadFile(folder.path() / "second"),
+           "other bytes when it is written again");
+    UseMap(stored.map);
+  });
+}
+
+constexpr std::array<FuzzedReader, 20> kReaders = {{{"trajectory", FuzzTrajectory},
                                                     {"settings", FuzzSettings},
                                                     {"sequence", FuzzSequence},
                                                     {"associations", FuzzAssociations},
@@ -294,7 +351,8 @@ constexpr std::array<FuzzedReader, 19> kReaders = {{{"trajectory", FuzzTrajector
                                                     {"label_png", FuzzLabelPng},
                                                     {"classes_json", FuzzClassesJson},
                                                     {"vocabulary_binary", FuzzVocabularyBinary},
-                                                    {"vocabulary_text", FuzzVocabularyText}}};
+                                                    {"vocabulary_text", FuzzVocabularyText},
+                                                    {"map", FuzzMap}}};
 
 }  // namespace
 

@@ -107,5 +107,19 @@ TEST(TrajectoryFile, NonFiniteValuesAreNeverWritten) {
   EXPECT_THROW(FormatTrajectory(trajectory), CheckError);
 }
 
+TEST(TrajectoryFile, PartsHaveATitle) {
+  const StampedPose pose{.timestamp = 1.5, .world_from_cam = {}};
+  const Trajectory one = {pose};
+  const std::string line =
+      "1.500000 0.000000000 0.000000000 0.000000000 0.000000000 0.000000000 "
+      "0.000000000 1.000000000\n";
+  const std::string head = "# timestamp tx ty tz qx qy qz qw\n";
+  EXPECT_EQ(FormatTrajectory(one), head + line);
+  const std::vector<TrajectoryPart> parts = {
+      {{}, one}, {"session 1: desk", one}, {"session 2: a\nroom", {}}};
+  EXPECT_EQ(FormatTrajectory(parts),
+            head + line + "# session 1: desk\n" + line + "# session 2: a?room\n");
+}
+
 }  // namespace
 }  // namespace hullslam

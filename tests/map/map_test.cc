@@ -433,5 +433,22 @@ TEST(MapIndex, StaysConsistentUnderRandomEdits) {
   EXPECT_EQ(FindViolations(map), std::vector<std::string>());
 }
 
+TEST(Map, SessionsBeginAfterAllFrames) {
+  Map map;
+  EXPECT_EQ(map.NextFrame(), FrameId(0));
+  map.BeginSession({"a", FrameId(0)});
+  AddKeyframe(map, 10);
+  const KeyframeId second = AddKeyframe(map, 10);
+  EXPECT_EQ(map.NextFrame(), FrameId(kFramesPerKeyframe + 1));
+  EXPECT_THROW(map.BeginSession({"b", FrameId(kFramesPerKeyframe)}), CheckError);
+  EXPECT_THROW(map.BeginSession({"b", FrameId()}), CheckError);
+  map.BeginSession({"b", FrameId(10)});
+  EXPECT_THROW(map.BeginSession({"c", FrameId(10)}), CheckError);
+  SetParent(map, second, KeyframeId(0));
+  map.CullKeyframe(second);
+  EXPECT_EQ(map.NextFrame(), FrameId(kFramesPerKeyframe + 1)) << "culled keyframes count";
+  EXPECT_EQ(map.Snapshot().sessions(), map.sessions());
+}
+
 }  // namespace
 }  // namespace hullslam

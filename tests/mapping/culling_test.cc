@@ -9,6 +9,7 @@
 #include <string>
 
 #include "map/invariants.h"
+#include "map/made_map.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
@@ -287,6 +288,19 @@ TEST(CullKeyframes, ObserversAtACoarserLevelDoNotCount) {
   EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(1)));
   EXPECT_FALSE(made.map.keyframes().Contains(KeyframeId(2)))
       << "keyframe 1 sees its landmarks at a finer level";
+}
+
+TEST(FindRecentLandmarks, FindsThoseThatMayStillBeCulled) {
+  Map map;
+  for (int i = 0; i < 6; ++i) {
+    AddKeyframe(map, 10);
+  }
+  std::vector<LandmarkId> made;
+  for (uint32_t i = 0; i < 6; ++i) {
+    made.push_back(map.AddLandmark({0.0, 0.0, 1.0}, KeyframeId(i)));
+  }
+  EXPECT_EQ(FindRecentLandmarks(map), (std::vector<LandmarkId>{made[3], made[4], made[5]}));
+  EXPECT_TRUE(FindRecentLandmarks(Map()).empty());
 }
 
 }  // namespace

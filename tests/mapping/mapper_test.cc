@@ -340,6 +340,27 @@ TEST_F(MapperTest, FinishDoesNothingWithFewerThanTwoKeyframesOrCancelled) {
   EXPECT_FALSE(mapper_->times().samples().contains("global_bundle_adjustment"));
 }
 
+TEST_F(MapperTest, ASessionBeginsWithItsFirstKeyframe) {
+  MappingOptions options;
+  options.final_bundle_adjustment = true;
+  SyntheticMap made = MakeSyntheticMap(world_, {0, 5, 10});
+  const auto begin = [&] {
+    Restart(options);
+    mapper_->Begin(made.map.Snapshot(), {"second", FrameId(15)});
+    ASSERT_EQ(published_.size(), 1u) << "the map is there before the first message";
+  };
+  begin();
+  mapper_->Finish(nullptr);
+  EXPECT_EQ(published_.size(), 1u) << "a map without new keyframes is not adjusted";
+  EXPECT_TRUE(map().sessions().empty());
+  begin();
+  Process(Request(20, KeyframeId(2)));
+  EXPECT_EQ(map().sessions(), (std::vector<Session>{{"second", FrameId(15)}}));
+  EXPECT_EQ(map().keyframes().NextId(), KeyframeId(4));
+  mapper_->Finish(nullptr);
+  EXPECT_TRUE(mapper_->times().samples().contains("global_bundle_adjustment"));
+}
+
 class MapperWithoutMuchDepthTest : public MapperTest {
  protected:
   MapperWithoutMuchDepthTest() : MapperTest({.points = 600, .depth_share = 0.3}) {}

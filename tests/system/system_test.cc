@@ -6,16 +6,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "hullslam/io/map_file.h"
 #include "hullslam/system/prefetcher.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 #include "map/invariants.h"
 #include "support/expect_error.h"
+#include "support/temporary_folder.h"
 
 namespace hullslam {
 namespace {
@@ -207,6 +210,37 @@ TEST_P(SystemTest, ResetGivesAnEmptySystem) {
   EXPECT_EQ(reports, 18u) << "the callback is kept";
   system.Finish();
   EXPECT_LT(MaxError(system.trajectory()), 0.01);
+}
+
+// No frame can be found in the loaded map yet.
+TEST_P(SystemTest, BeginsWithTheMapOfAnEarlierSession) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "map";
+  {
+    System first(Wall::Options(), GetParam(), {.session_name = "first"});
+    for (int i = 0; i < 6; ++i) {
+      TrackFrame(first, i);
+    }
+    first.Finish();
+    WriteMap(path, *first.map(), MapSettingsOf(Wall::Options()));
+  }
+  SystemStart start{.map = ReadMap(path, MapSettingsOf(Wall::Options())), .session_name = "second"};
+  ASSERT_EQ(start.map.sessions(), (std::vector<Session>{{"first", FrameId(0)}}));
+  const FrameId next = start.map.NextFrame();
+  const size_t landmarks = start.map.landmarks().size();
+  System second(Wall::Options(), GetParam(), std::move(start));
+  for (int run = 0; run < 2; ++run) {
+    ASSERT_NE(second.map(), nullptr);
+    for (int i = 0; i < 3; ++i) {  // the time stamps begin before the last one of the map
+      const TrackedFrame frame = TrackFrame(second, i);
+      EXPECT_EQ(frame.state, TrackingState::kLost);
+      EXPECT_EQ(frame.frame, FrameId(next.value + static_cast<uint32_t>(i)));
+    }
+    EXPECT_EQ(second.map()->landmarks().size(), landmarks);
+    EXPECT_EQ(second.map()->sessions().size(), 1u);
+    EXPECT_TRUE(second.trajectory().empty());
+    second.Reset();
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SystemTest,

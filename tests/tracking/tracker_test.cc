@@ -717,5 +717,65 @@ TEST_F(ObjectTrackerTest, FindsLandmarksAgainAfterAFrameWithoutThem) {
   ExpectNear(result.report.tracked.cam_from_world, SyntheticWorld::CamFromWorld(4), 1e-3);
 }
 
+// ---- a map of an earlier session
+
+// Finds a frame by keyframe 0 when it is asked for the third time and later; counts how often it
+// was asked.
+Relocalise ByKeyframe0(int& asked) {
+  return [&asked](const Frame& frame, const Map& map,
+                  const TrackingContext& context) -> std::optional<PoseEstimate> {
+    if (++asked < 3) {
+      return std::nullopt;
+    }
+    LastFrame last;
+    last.reference = KeyframeId(0);
+    last.cam_from_world = map.keyframes().At(last.reference).cam_from_world;
+    return PoseByReferenceKeyframe(frame, map, context, last);
+  };
+}
+
+TEST_F(TrackerTest, WithAMapButNoPoseItIsLostUntilAFrameIsFound) {
+  map_ = Publish(made_.map);
+  int asked = 0;
+  Tracker tracker(world_.sensor(), {});
+  tracker.Begin(ByKeyframe0(asked), false);
+  uint32_t first_request = 0;
+  for (uint32_t i = 10; i < 25; ++i) {
+    const Tracker::Result result = tracker.Process(DemandingFrame(i), map_, kIdle);
+    const bool is_found = i >= 12;
+    EXPECT_EQ(result.report.tracked.state,
+              is_found ? TrackingState::kTracked : TrackingState::kLost);
+    EXPECT_EQ(result.message.has_value() && !is_found, false);
+    if (is_found) {
+      ExpectNear(result.report.tracked.cam_from_world, SyntheticWorld::CamFromWorld(i), 1e-3);
+    }
+    if (first_request == 0 && RequestOf(result) != nullptr) {
+      first_request = i;
+    }
+  }
+  EXPECT_EQ(asked, 3) << "the last frame leads to the next";
+  EXPECT_EQ(first_request, 18u) << "0.2 s after the first pose";
+}
+
+TEST_F(TrackerTest, WithoutASourceItStaysLost) {
+  map_ = Publish(made_.map);
+  for (uint32_t i = 0; i < 3; ++i) {
+    const Tracker::Result result = Process(DemandingFrame(i));
+    EXPECT_EQ(result.report.tracked.state, TrackingState::kLost);
+    EXPECT_FALSE(result.message);
+  }
+}
+
+TEST_F(TrackerTest, LocalizationRequestsNoKeyframes) {
+  map_ = Publish(made_.map);
+  int asked = 2;
+  tracker_.Begin(ByKeyframe0(asked), true);
+  for (uint32_t i = 0; i < 60; ++i) {
+    const Tracker::Result result = Process(DemandingFrame(i));
+    EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked) << i;
+    EXPECT_FALSE(result.message);
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

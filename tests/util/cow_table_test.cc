@@ -259,5 +259,15 @@ TEST(CowTable, SnapshotsAreReadWhileTheTableIsWritten) {
   }
 }
 
+TEST(CowTable, SkipsIdsThatWereUsed) {
+  CowTable<KeyframeId, int, 4> table;
+  table.Put(KeyframeId(3), 1);
+  table.SkipIds(KeyframeId(2));
+  EXPECT_EQ(table.NextId(), KeyframeId(4));
+  table.SkipIds(KeyframeId(9));
+  EXPECT_EQ(table.Insert(2), KeyframeId(9));
+  EXPECT_EQ(table.size(), 2u);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -205,5 +205,37 @@ TEST(RecyclingTable, SnapshotsAreReadWhileTheTableIsWritten) {
   }
 }
 
+TEST(RecyclingTable, IsMadeAgainFromItsValuesAndFreeIds) {
+  Table table = MakeTable(10);
+  for (const uint32_t slot : {7u, 2u, 5u}) {
+    table.Erase(LandmarkId(slot));
+  }
+  table.Insert("again");
+  for (uint32_t generation = 0; generation <= LandmarkId::kMaxGeneration; ++generation) {
+    table.Erase(LandmarkId(9, generation));  // the last time retires the slot
+    if (generation < LandmarkId::kMaxGeneration) {
+      table.Insert("short-lived");
+    }
+  }
+  ASSERT_EQ(table.used_slots(), 10u);
+  ASSERT_EQ(table.FreeIds(), (std::vector{LandmarkId(2, 1), LandmarkId(7, 1)}));
+
+  Table copy;
+  for (const auto& [id, value] : table) {
+    copy.Put(id, value);
+  }
+  const std::vector<LandmarkId> free = table.FreeIds();
+  std::for_each(free.rbegin(), free.rend(), [&](LandmarkId id) { copy.PutFree(id); });
+  copy.SkipSlots(table.used_slots());
+  EXPECT_EQ(Content(copy), Content(table));
+  EXPECT_EQ(copy.slots(), table.slots());
+  EXPECT_THROW(copy.Put(LandmarkId(2, 3), "used"), CheckError);
+  EXPECT_THROW(copy.PutFree(LandmarkId(0, 1)), CheckError);
+  EXPECT_THROW(copy.Put(LandmarkId(), "invalid"), CheckError);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(copy.Insert("new"), table.Insert("new"));
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -26,6 +26,8 @@ struct PinholeCamera {
   int height = 480;
   double bf = 40.0;  // baseline (m) times fx (px)
 
+  bool operator==(const PinholeCamera&) const = default;
+
   // Binds the fields to ORB-SLAM2's keys `Camera.fx` and so on.
   void Bind(OptionTable& options);
 

@@ -17,6 +17,9 @@ class DepthGrid {
   DepthGrid() = default;
   // `depth` as in ImageInput; an empty image gives an empty grid.
   DepthGrid(const cv::Mat& depth, double units_per_metre);
+  // A grid that was stored: its samples() and its number of columns. Throws CheckError if the
+  // samples do not fill the rows.
+  DepthGrid(int columns, std::vector<uint16_t> samples);
 
   bool empty() const { return samples_.empty(); }
   int columns() const { return columns_; }
@@ -25,6 +28,10 @@ class DepthGrid {
   double At(int column, int row) const {
     return 1e-3 * samples_[static_cast<size_t>(row * columns_ + column)];
   }
+  // All samples in mm, row by row; 0 for unknown.
+  const std::vector<uint16_t>& samples() const { return samples_; }
+  // Number of columns or rows of the grid of an image with this width or height (px).
+  static int CountAlong(int side) { return (side + kStep / 2 - 1) / kStep; }
   // Raw pixel of a sample.
   static Eigen::Vector2d RawPixel(int column, int row) {
     return {kStep * column + kStep / 2, kStep * row + kStep / 2};

@@ -12,4 +12,8 @@ namespace hullslam {
 // earlier file at `path` is unchanged. The files of a run are written together: see OutputFolder.
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content);
 
+// Throws InputError if WriteFileAtomically() could not write a small file at `path` now. Changes
+// nothing there.
+void ProbeFile(const std::filesystem::path& path);
+
 }  // namespace hullslam

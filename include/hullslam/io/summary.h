@@ -59,6 +59,7 @@ struct MapSummary {
   size_t keyframes = 0;
   size_t landmarks = 0;
   size_t loops = 0;
+  size_t sessions = 0;  // runs that added keyframes
 };
 
 struct ProvenanceSummary {

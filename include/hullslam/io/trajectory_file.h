@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "hullslam/geometry/trajectory.h"
@@ -18,5 +19,13 @@ Trajectory ReadTrajectory(const std::filesystem::path& path);
 // The trajectory in TUM's format: stamps with 6 decimals, values with 9, qw not negative. The same
 // poses give the same bytes. Throws CheckError for values that are not finite.
 std::string FormatTrajectory(const Trajectory& trajectory);
+
+// A part of the poses in a file. Time stamps may begin again from part to part.
+struct TrajectoryPart {
+  std::string title;  // written in printable ASCII, and cut if it is long; empty: none
+  Trajectory poses;
+};
+// The same with a comment line "# TITLE" before each part that has a title. Readers skip it.
+std::string FormatTrajectory(std::span<const TrajectoryPart> parts);
 
 }  // namespace hullslam

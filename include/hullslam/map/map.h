@@ -6,13 +6,16 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "hullslam/bow/inverted_index.h"
 #include "hullslam/bow/vocabulary.h"
 #include "hullslam/map/keyframe.h"
 #include "hullslam/map/landmark.h"
+#include "hullslam/map/map_tables.h"
 #include "hullslam/map/object_landmark.h"
 #include "hullslam/map/replacements.h"
+#include "hullslam/map/session.h"
 #include "hullslam/util/cow_table.h"
 #include "hullslam/util/id.h"
 #include "hullslam/util/recycling_table.h"
@@ -29,6 +32,8 @@ class Map {
   Map() = default;
   // `vocabulary` is the one that the words of all frames are from; null: the index stays empty.
   explicit Map(std::shared_ptr<const Vocabulary> vocabulary) : vocabulary_(std::move(vocabulary)) {}
+  // A map that was stored. The tables are not checked; map/restored_map.h does this.
+  explicit Map(MapTables tables, std::shared_ptr<const Vocabulary> vocabulary = nullptr);
 
   // A copy of the map. The two share memory until one of them is changed.
   Map Snapshot();
@@ -38,6 +43,16 @@ class Map {
   const CowTable<KeyframeId, Keyframe, 1>& keyframes() const { return keyframes_; }
   const RecyclingTable<LandmarkId, Landmark>& landmarks() const { return landmarks_; }
   const CowTable<ObjectId, ObjectLandmark, 4>& objects() const { return objects_; }
+  const CowTable<KeyframeId, CulledKeyframe>& culled() const { return culled_; }
+
+  // The runs that added keyframes, in the order in which they began. Empty for a map that was not
+  // made by a run.
+  const std::vector<Session>& sessions() const { return sessions_; }
+  // Frames from session.first_frame on belong to a new session. Throws CheckError unless this is
+  // later than all frames of the map and the begin of the last session.
+  void BeginSession(Session session);
+  // The id after the largest id of a frame in the map, culled keyframes included.
+  FrameId NextFrame() const;
 
   // The keyframes by the words of their frames, for place recognition.
   const InvertedIndex& index() const { return index_; }
@@ -105,6 +120,10 @@ class Map {
   // The keyframe itself or, if it is culled, the nearest ancestor that is not.
   KeyframeId NearestAlive(KeyframeId keyframe) const;
 
+  // How much the observation of a landmark at this keypoint counts: an observation with depth
+  // constrains all three coordinates, like two observations without depth.
+  static int ObservationWeight(const Frame& frame, uint32_t keypoint);
+
   // How many corrections have been applied (map/correction.h).
   uint32_t correction_count() const { return correction_count_; }
   void CountCorrection() { ++correction_count_; }
@@ -132,6 +151,7 @@ class Map {
   Replacements<LandmarkId> replaced_landmarks_;
   Replacements<ObjectId> replaced_objects_;
   CowTable<KeyframeId, CulledKeyframe> culled_;
+  std::vector<Session> sessions_;
   uint32_t correction_count_ = 0;
   uint32_t revision_ = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "hullslam/geometry/trajectory.h"
@@ -16,5 +17,7 @@ Trajectory ComposeTrajectory(const Map& map, std::span<const TrackedFrame> frame
 
 // The poses of the keyframes.
 Trajectory KeyframeTrajectory(const Map& map);
+// The poses of the keyframes of one session (SessionNumber).
+Trajectory KeyframeTrajectory(const Map& map, size_t session);
 
 }  // namespace hullslam

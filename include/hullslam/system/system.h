@@ -17,6 +17,7 @@
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
 #include "hullslam/system/options.h"
+#include "hullslam/system/system_start.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
 
@@ -54,8 +55,10 @@ struct ObjectCounts {
 // has more about threads.
 class System {
  public:
-  // Throws InputError if SystemOptions::Validate does.
-  System(const SystemOptions& options, PipelineKind kind);
+  // Throws InputError if SystemOptions::Validate does, and CheckError for localization without a
+  // map. With a map of earlier sessions, frame and keyframe ids go on after the largest of the map,
+  // and time stamps may begin anywhere.
+  System(const SystemOptions& options, PipelineKind kind, SystemStart start = {});
   ~System();
 
   // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order that Camera.RGB says; `depth` as in
@@ -89,12 +92,13 @@ class System {
   // iterations, in this thread. Track must not be called after Finish.
   void Finish(const Cancellation* cancellation = nullptr, const ProgressCallback& on_progress = {});
 
-  // Makes the system as it was after its construction: without a map, frames, times and counts, and
-  // ready for Track, also after Finish. Ids begin again, and time stamps may. Waits until the
+  // Makes the system as it was after its construction: with the map that it was given, without
+  // frames, times and counts, and ready for Track, also after Finish. Ids begin again, and time
+  // stamps may. Waits until the
   // mapper has ended. Snapshots that were taken before are not changed.
   void Reset();
 
-  // The newest snapshot; null before the first keyframe.
+  // The newest snapshot; null before the first keyframe of a new map.
   std::shared_ptr<const Map> map() const;
   // One entry per call of Track.
   const std::vector<TrackedFrame>& frames() const { return frames_; }
@@ -109,11 +113,13 @@ class System {
   ObjectCounts object_counts() const;
 
  private:
+  std::unique_ptr<Pipeline> BeginPipeline();
   std::unique_ptr<TaskRunner> MakeRunner();
   void CheckStamp(double timestamp) const;
 
   const SystemOptions options_;
   const PipelineKind kind_;
+  SystemStart start_;
   const Sensor sensor_;
   std::unique_ptr<FrameBuilder> frame_builder_;
   std::unique_ptr<Pipeline> pipeline_;

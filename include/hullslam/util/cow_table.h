@@ -87,6 +87,8 @@ class CowTable {
 
   // The id that the next Insert() returns. It is larger than every id used so far.
   IdType NextId() const { return IdType(next_id_); }
+  // From now on Insert() returns no id below `next`: they were used by values that were erased.
+  void SkipIds(IdType next) { next_id_ = std::max(next_id_, next.value); }
 
   IdType Insert(Value value) {
     const IdType id = NextId();

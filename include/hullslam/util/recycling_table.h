@@ -6,6 +6,7 @@
 #include <iterator>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "hullslam/util/check.h"
 #include "hullslam/util/cow_table.h"
@@ -95,6 +96,18 @@ class RecyclingTable {
   bool empty() const { return size_ == 0; }
   // Number of slots that hold a value or wait for one.
   size_t slots() const { return cells_.size(); }
+  // Number of slots that were ever used: slots() and those whose generations are used up.
+  uint32_t used_slots() const { return cells_.NextId().value; }
+  // The ids that the next values get in free slots, in this order.
+  std::vector<IdType> FreeIds() const {
+    std::vector<IdType> ids;
+    for (uint32_t slot = first_free_; slot != kNone;) {
+      const Cell& cell = cells_.At(SlotId(slot));
+      ids.push_back(cell.id);
+      slot = cell.next_free;
+    }
+    return ids;
+  }
 
   // Throws CheckError if all slots are used.
   IdType Insert(Value value) {
@@ -111,6 +124,24 @@ class RecyclingTable {
     ++size_;
     return cell.id;
   }
+
+  // The next three functions make a table again of which the values, FreeIds() and used_slots() are
+  // known. The first two throw CheckError if the slot of the id is used.
+
+  // Stores a value under an id whose slot has not been used.
+  void Put(IdType id, Value value) {
+    Check(id.slot() < IdType::kMaxSlot, "the id is invalid");
+    cells_.Put(SlotId(id.slot()), {.id = id, .value = std::move(value)});
+    ++size_;
+  }
+  // Frees a slot that has not been used. The next value gets this id.
+  void PutFree(IdType id) {
+    Check(id.slot() < IdType::kMaxSlot, "the id is invalid");
+    cells_.Put(SlotId(id.slot()), {.id = id, .value = std::nullopt, .next_free = first_free_});
+    first_free_ = id.slot();
+  }
+  // The slots below `count` that hold no value and are not free are not used again.
+  void SkipSlots(uint32_t count) { cells_.SkipIds(SlotId(count)); }
 
   // Null if the id was never used or was erased. The pointer is valid until the next write.
   const Value* Find(IdType id) const {

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "hullslam/util/id.h"
+
+namespace hullslam {
+
+// A run that has added keyframes to the map.
+struct Session {
+  std::string name;  // such as the name of the sequence
+  // Its frames have this id or a larger one. Those of the next session have still larger ids.
+  FrameId first_frame;
+
+  bool operator==(const Session&) const = default;
+};
+
+// The number of sessions that had begun before this frame or with it. So it is the number of the
+// frame's session, counted from 1, and 0 for a frame of no session. `sessions` are in the order in
+// which they began.
+size_t SessionNumber(std::span<const Session> sessions, FrameId frame);
+
+}  // namespace hullslam

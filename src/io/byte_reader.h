@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+namespace hullslam {
+
+// Reads what ByteWriter wrote. All functions throw InputError with the name of the bytes if these
+// end too early or if a value is not allowed.
+class ByteReader {
+ public:
+  // `bytes` must outlive the reader. `name` is what messages begin with: the file and the part.
+  ByteReader(std::string_view bytes, std::string name) : bytes_(bytes), name_(std::move(name)) {}
+
+  template <typename Number>
+  Number Get() {
+    static_assert(std::is_arithmetic_v<Number> && !std::is_same_v<Number, bool>);
+    Require(sizeof(Number) <= bytes_.size(), "is cut off");
+    std::array<char, sizeof(Number)> bytes{};
+    std::memcpy(bytes.data(), bytes_.data(), bytes.size());
+    if constexpr (std::endian::native == std::endian::big) {
+      std::reverse(bytes.begin(), bytes.end());
+    }
+    bytes_.remove_prefix(bytes.size());
+    return std::bit_cast<Number>(bytes);
+  }
+  // A number that is finite and whose size is at most `most`.
+  template <typename Number>
+  Number GetFinite(Number most) {
+    const auto number = Get<Number>();
+    Require(std::abs(number) <= most, "has a number that is out of range or not finite");
+    return number;
+  }
+  // A matrix of such numbers.
+  template <typename Matrix>
+  Matrix GetMatrix(typename Matrix::Scalar most) {
+    Matrix matrix;
+    for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
+      for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+        matrix(row, column) = GetFinite(most);
+      }
+    }
+    return matrix;
+  }
+  bool GetFlag() {
+    const auto flag = Get<uint8_t>();
+    Require(flag <= 1, "has a flag that is neither 0 nor 1");
+    return flag == 1;
+  }
+  // A number of elements of at least `bytes_each` bytes, which must all be there. So it is safe to
+  // allocate memory for them.
+  size_t GetCount(size_t bytes_each) {
+    const size_t count = Get<uint32_t>();
+    Require(count <= bytes_.size() / bytes_each, "has more elements than bytes");
+    return count;
+  }
+  std::string GetText() {
+    const size_t size = GetCount(1);
+    std::string text(bytes_.substr(0, size));
+    bytes_.remove_prefix(size);
+    return text;
+  }
+  size_t left() const { return bytes_.size(); }
+  // To be called after the last value.
+  void ExpectEnd() const { Require(bytes_.empty(), "has bytes after its end"); }
+
+  void Require(bool condition, const char* fault) const {
+    if (!condition) {
+      Fail(fault);
+    }
+  }
+  [[noreturn]] void Fail(const char* fault) const;
+
+ private:
+  std::string_view bytes_;  // that are left
+  std::string name_;
+};
+
+}  // namespace hullslam

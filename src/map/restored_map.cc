@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/restored_map.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hullslam/util/error.h"
+#include "map/invariants.h"
+
+namespace hullslam {
+namespace {
+
+[[noreturn]] void Fail(const std::string& kind, uint32_t id, const std::string& what) {
+  throw InputError(kind + ' ' + std::to_string(id) + ' ' + what);
+}
+
+void Require(bool condition, KeyframeId id, const char* what) {
+  if (!condition) {
+    Fail("keyframe", id.value, what);
+  }
+}
+
+// The number of keyframes that the map has had. Every id below it is that of a keyframe or of a
+// culled keyframe.
+uint32_t CountKeyframes(const MapTables& tables) {
+  return std::max(tables.keyframes.NextId().value, tables.culled.NextId().value);
+}
+
+// Map::KeyframeOfFrame searches in all keyframes by the frame.
+void CheckFrames(const MapTables& tables) {
+  constexpr uint32_t kMostFrames = uint32_t{1} << 31;  // later sessions need ids too
+  FrameId last;
+  for (uint32_t i = 0; i < CountKeyframes(tables); ++i) {
+    const KeyframeId id(i);
+    const Keyframe* keyframe = tables.keyframes.Find(id);
+    const CulledKeyframe* culled = tables.culled.Find(id);
+    Require((keyframe == nullptr) != (culled == nullptr), id, "is missing or is twice there");
+    const FrameId frame = keyframe != nullptr ? keyframe->frame->id : culled->frame;
+    Require(frame.value < kMostFrames && (!last.IsValid() || last < frame), id,
+            "has a frame that is not later than that of the keyframe before");
+    last = frame;
+  }
+  const Session* before = nullptr;
+  for (const Session& session : tables.sessions) {
+    if (before != nullptr && !(before->first_frame < session.first_frame)) {
+      throw InputError("the sessions are out of order");
+    }
+    before = &session;
+  }
+  if (before != nullptr && (!last.IsValid() || last < before->first_frame)) {
+    throw InputError("the last session has no keyframe");
+  }
+}
+
+// The pose of a culled keyframe is that of another one, which may be culled too, and so on. The
+// last one must be alive.
+void CheckCulled(const MapTables& tables) {
+  enum class Mark : uint8_t { kNew, kOnPath, kGood };
+  std::vector<Mark> marks(CountKeyframes(tables), Mark::kNew);
+  tables.culled.ForEach([&](KeyframeId id, const CulledKeyframe&) {
+    std::vector<KeyframeId> path;
+    while (const CulledKeyframe* culled = tables.culled.Find(id)) {
+      Require(marks[id.value] != Mark::kOnPath, id, "is culled and refers to itself");
+      if (marks[id.value] == Mark::kGood) {
+        break;
+      }
+      marks[id.value] = Mark::kOnPath;
+      path.push_back(id);
+      id = culled->pose.reference;
+    }
+    Require(tables.keyframes.Contains(id) || tables.culled.Contains(id), id,
+            "does not exist but a culled keyframe refers to it");
+    for (const KeyframeId passed : path) {
+      marks[passed.value] = Mark::kGood;
+    }
+  });
+}
+
+void CheckReference(const MapTables& tables, KeyframeId reference, const std::string& kind,
+                    uint32_t id) {
+  if (reference.IsValid() && reference.value >= CountKeyframes(tables)) {
+    Fail(kind, id, "refers to a keyframe that does not exist");
+  }
+}
+
+void CheckReferences(const MapTables& tables) {
+  tables.landmarks.ForEach([&](LandmarkId id, const Landmark& landmark) {
+    CheckReference(tables, landmark.reference, "landmark", id.value);
+    CheckReference(tables, landmark.created_by, "landmark", id.value);
+  });
+  tables.objects.ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    CheckReference(tables, object.reference, "object", id.value);
+    for (const MisfitSample& sample : object.misfit_samples) {
+      CheckReference(tables, sample.keyframe, "object", id.value);
+    }
+  });
+}
+
+void CheckWords(const MapTables& tables, const Vocabulary& vocabulary) {
+  tables.keyframes.ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    for (const WordId word : keyframe.frame->words) {
+      Require(word.value < vocabulary.word_count(), id, "has a word that is not in the vocabulary");
+    }
+  });
+}
+
+std::vector<KeyframeId> IdsOf(const MapTables& tables) {
+  std::vector<KeyframeId> ids;
+  tables.keyframes.ForEach([&](KeyframeId id, const Keyframe&) { ids.push_back(id); });
+  return ids;
+}
+
+void DeriveChildren(MapTables& tables) {
+  for (const KeyframeId id : IdsOf(tables)) {
+    const KeyframeId parent = tables.keyframes.At(id).parent;
+    if (parent.IsValid()) {
+      Require(tables.keyframes.Contains(parent), id, "has a parent that does not exist");
+      tables.keyframes.Mutable(parent).children.push_back(id);
+    }
+  }
+}
+
+// Adds the observation of an entity by a keyframe. Keyframes come in the order of their ids.
+template <typename Observations>
+void AppendObservation(Observations& observations, KeyframeId keyframe, uint32_t index) {
+  Require(observations.empty() || observations.back().keyframe != keyframe, keyframe,
+          "observes something twice");
+  observations.push_back({keyframe, index});
+}
+
+void DeriveObservations(MapTables& tables) {
+  for (const KeyframeId id : IdsOf(tables)) {
+    const Keyframe& keyframe = tables.keyframes.At(id);
+    for (uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
+      if (const LandmarkId observed = keyframe.landmarks[i]; observed.IsValid()) {
+        Require(tables.landmarks.Contains(observed), id, "observes a landmark that does not exist");
+        Landmark& landmark = tables.landmarks.Mutable(observed);
+        AppendObservation(landmark.observations, id, i);
+        landmark.observation_weight += Map::ObservationWeight(*keyframe.frame, i);
+      }
+    }
+    for (uint32_t i = 0; i < keyframe.objects.size(); ++i) {
+      if (const ObjectId observed = keyframe.objects[i]; observed.IsValid()) {
+        Require(tables.objects.Contains(observed), id, "observes an object that does not exist");
+        AppendObservation(tables.objects.Mutable(observed).observations, id, i);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Map RestoreMap(MapTables tables, std::shared_ptr<const Vocabulary> vocabulary) {
+  CheckFrames(tables);
+  if (vocabulary != nullptr) {
+    CheckWords(tables, *vocabulary);
+  }
+  CheckCulled(tables);
+  CheckReferences(tables);
+  DeriveChildren(tables);
+  DeriveObservations(tables);
+  tables.keyframes.SkipIds(KeyframeId(CountKeyframes(tables)));
+  Map map(std::move(tables), std::move(vocabulary));
+  if (const std::vector<std::string> violations = FindViolations(map); !violations.empty()) {
+    throw InputError(violations.front());
+  }
+  return map;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs of rgbd_tum that save and load maps.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "hullslam/io/map_file.h"
+#include "io/read_file.h"
+#include "support/plane_sequence.h"
+#include "support/run_program.h"
+#include "support/running_program.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Arguments = std::vector<std::string>;
+using Json = nlohmann::json;
+
+class RgbdMap : public ::testing::Test {
+ protected:
+  ProgramResult Run(const Arguments& more) const {
+    Arguments arguments = {path_, "--output", output_, "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunProgram("rgbd_tum", arguments);
+  }
+
+  void Save() const { ASSERT_EQ(Run({"--save-map", map_}).exit_code, 0); }
+
+  // Expects a refusal before the first frame.
+  void ExpectRefusal(const Arguments& arguments, const std::vector<std::string>& parts) const {
+    fs::remove_all(output_);
+    const ProgramResult result = Run(arguments);
+    EXPECT_EQ(result.exit_code, 2) << result.errors;
+    for (const std::string& part : parts) {
+      EXPECT_NE(result.errors.find(part), std::string::npos)
+          << "no '" << part << "' in: " << result.errors;
+    }
+    EXPECT_FALSE(fs::exists(output_ / "summary.json"));
+  }
+
+  Json Summary() const { return Json::parse(ReadFile(output_ / "summary.json")); }
+
+  TemporaryFolder folder_;
+  fs::path output_ = folder_.path() / "out";
+  fs::path map_ = folder_.path() / "a.map";
+  PlaneSequence sequence_;
+  std::string path_ = sequence_.path();
+};
+
+TEST_F(RgbdMap, SavingAMapChangesNoOtherFile) {
+  ASSERT_EQ(Run({}).exit_code, 0);
+  const std::string poses = ReadFile(output_ / "trajectory.txt");
+  const std::string keyframes = ReadFile(output_ / "keyframes.txt");
+  Save();
+  EXPECT_EQ(ReadFile(output_ / "trajectory.txt"), poses);
+  EXPECT_EQ(ReadFile(output_ / "keyframes.txt"), keyframes);
+  const std::string bytes = ReadFile(map_);
+  const StoredMap stored = ReadMap(map_);
+  EXPECT_EQ(stored.map.keyframes().size(), Summary()["map"]["keyframes"]);
+  EXPECT_EQ(stored.map.sessions().size(), 1U);
+  EXPECT_EQ(Summary()["map"]["sessions"], 1);
+  EXPECT_EQ(stored.map.sessions()[0].name, fs::path(path_).filename().string());
+  Save();
+  EXPECT_EQ(ReadFile(map_), bytes) << "the same run gives the same bytes";
+}
+
+// This version has no relocalisation, so a run on a loaded map stays lost.
+TEST_F(RgbdMap, ARunOnALoadedMapFailsIfNoFrameIsFound) {
+  Save();
+  const std::string bytes = ReadFile(map_);
+  const std::string name = fs::path(path_).filename().string();
+  const std::string head = "# timestamp tx ty tz qx qy qz qw\n";
+  for (const bool is_localization : {false, true}) {
+    Arguments arguments = {"--load-map", map_, "--save-map", map_, "--set", "run.max_lost_share=1"};
+    if (is_localization) {
+      arguments.emplace_back("--localization");
+    }
+    const ProgramResult result = Run(arguments);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_NE(result.errors.find("no frame was found in this map"), std::string::npos)
+        << result.errors;
+    EXPECT_EQ(Summary()["trajectory"]["lost"], 12);
+    EXPECT_EQ(Summary()["map"]["sessions"], 1);
+    EXPECT_EQ(ReadFile(output_ / "trajectory.txt"),
+              head + (is_localization ? "# localization: " : "# session 2: ") + name + "\n");
+    EXPECT_TRUE(ReadFile(output_ / "keyframes.txt").starts_with(head + "# session 1: " + name));
+    EXPECT_EQ(ReadFile(map_), bytes) << "nothing was added to the map";
+  }
+}
+
+TEST_F(RgbdMap, AnInterruptedRunSavesItsMap) {
+  const PlaneSequence slow(12, 0.5);
+  RunningProgram program("rgbd_tum",
+                         {slow.path(), "--realtime", "--output", output_, "--save-map", map_});
+  ASSERT_TRUE(program.ReadLine().starts_with("frame "));
+  program.Send(SIGINT);
+  EXPECT_EQ(program.Wait(), 1);
+  EXPECT_EQ(ReadMap(map_).map.keyframes().size(), Summary()["map"]["keyframes"]);
+}
+
+TEST_F(RgbdMap, BadUsageIsRefused) {
+  ExpectRefusal({"--localization"}, {"--localization", "--load-map"});
+  ExpectRefusal({"--save-map", folder_.path() / "none" / "a.map"},
+                {"none/a.map", "No such file or directory"});
+  ExpectRefusal({"--save-map", folder_.path()}, {folder_.path().string(), "not a regular file"});
+  ExpectRefusal({"--save-map", output_ / "a.map"}, {"--save-map", "output folder"});
+  ExpectRefusal({"--save-map", path_ + "/rgb/a.map"}, {"--save-map", "reads"});
+}
+
+TEST_F(RgbdMap, BadMapsAreRefused) {
+  ExpectRefusal({"--load-map", map_}, {map_.string(), "No such file"});
+  ExpectRefusal({"--load-map", path_ + "/rgb.txt"}, {"rgb.txt", "is not a map"});
+  Save();
+  ExpectRefusal({"--load-map", map_, "--set", "Camera.fx=501"},
+                {map_.string(), "Camera.fx 500", "501"});
+  ExpectRefusal({"--load-map", map_, "--set", "ORBextractor.nLevels=7"},
+                {map_.string(), "ORBextractor.nLevels 8", "7"});
+  ExpectRefusal({"--load-map", map_, "--output", folder_.path()}, {"contains", map_.string()});
+  fs::resize_file(map_, fs::file_size(map_) / 2);
+  ExpectRefusal({"--load-map", map_}, {map_.string(), "damaged or cut off"});
+}
+
+}  // namespace
+}  // namespace hullslam

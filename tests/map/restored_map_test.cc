@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/restored_map.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "map/covisibility.h"
+#include "map/invariants.h"
+#include "map/made_map.h"
+#include "map/random_edits.h"
+#include "support/expect_error.h"
+
+namespace hullslam {
+namespace {
+
+// The tables of a map without what can be derived.
+MapTables TablesOf(const Map& map) {
+  MapTables tables;
+  map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    tables.keyframes.Put(id, keyframe);
+    tables.keyframes.Mutable(id).children.clear();
+  });
+  map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+    tables.landmarks.Put(id, landmark);
+    tables.landmarks.Mutable(id).observations.clear();
+    tables.landmarks.Mutable(id).observation_weight = 0;
+  });
+  map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    tables.objects.Put(id, object);
+    tables.objects.Mutable(id).observations.clear();
+  });
+  map.culled().ForEach(
+      [&](KeyframeId id, const CulledKeyframe& culled) { tables.culled.Put(id, culled); });
+  tables.sessions = map.sessions();
+  return tables;
+}
+
+TEST(RestoreMap, DerivesWhatIsMissing) {
+  for (uint32_t seed = 0; seed < 5; ++seed) {
+    Map map;
+    RandomEdits edits(seed);
+    for (int i = 0; i < 400; ++i) {
+      edits.Edit(map);
+    }
+    map.ForgetReplaced(UINT32_MAX);
+    ASSERT_FALSE(map.culled().empty());
+    const Map restored = RestoreMap(TablesOf(map));
+    // Free slots are not in these tables, so Dump would differ in the absent ids that it resolves.
+    EXPECT_EQ(FindViolations(restored), std::vector<std::string>());
+    map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+      EXPECT_EQ(restored.keyframes().At(id).children, keyframe.children);
+    });
+    map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+      std::ostringstream expected;
+      std::ostringstream found;
+      Dump(landmark, expected);
+      Dump(restored.landmarks().At(id), found);
+      EXPECT_EQ(found.str(), expected.str());
+    });
+    EXPECT_EQ(restored.NextFrame(), map.NextFrame());
+  }
+}
+
+// A chain of five keyframes that share landmarks, of which the third is culled, and an object.
+Map MadeMap() {
+  Map map;
+  map.BeginSession({"first", FrameId(0)});
+  std::vector<KeyframeId> ids;
+  for (int i = 0; i < 5; ++i) {
+    ids.push_back(AddKeyframe(map, 60, 20));
+  }
+  Share(map, ids, 20);
+  for (const KeyframeId id : ids) {
+    UpdateCovisibility(map, id);
+  }
+  const ObjectId object = map.AddObject();
+  map.AddObservation(object, ids[0], 0);
+  map.AddObservation(object, ids[1], 2);
+  map.CullKeyframe(ids[2]);
+  return map;
+}
+
+CulledKeyframe Culled(uint32_t frame, uint32_t reference) {
+  CulledKeyframe culled;
+  culled.frame = FrameId(frame);
+  culled.pose.reference = KeyframeId(reference);
+  return culled;
+}
+
+// Expects that the tables of MadeMap() are refused after a change.
+void ExpectRefusal(const std::function<void(MapTables&)>& change,
+                   const std::vector<std::string>& parts) {
+  MapTables tables = TablesOf(MadeMap());
+  change(tables);
+  ExpectInputError([&] { RestoreMap(std::move(tables)); }, parts);
+}
+
+TEST(RestoreMap, AcceptsWhatAMapConsistsOf) {
+  EXPECT_EQ(Dump(RestoreMap(TablesOf(MadeMap()))), Dump(MadeMap()));
+}
+
+TEST(RestoreMap, RefusesKeyframesThatAreMissingOrOutOfOrder) {
+  ExpectRefusal([](MapTables& t) { t.culled.Erase(KeyframeId(2)); }, {"keyframe 2", "missing"});
+  ExpectRefusal([](MapTables& t) { t.culled.Put(KeyframeId(3), Culled(9, 0)); },
+                {"keyframe 3", "twice"});
+  ExpectRefusal([](MapTables& t) { t.culled.Mutable(KeyframeId(2)).frame = FrameId(3); },
+                {"keyframe 2", "frame", "not later"});
+  ExpectRefusal([](MapTables& t) { t.culled.Mutable(KeyframeId(2)).frame = FrameId(); },
+                {"keyframe 2", "frame"});
+  ExpectRefusal(
+      [](MapTables& t) {
+        t.sessions.push_back({"b", FrameId(0)});
+      },
+      {"sessions", "order"});
+  ExpectRefusal(
+      [](MapTables& t) {
+        t.sessions.push_back({"b", FrameId(13)});
+      },
+      {"session", "no keyframe"});
+}
+
+TEST(RestoreMap, RefusesCulledKeyframesWithoutAPose) {
+  const auto refer = [](uint32_t to) {
+    return [to](MapTables& t) { t.culled.Mutable(KeyframeId(2)).pose.reference = KeyframeId(to); };
+  };
+  ExpectRefusal(refer(2), {"keyframe 2", "itself"});
+  ExpectRefusal(refer(7), {"keyframe 7", "does not exist"});
+  ExpectRefusal(refer(UINT32_MAX), {"does not exist"});
+  ExpectRefusal(
+      [](MapTables& t) {
+        t.culled.Put(KeyframeId(5), Culled(30, 2));
+        t.culled.Mutable(KeyframeId(2)).pose.reference = KeyframeId(5);
+      },
+      {"itself"});
+}
+
+TEST(RestoreMap, RefusesReferencesToWhatDoesNotExist) {
+  const auto first = [](MapTables& t) -> LandmarkId { return (*t.landmarks.begin()).first; };
+  ExpectRefusal([&](MapTables& t) { t.landmarks.Mutable(first(t)).reference = KeyframeId(8); },
+                {"landmark", "keyframe that does not exist"});
+  ExpectRefusal([&](MapTables& t) { t.landmarks.Mutable(first(t)).created_by = KeyframeId(8); },
+                {"landmark", "keyframe that does not exist"});
+  ExpectRefusal([](MapTables& t) { t.objects.Mutable(ObjectId(0)).reference = KeyframeId(8); },
+                {"object 0", "keyframe that does not exist"});
+  ExpectRefusal(
+      [](MapTables& t) {
+        t.objects.Mutable(ObjectId(0)).misfit_samples.emplace_back().keyframe = KeyframeId(8);
+      },
+      {"object 0", "keyframe that does not exist"});
+  ExpectRefusal([](MapTables& t) { t.keyframes.Mutable(KeyframeId(1)).parent = KeyframeId(2); },
+                {"keyframe 1", "parent that does not exist"});
+  ExpectRefusal(
+      [](MapTables& t) { t.keyframes.Mutable(KeyframeId(1)).landmarks[59] = LandmarkId(99); },
+      {"keyframe 1", "landmark that does not exist"});
+  ExpectRefusal([&](MapTables& t) { t.keyframes.Mutable(KeyframeId(1)).landmarks[59] = first(t); },
+                {"keyframe 1", "twice"});
+  ExpectRefusal([](MapTables& t) { t.keyframes.Mutable(KeyframeId(1)).objects[0] = ObjectId(5); },
+                {"keyframe 1", "object that does not exist"});
+}
+
+TEST(RestoreMap, RefusesWhatViolatesTheInvariants) {
+  ExpectRefusal([](MapTables& t) { t.keyframes.Mutable(KeyframeId(1)).covisible[0].shared = 3; },
+                {"keyframe", "edge"});
+  ExpectRefusal(
+      [](MapTables& t) {
+        std::vector<Covisible>& edges = t.keyframes.Mutable(KeyframeId(1)).covisible;
+        std::swap(edges[0], edges[1]);
+      },
+      {"keyframe 1", "out of order"});
+  ExpectRefusal([](MapTables& t) { t.keyframes.Mutable(KeyframeId(0)).parent = KeyframeId(4); },
+                {"ancestor"});
+  ExpectRefusal([](MapTables& t) { t.objects.Mutable(ObjectId(0)).votes["cup"] += 1.0; },
+                {"object 0", "votes"});
+}
+
+}  // namespace
+}  // namespace hullslam
