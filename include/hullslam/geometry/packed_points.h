@@ -12,6 +12,7 @@ template <int N>
 class PackedPoints {
  public:
   using Point = Eigen::Matrix<double, N, 1>;
+  static constexpr size_t kBytesPerPoint = N * sizeof(float);
 
   PackedPoints() = default;
   PackedPoints(const std::vector<Point>& points) {
