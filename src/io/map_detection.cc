@@ -11,21 +11,28 @@ constexpr auto kMostFloat = static_cast<float>(kMostMapNumber);
 
 template <int N>
 void WritePoints(const PackedPoints<N>& points, ByteWriter& out) {
+  out.PutMatrix(points.min());
+  out.PutMatrix(points.step());
   out.PutCount(points.size());
-  for (const auto& point : points.Unpack()) {  // the numbers are floats
-    out.PutMatrix(point.template cast<float>().eval());
+  for (const auto& point : points.packed()) {
+    for (const uint16_t coordinate : point) {
+      out.Put(coordinate);
+    }
   }
 }
 
 template <int N>
 PackedPoints<N> ReadPoints(ByteReader& in) {
-  std::vector<Eigen::Matrix<double, N, 1>> points;
-  const size_t count = in.GetCount(N * sizeof(float));
-  points.reserve(count);
-  for (size_t i = 0; i < count; ++i) {
-    points.push_back(in.GetMatrix<Eigen::Matrix<float, N, 1>>(kMostFloat).template cast<double>());
+  using Corner = typename PackedPoints<N>::Corner;
+  const Corner min = in.GetMatrix<Corner>(kMostFloat);
+  const Corner step = in.GetMatrix<Corner>(kMostFloat);
+  std::vector<typename PackedPoints<N>::Packed> packed(in.GetCount(N * sizeof(uint16_t)));
+  for (auto& point : packed) {
+    for (uint16_t& coordinate : point) {
+      coordinate = in.Get<uint16_t>();
+    }
   }
-  return points;
+  return PackedPoints<N>(min, step, std::move(packed));
 }
 
 void WriteLines(const std::vector<SilhouetteLine>& lines, ByteWriter& out) {

@@ -101,8 +101,8 @@ void WriteSamples(const std::vector<MisfitSample>& samples, ByteWriter& out) {
 std::vector<MisfitSample> ReadSamples(ByteReader& in) {
   std::vector<MisfitSample> samples(in.GetCount(4 * sizeof(double) + sizeof(uint32_t)));
   for (MisfitSample& sample : samples) {
-    sample.normal = in.GetMatrix<Eigen::Vector3d>(2.0);
-    sample.excess = in.GetFinite(kMostMapNumber);
+    sample.normal = in.GetMatrix<Eigen::Vector3f>(2.0f);
+    sample.excess = in.GetFinite(static_cast<float>(kMostMapNumber));
     sample.keyframe = KeyframeId(in.Get<uint32_t>());
   }
   return samples;

@@ -248,6 +248,13 @@ void Map::ForgetReplaced(uint32_t revision) {
   replaced_objects_.Forget(revision);
 }
 
+void Map::ReplaceFrame(KeyframeId id, std::shared_ptr<const Frame> frame) {
+  Keyframe& keyframe = keyframes_.Mutable(id);
+  index_.Remove(id, VectorOf(*keyframe.frame));
+  keyframe.frame = std::move(frame);
+  index_.Add(id, VectorOf(*keyframe.frame));
+}
+
 void Map::AddLoop(KeyframeId a, KeyframeId b) {
   Check(a != b && keyframes_.Contains(a) && keyframes_.Contains(b),
         "a loop edge joins two keyframes of the map");

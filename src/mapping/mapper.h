@@ -77,6 +77,7 @@ class Mapper {
   Map map_;
   KeyframeId newest_keyframe_;
   std::vector<LandmarkId> recent_;  // new landmarks that CullRecentLandmarks checks
+  std::vector<KeyframeId> full_;    // keyframes that CompactOldKeyframes checks, by increasing id
   std::optional<Session> session_;  // until its first keyframe
 };
 

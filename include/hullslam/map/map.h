@@ -97,6 +97,11 @@ class Map {
   // How many replaced ids are remembered.
   size_t replaced_count() const { return replaced_landmarks_.size() + replaced_objects_.size(); }
 
+  // Gives a keyframe another frame and its words another place in the index. The lists of the
+  // keyframe that have one entry per keypoint or detection are left to the caller
+  // (CompactKeyframe).
+  void ReplaceFrame(KeyframeId keyframe, std::shared_ptr<const Frame> frame);
+
   // Adds a loop edge between two keyframes of the map, unless they already have one.
   void AddLoop(KeyframeId a, KeyframeId b);
 
