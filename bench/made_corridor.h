@@ -66,6 +66,7 @@ class MadeCorridor {
                                        Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
                                        Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
     AddDetections(cam_from_world, *frame);
+    frame->detections.shrink_to_fit();
     return frame;
   }
 

@@ -18,6 +18,7 @@
 
 #include "made_corridor.h"
 #include "made_map.h"
+#include "map_bytes.h"
 #include "system/sequential_pipeline.h"
 
 namespace hullslam {
@@ -103,6 +104,17 @@ void PrintLine(size_t frames, const Map& map, const FrameTimes& times, const Sta
   std::fflush(stdout);
 }
 
+// What the memory of a keyframe consists of.
+void PrintParts(const Map& map) {
+  const auto keyframes = static_cast<double>(map.keyframes().size());
+  double total = 0.0;
+  for (const auto& [part, bytes] : KeyframeBytes(map)) {
+    fmt::print("{:>30}: {:6.2f} kB\n", part, 1e-3 * static_cast<double>(bytes) / keyframes);
+    total += static_cast<double>(bytes);
+  }
+  fmt::print("{:>30}: {:6.2f} kB per keyframe\n", "together", 1e-3 * total / keyframes);
+}
+
 void Run(size_t frames) {
   const Sensor sensor = BenchSensor();
   SystemOptions options;
@@ -140,6 +152,7 @@ void Run(size_t frames) {
       "ids are remembered\n",
       1e-3 * total_ms, frames, lost, pipeline->map()->keyframes().NextId().value,
       pipeline->map()->replaced_count());
+  PrintParts(*pipeline->map());
 }
 
 }  // namespace

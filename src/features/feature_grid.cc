@@ -57,6 +57,34 @@ FeatureGrid::FeatureGrid(std::span<const Keypoint> keypoints, const Eigen::Vecto
   std::partial_sum(in_column.begin(), in_column.end(), column_start_.begin() + 1);
 }
 
+FeatureGrid FeatureGrid::Select(std::span<const uint32_t> kept) const {
+  if (order_.empty()) {
+    return *this;
+  }
+  constexpr uint16_t kRemoved = std::numeric_limits<uint16_t>::max();
+  std::vector<uint16_t> new_index(order_.size(), kRemoved);
+  for (size_t i = 0; i < kept.size(); ++i) {
+    new_index.at(kept[i]) = static_cast<uint16_t>(i);
+  }
+  FeatureGrid selected;
+  selected.min_ = min_;
+  selected.cells_per_pixel_ = cells_per_pixel_;
+  selected.order_.reserve(kept.size());
+  selected.rows_.reserve(kept.size());
+  selected.column_start_.reserve(column_start_.size());
+  size_t place = 0;
+  for (const uint16_t start : column_start_) {
+    for (; place < start; ++place) {
+      if (const uint16_t index = new_index[order_[place]]; index != kRemoved) {
+        selected.order_.push_back(index);
+        selected.rows_.push_back(rows_[place]);
+      }
+    }
+    selected.column_start_.push_back(static_cast<uint16_t>(selected.order_.size()));
+  }
+  return selected;
+}
+
 void FeatureGrid::FindNear(std::span<const Keypoint> keypoints, const Eigen::Vector2f& center,
                            float radius, int min_level, int max_level,
                            std::vector<uint32_t>& found) const {

@@ -4,6 +4,27 @@
 #include <algorithm>
 
 namespace hullslam {
+namespace {
+
+template <typename Value>
+std::vector<Value> Select(const std::vector<Value>& values, std::span<const uint32_t> kept) {
+  std::vector<Value> selected;
+  selected.reserve(kept.size());
+  for (const uint32_t index : kept) {
+    selected.push_back(values.at(index));
+  }
+  return selected;
+}
+
+}  // namespace
+
+FrameFeatures SelectKeypoints(const FrameFeatures& features, std::span<const uint32_t> kept) {
+  return {.keypoints = Select(features.keypoints, kept),
+          .descriptors = Select(features.descriptors, kept),
+          .depth = Select(features.depth, kept),
+          .right_u = Select(features.right_u, kept),
+          .grid = features.grid.Select(kept)};
+}
 
 std::vector<uint32_t> KeypointsByDepth(const FrameFeatures& features) {
   std::vector<uint32_t> keypoints;

@@ -65,6 +65,7 @@ std::vector<uint32_t> KeypointsIn(const MaskRegion& region,
       inside.push_back(static_cast<uint32_t>(i));
     }
   }
+  inside.shrink_to_fit();
   return inside;
 }
 
@@ -212,7 +213,9 @@ void AddLines(const std::vector<Candidate>& candidates, const FrameView& frame,
       others.push_back(&other.region);
     }
   }
-  for (const LineOnOutline& line : LinesOf(candidate, frame)) {
+  const std::vector<LineOnOutline> lines = LinesOf(candidate, frame);
+  candidate.detection.lines.reserve(lines.size());
+  for (const LineOnOutline& line : lines) {
     candidate.detection.lines.push_back(
         {.line = line.line, .is_one_sided = IsOneSided(line, frame, candidate.depth, others)});
   }
@@ -254,6 +257,7 @@ DetectionResult DetectionBuilder::Build(std::span<const InstanceMask> masks, con
   std::vector<Candidate> candidates = PrepareAll(masks, frame, runner, result.rejections);
   RejectDuplicates(options_, candidates, result.rejections);
   runner.Run(candidates.size(), [&](size_t i) { AddLines(candidates, frame, candidates[i]); });
+  result.detections.reserve(candidates.size());
   for (Candidate& candidate : candidates) {
     const std::vector<SilhouetteLine>& lines = candidate.detection.lines;
     const bool is_held = std::any_of(lines.begin(), lines.end(),

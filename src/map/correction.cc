@@ -192,7 +192,7 @@ void MoveObjects(Map& map, const WorldChanges& changes) {
     moved.ellipsoid = Moved(*change, moved.ellipsoid);
     moved.start = Moved(*change, moved.start);
     for (auto& sample : moved.misfit_samples) {
-      sample.excess *= change->scale;
+      sample.excess *= static_cast<float>(change->scale);
     }
   }
 }

@@ -115,6 +115,12 @@ void CheckDetections(const Map& map, KeyframeId id, const Keyframe& keyframe,
   if (keyframe.objects.size() != keyframe.frame->detections.size()) {
     violations.push_back(Name(id) + " does not have one object entry per detection");
   }
+  for (const Detection& detection : keyframe.frame->detections) {
+    if (std::any_of(detection.keypoints.begin(), detection.keypoints.end(),
+                    [&](uint32_t i) { return i >= keyframe.frame->features.size(); })) {
+      violations.push_back(Name(id) + " has a detection of a keypoint that it does not have");
+    }
+  }
   for (uint32_t i = 0; i < keyframe.objects.size(); ++i) {
     if (!keyframe.objects[i].IsValid()) {
       continue;

@@ -11,8 +11,8 @@ namespace hullslam {
 // What is inconsistent in a map, one sentence per fault: observations, covisibility edges, loop
 // edges or tree links that only one end knows, wrong observation weights or votes, a cycle in the
 // tree, an object whose reference is not the first keyframe that observes it, a
-// mapped object without observations, values that are not
-// finite. Empty for a consistent map.
+// mapped object without observations, a detection of a keypoint that the frame does not have,
+// values that are not finite. Empty for a consistent map.
 std::vector<std::string> FindViolations(const Map& map);
 
 }  // namespace hullslam

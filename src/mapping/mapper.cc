@@ -9,6 +9,7 @@
 #include "mapping/keyframe_insertion.h"
 #include "mapping/landmark_creation.h"
 #include "mapping/landmark_fusion.h"
+#include "mapping/old_keyframes.h"
 
 namespace hullslam {
 namespace {
@@ -87,6 +88,11 @@ void Mapper::ExtendMap(KeyframeId keyframe, const Cancellation* hurry) {
       const ScopedTimer timer(times_, "cull_keyframes");
       CullKeyframes(map_, keyframe, sensor_, static_cast<size_t>(object_options_.start.min_views));
     }
+  }
+  full_.push_back(keyframe);
+  if (options_.compact_keyframes) {
+    const ScopedTimer timer(times_, "compact_keyframes");
+    CompactOldKeyframes(map_, keyframe, full_);
   }
   PublishSnapshot();
 }

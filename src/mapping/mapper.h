@@ -62,6 +62,7 @@ class Mapper {
   ObjectMapper object_mapper_;
   Map map_;
   std::vector<LandmarkId> recent_;  // new landmarks that CullRecentLandmarks checks
+  std::vector<KeyframeId> full_;    // keyframes that CompactOldKeyframes checks, by increasing id
 };
 
 }  // namespace hullslam

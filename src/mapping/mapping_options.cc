@@ -10,6 +10,8 @@ void MappingOptions::Bind(OptionTable& options) {
               "largest number of fixed keyframes in local bundle adjustment; 0: all that observe "
               "its landmarks");
   options.Add("mapping.cull_keyframes", &cull_keyframes, "remove redundant keyframes");
+  options.Add("mapping.compact_keyframes", &compact_keyframes,
+              "remove keypoints that show no landmark from keyframes far from the newest one");
   options.Add("mapping.final_bundle_adjustment", &final_bundle_adjustment,
               "run a global bundle adjustment once at the end of the run");
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "geometry/polyline.h"
 
@@ -43,13 +44,17 @@ std::optional<TangentPlane> PlaneOfLine(const PinholeCamera& camera, const Rigid
 std::vector<MisfitSample> MeasureMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
                                         std::span<const ObjectView> views) {
   std::vector<MisfitSample> samples;
+  samples.reserve(std::accumulate(
+      views.begin(), views.end(), size_t{0},
+      [](size_t sum, const ObjectView& view) { return sum + view.detection->lines.size(); }));
   for (const ObjectView& view : views) {
     for (const SilhouetteLine& line : view.detection->lines) {
       if (line.is_one_sided) {
         continue;
       }
       if (const auto plane = PlaneOfLine(camera, view.cam_from_world, ellipsoid, line.line)) {
-        samples.push_back({plane->normal, plane->excess, view.keyframe});
+        samples.push_back(
+            {plane->normal.cast<float>(), static_cast<float>(plane->excess), view.keyframe});
       }
     }
   }
@@ -67,15 +72,15 @@ std::optional<double> PredictExcess(std::span<const MisfitSample> samples,
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
   for (const MisfitSample& sample : samples) {
-    const double cosine = sample.normal.dot(normal);
+    const Eigen::Vector3d sampled = sample.normal.cast<double>();
+    const double cosine = sampled.dot(normal);
     if (cosine < min_cosine || sample.keyframe == left_out) {
       continue;
     }
-    const Eigen::Vector3d basis(1.0, across.dot(sample.normal) / width,
-                                along.dot(sample.normal) / width);
+    const Eigen::Vector3d basis(1.0, across.dot(sampled) / width, along.dot(sampled) / width);
     const double weight = std::exp(-(1.0 - cosine) / (width * width));
     information += weight * basis * basis.transpose();
-    right_side += weight * sample.excess * basis;
+    right_side += weight * static_cast<double>(sample.excess) * basis;
   }
   if (information(0, 0) < kMinWeight) {
     return std::nullopt;

@@ -30,6 +30,8 @@ LastFrame FollowMap(const Map& map, LastFrame last) {
   }
   const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(last.frame->id);
   if (keyframe && map.keyframes().Contains(*keyframe)) {
+    // The map may have replaced the frame by one with fewer keypoints.
+    last.frame = map.keyframes().At(*keyframe).frame;
     last.landmarks = map.keyframes().At(*keyframe).landmarks;
     last.reference = *keyframe;
     last.pose = RelativePose{*keyframe, Rigid3(), map.ScaleOf(*keyframe)};

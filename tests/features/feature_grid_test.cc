@@ -128,6 +128,31 @@ TEST(FeatureGrid, RejectsMoreKeypointsThanAnIndexOf16BitsCanCount) {
   EXPECT_THROW(MakeGrid(keypoints), CheckError);
 }
 
+TEST(FeatureGrid, OfAPartOfTheKeypointsIsTheSameAsIfMadeOfThem) {
+  const std::vector<Keypoint> keypoints = MakeKeypoints(1000);
+  std::vector<uint32_t> kept;
+  std::vector<Keypoint> part;
+  for (uint32_t i = 0; i < keypoints.size(); i += 1 + i % 4) {
+    kept.push_back(i);
+    part.push_back(keypoints[i]);
+  }
+  const FeatureGrid selected = MakeGrid(keypoints).Select(kept);
+  const FeatureGrid made = MakeGrid(part);
+  for (float y = -60.0f; y < 540.0f; y += 37.0f) {
+    for (float x = -60.0f; x < 700.0f; x += 41.0f) {
+      std::vector<uint32_t> found;
+      std::vector<uint32_t> expected;
+      selected.FindNear(part, {x, y}, 60.0f, 0, 7, found);
+      made.FindNear(part, {x, y}, 60.0f, 0, 7, expected);
+      EXPECT_EQ(found, expected);
+    }
+  }
+  std::vector<uint32_t> found;
+  MakeGrid(keypoints).Select({}).FindNear({}, {300.0f, 200.0f}, 1000.0f, 0, 7, found);
+  FeatureGrid().Select({}).FindNear({}, {300.0f, 200.0f}, 1000.0f, 0, 7, found);
+  EXPECT_TRUE(found.empty());
+}
+
 TEST(FeatureGrid, RejectsAnEmptyBox) {
   EXPECT_THROW(FeatureGrid({}, {0.0f, 0.0f}, {0.0f, 480.0f}), CheckError);
 }

@@ -314,7 +314,7 @@ TEST(DetectionBuilder, PartsAreOneHullButForSmallOnes) {
   const Detection detection = BuildOne(mask, PlainCamera());
   EXPECT_EQ(detection.box.min(), Eigen::Vector2d(100.0, 100.0));
   EXPECT_EQ(detection.box.max(), Eigen::Vector2d(240.0, 180.0));
-  EXPECT_NEAR(SignedArea(detection.contour.Unpack()), 60.0 * 80.0, 1e-9);
+  EXPECT_NEAR(SignedArea(detection.contour.Unpack()), 60.0 * 80.0, 0.1);
   EXPECT_EQ(detection.hull, ConvexHull(std::vector<Eigen::Vector2d>{{100.0, 100.0},
                                                                     {160.0, 100.0},
                                                                     {100.0, 180.0},
@@ -533,7 +533,7 @@ TEST(DetectionBuilder, DepthPointsAreInsideTheErodedMaskOnAGrid) {
   for (const Eigen::Vector3d& point : detection.points.Unpack()) {
     EXPECT_NEAR(point.z(), 2.0, 1e-6);
     const Eigen::Vector2d raw = camera.Distort(camera.Project(point));
-    EXPECT_LT((raw - raw.array().round().matrix()).norm(), 1e-5);
+    EXPECT_LT((raw - raw.array().round().matrix()).norm(), 2e-3);
     EXPECT_GE(raw.x(), 204.9);
     EXPECT_LE(raw.x(), 315.1);
     EXPECT_GE(raw.y(), 154.9);

@@ -62,8 +62,8 @@ void GiveShape(Map& map, ObjectId id, RandomGeometry& random) {
   object.start = RandomEllipsoid(random);
   object.misfit_samples.assign(2, {});
   for (auto& sample : object.misfit_samples) {
-    sample.normal = random.Vector(1.0).normalized();
-    sample.excess = random.Number(-0.02, 0.02);
+    sample.normal = random.Vector(1.0).normalized().cast<float>();
+    sample.excess = static_cast<float>(random.Number(-0.02, 0.02));
   }
 }
 
@@ -99,7 +99,8 @@ void ExpectMoved(const Ellipsoid& after, const Ellipsoid& before, const Sim3& ne
   }
 }
 
-// All numbers of a map that a correction may change, in a fixed order.
+// All numbers of a map that a correction may change, in a fixed order, but for those of misfit
+// samples, which have single precision.
 std::vector<double> Numbers(const Map& map) {
   std::vector<double> numbers;
   const auto add = [&](const auto& matrix) {
@@ -122,11 +123,18 @@ std::vector<double> Numbers(const Map& map) {
       add(ellipsoid.world_from_object.ToMatrix());
       add(ellipsoid.half_axes);
     }
-    for (const auto& sample : object.misfit_samples) {
-      numbers.push_back(sample.excess);
-    }
   });
   return numbers;
+}
+
+std::vector<float> Excesses(const Map& map) {
+  std::vector<float> excesses;
+  map.objects().ForEach([&](ObjectId, const ObjectLandmark& object) {
+    for (const MisfitSample& sample : object.misfit_samples) {
+      excesses.push_back(sample.excess);
+    }
+  });
+  return excesses;
 }
 
 void ExpectNear(const Map& a, const Map& b, double tolerance) {
@@ -135,6 +143,12 @@ void ExpectNear(const Map& a, const Map& b, double tolerance) {
   ASSERT_EQ(numbers_a.size(), numbers_b.size());
   for (size_t i = 0; i < numbers_a.size(); ++i) {
     ASSERT_NEAR(numbers_a[i], numbers_b[i], tolerance) << i;
+  }
+  const std::vector<float> excesses_a = Excesses(a);
+  const std::vector<float> excesses_b = Excesses(b);
+  ASSERT_EQ(excesses_a.size(), excesses_b.size());
+  for (size_t i = 0; i < excesses_a.size(); ++i) {
+    ASSERT_NEAR(excesses_a[i], excesses_b[i], std::max(tolerance, 1e-8)) << i;
   }
 }
 
@@ -223,8 +237,9 @@ class LateCorrection : public ::testing::TestWithParam<uint32_t> {
       ExpectMoved(moved.start, object.start, change);
       for (size_t i = 0; i < object.misfit_samples.size(); ++i) {
         EXPECT_EQ(moved.misfit_samples[i].normal, object.misfit_samples[i].normal);
-        EXPECT_NEAR(moved.misfit_samples[i].excess, change.scale * object.misfit_samples[i].excess,
-                    1e-12);
+        const auto before = static_cast<double>(object.misfit_samples[i].excess);
+        EXPECT_NEAR(moved.misfit_samples[i].excess, change.scale * before,
+                    1.2e-7 * change.scale * std::abs(before));
       }
     });
   }
@@ -492,7 +507,7 @@ TEST_F(CorrectionByHand, MovesAndScales) {
   GiveShape(map_, object, random);
   map_.MutableObject(object).ellipsoid = {Shift(4.0), {0.1, 0.2, 0.3}};
   map_.MutableObject(object).start = {Shift(5.0), {0.2, 0.3, 0.4}};
-  map_.MutableObject(object).misfit_samples[0].excess = -0.01;
+  map_.MutableObject(object).misfit_samples[0].excess = -0.01f;
   Name(a_, 1.0, 0.0);
   Name(b_, 2.0, 10.0);
   Name(c_, 3.0, -1.0);
@@ -509,7 +524,7 @@ TEST_F(CorrectionByHand, MovesAndScales) {
   EXPECT_DOUBLE_EQ(moved.ellipsoid.half_axes.z(), 0.6);
   EXPECT_DOUBLE_EQ(moved.start.world_from_object.translation.x(), 20.0);
   EXPECT_DOUBLE_EQ(moved.start.half_axes.x(), 0.4);
-  EXPECT_DOUBLE_EQ(moved.misfit_samples[0].excess, -0.02);
+  EXPECT_FLOAT_EQ(moved.misfit_samples[0].excess, -0.02f);
   EXPECT_EQ(moved.state, ObjectState::kMapped);  // moving a shape keeps it valid
 }
 

@@ -162,6 +162,13 @@ TEST_F(Invariants, FindADetectionOfAMissingObject) {
   ExpectViolation("keyframe 0 observes object 7, which has no such observation");
 }
 
+TEST_F(Invariants, FindADetectionOfAMissingKeypoint) {
+  auto frame = std::make_shared<Frame>(*map_.keyframes().At(a_).frame);
+  frame->detections[1].keypoints = {0, static_cast<uint32_t>(frame->features.size())};
+  map_.MutableKeyframe(a_).frame = frame;
+  ExpectViolation("keyframe 0 has a detection of a keypoint that it does not have");
+}
+
 TEST_F(Invariants, FindWrongVotes) {
   const ObjectId object = map_.AddObject();
   ASSERT_TRUE(map_.AddObservation(object, b_, 1));

@@ -210,6 +210,31 @@ TEST_F(MapperTest, RedundantKeyframesAreCulledIfThatIsWanted) {
   EXPECT_LT(count(true), 8u);
 }
 
+// Each keyframe is at another place, 100 m from the last one, so none is covisible with another.
+TEST_F(MapperTest, DistantKeyframesAreCompactedIfThatIsWanted) {
+  for (const bool compact : {false, true}) {
+    MappingOptions options;
+    options.compact_keyframes = compact;
+    Restart(options);
+    Process(Initial(0));
+    const size_t keypoints = map().keyframes().At(KeyframeId(0)).frame->features.size();
+    for (uint32_t index = 1; index <= 22; ++index) {
+      KeyframeRequest request = Request(index, KeyframeId(index - 1));
+      request.pose.cam_from_reference = {Eigen::Quaterniond::Identity(), {100.0, 0.0, 0.0}};
+      request.landmarks.assign(request.landmarks.size(), LandmarkId());
+      request.sightings.clear();
+      Process(request);
+    }
+    for (const auto& [id, keyframe] : map().keyframes()) {
+      const std::vector<LandmarkId>& landmarks = keyframe.landmarks;
+      const bool is_full = std::any_of(landmarks.begin(), landmarks.end(),
+                                       [](LandmarkId i) { return !i.IsValid(); });
+      EXPECT_EQ(is_full, !compact || id.value >= 2) << id.value;
+    }
+    EXPECT_EQ(map().keyframes().At(KeyframeId(0)).frame->features.size() < keypoints, compact);
+  }
+}
+
 TEST_F(MapperTest, ARequestMayReferToWhatNoLongerExists) {
   for (uint32_t index = 0; index < 8; ++index) {
     ProcessFrame(index);

@@ -26,6 +26,8 @@ TEST(MappingOptions, AreSetByName) {
   options.Bind(table);
   table.Set("mapping.cull_keyframes", "false", "test");
   EXPECT_EQ(options.cull_keyframes, false);
+  table.Set("mapping.compact_keyframes", "0", "test");
+  EXPECT_EQ(options.compact_keyframes, false);
   ExpectInputError([&] { table.Set("mapping.cull_keyframes", "maybe", "test"); },
                    {"mapping.cull_keyframes", "'maybe'", "expected"});
 }

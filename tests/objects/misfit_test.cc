@@ -55,7 +55,7 @@ TEST(PredictExcess, IsLinearNearby) {
   RandomGeometry random(4);
   for (int i = 0; i < 4000; ++i) {
     const Eigen::Vector3d normal = random.Vector(1.0).normalized();
-    samples.push_back({normal, slope.dot(normal), KeyframeId(0)});
+    samples.push_back({normal.cast<float>(), static_cast<float>(slope.dot(normal)), KeyframeId(0)});
   }
   for (int i = 0; i < 20; ++i) {
     const Eigen::Vector3d normal = random.Vector(1.0).normalized();
@@ -66,7 +66,7 @@ TEST(PredictExcess, IsLinearNearby) {
 }
 
 TEST(PredictExcess, LeavesAKeyframeOutAndIsSilentWhereNothingIsNear) {
-  const std::vector<MisfitSample> samples(3, {Eigen::Vector3d::UnitX(), 0.01, KeyframeId(5)});
+  const std::vector<MisfitSample> samples(3, {Eigen::Vector3f::UnitX(), 0.01f, KeyframeId(5)});
   EXPECT_NEAR(PredictExcess(samples, Eigen::Vector3d::UnitX(), KeyframeId()).value(), 0.01, 1e-9);
   EXPECT_FALSE(PredictExcess(samples, Eigen::Vector3d::UnitX(), KeyframeId(5)));
   EXPECT_FALSE(PredictExcess(samples, Eigen::Vector3d::UnitY(), KeyframeId()));
@@ -81,7 +81,8 @@ TEST(PredictExcess, DoesNotExtrapolateTheSlopeOfSamplesOnOneSide) {
     std::vector<MisfitSample> samples;
     for (const double widths : {1.0, 1.0, 2.0, 2.0}) {
       const double angle = widths * 4.0 * std::numbers::pi / 180.0;
-      samples.push_back({std::cos(angle) * normal + std::sin(angle) * side, widths, KeyframeId(0)});
+      const Eigen::Vector3d sampled = std::cos(angle) * normal + std::sin(angle) * side;
+      samples.push_back({sampled.cast<float>(), static_cast<float>(widths), KeyframeId(0)});
     }
     const auto excess = PredictExcess(samples, normal, KeyframeId());
     ASSERT_TRUE(excess);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hullslam/util/check.h"
+#include "map/compaction.h"
 #include "map/made_map.h"
 
 namespace hullslam {
@@ -64,6 +65,20 @@ TEST_F(LastFrameTest, AFrameThatBecameAKeyframeHasItsPoseAndLandmarks) {
   EXPECT_EQ(followed.reference, made);
   EXPECT_EQ(followed.cam_from_world.translation.x(), 5.0);
   EXPECT_EQ(followed.landmarks, (std::vector<LandmarkId>{landmark, LandmarkId()}));
+}
+
+// The mapper may remove keypoints of a keyframe while tracking is lost.
+TEST_F(LastFrameTest, AFrameThatBecameACompactKeyframeHasOneLandmarkPerKeypoint) {
+  const KeyframeId made = map_.AddKeyframe(MakeFrame(1, 2), Shift(5.0));
+  const LandmarkId landmark = map_.AddLandmark({0.0, 0.0, 2.0}, made);
+  map_.AddObservation(landmark, made, 1);
+  CompactKeyframe(map_, made);
+  const LastFrame followed = FollowMap(map_, last_);
+  EXPECT_EQ(followed.landmarks, std::vector<LandmarkId>{landmark});
+  ASSERT_EQ(followed.frame->features.size(), 1u);
+  EXPECT_EQ(followed.frame->features.keypoints[0].undistorted.x(), 31.0f) << "the second keypoint";
+  EXPECT_EQ(followed.frame->id, last_.frame->id);
+  EXPECT_EQ(FollowMap(map_, followed).landmarks, followed.landmarks);
 }
 
 TEST_F(LastFrameTest, OfTwoLandmarksThatBecameOneTheFirstKeypointKeepsIt) {

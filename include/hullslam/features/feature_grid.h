@@ -21,6 +21,10 @@ class FeatureGrid {
   FeatureGrid(std::span<const Keypoint> keypoints, const Eigen::Vector2f& box_min,
               const Eigen::Vector2f& box_max);
 
+  // The grid of the keypoints with these indices, which increase. Their new indices are their
+  // places in `kept`. A grid without keypoints stays as it is.
+  FeatureGrid Select(std::span<const uint32_t> kept) const;
+
   // Appends to `found` the indices of all keypoints with |dx| < radius, |dy| < radius and a level
   // from min_level to max_level. `keypoints` are those of the constructor. Cells are visited one
   // after the other; within a cell the indices are in increasing order.

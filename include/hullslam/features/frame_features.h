@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "hullslam/features/feature_grid.h"
@@ -20,6 +21,10 @@ struct FrameFeatures {
 
   size_t size() const { return keypoints.size(); }
 };
+
+// The features of the keypoints with these indices, which increase. Their new indices are their
+// places in `kept`.
+FrameFeatures SelectKeypoints(const FrameFeatures& features, std::span<const uint32_t> kept);
 
 // The indices of the keypoints whose depth is known, nearest first; equal depths by index.
 std::vector<uint32_t> KeypointsByDepth(const FrameFeatures& features);

@@ -9,7 +9,8 @@ namespace hullslam {
 // A directed line in the image: points p satisfy normal . p + offset = 0, and the normal has unit
 // length. If the line bounds a silhouette, the normal points away from the object.
 struct Line2 {
-  Eigen::Vector2d normal = Eigen::Vector2d::UnitX();
+  // Without alignment to 16 bytes, which would make a SilhouetteLine half as large again.
+  Eigen::Matrix<double, 2, 1, Eigen::DontAlign> normal = Eigen::Vector2d::UnitX();
   double offset = 0.0;  // px
 
   // Signed distance of a point, px; positive on the side to which the normal points.

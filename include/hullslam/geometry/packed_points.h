@@ -2,40 +2,76 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace hullslam {
 
-// A list of points that is kept with single precision. It takes half the memory of doubles, and a
-// coordinate changes by less than 1e-7 of its size. Every keyframe keeps thousands of points.
+// A list of measured points in 16 bits per coordinate, a quarter of the memory of doubles. Every
+// keyframe keeps thousands of points. Along each axis, coordinates are multiples of 1/65535 of the
+// extent of all points, so they change by at most 1/131070 of it: by 0.005 px in a contour that is
+// as wide as an image of 640 px, and by 0.01 mm in depth points of an object of 1 m. The smallest
+// and the largest coordinate change only by the rounding of single precision.
 template <int N>
 class PackedPoints {
  public:
   using Point = Eigen::Matrix<double, N, 1>;
+  static constexpr size_t kBytesPerPoint = N * sizeof(uint16_t);
 
   PackedPoints() = default;
+  // The points must be finite.
   PackedPoints(const std::vector<Point>& points) {
+    Eigen::AlignedBox<double, N> box;
+    for (const Point& point : points) {
+      box.extend(point);
+    }
+    if (points.empty()) {
+      return;
+    }
+    min_ = box.min().template cast<float>();
+    step_ = (box.sizes() / kSteps).template cast<float>();
     packed_.reserve(points.size());
     for (const Point& point : points) {
-      packed_.push_back(point.template cast<float>());
+      std::array<uint16_t, N>& packed = packed_.emplace_back();
+      for (int axis = 0; axis < N; ++axis) {
+        const double steps = step_[axis] > 0.0f ? (point[axis] - static_cast<double>(min_[axis])) /
+                                                      static_cast<double>(step_[axis])
+                                                : 0.0;
+        packed[static_cast<size_t>(axis)] =
+            static_cast<uint16_t>(std::lround(std::clamp(steps, 0.0, kSteps)));
+      }
     }
   }
 
   size_t size() const { return packed_.size(); }
   bool empty() const { return packed_.empty(); }
-  void clear() { packed_.clear(); }
+  void clear() { *this = PackedPoints(); }
   std::vector<Point> Unpack() const {
     std::vector<Point> points;
     points.reserve(packed_.size());
-    for (const auto& point : packed_) {
-      points.push_back(point.template cast<double>());
+    for (const std::array<uint16_t, N>& packed : packed_) {
+      Point& point = points.emplace_back();
+      for (int axis = 0; axis < N; ++axis) {
+        point[axis] = static_cast<double>(min_[axis]) +
+                      static_cast<double>(step_[axis]) * packed[static_cast<size_t>(axis)];
+      }
     }
     return points;
   }
   bool operator==(const PackedPoints&) const = default;
 
  private:
-  std::vector<Eigen::Matrix<float, N, 1>> packed_;
+  static constexpr double kSteps = std::numeric_limits<uint16_t>::max();
+
+  Eigen::Matrix<float, N, 1> min_ = Eigen::Matrix<float, N, 1>::Zero();
+  Eigen::Matrix<float, N, 1> step_ = Eigen::Matrix<float, N, 1>::Zero();
+  std::vector<std::array<uint16_t, N>> packed_;
 };
 
 }  // namespace hullslam

@@ -23,10 +23,10 @@ struct ObjectObservation {
 };
 
 // How far the real object reaches beyond its quadric in one direction, measured by one line of one
-// keyframe (objects/misfit.h).
+// keyframe (objects/misfit.h). An object keeps hundreds of them, so they have single precision.
 struct MisfitSample {
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // outwards, object frame, unit
-  double excess = 0.0;                                // m; negative if it reaches less far
+  Eigen::Vector3f normal = Eigen::Vector3f::UnitX();  // outwards, object frame, unit
+  float excess = 0.0f;                                // m; negative if it reaches less far
   KeyframeId keyframe;
 };
 

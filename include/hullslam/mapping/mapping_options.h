@@ -11,6 +11,7 @@ struct MappingOptions {
   int fixed_keyframes = 0;
   bool cull_keyframes = true;
   bool final_bundle_adjustment = true;  // of the whole map, at the end of the run
+  bool compact_keyframes = true;        // those far from the newest one (mapping/old_keyframes.h)
 
   void Bind(OptionTable& options);
 };

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "hullslam/map/map.h"
+
+namespace hullslam {
+
+// Replaces the frame of a keyframe by one that has only the keypoints that show a landmark and the
+// detections that show an object, without depth grid. Observations get the new indices, so that the
+// map stays consistent; nothing else changes. Snapshots keep the former frame and indices. Indices
+// that were taken from the keyframe before are invalid afterwards.
+//
+// This is the only place where the frame of a keyframe changes. Whatever else the map derives from
+// the keypoints of a keyframe when it is added, such as an index of its words, must follow here.
+void CompactKeyframe(Map& map, KeyframeId keyframe);
+
+}  // namespace hullslam
