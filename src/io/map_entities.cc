@@ -99,7 +99,7 @@ void WriteSamples(const std::vector<MisfitSample>& samples, ByteWriter& out) {
 }
 
 std::vector<MisfitSample> ReadSamples(ByteReader& in) {
-  std::vector<MisfitSample> samples(in.GetCount(4 * sizeof(double) + sizeof(uint32_t)));
+  std::vector<MisfitSample> samples(in.GetCount(4 * sizeof(float) + sizeof(uint32_t)));
   for (MisfitSample& sample : samples) {
     sample.normal = in.GetMatrix<Eigen::Vector3f>(2.0f);
     sample.excess = in.GetFinite(static_cast<float>(kMostMapNumber));
