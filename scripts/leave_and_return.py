@@ -5,7 +5,8 @@
 The first half of SEQUENCE is followed by N frames that show something else, then by its second
 half. The frames in between are blank, or the first N frames of --other. Stamps go on without a gap:
 the second half is later by N frame intervals. groundtruth.txt knows only the frames of SEQUENCE.
-This shows whether a map keeps its objects while they are not seen.
+This shows whether a map keeps its objects while they are not seen. With --again the whole SEQUENCE
+comes twice, with the N frames in between, which shows whether tracking finds back to its map.
 
 SEQUENCE is a folder in TUM's format with PNG images, such as one of make_synthetic. Its masks
 (format yolo-seg) are taken over too. Frames in between have those of --other, or empty ones. OUT
@@ -132,44 +133,70 @@ def add_other_frames(writer, stamps, other):
             writer.add_image("depth", new, other / depth[nearest][1][0])
 
 
+class Part:
+    """The frames of the sequence from one stamp on to before another one, moved by a time."""
+
+    def __init__(self, begin, end, shift):
+        self.begin, self.end, self.shift = begin, end, shift
+
+    def rows(self, rows):
+        return [row for row in rows if self.begin <= row[0] < self.end]
+
+
+def split(arguments, stamps, interval):
+    """The parts of the sequence before and after the frames in between."""
+    gap = arguments.blank * interval
+    # Stamps of depth and ground truth differ from those of the images by up to half an interval.
+    first, last = stamps[0] - interval / 2, stamps[-1] + interval / 2
+    if arguments.again:
+        return Part(-np.inf, np.inf, 0.0), Part(-np.inf, np.inf, last - first + gap)
+    at = len(stamps) // 2 if arguments.at is None else arguments.at
+    if not 2 <= at <= len(stamps) - 1:
+        raise InputError(f"--at is {at}, expected 2 to {len(stamps) - 1}")
+    leave = (stamps[at - 1] + stamps[at]) / 2
+    return Part(-np.inf, leave, 0.0), Part(leave, np.inf, gap)
+
+
+def write_groundtruth(sequence, out, parts, between, interval):
+    """Nothing near the frames in between, which would be paired with them."""
+    lines = []
+    for part in parts:
+        for stamp, words in part.rows(read_rows(sequence / "groundtruth.txt")):
+            new = stamp + part.shift
+            if new < between[0] - 0.75 * interval or new > between[-1] + 0.75 * interval:
+                lines.append(f"{new:.6f} {' '.join(words)}\n")
+    (out / "groundtruth.txt").write_text("".join(lines))
+
+
 def make(arguments):
     sequence, out, count = arguments.sequence, arguments.out, arguments.blank
     rows, depth = read_rows(sequence / "rgb.txt"), read_rows(sequence / "depth.txt")
-    at = len(rows) // 2 if arguments.at is None else arguments.at
-    if not 2 <= at <= len(rows) - 1:
-        raise InputError(f"--at is {at}, expected 2 to {len(rows) - 1}")
     stamps = np.array([stamp for stamp, _ in rows])
     interval = float(np.median(np.diff(stamps)))
     if not interval > 0.0:
         raise InputError(f"{sequence / 'rgb.txt'}: the time stamps do not increase")
-    leave, shift = (stamps[at - 1] + stamps[at]) / 2, count * interval
+    parts = before, after = split(arguments, stamps, interval)
     if out.exists() and any(out.iterdir()):
         raise InputError(f"{out}: is not empty")
     if arguments.other and len(read_rows(arguments.other / "rgb.txt")) < count:
         raise InputError(f"{arguments.other}: has fewer than {count} frames")
     writer = Writer(out)
-    writer.add_frames(sequence, rows[:at], 0.0)
-    writer.add_depth(sequence, [row for row in depth if row[0] < leave], 0.0)
-    between = stamps[at - 1] + interval * np.arange(1, count + 1)
+    writer.add_frames(sequence, before.rows(rows), 0.0)
+    writer.add_depth(sequence, before.rows(depth), 0.0)
+    between = before.rows(rows)[-1][0] + interval * np.arange(1, count + 1)
     if arguments.other:
         add_other_frames(writer, between, arguments.other)
     else:
         add_blank_frames(writer, between, png_size(sequence / rows[0][1][0]))
-    writer.add_frames(sequence, rows[at:], shift)
-    writer.add_depth(sequence, [row for row in depth if row[0] >= leave], shift)
+    writer.add_frames(sequence, after.rows(rows), after.shift)
+    writer.add_depth(sequence, after.rows(depth), after.shift)
     writer.finish()
     for name in ("camera.yaml", "groundtruth_objects.json"):
         if (sequence / name).exists():
             link(sequence / name, out / name)
     if (sequence / "groundtruth.txt").exists():
-        lines = []
-        for stamp, words in read_rows(sequence / "groundtruth.txt"):
-            # Nothing near the frames in between, which would be paired with them.
-            if stamp < stamps[at - 1] + interval / 4 or stamp > stamps[at] - interval / 4:
-                new = stamp if stamp < leave else stamp + shift
-                lines.append(f"{new:.6f} {' '.join(words)}\n")
-        (out / "groundtruth.txt").write_text("".join(lines))
-    return at, len(rows) - at
+        write_groundtruth(sequence, out, parts, between, interval)
+    return len(before.rows(rows)), len(after.rows(rows))
 
 
 def main(words=None):
@@ -183,7 +210,11 @@ def main(words=None):
                         help="sequence whose first frames come in between (default: blank images)")
     parser.add_argument("--at", type=int, metavar="FRAME",
                         help="index of the first frame after the return (default: the middle)")
+    parser.add_argument("--again", action="store_true",
+                        help="the whole SEQUENCE, the frames in between, the whole SEQUENCE again")
     arguments = parser.parse_args(words)
+    if arguments.again and arguments.at is not None:
+        parser.error("--again and --at exclude each other")
     if arguments.blank < 1:
         parser.error("--blank must be 1 or more")
     try:

@@ -1,9 +1,10 @@
-# Installs the public headers, the library, the settings of known cameras, the scripts that draw
-# runs, and a CMake package for find_package(hullslam). Examples/CMakeLists.txt installs the
+# Installs the public headers, the library, the settings of known cameras, the default vocabulary,
+# the scripts that draw runs, and a CMake package for find_package(hullslam). Examples/CMakeLists.txt installs the
 # programs.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(HULLSLAM_INSTALL_CONFIGDIR ${CMAKE_INSTALL_DATADIR}/hullslam/config)
+set(HULLSLAM_INSTALL_VOCABULARYDIR ${CMAKE_INSTALL_DATADIR}/hullslam/Vocabulary)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hullslam)
 
 # hullslam_install_link(NAME FILE): installs bin/NAME as a relative link to FILE of the installation.
@@ -18,6 +19,8 @@ endfunction()
 install(TARGETS hullslam EXPORT hullslamTargets)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/hullslam TYPE INCLUDE FILES_MATCHING PATTERN *.h)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${HULLSLAM_INSTALL_CONFIGDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/Vocabulary/hullslam.bow ${PROJECT_SOURCE_DIR}/Vocabulary/README.md
+        DESTINATION ${HULLSLAM_INSTALL_VOCABULARYDIR})
 file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/plot_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/run_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/object_*.py)
@@ -29,7 +32,7 @@ install(EXPORT hullslamTargets NAMESPACE hullslam:: DESTINATION ${package_dir})
 
 configure_package_config_file(
   ${CMAKE_CURRENT_SOURCE_DIR}/hullslamConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/hullslamConfig.cmake
-  INSTALL_DESTINATION ${package_dir} PATH_VARS HULLSLAM_INSTALL_CONFIGDIR)
+  INSTALL_DESTINATION ${package_dir} PATH_VARS HULLSLAM_INSTALL_CONFIGDIR HULLSLAM_INSTALL_VOCABULARYDIR)
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/hullslamConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/hullslamConfig.cmake

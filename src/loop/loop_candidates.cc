@@ -10,12 +10,7 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kNeighbours = 10;
 constexpr size_t kSupporters = 5;  // keyframes that may support a candidate
-
-BowVector VectorOf(const Map& map, KeyframeId keyframe) {
-  return map.VectorOf(*map.keyframes().At(keyframe).frame);
-}
 
 // Everything within two steps of the covisibility graph.
 IdSet<KeyframeId> ConnectedTo(const Map& map, KeyframeId keyframe) {
@@ -30,14 +25,19 @@ IdSet<KeyframeId> ConnectedTo(const Map& map, KeyframeId keyframe) {
   return connected;
 }
 
-// What a keyframe looks like, other than what it is connected to.
+// What a keyframe looks like, other than what it is connected to: at least as much as the least
+// similar of its covisible keyframes.
 std::vector<SimilarKeyframe> FindSimilar(const Map& map, KeyframeId query) {
-  const BowVector vector = VectorOf(map, query);
-  double least = 1.0;
-  for (const KeyframeId neighbour : BestCovisible(map.keyframes().At(query), kNeighbours)) {
-    least = std::min(least, Score(vector, VectorOf(map, neighbour)));
+  const Keyframe& keyframe = map.keyframes().At(query);
+  std::vector<SimilarKeyframe> similar = map.index().Query(map.VectorOf(*keyframe.frame));
+  IdSet<KeyframeId> covisible;
+  for (const Covisible& other : keyframe.covisible) {
+    covisible.Insert(other.keyframe);
   }
-  std::vector<SimilarKeyframe> similar = map.index().Query(vector);
+  double least = 1.0;
+  for (const SimilarKeyframe& one : similar) {
+    least = covisible.Contains(one.keyframe) ? std::min(least, one.score) : least;
+  }
   const IdSet<KeyframeId> connected = ConnectedTo(map, query);
   std::erase_if(similar, [&](const SimilarKeyframe& one) {
     return one.score < least || connected.Contains(one.keyframe);
@@ -46,29 +46,39 @@ std::vector<SimilarKeyframe> FindSimilar(const Map& map, KeyframeId query) {
   return similar;
 }
 
-}  // namespace
+using KeyframeSet = IdSet<KeyframeId>;
 
-std::vector<KeyframeId> FindLoopCandidates(const Map& map, KeyframeId query, int min_supporters) {
-  std::vector<KeyframeId> candidates = BestOfPlaces(map, FindSimilar(map, query));
-  if (candidates.empty() || min_supporters == 0) {
-    return candidates;
-  }
-  std::vector<IdSet<KeyframeId>> seen_by_supporters;
-  for (const KeyframeId supporter : BestCovisible(map.keyframes().At(query), kSupporters)) {
-    IdSet<KeyframeId>& seen = seen_by_supporters.emplace_back();
-    for (const SimilarKeyframe& s : FindSimilar(map, supporter)) {
-      seen.Insert(s.keyframe);
+// For each of the keyframes that are most covisible with the query: what it looks like.
+std::vector<KeyframeSet> SeenByNeighbours(const Map& map, KeyframeId query) {
+  std::vector<KeyframeSet> seen;
+  for (const KeyframeId neighbour : BestCovisible(map.keyframes().At(query), kSupporters)) {
+    KeyframeSet& similar = seen.emplace_back();
+    for (const SimilarKeyframe& one : FindSimilar(map, neighbour)) {
+      similar.Insert(one.keyframe);
     }
   }
-  std::erase_if(candidates, [&](KeyframeId candidate) {
-    const std::vector<KeyframeId> place = PlaceOf(map, candidate);
-    const auto supports = [&](const IdSet<KeyframeId>& seen) {
+  return seen;
+}
+
+}  // namespace
+
+std::vector<LoopCandidate> FindLoopCandidates(const Map& map, KeyframeId query) {
+  const std::vector<KeyframeId> keyframes = BestOfPlaces(map, FindSimilar(map, query));
+  if (keyframes.empty()) {
+    return {};
+  }
+  const std::vector<KeyframeSet> seen_by_neighbours = SeenByNeighbours(map, query);
+  std::vector<LoopCandidate> candidates;
+  for (const KeyframeId keyframe : keyframes) {
+    const std::vector<KeyframeId> place = PlaceOf(map, keyframe);
+    const auto supports = [&](const KeyframeSet& seen) {
       return std::any_of(place.begin(), place.end(),
                          [&](KeyframeId member) { return seen.Contains(member); });
     };
-    return std::count_if(seen_by_supporters.begin(), seen_by_supporters.end(), supports) <
-           min_supporters;
-  });
+    const auto supporters =
+        std::count_if(seen_by_neighbours.begin(), seen_by_neighbours.end(), supports);
+    candidates.push_back({keyframe, static_cast<int>(supporters)});
+  }
   return candidates;
 }
 

@@ -10,6 +10,8 @@
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
 #include "hullslam/objects/object_options.h"
+#include "loop/loop_candidates.h"
+#include "loop/object_votes.h"
 
 namespace hullslam {
 
@@ -32,8 +34,10 @@ class LoopCloser {
   std::optional<MapCorrection> Process(LoopQuery query);
 
  private:
-  std::optional<MapCorrection> Close(LoopQuery& query, KeyframeId candidate,
+  std::optional<MapCorrection> Close(LoopQuery& query, const LoopCandidate& candidate,
                                      std::string& refusal) const;
+
+  size_t LandmarksNeeded(const LoopCandidate& candidate, const ObjectVotes& votes) const;
 
   const Sensor& sensor_;
   const LoopOptions options_;

@@ -6,9 +6,9 @@ namespace hullslam {
 void LoopOptions::Bind(OptionTable& options) {
   options.Add("loop.closing", &enabled,
               "close loops when the camera comes back to a known place; needs a vocabulary");
-  options.Add(
-      "loop.min_supporters", &min_supporters, Range::AtLeast(0),
-      "number of keyframes near the query that must look like the candidate's surroundings");
+  options.Add("loop.min_supporters", &min_supporters, Range::AtLeast(0),
+              "if fewer neighbours of the query look like the candidate's place, twice as many "
+              "landmarks are needed");
   options.Add("loop.min_matches", &min_matches, Range::AtLeast(4),
               "number of landmarks that must agree between query and candidate");
   options.Add("loop.min_landmarks", &min_landmarks, Range::AtLeast(4),

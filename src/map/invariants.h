@@ -10,9 +10,9 @@ namespace hullslam {
 
 // What is inconsistent in a map, one sentence per fault: observations, covisibility edges, loop
 // edges or tree links that only one end knows, wrong observation weights or votes, a cycle in the
-// tree, a keyframe whose entries in the index are not those of its words, an object whose reference is not the first keyframe that observes it, a
-// mapped object without observations, values that are not
-// finite. Empty for a consistent map.
+// tree, a keyframe whose entries in the index are not those of its words, an object whose reference
+// is not the first keyframe that observes it, a mapped object without observations, values that are
+// not finite. Empty for a consistent map.
 std::vector<std::string> FindViolations(const Map& map);
 
 }  // namespace hullslam

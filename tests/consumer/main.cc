@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "hullslam/io/vocabulary_file.h"
 #include "hullslam/system/options.h"
 #include "hullslam/system/system.h"
 
@@ -48,5 +49,7 @@ int main() {
   bool good = Report(OptionsAreNamed(), "options");
   good &= Report(FramesAreTracked(), "tracking");
   good &= Report(std::filesystem::is_directory(HULLSLAM_CONFIG_DIR), "settings are installed");
+  good &= Report(hullslam::ReadVocabulary(HULLSLAM_VOCABULARY).word_count() > 1000,
+                 "the default vocabulary is installed");
   return good ? 0 : 1;
 }

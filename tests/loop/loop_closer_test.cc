@@ -102,17 +102,27 @@ TEST_F(LoopCloserTest, OtherObjectsAtTheSamePlaceSpeakAgainstALoop) {
   EXPECT_FALSE(Closes(things));
 }
 
-TEST_F(LoopCloserTest, TheSameObjectsReplaceHalfOfTheLandmarks) {
-  options_.min_landmarks = 5000;
-  EXPECT_FALSE(Closes(ThreeThings())) << "there are not even half as many";
-  EXPECT_FALSE(Closes({}));
+// The number of landmarks that the query finds at the place, without objects and with supporters,
+// is taken as the bound.
+TEST_F(LoopCloserTest, ObjectsAndSupportersDecideHowManyLandmarksAreNeeded) {
   const RingMap made = MakeRingMap(SharedRing());
   const LoopVerdict verdict =
       VerifyLoop(made.map, SharedRing().sensor(), made.last(), KeyframeId(5), true, 1, options_);
   ASSERT_TRUE(verdict.loop) << verdict.refusal;
-  options_.min_landmarks = static_cast<int>(verdict.loop->landmarks.size()) + 1;
+  const auto found = static_cast<int>(verdict.loop->landmarks.size());
+  options_.min_landmarks = found;
+  EXPECT_TRUE(Closes({}));
+  options_.min_landmarks = found + 1;
   EXPECT_FALSE(Closes({}));
-  EXPECT_TRUE(Closes(ThreeThings()));
+  EXPECT_TRUE(Closes(ThreeThings())) << "half as many are enough if objects agree";
+  options_.min_landmarks = 2 * found + 2;
+  EXPECT_FALSE(Closes(ThreeThings()));
+
+  options_.min_supporters = 100;  // there are never so many
+  options_.min_landmarks = found / 2;
+  EXPECT_TRUE(Closes({})) << "twice as many are needed without supporters";
+  options_.min_landmarks = found / 2 + 1;
+  EXPECT_FALSE(Closes({}));
 }
 
 TEST_F(LoopCloserTest, LeavesTheMapAloneForAWhileAfterALoop) {

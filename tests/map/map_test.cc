@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "hullslam/util/check.h"
+#include "map/invariants.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
 #include "map/spanning_tree.h"
+#include "support/made_vocabulary.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {

@@ -96,6 +96,20 @@ class LeaveAndReturnTest(unittest.TestCase):
         self.assertIn("fewer than 4 frames", self.run_script("--blank", 4, "--other", other).stderr)
         self.assertFalse(self.out.exists())
 
+    def test_the_whole_sequence_again(self):
+        result = self.run_script("--blank", 2, "--again")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("4 frames, 2 of something else, 4 frames", result.stdout)
+        for kind in ("rgb", "depth"):
+            self.assertEqual([row[0] for row in self.rows(f"{kind}.txt")],
+                             [f"10.{i}00000" for i in range(10)])
+            self.assertEqual([(self.out / row[1]).resolve().name[:4]
+                              for row in self.rows(f"{kind}.txt")],
+                             ["10.0", "10.1", "10.2", "10.3", "blan", "blan"]
+                             + ["10.0", "10.1", "10.2", "10.3"])
+        truth = [(float(row[0]), float(row[1])) for row in self.rows("groundtruth.txt")]
+        self.assertEqual({round(stamp - place, 6) for stamp, place in truth}, {0.0, 0.6})
+
     def test_blank_images_are_png(self):
         path = self.dir / "blank.png"
         leave_and_return.write_png(path, (5, 3), 16, 1, 300)
@@ -107,7 +121,7 @@ class LeaveAndReturnTest(unittest.TestCase):
                          (b"\0" + b"\x01\x2c" * 5) * 3)
 
     def test_bad_input(self):
-        for arguments in (["--blank", 0], ["--at", 1], ["--at", 4], ["--other", self.dir]):
+        for arguments in (["--blank", 0], ["--again", "--at", 2], ["--at", 1], ["--at", 4], ["--other", self.dir]):
             with self.subTest(arguments):
                 result = self.run_script(*arguments)
                 self.assertEqual(result.returncode, 2)

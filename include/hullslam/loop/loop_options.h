@@ -10,12 +10,12 @@ namespace hullslam {
 struct LoopOptions {
   bool enabled = true;
 
-  // Candidates must also look like the surroundings of so many of the keyframes that see what the
-  // query sees (temporal and covisibility consistency, Mur-Artal and Tardos 2017: three in a row).
-  int min_supporters = 2;
   // Landmarks that must agree: with the candidate alone, and with its neighbourhood.
   int min_matches = 20;
   int min_landmarks = 40;
+  // If fewer of the query's neighbours look like the candidate's place (temporal and covisibility
+  // consistency), twice as many landmarks are needed.
+  int min_supporters = 2;
 
   // The drift budget (as in OKVIS2, Leutenegger 2022): how much a correction may move and turn the
   // query, relative to what the camera has travelled and turned since the candidate.
