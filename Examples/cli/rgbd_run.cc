@@ -145,6 +145,15 @@ size_t CountLost(const System& system) {
       [](const TrackedFrame& frame) { return frame.state != TrackingState::kTracked; }));
 }
 
+// Of a loop both ends know.
+size_t CountLoops(const Map& map) {
+  size_t ends = 0;
+  for (const auto& [id, keyframe] : map.keyframes()) {
+    ends += keyframe.loops.size();
+  }
+  return ends / 2;
+}
+
 RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options,
                      const TumSequence& sequence, const RunResult& result, const System& system) {
   RunSummary summary;
@@ -167,6 +176,7 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
     summary.map.keyframes = map->keyframes().size();
     summary.map.landmarks = map->landmarks().size();
     summary.map.sessions = map->sessions().size();
+    summary.map.loops = CountLoops(*map);
   }
   summary.provenance.version = HULLSLAM_VERSION;
   summary.provenance.git = HULLSLAM_GIT;

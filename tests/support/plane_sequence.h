@@ -22,8 +22,11 @@ namespace hullslam {
 // groundtruth.txt, camera.yaml and associations.txt.
 class PlaneSequence {
  public:
-  explicit PlaneSequence(int frames = 12, double seconds_a_frame = 0.1)
-      : seconds_a_frame_(seconds_a_frame) {
+  // `shift` in px per frame; 500 px are 1 m. The texture is the same again after `period` px, a
+  // multiple of 8; 0: never.
+  explicit PlaneSequence(int frames = 12, double seconds_a_frame = 0.1, int shift = 5,
+                         int period = 0)
+      : seconds_a_frame_(seconds_a_frame), shift_(shift), period_(period) {
     folder_.Write("camera.yaml",
                   "%YAML:1.0\nCamera.fx: 500.0\nCamera.fy: 500.0\nCamera.cx: 319.5\n"
                   "Camera.cy: 239.5\nCamera.width: 640\nCamera.height: 480\nCamera.fps: 30.0\n"
@@ -40,14 +43,16 @@ class PlaneSequence {
 
  private:
   void DrawImages(int frames) const {
-    constexpr int kShift = 5;  // px per frame: 500 px * 0.01 m / 1 m
-    cv::Mat texture(60, (640 + kShift * frames) / 8 + 1, CV_8UC1);
+    cv::Mat texture(60, (640 + shift_ * frames) / 8 + 1, CV_8UC1);
     cv::RNG(1).fill(texture, cv::RNG::UNIFORM, 0, 256);
+    for (int column = period_ / 8; period_ > 0 && column < texture.cols; ++column) {
+      texture.col(column - period_ / 8).copyTo(texture.col(column));
+    }
     cv::resize(texture, texture, cv::Size(8 * texture.cols, 480), 0.0, 0.0, cv::INTER_CUBIC);
     const cv::Mat depth(480, 640, CV_16UC1, cv::Scalar(5000));
     for (int i = 0; i < frames; ++i) {
       const std::string name = fmt::format("{:02}.png", i);
-      cv::imwrite((path() / "rgb" / name).string(), texture(cv::Rect(kShift * i, 0, 640, 480)));
+      cv::imwrite((path() / "rgb" / name).string(), texture(cv::Rect(shift_ * i, 0, 640, 480)));
       cv::imwrite((path() / "depth" / name).string(), depth);
     }
   }
@@ -62,7 +67,7 @@ class PlaneSequence {
       const std::string of_depth = fmt::format("{:.6f} depth/{:02}.png", Stamp(i) + 0.005, i);
       rgb += of_rgb + '\n';
       depth += of_depth + '\n';
-      truth += fmt::format("{:.6f} {:.2f} 0 0 0 0 0 1\n", Stamp(i), 0.01 * i);
+      truth += fmt::format("{:.6f} {:.3f} 0 0 0 0 0 1\n", Stamp(i), 0.002 * shift_ * i);
       associations += fmt::format("{} {}\n", of_rgb, of_depth);
     }
     folder_.Write("rgb.txt", rgb);
@@ -72,6 +77,8 @@ class PlaneSequence {
   }
 
   double seconds_a_frame_;
+  int shift_;
+  int period_;
   TemporaryFolder folder_;
 };
 

@@ -11,6 +11,7 @@
 #include "hullslam/util/check.h"
 #include "map/invariants.h"
 #include "system/pipeline_cases.h"
+#include "system/ring_path.h"
 #include "system/sequential_pipeline.h"
 #include "system/threaded_pipeline.h"
 
@@ -209,6 +210,45 @@ TEST_P(PipelineTest, TimesHaveOneEntryPerCall) {
   EXPECT_EQ(times.samples().at("pose").size(), 30u);
   EXPECT_EQ(times.samples().at("map_insert").size(), pipeline->map()->keyframes().NextId().value);
 }
+
+// The pipelines that leave out no keyframe.
+class LoopPipelineTest : public testing::TestWithParam<Kind> {
+ protected:
+  std::unique_ptr<Pipeline> Make() { return GetParam().make(path_.sensor(), path_.options()); }
+
+  RingPath path_;
+};
+
+TEST_P(LoopPipelineTest, AWayThatComesBackIsClosed) {
+  path_.options().loop.enabled = false;
+  const auto open = Make();
+  const std::vector<TrackedFrame> drifted = path_.Track(*open);
+  open->Finish();
+  EXPECT_EQ(RingPath::CountLoopEnds(*open->map()), 0);
+  const double drift = RingPath::ClosureError(*open->map(), drifted);
+  EXPECT_GT(drift, 0.02);
+  EXPECT_FALSE(open->times().samples().contains("loop_detection"));
+
+  path_.options().loop.enabled = true;
+  const auto closed = Make();
+  const std::vector<TrackedFrame> frames = path_.Track(*closed);
+  closed->Finish();
+  EXPECT_EQ(FindViolations(*closed->map()), std::vector<std::string>());
+  EXPECT_GE(RingPath::CountLoopEnds(*closed->map()), 2);
+  EXPECT_LT(RingPath::ClosureError(*closed->map(), frames), 0.1 * drift);
+  EXPECT_TRUE(closed->times().samples().contains("loop_detection"));
+}
+
+TEST_P(LoopPipelineTest, MayBeDestroyedWhileALoopIsClosed) {
+  const auto pipeline = Make();
+  path_.Track(*pipeline, 0, 170);
+  EXPECT_EQ(FindViolations(*pipeline->map()), std::vector<std::string>());
+}
+
+INSTANTIATE_TEST_SUITE_P(Loops, LoopPipelineTest,
+                         testing::Values(Kind{"sequential", MakeSequentialPipeline},
+                                         Kind{"threaded", MakePatient}),
+                         [](const auto& info) { return info.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(All, PipelineTest,
                          testing::Values(Kind{"sequential", MakeSequentialPipeline},

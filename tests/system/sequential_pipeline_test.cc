@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "hullslam/util/check.h"
+#include "map/made_map.h"
 #include "system/pipeline_cases.h"
+#include "system/ring_path.h"
 
 namespace hullslam {
 namespace {
@@ -115,6 +117,32 @@ TEST(SequentialPipeline, FinishMakesThePathBetterOnAverage) {
     error_after += PathError(ComposeTrajectory(*after.map, after.frames), world.sensor());
   }
   EXPECT_LT(error_after, error_before);
+}
+
+TEST(SequentialPipeline, TwoRunsWithALoopGiveTheSameMapToTheBit) {
+  const auto run = [] {
+    RingPath path;
+    const auto pipeline = MakeSequentialPipeline(path.sensor(), path.options());
+    path.Track(*pipeline);
+    pipeline->Finish();
+    EXPECT_GE(RingPath::CountLoopEnds(*pipeline->map()), 2);
+    return Dump(*pipeline->map());
+  };
+  EXPECT_EQ(run(), run());
+}
+
+// A loop is in the map, and the whole map adjusted, when Track returns.
+TEST(SequentialPipeline, ClosesLoopsBeforeTrackReturns) {
+  RingPath path;
+  for (const bool is_adjusted : {false, true}) {
+    path.options().loop.global_adjustment = is_adjusted;
+    const auto pipeline = MakeSequentialPipeline(path.sensor(), path.options());
+    const uint32_t end = path.TrackToLoop(*pipeline);
+    EXPECT_GT(end, RingPath::kFramesPerTurn * 5 / 6);
+    EXPECT_LT(end, RingPath::kFrames);
+    EXPECT_EQ(pipeline->map()->correction_count(), is_adjusted ? 2u : 1u);
+    EXPECT_EQ(pipeline->times().samples().contains("loop_adjustment"), is_adjusted);
+  }
 }
 
 TEST(SequentialPipeline, AKeyframeIsInTheMapWhenTrackReturns) {

@@ -11,6 +11,7 @@
 #include "hullslam/util/check.h"
 #include "map/invariants.h"
 #include "system/pipeline_cases.h"
+#include "system/ring_path.h"
 
 namespace hullslam {
 namespace {
@@ -115,6 +116,31 @@ TEST(ThreadedPipeline, AFailureOfMappingIsThrownByTheNextTrack) {
     }
   };
   EXPECT_THROW(track_on(), CheckError);
+}
+
+// The way ends soon after the keyframe that closes the loop, while the whole map is adjusted or the
+// loop is even still sought.
+TEST(ThreadedPipeline, FinishWaitsForTheLastLoop) {
+  RingPath path;
+  path.options().mapping.final_bundle_adjustment = false;
+  const auto pipeline = MakeThreadedPipeline(path.sensor(), path.options(), Pace::kWaitForMapper);
+  path.Track(*pipeline, 0, path.FirstLoop() + 10);
+  pipeline->Finish();
+  EXPECT_GE(RingPath::CountLoopEnds(*pipeline->map()), 2);
+  EXPECT_EQ(pipeline->map()->correction_count(), 2u) << "the loop and the adjustment";
+  EXPECT_EQ(pipeline->busy_threads(), 0);
+  EXPECT_EQ(pipeline->times().samples().at("loop_adjustment").size(), 1u);
+}
+
+TEST(ThreadedPipeline, AFinalAdjustmentReplacesThatOfTheLastLoop) {
+  RingPath path;
+  path.options().mapping.final_bundle_adjustment = true;
+  const auto pipeline = MakeThreadedPipeline(path.sensor(), path.options(), Pace::kWaitForMapper);
+  path.Track(*pipeline, 0, path.FirstLoop() + 10);
+  pipeline->Finish();
+  EXPECT_GE(RingPath::CountLoopEnds(*pipeline->map()), 2);
+  EXPECT_EQ(pipeline->busy_threads(), 0);
+  EXPECT_EQ(pipeline->times().samples().at("global_bundle_adjustment").size(), 1u);
 }
 
 TEST(ThreadedPipeline, OtherThreadsMayReadTheMapDuringTracking) {

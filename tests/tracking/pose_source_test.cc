@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
+#include "support/ring_world.h"
 #include "support/synthetic_world.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 namespace {
@@ -73,6 +77,110 @@ TEST_F(MotionModel, SearchesAWiderWindowIfTooLittleIsFound) {
   EXPECT_LT(AngularDistance(wide->cam_from_world.rotation, truth.rotation), 1e-3);
   const Rigid3 far = Rigid3(ExpSo3({0.0, 2.0 * turn, 0.0}), Eigen::Vector3d::Zero()) * start;
   EXPECT_FALSE(Estimate(Rigid3(), far, 1));
+}
+
+// A ring map without drift. The last frame is empty: nothing is known of the motion.
+class Relocalisation : public testing::Test {
+ protected:
+  std::optional<PoseEstimate> Find(const Frame& frame) const { return Find(frame, made_.map); }
+  std::optional<PoseEstimate> Find(const Frame& frame, const Map& map) const {
+    return PoseByRelocalisation(frame, map, {world_.sensor(), options_, objects_, index_, 1}, {});
+  }
+  // A frame of the ring at any place.
+  SyntheticView Look(double turns) const {
+    return world_.Observe(FrameId(1000), RingWorld::CamFromWorld(turns));
+  }
+
+  const RingWorld& world_ = SharedRing();
+  const RingMap made_ = MakeRingMap(world_, {.keyframes = 16, .drift = Rigid3()});
+  TrackingOptions options_;
+  ObjectOptions objects_;
+  const ObjectIndex index_{};
+};
+
+TEST_F(Relocalisation, FindsFramesOfTheMapWithoutTheLastFrame) {
+  for (const double turns : {0.02, 0.1, 0.23, 0.31, 0.5, 0.6}) {
+    const SyntheticView view = Look(turns);
+    const auto estimate = Find(*view.frame);
+    ASSERT_TRUE(estimate) << turns;
+    const Rigid3 truth = RingWorld::CamFromWorld(turns);
+    EXPECT_LT((estimate->cam_from_world.translation - truth.translation).norm(), 0.005);
+    EXPECT_LT(AngularDistance(estimate->cam_from_world.rotation, truth.rotation), 0.002);
+    EXPECT_GT(estimate->inliers, 100);
+  }
+}
+
+TEST_F(Relocalisation, ItsLandmarksAreThoseThatTheFrameShows) {
+  const SyntheticView view = Look(0.3);
+  const auto estimate = Find(*view.frame);
+  ASSERT_TRUE(estimate);
+  ASSERT_EQ(estimate->landmarks.size(), view.points.size());
+  IdSet<LandmarkId> found;
+  int count = 0;
+  for (size_t i = 0; i < view.points.size(); ++i) {
+    if (const LandmarkId id = estimate->landmarks[i]; id.IsValid()) {
+      const Observation& seen = made_.map.landmarks().At(id).observations.front();
+      EXPECT_EQ(made_.views[seen.keyframe.value].points[seen.keypoint], view.points[i]);
+      EXPECT_TRUE(found.Insert(id)) << "one landmark at two keypoints";
+      ++count;
+    }
+  }
+  EXPECT_EQ(count, estimate->inliers);
+}
+
+// The matches by words are with the landmarks of one keyframe, which sees only a part of them.
+TEST_F(Relocalisation, SeesTheWholePlace) {
+  const auto estimate = Find(*Look(4.5 / 24.0).frame);
+  ASSERT_TRUE(estimate);
+  size_t most = 0;
+  made_.map.keyframes().ForEach([&](KeyframeId, const Keyframe& keyframe) {
+    size_t common = 0;
+    for (const LandmarkId id : estimate->landmarks) {
+      common += id.IsValid() && std::count(keyframe.landmarks.begin(), keyframe.landmarks.end(), id)
+                    ? 1
+                    : 0;
+    }
+    most = std::max(most, common);
+  });
+  EXPECT_GT(static_cast<size_t>(estimate->inliers), most + 10);
+}
+
+TEST_F(Relocalisation, DoesNotFindAPlaceThatTheMapLacks) {
+  EXPECT_FALSE(Find(*Look(0.82).frame)) << "the map ends after two thirds of the turn";
+  const RingWorld other({.points = 300, .seed = 9});
+  Frame frame = *other.Observe(FrameId(0), Rigid3()).frame;
+  frame.words = world_.vocabulary()->WordsOf(frame.features.descriptors);
+  EXPECT_FALSE(Find(frame));
+}
+
+TEST_F(Relocalisation, NeedsWordsOfFrameAndMap) {
+  Frame frame = *Look(0.3).frame;
+  EXPECT_TRUE(Find(frame));
+  const RingMap without =
+      MakeRingMap(world_, {.keyframes = 16, .drift = Rigid3(), .has_vocabulary = false});
+  EXPECT_FALSE(Find(frame, without.map));
+  frame.words.clear();
+  EXPECT_FALSE(Find(frame));
+}
+
+TEST_F(Relocalisation, AsksForMoreInliersThanTracking) {
+  const Frame frame = *Look(0.3).frame;
+  const auto estimate = Find(frame);
+  ASSERT_TRUE(estimate);
+  options_.min_inliers = estimate->inliers * 3 / 5 - 1;
+  EXPECT_TRUE(Find(frame)) << "5 / 3 of it are needed";
+  options_.min_inliers = estimate->inliers * 3 / 5 + 2;
+  EXPECT_FALSE(Find(frame)) << "tracking would be content with this";
+}
+
+TEST_F(Relocalisation, TheSameFrameGivesTheSameBits) {
+  const Frame frame = *Look(0.3).frame;
+  const auto a = Find(frame);
+  const auto b = Find(frame);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->cam_from_world.rotation.coeffs(), b->cam_from_world.rotation.coeffs());
+  EXPECT_EQ(a->cam_from_world.translation, b->cam_from_world.translation);
+  EXPECT_EQ(a->landmarks, b->landmarks);
 }
 
 }  // namespace

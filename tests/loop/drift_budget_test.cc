@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "loop/drift_budget.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/random_geometry.h"
+#include "support/ring_world.h"
+
+namespace hullslam {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+class TravelTest : public testing::Test {
+ protected:
+  Travel Between(uint32_t first, uint32_t last) const {
+    return TravelBetween(made_.map, KeyframeId(first), KeyframeId(last));
+  }
+  RingMap made_ = MakeRingMap(SharedRing(), {.drift = Rigid3()});
+};
+
+TEST_F(TravelTest, IsTheLengthAndTurnOfTheWayAndNotOfTheShortCut) {
+  const Travel turn = Between(0, 24);
+  EXPECT_NEAR(turn.radians, 2.0 * kPi, 1e-9);
+  EXPECT_NEAR(turn.metres, 24 * 2.0 * RingWorld::kRadius * std::sin(kPi / 24), 1e-9);
+  const Travel none = Between(7, 7);
+  EXPECT_EQ(none.metres, 0.0);
+  EXPECT_EQ(none.radians, 0.0);
+}
+
+TEST_F(TravelTest, AddsUpAndDoesNotDependOnTheDirection) {
+  EXPECT_NEAR(Between(3, 9).metres + Between(9, 20).metres, Between(3, 20).metres, 1e-12);
+  EXPECT_NEAR(Between(3, 9).radians + Between(9, 20).radians, Between(3, 20).radians, 1e-12);
+  EXPECT_EQ(Between(20, 3).metres, Between(3, 20).metres);
+  EXPECT_EQ(Between(20, 3).radians, Between(3, 20).radians);
+}
+
+TEST_F(TravelTest, GoesAlongCulledKeyframesToo) {
+  const Travel before = Between(3, 20);
+  for (const uint32_t i : {5u, 6u, 12u}) {
+    made_.map.CullKeyframe(KeyframeId(i));
+  }
+  EXPECT_NEAR(Between(3, 20).metres, before.metres, 1e-12);
+  EXPECT_NEAR(Between(3, 20).radians, before.radians, 1e-12);
+}
+
+Rigid3 Moved(double metres) { return {Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}}; }
+Rigid3 Turned(double radians) { return {ExpSo3({0.0, radians, 0.0}), Eigen::Vector3d::Zero()}; }
+
+// Each of the numbers allows what it says, and no more.
+TEST(DriftBudget, GrowsWithTheTravel) {
+  const LoopOptions none{.drift_base = 0.0,
+                         .drift_per_metre = 0.0,
+                         .drift_per_radian = 0.0,
+                         .turn_base = 0.0,
+                         .turn_per_metre = 0.0,
+                         .turn_per_radian = 0.0};
+  const Travel travel{.metres = 20.0, .radians = 5.0};
+  EXPECT_TRUE(CanBeDrift(travel, Rigid3(), Rigid3(), none));
+  EXPECT_FALSE(CanBeDrift(travel, Rigid3(), Moved(0.001), none));
+  EXPECT_FALSE(CanBeDrift(travel, Rigid3(), Turned(0.001), none));
+  struct Case {
+    double LoopOptions::*option;
+    double value;
+    Rigid3 (*change)(double);
+    double allowed;
+  };
+  for (const Case& one : {Case{&LoopOptions::drift_base, 0.3, &Moved, 0.3},
+                          Case{&LoopOptions::drift_per_metre, 0.01, &Moved, 0.2},
+                          Case{&LoopOptions::drift_per_radian, 0.1, &Moved, 0.5},
+                          Case{&LoopOptions::turn_base, 0.3, &Turned, 0.3},
+                          Case{&LoopOptions::turn_per_metre, 0.01, &Turned, 0.2},
+                          Case{&LoopOptions::turn_per_radian, 0.1, &Turned, 0.5}}) {
+    LoopOptions options = none;
+    options.*one.option = one.value;
+    EXPECT_TRUE(CanBeDrift(travel, Rigid3(), one.change(0.99 * one.allowed), options));
+    EXPECT_FALSE(CanBeDrift(travel, Rigid3(), one.change(1.01 * one.allowed), options));
+  }
+}
+
+// The distance is that of the camera's centres, wherever the origin of the world is.
+TEST(DriftBudget, DoesNotDependOnTheWorldFrame) {
+  RandomGeometry random(1);
+  const Travel travel{.metres = 10.0, .radians = 10.0};
+  int allowed = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Rigid3 tracked = random.Pose(3.0, 2.0);
+    const Rigid3 corrected = random.Pose(0.5, 0.8) * tracked;
+    const Rigid3 other_world = random.Pose(3.0, 100.0);
+    const bool can_be = CanBeDrift(travel, tracked, corrected, {});
+    EXPECT_EQ(CanBeDrift(travel, tracked * other_world, corrected * other_world, {}), can_be);
+    EXPECT_EQ(CanBeDrift(travel, corrected, tracked, {}), can_be) << "it is symmetric";
+    allowed += can_be ? 1 : 0;
+  }
+  EXPECT_GT(allowed, 20);
+  EXPECT_LT(allowed, 180);
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "loop/loop_closer.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "loop/loop_verification.h"
+#include "loop/ring_things.h"
+#include "loop/whole_map_adjustment.h"
+#include "map/correction.h"
+#include "map/invariants.h"
+#include "map/made_map.h"
+
+namespace hullslam {
+namespace {
+
+class LoopCloserTest : public testing::Test {
+ protected:
+  LoopCloser Make() const { return {SharedRing().sensor(), options_, objects_, 1}; }
+  // The correction of a new loop closer.
+  std::optional<MapCorrection> Close(RingMap& made) const {
+    return Make().Process({made.map.Snapshot(), made.last()});
+  }
+  // Whether a loop is found in a map with these things.
+  bool Closes(const std::vector<RingThing>& things) const {
+    RingMap made = MakeRingMap(SharedRing(), {}, things);
+    return Close(made).has_value();
+  }
+  static Map Corrected(RingMap& made, const MapCorrection& correction) {
+    Map map = made.map.Snapshot();
+    EXPECT_TRUE(ApplyCorrection(map, correction, SharedRing().sensor().levels).is_applied);
+    return map;
+  }
+
+  LoopOptions options_;
+  ObjectOptions objects_;
+};
+
+TEST_F(LoopCloserTest, RemovesTheDriftAndJoinsBothEnds) {
+  RingMap made = MakeRingMap(SharedRing(), {}, ThreeThings());
+  const std::optional<MapCorrection> correction = Close(made);
+  ASSERT_TRUE(correction);
+  const Map map = Corrected(made, *correction);
+  EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+  EXPECT_LT(PoseError(made, map, made.last()), 0.1 * PoseError(made, made.map, made.last()));
+  EXPECT_EQ(map.CamFromWorld(KeyframeId(0)).translation,
+            made.map.CamFromWorld(KeyframeId(0)).translation);
+  EXPECT_EQ(map.CamFromWorld(KeyframeId(0)).rotation.coeffs(),
+            made.map.CamFromWorld(KeyframeId(0)).rotation.coeffs());
+  EXPECT_LT(map.landmarks().size(), made.map.landmarks().size() - 150);
+  EXPECT_EQ(map.objects().size(), 3u);
+  EXPECT_EQ(map.keyframes().At(made.last()).loops.size(), 1u);
+}
+
+// The graph spreads the error evenly over the way; the landmarks know where it came from.
+TEST_F(LoopCloserTest, AfterTheAdjustmentOfTheWholeMapNoKeyframeHasDrifted) {
+  RingMap made = MakeRingMap(SharedRing());
+  const std::optional<MapCorrection> correction = Close(made);
+  ASSERT_TRUE(correction);
+  Map map = Corrected(made, *correction);
+  const std::optional<MapCorrection> adjustment =
+      AdjustWholeMap(map, SharedRing().sensor(), objects_, nullptr);
+  ASSERT_TRUE(adjustment);
+  ASSERT_TRUE(ApplyCorrection(map, *adjustment, SharedRing().sensor().levels).is_applied);
+  const double drift = PoseError(made, made.map, made.last());
+  for (uint32_t i = 0; i < 30; ++i) {
+    EXPECT_LT(PoseError(made, map, KeyframeId(i)), 0.1 * drift) << i;
+  }
+}
+
+TEST_F(LoopCloserTest, DoesNotChangeTheMapOfTheCaller) {
+  RingMap made = MakeRingMap(SharedRing());
+  const std::string before = Dump(made.map);
+  EXPECT_TRUE(Close(made));
+  EXPECT_EQ(Dump(made.map), before);
+}
+
+TEST_F(LoopCloserTest, APlaceThatIsSeenOnceClosesNoLoop) {
+  RingMap made = MakeRingMap(SharedRing(), {.keyframes = 20});
+  LoopCloser closer = Make();
+  for (uint32_t i = 0; i < 20; ++i) {
+    EXPECT_FALSE(closer.Process({made.map.Snapshot(), KeyframeId(i)})) << i;
+  }
+}
+
+TEST_F(LoopCloserTest, WithoutAVocabularyOrSwitchedOffThereAreNoLoops) {
+  RingMap without = MakeRingMap(SharedRing(), {.has_vocabulary = false});
+  EXPECT_FALSE(Close(without));
+  RingMap made = MakeRingMap(SharedRing());
+  EXPECT_TRUE(Close(made));
+  options_.enabled = false;
+  EXPECT_FALSE(Close(made));
+}
+
+// Two rooms that look the same, 5 m apart.
+TEST_F(LoopCloserTest, RefusesWhatDriftCannotExplain) {
+  RingMap made =
+      MakeRingMap(SharedRing(), {.drift = Rigid3(Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0})});
+  EXPECT_FALSE(Close(made));
+  options_.drift_base = 6.0;
+  EXPECT_TRUE(Close(made)) << "nothing but the budget speaks against it";
+  RingMap turned =
+      MakeRingMap(SharedRing(), {.drift = Rigid3(ExpSo3({0.0, 0.8, 0.0}), {0.0, 0.0, 0.0})});
+  EXPECT_FALSE(Close(turned));
+  options_.turn_base = 1.0;
+  EXPECT_TRUE(Close(turned));
+}
+
+TEST_F(LoopCloserTest, OtherObjectsAtTheSamePlaceSpeakAgainstALoop) {
+  EXPECT_TRUE(Closes(ThreeThings()));
+  std::vector<RingThing> things = ThreeThings();
+  things[0].is_at_last = false;
+  EXPECT_TRUE(Closes(things)) << "one thing may have been taken away";
+  things[1].is_at_last = false;
+  things[2].is_at_last = false;
+  EXPECT_FALSE(Closes(things));
+}
+
+// The number of landmarks that the query finds at the place, without objects and with supporters,
+// is taken as the bound.
+TEST_F(LoopCloserTest, ObjectsAndSupportersDecideHowManyLandmarksAreNeeded) {
+  const RingMap made = MakeRingMap(SharedRing());
+  const LoopVerdict verdict =
+      VerifyLoop(made.map, SharedRing().sensor(), made.last(), KeyframeId(5), true, 1, options_);
+  ASSERT_TRUE(verdict.loop) << verdict.refusal;
+  const auto found = static_cast<int>(verdict.loop->landmarks.size());
+  options_.min_landmarks = found;
+  EXPECT_TRUE(Closes({}));
+  options_.min_landmarks = found + 1;
+  EXPECT_FALSE(Closes({}));
+  EXPECT_TRUE(Closes(ThreeThings())) << "half as many are enough if objects agree";
+  options_.min_landmarks = 2 * found + 2;
+  EXPECT_FALSE(Closes(ThreeThings()));
+
+  options_.min_supporters = 100;  // there are never so many
+  options_.min_landmarks = found / 2;
+  EXPECT_TRUE(Closes({})) << "twice as many are needed without supporters";
+  options_.min_landmarks = found / 2 + 1;
+  EXPECT_FALSE(Closes({}));
+}
+
+TEST_F(LoopCloserTest, LeavesTheMapAloneForAWhileAfterALoop) {
+  RingMap made = MakeRingMap(SharedRing(), {.keyframes = 40});
+  const auto query = [&](uint32_t keyframe) {
+    return LoopQuery{made.map.Snapshot(), KeyframeId(keyframe)};
+  };
+  LoopCloser closer = Make();
+  EXPECT_TRUE(closer.Process(query(28)));
+  EXPECT_FALSE(closer.Process(query(29)));
+  EXPECT_FALSE(closer.Process(query(37)));
+  EXPECT_TRUE(Make().Process(query(37))) << "it would be a loop if there had been none";
+  EXPECT_TRUE(closer.Process(query(38)));
+}
+
+TEST_F(LoopCloserTest, TheSameMapGivesTheSameBits) {
+  RingMap made = MakeRingMap(SharedRing(), {}, ThreeThings());
+  const auto dump = [&] { return Dump(Corrected(made, Close(made).value())); };
+  EXPECT_EQ(dump(), dump());
+}
+
+}  // namespace
+}  // namespace hullslam

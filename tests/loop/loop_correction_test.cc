@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "loop/loop_correction.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "loop/ring_things.h"
+#include "map/correction.h"
+#include "map/invariants.h"
+
+namespace hullslam {
+namespace {
+
+// A loop between two keyframes that is exactly right.
+Loop TrueLoop(const RingMap& made, uint32_t query, uint32_t candidate) {
+  Loop loop;
+  loop.query = KeyframeId(query);
+  loop.candidate = KeyframeId(candidate);
+  loop.query_from_candidate =
+      Sim3(made.true_cam_from_world[query] * Inverse(made.true_cam_from_world[candidate]));
+  return loop;
+}
+
+Map Corrected(RingMap& made, const MapCorrection& correction) {
+  Map corrected = made.map.Snapshot();
+  EXPECT_TRUE(ApplyCorrection(corrected, correction, SharedRing().sensor().levels).is_applied);
+  return corrected;
+}
+
+TEST(KeyframesAround, AreTheKeyframeAndAllThatAreCovisibleById) {
+  const RingMap made = MakeRingMap(SharedRing());
+  const Keyframe& keyframe = made.map.keyframes().At(KeyframeId(12));
+  const std::vector<KeyframeId> around = KeyframesAround(made.map, KeyframeId(12));
+  EXPECT_EQ(around.size(), keyframe.covisible.size() + 1);
+  EXPECT_TRUE(std::is_sorted(around.begin(), around.end()));
+  EXPECT_TRUE(std::binary_search(around.begin(), around.end(), KeyframeId(12)));
+  for (const Covisible& other : keyframe.covisible) {
+    EXPECT_TRUE(std::binary_search(around.begin(), around.end(), other.keyframe));
+  }
+}
+
+TEST(SpreadLoopError, RemovesTheDriftAtTheEndAndMuchOfItBetween) {
+  RingMap made = MakeRingMap(SharedRing());
+  const Map corrected = Corrected(made, SpreadLoopError(made.map, TrueLoop(made, 29, 5), true));
+  EXPECT_EQ(FindViolations(corrected), std::vector<std::string>());
+  double before = 0.0;
+  double after = 0.0;
+  for (uint32_t i = 0; i < 30; ++i) {
+    before += PoseError(made, made.map, KeyframeId(i));
+    after += PoseError(made, corrected, KeyframeId(i));
+  }
+  EXPECT_LT(PoseError(made, corrected, made.last()), 0.1 * PoseError(made, made.map, made.last()));
+  EXPECT_LT(after, 0.5 * before);
+}
+
+TEST(SpreadLoopError, NamesTheLoopAndAllKeyframesAsTheyAreInTheSnapshot) {
+  RingMap made = MakeRingMap(SharedRing());
+  made.map.CountCorrection();
+  const MapCorrection correction = SpreadLoopError(made.map, TrueLoop(made, 29, 5), true);
+  EXPECT_EQ(correction.snapshot_corrections, 1u);
+  ASSERT_TRUE(correction.loop);
+  EXPECT_EQ(std::max(correction.loop->a, correction.loop->b), KeyframeId(29));
+  EXPECT_EQ(std::min(correction.loop->a, correction.loop->b), KeyframeId(5));
+  EXPECT_TRUE(correction.landmarks.empty());
+  ASSERT_EQ(correction.poses.size(), 30u);
+  for (uint32_t i = 0; i < 30; ++i) {
+    const MapCorrection::Pose& pose = correction.poses[i];
+    EXPECT_EQ(pose.keyframe, KeyframeId(i));
+    const Rigid3& in_map = made.map.keyframes().At(KeyframeId(i)).cam_from_world;
+    EXPECT_EQ(pose.snapshot_cam_from_world.rotation.coeffs(), in_map.rotation.coeffs());
+    EXPECT_EQ(pose.snapshot_cam_from_world.translation, in_map.translation);
+    EXPECT_EQ(pose.corrected_cam_from_world.scale, 1.0);
+  }
+}
+
+TEST(SpreadLoopError, TheRootStaysToTheLastBit) {
+  RingMap made = MakeRingMap(SharedRing());
+  for (const uint32_t candidate : {3u, 5u}) {
+    const MapCorrection correction = SpreadLoopError(made.map, TrueLoop(made, 28, candidate), true);
+    const MapCorrection::Pose& root = correction.poses.front();
+    EXPECT_EQ(root.corrected_cam_from_world.rotation.coeffs(),
+              root.snapshot_cam_from_world.rotation.coeffs());
+    EXPECT_EQ(root.corrected_cam_from_world.translation, root.snapshot_cam_from_world.translation);
+    EXPECT_NE(correction.poses.back().corrected_cam_from_world.translation,
+              correction.poses.back().snapshot_cam_from_world.translation);
+  }
+}
+
+TEST(SpreadLoopError, AMapWithoutDriftStaysAsItIs) {
+  RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()});
+  const Map corrected = Corrected(made, SpreadLoopError(made.map, TrueLoop(made, 29, 5), true));
+  for (uint32_t i = 0; i < 30; ++i) {
+    EXPECT_LT(PoseError(made, corrected, KeyframeId(i)), 1e-9) << i;
+  }
+}
+
+// A loop in the middle of the way says that keyframe 16 is somewhere else. What is known to be at
+// the place of an old keyframe by an earlier loop does not follow it.
+TEST(SpreadLoopError, EarlierLoopsHoldTheMap) {
+  const auto moved = [](bool has_loop) {
+    RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()});
+    if (has_loop) {
+      made.map.AddLoop(KeyframeId(2), KeyframeId(26));
+    }
+    Loop loop = TrueLoop(made, 16, 4);
+    loop.query_from_candidate.translation += Eigen::Vector3d(0.3, 0.0, 0.0);
+    const Map corrected = Corrected(made, SpreadLoopError(made.map, loop, true));
+    return PoseError(made, corrected, KeyframeId(26));
+  };
+  EXPECT_GT(moved(false), 0.2);
+  EXPECT_LT(moved(true), 0.05);
+}
+
+class LoopMerges : public testing::Test {
+ protected:
+  LoopMerges() {
+    const Loop loop = TrueLoop(made_, 29, 5);
+    correction_ = SpreadLoopError(made_.map, loop, true);
+    AddMerges(Corrected(made_, correction_), SharedRing().sensor(), loop, {}, correction_);
+  }
+  uint32_t PointOf(LandmarkId id) const {
+    const Observation& seen = made_.map.landmarks().At(id).observations.front();
+    return made_.views[seen.keyframe.value].points[seen.keypoint];
+  }
+  KeyframeId NewestObserver(LandmarkId id) const {
+    return made_.map.landmarks().At(id).observations.back().keyframe;
+  }
+
+  RingMap made_ = MakeRingMap(SharedRing(), {}, ThreeThings());
+  MapCorrection correction_;
+};
+
+TEST_F(LoopMerges, JoinLandmarksOfOnePoint) {
+  EXPECT_GT(correction_.landmarks.size(), 150u);
+  IdSet<LandmarkId> merged;
+  for (const auto& [duplicate, kept] : correction_.landmarks) {
+    EXPECT_EQ(PointOf(duplicate), PointOf(kept));
+    EXPECT_TRUE(merged.Insert(duplicate)) << "twice: " << duplicate.value;
+    EXPECT_LT(NewestObserver(kept), KeyframeId(12)) << "the older one is kept";
+    EXPECT_GE(NewestObserver(duplicate), KeyframeId(24));
+  }
+}
+
+// Not only what the query sees itself: its neighbours also see old landmarks.
+TEST_F(LoopMerges, JoinTheNeighbourhoodToo) {
+  const std::vector<LandmarkId>& of_query = made_.map.keyframes().At(KeyframeId(29)).landmarks;
+  EXPECT_TRUE(std::any_of(
+      correction_.landmarks.begin(), correction_.landmarks.end(), [&](const auto& merge) {
+        return std::find(of_query.begin(), of_query.end(), merge.duplicate) == of_query.end();
+      }));
+}
+
+TEST_F(LoopMerges, JoinObjectsThatAreOneThing) {
+  ASSERT_EQ(made_.map.objects().size(), 6u);
+  ASSERT_EQ(correction_.objects.size(), 3u);
+  for (const auto& [duplicate, kept] : correction_.objects) {
+    EXPECT_EQ(made_.map.objects().At(duplicate).Label(), made_.map.objects().At(kept).Label());
+  }
+}
+
+TEST_F(LoopMerges, AreAppliedToAConsistentMapWithOneLandmarkPerPoint) {
+  const Map merged = Corrected(made_, correction_);
+  EXPECT_EQ(FindViolations(merged), std::vector<std::string>());
+  EXPECT_EQ(merged.objects().size(), 3u);
+  EXPECT_EQ(merged.landmarks().size(), made_.map.landmarks().size() - correction_.landmarks.size());
+  const Keyframe& query = merged.keyframes().At(KeyframeId(29));
+  EXPECT_TRUE(std::any_of(query.covisible.begin(), query.covisible.end(), [](const Covisible& c) {
+    return c.keyframe == KeyframeId(5) && c.shared > 100;
+  })) << "both ends see the same landmarks now";
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "places/landmark_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "frame/point_measurement.h"
+#include "map/covisibility.h"
+#include "support/random_geometry.h"
+#include "support/ring_world.h"
+
+namespace hullslam {
+namespace {
+
+// The frame and the landmarks of the keyframes 2 to 6 of a ring without drift.
+class LandmarkSearch : public testing::Test {
+ protected:
+  static constexpr double kTurns = 4.3 / 24.0;
+
+  LandmarkSearch() {
+    for (uint32_t i = 2; i <= 6; ++i) {
+      place_.emplace_back(i);
+    }
+    asked_ = ObservedLandmarks(made_.map, place_);
+  }
+  std::vector<FoundLandmark> Find(const Rigid3& cam_from_world) const {
+    return FindLandmarks(made_.map, world_.sensor(), *view_.frame, cam_from_world, asked_);
+  }
+  // The point that a landmark shows.
+  uint32_t PointOf(LandmarkId id) const {
+    const Observation& observation = made_.map.landmarks().At(id).observations.front();
+    return made_.views[observation.keyframe.value].points[observation.keypoint];
+  }
+  size_t CountRight(const std::vector<FoundLandmark>& found) const {
+    return static_cast<size_t>(std::count_if(found.begin(), found.end(), [&](const auto& one) {
+      return PointOf(one.landmark) == view_.points[one.keypoint];
+    }));
+  }
+  void ExpectUnique(const std::vector<FoundLandmark>& found) const {
+    std::set<uint32_t> keypoints;
+    std::set<LandmarkId> landmarks;
+    for (const auto& [keypoint, landmark] : found) {
+      EXPECT_TRUE(keypoints.insert(keypoint).second) << keypoint;
+      EXPECT_TRUE(landmarks.insert(landmark).second) << landmark.value;
+    }
+  }
+
+  const RingWorld& world_ = SharedRing();
+  const RingMap made_ = MakeRingMap(world_, {.drift = Rigid3()});
+  const Rigid3 pose_ = RingWorld::CamFromWorld(kTurns);
+  const SyntheticView view_ = world_.Observe(FrameId(1000), pose_);
+  std::vector<KeyframeId> place_;
+  std::vector<LandmarkId> asked_;
+};
+
+TEST_F(LandmarkSearch, FindsNearlyAllFromTheRightPoseAndNoneWrongly) {
+  const std::vector<FoundLandmark> found = Find(pose_);
+  ExpectUnique(found);
+  size_t in_view = 0;
+  for (const LandmarkId id : asked_) {
+    in_view += std::count(view_.points.begin(), view_.points.end(), PointOf(id)) > 0 ? 1 : 0;
+  }
+  EXPECT_GT(in_view, 150u);
+  EXPECT_GT(found.size(), in_view * 9 / 10);
+  EXPECT_EQ(CountRight(found), found.size());
+}
+
+TEST_F(LandmarkSearch, WhatIsFoundAgreesWithTheKeypoint) {
+  RandomGeometry random(1);
+  size_t count = 0;
+  for (int run = 0; run < 20; ++run) {
+    const Rigid3 pose = random.Pose(0.005, 0.01) * pose_;
+    for (const auto& [keypoint, landmark] : Find(pose)) {
+      EXPECT_TRUE(IsInlier(world_.sensor().camera,
+                           MeasurePoint(world_.sensor(), view_.frame->features, keypoint,
+                                        world_.sensor().depth_error),
+                           pose * made_.map.landmarks().At(landmark).position));
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 100u);
+}
+
+TEST_F(LandmarkSearch, FindsNothingFromAWrongPlace) {
+  EXPECT_TRUE(Find(RingWorld::CamFromWorld(kTurns + 0.5)).empty());
+  EXPECT_LT(Find(RingWorld::CamFromWorld(kTurns + 0.05)).size(), 5u);
+}
+
+TEST_F(LandmarkSearch, FindsOnlyLandmarksThatItIsGiven) {
+  const std::vector<FoundLandmark> all = Find(pose_);
+  asked_ = {all[3].landmark, all[8].landmark};
+  std::sort(asked_.begin(), asked_.end());
+  const std::vector<FoundLandmark> two = Find(pose_);
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_EQ(CountRight(two), 2u);
+  asked_.clear();
+  EXPECT_TRUE(Find(pose_).empty());
+}
+
+class LandmarkWords : public LandmarkSearch {
+ protected:
+  std::vector<FoundLandmark> Match(const std::vector<uint8_t>& is_asked = {}) const {
+    return MatchLandmarksByWords(made_.map, *view_.frame, KeyframeId(4), is_asked);
+  }
+};
+
+TEST_F(LandmarkWords, MatchesLandmarksOfTheKeyframeWithoutAPose) {
+  const std::vector<FoundLandmark> found = Match();
+  ExpectUnique(found);
+  const std::vector<LandmarkId>& known = made_.map.keyframes().At(KeyframeId(4)).landmarks;
+  for (const FoundLandmark& one : found) {
+    EXPECT_EQ(std::count(known.begin(), known.end(), one.landmark), 1);
+  }
+  EXPECT_GT(found.size(), 100u);
+  EXPECT_GT(CountRight(found), found.size() * 19 / 20);
+}
+
+TEST_F(LandmarkWords, LeavesOutKeypointsThatAreNotAsked) {
+  const size_t keypoints = view_.frame->features.size();
+  std::vector<uint8_t> is_asked(keypoints, 1);
+  const std::vector<FoundLandmark> all = Match();
+  EXPECT_EQ(Match(is_asked).size(), all.size());
+  for (size_t i = 0; i < keypoints; i += 2) {
+    is_asked[i] = 0;
+  }
+  const std::vector<FoundLandmark> odd = Match(is_asked);
+  EXPECT_GT(odd.size(), 50u);
+  for (const FoundLandmark& one : odd) {
+    EXPECT_EQ(one.keypoint % 2, 1u);
+  }
+  EXPECT_TRUE(Match(std::vector<uint8_t>(keypoints, 0)).empty());
+}
+
+TEST_F(LandmarkWords, MatchesNothingOfAnotherPlace) {
+  EXPECT_LT(MatchLandmarksByWords(made_.map, *view_.frame, KeyframeId(16), {}).size(), 5u);
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "map/covisibility.h"
+#include "map/made_map.h"
+#include "support/made_vocabulary.h"
+
+namespace hullslam {
+
+// A map of keyframes that are nothing but words.
+inline Map MakeWordMap() { return Map(SharedVocabulary()); }
+
+// A keyframe that shows each of the words once, and has room for `landmarks` landmarks.
+inline KeyframeId AddWords(Map& map, const std::vector<uint32_t>& words, size_t landmarks = 100) {
+  const auto frame = MakeFrame(map.keyframes().NextId().value, landmarks);
+  // One word per keypoint, so the words are repeated.
+  for (size_t i = 0; i < landmarks; ++i) {
+    frame->words.emplace_back(words[i % words.size()]);
+  }
+  return map.AddKeyframe(frame, Rigid3());
+}
+
+// Makes two keyframes covisible.
+inline void Connect(Map& map, KeyframeId a, KeyframeId b, int shared = 20) {
+  Share(map, {a, b}, shared);
+  UpdateCovisibility(map, b);
+}
+
+}  // namespace hullslam

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "system/loop_threads.h"
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "support/ring_world.h"
+
+namespace hullslam {
+namespace {
+
+// Collects what is sent. It can be told to stay in the first call until it is let go.
+class Receiver {
+ public:
+  ~Receiver() { LetGo(); }
+  void Block() { is_blocking_ = true; }
+  void WaitUntilBlocked() { is_blocked_.get_future().wait(); }
+  void LetGo() {
+    if (!std::exchange(is_free_, true)) {
+      go_.set_value();
+    }
+  }
+
+  void Receive(MapCorrection correction) {
+    bool is_first = false;
+    bool is_loop = false;
+    {
+      const std::lock_guard lock(mutex_);
+      is_loop = correction.loop.has_value();
+      is_first = sent_.empty();
+      sent_.push_back(std::move(correction));
+    }
+    if (is_blocking_ && is_first) {
+      is_blocked_.set_value();
+      go_.get_future().wait();
+    } else if (is_blocking_ && is_loop) {
+      has_loop_.set_value();
+    }
+  }
+  // Waits for a loop after the first call.
+  void WaitForLoop() { has_loop_.get_future().wait(); }
+
+  std::vector<MapCorrection> sent() const {
+    const std::lock_guard lock(mutex_);
+    return sent_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<MapCorrection> sent_;
+  bool is_blocking_ = false;
+  bool is_free_ = false;
+  std::promise<void> is_blocked_;
+  std::promise<void> go_;
+  std::promise<void> has_loop_;
+};
+
+class LoopThreadsTest : public testing::Test {
+ protected:
+  LoopThreadsTest() { options_.vocabulary = SharedRing().vocabulary(); }
+  std::unique_ptr<LoopThreads> Make() {
+    return std::make_unique<LoopThreads>(
+        SharedRing().sensor(), options_,
+        [this](MapCorrection correction) { receiver_.Receive(std::move(correction)); });
+  }
+  LoopQuery Query(KeyframeId keyframe) { return {made_.map.Snapshot(), keyframe}; }
+  std::shared_ptr<const Map> Published() {
+    return std::make_shared<const Map>(made_.map.Snapshot());
+  }
+
+  SystemOptions options_;
+  RingMap made_ = MakeRingMap(SharedRing());
+  Receiver receiver_;
+};
+
+TEST_F(LoopThreadsTest, NeedAVocabularyAndTheOption) {
+  EXPECT_TRUE(Make()->is_enabled());
+  options_.loop.enabled = false;
+  EXPECT_FALSE(Make()->is_enabled());
+  options_.loop.enabled = true;
+  options_.vocabulary = nullptr;
+  EXPECT_FALSE(Make()->is_enabled());
+}
+
+TEST_F(LoopThreadsTest, SettleWaitsForTheLoopThatIsSought) {
+  const auto threads = Make();
+  threads->Seek(Query(made_.last()));
+  EXPECT_TRUE(threads->Settle(false));
+  ASSERT_EQ(receiver_.sent().size(), 1u);
+  EXPECT_TRUE(receiver_.sent()[0].loop);
+  EXPECT_EQ(threads->busy_threads(), 0);
+  EXPECT_FALSE(threads->Settle(false)) << "nothing was sent since the last call";
+  EXPECT_EQ(threads->times().samples().at("loop_detection").size(), 1u);
+}
+
+TEST_F(LoopThreadsTest, NothingIsSentWhereThereIsNoLoop) {
+  const auto threads = Make();
+  threads->Seek(Query(KeyframeId(14)));
+  EXPECT_FALSE(threads->Settle(false));
+  EXPECT_TRUE(receiver_.sent().empty());
+}
+
+TEST_F(LoopThreadsTest, SettleWaitsForTheAdjustment) {
+  const auto threads = Make();
+  threads->Adjust(Published());
+  EXPECT_TRUE(threads->Settle(false));
+  ASSERT_EQ(receiver_.sent().size(), 1u);
+  EXPECT_FALSE(receiver_.sent()[0].loop);
+  EXPECT_FALSE(receiver_.sent()[0].positions.empty());
+  EXPECT_EQ(threads->times().samples().at("loop_adjustment").size(), 1u);
+}
+
+TEST_F(LoopThreadsTest, WithoutTheOptionTheMapIsNotAdjusted) {
+  options_.loop.global_adjustment = false;
+  const auto threads = Make();
+  threads->Adjust(Published());
+  EXPECT_FALSE(threads->Settle(false));
+  EXPECT_TRUE(receiver_.sent().empty());
+}
+
+// The next loop corrects the map, so that an adjustment of the former map would be refused.
+TEST_F(LoopThreadsTest, TheNextLoopGivesUpTheAdjustment) {
+  receiver_.Block();
+  const auto threads = Make();
+  threads->Adjust(Published());
+  receiver_.WaitUntilBlocked();  // the first adjustment is being sent
+  EXPECT_EQ(threads->busy_threads(), 1);
+  threads->Adjust(Published());  // the second one waits
+  threads->Seek(Query(made_.last()));
+  receiver_.WaitForLoop();
+  receiver_.LetGo();
+  EXPECT_TRUE(threads->Settle(false));
+  const std::vector<MapCorrection> sent = receiver_.sent();
+  ASSERT_EQ(sent.size(), 2u);
+  EXPECT_FALSE(sent[0].loop);
+  EXPECT_TRUE(sent[1].loop);
+}
+
+TEST_F(LoopThreadsTest, MayBeDestroyedWhileTheyWork) {
+  for (int i = 0; i < 3; ++i) {
+    const auto threads = Make();
+    threads->Seek(Query(made_.last()));
+    threads->Adjust(Published());
+  }
+}
+
+TEST_F(LoopThreadsTest, AnExceptionReachesTheCaller) {
+  LoopThreads threads(SharedRing().sensor(), options_,
+                      [](const MapCorrection&) { throw std::runtime_error("full"); });
+  EXPECT_NO_THROW(threads.RethrowFailure());
+  threads.Seek(Query(made_.last()));
+  threads.Settle(false);
+  EXPECT_THROW(threads.RethrowFailure(), std::runtime_error);
+  LoopThreads others(SharedRing().sensor(), options_,
+                     [](const MapCorrection&) { throw std::runtime_error("full"); });
+  others.Adjust(Published());
+  others.Settle(false);
+  EXPECT_THROW(others.RethrowFailure(), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace hullslam
