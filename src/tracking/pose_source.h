@@ -35,4 +35,7 @@ PoseSource PoseByRelocalisation;
 inline constexpr std::array<PoseSource*, 3> kPoseSources = {
     &PoseByMotionModel, &PoseByReferenceKeyframe, &PoseByRelocalisation};
 
+// Those of them that need no last frame, in the same order.
+inline constexpr std::array<PoseSource*, 1> kRelocalisationSources = {&PoseByRelocalisation};
+
 }  // namespace hullslam

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "tracking/pose_source.h"
+#include "tracking/confirmed_pose.h"
 
 namespace hullslam {
 namespace {
@@ -113,11 +113,12 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   if (!frame->detections.empty()) {
     object_index_.Follow(map, sensor_.camera);
   }
-  const std::optional<LocalTracking> found = FindPose(*frame, map);
+  const std::optional<ConfirmedPose> found =
+      FindConfirmedPose(*frame, map, Context(), last_, kPoseSources);
   if (!found) {
     return Lose(std::move(frame));
   }
-  const LocalTracking& tracking = *found;
+  const LocalTracking& tracking = found->tracking;
   CountSightings(map, tracking);
   const PoseEstimate& estimate = tracking.estimate;
   const RelativePose pose = map.RelativeTo(tracking.reference, estimate.cam_from_world);
@@ -155,20 +156,6 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
            .cam_from_world = estimate.cam_from_world,
            .motion = motion};
   return result;
-}
-
-// The first pose that the local map confirms. Null if there is none.
-std::optional<LocalTracking> Tracker::FindPose(const Frame& frame, const Map& map) const {
-  for (PoseSource* source : kPoseSources) {
-    if (std::optional<PoseEstimate> start = source(frame, map, Context(), last_)) {
-      LocalTracking tracking =
-          TrackLocalMap(frame, map, Context(), last_.reference, std::move(*start));
-      if (tracking.estimate.EffectiveInliers() >= options_.min_inliers) {
-        return tracking;
-      }
-    }
-  }
-  return std::nullopt;
 }
 
 Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame) {

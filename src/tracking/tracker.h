@@ -52,7 +52,6 @@ class Tracker {
   }
   Result Initialize(std::shared_ptr<const Frame> frame);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
-  std::optional<LocalTracking> FindPose(const Frame& frame, const Map& map) const;
   Result Lose(std::shared_ptr<const Frame> frame);
   void CountSightings(const Map& map, const LocalTracking& tracking);
   KeyframeRequest MakeRequest(std::shared_ptr<const Frame> frame, const LocalTracking& tracking,
