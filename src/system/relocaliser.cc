@@ -48,7 +48,7 @@ std::optional<RelocalisedPose> Relocaliser::Find(const Frame& frame) const {
     return std::nullopt;
   }
   const PoseEstimate& estimate = found->tracking.estimate;
-  constexpr std::array kMethods = {RelocalisationMethod::kWords};
+  constexpr std::array kMethods = {RelocalisationMethod::kWords, RelocalisationMethod::kObjects};
   static_assert(kMethods.size() == kRelocalisationSources.size());
   return RelocalisedPose{.cam_from_world = estimate.cam_from_world,
                          .method = kMethods[found->source],

@@ -14,7 +14,8 @@ std::optional<ConfirmedPose> FindConfirmedPose(const Frame& frame, const Map& ma
     if (!start) {
       continue;
     }
-    LocalTracking tracking = TrackLocalMap(frame, map, context, last.reference, std::move(*start));
+    const KeyframeId near = start->place.IsValid() ? start->place : last.reference;
+    LocalTracking tracking = TrackLocalMap(frame, map, context, near, std::move(*start));
     if (tracking.estimate.EffectiveInliers() >= context.options.min_inliers) {
       return ConfirmedPose{std::move(tracking), i};
     }
