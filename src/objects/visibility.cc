@@ -55,12 +55,12 @@ void AddDepthGrid(const DepthGrid& grid, const PinholeCamera& camera,
   }
 }
 
-void AddLandmarks(const Map& map, const Keyframe& keyframe, HiddenCounter& counter) {
-  for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
-    if (keyframe.landmarks[i].IsValid()) {
-      const Eigen::Vector3d& position = map.landmarks().At(keyframe.landmarks[i]).position;
-      counter.Add(keyframe.frame->features.keypoints[i].undistorted.cast<double>(),
-                  (keyframe.cam_from_world * position).z());
+void AddLandmarks(const Map& map, const ImageKnowledge& image, HiddenCounter& counter) {
+  for (size_t i = 0; i < image.landmarks.size(); ++i) {
+    if (image.landmarks[i].IsValid()) {
+      const Eigen::Vector3d& position = map.landmarks().At(image.landmarks[i]).position;
+      counter.Add(image.frame.features.keypoints[i].undistorted.cast<double>(),
+                  (image.cam_from_world * position).z());
     }
   }
 }
@@ -78,17 +78,17 @@ DepthRange DepthsOf(const Ellipsoid& in_cam) {
   return {center - axes.norm(), center + axes.norm()};
 }
 
-// Whether the keyframe observes a mapped object that covers the centre of the ellipse and is
+// Whether the image shows a mapped object that covers the centre of the ellipse and is
 // nearer than `depth` as a whole.
-bool IsBehindObject(const Map& map, const Keyframe& keyframe, const Ellipse& ellipse,
+bool IsBehindObject(const Map& map, const ImageKnowledge& image, const Ellipse& ellipse,
                     double depth) {
-  for (size_t i = 0; i < keyframe.objects.size(); ++i) {
-    const ObjectLandmark* other = map.objects().Find(keyframe.objects[i]);
+  for (size_t i = 0; i < image.objects.size(); ++i) {
+    const ObjectLandmark* other = map.objects().Find(image.objects[i]);
     if (other == nullptr || other->state != ObjectState::kMapped) {
       continue;
     }
-    if (DepthsOf(keyframe.cam_from_world * other->ellipsoid).farthest < depth &&
-        IsInOrNearConvex(keyframe.frame->detections[i].hull, ellipse.center, 0.0)) {
+    if (DepthsOf(image.cam_from_world * other->ellipsoid).farthest < depth &&
+        IsInOrNearConvex(image.frame.detections[i].hull, ellipse.center, 0.0)) {
       return true;
     }
   }
@@ -97,16 +97,15 @@ bool IsBehindObject(const Map& map, const Keyframe& keyframe, const Ellipse& ell
 
 }  // namespace
 
-bool ShouldShow(const Map& map, const Sensor& sensor, KeyframeId keyframe,
+bool ShouldShow(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
                 const ObjectLandmark& object, const ObjectOptions& options) {
-  const Keyframe& observer = map.keyframes().At(keyframe);
   const auto ellipse =
-      ProjectEllipsoid(sensor.camera.Matrix(), observer.cam_from_world, object.ellipsoid);
+      ProjectEllipsoid(sensor.camera.Matrix(), image.cam_from_world, object.ellipsoid);
   if (!ellipse || !sensor.bounds.Contains(ellipse->Bounds().min()) ||
       !sensor.bounds.Contains(ellipse->Bounds().max())) {
     return false;
   }
-  const Ellipsoid in_cam = observer.cam_from_world * object.ellipsoid;
+  const Ellipsoid in_cam = image.cam_from_world * object.ellipsoid;
   const double distance = in_cam.world_from_object.translation.norm();
   const double farthest =
       FarthestView(CollectViews(map, object), object.ellipsoid.world_from_object.translation);
@@ -117,13 +116,22 @@ bool ShouldShow(const Map& map, const Sensor& sensor, KeyframeId keyframe,
   const double depth =
       DepthsOf(in_cam).nearest - NearSurface(object.ellipsoid, distance, options.validity);
   HiddenCounter counter(*ellipse, depth);
-  if (observer.frame->depth.empty()) {
-    AddLandmarks(map, observer, counter);
+  if (image.frame.depth.empty()) {
+    AddLandmarks(map, image, counter);
   } else {
-    AddDepthGrid(observer.frame->depth, sensor.camera, ellipse->Bounds(), counter);
+    AddDepthGrid(image.frame.depth, sensor.camera, ellipse->Bounds(), counter);
   }
   return !counter.IsHidden(options.culling.max_hidden) &&
-         !IsBehindObject(map, observer, *ellipse, depth);
+         !IsBehindObject(map, image, *ellipse, depth);
+}
+
+bool ShouldShow(const Map& map, const Sensor& sensor, KeyframeId keyframe,
+                const ObjectLandmark& object, const ObjectOptions& options) {
+  const Keyframe& observer = map.keyframes().At(keyframe);
+  return ShouldShow(map, sensor,
+                    ImageKnowledge{*observer.frame, observer.cam_from_world, observer.landmarks,
+                                   observer.objects},
+                    object, options);
 }
 
 }  // namespace hullslam

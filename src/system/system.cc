@@ -14,6 +14,7 @@
 #include "hullslam/util/error.h"
 #include "hullslam/util/task_runner.h"
 #include "system/idle_core_runner.h"
+#include "system/make_sensor.h"
 #include "system/pipeline.h"
 #include "system/sequential_pipeline.h"
 #include "system/threaded_pipeline.h"
@@ -24,17 +25,6 @@ namespace {
 const SystemOptions& Validated(const SystemOptions& options) {
   options.Validate();
   return options;
-}
-
-Sensor MakeSensor(const SystemOptions& options) {
-  Sensor sensor;
-  sensor.camera = options.camera;
-  sensor.bounds = options.camera.UndistortedBounds();
-  sensor.levels = ScaleLevels::Create(options.features.level_count, options.features.scale_factor);
-  sensor.close_depth = options.depth.close_baselines * sensor.baseline();
-  sensor.depth_error = options.depth.error;
-  sensor.frames_per_second = options.frames_per_second;
-  return sensor;
 }
 
 cv::Mat ToGrey(const cv::Mat& image, bool rgb_order) {

@@ -32,13 +32,22 @@ PoseSource PoseByReferenceKeyframe;
 // (Mur-Artal and Tardos 2017; relocalisation_source.cc).
 PoseSource PoseByRelocalisation;
 
+// The arrangement of the mapped objects in the frame gives a pose, and hull lines and landmarks
+// refine and confirm it. Null if another pose explains the frame about as well. The last frame is
+// not used (object_relocalisation_source.cc).
+PoseSource PoseByObjects;
+
 // A source of the caller, which is asked when all others find nothing. The estimate names landmarks
 // that keyframes of the map observe. Null if it finds too little.
 using Relocalise = std::function<std::optional<PoseEstimate>(const Frame& frame, const Map& map,
                                                              const TrackingContext& context)>;
 
 // All sources, in the order in which they are tried.
-inline constexpr std::array<PoseSource*, 3> kPoseSources = {
-    &PoseByMotionModel, &PoseByReferenceKeyframe, &PoseByRelocalisation};
+inline constexpr std::array<PoseSource*, 4> kPoseSources = {
+    &PoseByMotionModel, &PoseByReferenceKeyframe, &PoseByRelocalisation, &PoseByObjects};
+
+// Those of them that need no last frame, in the same order.
+inline constexpr std::array<PoseSource*, 2> kRelocalisationSources = {&PoseByRelocalisation,
+                                                                      &PoseByObjects};
 
 }  // namespace hullslam

@@ -78,7 +78,8 @@ PoseEstimate SeeWholePlace(const Frame& frame, const Map& map, const TrackingCon
 std::optional<PoseEstimate> PoseByRelocalisation(const Frame& frame, const Map& map,
                                                  const TrackingContext& context,
                                                  const LastFrame& /*last*/) {
-  if (map.vocabulary() == nullptr || frame.words.empty()) {
+  const bool has_words = map.vocabulary() != nullptr && !frame.words.empty();
+  if (!context.options.relocalise_by_words || !has_words) {
     return std::nullopt;
   }
   for (const KeyframeId keyframe : FindPlaces(frame, map)) {

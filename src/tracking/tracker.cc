@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "tracking/confirmed_pose.h"
+
 namespace hullslam {
 namespace {
 
@@ -160,22 +162,18 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
 
 // The first pose that the local map confirms. Null if there is none.
 std::optional<LocalTracking> Tracker::FindPose(const Frame& frame, const Map& map) const {
-  const auto confirm = [&](std::optional<PoseEstimate> start) {
-    std::optional<LocalTracking> tracking;
-    if (start) {
-      tracking = TrackLocalMap(frame, map, Context(), last_.reference, std::move(*start));
-      if (tracking->estimate.EffectiveInliers() < options_.min_inliers) {
-        tracking.reset();
-      }
-    }
-    return tracking;
-  };
-  for (PoseSource* source : kPoseSources) {
-    if (std::optional<LocalTracking> found = confirm(source(frame, map, Context(), last_))) {
-      return found;
-    }
+  if (auto found = FindConfirmedPose(frame, map, Context(), last_, kPoseSources)) {
+    return std::move(found->tracking);
   }
-  return relocalise_ ? confirm(relocalise_(frame, map, Context())) : std::nullopt;
+  std::optional<PoseEstimate> start =
+      relocalise_ ? relocalise_(frame, map, Context()) : std::nullopt;
+  if (!start) {
+    return std::nullopt;
+  }
+  LocalTracking tracking = TrackLocalMap(frame, map, Context(), last_.reference, std::move(*start));
+  return tracking.estimate.EffectiveInliers() >= options_.min_inliers
+             ? std::optional(std::move(tracking))
+             : std::nullopt;
 }
 
 bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,

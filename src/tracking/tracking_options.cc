@@ -18,6 +18,10 @@ void TrackingOptions::Bind(OptionTable& options) {
       "classes of dynamic objects, separated by commas; keypoints on their masks are removed");
   options.Add("tracking.keyframe_interval", &keyframe_interval, Range::Between(0.0, 60.0),
               "least time between keyframes, unless tracking weakens abruptly, s");
+  options.Add("tracking.relocalise_by_words", &relocalise_by_words,
+              "find a lost frame by keyframes that look like it (needs a vocabulary)");
+  options.Add("tracking.relocalise_by_objects", &relocalise_by_objects,
+              "find a lost frame by the arrangement of the mapped objects in it (needs masks)");
 }
 
 }  // namespace hullslam

@@ -60,6 +60,7 @@ Relocalise ByKeyframe0(int failures) {
     }
     LastFrame last;
     last.reference = KeyframeId(0);
+    last.frame = map.keyframes().At(KeyframeId(0)).frame;
     last.cam_from_world = map.keyframes().At(KeyframeId(0)).cam_from_world;
     return PoseByReferenceKeyframe(frame, map, context, last);
   };

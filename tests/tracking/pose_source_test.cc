@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "objects/made_room.h"
 #include "support/ring_world.h"
 #include "support/synthetic_world.h"
 #include "util/id_set.h"
@@ -181,6 +182,91 @@ TEST_F(Relocalisation, TheSameFrameGivesTheSameBits) {
   EXPECT_EQ(a->cam_from_world.rotation.coeffs(), b->cam_from_world.rotation.coeffs());
   EXPECT_EQ(a->cam_from_world.translation, b->cam_from_world.translation);
   EXPECT_EQ(a->landmarks, b->landmarks);
+}
+
+// A room of seven objects without any landmark.
+class ByObjects : public testing::Test {
+ protected:
+  ByObjects() { sensor_.levels = ScaleLevels::Create(8, 1.2); }
+  std::optional<PoseEstimate> Find(const Map& map, const Frame& frame) const {
+    const ObjectIndex index(map, sensor_.camera);
+    return PoseByObjects(frame, map, {sensor_, options_, objects_, index}, LastFrame());
+  }
+  static double Error(const PoseEstimate& found, const Rigid3& truth) {
+    return (Inverse(found.cam_from_world).translation - Inverse(truth).translation).norm();
+  }
+  Sensor sensor_ = MakeObjectSensor();
+  TrackingOptions options_;
+  ObjectOptions objects_;
+  const std::vector<MadeObject> room_ = MakeRoom();
+  const Rigid3 truth_ = CameraOnCircle(0.9, 1.9, 0.7);
+};
+
+TEST_F(ByObjects, FindThePoseInSpiteOfNoise) {
+  Map map;
+  AddRoom(map, sensor_, room_);
+  const auto exact = Find(map, SeeRoom(sensor_, room_, truth_));
+  ASSERT_TRUE(exact);
+  EXPECT_LT(Error(*exact, truth_), 0.01);
+  EXPECT_EQ(exact->used_objects, 7);
+  EXPECT_EQ(exact->place, KeyframeId(0));
+  const auto noisy = Find(map, SeeRoom(sensor_, room_, truth_, 0.02));
+  ASSERT_TRUE(noisy);
+  EXPECT_LT(Error(*noisy, truth_), 0.1);
+}
+
+TEST_F(ByObjects, TheWorldMayBeAnywhere) {
+  const Rigid3 motion(ExpSo3({0.4, -0.8, 1.9}), {3.0, -2.0, 7.0});
+  Map map;
+  AddRoom(map, sensor_, Moved(motion, room_), motion);
+  const auto found = Find(map, SeeRoom(sensor_, room_, truth_));
+  ASSERT_TRUE(found);
+  EXPECT_LT(Error(*found, truth_ * Inverse(motion)), 0.01);
+}
+
+TEST_F(ByObjects, GiveTheSameBitsAgain) {
+  Map map;
+  AddRoom(map, sensor_, room_);
+  const Frame frame = SeeRoom(sensor_, room_, truth_, 0.02);
+  EXPECT_EQ(Find(map, frame)->cam_from_world.ToMatrix(),
+            Find(map, frame)->cam_from_world.ToMatrix());
+}
+
+TEST_F(ByObjects, AreAmbiguousInTwoEqualRooms) {
+  Map map;
+  AddRoom(map, sensor_, room_);
+  const Rigid3 aside(Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0});
+  std::vector<MadeObject> other = Moved(aside, room_);
+  AddRoom(map, sensor_, other, aside);
+  EXPECT_FALSE(Find(map, SeeRoom(sensor_, room_, truth_)));
+}
+
+TEST_F(ByObjects, RefuseAnUnknownArrangement) {
+  Map map;
+  AddRoom(map, sensor_, room_);
+  std::vector<MadeObject> moved = room_;
+  for (size_t i = 0; i < room_.size(); ++i) {
+    Eigen::Vector3d& center = moved[i].ellipsoid.world_from_object.translation;
+    center = Eigen::Vector3d(-center.y(), 0.4 - center.z(), center.x()) * 0.9;
+  }
+  EXPECT_FALSE(Find(map, SeeRoom(sensor_, moved, truth_)));
+}
+
+TEST_F(ByObjects, RefuseTooFewObjects) {
+  Map map;
+  AddRoom(map, sensor_, room_);
+  EXPECT_FALSE(Find(map, SeeRoom(sensor_, {room_[0], room_[1], room_[2]}, truth_)));
+}
+
+TEST_F(ByObjects, CanBeSwitchedOff) {
+  Map map;
+  AddRoom(map, sensor_, room_);
+  const Frame frame = SeeRoom(sensor_, room_, truth_);
+  options_.relocalise_by_objects = false;
+  EXPECT_FALSE(Find(map, frame));
+  options_.relocalise_by_objects = true;
+  objects_.enabled = false;
+  EXPECT_FALSE(Find(map, frame));
 }
 
 }  // namespace

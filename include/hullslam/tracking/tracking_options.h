@@ -22,6 +22,10 @@ struct TrackingOptions {
   // mapped.
   std::string dynamic_classes = "person";
 
+  // How a lost frame is found in the map. By words needs a vocabulary, by objects needs masks.
+  bool relocalise_by_words = true;
+  bool relocalise_by_objects = true;
+
   void Bind(OptionTable& options);
 };
 

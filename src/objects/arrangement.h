@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "hullslam/frame/frame.h"
+#include "hullslam/frame/sensor.h"
+#include "hullslam/map/map.h"
+#include "hullslam/objects/object_options.h"
+#include "objects/object_index.h"
+
+namespace hullslam {
+
+// How well the arrangement of the mapped objects explains what a frame shows, if it is seen from a
+// certain pose.
+struct Arrangement {
+  std::vector<ObjectId> objects;  // one per detection; invalid where it shows no mapped object
+  int matched = 0;                // detections that show a mapped object
+  double overlap = 0.0;           // sum of their IoU with the projected ellipses
+  int missed = 0;                 // mapped objects that the frame should show (ShouldShow)
+
+  // The sum of overlaps; each missed object counts as half an overlap against it.
+  double Score() const { return overlap - 0.5 * missed; }
+};
+
+// Matches detections and mapped objects by class and by the IoU of hull and projected ellipse,
+// those with the largest IoU first. `index` is that of the map.
+Arrangement CompareArrangement(const Map& map, const ObjectIndex& index, const Sensor& sensor,
+                               const Frame& frame, const Rigid3& cam_from_world,
+                               const ObjectOptions& options);
+
+}  // namespace hullslam

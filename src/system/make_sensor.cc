@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "system/make_sensor.h"
+
+namespace hullslam {
+
+Sensor MakeSensor(const SystemOptions& options) {
+  Sensor sensor;
+  sensor.camera = options.camera;
+  sensor.bounds = options.camera.UndistortedBounds();
+  sensor.levels = ScaleLevels::Create(options.features.level_count, options.features.scale_factor);
+  sensor.close_depth = options.depth.close_baselines * sensor.baseline();
+  sensor.depth_error = options.depth.error;
+  sensor.frames_per_second = options.frames_per_second;
+  return sensor;
+}
+
+}  // namespace hullslam

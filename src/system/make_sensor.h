@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "hullslam/frame/sensor.h"
+#include "hullslam/system/options.h"
+
+namespace hullslam {
+
+// The properties of the camera of a run.
+Sensor MakeSensor(const SystemOptions& options);
+
+}  // namespace hullslam

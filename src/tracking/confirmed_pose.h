@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "hullslam/frame/frame.h"
+#include "hullslam/map/map.h"
+#include "tracking/last_frame.h"
+#include "tracking/local_map_tracking.h"
+#include "tracking/pose_source.h"
+#include "tracking/tracking_context.h"
+
+namespace hullslam {
+
+// A frame whose pose is confirmed by its local map, and which source gave its first pose.
+struct ConfirmedPose {
+  LocalTracking tracking;
+  size_t source = 0;  // index into the sources that were asked
+};
+
+// Asks the sources one after the other for a first pose of the frame. The first one whose pose is
+// confirmed by the local map (tracking.min_inliers) is the result; null if there is none.
+std::optional<ConfirmedPose> FindConfirmedPose(const Frame& frame, const Map& map,
+                                               const TrackingContext& context,
+                                               const LastFrame& last,
+                                               std::span<PoseSource* const> sources);
+
+}  // namespace hullslam
