@@ -58,6 +58,7 @@ class Tracker {
   }
   Result Initialize(std::shared_ptr<const Frame> frame);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
+  std::optional<LocalTracking> FindPose(const Frame& frame, const Map& map) const;
   Result Lose(std::shared_ptr<const Frame> frame);
   bool NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,
                      const MapperStatus& mapper);
