@@ -21,7 +21,7 @@ namespace {
 // What is done with a setting of ORB-SLAM3.
 enum class Kind {
   kRenamed,   // it is our setting `key`
-  kIgnored,   // it has no meaning here (viewer, IMU, loop closing)
+  kIgnored,   // it has no meaning here (viewer, IMU)
   kBaseline,  // Stereo.b, the baseline in m; Camera.bf is this times Camera.fx
   kVersion,   // File.version
   kModel,     // Camera.type
@@ -58,7 +58,7 @@ constexpr std::array<Entry, 22> kEntries = {{
     {"System.LoadAtlasFromFile", Kind::kRefused, {}, "HullSLAM cannot load maps of ORB-SLAM3"},
     {"System.SaveAtlasToFile", Kind::kRefused, {}, "HullSLAM cannot save maps of ORB-SLAM3"},
     {"Viewer.imageViewScale", Kind::kIgnored},
-    {"loopClosing", Kind::kIgnored},
+    {"loopClosing", Kind::kRenamed, "loop.closing"},
 }};
 
 constexpr Entry kSecondCamera = {

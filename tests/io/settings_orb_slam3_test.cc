@@ -48,7 +48,7 @@ IMU.T_b_c1: !!opencv-matrix
           0.0, 1.0]
 
 ORBextractor.nFeatures: 1250
-loopClosing: 1
+loopClosing: 0
 Viewer.ViewpointX: 0.0
 Viewer.imageViewScale: 1.0
 )";
@@ -95,6 +95,7 @@ TEST_F(SettingsOrbSlam3, AreTranslated) {
   EXPECT_EQ(options.depth.close_baselines, 35.0);
   EXPECT_EQ(options.depth.units_per_metre, 1000.0);
   EXPECT_EQ(options.features.feature_count, 1250);
+  EXPECT_FALSE(options.loop.enabled);
 }
 
 TEST_F(SettingsOrbSlam3, OurOwnKeysAndOverridesWorkToo) {
