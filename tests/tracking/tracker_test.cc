@@ -777,83 +777,85 @@ TEST_F(TrackerTest, LocalizationRequestsNoKeyframes) {
     EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked) << i;
     EXPECT_FALSE(result.message);
   }
-  // A map of two thirds of the ring world. The camera stands at its beginning.
-  class RelocalisingTracker : public testing::Test {
-   protected:
-    RelocalisingTracker() {
-      tracker_.Process(Look(0, 0.0), nullptr, kIdle);
-      for (uint32_t i = 1; i <= 3; ++i) {
-        EXPECT_EQ(Process(Look(1000 + i, 0.0)).state, TrackingState::kTracked);
-      }
-    }
-    std::shared_ptr<Frame> Look(uint32_t id, double turns) const {
-      return std::make_shared<Frame>(
-          *world_.Observe(FrameId(id), RingWorld::CamFromWorld(turns)).frame);
-    }
-    TrackedFrame Process(std::shared_ptr<const Frame> frame) {
-      return tracker_.Process(std::move(frame), map_, kIdle).report.tracked;
-    }
-    void LoseTrack() {
-      auto blank = std::make_shared<Frame>();
-      blank->id = FrameId(1004);
-      RebuildGrid(world_.sensor(), *blank);
-      EXPECT_EQ(Process(blank).state, TrackingState::kLost);
-    }
+}
 
-    const RingWorld& world_ = SharedRing();
-    RingMap made_ = MakeRingMap(world_, {.keyframes = 16, .drift = Rigid3()});
-    const std::shared_ptr<const Map> map_ = Publish(made_.map);
-    Tracker tracker_{world_.sensor(), TrackingOptions(), ObjectOptions(), 1};
-  };
-
-  TEST_F(RelocalisingTracker, ContinuesAtAnotherPlaceOfTheMap) {
-    LoseTrack();
-    for (uint32_t i = 0; i < 4; ++i) {
-      const double turns = 0.45 + 0.005 * i;
-      const TrackedFrame tracked = Process(Look(1010 + i, turns));
-      ASSERT_EQ(tracked.state, TrackingState::kTracked) << i;
-      ExpectNear(tracked.cam_from_world, RingWorld::CamFromWorld(turns), 0.005);
-      EXPECT_GT(tracked.pose->reference, KeyframeId(8)) << "a keyframe of the new place";
+// A map of two thirds of the ring world. The camera stands at its beginning.
+class RelocalisingTracker : public testing::Test {
+ protected:
+  RelocalisingTracker() {
+    tracker_.Process(Look(0, 0.0), nullptr, kIdle);
+    for (uint32_t i = 1; i <= 3; ++i) {
+      EXPECT_EQ(Process(Look(1000 + i, 0.0)).state, TrackingState::kTracked);
     }
   }
-
-  TEST_F(RelocalisingTracker, StaysLostAtAPlaceThatTheMapLacks) {
-    LoseTrack();
-    EXPECT_EQ(Process(Look(1010, 0.82)).state, TrackingState::kLost);
-    EXPECT_EQ(Process(Look(1011, 0.3)).state, TrackingState::kTracked);
+  std::shared_ptr<Frame> Look(uint32_t id, double turns) const {
+    return std::make_shared<Frame>(
+        *world_.Observe(FrameId(id), RingWorld::CamFromWorld(turns)).frame);
+  }
+  TrackedFrame Process(std::shared_ptr<const Frame> frame) {
+    return tracker_.Process(std::move(frame), map_, kIdle).report.tracked;
+  }
+  void LoseTrack() {
+    auto blank = std::make_shared<Frame>();
+    blank->id = FrameId(1004);
+    RebuildGrid(world_.sensor(), *blank);
+    EXPECT_EQ(Process(blank).state, TrackingState::kLost);
   }
 
-  TEST_F(RelocalisingTracker, StaysLostElsewhereWithoutWords) {
-    LoseTrack();
-    const auto frame = Look(1010, 0.45);
-    frame->words.clear();
-    EXPECT_EQ(Process(frame).state, TrackingState::kLost);
-  }
+  const RingWorld& world_ = SharedRing();
+  RingMap made_ = MakeRingMap(world_, {.keyframes = 16, .drift = Rigid3()});
+  const std::shared_ptr<const Map> map_ = Publish(made_.map);
+  Tracker tracker_{world_.sensor(), TrackingOptions(), ObjectOptions(), 1};
+};
 
-  // The frame is of another place, but some keypoints look as if the camera had not moved: enough
-  // for a first pose, too few for the local map.
-  TEST_F(RelocalisingTracker, TriesTheNextSourceIfTheLocalMapDoesNotConfirmAPose) {
-    constexpr size_t kMisleading = 25;
-    const auto frame = Look(1004, 0.45);
-    const auto still = Look(1004, 0.0);
-    const std::vector<LandmarkId>& known = made_.map.keyframes().At(KeyframeId(0)).landmarks;
-    size_t added = 0;
-    for (size_t i = 0; i < known.size() && added < kMisleading; ++i) {
-      if (known[i].IsValid()) {
-        frame->features.keypoints.push_back(still->features.keypoints[i]);
-        frame->features.descriptors.push_back(still->features.descriptors[i]);
-        frame->features.depth.push_back(still->features.depth[i]);
-        frame->features.right_u.push_back(still->features.right_u[i]);
-        frame->words.push_back(still->words[i]);
-        ++added;
-      }
+TEST_F(RelocalisingTracker, ContinuesAtAnotherPlaceOfTheMap) {
+  LoseTrack();
+  for (uint32_t i = 0; i < 4; ++i) {
+    const double turns = 0.45 + 0.005 * i;
+    const TrackedFrame tracked = Process(Look(1010 + i, turns));
+    ASSERT_EQ(tracked.state, TrackingState::kTracked) << i;
+    ExpectNear(tracked.cam_from_world, RingWorld::CamFromWorld(turns), 0.005);
+    EXPECT_GT(tracked.pose->reference, KeyframeId(8)) << "a keyframe of the new place";
+  }
+}
+
+TEST_F(RelocalisingTracker, StaysLostAtAPlaceThatTheMapLacks) {
+  LoseTrack();
+  EXPECT_EQ(Process(Look(1010, 0.82)).state, TrackingState::kLost);
+  EXPECT_EQ(Process(Look(1011, 0.3)).state, TrackingState::kTracked);
+}
+
+TEST_F(RelocalisingTracker, StaysLostElsewhereWithoutWords) {
+  LoseTrack();
+  const auto frame = Look(1010, 0.45);
+  frame->words.clear();
+  EXPECT_EQ(Process(frame).state, TrackingState::kLost);
+}
+
+// The frame is of another place, but some keypoints look as if the camera had not moved: enough
+// for a first pose, too few for the local map.
+TEST_F(RelocalisingTracker, TriesTheNextSourceIfTheLocalMapDoesNotConfirmAPose) {
+  constexpr size_t kMisleading = 25;
+  const auto frame = Look(1004, 0.45);
+  const auto still = Look(1004, 0.0);
+  const std::vector<LandmarkId>& known = made_.map.keyframes().At(KeyframeId(0)).landmarks;
+  size_t added = 0;
+  for (size_t i = 0; i < known.size() && added < kMisleading; ++i) {
+    if (known[i].IsValid()) {
+      frame->features.keypoints.push_back(still->features.keypoints[i]);
+      frame->features.descriptors.push_back(still->features.descriptors[i]);
+      frame->features.depth.push_back(still->features.depth[i]);
+      frame->features.right_u.push_back(still->features.right_u[i]);
+      frame->words.push_back(still->words[i]);
+      ++added;
     }
-    ASSERT_EQ(added, kMisleading);
-    RebuildGrid(world_.sensor(), *frame);
-    const TrackedFrame tracked = Process(frame);
-    ASSERT_EQ(tracked.state, TrackingState::kTracked);
-    ExpectNear(tracked.cam_from_world, RingWorld::CamFromWorld(0.45), 0.005);
   }
+  ASSERT_EQ(added, kMisleading);
+  RebuildGrid(world_.sensor(), *frame);
+  const TrackedFrame tracked = Process(frame);
+  ASSERT_EQ(tracked.state, TrackingState::kTracked);
+  ExpectNear(tracked.cam_from_world, RingWorld::CamFromWorld(0.45), 0.005);
+}
 
 }  // namespace
 }  // namespace hullslam
