@@ -55,8 +55,9 @@ TEST_F(ObjectSightingTest, TellsWhereTheCenterIsAndHowLargeTheObject) {
     const auto sighting = SightObject(sensor_.camera, detection);
     ASSERT_TRUE(sighting);
     const double distance = DistanceOfCenter(*sighting, kBook);
-    EXPECT_NEAR(distance, pose.translation.norm(), 0.005) << turn;
-    EXPECT_LT((distance * sighting->ray - pose.translation).norm(), 0.007) << turn;
+    // The rays are not quite parallel, which makes 6 mm at 2.2 m.
+    EXPECT_NEAR(distance, pose.translation.norm(), 0.01) << turn;
+    EXPECT_LT((distance * sighting->ray - pose.translation).norm(), 0.01) << turn;
     EXPECT_TRUE(MayHaveSize(*sighting, distance, kBook));
     EXPECT_FALSE(MayHaveSize(*sighting, distance, 2.5 * kBook));
     EXPECT_FALSE(MayHaveSize(*sighting, distance, 0.4 * kBook));

@@ -94,10 +94,10 @@ TEST_F(PoseHypotheses, OtherClassesSizesAndDistancesGiveNone) {
   std::vector<MadeObject> larger = room_;
   std::vector<MadeObject> apart = room_;
   for (size_t i = 0; i < room_.size(); ++i) {
-    larger[i].ellipsoid.half_axes *= 2.0;
+    larger[i].ellipsoid.half_axes *= 4.0;
     apart[i].ellipsoid.world_from_object.translation *= 1.0 + 0.5 * static_cast<double>(i);
   }
-  EXPECT_TRUE(Propose(map, SeeRoom(sensor_, larger, CameraOnCircle(0.9, 3.0, 0.7))).empty());
+  EXPECT_TRUE(Propose(map, SeeRoom(sensor_, larger, CameraOnCircle(0.9, 5.0, 0.7))).empty());
   const auto found = Propose(map, SeeRoom(sensor_, apart, CameraOnCircle(0.9, 6.0, 1.0)));
   for (const PoseHypothesis& hypothesis : found) {
     EXPECT_LT(hypothesis.agreement, 4.0);
