@@ -34,8 +34,8 @@
 #include "hullslam/util/error.h"
 #include "io/map_parser.h"
 #include "io/mask_classes.h"
-#include "io/vocabulary_text.h"
 #include "io/read_file.h"
+#include "io/vocabulary_text.h"
 #include "map/covisibility.h"
 #include "map/invariants.h"
 

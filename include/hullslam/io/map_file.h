@@ -37,10 +37,11 @@ struct StoredMap {
 // no keyframe or the file cannot be written.
 void WriteMap(const std::filesystem::path& path, const Map& map, const MapSettings& settings);
 
-// Reads a file of WriteMap(), without an index of its words. The map has the same values, ids and free ids, so work goes on as
-// before; only ids that were replaced before it was written are absent, and its revision begins
-// again at 0. Throws InputError with `path` and the reason for anything else: a file that is
-// damaged or cut off, that another version wrote, or whose map is not consistent.
+// Reads a file of WriteMap(), without an index of its words. The map has the same values, ids and
+// free ids, so work goes on as before; only ids that were replaced before it was written are
+// absent, and its revision begins again at 0. Throws InputError with `path` and the reason for
+// anything else: a file that is damaged or cut off, that another version wrote, or whose map is not
+// consistent.
 StoredMap ReadMap(const std::filesystem::path& path);
 // Reads a map that a run with these settings is to go on with. Also throws InputError, before it
 // reads the keyframes, if the file has other settings; the message says which. `vocabulary` is the
