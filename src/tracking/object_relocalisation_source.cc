@@ -26,6 +26,9 @@ constexpr int kRounds = 2;             // of matching and refinement with object
 constexpr float kWideRadius = 25.0f;   // px at level 0; objects give a pose to a few centimetres
 constexpr double kWideRatio = 0.8;
 constexpr double kLeastMeanOverlap = 0.5;  // of the objects that confirm a pose
+// Hypotheses with a smaller share of the best score of objects are not looked at any further.
+constexpr double kWorthyShare = 0.5;
+constexpr int kMostSamples = 200;  // of RANSAC; most of the landmarks near a true pose agree
 // A second place that explains the frame this well, as a share of the best one, makes the frame
 // ambiguous.
 constexpr double kAmbiguousShare = 0.75;
@@ -47,17 +50,14 @@ class Finder {
       : frame_(frame), map_(map), context_(context) {}
 
   std::optional<PoseEstimate> Run() const {
-    std::vector<Place> places;
-    for (Place& place : CompareHypotheses()) {
-      const auto is_known = [&](const Place& other) { return AreSame(other, place); };
-      if (places.size() == kMostRefined || std::any_of(places.begin(), places.end(), is_known)) {
-        continue;
-      }
-      RefineByObjects(place);
-      if (place.arrangement.matched >= context_.objects.pose.min_objects) {
-        AddLandmarks(place);
-        places.push_back(std::move(place));
-      }
+    std::vector<Place> places = RefineHypotheses();
+    const double best_score = BestScore(places);
+    std::erase_if(places, [&](const Place& place) {
+      return place.arrangement.matched < context_.objects.pose.min_objects ||
+             place.arrangement.Score() < kWorthyShare * best_score;
+    });
+    for (Place& place : places) {
+      AddLandmarks(place);
     }
     const Place* const best = FindBest(places);
     if (best == nullptr || !IsConfirmed(*best)) {
@@ -83,6 +83,32 @@ class Finder {
     std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
       return a.arrangement.Score() > b.arrangement.Score();
     });
+    return places;
+  }
+
+  static double BestScore(const std::vector<Place>& places) {
+    double best = 0.0;
+    for (const Place& place : places) {
+      best = std::max(best, place.arrangement.Score());
+    }
+    return best;
+  }
+
+  // The hypotheses, refined by objects alone, without those that are near a better one or much
+  // worse.
+  std::vector<Place> RefineHypotheses() const {
+    std::vector<Place> places;
+    for (Place& place : CompareHypotheses()) {
+      const auto is_known = [&](const Place& other) { return AreSame(other, place); };
+      if (places.size() == kMostRefined ||
+          place.arrangement.Score() < kWorthyShare * BestScore(places)) {
+        break;  // those that follow are not better
+      }
+      if (std::none_of(places.begin(), places.end(), is_known)) {
+        RefineByObjects(place);
+        places.push_back(std::move(place));
+      }
+    }
     return places;
   }
 
@@ -166,6 +192,7 @@ class Finder {
     RansacOptions ransac;
     ransac.seed = HashSeed(context_.seed, frame_.id.value, "relocalisation by objects");
     ransac.min_inliers = static_cast<size_t>(context_.min_start_inliers());
+    ransac.max_iterations = kMostSamples;
     const AbsolutePose pose = EstimateAbsolutePose(context_.sensor.camera, observations, ransac);
     if (!pose.ok() ||
         !AreSamePlace(place.estimate.cam_from_world, pose.cam_from_world, MeanDistance(place))) {
