@@ -62,32 +62,14 @@ ObjectBuilder MakeComputer(std::string_view class_name, const Vector3f& tint,
                     builder.Fit(palette.keys, {0.15, 0.06, 0.001}), body);
 }
 
-}  // namespace
-
-ObjectBuilder MakeModel(const Placement& placement, const Palette& palette, SceneBuilder& builder) {
+// The classes whose models have several parts with textures that repeat.
+ObjectBuilder MakeCompound(const Placement& placement, const Palette& palette,
+                           SceneBuilder& builder) {
   const std::string_view name = placement.class_name;
   const Vector3f& tint = placement.tint;
   const auto height = [&](double usual) {
     return placement.height > 0.0 ? placement.height : usual;
   };
-  if (const SolidModel* solid = FindSolid(name)) {
-    return MakeSolid(std::string(name), solid->shape,
-                     builder.Repeat(palette.*solid->texture, solid->tile, tint));
-  }
-  if (name == "tv" || name == "laptop") {
-    return MakeComputer(name, tint, palette, builder);
-  }
-  if (name == "book") {
-    const int page = builder.random().Index(static_cast<int>(palette.pages.size()));
-    return MakePrinted(name, {0.085, 0.12, 0.014 + 0.004 * (page % 3)},
-                       palette.pages[static_cast<size_t>(page)], tint, builder);
-  }
-  if (name == "keyboard") {
-    return MakePrinted(name, {0.21, 0.07, 0.012}, palette.keys, tint, builder);
-  }
-  if (name == "cell phone") {
-    return MakePrinted(name, {0.037, 0.075, 0.005}, palette.screens.back(), tint, builder);
-  }
   if (name == "cup") {
     return MakeMug(builder.Repeat(palette.speckle, 0.22, tint));
   }
@@ -109,6 +91,40 @@ ObjectBuilder MakeModel(const Placement& placement, const Palette& palette, Scen
   }
   Check(name == "couch", "the catalogue has no class '" + std::string(name) + "'");
   return MakeCouch(fabric, builder.Repeat(palette.fabric, 0.7, {0.7F, 0.8F, 0.8F}));
+}
+
+}  // namespace
+
+ObjectBuilder MakeModel(const Placement& placement, const Palette& palette, SceneBuilder& builder) {
+  const std::string_view name = placement.class_name;
+  const Vector3f& tint = placement.tint;
+  if (const SolidModel* solid = FindSolid(name)) {
+    return MakeSolid(std::string(name), solid->shape,
+                     builder.Repeat(palette.*solid->texture, solid->tile, tint));
+  }
+  if (name == "tv" || name == "laptop") {
+    return MakeComputer(name, tint, palette, builder);
+  }
+  if (name == "book") {
+    const int page = builder.random().Index(static_cast<int>(palette.pages.size()));
+    return MakePrinted(name, {0.085, 0.12, 0.014 + 0.004 * (page % 3)},
+                       palette.pages[static_cast<size_t>(page)], tint, builder);
+  }
+  if (name == "keyboard") {
+    return MakePrinted(name, {0.21, 0.07, 0.012}, palette.keys, tint, builder);
+  }
+  if (name == "cell phone") {
+    return MakePrinted(name, {0.037, 0.075, 0.005}, palette.screens.back(), tint, builder);
+  }
+  return MakeCompound(placement, palette, builder);
+}
+
+void AddBook(SceneBuilder& builder, const Palette& palette, size_t page, const Vector3f& tint,
+             const Vector3d& base, double yaw) {
+  const Vector3d half(0.085, 0.12, 0.014 + 0.004 * static_cast<double>(page % 3));
+  Material cover = builder.Fit(palette.pages[page % palette.pages.size()], half);
+  cover.tint = tint;
+  builder.AddObject(MakeSolid("book", Shape::Box(half), cover).Build(base, yaw));
 }
 
 void AddObjects(std::span<const Placement> placements, const Palette& palette,

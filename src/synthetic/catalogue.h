@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <span>
 #include <string_view>
 
@@ -30,6 +31,10 @@ struct Placement {
 // The model of an object of this class, in any frame with z up; the front is at -y. `height`
 // matters only for teddy bears and potted plants. Throws CheckError for a class without a model.
 ObjectBuilder MakeModel(const Placement& placement, const Palette& palette, SceneBuilder& builder);
+
+// Adds a book that shows the given page. It lies on `base`; `yaw` is in radians.
+void AddBook(SceneBuilder& builder, const Palette& palette, size_t page,
+             const Eigen::Vector3f& tint, const Eigen::Vector3d& base, double yaw);
 
 // Makes the models of all placements and adds them to the scene, in order.
 void AddObjects(std::span<const Placement> placements, const Palette& palette,

@@ -24,6 +24,69 @@ const std::array<Doorway, 4> kDoorways = {{{.centre = {-2.0, 0.85}},
 // Between kitchen and bedroom.
 const Doorway kSideDoor = {.centre = {0.0, -2.6}};
 
+// A waypoint of the tour: place in metres, angles in degrees, and the least time in seconds.
+struct Step {
+  double x = 0.0;
+  double y = 0.0;
+  double yaw = 0.0;
+  double pitch = -14.0;
+  double seconds = 0.0;
+};
+
+constexpr std::array<Step, 45> kTour = {{
+    // The office: from the desk clockwise to the door.
+    {-1.2, 2.4, 182.0},
+    {-1.3, 2.45, 172.0, -14.0, 2.0},
+    {-1.5, 2.3, 110.0},
+    {-1.8, 2.2, 50.0},
+    {-2.1, 2.2, 0.0, -18.0},
+    {-2.05, 1.9, -60.0},
+    {-2.0, 1.5, -88.0, -10.0, 1.1},
+    // The corridor, to the east.
+    {-2.0, 0.7, -85.0, -10.0, 1.6},
+    {-1.9, 0.25, -55.0, -14.0, 1.0},
+    {-1.5, 0.02, -15.0, -14.0, 1.2},
+    {-0.6, 0.0, 5.0},
+    {0.6, 0.03, -5.0},
+    {1.4, 0.0, 15.0},
+    {1.85, 0.2, 60.0},
+    // The living room: a look to the left, then clockwise to the door.
+    {2.0, 0.8, 88.0, -14.0, 1.4},
+    {2.0, 1.6, 110.0},
+    {1.95, 2.1, 150.0, -18.0},
+    {1.85, 2.2, 95.0},
+    {1.65, 2.2, 40.0, -14.0, 1.6},
+    {1.6, 2.2, 0.0, -18.0},
+    {1.75, 2.0, -50.0},
+    {1.95, 1.6, -88.0, -10.0},
+    // Across the corridor into the kitchen, and through the side door.
+    {2.0, 0.8, -90.0, -10.0},
+    {2.0, -0.2, -90.0, -10.0},
+    {2.0, -1.2, -82.0},
+    {1.8, -1.9, -40.0, -18.0},
+    {1.6, -2.3, -15.0, -18.0},
+    {1.6, -2.5, -80.0, -14.0, 1.9},
+    {1.55, -2.55, -135.0, -14.0, 1.6},
+    {1.3, -2.6, -175.0},
+    // The bedroom: past the bed, then clockwise to the door.
+    {0.4, -2.6, -180.0, -12.0},
+    {-0.5, -2.6, -178.0},
+    {-1.1, -2.5, -162.0, -18.0},
+    {-1.6, -2.3, -187.0, -18.0},
+    {-1.9, -2.1, -230.0, -14.0, 1.3},
+    {-2.0, -1.6, -266.0, -10.0, 1.4},
+    // A look along the corridor, as in the beginning, and back to the desk.
+    {-2.0, -0.7, -275.0, -10.0, 1.7},
+    {-1.95, -0.15, -320.0},
+    {-1.75, 0.0, -353.0},
+    {-1.7, 0.02, -357.0, -14.0, 0.8},
+    {-1.95, 0.12, -300.0, -14.0, 1.7},
+    {-2.0, 1.0, -268.0, -14.0, 1.9},
+    {-1.65, 1.9, -225.0, -14.0, 1.8},
+    {-1.2, 2.4, -178.0},
+    {-1.3, 2.45, -188.0, -14.0, 2.0},
+}};
+
 void FurnishOffice(const Palette& palette, SceneBuilder& builder) {
   builder.AddTable({-3.1, 2.7}, {0.38, 0.8}, 0.75, palette);
   builder.AddTable({-0.42, 2.4}, {0.3, 0.65}, 0.6, palette);
@@ -150,63 +213,13 @@ void FurnishHouse(SceneBuilder& builder) {
 
 WaypointPath HousePath() {
   std::vector<Waypoint> waypoints;
-  const auto add = [&](double x, double y, double yaw, double pitch = -14.0, double seconds = 0.0) {
-    waypoints.push_back({.eye = {x, y, kEyeHeight + 0.03 * std::sin(2.0 * x + y)},
-                         .yaw = yaw,
-                         .pitch = pitch,
-                         .seconds = seconds});
-  };
-  // The office: from the desk clockwise to the door.
-  add(-1.2, 2.4, 182.0);
-  add(-1.3, 2.45, 172.0, -14.0, 2.0);
-  add(-1.5, 2.3, 110.0);
-  add(-1.8, 2.2, 50.0);
-  add(-2.1, 2.2, 0.0, -18.0);
-  add(-2.05, 1.9, -60.0);
-  add(-2.0, 1.5, -88.0, -10.0, 1.1);
-  // The corridor, to the east.
-  add(-2.0, 0.7, -85.0, -10.0, 1.6);
-  add(-1.9, 0.25, -55.0, -14.0, 1.0);
-  add(-1.5, 0.02, -15.0, -14.0, 1.2);
-  add(-0.6, 0.0, 5.0);
-  add(0.6, 0.03, -5.0);
-  add(1.4, 0.0, 15.0);
-  add(1.85, 0.2, 60.0);
-  // The living room: a look to the left, then clockwise to the door.
-  add(2.0, 0.8, 88.0, -14.0, 1.4);
-  add(2.0, 1.6, 110.0);
-  add(1.95, 2.1, 150.0, -18.0);
-  add(1.85, 2.2, 95.0);
-  add(1.65, 2.2, 40.0, -14.0, 1.6);
-  add(1.6, 2.2, 0.0, -18.0);
-  add(1.75, 2.0, -50.0);
-  add(1.95, 1.6, -88.0, -10.0);
-  // Across the corridor into the kitchen, and through the side door.
-  add(2.0, 0.8, -90.0, -10.0);
-  add(2.0, -0.2, -90.0, -10.0);
-  add(2.0, -1.2, -82.0);
-  add(1.8, -1.9, -40.0, -18.0);
-  add(1.6, -2.3, -15.0, -18.0);
-  add(1.6, -2.5, -80.0, -14.0, 1.9);
-  add(1.55, -2.55, -135.0, -14.0, 1.6);
-  add(1.3, -2.6, -175.0);
-  // The bedroom: past the bed, then clockwise to the door.
-  add(0.4, -2.6, -180.0, -12.0);
-  add(-0.5, -2.6, -178.0);
-  add(-1.1, -2.5, -162.0, -18.0);
-  add(-1.6, -2.3, -187.0, -18.0);
-  add(-1.9, -2.1, -230.0, -14.0, 1.3);
-  add(-2.0, -1.6, -266.0, -10.0, 1.4);
-  // A look along the corridor, as in the beginning, and back to the desk.
-  add(-2.0, -0.7, -275.0, -10.0, 1.7);
-  add(-1.95, -0.15, -320.0);
-  add(-1.75, 0.0, -353.0);
-  add(-1.7, 0.02, -357.0, -14.0, 0.8);
-  add(-1.95, 0.12, -300.0, -14.0, 1.7);
-  add(-2.0, 1.0, -268.0, -14.0, 1.9);
-  add(-1.65, 1.9, -225.0, -14.0, 1.8);
-  add(-1.2, 2.4, -178.0);
-  add(-1.3, 2.45, -188.0, -14.0, 2.0);
+  for (const Step& step : kTour) {
+    const double height = kEyeHeight + 0.03 * std::sin(2.0 * step.x + step.y);
+    waypoints.push_back({.eye = {step.x, step.y, height},
+                         .yaw = step.yaw,
+                         .pitch = step.pitch,
+                         .seconds = step.seconds});
+  }
   return {waypoints, 0.6, 40.0};
 }
 

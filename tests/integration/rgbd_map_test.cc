@@ -31,7 +31,11 @@ class RgbdMap : public ::testing::Test {
     return RunProgram("rgbd_tum", arguments);
   }
 
-  void Save() const { ASSERT_EQ(Run({"--save-map", map_}).exit_code, 0); }
+  void Save(const Arguments& more = {}) const {
+    Arguments arguments = {"--save-map", map_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    ASSERT_EQ(Run(arguments).exit_code, 0);
+  }
 
   // Expects a refusal before the first frame.
   void ExpectRefusal(const Arguments& arguments, const std::vector<std::string>& parts) const {
@@ -71,14 +75,33 @@ TEST_F(RgbdMap, SavingAMapChangesNoOtherFile) {
   EXPECT_EQ(ReadFile(map_), bytes) << "the same run gives the same bytes";
 }
 
-// This version has no relocalisation, so a run on a loaded map stays lost.
-TEST_F(RgbdMap, ARunOnALoadedMapFailsIfNoFrameIsFound) {
+TEST_F(RgbdMap, LocalizationFindsAllFramesAndChangesNothing) {
   Save();
+  const std::string bytes = ReadFile(map_);
+  ASSERT_EQ(Run({"--load-map", map_, "--save-map", map_, "--localization"}).exit_code, 0);
+  EXPECT_EQ(Summary()["trajectory"]["lost"], 0);
+  EXPECT_EQ(Summary()["map"]["sessions"], 1);
+  EXPECT_EQ(ReadFile(map_), bytes);
+}
+
+TEST_F(RgbdMap, ASecondSessionGoesOnWithTheMap) {
+  Save();
+  const size_t keyframes = Summary()["map"]["keyframes"].get<size_t>();
+  ASSERT_EQ(Run({"--load-map", map_}).exit_code, 0);
+  EXPECT_EQ(Summary()["trajectory"]["lost"], 0);
+  EXPECT_GE(Summary()["map"]["keyframes"].get<size_t>(), keyframes);
+}
+
+// Without a vocabulary and masks nothing is recognised, so a run on a loaded map stays lost.
+TEST_F(RgbdMap, ARunOnALoadedMapFailsIfNoFrameIsFound) {
+  const Arguments no_words = {"--vocabulary", "none"};
+  Save(no_words);
   const std::string bytes = ReadFile(map_);
   const std::string name = fs::path(path_).filename().string();
   const std::string head = "# timestamp tx ty tz qx qy qz qw\n";
   for (const bool is_localization : {false, true}) {
     Arguments arguments = {"--load-map", map_, "--save-map", map_, "--set", "run.max_lost_share=1"};
+    arguments.insert(arguments.end(), no_words.begin(), no_words.end());
     if (is_localization) {
       arguments.emplace_back("--localization");
     }

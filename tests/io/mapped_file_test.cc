@@ -18,14 +18,14 @@ std::string Text(const FileBytes& file) {
   return {reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()};
 }
 
-TEST(MapFile, GivesTheContentOfAFile) {
+TEST(MappedFile, GivesTheContentOfAFile) {
   const TemporaryFolder folder;
   const std::string content(100'000, 'a');
   EXPECT_EQ(Text(MapFile(folder.Write("file", content), 100'000)), content);
   EXPECT_EQ(Text(MapFile(folder.Write("empty", ""), 10)), "");
 }
 
-TEST(MapFile, TheContentOutlivesTheFile) {
+TEST(MappedFile, TheContentOutlivesTheFile) {
   const TemporaryFolder folder;
   const FileBytes file = MapFile(folder.Write("file", "content"), 10);
   const FileBytes copy = file;
@@ -34,7 +34,7 @@ TEST(MapFile, TheContentOutlivesTheFile) {
   EXPECT_EQ(Text(MapFile(folder.path() / "file", 100)), "another text");
 }
 
-TEST(MapFile, APipeIsRead) {
+TEST(MappedFile, APipeIsRead) {
   const TemporaryFolder folder;
   const std::string pipe = (folder.path() / "pipe").string();
   ASSERT_EQ(RunShell("mkfifo '" + pipe + "'"), 0);
@@ -42,7 +42,7 @@ TEST(MapFile, APipeIsRead) {
   EXPECT_EQ(Text(MapFile(pipe, 10)), "content");
 }
 
-TEST(MapFile, WhatCannotBeReadIsAnError) {
+TEST(MappedFile, WhatCannotBeReadIsAnError) {
   const TemporaryFolder folder;
   ExpectInputError([&] { MapFile(folder.path() / "none", 10); }, {"none", "No such file"});
   ExpectInputError([&] { MapFile(folder.path(), 10); }, {"folder"});
