@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <span>
 #include <utility>
 
@@ -45,6 +46,19 @@ void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& c
   });
 }
 
+std::vector<WordId> WordsOf(const Vocabulary& vocabulary, std::span<const Descriptor> descriptors,
+                            TaskRunner& runner) {
+  constexpr size_t kInTask = 256;
+  std::vector<WordId> words(descriptors.size());
+  runner.Run((words.size() + kInTask - 1) / kInTask, [&](size_t task) {
+    const size_t begin = task * kInTask;
+    const size_t count = std::min(kInTask, words.size() - begin);
+    std::ranges::copy(vocabulary.WordsOf(descriptors.subspan(begin, count)),
+                      words.begin() + static_cast<std::ptrdiff_t>(begin));
+  });
+  return words;
+}
+
 }  // namespace
 
 FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
@@ -77,7 +91,7 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
   built.frame->timestamp = image.timestamp;
   const std::vector<RawKeypoint> keypoints = AddFeatures(image, runner, built.frame->features);
   if (vocabulary_ != nullptr) {
-    built.frame->words = vocabulary_->WordsOf(built.frame->features.descriptors);
+    built.frame->words = WordsOf(*vocabulary_, built.frame->features.descriptors, runner);
   }
   built.masks.frames_with_masks = image.masks.empty() ? 0 : 1;
   has_seen_masks_ |= !image.masks.empty();
