@@ -45,7 +45,7 @@ inline std::map<std::string, size_t> KeyframeBytes(const Map& map) {
     bytes["descriptors"] += Block(features.descriptors);
     bytes["depths"] += Block(features.depth) + Block(features.right_u);
     bytes["feature grid"] +=
-        3 * features.size() + 65 * sizeof(uint16_t) + 3 * bytes_internal::kOverhead;
+        sizeof(uint16_t) * (features.size() + 32 * 24 + 1) + 2 * bytes_internal::kOverhead;
     bytes["depth grid"] +=
         sizeof(uint16_t) * static_cast<size_t>(frame.depth.columns() * frame.depth.rows());
     bytes["detections themselves"] += Block(frame.detections);

@@ -37,24 +37,20 @@ FeatureGrid::FeatureGrid(std::span<const Keypoint> keypoints, const Eigen::Vecto
   Check((box_max.array() > box_min.array()).all(), "the box of the image is empty");
   Check(keypoints.size() <= std::numeric_limits<uint16_t>::max(), "too many keypoints for a grid");
   cells_per_pixel_ = Eigen::Array2f(kColumns, kRows) / (box_max - box_min).array();
-  std::vector<int> cells;
+  std::vector<uint16_t> cells;
   cells.reserve(keypoints.size());
-  std::vector<int> in_column(kColumns, 0);
+  cell_start_.assign(kColumns * kRows + 1, 0);
   for (const Keypoint& keypoint : keypoints) {
-    const int column = Column(keypoint.undistorted.x());
-    cells.push_back(column * kRows + Row(keypoint.undistorted.y()));
-    ++in_column[static_cast<size_t>(column)];
+    const int cell = Column(keypoint.undistorted.x()) * kRows + Row(keypoint.undistorted.y());
+    cells.push_back(static_cast<uint16_t>(cell));
+    ++cell_start_[static_cast<size_t>(cell) + 1];
   }
+  std::partial_sum(cell_start_.begin(), cell_start_.end(), cell_start_.begin());
   order_.resize(keypoints.size());
-  std::iota(order_.begin(), order_.end(), uint16_t{0});
-  std::stable_sort(order_.begin(), order_.end(),
-                   [&](uint16_t a, uint16_t b) { return cells[a] < cells[b]; });
-  rows_.reserve(order_.size());
-  for (const uint16_t index : order_) {
-    rows_.push_back(static_cast<uint8_t>(cells[index] % kRows));
+  std::vector<uint16_t> next(cell_start_);
+  for (size_t i = 0; i < cells.size(); ++i) {
+    order_[next[cells[i]]++] = static_cast<uint16_t>(i);
   }
-  column_start_.assign(kColumns + 1, 0);
-  std::partial_sum(in_column.begin(), in_column.end(), column_start_.begin() + 1);
 }
 
 FeatureGrid FeatureGrid::Select(std::span<const uint32_t> kept) const {
@@ -70,17 +66,15 @@ FeatureGrid FeatureGrid::Select(std::span<const uint32_t> kept) const {
   selected.min_ = min_;
   selected.cells_per_pixel_ = cells_per_pixel_;
   selected.order_.reserve(kept.size());
-  selected.rows_.reserve(kept.size());
-  selected.column_start_.reserve(column_start_.size());
+  selected.cell_start_.reserve(cell_start_.size());
   size_t place = 0;
-  for (const uint16_t start : column_start_) {
+  for (const uint16_t start : cell_start_) {
     for (; place < start; ++place) {
       if (const uint16_t index = new_index[order_[place]]; index != kRemoved) {
         selected.order_.push_back(index);
-        selected.rows_.push_back(rows_[place]);
       }
     }
-    selected.column_start_.push_back(static_cast<uint16_t>(selected.order_.size()));
+    selected.cell_start_.push_back(static_cast<uint16_t>(selected.order_.size()));
   }
   return selected;
 }
@@ -95,11 +89,9 @@ void FeatureGrid::FindNear(std::span<const Keypoint> keypoints, const Eigen::Vec
   const int first_row = Row(center.y() - radius);
   const int last_row = Row(center.y() + radius);
   for (int column = Column(center.x() - radius); column <= last_column; ++column) {
-    const auto start = column_start_.begin() + column;
-    const auto column_end = rows_.begin() + start[1];
-    auto row = std::lower_bound(rows_.begin() + start[0], column_end, first_row);
-    for (; row != column_end && *row <= last_row; ++row) {
-      const uint16_t index = order_[static_cast<size_t>(row - rows_.begin())];
+    const uint16_t* const cell = cell_start_.data() + column * kRows;
+    for (size_t place = cell[first_row]; place < cell[last_row + 1]; ++place) {
+      const uint16_t index = order_[place];
       const Keypoint& keypoint = keypoints[index];
       if (keypoint.level >= min_level && keypoint.level <= max_level &&
           std::abs(keypoint.undistorted.x() - center.x()) < radius &&

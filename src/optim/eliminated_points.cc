@@ -7,8 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "optim/robust.h"
-
 namespace hullslam::internal {
 namespace {
 
@@ -25,7 +23,9 @@ constexpr double kLeastDamping = 1e-8;   // relative to the diagonal
 constexpr double kFailedDamping = 1e-2;  // after the first step that failed
 constexpr double kMostDamping = 1e6;
 
-Eigen::Matrix3d DampedInverse(Eigen::Matrix3d hessian, double damping) {
+// `lower`: the Hessian, of which the lower half counts.
+Eigen::Matrix3d DampedInverse(const Eigen::Matrix3d& lower, double damping) {
+  Eigen::Matrix3d hessian = lower.selfadjointView<Eigen::Lower>();
   // A point in a single view without depth is free along its ray. The second term holds it.
   const double floor = 1e-9 * hessian.trace();
   hessian.diagonal() += damping * hessian.diagonal() + Eigen::Vector3d::Constant(floor);
@@ -43,10 +43,6 @@ EliminatedPoints::EliminatedPoints(const PinholeCamera& camera, BundlePoints& po
       moved_(points.positions()),
       damping_(points.size(), kLeastDamping) {}
 
-double EliminatedPoints::Loss(double chi2, const PointMeasurement& measurement) const {
-  return 0.5 * (robust_ ? HuberCost(chi2, OutlierBound(measurement)) : chi2);
-}
-
 double EliminatedPoints::CostOf(size_t point, const Eigen::Vector3d& position) const {
   double cost = 0.0;
   for (const BundlePoints::View& view : std::as_const(points_).ViewsOf(point)) {
@@ -58,39 +54,23 @@ double EliminatedPoints::CostOf(size_t point, const Eigen::Vector3d& position) c
   return cost;
 }
 
-bool EliminatedPoints::Evaluate(const BundlePoints::View& view, const Eigen::Vector3d& position,
-                                ViewSystem& system) const {
-  system.in_camera = poses_[view.pose] * position;
-  if (system.in_camera.z() < kMinDepth) {
-    return false;
-  }
-  const Eigen::Vector3d residual = PointResidual(camera_, view.measurement, system.in_camera);
-  const Eigen::Matrix3d jacobian =
-      PointResidualJacobian(camera_, view.measurement, system.in_camera);
-  const double chi2 = residual.squaredNorm();
-  const double weight = robust_ ? HuberWeight(chi2, OutlierBound(view.measurement)) : 1.0;
-  system.cost = Loss(chi2, view.measurement);
-  system.hessian.noalias() = weight * jacobian.transpose() * jacobian;
-  system.gradient.noalias() = weight * jacobian.transpose() * residual;
-  return true;
-}
-
 EliminatedPoints::PointSystem EliminatedPoints::SystemOf(size_t point,
                                                          const Eigen::Vector3d& position) const {
   PointSystem sum;
-  ViewSystem system;
   for (const BundlePoints::View& view : std::as_const(points_).ViewsOf(point)) {
     if (!view.is_inlier) {
       continue;
     }
-    if (!Evaluate(view, position, system)) {
+    const Eigen::Vector3d in_camera = poses_[view.pose] * position;
+    if (in_camera.z() < kMinDepth) {
       sum.cost = kInfinite;
       return sum;
     }
-    const Eigen::Matrix3d& rotation = poses_[view.pose].rotation;
-    sum.cost += system.cost;
-    sum.hessian += rotation.transpose() * system.hessian * rotation;
-    sum.gradient += rotation.transpose() * system.gradient;
+    const PointLinearization linear(camera_, view.measurement, in_camera);
+    const double chi2 = linear.residual.squaredNorm();
+    sum.cost += Loss(chi2, view.measurement);
+    sum.Add(WeightOf(chi2, view.measurement), linear.residual,
+            linear.Times(poses_[view.pose].rotation));
   }
   return sum;
 }
@@ -140,29 +120,30 @@ void EliminatedPoints::Accept() { points_.positions() = moved_; }
 void EliminatedPoints::AddView(const BundlePoints::View& view, const Eigen::Vector3d& position,
                                PointSystem& point, Eigen::MatrixXd& hessian,
                                Eigen::VectorXd& gradient) {
-  ViewSystem system;
-  if (!Evaluate(view, position, system)) {
+  const MatrixPose& pose = poses_[view.pose];
+  const Eigen::Vector3d in_camera = pose * position;
+  if (in_camera.z() < kMinDepth) {
     return;
   }
-  const Eigen::Matrix3d& rotation = poses_[view.pose].rotation;
-  const Eigen::Matrix3d by_point = system.hessian * rotation;
-  point.hessian.noalias() += rotation.transpose() * by_point;
-  point.gradient.noalias() += rotation.transpose() * system.gradient;
+  const PointLinearization linear(camera_, view.measurement, in_camera);
+  const double weight = WeightOf(linear.residual.squaredNorm(), view.measurement);
+  point.Add(weight, linear.residual, linear.Times(pose.rotation));
   if (view.pose >= moving_) {
     return;
   }
+  const Eigen::Matrix3d by_camera_point = weight * linear.Hessian();
+  const Eigen::Vector3d slope = weight * linear.Gradient();
+  const Eigen::Matrix3d by_rotation = -by_camera_point.colwise().cross(in_camera);  // [x]_x H
   const Eigen::Index at = 6 * static_cast<Eigen::Index>(view.pose);
-  const Eigen::Matrix3d skew = Skew(system.in_camera);
-  const Eigen::Matrix3d skew_hessian = skew * system.hessian;
-  hessian.block<3, 3>(at, at).noalias() -= skew_hessian * skew;
-  hessian.block<3, 3>(at + 3, at).noalias() += skew_hessian.transpose();
-  hessian.block<3, 3>(at + 3, at + 3) += system.hessian;
-  gradient.segment<3>(at) += system.in_camera.cross(system.gradient);
-  gradient.segment<3>(at + 3) += system.gradient;
+  hessian.block<3, 3>(at, at) -= by_rotation.rowwise().cross(in_camera.transpose());
+  hessian.block<3, 3>(at + 3, at) += by_rotation.transpose();
+  hessian.block<3, 3>(at + 3, at + 3) += by_camera_point;
+  gradient.segment<3>(at) += in_camera.cross(slope);
+  gradient.segment<3>(at + 3) += slope;
   Coupling& coupling = couplings_.emplace_back();
   coupling.pose = at;
-  coupling.block.topRows<3>().noalias() = skew * by_point;
-  coupling.block.bottomRows<3>() = by_point;
+  coupling.block.topRows<3>().noalias() = by_rotation * pose.rotation;
+  coupling.block.bottomRows<3>().noalias() = by_camera_point * pose.rotation;
 }
 
 void EliminatedPoints::Eliminate(const PointSystem& point, double damping, Eigen::MatrixXd& hessian,

@@ -10,6 +10,7 @@
 #include "hullslam/geometry/rigid3.h"
 #include "optim/bundle_points.h"
 #include "optim/matrix_pose.h"
+#include "optim/robust.h"
 
 namespace hullslam::internal {
 
@@ -45,16 +46,21 @@ class EliminatedPoints {
  private:
   // The cost of one point and its derivatives by the point.
   struct PointSystem {
+    // Adds weight / 2 times the squared norm of a view's residual, whose derivative by the point is
+    // `jacobian`. Of the Hessian only the lower half.
+    void Add(double weight, const Eigen::Vector3d& residual, const Eigen::Matrix3d& jacobian) {
+      const Eigen::Matrix3d weighted = weight * jacobian;
+      for (int column = 0; column < 3; ++column) {
+        for (int row = column; row < 3; ++row) {
+          hessian(row, column) += weighted.col(row).dot(jacobian.col(column));
+        }
+      }
+      gradient.noalias() += weighted.transpose() * residual;
+    }
+
     double cost = 0.0;
-    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();  // lower half
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  };
-  // The cost of one view and its derivatives by the point in the camera frame.
-  struct ViewSystem {
-    double cost = 0.0;
-    Eigen::Vector3d in_camera;
-    Eigen::Matrix3d hessian;
-    Eigen::Vector3d gradient;
   };
   // Second derivative of the cost of a view, by the pose and the point.
   struct Coupling {
@@ -62,10 +68,14 @@ class EliminatedPoints {
     Eigen::Matrix<double, 6, 3> block;
   };
 
-  double Loss(double chi2, const PointMeasurement& measurement) const;
+  // Half of rho, and its derivative by half of the squared residual.
+  double Loss(double chi2, const PointMeasurement& measurement) const {
+    return 0.5 * (robust_ ? HuberCost(chi2, OutlierBound(measurement)) : chi2);
+  }
   double CostOf(size_t point, const Eigen::Vector3d& position) const;
-  bool Evaluate(const BundlePoints::View& view, const Eigen::Vector3d& position,
-                ViewSystem& system) const;
+  double WeightOf(double chi2, const PointMeasurement& measurement) const {
+    return robust_ ? HuberWeight(chi2, OutlierBound(measurement)) : 1.0;
+  }
   PointSystem SystemOf(size_t point, const Eigen::Vector3d& position) const;
   double MovePoint(size_t point, Eigen::Vector3d& position, double& damping) const;
   void AddView(const BundlePoints::View& view, const Eigen::Vector3d& position, PointSystem& point,

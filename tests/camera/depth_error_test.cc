@@ -106,6 +106,24 @@ TEST(PointResidual, DerivativeIsTrue) {
   }
 }
 
+TEST(PointLinearization, IsTheResidualAndItsDerivative) {
+  RandomGeometry random(4);
+  for (int i = 0; i < 30; ++i) {
+    const Eigen::Vector3d point = random.Vector(1.0) + Eigen::Vector3d(0.0, 0.0, 2.5);
+    const PointMeasurement measurement =
+        Measure({random.Number(0, 640), random.Number(0, 480)},
+                i % 2 == 0 ? std::optional(random.Number(5, 40)) : std::nullopt);
+    const PointLinearization linear(kCamera, measurement, point);
+    const Eigen::Vector3d residual = PointResidual(kCamera, measurement, point);
+    const Eigen::Matrix3d jacobian = PointResidualJacobian(kCamera, measurement, point);
+    EXPECT_LT((linear.residual - residual).norm(), 1e-9);
+    EXPECT_LT((linear.Gradient() - jacobian.transpose() * residual).norm(), 1e-6);
+    EXPECT_LT((linear.Hessian() - jacobian.transpose() * jacobian).norm(), 1e-6);
+    const Eigen::Matrix3d rotation = random.Pose(2.0, 0.0).rotation.toRotationMatrix();
+    EXPECT_LT((linear.Times(rotation) - jacobian * rotation).norm(), 1e-9);
+  }
+}
+
 // The error of depth does not depend on the pyramid level that the keypoint was found at.
 TEST(PointResidual, ThePyramidLevelDoesNotChangeTheDisparity) {
   const Eigen::Vector3d point(0.3, 0.2, 1.5);

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "support/random_geometry.h"
@@ -36,9 +38,66 @@ TEST(OrientedBox, HasTheAxesOfABox) {
   }
 }
 
-TEST(OrientedBox, IsDeterministic) {
-  const auto points = Box(Eigen::Quaterniond(0.9, 0.1, 0.3, 0.2).normalized(), {0.1, 0.2, 0.4});
-  EXPECT_EQ(OrientedBoxAxes(points).value(), OrientedBoxAxes(points).value());
+// The volume of the box along the axes.
+double Volume(const std::vector<Eigen::Vector3d>& points, const Eigen::Matrix3d& axes) {
+  Eigen::Vector3d low = axes.transpose() * points[0];
+  Eigen::Vector3d high = low;
+  for (const Eigen::Vector3d& point : points) {
+    low = low.cwiseMin(axes.transpose() * point);
+    high = high.cwiseMax(axes.transpose() * point);
+  }
+  return (high - low).prod();
+}
+
+// Points on the visible sides of a box with noise, as a depth image gives them.
+TEST(OrientedBox, IsHardlyLargerThanTheBoxThatThePointsAreOf) {
+  RandomGeometry random(2);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Eigen::Matrix3d rotation = random.Pose(2.0, 0.0).rotation.toRotationMatrix();
+    const Eigen::Vector3d half(0.1, 0.2, 0.4);
+    std::vector<Eigen::Vector3d> points;
+    for (int i = 0; i < 500; ++i) {
+      Eigen::Vector3d point = random.Vector(1.0).cwiseProduct(half);
+      point[i % 3] = half[i % 3];
+      points.push_back(rotation * (point + random.Vector(0.003)));
+    }
+    const auto axes = OrientedBoxAxes(points);
+    ASSERT_TRUE(axes);
+    EXPECT_LT(Volume(points, *axes), 1.05 * Volume(points, rotation)) << trial;
+  }
+}
+
+TEST(OrientedBox, OfPointsInAPlaneHasAnAxisAcrossIt) {
+  const std::vector<Eigen::Vector3d> points = {
+      {0.0, 0.0, 1.0}, {2.0, 0.0, 1.0}, {2.0, 1.0, 1.0}, {0.0, 1.0, 1.0}, {1.0, 0.5, 1.0}};
+  const auto axes = OrientedBoxAxes(points);
+  ASSERT_TRUE(axes);
+  EXPECT_NEAR(axes->row(2).cwiseAbs().maxCoeff(), 1.0, 1e-9);
+}
+
+TEST(OrientedBox, OfPointsOnALineIsUnknown) {
+  const std::vector<Eigen::Vector3d> points = {
+      {0.0, 0.0, 1.0}, {1.0, 0.0, 1.0}, {2.0, 0.0, 1.0}, {3.0, 0.0, 1.0}};
+  EXPECT_FALSE(OrientedBoxAxes(points));
+}
+
+// Neither on the order of the points nor on where CGAL finds memory.
+TEST(OrientedBox, DependsOnThePointsAlone) {
+  RandomGeometry random(3);
+  std::mt19937 generator(3);
+  std::vector<std::vector<char>> blocks;
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<Eigen::Vector3d> points;
+    for (int i = 0; i < 200; ++i) {
+      points.push_back(random.Vector(1.0));
+    }
+    const Eigen::Matrix3d axes = OrientedBoxAxes(points).value();
+    for (int again = 0; again < 5; ++again) {
+      blocks.emplace_back(static_cast<size_t>(random.Number(1, 100000)));
+      std::shuffle(points.begin(), points.end(), generator);
+      EXPECT_EQ(OrientedBoxAxes(points).value(), axes) << trial;
+    }
+  }
 }
 
 TEST(OrientedBox, NeedsFourPoints) {

@@ -11,7 +11,7 @@
 namespace hullslam {
 
 // Keypoints sorted into cells of the image, to find the keypoints near a pixel. Every keyframe
-// keeps one, so it is small: three bytes per keypoint and two per column of cells.
+// keeps one, so it is small: two bytes per keypoint and two per cell.
 class FeatureGrid {
  public:
   FeatureGrid() = default;
@@ -35,13 +35,14 @@ class FeatureGrid {
   int Column(float x) const;
   int Row(float y) const;
 
-  static constexpr int kColumns = 64;
-  static constexpr int kRows = 48;
+  // With half of this size a search looks at half as many keypoints, but at more cells, and takes as
+  // long. The table of cells would be four times as large.
+  static constexpr int kColumns = 32;
+  static constexpr int kRows = 24;
   Eigen::Vector2f min_ = Eigen::Vector2f::Zero();
   Eigen::Vector2f cells_per_pixel_ = Eigen::Vector2f::Zero();
-  std::vector<uint16_t> column_start_;  // kColumns + 1, into order_
-  std::vector<uint16_t> order_;         // keypoint indices, cell by cell, column-major
-  std::vector<uint8_t> rows_;           // row of each of them
+  std::vector<uint16_t> cell_start_;  // kColumns kRows + 1, into order_; column-major
+  std::vector<uint16_t> order_;       // keypoint indices, cell by cell
 };
 
 }  // namespace hullslam
