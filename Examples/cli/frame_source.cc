@@ -9,16 +9,15 @@
 #include "hullslam/util/error.h"
 
 namespace hullslam {
-
-FrameSource::FrameSource(Pace pace, const TumSequence& sequence, const PinholeCamera& camera,
-                         const SequenceMasks& masks, System& system)
+FrameSource::FrameSource(Pace pace, PrefetchPriority priority, const TumSequence& sequence,
+                         const PinholeCamera& camera, const SequenceMasks& masks, System& system)
     : is_realtime_(pace == Pace::kRealtime),
       sequence_(sequence),
       camera_(camera),
       masks_(masks),
       system_(system),
-      images_([this] { return LoadNext(); }, kImagesAhead),
-      frames_([this] { return BuildNext(); }, kFramesAhead) {}
+      images_([this] { return LoadNext(); }, kImagesAhead, priority),
+      frames_([this] { return BuildNext(); }, kFramesAhead, priority) {}
 
 FrameSource::~FrameSource() {
   end_.Request();

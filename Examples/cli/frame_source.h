@@ -31,9 +31,10 @@ enum class Pace { kFast, kRealtime };
 // tracking.
 class FrameSource {
  public:
-  // The arguments must outlive this object. The time in real time begins here.
-  FrameSource(Pace pace, const TumSequence& sequence, const PinholeCamera& camera,
-              const SequenceMasks& masks, System& system);
+  // The references must outlive this object. The time in real time begins here. `priority` is that
+  // of both threads.
+  FrameSource(Pace pace, PrefetchPriority priority, const TumSequence& sequence,
+              const PinholeCamera& camera, const SequenceMasks& masks, System& system);
   ~FrameSource();
   FrameSource(const FrameSource&) = delete;
   FrameSource& operator=(const FrameSource&) = delete;

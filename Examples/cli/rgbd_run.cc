@@ -95,8 +95,10 @@ RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
   RunResult result;
   Progress progress(sequence.frames.size(), arguments.quiet);
   const Clock::time_point start = Clock::now();
-  FrameSource frames(arguments.realtime ? Pace::kRealtime : Pace::kFast, sequence, camera, masks,
-                     system);
+  // In the sequential pipeline the thread that tracks and maps has more to do than the others.
+  FrameSource frames(arguments.realtime ? Pace::kRealtime : Pace::kFast,
+                     arguments.threaded ? PrefetchPriority::kNormal : PrefetchPriority::kBackground,
+                     sequence, camera, masks, system);
   while (!IsInterrupted()) {
     std::optional<LoadedFrame> loaded = frames.Next();
     if (!loaded) {

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/util/thread_priority.h"
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+namespace hullslam {
+
+// On Linux each thread has a niceness of its own. If the call fails, the thread stays as it is,
+// which changes no result.
+void RunInBackground() {
+  const auto thread = static_cast<id_t>(syscall(SYS_gettid));
+  const int niceness = std::max(kBackgroundNiceness, getpriority(PRIO_PROCESS, thread));
+  setpriority(PRIO_PROCESS, thread, niceness);
+}
+
+}  // namespace hullslam

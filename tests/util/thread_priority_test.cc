@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/util/thread_priority.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <thread>
+
+namespace hullslam {
+namespace {
+
+TEST(RunInBackground, LowersThePriorityOfTheCallingThreadAlone) {
+  const int before = getpriority(PRIO_PROCESS, 0);
+  int in_thread = 0;
+  std::thread([&] {
+    RunInBackground();
+    in_thread = getpriority(PRIO_PROCESS, 0);
+  }).join();
+  EXPECT_GE(in_thread, kBackgroundNiceness);
+  EXPECT_GE(in_thread, before);
+  EXPECT_EQ(getpriority(PRIO_PROCESS, 0), before);
+}
+
+}  // namespace
+}  // namespace hullslam
