@@ -18,6 +18,9 @@ namespace hullslam {
 ObjectReport CollectObjects(const Map& map, const PinholeCamera& camera,
                             const std::filesystem::path& sequence);
 
+// "2 objects were moved, 1 is gone, ..." with a line for each that is not where it was.
+std::string DescribeChanges(const std::vector<ChangedObject>& changes);
+
 ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& counts);
 
 // The contents of objects.json, objects_observations.json, objects.csv and objects.ply, so that

@@ -218,7 +218,8 @@ void WriteOutputs(OutputFolder& output, const Map& map, const std::vector<Trajec
   output.Commit();
 }
 
-void PrintReport(const RunArguments& arguments, const RunSummary& summary) {
+void PrintReport(const RunArguments& arguments, const RunSummary& summary,
+                 const ObjectReport& objects) {
   const TrajectorySummary& trajectory = summary.trajectory;
   Print("{} frames: {} tracked, {} lost, {} skipped; {} images without depth\n", trajectory.frames,
         trajectory.tracked, trajectory.lost, trajectory.skipped, trajectory.unpaired);
@@ -235,6 +236,9 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary) {
   Print("{} keyframes, {} landmarks\n", summary.map.keyframes, summary.map.landmarks);
   if (summary.objects) {
     Print("{}\n", DescribeObjects(*summary.objects));
+    if (objects.changes) {
+      Print("{}", DescribeChanges(*objects.changes));
+    }
   }
   Print(
       "tracking {:.1f} ms per frame (median; mean {:.1f}, p95 {:.1f}); {:.1f} frames/s overall; "
@@ -317,7 +321,10 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
   }
   const std::shared_ptr<const Map> map =
       system.map() != nullptr ? system.map() : std::make_shared<const Map>();
-  const ObjectReport objects = CollectObjects(*map, options.camera, arguments.sequence);
+  ObjectReport objects = CollectObjects(*map, options.camera, arguments.sequence);
+  if (map->sessions().size() > earlier_sessions && earlier_sessions > 0) {
+    objects.changes = system.object_changes();
+  }
   if (masks.format()) {
     summary.objects = SummarizeObjects(objects, system.object_counts());
   }
@@ -325,7 +332,7 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
                KeyframeParts(arguments, *map), summary, objects);
   SaveMap(arguments, options, *map);
   if (!arguments.quiet) {
-    PrintReport(arguments, summary);
+    PrintReport(arguments, summary, objects);
   }
   const std::string failure =
       result.was_interrupted

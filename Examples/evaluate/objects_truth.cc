@@ -67,6 +67,26 @@ std::string DescribeRatios(const Eigen::Vector3d& ratios) {
 
 Json ToJson(const Eigen::Vector3d& values) { return {values.x(), values.y(), values.z()}; }
 
+std::string DescribeChange(const char* kind, const ChangeCounts& counts) {
+  return fmt::format("{:<12} {} in truth, {} reported, {} of them right\n", kind, counts.in_truth,
+                     counts.reported, counts.right);
+}
+
+Json ToJson(const ChangeCounts& counts) {
+  return {{"in_truth", counts.in_truth}, {"reported", counts.reported}, {"right", counts.right}};
+}
+
+Json ToJson(const std::optional<ChangeComparison>& changes) {
+  if (!changes) {
+    return nullptr;
+  }
+  return {{"moved", ToJson(changes->moved)},
+          {"gone", ToJson(changes->gone)},
+          {"new", ToJson(changes->added)},
+          {"places_left", ToJson(changes->left)},
+          {"places_taken", ToJson(changes->taken)}};
+}
+
 Json ToJson(const ShapeErrors& errors) {
   return {{"objects", errors.objects},
           {"center_share_mean", errors.center_share_mean},
@@ -144,10 +164,15 @@ TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectRep
     throw InputError((arguments.run / "trajectory.txt").string() + ": " + ate.failure);
   }
   TruthEvaluation evaluation;
-  evaluation.truths = ReadTrueObjects(arguments.groundtruth);
+  const TrueScene scene = ReadTrueScene(arguments.groundtruth);
+  evaluation.truths = scene.objects;
   evaluation.sightings = ReadSightings(folder, evaluation.truths, report.camera, groundtruth, run);
-  evaluation.comparison = CompareWithTruth(evaluation.truths, report,
-                                           AlignWorlds(groundtruth, run, MeanDistance(report)));
+  const Rigid3 truth_from_map = AlignWorlds(groundtruth, run, MeanDistance(report));
+  evaluation.comparison = CompareWithTruth(evaluation.truths, report, truth_from_map);
+  if (report.changes && scene.is_rearranged) {
+    evaluation.changes = CompareChanges(scene, *report.changes, truth_from_map,
+                                        evaluation.sightings, arguments.min_masks);
+  }
   evaluation.counts = CountMapped(evaluation.truths, evaluation.comparison, evaluation.sightings,
                                   arguments.min_masks);
   evaluation.ate_rmse_m = ate.errors.rmse;
@@ -180,6 +205,13 @@ void PrintTruth(const TruthEvaluation& evaluation) {
         shape, errors.objects, 100.0 * errors.center_share_mean, 100.0 * errors.center_share_max,
         errors.axis_ratio_mean, 100.0 * errors.axis_ratio_deviation,
         FormatFigure(errors.siou_mean, 3));
+  }
+  if (evaluation.changes) {
+    const ChangeComparison& changes = *evaluation.changes;
+    fmt::print("{}{}{}{}{}", DescribeChange("moved", changes.moved),
+               DescribeChange("gone", changes.gone), DescribeChange("new", changes.added),
+               DescribeChange("places left", changes.left),
+               DescribeChange("places taken", changes.taken));
   }
 }
 
@@ -217,6 +249,7 @@ Json ToJson(const TruthEvaluation& evaluation) {
           {"never", evaluation.counts.never},
           {"without_truth", without},
           {"shapes", shapes},
+          {"changes", ToJson(evaluation.changes)},
           {"each", each}};
 }
 

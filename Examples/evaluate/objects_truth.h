@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "evaluate/objects_command.h"
+#include "hullslam/eval/change_groundtruth.h"
 #include "hullslam/eval/object_groundtruth.h"
 
 namespace hullslam {
@@ -16,7 +18,8 @@ struct TruthEvaluation {
   std::vector<size_t> sightings;  // masks of each true object; empty if the sequence has no masks
   GroundtruthComparison comparison;
   TruthCounts counts;
-  double ate_rmse_m = 0.0;  // of the run, aligned by positions
+  std::optional<ChangeComparison> changes;  // of a run that went on with a map of the scene before
+  double ate_rmse_m = 0.0;                  // of the run, aligned by positions
   size_t min_masks = 0;
 };
 

@@ -35,6 +35,12 @@ Ellipsoid operator*(const Rigid3& b_from_world, const Ellipsoid& ellipsoid) {
   return {b_from_world * ellipsoid.world_from_object, ellipsoid.half_axes};
 }
 
+Ellipsoid operator*(const Sim3& b_from_world, const Ellipsoid& ellipsoid) {
+  const Sim3 b_from_object = b_from_world * Sim3(ellipsoid.world_from_object);
+  return {{b_from_object.rotation, b_from_object.translation},
+          b_from_world.scale * ellipsoid.half_axes};
+}
+
 std::optional<Ellipse> ProjectEllipsoid(const Eigen::Matrix3d& k, const Rigid3& cam_from_world,
                                         const Ellipsoid& ellipsoid) {
   const Ellipsoid in_cam = cam_from_world * ellipsoid;

@@ -129,6 +129,37 @@ Json ToJson(const ReportedObject& object) {
           {"observations", object.views.size()}};
 }
 
+Json ToJson(const std::optional<ObjectPlace>& place) {
+  if (!place) {
+    return nullptr;
+  }
+  const Eigen::Vector3d& axes = place->ellipsoid.half_axes;
+  return {{"object", place->object.value},
+          {"world_from_object", PoseJson(place->ellipsoid.world_from_object)},
+          {"half_axes",
+           {Rounded(axes.x(), kMetre), Rounded(axes.y(), kMetre), Rounded(axes.z(), kMetre)}}};
+}
+
+Json ToJson(const ChangedObject& changed) {
+  return {{"change", std::string(ToString(changed.change))},
+          {"class", changed.label},
+          {"now", ToJson(changed.now)},
+          {"former", ToJson(changed.former)},
+          {"expected", changed.expected},
+          {"found", changed.found}};
+}
+
+Json ToJson(const std::optional<std::vector<ChangedObject>>& changes) {
+  if (!changes) {
+    return nullptr;
+  }
+  Json list = Json::array();
+  for (const ChangedObject& changed : *changes) {
+    list.push_back(ToJson(changed));
+  }
+  return list;
+}
+
 // Labels come from the files of users and may contain any bytes.
 std::string Dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -259,6 +290,42 @@ ReportedObject ReadObject(const JsonNode& node) {
   return object;
 }
 
+std::optional<ObjectPlace> ReadPlace(const JsonNode& node, const char* key) {
+  if (!node.Has(key)) {
+    return std::nullopt;
+  }
+  const JsonNode place = node.At(key);
+  return ObjectPlace{ObjectId(place.At("object").Count()),
+                     {place.At("world_from_object").Pose(), place.At("half_axes").Lengths()}};
+}
+
+ObjectChange ReadChange(const JsonNode& node) {
+  const std::string name = node.Text();
+  for (const ObjectChange change : kObjectChanges) {
+    if (ToString(change) == name) {
+      return change;
+    }
+  }
+  node.Fail("seen_again, moved, gone, new, not_seen or first_seen");
+}
+
+// Null in the file of a run without a map of earlier sessions.
+std::optional<std::vector<ChangedObject>> ReadChanges(const JsonNode& top) {
+  if (!top.Has("changes")) {
+    return std::nullopt;
+  }
+  std::vector<ChangedObject> changes;
+  for (const JsonNode& node : top.At("changes").Elements()) {
+    changes.push_back({.change = ReadChange(node.At("change")),
+                       .label = node.At("class").Text(),
+                       .now = ReadPlace(node, "now"),
+                       .former = ReadPlace(node, "former"),
+                       .expected = static_cast<int>(node.At("expected").Count()),
+                       .found = static_cast<int>(node.At("found").Count())});
+  }
+  return changes;
+}
+
 void CheckVersion(const JsonNode& top) {
   if (top.At("version").Count() != kVersion) {
     top.At("version").Fail("2, which this version of HullSLAM writes");
@@ -299,7 +366,8 @@ std::string FormatObjects(const ObjectReport& report) {
   const Json head = {{"version", kVersion},
                      {"sequence", report.sequence},
                      {"camera", ToJson(report.camera)},
-                     {"candidates", report.candidates}};
+                     {"candidates", report.candidates},
+                     {"changes", ToJson(report.changes)}};
   std::vector<std::string> objects;
   for (const ReportedObject& object : report.objects) {
     objects.push_back(Dump(ToJson(object)));
@@ -352,6 +420,7 @@ ObjectReport ReadObjects(const std::filesystem::path& path,
   report.sequence = top.At("sequence").Text();
   report.camera = ReadCamera(top.At("camera"));
   report.candidates = top.At("candidates").Count();
+  report.changes = ReadChanges(top);
   std::vector<uint32_t> counts;
   for (const JsonNode& object : top.At("objects").Elements()) {
     report.objects.push_back(ReadObject(object));

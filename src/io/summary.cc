@@ -47,7 +47,8 @@ Json ToJson(const ObjectsSummary& summary) {
           {"detections", summary.detections},
           {"frames_with_masks", summary.frames_with_masks},
           {"frames_without_masks", summary.frames_without_masks},
-          {"rejections", rejections}};
+          {"rejections", rejections},
+          {"changes", summary.changes ? Json(*summary.changes) : Json(nullptr)}};
 }
 
 Json ToJson(const TimeStatistics& times) {

@@ -84,12 +84,6 @@ Rigid3 Moved(const Sim3& new_from_old, const Rigid3& cam_from_old) {
   return {cam_from_new.rotation, new_from_old.scale * cam_from_new.translation};
 }
 
-Ellipsoid Moved(const Sim3& new_from_old, const Ellipsoid& ellipsoid) {
-  const Sim3 new_from_object = new_from_old * Sim3(ellipsoid.world_from_object);
-  return {{new_from_object.rotation, new_from_object.translation},
-          new_from_old.scale * ellipsoid.half_axes};
-}
-
 // A culled keyframe that the correction names, as it was before.
 struct CulledPose {
   KeyframeId keyframe;
@@ -189,8 +183,8 @@ void MoveObjects(Map& map, const WorldChanges& changes) {
       continue;
     }
     ObjectLandmark& moved = map.MutableObject(ObjectId(i));
-    moved.ellipsoid = Moved(*change, moved.ellipsoid);
-    moved.start = Moved(*change, moved.start);
+    moved.ellipsoid = *change * moved.ellipsoid;
+    moved.start = *change * moved.start;
     for (auto& sample : moved.misfit_samples) {
       sample.excess *= static_cast<float>(change->scale);
     }

@@ -25,6 +25,7 @@ void Mapper::Begin(Map map, Session session) {
   session_ = std::move(session);
   if (!map.keyframes().empty()) {
     map_ = std::move(map);
+    former_ = map_.Snapshot();
     recent_ = FindRecentLandmarks(map_);
     PublishSnapshot();
   }
@@ -138,12 +139,17 @@ void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry)
 }
 
 void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
-  const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
-  const bool is_unchanged = session_.has_value();  // the run has added no keyframe
-  if (!options_.final_bundle_adjustment || is_cancelled || is_unchanged ||
-      map_.keyframes().size() < 2) {
-    return;
+  if (session_) {
+    return;  // the run has added no keyframe
   }
+  const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
+  if (options_.final_bundle_adjustment && !is_cancelled && map_.keyframes().size() >= 2) {
+    AdjustMap(cancellation, on_progress);
+  }
+  FinishObjects();
+}
+
+void Mapper::AdjustMap(const Cancellation* cancellation, const ProgressCallback& on_progress) {
   BundleWindow window;
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
@@ -153,6 +159,50 @@ void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on
   }
   RecheckObjects(window.objects);
   PublishSnapshot();
+}
+
+// Finds out what has become of the objects of earlier sessions. Those that are not there any more
+// are removed from the map.
+void Mapper::FinishObjects() {
+  if (!object_options_.enabled || former_.objects().empty()) {
+    return;
+  }
+  {
+    const ScopedTimer timer(times_, "object_changes");
+    object_changes_ = FindChanges();
+    if (SplitReplacedObjects()) {
+      object_changes_ = FindChanges();
+    }
+    for (const ChangedObject& changed : object_changes_) {
+      const bool has_left =
+          changed.change == ObjectChange::kGone || changed.change == ObjectChange::kMoved;
+      const ObjectId id = has_left ? map_.Resolve(changed.former->object) : ObjectId();
+      if (map_.objects().Contains(id)) {
+        map_.EraseObject(id);
+      }
+    }
+  }
+  PublishSnapshot();
+}
+
+std::vector<ChangedObject> Mapper::FindChanges() const {
+  return FindObjectChanges(former_, map_, former_.NextFrame(), sensor_, object_options_);
+}
+
+// Returns whether there are any.
+bool Mapper::SplitReplacedObjects() {
+  bool has_split = false;
+  for (const ChangedObject& changed : object_changes_) {
+    const ObjectId id =
+        changed.change == ObjectChange::kGone || changed.change == ObjectChange::kMoved
+            ? map_.Resolve(changed.former->object)
+            : ObjectId();
+    if (map_.objects().Contains(id)) {
+      has_split |= object_mapper_.SplitOff(map_, id, former_.objects().At(changed.former->object),
+                                           former_.NextFrame());
+    }
+  }
+  return has_split;
 }
 
 void Mapper::Adjust(const BundleWindow& window, const BundleOptions& options,

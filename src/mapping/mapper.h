@@ -11,6 +11,7 @@
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
 #include "hullslam/mapping/mapping_options.h"
+#include "hullslam/objects/object_changes.h"
 #include "hullslam/objects/object_mapper.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
@@ -49,6 +50,11 @@ class Mapper {
   Map Snapshot() { return map_.Snapshot(); }
   std::optional<KeyframeId> NewestKeyframe() const;
 
+  // What the session has changed among the objects of the map of earlier sessions; complete after
+  // Finish, which removes objects that are gone or were moved away. Empty if there was no such map
+  // or no keyframe was added.
+  const std::vector<ChangedObject>& object_changes() const { return object_changes_; }
+
   const StageTimes& times() const { return times_; }
   const std::map<ObjectRejection, size_t>& object_rejections() const {
     return object_mapper_.rejections();
@@ -59,6 +65,10 @@ class Mapper {
   void Apply(const KeyframeRequest& request, const Cancellation* hurry);
   void Apply(const MapCorrection& correction, const Cancellation* hurry);
   void BeginSession();
+  void FinishObjects();
+  std::vector<ChangedObject> FindChanges() const;
+  bool SplitReplacedObjects();
+  void AdjustMap(const Cancellation* cancellation, const ProgressCallback& on_progress);
   void ExtendMap(KeyframeId keyframe, const Cancellation* hurry);
   void PublishSnapshot();
   void MapObjects(KeyframeId keyframe);
@@ -75,10 +85,12 @@ class Mapper {
   StageTimes times_;
   ObjectMapper object_mapper_;
   Map map_;
+  Map former_;  // the map of earlier sessions
   KeyframeId newest_keyframe_;
   std::vector<LandmarkId> recent_;  // new landmarks that CullRecentLandmarks checks
   std::vector<KeyframeId> full_;    // keyframes that CompactOldKeyframes checks, by increasing id
   std::optional<Session> session_;  // until its first keyframe
+  std::vector<ChangedObject> object_changes_;
 };
 
 }  // namespace hullslam

@@ -243,6 +243,28 @@ void ObjectMapper::RefineMerged(Map& map, std::span<const ObjectId> objects) {
   }
 }
 
+bool ObjectMapper::SplitOff(Map& map, ObjectId object, const ObjectLandmark& former,
+                            FrameId session) {
+  std::vector<ObjectObservation> others;
+  for (const ObjectObservation& observation : map.objects().At(object).observations) {
+    const Frame& frame = *map.keyframes().At(observation.keyframe).frame;
+    if (frame.id >= session &&
+        !former.votes.contains(frame.detections[observation.detection].label)) {
+      others.push_back(observation);
+    }
+  }
+  if (others.empty()) {
+    return false;
+  }
+  const ObjectId other = map.AddObject();
+  for (const ObjectObservation& observation : others) {
+    map.RemoveObservation(object, observation.keyframe);
+    map.AddObservation(other, observation.keyframe, observation.detection);
+  }
+  Update(map, other);
+  return true;
+}
+
 // The objects that may have changed since the last call: those that this class changed, and those
 // of the neighbourhood, where local bundle adjustment moves keyframes. By increasing id.
 std::vector<ObjectId> ObjectMapper::TakeChanged(const Map& map, KeyframeId keyframe) {

@@ -179,6 +179,22 @@ void BindCulling(OptionTable& options, CullingOptions& culling) {
               "a keyframe should show an object only if at most this share of it is hidden");
 }
 
+void BindChanges(OptionTable& options, ChangeOptions& changes) {
+  options.Add("objects.changes.min_keyframes", &changes.min_keyframes, Range::Between(1, 1000000),
+              "keyframes that should show an object before it is called gone or new");
+  options.Add("objects.changes.max_found_ratio", &changes.max_found_ratio, Range::Between(0.0, 1.0),
+              "an object is gone or new if it is found in a smaller share of these keyframes");
+  options.Add(
+      "objects.changes.min_overlap", &changes.min_overlap, Range::Between(0.0, 1.0),
+      "least IoU of the projected ellipse of an object and the hull of a mask that shows it");
+  options.Add("objects.changes.min_inside", &changes.min_inside, Range::Between(0.0, 1.0),
+              "a keyframe should show an object if at least this share of it is in the image");
+  options.Add("objects.changes.max_move", &changes.max_move, Range::Between(0.0, 1e6),
+              "an object is taken for one that was moved only up to this distance, m");
+  options.Add("objects.changes.max_size_ratio", &changes.max_size_ratio, Range::Between(1.0, 100.0),
+              "largest ratio of the half axes of an object before and after it was moved");
+}
+
 void CheckResidual(const std::string& use, ObjectResidual residual, ObjectPrimitive primitive) {
   if (!IsSupported(residual, primitive)) {
     throw InputError("settings: objects." + use + ".residual '" + std::string(NameOf(residual)) +
@@ -267,6 +283,7 @@ void ObjectOptions::Bind(OptionTable& options) {
   BindValidity(options, validity);
   BindFusion(options, fusion);
   BindCulling(options, culling);
+  BindChanges(options, changes);
   options.Add("objects.misfit.views", &misfit.views, Range::Between(1, 10000),
               "number of the latest keyframes that measure the misfit of an object");
   options.Add("objects.misfit.width", &misfit.width, Range::Between(0.1, 45.0),

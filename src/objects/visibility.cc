@@ -65,6 +65,14 @@ void AddLandmarks(const Map& map, const ImageKnowledge& image, HiddenCounter& co
   }
 }
 
+// The share of the area of a box that is in the image; exactly 1 if it is there as a whole.
+double ShareInside(const Eigen::AlignedBox2d& box, const PinholeCamera::Bounds& bounds) {
+  const Eigen::AlignedBox2d image(Eigen::Vector2d(bounds.min_x, bounds.min_y),
+                                  Eigen::Vector2d(bounds.max_x, bounds.max_y));
+  const Eigen::AlignedBox2d inside = box.intersection(image);
+  return inside.isEmpty() ? 0.0 : inside.volume() / box.volume();
+}
+
 // Depths (z, m) of the nearest and of the farthest point of an ellipsoid.
 struct DepthRange {
   double nearest;
@@ -98,11 +106,10 @@ bool IsBehindObject(const Map& map, const ImageKnowledge& image, const Ellipse& 
 }  // namespace
 
 bool ShouldShow(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
-                const ObjectLandmark& object, const ObjectOptions& options) {
+                const ObjectLandmark& object, const ObjectOptions& options, double min_inside) {
   const auto ellipse =
       ProjectEllipsoid(sensor.camera.Matrix(), image.cam_from_world, object.ellipsoid);
-  if (!ellipse || !sensor.bounds.Contains(ellipse->Bounds().min()) ||
-      !sensor.bounds.Contains(ellipse->Bounds().max())) {
+  if (!ellipse || !(ShareInside(ellipse->Bounds(), sensor.bounds) >= min_inside)) {
     return false;
   }
   const Ellipsoid in_cam = image.cam_from_world * object.ellipsoid;
@@ -126,12 +133,12 @@ bool ShouldShow(const Map& map, const Sensor& sensor, const ImageKnowledge& imag
 }
 
 bool ShouldShow(const Map& map, const Sensor& sensor, KeyframeId keyframe,
-                const ObjectLandmark& object, const ObjectOptions& options) {
+                const ObjectLandmark& object, const ObjectOptions& options, double min_inside) {
   const Keyframe& observer = map.keyframes().At(keyframe);
   return ShouldShow(map, sensor,
                     ImageKnowledge{*observer.frame, observer.cam_from_world, observer.landmarks,
                                    observer.objects},
-                    object, options);
+                    object, options, min_inside);
 }
 
 }  // namespace hullslam

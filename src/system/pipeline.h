@@ -3,9 +3,11 @@
 
 #include <map>
 #include <memory>
+#include <vector>
 
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
+#include "hullslam/objects/object_changes.h"
 #include "hullslam/objects/rejection.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
@@ -40,6 +42,8 @@ class Pipeline {
   virtual StageTimes times() const = 0;
   // How often an object was not mapped, by reason; complete after Finish.
   virtual std::map<ObjectRejection, size_t> object_rejections() const = 0;
+  // See Mapper::object_changes. To be called after Finish, which fills it in.
+  virtual const std::vector<ChangedObject>& object_changes() const = 0;
 };
 
 }  // namespace hullslam

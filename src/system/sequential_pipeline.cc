@@ -64,6 +64,10 @@ class SequentialPipeline final : public Pipeline {
     return mapper_.object_rejections();
   }
 
+  const std::vector<ChangedObject>& object_changes() const override {
+    return mapper_.object_changes();
+  }
+
  private:
   // Looks for a loop at the newest keyframe. After it has been closed, the whole map is adjusted.
   void CloseLoop() {

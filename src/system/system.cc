@@ -189,6 +189,10 @@ StageTimes System::times() const {
   return all;
 }
 
+const std::vector<ChangedObject>& System::object_changes() const {
+  return pipeline_->object_changes();
+}
+
 ObjectCounts System::object_counts() const {
   ObjectCounts counts;
   counts.detections = mask_counts_.detections;

@@ -89,6 +89,10 @@ class ThreadedPipeline final : public Pipeline {
     return object_rejections_;
   }
 
+  const std::vector<ChangedObject>& object_changes() const override {
+    return mapper_.object_changes();  // only Finish writes it
+  }
+
  private:
   bool IsMapping() const {
     const std::lock_guard lock(mutex_);

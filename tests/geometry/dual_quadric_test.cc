@@ -92,6 +92,18 @@ TEST(Ellipsoid, MovesWithItsFrame) {
   }
 }
 
+TEST(Ellipsoid, GrowsWithASimilarity) {
+  RandomGeometry random(6);
+  for (int i = 0; i < 50; ++i) {
+    const Ellipsoid ellipsoid = RandomEllipsoid(random);
+    const Rigid3 rigid = random.Pose(2.0, 3.0);
+    const Sim3 b_from_world(1.0 + 0.05 * i, rigid.rotation, rigid.translation);
+    const Ellipsoid moved = b_from_world * ellipsoid;
+    const Eigen::Vector3d surface = SurfacePoint(ellipsoid, random);
+    EXPECT_NEAR(moved.RadialDistance(b_from_world * surface), 0.0, 1e-9);
+  }
+}
+
 TEST(Ellipsoid, RadialDistanceIsZeroOnTheSurfaceAndAlongTheRay) {
   RandomGeometry random(4);
   for (int i = 0; i < 100; ++i) {

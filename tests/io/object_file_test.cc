@@ -148,6 +148,33 @@ TEST(ObjectFile, ReadingAndWritingGivesTheSameBytes) {
   EXPECT_NEAR(view.lines[0].line.normal.x(), 0.6, 1e-9);
 }
 
+// A report of a run that went on with a map.
+ObjectReport MakeChangedReport() {
+  ObjectReport report = MakeReport();
+  const ObjectPlace place = {ObjectId(7), report.objects[0].ellipsoid};
+  ChangedObject moved{.change = ObjectChange::kMoved, .label = "cup", .expected = 12, .found = 1};
+  moved.now = place;
+  moved.former = ObjectPlace{ObjectId(3), report.objects[0].ellipsoid};
+  ChangedObject gone{.change = ObjectChange::kGone, .label = "book", .expected = 4, .found = 0};
+  gone.former = place;
+  report.changes = {moved, gone};
+  return report;
+}
+
+TEST(ObjectFile, ChangesAreWrittenAndRead) {
+  const ObjectReport report = MakeChangedReport();
+  const Json json = Json::parse(FormatObjects(report));
+  ASSERT_EQ(json["changes"].size(), 2U);
+  EXPECT_EQ(json["changes"][0]["change"], "moved");
+  EXPECT_EQ(json["changes"][0]["former"]["object"], 3);
+  EXPECT_EQ(json["changes"][1]["class"], "book");
+  EXPECT_TRUE(json["changes"][1]["now"].is_null());
+  EXPECT_TRUE(Json::parse(FormatObjects(MakeReport()))["changes"].is_null());
+  const ObjectReport read = WriteAndRead(report);
+  EXPECT_EQ(FormatObjects(read), FormatObjects(report));
+  EXPECT_FALSE(WriteAndRead(MakeReport()).changes);
+}
+
 TEST(ObjectFile, AMapWithoutObjectsGivesAValidFile) {
   ObjectReport empty;
   empty.camera = MakeReport().camera;
@@ -175,7 +202,7 @@ TEST(ObjectFile, NonFiniteValuesAreNeverWritten) {
 // Expects that the files are refused when the value at `pointer` of one of them is replaced.
 void ExpectRefusal(const std::string& pointer, const Json& value,
                    const std::vector<std::string>& parts) {
-  Json objects = Json::parse(FormatObjects(MakeReport()));
+  Json objects = Json::parse(FormatObjects(MakeChangedReport()));
   Json observations = Json::parse(FormatObservations(MakeReport()));
   const bool is_observation = pointer.starts_with("/observations");
   (is_observation ? observations : objects)[Json::json_pointer(pointer)] = value;
@@ -199,6 +226,11 @@ TEST(ObjectFile, BrokenValuesAreReportedWithTheirPath) {
   ExpectRefusal("/camera/k1", -5, {"camera is {", "Camera.k1 is '-5'"});
   ExpectRefusal("/candidates", -1, {"candidates is -1"});
   ExpectRefusal("/objects", "none", {"objects is \"none\"", "an array"});
+  ExpectRefusal("/changes", 1, {"changes is 1", "an array"});
+  ExpectRefusal("/changes/0/change", "lost", {"changes[0].change is \"lost\"", "seen_again"});
+  ExpectRefusal("/changes/0/now/object", -1, {"changes[0].now.object is -1"});
+  ExpectRefusal("/changes/1/former/half_axes", {1, 0, 1}, {"changes[1].former.half_axes"});
+  ExpectRefusal("/changes/1/expected", "many", {"changes[1].expected is \"many\""});
   ExpectRefusal(object + "id", "x", {"objects[1].id is \"x\""});
   ExpectRefusal(object + "state", "lost", {"objects[1].state is \"lost\"", "mapped"});
   ExpectRefusal(object + "class", 3, {"objects[1].class is 3", "a string"});

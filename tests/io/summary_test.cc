@@ -50,7 +50,9 @@ TEST(Summary, HasTheKeysOfObjectsInOrder) {
   EXPECT_EQ(Keys(json["objects"]),
             (std::vector<std::string>{"count", "siou_mean", "siou_mask_mean", "mtd_mean_m2",
                                       "tangent_mean_px", "observations", "candidates", "detections",
-                                      "frames_with_masks", "frames_without_masks", "rejections"}));
+                                      "frames_with_masks", "frames_without_masks", "rejections",
+                                      "changes"}));
+  EXPECT_TRUE(json["objects"]["changes"].is_null());
   EXPECT_TRUE(json["objects"]["siou_mean"].is_null());
   EXPECT_TRUE(json["objects"]["rejections"].is_object());
 }
@@ -73,6 +75,7 @@ TEST(Summary, ValuesAreWritten) {
   summary.trajectory.skipped = 3;
   summary.objects = ObjectsSummary{.count = 6, .siou_mean = 0.8};
   summary.objects->rejections["too few views"] = 2;
+  summary.objects->changes = {{"gone", 3}};
   summary.timing.stages_ms = SummarizeStages(times);
   summary.map.landmarks = 1234;
   summary.provenance.seed = 18446744073709551615U;
@@ -83,6 +86,7 @@ TEST(Summary, ValuesAreWritten) {
   EXPECT_EQ(json["objects"]["count"], 6);
   EXPECT_EQ(json["objects"]["siou_mean"], 0.8);
   EXPECT_EQ(json["objects"]["rejections"]["too few views"], 2);
+  EXPECT_EQ(json["objects"]["changes"]["gone"], 3);
   EXPECT_EQ(json["timing"]["stages_ms"]["extract"]["mean"], 3.0);
   EXPECT_EQ(json["timing"]["stages_ms"]["extract"]["max"], 4.0);
   EXPECT_EQ(json["map"]["landmarks"], 1234);

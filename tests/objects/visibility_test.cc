@@ -59,6 +59,20 @@ TEST_F(Visibility, IsExpectedInTheImageUpToTheRange) {
   EXPECT_FALSE(Shows(Look(aside)));
 }
 
+TEST_F(Visibility, APartInTheImageCanBeEnough) {
+  Rigid3 aside;
+  aside.translation.x() = 0.6;  // the border of the image cuts a little of it
+  const KeyframeId keyframe = Look(aside);
+  const auto shows = [&](double min_inside) {
+    return ShouldShow(map_, sensor_, keyframe, map_.objects().At(id_), options_, min_inside);
+  };
+  EXPECT_FALSE(shows(1.0));
+  EXPECT_TRUE(shows(0.5));
+  Rigid3 far_aside;
+  far_aside.translation.x() = 1.2;
+  EXPECT_FALSE(ShouldShow(map_, sensor_, Look(far_aside), map_.objects().At(id_), options_, 0.01));
+}
+
 TEST_F(Visibility, IsNotExpectedBehindANearerSurface) {
   EXPECT_TRUE(Shows(Look(Rigid3(), Wall(3000))));  // a wall behind it
   EXPECT_TRUE(Shows(Look(Rigid3(), Wall(0))));     // unknown depth hides nothing

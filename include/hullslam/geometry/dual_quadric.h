@@ -6,6 +6,7 @@
 
 #include "hullslam/geometry/conic.h"
 #include "hullslam/geometry/rigid3.h"
+#include "hullslam/geometry/sim3.h"
 
 namespace hullslam {
 
@@ -24,6 +25,7 @@ struct Ellipsoid {
 };
 
 Ellipsoid operator*(const Rigid3& b_from_world, const Ellipsoid& ellipsoid);
+Ellipsoid operator*(const Sim3& b_from_world, const Ellipsoid& ellipsoid);
 
 // The projected ellipse in an undistorted image of a camera with intrinsics `k` (upper triangular,
 // px): C* = P Q* P^T with P = k [R|t]. Returns nothing unless the whole ellipsoid is in front of

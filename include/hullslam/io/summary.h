@@ -46,6 +46,9 @@ struct ObjectsSummary {
   size_t frames_without_masks = 0;  // frames without a file of masks, or with an empty one
   std::map<std::string, size_t> rejections =
       {};  // numbers of rejected masks and objects, by reason
+  // Of a run that went on with a map: how many objects were seen again, moved and so on, by the
+  // names of ObjectChange.
+  std::optional<std::map<std::string, size_t>> changes = std::nullopt;
 };
 
 struct TimingSummary {

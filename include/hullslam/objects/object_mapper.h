@@ -34,6 +34,13 @@ class ObjectMapper {
   // that other objects were merged into.
   void RefineMerged(Map& map, std::span<const ObjectId> objects);
 
+  // For a map of earlier sessions, at the end of a session whose frames have the id `session` or a
+  // larger one. What stands where something else stood before may have been taken for it. So the
+  // session's observations of `object` in which it has another class than before are moved to a
+  // new object, whose shape is sought. `former` is the object before the session. Returns whether
+  // there are such observations.
+  bool SplitOff(Map& map, ObjectId object, const ObjectLandmark& former, FrameId session);
+
   // How often an object was rejected, for each reason.
   const std::map<ObjectRejection, size_t>& rejections() const { return rejections_; }
 

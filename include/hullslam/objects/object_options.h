@@ -85,6 +85,18 @@ struct CullingOptions {
   double max_hidden = 0.3;
 };
 
+// When an object of a loaded map counts as gone or new; see FindObjectChanges.
+struct ChangeOptions {
+  int min_keyframes = 3;         // that should show an object before it is called gone or new
+  double max_found_ratio = 0.2;  // it is found in a smaller share of them
+  double min_overlap = 0.25;     // IoU of its projected ellipse and a hull that may show it
+  double min_inside = 0.6;       // share of the object that must be in the image
+  // An object that is farther away than this (m; in the unit of the map if its scale is unknown) is
+  // another one, and not the one that is gone.
+  double max_move = 4.0;
+  double max_size_ratio = 2.5;  // of the half axes of an object before and after it was moved
+};
+
 // How the misfit of an object is measured; see objects/misfit.h.
 struct MisfitOptions {
   int views = 40;      // number of latest keyframes that samples are taken from
@@ -161,6 +173,7 @@ struct ObjectOptions {
   ValidityOptions validity;
   FusionOptions fusion;
   CullingOptions culling;
+  ChangeOptions changes;
   MisfitOptions misfit;
   GuideOptions guide;
   ObjectRefinementOptions refinement;

@@ -11,6 +11,7 @@
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/line2.h"
 #include "hullslam/map/map.h"
+#include "hullslam/objects/object_changes.h"
 
 namespace hullslam {
 
@@ -65,9 +66,11 @@ struct ObjectReport {
   PinholeCamera camera;
   size_t candidates = 0;                // objects that are not mapped, with or without a shape
   std::vector<ReportedObject> objects;  // objects with a shape, by increasing id
+  // Of a run that has added keyframes to a map of earlier sessions: what it has changed.
+  std::optional<std::vector<ChangedObject>> changes;
 };
 
-// Fills in everything except `sequence` and the fits.
+// Fills in everything except `sequence`, `changes` and the fits.
 ObjectReport ReportObjects(const Map& map, const PinholeCamera& camera);
 
 }  // namespace hullslam

@@ -16,6 +16,7 @@
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
+#include "hullslam/objects/object_changes.h"
 #include "hullslam/system/options.h"
 #include "hullslam/system/system_start.h"
 #include "hullslam/util/cancellation.h"
@@ -109,6 +110,9 @@ class System {
   // frames may be built long before they are tracked, and "track" is the sum of the two. May be
   // called at any time by the thread that calls Track; complete after Finish.
   StageTimes times() const;
+  // What has become of the objects of the map that the system began with, and which objects are
+  // new (docs/maps.md). Empty before Finish, and if no keyframe was added.
+  const std::vector<ChangedObject>& object_changes() const;
   // What became of the masks. May be called like times().
   ObjectCounts object_counts() const;
 

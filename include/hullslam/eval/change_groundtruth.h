@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "hullslam/eval/true_object.h"
+#include "hullslam/objects/object_changes.h"
+
+namespace hullslam {
+
+// How many changes of one kind there are in truth, were reported, and were reported rightly.
+struct ChangeCounts {
+  size_t in_truth = 0;
+  size_t reported = 0;
+  size_t right = 0;
+};
+
+struct ChangeComparison {
+  ChangeCounts moved;
+  ChangeCounts gone;
+  ChangeCounts added;  // ObjectChange::kNew
+  // Places that an object left, and places where there is one that was not there: a moved object
+  // counts in both, so it does not matter which of two cups was moved.
+  ChangeCounts left;
+  ChangeCounts taken;
+};
+
+// Compares the reported changes with a rearranged scene. A reported place is that of a true object
+// of any class if its centre is at most half of the Size() of the object away. Each true object is
+// counted once. Moving true objects are left out, and so are those of `scene.objects` whose entry
+// in `sightings` is less than `min_sightings`; `sightings` may be empty.
+ChangeComparison CompareChanges(const TrueScene& scene, std::span<const ChangedObject> changes,
+                                const Rigid3& truth_from_map, std::span<const size_t> sightings,
+                                size_t min_sightings);
+
+}  // namespace hullslam

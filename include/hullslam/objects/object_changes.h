@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hullslam/frame/sensor.h"
+#include "hullslam/map/map.h"
+#include "hullslam/objects/object_options.h"
+
+namespace hullslam {
+
+// What has become of an object between earlier sessions of a map and the last one.
+enum class ObjectChange {
+  kSeenAgain,
+  kMoved,      // it is gone from its place, and a new object of its class and size is elsewhere
+  kGone,       // it should have been visible, but was not found
+  kNew,        // earlier sessions should have seen it, but did not
+  kNotSeen,    // too few keyframes of the session should show its place
+  kFirstSeen,  // too few keyframes of earlier sessions should show its place
+};
+
+inline constexpr std::array kObjectChanges = {ObjectChange::kSeenAgain, ObjectChange::kMoved,
+                                              ObjectChange::kGone,      ObjectChange::kNew,
+                                              ObjectChange::kNotSeen,   ObjectChange::kFirstSeen};
+
+// The name in files: "seen_again", "moved", "gone", "new", "not_seen", "first_seen".
+std::string_view ToString(ObjectChange change);
+
+// An object at a place in the coordinates of the map after the session.
+struct ObjectPlace {
+  ObjectId object;
+  Ellipsoid ellipsoid;
+};
+
+struct ChangedObject {
+  ObjectChange change = ObjectChange::kSeenAgain;
+  std::string label;
+  std::optional<ObjectPlace> now =
+      std::nullopt;  // unless it is gone, or not seen and not in the map any more
+  std::optional<ObjectPlace> former =
+      std::nullopt;  // with its id in the former map; unless it is new
+  // The evidence: keyframes that should show the object, and those of them in which it is found. Of
+  // new and first seen objects these are keyframes of earlier sessions, of all others those of the
+  // last session.
+  int expected = 0;
+  int found = 0;
+};
+
+// Compares the mapped objects of `former`, a map of earlier sessions, with `map`, which went on
+// with it in a session whose frames have the id `session` or a larger one. The objects of the
+// former map come first, by increasing id, then those that are new or were first seen. Keyframes
+// without any detection count as not seen, so a session without masks changes nothing.
+std::vector<ChangedObject> FindObjectChanges(const Map& former, const Map& map, FrameId session,
+                                             const Sensor& sensor, const ObjectOptions& options);
+
+}  // namespace hullslam

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/object_changes.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <span>
+#include <utility>
+
+#include "geometry/assignment.h"
+#include "geometry/polygon_overlap.h"
+#include "hullslam/objects/object_view.h"
+#include "objects/visibility.h"
+
+namespace hullslam {
+namespace {
+
+// Where a correction of the map since then has moved the object.
+Ellipsoid InMap(const Map& map, const Map& former, const ObjectLandmark& object) {
+  const KeyframeId keyframe = object.reference;
+  const Sim3 change(map.ScaleOf(keyframe) / former.ScaleOf(keyframe),
+                    Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
+  return Inverse(Sim3(map.CamFromWorld(keyframe))) * change * Sim3(former.CamFromWorld(keyframe)) *
+         object.ellipsoid;
+}
+
+// Whether a detection with this label may show the object.
+bool MayBe(const ObjectLandmark& object, const std::string& label) {
+  constexpr double kLeastShare = 0.2;
+  double all = 0.0;
+  for (const auto& [name, votes] : object.votes) {
+    all += votes;
+  }
+  const auto same = object.votes.find(label);
+  return same != object.votes.end() && same->second >= kLeastShare * all;
+}
+
+// How much the sizes of two objects differ: the larger ratio of their two longest half axes. The
+// shortest one is badly known for flat things.
+double SizeRatio(Eigen::Vector3d a, Eigen::Vector3d b) {
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  return a.cwiseQuotient(b).cwiseMax(b.cwiseQuotient(a)).tail<2>().maxCoeff();
+}
+
+class Comparison {
+ public:
+  Comparison(const Map& former, const Map& map, FrameId session, const Sensor& sensor,
+             const ObjectOptions& options)
+      : former_(former), map_(map), sensor_(sensor), options_(options) {
+    for (const auto& [id, keyframe] : map.keyframes()) {
+      if (!keyframe.frame->detections.empty()) {
+        (keyframe.frame->id < session ? earlier_ : later_).push_back(id);
+      }
+    }
+  }
+
+  std::vector<ChangedObject> Run() {
+    if (later_.empty()) {
+      return {};
+    }
+    std::vector<ChangedObject> changed;
+    for (const auto& [id, object] : former_.objects()) {
+      if (object.state == ObjectState::kMapped) {
+        changed.push_back(CompareFormer(id, object));
+      }
+    }
+    for (const auto& [id, object] : map_.objects()) {
+      if (object.state == ObjectState::kMapped && !former_.objects().Contains(id)) {
+        changed.push_back(CompareAdded(id, object));
+      }
+    }
+    FindMoved(changed);
+    return changed;
+  }
+
+ private:
+  ChangedObject CompareFormer(ObjectId id, const ObjectLandmark& former) {
+    ChangedObject changed{.label = former.Label()};
+    const ObjectId now = map_.Resolve(id);
+    const ObjectLandmark* const object = map_.objects().Find(now);
+    ObjectLandmark sought = object != nullptr && object->has_shape ? *object : former;
+    if (object == nullptr || !object->has_shape) {
+      sought.ellipsoid = InMap(map_, former_, former);
+    }
+    sought.votes = former.votes;
+    changed.former = {id, sought.ellipsoid};
+    CountViews(later_, now, sought, changed);
+    changed.change = Judge(changed, ObjectChange::kGone, ObjectChange::kNotSeen);
+    if (object != nullptr && changed.change != ObjectChange::kGone) {
+      changed.now = {now, sought.ellipsoid};
+    }
+    return changed;
+  }
+
+  ChangedObject CompareAdded(ObjectId id, const ObjectLandmark& object) {
+    ChangedObject changed{.label = object.Label(), .now = ObjectPlace{id, object.ellipsoid}};
+    CountViews(earlier_, id, object, changed);
+    changed.change = Judge(changed, ObjectChange::kNew, ObjectChange::kFirstSeen);
+    if (changed.change == ObjectChange::kSeenAgain) {
+      changed.change = ObjectChange::kFirstSeen;  // it was seen, but was not mapped
+    }
+    return changed;
+  }
+
+  ObjectChange Judge(const ChangedObject& changed, ObjectChange if_absent,
+                     ObjectChange if_unknown) const {
+    const ChangeOptions& limits = options_.changes;
+    if (changed.expected < limits.min_keyframes) {
+      return changed.found > 0 ? ObjectChange::kSeenAgain : if_unknown;
+    }
+    return changed.found < limits.max_found_ratio * changed.expected ? if_absent
+                                                                     : ObjectChange::kSeenAgain;
+  }
+
+  void CountViews(std::span<const KeyframeId> keyframes, ObjectId id, ObjectLandmark object,
+                  ChangedObject& changed) const {
+    std::erase_if(object.observations, [&](const ObjectObservation& observation) {
+      return !map_.keyframes().Contains(observation.keyframe);
+    });
+    for (const KeyframeId keyframe : keyframes) {
+      const bool is_found = Shows(map_.keyframes().At(keyframe), id, object);
+      if (is_found ||
+          ShouldShow(map_, sensor_, keyframe, object, options_, options_.changes.min_inside)) {
+        ++changed.expected;
+        changed.found += is_found ? 1 : 0;
+      }
+    }
+  }
+
+  // Whether a detection of the keyframe shows the object or something of its class at its place.
+  bool Shows(const Keyframe& keyframe, ObjectId id, const ObjectLandmark& object) const {
+    const auto ellipse =
+        ProjectEllipsoid(sensor_.camera.Matrix(), keyframe.cam_from_world, object.ellipsoid);
+    if (!ellipse) {
+      return false;
+    }
+    const std::vector<Eigen::Vector2d> outline = ellipse->Polygon();
+    for (size_t i = 0; i < keyframe.objects.size(); ++i) {
+      const Detection& detection = keyframe.frame->detections[i];
+      if (!MayBe(object, detection.label)) {
+        continue;
+      }
+      if (keyframe.objects[i] == id && id.IsValid()) {
+        return true;
+      }
+      if (!IsAnother(keyframe.objects[i], id) &&
+          IntersectionOverUnion(outline, detection.hull) >= options_.changes.min_overlap &&
+          IsThere(keyframe, detection, object)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // Whether `shown` is an object that the former map has too, and not the one with this id.
+  bool IsAnother(ObjectId shown, ObjectId id) const {
+    const ObjectLandmark* const former = former_.objects().Find(shown);
+    return shown != id && former != nullptr && former->state == ObjectState::kMapped;
+  }
+
+  // Whether the depth of the detection, if there is any, is that of the object.
+  static bool IsThere(const Keyframe& keyframe, const Detection& detection,
+                      const ObjectLandmark& object) {
+    if (detection.points.empty()) {
+      return true;
+    }
+    const Eigen::Vector3d center = Centroid({KeyframeId(), keyframe.cam_from_world, &detection});
+    return (center - object.ellipsoid.world_from_object.translation).norm() <=
+           object.ellipsoid.half_axes.maxCoeff();
+  }
+
+  // Pairs objects that are gone with new ones of the same class and size.
+  void FindMoved(std::vector<ChangedObject>& changed) const {
+    std::vector<size_t> gone;
+    std::vector<size_t> added;
+    for (size_t i = 0; i < changed.size(); ++i) {
+      if (changed[i].change == ObjectChange::kGone) {
+        gone.push_back(i);
+      } else if (changed[i].change == ObjectChange::kNew) {
+        added.push_back(i);
+      }
+    }
+    Eigen::MatrixXd cost(gone.size(), added.size());
+    for (size_t i = 0; i < gone.size(); ++i) {
+      for (size_t j = 0; j < added.size(); ++j) {
+        cost(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+            MovingCost(changed[gone[i]], changed[added[j]]);
+      }
+    }
+    const std::vector<int> partners = AssignMinimumCost(cost, kNever);
+    std::vector<size_t> used;
+    for (size_t i = 0; i < gone.size(); ++i) {
+      if (partners[i] >= 0) {
+        const size_t partner = added[static_cast<size_t>(partners[i])];
+        changed[gone[i]].change = ObjectChange::kMoved;
+        changed[gone[i]].now = changed[partner].now;
+        used.push_back(partner);
+      }
+    }
+    std::sort(used.begin(), used.end(), std::greater<>());
+    for (const size_t i : used) {
+      changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
+
+  // Nothing that the map knows tells two cups apart. So the nearest one of the same class and about
+  // the same size is taken for the one that was moved, if it is not too far away.
+  double MovingCost(const ChangedObject& gone, const ChangedObject& added) const {
+    const Ellipsoid& from = gone.former->ellipsoid;
+    const Ellipsoid& to = added.now->ellipsoid;
+    const double ratio = SizeRatio(from.half_axes, to.half_axes);
+    const double distance =
+        (from.world_from_object.translation - to.world_from_object.translation).norm();
+    if (gone.label != added.label || ratio > options_.changes.max_size_ratio ||
+        distance > options_.changes.max_move) {
+      return kNever;
+    }
+    return std::log(ratio) + distance / options_.changes.max_move;
+  }
+
+  static constexpr double kNever = 1e3;
+
+  const Map& former_;
+  const Map& map_;
+  const Sensor& sensor_;
+  const ObjectOptions& options_;
+  std::vector<KeyframeId> earlier_;
+  std::vector<KeyframeId> later_;  // those of the session
+};
+
+}  // namespace
+
+std::string_view ToString(ObjectChange change) {
+  switch (change) {
+    case ObjectChange::kSeenAgain:
+      return "seen_again";
+    case ObjectChange::kMoved:
+      return "moved";
+    case ObjectChange::kGone:
+      return "gone";
+    case ObjectChange::kNew:
+      return "new";
+    case ObjectChange::kNotSeen:
+      return "not_seen";
+    default:
+      return "first_seen";
+  }
+}
+
+std::vector<ChangedObject> FindObjectChanges(const Map& former, const Map& map, FrameId session,
+                                             const Sensor& sensor, const ObjectOptions& options) {
+  return Comparison(former, map, session, sensor, options).Run();
+}
+
+}  // namespace hullslam

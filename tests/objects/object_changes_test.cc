@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/objects/object_changes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "hullslam/objects/object_mapper.h"
+#include "objects/made_objects.h"
+
+namespace hullslam {
+namespace {
+
+// A table that a camera goes around twice, in a session each. In between things may be changed.
+class ObjectChanges : public testing::Test {
+ protected:
+  // One session over a third of the circle from `begin` (radians) on.
+  void Visit(const std::vector<MadeObject>& objects, double begin = 0.0) {
+    for (int i = 0; i < 10; ++i) {
+      const Rigid3 cam_from_world = CameraOnCircle(begin + 0.2 * i, 1.5, 0.8);
+      mapper_.Process(map_, AddObserver(map_, sensor_, cam_from_world, objects));
+    }
+  }
+  void EndFirstSession() {
+    session_ = map_.NextFrame();
+    former_ = map_.Snapshot();
+  }
+  std::vector<ChangedObject> Changes() const {
+    return FindObjectChanges(former_, map_, session_, sensor_, options_);
+  }
+  // The change of the only object with this label.
+  ObjectChange ChangeOf(const std::string& label) const {
+    std::vector<ObjectChange> changes;
+    for (const ChangedObject& changed : Changes()) {
+      if (changed.label == label) {
+        changes.push_back(changed.change);
+      }
+    }
+    EXPECT_EQ(changes.size(), 1U) << label;
+    return changes.at(0);
+  }
+
+  Sensor sensor_ = MakeObjectSensor();
+  ObjectOptions options_;
+  ObjectMapper mapper_{sensor_, options_};
+  Map map_;
+  Map former_;
+  FrameId session_;
+};
+
+MadeObject Moved(MadeObject object, const Eigen::Vector3d& by) {
+  object.ellipsoid.world_from_object.translation += by;
+  return object;
+}
+
+TEST_F(ObjectChanges, WhatIsStillThereIsSeenAgain) {
+  Visit(MakeTable());
+  EndFirstSession();
+  Visit(MakeTable());
+  const std::vector<ChangedObject> changes = Changes();
+  ASSERT_EQ(changes.size(), 3U);
+  for (const ChangedObject& changed : changes) {
+    EXPECT_EQ(changed.change, ObjectChange::kSeenAgain) << changed.label;
+    EXPECT_EQ(changed.expected, 10);
+    EXPECT_EQ(changed.found, 10);
+    ASSERT_TRUE(changed.now && changed.former);
+    EXPECT_EQ(changed.now->object, changed.former->object);
+  }
+}
+
+TEST_F(ObjectChanges, WhatIsMissingIsGone) {
+  Visit(MakeTable());
+  EndFirstSession();
+  std::vector<MadeObject> table = MakeTable();
+  table.erase(table.begin());
+  Visit(table);
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kGone);
+  EXPECT_EQ(ChangeOf("book"), ObjectChange::kSeenAgain);
+  EXPECT_EQ(ChangeOf("bottle"), ObjectChange::kSeenAgain);
+}
+
+TEST_F(ObjectChanges, WhatWasNotThereIsNew) {
+  std::vector<MadeObject> table = MakeTable();
+  table.pop_back();
+  Visit(table);
+  EndFirstSession();
+  Visit(MakeTable());
+  EXPECT_EQ(ChangeOf("bottle"), ObjectChange::kNew);
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kSeenAgain);
+}
+
+TEST_F(ObjectChanges, WhatIsElsewhereWasMoved) {
+  Visit(MakeTable());
+  EndFirstSession();
+  std::vector<MadeObject> table = MakeTable();
+  table[0] = Moved(table[0], {-0.25, -0.35, 0.0});
+  Visit(table);
+  const std::vector<ChangedObject> changes = Changes();
+  EXPECT_EQ(changes.size(), 3U);
+  const auto cup = std::find_if(changes.begin(), changes.end(),
+                                [](const auto& changed) { return changed.label == "cup"; });
+  ASSERT_NE(cup, changes.end());
+  EXPECT_EQ(cup->change, ObjectChange::kMoved);
+  EXPECT_LT((cup->former->ellipsoid.world_from_object.translation -
+             MakeTable()[0].ellipsoid.world_from_object.translation)
+                .norm(),
+            0.02);
+  EXPECT_LT((cup->now->ellipsoid.world_from_object.translation -
+             table[0].ellipsoid.world_from_object.translation)
+                .norm(),
+            0.02);
+  EXPECT_NE(cup->now->object, cup->former->object);
+}
+
+TEST_F(ObjectChanges, OfSeveralThatMayHaveBeenMovedTheNearestWas) {
+  std::vector<MadeObject> table = {MakeObject("cup", {0.3, 0.2, 0.0}, {0.05, 0.05, 0.06}),
+                                   MakeObject("cup", {-0.3, -0.2, 0.0}, {0.05, 0.05, 0.06}),
+                                   MakeTable()[2]};
+  Visit(table);
+  EndFirstSession();
+  table[0] = Moved(table[0], {-0.2, 0.1, 0.0});
+  table[1] = Moved(table[1], {0.2, 0.2, 0.0});
+  Visit(table);
+  int moved = 0;
+  for (const ChangedObject& changed : Changes()) {
+    if (changed.change == ObjectChange::kMoved) {
+      ++moved;
+      EXPECT_LT((changed.now->ellipsoid.world_from_object.translation -
+                 changed.former->ellipsoid.world_from_object.translation)
+                    .norm(),
+                0.32);
+    }
+  }
+  EXPECT_EQ(moved, 2);
+}
+
+TEST_F(ObjectChanges, AnObjectOfAnotherSizeOrTooFarAwayWasNotMoved) {
+  Visit({MakeTable()[0], MakeTable()[1]});
+  EndFirstSession();
+  MadeObject large = Moved(MakeTable()[0], {-0.25, -0.35, 0.0});
+  large.ellipsoid.half_axes *= 2.0;
+  Visit({MakeTable()[1], large});
+  options_.changes.max_size_ratio = 1.5;
+  std::vector<ChangedObject> changes = Changes();
+  ASSERT_EQ(changes.size(), 3U);
+  EXPECT_EQ(changes[0].change, ObjectChange::kGone);
+  EXPECT_EQ(changes[2].change, ObjectChange::kNew);
+  options_.changes.max_size_ratio = 3.0;
+  EXPECT_EQ(Changes().size(), 2U);
+  options_.changes.max_move = 0.4;  // it is 0.43 m away
+  EXPECT_EQ(Changes().size(), 3U);
+}
+
+TEST_F(ObjectChanges, WhatTheSessionDidNotLookAtIsNotSeen) {
+  std::vector<MadeObject> table = MakeTable();
+  Visit(table);
+  EndFirstSession();
+  // A camera that looks away from the table, at another one.
+  const MadeObject chair = MakeObject("chair", {0.0, 5.0, 0.0}, {0.3, 0.3, 0.4});
+  for (int i = 0; i < 6; ++i) {
+    Rigid3 cam_from_world = CameraOnCircle(0.2 * i, 2.0, 0.8);
+    cam_from_world.translation -=
+        cam_from_world.rotation * chair.ellipsoid.world_from_object.translation;
+    mapper_.Process(map_, AddObserver(map_, sensor_, cam_from_world, {chair}));
+  }
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kNotSeen);
+  EXPECT_EQ(ChangeOf("chair"), ObjectChange::kFirstSeen);
+}
+
+TEST_F(ObjectChanges, ASessionWithoutMasksChangesNothing) {
+  Visit(MakeTable());
+  EndFirstSession();
+  Visit({});
+  EXPECT_TRUE(Changes().empty());
+}
+
+// Something else may stand where an object stood.
+TEST_F(ObjectChanges, AnotherClassAtThePlaceIsNotTheObject) {
+  Visit(MakeTable());
+  EndFirstSession();
+  std::vector<MadeObject> table = MakeTable();
+  table[0].label = "orange";
+  Visit(table);
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kGone);
+}
+
+TEST_F(ObjectChanges, WhatTookThePlaceOfAnObjectBecomesAnObjectOfItsOwn) {
+  Visit(MakeTable());
+  EndFirstSession();
+  std::vector<MadeObject> table = MakeTable();
+  table[0].label = "orange";
+  Visit(table);
+  const ObjectId cup(0);
+  ASSERT_EQ(former_.objects().At(cup).Label(), "cup");
+  ASSERT_GT(map_.objects().At(cup).votes.count("orange"), 0U);  // it was taken for the cup
+  EXPECT_TRUE(mapper_.SplitOff(map_, cup, former_.objects().At(cup), session_));
+  EXPECT_EQ(map_.objects().At(cup).votes.count("orange"), 0U);
+  EXPECT_EQ(ChangeOf("orange"), ObjectChange::kNew);
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kGone);
+  EXPECT_FALSE(mapper_.SplitOff(map_, cup, former_.objects().At(cup), session_));
+}
+
+// A correction of the map moves the place where an object was, also if it is gone.
+TEST_F(ObjectChanges, PlacesFollowCorrectionsOfTheMap) {
+  Visit(MakeTable());
+  EndFirstSession();
+  const Rigid3 new_from_old(ExpSo3({0.0, 0.0, 0.3}), {1.0, 2.0, 3.0});
+  for (uint32_t i = 0; i < 10; ++i) {
+    const KeyframeId id(i);
+    map_.SetPose(id, map_.keyframes().At(id).cam_from_world * Inverse(new_from_old));
+  }
+  map_.EraseObject(ObjectId(0));
+  const Ellipsoid before = former_.objects().At(ObjectId(0)).ellipsoid;
+  const MadeObject chair =
+      MakeObject("chair", new_from_old * Eigen::Vector3d(0.0, 0.0, 0.0), {0.05, 0.05, 0.05});
+  for (int i = 0; i < 4; ++i) {
+    const Rigid3 pose = CameraOnCircle(0.2 * i, 1.5, 0.8) * Inverse(new_from_old);
+    mapper_.Process(map_, AddObserver(map_, sensor_, pose, {chair}));
+  }
+  const std::vector<ChangedObject> changes = Changes();
+  ASSERT_FALSE(changes.empty());
+  EXPECT_EQ(changes[0].change, ObjectChange::kGone);
+  EXPECT_LT((changes[0].former->ellipsoid.world_from_object.translation -
+             new_from_old * before.world_from_object.translation)
+                .norm(),
+            1e-9);
+}
+
+TEST(ObjectChangeNames, AreDifferent) {
+  for (const ObjectChange a : kObjectChanges) {
+    for (const ObjectChange b : kObjectChanges) {
+      EXPECT_EQ(ToString(a) == ToString(b), a == b);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hullslam
