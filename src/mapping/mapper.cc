@@ -174,10 +174,7 @@ void Mapper::FinishObjects() {
       object_changes_ = FindChanges();
     }
     for (const ChangedObject& changed : object_changes_) {
-      const bool has_left =
-          changed.change == ObjectChange::kGone || changed.change == ObjectChange::kMoved;
-      const ObjectId id = has_left ? map_.Resolve(changed.former->object) : ObjectId();
-      if (map_.objects().Contains(id)) {
+      if (const ObjectId id = FindLeft(changed); id.IsValid()) {
         map_.EraseObject(id);
       }
     }
@@ -189,15 +186,20 @@ std::vector<ChangedObject> Mapper::FindChanges() const {
   return FindObjectChanges(former_, map_, former_.NextFrame(), sensor_, object_options_);
 }
 
+// The object of the map that is not any more where it was; invalid if the change is another one or
+// if the object was removed already.
+ObjectId Mapper::FindLeft(const ChangedObject& changed) const {
+  const bool has_left =
+      changed.change == ObjectChange::kGone || changed.change == ObjectChange::kMoved;
+  const ObjectId id = has_left ? map_.Resolve(changed.former->object) : ObjectId();
+  return map_.objects().Contains(id) ? id : ObjectId();
+}
+
 // Returns whether there are any.
 bool Mapper::SplitReplacedObjects() {
   bool has_split = false;
   for (const ChangedObject& changed : object_changes_) {
-    const ObjectId id =
-        changed.change == ObjectChange::kGone || changed.change == ObjectChange::kMoved
-            ? map_.Resolve(changed.former->object)
-            : ObjectId();
-    if (map_.objects().Contains(id)) {
+    if (const ObjectId id = FindLeft(changed); id.IsValid()) {
       has_split |= object_mapper_.SplitOff(map_, id, former_.objects().At(changed.former->object),
                                            former_.NextFrame());
     }

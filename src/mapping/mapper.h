@@ -67,6 +67,7 @@ class Mapper {
   void BeginSession();
   void FinishObjects();
   std::vector<ChangedObject> FindChanges() const;
+  ObjectId FindLeft(const ChangedObject& changed) const;
   bool SplitReplacedObjects();
   void AdjustMap(const Cancellation* cancellation, const ProgressCallback& on_progress);
   void ExtendMap(KeyframeId keyframe, const Cancellation* hurry);

@@ -81,17 +81,14 @@ class Comparison {
   ChangedObject CompareFormer(ObjectId id, const ObjectLandmark& former) {
     ChangedObject changed{.label = former.Label()};
     const ObjectId now = map_.Resolve(id);
-    const ObjectLandmark* const object = map_.objects().Find(now);
-    ObjectLandmark sought = object != nullptr && object->has_shape ? *object : former;
-    if (object == nullptr || !object->has_shape) {
-      sought.ellipsoid = InMap(map_, former_, former);
-    }
-    sought.votes = former.votes;
+    ObjectLandmark sought = former;
+    sought.ellipsoid = InMap(map_, former_, former);
     changed.former = {id, sought.ellipsoid};
     CountViews(later_, now, sought, changed);
     changed.change = Judge(changed, ObjectChange::kGone, ObjectChange::kNotSeen);
-    if (object != nullptr && changed.change != ObjectChange::kGone) {
-      changed.now = {now, sought.ellipsoid};
+    const ObjectLandmark* const object = map_.objects().Find(now);
+    if (object != nullptr && object->has_shape && changed.change != ObjectChange::kGone) {
+      changed.now = {now, object->ellipsoid};
     }
     return changed;
   }
@@ -123,12 +120,30 @@ class Comparison {
     });
     for (const KeyframeId keyframe : keyframes) {
       const bool is_found = Shows(map_.keyframes().At(keyframe), id, object);
-      if (is_found ||
+      if (is_found || IsReplaced(map_.keyframes().At(keyframe), id, object) ||
           ShouldShow(map_, sensor_, keyframe, object, options_, options_.changes.min_inside)) {
         ++changed.expected;
         changed.found += is_found ? 1 : 0;
       }
     }
+  }
+
+  // Whether the keyframe shows that something else stands where the object stood. It may hide that
+  // place. It is a new object of another class, or was taken for the object itself.
+  bool IsReplaced(const Keyframe& keyframe, ObjectId id, const ObjectLandmark& object) const {
+    for (size_t i = 0; i < keyframe.objects.size(); ++i) {
+      const ObjectId shown = keyframe.objects[i];
+      if (!shown.IsValid() || MayBe(object, keyframe.frame->detections[i].label)) {
+        continue;
+      }
+      const ObjectLandmark& other = map_.objects().At(shown);
+      if (shown == id ||
+          (other.state == ObjectState::kMapped && !former_.objects().Contains(shown) &&
+           other.ellipsoid.RadialDistance(object.ellipsoid.world_from_object.translation) < 0.0)) {
+        return true;
+      }
+    }
+    return false;
   }
 
   // Whether a detection of the keyframe shows the object or something of its class at its place.

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
@@ -199,7 +201,27 @@ TEST_F(ObjectChanges, WhatTookThePlaceOfAnObjectBecomesAnObjectOfItsOwn) {
   EXPECT_EQ(map_.objects().At(cup).votes.count("orange"), 0U);
   EXPECT_EQ(ChangeOf("orange"), ObjectChange::kNew);
   EXPECT_EQ(ChangeOf("cup"), ObjectChange::kGone);
+  EXPECT_EQ(Changes()[0].expected, 10);
   EXPECT_FALSE(mapper_.SplitOff(map_, cup, former_.objects().At(cup), session_));
+}
+
+// What is larger than the object that stood there hides its place from all sides.
+TEST_F(ObjectChanges, AnObjectInsideAnotherOneIsGone) {
+  Visit(MakeTable());
+  EndFirstSession();
+  std::vector<MadeObject> table = MakeTable();
+  table[2] = MakeObject("box", table[2].ellipsoid.world_from_object.translation, {0.2, 0.2, 0.2});
+  for (int i = 0; i < 10; ++i) {
+    const Rigid3 cam_from_world = CameraOnCircle(0.2 * i, 1.5, 0.8);
+    auto frame = std::make_shared<Frame>();
+    frame->id = FrameId(map_.keyframes().NextId().value);
+    for (const MadeObject& object : table) {
+      frame->detections.push_back(Detect(object, sensor_, cam_from_world));
+    }
+    frame->depth = DepthGrid(cv::Mat(480, 640, CV_16UC1, cv::Scalar(1000)), 1000.0);
+    mapper_.Process(map_, map_.AddKeyframe(std::move(frame), cam_from_world));
+  }
+  EXPECT_EQ(ChangeOf("bottle"), ObjectChange::kGone);
 }
 
 // A correction of the map moves the place where an object was, also if it is gone.
