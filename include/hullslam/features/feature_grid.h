@@ -35,8 +35,8 @@ class FeatureGrid {
   int Column(float x) const;
   int Row(float y) const;
 
-  // With half of this size a search looks at half as many keypoints, but at more cells, and takes as
-  // long. The table of cells would be four times as large.
+  // With half of this size a search looks at half as many keypoints, but at more cells, and takes
+  // as long. The table of cells would be four times as large.
   static constexpr int kColumns = 32;
   static constexpr int kRows = 24;
   Eigen::Vector2f min_ = Eigen::Vector2f::Zero();
