@@ -9,6 +9,7 @@
 #include "hullslam/util/error.h"
 
 namespace hullslam {
+
 FrameSource::FrameSource(Pace pace, PrefetchPriority priority, const TumSequence& sequence,
                          const PinholeCamera& camera, const SequenceMasks& masks, System& system)
     : is_realtime_(pace == Pace::kRealtime),

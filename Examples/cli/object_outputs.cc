@@ -11,7 +11,6 @@
 #include "hullslam/io/ply_file.h"
 
 namespace hullslam {
-
 namespace {
 
 // With a zero for each kind of change that did not happen.

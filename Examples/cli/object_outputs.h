@@ -18,7 +18,7 @@ namespace hullslam {
 ObjectReport CollectObjects(const Map& map, const PinholeCamera& camera,
                             const std::filesystem::path& sequence);
 
-// "2 objects were moved, 1 is gone, ..." with a line for each that is not where it was.
+// "objects of the map: 12 seen again, ...", and a line for each that was moved, is gone or new.
 std::string DescribeChanges(const std::vector<ChangedObject>& changes);
 
 ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& counts);

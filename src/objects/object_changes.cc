@@ -5,10 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
-#include <map>
 #include <span>
-#include <utility>
 
 #include "geometry/assignment.h"
 #include "geometry/polygon_overlap.h"
@@ -69,7 +66,7 @@ class Comparison {
       }
     }
     for (const auto& [id, object] : map_.objects()) {
-      if (object.state == ObjectState::kMapped && !former_.objects().Contains(id)) {
+      if (object.state == ObjectState::kMapped && !WasMapped(id)) {
         changed.push_back(CompareAdded(id, object));
       }
     }
@@ -138,7 +135,7 @@ class Comparison {
       }
       const ObjectLandmark& other = map_.objects().At(shown);
       if (shown == id ||
-          (other.state == ObjectState::kMapped && !former_.objects().Contains(shown) &&
+          (other.state == ObjectState::kMapped && !WasMapped(shown) &&
            other.ellipsoid.RadialDistance(object.ellipsoid.world_from_object.translation) < 0.0)) {
         return true;
       }
@@ -162,7 +159,7 @@ class Comparison {
       if (keyframe.objects[i] == id && id.IsValid()) {
         return true;
       }
-      if (!IsAnother(keyframe.objects[i], id) &&
+      if (!WasMapped(keyframe.objects[i]) &&
           IntersectionOverUnion(outline, detection.hull) >= options_.changes.min_overlap &&
           IsThere(keyframe, detection, object)) {
         return true;
@@ -171,10 +168,9 @@ class Comparison {
     return false;
   }
 
-  // Whether `shown` is an object that the former map has too, and not the one with this id.
-  bool IsAnother(ObjectId shown, ObjectId id) const {
-    const ObjectLandmark* const former = former_.objects().Find(shown);
-    return shown != id && former != nullptr && former->state == ObjectState::kMapped;
+  bool WasMapped(ObjectId id) const {
+    const ObjectLandmark* const former = former_.objects().Find(id);
+    return former != nullptr && former->state == ObjectState::kMapped;
   }
 
   // Whether the depth of the detection, if there is any, is that of the object.

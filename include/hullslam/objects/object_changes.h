@@ -20,7 +20,7 @@ enum class ObjectChange {
   kGone,       // it should have been visible, but was not found
   kNew,        // earlier sessions should have seen it, but did not
   kNotSeen,    // too few keyframes of the session should show its place
-  kFirstSeen,  // too few keyframes of earlier sessions should show its place
+  kFirstSeen,  // mapped for the first time, and not known to be new
 };
 
 inline constexpr std::array kObjectChanges = {ObjectChange::kSeenAgain, ObjectChange::kMoved,
@@ -39,10 +39,10 @@ struct ObjectPlace {
 struct ChangedObject {
   ObjectChange change = ObjectChange::kSeenAgain;
   std::string label;
-  std::optional<ObjectPlace> now =
-      std::nullopt;  // unless it is gone, or not seen and not in the map any more
-  std::optional<ObjectPlace> former =
-      std::nullopt;  // with its id in the former map; unless it is new
+  // Where it is; absent if it is gone, or if it was not seen and is not in the map any more.
+  std::optional<ObjectPlace> now = std::nullopt;
+  // Where it was, with its id in the former map; absent if it is new or first seen.
+  std::optional<ObjectPlace> former = std::nullopt;
   // The evidence: keyframes that should show the object, and those of them in which it is found. Of
   // new and first seen objects these are keyframes of earlier sessions, of all others those of the
   // last session.

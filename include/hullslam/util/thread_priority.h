@@ -3,8 +3,10 @@
 
 namespace hullslam {
 
-// From now on the calling thread gets a core for long only if other threads leave one idle.
+// The niceness of threads in the background (setpriority(2)).
 inline constexpr int kBackgroundNiceness = 10;
+
+// From now on the calling thread gets a core for long only if other threads leave one idle.
 void RunInBackground();
 
 }  // namespace hullslam
