@@ -56,7 +56,8 @@ Vote VoteOf(const Map& map, const Sensor& sensor, const ObjectLandmark& object,
       is_place_taken = true;
     }
   }
-  const bool is_missing = is_place_taken || ShouldShow(map, sensor, other_end, object, options);
+  const bool is_missing =
+      is_place_taken || ViewPlace(map, sensor, other_end, object, options) == PlaceView::kVisible;
   return is_missing ? Vote::kDisagree : Vote::kNone;
 }
 

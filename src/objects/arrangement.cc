@@ -85,7 +85,8 @@ Arrangement CompareArrangement(const Map& map, const ObjectIndex& index, const S
   for (const ObjectId id : mapped) {
     const bool is_found = std::find(arrangement.objects.begin(), arrangement.objects.end(), id) !=
                           arrangement.objects.end();
-    if (!is_found && ShouldShow(map, sensor, image, map.objects().At(id), options)) {
+    if (!is_found &&
+        ViewPlace(map, sensor, image, map.objects().At(id), options) == PlaceView::kVisible) {
       ++arrangement.missed;
     }
   }

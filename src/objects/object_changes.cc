@@ -117,12 +117,21 @@ class Comparison {
     });
     for (const KeyframeId keyframe : keyframes) {
       const bool is_found = Shows(map_.keyframes().At(keyframe), id, object);
-      if (is_found || IsReplaced(map_.keyframes().At(keyframe), id, object) ||
-          ShouldShow(map_, sensor_, keyframe, object, options_, options_.changes.min_inside)) {
+      if (is_found || IsSeenWithout(keyframe, id, object)) {
         ++changed.expected;
         changed.found += is_found ? 1 : 0;
       }
     }
+  }
+
+  // Whether a keyframe that does not show the object shows its place.
+  bool IsSeenWithout(KeyframeId id, ObjectId object_id, const ObjectLandmark& object) const {
+    const Keyframe& keyframe = map_.keyframes().At(id);
+    const ChangeOptions& limits = options_.changes;
+    return IsReplaced(keyframe, object_id, object) ||
+           SeesThrough(sensor_, *keyframe.frame, keyframe.cam_from_world, object.ellipsoid,
+                       limits.min_seen_through) ||
+           ViewPlace(map_, sensor_, id, object, options_, limits.min_inside) == PlaceView::kVisible;
   }
 
   // Whether the keyframe shows that something else stands where the object stood. It may hide that
@@ -191,7 +200,7 @@ class Comparison {
     for (size_t i = 0; i < changed.size(); ++i) {
       if (changed[i].change == ObjectChange::kGone) {
         gone.push_back(i);
-      } else if (changed[i].change == ObjectChange::kNew) {
+      } else if (changed[i].change == ObjectChange::kNew || WasHidden(changed[i])) {
         added.push_back(i);
       }
     }
@@ -218,6 +227,19 @@ class Comparison {
     }
   }
 
+  // Whether earlier sessions looked towards the place of an object, but something hid it from them.
+  bool WasHidden(const ChangedObject& added) const {
+    if (added.change != ObjectChange::kFirstSeen || added.found > 0) {
+      return false;
+    }
+    const ObjectLandmark& object = map_.objects().At(added.now->object);
+    const auto hidden = std::count_if(earlier_.begin(), earlier_.end(), [&](KeyframeId id) {
+      return ViewPlace(map_, sensor_, id, object, options_, options_.changes.min_inside) ==
+             PlaceView::kHidden;
+    });
+    return hidden >= options_.changes.min_keyframes;
+  }
+
   // Nothing that the map knows tells two cups apart. So the nearest one of the same class and about
   // the same size is taken for the one that was moved, if it is not too far away.
   double MovingCost(const ChangedObject& gone, const ChangedObject& added) const {
@@ -230,7 +252,9 @@ class Comparison {
         distance > options_.changes.max_move) {
       return kNever;
     }
-    return std::log(ratio) + distance / options_.changes.max_move;
+    // A place that was seen empty is a better one.
+    const double doubt = added.change == ObjectChange::kNew ? 0.0 : 1.0;
+    return std::log(ratio) + distance / options_.changes.max_move + doubt;
   }
 
   static constexpr double kNever = 1e3;

@@ -82,7 +82,7 @@ void ObjectMapper::CountVisible(Map& map, const ObjectIndex& index, KeyframeId k
       continue;
     }
     const bool is_found = std::find(observed.begin(), observed.end(), id) != observed.end();
-    if (is_found || ShouldShow(map, sensor_, keyframe, *object, options_)) {
+    if (is_found || ViewPlace(map, sensor_, keyframe, *object, options_) == PlaceView::kVisible) {
       visible.emplace_back(id, is_found);
     }
   }

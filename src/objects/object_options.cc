@@ -189,6 +189,9 @@ void BindChanges(OptionTable& options, ChangeOptions& changes) {
       "least IoU of the projected ellipse of an object and the hull of a mask that shows it");
   options.Add("objects.changes.min_inside", &changes.min_inside, Range::Between(0.0, 1.0),
               "a keyframe should show an object if at least this share of it is in the image");
+  options.Add("objects.changes.min_seen_through", &changes.min_seen_through,
+              Range::Between(0.0, 1.0),
+              "or its place counts as seen if this share of what is behind it was measured");
   options.Add("objects.changes.max_move", &changes.max_move, Range::Between(0.0, 1e6),
               "an object is taken for one that was moved only up to this distance, m");
   options.Add("objects.changes.max_size_ratio", &changes.max_size_ratio, Range::Between(1.0, 100.0),

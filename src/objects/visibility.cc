@@ -10,7 +10,7 @@
 namespace hullslam {
 namespace {
 
-constexpr int kFewSamples = 3;  // fewer samples on an object say nothing about what hides it
+constexpr int kFewSamples = 3;  // fewer samples on an object say nothing
 
 // Counts how many of the samples on a projected ellipse are nearer than a depth.
 class HiddenCounter {
@@ -39,8 +39,11 @@ class HiddenCounter {
   int nearer_ = 0;
 };
 
-void AddDepthGrid(const DepthGrid& grid, const PinholeCamera& camera,
-                  const Eigen::AlignedBox2d& bounds, HiddenCounter& counter) {
+// Calls `use` with the undistorted pixel and the depth (z, m) of each known sample in a box of
+// undistorted pixels.
+template <typename Use>
+void ForEachSample(const DepthGrid& grid, const PinholeCamera& camera,
+                   const Eigen::AlignedBox2d& bounds, const Use& use) {
   // Distortion moves the corners of the box, but a sample that is missed at its rim does no harm.
   const Eigen::Vector2d first = camera.Distort(bounds.min()) / DepthGrid::kStep;
   const Eigen::Vector2d last = camera.Distort(bounds.max()) / DepthGrid::kStep;
@@ -49,7 +52,7 @@ void AddDepthGrid(const DepthGrid& grid, const PinholeCamera& camera,
   for (int row = std::max(0, static_cast<int>(first.y())); row <= last_row; ++row) {
     for (int column = std::max(0, static_cast<int>(first.x())); column <= last_column; ++column) {
       if (const double z = grid.At(column, row); z > 0.0) {
-        counter.Add(camera.Undistort(DepthGrid::RawPixel(column, row)), z);
+        use(camera.Undistort(DepthGrid::RawPixel(column, row)), z);
       }
     }
   }
@@ -105,19 +108,19 @@ bool IsBehindObject(const Map& map, const ImageKnowledge& image, const Ellipse& 
 
 }  // namespace
 
-bool ShouldShow(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
-                const ObjectLandmark& object, const ObjectOptions& options, double min_inside) {
+PlaceView ViewPlace(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
+                    const ObjectLandmark& object, const ObjectOptions& options, double min_inside) {
   const auto ellipse =
       ProjectEllipsoid(sensor.camera.Matrix(), image.cam_from_world, object.ellipsoid);
   if (!ellipse || !(ShareInside(ellipse->Bounds(), sensor.bounds) >= min_inside)) {
-    return false;
+    return PlaceView::kOutside;
   }
   const Ellipsoid in_cam = image.cam_from_world * object.ellipsoid;
   const double distance = in_cam.world_from_object.translation.norm();
   const double farthest =
       FarthestView(CollectViews(map, object), object.ellipsoid.world_from_object.translation);
   if (distance > options.culling.max_range * farthest) {
-    return false;
+    return PlaceView::kOutside;
   }
   // What is nearer by less may be the object's own surface.
   const double depth =
@@ -126,19 +129,47 @@ bool ShouldShow(const Map& map, const Sensor& sensor, const ImageKnowledge& imag
   if (image.frame.depth.empty()) {
     AddLandmarks(map, image, counter);
   } else {
-    AddDepthGrid(image.frame.depth, sensor.camera, ellipse->Bounds(), counter);
+    ForEachSample(image.frame.depth, sensor.camera, ellipse->Bounds(),
+                  [&](const Eigen::Vector2d& pixel, double z) { counter.Add(pixel, z); });
   }
-  return !counter.IsHidden(options.culling.max_hidden) &&
-         !IsBehindObject(map, image, *ellipse, depth);
+  return counter.IsHidden(options.culling.max_hidden) || IsBehindObject(map, image, *ellipse, depth)
+             ? PlaceView::kHidden
+             : PlaceView::kVisible;
 }
 
-bool ShouldShow(const Map& map, const Sensor& sensor, KeyframeId keyframe,
-                const ObjectLandmark& object, const ObjectOptions& options, double min_inside) {
+PlaceView ViewPlace(const Map& map, const Sensor& sensor, KeyframeId keyframe,
+                    const ObjectLandmark& object, const ObjectOptions& options, double min_inside) {
   const Keyframe& observer = map.keyframes().At(keyframe);
-  return ShouldShow(map, sensor,
-                    ImageKnowledge{*observer.frame, observer.cam_from_world, observer.landmarks,
-                                   observer.objects},
-                    object, options, min_inside);
+  return ViewPlace(map, sensor,
+                   ImageKnowledge{*observer.frame, observer.cam_from_world, observer.landmarks,
+                                  observer.objects},
+                   object, options, min_inside);
+}
+
+bool SeesThrough(const Sensor& sensor, const Frame& frame, const Rigid3& cam_from_world,
+                 const Ellipsoid& ellipsoid, double min_share) {
+  constexpr double kMiddle = 0.5;  // squared distance of a ray from the centre, in radii
+  const auto ellipse = ProjectEllipsoid(sensor.camera.Matrix(), cam_from_world, ellipsoid);
+  if (!ellipse) {
+    return false;
+  }
+  // In coordinates in which the ellipsoid is the unit sphere, a sample of depth z is at
+  // origin + z * direction.
+  const Rigid3 object_from_cam = Inverse(cam_from_world * ellipsoid.world_from_object);
+  const Eigen::Vector3d origin = object_from_cam.translation.cwiseQuotient(ellipsoid.half_axes);
+  int samples = 0;
+  int behind = 0;
+  ForEachSample(
+      frame.depth, sensor.camera, ellipse->Bounds(), [&](const Eigen::Vector2d& pixel, double z) {
+        const Eigen::Vector3d ray = object_from_cam.rotation * sensor.camera.Unproject(pixel, 1.0);
+        const Eigen::Vector3d direction = ray.cwiseQuotient(ellipsoid.half_axes);
+        const double nearest = -origin.dot(direction) / direction.squaredNorm();
+        if ((origin + nearest * direction).squaredNorm() <= kMiddle) {
+          ++samples;
+          behind += z > nearest && (origin + z * direction).squaredNorm() > 1.0 ? 1 : 0;
+        }
+      });
+  return samples >= kFewSamples && behind >= min_share * samples;
 }
 
 }  // namespace hullslam

@@ -52,6 +52,18 @@ class ObjectChanges : public testing::Test {
   FrameId session_;
 };
 
+// A keyframe that sees these objects, and nothing but a wall at this depth (mm).
+KeyframeId AddBeforeWall(Map& map, const Sensor& sensor, const Rigid3& cam_from_world,
+                         const std::vector<MadeObject>& objects, int wall) {
+  auto frame = std::make_shared<Frame>();
+  frame->id = FrameId(map.keyframes().NextId().value);
+  for (const MadeObject& object : objects) {
+    frame->detections.push_back(Detect(object, sensor, cam_from_world));
+  }
+  frame->depth = DepthGrid(cv::Mat(480, 640, CV_16UC1, cv::Scalar(wall)), 1000.0);
+  return map.AddKeyframe(std::move(frame), cam_from_world);
+}
+
 MadeObject Moved(MadeObject object, const Eigen::Vector3d& by) {
   object.ellipsoid.world_from_object.translation += by;
   return object;
@@ -178,6 +190,69 @@ TEST_F(ObjectChanges, ASessionWithoutMasksChangesNothing) {
   EXPECT_TRUE(Changes().empty());
 }
 
+// The first session was too far away to expect a detection of the bottle, but may have seen what is
+// behind its place.
+class FarAway : public ObjectChanges {
+ protected:
+  ObjectChange ChangeOfBottle(int wall) {
+    for (int i = 0; i < 10; ++i) {
+      const Rigid3 cam_from_world = CameraOnCircle(0.2 * i, 3.0, 0.8);
+      mapper_.Process(map_, AddBeforeWall(map_, sensor_, cam_from_world,
+                                          {MakeTable()[0], MakeTable()[1]}, wall));
+    }
+    EndFirstSession();
+    Visit(MakeTable());
+    return ChangeOf("bottle");
+  }
+};
+
+TEST_F(FarAway, WhereDepthShowedNothingIsNew) {
+  EXPECT_EQ(ChangeOfBottle(6000), ObjectChange::kNew);
+}
+
+TEST_F(FarAway, WithoutDepthItIsFirstSeen) {
+  EXPECT_EQ(ChangeOfBottle(0), ObjectChange::kFirstSeen);
+}
+
+// A bear hides a part of the table from all keyframes of the first session. Nobody knows what was
+// there. But if a cup is gone and one is found there, it was moved.
+class BehindABear : public ObjectChanges {
+ protected:
+  static MadeObject Cup(double x, double y) {
+    return MakeObject("cup", {x, y, 0.05}, {0.06, 0.05, 0.08});
+  }
+  void VisitFromOneSide(const std::vector<MadeObject>& objects) {
+    for (int i = 0; i < 10; ++i) {
+      const Rigid3 cam_from_world = CameraOnCircle(0.85 + 0.04 * i, 1.5, 0.3);
+      mapper_.Process(map_, AddObserver(map_, sensor_, cam_from_world, objects));
+    }
+  }
+  // After a session with a cup and a bear, and one with these cups.
+  void ExpectMovedTo(const MadeObject& place, const std::vector<MadeObject>& cups) {
+    VisitFromOneSide({Cup(0.4, -0.1), MakeObject("teddy bear", {0, -0.2, 0.1}, {0.2, 0.2, 0.2})});
+    EndFirstSession();
+    VisitFromOneSide(cups);
+    EXPECT_EQ(ChangeOf("teddy bear"), ObjectChange::kGone);
+    const std::vector<ChangedObject> changes = Changes();
+    ASSERT_EQ(changes.size(), cups.size() + 1);
+    ASSERT_EQ(changes[0].change, ObjectChange::kMoved);
+    EXPECT_LT((changes[0].now->ellipsoid.world_from_object.translation -
+               place.ellipsoid.world_from_object.translation)
+                  .norm(),
+              0.02);
+  }
+  const MadeObject hidden_ = Cup(-0.16, -0.51);
+  const MadeObject seen_empty_ = Cup(-0.3, 0.5);  // farther away
+};
+
+TEST_F(BehindABear, AnObjectMayHaveBeenMovedToAPlaceThatWasHidden) {
+  ExpectMovedTo(hidden_, {hidden_});
+}
+
+TEST_F(BehindABear, APlaceThatWasSeenEmptyExplainsMore) {
+  ExpectMovedTo(seen_empty_, {hidden_, seen_empty_});
+}
+
 // Something else may stand where an object stood.
 TEST_F(ObjectChanges, AnotherClassAtThePlaceIsNotTheObject) {
   Visit(MakeTable());
@@ -213,13 +288,7 @@ TEST_F(ObjectChanges, AnObjectInsideAnotherOneIsGone) {
   table[2] = MakeObject("box", table[2].ellipsoid.world_from_object.translation, {0.2, 0.2, 0.2});
   for (int i = 0; i < 10; ++i) {
     const Rigid3 cam_from_world = CameraOnCircle(0.2 * i, 1.5, 0.8);
-    auto frame = std::make_shared<Frame>();
-    frame->id = FrameId(map_.keyframes().NextId().value);
-    for (const MadeObject& object : table) {
-      frame->detections.push_back(Detect(object, sensor_, cam_from_world));
-    }
-    frame->depth = DepthGrid(cv::Mat(480, 640, CV_16UC1, cv::Scalar(1000)), 1000.0);
-    mapper_.Process(map_, map_.AddKeyframe(std::move(frame), cam_from_world));
+    mapper_.Process(map_, AddBeforeWall(map_, sensor_, cam_from_world, table, 1000));
   }
   EXPECT_EQ(ChangeOf("bottle"), ObjectChange::kGone);
 }

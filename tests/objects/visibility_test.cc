@@ -35,7 +35,8 @@ class Visibility : public ::testing::Test {
     return Add(cam_from_world, std::move(frame));
   }
   bool Shows(KeyframeId keyframe) const {
-    return ShouldShow(map_, sensor_, keyframe, map_.objects().At(id_), options_);
+    return ViewPlace(map_, sensor_, keyframe, map_.objects().At(id_), options_) ==
+           PlaceView::kVisible;
   }
   static Rigid3 Back(double metres) { return {Eigen::Quaterniond::Identity(), {0, 0, metres}}; }
   static cv::Mat Wall(int millimetres) {
@@ -64,13 +65,15 @@ TEST_F(Visibility, APartInTheImageCanBeEnough) {
   aside.translation.x() = 0.6;  // the border of the image cuts a little of it
   const KeyframeId keyframe = Look(aside);
   const auto shows = [&](double min_inside) {
-    return ShouldShow(map_, sensor_, keyframe, map_.objects().At(id_), options_, min_inside);
+    return ViewPlace(map_, sensor_, keyframe, map_.objects().At(id_), options_, min_inside) ==
+           PlaceView::kVisible;
   };
   EXPECT_FALSE(shows(1.0));
   EXPECT_TRUE(shows(0.5));
   Rigid3 far_aside;
   far_aside.translation.x() = 1.2;
-  EXPECT_FALSE(ShouldShow(map_, sensor_, Look(far_aside), map_.objects().At(id_), options_, 0.01));
+  EXPECT_EQ(ViewPlace(map_, sensor_, Look(far_aside), map_.objects().At(id_), options_, 0.01),
+            PlaceView::kOutside);
 }
 
 TEST_F(Visibility, IsNotExpectedBehindANearerSurface) {
@@ -126,6 +129,46 @@ TEST_F(Visibility, IsNotExpectedBehindANearerObject) {
   box.world_from_object.translation = {0.0, 0.0, 0.98};  // not nearer as a whole
   SetMapped(other, box);
   EXPECT_TRUE(Shows(keyframe));
+}
+
+class SeeingThrough : public Visibility {
+ protected:
+  bool IsSeen(const Rigid3& cam_from_world, const cv::Mat& depth) const {
+    Frame frame;
+    frame.depth = DepthGrid(depth, 1000.0);
+    return SeesThrough(sensor_, frame, cam_from_world, cup_, 0.8);
+  }
+};
+
+TEST_F(SeeingThrough, NeedsDepthBehindTheObject) {
+  EXPECT_TRUE(IsSeen(Rigid3(), Wall(1500)));
+  EXPECT_TRUE(IsSeen(Rigid3(), Wall(1070)));   // just behind its back
+  EXPECT_FALSE(IsSeen(Rigid3(), Wall(1000)));  // in its middle
+  EXPECT_FALSE(IsSeen(Rigid3(), Wall(960)));   // its surface
+  EXPECT_FALSE(IsSeen(Rigid3(), Wall(500)));   // something hides it
+  EXPECT_FALSE(IsSeen(Rigid3(), Wall(0)));     // unknown
+  EXPECT_FALSE(IsSeen(Rigid3(), cv::Mat()));
+  EXPECT_FALSE(IsSeen(Back(-3.0), Wall(1500)));  // it is behind the camera
+}
+
+TEST_F(SeeingThrough, NeedsMostOfWhatIsBehindIt) {
+  cv::Mat most = Wall(1500);
+  most(cv::Rect(0, 0, 296, 480)) = 1000;
+  EXPECT_TRUE(IsSeen(Rigid3(), most));
+  cv::Mat half = Wall(1500);
+  half(cv::Rect(0, 0, 320, 480)) = 1000;
+  EXPECT_FALSE(IsSeen(Rigid3(), half));
+}
+
+// A detector may miss what is far away or cut by the border of the image. Depth does not.
+TEST_F(SeeingThrough, WorksFartherAwayAndAtTheBorder) {
+  EXPECT_TRUE(IsSeen(Back(1.0), Wall(4000)));
+  EXPECT_FALSE(IsSeen(Back(4.0), Wall(8000)));  // too few samples
+  Rigid3 aside;
+  aside.translation.x() = 0.6;
+  EXPECT_TRUE(IsSeen(aside, Wall(4000)));
+  aside.translation.x() = 1.2;
+  EXPECT_FALSE(IsSeen(aside, Wall(4000)));
 }
 
 }  // namespace

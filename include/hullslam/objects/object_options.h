@@ -91,6 +91,8 @@ struct ChangeOptions {
   double max_found_ratio = 0.2;  // it is found in a smaller share of them
   double min_overlap = 0.25;     // IoU of its projected ellipse and a hull that may show it
   double min_inside = 0.6;       // share of the object that must be in the image
+  // Or the depth image shows this share of what is behind its place, wherever that is.
+  double min_seen_through = 0.8;
   // An object that is farther away than this (m; in the unit of the map if its scale is unknown) is
   // another one, and not the one that is gone.
   double max_move = 4.0;
