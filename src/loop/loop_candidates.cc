@@ -12,19 +12,6 @@ namespace {
 
 constexpr size_t kSupporters = 5;  // keyframes that may support a candidate
 
-// Everything within two steps of the covisibility graph.
-IdSet<KeyframeId> ConnectedTo(const Map& map, KeyframeId keyframe) {
-  IdSet<KeyframeId> connected;
-  connected.Insert(keyframe);
-  for (const Covisible& first : map.keyframes().At(keyframe).covisible) {
-    connected.Insert(first.keyframe);
-    for (const Covisible& second : map.keyframes().At(first.keyframe).covisible) {
-      connected.Insert(second.keyframe);
-    }
-  }
-  return connected;
-}
-
 // What a keyframe looks like, other than what it is connected to: at least as much as the least
 // similar of its covisible keyframes.
 std::vector<SimilarKeyframe> FindSimilar(const Map& map, KeyframeId query) {
@@ -61,6 +48,18 @@ std::vector<KeyframeSet> SeenByNeighbours(const Map& map, KeyframeId query) {
 }
 
 }  // namespace
+
+IdSet<KeyframeId> ConnectedTo(const Map& map, KeyframeId keyframe) {
+  IdSet<KeyframeId> connected;
+  connected.Insert(keyframe);
+  for (const Covisible& first : map.keyframes().At(keyframe).covisible) {
+    connected.Insert(first.keyframe);
+    for (const Covisible& second : map.keyframes().At(first.keyframe).covisible) {
+      connected.Insert(second.keyframe);
+    }
+  }
+  return connected;
+}
 
 std::vector<LoopCandidate> FindLoopCandidates(const Map& map, KeyframeId query) {
   const std::vector<KeyframeId> keyframes = BestOfPlaces(map, FindSimilar(map, query));

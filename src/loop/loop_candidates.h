@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hullslam/map/map.h"
+#include "util/id_set.h"
 
 namespace hullslam {
 
@@ -16,11 +17,14 @@ struct LoopCandidate {
   int supporters = 0;
 };
 
-// Keyframes that look like `query` although tracking does not connect them to it: no path of two
-// steps in the covisibility graph leads from one to the other. A candidate is at least as similar
-// to the query as the least similar of the query's covisible keyframes. The most similar comes
-// first; of keyframes that are covisible with each other only the best is listed. The map must have
-// a vocabulary.
+// The keyframes that tracking connects to one: it and everything within two steps of the
+// covisibility graph.
+IdSet<KeyframeId> ConnectedTo(const Map& map, KeyframeId keyframe);
+
+// Keyframes that look like `query` although tracking does not connect them to it. A candidate is at
+// least as similar to the query as the least similar of the query's covisible keyframes. The most
+// similar comes first; of keyframes that are covisible with each other only the best is listed. The
+// map must have a vocabulary.
 std::vector<LoopCandidate> FindLoopCandidates(const Map& map, KeyframeId query);
 
 }  // namespace hullslam

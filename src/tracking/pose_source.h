@@ -23,8 +23,9 @@ using PoseSource = std::optional<PoseEstimate>(const Frame& frame, const Map& ma
 // without a prediction (PredictMotion, motion_model_source.cc).
 PoseSource PoseByMotionModel;
 
-// Keypoints are compared with those of the last frame's reference keyframe by descriptor alone,
-// starting from the last frame's pose (reference_keyframe_source.cc).
+// Keypoints are compared with those of the last frame's reference keyframe wherever they are in the
+// image: those of one node of the vocabulary or, without words, all. The last frame's pose is where
+// refinement begins (reference_keyframe_source.cc).
 PoseSource PoseByReferenceKeyframe;
 
 // Keyframes that look like the frame by their words give matches with their landmarks, from which

@@ -80,6 +80,52 @@ TEST_F(MotionModel, SearchesAWiderWindowIfTooLittleIsFound) {
   EXPECT_FALSE(Estimate(Rigid3(), far, 1));
 }
 
+// The reference keyframe is the one of keyframe 3 of a ring map; nothing but its pose is known of
+// the last frame.
+class ByReferenceKeyframe : public testing::TestWithParam<bool> {
+ protected:
+  std::optional<PoseEstimate> Find(const Frame& frame) const {
+    const Keyframe& reference = made_.map.keyframes().At(KeyframeId(3));
+    LastFrame last;
+    last.frame = reference.frame;
+    last.reference = KeyframeId(3);
+    last.cam_from_world = reference.cam_from_world;
+    return PoseByReferenceKeyframe(frame, made_.map, {world_.sensor(), options_, objects_, index_},
+                                   last);
+  }
+
+  const RingWorld& world_ = SharedRing();
+  const RingMap made_ =
+      MakeRingMap(world_, {.keyframes = 16, .drift = Rigid3(), .has_vocabulary = GetParam()});
+  TrackingOptions options_;
+  ObjectOptions objects_;
+  const ObjectIndex index_{};
+};
+
+TEST_P(ByReferenceKeyframe, FindsFramesNearIt) {
+  for (const double turns : {2.5 / 24.0, 3.0 / 24.0, 3.4 / 24.0}) {
+    const Rigid3 truth = RingWorld::CamFromWorld(turns);
+    const auto estimate = Find(*world_.Observe(FrameId(1000), truth).frame);
+    ASSERT_TRUE(estimate) << turns;
+    EXPECT_LT((estimate->cam_from_world.translation - truth.translation).norm(), 0.01);
+    EXPECT_LT(AngularDistance(estimate->cam_from_world.rotation, truth.rotation), 0.003);
+    EXPECT_GT(estimate->inliers, 40);
+  }
+}
+
+TEST_P(ByReferenceKeyframe, DoesNotFindOthers) {
+  EXPECT_FALSE(Find(*world_.Observe(FrameId(1000), RingWorld::CamFromWorld(0.5)).frame));
+}
+
+// A frame may have no words although the map has a vocabulary.
+TEST_P(ByReferenceKeyframe, DoesNotNeedWords) {
+  Frame frame = *world_.Observe(FrameId(1000), RingWorld::CamFromWorld(0.125)).frame;
+  frame.words.clear();
+  EXPECT_TRUE(Find(frame));
+}
+
+INSTANTIATE_TEST_SUITE_P(Vocabulary, ByReferenceKeyframe, testing::Bool());
+
 // A ring map without drift. The last frame is empty: nothing is known of the motion.
 class Relocalisation : public testing::Test {
  protected:
