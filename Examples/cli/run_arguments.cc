@@ -52,7 +52,7 @@ void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::st
   auto* const load_map = app.add_option(
       "--load-map", arguments.load_map,
       "file of --save-map: the run goes on with this map, as a new session. Tracking "
-      "is lost until a frame is found in it (this version cannot find one yet)");
+      "is lost until a frame is found in it");
   app.add_flag("--localization", arguments.localization,
                "only find the poses in the map of --load-map; nothing in it is changed")
       ->needs(load_map);
@@ -61,7 +61,7 @@ void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::st
   app.add_flag("--realtime", arguments.realtime,
                "process the images no faster than the camera took them, by their stamps");
   app.add_option("--seed", arguments.seed,
-                 "has no effect yet: nothing in a run is random. It is only copied to summary.json")
+                 "seed of the random choices in relocalisation and loop closing")
       ->check(WholeNumber(0))
       ->capture_default_str();
   app.add_option("--first", arguments.tum.selection.first,
