@@ -23,7 +23,20 @@ void CheckSize(const char* name, const cv::Mat& image, const cv::Size& size) {
   }
 }
 
-// Adds the undistorted keypoints and their depths.
+void CheckDepth(const cv::Mat& depth, SensorKind sensor, const cv::Size& size) {
+  if (sensor == SensorKind::kMonocular) {
+    if (!depth.empty()) {
+      throw InputError("there is a depth image, expected none from a monocular camera");
+    }
+    return;
+  }
+  CheckSize("depth image", depth, size);
+  if (depth.type() != CV_16UC1 && depth.type() != CV_32FC1) {
+    throw InputError("the depth image is neither CV_16UC1 nor CV_32FC1");
+  }
+}
+
+// Adds the undistorted keypoints and their depths, which are unknown without a depth image.
 void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& camera,
                   const cv::Mat& depth, double units_per_metre, TaskRunner& runner,
                   FrameFeatures& features) {
@@ -37,7 +50,7 @@ void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& c
       const RawKeypoint& keypoint = keypoints[i];
       const Eigen::Vector2f undistorted =
           camera.Undistort(keypoint.raw.cast<double>()).cast<float>();
-      const float z = SampleDepth(depth, keypoint.raw, units_per_metre);
+      const float z = depth.empty() ? 0.0f : SampleDepth(depth, keypoint.raw, units_per_metre);
       features.keypoints[i] = {
           .undistorted = undistorted, .angle = keypoint.angle, .level = keypoint.level};
       features.depth[i] = z;
@@ -80,13 +93,10 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
   using Clock = std::chrono::steady_clock;
   const cv::Size size(sensor_.camera.width, sensor_.camera.height);
   CheckSize("image", image.grey, size);
-  CheckSize("depth image", image.depth, size);
   if (image.grey.type() != CV_8UC1) {
     throw InputError("the image is not CV_8UC1");
   }
-  if (image.depth.type() != CV_16UC1 && image.depth.type() != CV_32FC1) {
-    throw InputError("the depth image is neither CV_16UC1 nor CV_32FC1");
-  }
+  CheckDepth(image.depth, sensor_.kind, size);
   BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = Clock::now()};
   built.frame->timestamp = image.timestamp;
   const std::vector<RawKeypoint> keypoints = AddFeatures(image, runner, built.frame->features);

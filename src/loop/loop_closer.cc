@@ -14,7 +14,6 @@
 namespace hullslam {
 namespace {
 
-constexpr bool kFixScale = true;              // RGB-D
 constexpr uint32_t kKeyframesAfterLoop = 10;  // in which no other loop is sought
 
 // The query's pose if the loop is right, at the scale of the query.
@@ -56,8 +55,8 @@ std::optional<MapCorrection> LoopCloser::Process(LoopQuery query) {
 std::optional<MapCorrection> LoopCloser::Close(LoopQuery& query, const LoopCandidate& candidate,
                                                std::string& refusal) const {
   const Map& map = query.map;
-  const LoopVerdict verdict =
-      VerifyLoop(map, sensor_, query.keyframe, candidate.keyframe, kFixScale, seed_, options_);
+  const LoopVerdict verdict = VerifyLoop(map, sensor_, query.keyframe, candidate.keyframe,
+                                         !sensor_.IsMonocular(), seed_, options_);
   if (!verdict.loop) {
     refusal = verdict.refusal;
     return std::nullopt;
@@ -71,7 +70,7 @@ std::optional<MapCorrection> LoopCloser::Close(LoopQuery& query, const LoopCandi
                           CameraDistance(by_loop, tracked), travel.metres);
     return std::nullopt;
   }
-  MapCorrection correction = SpreadLoopError(map, loop, kFixScale);
+  MapCorrection correction = SpreadLoopError(map, loop, !sensor_.IsMonocular());
   if (correction.poses.empty()) {
     refusal = "the pose graph could not be solved";
     return std::nullopt;

@@ -15,7 +15,9 @@ namespace {
 
 constexpr double kMinFoundRatio = 0.25;
 constexpr uint32_t kTrialKeyframes = 2;  // from this age on a small weight is a reason to erase
+// An observation with depth weighs as much as two without.
 constexpr int kMaxWeakWeight = 3;
+constexpr int kMaxWeakMonocularWeight = 2;
 constexpr int kOtherObservers = 3;
 constexpr double kRedundantShare = 0.9;
 // With fewer landmarks, a share says little about how redundant a keyframe is.
@@ -117,7 +119,9 @@ bool IsNeededByAnObject(const Map& map, KeyframeId id, size_t min_views) {
 
 }  // namespace
 
-void CullRecentLandmarks(Map& map, KeyframeId current, std::vector<LandmarkId>& recent) {
+void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
+                         std::vector<LandmarkId>& recent) {
+  const int max_weak = sensor.IsMonocular() ? kMaxWeakMonocularWeight : kMaxWeakWeight;
   std::erase_if(recent, [&](LandmarkId id) {
     const Landmark* landmark = map.landmarks().Find(id);
     if (landmark == nullptr) {
@@ -125,7 +129,7 @@ void CullRecentLandmarks(Map& map, KeyframeId current, std::vector<LandmarkId>& 
     }
     const uint32_t age = current.value - landmark->created_by.value;
     const bool is_seldom_found = landmark->found < kMinFoundRatio * landmark->visible;
-    const bool is_weak = age >= kTrialKeyframes && landmark->observation_weight <= kMaxWeakWeight;
+    const bool is_weak = age >= kTrialKeyframes && landmark->observation_weight <= max_weak;
     if (is_seldom_found || is_weak) {
       map.EraseLandmark(id);
       return true;

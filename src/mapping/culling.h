@@ -12,7 +12,8 @@ namespace hullslam {
 // in which they should have been visible, or if their observation weight is still too small two
 // keyframes after they were made (Mur-Artal and Tardos 2015, section VI.B). Landmarks that no
 // longer exist or that are three keyframes old leave the list.
-void CullRecentLandmarks(Map& map, KeyframeId current, std::vector<LandmarkId>& recent);
+void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
+                         std::vector<LandmarkId>& recent);
 
 // The landmarks of a map of an earlier session that CullRecentLandmarks has to check, by increasing
 // id: those that were not three keyframes old at its end.

@@ -2,6 +2,7 @@
 #include "mapping/landmark_creation.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -16,7 +17,9 @@ namespace hullslam {
 namespace {
 
 constexpr size_t kNeighbours = 10;
-constexpr double kMaxCosParallax = 0.9998;  // about 1.1 degrees, for pairs without depth
+constexpr size_t kMonocularNeighbours = 20;  // without depth, all landmarks are made here
+constexpr double kMinBaseline = 0.01;        // over the median depth, without depth images
+constexpr double kMaxCosParallax = 0.9998;   // about 1.1 degrees, for pairs without depth
 
 // A keypoint of a keyframe with what triangulation needs.
 struct View {
@@ -107,10 +110,31 @@ Eigen::Vector2d EpipoleOf(const Rigid3& b_from_a, const PinholeCamera& camera) {
   return is_parallel ? Eigen::Vector2d::Constant(-1e6) : camera.Project(center);
 }
 
-std::vector<Match> FindPairs(const Keyframe& a, const Keyframe& b, const Sensor& sensor) {
+// The shortest baseline from which landmarks are made. Depth images are more precise than a shorter
+// one than their own; without them it depends on how far away the landmarks are.
+double MinBaseline(const Map& map, const Keyframe& keyframe, const Sensor& sensor) {
+  if (!sensor.IsMonocular()) {
+    return sensor.baseline();
+  }
+  std::vector<double> depths;
+  for (const LandmarkId id : keyframe.landmarks) {
+    if (id.IsValid()) {
+      depths.push_back((keyframe.cam_from_world * map.landmarks().At(id).position).z());
+    }
+  }
+  if (depths.empty()) {
+    return 0.0;
+  }
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return kMinBaseline * *middle;
+}
+
+std::vector<Match> FindPairs(const Map& map, const Keyframe& a, const Keyframe& b,
+                             const Sensor& sensor) {
   const Rigid3 b_from_a = b.cam_from_world * Inverse(a.cam_from_world);
-  if (b_from_a.translation.norm() < sensor.baseline()) {
-    return {};  // depth is more precise than such a short baseline
+  if (b_from_a.translation.norm() < MinBaseline(map, b, sensor)) {
+    return {};
   }
   Eigen::Matrix3d calibration = Eigen::Matrix3d::Identity();
   calibration(0, 0) = sensor.camera.fx;
@@ -134,9 +158,10 @@ std::optional<Eigen::Vector3d> LocateAndVerify(const View& a, const View& b, con
 
 std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId id, const Sensor& sensor) {
   std::vector<LandmarkId> created;
-  for (const KeyframeId neighbour : BestCovisible(map.keyframes().At(id), kNeighbours)) {
+  const size_t neighbours = sensor.IsMonocular() ? kMonocularNeighbours : kNeighbours;
+  for (const KeyframeId neighbour : BestCovisible(map.keyframes().At(id), neighbours)) {
     const std::vector<Match> pairs =
-        FindPairs(map.keyframes().At(id), map.keyframes().At(neighbour), sensor);
+        FindPairs(map, map.keyframes().At(id), map.keyframes().At(neighbour), sensor);
     for (const Match& pair : pairs) {
       const View a = MakeView(map.keyframes().At(id), pair.query, sensor);
       const View b = MakeView(map.keyframes().At(neighbour), pair.keypoint, sensor);

@@ -12,6 +12,12 @@
 #include "mapping/old_keyframes.h"
 
 namespace hullslam {
+namespace {
+
+bool MustHurry(const Cancellation* hurry) { return hurry != nullptr && hurry->IsRequested(); }
+
+}  // namespace
+
 Mapper::Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
                Publish publish, std::shared_ptr<const Vocabulary> vocabulary)
     : sensor_(sensor),
@@ -50,8 +56,11 @@ void Mapper::Apply(const InitialMap& initial, const Cancellation* hurry) {
     PublishSnapshot();
   }
   for (const KeyframeId keyframe : keyframes) {
-    ExtendMap(keyframe, hurry);
+    AddEntities(keyframe, hurry);
   }
+  Improve(keyframes.back(), hurry, Culling::kNone);
+  full_.insert(full_.end(), keyframes.begin(), keyframes.end());
+  PublishSnapshot();
 }
 
 void Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
@@ -63,7 +72,14 @@ void Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
     map_.ForgetReplaced(request.oldest_revision);
     PublishSnapshot();
   }
-  ExtendMap(keyframe, hurry);
+  AddEntities(keyframe, hurry);
+  Improve(keyframe, hurry, options_.cull_keyframes ? Culling::kKeyframes : Culling::kNone);
+  full_.push_back(keyframe);
+  if (options_.compact_keyframes) {
+    const ScopedTimer timer(times_, "compact_keyframes");
+    CompactOldKeyframes(map_, keyframe, full_);
+  }
+  PublishSnapshot();
 }
 
 void Mapper::Apply(const MapCorrection& correction, const Cancellation*) {
@@ -75,33 +91,30 @@ void Mapper::Apply(const MapCorrection& correction, const Cancellation*) {
   }
 }
 
-// Everything that follows from a new keyframe.
-void Mapper::ExtendMap(KeyframeId keyframe, const Cancellation* hurry) {
+// The landmarks and objects that follow from a new keyframe.
+void Mapper::AddEntities(KeyframeId keyframe, const Cancellation* hurry) {
   newest_keyframe_ = keyframe;
-  const auto must_hurry = [&] { return hurry != nullptr && hurry->IsRequested(); };
   {
     const ScopedTimer timer(times_, "map_landmarks");
-    CullRecentLandmarks(map_, keyframe, recent_);
+    CullRecentLandmarks(map_, keyframe, sensor_, recent_);
     const std::vector<LandmarkId> created = CreateLandmarks(map_, keyframe, sensor_);
     recent_.insert(recent_.end(), created.begin(), created.end());
-    if (!must_hurry()) {
+    if (!MustHurry(hurry)) {
       FuseLandmarks(map_, keyframe, sensor_);
     }
   }
   MapObjects(keyframe);
-  if (!must_hurry() && map_.keyframes().size() > 2) {
-    AdjustNeighbourhood(keyframe, hurry);
-    if (options_.cull_keyframes) {
-      const ScopedTimer timer(times_, "cull_keyframes");
-      CullKeyframes(map_, keyframe, sensor_, static_cast<size_t>(object_options_.start.min_views));
-    }
+}
+
+void Mapper::Improve(KeyframeId keyframe, const Cancellation* hurry, Culling culling) {
+  if (MustHurry(hurry) || map_.keyframes().size() <= 2) {
+    return;
   }
-  full_.push_back(keyframe);
-  if (options_.compact_keyframes) {
-    const ScopedTimer timer(times_, "compact_keyframes");
-    CompactOldKeyframes(map_, keyframe, full_);
+  AdjustNeighbourhood(keyframe, hurry);
+  if (culling == Culling::kKeyframes) {
+    const ScopedTimer timer(times_, "cull_keyframes");
+    CullKeyframes(map_, keyframe, sensor_, static_cast<size_t>(object_options_.start.min_views));
   }
-  PublishSnapshot();
 }
 
 std::optional<KeyframeId> Mapper::NewestKeyframe() const {

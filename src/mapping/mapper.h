@@ -70,7 +70,9 @@ class Mapper {
   ObjectId FindLeft(const ChangedObject& changed) const;
   bool SplitReplacedObjects();
   void AdjustMap(const Cancellation* cancellation, const ProgressCallback& on_progress);
-  void ExtendMap(KeyframeId keyframe, const Cancellation* hurry);
+  enum class Culling { kNone, kKeyframes };
+  void AddEntities(KeyframeId keyframe, const Cancellation* hurry);
+  void Improve(KeyframeId keyframe, const Cancellation* hurry, Culling culling);
   void PublishSnapshot();
   void MapObjects(KeyframeId keyframe);
   void AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry);

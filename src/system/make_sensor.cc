@@ -5,6 +5,7 @@ namespace hullslam {
 
 Sensor MakeSensor(const SystemOptions& options) {
   Sensor sensor;
+  sensor.kind = options.sensor;
   sensor.camera = options.camera;
   sensor.bounds = options.camera.UndistortedBounds();
   sensor.levels = ScaleLevels::Create(options.features.level_count, options.features.scale_factor);

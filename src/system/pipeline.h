@@ -33,6 +33,8 @@ class Pipeline {
   // requested. `on_progress` is called after each of its iterations.
   virtual void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) = 0;
   void Finish() { Finish(nullptr, {}); }
+  // See Tracker::LocaliseEarlyFrames. To be called after Finish; the second call gives nothing.
+  virtual std::vector<TrackedFrame> TakeEarlyFrames() = 0;
   // The newest snapshot; null before the first keyframe.
   virtual std::shared_ptr<const Map> map() const = 0;
   // How many other threads than that of Track work on the map now. May be called by any thread.

@@ -49,6 +49,11 @@ class SequentialPipeline final : public Pipeline {
     }
   }
 
+  std::vector<TrackedFrame> TakeEarlyFrames() override {
+    const std::shared_ptr<const Map> newest = map();
+    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest) : std::vector<TrackedFrame>();
+  }
+
   std::shared_ptr<const Map> map() const override { return map_; }
 
   int busy_threads() const override { return 0; }

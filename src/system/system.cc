@@ -156,6 +156,9 @@ std::unique_ptr<TaskRunner> System::MakeRunner() {
 
 void System::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
   pipeline_->Finish(cancellation, on_progress);
+  for (const TrackedFrame& early : pipeline_->TakeEarlyFrames()) {
+    frames_.at(early.frame.value - frames_.front().frame.value) = early;
+  }
 }
 
 void System::Reset() {

@@ -72,6 +72,11 @@ class ThreadedPipeline final : public Pipeline {
     }
   }
 
+  std::vector<TrackedFrame> TakeEarlyFrames() override {
+    const std::shared_ptr<const Map> newest = map();
+    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest) : std::vector<TrackedFrame>();
+  }
+
   std::shared_ptr<const Map> map() const override { return map_.Get(); }
 
   int busy_threads() const override { return (IsMapping() ? 1 : 0) + loops_.busy_threads(); }

@@ -15,15 +15,12 @@ struct LevelRange {
 };
 
 // When the camera moves forward, patches grow and are found at higher levels; when it moves
-// backward, at lower levels.
-LevelRange LevelsAfterMotion(int level, double forward, double baseline, int level_count) {
-  if (forward > baseline) {
-    return {level, level_count - 1};
+// backward, at lower levels. Without metres nothing is known of how much they grow.
+LevelRange LevelsAfterMotion(int level, double forward, const Sensor& sensor) {
+  if (sensor.IsMonocular() || std::abs(forward) <= sensor.baseline()) {
+    return {level - 1, level + 1};
   }
-  if (-forward > baseline) {
-    return {0, level};
-  }
-  return {level - 1, level + 1};
+  return forward > 0.0 ? LevelRange{level, sensor.levels.count() - 1} : LevelRange{0, level};
 }
 
 struct Expected {
@@ -49,8 +46,7 @@ Expected ExpectLandmarks(const Map& map, const Sensor& sensor, const LastFrame& 
       continue;
     }
     const Keypoint& seen = last.frame->features.keypoints[i];
-    const LevelRange levels =
-        LevelsAfterMotion(seen.level, forward, sensor.baseline(), sensor.levels.count());
+    const LevelRange levels = LevelsAfterMotion(seen.level, forward, sensor);
     Projection& projection = expected.projections.emplace_back();
     projection.pixel = pixel.cast<float>();
     projection.right_u = static_cast<float>(pixel.x() - sensor.camera.bf / point.z());

@@ -2,13 +2,18 @@
 #include "tracking/tracker.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "tracking/confirmed_pose.h"
 
 namespace hullslam {
 namespace {
+
+constexpr size_t kYoungKeyframes = 10;    // a monocular map with fewer is young
+constexpr size_t kMostEarlyFrames = 300;  // the first ones are forgotten if there are more
 
 KeyframePolicy MakePolicy(const Sensor& sensor, const TrackingOptions& options) {
   KeyframePolicy policy;
@@ -70,6 +75,19 @@ KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor
           .requests_waiting = mapper.requests_waiting};
 }
 
+KeyframeId NearestInTime(const Map& map, double timestamp) {
+  KeyframeId nearest;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const auto& [id, keyframe] : map.keyframes()) {
+    const double gap = std::abs(keyframe.frame->timestamp - timestamp);
+    if (gap < smallest) {
+      smallest = gap;
+      nearest = id;
+    }
+  }
+  return nearest;
+}
+
 }  // namespace
 
 Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects,
@@ -78,7 +96,8 @@ Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const Obj
       options_(options),
       object_options_(objects),
       seed_(seed),
-      policy_(MakePolicy(sensor, options)) {}
+      policy_(MakePolicy(sensor, options)),
+      initialiser_(sensor, seed) {}
 
 void Tracker::Begin(Relocalise relocalise, bool localization_only) {
   relocalise_ = std::move(relocalise);
@@ -89,7 +108,22 @@ Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared
                                  const MapperStatus& mapper) {
   const ScopedTimer timer(times_, "pose");
   const bool has_map = map != nullptr && !map->keyframes().empty();
-  return has_map ? Track(std::move(frame), *map, mapper) : Initialize(std::move(frame));
+  if (!has_map) {
+    return sensor_.IsMonocular() ? InitializeMonocular(std::move(frame))
+                                 : Initialize(std::move(frame));
+  }
+  const bool is_young = sensor_.IsMonocular() && map->keyframes().size() < kYoungKeyframes;
+  if (is_young && !is_localizing_only_) {
+    KeepEarlyFrame(frame);
+  }
+  return Track(std::move(frame), *map, mapper);
+}
+
+void Tracker::KeepEarlyFrame(std::shared_ptr<const Frame> frame) {
+  if (early_.size() == kMostEarlyFrames) {
+    early_.erase(early_.begin());
+  }
+  early_.push_back(std::move(frame));
 }
 
 Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
@@ -110,6 +144,57 @@ Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
   last_.frame = std::move(frame);
   last_request_time_ = last_.frame->timestamp;
   return result;
+}
+
+Tracker::Result Tracker::InitializeMonocular(std::shared_ptr<const Frame> frame) {
+  Result result;
+  result.report.frame = frame;
+  result.report.tracked.frame = frame->id;
+  result.report.tracked.timestamp = frame->timestamp;
+  result.report.landmarks.resize(frame->features.size());
+  result.report.objects.resize(frame->detections.size());
+  MonocularInitialiser::Result initial = initialiser_.Process(frame);
+  if (!initial.map) {
+    result.report.failure = initial.failure;
+    KeepEarlyFrame(std::move(frame));
+    return result;
+  }
+  result.report.tracked.state = TrackingState::kTracked;
+  result.report.tracked.inliers = static_cast<int>(initial.map->points.size());
+  last_ = LastFrame();
+  last_.frame = std::move(frame);
+  last_request_time_ = last_.frame->timestamp;
+  result.message = std::move(*initial.map);
+  return result;
+}
+
+std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map) {
+  constexpr std::array<PoseSource*, 2> kSources = {&PoseByReferenceKeyframe, &PoseByRelocalisation};
+  std::vector<TrackedFrame> localised;
+  for (const std::shared_ptr<const Frame>& frame : early_) {
+    TrackedFrame tracked;
+    tracked.frame = frame->id;
+    tracked.timestamp = frame->timestamp;
+    tracked.state = TrackingState::kTracked;
+    if (map.KeyframeOfFrame(frame->id)) {
+      localised.push_back(tracked);
+      continue;
+    }
+    object_index_.Follow(map, sensor_.camera);
+    LastFrame nearest;
+    nearest.reference = NearestInTime(map, frame->timestamp);
+    nearest.frame = map.keyframes().At(nearest.reference).frame;
+    nearest.cam_from_world = map.keyframes().At(nearest.reference).cam_from_world;
+    if (const auto found = FindConfirmedPose(*frame, map, Context(), nearest, kSources)) {
+      const PoseEstimate& estimate = found->tracking.estimate;
+      tracked.pose = map.RelativeTo(found->tracking.reference, estimate.cam_from_world);
+      tracked.cam_from_world = estimate.cam_from_world;
+      tracked.inliers = estimate.inliers;
+      localised.push_back(tracked);
+    }
+  }
+  early_.clear();
+  return localised;
 }
 
 Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& map,

@@ -14,6 +14,7 @@
 #include "tracking/keyframe_policy.h"
 #include "tracking/last_frame.h"
 #include "tracking/local_map_tracking.h"
+#include "tracking/monocular_initialiser.h"
 #include "tracking/pose_source.h"
 #include "tracking/request_memory.h"
 #include "tracking/sighting_counter.h"
@@ -50,6 +51,11 @@ class Tracker {
   Result Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
                  const MapperStatus& mapper);
 
+  // To be called at the end of a monocular run, with the final map. Gives poses to the frames
+  // before the map, which had none, and better ones to those that were tracked while the map was
+  // young. Frames that are not found in the map are left out.
+  std::vector<TrackedFrame> LocaliseEarlyFrames(const Map& map);
+
   const StageTimes& times() const { return times_; }
 
  private:
@@ -57,6 +63,8 @@ class Tracker {
     return {sensor_, options_, object_options_, object_index_, seed_};
   }
   Result Initialize(std::shared_ptr<const Frame> frame);
+  Result InitializeMonocular(std::shared_ptr<const Frame> frame);
+  void KeepEarlyFrame(std::shared_ptr<const Frame> frame);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
   std::optional<LocalTracking> FindPose(const Frame& frame, const Map& map) const;
   Result Lose(std::shared_ptr<const Frame> frame);
@@ -72,6 +80,9 @@ class Tracker {
   const uint64_t seed_;
   const KeyframePolicy policy_;
   StageTimes times_;
+
+  MonocularInitialiser initialiser_;
+  std::vector<std::shared_ptr<const Frame>> early_;  // for LocaliseEarlyFrames, in order of time
 
   Relocalise relocalise_;  // may be null
   bool is_localizing_only_ = false;

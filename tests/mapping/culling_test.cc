@@ -37,14 +37,14 @@ class RecentLandmarksTest : public testing::Test {
 
   void ExpectCulled(LandmarkId id, uint32_t current, const std::string& what) {
     std::vector<LandmarkId> recent = {id};
-    CullRecentLandmarks(map_, KeyframeId(current), recent);
+    CullRecentLandmarks(map_, KeyframeId(current), sensor_, recent);
     EXPECT_FALSE(map_.landmarks().Contains(id)) << what;
     EXPECT_TRUE(recent.empty()) << what;
     EXPECT_EQ(FindViolations(map_), std::vector<std::string>());
   }
   void ExpectKept(LandmarkId id, uint32_t current, bool on_trial, const std::string& what) {
     std::vector<LandmarkId> recent = {id};
-    CullRecentLandmarks(map_, KeyframeId(current), recent);
+    CullRecentLandmarks(map_, KeyframeId(current), sensor_, recent);
     EXPECT_TRUE(map_.landmarks().Contains(id)) << what;
     EXPECT_EQ(recent.size(), on_trial ? 1u : 0u) << what;
   }
@@ -78,7 +78,7 @@ TEST_F(RecentLandmarksTest, ThatNoLongerExistLeaveTheList) {
   map_.EraseLandmark(gone);
   map_.ReplaceLandmark(replaced, by);
   std::vector<LandmarkId> recent = {gone, replaced, by};
-  CullRecentLandmarks(map_, KeyframeId(0), recent);
+  CullRecentLandmarks(map_, KeyframeId(0), sensor_, recent);
   EXPECT_EQ(recent, std::vector{by});
 }
 

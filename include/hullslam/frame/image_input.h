@@ -8,12 +8,12 @@
 
 namespace hullslam {
 
-// One input frame of an RGB-D camera; depth is registered to the colour image.
+// One input frame; depth is registered to the colour image.
 struct ImageInput {
   double timestamp = 0.0;  // seconds
   cv::Mat grey;            // CV_8UC1
   // CV_16UC1 in units of 1 / DepthMapFactor metres, or CV_32FC1 in metres. The depth is unknown
-  // where the value is 0 or not finite.
+  // where the value is 0 or not finite. Empty for a monocular camera.
   cv::Mat depth;
   std::vector<InstanceMask> masks = {};  // the objects that it shows; empty without masks
 };

@@ -9,8 +9,16 @@
 
 namespace hullslam {
 
+enum class SensorKind {
+  kRgbd,
+  // One camera without depth. The unit of length of a map is then not known in metres: it is the
+  // median depth of the first points.
+  kMonocular,
+};
+
 // The properties of the camera that are the same for all frames of a run.
 struct Sensor {
+  SensorKind kind = SensorKind::kRgbd;
   PinholeCamera camera;
   PinholeCamera::Bounds bounds;  // of the undistorted image, px
   ScaleLevels levels;
@@ -18,7 +26,9 @@ struct Sensor {
   DepthErrorOptions depth_error;
   double frames_per_second = 30.0;
 
-  double baseline() const { return camera.bf / camera.fx; }  // m
+  bool IsMonocular() const { return kind == SensorKind::kMonocular; }
+  // Of the virtual stereo pair, m; 0 without depth.
+  double baseline() const { return IsMonocular() ? 0.0 : camera.bf / camera.fx; }
 };
 
 }  // namespace hullslam

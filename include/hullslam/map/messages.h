@@ -12,6 +12,7 @@
 #include "hullslam/frame/frame.h"
 #include "hullslam/geometry/rigid3.h"
 #include "hullslam/geometry/sim3.h"
+#include "hullslam/map/initialisation_failure.h"
 #include "hullslam/map/relative_pose.h"
 #include "hullslam/util/id.h"
 
@@ -117,6 +118,8 @@ struct FrameReport {
   std::shared_ptr<const Frame> frame;
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
   std::vector<ObjectId> objects;      // one per detection; invalid where it shows no mapped object
+  // Only before a monocular camera has a map: why it has none.
+  std::optional<InitialisationFailure> failure = std::nullopt;
 };
 
 }  // namespace hullslam

@@ -8,6 +8,7 @@
 #include "hullslam/camera/depth.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/features/extractor.h"
+#include "hullslam/frame/sensor.h"
 #include "hullslam/loop/loop_options.h"
 #include "hullslam/mapping/mapping_options.h"
 #include "hullslam/objects/object_options.h"
@@ -27,6 +28,7 @@ struct RunOptions {
 
 // All options of a run. The defaults are those of the structs. The camera has no default.
 struct SystemOptions {
+  SensorKind sensor = SensorKind::kRgbd;  // not a setting of the table: each program has its own
   PinholeCamera camera;
   double frames_per_second = 30.0;  // of the camera
   bool rgb_order = true;            // order of channels of colour images from memory: RGB, else BGR

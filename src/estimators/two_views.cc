@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "estimators/two_views.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
+#include <optional>
+
+#include "geometry/triangulation.h"
+
+namespace hullslam {
+namespace {
+
+constexpr double kChi2 = 5.991;  // 95 % of a chi-square distribution with two degrees of freedom
+constexpr size_t kFewestPairs = 20;
+// The parallax of a point below this (radians) says nothing about its depth, so the point counts
+// neither for nor against a motion.
+constexpr double kNoParallax = 0.3 * std::numbers::pi / 180.0;
+
+cv::UsacParams MakeUsacParams(double threshold, uint64_t seed) {
+  cv::UsacParams params;
+  params.confidence = 0.999;
+  params.isParallel = false;
+  params.loIterations = 10;
+  params.loMethod = cv::LOCAL_OPTIM_INNER_LO;
+  params.loSampleSize = 50;
+  params.maxIterations = 2000;
+  params.neighborsSearch = cv::NEIGH_GRID;
+  params.randomGeneratorState = static_cast<int>(seed % 0x7fffffffU);
+  params.sampler = cv::SAMPLING_UNIFORM;
+  params.score = cv::SCORE_METHOD_MSAC;
+  params.threshold = threshold;
+  return params;
+}
+
+// The pairs as OpenCV's points, and the typical noise of their pixels.
+struct CvPairs {
+  std::vector<cv::Point2d> a;
+  std::vector<cv::Point2d> b;
+  double sigma = 1.0;  // px
+};
+
+CvPairs ToCv(std::span<const PixelPair> pairs) {
+  CvPairs points;
+  std::vector<double> sigmas;
+  for (const PixelPair& pair : pairs) {
+    points.a.emplace_back(pair.a.x(), pair.a.y());
+    points.b.emplace_back(pair.b.x(), pair.b.y());
+    sigmas.push_back(std::max(pair.sigma_a, pair.sigma_b));
+  }
+  const auto middle = sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2);
+  std::nth_element(sigmas.begin(), middle, sigmas.end());
+  points.sigma = *middle;
+  return points;
+}
+
+Rigid3 MakeMotion(const cv::Mat& rotation, const cv::Mat& translation, double sign) {
+  Eigen::Matrix3d matrix;
+  Eigen::Vector3d vector;
+  cv::cv2eigen(rotation, matrix);
+  cv::cv2eigen(translation, vector);
+  return {Eigen::Quaterniond(matrix).normalized(), sign * vector.normalized()};
+}
+
+// The four motions that an essential matrix can stand for.
+void AddMotionsOfEssential(const CvPairs& points, const cv::Mat& k, uint64_t seed,
+                           std::vector<Rigid3>& motions) {
+  cv::Mat mask;
+  const cv::Mat essential =
+      cv::findEssentialMat(points.a, points.b, k, k, cv::noArray(), cv::noArray(), mask,
+                           MakeUsacParams(std::sqrt(kChi2) * points.sigma, seed));
+  if (essential.rows != 3 || essential.cols != 3) {
+    return;
+  }
+  cv::Mat first;
+  cv::Mat second;
+  cv::Mat translation;
+  cv::decomposeEssentialMat(essential, first, second, translation);
+  for (const cv::Mat& rotation : {first, second}) {
+    motions.push_back(MakeMotion(rotation, translation, 1.0));
+    motions.push_back(MakeMotion(rotation, translation, -1.0));
+  }
+}
+
+// The motions that a homography can stand for (Malis and Vargas 2007). A plane and its homography
+// do not tell the sign of the motion, so both are tried.
+void AddMotionsOfHomography(const CvPairs& points, const cv::Mat& k, uint64_t seed,
+                            std::vector<Rigid3>& motions) {
+  cv::Mat mask;
+  const cv::Mat homography = cv::findHomography(
+      points.a, points.b, mask, MakeUsacParams(std::sqrt(kChi2) * points.sigma, seed));
+  if (homography.empty()) {
+    return;
+  }
+  std::vector<cv::Mat> rotations;
+  std::vector<cv::Mat> translations;
+  std::vector<cv::Mat> normals;
+  const int count = cv::decomposeHomographyMat(homography, k, rotations, translations, normals);
+  for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
+    if (cv::norm(translations[i]) > 1e-6) {
+      motions.push_back(MakeMotion(rotations[i], translations[i], 1.0));
+    }
+  }
+}
+
+// What a motion makes of the pairs.
+struct Hypothesis {
+  Rigid3 b_from_a;
+  std::vector<TwoViews::Point> points;  // with parallax
+  std::vector<double> parallaxes;       // radians; of the points and of pairs without parallax
+  size_t agreeing = 0;                  // points, and pairs without parallax that agree
+};
+
+double SquaredError(const PinholeCamera& camera, const Eigen::Vector3d& point,
+                    const Eigen::Vector2d& pixel, double sigma) {
+  return (camera.Project(point) - pixel).squaredNorm() / (sigma * sigma);
+}
+
+Hypothesis Explain(const PinholeCamera& camera, std::span<const PixelPair> pairs,
+                   const Rigid3& b_from_a) {
+  Hypothesis hypothesis{.b_from_a = b_from_a, .points = {}, .parallaxes = {}};
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    const PixelPair& pair = pairs[i];
+    const Eigen::Vector3d ray_a = camera.Unproject(pair.a, 1.0);
+    const Eigen::Vector3d ray_b = camera.Unproject(pair.b, 1.0);
+    const Eigen::Vector3d turned = b_from_a.rotation * ray_a;
+    const double parallax = std::atan2(turned.cross(ray_b).norm(), turned.dot(ray_b));
+    if (parallax < kNoParallax) {
+      // At infinity: it agrees if the rotation alone explains it.
+      if (turned.z() > 0.0 &&
+          SquaredError(camera, turned, pair.b, std::hypot(pair.sigma_a, pair.sigma_b)) < kChi2) {
+        ++hypothesis.agreeing;
+      }
+      hypothesis.parallaxes.push_back(parallax);
+      continue;
+    }
+    const std::optional<Eigen::Vector3d> point =
+        TriangulatePoint(Rigid3(), ray_a.head<2>(), b_from_a, ray_b.head<2>());
+    if (!point || !(point->z() > 0.0)) {
+      continue;
+    }
+    const Eigen::Vector3d in_b = b_from_a * *point;
+    if (in_b.z() > 0.0 && SquaredError(camera, *point, pair.a, pair.sigma_a) < kChi2 &&
+        SquaredError(camera, in_b, pair.b, pair.sigma_b) < kChi2) {
+      hypothesis.points.push_back({i, *point});
+      hypothesis.parallaxes.push_back(parallax);
+      ++hypothesis.agreeing;
+    }
+  }
+  return hypothesis;
+}
+
+bool AreDifferent(const Rigid3& one, const Rigid3& other) {
+  constexpr double kTurn = 3.0 * std::numbers::pi / 180.0;
+  constexpr double kDirection = 15.0 * std::numbers::pi / 180.0;
+  return AngularDistance(one.rotation, other.rotation) > kTurn ||
+         std::acos(std::clamp(one.translation.dot(other.translation), -1.0, 1.0)) > kDirection;
+}
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Why the best hypothesis is not good enough.
+TwoViewFailure Judge(std::span<const Hypothesis> hypotheses, const Hypothesis& best,
+                     double parallax, const TwoViewOptions& options) {
+  if (parallax < options.min_parallax) {
+    return TwoViewFailure::kTooLittleParallax;
+  }
+  for (const Hypothesis& other : hypotheses) {
+    if (AreDifferent(other.b_from_a, best.b_from_a) &&
+        static_cast<double>(other.points.size()) >
+            options.max_rival_share * static_cast<double>(best.points.size())) {
+      return TwoViewFailure::kAmbiguous;
+    }
+  }
+  const bool has_few = best.points.size() < options.min_points ||
+                       static_cast<double>(best.points.size()) <
+                           options.min_share * static_cast<double>(best.agreeing);
+  return has_few ? TwoViewFailure::kTooFewPoints : TwoViewFailure::kNone;
+}
+
+}  // namespace
+
+std::string_view ToString(TwoViewFailure failure) {
+  switch (failure) {
+    case TwoViewFailure::kTooFewPairs:
+      return "too few matches";
+    case TwoViewFailure::kTooLittleParallax:
+      return "too little parallax";
+    case TwoViewFailure::kAmbiguous:
+      return "ambiguous";
+    case TwoViewFailure::kTooFewPoints:
+      return "too few points";
+    default:
+      return "none";
+  }
+}
+
+TwoViews EstimateTwoViews(const PinholeCamera& camera, std::span<const PixelPair> pairs,
+                          const TwoViewOptions& options) {
+  TwoViews result;
+  if (pairs.size() < std::max(kFewestPairs, options.min_points)) {
+    result.failure = TwoViewFailure::kTooFewPairs;
+    return result;
+  }
+  const CvPairs points = ToCv(pairs);
+  cv::Mat k;
+  cv::eigen2cv(camera.Matrix(), k);
+  std::vector<Rigid3> motions;
+  AddMotionsOfEssential(points, k, options.seed, motions);
+  AddMotionsOfHomography(points, k, options.seed, motions);
+  std::vector<Hypothesis> hypotheses;
+  for (const Rigid3& motion : motions) {
+    hypotheses.push_back(Explain(camera, pairs, motion));
+  }
+  const auto best = std::max_element(
+      hypotheses.begin(), hypotheses.end(),
+      [](const Hypothesis& a, const Hypothesis& b) { return a.agreeing < b.agreeing; });
+  if (best == hypotheses.end() || best->agreeing < options.min_points) {
+    result.failure = TwoViewFailure::kTooFewPoints;
+    return result;
+  }
+  result.parallax = Median(best->parallaxes) * 180.0 / std::numbers::pi;
+  result.failure = Judge(hypotheses, *best, result.parallax, options);
+  result.b_from_a = best->b_from_a;
+  result.points = best->points;
+  return result;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/geometry/rigid3.h"
+
+namespace hullslam {
+
+// One point in two images, as undistorted pixels with the sigma of each.
+struct PixelPair {
+  Eigen::Vector2d a;
+  Eigen::Vector2d b;
+  double sigma_a = 1.0;  // px
+  double sigma_b = 1.0;
+};
+
+struct TwoViewOptions {
+  uint64_t seed = 0;
+  size_t min_points = 50;     // that must be seen in front of both cameras
+  double min_share = 0.7;     // of the pairs that agree with any motion, which must be such points
+  double min_parallax = 1.2;  // degrees between the two rays to a point, in the median
+  double max_rival_share = 0.75;  // points of the second best motion over those of the best one
+};
+
+enum class TwoViewFailure {
+  kNone,
+  kTooFewPairs,
+  kTooLittleParallax,  // the camera has not moved, or it has only turned
+  kAmbiguous,          // two different motions explain the pairs
+  kTooFewPoints,
+};
+
+// "too few matches", "too little parallax", "ambiguous", "too few points".
+std::string_view ToString(TwoViewFailure failure);
+
+// The motion between two views and the points that both see. The unit of length is the distance of
+// the cameras.
+struct TwoViews {
+  struct Point {
+    size_t pair = 0;             // index
+    Eigen::Vector3d point_in_a;  // in the camera frame of a
+  };
+  TwoViewFailure failure = TwoViewFailure::kNone;
+  Rigid3 b_from_a;
+  std::vector<Point> points;  // by increasing index of the pair
+  double parallax = 0.0;      // degrees, in the median
+
+  bool ok() const { return failure == TwoViewFailure::kNone; }
+};
+
+// The motion of a camera between two images, from pairs of which many may be wrong. Essential
+// matrix and homography are both estimated (OpenCV's USAC), and all motions that they can stand for
+// compete: a pair counts for a motion if its point lies in front of both cameras and reprojects
+// within 95 % of its noise. A general scene is explained by the essential matrix, a plane by the
+// homography. If the best motion and a different one explain about as many pairs, or if the rays
+// are nearly parallel, there is no result. The same input and seed give the same bits.
+TwoViews EstimateTwoViews(const PinholeCamera& camera, std::span<const PixelPair> pairs,
+                          const TwoViewOptions& options);
+
+}  // namespace hullslam

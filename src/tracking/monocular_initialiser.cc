@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tracking/monocular_initialiser.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "estimators/absolute_pose.h"
+#include "estimators/two_views.h"
+#include "frame/point_measurement.h"
+#include "map/spanning_tree.h"
+#include "matching/by_descriptor.h"
+#include "optim/bundle_adjustment.h"
+#include "util/random_seed.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kMinFeatures = 100;
+constexpr size_t kMinMatches = 80;
+constexpr size_t kMinPoints = 50;  // of the map
+constexpr size_t kMostReferences = 12;
+constexpr uint32_t kReferenceInterval = 3;  // frames from one reference to the next
+constexpr size_t kViewsBetween = 3;         // most frames between the first and the last view
+constexpr double kMinConfirmed = 0.6;  // share of its matches that a frame in between must confirm
+// Images without parallax are recognised by how little keypoints have moved, as a share of the
+// image's width, before a motion is estimated.
+constexpr double kMinShift = 0.015;
+
+using FramePointer = std::shared_ptr<const Frame>;
+
+std::vector<Match> MatchFrames(const Frame& from, const Frame& to) {
+  std::vector<uint32_t> all(from.features.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return MatchByDescriptor(from.features, all, to.features, {});
+}
+
+double MedianShift(const Frame& from, const Frame& to, const std::vector<Match>& matches) {
+  std::vector<float> shifts;
+  for (const Match& match : matches) {
+    shifts.push_back((from.features.keypoints[match.query].undistorted -
+                      to.features.keypoints[match.keypoint].undistorted)
+                         .norm());
+  }
+  const auto middle = shifts.begin() + static_cast<std::ptrdiff_t>(shifts.size() / 2);
+  std::nth_element(shifts.begin(), middle, shifts.end());
+  return static_cast<double>(*middle);
+}
+
+double SigmaOf(const Keypoint& keypoint, const ScaleLevels& levels) {
+  return static_cast<double>(levels.scale[static_cast<size_t>(keypoint.level)]);
+}
+
+std::vector<PixelPair> MakePairs(const Frame& a, const Frame& b, const std::vector<Match>& matches,
+                                 const ScaleLevels& levels) {
+  std::vector<PixelPair> pairs;
+  for (const Match& match : matches) {
+    const Keypoint& in_a = a.features.keypoints[match.query];
+    const Keypoint& in_b = b.features.keypoints[match.keypoint];
+    pairs.push_back({.a = in_a.undistorted.cast<double>(),
+                     .b = in_b.undistorted.cast<double>(),
+                     .sigma_a = SigmaOf(in_a, levels),
+                     .sigma_b = SigmaOf(in_b, levels)});
+  }
+  return pairs;
+}
+
+InitialisationFailure ToInitialisationFailure(TwoViewFailure failure) {
+  switch (failure) {
+    case TwoViewFailure::kTooFewPairs:
+      return InitialisationFailure::kTooFewMatches;
+    case TwoViewFailure::kTooLittleParallax:
+      return InitialisationFailure::kTooLittleParallax;
+    case TwoViewFailure::kAmbiguous:
+      return InitialisationFailure::kAmbiguous;
+    default:
+      return InitialisationFailure::kTooFewPoints;
+  }
+}
+
+// The points of two views: the world frame is the camera frame of the first one.
+InitialMap MakeMap(const FramePointer& first, const FramePointer& last,
+                   const std::vector<Match>& matches, const TwoViews& motion) {
+  InitialMap map;
+  map.views = {{first, Rigid3()}, {last, motion.b_from_a}};
+  for (const TwoViews::Point& point : motion.points) {
+    const Match& match = matches[point.pair];
+    map.points.push_back(
+        {.position = point.point_in_a, .observations = {{0, match.query}, {1, match.keypoint}}});
+  }
+  return map;
+}
+
+// Adds a frame that was taken between the views of a map at its place in time, if the map explains
+// it. Returns whether it does; a frame that shows too little of the map says nothing.
+bool AddViewBetween(const Sensor& sensor, uint64_t seed, const FramePointer& frame,
+                    InitialMap& map) {
+  const Frame& first = *map.views.front().frame;
+  std::vector<uint32_t> keypoints;
+  for (const InitialMap::Point& point : map.points) {
+    keypoints.push_back(point.observations.front().keypoint);
+  }
+  std::vector<size_t> point_of(first.features.size());
+  for (size_t i = 0; i < keypoints.size(); ++i) {
+    point_of[keypoints[i]] = i;
+  }
+  const std::vector<Match> matches =
+      MatchByDescriptor(first.features, keypoints, frame->features, {});
+  if (matches.size() < kMinPoints / 2) {
+    return true;
+  }
+  std::vector<PoseObservation> observations;
+  for (const Match& match : matches) {
+    observations.push_back(
+        {.point = map.points[point_of[match.query]].position,
+         .measurement = MeasurePoint(sensor, frame->features, match.keypoint, sensor.depth_error)});
+  }
+  const AbsolutePose pose = EstimateAbsolutePose(
+      sensor.camera, observations, {.seed = HashSeed(seed, frame->id.value, "initial map")});
+  if (!pose.ok() || static_cast<double>(pose.inliers.size()) <
+                        kMinConfirmed * static_cast<double>(matches.size())) {
+    return false;
+  }
+  // The last view stays the last one.
+  const size_t place = map.views.size() - 1;
+  for (InitialMap::Point& point : map.points) {
+    for (InitialMap::Observation& seen : point.observations) {
+      seen.view += seen.view == place ? 1 : 0;
+    }
+  }
+  map.views.insert(map.views.begin() + static_cast<std::ptrdiff_t>(place),
+                   {frame, pose.cam_from_world});
+  for (const size_t inlier : pose.inliers) {
+    map.points[point_of[matches[inlier].query]].observations.push_back(
+        {place, matches[inlier].keypoint});
+  }
+  return true;
+}
+
+// Only what bundle adjustment needs of a frame.
+FramePointer WithoutWords(const Frame& frame) {
+  auto reduced = std::make_shared<Frame>();
+  reduced->id = frame.id;
+  reduced->timestamp = frame.timestamp;
+  reduced->features = frame.features;
+  return reduced;
+}
+
+// Bundle adjustment of all views and points. Points that are left with one view are removed.
+void AdjustMap(const Sensor& sensor, InitialMap& initial) {
+  Map map;
+  std::vector<KeyframeId> keyframes;
+  for (const InitialMap::View& view : initial.views) {
+    keyframes.push_back(map.AddKeyframe(WithoutWords(*view.frame), view.cam_from_world));
+    if (keyframes.size() > 1) {
+      SetParent(map, keyframes.back(), keyframes.front());
+    }
+  }
+  std::vector<LandmarkId> landmarks;
+  for (const InitialMap::Point& point : initial.points) {
+    landmarks.push_back(map.AddLandmark(point.position, keyframes.front()));
+    for (const InitialMap::Observation& seen : point.observations) {
+      map.AddObservation(landmarks.back(), keyframes[seen.view], seen.keypoint);
+    }
+  }
+  const BundleResult result =
+      AdjustBundle(map, sensor, GlobalWindow(map), BundleOptions().ForWholeMap(), nullptr);
+  if (!result.is_usable) {
+    return;
+  }
+  ApplyBundle(map, result, sensor.levels);
+  for (size_t i = 0; i < keyframes.size(); ++i) {
+    initial.views[i].cam_from_world = map.CamFromWorld(keyframes[i]);
+  }
+  std::vector<InitialMap::Point> kept;
+  for (const LandmarkId id : landmarks) {
+    const Landmark* const landmark = map.landmarks().Find(id);
+    if (landmark == nullptr || landmark->observations.size() < 2) {
+      continue;
+    }
+    InitialMap::Point& point = kept.emplace_back();
+    point.position = landmark->position;
+    for (const Observation& seen : landmark->observations) {
+      const auto view = std::find(keyframes.begin(), keyframes.end(), seen.keyframe);
+      point.observations.push_back({static_cast<size_t>(view - keyframes.begin()), seen.keypoint});
+    }
+  }
+  initial.points = std::move(kept);
+}
+
+// Makes the median depth of the points in the first view 1.
+void Normalise(InitialMap& map) {
+  std::vector<double> depths;
+  for (const InitialMap::Point& point : map.points) {
+    depths.push_back(point.position.z());
+  }
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  const double scale = 1.0 / *middle;
+  for (InitialMap::View& view : map.views) {
+    view.cam_from_world.translation *= scale;
+  }
+  for (InitialMap::Point& point : map.points) {
+    point.position *= scale;
+  }
+}
+
+}  // namespace
+
+MonocularInitialiser::MonocularInitialiser(const Sensor& sensor, uint64_t seed)
+    : sensor_(sensor), seed_(seed) {}
+
+MonocularInitialiser::Result MonocularInitialiser::Process(FramePointer frame) {
+  if (frame->features.size() < kMinFeatures) {
+    return {.map = std::nullopt, .failure = InitialisationFailure::kTooFewFeatures};
+  }
+  Result result = TryReferences(frame);
+  if (result.map) {
+    references_.clear();
+  } else {
+    KeepAsReference(std::move(frame));
+  }
+  return result;
+}
+
+// The failure is that of the reference with which the frame came farthest.
+MonocularInitialiser::Result MonocularInitialiser::TryReferences(const FramePointer& frame) const {
+  Result farthest{.map = std::nullopt, .failure = InitialisationFailure::kTooFewMatches};
+  for (size_t i = 0; i < references_.size(); ++i) {
+    Result result = TryReference(i, frame);
+    if (result.map) {
+      return result;
+    }
+    farthest.failure = std::max(farthest.failure, result.failure);
+  }
+  return farthest;
+}
+
+MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference,
+                                                                const FramePointer& frame) const {
+  const FramePointer& first = references_[reference];
+  const auto fail = [](InitialisationFailure failure) {
+    return Result{.map = std::nullopt, .failure = failure};
+  };
+  const std::vector<Match> matches = MatchFrames(*first, *frame);
+  if (matches.size() < kMinMatches) {
+    return fail(InitialisationFailure::kTooFewMatches);
+  }
+  if (MedianShift(*first, *frame, matches) < kMinShift * sensor_.camera.width) {
+    return fail(InitialisationFailure::kTooLittleParallax);
+  }
+  const TwoViews motion = EstimateTwoViews(
+      sensor_.camera, MakePairs(*first, *frame, matches, sensor_.levels),
+      {.seed = HashSeed(seed_, frame->id.value, "two views"), .min_points = kMinPoints});
+  if (!motion.ok()) {
+    return fail(ToInitialisationFailure(motion.failure));
+  }
+  InitialMap map = MakeMap(first, frame, matches, motion);
+  const size_t between = references_.size() - reference - 1;
+  const size_t count = std::min(between, kViewsBetween);
+  for (size_t i = 1; i <= count; ++i) {
+    const FramePointer& other = references_[reference + i * between / count];
+    if (!AddViewBetween(sensor_, seed_, other, map)) {
+      return fail(InitialisationFailure::kNotConfirmed);
+    }
+  }
+  AdjustMap(sensor_, map);
+  std::erase_if(map.points, [](const auto& point) { return !(point.position.z() > 0.0); });
+  if (map.points.size() < kMinPoints) {
+    return fail(InitialisationFailure::kTooFewPoints);
+  }
+  Normalise(map);
+  return {.map = std::move(map), .failure = {}};
+}
+
+// When there are too many, the one goes that is nearest in time to the one before it. So the
+// references reach farther and farther back, and are the sparser the older they are.
+void MonocularInitialiser::KeepAsReference(FramePointer frame) {
+  if (!references_.empty() && frame->id.value < references_.back()->id.value + kReferenceInterval) {
+    return;
+  }
+  references_.push_back(std::move(frame));
+  if (references_.size() <= kMostReferences) {
+    return;
+  }
+  size_t nearest = 1;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (size_t i = 1; i + 1 < references_.size(); ++i) {
+    const double gap = references_[i]->timestamp - references_[i - 1]->timestamp;
+    if (gap < smallest) {
+      smallest = gap;
+      nearest = i;
+    }
+  }
+  references_.erase(references_.begin() + static_cast<std::ptrdiff_t>(nearest));
+}
+
+}  // namespace hullslam

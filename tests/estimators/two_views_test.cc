@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "estimators/two_views.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <string>
+
+namespace hullslam {
+namespace {
+
+PinholeCamera Camera() {
+  PinholeCamera camera;
+  camera.fx = camera.fy = 520.0;
+  camera.cx = 320.0;
+  camera.cy = 240.0;
+  return camera;
+}
+
+struct World {
+  double noise = 0.7;     // px
+  double outliers = 0.2;  // share of the pairs
+  int pairs = 300;
+};
+
+// What a camera at the origin and one at `b_from_a` see of points at depths that `depth` gives for
+// a pixel of a.
+std::vector<PixelPair> See(const Rigid3& b_from_a, uint64_t seed, const World& world,
+                           const std::function<double(const Eigen::Vector3d&, double)>& depth) {
+  const PinholeCamera camera = Camera();
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0.0, world.noise);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  std::vector<PixelPair> pairs;
+  while (pairs.size() < static_cast<size_t>(world.pairs)) {
+    const double u = 640.0 * share(random);
+    const double v = 480.0 * share(random);
+    const Eigen::Vector3d ray = camera.Unproject({u, v}, 1.0);
+    const Eigen::Vector3d in_b = b_from_a * (depth(ray, share(random)) * ray);
+    const Eigen::Vector2d pixel = camera.Project(in_b);
+    if (in_b.z() <= 0.0 || pixel.x() < 0.0 || pixel.x() > 640.0 || pixel.y() < 0.0 ||
+        pixel.y() > 480.0) {
+      continue;
+    }
+    const bool is_wrong = share(random) < world.outliers;
+    const double wrong_u = 640.0 * share(random);
+    const double wrong_v = 480.0 * share(random);
+    const double du = noise(random);
+    const double dv = noise(random);
+    pairs.push_back({{u, v},
+                     is_wrong ? Eigen::Vector2d(wrong_u, wrong_v)
+                              : Eigen::Vector2d(pixel.x() + du, pixel.y() + dv)});
+  }
+  return pairs;
+}
+
+double GeneralDepth(const Eigen::Vector3d&, double share) { return 1.0 + 3.0 * share; }
+
+// A plane through (0, 0, 2) with this normal.
+std::function<double(const Eigen::Vector3d&, double)> Plane(const Eigen::Vector3d& normal) {
+  return
+      [normal](const Eigen::Vector3d& ray, double) { return 2.0 * normal.z() / normal.dot(ray); };
+}
+
+Rigid3 Motion(const Eigen::Vector3d& turn, const Eigen::Vector3d& step) {
+  return {ExpSo3(turn), step};
+}
+
+double DirectionError(const TwoViews& found, const Rigid3& truth) {
+  return std::acos(std::clamp(found.b_from_a.translation.dot(truth.translation.normalized()), -1.0,
+                              1.0)) *
+         180.0 / std::numbers::pi;
+}
+
+TEST(TwoViews, FindTheMotionInAGeneralScene) {
+  const std::vector<Rigid3> motions = {
+      Motion({0, 0, 0}, {0.2, 0, 0}), Motion({0.05, -0.1, 0.02}, {-0.15, 0.1, 0.05}),
+      Motion({0, 0.1, 0}, {-0.3, 0.0, 0.0}), Motion({0, 0, 0}, {0.0, 0.05, -0.4})};
+  for (size_t i = 0; i < motions.size(); ++i) {
+    for (uint64_t seed = 0; seed < 5; ++seed) {
+      const std::vector<PixelPair> pairs = See(motions[i], seed, {}, GeneralDepth);
+      const TwoViews found = EstimateTwoViews(Camera(), pairs, {.seed = seed});
+      ASSERT_TRUE(found.ok()) << i << ": " << ToString(found.failure);
+      EXPECT_LT(AngularDistance(found.b_from_a.rotation, motions[i].rotation), 0.01) << i;
+      EXPECT_LT(DirectionError(found, motions[i]), 5.0) << i;
+      EXPECT_NEAR(found.b_from_a.translation.norm(), 1.0, 1e-9);
+      EXPECT_GT(found.points.size(), 150U);
+    }
+  }
+}
+
+TEST(TwoViews, PointsAreInTheFirstCameraAndInOrder) {
+  const Rigid3 motion = Motion({0.02, 0.05, 0.0}, {-0.25, 0.02, 0.0});
+  const std::vector<PixelPair> pairs =
+      See(motion, 3, {.noise = 0.0, .outliers = 0.0}, GeneralDepth);
+  const TwoViews found = EstimateTwoViews(Camera(), pairs, {});
+  ASSERT_TRUE(found.ok());
+  EXPECT_TRUE(std::is_sorted(found.points.begin(), found.points.end(),
+                             [](const auto& a, const auto& b) { return a.pair < b.pair; }));
+  for (const TwoViews::Point& point : found.points) {
+    EXPECT_LT((Camera().Project(point.point_in_a) - pairs[point.pair].a).norm(), 0.1);
+    EXPECT_LT((Camera().Project(found.b_from_a * point.point_in_a) - pairs[point.pair].b).norm(),
+              0.1);
+  }
+}
+
+// A tilted plane is explained by a homography. The motion is found, or it is called ambiguous.
+TEST(TwoViews, OnAPlaneTheyAreRightOrAmbiguous) {
+  int found_count = 0;
+  const Rigid3 motion = Motion({0.0, 0.12, 0.03}, {-0.35, 0.1, 0.1});
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    const std::vector<PixelPair> pairs = See(motion, seed, {.noise = 0.5}, Plane({0.3, -0.4, 1.0}));
+    const TwoViews found = EstimateTwoViews(Camera(), pairs, {.seed = seed});
+    if (found.ok()) {
+      ++found_count;
+      EXPECT_LT(AngularDistance(found.b_from_a.rotation, motion.rotation), 0.03) << seed;
+      EXPECT_LT(DirectionError(found, motion), 10.0) << seed;
+    } else {
+      EXPECT_EQ(found.failure, TwoViewFailure::kAmbiguous) << seed;
+    }
+  }
+  RecordProperty("found", found_count);
+}
+
+TEST(TwoViews, ARotationHasNoParallax) {
+  for (uint64_t seed = 0; seed < 50; ++seed) {
+    const double turn = 0.02 + 0.004 * static_cast<double>(seed);
+    const Rigid3 motion = Motion({0.3 * turn, turn, 0.2 * turn}, {0, 0, 0});
+    const TwoViews found =
+        EstimateTwoViews(Camera(), See(motion, seed, {}, GeneralDepth), {.seed = seed});
+    EXPECT_FALSE(found.ok()) << seed;
+  }
+}
+
+TEST(TwoViews, ACameraThatStandsStillHasNoParallax) {
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    const TwoViews found =
+        EstimateTwoViews(Camera(), See(Rigid3(), seed, {}, GeneralDepth), {.seed = seed});
+    EXPECT_EQ(found.failure, TwoViewFailure::kTooLittleParallax);
+  }
+}
+
+TEST(TwoViews, WrongPairsGiveNoMotion) {
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    const TwoViews found = EstimateTwoViews(
+        Camera(), See(Rigid3(), seed, {.outliers = 1.0}, GeneralDepth), {.seed = seed});
+    EXPECT_FALSE(found.ok()) << seed;
+  }
+}
+
+TEST(TwoViews, NeedEnoughPairs) {
+  const Rigid3 motion = Motion({0, 0, 0}, {0.2, 0, 0});
+  const std::vector<PixelPair> pairs = See(motion, 1, {.pairs = 49}, GeneralDepth);
+  EXPECT_EQ(EstimateTwoViews(Camera(), pairs, {}).failure, TwoViewFailure::kTooFewPairs);
+  EXPECT_EQ(EstimateTwoViews(Camera(), {}, {}).failure, TwoViewFailure::kTooFewPairs);
+}
+
+TEST(TwoViews, TheSameSeedGivesTheSameBits) {
+  const Rigid3 motion = Motion({0.05, -0.1, 0.02}, {-0.15, 0.1, 0.05});
+  const std::vector<PixelPair> pairs = See(motion, 5, {}, GeneralDepth);
+  const TwoViews one = EstimateTwoViews(Camera(), pairs, {.seed = 7});
+  const TwoViews two = EstimateTwoViews(Camera(), pairs, {.seed = 7});
+  EXPECT_EQ(one.b_from_a.ToMatrix(), two.b_from_a.ToMatrix());
+  ASSERT_EQ(one.points.size(), two.points.size());
+  for (size_t i = 0; i < one.points.size(); ++i) {
+    EXPECT_EQ(one.points[i].point_in_a, two.points[i].point_in_a);
+  }
+}
+
+TEST(TwoViews, NamesOfFailuresAreDifferent) {
+  EXPECT_EQ(ToString(TwoViewFailure::kTooLittleParallax), "too little parallax");
+  EXPECT_NE(ToString(TwoViewFailure::kAmbiguous), ToString(TwoViewFailure::kTooFewPoints));
+}
+
+}  // namespace
+}  // namespace hullslam
