@@ -3,8 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "frame/point_measurement.h"
 #include "geometry/epipolar.h"
@@ -18,8 +20,14 @@ namespace {
 
 constexpr size_t kNeighbours = 10;
 constexpr size_t kMonocularNeighbours = 20;  // without depth, all landmarks are made here
-constexpr double kMinBaseline = 0.01;        // over the median depth, without depth images
-constexpr double kMaxCosParallax = 0.9998;   // about 1.1 degrees, for pairs without depth
+constexpr double kMinBaseline = 0.005;       // over the median depth, without depth images
+// Without depth images, in a keyframe with fewer the depth of what has no parallax is guessed.
+constexpr size_t kEnoughLandmarks = 300;
+// Without depth images, a pair needs a parallax of so many standard deviations of its keypoints.
+// With less, noise decides which pairs seem to have enough, and these seem to be too near: the
+// scale of the map would shrink wherever the camera only turns.
+constexpr double kMinParallaxSigmas = 4.0;
+constexpr double kMaxCosParallax = 0.9998;  // about 1.1 degrees, for pairs without depth
 
 // A keypoint of a keyframe with what triangulation needs.
 struct View {
@@ -58,13 +66,21 @@ Eigen::Vector3d UnprojectToWorld(const View& view, const Sensor& sensor) {
   return Inverse(view.keyframe->cam_from_world) * sensor.camera.Unproject(view.pixel, view.depth);
 }
 
+// Cosine of the parallax from which a pair without depth is triangulated.
+double MaxCosParallax(const View& a, const View& b, const Sensor& sensor) {
+  if (!sensor.IsMonocular()) {
+    return kMaxCosParallax;
+  }
+  return std::cos(kMinParallaxSigmas * std::hypot(a.scale, b.scale) / sensor.camera.fx);
+}
+
 std::optional<Eigen::Vector3d> Locate(const View& a, const View& b, const Sensor& sensor) {
   const double cos_parallax = a.ray_in_world.dot(b.ray_in_world);
   const double cos_a = CosStereoParallax(a, sensor.baseline());
   const double cos_b = CosStereoParallax(b, sensor.baseline());
   const bool has_depth = a.depth > 0.0 || b.depth > 0.0;
   if (cos_parallax > 0.0 && cos_parallax < std::min(cos_a, cos_b) &&
-      (has_depth || cos_parallax < kMaxCosParallax)) {
+      (has_depth || cos_parallax < MaxCosParallax(a, b, sensor))) {
     return TriangulatePoint(a.keyframe->cam_from_world, a.normalized, b.keyframe->cam_from_world,
                             b.normalized);
   }
@@ -147,35 +163,104 @@ std::vector<Match> FindPairs(const Map& map, const Keyframe& a, const Keyframe& 
                                EpipoleOf(b_from_a, sensor.camera), sensor.levels, {});
 }
 
-std::optional<Eigen::Vector3d> LocateAndVerify(const View& a, const View& b, const Sensor& sensor) {
-  const std::optional<Eigen::Vector3d> point = Locate(a, b, sensor);
-  const bool is_good = point && Reprojects(a, *point, sensor) && Reprojects(b, *point, sensor) &&
-                       HasConsistentScale(a, b, *point, sensor);
-  return is_good ? point : std::nullopt;
+bool IsConsistent(const View& a, const View& b, const Eigen::Vector3d& point,
+                  const Sensor& sensor) {
+  return Reprojects(a, point, sensor) && Reprojects(b, point, sensor) &&
+         HasConsistentScale(a, b, point, sensor);
+}
+
+// Where landmarks of a keyframe are, to guess the depth of what is beside them.
+class NearbyDepth {
+ public:
+  NearbyDepth(const Map& map, const Keyframe& keyframe) {
+    for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
+      if (keyframe.landmarks[i].IsValid()) {
+        const Eigen::Vector3d& position = map.landmarks().At(keyframe.landmarks[i]).position;
+        samples_.push_back({keyframe.frame->features.keypoints[i].undistorted.cast<double>(),
+                            (keyframe.cam_from_world * position).z()});
+      }
+    }
+  }
+
+  // The median depth of the landmarks that are nearest in the image; null if there are too few.
+  std::optional<double> At(const Eigen::Vector2d& pixel) const {
+    constexpr size_t kNearest = 9;
+    if (samples_.size() < kNearest) {
+      return std::nullopt;
+    }
+    std::vector<std::pair<double, double>> nearest;  // squared distance, depth
+    for (const Sample& sample : samples_) {
+      nearest.emplace_back((sample.pixel - pixel).squaredNorm(), sample.depth);
+    }
+    std::partial_sort(nearest.begin(), nearest.begin() + kNearest, nearest.end());
+    std::array<double, kNearest> depths;
+    std::transform(nearest.begin(), nearest.begin() + kNearest, depths.begin(),
+                   [](const auto& one) { return one.second; });
+    std::nth_element(depths.begin(), depths.begin() + kNearest / 2, depths.end());
+    return depths[kNearest / 2];
+  }
+
+ private:
+  struct Sample {
+    Eigen::Vector2d pixel;
+    double depth;
+  };
+  std::vector<Sample> samples_;
+};
+
+// Makes landmarks of the pairs that `locate` finds a point for.
+template <typename Locator>
+void AddPairs(Map& map, KeyframeId id, KeyframeId neighbour, const Sensor& sensor,
+              const Locator& locate, std::vector<LandmarkId>& created) {
+  for (const Match& pair :
+       FindPairs(map, map.keyframes().At(id), map.keyframes().At(neighbour), sensor)) {
+    const View a = MakeView(map.keyframes().At(id), pair.query, sensor);
+    const View b = MakeView(map.keyframes().At(neighbour), pair.keypoint, sensor);
+    const std::optional<Eigen::Vector3d> point = locate(a, b);
+    if (!point || !IsConsistent(a, b, *point, sensor)) {
+      continue;
+    }
+    const LandmarkId landmark = map.AddLandmark(*point, id);
+    map.AddObservation(landmark, id, pair.query);
+    map.AddObservation(landmark, neighbour, pair.keypoint);
+    UpdateDescriptor(map, landmark);
+    UpdateViewingGeometry(map, landmark, sensor.levels);
+    created.push_back(landmark);
+  }
+}
+
+size_t CountLandmarks(const Keyframe& keyframe) {
+  return static_cast<size_t>(std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
+                                           [](LandmarkId id) { return id.IsValid(); }));
 }
 
 }  // namespace
 
 std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId id, const Sensor& sensor) {
+  const std::vector<KeyframeId> neighbours = BestCovisible(
+      map.keyframes().At(id), sensor.IsMonocular() ? kMonocularNeighbours : kNeighbours);
   std::vector<LandmarkId> created;
-  const size_t neighbours = sensor.IsMonocular() ? kMonocularNeighbours : kNeighbours;
-  for (const KeyframeId neighbour : BestCovisible(map.keyframes().At(id), neighbours)) {
-    const std::vector<Match> pairs =
-        FindPairs(map, map.keyframes().At(id), map.keyframes().At(neighbour), sensor);
-    for (const Match& pair : pairs) {
-      const View a = MakeView(map.keyframes().At(id), pair.query, sensor);
-      const View b = MakeView(map.keyframes().At(neighbour), pair.keypoint, sensor);
-      const std::optional<Eigen::Vector3d> point = LocateAndVerify(a, b, sensor);
-      if (!point) {
-        continue;
-      }
-      const LandmarkId landmark = map.AddLandmark(*point, id);
-      map.AddObservation(landmark, id, pair.query);
-      map.AddObservation(landmark, neighbour, pair.keypoint);
-      UpdateDescriptor(map, landmark);
-      UpdateViewingGeometry(map, landmark, sensor.levels);
-      created.push_back(landmark);
-    }
+  for (const KeyframeId neighbour : neighbours) {
+    AddPairs(
+        map, id, neighbour, sensor,
+        [&](const View& a, const View& b) { return Locate(a, b, sensor); }, created);
+  }
+  if (!sensor.IsMonocular() || CountLandmarks(map.keyframes().At(id)) >= kEnoughLandmarks) {
+    return created;
+  }
+  // The camera only turns. What comes into view has no parallax, but tracking would soon have
+  // nothing left. So its depth is guessed, until there is parallax to correct it.
+  const NearbyDepth nearby(map, map.keyframes().At(id));
+  for (const KeyframeId neighbour : neighbours) {
+    AddPairs(
+        map, id, neighbour, sensor,
+        [&](const View& a, const View&) -> std::optional<Eigen::Vector3d> {
+          const std::optional<double> depth = nearby.At(a.pixel);
+          return depth ? std::optional(Inverse(a.keyframe->cam_from_world) *
+                                       sensor.camera.Unproject(a.pixel, *depth))
+                       : std::nullopt;
+        },
+        created);
   }
   return created;
 }

@@ -15,6 +15,7 @@
 #include "frame/point_measurement.h"
 #include "map/landmark_edits.h"
 #include "optim/bundle_points.h"
+#include "optim/bundle_scale.h"
 #include "optim/eliminated_points.h"
 #include "optim/object_bundle.h"
 #include "optim/reduced_points_cost.h"
@@ -254,14 +255,16 @@ BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWind
   const int most = options.robust_iterations + options.final_iterations;
   Supervision supervision(cancellation, on_progress, most);
   BundleResult result = Adjust(map, sensor, window, options, supervision);
-  if (result.is_usable || window.objects.empty()) {
-    return result;
+  if (!result.is_usable && !window.objects.empty()) {
+    BundleWindow points_only = window;
+    points_only.objects.clear();
+    Supervision again(cancellation, on_progress, most);
+    result = Adjust(map, sensor, points_only, options, again);
+    result.failed_objects = window.objects;
   }
-  BundleWindow points_only = window;
-  points_only.objects.clear();
-  Supervision again(cancellation, on_progress, most);
-  result = Adjust(map, sensor, points_only, options, again);
-  result.failed_objects = window.objects;
+  if (sensor.IsMonocular() && result.is_usable && window.fixed.size() == 1) {
+    KeepScale(map, window.fixed.front(), result);
+  }
   return result;
 }
 
