@@ -74,7 +74,7 @@ void WarnOfUnknownClasses(const TrackingOptions& options, const SequenceMasks& m
   }
 }
 
-void WarnOfLastFrame(const FrameSelection& selection, const TumSequence& sequence) {
+void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& sequence) {
   if (selection.last != std::numeric_limits<size_t>::max() &&
       selection.last >= sequence.available) {
     PrintError("warning: --last is '{}', but the last frame of the sequence is {}\n",

@@ -9,13 +9,22 @@
 
 namespace hullslam {
 
+// What a negative Camera.fy in a settings file means. Some files of other programs have one: their
+// y axis points up, so their world is left-handed. The pixels are those of the camera with y down
+// and the positive value.
+enum class NegativeFy {
+  kError,
+  kPositive,  // the positive value is used; for programs that mirror the ground truth (rgbd_icl)
+};
+
 // Reads a settings file in the format of ORB-SLAM2 (OpenCV YAML: `key: value` lines after a first
 // line `%YAML:1.0`) or of ORB-SLAM3 (format 1.0, docs/settings.md), then applies `overrides` of the
 // form `key=value`, then validates the result. Missing keys keep their defaults; Camera.fx, fy, cx
 // and cy have no default. Throws InputError that names file, line, key, value and what was
 // expected.
 SystemOptions ReadSettings(const std::filesystem::path& file,
-                           std::span<const std::string> overrides = {});
+                           std::span<const std::string> overrides = {},
+                           NegativeFy negative_fy = NegativeFy::kError);
 
 // The default settings file of a sequence: `camera.yaml` in its folder, else the file in
 // `config_folder` for the camera that the name of the folder contains (freiburg1 or fr1: TUM1.yaml,
