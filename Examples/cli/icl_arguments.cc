@@ -11,6 +11,19 @@
 #include "hullslam/io/settings.h"
 
 namespace hullslam {
+namespace {
+
+// Adds an option that is one of the names and sets the field to its value.
+template <typename Enum>
+void AddNamed(CLI::App& app, const std::string& option, const std::map<std::string, Enum>& values,
+              Enum& field, const std::string& help) {
+  app.add_option_function<std::string>(
+         option, [&field, values](const std::string& name) { field = values.at(name); }, help)
+      ->check(CLI::IsMember(values).description(""))
+      ->type_name("NAME");
+}
+
+}  // namespace
 
 DatasetHelp IclHelp() {
   return {.sequence = "folder of ICL-NUIM, of either package (--package)",
@@ -20,26 +33,19 @@ DatasetHelp IclHelp() {
 }
 
 void AddIclArguments(CLI::App& app, IclSequenceOptions& icl) {
-  const std::map<std::string, IclPackage> packages = {{"tum", IclPackage::kTum},
-                                                      {"povray", IclPackage::kPovray}};
-  const std::map<std::string, CameraYAxis> axes = {{"up", CameraYAxis::kUp},
-                                                   {"down", CameraYAxis::kDown}};
-  app.add_option("--package", icl.package,
-                 "tum: rgb/N.png, depth/N.png and associations.txt; povray: scene_00_NNNN.png, "
-                 ".depth and .txt (default: by the files in SEQUENCE)")
-      ->transform(CLI::Transformer(packages).description(""))
-      ->check(CLI::IsMember(packages).description(""))
-      ->type_name("tum|povray");
+  AddNamed<IclPackage>(
+      app, "--package", {{"tum", IclPackage::kTum}, {"povray", IclPackage::kPovray}}, icl.package,
+      "tum: rgb/N.png, depth/N.png and associations.txt; povray: scene_00_NNNN.png, .depth and "
+      ".txt (default: by the files in SEQUENCE)");
   app.add_option("--groundtruth", icl.groundtruth,
                  "true trajectory in TUM's format, with indices of frames as time stamps (default: "
                  "the .txt files of package povray, else *.gt.freiburg or groundtruth.txt in "
                  "SEQUENCE)");
-  app.add_option("--groundtruth-y", icl.groundtruth_y,
-                 "where the y axis of the ground truth's cameras points; up (fy < 0) means that it "
-                 "is mirrored (default: what the depth images agree with; docs/datasets.md)")
-      ->transform(CLI::Transformer(axes).description(""))
-      ->check(CLI::IsMember(axes).description(""))
-      ->type_name("up|down");
+  AddNamed<CameraYAxis>(
+      app, "--groundtruth-y", {{"up", CameraYAxis::kUp}, {"down", CameraYAxis::kDown}},
+      icl.groundtruth_y,
+      "where the y axis of the ground truth's cameras points; up (fy < 0) means that it is "
+      "mirrored (default: what the depth images agree with; docs/datasets.md)");
   app.add_option("--povray-units", icl.povray_units,
                  "lengths in the .depth and .txt files per metre (100: centimetres)")
       ->check(CLI::Range(1e-6, 1e6).description(""))

@@ -274,7 +274,7 @@ std::string DescribeLoss(const RunArguments& arguments, const RunOptions& option
 }
 
 std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
-  return {arguments.sequence,         arguments.masks,      arguments.settings,
+  return {arguments.sequence,     arguments.masks,      arguments.settings,
           arguments.associations, arguments.vocabulary, arguments.load_map};
 }
 

@@ -31,9 +31,9 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   app.add_option("ARGUMENTS", positional,
                  "SEQUENCE: " + help.sequence +
                      "\nor VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS, the arguments of ORB-SLAM2");
-  app.add_option("--settings", arguments.settings,
-                 "settings file (default: camera.yaml in SEQUENCE; without it, " + help.settings +
-                     ")");
+  app.add_option(
+      "--settings", arguments.settings,
+      "settings file (default: camera.yaml in SEQUENCE; without it, " + help.settings + ")");
   app.add_option("--vocabulary", arguments.vocabulary,
                  "vocabulary of visual words: a binary file, a text file of ORB-SLAM2, or none "
                  "(default: the one that comes with HullSLAM)");
@@ -70,8 +70,7 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   app.add_option("--last", arguments.selection.last,
                  "number of the last frame, inclusive (default: last of the sequence)")
       ->check(WholeNumber(0));
-  app.add_option("--stride", arguments.selection.stride,
-                 "use every n-th frame only (default: 1)")
+  app.add_option("--stride", arguments.selection.stride, "use every n-th frame only (default: 1)")
       ->check(WholeNumber(1));
   app.add_flag("--strict", arguments.strict,
                "stop at an image that cannot be read instead of skipping the frame");

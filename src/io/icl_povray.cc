@@ -114,28 +114,26 @@ const Eigen::Vector3d& VectorOf(const Vectors& vectors, const char* key, const f
 }  // namespace
 
 bool HasPovrayFrames(const fs::path& folder) {
-  std::error_code error;
-  fs::directory_iterator entries(folder, error);
-  return !error && std::any_of(begin(entries), end(entries), [](const fs::directory_entry& entry) {
-           return ParseName(entry.path()).has_value();
-         });
+  const std::vector<fs::path> files = ListFolder(folder);
+  return std::any_of(files.begin(), files.end(),
+                     [](const fs::path& file) { return ParseName(file).has_value(); });
 }
 
 std::vector<FramePaths> ListPovrayFrames(const fs::path& folder) {
   std::map<size_t, fs::path> images;
   std::string scene;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::optional<FrameName> name = ParseName(entry.path());
+  for (const fs::path& file : ListFolder(folder)) {
+    const std::optional<FrameName> name = ParseName(file);
     if (!name) {
       continue;
     }
     if (!images.empty() && (name->scene != scene || images.contains(name->index))) {
       throw InputError(fmt::format("{}: has images of two scenes, such as {} and {}",
                                    folder.string(), images.begin()->second.filename().string(),
-                                   entry.path().filename().string()));
+                                   file.filename().string()));
     }
     scene = name->scene;
-    images.emplace(name->index, entry.path());
+    images.emplace(name->index, file);
   }
   if (images.empty()) {
     throw InputError(folder.string() + ": has no images scene_NN_NNNN.png");
@@ -157,8 +155,9 @@ Rigid3 ReadPovrayCamera(const fs::path& path, double units) {
   const Eigen::Vector3d forward = VectorOf(vectors, "cam_dir", path);
   const Eigen::Vector3d right = VectorOf(vectors, "cam_up", path).cross(forward);
   if (right.norm() < kLeastLength) {
-    throw InputError(path.string() + ": cam_dir and cam_up are parallel, expected the directions "
-                                     "of a camera");
+    throw InputError(path.string() +
+                     ": cam_dir and cam_up are parallel, expected the directions "
+                     "of a camera");
   }
   Eigen::Matrix3d world_from_cam;
   world_from_cam.col(0) = right.normalized();
@@ -201,7 +200,8 @@ cv::Mat ReadRayDepth(const fs::path& path, const PinholeCamera& camera, double u
     if (count < depth.total()) {
       const int row = static_cast<int>(count) / depth.cols;
       const int column = static_cast<int>(count) % depth.cols;
-      const Eigen::Vector3d ray = camera.Unproject(camera.Undistort(Eigen::Vector2d(column, row)), 1.0);
+      const Eigen::Vector3d ray =
+          camera.Unproject(camera.Undistort(Eigen::Vector2d(column, row)), 1.0);
       depth.at<float>(row, column) = static_cast<float>(distance / (units * ray.norm()));
     }
     ++count;

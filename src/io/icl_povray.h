@@ -15,7 +15,7 @@ namespace hullslam {
 // (text: for each pixel, row by row, the distance of the surface along the ray) and .txt (the
 // camera of POVRay). Lengths are in units of which `units` are a metre.
 
-// Whether the folder has an image of the package.
+// Whether the folder has an image of the package. Throws InputError if it cannot be read.
 bool HasPovrayFrames(const std::filesystem::path& folder);
 
 // All frames of the folder, by increasing index, with the time stamp index / 30 s. The depth files
@@ -23,9 +23,9 @@ bool HasPovrayFrames(const std::filesystem::path& folder);
 // scenes.
 std::vector<FramePaths> ListPovrayFrames(const std::filesystem::path& folder);
 
-// The camera of a .txt file, from its lines `cam_pos = [x, y, z]';`, `cam_dir` and `cam_up`. POVRay's
-// world is left-handed, and the y axis of its camera points up. The result is the pose of the
-// right-handed camera in the mirrored world (MirrorY), m. Throws InputError with file and line.
+// The camera of a .txt file, from its lines `cam_pos = [x, y, z]';`, `cam_dir` and `cam_up`.
+// POVRay's world is left-handed, and the y axis of its camera points up. The result is the pose of
+// the right-handed camera in the mirrored world (MirrorY), m. Throws InputError with file and line.
 Rigid3 ReadPovrayCamera(const std::filesystem::path& path, double units);
 
 // The poses of all frames. Absent if the first frame has no .txt file. Throws InputError if another

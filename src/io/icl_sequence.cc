@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 IclPackage DetectPackage(const fs::path& folder, const IclSequenceOptions& options) {
   std::error_code error;
-  const bool is_tum = !options.associations.empty() || fs::exists(folder / "associations.txt", error);
+  const bool is_tum =
+      !options.associations.empty() || fs::exists(folder / "associations.txt", error);
   const bool is_povray = HasPovrayFrames(folder);
   if (is_tum != is_povray) {
     return is_tum ? IclPackage::kTum : IclPackage::kPovray;
@@ -39,9 +40,10 @@ IclPackage DetectPackage(const fs::path& folder, const IclSequenceOptions& optio
 double Index(const TextRow& row, size_t column, std::string_view name) {
   const double index = row.Number(column, name);
   if (index < 0.0 || index != std::floor(index) || index > kMostImages) {
-    row.Fail(fmt::format("{} is '{}', expected the index of a frame; lists with times in seconds "
-                         "are those of TUM",
-                         name, row.columns[column]));
+    row.Fail(
+        fmt::format("{} is '{}', expected the index of a frame; lists with times in seconds "
+                    "are those of TUM",
+                    name, row.columns[column]));
   }
   return index;
 }
@@ -60,9 +62,10 @@ FramePaths ParsePair(const TextRow& row, const fs::path& folder) {
                          row.columns[0], row.columns[2]));
   }
   if (IsIn("rgb", row.columns[1]) || IsIn("depth", row.columns[3])) {
-    row.Fail(fmt::format("the files are '{}' and '{}', expected the depth image first, as in "
-                         "ICL-NUIM",
-                         row.columns[1], row.columns[3]));
+    row.Fail(
+        fmt::format("the files are '{}' and '{}', expected the depth image first, as in "
+                    "ICL-NUIM",
+                    row.columns[1], row.columns[3]));
   }
   return {index / kIclFramesPerSecond, ImageFile(row, 3, folder), ImageFile(row, 1, folder)};
 }
@@ -81,13 +84,12 @@ std::vector<FramePaths> ReadPairs(const fs::path& folder, const fs::path& associ
 
 std::optional<fs::path> FindGroundtruth(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
+  for (const fs::path& file : ListFolder(folder)) {
+    const std::string name = file.filename().string();
     if (name.ends_with(".gt.freiburg") || name == "groundtruth.txt") {
-      files.push_back(entry.path());
+      files.push_back(file);
     }
   }
-  std::sort(files.begin(), files.end());
   if (files.size() > 1) {
     throw InputError(fmt::format("{}: has {} and {}, expected --groundtruth FILE to say which",
                                  folder.string(), files[0].filename().string(),
@@ -113,9 +115,9 @@ ChosenAxis ChooseAxis(const fs::path& path, const YAxisVotes& votes) {
   const double up = percent(votes.both + votes.only_up);
   const double down = percent(votes.both + votes.only_down);
   // With a motion that the mirror does not change, both axes give the same.
-  constexpr double kSame = 0.5;     // % of the pixels on which only one of the axes agrees
-  constexpr double kLeast = 50.0;   // % of the pixels
-  constexpr size_t kFactor = 2;     // how many times more pixels agree with only the right axis
+  constexpr double kSame = 0.5;    // % of the pixels on which only one of the axes agrees
+  constexpr double kLeast = 50.0;  // % of the pixels
+  constexpr size_t kFactor = 2;    // how many times more pixels agree with only the right axis
   if (percent(votes.only_up + votes.only_down) < kSame && up >= kLeast) {
     return {true, "as ICL-NUIM says; the depth images agree with y down as well"};
   }
@@ -127,8 +129,8 @@ ChosenAxis ChooseAxis(const fs::path& path, const YAxisVotes& votes) {
         "and {:.0f} % with y down, so it is unclear; expected --groundtruth-y up or down",
         path.string(), up, down));
   }
-  return {is_up, fmt::format("{:.0f} % of the depth agrees with y up, {:.0f} % with y down", up,
-                             down)};
+  return {is_up,
+          fmt::format("{:.0f} % of the depth agrees with y up, {:.0f} % with y down", up, down)};
 }
 
 void AddGroundtruth(const fs::path& path, const PinholeCamera& camera, const DepthOptions& depth,
@@ -153,8 +155,8 @@ IclSequence OpenIclSequence(const fs::path& folder, const PinholeCamera& camera,
     throw InputError(folder.string() + ": no such folder, expected a sequence of ICL-NUIM");
   }
   IclSequence sequence;
-  sequence.package = options.package == IclPackage::kDetect ? DetectPackage(folder, options)
-                                                            : options.package;
+  sequence.package =
+      options.package == IclPackage::kDetect ? DetectPackage(folder, options) : options.package;
   const bool is_povray = sequence.package == IclPackage::kPovray;
   sequence.images.frames =
       is_povray ? ListPovrayFrames(folder) : ReadPairs(folder, options.associations);

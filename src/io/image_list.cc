@@ -72,6 +72,20 @@ void SelectFrames(const fs::path& source, const FrameSelection& selection,
   sequence.frames = Select(source, std::move(sequence.frames), selection);
 }
 
+std::vector<fs::path> ListFolder(const fs::path& folder) {
+  std::vector<fs::path> paths;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    paths.push_back(entry->path());
+  }
+  if (error) {
+    throw InputError(folder.string() + ": " + error.message());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
 void CheckImagesExist(const std::vector<FramePaths>& frames) {
   std::error_code error;
   for (const FramePaths& frame : frames) {

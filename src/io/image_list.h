@@ -31,6 +31,9 @@ void AddFrame(const TextRow& row, FramePaths frame, std::vector<FramePaths>& fra
 void SelectFrames(const std::filesystem::path& source, const FrameSelection& selection,
                   ImageSequence& sequence);
 
+// The paths in a folder, sorted by name.
+std::vector<std::filesystem::path> ListFolder(const std::filesystem::path& folder);
+
 // Refuses frames whose image, or whose depth image if there should be one, is no file.
 void CheckImagesExist(const std::vector<FramePaths>& frames);
 

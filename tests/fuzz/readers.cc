@@ -22,6 +22,7 @@
 
 #include "bow/vocabulary_layout.h"
 #include "hullslam/frame/detection_builder.h"
+#include "hullslam/io/icl_sequence.h"
 #include "hullslam/io/image_file.h"
 #include "hullslam/io/map_file.h"
 #include "hullslam/io/mask_source.h"
@@ -32,6 +33,7 @@
 #include "hullslam/io/tum_sequence.h"
 #include "hullslam/io/vocabulary_file.h"
 #include "hullslam/util/error.h"
+#include "io/icl_povray.h"
 #include "io/map_parser.h"
 #include "io/mask_classes.h"
 #include "io/read_file.h"
@@ -157,6 +159,28 @@ void FuzzAssociations(std::string_view bytes) {
   Try([] {
     OpenTumSequence(folder.path(),
                     {.associations = folder.path() / "associations.txt", .need_images = false});
+  });
+}
+
+// The images do not exist, so a good file ends with an error that names the first one.
+void FuzzIclAssociations(std::string_view bytes) {
+  static const InputFolder folder("associations.txt");
+  folder.Write(bytes);
+  Try([] { OpenIclSequence(folder.path(), PinholeCamera(), DepthOptions()); });
+}
+
+void FuzzPovrayCamera(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const Rigid3 pose = ReadPovrayCamera(path, 1.0);
+    Expect(std::abs(pose.rotation.norm() - 1.0) < 1e-6 && pose.translation.allFinite(), "the pose");
+  });
+}
+
+void FuzzRayDepth(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const PinholeCamera camera{.fx = 4.0, .fy = 4.0, .cx = 1.0, .cy = 0.5, .width = 3, .height = 2};
+    const cv::Mat depth = ReadRayDepth(path, camera, 1.0);
+    Expect(cv::checkRange(depth, true, nullptr, 0.0, 2e8), "the depth");
   });
 }
 
@@ -333,7 +357,7 @@ void FuzzMap(std::string_view bytes) {
   });
 }
 
-constexpr std::array<FuzzedReader, 20> kReaders = {{{"trajectory", FuzzTrajectory},
+constexpr std::array<FuzzedReader, 23> kReaders = {{{"trajectory", FuzzTrajectory},
                                                     {"settings", FuzzSettings},
                                                     {"sequence", FuzzSequence},
                                                     {"associations", FuzzAssociations},
@@ -352,7 +376,10 @@ constexpr std::array<FuzzedReader, 20> kReaders = {{{"trajectory", FuzzTrajector
                                                     {"classes_json", FuzzClassesJson},
                                                     {"vocabulary_binary", FuzzVocabularyBinary},
                                                     {"vocabulary_text", FuzzVocabularyText},
-                                                    {"map", FuzzMap}}};
+                                                    {"map", FuzzMap},
+                                                    {"icl_associations", FuzzIclAssociations},
+                                                    {"povray_camera", FuzzPovrayCamera},
+                                                    {"ray_depth", FuzzRayDepth}}};
 
 }  // namespace
 
