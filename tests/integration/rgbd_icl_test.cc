@@ -21,7 +21,7 @@ using Arguments = std::vector<std::string>;
 using Json = nlohmann::json;
 
 constexpr int kFrames = 16;
-constexpr double kSmall = 0.01;  // m
+constexpr double kSmall = 0.004;  // m
 
 class RgbdIcl : public ::testing::Test {
  protected:
@@ -65,12 +65,14 @@ TEST_F(RgbdIcl, AGroundTruthWithEitherAxisFitsTheTrajectory) {
   }
 }
 
-// A mirrored trajectory does not fit, so the small errors above say something.
+// A mirrored trajectory does not fit, so the small errors of the others say something.
 TEST_F(RgbdIcl, TheWrongAxisGivesALargeError) {
-  room_.WriteIclTum(path_, kFrames, true);
+  room_.WriteIclTum(path_, 2 * kFrames, true);
+  RunWell({path_, "--quiet"});
+  const double right = Trajectory()["ate_rmse_m"];
   const ProgramResult result = RunWell({path_, "--groundtruth-y", "down"});
   EXPECT_NE(result.output.find("as --groundtruth-y says"), std::string::npos) << result.output;
-  EXPECT_GT(Trajectory()["ate_rmse_m"].get<double>(), 2.0 * kSmall);
+  EXPECT_GT(Trajectory()["ate_rmse_m"].get<double>(), 3.0 * right) << right;
 }
 
 TEST_F(RgbdIcl, TheConvertedGroundTruthIsWrittenForOtherPrograms) {

@@ -33,11 +33,12 @@ class MadeRoom {
 
   const PinholeCamera& camera() const { return camera_; }
 
-  // World from camera of a frame.
+  // World from camera of a frame. The path is a helix, which no rotation turns into its mirror
+  // image.
   static Rigid3 Pose(int frame) {
     const double t = 0.1 * frame;
     const Eigen::Quaterniond rotation = ExpSo3({0.25 * std::sin(t), 0.15 * t, 0.1 * t});
-    return {rotation, {0.1 * t, 0.12 * t * t + 0.1 * t, 0.2 * std::sin(t)}};
+    return {rotation, {0.25 * std::sin(1.5 * t), 0.25 - 0.25 * std::cos(1.5 * t), 0.15 * t}};
   }
 
   struct Images {
