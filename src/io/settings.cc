@@ -118,6 +118,28 @@ SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> ov
   return options;
 }
 
+SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
+                           std::span<const std::string> overrides) {
+  SystemOptions options;
+  OptionTable table = options.Bind();
+  SystemOptions given;
+  given.camera = calibration.camera;
+  given.frames_per_second = calibration.frames_per_second;
+  // Each value is set as if a file had it, so that its range is checked.
+  for (const OptionTable::Entry& entry : given.Bind().Entries()) {
+    if (entry.key.starts_with("Camera.")) {
+      table.Set(entry.key, entry.value, source);
+    }
+  }
+  if (const std::string fault = calibration.camera.FindFault(); !fault.empty()) {
+    throw InputError(source + ": " + fault);
+  }
+  std::set<std::string> changed;
+  ApplyOverrides(overrides, table, changed);
+  options.Validate();
+  return options;
+}
+
 fs::path FindDefaultSettings(const fs::path& sequence, const fs::path& config_folder) {
   std::error_code error;
   fs::path own = sequence / "camera.yaml";

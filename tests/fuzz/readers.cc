@@ -22,6 +22,7 @@
 
 #include "bow/vocabulary_layout.h"
 #include "hullslam/frame/detection_builder.h"
+#include "hullslam/io/euroc_sequence.h"
 #include "hullslam/io/icl_sequence.h"
 #include "hullslam/io/image_file.h"
 #include "hullslam/io/map_file.h"
@@ -33,6 +34,7 @@
 #include "hullslam/io/tum_sequence.h"
 #include "hullslam/io/vocabulary_file.h"
 #include "hullslam/util/error.h"
+#include "io/euroc_states.h"
 #include "io/icl_povray.h"
 #include "io/map_parser.h"
 #include "io/mask_classes.h"
@@ -181,6 +183,33 @@ void FuzzRayDepth(std::string_view bytes) {
     const PinholeCamera camera{.fx = 4.0, .fy = 4.0, .cx = 1.0, .cy = 0.5, .width = 3, .height = 2};
     const cv::Mat depth = ReadRayDepth(path, camera, 1.0);
     Expect(cv::checkRange(depth, true, nullptr, 0.0, 2e8), "the depth");
+  });
+}
+
+void FuzzEurocSensor(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const EurocCamera read = ReadEurocCamera(path);
+    Expect(read.calibration.camera.FindFault().empty(), "a camera with a fault");
+    Expect(std::abs(read.body_from_cam.rotation.norm() - 1.0) < 1e-6, "not normalised");
+  });
+}
+
+// The folder is its own subfolder `cam0`.
+void FuzzEurocImages(std::string_view bytes) {
+  static const InputFolder folder("data.csv", "sensor.yaml");
+  const fs::path cam0 = folder.path() / "cam0";
+  if (!fs::exists(cam0)) {
+    fs::create_directory_symlink(folder.path(), cam0);
+  }
+  folder.Write(bytes);
+  Try([] { OpenEurocSequence(folder.path()); });
+}
+
+void FuzzEurocStates(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    for (const StampedPose& pose : ReadEurocStates(path, Rigid3())) {
+      Expect(std::abs(pose.world_from_cam.rotation.norm() - 1.0) < 1e-9, "not normalised");
+    }
   });
 }
 
@@ -357,7 +386,7 @@ void FuzzMap(std::string_view bytes) {
   });
 }
 
-constexpr std::array<FuzzedReader, 23> kReaders = {{{"trajectory", FuzzTrajectory},
+constexpr std::array<FuzzedReader, 26> kReaders = {{{"trajectory", FuzzTrajectory},
                                                     {"settings", FuzzSettings},
                                                     {"sequence", FuzzSequence},
                                                     {"associations", FuzzAssociations},
@@ -379,7 +408,10 @@ constexpr std::array<FuzzedReader, 23> kReaders = {{{"trajectory", FuzzTrajector
                                                     {"map", FuzzMap},
                                                     {"icl_associations", FuzzIclAssociations},
                                                     {"povray_camera", FuzzPovrayCamera},
-                                                    {"ray_depth", FuzzRayDepth}}};
+                                                    {"ray_depth", FuzzRayDepth},
+                                                    {"euroc_sensor", FuzzEurocSensor},
+                                                    {"euroc_images", FuzzEurocImages},
+                                                    {"euroc_states", FuzzEurocStates}}};
 
 }  // namespace
 

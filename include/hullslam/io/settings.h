@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/system/options.h"
 
 namespace hullslam {
@@ -25,6 +26,18 @@ enum class NegativeFy {
 SystemOptions ReadSettings(const std::filesystem::path& file,
                            std::span<const std::string> overrides = {},
                            NegativeFy negative_fy = NegativeFy::kError);
+
+// A camera as its calibration or its data set describes it.
+struct CameraCalibration {
+  PinholeCamera camera;
+  double frames_per_second = 30.0;
+};
+
+// The settings for a camera without a settings file: the defaults, then `overrides` as in
+// ReadSettings(). Throws InputError for what ReadSettings() would refuse; `source` is the name of
+// what the calibration is from.
+SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
+                           std::span<const std::string> overrides = {});
 
 // The default settings file of a sequence: `camera.yaml` in its folder, else the file in
 // `config_folder` for the camera that the name of the folder contains (freiburg1 or fr1: TUM1.yaml,
