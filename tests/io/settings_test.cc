@@ -146,8 +146,13 @@ TEST_F(Settings, TheConfigurationOfIclNuimIsRightHanded) {
 
 TEST_F(Settings, ACalibrationReplacesASettingsFile) {
   CameraCalibration calibration;
-  calibration.camera = {
-      .fx = 458.654, .fy = 457.1, .cx = 367.2, .cy = 248.375, .k1 = -0.28, .width = 752};
+  calibration.camera = {.fx = 458.654,
+                        .fy = 457.1,
+                        .cx = 367.2,
+                        .cy = 248.375,
+                        .k1 = -0.28,
+                        .k2 = 0.074,
+                        .width = 752};
   calibration.frames_per_second = 20.0;
   const std::vector<std::string> overrides = {"ORBextractor.nFeatures=1500", "Camera.cx=300"};
   const SystemOptions options = MakeSettings(calibration, "sensor.yaml", overrides);
