@@ -95,8 +95,17 @@ TEST_F(RgbdIcl, ThePovrayPackageIsTracked) {
   fs::create_directory(path_);
   room_.WriteIclPovray(path_, kFrames);
   const ProgramResult result = RunWell({path_, "--povray-units", "100"});
+  EXPECT_EQ(result.errors.find("warning"), std::string::npos) << result.errors;
   EXPECT_NE(result.output.find("package povray"), std::string::npos) << result.output;
   ExpectSmallError(kFrames);
+}
+
+TEST_F(RgbdIcl, AWrongUnitOfLengthIsNoticed) {
+  fs::create_directory(path_);
+  room_.WriteIclPovray(path_, 2);
+  const ProgramResult result = Run({path_, "--povray-units", "1", "--last", "0"});
+  EXPECT_NE(result.errors.find("is its unit (--povray-units) right?"), std::string::npos)
+      << result.errors;
 }
 
 // The fourth argument is the association file, and ICL.yaml of other programs has fy = -480.
