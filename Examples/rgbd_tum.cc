@@ -23,9 +23,9 @@ int main(int argc, char** argv) {
           return static_cast<int>(hullslam::kDone);
         }
         hullslam::FinishArguments(positional, arguments);
-        const hullslam::ImageSequence sequence =
-            hullslam::OpenTumSequence(arguments.sequence, {.associations = arguments.associations,
-                                                           .selection = arguments.selection});
+        const hullslam::ImageSequence sequence = hullslam::OpenTumSequence(
+            arguments.sequence,
+            {.associations = arguments.associations, .selection = arguments.selection});
         return hullslam::RunRgbd(arguments, hullslam::LoadOptions(arguments), sequence);
       },
       argc, argv);

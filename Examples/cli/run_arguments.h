@@ -15,8 +15,8 @@ namespace hullslam {
 // The command line options that all programs share which run SLAM.
 struct RunArguments {
   std::filesystem::path sequence;
-  std::filesystem::path settings;    // empty: chosen by FindDefaultSettings()
-  std::filesystem::path vocabulary;  // empty: the default one; "none": none
+  std::filesystem::path settings;      // empty: chosen by FindDefaultSettings()
+  std::filesystem::path vocabulary;    // empty: the default one; "none": none
   std::filesystem::path associations;  // empty: those of the sequence, or images paired by time
   FrameSelection selection;
   std::filesystem::path masks;         // empty: none

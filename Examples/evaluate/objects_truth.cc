@@ -9,9 +9,9 @@
 #include "cli/object_outputs.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/io/mask_source.h"
-#include "hullslam/io/tum_sequence.h"
 #include "hullslam/io/trajectory_file.h"
 #include "hullslam/io/true_object_file.h"
+#include "hullslam/io/tum_sequence.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

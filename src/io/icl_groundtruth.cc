@@ -69,7 +69,7 @@ std::optional<Prediction> Predict(const PinholeCamera& camera, const Rigid3& to_
 // Adds the votes of the pixels of one pair of images.
 void CompareDepth(const PinholeCamera& camera, const DepthOptions& options, const cv::Mat& from,
                   const cv::Mat& to, const Rigid3& to_from_from, YAxisVotes& votes) {
-  constexpr int kStep = 8;            // px
+  constexpr int kStep = 8;             // px
   constexpr double kTolerance = 0.03;  // of the depth; noisy depth images are off by less
   const Rigid3 mirrored = MirrorY(to_from_from);
   for (int v = kStep / 2; v < from.rows; v += kStep) {
@@ -106,8 +106,7 @@ Rigid3 MirrorY(const Rigid3& world_from_cam) {
   // A rotation axis is an axial vector: the mirror turns (x, y, z) into (-x, y, -z).
   const Eigen::Quaterniond& q = world_from_cam.rotation;
   const Eigen::Vector3d& t = world_from_cam.translation;
-  return {Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()),
-          Eigen::Vector3d(t.x(), -t.y(), t.z())};
+  return {Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()), Eigen::Vector3d(t.x(), -t.y(), t.z())};
 }
 
 Trajectory MirrorY(Trajectory trajectory) {
@@ -139,8 +138,7 @@ YAxisVotes MeasureYAxis(const ImageSequence& sequence, const Trajectory& as_give
   YAxisVotes votes;
   for (size_t i = 0; i + 1 < views.size(); i += step) {
     size_t j = i + 1;
-    while (j + 1 < views.size() &&
-           views[j].frame->timestamp < views[i].frame->timestamp + kApart) {
+    while (j + 1 < views.size() && views[j].frame->timestamp < views[i].frame->timestamp + kApart) {
       ++j;
     }
     const auto from = LoadDepth(sequence, *views[i].frame, camera);

@@ -14,10 +14,10 @@ ImageInput LoadFrame(const FramePaths& frame, const PinholeCamera& camera) {
   ImageInput image{frame.timestamp, ReadGreyImage(frame.image),
                    frame.depth.empty() ? cv::Mat() : ReadDepthImage(frame.depth)};
   if (!frame.depth.empty() && image.grey.size() != image.depth.size()) {
-    throw InputError(fmt::format(
-        "{}: {}x{} px, expected the size of its colour image {}, {}x{}", frame.depth.string(),
-        image.depth.cols, image.depth.rows, frame.image.filename().string(), image.grey.cols,
-        image.grey.rows));
+    throw InputError(fmt::format("{}: {}x{} px, expected the size of its colour image {}, {}x{}",
+                                 frame.depth.string(), image.depth.cols, image.depth.rows,
+                                 frame.image.filename().string(), image.grey.cols,
+                                 image.grey.rows));
   }
   CheckImageSize(frame.image.string(), image.grey, camera);
   return image;

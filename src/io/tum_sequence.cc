@@ -78,10 +78,10 @@ ImageSequence ReadAssociations(const fs::path& folder, const fs::path& path) {
   ForEachRow(path, [&](const TextRow& row) {
     CheckColumns(row, 4, "timestamp rgb timestamp depth");
     row.Stamp(2, "timestamp of depth");
-    AddFrame(row,
-             {row.Stamp(0, "timestamp of rgb"), ImageFile(row, 1, folder),
-              ImageFile(row, 3, folder)},
-             sequence.frames);
+    AddFrame(
+        row,
+        {row.Stamp(0, "timestamp of rgb"), ImageFile(row, 1, folder), ImageFile(row, 3, folder)},
+        sequence.frames);
   });
   if (sequence.frames.empty()) {
     throw InputError(path.string() + ": has no images");
