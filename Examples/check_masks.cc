@@ -144,12 +144,12 @@ void DrawFrame(const std::string& name, const cv::Mat& grey, const PinholeCamera
 // Counts and draws one frame. If its masks or images cannot be read, this is recorded as a fault.
 // Without `output` nothing is drawn.
 void CheckFrame(const Arguments& arguments, const SystemOptions& options, const MaskSource& source,
-                const RgbdFramePaths& paths, const MaskFrame& names, OutputFolder* output,
+                const FramePaths& paths, const MaskFrame& names, OutputFolder* output,
                 Counts& counts) {
   const bool is_drawn = output != nullptr && counts.frames % arguments.every == 0;
   ++counts.frames;
   std::error_code error;
-  counts.without_image += fs::exists(paths.rgb, error) ? 0 : 1;
+  counts.without_image += fs::exists(paths.image, error) ? 0 : 1;
   counts.without_depth += paths.depth.empty() ? 1 : 0;
   try {
     const FrameMasks frame = source.Read(names);
@@ -164,7 +164,7 @@ void CheckFrame(const Arguments& arguments, const SystemOptions& options, const 
     const DetectionResult result = builder.Build(frame.masks, depth, {});
     CountDetections(frame, result, counts);
     if (is_drawn) {
-      DrawFrame(names.stem + ".png", Background(paths.rgb, options.camera), options.camera, frame,
+      DrawFrame(names.stem + ".png", Background(paths.image, options.camera), options.camera, frame,
                 result, *output);
       ++counts.pictures;
     }
@@ -250,7 +250,7 @@ int Run(int argc, char** argv) {
   SystemOptions options = ReadSettings(settings, arguments.overrides);
   options.objects.detection.min_keypoints = 0;  // no keypoints are extracted here
   arguments.tum.need_images = false;
-  const TumSequence sequence = OpenTumSequence(arguments.sequence, arguments.tum);
+  const ImageSequence sequence = OpenTumSequence(arguments.sequence, arguments.tum);
   const std::vector<MaskFrame> frames = MaskFrames(sequence);
   const auto source = OpenMasks(
       {arguments.masks, arguments.format, options.camera.width, options.camera.height}, frames);

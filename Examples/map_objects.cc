@@ -29,6 +29,7 @@
 #include "hullslam/io/output_folder.h"
 #include "hullslam/io/settings.h"
 #include "hullslam/io/trajectory_file.h"
+#include "hullslam/io/tum_sequence.h"
 #include "hullslam/objects/object_mapper.h"
 #include "hullslam/objects/object_view.h"
 #include "hullslam/system/compose_trajectory.h"
@@ -155,7 +156,7 @@ bool HasMaskMoved(const std::vector<LabelledBox>& last, const std::vector<Labell
 // Where a mask has moved by more than half of its size, a quarter of that motion is enough: small
 // things that are seen for a short time need enough views, and a view must resemble the one before
 // to be recognised. Throws InputError if no frame has a pose.
-Views ChooseViews(const Arguments& arguments, const std::vector<RgbdFramePaths>& frames,
+Views ChooseViews(const Arguments& arguments, const std::vector<FramePaths>& frames,
                   const Trajectory& poses, const SequenceMasks& masks) {
   constexpr double kSmallMotion = 0.25;
   Views chosen;
@@ -251,7 +252,7 @@ void PrintTable(const ObjectRun& run, const ObjectReport& report) {
 
 struct Inputs {
   SystemOptions options;
-  TumSequence sequence;
+  ImageSequence sequence;
   Trajectory poses;
 };
 
@@ -265,7 +266,7 @@ Inputs OpenInputs(const Arguments& arguments) {
 
 // Returns false if a signal ended it early.
 bool MapAll(const Arguments& arguments, const SystemOptions& options,
-            const std::vector<RgbdFramePaths>& frames, const std::vector<View>& views,
+            const std::vector<FramePaths>& frames, const std::vector<View>& views,
             const SequenceMasks& masks, ObjectRun& run) {
   Progress progress(frames.size(), arguments.quiet);
   bool is_depth_checked = false;
@@ -274,7 +275,7 @@ bool MapAll(const Arguments& arguments, const SystemOptions& options,
       progress.Clear();
       return false;
     }
-    const RgbdFramePaths& frame = frames[view.frame];
+    const FramePaths& frame = frames[view.frame];
     const bool has_depth = !arguments.without_depth && !frame.depth.empty();
     const cv::Mat depth = has_depth ? ReadDepthImage(frame.depth) : cv::Mat();
     if (has_depth && !std::exchange(is_depth_checked, true)) {

@@ -44,7 +44,7 @@ void PrintObjects(const hullslam::Map& map) {
 
 void Run(const char* sequence_folder, const char* settings, const char* mask_folder) {
   const hullslam::SystemOptions options = hullslam::ReadSettings(settings);
-  const hullslam::TumSequence sequence = hullslam::OpenTumSequence(sequence_folder);
+  const hullslam::ImageSequence sequence = hullslam::OpenTumSequence(sequence_folder);
   const std::vector<hullslam::MaskFrame> names = hullslam::MaskFrames(sequence);
   const auto masks =
       hullslam::OpenMasks({mask_folder, "", options.camera.width, options.camera.height}, names);
@@ -58,7 +58,7 @@ void Run(const char* sequence_folder, const char* settings, const char* mask_fol
     }
   });
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
-    hullslam::ImageInput image = hullslam::LoadRgbd(sequence.frames[i], options.camera);
+    hullslam::ImageInput image = sequence.load(sequence.frames[i], options.camera);
     image.masks = masks->Read(names[i]).masks;
     system.Track(image);
   }

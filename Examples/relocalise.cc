@@ -24,6 +24,7 @@
 #include "cli/version.h"
 #include "cli/vocabulary_loading.h"
 #include "hullslam/eval/ate.h"
+#include "hullslam/io/image_sequence.h"
 #include "hullslam/io/settings.h"
 #include "hullslam/io/trajectory_file.h"
 #include "hullslam/io/tum_sequence.h"
@@ -142,16 +143,17 @@ SystemOptions LoadOptions(const Arguments& arguments, bool for_queries) {
   return options;
 }
 
-Trajectory ReadGroundtruth(const Arguments& arguments, const TumSequence& sequence) {
-  if (!sequence.groundtruth) {
+Trajectory NeedGroundtruth(const Arguments& arguments, const ImageSequence& sequence) {
+  std::optional<Trajectory> groundtruth = ReadGroundtruth(sequence);
+  if (!groundtruth) {
     throw InputError(arguments.sequence.string() + ": has no groundtruth.txt");
   }
-  return ReadTrajectory(*sequence.groundtruth);
+  return std::move(*groundtruth);
 }
 
 // Everything that is read before the first frame.
 struct Inputs {
-  TumSequence sequence;
+  ImageSequence sequence;
   Trajectory groundtruth;
   SystemOptions map_options;
   SystemOptions query_options;
@@ -161,7 +163,7 @@ struct Inputs {
 };
 
 // Chooses frames of the range that have a true pose.
-std::vector<size_t> ChooseQueries(const Arguments& arguments, const TumSequence& sequence,
+std::vector<size_t> ChooseQueries(const Arguments& arguments, const ImageSequence& sequence,
                                   const Trajectory& groundtruth, const FrameRange& range) {
   std::vector<size_t> frames;
   for (size_t i = range.first; i <= range.last; ++i) {
@@ -184,8 +186,8 @@ std::vector<size_t> ChooseQueries(const Arguments& arguments, const TumSequence&
 }
 
 Inputs LoadInputs(const Arguments& arguments) {
-  TumSequence sequence = OpenTumSequence(arguments.sequence);
-  Trajectory groundtruth = ReadGroundtruth(arguments, sequence);
+  ImageSequence sequence = OpenTumSequence(arguments.sequence);
+  Trajectory groundtruth = NeedGroundtruth(arguments, sequence);
   SystemOptions map_options = LoadOptions(arguments, false);
   SystemOptions query_options = LoadOptions(arguments, true);
   const FrameRange map_frames =
@@ -204,7 +206,7 @@ Inputs LoadInputs(const Arguments& arguments) {
 }
 
 ImageInput LoadFrame(const Inputs& inputs, const PinholeCamera& camera, size_t frame) {
-  ImageInput image = LoadRgbd(inputs.sequence.frames[frame], camera);
+  ImageInput image = inputs.sequence.load(inputs.sequence.frames[frame], camera);
   image.masks = inputs.masks.Read(frame);
   return image;
 }

@@ -3,6 +3,7 @@
 #include "cli/program.h"
 #include "cli/rgbd_run.h"
 #include "cli/run_arguments.h"
+#include "hullslam/io/tum_sequence.h"
 
 int main(int argc, char** argv) {
   return hullslam::RunMain(
@@ -10,13 +11,22 @@ int main(int argc, char** argv) {
         CLI::App app("Runs RGB-D SLAM on a sequence in TUM format.", "rgbd_tum");
         hullslam::RunArguments arguments;
         std::vector<std::string> positional;
-        hullslam::AddRunArguments(app, arguments, positional);
+        hullslam::AddRunArguments(
+            app,
+            {.sequence = "folder with rgb.txt and depth.txt",
+             .settings = "the file in config/ that fits the folder's name, such as TUM1.yaml for "
+                         "freiburg1",
+             .associations = "stamp rgb stamp depth (default: images are paired by their stamps, "
+                             "at most 0.02 s apart)"},
+            arguments, positional);
         if (!hullslam::ParseCommandLine(app, count, words)) {
           return static_cast<int>(hullslam::kDone);
         }
         hullslam::FinishArguments(positional, arguments);
-        return hullslam::RunRgbd(arguments,
-                                 hullslam::OpenTumSequence(arguments.sequence, arguments.tum));
+        const hullslam::ImageSequence sequence = hullslam::OpenTumSequence(
+            arguments.sequence,
+            {.associations = arguments.associations, .selection = arguments.selection});
+        return hullslam::RunRgbd(arguments, hullslam::LoadOptions(arguments), sequence);
       },
       argc, argv);
 }

@@ -42,8 +42,8 @@ void AddViews(std::string path, size_t number, std::vector<View>& views) {
   if (is_half) {
     path.resize(path.size() - kHalf.size());
   }
-  const TumSequence sequence = OpenTumSequence(path, {});
-  const Trajectory truth = ReadTrajectory(sequence.groundtruth.value());
+  const ImageSequence sequence = OpenTumSequence(path, {});
+  const Trajectory truth = ReadGroundtruth(sequence).value();
   FeatureExtractor extractor{FeatureOptions()};
   for (size_t i = is_half ? sequence.frames.size() / 2 : 0; i < sequence.frames.size(); i += 10) {
     const double stamp = sequence.frames[i].timestamp;
@@ -52,7 +52,7 @@ void AddViews(std::string path, size_t number, std::vector<View>& views) {
         [](const StampedPose& a, double timestamp) { return a.timestamp < timestamp; });
     if (pose != truth.end() && std::abs(pose->timestamp - stamp) < 0.02) {
       views.push_back({number, stamp, pose->world_from_cam,
-                       extractor.Extract(ReadGreyImage(sequence.frames[i].rgb)).descriptors});
+                       extractor.Extract(ReadGreyImage(sequence.frames[i].image)).descriptors});
     }
   }
 }

@@ -10,7 +10,7 @@
 
 namespace hullslam {
 
-FrameSource::FrameSource(Pace pace, PrefetchPriority priority, const TumSequence& sequence,
+FrameSource::FrameSource(Pace pace, PrefetchPriority priority, const ImageSequence& sequence,
                          const PinholeCamera& camera, const SequenceMasks& masks, System& system)
     : is_realtime_(pace == Pace::kRealtime),
       sequence_(sequence),
@@ -48,7 +48,7 @@ std::optional<FrameSource::LoadedImage> FrameSource::LoadNext() {
   const size_t frame = next_++;
   LoadedImage loaded;
   try {
-    loaded.image = LoadRgbd(sequence_.frames[frame], camera_);
+    loaded.image = sequence_.load(sequence_.frames[frame], camera_);
   } catch (const InputError& error) {
     loaded.error = error.what();
   }

@@ -9,7 +9,7 @@
 
 #include "cli/mask_arguments.h"
 #include "hullslam/camera/pinhole.h"
-#include "hullslam/io/tum_sequence.h"
+#include "hullslam/io/image_sequence.h"
 #include "hullslam/system/prefetcher.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/cancellation.h"
@@ -33,7 +33,7 @@ class FrameSource {
  public:
   // The references must outlive this object. The time in real time begins here. `priority` is that
   // of both threads.
-  FrameSource(Pace pace, PrefetchPriority priority, const TumSequence& sequence,
+  FrameSource(Pace pace, PrefetchPriority priority, const ImageSequence& sequence,
               const PinholeCamera& camera, const SequenceMasks& masks, System& system);
   ~FrameSource();
   FrameSource(const FrameSource&) = delete;
@@ -59,7 +59,7 @@ class FrameSource {
   bool WaitFor(double stamp) const;
 
   const bool is_realtime_;
-  const TumSequence& sequence_;
+  const ImageSequence& sequence_;
   const PinholeCamera& camera_;
   const SequenceMasks& masks_;
   System& system_;

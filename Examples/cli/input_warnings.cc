@@ -18,13 +18,14 @@
 namespace hullslam {
 namespace {
 
-// The median of the known values of a 16-bit depth image, in its units.
-std::optional<double> MedianUnits(const cv::Mat& depth) {
-  std::vector<uint16_t> known;
+// The median of the known values of a depth image, in its units.
+template <typename Value>
+std::optional<double> MedianOf(const cv::Mat& depth) {
+  std::vector<Value> known;
   for (int y = 0; y < depth.rows; ++y) {
-    const auto* const row = depth.ptr<uint16_t>(y);
+    const auto* const row = depth.ptr<Value>(y);
     std::copy_if(row, row + depth.cols, std::back_inserter(known),
-                 [](uint16_t units) { return units != 0; });
+                 [](Value value) { return value > Value(0); });
   }
   if (known.empty()) {
     return std::nullopt;
@@ -40,18 +41,22 @@ void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& de
                             const DepthOptions& options) {
   constexpr double kNearest = 0.2;    // m
   constexpr double kFarthest = 20.0;  // m
-  if (depth.type() != CV_16UC1) {
+  const bool is_in_units = depth.type() == CV_16UC1;
+  if (!is_in_units && depth.type() != CV_32FC1) {
     return;
   }
-  const std::optional<double> units = MedianUnits(depth);
-  const double metres = units.value_or(0.0) / options.units_per_metre;
-  if (units && (metres < kNearest || metres > kFarthest)) {
-    PrintError(
-        "warning: {}: the median depth is {:.3g} m with DepthMapFactor {:g}, expected {} to {} m; "
-        "is "
-        "DepthMapFactor right?\n",
-        file.string(), metres, options.units_per_metre, kNearest, kFarthest);
+  const std::optional<double> median =
+      is_in_units ? MedianOf<uint16_t>(depth) : MedianOf<float>(depth);
+  const double metres = median.value_or(0.0) / (is_in_units ? options.units_per_metre : 1.0);
+  if (!median || (metres >= kNearest && metres <= kFarthest)) {
+    return;
   }
+  const std::string reason = is_in_units
+                                 ? fmt::format("with DepthMapFactor {:g}", options.units_per_metre)
+                                 : std::string("in the units of the file");
+  PrintError("warning: {}: the median depth is {:.3g} m {}, expected {} to {} m; is {} right?\n",
+             file.string(), metres, reason, kNearest, kFarthest,
+             is_in_units ? "DepthMapFactor" : "its unit (--povray-units)");
 }
 
 void WarnOfUnknownClasses(const TrackingOptions& options, const SequenceMasks& masks) {
@@ -74,7 +79,7 @@ void WarnOfUnknownClasses(const TrackingOptions& options, const SequenceMasks& m
   }
 }
 
-void WarnOfLastFrame(const FrameSelection& selection, const TumSequence& sequence) {
+void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& sequence) {
   if (selection.last != std::numeric_limits<size_t>::max() &&
       selection.last >= sequence.available) {
     PrintError("warning: --last is '{}', but the last frame of the sequence is {}\n",

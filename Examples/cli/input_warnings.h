@@ -5,7 +5,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "cli/mask_arguments.h"
-#include "hullslam/io/tum_sequence.h"
+#include "hullslam/io/image_sequence.h"
 #include "hullslam/system/options.h"
 
 namespace hullslam {
@@ -20,6 +20,6 @@ void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& de
 // A class in tracking.dynamic_classes is in no mask. Classes of the default are not reported.
 void WarnOfUnknownClasses(const TrackingOptions& options, const SequenceMasks& masks);
 // --last is beyond the end of the sequence.
-void WarnOfLastFrame(const FrameSelection& selection, const TumSequence& sequence);
+void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& sequence);
 
 }  // namespace hullslam

@@ -48,7 +48,7 @@ void CheckSavedMap(const RunArguments& arguments) {
     return;
   }
   for (const fs::path& input : {arguments.sequence, arguments.masks, arguments.settings,
-                                arguments.tum.associations, arguments.vocabulary}) {
+                                arguments.associations, arguments.vocabulary}) {
     if (!input.empty() && IsSameOrInside(arguments.save_map, input)) {
       throw InputError(
           fmt::format("--save-map is '{}', which is or is inside {}, which this run "

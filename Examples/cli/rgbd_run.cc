@@ -43,13 +43,6 @@ struct RunResult {
   bool was_interrupted = false;
 };
 
-SystemOptions LoadOptions(const RunArguments& arguments) {
-  const std::filesystem::path settings =
-      arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
-                                 : arguments.settings;
-  return ReadSettings(settings, arguments.overrides);
-}
-
 PipelineKind ChoosePipeline(const RunArguments& arguments) {
   if (!arguments.threaded) {
     return PipelineKind::kSequential;
@@ -90,7 +83,7 @@ void FinishMap(bool is_quiet, System& system) {
   });
 }
 
-RunResult TrackAll(const RunArguments& arguments, const TumSequence& sequence,
+RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
                    const PinholeCamera& camera, const SequenceMasks& masks, System& system) {
   RunResult result;
   Progress progress(sequence.frames.size(), arguments.quiet);
@@ -157,7 +150,7 @@ size_t CountLoops(const Map& map) {
 }
 
 RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options,
-                     const TumSequence& sequence, const RunResult& result, const System& system) {
+                     const ImageSequence& sequence, const RunResult& result, const System& system) {
   RunSummary summary;
   summary.trajectory.frames = result.given;
   summary.trajectory.skipped = result.skipped;
@@ -204,10 +197,13 @@ std::string MapPly(const Map& map, const Trajectory& keyframes) {
 // The files of objects are only written if the run has masks.
 void WriteOutputs(OutputFolder& output, const Map& map, const std::vector<TrajectoryPart>& poses,
                   const std::vector<TrajectoryPart>& keyframes, RunSummary summary,
-                  const ObjectReport& objects) {
+                  const ObjectReport& objects, const ImageSequence& sequence) {
   output.Write({"trajectory.txt", FormatTrajectory(poses)});
   output.Write({"keyframes.txt", FormatTrajectory(keyframes)});
   output.Write({"map.ply", MapPly(map, KeyframeTrajectory(map))});
+  if (sequence.converted_groundtruth) {
+    output.Write({"groundtruth.txt", FormatTrajectory(*sequence.converted_groundtruth)});
+  }
   if (summary.objects) {
     for (const FileContent& file : ObjectFiles(objects)) {
       output.Write(file);
@@ -250,7 +246,7 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
 
 // Why the run has failed although it came to its end; empty if it has not.
 std::string DescribeLoss(const RunArguments& arguments, const RunOptions& options,
-                         const TumSequence& sequence, const RunSummary& summary,
+                         const ImageSequence& sequence, const RunSummary& summary,
                          const System& system) {
   const TrajectorySummary& trajectory = summary.trajectory;
   if (!arguments.load_map.empty() && trajectory.tracked == 0) {
@@ -278,20 +274,18 @@ std::string DescribeLoss(const RunArguments& arguments, const RunOptions& option
 }
 
 std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
-  return {arguments.sequence,         arguments.masks,      arguments.settings,
-          arguments.tum.associations, arguments.vocabulary, arguments.load_map};
+  return {arguments.sequence,     arguments.masks,      arguments.settings,
+          arguments.associations, arguments.vocabulary, arguments.load_map};
 }
 
 }  // namespace
 
-int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
-  SystemOptions options = LoadOptions(arguments);
+int RunRgbd(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence) {
   options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
   options.seed = arguments.seed;
   // Finds images of a wrong type or size early.
-  const ImageInput first = LoadRgbd(sequence.frames.front(), options.camera);
-  const std::optional<Trajectory> groundtruth =
-      sequence.groundtruth ? std::optional(ReadTrajectory(*sequence.groundtruth)) : std::nullopt;
+  const ImageInput first = sequence.load(sequence.frames.front(), options.camera);
+  const std::optional<Trajectory> groundtruth = ReadGroundtruth(sequence);
   const SequenceMasks masks(
       {arguments.masks, arguments.masks_format, options.camera.width, options.camera.height},
       MaskFrames(sequence));
@@ -302,7 +296,7 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments));
   WarnOfImplausibleDepth(sequence.frames.front().depth, first.depth, options.depth);
   WarnOfUnknownClasses(options.tracking, masks);
-  WarnOfLastFrame(arguments.tum.selection, sequence);
+  WarnOfLastFrame(arguments.selection, sequence);
   if (!arguments.quiet && masks.format()) {
     Print("{}\n", masks.Describe());
   }
@@ -329,7 +323,7 @@ int RunRgbd(const RunArguments& arguments, const TumSequence& sequence) {
     summary.objects = SummarizeObjects(objects, system.object_counts());
   }
   WriteOutputs(output, *map, RunParts(arguments, earlier_sessions, trajectory),
-               KeyframeParts(arguments, *map), summary, objects);
+               KeyframeParts(arguments, *map), summary, objects, sequence);
   SaveMap(arguments, options, *map);
   if (!arguments.quiet) {
     PrintReport(arguments, summary, objects);

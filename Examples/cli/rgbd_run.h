@@ -2,13 +2,15 @@
 #pragma once
 
 #include "cli/run_arguments.h"
-#include "hullslam/io/tum_sequence.h"
+#include "hullslam/io/image_sequence.h"
+#include "hullslam/system/options.h"
 
 namespace hullslam {
 
 // Runs RGB-D SLAM on a sequence. Writes trajectory.txt, keyframes.txt, map.ply and summary.json to
-// the output folder, with masks also objects.json and objects.ply, and prints the results. Returns
-// the program's exit code. Throws InputError for bad input, before the first frame if possible.
-int RunRgbd(const RunArguments& arguments, const TumSequence& sequence);
+// the output folder, with masks also the files of the objects, and groundtruth.txt if the ground
+// truth of the sequence had to be converted; prints the results. Returns the program's exit code.
+// Throws InputError for bad input, before the first frame if possible.
+int RunRgbd(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence);
 
 }  // namespace hullslam

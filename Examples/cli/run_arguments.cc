@@ -4,6 +4,7 @@
 #include "cli/logging.h"
 #include "cli/mask_arguments.h"
 #include "cli/version.h"
+#include "hullslam/io/settings.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
@@ -25,20 +26,19 @@ CLI::Validator WholeNumber(int least) {
 
 }  // namespace
 
-void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::string>& positional) {
+void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& arguments,
+                     std::vector<std::string>& positional) {
   app.add_option("ARGUMENTS", positional,
-                 "SEQUENCE: folder with rgb.txt and depth.txt\n"
-                 "or VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS, the arguments of ORB-SLAM2");
-  app.add_option("--settings", arguments.settings,
-                 "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
-                 "that fits the folder's name, such as TUM1.yaml for freiburg1)");
+                 "SEQUENCE: " + help.sequence +
+                     "\nor VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS, the arguments of ORB-SLAM2");
+  app.add_option(
+      "--settings", arguments.settings,
+      "settings file (default: camera.yaml in SEQUENCE; without it, " + help.settings + ")");
   app.add_option("--vocabulary", arguments.vocabulary,
                  "vocabulary of visual words: a binary file, a text file of ORB-SLAM2, or none "
                  "(default: the one that comes with HullSLAM)");
-  app.add_option(
-      "--associations", arguments.tum.associations,
-      "file with one pair of images per line: stamp rgb stamp depth (default: images are "
-      "paired by their stamps, at most 0.02 s apart)");
+  app.add_option("--associations", arguments.associations,
+                 "file with one pair of images per line: " + help.associations);
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
   app.add_option("--set", arguments.overrides,
                  "key=value: overrides one setting; can be given several times")
@@ -64,14 +64,13 @@ void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::st
                  "seed of the random choices in relocalisation and loop closing")
       ->check(WholeNumber(0))
       ->capture_default_str();
-  app.add_option("--first", arguments.tum.selection.first,
+  app.add_option("--first", arguments.selection.first,
                  "number of the first frame, counted from 0 (default: 0)")
       ->check(WholeNumber(0));
-  app.add_option("--last", arguments.tum.selection.last,
+  app.add_option("--last", arguments.selection.last,
                  "number of the last frame, inclusive (default: last of the sequence)")
       ->check(WholeNumber(0));
-  app.add_option("--stride", arguments.tum.selection.stride,
-                 "use every n-th frame only (default: 1)")
+  app.add_option("--stride", arguments.selection.stride, "use every n-th frame only (default: 1)")
       ->check(WholeNumber(1));
   app.add_flag("--strict", arguments.strict,
                "stop at an image that cannot be read instead of skipping the frame");
@@ -97,7 +96,14 @@ void FinishArguments(const std::vector<std::string>& positional, RunArguments& a
   arguments.vocabulary = positional[0];
   arguments.settings = positional[1];
   arguments.sequence = positional[2];
-  arguments.tum.associations = positional[3];
+  arguments.associations = positional[3];
+}
+
+SystemOptions LoadOptions(const RunArguments& arguments) {
+  return ReadSettings(arguments.settings.empty()
+                          ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
+                          : arguments.settings,
+                      arguments.overrides);
 }
 
 }  // namespace hullslam

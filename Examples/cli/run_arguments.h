@@ -7,16 +7,18 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/io/tum_sequence.h"
+#include "hullslam/io/image_sequence.h"
+#include "hullslam/system/options.h"
 
 namespace hullslam {
 
 // The command line options that all programs share which run SLAM.
 struct RunArguments {
   std::filesystem::path sequence;
-  std::filesystem::path settings;    // empty: chosen by FindDefaultSettings()
-  std::filesystem::path vocabulary;  // empty: the default one; "none": none
-  TumSequenceOptions tum;
+  std::filesystem::path settings;      // empty: chosen by FindDefaultSettings()
+  std::filesystem::path vocabulary;    // empty: the default one; "none": none
+  std::filesystem::path associations;  // empty: those of the sequence, or images paired by time
+  FrameSelection selection;
   std::filesystem::path masks;         // empty: none
   std::string masks_format;            // empty: detected
   std::vector<std::string> overrides;  // key=value
@@ -31,12 +33,24 @@ struct RunArguments {
   uint64_t seed = 0;
 };
 
+// What the help says about the data set of a program.
+struct DatasetHelp {
+  std::string sequence;      // what the folder SEQUENCE holds
+  std::string settings;      // the settings that are used without --settings
+  std::string associations;  // the lines of the file of --associations, and what is used without it
+};
+
 // Adds the options and the positional arguments: SEQUENCE, or ORB-SLAM2's VOCABULARY SETTINGS
 // SEQUENCE ASSOCIATIONS. `arguments` and `positional` must outlive the app. Call FinishArguments
 // after parsing.
-void AddRunArguments(CLI::App& app, RunArguments& arguments, std::vector<std::string>& positional);
+void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& arguments,
+                     std::vector<std::string>& positional);
 // Copies the positional arguments to the fields that they stand for. Throws InputError unless there
 // are 1 or 4 of them.
 void FinishArguments(const std::vector<std::string>& positional, RunArguments& arguments);
+
+// The settings of --settings, else those that FindDefaultSettings() finds for the sequence, with
+// the overrides of --set.
+SystemOptions LoadOptions(const RunArguments& arguments);
 
 }  // namespace hullslam

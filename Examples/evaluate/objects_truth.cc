@@ -11,6 +11,7 @@
 #include "hullslam/io/mask_source.h"
 #include "hullslam/io/trajectory_file.h"
 #include "hullslam/io/true_object_file.h"
+#include "hullslam/io/tum_sequence.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
@@ -41,7 +42,7 @@ std::vector<size_t> ReadSightings(const std::filesystem::path& folder,
   if (!std::filesystem::exists(folder / "masks") || !std::filesystem::exists(folder / "rgb.txt")) {
     return {};
   }
-  const TumSequence sequence = OpenTumSequence(folder);
+  const ImageSequence sequence = OpenTumSequence(folder);
   const std::vector<MaskFrame> frames = MaskFrames(sequence);
   const auto source = OpenMasks({folder / "masks", "", camera.width, camera.height}, frames);
   std::vector<double> stamps;

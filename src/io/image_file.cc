@@ -20,6 +20,8 @@ using namespace std::string_view_literals;
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n"sv;
 constexpr std::string_view kJpegSignature = "\xff\xd8\xff"sv;
 
+constexpr int kGreyFlags = cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION;
+
 struct ImageSize {
   uint64_t width = 0;
   uint64_t height = 0;
@@ -164,8 +166,16 @@ cv::Mat Read16Bit(const std::filesystem::path& path, const char* kind) {
 
 }  // namespace
 
-cv::Mat ReadGreyImage(const std::filesystem::path& path) {
-  return Decode(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+cv::Mat ReadGreyImage(const std::filesystem::path& path) { return Decode(path, kGreyFlags); }
+
+cv::Mat ReadPicture(const std::filesystem::path& path) {
+  cv::Mat image = Decode(path, kGreyFlags | cv::IMREAD_ANYDEPTH);
+  if (image.depth() != CV_8U) {
+    Fail(path, fmt::format("has {} bits per channel, expected a picture with 8 bits; depth images "
+                           "are no pictures, and others must be converted",
+                           8 * image.elemSize1()));
+  }
+  return image;
 }
 
 cv::Mat ReadDepthImage(const std::filesystem::path& path) { return Read16Bit(path, "depth"); }

@@ -81,10 +81,10 @@ void CheckSomeFrameHasMasks(const std::filesystem::path& path, const MaskSource&
 
 }  // namespace
 
-std::vector<MaskFrame> MaskFrames(const TumSequence& sequence) {
+std::vector<MaskFrame> MaskFrames(const ImageSequence& sequence) {
   std::vector<MaskFrame> frames;
-  for (const RgbdFramePaths& frame : sequence.frames) {
-    frames.push_back({ImageStem(frame.rgb.string()), frame.number});
+  for (const FramePaths& frame : sequence.frames) {
+    frames.push_back({ImageStem(frame.image.string()), frame.number});
   }
   return frames;
 }

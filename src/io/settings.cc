@@ -11,6 +11,7 @@
 #include <set>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "hullslam/util/error.h"
 #include "io/settings_orb_slam3.h"
@@ -24,7 +25,26 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array kIntrinsics = {"Camera.fx", "Camera.fy", "Camera.cx", "Camera.cy"};
-void ApplyFile(const fs::path& file, OptionTable& table, std::set<std::string>& given) {
+
+// The text of Camera.fy in a file, which is positive if a negative number may be there.
+std::string FocalLengthInY(const WrittenSetting& setting, std::string text,
+                           NegativeFy negative_fy) {
+  double value = 0.0;
+  if (!ParseFinite(text, value) || value >= 0.0) {
+    return text;
+  }
+  if (negative_fy == NegativeFy::kError) {
+    throw InputError(fmt::format(
+        "{}: {} is '{}', expected a positive number: a camera whose y axis points up makes a "
+        "mirrored world. The pixels are the same with {:g}; the ground truth must be mirrored, as "
+        "rgbd_icl does",
+        setting.place, setting.name, text, -value));
+  }
+  return text.substr(text.find('-') + 1);
+}
+
+void ApplyFile(const fs::path& file, NegativeFy negative_fy, OptionTable& table,
+               std::set<std::string>& given) {
   for (const WrittenSetting& setting : TranslateOrb3Settings(ReadYamlSettings(file))) {
     const bool is_renamed = setting.name != setting.key;
     if (!given.insert(setting.key).second) {
@@ -32,7 +52,10 @@ void ApplyFile(const fs::path& file, OptionTable& table, std::set<std::string>& 
           fmt::format("{}: {} was given before under another name", setting.place, setting.name));
     }
     // An unknown key is reported before anything that is wrong with its value.
-    const std::string text = table.Contains(setting.key) ? SingleValue(setting) : "";
+    std::string text = table.Contains(setting.key) ? SingleValue(setting) : "";
+    if (setting.key == "Camera.fy") {
+      text = FocalLengthInY(setting, std::move(text), negative_fy);
+    }
     table.Set(setting.key, text,
               is_renamed ? fmt::format("{}: {}", setting.place, setting.name) : setting.place);
   }
@@ -78,11 +101,12 @@ std::string FolderName(const fs::path& folder) {
 
 }  // namespace
 
-SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> overrides) {
+SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> overrides,
+                           NegativeFy negative_fy) {
   SystemOptions options;
   OptionTable table = options.Bind();
   std::set<std::string> given;
-  ApplyFile(file, table, given);
+  ApplyFile(file, negative_fy, table, given);
   ApplyOverrides(overrides, table, given);
   for (const char* const key : kIntrinsics) {
     if (!given.contains(key)) {
@@ -90,6 +114,28 @@ SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> ov
                        " is not given, expected the intrinsics of the camera in px");
     }
   }
+  options.Validate();
+  return options;
+}
+
+SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
+                           std::span<const std::string> overrides) {
+  SystemOptions options;
+  OptionTable table = options.Bind();
+  SystemOptions given;
+  given.camera = calibration.camera;
+  given.frames_per_second = calibration.frames_per_second;
+  // Each value is set as if a file had it, so that its range is checked.
+  for (const OptionTable::Entry& entry : given.Bind().Entries()) {
+    if (entry.key.starts_with("Camera.")) {
+      table.Set(entry.key, entry.value, source);
+    }
+  }
+  if (const std::string fault = calibration.camera.FindFault(); !fault.empty()) {
+    throw InputError(source + ": " + fault);
+  }
+  std::set<std::string> changed;
+  ApplyOverrides(overrides, table, changed);
   options.Validate();
   return options;
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <opencv2/core.hpp>
 #include <string_view>
@@ -13,7 +12,7 @@
 #include "hullslam/util/error.h"
 #include "io/read_file.h"
 #include "io/text_rows.h"
-#include "io/yaml_nesting.h"
+#include "io/yaml_storage.h"
 #include "util/shown_text.h"
 
 namespace hullslam {
@@ -78,25 +77,6 @@ std::string ReadYamlText(const fs::path& file) {
   return text;
 }
 
-// OpenCV's parser puts "(line): message" into the field for the name of the function.
-[[noreturn]] void FailParsing(const fs::path& file, const cv::Exception& error) {
-  int line = 0;
-  char reason[200] = "is not valid YAML";
-  if (std::sscanf(error.func.c_str(), "(%d): %199[^\n]", &line, reason) >= 1) {
-    throw InputError(Place(file, line) + ": " + reason);
-  }
-  throw InputError(file.string() + ": is not valid YAML");
-}
-
-cv::FileStorage ParseYaml(const fs::path& file, const std::string& text) {
-  try {
-    return cv::FileStorage(
-        text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
-  } catch (const cv::Exception& error) {
-    FailParsing(file, error);
-  }
-}
-
 // The text of a single value; see WrittenSetting.
 std::string SingleText(const cv::FileNode& node, const WrittenValue& written) {
   if (node.isString()) {
@@ -149,7 +129,6 @@ std::vector<WrittenSetting> CollectSettings(const fs::path& file, const std::str
 
 std::vector<WrittenSetting> ReadYamlSettings(const fs::path& file) {
   const std::string text = ReadYamlText(file);
-  CheckYamlNesting(file, text);
   const cv::FileStorage storage = ParseYaml(file, text);
   try {
     return CollectSettings(file, text, storage.root());

@@ -1,26 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fuzz/readers.h"
 
-#include <fmt/format.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <exception>
-#include <filesystem>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <sstream>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "bow/vocabulary_layout.h"
+#include "fuzz/fuzzed_input.h"
 #include "hullslam/frame/detection_builder.h"
 #include "hullslam/io/image_file.h"
 #include "hullslam/io/map_file.h"
@@ -29,9 +21,7 @@
 #include "hullslam/io/settings.h"
 #include "hullslam/io/trajectory_file.h"
 #include "hullslam/io/true_object_file.h"
-#include "hullslam/io/tum_sequence.h"
 #include "hullslam/io/vocabulary_file.h"
-#include "hullslam/util/error.h"
 #include "io/map_parser.h"
 #include "io/mask_classes.h"
 #include "io/read_file.h"
@@ -41,89 +31,6 @@
 
 namespace hullslam {
 namespace {
-
-namespace fs = std::filesystem;
-
-[[noreturn]] void Finding(const std::string& what) {
-  std::fprintf(stderr, "finding: %s\n", what.c_str());
-  std::abort();
-}
-
-void Expect(bool good, const std::string& what) {
-  if (!good) {
-    Finding(what);
-  }
-}
-
-// A file in memory. Its content is replaced for each input.
-class MemoryFile {
- public:
-  MemoryFile() : descriptor_(::memfd_create("input", MFD_CLOEXEC)) {
-    Expect(descriptor_ >= 0, "memfd_create");
-  }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  fs::path path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
-
-  void Write(std::string_view bytes) const {
-    Expect(::ftruncate(descriptor_, 0) == 0, "ftruncate");
-    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), 0);
-    Expect(written == static_cast<ssize_t>(bytes.size()), "pwrite");
-  }
-
- private:
-  int descriptor_;
-};
-
-// A temporary folder in which the file `name` is the input. `other` is a file of the folder `given`
-// that is there too.
-class InputFolder {
- public:
-  explicit InputFolder(const std::string& name, const std::string& other = "") {
-    std::string folder = fs::temp_directory_path() / "hullslam_fuzz_XXXXXX";
-    Expect(::mkdtemp(folder.data()) != nullptr, "mkdtemp");
-    path_ = folder;
-    fs::create_symlink(file_.path(), path_ / name);
-    if (!other.empty()) {
-      fs::copy_file(fs::path(HULLSLAM_FUZZ_FOLDER) / "given" / other, path_ / other);
-    }
-  }
-  ~InputFolder() {
-    std::error_code error;
-    fs::remove_all(path_, error);
-  }
-  InputFolder(const InputFolder&) = delete;
-  InputFolder& operator=(const InputFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-  void Write(std::string_view bytes) const { file_.Write(bytes); }
-
- private:
-  MemoryFile file_;
-  fs::path path_;
-};
-
-// Runs a reader on its input.
-template <typename Read>
-void Try(const Read& read) {
-  try {
-    read();
-  } catch (const InputError& error) {
-    const std::string_view message = error.what();
-    Expect(message.find('\n') == std::string_view::npos, "a message of several lines");
-    Expect(message.size() < 2000, "a message of " + std::to_string(message.size()) + " bytes");
-  } catch (const std::exception& error) {
-    Finding(std::string("another exception than InputError: ") + error.what());
-  }
-}
-
-template <typename Read>
-void TryFile(std::string_view bytes, const Read& read) {
-  static const MemoryFile file;
-  file.Write(bytes);
-  Try([&] { read(file.path()); });
-}
 
 void FuzzTrajectory(std::string_view bytes) {
   TryFile(bytes, [](const fs::path& path) {
@@ -142,21 +49,6 @@ void FuzzSettings(std::string_view bytes) {
     const SystemOptions options = ReadSettings(path);
     Expect(options.camera.FindFault().empty(), "a camera with a fault");
     Expect(!FormatSettings(options).empty(), "no settings");
-  });
-}
-
-void FuzzSequence(std::string_view bytes) {
-  static const InputFolder folder("rgb.txt");
-  folder.Write(bytes);
-  Try([] { OpenTumSequence(folder.path(), {.need_images = false}); });
-}
-
-void FuzzAssociations(std::string_view bytes) {
-  static const InputFolder folder("associations.txt");
-  folder.Write(bytes);
-  Try([] {
-    OpenTumSequence(folder.path(),
-                    {.associations = folder.path() / "associations.txt", .need_images = false});
   });
 }
 
@@ -333,10 +225,8 @@ void FuzzMap(std::string_view bytes) {
   });
 }
 
-constexpr std::array<FuzzedReader, 20> kReaders = {{{"trajectory", FuzzTrajectory},
+constexpr std::array<FuzzedReader, 18> kReaders = {{{"trajectory", FuzzTrajectory},
                                                     {"settings", FuzzSettings},
-                                                    {"sequence", FuzzSequence},
-                                                    {"associations", FuzzAssociations},
                                                     {"grey_image", FuzzGreyImage},
                                                     {"depth_image", FuzzDepthImage},
                                                     {"objects", FuzzObjects},
@@ -357,11 +247,15 @@ constexpr std::array<FuzzedReader, 20> kReaders = {{{"trajectory", FuzzTrajector
 }  // namespace
 
 const FuzzedReader& FindFuzzedReader(std::string_view name) {
-  const auto* const found =
-      std::find_if(kReaders.begin(), kReaders.end(),
-                   [&](const FuzzedReader& reader) { return reader.name == name; });
-  Expect(found != kReaders.end(), "no reader " + std::string(name));
-  return *found;
+  for (const std::span<const FuzzedReader> readers :
+       {std::span<const FuzzedReader>(kReaders), SequenceReaders()}) {
+    for (const FuzzedReader& reader : readers) {
+      if (reader.name == name) {
+        return reader;
+      }
+    }
+  }
+  Finding("no reader " + std::string(name));
 }
 
 }  // namespace hullslam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <string_view>
 
 namespace hullslam {
@@ -12,6 +13,9 @@ struct FuzzedReader {
   std::string_view name;
   void (*read)(std::string_view bytes);
 };
+
+// The readers of sequences, which FindFuzzedReader() finds too.
+std::span<const FuzzedReader> SequenceReaders();
 
 // Ends the program if there is no reader of this name.
 const FuzzedReader& FindFuzzedReader(std::string_view name);

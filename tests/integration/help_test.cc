@@ -27,9 +27,9 @@ TEST_P(Help, TheVersionIsPrinted) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Programs, Help,
-                         ::testing::Values("rgbd_tum", "map_objects", "evaluate", "check_masks",
-                                           "make_synthetic", "relocalise", "train_vocabulary",
-                                           "convert_vocabulary"),
+                         ::testing::Values("rgbd_tum", "rgbd_icl", "map_objects", "evaluate",
+                                           "check_masks", "make_synthetic", "relocalise",
+                                           "train_vocabulary", "convert_vocabulary"),
                          [](const auto& info) { return info.param; });
 
 TEST(HelpOfSubcommands, NamesTheExitCodes) {

@@ -19,7 +19,7 @@ class MaskSourceTest : public MaskFixture {
 };
 
 TEST(MaskFrames, HaveTheStemsAndNumbersOfTheImages) {
-  TumSequence sequence;
+  ImageSequence sequence;
   sequence.frames = {{1.5, "a/rgb/1.500000.png", "", 3}, {2.5, "/b/rgb/0007.JPG", "", 4}};
   const std::vector<MaskFrame> frames = MaskFrames(sequence);
   ASSERT_EQ(frames.size(), 2U);

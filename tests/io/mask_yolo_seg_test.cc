@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "hullslam/io/tum_sequence.h"
 #include "io/mask_fixture.h"
 #include "support/test_data.h"
 

@@ -123,6 +123,48 @@ TEST_F(Settings, OverridesReplaceValuesOfTheFile) {
   ExpectError(kMinimal, {"--set", "'Camera.fx'", "key=value"}, {"Camera.fx"});
 }
 
+TEST_F(Settings, ANegativeFyIsDecidedByTheProgram) {
+  const std::string text =
+      "%YAML:1.0\nCamera.fx: 481.2\nCamera.fy: -480.0\nCamera.cx: 319.5\nCamera.cy: 239.5\n";
+  ExpectError(text, {"camera.yaml:3: Camera.fy is '-480", "mirrored world", "rgbd_icl"});
+  const auto file = folder_.Write("camera.yaml", text);
+  EXPECT_EQ(ReadSettings(file, {}, NegativeFy::kPositive).camera.fy, 480.0);
+  const std::vector<std::string> overrides = {"Camera.fy=-480"};
+  ExpectInputError([&] { ReadSettings(file, overrides, NegativeFy::kPositive); },
+                   {"--set", "Camera.fy is '-480'"});
+}
+
+TEST_F(Settings, TheConfigurationOfIclNuimIsRightHanded) {
+  const SystemOptions options = ReadSettings(FindConfigFolder() / "ICL.yaml");
+  EXPECT_EQ(options.camera.fx, 481.2);
+  EXPECT_EQ(options.camera.fy, 480.0);
+  EXPECT_EQ(options.camera.cx, 319.5);
+  EXPECT_EQ(options.camera.cy, 239.5);
+  EXPECT_FALSE(options.camera.IsDistorted());
+  EXPECT_EQ(options.depth.units_per_metre, 5000.0);
+}
+
+TEST_F(Settings, ACalibrationReplacesASettingsFile) {
+  CameraCalibration calibration;
+  calibration.camera = {.fx = 458.654,
+                        .fy = 457.1,
+                        .cx = 367.2,
+                        .cy = 248.375,
+                        .k1 = -0.28,
+                        .k2 = 0.074,
+                        .width = 752};
+  calibration.frames_per_second = 20.0;
+  const std::vector<std::string> overrides = {"ORBextractor.nFeatures=1500", "Camera.cx=300"};
+  const SystemOptions options = MakeSettings(calibration, "sensor.yaml", overrides);
+  calibration.camera.cx = 300.0;
+  EXPECT_TRUE(options.camera == calibration.camera);
+  EXPECT_EQ(options.frames_per_second, 20.0);
+  EXPECT_EQ(options.features.feature_count, 1500);
+  calibration.camera.width = 8;
+  ExpectInputError([&] { MakeSettings(calibration, "sensor.yaml"); },
+                   {"sensor.yaml: Camera.width is '8'"});
+}
+
 TEST_F(Settings, OverridesCanGiveMissingIntrinsics) {
   const std::string text = "%YAML:1.0\nCamera.fx: 50\nCamera.fy: 50\nCamera.cx: 5\n";
   EXPECT_EQ(Read(text, {"Camera.cy=7"}).camera.cy, 7.0);

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 
 #include "support/expect_error.h"
@@ -27,7 +25,7 @@ class TumSequenceTest : public ::testing::Test {
 
   void WriteRgb(const std::string& lines) { folder_.Write("rgb.txt", "# head\r\n" + lines); }
   void WriteDepth(const std::string& lines) { folder_.Write("depth.txt", lines); }
-  TumSequence Open(const TumSequenceOptions& options = {}) {
+  ImageSequence Open(const TumSequenceOptions& options = {}) {
     return OpenTumSequence(folder_.path(), options);
   }
   void ExpectError(const std::vector<std::string>& parts, const TumSequenceOptions& options = {}) {
@@ -38,12 +36,12 @@ class TumSequenceTest : public ::testing::Test {
 };
 
 TEST_F(TumSequenceTest, PairsImagesAndCountsUnpairedOnes) {
-  const TumSequence sequence = Open();
+  const ImageSequence sequence = Open();
   ASSERT_EQ(sequence.frames.size(), 3U);
   EXPECT_EQ(sequence.unpaired,
             1U);  // 1.03: its nearest depth image is paired with 1.06, which is closer
   EXPECT_EQ(sequence.frames[1].timestamp, 1.06);
-  EXPECT_EQ(sequence.frames[1].rgb, folder_.path() / "rgb/c.png");
+  EXPECT_EQ(sequence.frames[1].image, folder_.path() / "rgb/c.png");
   EXPECT_EQ(sequence.frames[1].depth, folder_.path() / "depth/b.png");
   EXPECT_FALSE(sequence.groundtruth.has_value());
   folder_.Write("groundtruth.txt", "");
@@ -54,15 +52,30 @@ TEST_F(TumSequenceTest, WithoutImagesReturnsStampsAndExistingDepthImages) {
   std::filesystem::remove(folder_.path() / "rgb/c.png");
   std::filesystem::remove(folder_.path() / "depth/b.png");
   ExpectError({"the image is missing"});
-  const TumSequence some = Open({.need_images = false});
+  const ImageSequence some = Open({.need_images = false});
   ASSERT_EQ(some.frames.size(), 3U);
   EXPECT_EQ(some.frames[0].depth, folder_.path() / "depth/a.png");
   EXPECT_TRUE(some.frames[1].depth.empty());
   std::filesystem::remove(folder_.path() / "depth.txt");
-  const TumSequence none = Open({.need_images = false});
+  const ImageSequence none = Open({.need_images = false});
   ASSERT_EQ(none.frames.size(), 4U);
   EXPECT_TRUE(none.frames[0].depth.empty());
   EXPECT_EQ(none.frames[3].timestamp, 1.09);
+}
+
+TEST_F(TumSequenceTest, WithoutDepthAllImagesAreFrames) {
+  std::filesystem::remove(folder_.path() / "depth.txt");
+  const ImageSequence all = Open({.use_depth = false});
+  ASSERT_EQ(all.frames.size(), 4U);
+  EXPECT_EQ(all.unpaired, 0U);
+  EXPECT_EQ(all.frames[1].image, folder_.path() / "rgb/b.png");
+  EXPECT_TRUE(all.frames[1].depth.empty());
+  const auto path = folder_.Write("assoc.txt", "1.0 rgb/a.png 7.5 depth/none.png\n");
+  const ImageSequence listed = Open({.associations = path, .use_depth = false});
+  ASSERT_EQ(listed.frames.size(), 1U);
+  EXPECT_TRUE(listed.frames[0].depth.empty());
+  std::filesystem::remove(folder_.path() / "rgb/d.png");
+  ExpectError({"rgb/d.png: the image is missing"}, {.use_depth = false});
 }
 
 TEST_F(TumSequenceTest, LongLinesAndNamesAreRefused) {
@@ -77,7 +90,7 @@ TEST_F(TumSequenceTest, LongLinesAndNamesAreRefused) {
 TEST_F(TumSequenceTest, SelectsFrames) {
   const auto stamps = [&](const FrameSelection& selection) {
     std::vector<double> result;
-    for (const RgbdFramePaths& frame : Open({.associations = {}, .selection = selection}).frames) {
+    for (const FramePaths& frame : Open({.associations = {}, .selection = selection}).frames) {
       result.push_back(frame.timestamp);
     }
     return result;
@@ -98,7 +111,7 @@ TEST_F(TumSequenceTest, SelectsFrames) {
 TEST_F(TumSequenceTest, AnAssociationFileReplacesPairingByTime) {
   const auto path = folder_.Write(
       "assoc.txt", "# head\n1.0 rgb/a.png 7.5 depth/d.png\n1.5 rgb/b.png 1.5 depth/b.png\n");
-  const TumSequence sequence = Open({.associations = path, .selection = {}});
+  const ImageSequence sequence = Open({.associations = path, .selection = {}});
   ASSERT_EQ(sequence.frames.size(), 2U);
   EXPECT_EQ(sequence.frames[0].depth, folder_.path() / "depth/d.png");
   EXPECT_EQ(sequence.unpaired, 0U);
@@ -148,57 +161,18 @@ TEST_F(TumSequenceTest, MissingFilesAreReportedByName) {
   ExpectInputError([] { OpenTumSequence("/no/such"); }, {"/no/such", "no such folder"});
 }
 
-class LoadRgbdTest : public ::testing::Test {
- protected:
-  LoadRgbdTest() {
-    camera_.width = 64;
-    camera_.height = 48;
-  }
-  ImageInput Load(const cv::Size& rgb, const cv::Size& depth) {
-    const RgbdFramePaths paths{1.5, folder_.path() / "rgb.png", folder_.path() / "depth.png"};
-    cv::imwrite(paths.rgb.string(), cv::Mat(rgb, CV_8UC3, cv::Scalar::all(9)));
-    cv::imwrite(paths.depth.string(), cv::Mat(depth, CV_16UC1, cv::Scalar::all(999)));
-    return LoadRgbd(paths, camera_);
-  }
-
-  TemporaryFolder folder_;
-  PinholeCamera camera_;
-};
-
-TEST_F(LoadRgbdTest, DecodesBothImages) {
-  const ImageInput image = Load({64, 48}, {64, 48});
-  EXPECT_EQ(image.timestamp, 1.5);
-  ASSERT_EQ(image.grey.type(), CV_8UC1);
-  ASSERT_EQ(image.depth.type(), CV_16UC1);
-  EXPECT_EQ(image.grey.at<uint8_t>(1, 2), 9);
-  EXPECT_EQ(image.depth.at<uint16_t>(1, 2), 999);
-}
-
-TEST_F(LoadRgbdTest, ImagesMustHaveTheSizeOfTheCamera) {
-  ExpectInputError(
-      [&] {
-        Load({64, 48}, {32, 24});
-      },
-      {"depth.png: 32x24 px", "colour image rgb.png, 64x48"});
-  ExpectInputError(
-      [&] {
-        Load({32, 24}, {32, 24});
-      },
-      {"rgb.png: 32x24 px", "Camera.width x Camera.height, 64x48"});
-}
-
 TEST(TumSequenceData, RealSequencesAreRead) {
   const auto folder = FindTestData("fr1_xyz");
   if (!folder) {
     GTEST_SKIP() << "fr1_xyz is not on this machine; set HULLSLAM_DATA";
   }
-  const TumSequence sequence = OpenTumSequence(*folder);
+  const ImageSequence sequence = OpenTumSequence(*folder);
   EXPECT_EQ(sequence.frames.size() + sequence.unpaired, 798U);
-  const TumSequence given =
+  const ImageSequence given =
       OpenTumSequence(*folder, {.associations = *folder / "associations.txt", .selection = {}});
   EXPECT_EQ(given.frames.size(), 792U);
   EXPECT_EQ(sequence.frames.size(), given.frames.size());
-  EXPECT_EQ(LoadRgbd(sequence.frames[0], PinholeCamera()).depth.cols, 640);
+  EXPECT_EQ(sequence.load(sequence.frames[0], PinholeCamera()).depth.cols, 640);
 }
 
 }  // namespace

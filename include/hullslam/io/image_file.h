@@ -14,6 +14,10 @@ namespace hullslam {
 // calibration of the camera refers to the pixels as stored.
 cv::Mat ReadGreyImage(const std::filesystem::path& path);
 
+// The same for images of unknown origin. Images with 16 bits per channel are errors too, because
+// they may be depth images, or pictures that use only a few of their bits and would become black.
+cv::Mat ReadPicture(const std::filesystem::path& path);
+
 // A depth image with unchanged values, CV_16UC1. Another bit depth than 16 or several channels are
 // errors too.
 cv::Mat ReadDepthImage(const std::filesystem::path& path);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hullslam/frame/instance_mask.h"
-#include "hullslam/io/tum_sequence.h"
+#include "hullslam/io/image_sequence.h"
 
 namespace hullslam {
 
@@ -20,7 +20,7 @@ struct MaskFrame {
 };
 
 // The frames of a sequence, in order.
-std::vector<MaskFrame> MaskFrames(const TumSequence& sequence);
+std::vector<MaskFrame> MaskFrames(const ImageSequence& sequence);
 
 // The masks of one frame.
 struct FrameMasks {

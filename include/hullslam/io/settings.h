@@ -5,9 +5,18 @@
 #include <span>
 #include <string>
 
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/system/options.h"
 
 namespace hullslam {
+
+// What a negative Camera.fy in a settings file means. Some files of other programs have one: their
+// y axis points up, so their world is left-handed. The pixels are those of the camera with y down
+// and the positive value.
+enum class NegativeFy {
+  kError,
+  kPositive,  // the positive value is used; for programs that mirror the ground truth (rgbd_icl)
+};
 
 // Reads a settings file in the format of ORB-SLAM2 (OpenCV YAML: `key: value` lines after a first
 // line `%YAML:1.0`) or of ORB-SLAM3 (format 1.0, docs/settings.md), then applies `overrides` of the
@@ -15,6 +24,19 @@ namespace hullslam {
 // and cy have no default. Throws InputError that names file, line, key, value and what was
 // expected.
 SystemOptions ReadSettings(const std::filesystem::path& file,
+                           std::span<const std::string> overrides = {},
+                           NegativeFy negative_fy = NegativeFy::kError);
+
+// A camera as its calibration or its data set describes it.
+struct CameraCalibration {
+  PinholeCamera camera;
+  double frames_per_second = 30.0;
+};
+
+// The settings for a camera without a settings file: the defaults, then `overrides` as in
+// ReadSettings(). Throws InputError for what ReadSettings() would refuse; `source` is the name of
+// what the calibration is from.
+SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
                            std::span<const std::string> overrides = {});
 
 // The default settings file of a sequence: `camera.yaml` in its folder, else the file in

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs RGB-D SLAM on a sequence of ICL-NUIM.
+#include "cli/icl_arguments.h"
+#include "cli/program.h"
+#include "cli/rgbd_run.h"
+#include "cli/run_arguments.h"
+
+int main(int argc, char** argv) {
+  return hullslam::RunMain(
+      [](int count, char** words) {
+        CLI::App app("Runs RGB-D SLAM on a sequence of ICL-NUIM.", "rgbd_icl");
+        hullslam::RunArguments arguments;
+        hullslam::IclSequenceOptions icl;
+        std::vector<std::string> positional;
+        hullslam::AddRunArguments(app, hullslam::IclHelp(), arguments, positional);
+        hullslam::AddIclArguments(app, icl);
+        if (!hullslam::ParseCommandLine(app, count, words)) {
+          return static_cast<int>(hullslam::kDone);
+        }
+        hullslam::FinishArguments(positional, arguments);
+        const hullslam::SystemOptions options = hullslam::LoadIclOptions(arguments);
+        const hullslam::ImageSequence sequence = hullslam::OpenIcl(arguments, icl, options);
+        return hullslam::RunRgbd(arguments, options, sequence);
+      },
+      argc, argv);
+}

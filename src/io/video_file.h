@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <opencv2/core/mat.hpp>
+#include <opencv2/videoio.hpp>
+#include <vector>
+
+namespace hullslam {
+
+// The frames of a video file, decoded with FFmpeg one after the other.
+class VideoFile {
+ public:
+  // Throws InputError if it is no file, or none that can be decoded.
+  explicit VideoFile(std::filesystem::path path);
+
+  // The time stamps of all frames, s. Decodes the whole video. Throws InputError if there is none.
+  std::vector<double> ReadStamps();
+  // The frame with this number, counted from 0; CV_8UC1. Frames before it are decoded too, from the
+  // beginning if it comes before the last one that was read. Throws InputError if it cannot be
+  // decoded.
+  cv::Mat ReadGrey(size_t number);
+
+ private:
+  void Rewind();
+
+  std::filesystem::path path_;
+  cv::VideoCapture capture_;
+  size_t next_ = 0;  // number of the frame that is decoded next
+};
+
+}  // namespace hullslam

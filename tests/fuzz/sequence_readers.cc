@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <cmath>
+#include <opencv2/core.hpp>
+
+#include "fuzz/fuzzed_input.h"
+#include "fuzz/readers.h"
+#include "hullslam/io/euroc_sequence.h"
+#include "hullslam/io/icl_sequence.h"
+#include "hullslam/io/tum_sequence.h"
+#include "io/euroc_states.h"
+#include "io/icl_povray.h"
+
+namespace hullslam {
+namespace {
+
+void FuzzSequence(std::string_view bytes) {
+  static const InputFolder folder("rgb.txt");
+  folder.Write(bytes);
+  Try([] { OpenTumSequence(folder.path(), {.need_images = false}); });
+}
+
+void FuzzAssociations(std::string_view bytes) {
+  static const InputFolder folder("associations.txt");
+  folder.Write(bytes);
+  Try([] {
+    OpenTumSequence(folder.path(),
+                    {.associations = folder.path() / "associations.txt", .need_images = false});
+  });
+}
+
+// The images do not exist, so a good file ends with an error that names the first one.
+void FuzzIclAssociations(std::string_view bytes) {
+  static const InputFolder folder("associations.txt");
+  folder.Write(bytes);
+  Try([] { OpenIclSequence(folder.path(), PinholeCamera(), DepthOptions()); });
+}
+
+void FuzzPovrayCamera(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const Rigid3 pose = ReadPovrayCamera(path, 1.0);
+    Expect(std::abs(pose.rotation.norm() - 1.0) < 1e-6 && pose.translation.allFinite(), "the pose");
+  });
+}
+
+void FuzzRayDepth(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const PinholeCamera camera{.fx = 4.0, .fy = 4.0, .cx = 1.0, .cy = 0.5, .width = 3, .height = 2};
+    const cv::Mat depth = ReadRayDepth(path, camera, 1.0);
+    Expect(cv::checkRange(depth, true, nullptr, 0.0, 2e8), "the depth");
+  });
+}
+
+void FuzzEurocSensor(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const EurocCamera read = ReadEurocCamera(path);
+    Expect(read.calibration.camera.FindFault().empty(), "a camera with a fault");
+    Expect(std::abs(read.body_from_cam.rotation.norm() - 1.0) < 1e-6, "not normalised");
+  });
+}
+
+// The folder is its own subfolder `cam0`.
+void FuzzEurocImages(std::string_view bytes) {
+  static const InputFolder folder("data.csv", "sensor.yaml");
+  const fs::path cam0 = folder.path() / "cam0";
+  if (!fs::exists(cam0)) {
+    fs::create_directory_symlink(folder.path(), cam0);
+  }
+  folder.Write(bytes);
+  Try([] { OpenEurocSequence(folder.path()); });
+}
+
+void FuzzEurocStates(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    for (const StampedPose& pose : ReadEurocStates(path, Rigid3())) {
+      Expect(std::abs(pose.world_from_cam.rotation.norm() - 1.0) < 1e-9, "not normalised");
+    }
+  });
+}
+
+constexpr std::array<FuzzedReader, 8> kReaders = {{{"sequence", FuzzSequence},
+                                                   {"associations", FuzzAssociations},
+                                                   {"icl_associations", FuzzIclAssociations},
+                                                   {"povray_camera", FuzzPovrayCamera},
+                                                   {"ray_depth", FuzzRayDepth},
+                                                   {"euroc_sensor", FuzzEurocSensor},
+                                                   {"euroc_images", FuzzEurocImages},
+                                                   {"euroc_states", FuzzEurocStates}}};
+
+}  // namespace
+
+std::span<const FuzzedReader> SequenceReaders() { return kReaders; }
+
+}  // namespace hullslam
