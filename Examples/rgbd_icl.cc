@@ -2,8 +2,8 @@
 // Runs RGB-D SLAM on a sequence of ICL-NUIM.
 #include "cli/icl_arguments.h"
 #include "cli/program.h"
-#include "cli/rgbd_run.h"
 #include "cli/run_arguments.h"
+#include "cli/slam_run.h"
 
 int main(int argc, char** argv) {
   return hullslam::RunMain(
@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
         hullslam::FinishArguments(positional, arguments);
         const hullslam::SystemOptions options = hullslam::LoadIclOptions(arguments);
         const hullslam::ImageSequence sequence = hullslam::OpenIcl(arguments, icl, options);
-        return hullslam::RunRgbd(arguments, options, sequence);
+        return hullslam::RunSlam(arguments, options, sequence);
       },
       argc, argv);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs RGB-D SLAM on a sequence in TUM format.
 #include "cli/program.h"
-#include "cli/rgbd_run.h"
 #include "cli/run_arguments.h"
+#include "cli/slam_run.h"
 #include "hullslam/io/tum_sequence.h"
 
 int main(int argc, char** argv) {
@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
         const hullslam::ImageSequence sequence = hullslam::OpenTumSequence(
             arguments.sequence,
             {.associations = arguments.associations, .selection = arguments.selection});
-        return hullslam::RunRgbd(arguments, hullslam::LoadOptions(arguments), sequence);
+        return hullslam::RunSlam(arguments, hullslam::LoadOptions(arguments), sequence);
       },
       argc, argv);
 }

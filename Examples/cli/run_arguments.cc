@@ -24,21 +24,29 @@ CLI::Validator WholeNumber(int least) {
       "");
 }
 
+// ORB-SLAM2's own arguments.
+std::string LongForm(SensorKind sensor) {
+  return sensor == SensorKind::kMonocular ? "VOCABULARY SETTINGS SEQUENCE"
+                                          : "VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS";
+}
+
 }  // namespace
 
 void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& arguments,
                      std::vector<std::string>& positional) {
   app.add_option("ARGUMENTS", positional,
-                 "SEQUENCE: " + help.sequence +
-                     "\nor VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS, the arguments of ORB-SLAM2");
+                 "SEQUENCE: " + help.sequence + "\nor " + LongForm(arguments.sensor) +
+                     ", the arguments of ORB-SLAM2");
   app.add_option(
       "--settings", arguments.settings,
       "settings file (default: camera.yaml in SEQUENCE; without it, " + help.settings + ")");
   app.add_option("--vocabulary", arguments.vocabulary,
                  "vocabulary of visual words: a binary file, a text file of ORB-SLAM2, or none "
                  "(default: the one that comes with HullSLAM)");
-  app.add_option("--associations", arguments.associations,
-                 "file with one pair of images per line: " + help.associations);
+  if (arguments.sensor == SensorKind::kRgbd) {
+    app.add_option("--associations", arguments.associations,
+                   "file with one pair of images per line: " + help.associations);
+  }
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
   app.add_option("--set", arguments.overrides,
                  "key=value: overrides one setting; can be given several times")
@@ -61,7 +69,7 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   app.add_flag("--realtime", arguments.realtime,
                "process the images no faster than the camera took them, by their stamps");
   app.add_option("--seed", arguments.seed,
-                 "seed of the random choices in relocalisation and loop closing")
+                 "seed of the random choices in initialisation, relocalisation and loop closing")
       ->check(WholeNumber(0))
       ->capture_default_str();
   app.add_option("--first", arguments.selection.first,
@@ -88,22 +96,27 @@ void FinishArguments(const std::vector<std::string>& positional, RunArguments& a
     arguments.sequence = positional[0];
     return;
   }
-  if (positional.size() != 4) {
+  const bool has_associations = arguments.sensor == SensorKind::kRgbd;
+  if (positional.size() != (has_associations ? 4 : 3)) {
     throw InputError(std::to_string(positional.size()) +
-                     " positional arguments, expected SEQUENCE or VOCABULARY SETTINGS SEQUENCE "
-                     "ASSOCIATIONS (see --help)");
+                     " positional arguments, expected SEQUENCE or " + LongForm(arguments.sensor) +
+                     " (see --help)");
   }
   arguments.vocabulary = positional[0];
   arguments.settings = positional[1];
   arguments.sequence = positional[2];
-  arguments.associations = positional[3];
+  if (has_associations) {
+    arguments.associations = positional[3];
+  }
 }
 
 SystemOptions LoadOptions(const RunArguments& arguments) {
-  return ReadSettings(arguments.settings.empty()
-                          ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
-                          : arguments.settings,
-                      arguments.overrides);
+  SystemOptions options = ReadSettings(
+      arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
+                                 : arguments.settings,
+      arguments.overrides);
+  options.sensor = arguments.sensor;
+  return options;
 }
 
 }  // namespace hullslam

@@ -14,6 +14,8 @@ namespace hullslam {
 
 // The command line options that all programs share which run SLAM.
 struct RunArguments {
+  // Not an option: each program has its own. A monocular one has no associations of depth images.
+  SensorKind sensor = SensorKind::kRgbd;
   std::filesystem::path sequence;
   std::filesystem::path settings;      // empty: chosen by FindDefaultSettings()
   std::filesystem::path vocabulary;    // empty: the default one; "none": none
@@ -35,18 +37,20 @@ struct RunArguments {
 
 // What the help says about the data set of a program.
 struct DatasetHelp {
-  std::string sequence;      // what the folder SEQUENCE holds
-  std::string settings;      // the settings that are used without --settings
-  std::string associations;  // the lines of the file of --associations, and what is used without it
+  std::string sequence;  // what the folder SEQUENCE holds
+  std::string settings;  // the settings that are used without --settings
+  // The lines of the file of --associations, and what is used without it; not for monocular
+  // cameras.
+  std::string associations = {};
 };
 
 // Adds the options and the positional arguments: SEQUENCE, or ORB-SLAM2's VOCABULARY SETTINGS
-// SEQUENCE ASSOCIATIONS. `arguments` and `positional` must outlive the app. Call FinishArguments
-// after parsing.
+// SEQUENCE ASSOCIATIONS (without ASSOCIATIONS if RunArguments::sensor is monocular). `arguments`
+// and `positional` must outlive the app. Call FinishArguments after parsing.
 void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& arguments,
                      std::vector<std::string>& positional);
 // Copies the positional arguments to the fields that they stand for. Throws InputError unless there
-// are 1 or 4 of them.
+// are 1 or 4 of them, 1 or 3 for a monocular camera.
 void FinishArguments(const std::vector<std::string>& positional, RunArguments& arguments);
 
 // The settings of --settings, else those that FindDefaultSettings() finds for the sequence, with

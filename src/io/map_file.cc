@@ -192,7 +192,8 @@ StoredMap Read(const fs::path& path, const MapSettings* expected,
 }  // namespace
 
 MapSettings MapSettingsOf(const SystemOptions& options) {
-  return {.camera = options.camera,
+  return {.sensor = options.sensor,
+          .camera = options.camera,
           .level_count = options.features.level_count,
           .scale_factor = options.features.scale_factor,
           .vocabulary = options.vocabulary != nullptr ? options.vocabulary->hash() : 0};

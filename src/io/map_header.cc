@@ -6,7 +6,10 @@
 namespace hullslam {
 namespace {
 
-constexpr uint8_t kRgbd = 1;  // the sensor; 2 will be a monocular camera
+// Sensors in the file.
+constexpr uint8_t kRgbd = 1;
+constexpr uint8_t kMonocular = 2;
+
 constexpr int kMostLevels = 64;
 constexpr double kMostScaleFactor = 16.0;
 
@@ -37,7 +40,7 @@ PinholeCamera ReadCamera(ByteReader& in) {
 }  // namespace
 
 void WriteHeader(const MapHeader& header, ByteWriter& out) {
-  out.Put(kRgbd);
+  out.Put(header.settings.sensor == SensorKind::kMonocular ? kMonocular : kRgbd);
   WriteCamera(header.settings.camera, out);
   out.Put(static_cast<int32_t>(header.settings.level_count));
   out.Put(header.settings.scale_factor);
@@ -56,7 +59,10 @@ void WriteHeader(const MapHeader& header, ByteWriter& out) {
 
 MapHeader ReadHeader(ByteReader& in) {
   MapHeader header;
-  in.Require(in.Get<uint8_t>() == kRgbd, "is of a sensor that this version does not know");
+  const auto sensor = in.Get<uint8_t>();
+  in.Require(sensor == kRgbd || sensor == kMonocular,
+             "is of a sensor that this version does not know");
+  header.settings.sensor = sensor == kRgbd ? SensorKind::kRgbd : SensorKind::kMonocular;
   header.settings.camera = ReadCamera(in);
   header.settings.level_count = in.Get<int32_t>();
   header.settings.scale_factor = in.GetFinite(kMostScaleFactor);

@@ -79,6 +79,13 @@ std::vector<OptionTable::Entry> Describe(MapSettings settings) {
 
 void RequireSettings(const MapSettings& found, const MapSettings& expected,
                      const std::string& name) {
+  const auto kind = [](const MapSettings& settings) {
+    return settings.sensor == SensorKind::kMonocular ? "a monocular" : "an RGB-D";
+  };
+  if (found.sensor != expected.sensor) {
+    throw InputError(fmt::format("{}: was made with {} camera, this run has {} one", name,
+                                 kind(found), kind(expected)));
+  }
   if (found.vocabulary != expected.vocabulary) {
     throw InputError(
         fmt::format("{}: was made with the vocabulary {:016x}, this run has {:016x} "

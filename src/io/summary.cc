@@ -51,6 +51,10 @@ Json ToJson(const ObjectsSummary& summary) {
           {"changes", summary.changes ? Json(*summary.changes) : Json(nullptr)}};
 }
 
+Json ToJson(const InitialisationSummary& summary) {
+  return {{"seconds", OrNull(summary.seconds)}, {"failures", Json(summary.failures)}};
+}
+
 Json ToJson(const TimeStatistics& times) {
   return {{"median", times.median}, {"mean", times.mean}, {"p95", times.p95}, {"max", times.max}};
 }
@@ -88,13 +92,15 @@ Json ToJson(const ProvenanceSummary& summary) {
 }  // namespace
 
 std::string FormatSummary(const RunSummary& summary) {
-  const Json json = {{"trajectory", ToJson(summary.trajectory)},
-                     {"objects", summary.objects ? ToJson(*summary.objects) : Json(nullptr)},
-                     {"timing", ToJson(summary.timing)},
-                     {"memory", {{"peak_mb", summary.peak_memory_mb}}},
-                     {"map", ToJson(summary.map)},
-                     {"provenance", ToJson(summary.provenance)},
-                     {"files", summary.files}};
+  const Json json = {
+      {"trajectory", ToJson(summary.trajectory)},
+      {"initialisation", summary.initialisation ? ToJson(*summary.initialisation) : Json(nullptr)},
+      {"objects", summary.objects ? ToJson(*summary.objects) : Json(nullptr)},
+      {"timing", ToJson(summary.timing)},
+      {"memory", {{"peak_mb", summary.peak_memory_mb}}},
+      {"map", ToJson(summary.map)},
+      {"provenance", ToJson(summary.provenance)},
+      {"files", summary.files}};
   constexpr int kIndent = 2;
   // The name of a folder may contain any bytes; those that are not UTF-8 are replaced.
   return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + '\n';

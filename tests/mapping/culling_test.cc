@@ -50,6 +50,7 @@ class RecentLandmarksTest : public testing::Test {
   }
 
   const SyntheticWorld world_{{.points = 300}};
+  Sensor sensor_ = world_.sensor();
   Map map_;
   uint32_t next_keypoint_ = 0;
 };
@@ -64,6 +65,15 @@ TEST_F(RecentLandmarksTest, AreErasedIfTheirWeightIsSmallAfterTwoKeyframes) {
   ExpectKept(Add(1, 1, 1, 1), 2, true, "one observation, one keyframe later");
   ExpectCulled(Add(1, 1, 1, 1), 3, "one observation with depth, two keyframes later");
   ExpectKept(Add(1, 2, 1, 1), 3, true, "two observations with depth are enough");
+}
+
+// Without depth every observation has the weight 1, and three are needed.
+TEST_F(RecentLandmarksTest, OfAMonocularCameraNeedThreeObservations) {
+  const LandmarkId three = Add(0, 2, 1, 1);  // weight 4
+  sensor_.kind = SensorKind::kMonocular;
+  ExpectKept(three, 3, false, "weight 4");
+  const LandmarkId weak = Add(0, 1, 1, 1);  // weight 2
+  ExpectCulled(weak, 2, "weight 2");
 }
 
 TEST_F(RecentLandmarksTest, LeaveTheListAfterThreeKeyframes) {

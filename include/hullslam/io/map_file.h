@@ -7,6 +7,7 @@
 
 #include "hullslam/bow/vocabulary.h"
 #include "hullslam/camera/pinhole.h"
+#include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/system/options.h"
 
@@ -15,6 +16,7 @@ namespace hullslam {
 // What the frames of a map were made with. Frames that were made with something else cannot be
 // found in the map.
 struct MapSettings {
+  SensorKind sensor = SensorKind::kRgbd;
   PinholeCamera camera;
   int level_count = 8;        // of the image pyramid
   double scale_factor = 1.2;  // between two levels

@@ -51,6 +51,12 @@ struct ObjectsSummary {
   std::optional<std::map<std::string, size_t>> changes = std::nullopt;
 };
 
+// Of a monocular camera: how it got its first map.
+struct InitialisationSummary {
+  std::optional<double> seconds = std::nullopt;  // from the first image to the map; absent: no map
+  std::map<std::string, size_t> failures = {};   // frames that made no map, by reason
+};
+
 struct TimingSummary {
   TimeStatistics track_ms;
   std::map<std::string, TimeStatistics> stages_ms;
@@ -79,6 +85,7 @@ struct ProvenanceSummary {
 
 struct RunSummary {
   TrajectorySummary trajectory;
+  std::optional<InitialisationSummary> initialisation = std::nullopt;  // absent with depth
   std::optional<ObjectsSummary> objects = std::nullopt;  // absent for a run without masks
   TimingSummary timing;
   double peak_memory_mb = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/rgbd_run.h"
+#include "cli/slam_run.h"
 
 #include <fmt/format.h>
 
@@ -41,6 +41,7 @@ struct RunResult {
   size_t skipped = 0;  // those of them with an image that cannot be read
   double seconds = 0.0;
   bool was_interrupted = false;
+  InitialisationSummary initialisation;
 };
 
 PipelineKind ChoosePipeline(const RunArguments& arguments) {
@@ -61,8 +62,12 @@ const char* Name(TrackingState state) {
   }
 }
 
-std::string DescribeState(TrackingState state, const System& system) {
+std::string DescribeState(TrackingState state, std::optional<InitialisationFailure> failure,
+                          const System& system) {
   const auto map = system.map();
+  if (failure) {
+    return fmt::format("{}: {}", Name(state), ToString(*failure));
+  }
   return fmt::format("{}  {} keyframes  {} landmarks", Name(state),
                      map != nullptr ? map->keyframes().size() : 0,
                      map != nullptr ? map->landmarks().size() : 0);
@@ -87,6 +92,15 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
                    const PinholeCamera& camera, const SequenceMasks& masks, System& system) {
   RunResult result;
   Progress progress(sequence.frames.size(), arguments.quiet);
+  std::optional<InitialisationFailure> failure;  // of the last frame
+  system.SetFrameCallback([&](const FrameReport& report) {
+    failure = report.failure;
+    if (failure) {
+      ++result.initialisation.failures[std::string(ToString(*failure))];
+    } else if (report.tracked.state == TrackingState::kTracked && !result.initialisation.seconds) {
+      result.initialisation.seconds = report.tracked.timestamp - sequence.frames.front().timestamp;
+    }
+  });
   const Clock::time_point start = Clock::now();
   // In the sequential pipeline the thread that tracks and maps has more to do than the others.
   FrameSource frames(arguments.realtime ? Pace::kRealtime : Pace::kFast,
@@ -108,18 +122,30 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
       continue;
     }
     const TrackedFrame frame = system.Track(std::move(*loaded->frame));
-    progress.Show(result.given, [&] { return DescribeState(frame.state, system); });
+    progress.Show(result.given, [&] { return DescribeState(frame.state, failure, system); });
   }
   progress.Clear();
+  system.SetFrameCallback({});
   FinishMap(arguments.quiet, system);
   result.was_interrupted = IsInterrupted();
   result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return result;
 }
 
-void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory,
+Trajectory Scaled(Trajectory trajectory, double scale) {
+  for (StampedPose& pose : trajectory) {
+    pose.world_from_cam.translation *= scale;
+  }
+  return trajectory;
+}
+
+// The scale of a monocular map is not known, so it is aligned too.
+void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory, SensorKind sensor,
               TrajectorySummary& summary) {
-  const AteReport ate = EvaluateAte(groundtruth, trajectory);
+  AteOptions options;
+  options.alignment = sensor == SensorKind::kMonocular ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
+  summary.alignment = ToString(options.alignment);
+  const AteReport ate = EvaluateAte(groundtruth, trajectory, options);
   if (!ate.ok()) {
     PrintError("warning: the trajectory error cannot be computed: {}\n", ate.failure);
     return;
@@ -127,7 +153,8 @@ void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory,
   summary.ate_rmse_m = ate.errors.rmse;
   summary.scale = ate.reference_from_estimate.scale;
   summary.pairs = ate.pairs;
-  const RpeReport rpe = EvaluateRpe(groundtruth, trajectory);
+  const RpeReport rpe =
+      EvaluateRpe(groundtruth, Scaled(trajectory, ate.reference_from_estimate.scale));
   if (rpe.ok()) {
     summary.rpe_rmse_m = rpe.translation.rmse;
     summary.rpe_rmse_deg = rpe.rotation.rmse;
@@ -173,6 +200,9 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
     summary.map.sessions = map->sessions().size();
     summary.map.loops = CountLoops(*map);
   }
+  if (options.sensor == SensorKind::kMonocular) {
+    summary.initialisation = result.initialisation;
+  }
   summary.provenance.version = HULLSLAM_VERSION;
   summary.provenance.git = HULLSLAM_GIT;
   summary.provenance.settings_hash = HashSettings(options);
@@ -217,8 +247,15 @@ void WriteOutputs(OutputFolder& output, const Map& map, const std::vector<Trajec
 void PrintReport(const RunArguments& arguments, const RunSummary& summary,
                  const ObjectReport& objects) {
   const TrajectorySummary& trajectory = summary.trajectory;
-  Print("{} frames: {} tracked, {} lost, {} skipped; {} images without depth\n", trajectory.frames,
-        trajectory.tracked, trajectory.lost, trajectory.skipped, trajectory.unpaired);
+  Print("{} frames: {} tracked, {} lost, {} skipped", trajectory.frames, trajectory.tracked,
+        trajectory.lost, trajectory.skipped);
+  if (!summary.initialisation) {
+    Print("; {} images without depth\n", trajectory.unpaired);
+  } else if (summary.initialisation->seconds) {
+    Print("; first map after {:.2f} s\n", *summary.initialisation->seconds);
+  } else {
+    Print("; no map\n");
+  }
   if (trajectory.ate_rmse_m) {
     Print(
         "ATE RMSE {:.4f} m ({} alignment, {} pairs of poses, coverage {:.1f} % of the sequence)\n",
@@ -244,6 +281,20 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
   Print("results are in {}\n", arguments.output.string());
 }
 
+// "40 x too little parallax, 3 x too few matches", the most frequent one first.
+std::string DescribeFailures(const InitialisationSummary& initialisation) {
+  std::vector<std::pair<size_t, std::string>> reasons;
+  for (const auto& [reason, count] : initialisation.failures) {
+    reasons.emplace_back(count, fmt::format("{} x {}", count, reason));
+  }
+  std::sort(reasons.rbegin(), reasons.rend());
+  std::string text;
+  for (const auto& [count, reason] : reasons) {
+    text += (text.empty() ? "" : ", ") + reason;
+  }
+  return text;
+}
+
 // Why the run has failed although it came to its end; empty if it has not.
 std::string DescribeLoss(const RunArguments& arguments, const RunOptions& options,
                          const ImageSequence& sequence, const RunSummary& summary,
@@ -252,6 +303,10 @@ std::string DescribeLoss(const RunArguments& arguments, const RunOptions& option
   if (!arguments.load_map.empty() && trajectory.tracked == 0) {
     return fmt::format("{}: no frame was found in this map, so none of {} frames has a pose",
                        arguments.load_map.string(), sequence.frames.size());
+  }
+  if (summary.initialisation && !summary.initialisation->seconds) {
+    return fmt::format("no map could be made from {} frames: {}; the camera must move sideways",
+                       summary.trajectory.frames, DescribeFailures(*summary.initialisation));
   }
   const std::string found =
       fmt::format("{} of {} frames have a pose", trajectory.tracked, sequence.frames.size());
@@ -280,7 +335,7 @@ std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
 
 }  // namespace
 
-int RunRgbd(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence) {
+int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence) {
   options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
   options.seed = arguments.seed;
   // Finds images of a wrong type or size early.
@@ -311,7 +366,7 @@ int RunRgbd(const RunArguments& arguments, SystemOptions options, const ImageSeq
   summary.provenance.masks_format = masks.format();
   const Trajectory trajectory = system.trajectory();
   if (groundtruth) {
-    Evaluate(*groundtruth, trajectory, summary.trajectory);
+    Evaluate(*groundtruth, trajectory, options.sensor, summary.trajectory);
   }
   const std::shared_ptr<const Map> map =
       system.map() != nullptr ? system.map() : std::make_shared<const Map>();
