@@ -11,9 +11,9 @@ RUN_DIR is a folder that `rgbd_tum --output` or `map_objects --output` wrote. It
 trajectory.txt; map.ply, keyframes.txt, objects.json and summary.json are used if they exist.
 
 The run is aligned to the ground truth of its sequence (SE3, Umeyama 1991, pairs within 0.02 s) and
-drawn from above and from the side. The ground truth is groundtruth.txt in RUN_DIR (of runs that
-had to convert it), else in the folder that summary.json names, or the file that is given. Without it, it is not known where up is: the run is
-drawn in its own frame, and the views are named by the axes.
+drawn from above and from the side. The ground truth is groundtruth.txt in RUN_DIR if the run wrote
+one, else in the folder that summary.json names, or the file that is given. Without it, it is not
+known where up is: the run is drawn in its own frame, and the views are named by the axes.
 
 Exit codes: 0 done, 2 bad usage or input.
 """
@@ -287,9 +287,8 @@ def align_run(run, arguments, sequence):
     if arguments.groundtruth:
         run.align_to(arguments.groundtruth)
         return
-    converted = arguments.run_dir / "groundtruth.txt"
-    if converted.exists():
-        path = converted
+    if "groundtruth.txt" in run.summary.texts("files"):  # the run had to convert it
+        path = arguments.run_dir / "groundtruth.txt"
     else:
         path = sequence / "groundtruth.txt" if sequence else None
     if arguments.no_groundtruth or path is None or not path.exists():

@@ -91,6 +91,13 @@ class Summary:
             raise InputError(f"{self.path}: {'.'.join(keys)}: expected a text")
         return value
 
+    def texts(self, *keys):
+        value = self._at(keys)
+        if value is not None and not (isinstance(value, list)
+                                      and all(isinstance(text, str) for text in value)):
+            raise InputError(f"{self.path}: {'.'.join(keys)}: expected a list of texts")
+        return value or []
+
     def keys(self, *keys):
         value = self._at(keys)
         if value is not None and not isinstance(value, dict):

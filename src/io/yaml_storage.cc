@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <stdexcept>
 
 #include "hullslam/util/error.h"
 #include "io/yaml_nesting.h"
@@ -19,6 +20,8 @@ cv::FileStorage ParseYaml(const std::filesystem::path& file, const std::string& 
         text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
   } catch (const cv::Exception& error) {
     FailParsing(file, error, added_lines);
+  } catch (const std::length_error&) {  // some broken texts make the parser build a huge string
+    throw InputError(file.string() + ": is not valid YAML");
   }
 }
 

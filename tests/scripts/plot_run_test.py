@@ -269,6 +269,13 @@ class PlotRunTest(unittest.TestCase):
         self.assertNotIn("ATE", self.plot().stdout)
         self.assertIn("0.0100 m (SE3", self.plot("--sequence", self.dir).stdout)
 
+    def test_takes_the_ground_truth_that_the_run_has_converted(self):
+        self.write("summary.json", json.dumps({"files": ["groundtruth.txt", "trajectory.txt"]}))
+        self.assertIn("0.0100 m (SE3", self.plot().stdout)
+        for files in ("groundtruth.txt", [1]):
+            self.write("summary.json", json.dumps({"files": files}))
+            self.assert_refused(self.plot(), "summary.json: files: expected a list of texts")
+
     def test_unsuitable_ground_truth_of_the_sequence_is_not_used(self):
         self.write("rgb.txt", "")
         self.write_summary(self.dir)
