@@ -200,7 +200,7 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
     summary.map.sessions = map->sessions().size();
     summary.map.loops = CountLoops(*map);
   }
-  if (options.sensor == SensorKind::kMonocular) {
+  if (options.sensor == SensorKind::kMonocular && arguments.load_map.empty()) {
     summary.initialisation = result.initialisation;
   }
   summary.provenance.version = HULLSLAM_VERSION;
