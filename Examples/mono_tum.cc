@@ -16,8 +16,8 @@ int main(int argc, char** argv) {
         hullslam::AddRunArguments(
             app,
             {.sequence = "folder with rgb.txt",
-             .settings = "the file in config/ that fits the folder's name, such as TUM1.yaml for "
-                         "freiburg1"},
+             .settings = "default: camera.yaml in SEQUENCE; without it, the file in config/ that "
+                         "fits the folder's name, such as TUM1.yaml for freiburg1"},
             arguments, positional);
         if (!hullslam::ParseCommandLine(app, count, words)) {
           return static_cast<int>(hullslam::kDone);

@@ -14,8 +14,8 @@ int main(int argc, char** argv) {
         hullslam::AddRunArguments(
             app,
             {.sequence = "folder with rgb.txt and depth.txt",
-             .settings = "the file in config/ that fits the folder's name, such as TUM1.yaml for "
-                         "freiburg1",
+             .settings = "default: camera.yaml in SEQUENCE; without it, the file in config/ that "
+                         "fits the folder's name, such as TUM1.yaml for freiburg1",
              .associations = "stamp rgb stamp depth (default: images are paired by their stamps, "
                              "at most 0.02 s apart)"},
             arguments, positional);

@@ -27,7 +27,7 @@ void AddNamed(CLI::App& app, const std::string& option, const std::map<std::stri
 
 DatasetHelp IclHelp() {
   return {.sequence = "folder of ICL-NUIM, of either package (--package)",
-          .settings = "config/ICL.yaml",
+          .settings = "default: camera.yaml in SEQUENCE; without it, config/ICL.yaml",
           .associations =
               "index depth index rgb (default: associations.txt in SEQUENCE; package tum only)"};
 }
@@ -61,12 +61,15 @@ SystemOptions LoadIclOptions(const RunArguments& arguments) {
       settings = FindConfigFolder() / "ICL.yaml";
     }
   }
-  return ReadSettings(settings, arguments.overrides, NegativeFy::kPositive);
+  SystemOptions options = ReadSettings(settings, arguments.overrides, NegativeFy::kPositive);
+  options.sensor = arguments.sensor;
+  return options;
 }
 
 ImageSequence OpenIcl(const RunArguments& arguments, IclSequenceOptions icl,
                       const SystemOptions& options) {
   icl.associations = arguments.associations;
+  icl.use_depth = arguments.sensor == SensorKind::kRgbd;
   icl.selection = arguments.selection;
   IclSequence sequence = OpenIclSequence(arguments.sequence, options.camera, options.depth, icl);
   if (!arguments.quiet) {

@@ -36,10 +36,8 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
                      std::vector<std::string>& positional) {
   app.add_option("ARGUMENTS", positional,
                  "SEQUENCE: " + help.sequence + "\nor " + LongForm(arguments.sensor) +
-                     ", the arguments of ORB-SLAM2");
-  app.add_option(
-      "--settings", arguments.settings,
-      "settings file (default: camera.yaml in SEQUENCE; without it, " + help.settings + ")");
+                     ", in the order of ORB-SLAM2");
+  app.add_option("--settings", arguments.settings, "settings file (" + help.settings + ")");
   app.add_option("--vocabulary", arguments.vocabulary,
                  "vocabulary of visual words: a binary file, a text file of ORB-SLAM2, or none "
                  "(default: the one that comes with HullSLAM)");

@@ -37,8 +37,8 @@ struct RunArguments {
 
 // What the help says about the data set of a program.
 struct DatasetHelp {
-  std::string sequence;  // what the folder SEQUENCE holds
-  std::string settings;  // the settings that are used without --settings
+  std::string sequence;  // what SEQUENCE is
+  std::string settings;  // what is used without --settings
   // The lines of the file of --associations, and what is used without it; not for monocular
   // cameras.
   std::string associations = {};

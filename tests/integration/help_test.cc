@@ -27,7 +27,8 @@ TEST_P(Help, TheVersionIsPrinted) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Programs, Help,
-                         ::testing::Values("rgbd_tum", "rgbd_icl", "map_objects", "evaluate",
+                         ::testing::Values("rgbd_tum", "rgbd_icl", "mono_tum", "mono_icl",
+                                           "mono_euroc", "mono_video", "map_objects", "evaluate",
                                            "check_masks", "make_synthetic", "relocalise",
                                            "train_vocabulary", "convert_vocabulary"),
                          [](const auto& info) { return info.param; });

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "support/made_room.h"
+#include "support/mono_program.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFrames = 20;
+constexpr double kSmall = 0.010;  // m
+
+class MonoIcl : public MonoProgram {
+ protected:
+  MonoIcl() : MonoProgram("mono_icl") {}
+};
+
+// A mirrored path fits after no rotation and no scale, so the large error says that the small one
+// means something.
+TEST_F(MonoIcl, ThePackageWithPngImagesIsTracked) {
+  MadeRoom().WriteIclTum(path_, kFrames, true);
+  const ProgramResult result = ExpectMap({path_}, kFrames);
+  ExpectParts(result.output, {"package tum", "y up, mirrored"});
+  EXPECT_LE(Ate(), kSmall);
+  EXPECT_EQ(Summary()["trajectory"]["pairs"], kFrames - 1) << "the first frame has no true pose";
+  EXPECT_EQ(ReadTrajectory(output_ / "groundtruth.txt").size(), kFrames - 1U);
+  const double right = Ate();
+  ExpectMap({path_, "--groundtruth-y", "down"}, kFrames);
+  EXPECT_GT(Ate(), 3.0 * right);
+}
+
+// The depth files are not read: here they are empty.
+TEST_F(MonoIcl, ThePovrayPackageIsTrackedWithoutDepth) {
+  fs::create_directory(path_);
+  const MadeRoom room(2);
+  room.WriteIclPovray(path_, kFrames);
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_)) {
+    if (entry.path().extension() == ".depth") {
+      fs::resize_file(entry.path(), 0);
+    }
+  }
+  const std::string settings =
+      folder_.Write("half.yaml",
+                    "%YAML:1.0\nCamera.fx: 240.6\nCamera.fy: -240.0\nCamera.cx: 159.75\n"
+                    "Camera.cy: 119.75\nCamera.width: 320\nCamera.height: 240\n");
+  const ProgramResult result =
+      ExpectMap({"none", settings, path_, "--povray-units", "100"}, kFrames);
+  ExpectParts(result.output, {"package povray"});
+  EXPECT_LE(Ate(), kSmall);
+  ExpectRefusal({path_}, {"scene_00_0000.png", "320x240", "640x480"});
+}
+
+TEST_F(MonoIcl, AsksWhatTheFolderDoesNotTell) {
+  fs::create_directory(path_);
+  ExpectRefusal({path_}, {path_, "--package tum or --package povray"});
+  ExpectRefusal({path_ + "/none"}, {path_ + "/none: no such folder"});
+  ExpectRefusal({path_, "--associations", "pairs.txt"}, {"--associations"});
+  ExpectRefusal({"none", "ICL.yaml", path_, "pairs.txt"}, {"4 positional arguments"});
+}
+
+TEST_F(MonoIcl, ACameraThatStandsStillMakesNoMap) {
+  MadeRoom().WriteIclTum(path_, 3, false);
+  fs::remove(path_ + "/made.gt.freiburg");
+  for (const char* const name : {"1.png", "2.png"}) {
+    fs::copy_file(path_ + "/rgb/0.png", path_ + "/rgb/" + name,
+                  fs::copy_options::overwrite_existing);
+  }
+  ExpectParts(Run({path_}).output, {"ground truth: none"});
+  ExpectNoMap({path_}, 3, "too little parallax");
+}
+
+}  // namespace
+}  // namespace hullslam
