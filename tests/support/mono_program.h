@@ -58,7 +58,7 @@ class MonoProgram : public ::testing::Test {
     EXPECT_EQ(summary["trajectory"]["tracked"], 0);
     EXPECT_EQ(summary["trajectory"]["coverage"], 0.0);
     EXPECT_EQ(summary["map"]["keyframes"], 0);
-    EXPECT_EQ(ReadFile(output_ / "trajectory.txt"), "");
+    EXPECT_EQ(ReadFile(output_ / "trajectory.txt"), FormatTrajectory(Trajectory()));
   }
 
   // Expects exit code 2, an error with these parts, and no results.
