@@ -92,15 +92,16 @@ Json ToJson(const ProvenanceSummary& summary) {
 }  // namespace
 
 std::string FormatSummary(const RunSummary& summary) {
-  const Json json = {
-      {"trajectory", ToJson(summary.trajectory)},
-      {"initialisation", summary.initialisation ? ToJson(*summary.initialisation) : Json(nullptr)},
-      {"objects", summary.objects ? ToJson(*summary.objects) : Json(nullptr)},
-      {"timing", ToJson(summary.timing)},
-      {"memory", {{"peak_mb", summary.peak_memory_mb}}},
-      {"map", ToJson(summary.map)},
-      {"provenance", ToJson(summary.provenance)},
-      {"files", summary.files}};
+  Json json = {{"trajectory", ToJson(summary.trajectory)},
+               {"objects", summary.objects ? ToJson(*summary.objects) : Json(nullptr)},
+               {"timing", ToJson(summary.timing)},
+               {"memory", {{"peak_mb", summary.peak_memory_mb}}},
+               {"map", ToJson(summary.map)},
+               {"provenance", ToJson(summary.provenance)},
+               {"files", summary.files}};
+  if (summary.initialisation) {
+    json["initialisation"] = ToJson(*summary.initialisation);
+  }
   constexpr int kIndent = 2;
   // The name of a folder may contain any bytes; those that are not UTF-8 are replaced.
   return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + '\n';

@@ -126,6 +126,27 @@ TEST(TwoViews, OnAPlaneTheyAreRightOrAmbiguous) {
   RecordProperty("found", found_count);
 }
 
+// A wall seen head on is the worst plane: two motions explain it about equally well.
+TEST(TwoViews, BeforeAWallTheyAreRightOrThereIsNone) {
+  const std::vector<Rigid3> motions = {
+      Motion({0, 0, 0}, {0.25, 0, 0}), Motion({0, 0, 0}, {0, 0, 0.4}),
+      Motion({0, 0.08, 0}, {-0.3, 0.05, 0.1}), Motion({0.1, 0, 0.05}, {0.05, 0.3, -0.1})};
+  int wrong = 0;
+  int found_count = 0;
+  for (uint64_t seed = 0; seed < 25; ++seed) {
+    for (const Rigid3& motion : motions) {
+      const TwoViews found =
+          EstimateTwoViews(Camera(), See(motion, seed, {}, Plane({0.0, 0.0, 1.0})), {.seed = seed});
+      found_count += found.ok() ? 1 : 0;
+      wrong += found.ok() && (AngularDistance(found.b_from_a.rotation, motion.rotation) > 0.05 ||
+                              DirectionError(found, motion) > 15.0)
+                   ? 1
+                   : 0;
+    }
+  }
+  EXPECT_EQ(wrong, 0) << "of " << found_count << " found";
+}
+
 TEST(TwoViews, ARotationHasNoParallax) {
   for (uint64_t seed = 0; seed < 50; ++seed) {
     const double turn = 0.02 + 0.004 * static_cast<double>(seed);

@@ -307,5 +307,20 @@ TEST_F(FrameBuilderTest, ImagesOfAnotherTypeAreRefusedWhateverTheyShow) {
   EXPECT_THROW(Build(image), InputError);
 }
 
+TEST_F(FrameBuilderTest, AMonocularCameraHasNoDepth) {
+  Sensor sensor = sensor_;
+  sensor.kind = SensorKind::kMonocular;
+  FrameBuilder builder(sensor, DepthOptions(), FewFeatures());
+  ImageInput image = MakeImage();
+  ExpectInputError([&] { builder.Build(image, runner_); }, {"depth image", "none"});
+  image.depth = cv::Mat();
+  const auto frame = builder.Build(image, runner_).frame;
+  ASSERT_EQ(frame->features.size(), Build(MakeImage())->features.size());
+  for (size_t i = 0; i < frame->features.size(); ++i) {
+    EXPECT_EQ(frame->features.depth[i], 0.0f);
+    EXPECT_EQ(frame->features.right_u[i], -1.0f);
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -202,7 +202,17 @@ TEST_F(MapFile, OtherSettingsAreRefused) {
   refuse([](MapSettings& s) { s.camera.k2 = 1e-4; }, {"Camera.k2 0", "1e-04"});
   refuse([](MapSettings& s) { s.level_count = 7; }, {"ORBextractor.nLevels 8", "7"});
   refuse([](MapSettings& s) { s.scale_factor = 1.3; }, {"ORBextractor.scaleFactor 1.2", "1.3"});
+  refuse([](MapSettings& s) { s.sensor = SensorKind::kMonocular; },
+         {path_.string(), "an RGB-D camera", "a monocular"});
   refuse([](MapSettings& s) { s.vocabulary = 9; }, {"vocabulary", "0000000000000009"});
+}
+
+TEST_F(MapFile, AMonocularMapStaysOne) {
+  MapSettings settings = MadeSettings();
+  settings.sensor = SensorKind::kMonocular;
+  WriteMap(path_, SmallMap(), settings);
+  EXPECT_EQ(ReadMap(path_).settings.sensor, SensorKind::kMonocular);
+  ExpectInputError([&] { ReadMap(path_, MadeSettings()); }, {"a monocular camera", "an RGB-D"});
 }
 
 TEST_F(MapFile, EveryFlippedByteIsRefused) {

@@ -23,6 +23,18 @@ std::vector<std::string> Keys(const Json& json) {
   return keys;
 }
 
+TEST(Summary, OfAMonocularCameraTellsHowTheMapBegan) {
+  RunSummary summary;
+  EXPECT_FALSE(Json::parse(FormatSummary(summary)).contains("initialisation"));
+  summary.initialisation = InitialisationSummary();
+  summary.initialisation->failures["too little parallax"] = 3;
+  const Json without_map = Json::parse(FormatSummary(summary))["initialisation"];
+  EXPECT_TRUE(without_map["seconds"].is_null());
+  EXPECT_EQ(without_map["failures"]["too little parallax"], 3);
+  summary.initialisation->seconds = 1.5;
+  EXPECT_EQ(Json::parse(FormatSummary(summary))["initialisation"]["seconds"], 1.5);
+}
+
 TEST(Summary, HasTheKeysOfTheFormatInOrder) {
   const Json json = Json::parse(FormatSummary({}));
   EXPECT_EQ(Keys(json), (std::vector<std::string>{"trajectory", "objects", "timing", "memory",

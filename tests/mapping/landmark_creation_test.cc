@@ -214,5 +214,64 @@ TEST(LandmarkCreation, KeypointsNearTheEpipoleGiveNoLandmark) {
   }
 }
 
+Sensor Monocular(const SyntheticWorld& world) {
+  Sensor sensor = world.sensor();
+  sensor.kind = SensorKind::kMonocular;
+  return sensor;
+}
+
+// Keypoints at coarse levels are less precise, so they need more parallax.
+TEST(LandmarkCreation, AMonocularPairNeedsParallaxInStandardDeviations) {
+  const SyntheticWorld world({.points = 3000, .depth_share = 0.0});
+  const Sensor sensor = Monocular(world);
+  const Eigen::Vector3d center(0.12, 0.0, 0.0);
+  TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead(center));
+  const std::vector<LandmarkId> created = CreateLandmarks(pair.map, KeyframeId(1), sensor);
+  EXPECT_EQ(FindViolations(pair.map), std::vector<std::string>());
+  ASSERT_GT(created.size(), 50U);
+  for (const LandmarkId id : created) {
+    const Landmark& landmark = pair.map.landmarks().At(id);
+    double variance = 0.0;  // px^2
+    for (const Observation& seen : landmark.observations) {
+      const Keypoint& keypoint =
+          pair.map.keyframes().At(seen.keyframe).frame->features.keypoints[seen.keypoint];
+      variance += static_cast<double>(sensor.levels.sigma2[static_cast<size_t>(keypoint.level)]);
+    }
+    const double parallax =
+        ParallaxDegrees(world.points()[PointOf(world, landmark)], Eigen::Vector3d::Zero(), center);
+    EXPECT_GT(parallax * std::numbers::pi / 180.0, 3.9 * std::sqrt(variance) / sensor.camera.fx);
+  }
+}
+
+// The camera has hardly moved. There are few landmarks, so the others get the depth of those
+// beside them, and agree with both images.
+TEST(LandmarkCreation, WithFewLandmarksAMonocularCameraGuessesTheDepth) {
+  const SyntheticWorld world({.depth_share = 0.0});
+  const Eigen::Vector3d center(0.03, 0.0, 0.0);
+  TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead(center));
+  TwoKeyframes same = MakePair(world, Rigid3(), LookingAhead(center));
+  EXPECT_TRUE(CreateLandmarks(same.map, KeyframeId(1), world.sensor()).empty()) << "with depth";
+  const std::vector<LandmarkId> created =
+      CreateLandmarks(pair.map, KeyframeId(1), Monocular(world));
+  EXPECT_EQ(FindViolations(pair.map), std::vector<std::string>());
+  const size_t shared = CountFreeShared(world, pair, [](const auto&) { return true; });
+  EXPECT_GT(created.size(), shared / 2);
+  for (const LandmarkId id : created) {
+    const Landmark& landmark = pair.map.landmarks().At(id);
+    const Eigen::Vector3d truth = world.points()[PointOf(world, landmark)];
+    EXPECT_GT(landmark.position.z(), 1.5);  // the points are at 2 to 6 m
+    EXPECT_LT(landmark.position.z(), 6.5);
+    EXPECT_LT(
+        (landmark.position.head<2>() / landmark.position.z() - truth.head<2>() / truth.z()).norm(),
+        0.01);
+  }
+}
+
+TEST(LandmarkCreation, AMonocularCameraThatStandsStillMakesNone) {
+  const SyntheticWorld world({.depth_share = 0.0});
+  TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead({0.005, 0.0, 0.0}));
+  EXPECT_TRUE(CreateLandmarks(pair.map, KeyframeId(1), Monocular(world)).empty());
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -857,5 +857,59 @@ TEST_F(RelocalisingTracker, TriesTheNextSourceIfTheLocalMapDoesNotConfirmAPose) 
   ExpectNear(tracked.cam_from_world, RingWorld::CamFromWorld(0.45), 0.005);
 }
 
+// Frames without depth of a moving camera, before there is a map.
+class MonocularTracker : public testing::Test {
+ protected:
+  MonocularTracker() { sensor_.kind = SensorKind::kMonocular; }
+  // Gives frames to the tracker until it sends a map; returns the number of the last one.
+  uint32_t WaitForMap() {
+    for (uint32_t i = 0; i < 40; ++i) {
+      const Tracker::Result result = tracker_.Process(world_.Observe(i).frame, nullptr, kIdle);
+      EXPECT_EQ(result.report.failure.has_value(), !result.message.has_value());
+      if (result.message) {
+        EXPECT_TRUE(std::holds_alternative<InitialMap>(*result.message));
+        EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked);
+        return i;
+      }
+      EXPECT_EQ(result.report.tracked.state, TrackingState::kNotInitialized);
+    }
+    ADD_FAILURE() << "there is no map";
+    return 0;
+  }
+
+  const SyntheticWorld world_{{.points = 300, .depth_share = 0.0}};
+  Sensor sensor_ = world_.sensor();
+  TrackingOptions options_;
+  Tracker tracker_{sensor_, options_};
+};
+
+TEST_F(MonocularTracker, WaitsForAMapAndGivesTheFirstFramesPosesAtTheEnd) {
+  const uint32_t last = WaitForMap();
+  ASSERT_GT(last, 4U);
+  const SyntheticMap made = MakeSyntheticMap(world_, {2, last / 2, last});
+  const std::vector<TrackedFrame> early = tracker_.LocaliseEarlyFrames(made.map);
+  ASSERT_EQ(early.size(), last);
+  for (uint32_t i = 0; i < last; ++i) {
+    EXPECT_EQ(early[i].frame, FrameId(i));
+    EXPECT_EQ(early[i].state, TrackingState::kTracked);
+    if (i == 2 || i == last / 2) {
+      EXPECT_FALSE(early[i].pose) << "it is a keyframe";
+    } else {
+      ASSERT_TRUE(early[i].pose) << i;
+      const Rigid3 truth = SyntheticWorld::CamFromWorld(i);
+      EXPECT_LT((made.map.CamFromWorld(*early[i].pose).translation - truth.translation).norm(),
+                0.02);
+    }
+  }
+  EXPECT_TRUE(tracker_.LocaliseEarlyFrames(made.map).empty());
+}
+
+TEST_F(MonocularTracker, FramesThatTheMapDoesNotShowAreLeftOut) {
+  const uint32_t last = WaitForMap();
+  const SyntheticWorld other({.points = 300, .depth_share = 0.0, .seed = 77});
+  const SyntheticMap made = MakeSyntheticMap(other, {last + 10, last + 20});
+  EXPECT_TRUE(tracker_.LocaliseEarlyFrames(made.map).empty());
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -85,7 +85,7 @@ struct ProvenanceSummary {
 
 struct RunSummary {
   TrajectorySummary trajectory;
-  std::optional<InitialisationSummary> initialisation = std::nullopt;  // absent with depth
+  std::optional<InitialisationSummary> initialisation = std::nullopt;  // written only without depth
   std::optional<ObjectsSummary> objects = std::nullopt;  // absent for a run without masks
   TimingSummary timing;
   double peak_memory_mb = 0.0;

@@ -44,7 +44,7 @@ struct ObjectCounts {
   std::map<std::string, size_t> rejections;
 };
 
-// RGB-D SLAM as one object: images in, poses and map out.
+// SLAM as one object: images in, poses and map out.
 //
 //   System system(options, PipelineKind::kSequential);
 //   for each frame: TrackedFrame tracked = system.Track(timestamp, image, depth);
@@ -63,9 +63,10 @@ class System {
   ~System();
 
   // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order that Camera.RGB says; `depth` as in
-  // ImageInput. `masks` are those of the objects in the image, in its raw pixels. Throws InputError
-  // for images of another type or size and for masks that ValidateMasks() refuses. Time stamps (s)
-  // must increase; throws CheckError otherwise. A refused frame changes nothing.
+  // ImageInput, empty if SystemOptions::sensor is monocular. `masks` are those of the objects in
+  // the image, in its raw pixels. Throws InputError for images of another type or size and for
+  // masks that ValidateMasks() refuses. Time stamps (s) must increase; throws CheckError otherwise.
+  // A refused frame changes nothing.
   //
   // If mapping fails, this call or a later one throws its exception, and so do all calls of Track
   // and Finish after it. map() and trajectory() then give what was published before.
@@ -90,7 +91,8 @@ class System {
   // Waits until all keyframes are in the map. Then it adjusts the whole map if
   // mapping.final_bundle_adjustment is set. The adjustment ends early with what it has if
   // `cancellation` (may be null) is requested. `on_progress` is called after each of its
-  // iterations, in this thread. Track must not be called after Finish.
+  // iterations, in this thread. Of a monocular camera, frames before the map are then located in
+  // the map, so frames() may change. Track must not be called after Finish.
   void Finish(const Cancellation* cancellation = nullptr, const ProgressCallback& on_progress = {});
 
   // Makes the system as it was after its construction: with the map that it was given, without

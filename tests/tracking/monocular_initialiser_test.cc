@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tracking/monocular_initialiser.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+class MonocularStart : public testing::Test {
+ protected:
+  MonocularStart() { sensor_.kind = SensorKind::kMonocular; }
+
+  // Feeds frames `begin`, `begin` + 1, ... of the path until there is a map; at most `most`.
+  std::optional<InitialMap> Walk(MonocularInitialiser& initialiser, uint32_t begin, uint32_t most) {
+    for (uint32_t i = begin; i < begin + most; ++i) {
+      if (auto result = Give(initialiser, i, SyntheticWorld::CamFromWorld(i)); result.map) {
+        return std::move(result.map);
+      }
+    }
+    return std::nullopt;
+  }
+  MonocularInitialiser::Result Give(MonocularInitialiser& initialiser, uint32_t id,
+                                    const Rigid3& cam_from_world) {
+    SyntheticView view = world_.Observe(FrameId(id), cam_from_world);
+    truth_[id] = cam_from_world;
+    points_[id] = view.points;
+    MonocularInitialiser::Result result = initialiser.Process(view.frame);
+    if (!result.map) {
+      ++failures_[result.failure];
+    }
+    return result;
+  }
+  // The poses are right but for the scale; errors count as a share of the whole way.
+  void ExpectRight(const InitialMap& map) {
+    const Rigid3 world_from_first = Inverse(truth_.at(map.views.front().frame->id.value));
+    const auto truth_of = [&](const InitialMap::View& view) {
+      return truth_.at(view.frame->id.value) * world_from_first;
+    };
+    const double way = truth_of(map.views.back()).translation.norm();
+    const double scale = way / map.views.back().cam_from_world.translation.norm();
+    for (const InitialMap::View& view : map.views) {
+      const Rigid3 truth = truth_of(view);
+      EXPECT_LT(AngularDistance(view.cam_from_world.rotation, truth.rotation), 0.01);
+      EXPECT_LT((scale * view.cam_from_world.translation - truth.translation).norm(), 0.15 * way);
+    }
+  }
+  static double MedianDepth(const InitialMap& map) {
+    std::vector<double> depths;
+    for (const InitialMap::Point& point : map.points) {
+      depths.push_back(point.position.z());
+    }
+    std::sort(depths.begin(), depths.end());
+    return depths[depths.size() / 2];
+  }
+
+  const SyntheticWorld world_{{.points = 400, .depth_share = 0.0}};
+  Sensor sensor_ = world_.sensor();
+  std::map<uint32_t, Rigid3> truth_;                  // by frame
+  std::map<uint32_t, std::vector<uint32_t>> points_;  // that the keypoints of a frame show
+  std::map<InitialisationFailure, int> failures_;
+};
+
+TEST_F(MonocularStart, MakesAMapOfTheFirstFramesWithParallax) {
+  MonocularInitialiser initialiser(sensor_, 1);
+  const auto map = Walk(initialiser, 0, 30);
+  ASSERT_TRUE(map);
+  EXPECT_GE(map->views.size(), 3U);  // frames in between confirm it
+  EXPECT_EQ(map->views.front().cam_from_world.ToMatrix(), Rigid3().ToMatrix());
+  EXPECT_TRUE(
+      std::is_sorted(map->views.begin(), map->views.end(),
+                     [](const auto& a, const auto& b) { return a.frame->id < b.frame->id; }));
+  EXPECT_NEAR(MedianDepth(*map), 1.0, 1e-9);
+  EXPECT_GE(map->points.size(), 100U);
+  ExpectRight(*map);
+}
+
+TEST_F(MonocularStart, AllObservationsOfAPointShowThePoint) {
+  MonocularInitialiser initialiser(sensor_, 1);
+  const auto map = Walk(initialiser, 0, 30);
+  ASSERT_TRUE(map);
+  size_t wrong = 0;
+  for (const InitialMap::Point& point : map->points) {
+    ASSERT_GE(point.observations.size(), 2U);
+    const auto shown = [&](const InitialMap::Observation& seen) {
+      return points_.at(map->views[seen.view].frame->id.value)[seen.keypoint];
+    };
+    for (const InitialMap::Observation& seen : point.observations) {
+      wrong += shown(seen) == shown(point.observations.front()) ? 0 : 1;
+    }
+  }
+  EXPECT_EQ(wrong, 0U);
+}
+
+// A camera that stood still for long has many images without parallax behind it.
+TEST_F(MonocularStart, ALongWaitDoesNoHarm) {
+  MonocularInitialiser initialiser(sensor_, 1);
+  for (uint32_t i = 0; i < 90; ++i) {
+    EXPECT_FALSE(Give(initialiser, i, SyntheticWorld::CamFromWorld(90)).map);
+  }
+  const auto map = Walk(initialiser, 90, 30);
+  ASSERT_TRUE(map);
+  ExpectRight(*map);
+  EXPECT_GE(failures_[InitialisationFailure::kTooLittleParallax], 89);
+}
+
+TEST_F(MonocularStart, ARotationGivesNoMap) {
+  for (uint64_t seed = 0; seed < 10; ++seed) {
+    MonocularInitialiser initialiser(sensor_, seed);
+    for (uint32_t i = 0; i < 40; ++i) {
+      const double angle = 0.012 * i;
+      const Rigid3 turned(ExpSo3({0.2 * angle, angle, 0.1 * angle}), Eigen::Vector3d::Zero());
+      EXPECT_FALSE(Give(initialiser, static_cast<uint32_t>(100 * seed) + i, turned).map)
+          << seed << ", " << i;
+    }
+  }
+  EXPECT_GT(failures_[InitialisationFailure::kTooLittleParallax], 300);
+}
+
+TEST_F(MonocularStart, TellsThatTheImageHasTooFewFeatures) {
+  const SyntheticWorld bare({.points = 60});
+  MonocularInitialiser initialiser(sensor_, 1);
+  EXPECT_EQ(initialiser.Process(bare.Observe(0).frame).failure,
+            InitialisationFailure::kTooFewFeatures);
+}
+
+TEST_F(MonocularStart, TellsThatImagesHaveTooLittleInCommon) {
+  MonocularInitialiser initialiser(sensor_, 1);
+  for (uint32_t i = 0; i < 10; ++i) {
+    const SyntheticWorld other({.points = 400, .depth_share = 0.0, .seed = i + 10});
+    EXPECT_EQ(initialiser.Process(other.Observe(i).frame).failure,
+              InitialisationFailure::kTooFewMatches);
+  }
+}
+
+TEST_F(MonocularStart, TheSameFramesGiveTheSameBits) {
+  MonocularInitialiser one(sensor_, 1);
+  MonocularInitialiser two(sensor_, 1);
+  const auto a = Walk(one, 0, 30);
+  const auto b = Walk(two, 0, 30);
+  ASSERT_TRUE(a && b);
+  ASSERT_EQ(a->points.size(), b->points.size());
+  for (size_t i = 0; i < a->points.size(); ++i) {
+    EXPECT_EQ(a->points[i].position, b->points[i].position);
+  }
+  EXPECT_EQ(a->views.back().cam_from_world.ToMatrix(), b->views.back().cam_from_world.ToMatrix());
+}
+
+}  // namespace
+}  // namespace hullslam
