@@ -33,7 +33,8 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "folder to create, with a TUM sequence and its ground truth")
       ->required();
   app.add_option("--scene", arguments.scene, "scene")
-      ->check(CLI::IsMember({"desk", "room", "lowtexture", "dynamic", "house", "twins"}))
+      ->check(CLI::IsMember(
+          {"desk", "room", "lowtexture", "dynamic", "house", "twins", "rotation", "wall"}))
       ->capture_default_str();
   app.add_option("--frames", arguments.frames,
                  "number of frames (default: 300; 600 for room, 1800 for house, 930 for twins)")

@@ -2,6 +2,7 @@
 #include "estimators/two_views.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -153,6 +154,39 @@ Hypothesis Explain(const PinholeCamera& camera, std::span<const PixelPair> pairs
   return hypothesis;
 }
 
+// How many of the pairs a rotation alone explains. It is fitted to the pairs that agree with the
+// motion, again and again without those that it does not explain.
+size_t CountTurned(const PinholeCamera& camera, std::span<const PixelPair> pairs,
+                   const Hypothesis& motion) {
+  constexpr int kRounds = 10;
+  Eigen::Quaterniond rotation = motion.b_from_a.rotation;
+  size_t explained = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    const double slack = round < kRounds / 2 ? 16.0 : 1.0;  // at first far off, because of parallax
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    explained = 0;
+    for (const PixelPair& pair : pairs) {
+      const Eigen::Vector3d ray_a = camera.Unproject(pair.a, 1.0);
+      const Eigen::Vector3d turned = rotation * ray_a;
+      if (turned.z() > 0.0 &&
+          SquaredError(camera, turned, pair.b, std::hypot(pair.sigma_a, pair.sigma_b)) <
+              slack * kChi2) {
+        ++explained;
+        covariance += camera.Unproject(pair.b, 1.0).normalized() * ray_a.normalized().transpose();
+      }
+    }
+    if (explained < 3) {
+      return explained;
+    }
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
+                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Matrix3d flip = Eigen::Matrix3d::Identity();
+    flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+    rotation = Eigen::Quaterniond(svd.matrixU() * flip * svd.matrixV().transpose());
+  }
+  return explained;
+}
+
 bool AreDifferent(const Rigid3& one, const Rigid3& other) {
   constexpr double kTurn = 3.0 * std::numbers::pi / 180.0;
   constexpr double kDirection = 15.0 * std::numbers::pi / 180.0;
@@ -227,7 +261,10 @@ TwoViews EstimateTwoViews(const PinholeCamera& camera, std::span<const PixelPair
     return result;
   }
   result.parallax = Median(best->parallaxes) * 180.0 / std::numbers::pi;
-  result.failure = Judge(hypotheses, *best, result.parallax, options);
+  const bool only_turned = static_cast<double>(CountTurned(camera, pairs, *best)) >
+                           options.max_turned_share * static_cast<double>(best->agreeing);
+  result.failure = only_turned ? TwoViewFailure::kTooLittleParallax
+                               : Judge(hypotheses, *best, result.parallax, options);
   result.b_from_a = best->b_from_a;
   result.points = best->points;
   return result;

@@ -26,6 +26,8 @@ struct TwoViewOptions {
   size_t min_points = 50;     // that must be seen in front of both cameras
   double min_share = 0.7;     // of the pairs that agree with any motion, which must be such points
   double min_parallax = 1.2;  // degrees between the two rays to a point, in the median
+  // Of the pairs that agree with the best motion, the share that a rotation alone may explain.
+  double max_turned_share = 0.9;
   double max_rival_share = 0.75;  // points of the second best motion over those of the best one
 };
 

@@ -25,13 +25,15 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::array<std::pair<std::string_view, SceneKind>, 6> kSceneNames = {
+constexpr std::array<std::pair<std::string_view, SceneKind>, 8> kSceneNames = {
     {{"desk", SceneKind::kDesk},
      {"room", SceneKind::kRoom},
      {"lowtexture", SceneKind::kLowTexture},
      {"dynamic", SceneKind::kDynamic},
      {"house", SceneKind::kHouse},
-     {"twins", SceneKind::kTwins}}};
+     {"twins", SceneKind::kTwins},
+     {"rotation", SceneKind::kRotation},
+     {"wall", SceneKind::kWall}}};
 constexpr double kFramesPerSecond = 30.0;
 constexpr double kTableHeight = 0.75;
 constexpr int kHouseFrames = 1800;
@@ -252,6 +254,40 @@ Scene BuildHouse(int frames, uint64_t seed, uint64_t visit) {
   return builder.Finish();
 }
 
+// The room of the desk, seen by a camera that turns on the spot. No image has parallax to another.
+Scene BuildRotation(uint64_t seed) {
+  Scene scene = BuildDesk(seed, seed);
+  RandomStream random(HashSeed(seed, 0, "rotation"));
+  const Vector3d eye(random.Uniform(-1.6, -1.2), random.Uniform(-1.4, -1.0), 1.4);
+  const double start = random.Uniform(0.0, 2.0 * kPi);
+  const double speed = random.Uniform(0.15, 0.5) * (random.Uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0);
+  scene.world_from_cam = [=](double time) {
+    const double yaw = start + speed * time;
+    const double pitch = -0.2 + 0.15 * std::sin(0.9 * time);
+    return LookAt(eye, eye + Vector3d(std::cos(yaw), std::sin(yaw), std::tan(pitch)));
+  };
+  return scene;
+}
+
+// A wall with posters, seen head on from so near that nothing else is in the image.
+Scene BuildWall(uint64_t seed) {
+  SceneBuilder builder(HashSeed(seed, 0, "wall"));
+  const Palette palette = builder.AddRichPalette();
+  builder.AddRoom({.half_x = 2.9, .half_y = 2.6, .height = 2.6}, palette);
+  builder.AddPosters(palette);
+  const double phase = builder.random().Uniform(0.0, 2.0 * kPi);
+  struct Path {
+    double phase;
+    Rigid3 WorldFromCam(double time) const {
+      const Vector3d eye(0.7 * std::sin(0.5 * time + phase), 1.3 + 0.1 * std::sin(0.8 * time),
+                         1.3 + 0.1 * std::sin(0.6 * time + phase));
+      return LookAt(eye, eye + Vector3d::UnitY());
+    }
+  };
+  SetPath(Path{phase}, seed, builder.scene());
+  return builder.Finish();
+}
+
 Scene BuildTwins(int frames, uint64_t seed) {
   SceneBuilder builder(HashSeed(seed, 0, "twins"));
   FurnishTwins(builder);
@@ -273,6 +309,10 @@ Scene BuildVisit(SceneKind kind, int frames, uint64_t seed, uint64_t visit) {
       return BuildHouse(frames, seed, visit);
     case SceneKind::kTwins:
       return BuildTwins(frames, seed);
+    case SceneKind::kRotation:
+      return BuildRotation(seed);
+    case SceneKind::kWall:
+      return BuildWall(seed);
   }
   throw InputError("unknown scene");
 }

@@ -2,7 +2,9 @@
 #include "tracking/monocular_initialiser.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -21,8 +23,9 @@ constexpr size_t kMinFeatures = 100;
 constexpr size_t kMinMatches = 80;
 constexpr size_t kMinPoints = 50;  // of the map
 constexpr size_t kMostReferences = 12;
-constexpr uint32_t kReferenceInterval = 3;  // frames from one reference to the next
-constexpr size_t kViewsBetween = 3;         // most frames between the first and the last view
+constexpr uint32_t kReferenceInterval = 3;    // frames from one reference to the next
+constexpr size_t kViewsBetween = 3;           // most frames between the first and the last view
+constexpr double kMinAdjustedParallax = 1.0;  // degrees, in the median
 constexpr double kMinConfirmed = 0.6;  // share of its matches that a frame in between must confirm
 // Images without parallax are recognised by how little keypoints have moved, as a share of the
 // image's width, before a motion is estimated.
@@ -189,6 +192,19 @@ void AdjustMap(const Sensor& sensor, InitialMap& initial) {
   initial.points = std::move(kept);
 }
 
+// The median angle between the rays from the first and the last view to the points, degrees.
+double MedianParallax(const InitialMap& map) {
+  const Eigen::Vector3d last = Inverse(map.views.back().cam_from_world).translation;
+  std::vector<double> angles;
+  for (const InitialMap::Point& point : map.points) {
+    const Eigen::Vector3d ray = point.position - last;
+    angles.push_back(std::atan2(point.position.cross(ray).norm(), point.position.dot(ray)));
+  }
+  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
+  std::nth_element(angles.begin(), middle, angles.end());
+  return *middle * 180.0 / std::numbers::pi;
+}
+
 // Makes the median depth of the points in the first view 1.
 void Normalise(InitialMap& map) {
   std::vector<double> depths;
@@ -269,6 +285,11 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
   std::erase_if(map.points, [](const auto& point) { return !(point.position.z() > 0.0); });
   if (map.points.size() < kMinPoints) {
     return fail(InitialisationFailure::kTooFewPoints);
+  }
+  // Two views with wrong matches may seem to have parallax. Together with the views between them
+  // they have not.
+  if (MedianParallax(map) < kMinAdjustedParallax) {
+    return fail(InitialisationFailure::kTooLittleParallax);
   }
   Normalise(map);
   return {.map = std::move(map), .failure = {}};

@@ -16,8 +16,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr SceneKind kAll[] = {SceneKind::kDesk,    SceneKind::kRoom,  SceneKind::kLowTexture,
-                              SceneKind::kDynamic, SceneKind::kHouse, SceneKind::kTwins};
+constexpr SceneKind kAll[] = {SceneKind::kDesk,     SceneKind::kRoom,  SceneKind::kLowTexture,
+                              SceneKind::kDynamic,  SceneKind::kHouse, SceneKind::kTwins,
+                              SceneKind::kRotation, SceneKind::kWall};
 
 PinholeCamera SmallCamera() {
   return {.fx = 133.85, .fy = 134.8, .cx = 80.0, .cy = 61.9, .width = 160, .height = 120};
@@ -82,6 +83,41 @@ TEST(Scenes, HouseIsClosedFurnishedAndSlowEnoughToTrack) {
 
 TEST(Scenes, TwinsIsClosedFurnishedAndSlowEnoughToTrack) {
   ExpectClosedFurnishedAndSlowEnoughToTrack(SceneKind::kTwins, 30);
+}
+
+TEST(Scenes, InRotationTheCameraOnlyTurns) {
+  for (uint64_t seed = 0; seed < 3; ++seed) {
+    const Scene scene = BuildScene(SceneKind::kRotation, 300, seed);
+    const Rigid3 start = scene.world_from_cam(0.0);
+    for (double time = 1.0; time < 10.0; time += 1.0) {
+      const Rigid3 pose = scene.world_from_cam(time);
+      EXPECT_EQ(pose.translation, start.translation);
+      EXPECT_GT(AngularDistance(pose.rotation, scene.world_from_cam(time - 1.0).rotation), 0.1);
+    }
+    const RenderedFrame frame = Renderer(scene, SmallCamera()).Render(0.0);
+    EXPECT_LT(LargestMotion(scene, frame, 0.0), 27.0);
+    double nearest = 0.0;
+    cv::minMaxLoc(frame.depth, &nearest, nullptr);
+    EXPECT_GT(nearest, 0.3);
+  }
+}
+
+// Everything that the camera sees is within 5 cm of one plane.
+TEST(Scenes, OfWallTheCameraSeesNothingElse) {
+  const Scene scene = BuildScene(SceneKind::kWall, 300, 1);
+  const Renderer renderer(scene, SmallCamera());
+  for (double time = 0.0; time < 10.0; time += 1.3) {
+    const RenderedFrame frame = renderer.Render(time);
+    const Rigid3 world_from_cam = scene.world_from_cam(time);
+    EXPECT_LT(LargestMotion(scene, frame, time), 27.0);
+    for (int y = 0; y < frame.depth.rows; y += 10) {
+      for (int x = 0; x < frame.depth.cols; x += 10) {
+        const Vector3d point =
+            world_from_cam * SmallCamera().Unproject(Vector2d(x, y), frame.depth.at<float>(y, x));
+        EXPECT_NEAR(point.y(), 2.6, 0.05) << time;
+      }
+    }
+  }
 }
 
 TEST(VisitSeed, IsTheSeedOfTheSceneUnlessItIsRearranged) {
