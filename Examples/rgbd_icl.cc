@@ -2,25 +2,12 @@
 // Runs RGB-D SLAM on a sequence of ICL-NUIM.
 #include "cli/icl_arguments.h"
 #include "cli/program.h"
-#include "cli/run_arguments.h"
-#include "cli/slam_run.h"
 
 int main(int argc, char** argv) {
   return hullslam::RunMain(
       [](int count, char** words) {
-        CLI::App app("Runs RGB-D SLAM on a sequence of ICL-NUIM.", "rgbd_icl");
-        hullslam::RunArguments arguments;
-        hullslam::IclSequenceOptions icl;
-        std::vector<std::string> positional;
-        hullslam::AddRunArguments(app, hullslam::IclHelp(), arguments, positional);
-        hullslam::AddIclArguments(app, icl);
-        if (!hullslam::ParseCommandLine(app, count, words)) {
-          return static_cast<int>(hullslam::kDone);
-        }
-        hullslam::FinishArguments(positional, arguments);
-        const hullslam::SystemOptions options = hullslam::LoadIclOptions(arguments);
-        const hullslam::ImageSequence sequence = hullslam::OpenIcl(arguments, icl, options);
-        return hullslam::RunSlam(arguments, options, sequence);
+        return hullslam::RunIcl(hullslam::SensorKind::kRgbd, "rgbd_icl",
+                                "Runs RGB-D SLAM on a sequence of ICL-NUIM.", count, words);
       },
       argc, argv);
 }

@@ -10,8 +10,8 @@ object and dashed if not. Hulls are dotted.
 RUN_DIR is a folder that `rgbd_tum --output` or `map_objects --output` wrote. It must contain
 trajectory.txt; map.ply, keyframes.txt, objects.json and summary.json are used if they exist.
 
-The run is aligned to the ground truth of its sequence (SE3, Umeyama 1991, pairs within 0.02 s) and
-drawn from above and from the side. The ground truth is groundtruth.txt in RUN_DIR if the run wrote
+The run is aligned to the ground truth of its sequence (SE3, Umeyama 1991, pairs within 0.02 s; Sim3
+if summary.json says that the run was, because the scale of a single camera is unknown) and drawn from above and from the side. The ground truth is groundtruth.txt in RUN_DIR if the run wrote
 one, else in the folder that summary.json names, or the file that is given. Without it, it is not
 known where up is: the run is drawn in its own frame, and the views are named by the axes.
 
@@ -56,16 +56,18 @@ def pair(stamps, truth_stamps):
     return np.array(sorted(pairs), dtype=int).reshape(-1, 2)
 
 
-def align(source, target):
-    """Returns R (3 x 3) and t (3) that minimise |R source + t - target| (Umeyama 1991).
+def align(source, target, with_scale=False):
+    """Returns s, R (3 x 3) and t (3) that minimise |s R source + t - target| (Umeyama 1991).
 
-    `source` and `target` are n x 3, one point per row.
+    `source` and `target` are n x 3, one point per row. s is 1 unless `with_scale`.
     """
     source_mean, target_mean = source.mean(axis=0), target.mean(axis=0)
-    u, _, vt = np.linalg.svd((target - target_mean).T @ (source - source_mean))
+    u, singular, vt = np.linalg.svd((target - target_mean).T @ (source - source_mean))
     flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(u) * np.linalg.det(vt))])
     rotation = u @ flip @ vt
-    return rotation, target_mean - rotation @ source_mean
+    spread = np.sum((source - source_mean) ** 2)
+    scale = float(singular @ np.diag(flip) / spread) if with_scale and spread > 0 else 1.0
+    return scale, rotation, target_mean - scale * rotation @ source_mean
 
 
 class Run:
@@ -86,6 +88,8 @@ class Run:
         self.summary = Summary(run_dir / "summary.json")
         self.gives_poses = self.summary.text("provenance", "pipeline") != "objects"
         self.camera, self.objects = run_objects.read_objects(run_dir / "objects.json")
+        is_sim3 = self.summary.text("trajectory", "alignment") == "sim3"
+        self.alignment = "Sim3" if is_sim3 else "SE3"
         self.truth = self.error_stamps = self.errors = None
 
     def align_to(self, path):
@@ -97,18 +101,19 @@ class Run:
         if len(pairs) < 3:
             raise InputError(f"{path}: {len(pairs)} poses are within {MAX_DIFFERENCE} s of a pose of "
                              "the run, at least 3 are needed; is it the same sequence?")
-        self._move(*align(self.positions[pairs[:, 0]], truth[pairs[:, 1]]))
+        self._move(*align(self.positions[pairs[:, 0]], truth[pairs[:, 1]],
+                          self.alignment == "Sim3"))
         self.error_stamps = self.stamps[pairs[:, 0]]
         difference = self.positions[pairs[:, 0]] - truth[pairs[:, 1]]
         self.errors = np.linalg.norm(difference, axis=1)
         during = (truth_stamps >= self.stamps[0] - 1) & (truth_stamps <= self.stamps[-1] + 1)
         self.truth = truth[during]
 
-    def _move(self, rotation, translation):
+    def _move(self, scale, rotation, translation):
         for name in ("positions", "keyframes", "points"):
-            setattr(self, name, getattr(self, name) @ rotation.T + translation)
+            setattr(self, name, scale * getattr(self, name) @ rotation.T + translation)
         for item in self.objects:
-            item.move(rotation, translation)
+            item.move(scale, rotation, translation)
 
     def ate(self):
         return float(np.sqrt(np.mean(self.errors**2)))
@@ -235,7 +240,7 @@ def draw(run, path, name):
     if run.objects:
         title += f", {sum(item.is_mapped for item in run.objects)} objects"
     if run.errors is not None:
-        title += f", ATE RMSE {run.ate():.4f} m (SE3, {len(run.errors)} pairs)"
+        title += f", ATE RMSE {run.ate():.4f} m ({run.alignment}, {len(run.errors)} pairs)"
     figure.suptitle(title)
     figure.canvas.draw()  # places the plots, on which the places of the labels depend
     figure.set_layout_engine("none")
@@ -247,7 +252,7 @@ def draw(run, path, name):
 
 def print_figures(run):
     if run.errors is not None:
-        print(f"ATE RMSE         {run.ate():.4f} m (SE3, all frames, {len(run.errors)} pairs)")
+        print(f"ATE RMSE         {run.ate():.4f} m ({run.alignment}, all frames, {len(run.errors)} pairs)")
     frames, tracked, lost = (run.summary.number("trajectory", key)
                              for key in ("frames", "tracked", "lost"))
     if frames is not None:

@@ -53,9 +53,9 @@ class Object:
                 raise ValueError("hull: expected three or more corners")
             self.views[stamp] = (pose(view["cam_from_world"], "cam_from_world"), np.array(hull))
 
-    def move(self, turn, shift):
-        self.centre = turn @ self.centre + shift
-        self.shape = turn @ self.shape @ turn.T
+    def move(self, scale, turn, shift):
+        self.centre = scale * turn @ self.centre + shift
+        self.shape = scale**2 * turn @ self.shape @ turn.T
 
     def seen_along(self, axes):
         """The ellipse of its parallel projection onto two axes of the world."""

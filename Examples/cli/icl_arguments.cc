@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "cli/messages.h"
+#include "cli/program.h"
+#include "cli/slam_run.h"
 #include "hullslam/io/settings.h"
 
 namespace hullslam {
@@ -78,6 +80,23 @@ ImageSequence OpenIcl(const RunArguments& arguments, IclSequenceOptions icl,
           sequence.groundtruth_note.empty() ? "none" : sequence.groundtruth_note);
   }
   return std::move(sequence.images);
+}
+
+int RunIcl(SensorKind sensor, const std::string& name, const std::string& description, int argc,
+           char** argv) {
+  CLI::App app(description, name);
+  RunArguments arguments;
+  arguments.sensor = sensor;
+  IclSequenceOptions icl;
+  std::vector<std::string> positional;
+  AddRunArguments(app, IclHelp(), arguments, positional);
+  AddIclArguments(app, icl);
+  if (!ParseCommandLine(app, argc, argv)) {
+    return kDone;
+  }
+  FinishArguments(positional, arguments);
+  const SystemOptions options = LoadIclOptions(arguments);
+  return RunSlam(arguments, options, OpenIcl(arguments, icl, options));
 }
 
 }  // namespace hullslam

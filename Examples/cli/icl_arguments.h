@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
 
 #include "cli/run_arguments.h"
 #include "hullslam/io/icl_sequence.h"
@@ -23,5 +24,10 @@ SystemOptions LoadIclOptions(const RunArguments& arguments);
 // options of `icl` that other data sets have too are taken from `arguments`.
 ImageSequence OpenIcl(const RunArguments& arguments, IclSequenceOptions icl,
                       const SystemOptions& options);
+
+// The whole program: parses the command line, opens the sequence and runs SLAM with this sensor.
+// Returns the exit code; throws InputError for bad input.
+int RunIcl(SensorKind sensor, const std::string& name, const std::string& description, int argc,
+           char** argv);
 
 }  // namespace hullslam

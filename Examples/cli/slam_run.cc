@@ -281,7 +281,7 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
   Print("results are in {}\n", arguments.output.string());
 }
 
-// "40 x too little parallax, 3 x too few matches", the most frequent one first.
+// "40 x too little parallax, 3 x too few matches", the most frequent one first; and what helps.
 std::string DescribeFailures(const InitialisationSummary& initialisation) {
   std::vector<std::pair<size_t, std::string>> reasons;
   for (const auto& [reason, count] : initialisation.failures) {
@@ -292,7 +292,10 @@ std::string DescribeFailures(const InitialisationSummary& initialisation) {
   for (const auto& [count, reason] : reasons) {
     text += (text.empty() ? "" : ", ") + reason;
   }
-  return text;
+  const bool lacks_parallax =
+      !reasons.empty() &&
+      reasons.front().second.ends_with(ToString(InitialisationFailure::kTooLittleParallax));
+  return text + (lacks_parallax ? "; the camera must move sideways" : "");
 }
 
 // Why the run has failed although it came to its end; empty if it has not.
@@ -305,8 +308,8 @@ std::string DescribeLoss(const RunArguments& arguments, const RunOptions& option
                        arguments.load_map.string(), sequence.frames.size());
   }
   if (summary.initialisation && !summary.initialisation->seconds) {
-    return fmt::format("no map could be made from {} frames: {}; the camera must move sideways",
-                       summary.trajectory.frames, DescribeFailures(*summary.initialisation));
+    return fmt::format("no map could be made from {} frames: {}", summary.trajectory.frames,
+                       DescribeFailures(*summary.initialisation));
   }
   const std::string found =
       fmt::format("{} of {} frames have a pose", trajectory.tracked, sequence.frames.size());

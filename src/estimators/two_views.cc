@@ -9,8 +9,10 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 #include <optional>
+#include <utility>
 
 #include "geometry/triangulation.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
@@ -52,9 +54,7 @@ CvPairs ToCv(std::span<const PixelPair> pairs) {
     points.b.emplace_back(pair.b.x(), pair.b.y());
     sigmas.push_back(std::max(pair.sigma_a, pair.sigma_b));
   }
-  const auto middle = sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2);
-  std::nth_element(sigmas.begin(), middle, sigmas.end());
-  points.sigma = *middle;
+  points.sigma = Median(std::move(sigmas));
   return points;
 }
 
@@ -192,12 +192,6 @@ bool AreDifferent(const Rigid3& one, const Rigid3& other) {
   constexpr double kDirection = 15.0 * std::numbers::pi / 180.0;
   return AngularDistance(one.rotation, other.rotation) > kTurn ||
          std::acos(std::clamp(one.translation.dot(other.translation), -1.0, 1.0)) > kDirection;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Why the best hypothesis is not good enough.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hullslam/camera/depth.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
@@ -122,9 +123,7 @@ double MedianDepth(std::span<const Eigen::Vector3d> points) {
   for (const Eigen::Vector3d& point : points) {
     depths.push_back(point.z());
   }
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return Median(std::move(depths));
 }
 
 void RemoveFarFromMedian(const PinholeCamera& camera, double side, double max_offset,

@@ -41,13 +41,7 @@ Trajectory ReadEurocStates(const std::filesystem::path& file, const Rigid3& body
     world_from_body.translation = {row.Number(1, "p_x", kMostMetres),
                                    row.Number(2, "p_y", kMostMetres),
                                    row.Number(3, "p_z", kMostMetres)};
-    world_from_body.rotation = Eigen::Quaterniond(row.Number(4, "q_w"), row.Number(5, "q_x"),
-                                                  row.Number(6, "q_y"), row.Number(7, "q_z"));
-    if (!IsPlausibleRotation(world_from_body.rotation)) {
-      row.Fail(fmt::format("the quaternion has length {:g}, expected a rotation (length 1)",
-                           world_from_body.rotation.norm()));
-    }
-    world_from_body.rotation.normalize();
+    world_from_body.rotation = row.Rotation(4, 5, 6, 7);
     trajectory.push_back({stamp, world_from_body * body_from_cam});
   });
   if (trajectory.empty()) {

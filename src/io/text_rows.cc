@@ -76,6 +76,20 @@ double TextRow::Number(size_t column, std::string_view name, double most) const 
   return value;
 }
 
+Eigen::Quaterniond TextRow::Rotation(size_t w, size_t x, size_t y, size_t z) const {
+  // One after the other: the order of the arguments of a call is not specified.
+  const double qw = Number(w, "qw");
+  const double qx = Number(x, "qx");
+  const double qy = Number(y, "qy");
+  const double qz = Number(z, "qz");
+  const Eigen::Quaterniond rotation(qw, qx, qy, qz);
+  if (!IsPlausibleRotation(rotation)) {
+    Fail(fmt::format("the quaternion has length {:g}, expected a rotation (length 1)",
+                     rotation.norm()));
+  }
+  return rotation.normalized();
+}
+
 double TextRow::Stamp(size_t column, std::string_view name) const {
   const double value = Number(column, name);
   if (std::abs(value) > kMostSeconds) {

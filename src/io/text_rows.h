@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -32,6 +33,9 @@ struct TextRow {
   double Number(size_t column, std::string_view name) const;
   // The same for a number that may not be larger than `most`, nor smaller than its negative.
   double Number(size_t column, std::string_view name, double most) const;
+  // The unit quaternion in four columns named qw, qx, qy and qz; throws InputError for numbers that
+  // are no rotation.
+  Eigen::Quaterniond Rotation(size_t w, size_t x, size_t y, size_t z) const;
   // A time stamp, s.
   double Stamp(size_t column, std::string_view name = "timestamp") const;
 };

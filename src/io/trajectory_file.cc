@@ -25,14 +25,7 @@ StampedPose ParsePose(const TextRow& row) {
   Rigid3& world_from_cam = pose.world_from_cam;
   world_from_cam.translation = {row.Number(1, "tx", kMostMetres), row.Number(2, "ty", kMostMetres),
                                 row.Number(3, "tz", kMostMetres)};
-  // The order of Eigen: w, x, y, z. A comma initialiser would abort if a column throws.
-  world_from_cam.rotation = Eigen::Quaterniond(row.Number(7, "qw"), row.Number(4, "qx"),
-                                               row.Number(5, "qy"), row.Number(6, "qz"));
-  if (!IsPlausibleRotation(world_from_cam.rotation)) {
-    row.Fail(fmt::format("the quaternion has length {:g}, expected a rotation (length 1)",
-                         world_from_cam.rotation.norm()));
-  }
-  world_from_cam.rotation.normalize();
+  world_from_cam.rotation = row.Rotation(7, 4, 5, 6);
   return pose;
 }
 

@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "map/covisibility.h"
 #include "map/landmark_edits.h"
 #include "matching/for_triangulation.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
@@ -141,9 +141,7 @@ double MinBaseline(const Map& map, const Keyframe& keyframe, const Sensor& senso
   if (depths.empty()) {
     return 0.0;
   }
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return kMinBaseline * *middle;
+  return kMinBaseline * Median(std::move(depths));
 }
 
 std::vector<Match> FindPairs(const Map& map, const Keyframe& a, const Keyframe& b,
@@ -193,11 +191,10 @@ class NearbyDepth {
       nearest.emplace_back((sample.pixel - pixel).squaredNorm(), sample.depth);
     }
     std::partial_sort(nearest.begin(), nearest.begin() + kNearest, nearest.end());
-    std::array<double, kNearest> depths;
+    std::vector<double> depths(kNearest);
     std::transform(nearest.begin(), nearest.begin() + kNearest, depths.begin(),
                    [](const auto& one) { return one.second; });
-    std::nth_element(depths.begin(), depths.begin() + kNearest / 2, depths.end());
-    return depths[kNearest / 2];
+    return Median(std::move(depths));
   }
 
  private:

@@ -14,6 +14,7 @@
 #include "map/spanning_tree.h"
 #include "matching/by_descriptor.h"
 #include "optim/bundle_adjustment.h"
+#include "util/median.h"
 #include "util/random_seed.h"
 
 namespace hullslam {
@@ -46,9 +47,7 @@ double MedianShift(const Frame& from, const Frame& to, const std::vector<Match>&
                       to.features.keypoints[match.keypoint].undistorted)
                          .norm());
   }
-  const auto middle = shifts.begin() + static_cast<std::ptrdiff_t>(shifts.size() / 2);
-  std::nth_element(shifts.begin(), middle, shifts.end());
-  return static_cast<double>(*middle);
+  return static_cast<double>(Median(std::move(shifts)));
 }
 
 double SigmaOf(const Keypoint& keypoint, const ScaleLevels& levels) {
@@ -200,9 +199,7 @@ double MedianParallax(const InitialMap& map) {
     const Eigen::Vector3d ray = point.position - last;
     angles.push_back(std::atan2(point.position.cross(ray).norm(), point.position.dot(ray)));
   }
-  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
-  std::nth_element(angles.begin(), middle, angles.end());
-  return *middle * 180.0 / std::numbers::pi;
+  return Median(std::move(angles)) * 180.0 / std::numbers::pi;
 }
 
 // Makes the median depth of the points in the first view 1.
@@ -211,9 +208,7 @@ void Normalise(InitialMap& map) {
   for (const InitialMap::Point& point : map.points) {
     depths.push_back(point.position.z());
   }
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  const double scale = 1.0 / *middle;
+  const double scale = 1.0 / Median(std::move(depths));
   for (InitialMap::View& view : map.views) {
     view.cam_from_world.translation *= scale;
   }

@@ -88,6 +88,18 @@ KeyframeId NearestInTime(const Map& map, double timestamp) {
   return nearest;
 }
 
+// A frame without a pose, or one of the initial map.
+Tracker::Result MakeResult(std::shared_ptr<const Frame> frame, TrackingState state) {
+  Tracker::Result result;
+  result.report.tracked.frame = frame->id;
+  result.report.tracked.timestamp = frame->timestamp;
+  result.report.tracked.state = state;
+  result.report.landmarks.resize(frame->features.size());
+  result.report.objects.resize(frame->detections.size());
+  result.report.frame = std::move(frame);
+  return result;
+}
+
 }  // namespace
 
 Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects,
@@ -127,44 +139,33 @@ void Tracker::KeepEarlyFrame(std::shared_ptr<const Frame> frame) {
 }
 
 Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
-  Result result;
-  result.report.frame = frame;
-  result.report.tracked.frame = frame->id;
-  result.report.tracked.timestamp = frame->timestamp;
   const std::vector<uint32_t> with_depth = KeypointsByDepth(frame->features);
   if (with_depth.size() < static_cast<size_t>(options_.min_initial_points)) {
-    return result;
+    return MakeResult(std::move(frame), TrackingState::kNotInitialized);
   }
-  result.report.tracked.state = TrackingState::kTracked;
-  result.report.tracked.inliers = static_cast<int>(with_depth.size());
-  result.report.landmarks.resize(frame->features.size());
-  result.report.objects.resize(frame->detections.size());
-  result.message = MakeInitialMap(frame, sensor_.camera, with_depth);
-  last_ = LastFrame();
-  last_.frame = std::move(frame);
-  last_request_time_ = last_.frame->timestamp;
-  return result;
+  InitialMap initial = MakeInitialMap(frame, sensor_.camera, with_depth);
+  return BeginMap(std::move(frame), std::move(initial));
 }
 
 Tracker::Result Tracker::InitializeMonocular(std::shared_ptr<const Frame> frame) {
-  Result result;
-  result.report.frame = frame;
-  result.report.tracked.frame = frame->id;
-  result.report.tracked.timestamp = frame->timestamp;
-  result.report.landmarks.resize(frame->features.size());
-  result.report.objects.resize(frame->detections.size());
   MonocularInitialiser::Result initial = initialiser_.Process(frame);
-  if (!initial.map) {
-    result.report.failure = initial.failure;
-    KeepEarlyFrame(std::move(frame));
-    return result;
+  if (initial.map) {
+    return BeginMap(std::move(frame), std::move(*initial.map));
   }
-  result.report.tracked.state = TrackingState::kTracked;
-  result.report.tracked.inliers = static_cast<int>(initial.map->points.size());
+  KeepEarlyFrame(frame);
+  Result result = MakeResult(std::move(frame), TrackingState::kNotInitialized);
+  result.report.failure = initial.failure;
+  return result;
+}
+
+// The frame is the last view of the map.
+Tracker::Result Tracker::BeginMap(std::shared_ptr<const Frame> frame, InitialMap initial) {
   last_ = LastFrame();
-  last_.frame = std::move(frame);
-  last_request_time_ = last_.frame->timestamp;
-  result.message = std::move(*initial.map);
+  last_.frame = frame;
+  last_request_time_ = frame->timestamp;
+  Result result = MakeResult(std::move(frame), TrackingState::kTracked);
+  result.report.tracked.inliers = static_cast<int>(initial.points.size());
+  result.message = std::move(initial);
   return result;
 }
 
@@ -278,14 +279,7 @@ bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTrack
 
 Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame) {
   last_.motion.reset();
-  Result result;
-  result.report.tracked.frame = frame->id;
-  result.report.tracked.timestamp = frame->timestamp;
-  result.report.tracked.state = TrackingState::kLost;
-  result.report.landmarks.resize(frame->features.size());
-  result.report.objects.resize(frame->detections.size());
-  result.report.frame = std::move(frame);
-  return result;
+  return MakeResult(std::move(frame), TrackingState::kLost);
 }
 
 void Tracker::CountSightings(const Map& map, const LocalTracking& tracking) {

@@ -64,6 +64,7 @@ class Tracker {
   }
   Result Initialize(std::shared_ptr<const Frame> frame);
   Result InitializeMonocular(std::shared_ptr<const Frame> frame);
+  Result BeginMap(std::shared_ptr<const Frame> frame, InitialMap initial);
   void KeepEarlyFrame(std::shared_ptr<const Frame> frame);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
   std::optional<LocalTracking> FindPose(const Frame& frame, const Map& map) const;

@@ -306,7 +306,9 @@ TEST_F(MapFile, AKilledWriterLeavesTheOldOrTheNewFile) {
   const std::array<std::string, 2> whole = {Written(large), Written(small)};
   RandomGeometry random(7);
   std::array<int, 2> found{};
-  for (int kill = 0; kill < 50; ++kill) {
+  // On a busy computer it takes more kills until one comes between two files.
+  const auto has_both = [&] { return found[0] > 0 && found[1] > 0; };
+  for (int kill = 0; kill < 50 || (kill < 1000 && !has_both()); ++kill) {
     const pid_t process = ::fork();
     if (process == 0) {
       while (true) {
@@ -323,8 +325,7 @@ TEST_F(MapFile, AKilledWriterLeavesTheOldOrTheNewFile) {
     ASSERT_TRUE(bytes == whole[0] || bytes == whole[1]) << kill;
     ++found[bytes == whole[0] ? 0 : 1];
   }
-  EXPECT_GT(found[0], 0) << "no kill came between";
-  EXPECT_GT(found[1], 0);
+  EXPECT_TRUE(has_both()) << "no kill came between";
   Written(small);  // removes what the killed processes have left
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
 }

@@ -69,6 +69,19 @@ TEST(TextRows, NumbersAndStampsHaveBounds) {
   });
 }
 
+TEST(TextRows, RotationsAreNormalised) {
+  const TemporaryFolder folder;
+  ForEachRow(folder.Write("row.txt", "0 0 0.2 0\n"), [](const TextRow& row) {
+    const Eigen::Quaterniond rotation = row.Rotation(3, 0, 1, 2);
+    EXPECT_EQ(rotation.coeffs(), Eigen::Vector4d(0.0, 0.0, 1.0, 0.0));
+    EXPECT_EQ(row.Rotation(2, 0, 1, 3).coeffs(), Eigen::Vector4d(0.0, 0.0, 0.0, 1.0));
+  });
+  ForEachRow(folder.Write("bad.txt", "0 0 0 x\n"), [](const TextRow& row) {
+    ExpectInputError([&] { row.Rotation(0, 1, 2, 2); }, {"bad.txt:1", "length 0"});
+    ExpectInputError([&] { row.Rotation(3, 0, 1, 2); }, {"bad.txt:1", "qw is 'x'"});
+  });
+}
+
 TEST(TextRows, TrimRemovesBlanksAtBothEnds) {
   EXPECT_EQ(Trim(" \ta b\r"), "a b");
   EXPECT_EQ(Trim("a"), "a");

@@ -75,10 +75,10 @@ class ObjectTest(unittest.TestCase):
 
     def test_moves_with_the_world(self):
         self.sphere.shape = np.diag([1.0, 4.0, 9.0])
-        self.sphere.move(TURN, np.array([1.0, 2.0, 3.0]))
-        np.testing.assert_allclose(self.sphere.centre, [1, 2, 5])
+        self.sphere.move(3.0, TURN, np.array([1.0, 2.0, 3.0]))
+        np.testing.assert_allclose(self.sphere.centre, [1, 2, 9])
         ellipse = self.sphere.seen_along([0, 1]) - [1, 2]
-        np.testing.assert_allclose(np.abs(ellipse).max(axis=0), [2, 1], atol=1e-9)
+        np.testing.assert_allclose(np.abs(ellipse).max(axis=0), [6, 3], atol=1e-9)
 
     def test_distortion_is_browns(self):
         camera = dict(self.camera, k1=0.1, k2=0.0, p1=0.01, p2=0.0, k3=0.0)
@@ -137,13 +137,23 @@ class LabelTest(unittest.TestCase):
 class AlignTest(unittest.TestCase):
     def test_recovers_a_motion(self):
         points = np.random.default_rng(1).normal(size=(20, 3))
-        rotation, translation = plot_run.align(points, points @ TURN.T + [1, 2, 3])
+        scale, rotation, translation = plot_run.align(points, points @ TURN.T + [1, 2, 3])
+        self.assertEqual(scale, 1.0)
         np.testing.assert_allclose(rotation, TURN, atol=1e-12)
         np.testing.assert_allclose(translation, [1, 2, 3], atol=1e-12)
 
+    def test_recovers_a_scale_if_asked_for(self):
+        points = np.random.default_rng(1).normal(size=(20, 3))
+        moved = 2.5 * points @ TURN.T + [1, 2, 3]
+        scale, rotation, translation = plot_run.align(points, moved, True)
+        self.assertAlmostEqual(scale, 2.5)
+        np.testing.assert_allclose(rotation, TURN, atol=1e-12)
+        np.testing.assert_allclose(translation, [1, 2, 3], atol=1e-12)
+        self.assertEqual(plot_run.align(points, moved)[0], 1.0)
+
     def test_never_mirrors(self):
         points = np.random.default_rng(1).normal(size=(20, 3))
-        rotation, _ = plot_run.align(points, points * [1, 1, -1])
+        _, rotation, _ = plot_run.align(points, points * [1, 1, -1])
         self.assertAlmostEqual(np.linalg.det(rotation), 1.0)
 
 
@@ -200,6 +210,15 @@ class PlotRunTest(unittest.TestCase):
         self.assert_drawn(result, self.dir / "a" / "b" / "run.png")
         self.assertIn("0.0100 m (SE3, all frames, 40 pairs)", result.stdout)
         self.assertIn("9.5 ms median", result.stdout)
+
+    def test_the_scale_of_a_single_camera_is_aligned(self):
+        stamps = 1000 + np.arange(40) / 30
+        positions = np.stack([np.cos(stamps), np.sin(stamps), 0.1 * np.cos(3 * stamps)], axis=1)
+        self.write("trajectory.txt", trajectory_text(stamps, 0.2 * positions))
+        self.write("summary.json", '{"trajectory": {"alignment": "sim3"}}')
+        result = self.plot("--groundtruth", self.truth)
+        self.assert_drawn(result, self.dir / "run.png")
+        self.assertIn("0.0100 m (Sim3, all frames, 40 pairs)", result.stdout)
 
     def test_as_a_program(self):
         result = subprocess.run([SCRIPT, self.dir / "none"], capture_output=True, text=True,

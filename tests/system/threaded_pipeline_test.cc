@@ -83,7 +83,8 @@ TEST(ThreadedPipeline, TimesAndRejectionsMayBeReadDuringTracking) {
 TEST(ThreadedPipeline, AfterAFailureNothingMoreIsMapped) {
   const FailingMapping failing;
   const SystemOptions options;
-  const auto pipeline = MakeThreadedPipeline(failing.sensor, options, Pace::kNeverWait);
+  // A mapper that must hurry would leave out what fails, and tracking might fail before it.
+  const auto pipeline = MakeThreadedPipeline(failing.sensor, options, Pace::kWaitForMapper);
   pipeline->Track(failing.first);
   pipeline->Track(failing.second);
   // Waits until mapping has failed.
