@@ -140,11 +140,14 @@ Trajectory Scaled(Trajectory trajectory, double scale) {
 }
 
 // The scale of a monocular map is not known, so it is aligned too.
+AlignmentKind AlignmentOf(SensorKind sensor) {
+  return sensor == SensorKind::kMonocular ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
+}
+
 void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory, SensorKind sensor,
               TrajectorySummary& summary) {
   AteOptions options;
-  options.alignment = sensor == SensorKind::kMonocular ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
-  summary.alignment = ToString(options.alignment);
+  options.alignment = AlignmentOf(sensor);
   const AteReport ate = EvaluateAte(groundtruth, trajectory, options);
   if (!ate.ok()) {
     PrintError("warning: the trajectory error cannot be computed: {}\n", ate.failure);
@@ -179,6 +182,7 @@ size_t CountLoops(const Map& map) {
 RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options,
                      const ImageSequence& sequence, const RunResult& result, const System& system) {
   RunSummary summary;
+  summary.trajectory.alignment = ToString(AlignmentOf(options.sensor));
   summary.trajectory.frames = result.given;
   summary.trajectory.skipped = result.skipped;
   summary.trajectory.unpaired = sequence.unpaired;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "evaluate/objects_truth.h"
 #include "hullslam/eval/object_metrics.h"
 #include "hullslam/io/object_file.h"
+#include "hullslam/io/summary.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
@@ -67,10 +69,12 @@ void PrintObject(const ReportedObject& object) {
       FormatFigure(fit.tangent_px, 2), object.misfit_px, axes.x(), axes.y(), axes.z());
 }
 
-void PrintText(const ObjectReport& report) {
+// The unit of length is the metre, or u, that of the map, if the alignment has a scale.
+void PrintText(const ObjectReport& report, AlignmentKind alignment) {
+  const std::string unit = alignment == AlignmentKind::kSim3 ? "u" : "m";
   fmt::print("{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7}  {}\n", "id", "class",
-             "state", "views", "lines", "SIoU", "mask", "MTD m2", "tang. px", "misfit",
-             "half axes m");
+             "state", "views", "lines", "SIoU", "mask", "MTD " + unit + "2", "tang. px", "misfit",
+             "half axes " + unit);
   for (const ReportedObject& object : report.objects) {
     PrintObject(object);
   }
@@ -78,9 +82,23 @@ void PrintText(const ObjectReport& report) {
   fmt::print("\n{} mapped, {} candidates; {} observations and {} lines of mapped objects\n",
              fit.objects, report.candidates, fit.mean.observations, fit.mean.lines);
   fmt::print(
-      "mean SIoU {} with hulls, {} with masks; mean MTD {} m2; mean tangent distance {} px\n",
+      "mean SIoU {} with hulls, {} with masks; mean MTD {} {}2; mean tangent distance {} px\n",
       FormatFigure(fit.mean.siou, 4), FormatFigure(fit.mean.siou_mask, 4),
-      FormatFigure(fit.mean.mtd_m2, 6), FormatFigure(fit.mean.tangent_px, 2));
+      FormatFigure(fit.mean.mtd_m2, 6), unit, FormatFigure(fit.mean.tangent_px, 2));
+  if (alignment == AlignmentKind::kSim3) {
+    fmt::print(
+        "u is the unit of length of the map, which a monocular run does not know in metres\n");
+  }
+}
+
+// The unit of length of a run is not the metre if its trajectory is to be aligned with a scale.
+// Without summary.json it is the metre.
+AlignmentKind FindAlignment(const std::filesystem::path& run) {
+  std::error_code error;
+  const std::filesystem::path summary = run / "summary.json";
+  const bool is_scaled =
+      std::filesystem::exists(summary, error) && ReadAlignment(summary) == AlignmentKind::kSim3;
+  return is_scaled ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
 }
 
 void CheckHasObjects(const std::filesystem::path& run) {
@@ -97,12 +115,19 @@ void CheckHasObjects(const std::filesystem::path& run) {
 }  // namespace
 
 CLI::App* AddObjectsCommand(CLI::App& app, ObjectsArguments& arguments) {
+  const std::map<std::string, AlignmentKind> alignments = {{"se3", AlignmentKind::kSe3},
+                                                           {"sim3", AlignmentKind::kSim3}};
   CLI::App* const command =
       app.add_subcommand("objects", "SIoU, MTD and tangent distance of the objects of a run");
   command->add_option("RUN_DIR", arguments.run, "output folder of the run")->required();
   command->add_option("--groundtruth", arguments.groundtruth,
                       "groundtruth_objects.json of the sequence, which make_synthetic wrote "
                       "(default: no comparison with true objects)");
+  command
+      ->add_option("--align", arguments.alignment,
+                   "alignment with the true trajectory: se3 or sim3, with scale (default: sim3 if "
+                   "summary.json in RUN_DIR says that the run was monocular, else se3)")
+      ->transform(CLI::CheckedTransformer(alignments).description(""));
   command
       ->add_option("--min-masks", arguments.min_masks,
                    "a true object counts as visible if at least this many masks show it")
@@ -116,15 +141,17 @@ void RunObjectsCommand(const ObjectsArguments& arguments) {
   CheckHasObjects(arguments.run);
   ObjectReport report = ReadObjects(arguments.run / "objects.json");
   MeasureObjects(report);
+  const AlignmentKind alignment =
+      arguments.alignment ? *arguments.alignment : FindAlignment(arguments.run);
   std::optional<TruthEvaluation> truth;
   if (!arguments.groundtruth.empty()) {
-    truth = EvaluateTruth(arguments, report);
+    truth = EvaluateTruth(arguments, report, alignment);
   }
   if (arguments.json) {
     PrintJson(report, truth);
     return;
   }
-  PrintText(report);
+  PrintText(report, alignment);
   if (truth) {
     PrintTruth(*truth);
   }

@@ -4,13 +4,18 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
+
+#include "hullslam/geometry/alignment.h"
 
 namespace hullslam {
 
 struct ObjectsArguments {
   std::filesystem::path run;
   std::filesystem::path groundtruth;  // groundtruth_objects.json; empty: none
-  size_t min_masks = 30;              // a true object with fewer masks does not count as visible
+  // How the run is aligned with the ground truth; absent: as summary.json of the run says.
+  std::optional<AlignmentKind> alignment;
+  size_t min_masks = 30;  // a true object with fewer masks does not count as visible
   bool json = false;
 };
 

@@ -126,8 +126,9 @@ void PrintTrueObject(const TruthEvaluation& evaluation, size_t index) {
 }
 
 // The distance at which errors of orientation count (m): the mean distance of the mapped objects
-// from the keyframes that observe them. 1 if no object is mapped.
-double MeanDistance(const ObjectReport& report) {
+// from the keyframes that observe them. 1 if no object is mapped. `scale` is the length of one unit
+// of the map in metres.
+double MeanDistance(const ObjectReport& report, double scale) {
   double sum = 0.0;
   size_t count = 0;
   for (const ReportedObject& object : report.objects) {
@@ -138,29 +139,32 @@ double MeanDistance(const ObjectReport& report) {
       }
     }
   }
-  return sum > 0.0 ? sum / static_cast<double>(count) : 1.0;
+  return sum > 0.0 ? scale * sum / static_cast<double>(count) : 1.0;
 }
 
-// Maps the world of the run to the true one. Positions alone would not determine the rotation of a
-// run whose camera hardly moved.
-Rigid3 AlignWorlds(const Trajectory& groundtruth, const Trajectory& run, double lever) {
+// Maps the world of the run, whose unit of length is `scale` metres, to the true one. Positions
+// alone would not determine the rotation of a run whose camera hardly moved.
+Sim3 AlignWorlds(const Trajectory& groundtruth, const Trajectory& run, double scale, double lever) {
   std::vector<Rigid3> truths;
   std::vector<Rigid3> estimates;
   for (const auto& [truth, estimate] :
        PairPoses(groundtruth, run, PairingRule::kTum, DefaultMaxDifference(PairingRule::kTum))) {
     truths.push_back(groundtruth[truth].world_from_cam);
     estimates.push_back(run[estimate].world_from_cam);
+    estimates.back().translation *= scale;
   }
-  return AlignPoses(estimates, truths, lever);
+  const Rigid3 truth_from_scaled = AlignPoses(estimates, truths, lever);
+  return {scale, truth_from_scaled.rotation, truth_from_scaled.translation};
 }
 
 }  // namespace
 
-TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectReport& report) {
+TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectReport& report,
+                              AlignmentKind alignment) {
   const std::filesystem::path folder = arguments.groundtruth.parent_path();
   const Trajectory groundtruth = ReadTrajectory(folder / "groundtruth.txt");
   const Trajectory run = ReadTrajectory(arguments.run / "trajectory.txt");
-  const AteReport ate = EvaluateAte(groundtruth, run);
+  const AteReport ate = EvaluateAte(groundtruth, run, {.alignment = alignment});
   if (!ate.ok()) {
     throw InputError((arguments.run / "trajectory.txt").string() + ": " + ate.failure);
   }
@@ -168,7 +172,10 @@ TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectRep
   const TrueScene scene = ReadTrueScene(arguments.groundtruth);
   evaluation.truths = scene.objects;
   evaluation.sightings = ReadSightings(folder, evaluation.truths, report.camera, groundtruth, run);
-  const Rigid3 truth_from_map = AlignWorlds(groundtruth, run, MeanDistance(report));
+  evaluation.alignment = alignment;
+  evaluation.scale = ate.reference_from_estimate.scale;
+  const Sim3 truth_from_map =
+      AlignWorlds(groundtruth, run, evaluation.scale, MeanDistance(report, evaluation.scale));
   evaluation.comparison = CompareWithTruth(evaluation.truths, report, truth_from_map);
   if (report.changes && scene.is_rearranged) {
     evaluation.changes = CompareChanges(scene, *report.changes, truth_from_map,
@@ -182,8 +189,10 @@ TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectRep
 }
 
 void PrintTruth(const TruthEvaluation& evaluation) {
-  fmt::print("\ntrue objects, after alignment of the poses (ATE RMSE of the run {:.4f} m)\n",
-             evaluation.ate_rmse_m);
+  fmt::print(
+      "\ntrue objects, after {} alignment of the poses with scale {:.6f} (ATE RMSE of the run "
+      "{:.4f} m)\n",
+      ToString(evaluation.alignment), evaluation.scale, evaluation.ate_rmse_m);
   fmt::print("{:>4} {:<14} {:<12} {:>5}  {:>4}  {:>6} {:>6}  {:<17}  {}\n", "id", "class", "shape",
              "masks", "id", "mm", "% size", "axes, mapped/true", "extents, mapped/true");
   for (size_t i = 0; i < evaluation.truths.size(); ++i) {
@@ -242,7 +251,9 @@ Json ToJson(const TruthEvaluation& evaluation) {
   for (const ObjectId id : evaluation.comparison.without_truth) {
     without.push_back(id.value);
   }
-  return {{"ate_rmse_m", evaluation.ate_rmse_m},
+  return {{"alignment", ToString(evaluation.alignment)},
+          {"scale", evaluation.scale},
+          {"ate_rmse_m", evaluation.ate_rmse_m},
           {"min_masks", evaluation.min_masks},
           {"visible", evaluation.counts.visible},
           {"once", evaluation.counts.once},

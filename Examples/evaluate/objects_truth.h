@@ -19,13 +19,17 @@ struct TruthEvaluation {
   GroundtruthComparison comparison;
   TruthCounts counts;
   std::optional<ChangeComparison> changes;  // of a run that went on with a map of the scene before
-  double ate_rmse_m = 0.0;                  // of the run, aligned by positions
+  AlignmentKind alignment = AlignmentKind::kSe3;  // kSe3 or kSim3
+  double scale = 1.0;                             // metres per unit of the map
+  double ate_rmse_m = 0.0;                        // of the run, aligned by positions
   size_t min_masks = 0;
 };
 
 // Reads groundtruth_objects.json, and from the same folder groundtruth.txt and the masks. Throws
-// InputError for bad files, and if no pose of the run has a true pose at its time.
-TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectReport& report);
+// InputError for bad files, and if no pose of the run has a true pose at its time. `alignment` is
+// kSe3, or kSim3 if the unit of length of the run is not the metre.
+TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectReport& report,
+                              AlignmentKind alignment);
 
 void PrintTruth(const TruthEvaluation& evaluation);
 nlohmann::ordered_json ToJson(const TruthEvaluation& evaluation);

@@ -15,7 +15,7 @@ struct PlaceChange {
 };
 
 std::optional<Eigen::Vector3d> CenterOf(const std::optional<ObjectPlace>& place,
-                                        const Rigid3& truth_from_map) {
+                                        const Sim3& truth_from_map) {
   return place ? std::optional(truth_from_map * place->ellipsoid.world_from_object.translation)
                : std::nullopt;
 }
@@ -89,8 +89,7 @@ ChangesByKind TrueChanges(const TrueScene& scene, std::span<const size_t> sighti
   return changes;
 }
 
-ChangesByKind ReportedChanges(std::span<const ChangedObject> reported,
-                              const Rigid3& truth_from_map) {
+ChangesByKind ReportedChanges(std::span<const ChangedObject> reported, const Sim3& truth_from_map) {
   ChangesByKind changes;
   for (const ChangedObject& changed : reported) {
     const PlaceChange said{CenterOf(changed.former, truth_from_map),
@@ -109,7 +108,7 @@ ChangesByKind ReportedChanges(std::span<const ChangedObject> reported,
 }  // namespace
 
 ChangeComparison CompareChanges(const TrueScene& scene, std::span<const ChangedObject> changes,
-                                const Rigid3& truth_from_map, std::span<const size_t> sightings,
+                                const Sim3& truth_from_map, std::span<const size_t> sightings,
                                 size_t min_sightings) {
   const ChangesByKind truth = TrueChanges(scene, sightings, min_sightings);
   const ChangesByKind said = ReportedChanges(changes, truth_from_map);

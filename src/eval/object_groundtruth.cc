@@ -95,7 +95,7 @@ std::optional<size_t> FindShown(std::span<const TrueObject> truths,
 }  // namespace
 
 GroundtruthComparison CompareWithTruth(std::span<const TrueObject> truths,
-                                       const ObjectReport& report, const Rigid3& truth_from_map) {
+                                       const ObjectReport& report, const Sim3& truth_from_map) {
   GroundtruthComparison comparison;
   comparison.times_mapped.assign(truths.size(), 0);
   for (const ReportedObject& object : report.objects) {

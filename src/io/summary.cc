@@ -5,6 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "hullslam/eval/ate.h"
+#include "io/json_file.h"
+#include "io/json_node.h"
+
 namespace hullslam {
 namespace {
 
@@ -105,6 +109,19 @@ std::string FormatSummary(const RunSummary& summary) {
   constexpr int kIndent = 2;
   // The name of a folder may contain any bytes; those that are not UTF-8 are replaced.
   return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+AlignmentKind ReadAlignment(const std::filesystem::path& path) {
+  const nlohmann::json json = ReadJson(path);
+  const JsonNode alignment = JsonNode(path, json).At("trajectory").At("alignment");
+  const std::string name = alignment.Text();
+  for (const AlignmentKind kind :
+       {AlignmentKind::kNone, AlignmentKind::kSe3, AlignmentKind::kSim3}) {
+    if (name == ToString(kind)) {
+      return kind;
+    }
+  }
+  alignment.Fail("none, se3 or sim3");
 }
 
 std::map<std::string, TimeStatistics> SummarizeStages(const StageTimes& times) {

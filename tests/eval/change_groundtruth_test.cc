@@ -64,7 +64,7 @@ TEST(ChangeGroundtruth, CountsRightReportsInAnyWorldFrame) {
       Changed(ObjectChange::kGone, 6.0, {}, map_from_truth),
       Changed(ObjectChange::kSeenAgain, 7.0, 7.0, map_from_truth)};
   const ChangeComparison comparison =
-      CompareChanges(MakeScene(), changes, Inverse(map_from_truth), {}, 1);
+      CompareChanges(MakeScene(), changes, Sim3(Inverse(map_from_truth)), {}, 1);
   ExpectCounts(comparison.moved, 2, 2, 2);
   ExpectCounts(comparison.added, 1, 1, 1);
   ExpectCounts(comparison.gone, 1, 1, 1);
@@ -72,11 +72,21 @@ TEST(ChangeGroundtruth, CountsRightReportsInAnyWorldFrame) {
   ExpectCounts(comparison.taken, 3, 3, 3);
 }
 
+// The map of a monocular run has a unit of length of its own.
+TEST(ChangeGroundtruth, PlacesAreComparedInMetresInAMapOfAnyUnit) {
+  const Sim3 truth_from_map(10.0, Eigen::Quaterniond::Identity(), {1.0, 0.0, 0.0});
+  const std::vector<ChangedObject> changes = {Changed(ObjectChange::kMoved, 0.005, 0.105),
+                                              Changed(ObjectChange::kGone, 6.0, {})};
+  const ChangeComparison comparison = CompareChanges(MakeScene(), changes, truth_from_map, {}, 1);
+  ExpectCounts(comparison.moved, 2, 1, 1);
+  ExpectCounts(comparison.gone, 1, 1, 0);
+}
+
 // If the wrong one of two things counts as moved, the places are still right.
 TEST(ChangeGroundtruth, PairsMatterForMovedObjectsButNotForPlaces) {
   const std::vector<ChangedObject> changes = {Changed(ObjectChange::kMoved, 1.0, 4.0),
                                               Changed(ObjectChange::kMoved, 3.0, 2.0)};
-  const ChangeComparison comparison = CompareChanges(MakeScene(), changes, Rigid3(), {}, 1);
+  const ChangeComparison comparison = CompareChanges(MakeScene(), changes, Sim3(), {}, 1);
   ExpectCounts(comparison.moved, 2, 2, 0);
   ExpectCounts(comparison.left, 3, 2, 2);
   ExpectCounts(comparison.taken, 3, 2, 2);
@@ -86,14 +96,14 @@ TEST(ChangeGroundtruth, FarOffAndRepeatedReportsAreWrong) {
   const std::vector<ChangedObject> changes = {
       Changed(ObjectChange::kNew, {}, 5.11), Changed(ObjectChange::kNew, {}, 5.0),
       Changed(ObjectChange::kNew, {}, 5.0), Changed(ObjectChange::kGone, 7.0, {})};
-  const ChangeComparison comparison = CompareChanges(MakeScene(), changes, Rigid3(), {}, 1);
+  const ChangeComparison comparison = CompareChanges(MakeScene(), changes, Sim3(), {}, 1);
   ExpectCounts(comparison.added, 1, 3, 1);
   ExpectCounts(comparison.gone, 1, 1, 0);
 }
 
 TEST(ChangeGroundtruth, WhatWasNotSeenCannotBeReported) {
   const std::vector<size_t> sightings = {9, 10, 9, 10};
-  const ChangeComparison comparison = CompareChanges(MakeScene(), {}, Rigid3(), sightings, 10);
+  const ChangeComparison comparison = CompareChanges(MakeScene(), {}, Sim3(), sightings, 10);
   ExpectCounts(comparison.moved, 1, 0, 0);
   ExpectCounts(comparison.added, 0, 0, 0);
 }

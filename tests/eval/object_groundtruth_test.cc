@@ -40,7 +40,7 @@ TEST(ObjectGroundtruth, APerfectlyMappedObjectHasNoErrorInAnyWorldFrame) {
   const Rigid3 truth_from_map = random.Pose(2.0, 10.0);
   ObjectReport report;
   report.objects = {MakeObject(4, Inverse(truth_from_map) * MappedAs(truths[1]))};
-  const GroundtruthComparison comparison = CompareWithTruth(truths, report, truth_from_map);
+  const GroundtruthComparison comparison = CompareWithTruth(truths, report, Sim3(truth_from_map));
   ASSERT_EQ(comparison.errors.size(), 1U);
   const ObjectError& error = comparison.errors[0];
   EXPECT_EQ(error.object, ObjectId(4));
@@ -50,6 +50,24 @@ TEST(ObjectGroundtruth, APerfectlyMappedObjectHasNoErrorInAnyWorldFrame) {
   EXPECT_LT((error.extent_ratios - Eigen::Vector3d::Ones()).norm(), 1e-9);
   EXPECT_EQ(comparison.times_mapped, (std::vector<size_t>{0, 1}));
   EXPECT_TRUE(comparison.without_truth.empty());
+}
+
+// The map of a monocular run has a unit of length of its own.
+TEST(ObjectGroundtruth, ErrorsAreInMetresInAMapOfAnyUnit) {
+  RandomGeometry random(6);
+  const std::vector<TrueObject> truths = {MakeTruth({0, 0, 0}), MakeTruth({1, 0, 0})};
+  const Rigid3 pose = random.Pose(2.0, 10.0);
+  const Sim3 truth_from_map(2.5, pose.rotation, pose.translation);
+  Ellipsoid mapped = MappedAs(truths[1], {0.0, 0.02, 0.0});
+  mapped.half_axes = {0.11, 0.2, 0.27};
+  ObjectReport report;
+  report.objects = {MakeObject(4, Inverse(truth_from_map) * mapped)};
+  const ObjectError error = CompareWithTruth(truths, report, truth_from_map).errors.at(0);
+  EXPECT_EQ(error.truth, 1U);
+  EXPECT_NEAR(error.center_m, 0.02, 1e-12);
+  EXPECT_NEAR(error.center_share, 0.05, 1e-12);
+  EXPECT_LT((error.axis_ratios - Eigen::Vector3d(0.9, 1.0, 1.1)).norm(), 1e-12);
+  EXPECT_LT((error.extent_ratios - Eigen::Vector3d(1.1, 1.0, 0.9)).norm(), 1e-9);
 }
 
 TEST(ObjectGroundtruth, ErrorsMatchHandComputedValues) {

@@ -13,12 +13,14 @@
 
 #include "bow/vocabulary_layout.h"
 #include "fuzz/fuzzed_input.h"
+#include "hullslam/eval/ate.h"
 #include "hullslam/frame/detection_builder.h"
 #include "hullslam/io/image_file.h"
 #include "hullslam/io/map_file.h"
 #include "hullslam/io/mask_source.h"
 #include "hullslam/io/object_file.h"
 #include "hullslam/io/settings.h"
+#include "hullslam/io/summary.h"
 #include "hullslam/io/trajectory_file.h"
 #include "hullslam/io/true_object_file.h"
 #include "hullslam/io/vocabulary_file.h"
@@ -71,6 +73,14 @@ void FuzzObjects(std::string_view bytes) {
     const ObjectReport report = ReadObjects(path, path);
     const std::string text = FormatObjects(report) + FormatObservations(report);
     Expect(text.find("null,null,null") == std::string::npos, "a number that is not finite");
+  });
+}
+
+void FuzzSummary(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    RunSummary summary;
+    summary.trajectory.alignment = ToString(ReadAlignment(path));
+    Expect(!FormatSummary(summary).empty(), "no summary");
   });
 }
 
@@ -225,12 +235,13 @@ void FuzzMap(std::string_view bytes) {
   });
 }
 
-constexpr std::array<FuzzedReader, 18> kReaders = {{{"trajectory", FuzzTrajectory},
+constexpr std::array<FuzzedReader, 19> kReaders = {{{"trajectory", FuzzTrajectory},
                                                     {"settings", FuzzSettings},
                                                     {"grey_image", FuzzGreyImage},
                                                     {"depth_image", FuzzDepthImage},
                                                     {"objects", FuzzObjects},
                                                     {"true_objects", FuzzTrueObjects},
+                                                    {"summary", FuzzSummary},
                                                     {"mask_probe", FuzzMaskProbe},
                                                     {"classes", FuzzClasses},
                                                     {"yolo_seg", FuzzYoloSeg},

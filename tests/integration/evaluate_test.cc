@@ -8,6 +8,7 @@
 
 #include "hullslam/io/atomic_file.h"
 #include "hullslam/io/object_file.h"
+#include "hullslam/io/summary.h"
 #include "hullslam/io/trajectory_file.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
@@ -127,6 +128,22 @@ class EvaluateObjects : public Evaluate {
     folder_.Write("run/objects_observations.json", FormatObservations(report_));
   }
 
+  // The run as a monocular one whose map has a unit of length of `unit` metres.
+  void WriteMonocularRun(double unit) {
+    Ellipsoid& ellipsoid = report_.objects[0].ellipsoid;
+    ellipsoid.world_from_object.translation /= unit;
+    ellipsoid.half_axes /= unit;
+    WriteRun();
+    Trajectory trajectory = ReadTrajectory(folder_.path() / "run" / "trajectory.txt");
+    for (StampedPose& pose : trajectory) {
+      pose.world_from_cam.translation /= unit;
+    }
+    WriteFileAtomically(folder_.path() / "run" / "trajectory.txt", FormatTrajectory(trajectory));
+    RunSummary summary;
+    summary.trajectory.alignment = "sim3";
+    folder_.Write("run/summary.json", FormatSummary(summary));
+  }
+
   // The world frame of the run differs from the true one by a rotation and a translation.
   void WriteSequence() {
     const Rigid3 truth_from_map(ExpSo3({0.0, 0.0, 0.3}), {1.0, 2.0, 3.0});
@@ -191,6 +208,8 @@ TEST_F(EvaluateObjects, ComparesWithTheTruth) {
       RunProgram("evaluate", {"objects", run_, "--groundtruth", truth_file_, "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const auto truth = nlohmann::json::parse(result.output)["groundtruth"];
+  EXPECT_EQ(truth["alignment"], "se3");
+  EXPECT_EQ(truth["scale"], 1.0);
   EXPECT_EQ(truth["visible"], 1);
   EXPECT_EQ(truth["once"], 1);
   EXPECT_EQ(truth["never"], 0);
@@ -200,6 +219,55 @@ TEST_F(EvaluateObjects, ComparesWithTheTruth) {
   EXPECT_NEAR(truth["shapes"]["ellipsoid"]["axis_ratio_mean"].get<double>(), 1.01, 1e-9);
   EXPECT_NEAR(truth["shapes"]["ellipsoid"]["siou_mean"].get<double>(), 1.0 / (1.01 * 1.01), 1e-3);
   EXPECT_EQ(truth["without_truth"].size(), 0U);
+}
+
+TEST_F(EvaluateObjects, AMonocularRunIsComparedInMetres) {
+  WriteMonocularRun(2.5);
+  const ProgramResult result =
+      RunProgram("evaluate", {"objects", run_, "--groundtruth", truth_file_, "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto truth = nlohmann::json::parse(result.output)["groundtruth"];
+  EXPECT_EQ(truth["alignment"], "sim3");
+  EXPECT_NEAR(truth["scale"].get<double>(), 2.5, 1e-6);
+  EXPECT_LT(truth["ate_rmse_m"].get<double>(), 1e-6);
+  EXPECT_EQ(truth["once"], 1);
+  EXPECT_LT(truth["each"][0]["mapped"][0]["center_m"].get<double>(), 1e-6);
+  EXPECT_NEAR(truth["shapes"]["ellipsoid"]["axis_ratio_mean"].get<double>(), 1.01, 1e-6);
+}
+
+TEST_F(EvaluateObjects, NamesTheAlignmentAndTheUnit) {
+  const std::vector<std::string> arguments = {"objects", run_, "--groundtruth", truth_file_};
+  const ProgramResult with_depth = RunProgram("evaluate", arguments);
+  EXPECT_NE(with_depth.output.find("half axes m\n"), std::string::npos) << with_depth.output;
+  EXPECT_NE(with_depth.output.find("after se3 alignment of the poses with scale 1.000000 (ATE"),
+            std::string::npos)
+      << with_depth.output;
+  WriteMonocularRun(2.5);
+  const ProgramResult monocular = RunProgram("evaluate", arguments);
+  for (const char* const part :
+       {"half axes u\n", "MTD u2", " u2; mean tangent", "u is the unit of length of the map",
+        "after sim3 alignment of the poses with scale 2.50000", "1 mapped once"}) {
+    EXPECT_NE(monocular.output.find(part), std::string::npos) << part << " in\n"
+                                                              << monocular.output;
+  }
+}
+
+TEST_F(EvaluateObjects, TheAlignmentCanBeGiven) {
+  WriteMonocularRun(2.5);
+  // summary.json is not needed then, and would be refused.
+  folder_.Write("run/summary.json", "{}");
+  std::vector<std::string> arguments = {"objects", run_,      "--groundtruth", truth_file_,
+                                        "--json",  "--align", "sim3"};
+  const auto counts = [&] {
+    const ProgramResult result = RunProgram("evaluate", arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return nlohmann::json::parse(result.output)["groundtruth"];
+  };
+  EXPECT_EQ(counts()["once"], 1);
+  arguments.back() = "se3";
+  EXPECT_EQ(counts()["never"], 1);
+  arguments.back() = "none";
+  ExpectRefusal(arguments, "--align");
 }
 
 // The camera of a short run moves by less than the error of its positions. An alignment by
@@ -254,6 +322,8 @@ TEST_F(EvaluateObjects, BadInputIsRefusedWithOneLine) {
   ExpectRefusal({"objects", run_, "--groundtruth", truth_file_}, "7.txt:1");
   folder_.Write("run/trajectory.txt", "900 0 0 0 0 0 0 1\n");
   ExpectRefusal({"objects", run_, "--groundtruth", truth_file_}, "run/trajectory.txt: no pose");
+  folder_.Write("run/summary.json", R"({"trajectory": {"alignment": "left"}})");
+  ExpectRefusal({"objects", run_}, "run/summary.json: trajectory.alignment is \"left\"");
   folder_.Write("run/objects.json", "{\"version\": 2}");
   ExpectRefusal({"objects", run_}, "objects.json: \"sequence\" is missing");
 }

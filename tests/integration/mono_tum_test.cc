@@ -68,6 +68,7 @@ TEST_F(MonoTum, HasNoDepthAndNoAssociations) {
   ExpectRefusal({path + "/none"}, {path + "/none"});
   fs::remove_all(sequence.path() / "depth");
   fs::remove(sequence.path() / "depth.txt");
+  fs::remove(sequence.path() / "groundtruth.txt");
   ExpectNoMap({path}, 2, "too little parallax");
 }
 

@@ -56,6 +56,7 @@ class MonoProgram : public ::testing::Test {
     EXPECT_TRUE(summary["initialisation"]["seconds"].is_null());
     EXPECT_GT(summary["initialisation"]["failures"].value(reason, 0), 0);
     EXPECT_EQ(summary["trajectory"]["tracked"], 0);
+    EXPECT_EQ(summary["trajectory"]["alignment"], "sim3");  // with and without ground truth
     EXPECT_EQ(summary["trajectory"]["coverage"], 0.0);
     EXPECT_EQ(summary["map"]["keyframes"], 0);
     EXPECT_EQ(ReadFile(output_ / "trajectory.txt"), FormatTrajectory(Trajectory()));

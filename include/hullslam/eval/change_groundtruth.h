@@ -5,6 +5,7 @@
 #include <span>
 
 #include "hullslam/eval/true_object.h"
+#include "hullslam/geometry/sim3.h"
 #include "hullslam/objects/object_changes.h"
 
 namespace hullslam {
@@ -29,9 +30,10 @@ struct ChangeComparison {
 // Compares the reported changes with a rearranged scene. A reported place is that of a true object
 // of any class if its centre is at most half of the Size() of the object away. Each true object is
 // counted once. Moving true objects are left out, and so are those of `scene.objects` whose entry
-// in `sightings` is less than `min_sightings`; `sightings` may be empty.
+// in `sightings` is less than `min_sightings`; `sightings` may be empty. The scene is in metres;
+// `truth_from_map` has the scale 1 if the map is in metres too.
 ChangeComparison CompareChanges(const TrueScene& scene, std::span<const ChangedObject> changes,
-                                const Rigid3& truth_from_map, std::span<const size_t> sightings,
+                                const Sim3& truth_from_map, std::span<const size_t> sightings,
                                 size_t min_sightings);
 
 }  // namespace hullslam

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hullslam/eval/true_object.h"
+#include "hullslam/geometry/sim3.h"
 #include "hullslam/report/object_report.h"
 
 namespace hullslam {
@@ -34,9 +35,10 @@ struct GroundtruthComparison {
 
 // Assigns to each mapped object of the report the true object with the nearest centre, where
 // distances are divided by the Size() of the true object and must be at most one half. Classes do
-// not matter. Moving true objects are never assigned.
+// not matter. Moving true objects are never assigned. The true objects are in metres;
+// `truth_from_map` has the scale 1 if the map is in metres too.
 GroundtruthComparison CompareWithTruth(std::span<const TrueObject> truths,
-                                       const ObjectReport& report, const Rigid3& truth_from_map);
+                                       const ObjectReport& report, const Sim3& truth_from_map);
 
 // Counts how often the true objects that should be mapped were mapped.
 struct TruthCounts {

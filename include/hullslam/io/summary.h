@@ -3,11 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "hullslam/geometry/alignment.h"
 #include "hullslam/util/stage_timer.h"
 
 namespace hullslam {
@@ -96,6 +98,11 @@ struct RunSummary {
 
 // JSON with the keys in the order of the structs, with a final line feed.
 std::string FormatSummary(const RunSummary& summary);
+
+// The alignment that a `summary.json`, whose path this is, names in `trajectory.alignment`: kSim3
+// if the unit of length of the run is not the metre. Throws InputError for anything that
+// FormatSummary() did not write there.
+AlignmentKind ReadAlignment(const std::filesystem::path& path);
 
 // The statistics of each stage.
 std::map<std::string, TimeStatistics> SummarizeStages(const StageTimes& times);
