@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "hullslam/io/euroc_sequence.h"
 #include "io/text_rows.h"
 #include "support/expect_error.h"
 #include "support/paths.h"
@@ -142,6 +144,35 @@ TEST_F(Settings, TheConfigurationOfIclNuimIsRightHanded) {
   EXPECT_EQ(options.camera.cy, 239.5);
   EXPECT_FALSE(options.camera.IsDistorted());
   EXPECT_EQ(options.depth.units_per_metre, 5000.0);
+}
+
+// A user gets the same run from config/EuRoC.yaml as from the calibration that every sequence of
+// EuRoC brings along.
+TEST_F(Settings, TheConfigurationOfEurocIsThatOfItsSensorFile) {
+  const auto sensor = folder_.Write(
+      "sensor.yaml",
+      "T_BS:\n  cols: 4\n  rows: 4\n"
+      "  data: [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0,\n"
+      "         0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]\n"
+      "rate_hz: 20\nresolution: [752, 480]\ncamera_model: pinhole\n"
+      "intrinsics: [458.654, 457.296, 367.215, 248.375]\n"
+      "distortion_model: radial-tangential\n"
+      "distortion_coefficients: [-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05]\n");
+  const SystemOptions options = ReadSettings(SourceFolder() / "config" / "EuRoC.yaml");
+  EXPECT_EQ(FormatSettings(options),
+            FormatSettings(MakeSettings(ReadEurocCamera(sensor).calibration, sensor.string())));
+}
+
+// No file is left behind when a key is renamed.
+TEST_F(Settings, EveryFileOfTheConfigurationIsRead) {
+  size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(SourceFolder() / "config")) {
+    if (entry.path().extension() == ".yaml") {
+      ++files;
+      EXPECT_NO_THROW(ReadSettings(entry.path())) << entry.path();
+    }
+  }
+  EXPECT_GE(files, 5U);
 }
 
 TEST_F(Settings, ACalibrationReplacesASettingsFile) {
