@@ -166,14 +166,13 @@ cv::Mat Read16Bit(const std::filesystem::path& path, const char* kind) {
 
 }  // namespace
 
-cv::Mat ReadGreyImage(const std::filesystem::path& path) { return Decode(path, kGreyFlags); }
-
-cv::Mat ReadPicture(const std::filesystem::path& path) {
+cv::Mat ReadGreyImage(const std::filesystem::path& path) {
   cv::Mat image = Decode(path, kGreyFlags | cv::IMREAD_ANYDEPTH);
   if (image.depth() != CV_8U) {
-    Fail(path, fmt::format("has {} bits per channel, expected a picture with 8 bits; depth images "
-                           "are no pictures, and others must be converted",
-                           8 * image.elemSize1()));
+    Fail(path,
+         fmt::format("has {} bits per channel, expected an image with 8 bits, grey or in colour; "
+                     "if this is no depth image, it must be converted",
+                     8 * image.elemSize1()));
   }
   return image;
 }

@@ -61,7 +61,7 @@ std::vector<fs::path> ListImages(const fs::path& folder) {
 }
 
 ImageInput LoadPicture(const FramePaths& frame, const PinholeCamera& camera) {
-  ImageInput image{frame.timestamp, ReadPicture(frame.image), cv::Mat()};
+  ImageInput image{frame.timestamp, ReadGreyImage(frame.image), cv::Mat()};
   CheckImageSize(frame.image.string(), image.grey, camera);
   return image;
 }
@@ -86,7 +86,7 @@ ImageStream OpenFolder(const fs::path& folder, const ImageStreamOptions& options
     stream.images.frames.push_back(
         {static_cast<double>(number) / stream.frames_per_second, image, {}, number});
   }
-  const cv::Mat first = ReadPicture(stream.images.frames.front().image);
+  const cv::Mat first = ReadGreyImage(stream.images.frames.front().image);
   stream.width = first.cols;
   stream.height = first.rows;
   stream.images.load = LoadPicture;

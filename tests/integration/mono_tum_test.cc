@@ -93,5 +93,13 @@ TEST_F(MonoTum, ImagesOfAnotherSizeAreRefused) {
                 {"rgb/00.png", "640x480", "320x480", "Camera.width"});
 }
 
+// A list of depth images in rgb.txt would otherwise give a map of nonsense.
+TEST_F(MonoTum, DepthImagesAreNoImages) {
+  const PlaneSequence sequence(2);
+  fs::copy_file(sequence.path() / "depth.txt", sequence.path() / "rgb.txt",
+                fs::copy_options::overwrite_existing);
+  ExpectRefusal({sequence.path()}, {"depth/00.png: has 16 bits per channel", "8 bits"});
+}
+
 }  // namespace
 }  // namespace hullslam

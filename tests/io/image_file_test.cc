@@ -57,16 +57,16 @@ TEST(ImageFile, OnlySixteenBitDepthIsAccepted) {
   ExpectInputError([&] { ReadDepthImage(colour); }, {"c.png", "3 channel(s) of 16 bits"});
 }
 
-TEST(ImageFile, PicturesHave8Bits) {
+TEST(ImageFile, GreyImagesHave8Bits) {
   const TemporaryFolder folder;
   const auto write = [&](int type) {
     return folder.Write("a.png", Encode(".png", cv::Mat(2, 3, type, cv::Scalar::all(90))));
   };
-  EXPECT_EQ(ReadPicture(write(CV_8UC1)).at<uint8_t>(1, 2), 90);
-  EXPECT_EQ(ReadPicture(write(CV_8UC3)).at<uint8_t>(1, 2), 90);
+  EXPECT_EQ(ReadGreyImage(write(CV_8UC1)).at<uint8_t>(1, 2), 90);
+  EXPECT_EQ(ReadGreyImage(write(CV_8UC3)).at<uint8_t>(1, 2), 90);
   for (const int type : {CV_16UC1, CV_16UC3}) {
     const auto path = write(type);
-    ExpectInputError([&] { ReadPicture(path); }, {"a.png: has 16 bits per channel", "8 bits"});
+    ExpectInputError([&] { ReadGreyImage(path); }, {"a.png: has 16 bits per channel", "8 bits"});
   }
 }
 

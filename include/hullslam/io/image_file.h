@@ -11,12 +11,10 @@ namespace hullslam {
 // (Flipped bits inside a JPEG cannot be detected.)
 
 // The luma of a PNG or JPEG image, CV_8UC1. An orientation in the EXIF data is ignored, because the
-// calibration of the camera refers to the pixels as stored.
+// calibration of the camera refers to the pixels as stored. Images with 16 bits per channel are
+// errors too, because they may be depth images, or use only a few of their bits and would become
+// black.
 cv::Mat ReadGreyImage(const std::filesystem::path& path);
-
-// The same for images of unknown origin. Images with 16 bits per channel are errors too, because
-// they may be depth images, or pictures that use only a few of their bits and would become black.
-cv::Mat ReadPicture(const std::filesystem::path& path);
 
 // A depth image with unchanged values, CV_16UC1. Another bit depth than 16 or several channels are
 // errors too.
