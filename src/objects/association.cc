@@ -192,6 +192,9 @@ class Associator {
     if (!last.detection->points.empty()) {
       return {1.0 / MeanOf(last.detection->points.Unpack()).z()};
     }
+    if (const auto depth = LandmarkDepth(last)) {
+      return {1.0 / *depth};
+    }
     if (const auto sphere = StartFromRays(sensor_.camera, views, {})) {
       return {1.0 / (last.cam_from_world * sphere->world_from_object.translation).z()};
     }

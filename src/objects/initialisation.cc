@@ -4,9 +4,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 
 #include "geometry/oriented_box.h"
 #include "objects/point_statistics.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
@@ -14,6 +16,10 @@ namespace {
 // Rays are nearly parallel if the least eigenvalue of the information matrix of the point where
 // they meet, divided by the number of rays, is below this.
 constexpr double kMinRayInformation = 1e-3;
+
+// How far the centre of a sphere lies behind the surface that a camera sees, in radii: the mean
+// over its silhouette.
+constexpr double kSurfaceToCenter = 2.0 / 3.0;
 
 struct Interval {
   double low = 0.0;
@@ -78,6 +84,26 @@ std::vector<Eigen::Vector3d> InnerPoints(std::span<const Eigen::Vector3d> points
   return inner;
 }
 
+// A sphere with the mean size of the boxes at this place. Null if the place is not in front of all
+// cameras.
+std::optional<Ellipsoid> SphereAt(const Eigen::Vector3d& center, const PinholeCamera& camera,
+                                  std::span<const ObjectView> views, const StartOptions& options) {
+  double radius = 0.0;
+  for (const ObjectView& view : views) {
+    const double depth = (view.cam_from_world * center).z();
+    if (depth <= 0.0) {
+      return std::nullopt;
+    }
+    const Eigen::Vector2d sides = view.detection->box.sizes();
+    radius += 0.25 * (sides.x() / camera.fx + sides.y() / camera.fy) * depth;
+  }
+  Ellipsoid sphere;
+  sphere.world_from_object.translation = center;
+  const double least = options.min_half_axis * MeanDistance(views, center);
+  sphere.half_axes.setConstant(std::max(least, radius / static_cast<double>(views.size())));
+  return sphere;
+}
+
 }  // namespace
 
 std::vector<Ellipsoid> StartsFromPoints(std::span<const Eigen::Vector3d> points, double distance,
@@ -114,21 +140,37 @@ std::optional<Ellipsoid> StartFromRays(const PinholeCamera& camera,
   if (eigen.eigenvalues().x() < kMinRayInformation * static_cast<double>(views.size())) {
     return std::nullopt;
   }
-  Ellipsoid sphere;
-  sphere.world_from_object.translation = information.ldlt().solve(right_side);
-  double radius = 0.0;
+  return SphereAt(information.ldlt().solve(right_side), camera, views, options);
+}
+
+std::optional<Ellipsoid> StartFromLandmarks(const PinholeCamera& camera,
+                                            std::span<const ObjectView> views,
+                                            const StartOptions& options) {
+  std::array<std::vector<double>, 3> places;
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   for (const ObjectView& view : views) {
-    const double depth = (view.cam_from_world * sphere.world_from_object.translation).z();
-    if (depth <= 0.0) {
-      return std::nullopt;
+    const std::optional<double> depth = LandmarkDepth(view);
+    if (!depth) {
+      continue;
     }
-    const Eigen::Vector2d sides = view.detection->box.sizes();
-    radius += 0.25 * (sides.x() / camera.fx + sides.y() / camera.fy) * depth;
+    const Eigen::Vector3d in_camera = camera.Unproject(view.detection->box.center(), *depth);
+    const Rigid3 world_from_cam = Inverse(view.cam_from_world);
+    const Eigen::Vector3d place = world_from_cam * in_camera;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      places[axis].push_back(place[static_cast<Eigen::Index>(axis)]);
+    }
+    direction += world_from_cam.rotation * in_camera.normalized();
   }
-  const double least =
-      options.min_half_axis * MeanDistance(views, sphere.world_from_object.translation);
-  sphere.half_axes.setConstant(std::max(least, radius / static_cast<double>(views.size())));
-  return sphere;
+  if (2 * places[0].size() < views.size() || places[0].empty()) {
+    return std::nullopt;
+  }
+  const Eigen::Vector3d surface(Median(places[0]), Median(places[1]), Median(places[2]));
+  const auto in_front = SphereAt(surface, camera, views, options);
+  if (!in_front) {
+    return std::nullopt;
+  }
+  return SphereAt(surface + kSurfaceToCenter * in_front->half_axes.x() * direction.normalized(),
+                  camera, views, options);
 }
 
 }  // namespace hullslam

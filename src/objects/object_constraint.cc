@@ -12,6 +12,7 @@
 #include "costs/make_object_cost.h"
 #include "costs/pixel_error.h"
 #include "costs/quadric_prior.h"
+#include "objects/point_statistics.h"
 #include "util/thin.h"
 
 namespace hullslam {
@@ -57,16 +58,18 @@ std::unique_ptr<RobustRowsCost> MakeOutline(const PinholeCamera& camera, const O
   return MakeRobust(std::move(cost), MakeLoss(options.loss, scale), options.max_effective_lines);
 }
 
-std::unique_ptr<RobustRowsCost> MakeDepth(const Detection& detection,
+std::unique_ptr<RobustRowsCost> MakeDepth(const ObjectView& view,
                                           const ObjectDepthOptions& options) {
   const auto count = static_cast<size_t>(options.max_points);
   const std::vector<Eigen::Vector3d> points = options.choice == PointChoice::kEven
-                                                  ? Thin(detection.points.Unpack(), count)
-                                                  : EveryKth(detection.points.Unpack(), count);
+                                                  ? Thin(SurfacePoints(view), count)
+                                                  : EveryKth(SurfacePoints(view), count);
   if (points.empty()) {
     return nullptr;
   }
-  return MakeRobust(std::make_unique<DepthAnchorCost>(points, options.sigma),
+  const bool is_measured = !view.detection->points.empty();
+  const double sigma = is_measured ? options.sigma : options.landmark_sigma * MeanOf(points).norm();
+  return MakeRobust(std::make_unique<DepthAnchorCost>(points, sigma),
                     MakeLoss(options.loss, options.loss_scale), options.max_effective_points);
 }
 
@@ -77,7 +80,7 @@ ObjectConstraint MakeObjectConstraint(const PinholeCamera& camera, const ObjectV
                                       const Ellipsoid& ellipsoid, double misfit_px,
                                       const ObjectConstraintOptions& options) {
   return {.outline = MakeOutline(camera, view, lines, ellipsoid, misfit_px, options),
-          .depth = MakeDepth(*view.detection, options.depth)};
+          .depth = MakeDepth(view, options.depth)};
 }
 
 std::unique_ptr<ceres::CostFunction> MakeObjectPrior(const Ellipsoid& shape, bool has_depth,

@@ -122,8 +122,11 @@ void ObjectMapper::Update(Map& map, ObjectId id) {
 // Computes the shape of a candidate: refines several starts and takes the best result.
 void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> views) {
   const bool has_depth = HasDepth(views);
-  const std::optional<Ellipsoid> sphere =
+  const auto by_landmarks =
+      has_depth ? std::nullopt : StartFromLandmarks(sensor_.camera, views, options_.start);
+  const auto by_rays =
       has_depth ? std::nullopt : StartFromRays(sensor_.camera, views, options_.start);
+  const auto& sphere = by_landmarks ? by_landmarks : by_rays;
   if (!has_depth && !sphere) {
     Reject(map, id, {ObjectRejection::kNoStart, "the rays to the object do not meet"});
     return;
@@ -131,8 +134,8 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
   const Eigen::Vector3d center =
       sphere ? sphere->world_from_object.translation : MeanOf(CollectPoints(views, kFewPoints));
   const double parallax = Parallax(views, center);
-  const double min_parallax =
-      has_depth ? options_.start.min_parallax : options_.start.min_parallax_without_depth;
+  const double min_parallax = has_depth || by_landmarks ? options_.start.min_parallax
+                                                        : options_.start.min_parallax_without_depth;
   if (parallax < min_parallax) {
     Reject(
         map, id,
@@ -140,11 +143,16 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
          fmt::format("parallax {:.1f} degrees, expected at least {:.1f}", parallax, min_parallax)});
     return;
   }
-  const std::vector<Ellipsoid> starts =
-      has_depth
-          ? StartsFromPoints(CollectPoints(views, static_cast<size_t>(options_.start.max_points)),
-                             MeanDistance(views, center), options_.start)
-          : std::vector<Ellipsoid>{*sphere};
+  std::vector<Ellipsoid> starts;
+  if (has_depth) {
+    starts = StartsFromPoints(CollectPoints(views, static_cast<size_t>(options_.start.max_points)),
+                              MeanDistance(views, center), options_.start);
+  }
+  for (const auto* start : {&by_landmarks, &by_rays}) {
+    if (*start) {
+      starts.push_back(**start);
+    }
+  }
   if (starts.empty()) {
     Reject(map, id, {ObjectRejection::kNoStart, "too few depth points for a start"});
     return;

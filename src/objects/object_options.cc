@@ -227,6 +227,11 @@ void ObjectOptions::Bind(OptionTable& options) {
   BindSigma(options, "bundle", bundle.constraint);
   BindDepthAndPrior(options, "refinement", refinement.constraint);
   BindDepthAndPrior(options, "bundle", bundle.constraint);
+  options.Add(
+      "objects.refinement.landmark_sigma", &refinement.constraint.depth.landmark_sigma,
+      Range::Between(0.001, 100.0),
+      "standard deviation of the distance of landmarks from the surface of a quadric without "
+      "depth, as a share of their distance from the camera");
   options.Add("objects.bundle.min_loss_px", &bundle.constraint.min_loss_px,
               Range::Between(0.0, 1000.0), "least scale of the robust loss, px");
   options.Add("objects.refinement_sigma", &refinement.max_misfit_px, Range::Between(0.1, 100.0),

@@ -4,17 +4,57 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "hullslam/util/check.h"
 #include "objects/point_statistics.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
 
+// Degrees between the rays to a landmark that says where an object is. With less, the depth of the
+// landmark may have been guessed.
+constexpr double kMinLandmarkParallax = 1.5;
+constexpr size_t kMinLandmarks = 3;  // that tell the depth of an object
+
+bool HasParallax(const Map& map, const Landmark& landmark) {
+  static const double max_cosine = std::cos(kMinLandmarkParallax * std::numbers::pi / 180.0);
+  const auto ray_from = [&](const Observation& observation) {
+    const Rigid3& cam_from_world = map.keyframes().At(observation.keyframe).cam_from_world;
+    return (landmark.position - Inverse(cam_from_world).translation).normalized().eval();
+  };
+  const Eigen::Vector3d first = ray_from(landmark.observations.front());
+  return std::any_of(
+      landmark.observations.begin() + 1, landmark.observations.end(),
+      [&](const Observation& other) { return first.dot(ray_from(other)) < max_cosine; });
+}
+
+std::vector<Eigen::Vector3d> FindLandmarks(const Map& map, const Keyframe& keyframe,
+                                           const Detection& detection) {
+  std::vector<Eigen::Vector3d> points;
+  for (const uint32_t keypoint : detection.keypoints) {
+    const LandmarkId id = keyframe.landmarks[keypoint];
+    if (!id.IsValid()) {
+      continue;
+    }
+    const Landmark& landmark = map.landmarks().At(id);
+    const Eigen::Vector3d point = keyframe.cam_from_world * landmark.position;
+    if (point.z() > 0.0 && HasParallax(map, landmark)) {
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
 ObjectView MakeView(const Map& map, const ObjectObservation& observation) {
   const Keyframe& keyframe = map.keyframes().At(observation.keyframe);
-  return {observation.keyframe, keyframe.cam_from_world,
-          &keyframe.frame->detections[observation.detection]};
+  const Detection& detection = keyframe.frame->detections[observation.detection];
+  ObjectView view{observation.keyframe, keyframe.cam_from_world, &detection};
+  if (detection.points.empty()) {
+    view.landmarks = FindLandmarks(map, keyframe, detection);
+  }
+  return view;
 }
 
 }  // namespace
@@ -40,6 +80,21 @@ std::vector<ObjectView> LatestViews(const Map& map, const ObjectLandmark& object
     views.push_back(MakeView(map, object.observations[i]));
   }
   return views;
+}
+
+std::vector<Eigen::Vector3d> SurfacePoints(const ObjectView& view) {
+  return view.detection->points.empty() ? view.landmarks : view.detection->points.Unpack();
+}
+
+std::optional<double> LandmarkDepth(const ObjectView& view) {
+  if (view.landmarks.size() < kMinLandmarks) {
+    return std::nullopt;
+  }
+  std::vector<double> depths;
+  for (const Eigen::Vector3d& landmark : view.landmarks) {
+    depths.push_back(landmark.z());
+  }
+  return Median(std::move(depths));
 }
 
 std::vector<Eigen::Vector3d> CollectPoints(std::span<const ObjectView> views, size_t max_points) {

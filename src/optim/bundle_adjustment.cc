@@ -246,6 +246,14 @@ BundleOptions BundleOptions::ForWholeMap() const {
   options.robust_iterations = 10;
   options.final_iterations = 20;
   options.function_tolerance = 1e-6;
+  // Parts of the map may move by much more than the size of an object. Objects go with them; a
+  // prior on where they are would hold the parts back.
+  constexpr double kLoose = 20.0;
+  ObjectConstraintOptions& constraint = options.objects.constraint;
+  for (QuadricPriorSigmas* const prior : {&constraint.prior, &constraint.prior_without_depth}) {
+    prior->center *= kLoose;
+    prior->rotation *= kLoose;
+  }
   return options;
 }
 

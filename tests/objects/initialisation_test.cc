@@ -136,5 +136,55 @@ TEST_F(Rays, ThatMeetBehindTheCamerasGiveNothing) {
   EXPECT_TRUE(StartFromRays(sensor_.camera, views, {}));
 }
 
+// Four views within a few degrees of one another, too few for rays.
+class Landmarks : public ::testing::Test {
+ protected:
+  std::vector<ObjectView> Views(double step) {
+    const ObjectId object = map_.AddObject();
+    for (int i = 0; i < 4; ++i) {
+      const Rigid3 pose = CameraOnCircle(step * i, 1.5, 0.5);
+      map_.AddObservation(object, textured_.AddObserver(map_, sensor_, pose), 0);
+    }
+    return CollectViews(map_, map_.objects().At(object));
+  }
+  Sensor sensor_ = MakeObjectSensor();
+  MadeObject made_ = MakeObject("ball", {0.1, 0.05, 0.02}, {0.1, 0.1, 0.1});
+  TexturedObject textured_{made_, CameraOnCircle(0.0, 1.5, 0.5), 30};
+  Map map_;
+};
+
+TEST_F(Landmarks, GiveASphereWithItsSurfaceAtTheirDepth) {
+  const auto sphere = StartFromLandmarks(sensor_.camera, Views(0.02), {});
+  ASSERT_TRUE(sphere);
+  EXPECT_LT((sphere->world_from_object.translation - made_.ellipsoid.world_from_object.translation)
+                .norm(),
+            0.02);
+  EXPECT_NEAR(sphere->half_axes.x(), 0.1, 0.01);
+}
+
+TEST_F(Landmarks, BehindTheObjectDoNotMoveItIfTheyAreFew) {
+  std::vector<ObjectView> views = Views(0.02);
+  for (ObjectView& view : views) {
+    for (size_t i = 0; i < 10; ++i) {
+      view.landmarks[3 * i] *= 3.0;
+    }
+  }
+  const auto sphere = StartFromLandmarks(sensor_.camera, views, {});
+  ASSERT_TRUE(sphere);
+  EXPECT_LT((sphere->world_from_object.translation - made_.ellipsoid.world_from_object.translation)
+                .norm(),
+            0.04);
+}
+
+TEST_F(Landmarks, MustBeInHalfOfTheViews) {
+  std::vector<ObjectView> views = Views(0.02);
+  views[0].landmarks.clear();
+  views[2].landmarks.resize(2);
+  EXPECT_TRUE(StartFromLandmarks(sensor_.camera, views, {}));
+  views[3].landmarks.clear();
+  EXPECT_FALSE(StartFromLandmarks(sensor_.camera, views, {}));
+  EXPECT_FALSE(StartFromLandmarks(sensor_.camera, {}, {}));
+}
+
 }  // namespace
 }  // namespace hullslam

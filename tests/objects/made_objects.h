@@ -96,6 +96,49 @@ inline KeyframeId AddObserver(Map& map, const Sensor& sensor, const Rigid3& cam_
   return map.AddKeyframe(std::move(frame), cam_from_world);
 }
 
+// A textured object, which keyframes without depth see together with landmarks on its surface.
+class TexturedObject {
+ public:
+  // The landmarks lie on the side that `cam_from_world` sees.
+  TexturedObject(MadeObject object, const Rigid3& cam_from_world, size_t landmarks)
+      : object_(std::move(object)) {
+    const std::vector<Eigen::Vector3d> visible = VisibleSurface(object_.ellipsoid, cam_from_world);
+    for (size_t i = 0; i < landmarks; ++i) {
+      points_.push_back(Inverse(cam_from_world) * visible[i * visible.size() / landmarks]);
+    }
+  }
+
+  KeyframeId AddObserver(Map& map, const Sensor& sensor, const Rigid3& cam_from_world) {
+    auto frame = std::make_shared<Frame>();
+    frame->id = FrameId(map.keyframes().NextId().value);
+    Detection& detection = frame->detections.emplace_back(Detect(object_, sensor, cam_from_world));
+    detection.points.clear();
+    for (uint32_t i = 0; i < points_.size(); ++i) {
+      const Eigen::Vector2d pixel = sensor.camera.Project(cam_from_world * points_[i]);
+      frame->features.keypoints.push_back({.undistorted = pixel.cast<float>()});
+      detection.keypoints.push_back(i);
+    }
+    frame->features.descriptors.resize(points_.size());
+    frame->features.depth.resize(points_.size(), 0.0f);
+    frame->features.right_u.resize(points_.size(), -1.0f);
+    const KeyframeId keyframe = map.AddKeyframe(std::move(frame), cam_from_world);
+    for (uint32_t i = 0; i < points_.size(); ++i) {
+      if (landmarks_.size() == i) {
+        landmarks_.push_back(map.AddLandmark(points_[i], keyframe));
+      }
+      map.AddObservation(landmarks_[i], keyframe, i);
+    }
+    return keyframe;
+  }
+
+  const std::vector<Eigen::Vector3d>& points() const { return points_; }  // world
+
+ private:
+  MadeObject object_;
+  std::vector<Eigen::Vector3d> points_;
+  std::vector<LandmarkId> landmarks_;
+};
+
 inline MadeObject MakeObject(const std::string& label, const Eigen::Vector3d& center,
                              const Eigen::Vector3d& half_axes, double turn = 0.0) {
   MadeObject object;

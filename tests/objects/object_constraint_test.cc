@@ -55,6 +55,20 @@ TEST_F(ObjectConstraintTest, ByHandWithoutLoss) {
   EXPECT_NEAR(depth[0], 3.0 / std::sqrt(6.0), 1e-7);
 }
 
+// The sigma of landmarks is a share of their distance, here half of 0.1 m.
+TEST_F(ObjectConstraintTest, LandmarksStandForDepthPoints) {
+  const std::vector<Eigen::Vector3d> points = detection_.points.Unpack();
+  detection_.points.clear();
+  EXPECT_EQ(Make().depth, nullptr);
+  options_.depth.landmark_sigma = 0.5;
+  const ObjectView view{KeyframeId(), Rigid3(), &detection_, points};
+  const ObjectConstraint constraint = MakeObjectConstraint(kObjectCamera, view, detection_.lines,
+                                                           SphereAhead().ellipsoid, 0.0, options_);
+  const Eigen::VectorXd depth = ObjectResidualsOf(*constraint.depth, SphereAhead());
+  ASSERT_EQ(depth.size(), 6);
+  EXPECT_NEAR(depth[0], 0.3 / (0.5 * 0.1) / std::sqrt(6.0), 1e-6);
+}
+
 TEST_F(ObjectConstraintTest, TheMisfitAddsToTheSigma) {
   options_.misfit_factor = 0.5;
   misfit_px_ = 3.0;

@@ -69,6 +69,27 @@ TEST_F(Mapping, AnObjectIsACandidateUntilItIsSeenFromEnoughSides) {
   EXPECT_EQ(Mapped().size(), 3u);
 }
 
+// Six views within 6 degrees, without depth.
+TEST_F(Mapping, LandmarksTellWhereAnObjectIsWithoutDepth) {
+  const MadeObject cup = MakeObject("cup", {0.1, 0.05, 0.0}, {0.10, 0.12, 0.11});
+  for (const size_t landmarks : {0, 40}) {
+    map_ = Map();
+    ObjectMapper mapper(sensor_, ObjectOptions());
+    TexturedObject textured(cup, CameraOnCircle(0.0, 1.5, 0.6), landmarks);
+    for (int i = 0; i < 6; ++i) {
+      const Rigid3 pose = CameraOnCircle(0.02 * i, 1.5, 0.6);
+      mapper.Process(map_, textured.AddObserver(map_, sensor_, pose));
+    }
+    if (landmarks == 0) {
+      EXPECT_TRUE(Mapped().empty());
+      EXPECT_GT(mapper.rejections().at(ObjectRejection::kLittleParallax), 0u);
+    } else {
+      ASSERT_EQ(Mapped().size(), 1u);
+      EXPECT_GT(VolumeOverlap(Mapped()[0].ellipsoid, cup.ellipsoid), 0.7);
+    }
+  }
+}
+
 TEST_F(Mapping, ACandidateThatIsNotSeenAgainIsCulled) {
   const auto table = MakeTable();
   See(table, 0.0);

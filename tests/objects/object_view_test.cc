@@ -75,6 +75,62 @@ TEST_F(ObjectViews, ParallaxIsTheLargestAngle) {
   EXPECT_NEAR(Parallax(std::span(views).first(1), Eigen::Vector3d::Zero()), 0.0, 1e-6);
 }
 
+class LandmarkViews : public ::testing::Test {
+ protected:
+  // Two views, `degrees` apart.
+  std::vector<ObjectView> Views(double degrees) {
+    map_ = Map();
+    const ObjectId object = map_.AddObject();
+    for (const double angle : {0.0, degrees * std::numbers::pi / 180.0}) {
+      const Rigid3 pose = CameraOnCircle(angle, 1.5, 0.0);
+      map_.AddObservation(object, textured_.AddObserver(map_, sensor_, pose), 0);
+    }
+    return CollectViews(map_, map_.objects().At(object));
+  }
+  Sensor sensor_ = MakeObjectSensor();
+  TexturedObject textured_{MakeObject("cup", {0.0, 0.0, 0.0}, {0.05, 0.06, 0.08}),
+                           CameraOnCircle(0.0, 1.5, 0.0), 7};
+  Map map_;
+};
+
+TEST_F(LandmarkViews, HaveTheLandmarksInTheCamera) {
+  for (const ObjectView& view : Views(3.0)) {
+    ASSERT_EQ(view.landmarks.size(), 7u);
+    for (size_t i = 0; i < 7; ++i) {
+      EXPECT_LT((view.landmarks[i] - view.cam_from_world * textured_.points()[i]).norm(), 1e-9);
+    }
+    EXPECT_EQ(SurfacePoints(view).size(), 7u);
+    // Between the nearest point of the surface and the centre.
+    const double depth = LandmarkDepth(view).value();
+    EXPECT_GT(depth, 1.5 - 0.08);
+    EXPECT_LT(depth, 1.5);
+  }
+}
+
+TEST_F(LandmarkViews, LeaveOutWhatMayHaveBeenGuessed) {
+  for (const ObjectView& view : Views(1.0)) {
+    EXPECT_TRUE(view.landmarks.empty());
+    EXPECT_FALSE(LandmarkDepth(view));
+  }
+}
+
+TEST_F(LandmarkViews, DepthPointsAreBetter) {
+  ObjectView view = Views(3.0).front();
+  Detection detection = *view.detection;
+  detection.points = std::vector<Eigen::Vector3d>(1, {0.0, 0.0, 1.0});
+  view.detection = &detection;
+  EXPECT_EQ(SurfacePoints(view), std::vector<Eigen::Vector3d>(1, {0.0, 0.0, 1.0}));
+}
+
+TEST(LandmarkDepth, IsTheMedianOfThreeOrMore) {
+  const Detection detection;
+  ObjectView view{KeyframeId(0), Rigid3(), &detection};
+  view.landmarks = {{0.0, 0.0, 1.0}, {0.0, 0.0, 9.0}};
+  EXPECT_FALSE(LandmarkDepth(view));
+  view.landmarks.emplace_back(0.0, 0.0, 2.0);
+  EXPECT_EQ(LandmarkDepth(view), 2.0);
+}
+
 TEST(HasDepth, NeedsEnoughPointsInAllViewsTogether) {
   Detection detection;
   detection.points = std::vector<Eigen::Vector3d>(kMinDepthPoints / 2);

@@ -195,6 +195,19 @@ TEST_F(ObjectBundle, OfTheWholeMapImprovesPosesAndShapes) {
   EXPECT_LT(MeanShapeError(result), 0.25 * before);
 }
 
+// Outlines that say little compared with the prior, and objects two sizes beside their places.
+TEST_F(ObjectBundle, OfTheWholeMapDoesNotHoldObjectsBack) {
+  for (const ObjectId id : ids_) {
+    ObjectLandmark& object = made_.map.MutableObject(id);
+    object.ellipsoid.world_from_object.translation.x() +=
+        2.0 * std::cbrt(object.ellipsoid.half_axes.prod());
+    object.misfit_px = 40.0;
+  }
+  const double of_whole_map = MeanShapeError(Adjust(Window(), kPrecise.ForWholeMap()));
+  EXPECT_LT(of_whole_map, 0.1);
+  EXPECT_GT(MeanShapeError(Adjust(Window())), 5.0 * of_whole_map);
+}
+
 TEST_F(ObjectBundle, StaysAtTheTruth) {
   const BundleResult result = Adjust(Window());
   ASSERT_TRUE(result.is_usable);

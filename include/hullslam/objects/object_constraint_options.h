@@ -22,7 +22,9 @@ enum class PointChoice { kEven, kEveryKth };
 // How the depth points of one detection constrain an object.
 struct ObjectDepthOptions {
   double sigma = 0.10;  // m, of the distance of a point from the surface
-  int max_points = 0;   // per detection; 0: depth is not used
+  // The same of a landmark, where there is no depth, as a share of its distance.
+  double landmark_sigma = 0.05;
+  int max_points = 0;  // per detection; 0: depth is not used
   PointChoice choice = PointChoice::kEven;
   double max_effective_points = 1.0;  // largest number that the points of one detection count as
   RobustLoss loss = RobustLoss::kCauchy;

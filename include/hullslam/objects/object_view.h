@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct ObjectView {
   KeyframeId keyframe;
   Rigid3 cam_from_world;
   const Detection* detection = nullptr;  // owned by the keyframe's frame
+  // Where the detection has no depth points: the landmarks that its keypoints show, camera frame,
+  // in the unit of the map. Only those whose own depth is known well.
+  std::vector<Eigen::Vector3d> landmarks = {};
 };
 
 // The views of an object by increasing keyframe id. If there are more than `max_views` (0: no
@@ -27,6 +31,14 @@ std::vector<ObjectView> CollectViews(const Map& map, const ObjectLandmark& objec
 // The last `count` views by increasing keyframe id, or all if there are fewer. Valid until the map
 // changes.
 std::vector<ObjectView> LatestViews(const Map& map, const ObjectLandmark& object, size_t count);
+
+// Where the surface of the object is, as far as the view knows: its depth points or, without these,
+// its landmarks. Camera frame.
+std::vector<Eigen::Vector3d> SurfacePoints(const ObjectView& view);
+
+// The median depth (z) of its landmarks, in the unit of the map; nothing if there are fewer than
+// three.
+std::optional<double> LandmarkDepth(const ObjectView& view);
 
 // Depth points of the views in the world frame, evenly chosen, about `max_points` at most.
 std::vector<Eigen::Vector3d> CollectPoints(std::span<const ObjectView> views, size_t max_points);
