@@ -341,7 +341,7 @@ int Run(int argc, char** argv) {
   const auto [views, without_pose] = ChooseViews(arguments, frames, inputs.poses, masks);
   CatchInterrupts();
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments));
-  WarnOfUnknownClasses(inputs.options.tracking, masks);
+  WarnOfUnknownClasses(inputs.options.tracking, inputs.options.objects, masks);
   if (!arguments.quiet) {
     Print("{}\n", masks.Describe());
   }

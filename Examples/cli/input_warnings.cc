@@ -35,6 +35,20 @@ std::optional<double> MedianOf(const cv::Mat& depth) {
   return *middle;
 }
 
+// Names the classes of a setting that no mask has.
+void WarnOfOthers(const char* key, std::set<std::string> classes,
+                  const std::set<std::string>& labels) {
+  for (const std::string& label : labels) {
+    classes.erase(label);
+  }
+  if (!classes.empty()) {
+    PrintError("warning: {} has '{}', but no mask has this class; {}\n", key,
+               fmt::join(classes, "', '"),
+               labels.empty() ? std::string("there are no masks")
+                              : fmt::format("classes of the masks: {}", fmt::join(labels, ", ")));
+  }
+}
+
 }  // namespace
 
 void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& depth,
@@ -59,24 +73,22 @@ void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& de
              is_in_units ? "DepthMapFactor" : "its unit (--povray-units)");
 }
 
-void WarnOfUnknownClasses(const TrackingOptions& options, const SequenceMasks& masks) {
-  std::set<std::string> unknown = SplitNames(options.dynamic_classes);
+void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& objects,
+                          const SequenceMasks& masks) {
+  std::set<std::string> dynamic = SplitNames(tracking.dynamic_classes);
   for (const std::string& name : SplitNames(TrackingOptions().dynamic_classes)) {
-    unknown.erase(name);
+    dynamic.erase(name);
   }
-  if (unknown.empty()) {
+  std::set<std::string> sized;
+  for (const auto& [name, size] : objects.sizes) {
+    sized.insert(name);
+  }
+  if (dynamic.empty() && sized.empty()) {
     return;
   }
   const std::set<std::string> labels = masks.Labels();
-  for (const std::string& label : labels) {
-    unknown.erase(label);
-  }
-  if (!unknown.empty()) {
-    PrintError("warning: tracking.dynamic_classes has '{}', but no mask has this class; {}\n",
-               fmt::join(unknown, "', '"),
-               labels.empty() ? std::string("there are no masks")
-                              : fmt::format("classes of the masks: {}", fmt::join(labels, ", ")));
-  }
+  WarnOfOthers("tracking.dynamic_classes", dynamic, labels);
+  WarnOfOthers("objects.sizes", sized, labels);
 }
 
 void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& sequence) {

@@ -17,8 +17,10 @@ namespace hullslam {
 // may be wrong.
 void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& depth,
                             const DepthOptions& options);
-// A class in tracking.dynamic_classes is in no mask. Classes of the default are not reported.
-void WarnOfUnknownClasses(const TrackingOptions& options, const SequenceMasks& masks);
+// A class in tracking.dynamic_classes or objects.sizes is in no mask. Classes of the default are
+// not reported.
+void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& objects,
+                          const SequenceMasks& masks);
 // --last is beyond the end of the sequence.
 void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& sequence);
 

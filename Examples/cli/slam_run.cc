@@ -203,6 +203,9 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
     summary.map.landmarks = map->landmarks().size();
     summary.map.sessions = map->sessions().size();
     summary.map.loops = CountLoops(*map);
+    if (options.sensor == SensorKind::kMonocular && !options.objects.sizes.empty()) {
+      summary.map.known_sizes = system.sized_objects();
+    }
   }
   if (options.sensor == SensorKind::kMonocular && arguments.load_map.empty()) {
     summary.initialisation = result.initialisation;
@@ -271,6 +274,12 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
           *trajectory.rpe_rmse_deg);
   }
   Print("{} keyframes, {} landmarks\n", summary.map.keyframes, summary.map.landmarks);
+  if (summary.map.known_sizes) {
+    Print("{}\n", *summary.map.known_sizes > 0
+                      ? fmt::format("the unit of length is the metre, by {} objects of known size",
+                                    *summary.map.known_sizes)
+                      : "the unit of length is unknown: no object of a known size was mapped");
+  }
   if (summary.objects) {
     Print("{}\n", DescribeObjects(*summary.objects));
     if (objects.changes) {
@@ -357,7 +366,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   const size_t earlier_sessions = start.map.sessions().size();
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments));
   WarnOfImplausibleDepth(sequence.frames.front().depth, first.depth, options.depth);
-  WarnOfUnknownClasses(options.tracking, masks);
+  WarnOfUnknownClasses(options.tracking, options.objects, masks);
   WarnOfLastFrame(arguments.selection, sequence);
   if (!arguments.quiet && masks.format()) {
     Print("{}\n", masks.Describe());

@@ -52,7 +52,12 @@ void ApplyFile(const fs::path& file, NegativeFy negative_fy, OptionTable& table,
           fmt::format("{}: {} was given before under another name", setting.place, setting.name));
     }
     // An unknown key is reported before anything that is wrong with its value.
-    std::string text = table.Contains(setting.key) ? SingleValue(setting) : "";
+    std::string text;
+    if (table.IsMap(setting.key) && !setting.pairs.empty()) {
+      text = setting.pairs;
+    } else if (table.Contains(setting.key)) {
+      text = SingleValue(setting);
+    }
     if (setting.key == "Camera.fy") {
       text = FocalLengthInY(setting, std::move(text), negative_fy);
     }
@@ -182,9 +187,12 @@ fs::path FindConfigFolder() {
 std::string FormatSettings(SystemOptions options) {
   std::string text = "%YAML:1.0\n";
   for (const OptionTable::Entry& entry : options.Bind().Entries()) {
-    if (!entry.is_shared) {
-      text += entry.key + ": " + entry.value + '\n';
+    if (entry.is_shared) {
+      continue;
     }
+    const bool is_plain = !entry.value.empty() && entry.value.find(':') == std::string::npos;
+    text += is_plain ? fmt::format("{}: {}\n", entry.key, entry.value)
+                     : fmt::format("{}: \"{}\"\n", entry.key, entry.value);
   }
   return text;
 }

@@ -78,7 +78,8 @@ Json ToJson(const MapSummary& summary) {
   return {{"keyframes", summary.keyframes},
           {"landmarks", summary.landmarks},
           {"loops", summary.loops},
-          {"sessions", summary.sessions}};
+          {"sessions", summary.sessions},
+          {"known_sizes", OrNull(summary.known_sizes)}};
 }
 
 Json ToJson(const ProvenanceSummary& summary) {

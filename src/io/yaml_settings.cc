@@ -92,6 +92,19 @@ std::string SingleText(const cv::FileNode& node, const WrittenValue& written) {
   return is_whole && has_exponent_or_point ? fmt::format("{:.0f}", value) : written.text;
 }
 
+// Empty unless all values of the map are single.
+std::string MapText(const cv::FileNode& map) {
+  std::string text;
+  for (const cv::FileNode& node : map) {
+    if (!node.isString() && !node.isReal() && !node.isInt()) {
+      return "";
+    }
+    const std::string value = node.isString() ? node.string() : fmt::format("{}", node.real());
+    text += fmt::format("{}{}:{}", text.empty() ? "" : ",", node.name(), value);
+  }
+  return text;
+}
+
 WrittenSetting ToSetting(const cv::FileNode& node, const WrittenValue& written,
                          const fs::path& file) {
   WrittenSetting setting{
@@ -101,6 +114,7 @@ WrittenSetting ToSetting(const cv::FileNode& node, const WrittenValue& written,
     setting.no_value = "empty";
   } else if (node.isMap() || node.isSeq()) {
     setting.no_value = node.isMap() ? "a map" : "a list";
+    setting.pairs = node.isMap() ? MapText(node) : "";
   } else {
     setting.text = SingleText(node, written);
   }

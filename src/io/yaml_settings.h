@@ -17,6 +17,8 @@ struct WrittenSetting {
   // as a number.
   std::string text = {};
   std::string_view no_value = {};  // what it is ("a list") if it is not a single value
+  // Of a map of single values, `name:value` pairs with commas in between; else empty.
+  std::string pairs = {};
 };
 
 // The settings of a file in OpenCV's YAML, in their order: `key: value` lines after a first line

@@ -287,4 +287,14 @@ CorrectionOutcome ApplyCorrection(Map& map, const MapCorrection& correction,
   return outcome;
 }
 
+MapCorrection ScalingOf(const Map& map, double factor) {
+  MapCorrection correction;
+  correction.snapshot_corrections = map.correction_count();
+  map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    const Rigid3& pose = keyframe.cam_from_world;
+    correction.poses.push_back({id, pose, Sim3(1.0 / factor, pose.rotation, pose.translation)});
+  });
+  return correction;
+}
+
 }  // namespace hullslam

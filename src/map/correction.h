@@ -37,4 +37,7 @@ struct CorrectionOutcome {
 CorrectionOutcome ApplyCorrection(Map& map, const MapCorrection& correction,
                                   const ScaleLevels& levels);
 
+// The correction after which all lengths in the map are `factor` times as large.
+MapCorrection ScalingOf(const Map& map, double factor);
+
 }  // namespace hullslam

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mapping/mapper.h"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -10,9 +14,24 @@
 #include "mapping/landmark_creation.h"
 #include "mapping/landmark_fusion.h"
 #include "mapping/old_keyframes.h"
+#include "objects/known_sizes.h"
 
 namespace hullslam {
 namespace {
+
+// The scale of a single camera is measured when objects of known size have so many observations.
+constexpr size_t kMinSizedViews = 10;
+constexpr double kScaleTolerance =
+    0.01;  // during the run; every change makes loops in work useless
+
+size_t CountSizedViews(const Map& map, const std::map<std::string, double>& sizes) {
+  size_t views = 0;
+  map.objects().ForEach([&](ObjectId, const ObjectLandmark& object) {
+    const bool is_sized = object.state == ObjectState::kMapped && sizes.contains(object.Label());
+    views += is_sized ? object.observations.size() : 0;
+  });
+  return views;
+}
 
 bool MustHurry(const Cancellation* hurry) { return hurry != nullptr && hurry->IsRequested(); }
 
@@ -79,6 +98,7 @@ void Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
     const ScopedTimer timer(times_, "compact_keyframes");
     CompactOldKeyframes(map_, keyframe, full_);
   }
+  FollowKnownSizes(false);
   PublishSnapshot();
 }
 
@@ -159,6 +179,7 @@ void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on
   if (options_.final_bundle_adjustment && !is_cancelled && map_.keyframes().size() >= 2) {
     AdjustMap(cancellation, on_progress);
   }
+  FollowKnownSizes(true);
   FinishObjects();
 }
 
@@ -218,6 +239,28 @@ bool Mapper::SplitReplacedObjects() {
     }
   }
   return has_split;
+}
+
+// Makes the unit of length of a monocular map the metre if objects of known size are mapped. During
+// the run this is done once they have been seen often enough, and again when they have been seen
+// twice as often.
+void Mapper::FollowKnownSizes(bool is_final) {
+  const std::map<std::string, double>& sizes = object_options_.sizes;
+  if (!sensor_.IsMonocular() || !object_options_.enabled || sizes.empty()) {
+    return;
+  }
+  const size_t views = CountSizedViews(map_, sizes);
+  if (!is_final && views < std::max(kMinSizedViews, 2 * sized_views_)) {
+    return;
+  }
+  const ScopedTimer timer(times_, "known_sizes");
+  sized_views_ = views;
+  const KnownScale scale = MeasureScale(map_, sensor_, sizes);
+  const double tolerance = is_final ? 0.0 : kScaleTolerance;
+  if (std::abs(std::log(scale.metres_per_unit)) > tolerance) {
+    ApplyCorrection(map_, ScalingOf(map_, scale.metres_per_unit), sensor_.levels);
+    PublishSnapshot();
+  }
 }
 
 void Mapper::Adjust(const BundleWindow& window, const BundleOptions& options,

@@ -78,6 +78,7 @@ class Mapper {
   void AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry);
   void Adjust(const BundleWindow& window, const BundleOptions& options,
               const Cancellation* cancellation, const ProgressCallback& on_progress = {});
+  void FollowKnownSizes(bool is_final);
   void RecheckObjects(const std::vector<ObjectId>& objects);
   WindowObjects ObjectsToAdjust() const;
 
@@ -92,6 +93,7 @@ class Mapper {
   KeyframeId newest_keyframe_;
   std::vector<LandmarkId> recent_;  // new landmarks that CullRecentLandmarks checks
   std::vector<KeyframeId> full_;    // keyframes that CompactOldKeyframes checks, by increasing id
+  size_t sized_views_ = 0;          // of objects of known size when the scale was last measured
   std::optional<Session> session_;  // until its first keyframe
   std::vector<ChangedObject> object_changes_;
 };

@@ -218,6 +218,9 @@ void ObjectOptions::Bind(OptionTable& options) {
   options.Add("objects.guided_matching", &guided_matching,
               "search landmarks on mapped objects that are not in the local map, inside the hulls "
               "of their detections");
+  options.Add("objects.sizes", &sizes, Range::Between(0.001, 1000.0),
+              "longest side of objects by class, m; a single camera without depth gets its scale "
+              "from objects of known size");
   detection.Bind(options);
 
   BindOutline(options, "refinement", Range::Between(0.1, 1000.0), refinement.constraint);

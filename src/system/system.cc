@@ -13,6 +13,7 @@
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 #include "hullslam/util/task_runner.h"
+#include "objects/known_sizes.h"
 #include "system/idle_core_runner.h"
 #include "system/make_sensor.h"
 #include "system/pipeline.h"
@@ -194,6 +195,11 @@ StageTimes System::times() const {
 
 const std::vector<ChangedObject>& System::object_changes() const {
   return pipeline_->object_changes();
+}
+
+size_t System::sized_objects() const {
+  const std::shared_ptr<const Map> newest = map();
+  return newest != nullptr ? MeasureScale(*newest, sensor_, options_.objects.sizes).objects : 0;
 }
 
 ObjectCounts System::object_counts() const {

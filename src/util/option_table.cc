@@ -46,6 +46,38 @@ std::optional<bool> ParseBool(std::string_view text) {
   return std::nullopt;
 }
 
+std::string_view WithoutSpaces(std::string_view text) {
+  const size_t begin = text.find_first_not_of(" \t");
+  const size_t end = text.find_last_not_of(" \t");
+  return begin == std::string_view::npos ? "" : text.substr(begin, end + 1 - begin);
+}
+
+std::optional<std::map<std::string, double>> ParseMap(std::string_view text, const Range& range) {
+  std::map<std::string, double> numbers;
+  while (!WithoutSpaces(text).empty()) {
+    const std::string_view pair = text.substr(0, text.find(','));
+    text.remove_prefix(std::min(text.size(), pair.size() + 1));
+    const size_t colon = pair.find(':');
+    const std::string name(WithoutSpaces(pair.substr(0, colon)));
+    const auto number = colon == std::string_view::npos
+                            ? std::nullopt
+                            : ParseNumber<double>(WithoutSpaces(pair.substr(colon + 1)));
+    if (name.empty() || !number || !range.Contains(*number) ||
+        !numbers.emplace(name, *number).second) {
+      return std::nullopt;
+    }
+  }
+  return numbers;
+}
+
+std::string PrintMap(const std::map<std::string, double>& numbers) {
+  std::string text;
+  for (const auto& [name, number] : numbers) {
+    text += (text.empty() ? "" : ",") + name + ":" + PrintNumber(number);
+  }
+  return text;
+}
+
 // Levenshtein distance, to suggest the right key for a misspelt one.
 size_t EditDistance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
@@ -133,6 +165,22 @@ void OptionTable::Add(std::string key, bool* field, std::string help) {
                              .help = std::move(help)});
 }
 
+void OptionTable::Add(std::string key, std::map<std::string, double>* field, Range range,
+                      std::string help) {
+  AddOption(std::move(key),
+            {.parse =
+                 [field, range](const std::string& text) {
+                   auto numbers = ParseMap(text, range);
+                   const bool good = numbers.has_value();
+                   if (good) *field = std::move(*numbers);
+                   return good;
+                 },
+             .print = [field] { return PrintMap(*field); },
+             .expected = "name:number pairs, separated by commas, each number " + range.ToString(),
+             .help = std::move(help),
+             .is_map = true});
+}
+
 void OptionTable::Add(std::string key, std::string* field, std::vector<std::string> choices,
                       std::string help) {
   std::string expected = "one of: " + Join(choices);
@@ -208,6 +256,11 @@ void OptionTable::AddIgnored(std::string key) {
 
 bool OptionTable::Contains(std::string_view key) const {
   return options_.find(key) != options_.end();
+}
+
+bool OptionTable::IsMap(std::string_view key) const {
+  const auto it = options_.find(key);
+  return it != options_.end() && it->second.is_map;
 }
 
 void OptionTable::Set(const std::string& key, const std::string& value, const std::string& origin) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -55,6 +56,31 @@ TEST_F(MonoTum, RunsGiveTheSameBytesAlsoWithTheThreeArgumentsOfOrbSlam2) {
     EXPECT_TRUE(ReadFile(output_ / "keyframes.txt") == keyframes);
     EXPECT_TRUE(ReadFile(output_ / "map.ply") == map);
   }
+}
+
+// The longest side of the keyboard of desk is 0.42 m.
+TEST_F(MonoTum, ObjectsOfKnownSizeGiveTheScale) {
+  const RenderedDesk desk(40);
+  const Arguments arguments = {desk.path(), "--masks", desk.path() / "masks"};
+  ExpectMap(arguments, 40);
+  EXPECT_TRUE(Summary()["map"]["known_sizes"].is_null());
+  const double unit = Summary()["trajectory"]["scale"];
+  EXPECT_GT(std::abs(unit - 1.0), 0.1);
+
+  Arguments with_size = arguments;
+  with_size.insert(with_size.end(), {"--set", "objects.sizes=keyboard:0.42"});
+  const ProgramResult sized = ExpectMap(with_size, 40);
+  EXPECT_EQ(Summary()["map"]["known_sizes"], 1);
+  EXPECT_NEAR(Summary()["trajectory"]["scale"].get<double>(), 1.0, 0.05);
+  ExpectParts(sized.output, {"the unit of length is the metre, by 1 objects of known size"});
+
+  Arguments unknown = arguments;
+  unknown.insert(unknown.end(), {"--set", "objects.sizes=giraffe:5"});
+  const ProgramResult unsized = ExpectMap(unknown, 40);
+  EXPECT_EQ(Summary()["map"]["known_sizes"], 0);
+  EXPECT_EQ(Summary()["trajectory"]["scale"], unit);
+  ExpectParts(unsized.output, {"the unit of length is unknown"});
+  ExpectParts(unsized.errors, {"warning: objects.sizes has 'giraffe', but no mask has this class"});
 }
 
 TEST_F(MonoTum, HasNoDepthAndNoAssociations) {

@@ -217,6 +217,22 @@ TEST_F(Settings, BrokenValuesAreReportedWithLineKeyAndExpectation) {
   ExpectLineError("Camera.fy: 5", {"'Camera.fy' was given before, in line 3"});
 }
 
+TEST_F(Settings, SizesOfObjectsAreAMapOrAText) {
+  const std::string camera =
+      "%YAML:1.0\nCamera.fx: 50\nCamera.fy: 50\nCamera.cx: 5\nCamera.cy: 5\n";
+  const std::map<std::string, double> sizes = {{"cup", 0.1}, {"potted plant", 0.5}};
+  EXPECT_EQ(Read(camera + "objects.sizes:\n  cup: 0.1\n  potted plant: 0.5\n").objects.sizes,
+            sizes);
+  EXPECT_EQ(Read(camera + "objects.sizes: {cup: 0.1, potted plant: 0.5}\n").objects.sizes, sizes);
+  EXPECT_EQ(Read(camera + "objects.sizes: \"cup: 0.1, potted plant: 0.5\"\n").objects.sizes, sizes);
+  EXPECT_EQ(Read(camera, {"objects.sizes=potted plant:0.5,cup:0.1"}).objects.sizes, sizes);
+  ExpectLineError("objects.sizes: {cup: -1}", {"objects.sizes is 'cup:-1'", "name:number pairs"});
+  ExpectLineError("objects.sizes: {cup: big}", {"objects.sizes is 'cup:big'", "name:number pairs"});
+  ExpectLineError("objects.sizes: {cup: {x: 1}}", {"objects.sizes is a map", "a single value"});
+  ExpectLineError("objects.sizes: [1, 2]", {"objects.sizes is a list", "a single value"});
+  ExpectLineError("objects.sizes: 0.1", {"objects.sizes is '0.1'", "name:number pairs"});
+}
+
 TEST_F(Settings, AZeroFocalLengthIsRefused) {
   ExpectError("%YAML:1.0\nCamera.fx: 0.0\n",
               {"camera.yaml:2: ", "Camera.fx is '0'", "from 10 to 1e+05"});
@@ -305,9 +321,11 @@ TEST_F(Settings, RandomBytesGiveAnInputError) {
 }
 
 TEST_F(Settings, WrittenSettingsAreReadBackUnchanged) {
-  const SystemOptions options = Read(kOrbSlam2, {"ORBextractor.nFeatures=1234"});
+  const SystemOptions options =
+      Read(kOrbSlam2, {"ORBextractor.nFeatures=1234", "objects.sizes=cup:0.1,potted plant:2"});
   const std::string text = FormatSettings(options);
   EXPECT_NE(text.find("\nORBextractor.nFeatures: 1234\n"), std::string::npos);
+  EXPECT_NE(text.find("\nobjects.sizes: \"cup:0.1,potted plant:2\"\n"), std::string::npos);
   EXPECT_EQ(FormatSettings(Read(text)), text);
 }
 

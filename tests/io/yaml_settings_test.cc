@@ -50,6 +50,17 @@ TEST_F(YamlSettings, OnlySingleValuesHaveAText) {
   ExpectInputError([&] { SingleValue(settings[2]); }, {"a.yaml:4: d is empty"});
 }
 
+TEST_F(YamlSettings, AMapOfSingleValuesHasPairs) {
+  const auto settings =
+      Read("a:\n  cup: 0.1\n  potted plant: 2\nb: {c: 1.5}\nd: {e: {f: 1}}\ng: {h: x}\ni: 1\n");
+  ASSERT_EQ(settings.size(), 5u);
+  EXPECT_EQ(settings[0].pairs, "cup:0.1,potted plant:2");
+  EXPECT_EQ(settings[1].pairs, "c:1.5");
+  EXPECT_EQ(settings[2].pairs, "");
+  EXPECT_EQ(settings[3].pairs, "h:x");
+  EXPECT_EQ(settings[4].pairs, "");
+}
+
 TEST_F(YamlSettings, BrokenFilesAreRefused) {
   ExpectInputError([&] { Read("a: 1\na: 2\n"); }, {"a.yaml:3: key 'a' was given before", "line 2"});
   ExpectInputError([&] { Read("- 1\n- 2\n"); }, {"a.yaml: has no settings"});

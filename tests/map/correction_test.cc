@@ -904,6 +904,26 @@ TEST_F(UniformCorrection, KeepsThePixelOfEveryLandmark) {
   }
 }
 
+TEST_F(UniformCorrection, ScalingMakesAllLengthsLonger) {
+  Map before = made_.map.Snapshot();
+  const MapCorrection scaling = ScalingOf(made_.map, 2.5);
+  EXPECT_TRUE(ApplyCorrection(made_.map, scaling, world_.sensor().levels).is_applied);
+  EXPECT_EQ(FindViolations(made_.map), std::vector<std::string>());
+  for (const KeyframeId id : AllIds(before)) {
+    const Rigid3& pose = before.CamFromWorld(id);
+    EXPECT_LT(Distance(made_.map.CamFromWorld(id), {pose.rotation, 2.5 * pose.translation}), 1e-9);
+    EXPECT_NEAR(made_.map.ScaleOf(id), 2.5 * before.ScaleOf(id), 1e-12);
+  }
+  before.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+    EXPECT_LT((made_.map.landmarks().At(id).position - 2.5 * landmark.position).norm(), 1e-9);
+  });
+  before.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    EXPECT_LT(
+        (made_.map.objects().At(id).ellipsoid.half_axes - 2.5 * object.ellipsoid.half_axes).norm(),
+        1e-9);
+  });
+}
+
 TEST_F(UniformCorrection, KeepsTheProjectedEllipsesOfObjects) {
   RandomGeometry random(7);
   Map before = made_.map.Snapshot();

@@ -10,8 +10,10 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "map/invariants.h"
+#include "objects/made_objects.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
@@ -403,6 +405,102 @@ TEST_F(MapperWithoutMuchDepthTest, PointsWithoutDepthAreTriangulated) {
     }
   }
   EXPECT_GT(triangulated, 200u);
+}
+
+// A monocular camera that looks at a cup. The unit of length of the first map is 2 m.
+class MapperKnownSizesTest : public testing::Test {
+ protected:
+  void Run(const std::map<std::string, double>& sizes) {
+    ObjectOptions objects;
+    objects.sizes = sizes;
+    mapper_ = std::make_unique<Mapper>(sensor_, MappingOptions{.cull_keyframes = false}, objects,
+                                       [this](auto map) { map_ = std::move(map); });
+    const std::vector<SyntheticView> views = {View(0), View(10)};
+    InitialMap initial;
+    for (const SyntheticView& view : views) {
+      initial.views.push_back(
+          {view.frame, Scaled(SyntheticWorld::CamFromWorld(10.0 * initial.views.size()), 0.5)});
+    }
+    std::map<uint32_t, std::vector<InitialMap::Observation>> seen;
+    for (size_t view = 0; view < views.size(); ++view) {
+      for (uint32_t i = 0; i < views[view].points.size(); ++i) {
+        seen[views[view].points[i]].push_back({view, i});
+      }
+    }
+    for (const auto& [point, observations] : seen) {
+      if (observations.size() == 2) {
+        initial.points.push_back({0.5 * world_.points()[point], observations});
+      }
+    }
+    mapper_->Process(initial, nullptr);
+    for (uint32_t index = 20; index <= 160; index += 10) {
+      Request(index);
+    }
+  }
+
+  // The length of the unit of the map, m.
+  double Unit() const {
+    const auto distance = [](const Rigid3& a, const Rigid3& b) {
+      return (Inverse(a).translation - Inverse(b).translation).norm();
+    };
+    return distance(SyntheticWorld::CamFromWorld(0), SyntheticWorld::CamFromWorld(10)) /
+           distance(map_->CamFromWorld(KeyframeId(0)), map_->CamFromWorld(KeyframeId(1)));
+  }
+
+  std::unique_ptr<Mapper> mapper_;
+  std::shared_ptr<const Map> map_;
+
+ private:
+  static Rigid3 Scaled(const Rigid3& pose, double factor) {
+    return {pose.rotation, factor * pose.translation};
+  }
+  SyntheticView View(uint32_t index) const {
+    SyntheticView view = world_.Observe(index);
+    Frame frame = *view.frame;
+    frame.detections.push_back(Detect(cup_, sensor_, SyntheticWorld::CamFromWorld(index)));
+    frame.detections.back().points.clear();
+    view.frame = std::make_shared<const Frame>(std::move(frame));
+    return view;
+  }
+  // Sends the path's frame `index`, whose keypoints show the landmarks with their descriptors.
+  void Request(uint32_t index) {
+    std::map<Descriptor, LandmarkId> by_descriptor;
+    map_->landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+      by_descriptor.emplace(landmark.descriptor, id);
+    });
+    const SyntheticView view = View(index);
+    KeyframeRequest request;
+    request.frame = view.frame;
+    request.pose =
+        map_->RelativeTo(KeyframeId(0), Scaled(SyntheticWorld::CamFromWorld(index), 1.0 / Unit()));
+    for (const uint32_t point : view.points) {
+      const auto known = by_descriptor.find(world_.descriptor(point));
+      request.landmarks.push_back(known != by_descriptor.end() ? known->second : LandmarkId());
+    }
+    mapper_->Process(request, nullptr);
+  }
+
+  const SyntheticWorld world_{{.points = 400, .depth_share = 0.0}};
+  const Sensor sensor_ = [this] {
+    Sensor sensor = world_.sensor();
+    sensor.kind = SensorKind::kMonocular;
+    return sensor;
+  }();
+  const MadeObject cup_ = MakeObject("cup", {0.0, 0.0, 4.0}, {0.25, 0.40, 0.30});
+};
+
+TEST_F(MapperKnownSizesTest, WithoutASizeTheUnitStays) {
+  Run({{"book", 0.3}});
+  EXPECT_NEAR(Unit(), 2.0, 0.02);
+  EXPECT_FALSE(mapper_->times().samples().contains("known_sizes"));
+}
+
+TEST_F(MapperKnownSizesTest, ASizeMakesTheUnitTheMetreDuringTheRun) {
+  Run({{"cup", 0.8}});
+  EXPECT_NEAR(Unit(), 1.0, 0.02);
+  EXPECT_EQ(FindViolations(*map_), std::vector<std::string>());
+  mapper_->Finish(nullptr);
+  EXPECT_NEAR(Unit(), 1.0, 0.01);
 }
 
 }  // namespace

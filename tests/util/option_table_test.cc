@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <map>
 #include <string>
 
 #include "hullslam/util/check.h"
@@ -46,6 +47,41 @@ TEST(Range, IsDescribedInWords) {
   EXPECT_EQ(Range::AtLeast(1).ToString(), ">= 1");
   EXPECT_EQ(Range::Between(0, 1).ToString(), "from 0 to 1");
   EXPECT_EQ(Range::Any().ToString(), "of any size");
+}
+
+class MapOption : public ::testing::Test {
+ protected:
+  MapOption() {
+    table_.Add("sizes", &sizes_, Range::Between(0.001, 1000.0), "sizes, m");
+    table_.Add("length", &length_, Range::Positive(), "length, m");
+  }
+  std::map<std::string, double> sizes_;
+  double length_ = 1.0;
+  OptionTable table_;
+};
+
+TEST_F(MapOption, IsSetFromPairs) {
+  table_.Set("sizes", "cup:0.1, potted plant : 0.5,a b: 2", "--set");
+  EXPECT_EQ(sizes_,
+            (std::map<std::string, double>{{"a b", 2.0}, {"cup", 0.1}, {"potted plant", 0.5}}));
+  EXPECT_EQ(table_.Entries()[1].value, "a b:2,cup:0.1,potted plant:0.5");
+  table_.Set("sizes", "", "--set");
+  EXPECT_TRUE(sizes_.empty());
+  EXPECT_TRUE(table_.IsMap("sizes"));
+  EXPECT_FALSE(table_.IsMap("length"));
+  EXPECT_FALSE(table_.IsMap("width"));
+}
+
+TEST_F(MapOption, BrokenPairsAreRefusedAndChangeNothing) {
+  table_.Set("sizes", "cup:0.1", "--set");
+  for (const char* const text :
+       {"cup", "cup:", ":1", "cup:x", "cup:0", "cup:-1", "cup:nan", "cup:1e9", "cup:1,cup:2",
+        "a:b:2", "cup:1,,mug:2", "cup:1 mug:2"}) {
+    ExpectInputError(
+        [&] { table_.Set("sizes", text, "--set"); },
+        {"--set: sizes is '" + std::string(text) + "'", "name:number pairs", "from 0.001 to 1000"});
+  }
+  EXPECT_EQ(sizes_, (std::map<std::string, double>{{"cup", 0.1}}));
 }
 
 // Of a shared key and its members the one that is set last wins.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "hullslam/frame/detection_options.h"
 #include "hullslam/objects/object_constraint_options.h"
 #include "hullslam/util/option_table.h"
@@ -169,6 +172,8 @@ struct ObjectOptions {
   bool bundle_adjustment = true;  // quadrics are adjusted together with poses and landmarks
   bool misfit_compensation = true;
   bool guided_matching = true;  // search landmarks on objects that are not in the local map
+  // Longest side (m) by class. Without depth, objects of known size make the unit of the map 1 m.
+  std::map<std::string, double> sizes;
   DetectionOptions detection;
   AssociationOptions association;
   StartOptions start;

@@ -115,6 +115,9 @@ class System {
   // What has become of the objects of the map that the system began with, and which objects are
   // new (docs/maps.md). Empty before Finish, and if no keyframe was added.
   const std::vector<ChangedObject>& object_changes() const;
+  // How many mapped objects have a size in ObjectOptions::sizes and could be measured. If there are
+  // any, they make the unit of length of a monocular map the metre.
+  size_t sized_objects() const;
   // What became of the masks. May be called like times().
   ObjectCounts object_counts() const;
 

@@ -45,6 +45,8 @@ class OptionTable {
         key, names, [field](size_t index) { *field = static_cast<Enum>(index); },
         [field] { return static_cast<size_t>(*field); }, help);
   }
+  // Numbers by name: `name:number` pairs that are separated by commas.
+  void Add(std::string key, std::map<std::string, double>* field, Range range, std::string help);
   // A key that sets several others at once, all bound before with the same type and value. What is
   // set later wins, be it this key or one of the others.
   void AddShared(std::string key, std::vector<std::string> members, std::string help);
@@ -54,6 +56,8 @@ class OptionTable {
   void AddIgnored(std::string key);
 
   bool Contains(std::string_view key) const;
+  // Whether the option is one of numbers by name.
+  bool IsMap(std::string_view key) const;
   // Sets an option from text. Throws InputError that starts with `origin` (a file name or "--set")
   // and names the key, the value and what was expected. For an unknown key the message suggests the
   // most similar known key.
@@ -78,6 +82,7 @@ class OptionTable {
     std::string help;
     bool ignored = false;
     bool shared = false;
+    bool is_map = false;
   };
   void AddOption(std::string key, Option option);
   void AddChoice(std::string key, std::vector<std::string> names, std::function<void(size_t)> set,

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "objects/known_sizes.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "hullslam/objects/object_view.h"
+#include "objects/object_extents.h"
+#include "util/median.h"
+
+namespace hullslam {
+
+KnownScale MeasureScale(const Map& map, const Sensor& sensor,
+                        const std::map<std::string, double>& sizes) {
+  std::vector<double> scales;
+  map.objects().ForEach([&](ObjectId, const ObjectLandmark& object) {
+    const bool is_mapped = object.state == ObjectState::kMapped;
+    const auto size = is_mapped ? sizes.find(object.Label()) : sizes.end();
+    if (size == sizes.end()) {
+      return;
+    }
+    if (const auto extents = MeasureExtents(sensor, object.ellipsoid, CollectViews(map, object))) {
+      scales.push_back(size->second / extents->sides.z());
+    }
+  });
+  if (scales.empty()) {
+    return {};
+  }
+  return {.objects = scales.size(), .metres_per_unit = Median(std::move(scales))};
+}
+
+}  // namespace hullslam

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+
+#include "hullslam/frame/sensor.h"
+#include "hullslam/map/map.h"
+
+namespace hullslam {
+
+// What objects of known size say about the unit of length of a map.
+struct KnownScale {
+  size_t objects = 0;            // mapped objects of known size that could be measured
+  double metres_per_unit = 1.0;  // the median of what they say; 1 without any
+};
+
+// `sizes`: the length of the longest side (m) by class. An object has the class with most votes,
+// and its longest side is measured with objects/object_extents.h.
+KnownScale MeasureScale(const Map& map, const Sensor& sensor,
+                        const std::map<std::string, double>& sizes);
+
+}  // namespace hullslam

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "objects/object_extents.h"
+
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/rotation.h>
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "objects/misfit.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kMinPlanes = 30;    // for nine unknowns, with neighbours that are nearly equal
+constexpr double kLossScale = 0.04;  // of the largest half axis
+constexpr double kBorderPx = 20.0;
+constexpr double kMaxMisfit = 0.1;  // of the longest side
+constexpr int kIterations = 50;
+
+// A box, an ellipsoid, or an elliptic cylinder along one of the axes.
+enum class Body { kCylinderX, kCylinderY, kCylinderZ, kBox, kEllipsoid };
+constexpr std::array kBodies = {Body::kBox, Body::kEllipsoid, Body::kCylinderX, Body::kCylinderY,
+                                Body::kCylinderZ};
+
+// The support function of a body. `reach` has the products of its half sides and the normal.
+template <typename T>
+T Support(Body body, const std::array<T, 3>& reach) {
+  T straight(0.0);
+  T round(0.0);
+  for (size_t i = 0; i < 3; ++i) {
+    const bool is_straight = body == Body::kBox || static_cast<size_t>(body) == i;
+    straight += is_straight ? ceres::abs(reach[i]) : T(0.0);
+    round += is_straight ? T(0.0) : reach[i] * reach[i];
+  }
+  return body == Body::kBox ? straight : straight + ceres::sqrt(round);
+}
+
+// The signed distance of a tangent plane from a body: the support function of the object minus that
+// of the body. Parameters: logarithms of the half sides, offset of the centre and rotation vector,
+// both in the frame of the quadric.
+class PlaneCost {
+ public:
+  PlaneCost(Body body, const Eigen::Vector3d& normal, double support)
+      : body_(body), normal_(normal), support_(support) {}
+
+  template <typename T>
+  bool operator()(const T* log_half, const T* offset, const T* rotation, T* residual) const {
+    const std::array<T, 3> normal = {T(normal_.x()), T(normal_.y()), T(normal_.z())};
+    const std::array<T, 3> back = {-rotation[0], -rotation[1], -rotation[2]};
+    std::array<T, 3> in_body;
+    ceres::AngleAxisRotatePoint(back.data(), normal.data(), in_body.data());
+    std::array<T, 3> reach;
+    T moved(0.0);
+    for (size_t i = 0; i < 3; ++i) {
+      reach[i] = ceres::exp(log_half[i]) * in_body[i];
+      moved += offset[i] * normal[i];
+    }
+    residual[0] = Support(body_, reach) + moved - T(support_);
+    return true;
+  }
+
+ private:
+  Body body_;
+  Eigen::Vector3d normal_;
+  double support_;
+};
+
+// A plane that touches the object, in the frame of the quadric.
+struct TouchingPlane {
+  Eigen::Vector3d normal;  // outwards
+  double support = 0.0;    // distance from the centre of the quadric
+};
+
+// Whether the hull's corner that the line touches is near the border of the image.
+bool IsNearBorder(const Detection& detection, const Line2& line,
+                  const PinholeCamera::Bounds& bounds) {
+  const auto corner = std::max_element(
+      detection.hull.begin(), detection.hull.end(),
+      [&](const auto& a, const auto& b) { return line.normal.dot(a) < line.normal.dot(b); });
+  return corner == detection.hull.end() ||
+         std::min({corner->x() - bounds.min_x, bounds.max_x - corner->x(),
+                   corner->y() - bounds.min_y, bounds.max_y - corner->y()}) < kBorderPx;
+}
+
+std::vector<TouchingPlane> FindPlanes(const Sensor& sensor, const Ellipsoid& ellipsoid,
+                                      std::span<const ObjectView> views) {
+  std::vector<TouchingPlane> planes;
+  for (const ObjectView& view : views) {
+    for (const SilhouetteLine& line : view.detection->lines) {
+      if (line.is_one_sided || IsNearBorder(*view.detection, line.line, sensor.bounds)) {
+        continue;
+      }
+      if (const auto plane =
+              PlaneOfLine(sensor.camera, view.cam_from_world, ellipsoid, line.line)) {
+        const double quadric = ellipsoid.half_axes.cwiseProduct(plane->normal).norm();
+        planes.push_back({plane->normal, plane->excess + quadric});
+      }
+    }
+  }
+  return planes;
+}
+
+struct Fit {
+  Eigen::Vector3d half_sides;
+  double cost = 0.0;  // with the loss
+  double rms = 0.0;   // of the distances, without it
+};
+
+std::optional<Fit> FitBody(Body body, std::span<const TouchingPlane> planes,
+                           const Eigen::Vector3d& axes) {
+  Eigen::Vector3d log_half = axes.array().log();
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();
+  ceres::HuberLoss loss(kLossScale * axes.maxCoeff());
+  ceres::Problem::Options ownership;
+  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(ownership);
+  for (const TouchingPlane& plane : planes) {
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PlaneCost, 1, 3, 3, 3>(
+                                 new PlaneCost(body, plane.normal, plane.support)),
+                             &loss, log_half.data(), offset.data(), rotation.data());
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = kIterations;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  if (!summary.IsSolutionUsable() || !log_half.allFinite()) {
+    return std::nullopt;
+  }
+  ceres::Problem::EvaluateOptions without_loss;
+  without_loss.apply_loss_function = false;
+  double half_squares = 0.0;
+  problem.Evaluate(without_loss, &half_squares, nullptr, nullptr, nullptr);
+  const auto count = static_cast<double>(planes.size());
+  return Fit{log_half.array().exp(), summary.final_cost, std::sqrt(2.0 * half_squares / count)};
+}
+
+}  // namespace
+
+std::optional<ObjectExtents> MeasureExtents(const Sensor& sensor, const Ellipsoid& ellipsoid,
+                                            std::span<const ObjectView> views) {
+  const std::vector<TouchingPlane> planes = FindPlanes(sensor, ellipsoid, views);
+  if (planes.size() < kMinPlanes) {
+    return std::nullopt;
+  }
+  std::optional<Fit> best;
+  for (const Body body : kBodies) {
+    const std::optional<Fit> fit = FitBody(body, planes, ellipsoid.half_axes);
+    if (fit && (!best || fit->cost < best->cost)) {
+      best = fit;
+    }
+  }
+  if (!best) {
+    return std::nullopt;
+  }
+  ObjectExtents extents;
+  extents.sides = 2.0 * best->half_sides;
+  std::sort(extents.sides.begin(), extents.sides.end());
+  extents.misfit = best->rms / extents.sides.z();
+  return extents.misfit <= kMaxMisfit ? std::optional(extents) : std::nullopt;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+
+#include "hullslam/frame/sensor.h"
+#include "hullslam/geometry/dual_quadric.h"
+#include "hullslam/objects/object_view.h"
+
+namespace hullslam {
+
+// How large an object is.
+struct ObjectExtents {
+  // Lengths of the sides of the box around the object, the shortest first, in the unit of the map.
+  Eigen::Vector3d sides = Eigen::Vector3d::Zero();
+  double misfit = 0.0;  // RMS distance of the tangent planes from the body, over the longest side
+};
+
+// Measures an object by the two-sided lines of its views: each is the image of a plane that touches
+// it (objects/misfit.h). Lines near the border of the image are left out, because networks end
+// masks some pixels before it. The axes of the quadric are not the sides of the object: the
+// ellipsoid that fits the silhouettes of a box best is longer than the box where the corners show.
+// For the keyboard of freiburg1_xyz the longest axis is wrong by 16 %. So other bodies are fitted
+// to the planes: a box, an ellipsoid, and an elliptic cylinder along each axis. With half sides h
+// and the normal n in the frame of the body, the support function is sum_i h_i |n_i| for a box and
+// sqrt(sum_i (h_i n_i)^2) for an ellipsoid; that of a cylinder is the sum of the first along its
+// axis and the second across. Place and rotation are free. The body that fits best is taken.
+// Nothing if there are too few planes or if no body fits.
+std::optional<ObjectExtents> MeasureExtents(const Sensor& sensor, const Ellipsoid& ellipsoid,
+                                            std::span<const ObjectView> views);
+
+}  // namespace hullslam

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "objects/object_extents.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <numbers>
+#include <vector>
+
+#include "geometry/convex_hull.h"
+#include "geometry/polyline.h"
+#include "objects/made_objects.h"
+#include "support/random_geometry.h"
+
+namespace hullslam {
+namespace {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+// The corners of a box with these sides.
+Points Box(const Eigen::Vector3d& sides) {
+  Points corners;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d signs(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5);
+    corners.push_back(sides.cwiseProduct(signs));
+  }
+  return corners;
+}
+
+// The two rims of an upright cylinder, or one rim of an ellipsoid after the other.
+Points Rims(const Eigen::Vector3d& sides, bool is_round) {
+  Points points;
+  const int rims = is_round ? 33 : 2;
+  for (int k = 0; k < rims; ++k) {
+    const double z = 2.0 * k / (rims - 1) - 1.0;
+    const double radius = is_round ? std::sqrt(1.0 - z * z) : 1.0;
+    for (int i = 0; i < 96; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / 96;
+      const Eigen::Vector3d unit(radius * std::cos(angle), radius * std::sin(angle), z);
+      points.push_back(0.5 * sides.cwiseProduct(unit));
+    }
+  }
+  return points;
+}
+
+// Cameras above a table see a body.
+class Measured : public ::testing::Test {
+ protected:
+  void See(const Points& body, int count = 20, double noise_px = 0.0) {
+    views_.clear();
+    for (int i = 0; i < count; ++i) {
+      const Rigid3 pose = CameraOnCircle(0.1 * i, 1.2, 0.6);
+      std::vector<Eigen::Vector2d> pixels;
+      for (const Eigen::Vector3d& point : body) {
+        pixels.push_back(sensor_.camera.Project(pose * (turned_ * point)));
+      }
+      Detection& detection = detections_.emplace_back();
+      detection.hull = ConvexHull(pixels);
+      detection.box = BoundingBox(detection.hull);
+      for (int k = 0; k < 16; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / 16;
+        SilhouetteLine line;
+        line.line.normal = {std::cos(angle), std::sin(angle)};
+        double reach = -1e9;
+        for (const Eigen::Vector2d& corner : detection.hull) {
+          reach = std::max(reach, line.line.normal.dot(corner));
+        }
+        line.line.offset = -reach + random_.Number(-noise_px, noise_px);
+        detection.lines.push_back(line);
+      }
+      views_.push_back({KeyframeId(i), pose, &detection});
+    }
+  }
+  std::optional<ObjectExtents> Measure() const {
+    return MeasureExtents(sensor_, {Rigid3(), {0.27, 0.13, 0.06}}, views_);
+  }
+  void ExpectSides(const Eigen::Vector3d& sides, double tolerance) const {
+    const auto extents = Measure();
+    ASSERT_TRUE(extents);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_NEAR(extents->sides[i], sides[i], tolerance) << i;
+    }
+  }
+
+  Sensor sensor_ = MakeObjectSensor();
+  Rigid3 turned_{ExpSo3(Eigen::Vector3d(0.0, 0.0, 0.3)), {0.02, -0.01, 0.01}};
+  std::deque<Detection> detections_;
+  std::vector<ObjectView> views_;
+  RandomGeometry random_{3};
+};
+
+TEST_F(Measured, ABoxHasItsSides) {
+  See(Box({0.46, 0.20, 0.04}));
+  ExpectSides({0.04, 0.20, 0.46}, 1e-4);
+  EXPECT_LT(Measure()->misfit, 1e-4);
+}
+
+TEST_F(Measured, AnEllipsoidHasTheSidesOfTheBoxAroundIt) {
+  See(Rims({0.30, 0.12, 0.20}, true));
+  ExpectSides({0.12, 0.20, 0.30}, 2e-3);
+}
+
+TEST_F(Measured, ACylinderIsAsLongAsItsAxis) {
+  See(Rims({0.08, 0.10, 0.25}, false));
+  ExpectSides({0.08, 0.10, 0.25}, 1e-3);
+}
+
+TEST_F(Measured, NoiseAndSomeWrongLinesHardlyChangeIt) {
+  See(Box({0.46, 0.20, 0.04}), 20, 2.0);
+  for (Detection& detection : detections_) {
+    detection.lines[static_cast<size_t>(random_.Number(0.0, 15.9))].line.offset -= 30.0;
+  }
+  const auto extents = Measure();
+  ASSERT_TRUE(extents);
+  EXPECT_NEAR(extents->sides.z(), 0.46, 0.01);
+}
+
+TEST_F(Measured, LinesThatAreOneSidedOrNearTheBorderAreLeftOut) {
+  See(Box({0.46, 0.20, 0.04}));
+  const double right = sensor_.bounds.max_x;
+  for (Detection& detection : detections_) {
+    detection.lines[3].line.offset -= 200.0;
+    detection.lines[3].is_one_sided = true;
+    // The mask reaches to the border and ends 10 px before it.
+    detection.hull.emplace_back(right - 10.0, detection.box.center().y());
+    detection.lines[0].line.offset = -(right - 10.0);
+  }
+  ExpectSides({0.04, 0.20, 0.46}, 1e-3);
+}
+
+TEST_F(Measured, TooFewLinesOrLinesOfNoBodyGiveNothing) {
+  See(Box({0.46, 0.20, 0.04}), 1);
+  EXPECT_FALSE(Measure());
+  See(Box({0.46, 0.20, 0.04}), 2);
+  EXPECT_TRUE(Measure());
+  See(Box({0.46, 0.20, 0.04}), 20, 300.0);
+  EXPECT_FALSE(Measure());
+}
+
+}  // namespace
+}  // namespace hullslam
