@@ -108,6 +108,21 @@ TEST_F(MonocularStart, ALongWaitDoesNoHarm) {
   EXPECT_GE(failures_[InitialisationFailure::kTooLittleParallax], 89);
 }
 
+// The first image shows something else, and the image before has too little parallax. So one in
+// between must have been kept.
+TEST_F(MonocularStart, ImagesBetweenTheFirstAndTheLastAreKept) {
+  const SyntheticWorld other({.points = 400, .depth_share = 0.0, .seed = 10});
+  MonocularInitialiser initialiser(sensor_, 1);
+  EXPECT_FALSE(initialiser.Process(other.Observe(0).frame).map);
+  std::optional<InitialMap> map;
+  for (uint32_t i = 3; i < 60 && !map; ++i) {
+    map = Give(initialiser, i, SyntheticWorld::CamFromWorld(0.5 * i)).map;
+  }
+  ASSERT_TRUE(map);
+  EXPECT_GT(map->views.front().frame->id, FrameId(0));
+  ExpectRight(*map);
+}
+
 TEST_F(MonocularStart, ARotationGivesNoMap) {
   for (uint64_t seed = 0; seed < 10; ++seed) {
     MonocularInitialiser initialiser(sensor_, seed);
