@@ -381,7 +381,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   RunSummary summary = Summarize(arguments, options, sequence, result, system);
   summary.provenance.masks_format = masks.format();
   const Trajectory trajectory = system.trajectory();
-  if (groundtruth) {
+  if (groundtruth && !trajectory.empty()) {
     Evaluate(*groundtruth, trajectory, options.sensor, summary.trajectory);
   }
   const std::shared_ptr<const Map> map =

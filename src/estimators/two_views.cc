@@ -154,12 +154,36 @@ Hypothesis Explain(const PinholeCamera& camera, std::span<const PixelPair> pairs
   return hypothesis;
 }
 
-// How many of the pairs a rotation alone explains. It is fitted to the pairs that agree with the
-// motion, again and again without those that it does not explain.
-size_t CountTurned(const PinholeCamera& camera, std::span<const PixelPair> pairs,
-                   const Hypothesis& motion) {
+// What a rotation that turns rays of a into rays of b is computed from (Kabsch 1976).
+Eigen::Matrix3d RayCovariance(const PinholeCamera& camera, const PixelPair& pair) {
+  return camera.Unproject(pair.b, 1.0).normalized() *
+         camera.Unproject(pair.a, 1.0).normalized().transpose();
+}
+
+// The rotation with the least squares for a sum of covariances.
+Eigen::Quaterniond FitRotation(const Eigen::Matrix3d& covariance) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d flip = Eigen::Matrix3d::Identity();
+  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  return Eigen::Quaterniond(svd.matrixU() * flip * svd.matrixV().transpose());
+}
+
+// The rotation that comes nearest to the points of a motion.
+Eigen::Quaterniond NearestTurn(const PinholeCamera& camera, std::span<const PixelPair> pairs,
+                               const Hypothesis& motion) {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const TwoViews::Point& point : motion.points) {
+    covariance += RayCovariance(camera, pairs[point.pair]);
+  }
+  return FitRotation(covariance);
+}
+
+// How many of the pairs a rotation alone explains. It is fitted again and again to those that it
+// explains.
+size_t CountTurnedFrom(const PinholeCamera& camera, std::span<const PixelPair> pairs,
+                       Eigen::Quaterniond rotation) {
   constexpr int kRounds = 10;
-  Eigen::Quaterniond rotation = motion.b_from_a.rotation;
   size_t explained = 0;
   for (int round = 0; round < kRounds; ++round) {
     const double slack = round < kRounds / 2 ? 16.0 : 1.0;  // at first far off, because of parallax
@@ -172,19 +196,26 @@ size_t CountTurned(const PinholeCamera& camera, std::span<const PixelPair> pairs
           SquaredError(camera, turned, pair.b, std::hypot(pair.sigma_a, pair.sigma_b)) <
               slack * kChi2) {
         ++explained;
-        covariance += camera.Unproject(pair.b, 1.0).normalized() * ray_a.normalized().transpose();
+        covariance += RayCovariance(camera, pair);
       }
     }
     if (explained < 3) {
       return explained;
     }
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
-                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Matrix3d flip = Eigen::Matrix3d::Identity();
-    flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-    rotation = Eigen::Quaterniond(svd.matrixU() * flip * svd.matrixV().transpose());
+    rotation = FitRotation(covariance);
   }
   return explained;
+}
+
+// The same for the better one of two starts. A motion's own rotation may be far from any that
+// explains the pairs, because a step to the side can stand for a large part of a turn.
+size_t CountTurned(const PinholeCamera& camera, std::span<const PixelPair> pairs,
+                   const Hypothesis& motion) {
+  const size_t from_motion = CountTurnedFrom(camera, pairs, motion.b_from_a.rotation);
+  if (motion.points.size() < 3) {
+    return from_motion;
+  }
+  return std::max(from_motion, CountTurnedFrom(camera, pairs, NearestTurn(camera, pairs, motion)));
 }
 
 bool AreDifferent(const Rigid3& one, const Rigid3& other) {

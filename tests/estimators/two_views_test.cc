@@ -147,6 +147,23 @@ TEST(TwoViews, BeforeAWallTheyAreRightOrThereIsNone) {
   EXPECT_EQ(wrong, 0) << "of " << found_count << " found";
 }
 
+// The homography of a plane with normal n and a motion along t stands for another plane and motion
+// too, in which n and t have changed their roles (Longuet-Higgins 1986). If the camera approaches
+// the plane, both explain every pair with points in front of both cameras.
+TEST(TwoViews, APlaneThatIsApproachedIsAmbiguous) {
+  const std::vector<Rigid3> motions = {Motion({0, 0, 0}, {-0.3, 0.0, -0.4}),
+                                       Motion({0.02, 0.05, 0.01}, {0.2, 0.1, -0.4})};
+  for (const Rigid3& motion : motions) {
+    for (uint64_t seed = 0; seed < 5; ++seed) {
+      const std::vector<PixelPair> pairs =
+          See(motion, seed, {.noise = 0.3, .outliers = 0.1}, Plane({0.0, 0.0, 1.0}));
+      EXPECT_EQ(EstimateTwoViews(Camera(), pairs, {.seed = seed}).failure,
+                TwoViewFailure::kAmbiguous)
+          << seed;
+    }
+  }
+}
+
 TEST(TwoViews, ARotationHasNoParallax) {
   for (uint64_t seed = 0; seed < 50; ++seed) {
     const double turn = 0.02 + 0.004 * static_cast<double>(seed);
@@ -157,11 +174,38 @@ TEST(TwoViews, ARotationHasNoParallax) {
   }
 }
 
+// In a band across the middle of the image, a turn moves the pixels almost as a step to the side
+// does, so a step and points with a lot of parallax explain the pairs too.
+TEST(TwoViews, ATurnIsNoStepToTheSide) {
+  for (uint64_t seed = 0; seed < 60; ++seed) {
+    const double turn = 0.05 + 0.01 * static_cast<double>(seed % 20);
+    const Rigid3 motion = Motion({0.0, turn, 0.0}, {0, 0, 0});
+    std::vector<PixelPair> pairs = See(motion, seed, {.pairs = 6000}, GeneralDepth);
+    std::erase_if(pairs, [](const PixelPair& pair) { return std::abs(pair.a.y() - 240.0) > 10.0; });
+    const TwoViews found = EstimateTwoViews(Camera(), pairs, {.seed = seed});
+    EXPECT_EQ(found.failure, TwoViewFailure::kTooLittleParallax) << seed;
+  }
+}
+
 TEST(TwoViews, ACameraThatStandsStillHasNoParallax) {
   for (uint64_t seed = 0; seed < 20; ++seed) {
     const TwoViews found =
         EstimateTwoViews(Camera(), See(Rigid3(), seed, {}, GeneralDepth), {.seed = seed});
     EXPECT_EQ(found.failure, TwoViewFailure::kTooLittleParallax);
+  }
+}
+
+// No rotation explains this small step, but the depths that follow from it would be inaccurate.
+TEST(TwoViews, ASmallStepHasTooLittleParallax) {
+  const Rigid3 motion = Motion({0.0, 0.02, 0.0}, {-0.04, 0.0, 0.0});
+  for (uint64_t seed = 0; seed < 10; ++seed) {
+    const std::vector<PixelPair> pairs =
+        See(motion, seed, {.noise = 0.3, .outliers = 0.1}, GeneralDepth);
+    const TwoViews refused = EstimateTwoViews(Camera(), pairs, {.seed = seed});
+    EXPECT_EQ(refused.failure, TwoViewFailure::kTooLittleParallax) << seed;
+    const TwoViews found = EstimateTwoViews(Camera(), pairs, {.seed = seed, .min_parallax = 0.6});
+    EXPECT_NE(found.failure, TwoViewFailure::kTooLittleParallax) << seed;
+    EXPECT_NEAR(found.parallax, 0.9, 0.2) << seed;
   }
 }
 

@@ -108,6 +108,21 @@ TEST_F(MonocularStart, ALongWaitDoesNoHarm) {
   EXPECT_GE(failures_[InitialisationFailure::kTooLittleParallax], 89);
 }
 
+// The first image shows something else, and the image before has too little parallax. So one in
+// between must have been kept.
+TEST_F(MonocularStart, ImagesBetweenTheFirstAndTheLastAreKept) {
+  const SyntheticWorld other({.points = 400, .depth_share = 0.0, .seed = 10});
+  MonocularInitialiser initialiser(sensor_, 1);
+  EXPECT_FALSE(initialiser.Process(other.Observe(0).frame).map);
+  std::optional<InitialMap> map;
+  for (uint32_t i = 3; i < 60 && !map; ++i) {
+    map = Give(initialiser, i, SyntheticWorld::CamFromWorld(0.5 * i)).map;
+  }
+  ASSERT_TRUE(map);
+  EXPECT_GT(map->views.front().frame->id, FrameId(0));
+  ExpectRight(*map);
+}
+
 TEST_F(MonocularStart, ARotationGivesNoMap) {
   for (uint64_t seed = 0; seed < 10; ++seed) {
     MonocularInitialiser initialiser(sensor_, seed);
@@ -119,6 +134,30 @@ TEST_F(MonocularStart, ARotationGivesNoMap) {
     }
   }
   EXPECT_GT(failures_[InitialisationFailure::kTooLittleParallax], 300);
+}
+
+// Two images would be enough for a map. The one between them has the same features in other places.
+TEST_F(MonocularStart, AFrameInBetweenThatDoesNotFitPreventsTheMap) {
+  const auto give_three = [&](bool is_strange) {
+    MonocularInitialiser initialiser(sensor_, 1);
+    EXPECT_FALSE(Give(initialiser, 0, SyntheticWorld::CamFromWorld(0)).map);
+    auto between = std::make_shared<Frame>(
+        *world_.Observe(FrameId(10), SyntheticWorld::CamFromWorld(1)).frame);
+    if (is_strange) {
+      std::vector<Keypoint>& keypoints = between->features.keypoints;
+      for (size_t i = 0; i < keypoints.size() / 2; ++i) {
+        std::swap(keypoints[i].undistorted, keypoints[keypoints.size() - 1 - i].undistorted);
+      }
+    }
+    EXPECT_FALSE(initialiser.Process(between).map);
+    return Give(initialiser, 20, SyntheticWorld::CamFromWorld(20));
+  };
+  const MonocularInitialiser::Result good = give_three(false);
+  ASSERT_TRUE(good.map);
+  EXPECT_EQ(good.map->views.size(), 3U);
+  const MonocularInitialiser::Result bad = give_three(true);
+  EXPECT_FALSE(bad.map);
+  EXPECT_EQ(bad.failure, InitialisationFailure::kNotConfirmed);
 }
 
 TEST_F(MonocularStart, TellsThatTheImageHasTooFewFeatures) {
