@@ -56,7 +56,7 @@ void CheckFrames(const MapTables& tables) {
 }
 
 // The pose of a culled keyframe is that of another one, which may be culled too, and so on. The
-// last one must be alive.
+// last one must be alive, or have been removed with its island.
 void CheckCulled(const MapTables& tables) {
   enum class Mark : uint8_t { kNew, kOnPath, kGood };
   std::vector<Mark> marks(CountKeyframes(tables), Mark::kNew);
@@ -71,7 +71,7 @@ void CheckCulled(const MapTables& tables) {
       path.push_back(id);
       id = culled->pose.reference;
     }
-    Require(tables.keyframes.Contains(id) || tables.culled.Contains(id), id,
+    Require(!id.IsValid() || tables.keyframes.Contains(id) || tables.culled.Contains(id), id,
             "does not exist but a culled keyframe refers to it");
     for (const KeyframeId passed : path) {
       marks[passed.value] = Mark::kGood;

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "map/correction.h"
+#include "map/islands.h"
 #include "mapping/culling.h"
 #include "mapping/keyframe_insertion.h"
 #include "mapping/landmark_creation.h"
@@ -155,6 +156,9 @@ void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on
   if (session_) {
     return;  // the run has added no keyframe
   }
+  if (KeepOnlyIsland(map_, MainIsland(map_))) {
+    PublishSnapshot();
+  }
   const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
   if (options_.final_bundle_adjustment && !is_cancelled && map_.keyframes().size() >= 2) {
     AdjustMap(cancellation, on_progress);
@@ -166,7 +170,7 @@ void Mapper::AdjustMap(const Cancellation* cancellation, const ProgressCallback&
   BundleWindow window;
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
-    window = GlobalWindow(map_, ObjectsToAdjust());
+    window = GlobalWindow(map_, MainIsland(map_), ObjectsToAdjust());
     Adjust(window, BundleOptions{.objects = object_options_.bundle}.ForWholeMap(), cancellation,
            on_progress);
   }
