@@ -108,5 +108,15 @@ TEST_F(ObjectIndexTest, FollowsSnapshots) {
   EXPECT_TRUE(index.FindVisible(sensor_, here, IslandId(0)).empty());
 }
 
+TEST_F(ObjectIndexTest, FindsObjectsOfTheIslandOfTheCameraOnly) {
+  const Rigid3 here = CameraOnCircle(0.0, 1.5, 0.5);
+  const ObjectId first = Add(cup_, here, true);
+  const ObjectId second = Add(cup_, here, true);
+  map_.MoveToIsland(map_.objects().At(second).reference, map_.BeginIsland());
+  EXPECT_EQ(Visible(here), std::vector<ObjectId>{first});
+  EXPECT_EQ(ObjectIndex(map_, sensor_.camera).FindVisible(sensor_, here, IslandId(1)),
+            std::vector<ObjectId>{second});
+}
+
 }  // namespace
 }  // namespace hullslam
