@@ -250,15 +250,10 @@ TEST_P(LoopPipelineTest, IslandsOfALostMonocularCameraAreJoined) {
   path_.BeMonocular();
   const auto pipeline = Make();
   std::vector<TrackedFrame> frames = path_.Track(*pipeline, 0, 22);
-  for (uint32_t i = 22; i < 60; ++i) {
-    auto blank = std::make_shared<Frame>();
-    blank->id = FrameId(i);
-    blank->timestamp = i / path_.sensor().frames_per_second;
-    frames.push_back(pipeline->Track(blank).tracked);
-    EXPECT_EQ(frames.back().state, TrackingState::kLost);
+  for (const auto& more :
+       {path_.TrackBlank(*pipeline, 22, 60), path_.Track(*pipeline, 60, RingPath::kFrames)}) {
+    frames.insert(frames.end(), more.begin(), more.end());
   }
-  const std::vector<TrackedFrame> later = path_.Track(*pipeline, 60, RingPath::kFrames);
-  frames.insert(frames.end(), later.begin(), later.end());
   pipeline->Finish();
   const std::shared_ptr<const Map> map = pipeline->map();
   EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
@@ -278,14 +273,9 @@ TEST_P(LoopPipelineTest, OfIslandsThatAreNotJoinedTheLargestStays) {
   path_.BeMonocular();
   const auto pipeline = Make();
   std::vector<TrackedFrame> frames = path_.Track(*pipeline, 0, 22);
-  for (uint32_t i = 22; i < 40; ++i) {
-    auto blank = std::make_shared<Frame>();
-    blank->id = FrameId(i);
-    blank->timestamp = i / path_.sensor().frames_per_second;
-    frames.push_back(pipeline->Track(blank).tracked);
+  for (const auto& more : {path_.TrackBlank(*pipeline, 22, 60), path_.Track(*pipeline, 60, 110)}) {
+    frames.insert(frames.end(), more.begin(), more.end());
   }
-  const std::vector<TrackedFrame> later = path_.Track(*pipeline, 60, 110);
-  frames.insert(frames.end(), later.begin(), later.end());
   pipeline->Finish();
   const std::shared_ptr<const Map> map = pipeline->map();
   EXPECT_EQ(FindViolations(*map), std::vector<std::string>());

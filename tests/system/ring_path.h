@@ -57,6 +57,19 @@ class RingPath {
     return tracked;
   }
 
+  // Tracks frames without keypoints, which are all lost.
+  std::vector<TrackedFrame> TrackBlank(Pipeline& pipeline, uint32_t first, uint32_t end) const {
+    std::vector<TrackedFrame> tracked;
+    for (uint32_t i = first; i < end; ++i) {
+      auto blank = std::make_shared<Frame>();
+      blank->id = FrameId(i);
+      blank->timestamp = i / sensor_.frames_per_second;
+      tracked.push_back(pipeline.Track(std::move(blank)).tracked);
+      EXPECT_EQ(tracked.back().state, TrackingState::kLost);
+    }
+    return tracked;
+  }
+
   // Tracks frames until a loop is in the map, or to the end of the path. Returns their number.
   uint32_t TrackToLoop(Pipeline& pipeline) const {
     uint32_t end = 0;
