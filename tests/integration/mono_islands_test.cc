@@ -105,7 +105,6 @@ class MonoIslands : public MonoProgram {
 TEST_F(MonoIslands, AMapThatIsLostIsJoinedWhenItsPlaceIsSeenAgain) {
   const InterruptedDesk desk;
   ExpectOneMap({desk.path()}, desk.size());
-  ExpectOneMap({desk.path(), "--threaded"}, desk.size());
 }
 
 }  // namespace
