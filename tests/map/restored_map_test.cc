@@ -192,6 +192,13 @@ TEST(RestoreMap, KeyframesThatWereRemovedWithTheirIslandHaveNoPose) {
   EXPECT_EQ(Islands(restored).size(), 1u);
   EXPECT_FALSE(restored.NearestAlive(KeyframeId(0)).IsValid());
   EXPECT_EQ(restored.NearestAlive(KeyframeId(3)), KeyframeId(3));
+
+  Share(map, {KeyframeId(2), KeyframeId(3)});
+  MapTables tables = TablesOf(map);
+  const LandmarkId landmark = (*tables.landmarks.begin()).first;
+  tables.landmarks.Mutable(landmark).reference = KeyframeId(1);
+  ExpectInputError([&] { RestoreMap(std::move(tables)); },
+                   {"landmark", "a keyframe without a pose"});
 }
 
 }  // namespace
