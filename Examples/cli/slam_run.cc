@@ -62,15 +62,22 @@ const char* Name(TrackingState state) {
   }
 }
 
+// Of a monocular camera that was lost; empty if the map is in one piece.
+std::string DescribeIslands(const Map& map) {
+  return map.islands_begun() > 1
+             ? fmt::format("  {} islands, {} joined", map.islands_begun(), map.islands_joined())
+             : "";
+}
+
 std::string DescribeState(TrackingState state, std::optional<InitialisationFailure> failure,
                           const System& system) {
   const auto map = system.map();
   if (failure) {
     return fmt::format("{}: {}", Name(state), ToString(*failure));
   }
-  return fmt::format("{}  {} keyframes  {} landmarks", Name(state),
-                     map != nullptr ? map->keyframes().size() : 0,
-                     map != nullptr ? map->landmarks().size() : 0);
+  return fmt::format(
+      "{}  {} keyframes  {} landmarks{}", Name(state), map != nullptr ? map->keyframes().size() : 0,
+      map != nullptr ? map->landmarks().size() : 0, map != nullptr ? DescribeIslands(*map) : "");
 }
 
 // The bundle adjustment of the whole map is slow if the map is large. So its progress is shown.
@@ -209,6 +216,10 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
   }
   if (options.sensor == SensorKind::kMonocular && arguments.load_map.empty()) {
     summary.initialisation = result.initialisation;
+    if (const auto map = system.map()) {
+      summary.initialisation->islands = map->islands_begun();
+      summary.initialisation->joined_islands = map->islands_joined();
+    }
   }
   summary.provenance.version = HULLSLAM_VERSION;
   summary.provenance.git = HULLSLAM_GIT;
@@ -260,6 +271,11 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
     Print("; {} images without depth\n", trajectory.unpaired);
   } else if (summary.initialisation->seconds) {
     Print("; first map after {:.2f} s\n", *summary.initialisation->seconds);
+    if (summary.initialisation->islands > 1) {
+      Print("the map was begun {} times; {} of its islands were joined, {} removed\n",
+            summary.initialisation->islands, summary.initialisation->joined_islands,
+            summary.initialisation->islands - summary.initialisation->joined_islands - 1);
+    }
   } else {
     Print("; no map\n");
   }

@@ -56,7 +56,10 @@ Json ToJson(const ObjectsSummary& summary) {
 }
 
 Json ToJson(const InitialisationSummary& summary) {
-  return {{"seconds", OrNull(summary.seconds)}, {"failures", Json(summary.failures)}};
+  return {{"seconds", OrNull(summary.seconds)},
+          {"failures", Json(summary.failures)},
+          {"islands", summary.islands},
+          {"joined_islands", summary.joined_islands}};
 }
 
 Json ToJson(const TimeStatistics& times) {

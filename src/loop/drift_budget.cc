@@ -4,13 +4,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "map/islands.h"
+
 namespace hullslam {
 
 Travel TravelBetween(const Map& map, KeyframeId first, KeyframeId last) {
   Travel travel;
   const auto [from, to] = std::minmax(first.value, last.value);
+  const IslandId island = IslandOf(map, KeyframeId(from));
   Rigid3 before = Inverse(map.CamFromWorld(KeyframeId(from)));
   for (uint32_t i = from + 1; i <= to; ++i) {
+    if (IslandOf(map, KeyframeId(i)) != island) {
+      continue;
+    }
     const Rigid3 pose = Inverse(map.CamFromWorld(KeyframeId(i)));
     travel.metres += (pose.translation - before.translation).norm();
     travel.radians += pose.rotation.angularDistance(before.rotation);

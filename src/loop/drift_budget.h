@@ -12,7 +12,8 @@ struct Travel {
   double radians = 0.0;
 };
 
-// The travel along all keyframes, also culled ones, made between two keyframes.
+// The travel along all keyframes, also culled ones, made between two keyframes of one island.
+// Keyframes of other islands are passed over.
 Travel TravelBetween(const Map& map, KeyframeId first, KeyframeId last);
 
 // Whether drift on this way can explain that a camera, which was at one pose by tracking, is at

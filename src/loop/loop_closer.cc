@@ -4,12 +4,18 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "loop/drift_budget.h"
 #include "loop/loop_correction.h"
 #include "loop/loop_verification.h"
 #include "map/correction.h"
+#include "map/covisibility.h"
+#include "map/islands.h"
+#include "places/landmark_search.h"
+#include "places/similar_places.h"
 
 namespace hullslam {
 namespace {
@@ -21,6 +27,11 @@ Rigid3 PoseByLoop(const Map& map, const Loop& loop) {
   const Sim3 pose =
       loop.query_from_candidate * Sim3(map.keyframes().At(loop.candidate).cam_from_world);
   return {pose.rotation, pose.translation / pose.scale};
+}
+
+// Whether the keyframes belong to different islands.
+bool AreApart(const Map& map, KeyframeId a, KeyframeId b) {
+  return IslandOf(map, a) != IslandOf(map, b);
 }
 
 double CameraDistance(const Rigid3& a, const Rigid3& b) {
@@ -36,10 +47,15 @@ LoopCloser::LoopCloser(const Sensor& sensor, const LoopOptions& options,
 std::optional<MapCorrection> LoopCloser::Process(LoopQuery query) {
   const uint32_t keyframe = query.keyframe.value;
   const bool is_soon = last_loop_.IsValid() && keyframe < last_loop_.value + kKeyframesAfterLoop;
-  if (!options_.enabled || query.map.vocabulary() == nullptr || is_soon) {
+  // Islands are joined as soon as possible.
+  const bool may_join = Islands(query.map).size() > 1;
+  if (!options_.enabled || query.map.vocabulary() == nullptr || (is_soon && !may_join)) {
     return std::nullopt;
   }
   for (const LoopCandidate& candidate : FindLoopCandidates(query.map, query.keyframe)) {
+    if (is_soon && !AreApart(query.map, query.keyframe, candidate.keyframe)) {
+      continue;
+    }
     std::string refusal;
     if (std::optional<MapCorrection> correction = Close(query, candidate, refusal)) {
       spdlog::debug("loop: keyframe {} is at the place of {}", keyframe, candidate.keyframe.value);
@@ -62,15 +78,15 @@ std::optional<MapCorrection> LoopCloser::Close(LoopQuery& query, const LoopCandi
     return std::nullopt;
   }
   const Loop& loop = *verdict.loop;
-  const Travel travel = TravelBetween(map, candidate.keyframe, query.keyframe);
-  const Rigid3& tracked = map.keyframes().At(query.keyframe).cam_from_world;
-  const Rigid3 by_loop = PoseByLoop(map, loop);
-  if (!CanBeDrift(travel, tracked, by_loop, options_)) {
-    refusal = fmt::format("it would move the camera by {:.2f} m after {:.1f} m",
-                          CameraDistance(by_loop, tracked), travel.metres);
-    return std::nullopt;
+  const bool is_join = AreApart(map, query.keyframe, candidate.keyframe);
+  if (!is_join) {
+    refusal = FindTooMuchDrift(map, loop);
+    if (!refusal.empty()) {
+      return std::nullopt;
+    }
   }
-  MapCorrection correction = SpreadLoopError(map, loop, !sensor_.IsMonocular());
+  MapCorrection correction =
+      is_join ? MoveIsland(map, loop) : SpreadLoopError(map, loop, !sensor_.IsMonocular());
   if (correction.poses.empty()) {
     refusal = "the pose graph could not be solved";
     return std::nullopt;
@@ -89,10 +105,40 @@ std::optional<MapCorrection> LoopCloser::Close(LoopQuery& query, const LoopCandi
                           loop.landmarks.size(), needed);
     return std::nullopt;
   }
+  if (is_join && !IsConfirmedByNeighbour(corrected, loop)) {
+    refusal = "no neighbour shows the landmarks there";
+    return std::nullopt;
+  }
   spdlog::debug("loop: {} landmarks, {} neighbours and {} objects agree, {} objects do not",
                 loop.landmarks.size(), candidate.supporters, votes.agree, votes.disagree);
   AddMerges(corrected, sensor_, loop, object_options_.fusion, correction);
   return correction;
+}
+
+// What speaks against the loop by the drift budget; empty if nothing does.
+std::string LoopCloser::FindTooMuchDrift(const Map& map, const Loop& loop) const {
+  const Travel travel = TravelBetween(map, loop.candidate, loop.query);
+  const Rigid3& tracked = map.keyframes().At(loop.query).cam_from_world;
+  const Rigid3 by_loop = PoseByLoop(map, loop);
+  return CanBeDrift(travel, tracked, by_loop, options_)
+             ? std::string()
+             : fmt::format("it would move the camera by {:.2f} m after {:.1f} m",
+                           CameraDistance(by_loop, tracked), travel.metres);
+}
+
+// Whether a second keyframe at the query, which the similarity was not computed from, shows enough
+// of the landmarks around the candidate. There is no drift budget between islands, so this takes
+// its place.
+bool LoopCloser::IsConfirmedByNeighbour(const Map& corrected, const Loop& loop) const {
+  const std::vector<LandmarkId> landmarks =
+      ObservedLandmarks(corrected, PlaceOf(corrected, loop.candidate));
+  const std::vector<KeyframeId> place = PlaceOf(corrected, loop.query);
+  return std::any_of(place.begin(), place.end(), [&](KeyframeId id) {
+    const Keyframe& neighbour = corrected.keyframes().At(id);
+    return id != loop.query &&
+           FindLandmarks(corrected, sensor_, *neighbour.frame, neighbour.cam_from_world, landmarks)
+                   .size() >= static_cast<size_t>(options_.min_landmarks);
+  });
 }
 
 // Half as many landmarks are enough if the objects at both ends agree, and twice as many are needed

@@ -11,6 +11,7 @@
 #include "hullslam/map/messages.h"
 #include "hullslam/objects/object_options.h"
 #include "loop/loop_candidates.h"
+#include "loop/loop_verification.h"
 #include "loop/object_votes.h"
 
 namespace hullslam {
@@ -21,8 +22,8 @@ struct LoopQuery {
   KeyframeId keyframe;
 };
 
-// Finds loops in snapshots of the map and says how they correct it. It does not change the map but
-// sends corrections to the mapper.
+// Finds loops in snapshots of the map and says how they correct it. A loop whose ends belong to
+// different islands joins them. It does not change the map but sends corrections to the mapper.
 class LoopCloser {
  public:
   // `sensor` must outlive the loop closer. `seed` is that of the run.
@@ -37,6 +38,8 @@ class LoopCloser {
   std::optional<MapCorrection> Close(LoopQuery& query, const LoopCandidate& candidate,
                                      std::string& refusal) const;
 
+  std::string FindTooMuchDrift(const Map& map, const Loop& loop) const;
+  bool IsConfirmedByNeighbour(const Map& corrected, const Loop& loop) const;
   size_t LandmarksNeeded(const LoopCandidate& candidate, const ObjectVotes& votes) const;
 
   const Sensor& sensor_;

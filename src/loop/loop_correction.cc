@@ -5,6 +5,7 @@
 #include <map>
 
 #include "map/covisibility.h"
+#include "map/islands.h"
 #include "objects/fusion.h"
 #include "optim/pose_graph.h"
 
@@ -23,17 +24,16 @@ KeyframeId RootOf(const Map& map, KeyframeId keyframe) {
   return keyframe;
 }
 
-// The graph of all keyframes with edges as the map measures them.
+// The graph of all keyframes of an island with edges as the map measures them.
 class EssentialGraph {
  public:
-  explicit EssentialGraph(const Map& map) : map_(map) {
-    for (const auto& [id, keyframe] : map.keyframes()) {
-      index_.emplace(id, ids_.size());
-      ids_.push_back(id);
-      graph_.nodes.push_back({.cam_from_world = Sim3(keyframe.cam_from_world)});
+  EssentialGraph(const Map& map, IslandId island) : map_(map), ids_(KeyframesOf(map, island)) {
+    for (size_t i = 0; i < ids_.size(); ++i) {
+      index_.emplace(ids_[i], i);
+      graph_.nodes.push_back({.cam_from_world = Sim3(map.keyframes().At(ids_[i]).cam_from_world)});
     }
-    for (const auto& [id, keyframe] : map.keyframes()) {
-      AddEdgesOf(id, keyframe);
+    for (const KeyframeId id : ids_) {
+      AddEdgesOf(id, map.keyframes().At(id));
     }
   }
 
@@ -79,8 +79,8 @@ class EssentialGraph {
   }
 
   const Map& map_;
+  const std::vector<KeyframeId> ids_;
   std::map<KeyframeId, size_t> index_;
-  std::vector<KeyframeId> ids_;
   PoseGraph graph_;
 };
 
@@ -123,7 +123,7 @@ MapCorrection SpreadLoopError(const Map& map, const Loop& loop, bool fix_scale) 
   const Rigid3 world_from_query = Inverse(map.keyframes().At(loop.query).cam_from_world);
   const Sim3 corrected_query =
       loop.query_from_candidate * Sim3(map.keyframes().At(loop.candidate).cam_from_world);
-  EssentialGraph graph(map);
+  EssentialGraph graph(map, IslandOf(map, loop.candidate));
   graph.Fix(RootOf(map, loop.candidate));
   for (const KeyframeId id : KeyframesAround(map, loop.query)) {
     graph.Start(id,
@@ -140,6 +140,26 @@ MapCorrection SpreadLoopError(const Map& map, const Loop& loop, bool fix_scale) 
       correction.poses.push_back({graph.ids()[i], map.keyframes().At(graph.ids()[i]).cam_from_world,
                                   result.cam_from_world[i]});
     }
+  }
+  return correction;
+}
+
+MapCorrection MoveIsland(const Map& map, const Loop& loop) {
+  const Rigid3& query = map.keyframes().At(loop.query).cam_from_world;
+  const Rigid3& candidate = map.keyframes().At(loop.candidate).cam_from_world;
+  const IslandId of_query = IslandOf(map, loop.query);
+  const IslandId of_candidate = IslandOf(map, loop.candidate);
+  // From the world of the older island to that of the younger one.
+  const Sim3 candidate_from_query =
+      Inverse(Sim3(candidate)) * Inverse(loop.query_from_candidate) * Sim3(query);
+  const Sim3 younger_from_older =
+      of_candidate > of_query ? candidate_from_query : Inverse(candidate_from_query);
+  MapCorrection correction;
+  correction.snapshot_corrections = map.correction_count();
+  correction.loop = MapCorrection::LoopEdge{loop.candidate, loop.query};
+  for (const KeyframeId id : KeyframesOf(map, std::max(of_query, of_candidate))) {
+    const Rigid3& pose = map.keyframes().At(id).cam_from_world;
+    correction.poses.push_back({id, pose, Sim3(pose) * younger_from_older});
   }
   return correction;
 }

@@ -15,12 +15,16 @@ namespace hullslam {
 // The keyframe and all that are covisible with it, by increasing id.
 std::vector<KeyframeId> KeyframesAround(const Map& map, KeyframeId keyframe);
 
-// The poses of all keyframes after a pose graph has spread the error of the loop over them, and the
-// loop's edge. The graph has the edges of the spanning tree, of strong covisibility, of earlier
-// loops and of this one (the essential graph, Mur-Artal and Tardos 2014). The root of the
-// candidate's spanning tree stays where it is. The correction has no poses if the graph could not
-// be solved.
+// The poses of all keyframes of the loop's island after a pose graph has spread the error of the
+// loop over them, and the loop's edge. The graph has the edges of the spanning tree, of strong
+// covisibility, of earlier loops and of this one (the essential graph, Mur-Artal and Tardos 2014).
+// The root of the candidate's spanning tree stays where it is. The correction has no poses if the
+// graph could not be solved.
 MapCorrection SpreadLoopError(const Map& map, const Loop& loop, bool fix_scale);
+
+// The correction that makes one island of those of the loop's ends: the younger island moves as a
+// whole, by the similarity of the loop. Nothing in it changes its shape, and the older one stays.
+MapCorrection MoveIsland(const Map& map, const Loop& loop);
 
 // Adds to `correction` what is one thing although it was mapped at both ends of the loop. Landmarks
 // around the candidate are searched in the keyframes around the query; objects around the query are

@@ -1,30 +1,51 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "loop/whole_map_adjustment.h"
 
+#include <algorithm>
+
+#include "map/islands.h"
 #include "optim/bundle_adjustment.h"
 
 namespace hullslam {
+namespace {
 
-std::optional<MapCorrection> AdjustWholeMap(const Map& map, const Sensor& sensor,
-                                            const ObjectOptions& objects,
-                                            const Cancellation* cancellation) {
-  const WindowObjects in_window =
-      objects.enabled && objects.bundle_adjustment ? WindowObjects::kMapped : WindowObjects::kNone;
-  const BundleResult result =
-      AdjustBundle(map, sensor, GlobalWindow(map, in_window),
-                   BundleOptions{.objects = objects.bundle}.ForWholeMap(), cancellation);
-  const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
-  if (!result.is_usable || is_cancelled) {
-    return std::nullopt;
-  }
-  MapCorrection correction;
-  correction.snapshot_corrections = map.correction_count();
+bool IsRequested(const Cancellation* cancellation) {
+  return cancellation != nullptr && cancellation->IsRequested();
+}
+
+void Append(const Map& map, const BundleResult& result, MapCorrection& correction) {
   for (const auto& [id, pose] : result.poses) {
     correction.poses.push_back({id, map.keyframes().At(id).cam_from_world, Sim3(pose)});
   }
   for (const auto& [id, position] : result.positions) {
     correction.positions.push_back({id, position});
   }
+}
+
+}  // namespace
+
+std::optional<MapCorrection> AdjustWholeMap(const Map& map, const Sensor& sensor,
+                                            const ObjectOptions& objects,
+                                            const Cancellation* cancellation) {
+  const WindowObjects in_window =
+      objects.enabled && objects.bundle_adjustment ? WindowObjects::kMapped : WindowObjects::kNone;
+  MapCorrection correction;
+  correction.snapshot_corrections = map.correction_count();
+  bool is_adjusted = false;
+  for (const IslandId island : Islands(map)) {
+    const BundleResult result =
+        AdjustBundle(map, sensor, GlobalWindow(map, island, in_window),
+                     BundleOptions{.objects = objects.bundle}.ForWholeMap(), cancellation);
+    if (result.is_usable) {
+      Append(map, result, correction);
+      is_adjusted = true;
+    }
+  }
+  if (!is_adjusted || IsRequested(cancellation)) {
+    return std::nullopt;
+  }
+  std::sort(correction.poses.begin(), correction.poses.end(),
+            [](const auto& a, const auto& b) { return a.keyframe < b.keyframe; });
   return correction;
 }
 

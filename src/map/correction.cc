@@ -10,6 +10,7 @@
 
 #include "hullslam/util/check.h"
 #include "map/covisibility.h"
+#include "map/islands.h"
 #include "map/landmark_edits.h"
 #include "util/id_set.h"
 
@@ -257,12 +258,16 @@ std::vector<ObjectId> MergeObjects(Map& map, const MapCorrection& correction) {
   return merged;
 }
 
-void AddLoop(Map& map, const MapCorrection::LoopEdge& loop) {
-  const KeyframeId a = map.NearestAlive(loop.a);
-  const KeyframeId b = map.NearestAlive(loop.b);
-  if (a != b && map.keyframes().Contains(a) && map.keyframes().Contains(b)) {
-    map.AddLoop(a, b);
+// The ends of the loop edge, as far as they are still keyframes of the map.
+std::optional<MapCorrection::LoopEdge> FindLoop(const Map& map, const MapCorrection& correction) {
+  if (!correction.loop) {
+    return std::nullopt;
   }
+  const MapCorrection::LoopEdge edge{map.NearestAlive(correction.loop->a),
+                                     map.NearestAlive(correction.loop->b)};
+  const bool is_edge =
+      edge.a != edge.b && map.keyframes().Contains(edge.a) && map.keyframes().Contains(edge.b);
+  return is_edge ? std::optional(edge) : std::nullopt;
 }
 
 }  // namespace
@@ -276,12 +281,16 @@ CorrectionOutcome ApplyCorrection(Map& map, const MapCorrection& correction,
   MoveObjects(map, changes);
   MoveKeyframes(map, correction, changes);
   MoveLandmarks(map, correction, changes, levels);
+  const std::optional<MapCorrection::LoopEdge> loop = FindLoop(map, correction);
+  if (loop) {
+    JoinIslands(map, loop->a, loop->b);  // before they get landmarks in common
+  }
   MergeLandmarks(map, correction, levels);
   CorrectionOutcome outcome;
   outcome.is_applied = true;
   outcome.merged_objects = MergeObjects(map, correction);
-  if (correction.loop) {
-    AddLoop(map, *correction.loop);
+  if (loop) {
+    map.AddLoop(loop->a, loop->b);
   }
   map.CountCorrection();
   return outcome;

@@ -29,7 +29,8 @@ struct CorrectionOutcome {
 // the snapshot's own pose, to the last bit and with scale 1, nothing moves.
 //
 // Then landmarks and objects are merged, covisibility is counted again for the keyframes whose
-// observations were merged, and the loop edge is added. If a landmark, an object or a keyframe that
+// observations were merged, and the loop edge is added. If its ends belong to different islands,
+// these become one (JoinIslands). If a landmark, an object or a keyframe that
 // a merge or the loop edge names was replaced or culled since the snapshot, its replacement or
 // nearest ancestor is used. Merges of erased landmarks or objects and positions of missing
 // landmarks are passed over. Scales must be finite and positive, else CheckError is thrown and the

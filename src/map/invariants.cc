@@ -195,6 +195,32 @@ void CheckAncestors(const Map& map, KeyframeId id, std::vector<std::string>& vio
   }
 }
 
+// Nothing leads from one island to another one.
+void CheckIsland(const Map& map, KeyframeId id, const Keyframe& keyframe,
+                 std::vector<std::string>& violations) {
+  const auto is_elsewhere = [&](KeyframeId other) {
+    const Keyframe* const found = map.keyframes().Find(other);
+    return found != nullptr && found->island != keyframe.island;
+  };
+  for (const LandmarkId landmark : keyframe.landmarks) {
+    const Landmark* const observed = map.landmarks().Find(landmark);
+    if (observed != nullptr && !observed->observations.empty() &&
+        is_elsewhere(observed->observations.front().keyframe)) {
+      violations.push_back(Name(id) + " observes " + Name(landmark) + " of another island");
+    }
+  }
+  for (const ObjectId object : keyframe.objects) {
+    const ObjectLandmark* const observed = map.objects().Find(object);
+    if (observed != nullptr && is_elsewhere(observed->reference)) {
+      violations.push_back(Name(id) + " observes " + Name(object) + " of another island");
+    }
+  }
+  if (is_elsewhere(keyframe.parent) ||
+      std::any_of(keyframe.loops.begin(), keyframe.loops.end(), is_elsewhere)) {
+    violations.push_back(Name(id) + " has an edge to another island");
+  }
+}
+
 // Each keyframe has the entries of its words, and there are no others.
 void CheckIndex(const Map& map, std::vector<std::string>& violations) {
   size_t expected = 0;
@@ -248,6 +274,7 @@ std::vector<std::string> FindViolations(const Map& map) {
     CheckLinks(map, id, keyframe, violations);
     CheckLoops(map, id, keyframe, violations);
     CheckAncestors(map, id, violations);
+    CheckIsland(map, id, keyframe, violations);
   });
   CheckIndex(map, violations);
   return violations;

@@ -9,10 +9,11 @@
 namespace hullslam {
 
 // What is inconsistent in a map, one sentence per fault: observations, covisibility edges, loop
-// edges or tree links that only one end knows, wrong observation weights or votes, a cycle in the
-// tree, a keyframe whose entries in the index are not those of its words, an object whose reference
-// is not the first keyframe that observes it, a mapped object without observations, a detection of
-// a keypoint that the frame does not have, values that are not finite. Empty for a consistent map.
+// edges or tree links that only one end knows, whatever leads from one island to another, wrong
+// observation weights or votes, a cycle in the tree, a keyframe whose entries in the index are not
+// those of its words, an object whose reference is not the first keyframe that observes it, a
+// mapped object without observations, a detection of a keypoint that the frame does not have,
+// values that are not finite. Empty for a consistent map.
 std::vector<std::string> FindViolations(const Map& map);
 
 }  // namespace hullslam

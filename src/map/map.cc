@@ -52,6 +52,7 @@ Map::Map(MapTables tables, std::shared_ptr<const Vocabulary> vocabulary)
       correction_count_(tables.correction_count) {
   for (const auto& [id, keyframe] : keyframes_) {
     index_.Add(id, VectorOf(*keyframe.frame));
+    CountInIsland(keyframe.island);
   }
 }
 
@@ -67,6 +68,8 @@ Map Map::Snapshot() {
   copy.replaced_objects_ = replaced_objects_;
   copy.culled_ = culled_.Snapshot();
   copy.sessions_ = sessions_;
+  copy.island_sizes_ = island_sizes_;
+  copy.islands_joined_ = islands_joined_;
   copy.correction_count_ = correction_count_;
   copy.revision_ = revision_;
   return copy;
@@ -97,7 +100,9 @@ int Map::ObservationWeight(const Frame& frame, uint32_t keypoint) {
   return frame.features.right_u[keypoint] >= 0.0f ? 2 : 1;
 }
 
-KeyframeId Map::AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& cam_from_world) {
+KeyframeId Map::AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& cam_from_world,
+                            IslandId island) {
+  Check(island.IsValid(), "a keyframe belongs to an island");
   Check(frame != nullptr, "a keyframe needs a frame");
   Check(frame->words.empty() || frame->words.size() == frame->features.size(),
         "the frame does not have one word per keypoint");
@@ -106,6 +111,8 @@ KeyframeId Map::AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& ca
   keyframe.objects.resize(frame->detections.size());
   keyframe.frame = std::move(frame);
   keyframe.cam_from_world = cam_from_world;
+  keyframe.island = island;
+  CountInIsland(island);
   index_.Add(keyframes_.NextId(), VectorOf(*keyframe.frame));
   return keyframes_.Insert(std::move(keyframe));
 }
@@ -278,11 +285,39 @@ void Map::CullKeyframe(KeyframeId id) {
   HandOverLoops(*this, id, keyframe);
   DetachFromTree(*this, id);
   DetachCovisibility(*this, id);
+  Erase(id, RelativeTo(keyframe.parent, keyframe.cam_from_world));
+}
+
+void Map::RemoveKeyframe(KeyframeId id) { Erase(id, RelativePose()); }
+
+void Map::Erase(KeyframeId id, const RelativePose& kept) {
+  const Keyframe keyframe = keyframes_.At(id);
   index_.Remove(id, VectorOf(*keyframe.frame));
+  --island_sizes_.at(keyframe.island.value);
   keyframes_.Erase(id);
-  culled_.Put(id, {.frame = keyframe.frame->id,
-                   .pose = RelativeTo(keyframe.parent, keyframe.cam_from_world),
-                   .scale = keyframe.scale});
+  culled_.Put(id, {.frame = keyframe.frame->id, .pose = kept, .scale = keyframe.scale});
+}
+
+IslandId Map::BeginIsland() {
+  island_sizes_.push_back(0);
+  return IslandId(static_cast<uint32_t>(island_sizes_.size() - 1));
+}
+
+size_t Map::IslandSize(IslandId island) const {
+  return island.value < island_sizes_.size() ? island_sizes_[island.value] : 0;
+}
+
+void Map::MoveToIsland(KeyframeId keyframe, IslandId island) {
+  --island_sizes_.at(keyframes_.At(keyframe).island.value);
+  keyframes_.Mutable(keyframe).island = island;
+  CountInIsland(island);
+}
+
+void Map::CountInIsland(IslandId island) {
+  if (island.value >= island_sizes_.size()) {
+    island_sizes_.resize(island.value + 1, 0);
+  }
+  ++island_sizes_[island.value];
 }
 
 Rigid3 Map::CamFromWorld(KeyframeId keyframe) const {

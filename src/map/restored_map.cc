@@ -56,7 +56,7 @@ void CheckFrames(const MapTables& tables) {
 }
 
 // The pose of a culled keyframe is that of another one, which may be culled too, and so on. The
-// last one must be alive.
+// last one must be alive, or have been removed with its island.
 void CheckCulled(const MapTables& tables) {
   enum class Mark : uint8_t { kNew, kOnPath, kGood };
   std::vector<Mark> marks(CountKeyframes(tables), Mark::kNew);
@@ -71,7 +71,7 @@ void CheckCulled(const MapTables& tables) {
       path.push_back(id);
       id = culled->pose.reference;
     }
-    Require(tables.keyframes.Contains(id) || tables.culled.Contains(id), id,
+    Require(!id.IsValid() || tables.keyframes.Contains(id) || tables.culled.Contains(id), id,
             "does not exist but a culled keyframe refers to it");
     for (const KeyframeId passed : path) {
       marks[passed.value] = Mark::kGood;
@@ -86,13 +86,27 @@ void CheckReference(const MapTables& tables, KeyframeId reference, const std::st
   }
 }
 
+// The same; and the keyframe was not removed with its island, so it has a pose. CheckCulled has
+// found no cycle.
+void CheckPose(const MapTables& tables, KeyframeId reference, const std::string& kind,
+               uint32_t id) {
+  CheckReference(tables, reference, kind, id);
+  const bool has_reference = reference.IsValid();
+  while (const CulledKeyframe* culled = tables.culled.Find(reference)) {
+    reference = culled->pose.reference;
+  }
+  if (has_reference && !reference.IsValid()) {
+    Fail(kind, id, "refers to a keyframe without a pose");
+  }
+}
+
 void CheckReferences(const MapTables& tables) {
   tables.landmarks.ForEach([&](LandmarkId id, const Landmark& landmark) {
-    CheckReference(tables, landmark.reference, "landmark", id.value);
+    CheckPose(tables, landmark.reference, "landmark", id.value);
     CheckReference(tables, landmark.created_by, "landmark", id.value);
   });
   tables.objects.ForEach([&](ObjectId id, const ObjectLandmark& object) {
-    CheckReference(tables, object.reference, "object", id.value);
+    CheckPose(tables, object.reference, "object", id.value);
     for (const MisfitSample& sample : object.misfit_samples) {
       CheckReference(tables, sample.keyframe, "object", id.value);
     }

@@ -52,6 +52,17 @@ void SetParent(Map& map, KeyframeId child, KeyframeId parent) {
   }
 }
 
+void MakeRoot(Map& map, KeyframeId keyframe) {
+  std::vector<KeyframeId> path;  // up to the former root
+  for (KeyframeId id = keyframe; id.IsValid(); id = map.keyframes().At(id).parent) {
+    path.push_back(id);
+  }
+  for (size_t i = path.size() - 1; i > 0; --i) {
+    SetParent(map, path[i - 1], KeyframeId());
+    SetParent(map, path[i], path[i - 1]);
+  }
+}
+
 void DetachFromTree(Map& map, KeyframeId id) {
   const KeyframeId parent = map.keyframes().At(id).parent;
   std::vector<KeyframeId> waiting = map.keyframes().At(id).children;

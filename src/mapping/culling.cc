@@ -8,6 +8,7 @@
 #include <span>
 
 #include "hullslam/objects/object_view.h"
+#include "map/islands.h"
 #include "objects/point_statistics.h"
 
 namespace hullslam {
@@ -121,10 +122,11 @@ bool IsNeededByAnObject(const Map& map, KeyframeId id, size_t min_views) {
 
 void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
                          std::vector<LandmarkId>& recent) {
+  const IslandId island = IslandOf(map, current);
   const int max_weak = sensor.IsMonocular() ? kMaxWeakMonocularWeight : kMaxWeakWeight;
   std::erase_if(recent, [&](LandmarkId id) {
     const Landmark* landmark = map.landmarks().Find(id);
-    if (landmark == nullptr) {
+    if (landmark == nullptr || IslandOf(map, landmark->reference) != island) {
       return true;
     }
     const uint32_t age = current.value - landmark->created_by.value;

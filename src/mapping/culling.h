@@ -11,7 +11,8 @@ namespace hullslam {
 // Removes `recent` landmarks from the map if they were found in less than a quarter of the frames
 // in which they should have been visible, or if their observation weight is still too small two
 // keyframes after they were made (Mur-Artal and Tardos 2015, section VI.B). Landmarks that no
-// longer exist or that are three keyframes old leave the list.
+// longer exist or that are three keyframes old leave the list, and so do those of other islands
+// than that of `current`: the camera was lost before it could see them again.
 void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
                          std::vector<LandmarkId>& recent);
 

@@ -5,6 +5,7 @@
 
 #include "hullslam/util/check.h"
 #include "map/covisibility.h"
+#include "map/islands.h"
 #include "map/landmark_edits.h"
 #include "map/spanning_tree.h"
 
@@ -69,10 +70,10 @@ void AddDepthLandmarks(Map& map, KeyframeId id, const Sensor& sensor,
 
 std::vector<KeyframeId> InsertInitialMap(Map& map, const InitialMap& initial, const Sensor& sensor,
                                          std::vector<LandmarkId>& created) {
-  Check(map.keyframes().empty(), "an initial map needs an empty map");
+  const IslandId island = map.BeginIsland();
   std::vector<KeyframeId> ids;
   for (const InitialMap::View& view : initial.views) {
-    ids.push_back(map.AddKeyframe(view.frame, view.cam_from_world));
+    ids.push_back(map.AddKeyframe(view.frame, view.cam_from_world, island));
   }
   for (const InitialMap::Point& point : initial.points) {
     Check(!point.observations.empty(), "an initial point needs an observation");
@@ -94,7 +95,8 @@ std::vector<KeyframeId> InsertInitialMap(Map& map, const InitialMap& initial, co
 
 KeyframeId InsertKeyframe(Map& map, const KeyframeRequest& request, const Sensor& sensor,
                           std::vector<LandmarkId>& created) {
-  const KeyframeId id = map.AddKeyframe(request.frame, map.CamFromWorld(request.pose));
+  const KeyframeId id = map.AddKeyframe(request.frame, map.CamFromWorld(request.pose),
+                                        IslandOf(map, request.pose.reference));
   ApplySightings(map, request.sightings);
   AddKnownLandmarks(map, id, request.landmarks, sensor.levels);
   UpdateCovisibility(map, id);

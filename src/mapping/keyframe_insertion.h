@@ -9,9 +9,9 @@
 
 namespace hullslam {
 
-// Puts keyframes and landmarks of an initial map into an empty map. The first keyframe is the root
-// of the spanning tree. The ids of the landmarks are appended to `created`. Returns the ids of the
-// keyframes, one per view.
+// Puts keyframes and landmarks of an initial map into the map, as a new island. The first keyframe
+// is the root of its spanning tree. The ids of the landmarks are appended to `created`. Returns the
+// ids of the keyframes, one per view.
 std::vector<KeyframeId> InsertInitialMap(Map& map, const InitialMap& initial, const Sensor& sensor,
                                          std::vector<LandmarkId>& created);
 

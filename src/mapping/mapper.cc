@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "map/correction.h"
+#include "map/islands.h"
 #include "mapping/culling.h"
 #include "mapping/keyframe_insertion.h"
 #include "mapping/landmark_creation.h"
@@ -175,6 +176,9 @@ void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on
   if (session_) {
     return;  // the run has added no keyframe
   }
+  if (KeepOnlyIsland(map_, MainIsland(map_))) {
+    PublishSnapshot();
+  }
   const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
   if (options_.final_bundle_adjustment && !is_cancelled && map_.keyframes().size() >= 2) {
     AdjustMap(cancellation, on_progress);
@@ -187,7 +191,7 @@ void Mapper::AdjustMap(const Cancellation* cancellation, const ProgressCallback&
   BundleWindow window;
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
-    window = GlobalWindow(map_, ObjectsToAdjust());
+    window = GlobalWindow(map_, MainIsland(map_), ObjectsToAdjust());
     Adjust(window, BundleOptions{.objects = object_options_.bundle}.ForWholeMap(), cancellation,
            on_progress);
   }
@@ -250,8 +254,9 @@ void Mapper::FollowKnownSizes(bool is_final) {
     return;
   }
   const size_t views = CountSizedViews(map_, sizes);
-  if (!is_final && views < std::max(kMinSizedViews, 2 * sized_views_)) {
-    return;
+  const bool is_due = is_final || views >= std::max(kMinSizedViews, 2 * sized_views_);
+  if (!is_due || Islands(map_).size() != 1) {
+    return;  // each island has a unit of its own
   }
   const ScopedTimer timer(times_, "known_sizes");
   sized_views_ = views;

@@ -36,11 +36,12 @@ class Mapper {
   void Begin(Map map, Session session);
 
   // Does what the message asks for. `hurry` (may be null) is requested while another message waits.
-  // The mapper then leaves out what is not necessary. Throws CheckError for an initial map if the
+  // The mapper then leaves out what is not necessary. An initial map becomes a new island if the
   // map is not empty.
   void Process(const MapMessage& message, const Cancellation* hurry);
 
-  // To be called once, at the end. Adjusts the whole map if mapping.final_bundle_adjustment is set,
+  // To be called once, at the end. Removes all islands but the main one (map/islands.h). Then it
+  // adjusts the whole map if mapping.final_bundle_adjustment is set,
   // and publishes it; but not a map of earlier sessions to which no keyframe was added. If
   // `cancellation` (may be null) is requested, it ends early with what it has.
   void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress = {});

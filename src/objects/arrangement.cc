@@ -66,12 +66,12 @@ void Match(std::vector<Pair> pairs, Arrangement& arrangement) {
 }  // namespace
 
 Arrangement CompareArrangement(const Map& map, const ObjectIndex& index, const Sensor& sensor,
-                               const Frame& frame, const Rigid3& cam_from_world,
+                               const Frame& frame, const Rigid3& cam_from_world, IslandId island,
                                const ObjectOptions& options) {
   Arrangement arrangement;
   arrangement.objects.resize(frame.detections.size());
   std::vector<ObjectId> mapped;
-  for (const ObjectId id : index.FindVisible(sensor, cam_from_world)) {
+  for (const ObjectId id : index.FindVisible(sensor, cam_from_world, island)) {
     if (map.objects().At(id).state == ObjectState::kMapped) {
       mapped.push_back(id);
     }

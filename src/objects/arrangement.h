@@ -23,10 +23,10 @@ struct Arrangement {
   double Score() const { return overlap - 0.5 * missed; }
 };
 
-// Matches detections and mapped objects by class and by the IoU of hull and projected ellipse,
-// those with the largest IoU first. `index` is that of the map.
+// Matches detections and mapped objects of the pose's island by class and by the IoU of hull and
+// projected ellipse, those with the largest IoU first. `index` is that of the map.
 Arrangement CompareArrangement(const Map& map, const ObjectIndex& index, const Sensor& sensor,
-                               const Frame& frame, const Rigid3& cam_from_world,
+                               const Frame& frame, const Rigid3& cam_from_world, IslandId island,
                                const ObjectOptions& options);
 
 }  // namespace hullslam

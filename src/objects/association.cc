@@ -55,13 +55,14 @@ double SizeOf(std::span<const Eigen::Vector3d> points) {
 class Associator {
  public:
   Associator(const Map& map, const ObjectIndex& index, const Sensor& sensor, const Frame& frame,
-             const Rigid3& cam_from_world, std::span<const LandmarkId> landmarks,
+             const Rigid3& cam_from_world, IslandId island, std::span<const LandmarkId> landmarks,
              AssociationScope scope, const AssociationOptions& options)
       : map_(map),
         index_(index),
         sensor_(sensor),
         frame_(frame),
         cam_from_world_(cam_from_world),
+        island_(island),
         landmarks_(landmarks),
         scope_(scope),
         options_(options),
@@ -120,7 +121,7 @@ class Associator {
   // A detection can only show an object whose prediction reaches into the image, or one that shares
   // landmarks with it. Such an object is observed by a keyframe that observes the landmarks.
   std::vector<ObjectId> FindCandidates() const {
-    std::vector<ObjectId> candidates = index_.FindVisible(sensor_, cam_from_world_);
+    std::vector<ObjectId> candidates = index_.FindVisible(sensor_, cam_from_world_, island_);
     IdSet<KeyframeId> observers;
     for (const Detection& detection : frame_.detections) {
       for (const uint32_t keypoint : detection.keypoints) {
@@ -341,6 +342,7 @@ class Associator {
   const Sensor& sensor_;
   const Frame& frame_;
   const Rigid3& cam_from_world_;
+  const IslandId island_;
   std::span<const LandmarkId> landmarks_;
   AssociationScope scope_;
   const AssociationOptions& options_;
@@ -351,11 +353,12 @@ class Associator {
 
 std::vector<ObjectId> AssociateDetections(const Map& map, const ObjectIndex& index,
                                           const Sensor& sensor, const Frame& frame,
-                                          const Rigid3& cam_from_world,
+                                          const Rigid3& cam_from_world, IslandId island,
                                           std::span<const LandmarkId> landmarks,
                                           AssociationScope scope,
                                           const AssociationOptions& options) {
-  return Associator(map, index, sensor, frame, cam_from_world, landmarks, scope, options).Run();
+  return Associator(map, index, sensor, frame, cam_from_world, island, landmarks, scope, options)
+      .Run();
 }
 
 }  // namespace hullslam

@@ -19,11 +19,12 @@ enum class AssociationScope { kAll, kMapped };
 // projected ellipse and with the last hull, shared landmarks, rank-sum and t-tests of depth points,
 // and the class. Another class makes a pair less similar but does not exclude it. A pair is
 // excluded if the clouds of depth points are too far apart. The assignment with the largest total
-// similarity is chosen. `landmarks` has one entry per keypoint of the frame, or it is empty.
-// `index` is that of the map; the map may have more objects.
+// similarity is chosen. `island` is that of the map which the pose belongs to; objects of others
+// are not considered. `landmarks` has one entry per keypoint of the frame, or it is empty. `index`
+// is that of the map; the map may have more objects.
 std::vector<ObjectId> AssociateDetections(const Map& map, const ObjectIndex& index,
                                           const Sensor& sensor, const Frame& frame,
-                                          const Rigid3& cam_from_world,
+                                          const Rigid3& cam_from_world, IslandId island,
                                           std::span<const LandmarkId> landmarks,
                                           AssociationScope scope,
                                           const AssociationOptions& options);

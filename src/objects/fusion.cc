@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hullslam/objects/object_view.h"
+#include "map/islands.h"
 #include "objects/point_statistics.h"
 #include "util/id_set.h"
 
@@ -115,6 +116,7 @@ bool AreOne(const Map& map, const ObjectLandmark& a, const ObjectLandmark& b,
 // An object with a shape, as far as AreNear needs it.
 struct Ball {
   ObjectId id;
+  IslandId island;
   Eigen::Vector3d center;
   double radius = 0.0;
 };
@@ -126,7 +128,7 @@ std::vector<std::pair<ObjectId, ObjectId>> FindNearPairs(const Map& map,
   std::vector<Ball> balls;
   for (const auto& [id, object] : map.objects()) {
     if (object.has_shape) {
-      balls.push_back({id, object.ellipsoid.world_from_object.translation,
+      balls.push_back({id, IslandOf(map, object), object.ellipsoid.world_from_object.translation,
                        object.ellipsoid.half_axes.maxCoeff()});
     }
   }
@@ -136,7 +138,8 @@ std::vector<std::pair<ObjectId, ObjectId>> FindNearPairs(const Map& map,
       continue;
     }
     for (const Ball& other : balls) {
-      if (one.id != other.id && (one.center - other.center).norm() <= one.radius + other.radius) {
+      if (one.id != other.id && one.island == other.island &&
+          (one.center - other.center).norm() <= one.radius + other.radius) {
         pairs.push_back(std::minmax(one.id, other.id));
       }
     }
@@ -153,8 +156,9 @@ std::optional<ObjectId> FindWhole(const Map& map, const Sensor& sensor, ObjectId
   std::optional<ObjectId> whole;
   map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
     if (!whole && id != candidate && object.state == ObjectState::kMapped &&
-        AreNear(part.ellipsoid, object.ellipsoid) && object.Label() == part.Label() &&
-        SharedKeyframes(part, object) == 0 && ShouldBeSeenWith(map, sensor, part, object)) {
+        IslandOf(map, object) == IslandOf(map, part) && AreNear(part.ellipsoid, object.ellipsoid) &&
+        object.Label() == part.Label() && SharedKeyframes(part, object) == 0 &&
+        ShouldBeSeenWith(map, sensor, part, object)) {
       whole = id;
     }
   });

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "hullslam/objects/object_view.h"
+#include "map/islands.h"
 #include "objects/point_statistics.h"
 
 namespace hullslam {
@@ -64,14 +65,16 @@ void ObjectIndex::Follow(const Map& snapshot, const PinholeCamera& camera) {
 
 void ObjectIndex::Add(const Map& map, const PinholeCamera& camera, ObjectId id,
                       const ObjectLandmark& object) {
+  const IslandId island = IslandOf(map, object);
   if (object.has_shape) {
     spheres_.push_back({object.ellipsoid.world_from_object.translation,
-                        kMargin * object.ellipsoid.half_axes.maxCoeff(), id});
+                        kMargin * object.ellipsoid.half_axes.maxCoeff(), id, island});
   }
   const ObjectView last = LatestViews(map, object, 1).front();
   const Eigen::AlignedBox2d& box = last.detection->box;
   if (last.detection->points.empty() || box.isEmpty()) {
-    spheres_.push_back({Eigen::Vector3d::Zero(), std::numeric_limits<double>::infinity(), id});
+    spheres_.push_back(
+        {Eigen::Vector3d::Zero(), std::numeric_limits<double>::infinity(), id, island});
     return;
   }
   // The hull at the depth of its points, as association carries it to another frame.
@@ -80,16 +83,18 @@ void ObjectIndex::Add(const Map& map, const PinholeCamera& camera, ObjectId id,
     return camera.Unproject(pixel, depth);
   };
   spheres_.push_back({Inverse(last.cam_from_world) * unproject(box.center()),
-                      kMargin * 0.5 * (unproject(box.max()) - unproject(box.min())).norm(), id});
+                      kMargin * 0.5 * (unproject(box.max()) - unproject(box.min())).norm(), id,
+                      island});
 }
 
-std::vector<ObjectId> ObjectIndex::FindVisible(const Sensor& sensor,
-                                               const Rigid3& cam_from_world) const {
+std::vector<ObjectId> ObjectIndex::FindVisible(const Sensor& sensor, const Rigid3& cam_from_world,
+                                               IslandId island) const {
   const ViewVolume volume(sensor);
   std::vector<ObjectId> visible;
   for (const Sphere& sphere : spheres_) {
     const bool is_new = visible.empty() || visible.back() != sphere.object;
-    if (is_new && volume.MayMeet(cam_from_world * sphere.center, sphere.radius)) {
+    if (is_new && sphere.island == island &&
+        volume.MayMeet(cam_from_world * sphere.center, sphere.radius)) {
       visible.push_back(sphere.object);
     }
   }

@@ -21,16 +21,18 @@ class ObjectIndex {
   // Makes the index that of `snapshot`, unless it is already.
   void Follow(const Map& snapshot, const PinholeCamera& camera);
 
-  // The objects that a camera may see: all whose projected ellipse or last hull, moved to this
-  // pose, reaches into the image, and a few more. Objects whose place is not known are among them.
-  // By increasing id.
-  std::vector<ObjectId> FindVisible(const Sensor& sensor, const Rigid3& cam_from_world) const;
+  // The objects of an island that a camera there may see: all whose projected ellipse or last hull,
+  // moved to this pose, reaches into the image, and a few more. Objects whose place is not known
+  // are among them. By increasing id.
+  std::vector<ObjectId> FindVisible(const Sensor& sensor, const Rigid3& cam_from_world,
+                                    IslandId island) const;
 
  private:
   struct Sphere {
     Eigen::Vector3d center = Eigen::Vector3d::Zero();  // m, world frame
     double radius = 0.0;                               // m; infinite if the place is not known
     ObjectId object;
+    IslandId island;
   };
 
   void Add(const Map& map, const PinholeCamera& camera, ObjectId id, const ObjectLandmark& object);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "hullslam/objects/object_view.h"
+#include "map/islands.h"
 #include "objects/association.h"
 #include "objects/fusion.h"
 #include "objects/initialisation.h"
@@ -56,9 +57,9 @@ void ObjectMapper::Process(Map& map, KeyframeId keyframe) {
 // new object.
 void ObjectMapper::Observe(Map& map, const ObjectIndex& index, KeyframeId keyframe) {
   const Keyframe& observer = map.keyframes().At(keyframe);
-  std::vector<ObjectId> objects =
-      AssociateDetections(map, index, sensor_, *observer.frame, observer.cam_from_world,
-                          observer.landmarks, AssociationScope::kAll, options_.association);
+  std::vector<ObjectId> objects = AssociateDetections(
+      map, index, sensor_, *observer.frame, observer.cam_from_world, observer.island,
+      observer.landmarks, AssociationScope::kAll, options_.association);
   for (uint32_t i = 0; i < objects.size(); ++i) {
     if (!objects[i].IsValid()) {
       objects[i] = map.AddObject();
@@ -71,7 +72,8 @@ void ObjectMapper::Observe(Map& map, const ObjectIndex& index, KeyframeId keyfra
 void ObjectMapper::CountVisible(Map& map, const ObjectIndex& index, KeyframeId keyframe) const {
   const Keyframe& observer = map.keyframes().At(keyframe);
   const std::vector<ObjectId>& observed = observer.objects;
-  std::vector<ObjectId> candidates = index.FindVisible(sensor_, observer.cam_from_world);
+  std::vector<ObjectId> candidates =
+      index.FindVisible(sensor_, observer.cam_from_world, observer.island);
   candidates.insert(candidates.end(), observed.begin(), observed.end());
   std::sort(candidates.begin(), candidates.end());
   candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
@@ -308,8 +310,12 @@ void ObjectMapper::FuseDuplicates(Map& map, KeyframeId keyframe) {
 void ObjectMapper::CullSeldomSeen(Map& map, KeyframeId keyframe) {
   const CullingOptions& culling = options_.culling;
   const auto candidate_keyframes = static_cast<uint32_t>(culling.candidate_keyframes);
+  const IslandId island = IslandOf(map, keyframe);
   std::vector<std::pair<ObjectId, std::string>> culled;
   map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    if (IslandOf(map, object) != island) {
+      return;  // the camera cannot see it
+    }
     if (object.observations.empty()) {
       culled.emplace_back(id, "no keyframe observes the object any more");
     } else if (object.state == ObjectState::kCandidate &&

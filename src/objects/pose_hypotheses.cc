@@ -12,6 +12,7 @@
 #include "estimators/p3p.h"
 #include "geometry/polygon_overlap.h"
 #include "hullslam/geometry/alignment.h"
+#include "map/islands.h"
 #include "objects/object_sighting.h"
 
 namespace hullslam {
@@ -53,7 +54,8 @@ double Tolerance(const Candidate& candidate, double distance) {
 }
 
 // The detections that may show mapped objects, those with the fewest candidates first.
-std::vector<Seen> FindCandidates(const Map& map, const PinholeCamera& camera, const Frame& frame) {
+std::vector<Seen> FindCandidates(const Map& map, const PinholeCamera& camera, const Frame& frame,
+                                 IslandId island) {
   std::vector<Seen> all;
   for (const Detection& detection : frame.detections) {
     const std::optional<ObjectSighting> sighting = SightObject(camera, detection);
@@ -62,7 +64,8 @@ std::vector<Seen> FindCandidates(const Map& map, const PinholeCamera& camera, co
     }
     Seen seen{&detection, *sighting, {}};
     map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
-      if (object.state != ObjectState::kMapped || !MayHaveClass(object, detection.label)) {
+      if (object.state != ObjectState::kMapped || IslandOf(map, object) != island ||
+          !MayHaveClass(object, detection.label)) {
         return;
       }
       Candidate candidate{.id = id, .ellipsoid = &object.ellipsoid};
@@ -285,8 +288,8 @@ class Proposer {
 }  // namespace
 
 std::vector<PoseHypothesis> ProposePoses(const Map& map, const PinholeCamera& camera,
-                                         const Frame& frame) {
-  return Proposer(camera, FindCandidates(map, camera, frame)).Run();
+                                         const Frame& frame, IslandId island) {
+  return Proposer(camera, FindCandidates(map, camera, frame, island)).Run();
 }
 
 bool AreSamePlace(const Rigid3& a, const Rigid3& b, double depth) {

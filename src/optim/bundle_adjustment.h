@@ -31,9 +31,10 @@ struct BundleWindow {
 enum class WindowObjects { kNone, kMapped };
 BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, size_t max_fixed,
                          WindowObjects objects = WindowObjects::kNone);
-// All keyframes, all landmarks and, if asked for, the mapped objects. Only the root of the spanning
-// tree is fixed.
-BundleWindow GlobalWindow(const Map& map, WindowObjects objects = WindowObjects::kNone);
+// All keyframes and landmarks of an island and, if asked for, its mapped objects. Only the root of
+// the spanning tree is fixed.
+BundleWindow GlobalWindow(const Map& map, IslandId island,
+                          WindowObjects objects = WindowObjects::kNone);
 
 // How the problem is solved.
 struct BundleOptions {

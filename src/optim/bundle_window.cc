@@ -4,6 +4,7 @@
 #include <set>
 
 #include "map/covisibility.h"
+#include "map/islands.h"
 #include "optim/bundle_adjustment.h"
 
 namespace hullslam {
@@ -77,12 +78,18 @@ BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, s
   return window;
 }
 
-BundleWindow GlobalWindow(const Map& map, WindowObjects objects) {
+BundleWindow GlobalWindow(const Map& map, IslandId island, WindowObjects objects) {
   BundleWindow window;
   map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
-    (keyframe.parent.IsValid() ? window.moving : window.fixed).push_back(id);
+    if (keyframe.island == island) {
+      (keyframe.parent.IsValid() ? window.moving : window.fixed).push_back(id);
+    }
   });
-  map.landmarks().ForEach([&](LandmarkId id, const Landmark&) { window.landmarks.push_back(id); });
+  map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
+    if (IslandOf(map, landmark.reference) == island) {
+      window.landmarks.push_back(id);
+    }
+  });
   if (objects == WindowObjects::kMapped) {
     window.objects = ObservedObjects(map, window.moving);
   }

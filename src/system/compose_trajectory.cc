@@ -3,38 +3,67 @@
 
 #include <optional>
 
+#include "map/islands.h"
+
 namespace hullslam {
 
+namespace {
+
+// The pose of a tracked frame, if it is in this island.
+std::optional<Rigid3> FindPose(const Map& map, IslandId island, const TrackedFrame& frame) {
+  const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame.frame);
+  if (keyframe && IslandOf(map, *keyframe) == island) {
+    return map.CamFromWorld(*keyframe);
+  }
+  if (frame.pose && IslandOf(map, frame.pose->reference) == island) {
+    return map.CamFromWorld(*frame.pose);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 Trajectory ComposeTrajectory(const Map& map, std::span<const TrackedFrame> frames) {
+  const IslandId island = MainIsland(map);
   Trajectory trajectory;
   for (const TrackedFrame& frame : frames) {
     if (frame.state != TrackingState::kTracked) {
       continue;
     }
-    if (const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame.frame)) {
-      trajectory.push_back({frame.timestamp, Inverse(map.CamFromWorld(*keyframe))});
-    } else if (frame.pose) {
-      trajectory.push_back({frame.timestamp, Inverse(map.CamFromWorld(*frame.pose))});
+    if (const std::optional<Rigid3> pose = FindPose(map, island, frame)) {
+      trajectory.push_back({frame.timestamp, Inverse(*pose)});
     }
   }
   return trajectory;
 }
 
+void LoseFramesElsewhere(const Map& map, std::span<TrackedFrame> frames) {
+  const IslandId island = MainIsland(map);
+  for (TrackedFrame& frame : frames) {
+    if (frame.state == TrackingState::kTracked && !FindPose(map, island, frame)) {
+      frame.state = TrackingState::kLost;
+      frame.pose.reset();
+    }
+  }
+}
+
 Trajectory KeyframeTrajectory(const Map& map) {
   Trajectory trajectory;
-  map.keyframes().ForEach([&](KeyframeId, const Keyframe& keyframe) {
+  for (const KeyframeId id : KeyframesOf(map, MainIsland(map))) {
+    const Keyframe& keyframe = map.keyframes().At(id);
     trajectory.push_back({keyframe.frame->timestamp, Inverse(keyframe.cam_from_world)});
-  });
+  }
   return trajectory;
 }
 
 Trajectory KeyframeTrajectory(const Map& map, size_t session) {
   Trajectory trajectory;
-  map.keyframes().ForEach([&](KeyframeId, const Keyframe& keyframe) {
+  for (const KeyframeId id : KeyframesOf(map, MainIsland(map))) {
+    const Keyframe& keyframe = map.keyframes().At(id);
     if (SessionNumber(map.sessions(), keyframe.frame->id) == session) {
       trajectory.push_back({keyframe.frame->timestamp, Inverse(keyframe.cam_from_world)});
     }
-  });
+  }
   return trajectory;
 }
 

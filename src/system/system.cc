@@ -157,6 +157,9 @@ std::unique_ptr<TaskRunner> System::MakeRunner() {
 
 void System::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
   pipeline_->Finish(cancellation, on_progress);
+  if (const auto final_map = map()) {
+    LoseFramesElsewhere(*final_map, frames_);
+  }
   for (const TrackedFrame& early : pipeline_->TakeEarlyFrames()) {
     frames_.at(early.frame.value - frames_.front().frame.value) = early;
   }

@@ -52,6 +52,9 @@ class ThreadedPipeline final : public Pipeline {
       const bool is_initial = std::holds_alternative<InitialMap>(*result.message);
       if (is_initial || pace_ == Pace::kWaitForMapper) {
         PostAndWait(std::move(*result.message));
+        if (is_initial) {
+          WaitForMapper();  // what was published may also be the correction of a loop
+        }
       } else {
         Post(std::move(*result.message));
       }

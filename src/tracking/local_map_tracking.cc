@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "map/islands.h"
 #include "map/landmark_projection.h"
 #include "matching/by_projection.h"
 #include "tracking/local_map.h"
@@ -116,7 +117,7 @@ LocalTracking TrackLocalMap(const Frame& frame, const Map& map, const TrackingCo
   tracking.reference = local.reference;
   LandmarkSearch search(frame, map, context.sensor, start);
   search.Run(local.landmarks, {}, start.landmarks);
-  tracking.objects = FindMappedObjects(frame, map, context, start);
+  tracking.objects = FindMappedObjects(frame, map, context, start, IslandOf(map, local.reference));
   if (context.objects.guided_matching) {
     for (const ObjectGuide& guide : GuideByObjects(map, frame, tracking.objects, search.known())) {
       search.Run(guide.landmarks, guide.is_outside, start.landmarks);

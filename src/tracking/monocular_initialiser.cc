@@ -166,8 +166,8 @@ void AdjustMap(const Sensor& sensor, InitialMap& initial) {
       map.AddObservation(landmarks.back(), keyframes[seen.view], seen.keypoint);
     }
   }
-  const BundleResult result =
-      AdjustBundle(map, sensor, GlobalWindow(map), BundleOptions().ForWholeMap(), nullptr);
+  const BundleResult result = AdjustBundle(map, sensor, GlobalWindow(map, IslandId(0)),
+                                           BundleOptions().ForWholeMap(), nullptr);
   if (!result.is_usable) {
     return;
   }

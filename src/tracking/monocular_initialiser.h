@@ -30,6 +30,8 @@ class MonocularInitialiser {
 
   // Frames come in order of time. After a map was made, the initialiser has no frames.
   Result Process(std::shared_ptr<const Frame> frame);
+  // Forgets all frames.
+  void Forget() { references_.clear(); }
 
  private:
   Result TryReferences(const std::shared_ptr<const Frame>& frame) const;

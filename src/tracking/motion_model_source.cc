@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/islands.h"
 #include "matching/by_projection.h"
 #include "tracking/pose_objects.h"
 #include "tracking/pose_refinement.h"
@@ -89,8 +90,10 @@ std::optional<PoseEstimate> PoseByMotionModel(const Frame& frame, const Map& map
   // Objects are only looked for if there are too few landmarks without them.
   PoseObjects objects;
   if (matches.size() < context.min_motion_matches() && context.objects.joint_pose) {
-    objects = MakePoseObjects(map, context.sensor, frame, estimate.cam_from_world,
-                              FindMappedObjects(frame, map, context, estimate), context.objects);
+    const IslandId island = IslandOf(map, last.reference);
+    objects =
+        MakePoseObjects(map, context.sensor, frame, estimate.cam_from_world,
+                        FindMappedObjects(frame, map, context, estimate, island), context.objects);
   }
   if (matches.size() + PoseEstimate::kLandmarksPerObject * objects.objects.size() <
       context.min_motion_matches()) {

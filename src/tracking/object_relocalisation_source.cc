@@ -6,6 +6,7 @@
 #include "estimators/absolute_pose.h"
 #include "frame/point_measurement.h"
 #include "map/covisibility.h"
+#include "map/islands.h"
 #include "map/landmark_projection.h"
 #include "matching/by_projection.h"
 #include "objects/arrangement.h"
@@ -43,11 +44,11 @@ struct Place {
   }
 };
 
-// The steps of relocalisation by objects for one frame.
+// The steps of relocalisation by the objects of one island for one frame.
 class Finder {
  public:
-  Finder(const Frame& frame, const Map& map, const TrackingContext& context)
-      : frame_(frame), map_(map), context_(context) {}
+  Finder(const Frame& frame, const Map& map, const TrackingContext& context, IslandId island)
+      : frame_(frame), map_(map), context_(context), island_(island) {}
 
   std::optional<PoseEstimate> Run() const {
     std::vector<Place> places = RefineHypotheses();
@@ -69,13 +70,14 @@ class Finder {
  private:
   Arrangement Compare(const Rigid3& cam_from_world) const {
     return CompareArrangement(map_, context_.object_index, context_.sensor, frame_, cam_from_world,
-                              context_.objects);
+                              island_, context_.objects);
   }
 
   // The hypotheses, those whose projected ellipses agree best with the hulls first.
   std::vector<Place> CompareHypotheses() const {
     std::vector<Place> places;
-    for (const PoseHypothesis& hypothesis : ProposePoses(map_, context_.sensor.camera, frame_)) {
+    for (const PoseHypothesis& hypothesis :
+         ProposePoses(map_, context_.sensor.camera, frame_, island_)) {
       Place& place = places.emplace_back();
       place.estimate.cam_from_world = hypothesis.cam_from_world;
       place.arrangement = Compare(hypothesis.cam_from_world);
@@ -269,6 +271,7 @@ class Finder {
   const Frame& frame_;
   const Map& map_;
   const TrackingContext& context_;
+  const IslandId island_;
 };
 
 }  // namespace
@@ -280,7 +283,14 @@ std::optional<PoseEstimate> PoseByObjects(const Frame& frame, const Map& map,
   if (!is_wanted || frame.detections.size() < 2 || map.objects().empty()) {
     return std::nullopt;
   }
-  return Finder(frame, map, context).Run();
+  std::optional<PoseEstimate> best;
+  for (const IslandId island : Islands(map)) {
+    std::optional<PoseEstimate> found = Finder(frame, map, context, island).Run();
+    if (found && (!best || found->EffectiveInliers() > best->EffectiveInliers())) {
+      best = std::move(found);
+    }
+  }
+  return best;
 }
 
 }  // namespace hullslam

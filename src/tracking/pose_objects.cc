@@ -32,15 +32,15 @@ std::vector<SilhouetteLine> KnownLines(const Sensor& sensor, const Rigid3& cam_f
 
 std::vector<ObjectId> FindMappedObjects(const Frame& frame, const Map& map,
                                         const TrackingContext& context,
-                                        const PoseEstimate& estimate) {
+                                        const PoseEstimate& estimate, IslandId island) {
   const ObjectOptions& objects = context.objects;
   const bool is_wanted = objects.enabled && (objects.joint_pose || objects.guided_matching);
   if (!is_wanted || frame.detections.empty() || map.objects().empty()) {
     return std::vector<ObjectId>(frame.detections.size());
   }
   return AssociateDetections(map, context.object_index, context.sensor, frame,
-                             estimate.cam_from_world, estimate.landmarks, AssociationScope::kMapped,
-                             objects.association);
+                             estimate.cam_from_world, island, estimate.landmarks,
+                             AssociationScope::kMapped, objects.association);
 }
 
 PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& frame,

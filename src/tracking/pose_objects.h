@@ -20,10 +20,11 @@ struct PoseObjects {
 };
 
 // The mapped object that each detection of a frame shows, invalid for none; one entry per
-// detection. All are invalid where objects take no part in tracking. See AssociateDetections.
+// detection. The objects are those of the island that the pose belongs to. All are invalid where
+// objects take no part in tracking. See AssociateDetections.
 std::vector<ObjectId> FindMappedObjects(const Frame& frame, const Map& map,
                                         const TrackingContext& context,
-                                        const PoseEstimate& estimate);
+                                        const PoseEstimate& estimate, IslandId island);
 
 // The detections of a frame that show mapped objects (`ids`: one per detection). With misfit
 // compensation each line is moved by the excess that the keyframes have measured at its normal;

@@ -35,7 +35,8 @@ PoseSource PoseByRelocalisation;
 
 // The arrangement of the mapped objects in the frame gives a pose, and hull lines and landmarks
 // refine and confirm it. Null if another pose explains the frame about as well. The last frame is
-// not used (object_relocalisation_source.cc).
+// not used. Of several islands, the one that agrees best is taken
+// (object_relocalisation_source.cc).
 PoseSource PoseByObjects;
 
 // A source of the caller, which is asked when all others find nothing. The estimate names landmarks

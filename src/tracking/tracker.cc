@@ -7,12 +7,14 @@
 #include <limits>
 #include <utility>
 
+#include "map/islands.h"
 #include "tracking/confirmed_pose.h"
 
 namespace hullslam {
 namespace {
 
-constexpr size_t kYoungKeyframes = 10;    // a monocular map with fewer is young
+constexpr size_t kYoungKeyframes = 10;    // a monocular island with fewer is young
+constexpr double kPatience = 1.0;         // s, lost in an island that is not young
 constexpr size_t kMostEarlyFrames = 300;  // the first ones are forgotten if there are more
 
 KeyframePolicy MakePolicy(const Sensor& sensor, const TrackingOptions& options) {
@@ -52,7 +54,7 @@ int CountCloseKeypoints(const Frame& frame, const Sensor& sensor,
 
 // The number of the reference keyframe's landmarks with a sufficient observation weight.
 int CountReferenceLandmarks(const Map& map, KeyframeId reference) {
-  const int min_weight = map.keyframes().size() <= 2 ? 2 : 3;
+  const int min_weight = map.IslandSize(IslandOf(map, reference)) <= 2 ? 2 : 3;
   int count = 0;
   for (const LandmarkId id : map.keyframes().At(reference).landmarks) {
     count += id.IsValid() && map.landmarks().At(id).observation_weight >= min_weight ? 1 : 0;
@@ -70,7 +72,7 @@ KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor
           .close_tracked = CountCloseKeypoints(frame, sensor, estimate.landmarks, true),
           .close_untracked = CountCloseKeypoints(frame, sensor, estimate.landmarks, false),
           .unknown_objects = tracking.unknown_objects,
-          .keyframes = map.keyframes().size(),
+          .keyframes = map.IslandSize(IslandOf(map, tracking.reference)),
           .mapper_is_idle = mapper.is_idle,
           .requests_waiting = mapper.requests_waiting};
 }
@@ -124,10 +126,6 @@ Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared
     return sensor_.IsMonocular() ? InitializeMonocular(std::move(frame))
                                  : Initialize(std::move(frame));
   }
-  const bool is_young = sensor_.IsMonocular() && map->keyframes().size() < kYoungKeyframes;
-  if (is_young && !is_localizing_only_) {
-    KeepEarlyFrame(frame);
-  }
   return Track(std::move(frame), *map, mapper);
 }
 
@@ -144,13 +142,13 @@ Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
     return MakeResult(std::move(frame), TrackingState::kNotInitialized);
   }
   InitialMap initial = MakeInitialMap(frame, sensor_.camera, with_depth);
-  return BeginMap(std::move(frame), std::move(initial));
+  return BeginIsland(std::move(frame), std::move(initial));
 }
 
 Tracker::Result Tracker::InitializeMonocular(std::shared_ptr<const Frame> frame) {
   MonocularInitialiser::Result initial = initialiser_.Process(frame);
   if (initial.map) {
-    return BeginMap(std::move(frame), std::move(*initial.map));
+    return BeginIsland(std::move(frame), std::move(*initial.map));
   }
   KeepEarlyFrame(frame);
   Result result = MakeResult(std::move(frame), TrackingState::kNotInitialized);
@@ -158,8 +156,9 @@ Tracker::Result Tracker::InitializeMonocular(std::shared_ptr<const Frame> frame)
   return result;
 }
 
-// The frame is the last view of the map.
-Tracker::Result Tracker::BeginMap(std::shared_ptr<const Frame> frame, InitialMap initial) {
+// The frame is the last view of the initial map.
+Tracker::Result Tracker::BeginIsland(std::shared_ptr<const Frame> frame, InitialMap initial) {
+  lost_since_.reset();
   last_ = LastFrame();
   last_.frame = frame;
   last_request_time_ = frame->timestamp;
@@ -177,7 +176,8 @@ std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map) {
     tracked.frame = frame->id;
     tracked.timestamp = frame->timestamp;
     tracked.state = TrackingState::kTracked;
-    if (map.KeyframeOfFrame(frame->id)) {
+    const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame->id);
+    if (keyframe && IslandOf(map, *keyframe).IsValid()) {
       localised.push_back(tracked);
       continue;
     }
@@ -203,13 +203,18 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   if (last_.frame != nullptr) {
     last_ = FollowMap(map, std::move(last_));
   }
+  if (sensor_.IsMonocular() && !is_localizing_only_ && IsYoung(map)) {
+    KeepEarlyFrame(frame);
+  }
   if (!frame->detections.empty()) {
     object_index_.Follow(map, sensor_.camera);
   }
   const std::optional<LocalTracking> found = FindPose(*frame, map);
   if (!found) {
-    return Lose(std::move(frame));
+    return Lose(std::move(frame), map);
   }
+  lost_since_.reset();
+  initialiser_.Forget();
   const LocalTracking& tracking = *found;
   if (!is_localizing_only_) {
     CountSightings(map, tracking);
@@ -277,9 +282,36 @@ bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTrack
   return true;
 }
 
-Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame) {
+// Whether the island in which the camera was last seen has few keyframes.
+bool Tracker::IsYoung(const Map& map) const {
+  const IslandId island = last_.frame != nullptr ? IslandOf(map, last_.reference) : MainIsland(map);
+  return map.IslandSize(island) < kYoungKeyframes;
+}
+
+// A monocular camera that stays lost begins a new island, which may be joined to the others later.
+Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map) {
   last_.motion.reset();
+  lost_since_ = lost_since_.value_or(frame->timestamp);
+  if (MayBeginIsland(*frame, map)) {
+    MonocularInitialiser::Result initial = initialiser_.Process(frame);
+    if (!IsYoung(map)) {
+      KeepEarlyFrame(frame);
+    }
+    if (initial.map) {
+      return BeginIsland(std::move(frame), std::move(*initial.map));
+    }
+  }
   return MakeResult(std::move(frame), TrackingState::kLost);
+}
+
+// The camera may soon be found in a grown island, and only place recognition, which needs words,
+// can join another one to it. In a young one there is little to be found.
+bool Tracker::MayBeginIsland(const Frame& frame, const Map& map) const {
+  if (!sensor_.IsMonocular() || is_localizing_only_) {
+    return false;
+  }
+  const bool has_waited = frame.timestamp - *lost_since_ >= kPatience;
+  return IsYoung(map) || (has_waited && map.vocabulary() != nullptr);
 }
 
 void Tracker::CountSightings(const Map& map, const LocalTracking& tracking) {

@@ -28,9 +28,9 @@ struct MapperStatus {
   int requests_waiting = 0;
 };
 
-// Finds the pose of each frame in a snapshot of the map and decides on keyframes. It does not
-// change the map but sends messages to the mapper. Its members are what it remembers from one
-// frame to the next.
+// Finds the pose of each frame in a snapshot of the map and decides on keyframes. A monocular
+// camera that is lost begins a new island (Map::BeginIsland). It does not change the map but sends
+// messages to the mapper. Its members are what it remembers from one frame to the next.
 class Tracker {
  public:
   // `sensor` must outlive the tracker. `seed` is that of the run.
@@ -52,8 +52,8 @@ class Tracker {
                  const MapperStatus& mapper);
 
   // To be called at the end of a monocular run, with the final map. Gives poses to the frames
-  // before the map, which had none, and better ones to those that were tracked while the map was
-  // young. Frames that are not found in the map are left out.
+  // before the map and before each new island, which had none, and better ones to those that were
+  // tracked while their island was young. Frames that are not found in the map are left out.
   std::vector<TrackedFrame> LocaliseEarlyFrames(const Map& map);
 
   const StageTimes& times() const { return times_; }
@@ -64,11 +64,13 @@ class Tracker {
   }
   Result Initialize(std::shared_ptr<const Frame> frame);
   Result InitializeMonocular(std::shared_ptr<const Frame> frame);
-  Result BeginMap(std::shared_ptr<const Frame> frame, InitialMap initial);
+  Result BeginIsland(std::shared_ptr<const Frame> frame, InitialMap initial);
   void KeepEarlyFrame(std::shared_ptr<const Frame> frame);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
   std::optional<LocalTracking> FindPose(const Frame& frame, const Map& map) const;
-  Result Lose(std::shared_ptr<const Frame> frame);
+  Result Lose(std::shared_ptr<const Frame> frame, const Map& map);
+  bool IsYoung(const Map& map) const;
+  bool MayBeginIsland(const Frame& frame, const Map& map) const;
   bool NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,
                      const MapperStatus& mapper);
   void CountSightings(const Map& map, const LocalTracking& tracking);
@@ -88,7 +90,8 @@ class Tracker {
   Relocalise relocalise_;  // may be null
   bool is_localizing_only_ = false;
 
-  LastFrame last_;  // has no frame before the first frame with a pose
+  std::optional<double> lost_since_;  // s, time stamp of the first lost frame; absent if not lost
+  LastFrame last_;                    // has no frame before the first frame with a pose
   // s, time stamp of the frame of the last message; of the first frame with a pose if there is no
   // message yet.
   std::optional<double> last_request_time_;

@@ -32,8 +32,14 @@ TEST(Summary, OfAMonocularCameraTellsHowTheMapBegan) {
   const Json without_map = Json::parse(FormatSummary(summary))["initialisation"];
   EXPECT_TRUE(without_map["seconds"].is_null());
   EXPECT_EQ(without_map["failures"]["too little parallax"], 3);
+  EXPECT_EQ(without_map["islands"], 0);
   summary.initialisation->seconds = 1.5;
-  EXPECT_EQ(Json::parse(FormatSummary(summary))["initialisation"]["seconds"], 1.5);
+  summary.initialisation->islands = 3;
+  summary.initialisation->joined_islands = 1;
+  const Json with_map = Json::parse(FormatSummary(summary))["initialisation"];
+  EXPECT_EQ(with_map["seconds"], 1.5);
+  EXPECT_EQ(with_map["islands"], 3);
+  EXPECT_EQ(with_map["joined_islands"], 1);
 }
 
 TEST(Summary, HasTheKeysOfTheFormatInOrder) {

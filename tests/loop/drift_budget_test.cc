@@ -47,6 +47,18 @@ TEST_F(TravelTest, GoesAlongCulledKeyframesToo) {
   EXPECT_NEAR(Between(3, 20).radians, before.radians, 1e-12);
 }
 
+TEST_F(TravelTest, PassesOverOtherIslands) {
+  const Travel before = Between(3, 20);
+  const IslandId island = made_.map.BeginIsland();
+  for (const uint32_t i : {8u, 9u}) {
+    made_.map.MoveToIsland(KeyframeId(i), island);
+    made_.map.SetPose(KeyframeId(i), Rigid3(Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}));
+  }
+  EXPECT_NEAR(Between(3, 20).radians, before.radians, 1e-9);
+  EXPECT_LT(Between(3, 20).metres, before.metres);
+  EXPECT_GT(Between(3, 20).metres, 0.95 * before.metres) << "only the short cut is shorter";
+}
+
 Rigid3 Moved(double metres) { return {Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}}; }
 Rigid3 Turned(double radians) { return {ExpSo3({0.0, radians, 0.0}), Eigen::Vector3d::Zero()}; }
 

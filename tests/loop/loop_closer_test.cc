@@ -6,10 +6,12 @@
 #include <string>
 
 #include "loop/loop_verification.h"
+#include "loop/ring_islands.h"
 #include "loop/ring_things.h"
 #include "loop/whole_map_adjustment.h"
 #include "map/correction.h"
 #include "map/invariants.h"
+#include "map/islands.h"
 #include "map/made_map.h"
 
 namespace hullslam {
@@ -157,6 +159,68 @@ TEST_F(LoopCloserTest, TheSameMapGivesTheSameBits) {
   RingMap made = MakeRingMap(SharedRing(), {}, ThreeThings());
   const auto dump = [&] { return Dump(Corrected(made, Close(made).value())); };
   EXPECT_EQ(dump(), dump());
+}
+
+// The ring of a camera without depth.
+const RingWorld& MonocularRing() {
+  static const RingWorld world({.points = 300, .pixel_noise = 0.2, .depth_share = 0.0});
+  return world;
+}
+
+// A ring without drift that was lost on the way. Its second part has another world and another unit
+// of length.
+class IslandJoin : public LoopCloserTest {
+ protected:
+  IslandJoin() {
+    sensor_.kind = SensorKind::kMonocular;
+    SplitRing(made_, 15, island_from_world_);
+  }
+  std::optional<MapCorrection> Join() {
+    return LoopCloser(sensor_, options_, objects_, 1).Process({made_.map.Snapshot(), made_.last()});
+  }
+
+  Sensor sensor_ = SharedRing().sensor();
+  // So far that no drift budget allows it.
+  const Sim3 island_from_world_{2.5, ExpSo3({0.3, -0.4, 0.2}), {30.0, -10.0, 5.0}};
+  RingMap made_ = MakeRingMap(MonocularRing(), {.drift = Rigid3()}, ThreeThings());
+};
+
+TEST_F(IslandJoin, GivesTheYoungerIslandThePoseAndTheScaleOfTheOlderOne) {
+  ASSERT_EQ(FindViolations(made_.map), std::vector<std::string>());
+  const std::optional<MapCorrection> correction = Join();
+  ASSERT_TRUE(correction);
+  const Map map = Corrected(made_, *correction);
+  EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+  EXPECT_EQ(Islands(map), std::vector<IslandId>{IslandId(0)});
+  EXPECT_EQ(map.islands_joined(), 1u);
+  EXPECT_NEAR(map.ScaleOf(made_.last()), 1.0, 0.01);
+  for (uint32_t i = 0; i < 30; ++i) {
+    EXPECT_LT(PoseError(made_, map, KeyframeId(i)), i < 15 ? 1e-12 : 0.02) << i;
+  }
+  EXPECT_LT(map.landmarks().size(), made_.map.landmarks().size() - 150);
+  EXPECT_EQ(map.objects().size(), 3u);
+  EXPECT_EQ(map.keyframes().At(made_.last()).loops.size(), 1u);
+}
+
+// At the last keyframe no loop within an island would be sought so soon after another one.
+TEST_F(IslandJoin, IsSoughtAlsoSoonAfterALoop) {
+  RingMap one = MakeRingMap(SharedRing());
+  LoopCloser closer(sensor_, options_, objects_, 1);
+  ASSERT_TRUE(closer.Process({one.map.Snapshot(), KeyframeId(28)}));
+  EXPECT_FALSE(closer.Process({one.map.Snapshot(), made_.last()}));
+  EXPECT_TRUE(closer.Process({made_.map.Snapshot(), made_.last()}));
+}
+
+// Without it, a thing that looks the same in two places would be enough.
+TEST_F(IslandJoin, NeedsASecondKeyframeThatShowsThePlace) {
+  const std::vector<Covisible> neighbours = made_.map.keyframes().At(made_.last()).covisible;
+  ASSERT_TRUE(Join());
+  options_.min_supporters = 0;
+  for (const Covisible& neighbour : neighbours) {
+    made_.map.SetPose(neighbour.keyframe, Rigid3(ExpSo3({0.0, 3.0, 0.0}), {0.0, 0.0, 0.0}) *
+                                              made_.map.CamFromWorld(neighbour.keyframe));
+  }
+  EXPECT_FALSE(Join()) << "they look elsewhere";
 }
 
 }  // namespace

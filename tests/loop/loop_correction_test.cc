@@ -5,9 +5,11 @@
 
 #include <algorithm>
 
+#include "loop/ring_islands.h"
 #include "loop/ring_things.h"
 #include "map/correction.h"
 #include "map/invariants.h"
+#include "map/islands.h"
 
 namespace hullslam {
 namespace {
@@ -168,6 +170,41 @@ TEST_F(LoopMerges, AreAppliedToAConsistentMapWithOneLandmarkPerPoint) {
   EXPECT_TRUE(std::any_of(query.covisible.begin(), query.covisible.end(), [](const Covisible& c) {
     return c.keyframe == KeyframeId(5) && c.shared > 100;
   })) << "both ends see the same landmarks now";
+}
+
+// Of the two ends, either may belong to the younger island; that one moves.
+TEST(MoveIsland, PutsTheYoungerIslandToWhereItIsAndLeavesTheOtherOne) {
+  const Sim3 island_from_world(2.5, ExpSo3({0.3, -0.4, 0.2}), {3.0, -1.0, 0.5});
+  for (const bool query_is_younger : {true, false}) {
+    RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()});
+    SplitRing(made, 15, island_from_world);
+    ASSERT_EQ(FindViolations(made.map), std::vector<std::string>());
+    Loop loop = TrueLoop(made, query_is_younger ? 29 : 5, query_is_younger ? 5 : 29);
+    // Lengths in the younger island are 2.5 times as long.
+    const Sim3 unit(2.5, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
+    loop.query_from_candidate = query_is_younger ? unit * loop.query_from_candidate
+                                                 : loop.query_from_candidate * Inverse(unit);
+    const MapCorrection correction = MoveIsland(made.map, loop);
+    ASSERT_EQ(correction.poses.size(), 15u);
+    EXPECT_EQ(correction.poses.front().keyframe, KeyframeId(15));
+    EXPECT_EQ(correction.snapshot_corrections, made.map.correction_count());
+    const Map corrected = Corrected(made, correction);
+    EXPECT_EQ(FindViolations(corrected), std::vector<std::string>());
+    EXPECT_EQ(Islands(corrected).size(), 1u);
+    EXPECT_EQ(corrected.keyframes().At(KeyframeId(29)).parent, KeyframeId(5));
+    for (uint32_t i = 0; i < 30; ++i) {
+      EXPECT_LT(PoseError(made, corrected, KeyframeId(i)), 1e-9) << i;
+      EXPECT_NEAR(corrected.ScaleOf(KeyframeId(i)), 1.0, 1e-12) << i;
+    }
+  }
+}
+
+TEST(SpreadLoopError, NamesTheIslandOfTheLoopOnly) {
+  RingMap made = MakeRingMap(SharedRing());
+  SplitRing(made, 28, Sim3(2.0, Eigen::Quaterniond::Identity(), {1.0, 0.0, 0.0}));
+  const MapCorrection correction = SpreadLoopError(made.map, TrueLoop(made, 26, 3), true);
+  ASSERT_EQ(correction.poses.size(), 28u);
+  EXPECT_EQ(correction.poses.back().keyframe, KeyframeId(27));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "loop/ring_islands.h"
 #include "loop/ring_things.h"
 #include "map/correction.h"
 #include "map/invariants.h"
@@ -87,6 +88,30 @@ TEST_F(WholeMapAdjustment, TheSameInputGivesTheSameBits) {
     return Dump(map);
   };
   EXPECT_EQ(dump(), dump());
+}
+
+TEST(WholeMapAdjustmentOfIslands, AdjustsEachByItself) {
+  RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3(), .has_vocabulary = false});
+  const Sim3 island_from_world(2.0, ExpSo3({0.0, 0.5, 0.0}), {5.0, 0.0, 0.0});
+  SplitRing(made, 15, island_from_world);
+  Map truth = made.map.Snapshot();
+  Sensor sensor = SharedRing().sensor();
+  sensor.kind = SensorKind::kMonocular;
+  RandomGeometry random(1);
+  for (const uint32_t i : {4u, 5u, 20u, 21u}) {
+    made.map.SetPose(KeyframeId(i), random.Pose(0.01, 0.02) * truth.CamFromWorld(KeyframeId(i)));
+  }
+  const std::optional<MapCorrection> correction = AdjustWholeMap(made.map, sensor, {}, nullptr);
+  ASSERT_TRUE(correction);
+  ASSERT_EQ(correction->poses.size(), 28u) << "all but the two roots";
+  ASSERT_TRUE(ApplyCorrection(made.map, *correction, sensor.levels).is_applied);
+  for (uint32_t i = 0; i < 30; ++i) {
+    EXPECT_LT((made.map.CamFromWorld(KeyframeId(i)).translation -
+               truth.CamFromWorld(KeyframeId(i)).translation)
+                  .norm(),
+              i < 15 ? 0.02 : 0.05)
+        << i;
+  }
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "hullslam/util/check.h"
 #include "map/covisibility.h"
 #include "map/invariants.h"
+#include "map/islands.h"
 #include "map/landmark_edits.h"
 #include "map/landmark_projection.h"
 #include "map/made_correction.h"
@@ -944,6 +945,50 @@ TEST_F(UniformCorrection, KeepsTheProjectedEllipsesOfObjects) {
       EXPECT_LT((ellipse->shape - expected->shape).norm(), 1e-9 * expected->shape.norm());
     }
   });
+}
+
+// The younger island has another unit of length and another world; the correction is right.
+TEST(JoinCorrection, MovesTheYoungerIslandAndMakesOneOfBoth) {
+  RandomGeometry random(3);
+  Map map;
+  const ScaleLevels levels = ScaleLevels::Create(8, 1.2);
+  for (int i = 0; i < 2; ++i) {
+    const IslandId island = map.BeginIsland();
+    std::vector<KeyframeId> added;
+    for (int k = 0; k < 3; ++k) {
+      added.push_back(map.AddKeyframe(MakeFrame(map.keyframes().NextId().value, 40),
+                                      random.Pose(0.5, 1.0), island));
+    }
+    Share(map, added, 20);
+    for (const KeyframeId id : added) {
+      UpdateCovisibility(map, id);
+    }
+  }
+  Map before = map.Snapshot();
+  const Sim3 change = RandomSim3(random);
+  MapCorrection correction = MakeCorrection(map, change);
+  correction.poses.erase(correction.poses.begin(), correction.poses.begin() + 3);
+  correction.loop = MapCorrection::LoopEdge{KeyframeId(1), KeyframeId(5)};
+  const LandmarkId kept = map.keyframes().At(KeyframeId(1)).landmarks[0];
+  const LandmarkId duplicate = map.keyframes().At(KeyframeId(5)).landmarks[0];
+  const Eigen::Vector3d moved =
+      map.landmarks().At(map.keyframes().At(KeyframeId(5)).landmarks[1]).position;
+  correction.landmarks.push_back({.duplicate = duplicate, .kept = kept});
+  ASSERT_TRUE(ApplyCorrection(map, correction, levels).is_applied);
+  EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+  EXPECT_EQ(Islands(map).size(), 1u);
+  EXPECT_EQ(map.keyframes().At(KeyframeId(5)).parent, KeyframeId(1));
+  EXPECT_EQ(map.Resolve(duplicate), kept);
+  for (uint32_t i = 0; i < 6; ++i) {
+    const KeyframeId id(i);
+    const Rigid3 pose = before.CamFromWorld(id);
+    EXPECT_EQ(map.ScaleOf(id), i < 3 ? 1.0 : change.scale);
+    const Eigen::Vector3d center = Inverse(pose).translation;
+    const Eigen::Vector3d expected = i < 3 ? center : change * center;
+    EXPECT_LT((Inverse(map.CamFromWorld(id)).translation - expected).norm(), 1e-9);
+  }
+  const LandmarkId other = map.keyframes().At(KeyframeId(5)).landmarks[1];
+  EXPECT_LT((map.landmarks().At(other).position - change * moved).norm(), 1e-9);
 }
 
 }  // namespace

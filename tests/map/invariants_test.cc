@@ -255,5 +255,15 @@ TEST(InvariantsOfTheIndex, FindEntriesOfNoKeyframe) {
   EXPECT_EQ(FindViolations(map), std::vector<std::string>{"the index has 1 entries, expected 0"});
 }
 
+TEST_F(Invariants, NothingLeadsToAnotherIsland) {
+  map_.MoveToIsland(c_, map_.BeginIsland());
+  ExpectViolation("keyframe 2 observes landmark 0 of another island");
+  ExpectViolation("keyframe 2 has an edge to another island");
+  const ObjectId object = map_.AddObject();
+  map_.AddObservation(object, a_, 0);
+  map_.AddObservation(object, c_, 0);
+  ExpectViolation("keyframe 2 observes object 0 of another island");
+}
+
 }  // namespace
 }  // namespace hullslam

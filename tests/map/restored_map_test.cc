@@ -10,6 +10,7 @@
 
 #include "map/covisibility.h"
 #include "map/invariants.h"
+#include "map/islands.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
 #include "support/expect_error.h"
@@ -129,7 +130,7 @@ TEST(RestoreMap, RefusesCulledKeyframesWithoutAPose) {
   };
   ExpectRefusal(refer(2), {"keyframe 2", "itself"});
   ExpectRefusal(refer(7), {"keyframe 7", "does not exist"});
-  ExpectRefusal(refer(UINT32_MAX), {"does not exist"});
+  ExpectRefusal(refer(UINT32_MAX - 1), {"does not exist"});
   ExpectRefusal(
       [](MapTables& t) {
         t.culled.Put(KeyframeId(5), Culled(30, 2));
@@ -175,6 +176,29 @@ TEST(RestoreMap, RefusesWhatViolatesTheInvariants) {
                 {"ancestor"});
   ExpectRefusal([](MapTables& t) { t.objects.Mutable(ObjectId(0)).votes["cup"] += 1.0; },
                 {"object 0", "votes"});
+}
+
+TEST(RestoreMap, KeyframesThatWereRemovedWithTheirIslandHaveNoPose) {
+  Map map;
+  for (int i = 0; i < 2; ++i) {
+    const IslandId island = map.BeginIsland();
+    for (int k = 0; k < 2; ++k) {
+      map.AddKeyframe(MakeFrame(map.keyframes().NextId().value, 20), Rigid3(), island);
+    }
+  }
+  ASSERT_TRUE(KeepOnlyIsland(map, IslandId(1)));
+  const Map restored = RestoreMap(TablesOf(map));
+  EXPECT_EQ(restored.keyframes().size(), 2u);
+  EXPECT_EQ(Islands(restored).size(), 1u);
+  EXPECT_FALSE(restored.NearestAlive(KeyframeId(0)).IsValid());
+  EXPECT_EQ(restored.NearestAlive(KeyframeId(3)), KeyframeId(3));
+
+  Share(map, {KeyframeId(2), KeyframeId(3)});
+  MapTables tables = TablesOf(map);
+  const LandmarkId landmark = (*tables.landmarks.begin()).first;
+  tables.landmarks.Mutable(landmark).reference = KeyframeId(1);
+  ExpectInputError([&] { RestoreMap(std::move(tables)); },
+                   {"landmark", "a keyframe without a pose"});
 }
 
 }  // namespace

@@ -95,5 +95,17 @@ TEST_F(SpanningTree, ALeafIsRemoved) {
   EXPECT_FALSE(At(4).parent.IsValid());
 }
 
+// The tree is 0 - 1 - {2, 3, 4, 5}.
+TEST_F(SpanningTree, AKeyframeBecomesTheRoot) {
+  MakeRoot(map_, KeyframeId(4));
+  EXPECT_FALSE(At(4).parent.IsValid());
+  EXPECT_EQ(At(4).children, Ids({1}));
+  EXPECT_EQ(At(1).parent, KeyframeId(4));
+  EXPECT_EQ(At(1).children, Ids({0, 2, 3, 5}));
+  EXPECT_EQ(At(0).parent, KeyframeId(1));
+  MakeRoot(map_, KeyframeId(4));
+  EXPECT_EQ(At(4).children, Ids({1}));
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -67,6 +67,13 @@ TEST_F(RecentLandmarksTest, AreErasedIfTheirWeightIsSmallAfterTwoKeyframes) {
   ExpectKept(Add(1, 2, 1, 1), 3, true, "two observations with depth are enough");
 }
 
+TEST_F(RecentLandmarksTest, OfAnotherIslandStayAndAreOnTrialNoMore) {
+  const LandmarkId id = Add(1, 1, 100, 1);
+  map_.MoveToIsland(KeyframeId(4), map_.BeginIsland());
+  ExpectKept(id, 4, false, "the camera cannot see it any more");
+  ExpectCulled(id, 3, "the camera could see it");
+}
+
 // Without depth every observation has the weight 1, and three are needed.
 TEST_F(RecentLandmarksTest, OfAMonocularCameraNeedThreeObservations) {
   const LandmarkId three = Add(0, 2, 1, 1);  // weight 4

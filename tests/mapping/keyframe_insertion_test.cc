@@ -7,6 +7,7 @@
 
 #include "hullslam/util/check.h"
 #include "map/invariants.h"
+#include "map/islands.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
@@ -117,13 +118,25 @@ TEST(InitialMapInsertion, ViewsWithoutSharedPointsAreInOneTree) {
   EXPECT_EQ(FindViolations(map), std::vector<std::string>());
 }
 
-TEST(InitialMapInsertion, NeedsAnEmptyMap) {
+TEST(InitialMapInsertion, AnotherOneBecomesAnIslandWhichGrowsByItsOwnKeyframes) {
   const SyntheticWorld world;
-  const InitialMap initial = InitialMapOf(world.Observe(0), world.sensor().camera);
   Map map;
   std::vector<LandmarkId> created;
-  InsertInitialMap(map, initial, world.sensor(), created);
-  EXPECT_THROW(InsertInitialMap(map, initial, world.sensor(), created), CheckError);
+  for (const uint32_t frame : {0u, 30u}) {
+    InsertInitialMap(map, InitialMapOf(world.Observe(frame), world.sensor().camera), world.sensor(),
+                     created);
+  }
+  EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+  EXPECT_EQ(Islands(map), (std::vector<IslandId>{IslandId(0), IslandId(1)}));
+  EXPECT_FALSE(map.keyframes().At(KeyframeId(1)).parent.IsValid());
+  for (const uint32_t reference : {0u, 1u}) {
+    KeyframeRequest request;
+    request.frame = world.Observe(40 + reference).frame;
+    request.pose = map.RelativeTo(KeyframeId(reference), Rigid3());
+    const KeyframeId id = InsertKeyframe(map, request, world.sensor(), created);
+    EXPECT_EQ(IslandOf(map, id), IslandId(reference));
+    EXPECT_EQ(map.keyframes().At(id).parent, KeyframeId(reference));
+  }
 }
 
 // A keyframe after the initial map makes landmarks of all close keypoints and of the nearest

@@ -16,7 +16,8 @@ class ArrangementTest : public ::testing::Test {
  protected:
   ArrangementTest() { AddRoom(map_, sensor_, room_); }
   Arrangement Compare(const Frame& frame, const Rigid3& pose) const {
-    return CompareArrangement(map_, ObjectIndex(map_, sensor_.camera), sensor_, frame, pose, {});
+    return CompareArrangement(map_, ObjectIndex(map_, sensor_.camera), sensor_, frame, pose,
+                              IslandId(0), {});
   }
   Sensor sensor_ = MakeObjectSensor();
   const std::vector<MadeObject> room_ = MakeRoom();

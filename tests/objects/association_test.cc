@@ -38,7 +38,7 @@ class Association : public ::testing::Test {
       frame.detections.push_back(Detect(object, sensor_, cam_from_world));
     }
     return AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, frame,
-                               cam_from_world, {}, scope, options);
+                               cam_from_world, IslandId(0), {}, scope, options);
   }
   Sensor sensor_ = MakeObjectSensor();
   Map map_;
@@ -106,7 +106,7 @@ TEST_F(Association, WithoutDepthTheOutlineTells) {
     frame.detections.back().points.clear();
   }
   EXPECT_EQ(AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, frame,
-                                cam_from_world, {}, AssociationScope::kAll, {}),
+                                cam_from_world, IslandId(0), {}, AssociationScope::kAll, {}),
             (std::vector<ObjectId>{ObjectId(0), ObjectId(1), ObjectId(2)}));
 }
 
@@ -126,7 +126,8 @@ class Beside : public Association {
     frame.detections.push_back(Detect(beside_, sensor_, CameraOnCircle(0.0, 1.5, 0.6)));
     frame.detections.back().points.clear();
     return AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, frame,
-                               CameraOnCircle(0.0, 1.5, 0.6), {}, AssociationScope::kAll, options);
+                               CameraOnCircle(0.0, 1.5, 0.6), IslandId(0), {},
+                               AssociationScope::kAll, options);
   }
   double Overlap() const {
     const Rigid3 pose = CameraOnCircle(0.0, 1.5, 0.6);
@@ -190,7 +191,8 @@ TEST_F(Association, AFewCommonLandmarksAreNotEnough) {
   next.detections.back().points.clear();
   const auto associate = [&] {
     return AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, next, pose,
-                               landmarks, AssociationScope::kAll, {.min_similarity = 0.01})[0];
+                               IslandId(0), landmarks, AssociationScope::kAll,
+                               {.min_similarity = 0.01})[0];
   };
   EXPECT_EQ(associate(), ObjectId(0));
   landmarks[2] = LandmarkId();
@@ -210,7 +212,7 @@ class UnknownDepth : public Association {
   }
   ObjectId Associate(const MadeObject& object, double x) {
     return AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, See(object, x),
-                               Sideways(x), {}, AssociationScope::kAll, {})[0];
+                               Sideways(x), IslandId(0), {}, AssociationScope::kAll, {})[0];
   }
   void Add(double x) {
     const KeyframeId keyframe =

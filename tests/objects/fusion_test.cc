@@ -58,6 +58,18 @@ TEST_F(Duplicates, OfOnePlaceNeverSeenTogetherAreOneAndTheFullerOneStays) {
   EXPECT_EQ(pairs[0].second, a);
 }
 
+TEST_F(Duplicates, AreOfOneIsland) {
+  Look({cup_, near_}, 7);
+  Add(cup_, {0, 1, 2}, 0);
+  Add(near_, {3, 4, 5, 6}, 1);
+  EXPECT_EQ(FindDuplicates(map_).size(), 1u);
+  const IslandId island = map_.BeginIsland();
+  for (uint32_t i = 3; i < 7; ++i) {
+    map_.MoveToIsland(KeyframeId(i), island);
+  }
+  EXPECT_TRUE(FindDuplicates(map_).empty());
+}
+
 TEST_F(Duplicates, AreSoughtForChangedObjectsOnly) {
   Look({cup_, near_, far_}, 9);
   const ObjectId a = Add(cup_, {0, 1, 2}, 0);

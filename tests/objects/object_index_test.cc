@@ -27,7 +27,7 @@ class ObjectIndexTest : public ::testing::Test {
     return id;
   }
   std::vector<ObjectId> Visible(const Rigid3& cam_from_world) const {
-    return ObjectIndex(map_, sensor_.camera).FindVisible(sensor_, cam_from_world);
+    return ObjectIndex(map_, sensor_.camera).FindVisible(sensor_, cam_from_world, IslandId(0));
   }
   bool IsInImage(const std::vector<Eigen::Vector2d>& polygon) const {
     const Eigen::AlignedBox2d image(Eigen::Vector2d(sensor_.bounds.min_x, sensor_.bounds.min_y),
@@ -96,16 +96,26 @@ TEST_F(ObjectIndexTest, LeavesOutNothingThatIsInTheImage) {
 TEST_F(ObjectIndexTest, FollowsSnapshots) {
   const Rigid3 here = CameraOnCircle(0.0, 1.5, 0.5);
   ObjectIndex index;
-  EXPECT_TRUE(index.FindVisible(sensor_, here).empty());
+  EXPECT_TRUE(index.FindVisible(sensor_, here, IslandId(0)).empty());
   const ObjectId id = Add(cup_, here, true);
   const Map first = map_.Snapshot();
   index.Follow(first, sensor_.camera);
-  EXPECT_EQ(index.FindVisible(sensor_, here), std::vector<ObjectId>{id});
+  EXPECT_EQ(index.FindVisible(sensor_, here, IslandId(0)), std::vector<ObjectId>{id});
   map_.EraseObject(id);
   index.Follow(first, sensor_.camera);
-  EXPECT_EQ(index.FindVisible(sensor_, here), std::vector<ObjectId>{id});
+  EXPECT_EQ(index.FindVisible(sensor_, here, IslandId(0)), std::vector<ObjectId>{id});
   index.Follow(map_.Snapshot(), sensor_.camera);
-  EXPECT_TRUE(index.FindVisible(sensor_, here).empty());
+  EXPECT_TRUE(index.FindVisible(sensor_, here, IslandId(0)).empty());
+}
+
+TEST_F(ObjectIndexTest, FindsObjectsOfTheIslandOfTheCameraOnly) {
+  const Rigid3 here = CameraOnCircle(0.0, 1.5, 0.5);
+  const ObjectId first = Add(cup_, here, true);
+  const ObjectId second = Add(cup_, here, true);
+  map_.MoveToIsland(map_.objects().At(second).reference, map_.BeginIsland());
+  EXPECT_EQ(Visible(here), std::vector<ObjectId>{first});
+  EXPECT_EQ(ObjectIndex(map_, sensor_.camera).FindVisible(sensor_, here, IslandId(1)),
+            std::vector<ObjectId>{second});
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ double PositionError(const Rigid3& a, const Rigid3& b) {
 class PoseHypotheses : public ::testing::Test {
  protected:
   std::vector<PoseHypothesis> Propose(const Map& map, const Frame& frame) const {
-    return ProposePoses(map, sensor_.camera, frame);
+    return ProposePoses(map, sensor_.camera, frame, IslandId(0));
   }
   // The smallest error of the position of any hypothesis that is turned by less than 0.3 rad.
   double BestError(const std::vector<PoseHypothesis>& hypotheses) const {

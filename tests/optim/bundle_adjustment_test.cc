@@ -116,7 +116,7 @@ TEST(LocalWindow, WithoutALimitAllObserversAreFixed) {
 
 TEST(GlobalWindow, MovesAllButTheRoot) {
   const Map map = MakeChain(5);
-  const BundleWindow window = GlobalWindow(map);
+  const BundleWindow window = GlobalWindow(map, IslandId(0));
   EXPECT_EQ(window.moving, Ids({1, 2, 3, 4}));
   EXPECT_EQ(window.fixed, Ids({0}));
   EXPECT_EQ(window.landmarks.size(), 4u * 20u + 3u * 16u);
@@ -345,7 +345,7 @@ TEST_F(BundleAdjustment, WithManyPosesRecoversTheTruthAndGivesTheSameBits) {
       const Rigid3& pose = made.map.keyframes().At(KeyframeId(i)).cam_from_world;
       made.map.SetPose(KeyframeId(i), random_.Pose(0.01, 0.02) * pose);
     }
-    const BundleWindow window = GlobalWindow(made.map);
+    const BundleWindow window = GlobalWindow(made.map, IslandId(0));
     ASSERT_EQ(window.moving.size(), count - 1);
     const BundleResult first = AdjustBundle(made.map, world.sensor(), window, kPrecise, nullptr);
     const BundleResult second = AdjustBundle(made.map, world.sensor(), window, kPrecise, nullptr);
@@ -366,7 +366,7 @@ TEST_F(BundleAdjustment, CeresAloneComesToTheSameResult) {
 #endif
   const SyntheticWorld world({.points = 300, .pixel_noise = 1.0, .depth_share = 0.7});
   const SyntheticMap made = MakeSyntheticMap(world, {0, 10, 20, 30, 40, 50});
-  const BundleWindow window = GlobalWindow(made.map);
+  const BundleWindow window = GlobalWindow(made.map, IslandId(0));
   BundleOptions options = kPrecise;
   const BundleResult own = AdjustBundle(made.map, world.sensor(), window, options, nullptr);
   options.max_eliminated = window.moving.size() - 1;

@@ -157,7 +157,7 @@ TEST_F(ObjectBundle, WindowsContainTheMappedObjects) {
   const std::vector<ObjectId> mapped = {ids_[0], ids_[2]};
   const KeyframeId last(5);
   EXPECT_EQ(LocalWindow(made_.map, last, 20, 40, WindowObjects::kMapped).objects, mapped);
-  EXPECT_EQ(GlobalWindow(made_.map, WindowObjects::kMapped).objects, mapped);
+  EXPECT_EQ(GlobalWindow(made_.map, IslandId(0), WindowObjects::kMapped).objects, mapped);
   EXPECT_TRUE(LocalWindow(made_.map, last, 20, 40).objects.empty());
   for (uint32_t k = 0; k < 6; ++k) {
     made_.map.RemoveObservation(ids_[0], KeyframeId(k));
@@ -186,7 +186,7 @@ TEST_F(ObjectBundle, OfTheWholeMapImprovesPosesAndShapes) {
   PerturbPoses(0.01, 0.02);
   PerturbObjects(0.2);
   const double before = MeanShapeErrorBefore();
-  const BundleWindow window = GlobalWindow(made_.map, WindowObjects::kMapped);
+  const BundleWindow window = GlobalWindow(made_.map, IslandId(0), WindowObjects::kMapped);
   ASSERT_EQ(window.moving.size(), 5u);
   const BundleResult result = Adjust(window);
   ASSERT_TRUE(result.is_usable);

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "map/islands.h"
 #include "map/made_map.h"
 
 namespace hullslam {
@@ -32,6 +33,42 @@ TEST(ComposeTrajectory, FramesFollowTheirKeyframes) {
   EXPECT_EQ(trajectory[0].world_from_cam.translation.x(), 3.0);
   EXPECT_EQ(trajectory[1].timestamp, 5.0);
   EXPECT_EQ(trajectory[1].world_from_cam.translation.x(), 3.5);
+}
+
+// Between islands no relative pose is known.
+TEST(ComposeTrajectory, HasTheFramesOfTheMainIslandOnly) {
+  Map map;
+  const IslandId other = map.BeginIsland();
+  const IslandId main = map.BeginIsland();
+  const KeyframeId first = map.AddKeyframe(MakeFrame(1, 1), Shift(-1.0), other);
+  const KeyframeId second = map.AddKeyframe(MakeFrame(4, 1), Shift(-2.0), main);
+  map.AddKeyframe(MakeFrame(7, 1), Shift(-3.0), main);
+  std::vector<TrackedFrame> frames(4);
+  for (uint32_t i = 0; i < 4; ++i) {
+    frames[i].frame = FrameId(std::vector<uint32_t>{1, 2, 4, 5}[i]);
+    frames[i].timestamp = frames[i].frame.value;
+    frames[i].state = TrackingState::kTracked;
+    frames[i].pose = RelativePose{i < 2 ? first : second, Shift(-0.5), 1.0};
+  }
+  const auto expect_main_only = [&] {
+    const Trajectory trajectory = ComposeTrajectory(map, frames);
+    ASSERT_EQ(trajectory.size(), 2u);
+    EXPECT_EQ(trajectory[0].timestamp, 4.0);
+    EXPECT_EQ(trajectory[1].world_from_cam.translation.x(), 2.5);
+    EXPECT_EQ(KeyframeTrajectory(map).size(), 2u);
+  };
+  expect_main_only();
+  KeepOnlyIsland(map, main);
+  expect_main_only();
+  LoseFramesElsewhere(map, frames);
+  for (uint32_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(frames[i].state, i < 2 ? TrackingState::kLost : TrackingState::kTracked);
+    EXPECT_EQ(frames[i].pose.has_value(), i >= 2);
+  }
+  // A frame of a removed keyframe that was located in the main island at the end.
+  frames[0].state = TrackingState::kTracked;
+  frames[0].pose = RelativePose{second, Shift(-0.25), 1.0};
+  EXPECT_EQ(ComposeTrajectory(map, frames).front().world_from_cam.translation.x(), 2.25);
 }
 
 TEST(KeyframeTrajectory, HasThePosesOfTheKeyframes) {

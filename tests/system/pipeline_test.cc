@@ -10,6 +10,7 @@
 
 #include "hullslam/util/check.h"
 #include "map/invariants.h"
+#include "map/islands.h"
 #include "system/pipeline_cases.h"
 #include "system/ring_path.h"
 #include "system/sequential_pipeline.h"
@@ -243,6 +244,47 @@ TEST_P(LoopPipelineTest, MayBeDestroyedWhileALoopIsClosed) {
   const auto pipeline = Make();
   path_.Track(*pipeline, 0, 170);
   EXPECT_EQ(FindViolations(*pipeline->map()), std::vector<std::string>());
+}
+
+TEST_P(LoopPipelineTest, IslandsOfALostMonocularCameraAreJoined) {
+  path_.BeMonocular();
+  const auto pipeline = Make();
+  std::vector<TrackedFrame> frames = path_.Track(*pipeline, 0, 22);
+  for (const auto& more :
+       {path_.TrackBlank(*pipeline, 22, 60), path_.Track(*pipeline, 60, RingPath::kFrames)}) {
+    frames.insert(frames.end(), more.begin(), more.end());
+  }
+  pipeline->Finish();
+  const std::shared_ptr<const Map> map = pipeline->map();
+  EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
+  EXPECT_EQ(map->islands_begun(), 2u);
+  EXPECT_EQ(map->islands_joined(), 1u);
+  EXPECT_EQ(Islands(*map).size(), 1u);
+  for (const TrackedFrame& early : pipeline->TakeEarlyFrames()) {
+    frames.at(early.frame.value) = early;
+  }
+  const Trajectory trajectory = ComposeTrajectory(*map, frames);
+  EXPECT_EQ(trajectory.size(), RingPath::kFrames - 38u) << "all frames but the blank ones";
+  EXPECT_LT(RingPath::AlignedError(trajectory), 0.03);
+}
+
+// The second part never sees the first place again.
+TEST_P(LoopPipelineTest, OfIslandsThatAreNotJoinedTheLargestStays) {
+  path_.BeMonocular();
+  const auto pipeline = Make();
+  std::vector<TrackedFrame> frames = path_.Track(*pipeline, 0, 22);
+  for (const auto& more : {path_.TrackBlank(*pipeline, 22, 60), path_.Track(*pipeline, 60, 110)}) {
+    frames.insert(frames.end(), more.begin(), more.end());
+  }
+  pipeline->Finish();
+  const std::shared_ptr<const Map> map = pipeline->map();
+  EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
+  EXPECT_EQ(map->islands_joined(), 0u);
+  EXPECT_EQ(Islands(*map), std::vector<IslandId>{IslandId(1)});
+  const Trajectory trajectory = ComposeTrajectory(*map, frames);
+  ASSERT_FALSE(trajectory.empty());
+  EXPECT_GE(trajectory.front().timestamp, 60 / path_.sensor().frames_per_second);
+  EXPECT_LT(RingPath::AlignedError(trajectory), 0.03);
 }
 
 INSTANTIATE_TEST_SUITE_P(Loops, LoopPipelineTest,

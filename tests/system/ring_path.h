@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
+#include "hullslam/geometry/alignment.h"
 #include "hullslam/system/compose_trajectory.h"
 #include "hullslam/system/options.h"
 #include "support/ring_world.h"
@@ -31,13 +34,38 @@ class RingPath {
   const Sensor& sensor() const { return sensor_; }
   SystemOptions& options() { return options_; }
 
+  // From now on the camera has no depth, and the focal length is right.
+  void BeMonocular() {
+    sensor_ = SharedRing().sensor();
+    sensor_.kind = SensorKind::kMonocular;
+    options_.sensor = SensorKind::kMonocular;
+  }
+
   // Tracks the frames from `first` to `end` - 1.
   std::vector<TrackedFrame> Track(Pipeline& pipeline, uint32_t first = 0,
                                   uint32_t end = kFrames) const {
     std::vector<TrackedFrame> tracked;
     for (uint32_t i = first; i < end; ++i) {
       const Rigid3 pose = RingWorld::CamFromWorld(static_cast<double>(i) / kFramesPerTurn);
-      tracked.push_back(pipeline.Track(SharedRing().Observe(FrameId(i), pose).frame).tracked);
+      auto frame = std::make_shared<Frame>(*SharedRing().Observe(FrameId(i), pose).frame);
+      if (sensor_.IsMonocular()) {
+        std::fill(frame->features.depth.begin(), frame->features.depth.end(), 0.0f);
+        std::fill(frame->features.right_u.begin(), frame->features.right_u.end(), -1.0f);
+      }
+      tracked.push_back(pipeline.Track(std::move(frame)).tracked);
+    }
+    return tracked;
+  }
+
+  // Tracks frames without keypoints, which are all lost.
+  std::vector<TrackedFrame> TrackBlank(Pipeline& pipeline, uint32_t first, uint32_t end) const {
+    std::vector<TrackedFrame> tracked;
+    for (uint32_t i = first; i < end; ++i) {
+      auto blank = std::make_shared<Frame>();
+      blank->id = FrameId(i);
+      blank->timestamp = i / sensor_.frames_per_second;
+      tracked.push_back(pipeline.Track(std::move(blank)).tracked);
+      EXPECT_EQ(tracked.back().state, TrackingState::kLost);
     }
     return tracked;
   }
@@ -67,6 +95,26 @@ class RingPath {
       ++count;
     }
     return sum / count;
+  }
+
+  // Root mean square distance of the cameras from where they truly are, after the best similarity,
+  // m.
+  static double AlignedError(const Trajectory& trajectory) {
+    std::vector<Eigen::Vector3d> estimated;
+    std::vector<Eigen::Vector3d> truth;
+    for (const StampedPose& pose : trajectory) {
+      const double turns =
+          pose.timestamp * SharedRing().sensor().frames_per_second / kFramesPerTurn;
+      estimated.push_back(pose.world_from_cam.translation);
+      truth.push_back(Inverse(RingWorld::CamFromWorld(turns)).translation);
+    }
+    const PointAlignment aligned = AlignPoints(estimated, truth, AlignmentKind::kSim3);
+    EXPECT_TRUE(aligned.ok()) << aligned.failure;
+    double sum = 0.0;
+    for (size_t i = 0; i < truth.size(); ++i) {
+      sum += (aligned * estimated[i] - truth[i]).squaredNorm();
+    }
+    return std::sqrt(sum / static_cast<double>(truth.size()));
   }
 
   // The number of keyframes that are one end of a loop.

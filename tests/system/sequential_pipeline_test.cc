@@ -132,6 +132,22 @@ TEST(SequentialPipeline, TwoRunsWithALoopGiveTheSameMapToTheBit) {
 }
 
 // A loop is in the map, and the whole map adjusted, when Track returns.
+TEST(SequentialPipeline, TwoRunsWithAJoinOfIslandsGiveTheSameMapToTheBit) {
+  RingPath path;
+  path.BeMonocular();
+  const auto run = [&] {
+    const auto pipeline = MakeSequentialPipeline(path.sensor(), path.options());
+    path.Track(*pipeline, 0, 22);
+    path.TrackBlank(*pipeline, 22, 60);
+    path.Track(*pipeline, 60, RingPath::kFrames);
+    pipeline->Finish();
+    EXPECT_EQ(pipeline->map()->islands_joined(), 1u);
+    return Dump(*pipeline->map());
+  };
+  const std::string first = run();
+  EXPECT_TRUE(run() == first);
+}
+
 TEST(SequentialPipeline, ClosesLoopsBeforeTrackReturns) {
   RingPath path;
   for (const bool is_adjusted : {false, true}) {

@@ -47,7 +47,8 @@ class PoseObjectsTest : public ::testing::Test {
     PoseEstimate estimate;
     estimate.cam_from_world = camera_;
     const std::vector<ObjectId> ids = FindMappedObjects(
-        frame_, map_, {sensor_, tracking, options, ObjectIndex(map_, sensor_.camera)}, estimate);
+        frame_, map_, {sensor_, tracking, options, ObjectIndex(map_, sensor_.camera)}, estimate,
+        IslandId(0));
     return MakePoseObjects(map_, sensor_, frame_, camera_, ids, options);
   }
   // Expects all three objects with the original lines of their detections and the whole misfit.

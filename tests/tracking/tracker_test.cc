@@ -8,6 +8,8 @@
 #include <variant>
 
 #include "map/covisibility.h"
+#include "map/islands.h"
+#include "mapping/keyframe_insertion.h"
 #include "objects/made_objects.h"
 #include "support/ring_world.h"
 #include "support/synthetic_world.h"
@@ -909,6 +911,90 @@ TEST_F(MonocularTracker, FramesThatTheMapDoesNotShowAreLeftOut) {
   const SyntheticWorld other({.points = 300, .depth_share = 0.0, .seed = 77});
   const SyntheticMap made = MakeSyntheticMap(other, {last + 10, last + 20});
   EXPECT_TRUE(tracker_.LocaliseEarlyFrames(made.map).empty());
+}
+
+// A monocular camera that has a young map of one world and is then in another one.
+class LostMonocularTracker : public MonocularTracker {
+ protected:
+  // Frame `number` of a world, taken at its place `index`.
+  static std::shared_ptr<const Frame> FrameOf(const SyntheticWorld& world, uint32_t number,
+                                              uint32_t index) {
+    auto frame = std::make_shared<Frame>(*world.Observe(index).frame);
+    frame->id = FrameId(number);
+    frame->timestamp = number / world.sensor().frames_per_second;
+    return frame;
+  }
+  // Begins with a map of this many keyframes, and is lost from frame 100 on for so many frames.
+  // Returns the frame that begins an island; 0 if there is none.
+  uint32_t BeginAndLose(uint32_t keyframes, uint32_t frames) {
+    const uint32_t last = WaitForMap();
+    std::vector<uint32_t> indices;
+    for (uint32_t i = 0; i < keyframes; ++i) {
+      indices.push_back(last + 2 * i);
+    }
+    made_ = MakeSyntheticMap(world_, indices);
+    map_ = Publish(made_.map);
+    EXPECT_EQ(Process(world_.Observe(last + 1).frame).report.tracked.state,
+              TrackingState::kTracked);
+    for (uint32_t i = 100; i < 100 + frames; ++i) {
+      const Tracker::Result result = Process(FrameOf(other_, i, i - 100));
+      EXPECT_FALSE(result.report.failure) << "there is a map";
+      if (result.message) {
+        EXPECT_TRUE(std::holds_alternative<InitialMap>(*result.message));
+        EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked);
+        EXPECT_FALSE(result.report.tracked.pose) << "it is a keyframe";
+        island_ = std::get<InitialMap>(*result.message);
+        return i;
+      }
+      EXPECT_EQ(result.report.tracked.state, TrackingState::kLost);
+    }
+    return 0;
+  }
+  Tracker::Result Process(std::shared_ptr<const Frame> frame) {
+    return tracker_.Process(std::move(frame), map_, kIdle);
+  }
+
+  const SyntheticWorld other_{{.points = 300, .depth_share = 0.0, .seed = 77}};
+  SyntheticMap made_;
+  std::shared_ptr<const Map> map_;
+  InitialMap island_;
+};
+
+TEST_F(LostMonocularTracker, BeginsAnIslandAndFollowsIt) {
+  const uint32_t begin = BeginAndLose(3, 40);
+  ASSERT_GT(begin, 100u);
+  EXPECT_EQ(island_.views.back().frame->id, FrameId(begin));
+  EXPECT_GE(island_.views.front().frame->id, FrameId(100)) << "only frames since it was lost";
+  std::vector<LandmarkId> created;
+  const std::vector<KeyframeId> ids = InsertInitialMap(made_.map, island_, sensor_, created);
+  map_ = Publish(made_.map);
+  for (uint32_t i = begin + 1; i < begin + 4; ++i) {
+    const Tracker::Result result = Process(FrameOf(other_, i, i - 100));
+    ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked);
+    EXPECT_EQ(IslandOf(*map_, result.report.tracked.pose->reference), IslandId(1));
+  }
+}
+
+TEST_F(LostMonocularTracker, TheFramesBeforeTheIslandGetPosesAtTheEnd) {
+  const uint32_t begin = BeginAndLose(3, 40);
+  ASSERT_GT(begin, 100u);
+  std::vector<LandmarkId> created;
+  InsertInitialMap(made_.map, island_, sensor_, created);
+  ASSERT_TRUE(KeepOnlyIsland(made_.map, IslandId(1)));
+  const std::vector<TrackedFrame> early = tracker_.LocaliseEarlyFrames(made_.map);
+  ASSERT_GE(early.size(), begin - 100);
+  for (const TrackedFrame& frame : early) {
+    EXPECT_GE(frame.frame, FrameId(100)) << "the first island is not there any more";
+  }
+}
+
+TEST_F(LostMonocularTracker, WithoutWordsAGrownMapIsNotGivenUp) {
+  EXPECT_EQ(BeginAndLose(12, 60), 0u);
+}
+
+TEST_F(LostMonocularTracker, WithLocalizationOnlyNoIslandIsBegun) {
+  tracker_.Begin({}, true);
+  EXPECT_EQ(BeginAndLose(3, 40), 0u);
 }
 
 }  // namespace

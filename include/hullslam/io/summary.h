@@ -57,6 +57,8 @@ struct ObjectsSummary {
 struct InitialisationSummary {
   std::optional<double> seconds = std::nullopt;  // from the first image to the map; absent: no map
   std::map<std::string, size_t> failures = {};   // frames that made no map, by reason
+  size_t islands = 0;         // parts of the map that were begun, the first one included
+  size_t joined_islands = 0;  // those that were joined to an older one
 };
 
 struct TimingSummary {

@@ -28,12 +28,15 @@ struct Keyframe {
   KeyframeId parent;                  // in the spanning tree; invalid for its root
   std::vector<KeyframeId> children;   // by increasing id
   std::vector<KeyframeId> loops;      // joined to this one by a loop closure, by increasing id
+  IslandId island{0};                 // the part of the map that it belongs to (Map::BeginIsland)
 };
 
 // What is kept of a culled keyframe, so that frames tracked relative to it still have a pose.
 struct CulledKeyframe {
   FrameId frame;
-  RelativePose pose;   // relative to its parent, which may be culled later itself
+  // Relative to its parent, which may be culled later itself. Without a reference: the keyframe was
+  // removed with its island, so neither it nor what refers to it has a pose.
+  RelativePose pose;
   double scale = 1.0;  // Keyframe::scale when it was culled
 };
 

@@ -63,7 +63,8 @@ class Map {
 
   // Also adds the words of the frame to the index. Throws CheckError if the frame has words, but
   // not one per keypoint.
-  KeyframeId AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& cam_from_world);
+  KeyframeId AddKeyframe(std::shared_ptr<const Frame> frame, const Rigid3& cam_from_world,
+                         IslandId island = IslandId(0));
   LandmarkId AddLandmark(const Eigen::Vector3d& position, KeyframeId created_by);
 
   // False if the keyframe already observes the landmark or the keypoint already shows a landmark.
@@ -97,6 +98,19 @@ class Map {
   // How many replaced ids are remembered.
   size_t replaced_count() const { return replaced_landmarks_.size() + replaced_objects_.size(); }
 
+  // Islands are parts of the map between which no relative pose is known: a monocular camera begins
+  // a new one when it was lost. Each has a world frame and a unit of length of its own, a spanning
+  // tree of its own, and no landmark, object or edge in common with another one. The first island
+  // is number 0, and the others have larger numbers the later they were begun. map/islands.h joins
+  // and removes islands.
+  IslandId BeginIsland();
+  // How many islands were begun and how many were joined to an older one, in this run. A map of
+  // earlier sessions counts as one island.
+  size_t islands_begun() const { return island_sizes_.size(); }
+  size_t islands_joined() const { return islands_joined_; }
+  // The number of its keyframes, without culled ones; 0 after it was joined or removed.
+  size_t IslandSize(IslandId island) const;
+
   // Gives a keyframe another frame and its words another place in the index. The lists of the
   // keyframe that have one entry per keypoint or detection are left to the caller
   // (CompactKeyframe).
@@ -122,7 +136,8 @@ class Map {
   double ScaleOf(KeyframeId keyframe) const;
   // The keyframe made of this frame, culled or not.
   std::optional<KeyframeId> KeyframeOfFrame(FrameId frame) const;
-  // The keyframe itself or, if it is culled, the nearest ancestor that is not.
+  // The keyframe itself or, if it is culled, the nearest ancestor that is not. Invalid if that was
+  // removed with its island; then the keyframe has no pose.
   KeyframeId NearestAlive(KeyframeId keyframe) const;
 
   // How much the observation of a landmark at this keypoint counts: an observation with depth
@@ -141,10 +156,18 @@ class Map {
   Keyframe& MutableKeyframe(KeyframeId keyframe) { return keyframes_.Mutable(keyframe); }
   CulledKeyframe& MutableCulledKeyframe(KeyframeId keyframe) { return culled_.Mutable(keyframe); }
   Landmark& MutableLandmark(LandmarkId landmark) { return landmarks_.Mutable(landmark); }
+  void MoveToIsland(KeyframeId keyframe, IslandId island);
+  void CountJoinedIsland() { ++islands_joined_; }
+  // Removes a keyframe that has no observations any more, without its links to others. It has no
+  // pose afterwards.
+  void RemoveKeyframe(KeyframeId keyframe);
   // State, shape, misfit and counts may be written; observations and votes belong to this class.
   ObjectLandmark& MutableObject(ObjectId object) { return objects_.Mutable(object); }
 
  private:
+  void CountInIsland(IslandId island);
+  // Takes a keyframe out of the table and the index. `kept`: its pose from now on.
+  void Erase(KeyframeId keyframe, const RelativePose& kept);
   // cam_from_reference with the translation in the current unit of length of its reference.
   Rigid3 AtCurrentScale(const RelativePose& pose) const;
 
@@ -157,6 +180,8 @@ class Map {
   Replacements<ObjectId> replaced_objects_;
   CowTable<KeyframeId, CulledKeyframe> culled_;
   std::vector<Session> sessions_;
+  std::vector<size_t> island_sizes_;  // one entry per island that was begun
+  size_t islands_joined_ = 0;
   uint32_t correction_count_ = 0;
   uint32_t revision_ = 0;
 };

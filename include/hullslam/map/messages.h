@@ -18,8 +18,8 @@
 
 namespace hullslam {
 
-// The keyframes and points that a map begins with. RGB-D begins with one keyframe, a monocular map
-// with two or more.
+// The keyframes and points that a map, or a new island of it, begins with. RGB-D begins with one
+// keyframe, a monocular camera with two or more.
 struct InitialMap {
   struct View {
     std::shared_ptr<const Frame> frame;

@@ -10,12 +10,15 @@
 
 namespace hullslam {
 
-// The poses of all tracked frames in the current map. The pose of a frame is relative to its
-// reference keyframe, so it follows the map; a frame that is a keyframe has the keyframe's pose.
-// Frames without a pose are left out.
+// The poses of all tracked frames in the main island of the current map (Map::BeginIsland). The
+// pose of a frame is relative to its reference keyframe, so it follows the map; a frame that is a
+// keyframe has the keyframe's pose. Frames without a pose are left out.
 Trajectory ComposeTrajectory(const Map& map, std::span<const TrackedFrame> frames);
 
-// The poses of the keyframes.
+// Makes tracked frames lost that have no pose in the main island.
+void LoseFramesElsewhere(const Map& map, std::span<TrackedFrame> frames);
+
+// The poses of the keyframes of the main island.
 Trajectory KeyframeTrajectory(const Map& map);
 // The poses of the keyframes of one session (SessionNumber).
 Trajectory KeyframeTrajectory(const Map& map, size_t session);

@@ -91,8 +91,10 @@ class System {
   // Waits until all keyframes are in the map. Then it adjusts the whole map if
   // mapping.final_bundle_adjustment is set. The adjustment ends early with what it has if
   // `cancellation` (may be null) is requested. `on_progress` is called after each of its
-  // iterations, in this thread. Of a monocular camera, frames before the map are then located in
-  // the map, so frames() may change. Track must not be called after Finish.
+  // iterations, in this thread. Of a monocular camera that was lost, only the main island of the
+  // map stays (Map::BeginIsland), and frames in others become lost. Frames before the map and
+  // before each island are then located in the map. So frames() may change. Track must not be
+  // called after Finish.
   void Finish(const Cancellation* cancellation = nullptr, const ProgressCallback& on_progress = {});
 
   // Makes the system as it was after its construction: with the map that it was given, without
@@ -105,7 +107,7 @@ class System {
   std::shared_ptr<const Map> map() const;
   // One entry per call of Track.
   const std::vector<TrackedFrame>& frames() const { return frames_; }
-  // All tracked frames in the current map.
+  // All tracked frames in the main island of the current map.
   Trajectory trajectory() const;
   // Durations of the stages. "frame" is building a frame, "pose" is tracking it. With kRealtime,
   // "track" is the time from the begin of building to the pose, with all waiting in between. Else

@@ -69,6 +69,7 @@ using FrameId = Id<struct FrameTag>;
 using KeyframeId = Id<struct KeyframeTag>;
 using LandmarkId = Id<struct LandmarkTag>;
 using ObjectId = Id<struct ObjectTag>;
+using IslandId = Id<struct IslandTag>;
 
 }  // namespace hullslam
 

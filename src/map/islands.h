@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "hullslam/map/map.h"
+
+namespace hullslam {
+
+// The island of a keyframe, which may be culled; of an object, that of its reference keyframe.
+// Invalid if the keyframe has no pose (Map::NearestAlive).
+IslandId IslandOf(const Map& map, KeyframeId keyframe);
+IslandId IslandOf(const Map& map, const ObjectLandmark& object);
+
+// The islands that have keyframes, by increasing number.
+std::vector<IslandId> Islands(const Map& map);
+
+// The keyframes of an island, without culled ones, by increasing id.
+std::vector<KeyframeId> KeyframesOf(const Map& map, IslandId island);
+
+// The island that stays when a run ends: the one with most keyframes, culled ones included; of
+// equal ones the oldest. But if the map has keyframes of earlier sessions, it is the island of the
+// oldest one, because the run must not remove what others have mapped. Invalid for an empty map.
+IslandId MainIsland(const Map& map);
+
+// Makes one island of those of two keyframes: the younger one gets the number of the older one, and
+// its spanning tree becomes a branch of the other tree at the given keyframes. Does nothing if the
+// keyframes belong to one island already. Poses stay as they are; they must agree already.
+void JoinIslands(Map& map, KeyframeId a, KeyframeId b);
+
+// Removes all islands but one, with their keyframes, landmarks and objects. A removed keyframe, and
+// everything that has a pose relative to it, has no pose afterwards. Returns whether there were
+// others.
+bool KeepOnlyIsland(Map& map, IslandId kept);
+
+}  // namespace hullslam
