@@ -54,17 +54,20 @@ nlohmann::ordered_json ToJson(const RpeReport& rpe) {
 
 void PrintJson(const TrajectoryArguments& arguments, const Evaluation& evaluation) {
   const AteReport& ate = evaluation.ate;
-  const nlohmann::ordered_json json = {{"ate_m", ToJson(ate.errors)},
-                                       {"alignment", ToString(arguments.ate.alignment)},
-                                       {"scale", ate.reference_from_estimate.scale},
-                                       {"pairing", ToString(arguments.ate.pairing)},
-                                       {"max_difference_s", evaluation.max_difference},
-                                       {"pairs", ate.pairs},
-                                       {"coverage", ate.coverage},
-                                       {"estimate_poses", ate.estimate_poses},
-                                       {"groundtruth_poses", ate.reference_poses},
-                                       {"paired_span_s", ate.paired_span},
-                                       {"rpe", ToJson(evaluation.rpe)}};
+  const nlohmann::ordered_json json = {
+      {"ate_m", ToJson(ate.errors)},
+      {"alignment", ToString(arguments.ate.alignment)},
+      {"scale", ate.reference_from_estimate.scale},
+      {"pairing", ToString(arguments.ate.pairing)},
+      {"max_difference_s", evaluation.max_difference},
+      {"pairs", ate.pairs},
+      {"coverage", ate.coverage},
+      {"estimate_poses", ate.estimate_poses},
+      {"groundtruth_poses", ate.reference_poses},
+      {"paired_span_s", ate.paired_span},
+      {"rpe", ToJson(evaluation.rpe)},
+      {"scale_drift", ate.scale_drift ? nlohmann::ordered_json(*ate.scale_drift)
+                                      : nlohmann::ordered_json(nullptr)}};
   fmt::print("{}\n", json.dump(2));
 }
 
@@ -89,6 +92,10 @@ void PrintText(const TrajectoryArguments& arguments, const Evaluation& evaluatio
              100.0 * ate.coverage, ate.paired_span);
   fmt::print("{:<12} {}, scale {:.6f}\n", "alignment", ToString(arguments.ate.alignment),
              ate.reference_from_estimate.scale);
+  if (ate.scale_drift) {
+    fmt::print("{:<12} {:.2f} % from the first to the last tenth of the pairs\n", "scale drift",
+               100.0 * *ate.scale_drift);
+  }
 }
 
 }  // namespace

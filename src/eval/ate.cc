@@ -2,6 +2,7 @@
 #include "hullslam/eval/ate.h"
 
 #include <algorithm>
+#include <span>
 #include <sstream>
 #include <vector>
 
@@ -31,6 +32,20 @@ double CountDistinctEstimates(const std::vector<IndexPair>& pairs) {
   }
   std::sort(estimates.begin(), estimates.end());
   return static_cast<double>(std::unique(estimates.begin(), estimates.end()) - estimates.begin());
+}
+
+std::optional<double> ScaleDrift(const PairedPoints& points) {
+  const size_t count = points.reference.size() / 10;
+  const auto scale_of = [count](const std::vector<Eigen::Vector3d>& estimate,
+                                const std::vector<Eigen::Vector3d>& reference, size_t begin) {
+    return AlignPoints(std::span(estimate).subspan(begin, count),
+                       std::span(reference).subspan(begin, count), AlignmentKind::kSim3);
+  };
+  const PointAlignment first = scale_of(points.estimate, points.reference, 0);
+  const PointAlignment last =
+      scale_of(points.estimate, points.reference, points.reference.size() - count);
+  // A longer unit of the map means that lengths in the map have become shorter.
+  return first.ok() && last.ok() ? std::optional(first.scale / last.scale - 1.0) : std::nullopt;
 }
 
 std::string NoPairs(double max_difference) {
@@ -65,6 +80,9 @@ AteReport EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
   report.failure = report.reference_from_estimate.failure;
   if (!report.ok()) {
     return report;
+  }
+  if (options.alignment == AlignmentKind::kSim3) {
+    report.scale_drift = ScaleDrift(points);
   }
   std::vector<double> errors;
   for (size_t i = 0; i < pairs.size(); ++i) {

@@ -23,23 +23,7 @@ constexpr double kBorderPx = 20.0;
 constexpr double kMaxMisfit = 0.1;  // of the longest side
 constexpr int kIterations = 50;
 
-// A box, an ellipsoid, or an elliptic cylinder along one of the axes.
-enum class Body { kCylinderX, kCylinderY, kCylinderZ, kBox, kEllipsoid };
-constexpr std::array kBodies = {Body::kBox, Body::kEllipsoid, Body::kCylinderX, Body::kCylinderY,
-                                Body::kCylinderZ};
-
-// The support function of a body. `reach` has the products of its half sides and the normal.
-template <typename T>
-T Support(Body body, const std::array<T, 3>& reach) {
-  T straight(0.0);
-  T round(0.0);
-  for (size_t i = 0; i < 3; ++i) {
-    const bool is_straight = body == Body::kBox || static_cast<size_t>(body) == i;
-    straight += is_straight ? ceres::abs(reach[i]) : T(0.0);
-    round += is_straight ? T(0.0) : reach[i] * reach[i];
-  }
-  return body == Body::kBox ? straight : straight + ceres::sqrt(round);
-}
+enum class Body { kBox, kEllipsoid };
 
 // The signed distance of a tangent plane from a body: the support function of the object minus that
 // of the body. Parameters: logarithms of the half sides, offset of the centre and rotation vector,
@@ -55,13 +39,14 @@ class PlaneCost {
     const std::array<T, 3> back = {-rotation[0], -rotation[1], -rotation[2]};
     std::array<T, 3> in_body;
     ceres::AngleAxisRotatePoint(back.data(), normal.data(), in_body.data());
-    std::array<T, 3> reach;
+    T sum(0.0);
     T moved(0.0);
     for (size_t i = 0; i < 3; ++i) {
-      reach[i] = ceres::exp(log_half[i]) * in_body[i];
+      const T reach = ceres::exp(log_half[i]) * in_body[i];
+      sum += body_ == Body::kBox ? ceres::abs(reach) : reach * reach;
       moved += offset[i] * normal[i];
     }
-    residual[0] = Support(body_, reach) + moved - T(support_);
+    residual[0] = (body_ == Body::kBox ? sum : ceres::sqrt(sum)) + moved - T(support_);
     return true;
   }
 
@@ -152,7 +137,7 @@ std::optional<ObjectExtents> MeasureExtents(const Sensor& sensor, const Ellipsoi
     return std::nullopt;
   }
   std::optional<Fit> best;
-  for (const Body body : kBodies) {
+  for (const Body body : {Body::kBox, Body::kEllipsoid}) {
     const std::optional<Fit> fit = FitBody(body, planes, ellipsoid.half_axes);
     if (fit && (!best || fit->cost < best->cost)) {
       best = fit;

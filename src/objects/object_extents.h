@@ -22,12 +22,11 @@ struct ObjectExtents {
 // it (objects/misfit.h). Lines near the border of the image are left out, because networks end
 // masks some pixels before it. The axes of the quadric are not the sides of the object: the
 // ellipsoid that fits the silhouettes of a box best is longer than the box where the corners show.
-// For the keyboard of freiburg1_xyz the longest axis is wrong by 16 %. So other bodies are fitted
-// to the planes: a box, an ellipsoid, and an elliptic cylinder along each axis. With half sides h
-// and the normal n in the frame of the body, the support function is sum_i h_i |n_i| for a box and
-// sqrt(sum_i (h_i n_i)^2) for an ellipsoid; that of a cylinder is the sum of the first along its
-// axis and the second across. Place and rotation are free. The body that fits best is taken.
-// Nothing if there are too few planes or if no body fits.
+// For the keyboard of freiburg1_xyz the longest axis is wrong by 16 %. So two bodies are
+// fitted to the planes, a box with the support function sum_i h_i |n_i| and an ellipsoid with
+// sqrt(sum_i (h_i n_i)^2), where h are the half sides and n is the normal in the frame of the body;
+// place and rotation are free. The body that fits better is taken. Nothing if there are too few
+// planes or if neither body fits.
 std::optional<ObjectExtents> MeasureExtents(const Sensor& sensor, const Ellipsoid& ellipsoid,
                                             std::span<const ObjectView> views);
 

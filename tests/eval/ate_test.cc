@@ -43,6 +43,21 @@ TEST(Ate, IsInvariantUnderTheTransformsOfTheAlignment) {
   EXPECT_NEAR(similar.reference_from_estimate.scale, 2.0, 1e-9);
 }
 
+// The lengths of the estimate grow by a quarter on the way.
+TEST(Ate, ScaleDriftIsThatOfTheLastTenthOverTheFirst) {
+  const Trajectory reference = Helix(200);
+  Trajectory estimate = Moved(reference, Rigid3(), 0.4);
+  for (size_t i = 100; i < estimate.size(); ++i) {
+    estimate[i].world_from_cam.translation *= 1.25;
+  }
+  const AteReport report = EvaluateAte(reference, estimate, {.alignment = AlignmentKind::kSim3});
+  ASSERT_TRUE(report.scale_drift);
+  EXPECT_NEAR(*report.scale_drift, 0.25, 1e-9);
+  EXPECT_FALSE(EvaluateAte(reference, estimate).scale_drift) << "only with kSim3";
+  const Trajectory few = Helix(29);
+  EXPECT_FALSE(EvaluateAte(few, few, {.alignment = AlignmentKind::kSim3}).scale_drift);
+}
+
 TEST(Ate, WithoutAlignmentIsTheDistanceOfThePositions) {
   const Trajectory reference = Helix(10);
   const Trajectory shifted = Moved(reference, Rigid3({1, 0, 0, 0}, {0.0, 3.0, 4.0}), 1.0);

@@ -56,7 +56,7 @@ TEST_F(Evaluate, StatesErrorsPairsAlignmentAndScale) {
   EXPECT_EQ(result.errors, "");
   for (const char* const part :
        {"ATE", "RPE 1 s", "60 of the estimate", "60 of the ground truth",
-        "tum's rule within 0.02 s", "coverage 100.0 %", "sim3", "scale 2.000000"}) {
+        "tum's rule within 0.02 s", "coverage 100.0 %", "sim3", "scale 2.000000", "scale drift"}) {
     EXPECT_NE(result.output.find(part), std::string::npos) << part << " in\n" << result.output;
   }
 }

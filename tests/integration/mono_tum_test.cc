@@ -58,20 +58,21 @@ TEST_F(MonoTum, RunsGiveTheSameBytesAlsoWithTheThreeArgumentsOfOrbSlam2) {
   }
 }
 
-// The longest side of the keyboard of desk is 0.42 m.
+// The longest side of the keyboard of desk is 0.42 m. All views are from nearly the same side here,
+// so it is measured less precisely than in a longer run.
 TEST_F(MonoTum, ObjectsOfKnownSizeGiveTheScale) {
   const RenderedDesk desk(40);
   const Arguments arguments = {desk.path(), "--masks", desk.path() / "masks"};
   ExpectMap(arguments, 40);
   EXPECT_TRUE(Summary()["map"]["known_sizes"].is_null());
   const double unit = Summary()["trajectory"]["scale"];
-  EXPECT_GT(std::abs(unit - 1.0), 0.1);
+  EXPECT_GT(std::abs(unit - 1.0), 0.2);
 
   Arguments with_size = arguments;
   with_size.insert(with_size.end(), {"--set", "objects.sizes=keyboard:0.42"});
   const ProgramResult sized = ExpectMap(with_size, 40);
   EXPECT_EQ(Summary()["map"]["known_sizes"], 1);
-  EXPECT_NEAR(Summary()["trajectory"]["scale"].get<double>(), 1.0, 0.05);
+  EXPECT_NEAR(Summary()["trajectory"]["scale"].get<double>(), 1.0, 0.1);
   ExpectParts(sized.output, {"the unit of length is the metre, by 1 objects of known size"});
 
   Arguments unknown = arguments;
