@@ -27,8 +27,9 @@ void Append(const Map& map, const BundleResult& result, MapCorrection& correctio
 std::optional<MapCorrection> AdjustWholeMap(const Map& map, const Sensor& sensor,
                                             const ObjectOptions& objects,
                                             const Cancellation* cancellation) {
-  const WindowObjects in_window =
-      objects.enabled && objects.bundle_adjustment ? WindowObjects::kMapped : WindowObjects::kNone;
+  const bool has_objects =
+      objects.enabled && objects.bundle_adjustment && !sensor.IsMonocular();  // as in the mapper
+  const WindowObjects in_window = has_objects ? WindowObjects::kMapped : WindowObjects::kNone;
   MapCorrection correction;
   correction.snapshot_corrections = map.correction_count();
   bool is_adjusted = false;

@@ -34,6 +34,14 @@ size_t CountSizedViews(const Map& map, const std::map<std::string, double>& size
   return views;
 }
 
+// Takes the objects out of the window of a single camera. Silhouettes are wrong by some pixels.
+// Where the camera only turns, nothing but objects would tell that it does not move, and a few
+// pixels are a baseline from which landmarks at wrong depths are made. So poses are adjusted by
+// points alone, and the objects are refined afterwards.
+std::vector<ObjectId> TakeFollowers(const Sensor& sensor, BundleWindow& window) {
+  return sensor.IsMonocular() ? std::exchange(window.objects, {}) : std::vector<ObjectId>();
+}
+
 bool MustHurry(const Cancellation* hurry) { return hurry != nullptr && hurry->IsRequested(); }
 
 }  // namespace
@@ -163,13 +171,15 @@ void Mapper::PublishSnapshot() {
 
 void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry) {
   BundleWindow window;
+  std::vector<ObjectId> followers;
   {
     const ScopedTimer timer(times_, "local_bundle_adjustment");
     window = LocalWindow(map_, keyframe, static_cast<size_t>(options_.local_keyframes),
                          static_cast<size_t>(options_.fixed_keyframes), ObjectsToAdjust());
+    followers = TakeFollowers(sensor_, window);
     Adjust(window, {.objects = object_options_.bundle}, hurry);
   }
-  RecheckObjects(window.objects);
+  RecheckObjects(window.objects, followers);
 }
 
 void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
@@ -189,13 +199,15 @@ void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on
 
 void Mapper::AdjustMap(const Cancellation* cancellation, const ProgressCallback& on_progress) {
   BundleWindow window;
+  std::vector<ObjectId> followers;
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
     window = GlobalWindow(map_, MainIsland(map_), ObjectsToAdjust());
+    followers = TakeFollowers(sensor_, window);
     Adjust(window, BundleOptions{.objects = object_options_.bundle}.ForWholeMap(), cancellation,
            on_progress);
   }
-  RecheckObjects(window.objects);
+  RecheckObjects(window.objects, followers);
   PublishSnapshot();
 }
 
@@ -277,10 +289,13 @@ void Mapper::Adjust(const BundleWindow& window, const BundleOptions& options,
   }
 }
 
-void Mapper::RecheckObjects(const std::vector<ObjectId>& objects) {
-  if (!objects.empty()) {
+// `followers` were left out of the adjustment.
+void Mapper::RecheckObjects(const std::vector<ObjectId>& adjusted,
+                            const std::vector<ObjectId>& followers) {
+  if (!adjusted.empty() || !followers.empty()) {
     const ScopedTimer timer(times_, "check_objects");
-    object_mapper_.Recheck(map_, objects);
+    object_mapper_.Recheck(map_, adjusted);
+    object_mapper_.Follow(map_, followers);
   }
 }
 

@@ -80,7 +80,8 @@ class Mapper {
   void Adjust(const BundleWindow& window, const BundleOptions& options,
               const Cancellation* cancellation, const ProgressCallback& on_progress = {});
   void FollowKnownSizes(bool is_final);
-  void RecheckObjects(const std::vector<ObjectId>& objects);
+  void RecheckObjects(const std::vector<ObjectId>& adjusted,
+                      const std::vector<ObjectId>& followers);
   WindowObjects ObjectsToAdjust() const;
 
   const Sensor& sensor_;
