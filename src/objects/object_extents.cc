@@ -22,6 +22,7 @@ constexpr double kLossScale = 0.04;  // of the largest half axis
 constexpr double kBorderPx = 20.0;
 constexpr double kMaxMisfit = 0.1;  // of the longest side
 constexpr int kIterations = 50;
+constexpr double kMaxLogHalf = 100.0;  // of a half side; its exponential is still finite
 
 enum class Body { kBox, kEllipsoid };
 
@@ -42,6 +43,9 @@ class PlaneCost {
     T sum(0.0);
     T moved(0.0);
     for (size_t i = 0; i < 3; ++i) {
+      if (log_half[i] > T(kMaxLogHalf)) {
+        return false;  // the solver tries a shorter step
+      }
       const T reach = ceres::exp(log_half[i]) * in_body[i];
       sum += body_ == Body::kBox ? ceres::abs(reach) : reach * reach;
       moved += offset[i] * normal[i];
