@@ -34,14 +34,6 @@ size_t CountSizedViews(const Map& map, const std::map<std::string, double>& size
   return views;
 }
 
-// Takes the objects out of the window of a single camera. Silhouettes are wrong by some pixels.
-// Where the camera only turns, nothing but objects would tell that it does not move, and a few
-// pixels are a baseline from which landmarks at wrong depths are made. So poses are adjusted by
-// points alone, and the objects are refined afterwards.
-std::vector<ObjectId> TakeFollowers(const Sensor& sensor, BundleWindow& window) {
-  return sensor.IsMonocular() ? std::exchange(window.objects, {}) : std::vector<ObjectId>();
-}
-
 bool MustHurry(const Cancellation* hurry) { return hurry != nullptr && hurry->IsRequested(); }
 
 }  // namespace
@@ -171,15 +163,13 @@ void Mapper::PublishSnapshot() {
 
 void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry) {
   BundleWindow window;
-  std::vector<ObjectId> followers;
   {
     const ScopedTimer timer(times_, "local_bundle_adjustment");
     window = LocalWindow(map_, keyframe, static_cast<size_t>(options_.local_keyframes),
                          static_cast<size_t>(options_.fixed_keyframes), ObjectsToAdjust());
-    followers = TakeFollowers(sensor_, window);
     Adjust(window, {.objects = object_options_.bundle}, hurry);
   }
-  RecheckObjects(window.objects, followers);
+  RecheckObjects(window.objects);
 }
 
 void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
@@ -199,15 +189,14 @@ void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on
 
 void Mapper::AdjustMap(const Cancellation* cancellation, const ProgressCallback& on_progress) {
   BundleWindow window;
-  std::vector<ObjectId> followers;
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
     window = GlobalWindow(map_, MainIsland(map_), ObjectsToAdjust());
-    followers = TakeFollowers(sensor_, window);
     Adjust(window, BundleOptions{.objects = object_options_.bundle}.ForWholeMap(), cancellation,
            on_progress);
   }
-  RecheckObjects(window.objects, followers);
+  RecheckObjects(window.objects);
+  RefineObjects();
   PublishSnapshot();
 }
 
@@ -289,19 +278,30 @@ void Mapper::Adjust(const BundleWindow& window, const BundleOptions& options,
   }
 }
 
-// `followers` were left out of the adjustment.
-void Mapper::RecheckObjects(const std::vector<ObjectId>& adjusted,
-                            const std::vector<ObjectId>& followers) {
-  if (!adjusted.empty() || !followers.empty()) {
+void Mapper::RecheckObjects(const std::vector<ObjectId>& objects) {
+  if (!objects.empty()) {
     const ScopedTimer timer(times_, "check_objects");
-    object_mapper_.Recheck(map_, adjusted);
-    object_mapper_.Follow(map_, followers);
+    object_mapper_.Recheck(map_, objects);
   }
 }
 
+// The objects of a single camera are not in the adjustment of its poses (see ObjectsToAdjust).
+void Mapper::RefineObjects() {
+  if (!object_options_.enabled || !sensor_.IsMonocular()) {
+    return;
+  }
+  const ScopedTimer timer(times_, "check_objects");
+  std::vector<ObjectId> objects;
+  map_.objects().ForEach([&](ObjectId id, const ObjectLandmark&) { objects.push_back(id); });
+  object_mapper_.Follow(map_, objects);
+}
+
+// Not those of a single camera. Silhouettes are wrong by some pixels. Where the camera only turns,
+// nothing but objects would tell that it does not move, and a few pixels are a baseline from which
+// landmarks at wrong depths are made.
 WindowObjects Mapper::ObjectsToAdjust() const {
-  return object_options_.enabled && object_options_.bundle_adjustment ? WindowObjects::kMapped
-                                                                      : WindowObjects::kNone;
+  const bool has_objects = object_options_.enabled && object_options_.bundle_adjustment;
+  return has_objects && !sensor_.IsMonocular() ? WindowObjects::kMapped : WindowObjects::kNone;
 }
 
 }  // namespace hullslam

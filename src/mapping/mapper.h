@@ -80,8 +80,8 @@ class Mapper {
   void Adjust(const BundleWindow& window, const BundleOptions& options,
               const Cancellation* cancellation, const ProgressCallback& on_progress = {});
   void FollowKnownSizes(bool is_final);
-  void RecheckObjects(const std::vector<ObjectId>& adjusted,
-                      const std::vector<ObjectId>& followers);
+  void RecheckObjects(const std::vector<ObjectId>& objects);
+  void RefineObjects();
   WindowObjects ObjectsToAdjust() const;
 
   const Sensor& sensor_;

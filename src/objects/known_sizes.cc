@@ -13,7 +13,8 @@ namespace hullslam {
 
 KnownScale MeasureScale(const Map& map, const Sensor& sensor,
                         const std::map<std::string, double>& sizes) {
-  std::vector<double> scales;
+  std::vector<double> scales;  // one per observation
+  size_t objects = 0;
   map.objects().ForEach([&](ObjectId, const ObjectLandmark& object) {
     const bool is_mapped = object.state == ObjectState::kMapped;
     const auto size = is_mapped ? sizes.find(object.Label()) : sizes.end();
@@ -21,13 +22,14 @@ KnownScale MeasureScale(const Map& map, const Sensor& sensor,
       return;
     }
     if (const auto extents = MeasureExtents(sensor, object.ellipsoid, CollectViews(map, object))) {
-      scales.push_back(size->second / extents->sides.z());
+      scales.insert(scales.end(), object.observations.size(), size->second / extents->sides.z());
+      ++objects;
     }
   });
   if (scales.empty()) {
     return {};
   }
-  return {.objects = scales.size(), .metres_per_unit = Median(std::move(scales))};
+  return {.objects = objects, .metres_per_unit = Median(std::move(scales))};
 }
 
 }  // namespace hullslam

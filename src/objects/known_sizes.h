@@ -12,8 +12,9 @@ namespace hullslam {
 
 // What objects of known size say about the unit of length of a map.
 struct KnownScale {
-  size_t objects = 0;            // mapped objects of known size that could be measured
-  double metres_per_unit = 1.0;  // the median of what they say; 1 without any
+  size_t objects = 0;  // mapped objects of known size that could be measured
+  // The median of what they say, where each counts as often as it was observed; 1 without any.
+  double metres_per_unit = 1.0;
 };
 
 // `sizes`: the length of the longest side (m) by class. An object has the class with most votes,

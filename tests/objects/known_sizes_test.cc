@@ -47,6 +47,18 @@ TEST_F(KnownSizes, TheMedianOfSeveralCounts) {
   EXPECT_NEAR(scale.metres_per_unit, 2.0, 1e-3);
 }
 
+TEST_F(KnownSizes, AnObjectCountsAsOftenAsItWasObserved) {
+  Map("keyboard", 0.25);
+  ObjectLandmark& wrong = Map("keyboard", 0.10);
+  for (uint32_t i = 12; i < 20; ++i) {
+    map_.RemoveObservation(ObjectId(1), KeyframeId(i));
+  }
+  ASSERT_EQ(wrong.observations.size(), 4u);
+  const KnownScale scale = MeasureScale(map_, sensor_, {{"keyboard", 0.5}});
+  EXPECT_EQ(scale.objects, 2u);
+  EXPECT_NEAR(scale.metres_per_unit, 2.0, 1e-3);
+}
+
 TEST_F(KnownSizes, OthersAndCandidatesSayNothing) {
   Map("cup", 0.25);
   Map("keyboard", 0.25).state = ObjectState::kCandidate;
