@@ -363,7 +363,7 @@ int Run(int argc, char** argv) {
     PrintTable(run, report);
     Print("{} views of {} frames ({} without a pose) in {:.1f} s\n{}\nresults are in {}\n",
           summary.map.keyframes, summary.trajectory.frames, without_pose, seconds.count(),
-          DescribeObjects(*summary.objects), arguments.output.string());
+          DescribeObjects(*summary.objects, "m"), arguments.output.string());
   }
   if (!is_complete) {
     PrintFailure(

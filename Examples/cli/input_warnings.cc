@@ -36,8 +36,8 @@ std::optional<double> MedianOf(const cv::Mat& depth) {
 }
 
 // Names the classes of a setting that no mask has.
-void WarnOfOthers(const char* key, std::set<std::string> classes,
-                  const std::set<std::string>& labels) {
+void WarnOfClassesWithoutMasks(const char* key, std::set<std::string> classes,
+                               const std::set<std::string>& labels) {
   for (const std::string& label : labels) {
     classes.erase(label);
   }
@@ -87,8 +87,8 @@ void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& 
     return;
   }
   const std::set<std::string> labels = masks.Labels();
-  WarnOfOthers("tracking.dynamic_classes", dynamic, labels);
-  WarnOfOthers("objects.sizes", sized, labels);
+  WarnOfClassesWithoutMasks("tracking.dynamic_classes", dynamic, labels);
+  WarnOfClassesWithoutMasks("objects.sizes", sized, labels);
 }
 
 void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& sequence) {

@@ -102,14 +102,13 @@ std::string DescribeChanges(const std::vector<ChangedObject>& changes) {
   return text;
 }
 
-std::string DescribeObjects(const ObjectsSummary& summary) {
+std::string DescribeObjects(const ObjectsSummary& summary, const char* unit) {
   return fmt::format(
       "{} objects, {} candidates; means: SIoU {} with hulls, {} with masks, tangent distance {} "
-      "px, "
-      "MTD {} m^2 (of {} observations)",
+      "px, MTD {} {}^2 (of {} observations)",
       summary.count, summary.candidates, FormatFigure(summary.siou_mean, 3),
       FormatFigure(summary.siou_mask_mean, 3), FormatFigure(summary.tangent_mean_px, 1),
-      FormatFigure(summary.mtd_mean_m2, 5), summary.observations);
+      FormatFigure(summary.mtd_mean_m2, 5), unit, summary.observations);
 }
 
 }  // namespace hullslam

@@ -5,18 +5,18 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "util/trim.h"
+
 namespace hullslam {
 
 std::set<std::string> SplitNames(std::string_view names) {
   std::set<std::string> split;
   while (!names.empty()) {
     const size_t comma = std::min(names.find(','), names.size());
-    std::string_view name = names.substr(0, comma);
-    names.remove_prefix(std::min(comma + 1, names.size()));
-    const size_t first = name.find_first_not_of(' ');
-    if (first != std::string_view::npos) {
-      split.emplace(name.substr(first, name.find_last_not_of(' ') + 1 - first));
+    if (const std::string_view name = Trim(names.substr(0, comma)); !name.empty()) {
+      split.emplace(name);
     }
+    names.remove_prefix(std::min(comma + 1, names.size()));
   }
   return split;
 }

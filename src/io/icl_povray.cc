@@ -21,6 +21,7 @@
 #include "io/read_file.h"
 #include "io/text_rows.h"
 #include "util/shown_text.h"
+#include "util/trim.h"
 
 namespace hullslam {
 namespace {

@@ -9,6 +9,7 @@
 #include "hullslam/util/error.h"
 #include "io/read_file.h"
 #include "io/text_rows.h"
+#include "util/trim.h"
 
 namespace hullslam {
 namespace {

@@ -18,6 +18,7 @@
 #include "io/text_rows.h"
 #include "io/yaml_settings.h"
 #include "util/shown_text.h"
+#include "util/trim.h"
 
 namespace hullslam {
 namespace {
@@ -53,8 +54,8 @@ void ApplyFile(const fs::path& file, NegativeFy negative_fy, OptionTable& table,
     }
     // An unknown key is reported before anything that is wrong with its value.
     std::string text;
-    if (table.IsMap(setting.key) && !setting.pairs.empty()) {
-      text = setting.pairs;
+    if (table.IsMap(setting.key) && setting.pairs) {
+      text = *setting.pairs;
     } else if (table.Contains(setting.key)) {
       text = SingleValue(setting);
     }

@@ -38,15 +38,6 @@ std::string Shown(std::string_view column) {
 
 }  // namespace
 
-std::string_view Trim(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r";
-  const size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) {
-    return {};
-  }
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
-}
-
 bool ParseFinite(std::string_view text, double& value) {
   if (text.starts_with('+')) {
     text.remove_prefix(1);

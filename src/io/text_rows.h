@@ -18,9 +18,6 @@ constexpr size_t kMostLineBytes = 1'000'000;  // limit for a line of a text file
 // Parses `text` as a finite number. Returns false if it is none or if characters are left over.
 bool ParseFinite(std::string_view text, double& value);
 
-// The text without the blanks, tabs and carriage returns at both of its ends.
-std::string_view Trim(std::string_view text);
-
 // One line of a text file, split into columns. The views are only valid during the visit.
 struct TextRow {
   const std::filesystem::path& path;

@@ -14,6 +14,7 @@
 #include "io/text_rows.h"
 #include "io/yaml_storage.h"
 #include "util/shown_text.h"
+#include "util/trim.h"
 
 namespace hullslam {
 namespace {
@@ -92,12 +93,12 @@ std::string SingleText(const cv::FileNode& node, const WrittenValue& written) {
   return is_whole && has_exponent_or_point ? fmt::format("{:.0f}", value) : written.text;
 }
 
-// Empty unless all values of the map are single.
-std::string MapText(const cv::FileNode& map) {
+// Nothing unless all values of the map are single.
+std::optional<std::string> MapText(const cv::FileNode& map) {
   std::string text;
   for (const cv::FileNode& node : map) {
     if (!node.isString() && !node.isReal() && !node.isInt()) {
-      return "";
+      return std::nullopt;
     }
     const std::string value = node.isString() ? node.string() : fmt::format("{}", node.real());
     text += fmt::format("{}{}:{}", text.empty() ? "" : ",", node.name(), value);
@@ -114,7 +115,7 @@ WrittenSetting ToSetting(const cv::FileNode& node, const WrittenValue& written,
     setting.no_value = "empty";
   } else if (node.isMap() || node.isSeq()) {
     setting.no_value = node.isMap() ? "a map" : "a list";
-    setting.pairs = node.isMap() ? MapText(node) : "";
+    setting.pairs = node.isMap() ? MapText(node) : std::nullopt;
   } else {
     setting.text = SingleText(node, written);
   }

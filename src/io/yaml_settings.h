@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,8 +18,8 @@ struct WrittenSetting {
   // as a number.
   std::string text = {};
   std::string_view no_value = {};  // what it is ("a list") if it is not a single value
-  // Of a map of single values, `name:value` pairs with commas in between; else empty.
-  std::string pairs = {};
+  // Of a map of single values: `name:value` pairs with commas in between.
+  std::optional<std::string> pairs = std::nullopt;
 };
 
 // The settings of a file in OpenCV's YAML, in their order: `key: value` lines after a first line

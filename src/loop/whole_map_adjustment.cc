@@ -27,9 +27,7 @@ void Append(const Map& map, const BundleResult& result, MapCorrection& correctio
 std::optional<MapCorrection> AdjustWholeMap(const Map& map, const Sensor& sensor,
                                             const ObjectOptions& objects,
                                             const Cancellation* cancellation) {
-  const bool has_objects =
-      objects.enabled && objects.bundle_adjustment && !sensor.IsMonocular();  // as in the mapper
-  const WindowObjects in_window = has_objects ? WindowObjects::kMapped : WindowObjects::kNone;
+  const WindowObjects in_window = ObjectsToAdjust(sensor, objects);
   MapCorrection correction;
   correction.snapshot_corrections = map.correction_count();
   bool is_adjusted = false;

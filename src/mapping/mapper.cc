@@ -22,8 +22,8 @@ namespace {
 
 // The scale of a single camera is measured when objects of known size have so many observations.
 constexpr size_t kMinSizedViews = 10;
-constexpr double kScaleTolerance =
-    0.01;  // during the run; every change makes loops in work useless
+// During the run a smaller change is not made: every change makes loops in work useless.
+constexpr double kScaleTolerance = 0.01;
 
 size_t CountSizedViews(const Map& map, const std::map<std::string, double>& sizes) {
   size_t views = 0;
@@ -166,7 +166,8 @@ void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry)
   {
     const ScopedTimer timer(times_, "local_bundle_adjustment");
     window = LocalWindow(map_, keyframe, static_cast<size_t>(options_.local_keyframes),
-                         static_cast<size_t>(options_.fixed_keyframes), ObjectsToAdjust());
+                         static_cast<size_t>(options_.fixed_keyframes),
+                         ObjectsToAdjust(sensor_, object_options_));
     Adjust(window, {.objects = object_options_.bundle}, hurry);
   }
   RecheckObjects(window.objects);
@@ -191,7 +192,7 @@ void Mapper::AdjustMap(const Cancellation* cancellation, const ProgressCallback&
   BundleWindow window;
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
-    window = GlobalWindow(map_, MainIsland(map_), ObjectsToAdjust());
+    window = GlobalWindow(map_, MainIsland(map_), ObjectsToAdjust(sensor_, object_options_));
     Adjust(window, BundleOptions{.objects = object_options_.bundle}.ForWholeMap(), cancellation,
            on_progress);
   }
@@ -294,14 +295,6 @@ void Mapper::RefineObjects() {
   std::vector<ObjectId> objects;
   map_.objects().ForEach([&](ObjectId id, const ObjectLandmark&) { objects.push_back(id); });
   object_mapper_.Follow(map_, objects);
-}
-
-// Not those of a single camera. Silhouettes are wrong by some pixels. Where the camera only turns,
-// nothing but objects would tell that it does not move, and a few pixels are a baseline from which
-// landmarks at wrong depths are made.
-WindowObjects Mapper::ObjectsToAdjust() const {
-  const bool has_objects = object_options_.enabled && object_options_.bundle_adjustment;
-  return has_objects && !sensor_.IsMonocular() ? WindowObjects::kMapped : WindowObjects::kNone;
 }
 
 }  // namespace hullslam

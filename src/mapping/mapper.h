@@ -82,7 +82,6 @@ class Mapper {
   void FollowKnownSizes(bool is_final);
   void RecheckObjects(const std::vector<ObjectId>& objects);
   void RefineObjects();
-  WindowObjects ObjectsToAdjust() const;
 
   const Sensor& sensor_;
   MappingOptions options_;

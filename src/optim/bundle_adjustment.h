@@ -31,6 +31,11 @@ struct BundleWindow {
 enum class WindowObjects { kNone, kMapped };
 BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, size_t max_fixed,
                          WindowObjects objects = WindowObjects::kNone);
+// The objects that take part in bundle adjustment: with depth the mapped ones, if the options say
+// so. Those of a single camera do not. Silhouettes are wrong by some pixels. Where the camera only
+// turns, nothing but objects would tell that it does not move, and a few pixels are a baseline from
+// which landmarks at wrong depths are made.
+WindowObjects ObjectsToAdjust(const Sensor& sensor, const ObjectOptions& options);
 // All keyframes and landmarks of an island and, if asked for, its mapped objects. Only the root of
 // the spanning tree is fixed.
 BundleWindow GlobalWindow(const Map& map, IslandId island,

@@ -78,6 +78,11 @@ BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, s
   return window;
 }
 
+WindowObjects ObjectsToAdjust(const Sensor& sensor, const ObjectOptions& options) {
+  const bool are_used = options.enabled && options.bundle_adjustment && !sensor.IsMonocular();
+  return are_used ? WindowObjects::kMapped : WindowObjects::kNone;
+}
+
 BundleWindow GlobalWindow(const Map& map, IslandId island, WindowObjects objects) {
   BundleWindow window;
   map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {

@@ -12,6 +12,7 @@
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 #include "util/shown_text.h"
+#include "util/trim.h"
 
 namespace hullslam {
 namespace {
@@ -46,22 +47,16 @@ std::optional<bool> ParseBool(std::string_view text) {
   return std::nullopt;
 }
 
-std::string_view WithoutSpaces(std::string_view text) {
-  const size_t begin = text.find_first_not_of(" \t");
-  const size_t end = text.find_last_not_of(" \t");
-  return begin == std::string_view::npos ? "" : text.substr(begin, end + 1 - begin);
-}
-
 std::optional<std::map<std::string, double>> ParseMap(std::string_view text, const Range& range) {
   std::map<std::string, double> numbers;
-  while (!WithoutSpaces(text).empty()) {
+  while (!Trim(text).empty()) {
     const std::string_view pair = text.substr(0, text.find(','));
     text.remove_prefix(std::min(text.size(), pair.size() + 1));
     const size_t colon = pair.find(':');
-    const std::string name(WithoutSpaces(pair.substr(0, colon)));
+    const std::string name(Trim(pair.substr(0, colon)));
     const auto number = colon == std::string_view::npos
                             ? std::nullopt
-                            : ParseNumber<double>(WithoutSpaces(pair.substr(colon + 1)));
+                            : ParseNumber<double>(Trim(pair.substr(colon + 1)));
     if (name.empty() || !number || !range.Contains(*number) ||
         !numbers.emplace(name, *number).second) {
       return std::nullopt;

@@ -73,7 +73,7 @@ TEST_F(MonoTum, ObjectsOfKnownSizeGiveTheScale) {
   const ProgramResult sized = ExpectMap(with_size, 40);
   EXPECT_EQ(Summary()["map"]["known_sizes"], 1);
   EXPECT_NEAR(Summary()["trajectory"]["scale"].get<double>(), 1.0, 0.1);
-  ExpectParts(sized.output, {"the unit of length is the metre, by 1 objects of known size"});
+  ExpectParts(sized.output, {"the unit of length is the metre (objects of known size: 1)"});
 
   Arguments unknown = arguments;
   unknown.insert(unknown.end(), {"--set", "objects.sizes=giraffe:5"});

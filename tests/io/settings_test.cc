@@ -225,6 +225,7 @@ TEST_F(Settings, SizesOfObjectsAreAMapOrAText) {
             sizes);
   EXPECT_EQ(Read(camera + "objects.sizes: {cup: 0.1, potted plant: 0.5}\n").objects.sizes, sizes);
   EXPECT_EQ(Read(camera + "objects.sizes: \"cup: 0.1, potted plant: 0.5\"\n").objects.sizes, sizes);
+  EXPECT_TRUE(Read(camera + "objects.sizes: {}\n").objects.sizes.empty());
   EXPECT_EQ(Read(camera, {"objects.sizes=potted plant:0.5,cup:0.1"}).objects.sizes, sizes);
   ExpectLineError("objects.sizes: {cup: -1}", {"objects.sizes is 'cup:-1'", "name:number pairs"});
   ExpectLineError("objects.sizes: {cup: big}", {"objects.sizes is 'cup:big'", "name:number pairs"});

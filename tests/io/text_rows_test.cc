@@ -82,12 +82,5 @@ TEST(TextRows, RotationsAreNormalised) {
   });
 }
 
-TEST(TextRows, TrimRemovesBlanksAtBothEnds) {
-  EXPECT_EQ(Trim(" \ta b\r"), "a b");
-  EXPECT_EQ(Trim("a"), "a");
-  EXPECT_EQ(Trim(" \t"), "");
-  EXPECT_EQ(Trim(""), "");
-}
-
 }  // namespace
 }  // namespace hullslam

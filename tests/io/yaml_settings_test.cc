@@ -51,14 +51,15 @@ TEST_F(YamlSettings, OnlySingleValuesHaveAText) {
 }
 
 TEST_F(YamlSettings, AMapOfSingleValuesHasPairs) {
-  const auto settings =
-      Read("a:\n  cup: 0.1\n  potted plant: 2\nb: {c: 1.5}\nd: {e: {f: 1}}\ng: {h: x}\ni: 1\n");
-  ASSERT_EQ(settings.size(), 5u);
+  const auto settings = Read(
+      "a:\n  cup: 0.1\n  potted plant: 2\nb: {c: 1.5}\nd: {e: {f: 1}}\ng: {h: x}\ni: 1\nj: {}\n");
+  ASSERT_EQ(settings.size(), 6u);
   EXPECT_EQ(settings[0].pairs, "cup:0.1,potted plant:2");
   EXPECT_EQ(settings[1].pairs, "c:1.5");
-  EXPECT_EQ(settings[2].pairs, "");
+  EXPECT_FALSE(settings[2].pairs);
   EXPECT_EQ(settings[3].pairs, "h:x");
-  EXPECT_EQ(settings[4].pairs, "");
+  EXPECT_FALSE(settings[4].pairs);
+  EXPECT_EQ(settings[5].pairs, "");
 }
 
 TEST_F(YamlSettings, BrokenFilesAreRefused) {
