@@ -21,13 +21,9 @@ namespace {
 constexpr size_t kNeighbours = 10;
 constexpr size_t kMonocularNeighbours = 20;  // without depth, all landmarks are made here
 constexpr double kMinBaseline = 0.005;       // over the median depth, without depth images
-// Without depth images, in a keyframe with fewer the depth of what has no parallax is guessed.
-constexpr size_t kEnoughLandmarks = 300;
-// Without depth images, a pair needs a parallax of so many standard deviations of its keypoints.
-// With less, noise decides which pairs seem to have enough, and these seem to be too near: the
-// scale of the map would shrink wherever the camera only turns.
-constexpr double kMinParallaxSigmas = 4.0;
-constexpr double kMaxCosParallax = 0.9998;  // about 1.1 degrees, for pairs without depth
+constexpr double kMaxCosParallax = 0.9998;   // about 1.1 degrees, for pairs without depth
+// A monocular pair should have a parallax of so many standard deviations of its keypoints.
+constexpr double kMinParallaxSigmas = 2.0;
 
 // A keypoint of a keyframe with what triangulation needs.
 struct View {
@@ -66,23 +62,20 @@ Eigen::Vector3d UnprojectToWorld(const View& view, const Sensor& sensor) {
   return Inverse(view.keyframe->cam_from_world) * sensor.camera.Unproject(view.pixel, view.depth);
 }
 
-// Cosine of the parallax from which a pair without depth is triangulated.
-double MaxCosParallax(const View& a, const View& b, const Sensor& sensor) {
-  if (!sensor.IsMonocular()) {
-    return kMaxCosParallax;
-  }
-  return std::cos(kMinParallaxSigmas * std::hypot(a.scale, b.scale) / sensor.camera.fx);
+std::optional<Eigen::Vector3d> Triangulate(const View& a, const View& b) {
+  return TriangulatePoint(a.keyframe->cam_from_world, a.normalized, b.keyframe->cam_from_world,
+                          b.normalized);
 }
 
+// Where the point is that both views show; null if that cannot be told. For sensors with depth.
 std::optional<Eigen::Vector3d> Locate(const View& a, const View& b, const Sensor& sensor) {
   const double cos_parallax = a.ray_in_world.dot(b.ray_in_world);
   const double cos_a = CosStereoParallax(a, sensor.baseline());
   const double cos_b = CosStereoParallax(b, sensor.baseline());
   const bool has_depth = a.depth > 0.0 || b.depth > 0.0;
   if (cos_parallax > 0.0 && cos_parallax < std::min(cos_a, cos_b) &&
-      (has_depth || cos_parallax < MaxCosParallax(a, b, sensor))) {
-    return TriangulatePoint(a.keyframe->cam_from_world, a.normalized, b.keyframe->cam_from_world,
-                            b.normalized);
+      (has_depth || cos_parallax < kMaxCosParallax)) {
+    return Triangulate(a, b);
   }
   if (!has_depth) {
     return std::nullopt;
@@ -167,7 +160,7 @@ bool IsConsistent(const View& a, const View& b, const Eigen::Vector3d& point,
          HasConsistentScale(a, b, point, sensor);
 }
 
-// Where landmarks of a keyframe are, to guess the depth of what is beside them.
+// Where the landmarks of a keyframe are in its image and how far away.
 class NearbyDepth {
  public:
   NearbyDepth(const Map& map, const Keyframe& keyframe) {
@@ -205,30 +198,30 @@ class NearbyDepth {
   std::vector<Sample> samples_;
 };
 
-// Makes landmarks of the pairs that `locate` finds a point for.
-template <typename Locator>
-void AddPairs(Map& map, KeyframeId id, KeyframeId neighbour, const Sensor& sensor,
-              const Locator& locate, std::vector<LandmarkId>& created) {
-  for (const Match& pair :
-       FindPairs(map, map.keyframes().At(id), map.keyframes().At(neighbour), sensor)) {
-    const View a = MakeView(map.keyframes().At(id), pair.query, sensor);
-    const View b = MakeView(map.keyframes().At(neighbour), pair.keypoint, sensor);
-    const std::optional<Eigen::Vector3d> point = locate(a, b);
-    if (!point || !IsConsistent(a, b, *point, sensor)) {
-      continue;
-    }
-    const LandmarkId landmark = map.AddLandmark(*point, id);
-    map.AddObservation(landmark, id, pair.query);
-    map.AddObservation(landmark, neighbour, pair.keypoint);
-    UpdateDescriptor(map, landmark);
-    UpdateViewingGeometry(map, landmark, sensor.levels);
-    created.push_back(landmark);
+// The distance between the images in b, on the normalised plane, of a point of view a at this depth
+// and of a point that is infinitely far away.
+double ParallaxAt(double depth, const View& a, const View& b) {
+  const Rigid3 b_from_a = b.keyframe->cam_from_world * Inverse(a.keyframe->cam_from_world);
+  const Eigen::Vector3d infinite = b_from_a.rotation * a.normalized.homogeneous();
+  const Eigen::Vector3d point = infinite + b_from_a.translation / depth;
+  if (point.z() <= 0.0 || infinite.z() <= 0.0) {
+    return 0.0;
   }
+  return (point.hnormalized() - infinite.hnormalized()).norm();
 }
 
-size_t CountLandmarks(const Keyframe& keyframe) {
-  return static_cast<size_t>(std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
-                                           [](LandmarkId id) { return id.IsValid(); }));
+// Triangulates a pair of a monocular camera if its parallax should be large enough. Whether it is
+// must not be told by the pair itself: of many pairs with too little parallax, those would be taken
+// whose noise makes it larger. They are too near, and the scale of the map would shrink wherever
+// the camera only turns. So the depth of the landmarks beside it tells it.
+std::optional<Eigen::Vector3d> LocateWithoutDepth(const View& a, const View& b,
+                                                  const NearbyDepth& nearby, const Sensor& sensor) {
+  const std::optional<double> depth = nearby.At(a.pixel);
+  const double noise = std::hypot(a.scale, b.scale) / sensor.camera.fx;
+  if (!depth || ParallaxAt(*depth, a, b) < kMinParallaxSigmas * noise) {
+    return std::nullopt;
+  }
+  return Triangulate(a, b);
 }
 
 }  // namespace
@@ -236,28 +229,28 @@ size_t CountLandmarks(const Keyframe& keyframe) {
 std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId id, const Sensor& sensor) {
   const std::vector<KeyframeId> neighbours = BestCovisible(
       map.keyframes().At(id), sensor.IsMonocular() ? kMonocularNeighbours : kNeighbours);
+  std::optional<NearbyDepth> nearby;
+  if (sensor.IsMonocular()) {
+    nearby.emplace(map, map.keyframes().At(id));
+  }
   std::vector<LandmarkId> created;
   for (const KeyframeId neighbour : neighbours) {
-    AddPairs(
-        map, id, neighbour, sensor,
-        [&](const View& a, const View& b) { return Locate(a, b, sensor); }, created);
-  }
-  if (!sensor.IsMonocular() || CountLandmarks(map.keyframes().At(id)) >= kEnoughLandmarks) {
-    return created;
-  }
-  // The camera only turns. What comes into view has no parallax, but tracking would soon have
-  // nothing left. So its depth is guessed, until there is parallax to correct it.
-  const NearbyDepth nearby(map, map.keyframes().At(id));
-  for (const KeyframeId neighbour : neighbours) {
-    AddPairs(
-        map, id, neighbour, sensor,
-        [&](const View& a, const View&) -> std::optional<Eigen::Vector3d> {
-          const std::optional<double> depth = nearby.At(a.pixel);
-          return depth ? std::optional(Inverse(a.keyframe->cam_from_world) *
-                                       sensor.camera.Unproject(a.pixel, *depth))
-                       : std::nullopt;
-        },
-        created);
+    for (const Match& pair :
+         FindPairs(map, map.keyframes().At(id), map.keyframes().At(neighbour), sensor)) {
+      const View a = MakeView(map.keyframes().At(id), pair.query, sensor);
+      const View b = MakeView(map.keyframes().At(neighbour), pair.keypoint, sensor);
+      const std::optional<Eigen::Vector3d> point =
+          nearby ? LocateWithoutDepth(a, b, *nearby, sensor) : Locate(a, b, sensor);
+      if (!point || !IsConsistent(a, b, *point, sensor)) {
+        continue;
+      }
+      const LandmarkId landmark = map.AddLandmark(*point, id);
+      map.AddObservation(landmark, id, pair.query);
+      map.AddObservation(landmark, neighbour, pair.keypoint);
+      UpdateDescriptor(map, landmark);
+      UpdateViewingGeometry(map, landmark, sensor.levels);
+      created.push_back(landmark);
+    }
   }
   return created;
 }

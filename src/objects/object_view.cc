@@ -14,7 +14,7 @@ namespace hullslam {
 namespace {
 
 // Degrees between the rays to a landmark that says where an object is. With less, the depth of the
-// landmark may have been guessed.
+// landmark is not known well.
 constexpr double kMinLandmarkParallax = 1.5;
 constexpr size_t kMinLandmarks = 3;  // that tell the depth of an object
 

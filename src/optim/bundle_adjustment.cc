@@ -21,11 +21,19 @@
 #include "optim/reduced_points_cost.h"
 #include "optim/supervision.h"
 #include "util/chi_square.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
 
 using internal::Supervision;
+
+constexpr double kMedianChi2 = 1.386;  // of two degrees of freedom: 2 ln 2
+// Where the precision of keypoints was measured, an error is an outlier from this many bounds on,
+// because errors of keypoints have longer tails than a normal distribution with the same median.
+constexpr double kTails = 2.0;
+constexpr double kMaxPrecision = 5.0;
+constexpr size_t kMinViews = 100;  // for a median
 
 std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
                                               const PointMeasurement& measurement) {
@@ -58,10 +66,39 @@ class Bundle {
     ForEachView([](View& view, double chi2, size_t) { view.is_inlier = std::isfinite(chi2); });
   }
 
+  // Makes the standard deviations of the keypoints as small as the errors show them to be. Those of
+  // the sensor are cautious, so an error of several true standard deviations would count as an
+  // inlier. Points that slide along the edge of a door or over the contour of a thing have such
+  // errors, and where a camera hardly moves, a few of them are enough to change the scale.
+  void MeasurePrecision() {
+    std::vector<double> errors;
+    ForEachView([&](const View& view, double chi2, size_t) {
+      if (view.is_inlier) {
+        errors.push_back(chi2);
+      }
+    });
+    if (errors.size() < kMinViews) {
+      return;
+    }
+    // Points are fitted to their views, which makes the errors smaller.
+    const double equations = 2.0 * static_cast<double>(errors.size());
+    const double free_share =
+        std::max(0.3, 1.0 - 3.0 * static_cast<double>(points_.size()) / equations);
+    const double sigma =
+        std::sqrt(Median(std::move(errors)) / (kMedianChi2 * free_share)) / precision_;
+    const double precision = std::clamp(1.0 / sigma, 1.0, kMaxPrecision);
+    ForEachView([&](View& view, double, size_t) {
+      view.measurement.inverse_sigma *= precision / precision_;
+    });
+    precision_ = precision;
+  }
+
   // Decides again which views are inliers.
   void Classify() {
-    ForEachView([](View& view, double chi2, size_t) {
-      view.is_inlier = chi2 <= OutlierBound(view.measurement);
+    // But never beyond the bound of the sensor.
+    const double tails = std::min(kTails, precision_ * precision_);
+    ForEachView([tails](View& view, double chi2, size_t) {
+      view.is_inlier = chi2 <= tails * OutlierBound(view.measurement);
     });
   }
 
@@ -130,7 +167,8 @@ class Bundle {
   // Own code eliminates the points, and Ceres solves for the poses and the objects.
   bool SolveEliminated(int iterations, bool robust, Supervision& supervision,
                        BundleResult& result) {
-    internal::EliminatedPoints eliminated(camera_, points_, window_.moving.size(), robust);
+    internal::EliminatedPoints eliminated(camera_, points_, window_.moving.size(), robust,
+                                          options_.follow);
     internal::ReducedPointsCost cost(eliminated, poses_);
     ceres::Problem::Options problem_options = ProblemOptions();
     problem_options.evaluation_callback = &cost;
@@ -214,6 +252,7 @@ class Bundle {
   const internal::PoseIndices pose_indices_;
   std::vector<PoseBlock> poses_;
   internal::BundlePoints points_;
+  double precision_ = 1.0;  // of the keypoints: standard deviations of the sensor over those used
   internal::ObjectBundle objects_;
   PoseManifold manifold_;
 };
@@ -223,13 +262,19 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
   BundleResult result;
   Bundle bundle(map, sensor, window, options);
   bundle.ExcludeUndefined();
+  if (sensor.IsMonocular()) {
+    bundle.MeasurePrecision();
+  }
   if (!bundle.Solve(options.robust_iterations, true, supervision, result)) {
     return result;
   }
   // After a cancelled round the errors are not minimal, so they do not tell which are outliers.
   if (!supervision.IsCancelled()) {
+    if (sensor.IsMonocular()) {
+      bundle.MeasurePrecision();
+    }
     bundle.Classify();
-    if (!bundle.Solve(options.final_iterations, false, supervision, result)) {
+    if (!bundle.Solve(options.final_iterations, sensor.IsMonocular(), supervision, result)) {
       return result;
     }
     bundle.Classify();
@@ -257,9 +302,20 @@ BundleOptions BundleOptions::ForWholeMap() const {
   return options;
 }
 
+BundleOptions BundleOptions::WithoutDepth() const {
+  BundleOptions options = *this;
+  options.robust_iterations = std::max(robust_iterations, 10);
+  options.final_iterations = std::max(final_iterations, 20);
+  options.function_tolerance = std::min(function_tolerance, 1e-6);
+  options.follow.steps = std::max(follow.steps, 10);
+  options.follow.worthwhile = std::min(follow.worthwhile, 1e-6);
+  return options;
+}
+
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
-                          const BundleOptions& options, const Cancellation* cancellation,
+                          const BundleOptions& given, const Cancellation* cancellation,
                           const ProgressCallback& on_progress) {
+  const BundleOptions options = sensor.IsMonocular() ? given.WithoutDepth() : given;
   const int most = options.robust_iterations + options.final_iterations;
   Supervision supervision(cancellation, on_progress, most);
   BundleResult result = Adjust(map, sensor, window, options, supervision);

@@ -11,6 +11,7 @@
 #include "hullslam/map/map.h"
 #include "hullslam/objects/object_options.h"
 #include "hullslam/util/cancellation.h"
+#include "optim/bundle_points.h"
 
 namespace hullslam {
 
@@ -51,12 +52,17 @@ struct BundleOptions {
   // does. Nearly all of 140 poses share landmarks, so the system that is left without the landmarks
   // is nearly full, and a dense solver is faster (docs/performance.md).
   size_t max_eliminated = 140;
+  internal::FollowOptions follow = {};  // of points that own code eliminates
   ObjectBundleOptions objects = {};
 
   // These options for a whole map. A step that changes the cost by less than the tolerance is not
   // taken. In a global adjustment the terms that correct drift are a small share of the cost, so
   // the tolerance must be small.
   BundleOptions ForWholeMap() const;
+  // These options without depth, at least as precise as those of a whole map. Where the camera
+  // hardly moves, depths and motions can stand for each other, and the cost changes little on the
+  // way to its minimum.
+  BundleOptions WithoutDepth() const;
 };
 
 struct BundleResult {
@@ -72,7 +78,9 @@ struct BundleResult {
   int iterations = 0;
 };
 
-// Minimises the reprojection errors of the window's landmarks in its keyframes. Ceres solves for
+// Minimises the reprojection errors of the window's landmarks in its keyframes. Without depth, the
+// options are those of WithoutDepth(), the standard deviations of keypoints are made as small as
+// the errors show them to be, and Huber's loss is used in both rounds. Ceres solves for
 // poses and objects. In a small window own code eliminates the landmarks (EliminatedPoints); in a
 // large one, Ceres does so (BundleOptions::max_eliminated). Each object of the window adds the
 // constraints of its detections (MakeObjectConstraint) and a prior (MakeObjectPrior) at the shape

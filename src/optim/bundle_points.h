@@ -11,6 +11,14 @@
 
 namespace hullslam::internal {
 
+// How far a point goes towards its best place before the cost of the poses is known.
+struct FollowOptions {
+  int steps = 2;  // at most
+  // Another step is only taken if the last one was expected to lower the cost of the point by a
+  // larger share.
+  double worthwhile = 1e-3;
+};
+
 // The points of a bundle adjustment, and where its poses see them.
 class BundlePoints {
  public:

@@ -12,12 +12,9 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// Levenberg-Marquardt of a single point. A second step is worth its time only if the first one was
-// expected to lower the cost of the point by more than kWorthwhile; one that is expected to lower
-// it by less than kNegligible is lost in rounding.
-constexpr int kMostSteps = 2;
-constexpr int kMostTrials = 6;
-constexpr double kWorthwhile = 1e-3;
+// Levenberg-Marquardt of a single point. A step that is expected to lower the cost by a smaller
+// share than kNegligible is lost in rounding.
+constexpr int kTrialsPerStep = 3;
 constexpr double kNegligible = 1e-9;
 constexpr double kLeastDamping = 1e-8;   // relative to the diagonal
 constexpr double kFailedDamping = 1e-2;  // after the first step that failed
@@ -35,11 +32,12 @@ Eigen::Matrix3d DampedInverse(const Eigen::Matrix3d& lower, double damping) {
 }  // namespace
 
 EliminatedPoints::EliminatedPoints(const PinholeCamera& camera, BundlePoints& points, size_t moving,
-                                   bool robust)
+                                   bool robust, const FollowOptions& follow)
     : camera_(camera),
       points_(points),
       moving_(moving),
       robust_(robust),
+      follow_(follow),
       moved_(points.positions()),
       damping_(points.size(), kLeastDamping) {}
 
@@ -78,7 +76,7 @@ EliminatedPoints::PointSystem EliminatedPoints::SystemOf(size_t point,
 double EliminatedPoints::MovePoint(size_t point, Eigen::Vector3d& position, double& damping) const {
   PointSystem here = SystemOf(point, position);
   int steps = 0;
-  for (int trial = 0; trial < kMostTrials && here.cost < kInfinite; ++trial) {
+  for (int trial = 0; trial < kTrialsPerStep * follow_.steps && here.cost < kInfinite; ++trial) {
     const Eigen::Vector3d step = -DampedInverse(here.hessian, damping) * here.gradient;
     const double expected = -here.gradient.dot(step);
     const Eigen::Vector3d next = position + step;
@@ -93,7 +91,7 @@ double EliminatedPoints::MovePoint(size_t point, Eigen::Vector3d& position, doub
     position = next;
     damping = std::max(0.1 * damping, kLeastDamping);
     here.cost = cost;
-    if (++steps == kMostSteps || expected < kWorthwhile * cost) {
+    if (++steps == follow_.steps || expected < follow_.worthwhile * cost) {
       break;
     }
     here = SystemOf(point, position);

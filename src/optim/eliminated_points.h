@@ -27,7 +27,8 @@ class EliminatedPoints {
  public:
   // The poses with the first `moving` indices move, the others are fixed. `points` must outlive
   // this object.
-  EliminatedPoints(const PinholeCamera& camera, BundlePoints& points, size_t moving, bool robust);
+  EliminatedPoints(const PinholeCamera& camera, BundlePoints& points, size_t moving, bool robust,
+                   const FollowOptions& follow = {});
 
   size_t moving() const { return moving_; }
 
@@ -87,6 +88,7 @@ class EliminatedPoints {
   BundlePoints& points_;
   size_t moving_;
   bool robust_;
+  FollowOptions follow_;
   std::vector<MatrixPose> poses_;
   std::vector<Eigen::Vector3d> moved_;  // the places of the last Follow()
   // A point whose steps failed keeps its damping, and the Schur complement uses it too: such a

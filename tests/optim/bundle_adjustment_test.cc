@@ -295,6 +295,59 @@ TEST_F(BundleAdjustment, AnObservationIsAnOutlierFromAFewStandardDeviationsOn) {
   }
 }
 
+// Two standard deviations of the sensor, but seven of the errors that the keypoints have here.
+TEST_F(BundleAdjustment, WithoutDepthErrorsAreMeasuredByThoseOfTheOtherKeypoints) {
+  constexpr uint32_t kShifted = 20;  // keypoint
+  const SyntheticWorld world({.points = 300, .pixel_noise = 0.3, .depth_share = 0.0});
+  made_ = MakeSyntheticMap(world, {0, 10, 20, 30, 40, 50}, [&](Frame& frame, const Rigid3&) {
+    if (frame.id.value == 30) {
+      Keypoint& keypoint = frame.features.keypoints[kShifted];
+      const auto level = static_cast<size_t>(keypoint.level);
+      keypoint.undistorted.y() += 2.0f * world.sensor().levels.scale[level];
+    }
+  });
+  Sensor sensor = world.sensor();
+  EXPECT_TRUE(AdjustBundle(made_.map, sensor, Window(), kPrecise, nullptr).outliers.empty());
+  sensor.kind = SensorKind::kMonocular;
+  const BundleResult result = AdjustBundle(made_.map, sensor, Window(), kPrecise, nullptr);
+  ASSERT_TRUE(result.is_usable);
+  const std::pair shifted(made_.map.keyframes().At(KeyframeId(3)).landmarks[kShifted],
+                          KeyframeId(3));
+  EXPECT_EQ(std::count(result.outliers.begin(), result.outliers.end(), shifted), 1);
+  EXPECT_LT(result.outliers.size(), static_cast<size_t>(result.residuals) / 50);
+}
+
+// The errors of the sensor are the least that are believed: there are outliers that it does not
+// expect, but no keypoints that are that precise.
+TEST_F(BundleAdjustment, WithoutDepthExactKeypointsAreNoOutliers) {
+  Sensor sensor = world_.sensor();
+  sensor.kind = SensorKind::kMonocular;
+  Perturb(0.002, 0.005);
+  const BundleResult result = AdjustBundle(made_.map, sensor, Window(), kPrecise, nullptr);
+  ASSERT_TRUE(result.is_usable);
+  EXPECT_TRUE(result.outliers.empty());
+  EXPECT_LT(WorstPoseError(result), 1e-4);
+}
+
+TEST(BundleOptions, WithoutDepthTheyAreNoLessPrecise) {
+  const BundleOptions local = BundleOptions().WithoutDepth();
+  EXPECT_GT(local.robust_iterations, BundleOptions().robust_iterations);
+  EXPECT_GT(local.final_iterations, BundleOptions().final_iterations);
+  EXPECT_LT(local.function_tolerance, BundleOptions().function_tolerance);
+  EXPECT_GT(local.follow.steps, BundleOptions().follow.steps);
+  EXPECT_LT(local.follow.worthwhile, BundleOptions().follow.worthwhile);
+  const BundleOptions precise = BundleOptions{.robust_iterations = 50,
+                                              .final_iterations = 60,
+                                              .function_tolerance = 1e-14,
+                                              .follow = {.steps = 20, .worthwhile = 1e-9}}
+                                    .WithoutDepth();
+  EXPECT_EQ(precise.robust_iterations, 50);
+  EXPECT_EQ(precise.final_iterations, 60);
+  EXPECT_EQ(precise.function_tolerance, 1e-14);
+  EXPECT_EQ(precise.follow.steps, 20);
+  EXPECT_EQ(precise.follow.worthwhile, 1e-9);
+}
+
 TEST_F(BundleAdjustment, APointBehindACameraIsAnOutlierThere) {
   const LandmarkId id = Window().landmarks[5];
   const Landmark& landmark = made_.map.landmarks().At(id);

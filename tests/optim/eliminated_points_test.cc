@@ -173,6 +173,22 @@ TEST_P(EliminatedPointsTest, TheGradientIsTheDerivativeOfTheCost) {
   }
 }
 
+TEST(EliminatedPoints, MoreStepsComeNearerToTheBestPlaces) {
+  MadePoints made(5);
+  for (Eigen::Vector3d& position : made.points.positions()) {
+    position *= 1.5;  // away from the first camera
+  }
+  std::vector<double> costs;
+  for (const int steps : {1, 2, 10}) {
+    costs.push_back(
+        EliminatedPoints(made.camera, made.points, 5, false, {.steps = steps}).Follow(made.poses));
+  }
+  EXPECT_LT(costs[1], 0.9 * costs[0]);
+  EXPECT_LT(costs[2], costs[1]);
+  EliminatedPoints settled(made.camera, made.points, 5, false);
+  EXPECT_LT(costs[2], 1.001 * Settle(settled, made.poses));
+}
+
 TEST(EliminatedPoints, ViewsThatAreNoInliersHaveNoInfluence) {
   MadePoints made(4);
   MadePoints other(4);
