@@ -107,7 +107,7 @@ TEST_F(LandmarkViews, HaveTheLandmarksInTheCamera) {
   }
 }
 
-TEST_F(LandmarkViews, LeaveOutWhatMayHaveBeenGuessed) {
+TEST_F(LandmarkViews, LeaveOutWhatHasLittleParallax) {
   for (const ObjectView& view : Views(1.0)) {
     EXPECT_TRUE(view.landmarks.empty());
     EXPECT_FALSE(LandmarkDepth(view));
