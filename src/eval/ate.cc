@@ -36,14 +36,14 @@ double CountDistinctEstimates(const std::vector<IndexPair>& pairs) {
 
 std::optional<double> ScaleDrift(const PairedPoints& points) {
   const size_t count = points.reference.size() / 10;
-  const auto scale_of = [count](const std::vector<Eigen::Vector3d>& estimate,
-                                const std::vector<Eigen::Vector3d>& reference, size_t begin) {
+  const auto align = [count](const std::vector<Eigen::Vector3d>& estimate,
+                             const std::vector<Eigen::Vector3d>& reference, size_t begin) {
     return AlignPoints(std::span(estimate).subspan(begin, count),
                        std::span(reference).subspan(begin, count), AlignmentKind::kSim3);
   };
-  const PointAlignment first = scale_of(points.estimate, points.reference, 0);
+  const PointAlignment first = align(points.estimate, points.reference, 0);
   const PointAlignment last =
-      scale_of(points.estimate, points.reference, points.reference.size() - count);
+      align(points.estimate, points.reference, points.reference.size() - count);
   // A longer unit of the map means that lengths in the map have become shorter.
   return first.ok() && last.ok() ? std::optional(first.scale / last.scale - 1.0) : std::nullopt;
 }

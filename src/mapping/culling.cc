@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -19,8 +20,12 @@ constexpr uint32_t kTrialKeyframes = 2;  // from this age on a small weight is a
 // An observation with depth weighs as much as two without.
 constexpr int kMaxWeakWeight = 3;
 constexpr int kMaxWeakMonocularWeight = 2;
-constexpr int kOtherObservers = 3;
+constexpr size_t kOtherObservers = 3;
+constexpr size_t kOtherMonocularObservers = 4;
 constexpr double kRedundantShare = 0.9;
+// Without depth, two keyframes see a landmark from the same place if its parallax between them is
+// smaller than so many standard deviations.
+constexpr double kSamePlaceSigmas = 2.0;
 // With fewer landmarks, a share says little about how redundant a keyframe is.
 constexpr int kMinLandmarks = 20;
 // With fewer close landmarks, the far ones are judged too: the pose of the keyframe depends on them
@@ -29,15 +34,35 @@ constexpr int kMinCloseLandmarks = 100;
 constexpr double kMaxSimilarCos = 0.985;  // about 10 degrees
 constexpr size_t kCenterPoints = 20;      // depth points that are averaged for an object's centre
 
-bool IsSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId id, int level) {
-  int others = 0;
+Eigen::Vector3d RayTo(const Rigid3& cam_from_world, const Eigen::Vector3d& point) {
+  return (point - Inverse(cam_from_world).translation).normalized();
+}
+
+// Whether enough other keyframes see the landmark; without depth, from different places. Only
+// landmarks that are seen from three places carry the scale of a single camera from one pair of
+// keyframes to the next.
+bool IsSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId id, int level,
+                    const Sensor& sensor) {
+  const size_t enough = sensor.IsMonocular() ? kOtherMonocularObservers : kOtherObservers;
+  const double max_cos = std::cos(kSamePlaceSigmas * std::sqrt(2.0) / sensor.camera.fx);
+  std::array<Eigen::Vector3d, kOtherMonocularObservers> rays;
+  size_t others = 0;
   for (const Observation& observation : landmark.observations) {
-    if (observation.keyframe == id) {
+    const Keyframe& keyframe = map.keyframes().At(observation.keyframe);
+    if (observation.keyframe == id ||
+        keyframe.frame->features.keypoints[observation.keypoint].level > level + 1) {
       continue;
     }
-    const Frame& frame = *map.keyframes().At(observation.keyframe).frame;
-    if (frame.features.keypoints[observation.keypoint].level <= level + 1 &&
-        ++others >= kOtherObservers) {
+    if (sensor.IsMonocular()) {
+      rays[others] = RayTo(keyframe.cam_from_world, landmark.position);
+      const bool is_same_place =
+          std::any_of(rays.begin(), rays.begin() + others,
+                      [&](const Eigen::Vector3d& ray) { return ray.dot(rays[others]) > max_cos; });
+      if (is_same_place) {
+        continue;
+      }
+    }
+    if (++others == enough) {
       return true;
     }
   }
@@ -68,7 +93,8 @@ bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor) {
       continue;
     }
     const Landmark& landmark = map.landmarks().At(keyframe.landmarks[i]);
-    const bool is_redundant = IsSeenByOthers(map, landmark, id, features.keypoints[i].level);
+    const bool is_redundant =
+        IsSeenByOthers(map, landmark, id, features.keypoints[i].level, sensor);
     const double depth = static_cast<double>(features.depth[i]);
     all.Count(is_redundant);
     if (depth > 0.0 && depth <= sensor.close_depth) {
@@ -78,10 +104,6 @@ bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor) {
   const bool has_many_close = close.landmarks >= kMinCloseLandmarks;
   return all.landmarks >= kMinLandmarks && close.MostAreRedundant() &&
          (has_many_close || all.MostAreRedundant());
-}
-
-Eigen::Vector3d RayTo(const Rigid3& cam_from_world, const Eigen::Vector3d& center) {
-  return (center - Inverse(cam_from_world).translation).normalized();
 }
 
 // Where the object is, as far as that is known: null for a candidate without shape and depth.

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <memory>
 
 #include "costs/pose_manifold.h"
@@ -32,8 +34,25 @@ constexpr double kMedianChi2 = 1.386;  // of two degrees of freedom: 2 ln 2
 // Where the precision of keypoints was measured, an error is an outlier from this many bounds on,
 // because errors of keypoints have longer tails than a normal distribution with the same median.
 constexpr double kTails = 2.0;
-constexpr double kMaxPrecision = 5.0;
-constexpr size_t kMinViews = 100;  // for a median
+constexpr double kMaxPrecision = 5.0;  // over that of the sensor; even exact keypoints are rounded
+constexpr size_t kMinViews = 100;      // for a median
+
+// Keypoints that are nearer to each other, in x and in y, are at the same place.
+constexpr float kSamePlace = 3.0f;  // px
+
+// One over the number of landmarks that the keyframe sees at the place of this keypoint. A corner
+// is found at several levels of the pyramid, so it makes several landmarks with the same error. It
+// would count as often, most of all if it is no point at all: where an edge passes behind another,
+// the corner slides along both.
+double ShareOfPlace(const Keyframe& keyframe, uint32_t keypoint) {
+  const FrameFeatures& features = keyframe.frame->features;
+  std::vector<uint32_t> near;
+  features.grid.FindNear(features.keypoints, features.keypoints[keypoint].undistorted, kSamePlace,
+                         0, std::numeric_limits<int>::max(), near);
+  const auto seen = std::count_if(near.begin(), near.end(),
+                                  [&](uint32_t i) { return keyframe.landmarks[i].IsValid(); });
+  return 1.0 / static_cast<double>(std::max<std::ptrdiff_t>(seen, 1));
+}
 
 std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
                                               const PointMeasurement& measurement) {
@@ -132,10 +151,10 @@ class Bundle {
     points_.AddPoint(landmark.position);
     for (const Observation& seen : landmark.observations) {
       if (const size_t* const pose = pose_indices_.Find(seen.keyframe)) {
-        const FrameFeatures& features = map.keyframes().At(seen.keyframe).frame->features;
-        points_.AddView(
-            MeasurePoint(sensor, features, seen.keypoint, sensor.depth_error.ForAdjustment()),
-            *pose);
+        const Keyframe& keyframe = map.keyframes().At(seen.keyframe);
+        points_.AddView(MeasurePoint(sensor, keyframe.frame->features, seen.keypoint,
+                                     sensor.depth_error.ForAdjustment()),
+                        *pose, sensor.IsMonocular() ? ShareOfPlace(keyframe, seen.keypoint) : 1.0);
       }
     }
   }
@@ -186,15 +205,23 @@ class Bundle {
     ceres::HuberLoss without_depth(std::sqrt(Chi2Bound(2)));
     ceres::HuberLoss with_depth(std::sqrt(Chi2Bound(3)));
     std::vector<std::unique_ptr<ceres::CostFunction>> costs;
+    std::vector<std::unique_ptr<ceres::LossFunction>> weighted;
     ceres::Problem problem(ProblemOptions());
     for (size_t i = 0; i < points_.size(); ++i) {
       for (const View& view : points_.ViewsOf(i)) {
         if (view.is_inlier) {
-          ceres::LossFunction* const loss =
-              view.measurement.has_depth() ? &with_depth : &without_depth;
+          ceres::LossFunction* loss = nullptr;
+          if (robust) {
+            loss = view.measurement.has_depth() ? &with_depth : &without_depth;
+          }
+          if (view.weight != 1.0) {
+            weighted.push_back(std::make_unique<ceres::ScaledLoss>(loss, view.weight,
+                                                                   ceres::DO_NOT_TAKE_OWNERSHIP));
+            loss = weighted.back().get();
+          }
           costs.push_back(MakeCost(camera_, view.measurement));
-          problem.AddResidualBlock(costs.back().get(), robust ? loss : nullptr,
-                                   poses_[view.pose].data(), points_.positions()[i].data());
+          problem.AddResidualBlock(costs.back().get(), loss, poses_[view.pose].data(),
+                                   points_.positions()[i].data());
         }
       }
     }

@@ -24,7 +24,8 @@ class BundlePoints {
  public:
   struct View {
     PointMeasurement measurement;
-    size_t pose = 0;  // index of the pose
+    size_t pose = 0;      // index of the pose
+    double weight = 1.0;  // of its cost
     bool is_inlier = true;
   };
 
@@ -34,8 +35,8 @@ class BundlePoints {
     ends_.push_back(views_.size());
   }
   // Of the point that was added last.
-  void AddView(const PointMeasurement& measurement, size_t pose) {
-    views_.push_back({measurement, pose, true});
+  void AddView(const PointMeasurement& measurement, size_t pose, double weight = 1.0) {
+    views_.push_back({measurement, pose, weight, true});
     ends_.back() = views_.size();
   }
 

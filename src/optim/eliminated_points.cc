@@ -46,7 +46,7 @@ double EliminatedPoints::CostOf(size_t point, const Eigen::Vector3d& position) c
   for (const BundlePoints::View& view : std::as_const(points_).ViewsOf(point)) {
     if (view.is_inlier) {
       const Eigen::Vector3d in_camera = poses_[view.pose] * position;
-      cost += Loss(PointChi2(camera_, view.measurement, in_camera), view.measurement);
+      cost += Loss(PointChi2(camera_, view.measurement, in_camera), view);
     }
   }
   return cost;
@@ -66,9 +66,8 @@ EliminatedPoints::PointSystem EliminatedPoints::SystemOf(size_t point,
     }
     const PointLinearization linear(camera_, view.measurement, in_camera);
     const double chi2 = linear.residual.squaredNorm();
-    sum.cost += Loss(chi2, view.measurement);
-    sum.Add(WeightOf(chi2, view.measurement), linear.residual,
-            linear.Times(poses_[view.pose].rotation));
+    sum.cost += Loss(chi2, view);
+    sum.Add(WeightOf(chi2, view), linear.residual, linear.Times(poses_[view.pose].rotation));
   }
   return sum;
 }
@@ -124,7 +123,7 @@ void EliminatedPoints::AddView(const BundlePoints::View& view, const Eigen::Vect
     return;
   }
   const PointLinearization linear(camera_, view.measurement, in_camera);
-  const double weight = WeightOf(linear.residual.squaredNorm(), view.measurement);
+  const double weight = WeightOf(linear.residual.squaredNorm(), view);
   point.Add(weight, linear.residual, linear.Times(pose.rotation));
   if (view.pose >= moving_) {
     return;

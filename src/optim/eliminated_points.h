@@ -70,12 +70,13 @@ class EliminatedPoints {
   };
 
   // Half of rho, and its derivative by half of the squared residual.
-  double Loss(double chi2, const PointMeasurement& measurement) const {
-    return 0.5 * (robust_ ? HuberCost(chi2, OutlierBound(measurement)) : chi2);
+  double Loss(double chi2, const BundlePoints::View& view) const {
+    const double loss = robust_ ? HuberCost(chi2, OutlierBound(view.measurement)) : chi2;
+    return 0.5 * view.weight * loss;
   }
   double CostOf(size_t point, const Eigen::Vector3d& position) const;
-  double WeightOf(double chi2, const PointMeasurement& measurement) const {
-    return robust_ ? HuberWeight(chi2, OutlierBound(measurement)) : 1.0;
+  double WeightOf(double chi2, const BundlePoints::View& view) const {
+    return view.weight * (robust_ ? HuberWeight(chi2, OutlierBound(view.measurement)) : 1.0);
   }
   PointSystem SystemOf(size_t point, const Eigen::Vector3d& position) const;
   double MovePoint(size_t point, Eigen::Vector3d& position, double& damping) const;

@@ -157,6 +157,21 @@ TEST(CullKeyframes, RemovesNoneOfThreeKeyframes) {
   EXPECT_EQ(Cull(made.map, KeyframeId(2), world.sensor()), 0);
 }
 
+// What carries the scale of a single camera from one pair of keyframes to the next is a landmark
+// that is seen from a third place. Keyframes at the places of others do not replace it.
+TEST(CullKeyframes, WithoutDepthOthersAtTheSamePlaceCountOnce) {
+  const SyntheticWorld world({.points = 1200, .depth_share = 0.0});
+  Sensor sensor = world.sensor();
+  sensor.kind = SensorKind::kMonocular;
+  SyntheticMap apart = NearbyKeyframes(world, 8, 0.03);
+  EXPECT_EQ(Cull(apart.map, KeyframeId(7), sensor), 4) << "four others are left";
+  EXPECT_EQ(FindViolations(apart.map), std::vector<std::string>());
+  SyntheticMap together = NearbyKeyframes(world, 8, 0.001);
+  EXPECT_EQ(Cull(together.map, KeyframeId(7), sensor), 0);
+  sensor.kind = SensorKind::kRgbd;
+  EXPECT_EQ(Cull(together.map, KeyframeId(7), sensor), 5) << "with depth all count";
+}
+
 // Removes all observations of keyframe `id`'s landmarks by keyframes from `first` on, but those of
 // landmarks that `keep` selects by their depth.
 void SeeAlone(SyntheticMap& made, KeyframeId id, uint32_t first,

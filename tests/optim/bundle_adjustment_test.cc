@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <set>
 #include <string>
@@ -18,6 +19,7 @@
 #include "optim/robust.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
+#include "support/unknown_points.h"
 
 namespace hullslam {
 namespace {
@@ -317,8 +319,8 @@ TEST_F(BundleAdjustment, WithoutDepthErrorsAreMeasuredByThoseOfTheOtherKeypoints
   EXPECT_LT(result.outliers.size(), static_cast<size_t>(result.residuals) / 50);
 }
 
-// The errors of the sensor are the least that are believed: there are outliers that it does not
-// expect, but no keypoints that are that precise.
+// A fifth of the standard deviations of the sensor is the least that is believed. Otherwise the
+// rounding of exact keypoints would make outliers.
 TEST_F(BundleAdjustment, WithoutDepthExactKeypointsAreNoOutliers) {
   Sensor sensor = world_.sensor();
   sensor.kind = SensorKind::kMonocular;
@@ -327,6 +329,47 @@ TEST_F(BundleAdjustment, WithoutDepthExactKeypointsAreNoOutliers) {
   ASSERT_TRUE(result.is_usable);
   EXPECT_TRUE(result.outliers.empty());
   EXPECT_LT(WorstPoseError(result), 1e-4);
+}
+
+// Where an edge passes behind another, there is a corner that slides along both. It is found at
+// several levels of the pyramid, so that it makes several landmarks.
+TEST_F(BundleAdjustment, WithoutDepthACornerCountsOnceHoweverOftenItIsFound) {
+  const SyntheticWorld world({.points = 60, .pixel_noise = 0.1, .depth_share = 0.0});
+  Sensor sensor = world.sensor();
+  sensor.kind = SensorKind::kMonocular;
+  const auto error_with_copies = [&](uint32_t copies, size_t max_eliminated) {
+    made_ = MakeSyntheticMap(
+        world, {0, 10, 20, 30, 40, 50}, [&](Frame& frame, const Rigid3& cam_from_world) {
+          const double slide = 0.1 * std::pow(frame.id.value / 50.0, 2.0);
+          const Eigen::Vector3d corner(slide, 0.3, 3.0);
+          for (uint32_t i = 0; i < copies; ++i) {
+            frame.features.keypoints.push_back(
+                {.undistorted = sensor.camera.Project(cam_from_world * corner).cast<float>()});
+            frame.features.descriptors.push_back(world.descriptor(i));
+            frame.features.depth.push_back(0.0f);
+            frame.features.right_u.push_back(-1.0f);
+          }
+          RebuildGrid(sensor, frame);
+        });
+    BundleWindow window = Window();
+    for (uint32_t i = 0; i < copies; ++i) {
+      const LandmarkId id = made_.map.AddLandmark({0.1, 0.3, 3.0}, KeyframeId(0));
+      for (uint32_t k = 0; k < made_.views.size(); ++k) {
+        const auto first = static_cast<uint32_t>(made_.views[k].points.size());
+        made_.map.AddObservation(id, KeyframeId(k), first + i);
+      }
+      window.landmarks.push_back(id);
+    }
+    BundleOptions options = kPrecise;
+    options.max_eliminated = max_eliminated;
+    const BundleResult result = AdjustBundle(made_.map, sensor, window, options, nullptr);
+    EXPECT_TRUE(result.is_usable);
+    return WorstPoseError(result);
+  };
+  for (const size_t max_eliminated : {0U, 100U}) {  // both ways to solve it
+    // If each counted, the poses would follow them by decimetres.
+    EXPECT_LT(error_with_copies(8, max_eliminated), 1.2 * error_with_copies(0, max_eliminated));
+  }
 }
 
 TEST(BundleOptions, WithoutDepthTheyAreNoLessPrecise) {

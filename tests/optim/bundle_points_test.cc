@@ -15,7 +15,7 @@ TEST(BundlePoints, KeepsTheViewsOfEachPoint) {
   points.AddView({}, 5);
   points.AddPoint({0.0, 0.0, 1.0});
   points.AddPoint({4.0, 5.0, 6.0});
-  points.AddView({}, 6);
+  points.AddView({}, 6, 0.5);
   ASSERT_EQ(points.size(), 3u);
   EXPECT_EQ(points.positions()[2], Eigen::Vector3d(4.0, 5.0, 6.0));
   ASSERT_EQ(std::as_const(points).ViewsOf(0).size(), 2u);
@@ -23,6 +23,8 @@ TEST(BundlePoints, KeepsTheViewsOfEachPoint) {
   EXPECT_TRUE(points.ViewsOf(1).empty());
   ASSERT_EQ(points.ViewsOf(2).size(), 1u);
   EXPECT_EQ(points.ViewsOf(2)[0].pose, 6u);
+  EXPECT_EQ(points.ViewsOf(2)[0].weight, 0.5);
+  EXPECT_EQ(points.ViewsOf(0)[0].weight, 1.0) << "if nothing else is said";
 }
 
 TEST(BundlePoints, ViewsAreInliersUntilTheyAreLeftOut) {

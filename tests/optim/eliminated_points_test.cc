@@ -80,6 +80,7 @@ class CeresPoints {
     }
     ceres::LossFunction* loss =
         robust ? new ceres::HuberLoss(std::sqrt(Chi2Bound(has_depth ? 3 : 2))) : nullptr;
+    loss = new ceres::ScaledLoss(loss, view.weight, ceres::TAKE_OWNERSHIP);
     problem_.AddResidualBlock(cost, loss, poses_[view.pose].data(), positions_[point].data());
   }
 

@@ -14,8 +14,8 @@
 
 namespace hullslam {
 
-// Points that cameras on a short path see: some with depth, some views wrong by 30 px. Poses and
-// positions are some centimetres away from the truth.
+// Points that cameras on a short path see: some with depth, some views wrong by 30 px, and some
+// that count less. Poses and positions are some centimetres away from the truth.
 struct MadePoints {
   explicit MadePoints(size_t pose_count, size_t point_count = 40, uint64_t seed = 1) {
     RandomGeometry random(seed);
@@ -48,7 +48,7 @@ struct MadePoints {
     PointMeasurement measurement;
     measurement.measured = image + random.Vector(0.5) + Eigen::Vector3d(wrong, 0.0, 0.0);
     measurement.inverse_sigma << 1.2, 1.2, number % 3 == 0 ? 0.0 : 0.9;
-    points.AddView(measurement, pose);
+    points.AddView(measurement, pose, number % 5 == 0 ? 0.25 : 1.0);
   }
 };
 
