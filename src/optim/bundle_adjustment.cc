@@ -40,18 +40,29 @@ constexpr size_t kMinViews = 100;      // for a median
 // Keypoints that are nearer to each other, in x and in y, are at the same place.
 constexpr float kSamePlace = 3.0f;  // px
 
-// One over the number of landmarks that the keyframe sees at the place of this keypoint. A corner
-// is found at several levels of the pyramid, so it makes several landmarks with the same error. It
-// would count as often, most of all if it is no point at all: where an edge passes behind another,
-// the corner slides along both.
-double ShareOfPlace(const Keyframe& keyframe, uint32_t keypoint) {
+// The weight of a keypoint, such that all that show landmarks at its place weigh together as much
+// as the most precise of them. A corner is found at several levels of the pyramid, so it makes
+// several landmarks with the same error. It would count as often, most of all if it is no point at
+// all: where an edge passes behind another, the corner slides along both.
+double ShareOfPlace(const Keyframe& keyframe, uint32_t keypoint, const ScaleLevels& levels) {
   const FrameFeatures& features = keyframe.frame->features;
+  const auto information = [&](uint32_t i) {
+    const double sigma =
+        static_cast<double>(levels.scale[static_cast<size_t>(features.keypoints[i].level)]);
+    return 1.0 / (sigma * sigma);
+  };
   std::vector<uint32_t> near;
   features.grid.FindNear(features.keypoints, features.keypoints[keypoint].undistorted, kSamePlace,
                          0, std::numeric_limits<int>::max(), near);
-  const auto seen = std::count_if(near.begin(), near.end(),
-                                  [&](uint32_t i) { return keyframe.landmarks[i].IsValid(); });
-  return 1.0 / static_cast<double>(std::max<std::ptrdiff_t>(seen, 1));
+  double most = 0.0;
+  double sum = 0.0;
+  for (const uint32_t i : near) {
+    if (keyframe.landmarks[i].IsValid()) {
+      most = std::max(most, information(i));
+      sum += information(i);
+    }
+  }
+  return sum > 0.0 ? most / sum : 1.0;
 }
 
 std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
@@ -152,9 +163,11 @@ class Bundle {
     for (const Observation& seen : landmark.observations) {
       if (const size_t* const pose = pose_indices_.Find(seen.keyframe)) {
         const Keyframe& keyframe = map.keyframes().At(seen.keyframe);
-        points_.AddView(MeasurePoint(sensor, keyframe.frame->features, seen.keypoint,
-                                     sensor.depth_error.ForAdjustment()),
-                        *pose, sensor.IsMonocular() ? ShareOfPlace(keyframe, seen.keypoint) : 1.0);
+        points_.AddView(
+            MeasurePoint(sensor, keyframe.frame->features, seen.keypoint,
+                         sensor.depth_error.ForAdjustment()),
+            *pose,
+            sensor.IsMonocular() ? ShareOfPlace(keyframe, seen.keypoint, sensor.levels) : 1.0);
       }
     }
   }
