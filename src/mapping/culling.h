@@ -22,12 +22,12 @@ std::vector<LandmarkId> FindRecentLandmarks(const Map& map);
 
 // Removes redundant keyframes among those covisible with `current`. A keyframe is redundant if more
 // than nine tenths of its close landmarks are each seen by at least three others, at most one level
-// coarser than it sees them (section VI.E). Without depth, four are needed, and those
-// between which the landmark has no measurable parallax count as one. If it has fewer than 100
-// close landmarks, the same must hold for all of its landmarks, and with fewer than 20 landmarks it
-// is not redundant. A keyframe also stays if an object (mapped or candidate) needs its view:
-// because fewer than `min_object_views` would be left, or because no other keyframe sees the object
-// from a similar direction. Returns how many were removed.
+// coarser than it sees them (section VI.E). Without depth, four are needed, and those between which
+// the landmark has no measurable parallax count as one. If it has fewer than 100 close landmarks,
+// the same must hold for all of its landmarks, and with fewer than 20 landmarks it is not
+// redundant. A keyframe also stays if an object (mapped or candidate) needs its view: because fewer
+// than `min_object_views` would be left, or because no other keyframe sees the object from a
+// similar direction. Returns how many were removed.
 int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views);
 
 }  // namespace hullslam

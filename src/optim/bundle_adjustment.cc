@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <limits>
 #include <memory>
 
 #include "costs/pose_manifold.h"
@@ -20,6 +18,7 @@
 #include "optim/bundle_scale.h"
 #include "optim/eliminated_points.h"
 #include "optim/object_bundle.h"
+#include "optim/place_share.h"
 #include "optim/reduced_points_cost.h"
 #include "optim/supervision.h"
 #include "util/chi_square.h"
@@ -36,34 +35,6 @@ constexpr double kMedianChi2 = 1.386;  // of two degrees of freedom: 2 ln 2
 constexpr double kTails = 2.0;
 constexpr double kMaxPrecision = 5.0;  // over that of the sensor; even exact keypoints are rounded
 constexpr size_t kMinViews = 100;      // for a median
-
-// Keypoints that are nearer to each other, in x and in y, are at the same place.
-constexpr float kSamePlace = 3.0f;  // px
-
-// The weight of a keypoint, such that all that show landmarks at its place weigh together as much
-// as the most precise of them. A corner is found at several levels of the pyramid, so it makes
-// several landmarks with the same error. It would count as often, most of all if it is no point at
-// all: where an edge passes behind another, the corner slides along both.
-double ShareOfPlace(const Keyframe& keyframe, uint32_t keypoint, const ScaleLevels& levels) {
-  const FrameFeatures& features = keyframe.frame->features;
-  const auto information = [&](uint32_t i) {
-    const double sigma =
-        static_cast<double>(levels.scale[static_cast<size_t>(features.keypoints[i].level)]);
-    return 1.0 / (sigma * sigma);
-  };
-  std::vector<uint32_t> near;
-  features.grid.FindNear(features.keypoints, features.keypoints[keypoint].undistorted, kSamePlace,
-                         0, std::numeric_limits<int>::max(), near);
-  double most = 0.0;
-  double sum = 0.0;
-  for (const uint32_t i : near) {
-    if (keyframe.landmarks[i].IsValid()) {
-      most = std::max(most, information(i));
-      sum += information(i);
-    }
-  }
-  return sum > 0.0 ? most / sum : 1.0;
-}
 
 std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
                                               const PointMeasurement& measurement) {
@@ -163,11 +134,12 @@ class Bundle {
     for (const Observation& seen : landmark.observations) {
       if (const size_t* const pose = pose_indices_.Find(seen.keyframe)) {
         const Keyframe& keyframe = map.keyframes().At(seen.keyframe);
-        points_.AddView(
-            MeasurePoint(sensor, keyframe.frame->features, seen.keypoint,
-                         sensor.depth_error.ForAdjustment()),
-            *pose,
-            sensor.IsMonocular() ? ShareOfPlace(keyframe, seen.keypoint, sensor.levels) : 1.0);
+        const double weight = sensor.IsMonocular()
+                                  ? internal::ShareOfPlace(keyframe, seen.keypoint, sensor.levels)
+                                  : 1.0;
+        points_.AddView(MeasurePoint(sensor, keyframe.frame->features, seen.keypoint,
+                                     sensor.depth_error.ForAdjustment()),
+                        *pose, weight);
       }
     }
   }

@@ -80,16 +80,16 @@ struct BundleResult {
 
 // Minimises the reprojection errors of the window's landmarks in its keyframes. Without depth, the
 // options are those of WithoutDepth(), the standard deviations of keypoints are made as small as
-// the errors show them to be, and Huber's loss is used in both rounds. Ceres solves for
-// poses and objects. In a small window own code eliminates the landmarks (EliminatedPoints); in a
-// large one, Ceres does so (BundleOptions::max_eliminated). Each object of the window adds the
-// constraints of its detections (MakeObjectConstraint) and a prior (MakeObjectPrior) at the shape
-// that it has at the beginning. If the solver fails, the adjustment is repeated without objects,
-// and all objects are reported as failed. With a monocular sensor and a single fixed keyframe the
-// result has the scale of the map (KeepScale). If `cancellation` (may be null) is requested, the
-// adjustment ends early and returns what it has. If that happens in the first round, the only
-// outliers are observations of points that are not in front of the camera. `on_progress` is called
-// after each iteration.
+// the errors show them to be, keypoints at the same place share a weight (ShareOfPlace), and
+// Huber's loss is used in both rounds. Ceres solves for poses and objects. In a small window own
+// code eliminates the landmarks (EliminatedPoints); in a large one, Ceres does so
+// (BundleOptions::max_eliminated). Each object of the window adds the constraints of its detections
+// (MakeObjectConstraint) and a prior (MakeObjectPrior) at the shape that it has at the beginning.
+// If the solver fails, the adjustment is repeated without objects, and all objects are reported as
+// failed. With a monocular sensor and a single fixed keyframe the result has the scale of the map
+// (KeepScale). If `cancellation` (may be null) is requested, the adjustment ends early and returns
+// what it has. If that happens in the first round, the only outliers are observations of points
+// that are not in front of the camera. `on_progress` is called after each iteration.
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& options, const Cancellation* cancellation,
                           const ProgressCallback& on_progress = {});

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "optim/place_share.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "support/synthetic_world.h"
+#include "support/unknown_points.h"
+
+namespace hullslam::internal {
+namespace {
+
+// A keyframe in which all keypoints show landmarks.
+class PlaceShare : public testing::Test {
+ protected:
+  struct Seen {
+    float u;
+    float v;
+    int level;
+  };
+
+  Keyframe Make(const std::vector<Seen>& seen) const {
+    auto frame = std::make_shared<Frame>();
+    Keyframe keyframe;
+    for (const auto& [u, v, level] : seen) {
+      frame->features.keypoints.push_back({.undistorted = {u, v}, .level = level});
+      keyframe.landmarks.emplace_back(static_cast<uint32_t>(keyframe.landmarks.size()));
+    }
+    RebuildGrid(sensor_, *frame);
+    keyframe.frame = std::move(frame);
+    return keyframe;
+  }
+  double Share(const Keyframe& keyframe, uint32_t keypoint) const {
+    return ShareOfPlace(keyframe, keypoint, sensor_.levels);
+  }
+
+  const Sensor sensor_ = SyntheticSensor();
+};
+
+TEST_F(PlaceShare, AllAtAPlaceWeighAsMuchAsTheMostPrecise) {
+  const Keyframe keyframe = Make({{100.0f, 80.0f, 2}, {101.5f, 78.0f, 0}, {100.5f, 80.5f, 5}});
+  double together = 0.0;
+  for (const uint32_t i : {0U, 1U, 2U}) {
+    const auto level = static_cast<size_t>(keyframe.frame->features.keypoints[i].level);
+    together += Share(keyframe, i) * static_cast<double>(sensor_.levels.inverse_sigma2[level]);
+    EXPECT_EQ(Share(keyframe, i), Share(keyframe, 0));
+  }
+  EXPECT_NEAR(together, 1.0, 1e-6) << "that of the finest level";
+}
+
+TEST_F(PlaceShare, IsAllOfAKeypointThatIsAlone) {
+  const Keyframe keyframe = Make({{100.0f, 80.0f, 3}, {103.5f, 80.0f, 0}, {100.0f, 76.5f, 0}});
+  EXPECT_EQ(Share(keyframe, 0), 1.0);
+}
+
+TEST_F(PlaceShare, KeypointsWithoutALandmarkDoNotCount) {
+  Keyframe keyframe = Make({{100.0f, 80.0f, 1}, {100.0f, 80.0f, 0}});
+  EXPECT_LT(Share(keyframe, 0), 1.0);
+  keyframe.landmarks[1] = LandmarkId();
+  EXPECT_EQ(Share(keyframe, 0), 1.0);
+}
+
+}  // namespace
+}  // namespace hullslam::internal
