@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// Levenberg-Marquardt of a single point. A step that is expected to lower the cost by a smaller
-// share than kNegligible is lost in rounding.
+// Levenberg-Marquardt of a single point. A step that is expected to lower the cost by less than
+// kNegligible, or by a smaller share, is lost in rounding.
 constexpr int kTrialsPerStep = 3;
 constexpr double kNegligible = 1e-9;
 constexpr double kLeastDamping = 1e-8;   // relative to the diagonal
@@ -81,7 +81,7 @@ double EliminatedPoints::MovePoint(size_t point, Eigen::Vector3d& position, doub
     const Eigen::Vector3d next = position + step;
     const double cost = CostOf(point, next);
     if (!(cost < here.cost)) {
-      if (expected < kNegligible * here.cost) {
+      if (expected < kNegligible * (1.0 + here.cost)) {
         break;
       }
       damping = std::clamp(100.0 * damping, kFailedDamping, kMostDamping);

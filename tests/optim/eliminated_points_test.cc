@@ -223,6 +223,34 @@ TEST(EliminatedPoints, APointBehindACameraHasAnInfiniteCost) {
   EXPECT_LT(eliminated.Follow(made.poses), 1e9);  // and the next poses start where it was before
 }
 
+// If its views agree exactly, no step can lower the cost of a point. It must not be mistaken for one
+// whose steps fail: that one would be held where it is, and would hold the poses that see it.
+TEST(EliminatedPoints, APointWhoseViewsAgreeExactlyFollowsThePoses) {
+  MadePoints made(3);
+  BundlePoints exact;
+  for (const Eigen::Vector3d& position : made.points.positions()) {
+    exact.AddPoint(position);
+    for (size_t i = 0; i < made.poses.size(); ++i) {
+      const Eigen::Vector3d image = ProjectRgbd(made.camera, made.poses[i] * position);
+      exact.AddView({.measured = image, .inverse_sigma = {1.0, 1.0, 0.0}}, i);
+    }
+  }
+  EliminatedPoints eliminated(made.camera, exact, 3, true);
+  EXPECT_LT(eliminated.Follow(made.poses), 1e-9);
+  eliminated.Accept();
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+  eliminated.Linearize(hessian, gradient);
+  // All cameras move by the same vector, and the points with them: this costs nothing.
+  Eigen::VectorXd together(18);
+  for (size_t i = 0; i < made.poses.size(); ++i) {
+    together.segment<6>(6 * static_cast<Eigen::Index>(i)) << Eigen::Vector3d::Zero(),
+        made.poses[i].rotation * Eigen::Vector3d(1.0, 2.0, 3.0);
+  }
+  const Eigen::MatrixXd whole = hessian.selfadjointView<Eigen::Lower>();
+  EXPECT_LT(together.dot(whole * together), 1e-6 * whole.trace());
+}
+
 // A single view without depth leaves the distance free.
 TEST(EliminatedPoints, APointInASingleViewWithoutDepthStaysFinite) {
   MadePoints made(1, 1);
