@@ -27,7 +27,7 @@ void Append(const Map& map, const BundleResult& result, MapCorrection& correctio
 std::optional<MapCorrection> AdjustWholeMap(const Map& map, const Sensor& sensor,
                                             const ObjectOptions& objects,
                                             const Cancellation* cancellation) {
-  const WindowObjects in_window = ObjectsToAdjust(sensor, objects);
+  const WindowObjects in_window = ObjectsToAdjust(objects);
   MapCorrection correction;
   correction.snapshot_corrections = map.correction_count();
   bool is_adjusted = false;

@@ -167,7 +167,7 @@ void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry)
     const ScopedTimer timer(times_, "local_bundle_adjustment");
     window = LocalWindow(map_, keyframe, static_cast<size_t>(options_.local_keyframes),
                          static_cast<size_t>(options_.fixed_keyframes),
-                         ObjectsToAdjust(sensor_, object_options_));
+                         ObjectsToAdjust(object_options_));
     Adjust(window, {.objects = object_options_.bundle}, hurry);
   }
   RecheckObjects(window.objects);
@@ -192,12 +192,11 @@ void Mapper::AdjustMap(const Cancellation* cancellation, const ProgressCallback&
   BundleWindow window;
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
-    window = GlobalWindow(map_, MainIsland(map_), ObjectsToAdjust(sensor_, object_options_));
+    window = GlobalWindow(map_, MainIsland(map_), ObjectsToAdjust(object_options_));
     Adjust(window, BundleOptions{.objects = object_options_.bundle}.ForWholeMap(), cancellation,
            on_progress);
   }
   RecheckObjects(window.objects);
-  RefineObjects();
   PublishSnapshot();
 }
 
@@ -284,17 +283,6 @@ void Mapper::RecheckObjects(const std::vector<ObjectId>& objects) {
     const ScopedTimer timer(times_, "check_objects");
     object_mapper_.Recheck(map_, objects);
   }
-}
-
-// The objects of a single camera are not in the adjustment of its poses (see ObjectsToAdjust).
-void Mapper::RefineObjects() {
-  if (!object_options_.enabled || !sensor_.IsMonocular()) {
-    return;
-  }
-  const ScopedTimer timer(times_, "check_objects");
-  std::vector<ObjectId> objects;
-  map_.objects().ForEach([&](ObjectId id, const ObjectLandmark&) { objects.push_back(id); });
-  object_mapper_.Follow(map_, objects);
 }
 
 }  // namespace hullslam

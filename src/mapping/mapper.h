@@ -81,7 +81,6 @@ class Mapper {
               const Cancellation* cancellation, const ProgressCallback& on_progress = {});
   void FollowKnownSizes(bool is_final);
   void RecheckObjects(const std::vector<ObjectId>& objects);
-  void RefineObjects();
 
   const Sensor& sensor_;
   MappingOptions options_;

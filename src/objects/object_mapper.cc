@@ -244,18 +244,6 @@ void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
   }
 }
 
-void ObjectMapper::Follow(Map& map, std::span<const ObjectId> objects) {
-  changed_.insert(changed_.end(), objects.begin(), objects.end());
-  for (const ObjectId id : objects) {
-    const ObjectLandmark* object = map.objects().Find(id);
-    if (object != nullptr && object->state == ObjectState::kMapped &&
-        object->observations.size() >= static_cast<size_t>(options_.start.min_views)) {
-      Refine(map, id,
-             CollectViews(map, *object, static_cast<size_t>(options_.refinement.max_views)));
-    }
-  }
-}
-
 void ObjectMapper::RefineMerged(Map& map, std::span<const ObjectId> objects) {
   may_all_have_changed_ = true;
   for (const ObjectId id : objects) {

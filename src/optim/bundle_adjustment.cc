@@ -20,6 +20,7 @@
 #include "optim/object_bundle.h"
 #include "optim/place_share.h"
 #include "optim/reduced_points_cost.h"
+#include "optim/robust.h"
 #include "optim/supervision.h"
 #include "util/chi_square.h"
 #include "util/median.h"
@@ -103,11 +104,11 @@ class Bundle {
     });
   }
 
-  bool Solve(int iterations, bool robust, Supervision& supervision, BundleResult& result) {
+  bool Solve(int iterations, PointLoss loss, Supervision& supervision, BundleResult& result) {
     const size_t moving = window_.moving.size();
     const bool eliminates = moving > 0 && moving <= options_.max_eliminated;
-    return eliminates ? SolveEliminated(iterations, robust, supervision, result)
-                      : SolveSparse(iterations, robust, supervision, result);
+    return eliminates ? SolveEliminated(iterations, loss, supervision, result)
+                      : SolveSparse(iterations, loss, supervision, result);
   }
 
   void Write(BundleResult& result) {
@@ -169,9 +170,9 @@ class Bundle {
   }
 
   // Own code eliminates the points, and Ceres solves for the poses and the objects.
-  bool SolveEliminated(int iterations, bool robust, Supervision& supervision,
+  bool SolveEliminated(int iterations, PointLoss loss, Supervision& supervision,
                        BundleResult& result) {
-    internal::EliminatedPoints eliminated(camera_, points_, window_.moving.size(), robust,
+    internal::EliminatedPoints eliminated(camera_, points_, window_.moving.size(), loss,
                                           options_.follow);
     internal::ReducedPointsCost cost(eliminated, poses_);
     ceres::Problem::Options problem_options = ProblemOptions();
@@ -186,9 +187,11 @@ class Bundle {
   }
 
   // Ceres eliminates the points. The system that is left is sparse.
-  bool SolveSparse(int iterations, bool robust, Supervision& supervision, BundleResult& result) {
+  bool SolveSparse(int iterations, PointLoss point_loss, Supervision& supervision,
+                   BundleResult& result) {
     ceres::HuberLoss without_depth(std::sqrt(Chi2Bound(2)));
     ceres::HuberLoss with_depth(std::sqrt(Chi2Bound(3)));
+    ceres::CauchyLoss cauchy(kCauchyScale);
     std::vector<std::unique_ptr<ceres::CostFunction>> costs;
     std::vector<std::unique_ptr<ceres::LossFunction>> weighted;
     ceres::Problem problem(ProblemOptions());
@@ -196,8 +199,10 @@ class Bundle {
       for (const View& view : points_.ViewsOf(i)) {
         if (view.is_inlier) {
           ceres::LossFunction* loss = nullptr;
-          if (robust) {
+          if (point_loss == PointLoss::kHuber) {
             loss = view.measurement.has_depth() ? &with_depth : &without_depth;
+          } else if (point_loss == PointLoss::kCauchy) {
+            loss = &cauchy;
           }
           if (view.weight != 1.0) {
             weighted.push_back(std::make_unique<ceres::ScaledLoss>(loss, view.weight,
@@ -274,19 +279,25 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
   BundleResult result;
   Bundle bundle(map, sensor, window, options);
   bundle.ExcludeUndefined();
-  if (sensor.IsMonocular()) {
+  // Without depth, corners that slide along edges can change the scale. Poses follow them, so that
+  // their errors are too small for outliers, but not as small as those of others. Under Cauchy's
+  // loss such errors pull less than under Huber's.
+  const bool mono = sensor.IsMonocular();
+  if (mono) {
     bundle.MeasurePrecision();
   }
-  if (!bundle.Solve(options.robust_iterations, true, supervision, result)) {
+  if (!bundle.Solve(options.robust_iterations, mono ? PointLoss::kCauchy : PointLoss::kHuber,
+                    supervision, result)) {
     return result;
   }
   // After a cancelled round the errors are not minimal, so they do not tell which are outliers.
   if (!supervision.IsCancelled()) {
-    if (sensor.IsMonocular()) {
+    if (mono) {
       bundle.MeasurePrecision();
     }
     bundle.Classify();
-    if (!bundle.Solve(options.final_iterations, sensor.IsMonocular(), supervision, result)) {
+    if (!bundle.Solve(options.final_iterations, mono ? PointLoss::kCauchy : PointLoss::kNone,
+                      supervision, result)) {
       return result;
     }
     bundle.Classify();

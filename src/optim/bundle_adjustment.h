@@ -32,11 +32,8 @@ struct BundleWindow {
 enum class WindowObjects { kNone, kMapped };
 BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, size_t max_fixed,
                          WindowObjects objects = WindowObjects::kNone);
-// The objects that take part in bundle adjustment: with depth the mapped ones, if the options say
-// so. Those of a single camera do not. Silhouettes are wrong by some pixels. Where the camera only
-// turns, nothing but objects would tell that it does not move, and a few pixels are a baseline from
-// which landmarks at wrong depths are made.
-WindowObjects ObjectsToAdjust(const Sensor& sensor, const ObjectOptions& options);
+// The objects that take part in bundle adjustment: the mapped ones, if the options say so.
+WindowObjects ObjectsToAdjust(const ObjectOptions& options);
 // All keyframes and landmarks of an island and, if asked for, its mapped objects. Only the root of
 // the spanning tree is fixed.
 BundleWindow GlobalWindow(const Map& map, IslandId island,
@@ -44,8 +41,9 @@ BundleWindow GlobalWindow(const Map& map, IslandId island,
 
 // How the problem is solved.
 struct BundleOptions {
-  int robust_iterations = 5;  // with Huber's loss; outliers are then left out
-  int final_iterations = 10;  // without Huber's loss, inliers only
+  // With Huber's loss; then outliers are left out. Without depth, Cauchy's loss in both rounds.
+  int robust_iterations = 5;
+  int final_iterations = 10;  // without loss, inliers only
   double function_tolerance = 1e-4;
   int threads = 1;  // with more than one, the last bits differ from run to run
   // With up to this number of moving keyframes, own code eliminates the landmarks; with more, Ceres

@@ -78,8 +78,8 @@ BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, s
   return window;
 }
 
-WindowObjects ObjectsToAdjust(const Sensor& sensor, const ObjectOptions& options) {
-  const bool are_used = options.enabled && options.bundle_adjustment && !sensor.IsMonocular();
+WindowObjects ObjectsToAdjust(const ObjectOptions& options) {
+  const bool are_used = options.enabled && options.bundle_adjustment;
   return are_used ? WindowObjects::kMapped : WindowObjects::kNone;
 }
 

@@ -32,14 +32,38 @@ Eigen::Matrix3d DampedInverse(const Eigen::Matrix3d& lower, double damping) {
 }  // namespace
 
 EliminatedPoints::EliminatedPoints(const PinholeCamera& camera, BundlePoints& points, size_t moving,
-                                   bool robust, const FollowOptions& follow)
+                                   PointLoss loss, const FollowOptions& follow)
     : camera_(camera),
       points_(points),
       moving_(moving),
-      robust_(robust),
+      loss_(loss),
       follow_(follow),
       moved_(points.positions()),
       damping_(points.size(), kLeastDamping) {}
+
+double EliminatedPoints::Loss(double chi2, const BundlePoints::View& view) const {
+  switch (loss_) {
+    case PointLoss::kNone:
+      break;
+    case PointLoss::kHuber:
+      return 0.5 * view.weight * HuberCost(chi2, OutlierBound(view.measurement));
+    case PointLoss::kCauchy:
+      return 0.5 * view.weight * CauchyCost(chi2, kCauchyScale);
+  }
+  return 0.5 * view.weight * chi2;
+}
+
+double EliminatedPoints::WeightOf(double chi2, const BundlePoints::View& view) const {
+  switch (loss_) {
+    case PointLoss::kNone:
+      break;
+    case PointLoss::kHuber:
+      return view.weight * HuberWeight(chi2, OutlierBound(view.measurement));
+    case PointLoss::kCauchy:
+      return view.weight * CauchyWeight(chi2, kCauchyScale);
+  }
+  return view.weight;
+}
 
 double EliminatedPoints::CostOf(size_t point, const Eigen::Vector3d& position) const {
   double cost = 0.0;

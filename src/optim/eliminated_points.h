@@ -19,15 +19,14 @@ namespace hullslam::internal {
 //   sum over inlier views of 1/2 rho(|PointResidual|^2)
 // is a function of the poses alone. This class evaluates it and gives its Gauss-Newton
 // approximation: the Schur complement of the points (Triggs et al. 2000, "Bundle Adjustment: A
-// Modern Synthesis", section 6.1). rho is Huber's loss with the bound OutlierBound, or the
-// identity.
+// Modern Synthesis", section 6.1). rho is the loss (PointLoss).
 //
 // Poses are cam_from_world. Derivatives are by the six parameters of Retract.
 class EliminatedPoints {
  public:
   // The poses with the first `moving` indices move, the others are fixed. `points` must outlive
   // this object.
-  EliminatedPoints(const PinholeCamera& camera, BundlePoints& points, size_t moving, bool robust,
+  EliminatedPoints(const PinholeCamera& camera, BundlePoints& points, size_t moving, PointLoss loss,
                    const FollowOptions& follow = {});
 
   size_t moving() const { return moving_; }
@@ -70,14 +69,9 @@ class EliminatedPoints {
   };
 
   // Half of rho, and its derivative by half of the squared residual.
-  double Loss(double chi2, const BundlePoints::View& view) const {
-    const double loss = robust_ ? HuberCost(chi2, OutlierBound(view.measurement)) : chi2;
-    return 0.5 * view.weight * loss;
-  }
+  double Loss(double chi2, const BundlePoints::View& view) const;
   double CostOf(size_t point, const Eigen::Vector3d& position) const;
-  double WeightOf(double chi2, const BundlePoints::View& view) const {
-    return view.weight * (robust_ ? HuberWeight(chi2, OutlierBound(view.measurement)) : 1.0);
-  }
+  double WeightOf(double chi2, const BundlePoints::View& view) const;
   PointSystem SystemOf(size_t point, const Eigen::Vector3d& position) const;
   double MovePoint(size_t point, Eigen::Vector3d& position, double& damping) const;
   void AddView(const BundlePoints::View& view, const Eigen::Vector3d& position, PointSystem& point,
@@ -88,7 +82,7 @@ class EliminatedPoints {
   PinholeCamera camera_;
   BundlePoints& points_;
   size_t moving_;
-  bool robust_;
+  PointLoss loss_;
   FollowOptions follow_;
   std::vector<MatrixPose> poses_;
   std::vector<Eigen::Vector3d> moved_;  // the places of the last Follow()

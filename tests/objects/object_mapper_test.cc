@@ -127,28 +127,6 @@ TEST_F(Mapping, AnObjectThatTurnsBadIsACandidateAgain) {
   EXPECT_EQ(Mapped().size(), 3u);
 }
 
-// All poses were moved by 5 cm without the objects.
-TEST_F(Mapping, ObjectsFollowPosesThatWereChangedWithoutThem) {
-  const auto table = MakeTable();
-  for (int i = 0; i < 8; ++i) {
-    See(table, 0.1 * i);
-  }
-  ASSERT_EQ(Mapped().size(), 3u);
-  const Rigid3 motion(Eigen::Quaterniond::Identity(), {0.05, 0.0, 0.0});
-  for (uint32_t i = 0; i < 8; ++i) {
-    const Rigid3& pose = map_.keyframes().At(KeyframeId(i)).cam_from_world;
-    map_.SetPose(KeyframeId(i), pose * Inverse(motion));
-  }
-  const std::vector<ObjectId> all = {ObjectId(0), ObjectId(1), ObjectId(2), ObjectId(7)};
-  mapper_.Follow(map_, all);
-  ASSERT_EQ(Mapped().size(), 3u);
-  for (uint32_t i = 0; i < 3; ++i) {
-    const Eigen::Vector3d truth = motion * table[i].ellipsoid.world_from_object.translation;
-    const Ellipsoid& ellipsoid = map_.objects().At(ObjectId(i)).ellipsoid;
-    EXPECT_LT((ellipsoid.world_from_object.translation - truth).norm(), 0.01) << i;
-  }
-}
-
 // Keyframes are culled after the objects of the window were checked.
 TEST_F(Mapping, AnObjectWhoseKeyframesWereAllCulledIsNoLongerMapped) {
   const auto table = MakeTable();

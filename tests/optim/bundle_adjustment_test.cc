@@ -16,6 +16,7 @@
 #include "map/invariants.h"
 #include "map/made_map.h"
 #include "map/spanning_tree.h"
+#include "optim/place_share.h"
 #include "optim/robust.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
@@ -370,6 +371,64 @@ TEST_F(BundleAdjustment, WithoutDepthACornerCountsOnceHoweverOftenItIsFound) {
     // If each counted, the poses would follow them by decimetres.
     EXPECT_LT(error_with_copies(8, max_eliminated), 1.2 * error_with_copies(0, max_eliminated));
   }
+}
+
+// A step of Newton from where a point is goes nowhere, because Cauchy's loss is least there.
+TEST_F(BundleAdjustment, WithoutDepthCauchysLossIsMinimised) {
+  // So much noise that the precision of the keypoints is taken for that of the sensor.
+  const SyntheticWorld world({.points = 300, .pixel_noise = 1.2, .depth_share = 0.0});
+  Sensor sensor = world.sensor();
+  sensor.kind = SensorKind::kMonocular;
+  for (const size_t max_eliminated : {0U, 100U}) {  // both ways to solve it
+    made_ = MakeSyntheticMap(world, {0, 10, 20, 30, 40, 50});
+    BundleOptions options = kPrecise;
+    options.max_eliminated = max_eliminated;
+    const BundleResult result = AdjustBundle(made_.map, sensor, Window(), options, nullptr);
+    ASSERT_TRUE(result.is_usable);
+    const Map start = made_.map.Snapshot();  // with all observations, which share their places
+    ApplyBundle(made_.map, result, sensor.levels);
+    const auto cost = [&](LandmarkId id, const Eigen::Vector3d& position) {
+      double sum = 0.0;
+      for (const Observation& seen : made_.map.landmarks().At(id).observations) {
+        const Keyframe& keyframe = made_.map.keyframes().At(seen.keyframe);
+        const PointMeasurement measurement = MeasurePoint(
+            sensor, keyframe.frame->features, seen.keypoint, sensor.depth_error.ForAdjustment());
+        sum += internal::ShareOfPlace(start.keyframes().At(seen.keyframe), seen.keypoint,
+                                      sensor.levels) *
+               CauchyCost(PointChi2(sensor.camera, measurement, keyframe.cam_from_world * position),
+                          kCauchyScale);
+      }
+      return sum;
+    };
+    std::set<LandmarkId> with_outliers;
+    for (const auto& [id, keyframe] : result.outliers) {
+      with_outliers.insert(id);
+    }
+    double longest = 0.0;
+    EXPECT_LT(with_outliers.size() + 50, result.positions.size());
+    for (const auto& [id, position] : result.positions) {
+      if (with_outliers.contains(id)) {
+        continue;
+      }
+      const Eigen::Vector3d step(0.0, 1e-4, 0.0);
+      const double before = cost(id, position - step);
+      const double after = cost(id, position + step);
+      const double curvature = before + after - 2.0 * cost(id, position);
+      longest = std::max(longest, 0.5 * std::abs(after - before) / curvature * step.y());
+    }
+    EXPECT_LT(longest, 1e-6) << max_eliminated;
+  }
+}
+
+TEST(ObjectsToAdjust, AreTheMappedOnesIfTheOptionsSaySo) {
+  ObjectOptions options;
+  options.enabled = true;
+  EXPECT_EQ(ObjectsToAdjust(options), WindowObjects::kMapped);
+  options.bundle_adjustment = false;
+  EXPECT_EQ(ObjectsToAdjust(options), WindowObjects::kNone);
+  options.bundle_adjustment = true;
+  options.enabled = false;
+  EXPECT_EQ(ObjectsToAdjust(options), WindowObjects::kNone);
 }
 
 TEST(BundleOptions, WithoutDepthTheyAreNoLessPrecise) {

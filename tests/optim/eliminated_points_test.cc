@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -26,7 +27,7 @@ namespace {
 // The same points with the costs and the loss that Ceres sees without elimination.
 class CeresPoints {
  public:
-  CeresPoints(MadePoints& made, bool robust) : positions_(made.points.positions()) {
+  CeresPoints(MadePoints& made, PointLoss point_loss) : positions_(made.points.positions()) {
     for (const Rigid3& pose : made.poses) {
       poses_.push_back(ToBlock(pose));
     }
@@ -38,7 +39,7 @@ class CeresPoints {
       problem_.AddParameterBlock(positions_[i].data(), 3);
       blocks_.push_back(positions_[i].data());
       for (const BundlePoints::View& view : made.points.ViewsOf(i)) {
-        AddView(made.camera, view, i, robust);
+        AddView(made.camera, view, i, point_loss);
       }
     }
   }
@@ -67,7 +68,7 @@ class CeresPoints {
 
  private:
   void AddView(const PinholeCamera& camera, const BundlePoints::View& view, size_t point,
-               bool robust) {
+               PointLoss point_loss) {
     if (!view.is_inlier) {
       return;
     }
@@ -78,8 +79,12 @@ class CeresPoints {
     } else {
       cost = new ReprojectionCost(camera, view.measurement);
     }
-    ceres::LossFunction* loss =
-        robust ? new ceres::HuberLoss(std::sqrt(Chi2Bound(has_depth ? 3 : 2))) : nullptr;
+    ceres::LossFunction* loss = nullptr;
+    if (point_loss == PointLoss::kHuber) {
+      loss = new ceres::HuberLoss(std::sqrt(Chi2Bound(has_depth ? 3 : 2)));
+    } else if (point_loss == PointLoss::kCauchy) {
+      loss = new ceres::CauchyLoss(kCauchyScale);
+    }
     loss = new ceres::ScaledLoss(loss, view.weight, ceres::TAKE_OWNERSHIP);
     problem_.AddResidualBlock(cost, loss, poses_[view.pose].data(), positions_[point].data());
   }
@@ -100,30 +105,36 @@ double Settle(EliminatedPoints& eliminated, const std::vector<Rigid3>& poses) {
   return cost;
 }
 
-class EliminatedPointsTest : public ::testing::TestWithParam<bool> {
+class EliminatedPointsTest : public ::testing::TestWithParam<PointLoss> {
  protected:
-  bool robust() const { return GetParam(); }
+  PointLoss loss() const { return GetParam(); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Losses, EliminatedPointsTest, ::testing::Values(false, true),
-                         [](const auto& test) { return test.param ? "Huber" : "Squared"; });
+std::string NameOf(const ::testing::TestParamInfo<PointLoss>& test) {
+  constexpr std::array kNames{"Squared", "Huber", "Cauchy"};
+  return kNames.at(static_cast<size_t>(test.param));
+}
+
+INSTANTIATE_TEST_SUITE_P(Losses, EliminatedPointsTest,
+                         ::testing::Values(PointLoss::kNone, PointLoss::kHuber, PointLoss::kCauchy),
+                         NameOf);
 
 TEST_P(EliminatedPointsTest, TheCostIsThatOfCeresAtTheMovedPoints) {
   MadePoints made(5);
-  const double before = CeresPoints(made, robust()).Cost();
-  EliminatedPoints eliminated(made.camera, made.points, 5, robust());
+  const double before = CeresPoints(made, loss()).Cost();
+  EliminatedPoints eliminated(made.camera, made.points, 5, loss());
   const double cost = eliminated.Follow(made.poses);
   EXPECT_LT(cost, before);
-  EXPECT_EQ(CeresPoints(made, robust()).Cost(), before);  // not accepted yet
+  EXPECT_EQ(CeresPoints(made, loss()).Cost(), before);  // not accepted yet
   eliminated.Accept();
-  EXPECT_NEAR(CeresPoints(made, robust()).Cost(), cost, 1e-9 * cost);
+  EXPECT_NEAR(CeresPoints(made, loss()).Cost(), cost, 1e-9 * cost);
 }
 
 // The Schur complement of the points in the normal equations of all parameters.
 TEST_P(EliminatedPointsTest, TheSystemIsTheSchurComplementOfThatOfCeres) {
   MadePoints made(5);
   constexpr Eigen::Index kMoving = 3;
-  EliminatedPoints eliminated(made.camera, made.points, kMoving, robust());
+  EliminatedPoints eliminated(made.camera, made.points, kMoving, loss());
   Settle(eliminated, made.poses);
   Eigen::MatrixXd hessian;
   Eigen::VectorXd gradient;
@@ -131,7 +142,7 @@ TEST_P(EliminatedPointsTest, TheSystemIsTheSchurComplementOfThatOfCeres) {
 
   Eigen::MatrixXd all;
   Eigen::VectorXd all_gradient;
-  CeresPoints(made, robust()).Normal(all, all_gradient);
+  CeresPoints(made, loss()).Normal(all, all_gradient);
   const Eigen::Index first = 6 * 5;
   const Eigen::Index points = all.rows() - first;
   const Eigen::MatrixXd coupling = all.block(0, first, 6 * kMoving, points);
@@ -151,7 +162,7 @@ TEST_P(EliminatedPointsTest, TheSystemIsTheSchurComplementOfThatOfCeres) {
 // The derivative of the cost at the best places of the points.
 TEST_P(EliminatedPointsTest, TheGradientIsTheDerivativeOfTheCost) {
   MadePoints made(4);
-  EliminatedPoints eliminated(made.camera, made.points, 3, robust());
+  EliminatedPoints eliminated(made.camera, made.points, 3, loss());
   Settle(eliminated, made.poses);
   Eigen::MatrixXd hessian;
   Eigen::VectorXd gradient;
@@ -182,11 +193,12 @@ TEST(EliminatedPoints, MoreStepsComeNearerToTheBestPlaces) {
   std::vector<double> costs;
   for (const int steps : {1, 2, 10}) {
     costs.push_back(
-        EliminatedPoints(made.camera, made.points, 5, false, {.steps = steps}).Follow(made.poses));
+        EliminatedPoints(made.camera, made.points, 5, PointLoss::kNone, {.steps = steps})
+            .Follow(made.poses));
   }
   EXPECT_LT(costs[1], 0.9 * costs[0]);
   EXPECT_LT(costs[2], costs[1]);
-  EliminatedPoints settled(made.camera, made.points, 5, false);
+  EliminatedPoints settled(made.camera, made.points, 5, PointLoss::kNone);
   EXPECT_LT(costs[2], 1.001 * Settle(settled, made.poses));
 }
 
@@ -198,8 +210,8 @@ TEST(EliminatedPoints, ViewsThatAreNoInliersHaveNoInfluence) {
     other.points.ViewsOf(i)[0].is_inlier = false;
     other.points.ViewsOf(i)[0].measurement.measured.setConstant(1e5);
   }
-  EliminatedPoints first(made.camera, made.points, 4, true);
-  EliminatedPoints second(other.camera, other.points, 4, true);
+  EliminatedPoints first(made.camera, made.points, 4, PointLoss::kHuber);
+  EliminatedPoints second(other.camera, other.points, 4, PointLoss::kHuber);
   EXPECT_EQ(first.Follow(made.poses), second.Follow(other.poses));
   first.Accept();
   second.Accept();
@@ -218,13 +230,13 @@ TEST(EliminatedPoints, APointBehindACameraHasAnInfiniteCost) {
   MadePoints made(3);
   std::vector<Rigid3> turned = made.poses;
   turned[1].rotation = Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0);
-  EliminatedPoints eliminated(made.camera, made.points, 3, true);
+  EliminatedPoints eliminated(made.camera, made.points, 3, PointLoss::kHuber);
   EXPECT_EQ(eliminated.Follow(turned), std::numeric_limits<double>::infinity());
   EXPECT_LT(eliminated.Follow(made.poses), 1e9);  // and the next poses start where it was before
 }
 
-// If its views agree exactly, no step can lower the cost of a point. It must not be mistaken for one
-// whose steps fail: that one would be held where it is, and would hold the poses that see it.
+// If its views agree exactly, no step can lower the cost of a point. It must not be mistaken for
+// one whose steps fail: that one would be held where it is, and would hold the poses that see it.
 TEST(EliminatedPoints, APointWhoseViewsAgreeExactlyFollowsThePoses) {
   MadePoints made(3);
   BundlePoints exact;
@@ -235,7 +247,7 @@ TEST(EliminatedPoints, APointWhoseViewsAgreeExactlyFollowsThePoses) {
       exact.AddView({.measured = image, .inverse_sigma = {1.0, 1.0, 0.0}}, i);
     }
   }
-  EliminatedPoints eliminated(made.camera, exact, 3, true);
+  EliminatedPoints eliminated(made.camera, exact, 3, PointLoss::kHuber);
   EXPECT_LT(eliminated.Follow(made.poses), 1e-9);
   eliminated.Accept();
   Eigen::MatrixXd hessian;
@@ -257,7 +269,7 @@ TEST(EliminatedPoints, APointInASingleViewWithoutDepthStaysFinite) {
   made.points = {};
   made.points.AddPoint({0.1, 0.2, 3.0});
   made.points.AddView({.measured = {330.0, 260.0, 0.0}, .inverse_sigma = {1.0, 1.0, 0.0}}, 0);
-  EliminatedPoints eliminated(made.camera, made.points, 1, true);
+  EliminatedPoints eliminated(made.camera, made.points, 1, PointLoss::kHuber);
   EXPECT_LT(Settle(eliminated, made.poses), 1e-6);
   EXPECT_LT((made.points.positions()[0] - Eigen::Vector3d(0.1, 0.2, 3.0)).norm(), 0.5);
   Eigen::MatrixXd hessian;

@@ -57,7 +57,7 @@ class ReducedPointsCostTest : public ::testing::Test {
   MadePoints made_{5};
   std::vector<PoseBlock> poses_;
   PoseManifold manifold_;
-  EliminatedPoints points_{made_.camera, made_.points, kMoving, true};
+  EliminatedPoints points_{made_.camera, made_.points, kMoving, PointLoss::kHuber};
   ReducedPointsCost cost_{points_, poses_};
 };
 

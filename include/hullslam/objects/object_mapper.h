@@ -30,9 +30,6 @@ class ObjectMapper {
   // measured.
   void Recheck(Map& map, std::span<const ObjectId> objects);
 
-  // Refines mapped objects after the poses of their keyframes were changed without them.
-  void Follow(Map& map, std::span<const ObjectId> objects);
-
   // To be called after a correction of the map (map/correction.h). Finds the shapes of the objects
   // that other objects were merged into.
   void RefineMerged(Map& map, std::span<const ObjectId> objects);
