@@ -79,7 +79,7 @@ struct BundleResult {
 // Minimises the reprojection errors of the window's landmarks in its keyframes. Without depth, the
 // options are those of WithoutDepth(), the standard deviations of keypoints are made as small as
 // the errors show them to be, keypoints at the same place share a weight (ShareOfPlace), and
-// Huber's loss is used in both rounds. Ceres solves for poses and objects. In a small window own
+// Cauchy's loss is used in both rounds. Ceres solves for poses and objects. In a small window own
 // code eliminates the landmarks (EliminatedPoints); in a large one, Ceres does so
 // (BundleOptions::max_eliminated). Each object of the window adds the constraints of its detections
 // (MakeObjectConstraint) and a prior (MakeObjectPrior) at the shape that it has at the beginning.

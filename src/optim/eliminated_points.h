@@ -16,7 +16,7 @@ namespace hullslam::internal {
 
 // Removes the points from a bundle adjustment. For given poses each point has a best place of its
 // own, which does not depend on the other points. With all points at their best places the cost
-//   sum over inlier views of 1/2 rho(|PointResidual|^2)
+//   sum over inlier views of weight / 2 rho(|PointResidual|^2)
 // is a function of the poses alone. This class evaluates it and gives its Gauss-Newton
 // approximation: the Schur complement of the points (Triggs et al. 2000, "Bundle Adjustment: A
 // Modern Synthesis", section 6.1). rho is the loss (PointLoss).

@@ -9,6 +9,9 @@ namespace hullslam {
 
 namespace {
 
+// A pose in the final map that shows a smaller share of the landmarks that tracking found is wrong.
+constexpr double kMinFoundAgain = 0.9;
+
 // The pose of a tracked frame, if it is in this island.
 std::optional<Rigid3> FindPose(const Map& map, IslandId island, const TrackedFrame& frame) {
   const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame.frame);
@@ -43,6 +46,15 @@ void LoseFramesElsewhere(const Map& map, std::span<TrackedFrame> frames) {
     if (frame.state == TrackingState::kTracked && !FindPose(map, island, frame)) {
       frame.state = TrackingState::kLost;
       frame.pose.reset();
+    }
+  }
+}
+
+void ReplaceEarlyFrames(std::span<const TrackedFrame> early, std::span<TrackedFrame> frames) {
+  for (const TrackedFrame& found : early) {
+    TrackedFrame& frame = frames[found.frame.value - frames.front().frame.value];
+    if (frame.state != TrackingState::kTracked || found.inliers >= kMinFoundAgain * frame.inliers) {
+      frame = found;
     }
   }
 }

@@ -160,9 +160,7 @@ void System::Finish(const Cancellation* cancellation, const ProgressCallback& on
   if (const auto final_map = map()) {
     LoseFramesElsewhere(*final_map, frames_);
   }
-  for (const TrackedFrame& early : pipeline_->TakeEarlyFrames()) {
-    frames_.at(early.frame.value - frames_.front().frame.value) = early;
-  }
+  ReplaceEarlyFrames(pipeline_->TakeEarlyFrames(), frames_);
 }
 
 void System::Reset() {

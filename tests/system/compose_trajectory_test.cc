@@ -71,6 +71,26 @@ TEST(ComposeTrajectory, HasTheFramesOfTheMainIslandOnly) {
   EXPECT_EQ(ComposeTrajectory(map, frames).front().world_from_cam.translation.x(), 2.25);
 }
 
+TEST(ReplaceEarlyFrames, KeepsATrackedFrameWithClearlyMoreLandmarks) {
+  std::vector<TrackedFrame> frames(4);
+  std::vector<TrackedFrame> early(4);
+  for (uint32_t i = 0; i < 4; ++i) {
+    frames[i].frame = early[i].frame = FrameId(10 + i);
+    frames[i].state = early[i].state = TrackingState::kTracked;
+    frames[i].inliers = 600;
+    early[i].inliers = i == 1 ? 590 : 259;
+    early[i].pose = RelativePose{KeyframeId(0), Shift(1.0), 1.0};
+  }
+  frames[2].state = TrackingState::kLost;
+  early.pop_back();  // was not found
+  ReplaceEarlyFrames(early, frames);
+  EXPECT_FALSE(frames[0].pose);
+  EXPECT_TRUE(frames[1].pose);
+  EXPECT_TRUE(frames[2].pose);
+  EXPECT_EQ(frames[2].state, TrackingState::kTracked);
+  EXPECT_FALSE(frames[3].pose);
+}
+
 TEST(KeyframeTrajectory, HasThePosesOfTheKeyframes) {
   Map map;
   map.AddKeyframe(MakeFrame(4, 1), Shift(-1.0));

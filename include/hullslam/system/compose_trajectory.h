@@ -18,6 +18,11 @@ Trajectory ComposeTrajectory(const Map& map, std::span<const TrackedFrame> frame
 // Makes tracked frames lost that have no pose in the main island.
 void LoseFramesElsewhere(const Map& map, std::span<TrackedFrame> frames);
 
+// Replaces frames by what Tracker::LocaliseEarlyFrames found for them. A tracked frame stays as it
+// was if clearly fewer of its landmarks were found: before a plane, for example, a pose has two
+// solutions. The ids of `frames` must be consecutive.
+void ReplaceEarlyFrames(std::span<const TrackedFrame> early, std::span<TrackedFrame> frames);
+
 // The poses of the keyframes of the main island.
 Trajectory KeyframeTrajectory(const Map& map);
 // The poses of the keyframes of one session (SessionNumber).
