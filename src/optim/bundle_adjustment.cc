@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optim/bundle_adjustment.h"
 
+#include <ceres/iteration_callback.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -44,6 +45,20 @@ std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
   }
   return std::make_unique<ReprojectionCost>(camera, measurement);
 }
+
+// Ends a solution where a view of an object would become undefined.
+class UndefinedViewStop final : public ceres::IterationCallback {
+ public:
+  explicit UndefinedViewStop(const internal::ObjectBundle& objects) : objects_(objects) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
+    return objects_.HasUndefinedView() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                                       : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const internal::ObjectBundle& objects_;
+};
 
 // The parameter blocks and what connects them.
 class Bundle {
@@ -124,7 +139,7 @@ class Bundle {
                                      pose_indices_.entries()[view.pose].first);
       }
     });
-    objects_.Write(result);
+    objects_.Write(poses_, result);
   }
 
  private:
@@ -242,10 +257,17 @@ class Bundle {
     solver.num_threads = options_.threads;
     solver.logging_type = ceres::SILENT;
     solver.callbacks.push_back(&supervision);
+    UndefinedViewStop stop(objects_);
+    solver.callbacks.push_back(&stop);
     ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem, &summary);
+    do {
+      ceres::Solve(solver, &problem, &summary);
+      const int evaluations = static_cast<int>(summary.iterations.size());  // with the start
+      result.iterations += evaluations;
+      solver.max_num_iterations -= evaluations - 1;
+    } while (summary.IsSolutionUsable() && solver.max_num_iterations > 0 &&
+             objects_.LeaveOutUndefinedViews());
     result.residuals = points_.CountInliers() + static_cast<int>(objects_.CountCosts());
-    result.iterations += static_cast<int>(summary.iterations.size());
     return summary.IsSolutionUsable();
   }
 

@@ -68,8 +68,9 @@ struct BundleResult {
   std::vector<std::pair<LandmarkId, Eigen::Vector3d>> positions;
   std::vector<std::pair<LandmarkId, KeyframeId>> outliers;  // observations to be removed
   std::vector<std::pair<ObjectId, Ellipsoid>> ellipsoids;
-  // Objects whose result is not finite or has a half axis that changed by more than a factor of
-  // three. They keep the shape that they had and should be checked.
+  // Objects whose result is not finite, is not in front of all cameras that see it, or has a half
+  // axis that changed by more than a factor of three. They keep the shape that they had and should
+  // be checked.
   std::vector<ObjectId> failed_objects;
   bool is_usable = false;  // false if the solver failed; then there is no result to apply
   int residuals = 0;       // views of landmarks, and costs on objects
@@ -82,7 +83,8 @@ struct BundleResult {
 // Cauchy's loss is used in both rounds. Ceres solves for poses and objects. In a small window own
 // code eliminates the landmarks (EliminatedPoints); in a large one, Ceres does so
 // (BundleOptions::max_eliminated). Each object of the window adds the constraints of its detections
-// (MakeObjectConstraint) and a prior (MakeObjectPrior) at the shape that it has at the beginning.
+// (MakeObjectConstraint) and a prior (MakeObjectPrior) at the shape that it has at the beginning. A
+// view in which the object reaches the plane of the camera is left out.
 // If the solver fails, the adjustment is repeated without objects, and all objects are reported as
 // failed. With a monocular sensor and a single fixed keyframe the result has the scale of the map
 // (KeepScale). If `cancellation` (may be null) is requested, the adjustment ends early and returns

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optim/object_bundle.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "objects/object_constraint.h"
@@ -129,11 +130,46 @@ void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold
   }
 }
 
-void ObjectBundle::Write(BundleResult& result) const {
-  for (const Object& object : objects_) {
+bool ObjectBundle::HasUndefinedView() const {
+  return std::any_of(objects_.begin(), objects_.end(),
+                     [](const Object& object) { return object.fixed_part->HasUndefined(); }) ||
+         std::any_of(views_.begin(), views_.end(),
+                     [](const View& view) { return view.cost->HasUndefined(); });
+}
+
+bool ObjectBundle::LeaveOutUndefinedViews() {
+  const bool has_undefined = HasUndefinedView();
+  const auto leave_out = [](ObjectSumCost& sum) {
+    if (sum.HasUndefined()) {
+      sum.LeaveOutUndefined();
+    }
+  };
+  for (Object& object : objects_) {
+    leave_out(*object.fixed_part);
+  }
+  for (View& view : views_) {
+    leave_out(*view.cost);
+  }
+  return has_undefined;
+}
+
+bool ObjectBundle::IsDefinedEverywhere(size_t index, const std::vector<PoseBlock>& poses) const {
+  const Object& object = objects_[index];
+  const double* parameters[] = {nullptr, object.pose.data(), object.log_axes.data()};
+  return object.fixed_part->AreLeftOutDefined(parameters + 1) &&
+         std::all_of(views_.begin(), views_.end(), [&](const View& view) {
+           parameters[0] = poses[view.pose].data();
+           return view.object != index || view.cost->AreLeftOutDefined(parameters);
+         });
+}
+
+void ObjectBundle::Write(const std::vector<PoseBlock>& poses, BundleResult& result) const {
+  for (size_t i = 0; i < objects_.size(); ++i) {
+    const Object& object = objects_[i];
     Ellipsoid after{FromBlock(object.pose.data()), object.log_axes.array().exp()};
     after.world_from_object.rotation.normalize();
-    if (IsPlausible(after, object.before, options_.max_axis_change)) {
+    if (IsPlausible(after, object.before, options_.max_axis_change) &&
+        IsDefinedEverywhere(i, poses)) {
       result.ellipsoids.emplace_back(object.id, after);
     } else {
       result.failed_objects.push_back(object.id);

@@ -38,7 +38,16 @@ class ObjectBundle {
   // group 2.
   void AddParameters(ceres::Problem& problem, PoseManifold& manifold, int axes_group,
                      ceres::ParameterBlockOrdering& ordering);
-  void Write(BundleResult& result) const;
+
+  // A quadric that reaches the plane of a camera has no projected ellipse there, and the solver
+  // cannot go on: the whole map would be held by one object that is beside one camera. So such a
+  // view has to be left out. Whether there is one where the solver has tried to go:
+  bool HasUndefinedView() const;
+  // Leaves these views out. False if there are none.
+  bool LeaveOutUndefinedViews();
+
+  // An object that is not in front of a camera whose view was left out has failed.
+  void Write(const std::vector<PoseBlock>& poses, BundleResult& result) const;
 
  private:
   struct Object {
@@ -57,6 +66,7 @@ class ObjectBundle {
     std::unique_ptr<ObjectSumCost> cost;
   };
 
+  bool IsDefinedEverywhere(size_t object, const std::vector<PoseBlock>& poses) const;
   void AddObject(const Map& map, ObjectId id, const PoseIndices& pose_indices);
   // `pose` is the index of a moving pose of the window, or null.
   void AddView(const Map& map, const ObjectObservation& seen, double misfit_px, const size_t* pose);

@@ -80,14 +80,29 @@ bool ObjectSumCost::AddTo(NormalEquations& sum, const Part& part, double const* 
   return true;
 }
 
+void ObjectSumCost::LeaveOutUndefined() {
+  const auto undefined = parts_.begin() + static_cast<std::ptrdiff_t>(undefined_.value());
+  left_out_.push_back(std::move(*undefined));
+  parts_.erase(undefined);
+  undefined_.reset();
+}
+
+bool ObjectSumCost::AreLeftOutDefined(double const* const* parameters) const {
+  NormalEquations unused;
+  return std::all_of(left_out_.begin(), left_out_.end(),
+                     [&](const Part& part) { return AddTo(unused, part, parameters, false); });
+}
+
 bool ObjectSumCost::Evaluate(double const* const* parameters, double* residuals,
                              double** jacobians) const {
   const Eigen::Index size = num_residuals() - 1;
   NormalEquations sum;
   sum.hessian.setZero(size, size);
   sum.gradient.setZero(size);
-  for (const Part& part : parts_) {
-    if (!AddTo(sum, part, parameters, jacobians != nullptr)) {
+  undefined_.reset();
+  for (size_t i = 0; i < parts_.size(); ++i) {
+    if (!AddTo(sum, parts_[i], parameters, jacobians != nullptr)) {
+      undefined_ = i;
       return false;
     }
   }

@@ -33,6 +33,13 @@ class ObjectSumCost final : public ceres::CostFunction {
   void AddPrior(std::unique_ptr<ceres::CostFunction> prior);
   size_t size() const { return parts_.size(); }  // costs in the sum
 
+  // Whether a cost was not defined where the sum was evaluated last.
+  bool HasUndefined() const { return undefined_.has_value(); }
+  // Takes this cost out of the sum.
+  void LeaveOutUndefined();
+  // Whether the costs that were left out are defined at these parameters.
+  bool AreLeftOutDefined(double const* const* parameters) const;
+
   // False where one of the costs is not defined.
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
@@ -49,6 +56,8 @@ class ObjectSumCost final : public ceres::CostFunction {
 
   Camera camera_;
   std::vector<Part> parts_;
+  std::vector<Part> left_out_;
+  mutable std::optional<size_t> undefined_;  // place among the parts
 };
 
 }  // namespace hullslam::internal

@@ -51,10 +51,14 @@ class ObjectBundle : public ::testing::Test {
     objects_ = {MakeObject("cup", {-0.6, 0.2, 3.0}, {0.25, 0.15, 0.2}, 0.3),
                 MakeObject("book", {0.5, -0.4, 3.5}, {0.3, 0.2, 0.12}, 1.0),
                 MakeObject("bottle", {0.3, 0.5, 2.5}, {0.1, 0.25, 0.1})};
+    if (couch_) {
+      objects_[1] = *couch_;
+    }
     made_ = MakeSyntheticMap(
         *world_, {0, 10, 20, 30, 40, 50}, [this](Frame& frame, const Rigid3& cam_from_world) {
           for (size_t i = 0; i < objects_.size(); ++i) {
-            frame.detections.push_back(Detect(objects_[i], world_->sensor(), cam_from_world));
+            frame.detections.push_back(
+                Detect(SeenPart(objects_[i], cam_from_world), world_->sensor(), cam_from_world));
             frame.detections.back().primitive = primitive_;
             Disturb(frame, frame.detections.back());
             if (static_cast<int>(i) == object_without_depth_) {
@@ -74,6 +78,15 @@ class ObjectBundle : public ::testing::Test {
       object.ellipsoid = objects_[i].ellipsoid;
       object.start = object.ellipsoid;
     }
+  }
+  // Of an object that is not wholly in front of the camera only the far end is seen.
+  MadeObject SeenPart(const MadeObject& object, const Rigid3& cam_from_world) const {
+    MadeObject part = object;
+    while (!ProjectEllipsoid(world_->sensor().camera.Matrix(), cam_from_world, part.ellipsoid)) {
+      part.ellipsoid.half_axes.z() -= 0.05;
+      part.ellipsoid.world_from_object.translation.z() += 0.05;
+    }
+    return part;
   }
   // Shifts the lines of frame shifted_frame_ by 40 px and adds noise to all lines.
   void Disturb(const Frame& frame, Detection& detection) {
@@ -148,6 +161,7 @@ class ObjectBundle : public ::testing::Test {
   ObjectPrimitive primitive_ = ObjectPrimitive::kSupport;
   std::optional<SyntheticWorld> world_;
   std::vector<MadeObject> objects_;
+  std::optional<MadeObject> couch_;  // in place of the book
   SyntheticMap made_;
   std::vector<ObjectId> ids_;
 };
@@ -343,6 +357,23 @@ TEST_F(ObjectBundle, TheStartOfAnObjectHasNoInfluence) {
     EXPECT_EQ(Distance(result.poses[i].second, expected.poses[i].second), 0.0);
   }
   EXPECT_EQ(MeanShapeError(result), MeanShapeError(expected));
+}
+
+// A couch reaches from before the first camera to beside the last ones, where it has no projected
+// ellipse. Its end must not be a wall to all poses.
+TEST_F(ObjectBundle, AnObjectThatReachesACameraDoesNotHoldThePoses) {
+  const MadeObject couch = MakeObject("couch", {1.2, 0.3, 1.6}, {0.3, 0.2, 1.4});
+  couch_ = couch;
+  Make({.points = 300, .depth_share = 0.7});
+  const KeyframeId last(5);
+  ObjectLandmark& object = made_.map.MutableObject(ids_[1]);
+  object.ellipsoid = SeenPart(couch, made_.map.keyframes().At(last).cam_from_world).ellipsoid;
+  PerturbPoses(0.01, 0.02);
+  const BundleResult result = Adjust(Window());
+  ASSERT_TRUE(result.is_usable);
+  EXPECT_LT(MeanPoseError(result), 1e-3);
+  EXPECT_EQ(result.failed_objects, std::vector<ObjectId>{ids_[1]});
+  EXPECT_EQ(result.ellipsoids.size(), 2u);
 }
 
 TEST_F(ObjectBundle, AShapeThatChangesTooMuchIsNotWritten) {

@@ -168,5 +168,38 @@ TEST_F(ObjectSumCostTest, IsDefinedWhereAllCostsAre) {
   EXPECT_FALSE(sum.Evaluate(Parameters(0).data(), residuals.data(), nullptr));
 }
 
+TEST_F(ObjectSumCostTest, AnUndefinedCostCanBeLeftOut) {
+  ObjectSumCost sum(Camera::kMoving);
+  sum.Add(ConstraintOf(0).outline);
+  const Evaluation expected = Evaluate(sum, Parameters(0));
+  EXPECT_FALSE(sum.HasUndefined());
+  sum.Add(std::make_unique<UndefinedCost>());
+  EXPECT_TRUE(sum.AreLeftOutDefined(Parameters(0).data()));
+  Evaluate(sum, Parameters(0));
+  ASSERT_TRUE(sum.HasUndefined());
+  sum.LeaveOutUndefined();
+  EXPECT_FALSE(sum.HasUndefined());
+  EXPECT_EQ(sum.size(), 1u);
+  EXPECT_FALSE(sum.AreLeftOutDefined(Parameters(0).data()));
+  const Evaluation left = Evaluate(sum, Parameters(0));
+  ASSERT_TRUE(left.is_defined);
+  EXPECT_EQ(left.residuals, expected.residuals);
+  EXPECT_EQ(left.jacobian, expected.jacobian);
+}
+
+// It may be defined again elsewhere.
+TEST_F(ObjectSumCostTest, ACostIsUndefinedOnlyWhereItWasEvaluatedLast) {
+  ObjectSumCost sum(Camera::kMoving);
+  sum.Add(ConstraintOf(0).outline);
+  std::vector<const double*> behind = Parameters(0);
+  const PoseBlock turned =
+      ToBlock({Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0), Eigen::Vector3d::Zero()});
+  behind[0] = turned.data();
+  EXPECT_FALSE(Evaluate(sum, behind).is_defined);
+  EXPECT_TRUE(sum.HasUndefined());
+  EXPECT_TRUE(Evaluate(sum, Parameters(0)).is_defined);
+  EXPECT_FALSE(sum.HasUndefined());
+}
+
 }  // namespace
 }  // namespace hullslam::internal
