@@ -333,8 +333,8 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
 
 BundleOptions BundleOptions::ForWholeMap() const {
   BundleOptions options = *this;
-  options.robust_iterations = 10;
-  options.final_iterations = 20;
+  options.robust_iterations = 20;
+  options.final_iterations = 40;
   options.function_tolerance = 1e-6;
   // Parts of the map may move by much more than the size of an object. Objects go with them; a
   // prior on where they are would hold the parts back.

@@ -19,6 +19,7 @@
 #include "system/pipeline.h"
 #include "system/sequential_pipeline.h"
 #include "system/threaded_pipeline.h"
+#include "tracking/remembered_frame.h"
 
 namespace hullslam {
 namespace {
@@ -131,6 +132,9 @@ TrackedFrame System::Track(BuiltFrame built) {
                             .count());
   }
   frames_.push_back(report.tracked);
+  if (!start_.localization_only) {
+    remembered_.push_back(Remember(report, options_.objects));
+  }
   if (frame_callback_) {
     frame_callback_(report);
   }
@@ -159,6 +163,11 @@ void System::Finish(const Cancellation* cancellation, const ProgressCallback& on
   pipeline_->Finish(cancellation, on_progress);
   if (const auto final_map = map()) {
     LoseFramesElsewhere(*final_map, frames_);
+    const ObjectIndex object_index(*final_map, sensor_.camera);
+    RefinePoses(*final_map,
+                {sensor_, options_.tracking, options_.objects, object_index, options_.seed},
+                remembered_, frames_);
+    remembered_.clear();
   }
   ReplaceEarlyFrames(pipeline_->TakeEarlyFrames(), frames_);
 }
@@ -169,6 +178,7 @@ void System::Reset() {
   frame_builder_ = std::move(frame_builder);
   mask_counts_ = {};
   frames_.clear();
+  remembered_.clear();
   times_ = {};
 }
 

@@ -165,6 +165,25 @@ TEST_P(SystemTest, FinishAdjustsTheWholeMapUnlessCancelled) {
   }
 }
 
+// From the final places of their landmarks.
+TEST_P(SystemTest, FinishComputesThePosesOfFramesAgain) {
+  System system(Wall::Options(), GetParam());
+  for (int i = 0; i < 15; ++i) {
+    TrackFrame(system, i);
+  }
+  const std::vector<TrackedFrame> before = system.frames();
+  system.Finish();
+  int changed = 0;
+  for (size_t i = 0; i < before.size(); ++i) {
+    const TrackedFrame& after = system.frames()[i];
+    ASSERT_EQ(after.pose.has_value(), before[i].pose.has_value());
+    EXPECT_EQ(after.inliers, before[i].inliers);
+    changed += after.pose && after.pose->cam_from_reference.translation !=
+                                 before[i].pose->cam_from_reference.translation;
+  }
+  EXPECT_GT(changed, 0);
+}
+
 TEST_P(SystemTest, MayBeDestroyedWithoutFinish) {
   System system(Wall::Options(), GetParam());
   for (int i = 0; i < 3; ++i) {

@@ -27,6 +27,7 @@ namespace hullslam {
 class FrameBuilder;
 class Pipeline;
 class TaskRunner;
+struct RememberedFrame;
 
 enum class PipelineKind {
   kSequential,  // reproducible to the bit
@@ -92,9 +93,10 @@ class System {
   // mapping.final_bundle_adjustment is set. The adjustment ends early with what it has if
   // `cancellation` (may be null) is requested. `on_progress` is called after each of its
   // iterations, in this thread. Of a monocular camera that was lost, only the main island of the
-  // map stays (Map::BeginIsland), and frames in others become lost. Frames before the map and
-  // before each island are then located in the map. So frames() may change. Track must not be
-  // called after Finish.
+  // map stays (Map::BeginIsland), and frames in others become lost. Then the poses of all frames
+  // are computed again from the final places of their landmarks, unless the map was fixed, and
+  // frames before a monocular map and before each island are located in it. So frames() may change.
+  // Track must not be called after Finish.
   void Finish(const Cancellation* cancellation = nullptr, const ProgressCallback& on_progress = {});
 
   // Makes the system as it was after its construction: with the map that it was given, without
@@ -139,6 +141,7 @@ class System {
   DetectionCounts mask_counts_;         // of the frames that were tracked
   std::function<void(const FrameReport&)> frame_callback_;
   std::vector<TrackedFrame> frames_;
+  std::vector<RememberedFrame> remembered_;  // until Finish
   StageTimes times_;
 };
 

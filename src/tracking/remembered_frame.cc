@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tracking/remembered_frame.h"
+
+#include <cstddef>
+#include <cstdint>
+
+#include "objects/object_constraint.h"
+#include "tracking/pose_objects.h"
+#include "tracking/pose_refinement.h"
+#include "util/thin.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kMostLandmarks = 400;
+constexpr double kMinInlierShare = 0.5;  // of the landmarks that were found
+
+// The indices of valid ids.
+template <typename Id>
+std::vector<uint32_t> ValidOnes(const std::vector<Id>& ids) {
+  std::vector<uint32_t> valid;
+  for (uint32_t i = 0; i < ids.size(); ++i) {
+    if (ids[i].IsValid()) {
+      valid.push_back(i);
+    }
+  }
+  return valid;
+}
+
+// Only what the residual in the pose is computed from.
+Detection Slim(Detection detection, const ObjectOptions& options) {
+  if (TakesLines(options.pose.constraint.residual)) {
+    detection.contour = {};
+    detection.hull = {};
+  }
+  detection.points = {};
+  detection.keypoints = {};
+  return detection;
+}
+
+// What has become of the landmark; invalid if it is gone.
+LandmarkId Newest(const Map& map, LandmarkId landmark) { return map.Resolve(landmark); }
+
+// The same of an object; only mapped ones constrain poses.
+ObjectId Newest(const Map& map, ObjectId id) {
+  const ObjectId newest = map.Resolve(id);
+  const ObjectLandmark* const object = map.objects().Find(newest);
+  const bool is_mapped =
+      object != nullptr && object->state == ObjectState::kMapped && object->has_shape;
+  return is_mapped ? newest : ObjectId();
+}
+
+template <typename Id>
+std::vector<Id> Newest(const Map& map, std::vector<Id> ids) {
+  for (Id& id : ids) {
+    id = Newest(map, id);
+  }
+  return ids;
+}
+
+}  // namespace
+
+RememberedFrame Remember(const FrameReport& report, const ObjectOptions& options) {
+  RememberedFrame remembered;
+  remembered.frame.id = report.tracked.frame;
+  FrameFeatures& features = remembered.frame.features;
+  const std::vector<uint32_t> found = Thin(ValidOnes(report.landmarks), kMostLandmarks);
+  features.keypoints.reserve(found.size());
+  features.right_u.reserve(found.size());
+  remembered.landmarks.reserve(found.size());
+  for (const uint32_t i : found) {
+    features.keypoints.push_back(report.frame->features.keypoints[i]);
+    features.right_u.push_back(report.frame->features.right_u[i]);
+    remembered.landmarks.push_back(report.landmarks[i]);
+  }
+  if (options.enabled && options.joint_pose) {
+    const std::vector<uint32_t> seen = ValidOnes(report.objects);
+    remembered.frame.detections.reserve(seen.size());
+    remembered.objects.reserve(seen.size());
+    for (const uint32_t i : seen) {
+      remembered.frame.detections.push_back(Slim(report.frame->detections[i], options));
+      remembered.objects.push_back(report.objects[i]);
+    }
+  }
+  return remembered;
+}
+
+void RefinePoses(const Map& map, const TrackingContext& context,
+                 std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames) {
+  for (const RememberedFrame& seen : remembered) {
+    TrackedFrame& tracked = frames[seen.frame.id.value - frames.front().frame.value];
+    if (!tracked.pose) {
+      continue;
+    }
+    PoseEstimate start;
+    start.cam_from_world = map.CamFromWorld(*tracked.pose);
+    start.landmarks = Newest(map, seen.landmarks);
+    const PoseObjects objects =
+        MakePoseObjects(map, context.sensor, seen.frame, start.cam_from_world,
+                        Newest(map, seen.objects), context.objects);
+    const PoseEstimate refined =
+        RefinePose(seen.frame, map, context, objects.objects, std::move(start));
+    if (refined.EffectiveInliers() >= context.options.min_inliers &&
+        refined.inliers >= kMinInlierShare * static_cast<double>(seen.landmarks.size())) {
+      tracked.pose = map.RelativeTo(tracked.pose->reference, refined.cam_from_world);
+    }
+  }
+}
+
+}  // namespace hullslam
