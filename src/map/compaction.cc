@@ -8,20 +8,10 @@
 
 #include "frame/reduced_frame.h"
 #include "hullslam/util/check.h"
+#include "util/valid_ids.h"
 
 namespace hullslam {
 namespace {
-
-template <typename IdType>
-std::vector<uint32_t> IndicesOfValid(const std::vector<IdType>& ids) {
-  std::vector<uint32_t> indices;
-  for (uint32_t i = 0; i < ids.size(); ++i) {
-    if (ids[i].IsValid()) {
-      indices.push_back(i);
-    }
-  }
-  return indices;
-}
 
 template <typename IdType>
 std::vector<IdType> ValidOnes(const std::vector<IdType>& ids) {

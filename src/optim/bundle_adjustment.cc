@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optim/bundle_adjustment.h"
 
-#include <ceres/iteration_callback.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -45,20 +44,6 @@ std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
   }
   return std::make_unique<ReprojectionCost>(camera, measurement);
 }
-
-// Ends a solution where a view of an object would become undefined.
-class UndefinedViewStop final : public ceres::IterationCallback {
- public:
-  explicit UndefinedViewStop(const internal::ObjectBundle& objects) : objects_(objects) {}
-
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
-    return objects_.HasUndefinedView() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
-                                       : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const internal::ObjectBundle& objects_;
-};
 
 // The parameter blocks and what connects them.
 class Bundle {
@@ -257,7 +242,7 @@ class Bundle {
     solver.num_threads = options_.threads;
     solver.logging_type = ceres::SILENT;
     solver.callbacks.push_back(&supervision);
-    UndefinedViewStop stop(objects_);
+    internal::UndefinedViewStop stop(objects_);
     solver.callbacks.push_back(&stop);
     ceres::Solver::Summary summary;
     do {

@@ -84,12 +84,12 @@ struct BundleResult {
 // code eliminates the landmarks (EliminatedPoints); in a large one, Ceres does so
 // (BundleOptions::max_eliminated). Each object of the window adds the constraints of its detections
 // (MakeObjectConstraint) and a prior (MakeObjectPrior) at the shape that it has at the beginning. A
-// view in which the object reaches the plane of the camera is left out.
-// If the solver fails, the adjustment is repeated without objects, and all objects are reported as
-// failed. With a monocular sensor and a single fixed keyframe the result has the scale of the map
-// (KeepScale). If `cancellation` (may be null) is requested, the adjustment ends early and returns
-// what it has. If that happens in the first round, the only outliers are observations of points
-// that are not in front of the camera. `on_progress` is called after each iteration.
+// view in which the object reaches the plane of the camera is left out. If the solver fails, the
+// adjustment is repeated without objects, and all objects are reported as failed. With a monocular
+// sensor and a single fixed keyframe the result has the scale of the map (KeepScale). If
+// `cancellation` (may be null) is requested, the adjustment ends early and returns what it has. If
+// that happens in the first round, the only outliers are observations of points that are not in
+// front of the camera. `on_progress` is called after each iteration.
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& options, const Cancellation* cancellation,
                           const ProgressCallback& on_progress = {});

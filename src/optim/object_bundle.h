@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <ceres/iteration_callback.h>
 #include <ceres/ordered_groups.h>
 #include <ceres/problem.h>
 
@@ -76,6 +77,20 @@ class ObjectBundle {
   size_t moving_poses_;
   std::vector<Object> objects_;
   std::vector<View> views_;
+};
+
+// Ends a solution where a view of an object would become undefined.
+class UndefinedViewStop final : public ceres::IterationCallback {
+ public:
+  explicit UndefinedViewStop(const ObjectBundle& objects) : objects_(objects) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
+    return objects_.HasUndefinedView() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                                       : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const ObjectBundle& objects_;
 };
 
 }  // namespace hullslam::internal

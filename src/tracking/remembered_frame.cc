@@ -8,24 +8,13 @@
 #include "tracking/pose_objects.h"
 #include "tracking/pose_refinement.h"
 #include "util/thin.h"
+#include "util/valid_ids.h"
 
 namespace hullslam {
 namespace {
 
 constexpr size_t kMostLandmarks = 400;
 constexpr double kMinInlierShare = 0.5;  // of the landmarks that were found
-
-// The indices of valid ids.
-template <typename Id>
-std::vector<uint32_t> ValidOnes(const std::vector<Id>& ids) {
-  std::vector<uint32_t> valid;
-  for (uint32_t i = 0; i < ids.size(); ++i) {
-    if (ids[i].IsValid()) {
-      valid.push_back(i);
-    }
-  }
-  return valid;
-}
 
 // Only what the residual in the pose is computed from.
 Detection Slim(Detection detection, const ObjectOptions& options) {
@@ -45,8 +34,7 @@ LandmarkId Newest(const Map& map, LandmarkId landmark) { return map.Resolve(land
 ObjectId Newest(const Map& map, ObjectId id) {
   const ObjectId newest = map.Resolve(id);
   const ObjectLandmark* const object = map.objects().Find(newest);
-  const bool is_mapped =
-      object != nullptr && object->state == ObjectState::kMapped && object->has_shape;
+  const bool is_mapped = object != nullptr && object->state == ObjectState::kMapped;
   return is_mapped ? newest : ObjectId();
 }
 
@@ -64,7 +52,7 @@ RememberedFrame Remember(const FrameReport& report, const ObjectOptions& options
   RememberedFrame remembered;
   remembered.frame.id = report.tracked.frame;
   FrameFeatures& features = remembered.frame.features;
-  const std::vector<uint32_t> found = Thin(ValidOnes(report.landmarks), kMostLandmarks);
+  const std::vector<uint32_t> found = Thin(IndicesOfValid(report.landmarks), kMostLandmarks);
   features.keypoints.reserve(found.size());
   features.right_u.reserve(found.size());
   remembered.landmarks.reserve(found.size());
@@ -74,7 +62,7 @@ RememberedFrame Remember(const FrameReport& report, const ObjectOptions& options
     remembered.landmarks.push_back(report.landmarks[i]);
   }
   if (options.enabled && options.joint_pose) {
-    const std::vector<uint32_t> seen = ValidOnes(report.objects);
+    const std::vector<uint32_t> seen = IndicesOfValid(report.objects);
     remembered.frame.detections.reserve(seen.size());
     remembered.objects.reserve(seen.size());
     for (const uint32_t i : seen) {
