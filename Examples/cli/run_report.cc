@@ -60,7 +60,10 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
     Print("RPE RMSE {:.4f} m, {:.3f} degrees over 1 s\n", *trajectory.rpe_rmse_m,
           *trajectory.rpe_rmse_deg);
   }
-  Print("{} keyframes, {} landmarks\n", summary.map.keyframes, summary.map.landmarks);
+  Print("{} keyframes, {} landmarks{}\n", summary.map.keyframes, summary.map.landmarks,
+        summary.map.reprojection_px
+            ? fmt::format(", reprojection error {:.3f} px (median)", *summary.map.reprojection_px)
+            : "");
   if (summary.map.known_sizes) {
     Print("{}\n", *summary.map.known_sizes > 0
                       ? fmt::format("the unit of length is the metre (objects of known size: {})",

@@ -22,6 +22,7 @@
 #include "cli/run_report.h"
 #include "cli/vocabulary_loading.h"
 #include "hullslam/eval/ate.h"
+#include "hullslam/eval/reprojection_error.h"
 #include "hullslam/eval/rpe.h"
 #include "hullslam/io/output_folder.h"
 #include "hullslam/io/ply_file.h"
@@ -211,6 +212,7 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
     summary.map.landmarks = map->landmarks().size();
     summary.map.sessions = map->sessions().size();
     summary.map.loops = CountLoops(*map);
+    summary.map.reprojection_px = MedianReprojectionError(*map, options.camera);
     if (options.sensor == SensorKind::kMonocular && !options.objects.sizes.empty()) {
       summary.map.known_sizes = system.sized_objects();
     }

@@ -82,6 +82,7 @@ Json ToJson(const MapSummary& summary) {
           {"landmarks", summary.landmarks},
           {"loops", summary.loops},
           {"sessions", summary.sessions},
+          {"reprojection_px", OrNull(summary.reprojection_px)},
           {"known_sizes", OrNull(summary.known_sizes)}};
 }
 

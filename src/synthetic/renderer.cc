@@ -122,12 +122,9 @@ std::vector<cv::Point> FacetEdges(const cv::Mat& facet) {
 
 }  // namespace
 
-struct Renderer::View {
+struct Renderer::Eye {
   Matrix3f world_from_cam;
-  Vector3f eye;
-  std::vector<Rigid3> world_from_object;
-  std::vector<Placement> placements;             // one per entry of RayCaster::parts()
-  std::vector<std::vector<Occluder>> occluders;  // per part; empty for the parts of objects
+  Vector3f centre;
 
   Vector3f Direction(const PinholeCamera& camera, float x, float y) const {
     const Vector3f in_cam(static_cast<float>((x - camera.cx) / camera.fx),
@@ -136,23 +133,36 @@ struct Renderer::View {
   }
 };
 
+struct Renderer::View {
+  std::vector<Eye> eyes;  // one for each kBlockRows rows
+  std::vector<Rigid3> world_from_object;
+  std::vector<Placement> placements;             // one per entry of RayCaster::parts()
+  std::vector<std::vector<Occluder>> occluders;  // per part; empty for the parts of objects
+
+  const Eye& EyeOf(int row) const { return eyes[static_cast<size_t>(row / kBlockRows)]; }
+};
+
 struct Renderer::Fragment {
   Vector3f colour = Vector3f::Zero();
   float cosine = 0.0F;
   int facet = 0;  // differs between parts and between sides of a part
 };
 
-Renderer::Renderer(const Scene& scene, const PinholeCamera& camera)
-    : scene_(scene), camera_(camera), caster_(scene) {
+Renderer::Renderer(const Scene& scene, const PinholeCamera& camera, double readout_time)
+    : scene_(scene), camera_(camera), readout_time_(readout_time), caster_(scene) {
   Check(!camera.IsDistorted(), "the renderer needs a camera without distortion");
 }
 
 Renderer::View Renderer::MakeView(double time) const {
   View view;
   std::vector<Occluder> occluders;
-  const Rigid3 world_from_cam = scene_.world_from_cam(time);
-  view.world_from_cam = world_from_cam.rotation.toRotationMatrix().cast<float>();
-  view.eye = world_from_cam.translation.cast<float>();
+  for (int row = 0; row < camera_.height; row += kBlockRows) {
+    const double middle = row + 0.5 * (kBlockRows - 1);
+    const Rigid3 world_from_cam =
+        scene_.world_from_cam(time + (middle / camera_.height - 0.5) * readout_time_);
+    view.eyes.push_back({world_from_cam.rotation.toRotationMatrix().cast<float>(),
+                         world_from_cam.translation.cast<float>()});
+  }
   for (const SceneObject& object : scene_.objects) {
     const Rigid3 pose = object.WorldFromObject(time);
     view.world_from_object.push_back(pose);
@@ -208,12 +218,12 @@ Vector3f Renderer::TextureColour(const Material& material, const Vector3f& point
   return (sum / static_cast<float>(samples)).cwiseProduct(material.tint);
 }
 
-Renderer::Fragment Renderer::Shade(const View& view, int part, float distance,
+Renderer::Fragment Renderer::Shade(const View& view, const Eye& eye, int part, float distance,
                                    const Vector3f& direction, int max_samples) const {
   Fragment fragment;
   const PlacedPart& placed = caster_.parts()[static_cast<size_t>(part)];
   const Placement& placement = view.placements[static_cast<size_t>(part)];
-  const Vector3f point = view.eye + distance * direction;
+  const Vector3f point = eye.centre + distance * direction;
   const Vector3f local = placement.part_from_world * (point - placement.centre);
   const Vector3f normal = placed.part->shape.Normal(local.cast<double>()).cast<float>();
   const Vector3f ray = direction.normalized();
@@ -233,14 +243,15 @@ Renderer::Fragment Renderer::Shade(const View& view, int part, float distance,
 
 void Renderer::RenderBlock(const View& view, int x0, int y0, RenderedFrame& frame,
                            cv::Mat& facet) const {
+  const Eye& eye = view.EyeOf(y0);
   RayPacket packet;
   for (int i = 0; i < RayPacket::kSize; ++i) {
     const int x = x0 + i % kBlockColumns;
     const int y = y0 + i / kBlockColumns;
     packet.direction[static_cast<size_t>(i)] =
-        view.Direction(camera_, static_cast<float>(x), static_cast<float>(y));
+        eye.Direction(camera_, static_cast<float>(x), static_cast<float>(y));
   }
-  caster_.Cast(view.eye, view.world_from_object, packet);
+  caster_.Cast(eye.centre, view.world_from_object, packet);
   for (int i = 0; i < RayPacket::kSize; ++i) {
     const int x = x0 + i % kBlockColumns;
     const int y = y0 + i / kBlockColumns;
@@ -249,7 +260,8 @@ void Renderer::RenderBlock(const View& view, int x0, int y0, RenderedFrame& fram
     }
     const auto k = static_cast<size_t>(i);
     Check(packet.part[k] >= 0, "a ray left the room: the scene is not closed");
-    const Fragment hit = Shade(view, packet.part[k], packet.distance[k], packet.direction[k], 4);
+    const Fragment hit =
+        Shade(view, eye, packet.part[k], packet.distance[k], packet.direction[k], 4);
     frame.colour.at<cv::Vec3f>(y, x) = {hit.colour[0], hit.colour[1], hit.colour[2]};
     frame.depth.at<float>(y, x) = packet.distance[k];
     frame.instance.at<int16_t>(y, x) =
@@ -276,7 +288,7 @@ void Renderer::RenderCentres(const View& view, RenderedFrame& frame, cv::Mat& fa
 
 void Renderer::SmoothEdges(const View& view, const cv::Mat& facet, RenderedFrame& frame) const {
   // Four rays in a rotated grid, so that vertical and horizontal edges get four shades too. Two
-  // pixels share a packet.
+  // pixels, which are nearly always in the same row, share a packet, whose rays begin at one place.
   constexpr std::array<std::array<float, 2>, 4> kOffsets = {
       {{-0.125F, -0.375F}, {0.375F, -0.125F}, {0.125F, 0.375F}, {-0.375F, 0.125F}}};
   const std::vector<cv::Point> edges = FacetEdges(facet);
@@ -284,18 +296,19 @@ void Renderer::SmoothEdges(const View& view, const cv::Mat& facet, RenderedFrame
   for (size_t first = 0; first < edges.size(); first += 2) {
     const std::array<cv::Point, 2> pixels = {edges[first],
                                              edges[std::min(first + 1, edges.size() - 1)]};
+    const Eye& eye = view.EyeOf(pixels[0].y);
     for (size_t i = 0; i < RayPacket::kSize; ++i) {
       const cv::Point& pixel = pixels[i / kOffsets.size()];
       const auto& offset = kOffsets[i % kOffsets.size()];
-      packet.direction[i] = view.Direction(camera_, static_cast<float>(pixel.x) + offset[0],
-                                           static_cast<float>(pixel.y) + offset[1]);
+      packet.direction[i] = eye.Direction(camera_, static_cast<float>(pixel.x) + offset[0],
+                                          static_cast<float>(pixel.y) + offset[1]);
     }
-    caster_.Cast(view.eye, view.world_from_object, packet);
+    caster_.Cast(eye.centre, view.world_from_object, packet);
     std::array<Vector3f, 2> sums = {Vector3f::Zero(), Vector3f::Zero()};
     for (size_t i = 0; i < RayPacket::kSize; ++i) {
       Check(packet.part[i] >= 0, "a ray left the room: the scene is not closed");
       sums[i / kOffsets.size()] +=
-          Shade(view, packet.part[i], packet.distance[i], packet.direction[i], 1).colour;
+          Shade(view, eye, packet.part[i], packet.distance[i], packet.direction[i], 1).colour;
     }
     for (size_t i = 0; i < pixels.size(); ++i) {
       const Vector3f colour = sums[i] / static_cast<float>(kOffsets.size());

@@ -25,16 +25,19 @@ struct RenderedFrame {
 // bit-identical whatever else runs.
 class Renderer {
  public:
-  // Keeps a reference to `scene`. The camera must have no distortion.
-  Renderer(const Scene& scene, const PinholeCamera& camera);
+  // Keeps a reference to `scene`. The camera must have no distortion. `readout_time`: seconds from
+  // the exposure of the first row of an image to that of the last one (rolling shutter).
+  Renderer(const Scene& scene, const PinholeCamera& camera, double readout_time = 0.0);
 
+  // `time` is that of the middle row. Objects stand still while the rows are exposed.
   RenderedFrame Render(double time) const;
 
  private:
-  struct View;      // poses at one time
+  struct Eye;       // pose of the camera while some rows are exposed
+  struct View;      // poses during one frame
   struct Fragment;  // what one ray hits
-  Fragment Shade(const View& view, int part, float distance, const Eigen::Vector3f& direction,
-                 int max_samples) const;
+  Fragment Shade(const View& view, const Eye& eye, int part, float distance,
+                 const Eigen::Vector3f& direction, int max_samples) const;
   View MakeView(double time) const;
   void RenderBlock(const View& view, int x0, int y0, RenderedFrame& frame, cv::Mat& facet) const;
   void RenderCentres(const View& view, RenderedFrame& frame, cv::Mat& facet) const;
@@ -47,6 +50,7 @@ class Renderer {
 
   const Scene& scene_;
   PinholeCamera camera_;
+  double readout_time_;
   RayCaster caster_;
 };
 

@@ -74,8 +74,8 @@ std::string GroundTruth(const Scene& scene, int frames) {
   return text;
 }
 
-std::string CameraSettings(const PinholeCamera& camera) {
-  return fmt::format(
+std::string CameraSettings(const PinholeCamera& camera, double readout_time) {
+  std::string text = fmt::format(
       "%YAML:1.0\n---\nCamera.fx: {:.6f}\nCamera.fy: {:.6f}\nCamera.cx: {:.6f}\nCamera.cy: {:.6f}\n"
       "Camera.k1: 0.0\nCamera.k2: 0.0\nCamera.p1: 0.0\nCamera.p2: 0.0\n"
       "Camera.width: {}\nCamera.height: {}\nCamera.fps: 30.0\nCamera.bf: {:.1f}\nCamera.RGB: 1\n"
@@ -84,6 +84,10 @@ std::string CameraSettings(const PinholeCamera& camera) {
       "ORBextractor.iniThFAST: 20\nORBextractor.minThFAST: 7\n",
       camera.fx, camera.fy, camera.cx, camera.cy, camera.width, camera.height, camera.bf,
       Sensor::Options().units_per_metre);
+  if (readout_time > 0.0) {
+    text += fmt::format("Camera.readout_time: {}\n", readout_time);
+  }
+  return text;
 }
 
 nlohmann::ordered_json PoseJson(const Rigid3& pose) {
@@ -212,7 +216,7 @@ bool WriteSequence(const std::filesystem::path& folder, const SequenceOptions& o
   OutputSwap output(folder, options.force);
   const Scene scene = BuildScene(options.scene, options.frames, options.seed, options.rearranged);
   const PinholeCamera camera = SyntheticCamera();
-  const Renderer renderer(scene, camera);
+  const Renderer renderer(scene, camera, options.readout_time);
   const Sensor sensor({.noise = options.noise}, VisitSeed(options.seed, options.rearranged));
   for (const char* name : {"rgb", "depth", "masks"}) {
     std::filesystem::create_directory(output.working_folder() / name);
@@ -227,7 +231,7 @@ bool WriteSequence(const std::filesystem::path& folder, const SequenceOptions& o
   output.WriteFile("rgb.txt", FrameList(options.frames, "rgb"));
   output.WriteFile("depth.txt", FrameList(options.frames, "depth"));
   output.WriteFile("groundtruth.txt", GroundTruth(scene, options.frames));
-  output.WriteFile("camera.yaml", CameraSettings(camera));
+  output.WriteFile("camera.yaml", CameraSettings(camera, options.readout_time));
   output.WriteFile("groundtruth_objects.json", ObjectsJson(scene, options));
   output.Commit();
   return true;

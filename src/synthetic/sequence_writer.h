@@ -16,9 +16,10 @@ struct SequenceOptions {
   int frames = 300;
   uint64_t seed = 0;
   std::optional<uint64_t> rearranged = std::nullopt;  // seed of a rearrangement (BuildScene)
-  bool force = false;  // allows replacing a folder that an earlier run wrote
-  bool noise = true;   // whether the sensor has noise
-  int threads = 0;     // 0: as many as the CPU supports
+  bool force = false;         // allows replacing a folder that an earlier run wrote
+  bool noise = true;          // whether the sensor has noise
+  double readout_time = 0.0;  // s, from the first to the last row of an image (rolling shutter)
+  int threads = 0;            // 0: as many as the CPU supports
 };
 
 // A camera with 640x480 px, the intrinsics of TUM freiburg3, and no distortion.

@@ -12,6 +12,7 @@ Sensor MakeSensor(const SystemOptions& options) {
   sensor.close_depth = options.depth.close_baselines * sensor.baseline();
   sensor.depth_error = options.depth.error;
   sensor.frames_per_second = options.frames_per_second;
+  sensor.readout_time = options.readout_time;
   return sensor;
 }
 

@@ -19,6 +19,8 @@ OptionTable SystemOptions::Bind() {
   OptionTable table;
   camera.Bind(table);
   table.Add("Camera.fps", &frames_per_second, Range::Positive(), "frame rate of the camera, 1/s");
+  table.Add("Camera.readout_time", &readout_time, Range::Between(0.0, 0.1),
+            "rolling shutter: time from the first to the last row of an image, s; 0: all at once");
   table.Add("Camera.RGB", &rgb_order,
             "colour images that the library receives from memory are RGB (else BGR)");
   depth.Bind(table);

@@ -43,6 +43,15 @@ LastFrame FollowMap(const Map& map, LastFrame last) {
   return last;
 }
 
+std::optional<CameraMotion> MotionSince(const LastFrame& last, const Frame& frame,
+                                        const Rigid3& cam_from_world) {
+  if (last.frame == nullptr || frame.id.value != last.frame->id.value + 1) {
+    return std::nullopt;
+  }
+  return CameraMotion{cam_from_world * Inverse(last.cam_from_world),
+                      frame.timestamp - last.frame->timestamp};
+}
+
 std::optional<Rigid3> PredictMotion(const LastFrame& last, double timestamp) {
   if (!last.motion) {
     return std::nullopt;

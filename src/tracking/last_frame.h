@@ -34,6 +34,11 @@ struct LastFrame {
 // of that keyframe. Throws CheckError if the map knows neither the frame nor its reference.
 LastFrame FollowMap(const Map& map, LastFrame last);
 
+// The motion from the last frame to this one. Absent if there is no last frame or if frames between
+// the two were lost: a motion that took long says little about the velocity at its end.
+std::optional<CameraMotion> MotionSince(const LastFrame& last, const Frame& frame,
+                                        const Rigid3& cam_from_world);
+
 // The motion from the last frame to a frame at `timestamp` (s), if the camera keeps its velocity.
 // Null if the velocity is not known, or if the time step is so much longer than that in which the
 // velocity was measured that it says little about the new motion.

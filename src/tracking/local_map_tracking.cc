@@ -123,16 +123,23 @@ LocalTracking TrackLocalMap(const Frame& frame, const Map& map, const TrackingCo
       search.Run(guide.landmarks, guide.is_outside, start.landmarks);
     }
   }
+  tracking.visible = search.TakeVisible();
+  tracking.estimate = std::move(start);
+  RefineTracking(frame, map, context, tracking);
+  return tracking;
+}
+
+void RefineTracking(const Frame& frame, const Map& map, const TrackingContext& context,
+                    LocalTracking& tracking) {
   PoseObjects pose_objects;
   if (context.objects.joint_pose) {
-    pose_objects = MakePoseObjects(map, context.sensor, frame, start.cam_from_world,
+    pose_objects = MakePoseObjects(map, context.sensor, frame, tracking.estimate.cam_from_world,
                                    tracking.objects, context.objects);
     tracking.unknown_objects =
         static_cast<int>(frame.detections.size() - pose_objects.objects.size());
   }
-  tracking.estimate = RefinePose(frame, map, context, pose_objects.objects, std::move(start));
-  tracking.visible = search.TakeVisible();
-  return tracking;
+  tracking.estimate =
+      RefinePose(frame, map, context, pose_objects.objects, std::move(tracking.estimate));
 }
 
 }  // namespace hullslam

@@ -30,4 +30,9 @@ struct LocalTracking {
 LocalTracking TrackLocalMap(const Frame& frame, const Map& map, const TrackingContext& context,
                             KeyframeId last_reference, PoseEstimate start);
 
+// Optimises the pose again with other measurements: `frame` has the same keypoints and detections
+// as the one that was tracked, but at other pixels.
+void RefineTracking(const Frame& frame, const Map& map, const TrackingContext& context,
+                    LocalTracking& tracking);
+
 }  // namespace hullslam

@@ -14,6 +14,7 @@
 #include "map/spanning_tree.h"
 #include "matching/by_descriptor.h"
 #include "optim/bundle_adjustment.h"
+#include "tracking/shutter_correction.h"
 #include "util/median.h"
 #include "util/random_seed.h"
 
@@ -285,6 +286,13 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
   // they have not.
   if (MedianParallax(map) < kMinAdjustedParallax) {
     return fail(InitialisationFailure::kTooLittleParallax);
+  }
+  if (sensor_.readout_time > 0.0) {
+    CorrectViews(sensor_, map);
+    AdjustMap(sensor_, map);
+    if (map.points.size() < kMinPoints) {
+      return fail(InitialisationFailure::kTooFewPoints);
+    }
   }
   Normalise(map);
   return {.map = std::move(map), .failure = {}};

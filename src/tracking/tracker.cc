@@ -9,6 +9,7 @@
 
 #include "map/islands.h"
 #include "tracking/confirmed_pose.h"
+#include "tracking/shutter_correction.h"
 
 namespace hullslam {
 namespace {
@@ -171,6 +172,7 @@ Tracker::Result Tracker::BeginIsland(std::shared_ptr<const Frame> frame, Initial
 std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map) {
   constexpr std::array<PoseSource*, 2> kSources = {&PoseByReferenceKeyframe, &PoseByRelocalisation};
   std::vector<TrackedFrame> localised;
+  LastFrame before;  // in time, of those that were found
   for (const std::shared_ptr<const Frame>& frame : early_) {
     TrackedFrame tracked;
     tracked.frame = frame->id;
@@ -179,6 +181,8 @@ std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map) {
     const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame->id);
     if (keyframe && IslandOf(map, *keyframe).IsValid()) {
       localised.push_back(tracked);
+      before.frame = frame;
+      before.cam_from_world = map.CamFromWorld({*keyframe, Rigid3(), map.ScaleOf(*keyframe)});
       continue;
     }
     object_index_.Follow(map, sensor_.camera);
@@ -186,8 +190,11 @@ std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map) {
     nearest.reference = NearestInTime(map, frame->timestamp);
     nearest.frame = map.keyframes().At(nearest.reference).frame;
     nearest.cam_from_world = map.keyframes().At(nearest.reference).cam_from_world;
-    if (const auto found = FindConfirmedPose(*frame, map, Context(), nearest, kSources)) {
+    if (auto found = FindConfirmedPose(*frame, map, Context(), nearest, kSources)) {
+      CorrectShutter(frame, map, before, found->tracking);
       const PoseEstimate& estimate = found->tracking.estimate;
+      before.frame = frame;
+      before.cam_from_world = estimate.cam_from_world;
       tracked.pose = map.RelativeTo(found->tracking.reference, estimate.cam_from_world);
       tracked.cam_from_world = estimate.cam_from_world;
       tracked.inliers = estimate.inliers;
@@ -209,13 +216,16 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   if (!frame->detections.empty()) {
     object_index_.Follow(map, sensor_.camera);
   }
-  const std::optional<LocalTracking> found = FindPose(*frame, map);
+  const std::shared_ptr<const Frame> as_read = frame;
+  frame = PredictGlobalShutter(as_read, map, sensor_, last_);
+  std::optional<LocalTracking> found = FindPose(*frame, map);
   if (!found) {
-    return Lose(std::move(frame), map);
+    return Lose(as_read, map);
   }
   lost_since_.reset();
   initialiser_.Forget();
-  const LocalTracking& tracking = *found;
+  LocalTracking& tracking = *found;
+  frame = CorrectShutter(as_read, map, last_, tracking);
   if (!is_localizing_only_) {
     CountSightings(map, tracking);
   }
@@ -235,13 +245,7 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
                    .frame = frame,
                    .landmarks = estimate.landmarks,
                    .objects = tracking.objects};
-  // The last tracked frame may be long ago if frames were lost in between. The motion since then
-  // says little about the velocity now.
-  std::optional<CameraMotion> motion;
-  if (last_.frame != nullptr && frame->id.value == last_.frame->id.value + 1) {
-    motion = CameraMotion{estimate.cam_from_world * Inverse(last_.cam_from_world),
-                          frame->timestamp - last_.frame->timestamp};
-  }
+  const std::optional<CameraMotion> motion = MotionSince(last_, *frame, estimate.cam_from_world);
   last_ = {.frame = std::move(frame),
            .landmarks = estimate.landmarks,
            .pose = pose,
@@ -249,6 +253,19 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
            .cam_from_world = estimate.cam_from_world,
            .motion = motion};
   return result;
+}
+
+// Removes the effect of a rolling shutter from a frame whose pose was found, and optimises the pose
+// with the frame that it returns.
+std::shared_ptr<const Frame> Tracker::CorrectShutter(const std::shared_ptr<const Frame>& as_read,
+                                                     const Map& map, const LastFrame& last,
+                                                     LocalTracking& tracking) const {
+  std::shared_ptr<const Frame> corrected =
+      MeasureGlobalShutter(as_read, map, sensor_, last, tracking.estimate);
+  if (corrected != as_read) {
+    RefineTracking(*corrected, map, Context(), tracking);
+  }
+  return corrected;
 }
 
 // The first pose that the local map confirms. Null if there is none.

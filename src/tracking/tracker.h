@@ -68,6 +68,9 @@ class Tracker {
   void KeepEarlyFrame(std::shared_ptr<const Frame> frame);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
   std::optional<LocalTracking> FindPose(const Frame& frame, const Map& map) const;
+  std::shared_ptr<const Frame> CorrectShutter(const std::shared_ptr<const Frame>& as_read,
+                                              const Map& map, const LastFrame& last,
+                                              LocalTracking& tracking) const;
   Result Lose(std::shared_ptr<const Frame> frame, const Map& map);
   bool IsYoung(const Map& map) const;
   bool MayBeginIsland(const Frame& frame, const Map& map) const;

@@ -55,8 +55,9 @@ TEST(Summary, HasTheKeysOfTheFormatInOrder) {
   EXPECT_EQ(Keys(json["timing"]["track_ms"]),
             (std::vector<std::string>{"median", "mean", "p95", "max"}));
   EXPECT_EQ(Keys(json["memory"]), (std::vector<std::string>{"peak_mb"}));
-  EXPECT_EQ(Keys(json["map"]), (std::vector<std::string>{"keyframes", "landmarks", "loops",
-                                                         "sessions", "known_sizes"}));
+  EXPECT_EQ(Keys(json["map"]),
+            (std::vector<std::string>{"keyframes", "landmarks", "loops", "sessions",
+                                      "reprojection_px", "known_sizes"}));
   EXPECT_EQ(Keys(json["provenance"]),
             (std::vector<std::string>{"version", "git", "settings_hash", "preset", "seed",
                                       "pipeline", "masks_format", "sequence", "interrupted"}));

@@ -14,12 +14,14 @@
 
 namespace hullslam {
 
-// The first frames of the scene `desk` of make_synthetic, which takes 0.1 s per frame to render.
+// The first frames of the scene `desk` of make_synthetic, which takes 0.1 s per frame to render,
+// from a camera with this readout time (s) of its shutter.
 class RenderedDesk {
  public:
-  explicit RenderedDesk(int frames) : path_(folder_.path() / "desk") {
+  explicit RenderedDesk(int frames, double readout_time = 0.0) : path_(folder_.path() / "desk") {
     const ProgramResult result =
-        RunProgram("make_synthetic", {path_, "--frames", std::to_string(frames), "--quiet"});
+        RunProgram("make_synthetic", {path_, "--frames", std::to_string(frames), "--readout-time",
+                                      std::to_string(readout_time), "--quiet"});
     if (result.exit_code != 0) {
       throw std::runtime_error(result.errors);
     }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -37,8 +38,9 @@ struct SyntheticWorldOptions {
   int points = 600;
   // px, standard deviation of u and v at level 0, and of the disparity at every level.
   double pixel_noise = 0.0;
-  double depth_share = 1.0;  // share of the points that have a depth in every frame that sees them
-  int flipped_bits = 0;      // of each descriptor; every frame flips other bits
+  double depth_share = 1.0;   // share of the points that have a depth in every frame that sees them
+  int flipped_bits = 0;       // of each descriptor; every frame flips other bits
+  double readout_time = 0.0;  // s; the frames of the path are those of a rolling shutter
   uint64_t seed = 1;
 };
 
@@ -56,6 +58,7 @@ class SyntheticWorld {
  public:
   explicit SyntheticWorld(const SyntheticWorldOptions& options = {})
       : options_(options), sensor_(SyntheticSensor()) {
+    sensor_.readout_time = options.readout_time;
     std::mt19937_64 random(HashSeed(options.seed, 0, "points"));
     const auto number = [&random](double low, double high) {
       return std::uniform_real_distribution<double>(low, high)(random);
@@ -100,13 +103,31 @@ class SyntheticWorld {
 
   // The frame seen from a pose. Noise and flipped bits depend only on the seed and the frame's id.
   SyntheticView Observe(FrameId id, const Rigid3& cam_from_world) const {
+    return ObserveRows(id, [&](double) { return cam_from_world; });
+  }
+  // Frame `index` of the path.
+  SyntheticView Observe(uint32_t index) const {
+    const double frames = sensor_.readout_time * sensor_.frames_per_second;
+    return ObserveRows(FrameId(index),
+                       [&](double row) { return CamFromWorld(index + frames * row); });
+  }
+
+ private:
+  // `cam_from_world_at` is the pose at a row of the image: -0.5 is the top, 0.5 the bottom.
+  template <typename PoseAt>
+  SyntheticView ObserveRows(FrameId id, const PoseAt& cam_from_world_at) const {
     std::mt19937_64 random(HashSeed(options_.seed, id.value, "noise"));
     auto frame = std::make_shared<Frame>();
     frame->id = id;
     frame->timestamp = id.value / sensor_.frames_per_second;
     std::vector<uint32_t> points;
     for (uint32_t i = 0; i < points_.size(); ++i) {
-      const Eigen::Vector3d point_in_cam = cam_from_world * points_[i];
+      Eigen::Vector3d point_in_cam = cam_from_world_at(0.0) * points_[i];
+      for (int k = 0; sensor_.readout_time > 0.0 && k < 10; ++k) {
+        const double v = sensor_.camera.Project(point_in_cam).y();
+        point_in_cam =
+            cam_from_world_at(std::clamp(v / sensor_.camera.height - 0.5, -0.5, 0.5)) * points_[i];
+      }
       if (point_in_cam.z() > 0.1 && sensor_.bounds.Contains(sensor_.camera.Project(point_in_cam))) {
         AddKeypoint(patches_[i], point_in_cam, random, frame->features);
         points.push_back(i);
@@ -118,12 +139,7 @@ class SyntheticWorld {
                                        Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
     return {std::move(frame), std::move(points)};
   }
-  // Frame `index` of the path.
-  SyntheticView Observe(uint32_t index) const {
-    return Observe(FrameId(index), CamFromWorld(index));
-  }
 
- private:
   struct Patch {
     Descriptor descriptor{};
     float angle = 0.0f;

@@ -92,6 +92,20 @@ TEST_F(LastFrameTest, AFrameThatTheMapDoesNotKnowIsRefused) {
   EXPECT_THROW(FollowMap(map_, last_), CheckError);
 }
 
+TEST_F(LastFrameTest, TheMotionSinceIsThatToTheNextFrame) {
+  last_.cam_from_world = Shift(3.0);
+  Frame next;
+  next.id = FrameId(2);
+  next.timestamp = 0.5;
+  const std::optional<CameraMotion> motion = MotionSince(last_, next, Shift(3.25));
+  ASSERT_TRUE(motion);
+  EXPECT_DOUBLE_EQ(motion->cam_from_last_cam.translation.x(), 0.25);
+  EXPECT_DOUBLE_EQ(motion->duration, 0.5);
+  next.id = FrameId(3);
+  EXPECT_FALSE(MotionSince(last_, next, Shift(3.25))) << "a frame in between was lost";
+  EXPECT_FALSE(MotionSince(LastFrame(), next, Shift(3.25)));
+}
+
 // The last frame is at 0 s, and the camera moved 0.4 m in the 0.1 s before it.
 TEST_F(LastFrameTest, ThePredictedMotionIsProportionalToTheTimeStep) {
   ASSERT_EQ(last_.frame->timestamp, 0.0);

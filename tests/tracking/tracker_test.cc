@@ -859,6 +859,50 @@ TEST_F(RelocalisingTracker, TriesTheNextSourceIfTheLocalMapDoesNotConfirmAPose) 
   ExpectNear(tracked.cam_from_world, RingWorld::CamFromWorld(0.45), 0.005);
 }
 
+// The errors of tracking with a camera that has a rolling shutter.
+struct ShutterErrors {
+  double pose = 0.0;   // m, the largest distance from the true position
+  double pixel = 0.0;  // px, the largest one in the frames that the tracker hands on
+};
+
+// `known`: the readout time that the tracker is told.
+ShutterErrors TrackWithRollingShutter(double known) {
+  const SyntheticWorld world({.points = 300, .readout_time = 0.03});
+  Sensor sensor = world.sensor();
+  sensor.readout_time = known;
+  const SyntheticMap made = MakeSyntheticMap(world, {0, 15, 30});
+  Tracker tracker(sensor, {});
+  Map copy = made.map;
+  const std::shared_ptr<const Map> map = Publish(copy);
+  tracker.Process(world.Observe(0).frame, nullptr, kIdle);
+  ShutterErrors errors;
+  for (uint32_t i = 1; i < 25; ++i) {
+    const SyntheticView view = world.Observe(i);
+    const Tracker::Result result = tracker.Process(view.frame, map, kIdle);
+    EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked) << i;
+    if (i < 10) {
+      continue;  // the first velocities are those of a frame that was not corrected
+    }
+    const Rigid3 truth = SyntheticWorld::CamFromWorld(i);
+    errors.pose = std::max(
+        errors.pose, (result.report.tracked.cam_from_world.translation - truth.translation).norm());
+    for (size_t k = 0; k < view.points.size(); ++k) {
+      const Eigen::Vector2d pixel = sensor.camera.Project(truth * world.points()[view.points[k]]);
+      const auto& seen = result.report.frame->features.keypoints[k].undistorted;
+      errors.pixel = std::max(errors.pixel, (pixel - seen.cast<double>()).norm());
+    }
+  }
+  return errors;
+}
+
+TEST(Tracker, RemovesTheEffectOfARollingShutter) {
+  const ShutterErrors ignored = TrackWithRollingShutter(0.0);
+  const ShutterErrors corrected = TrackWithRollingShutter(0.03);
+  EXPECT_GT(ignored.pixel, 0.8);
+  EXPECT_LT(corrected.pixel, 0.2 * ignored.pixel);
+  EXPECT_LT(corrected.pose, 0.2 * ignored.pose);
+}
+
 // Frames without depth of a moving camera, before there is a map.
 class MonocularTracker : public testing::Test {
  protected:

@@ -25,6 +25,9 @@ struct Sensor {
   double close_depth = 0.0;  // m; smaller depths are precise enough for a landmark from one view
   DepthErrorOptions depth_error;
   double frames_per_second = 30.0;
+  // s, from the exposure of the first row of an image to that of the last one. 0: a global shutter
+  // exposes all rows at the same time.
+  double readout_time = 0.0;
 
   bool IsMonocular() const { return kind == SensorKind::kMonocular; }
   // Of the virtual stereo pair, m; 0 without depth.

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "frame/rolling_shutter.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <vector>
+
+#include "hullslam/util/check.h"
+#include "util/median.h"
+
+namespace hullslam {
+namespace {
+
+// An affine map of the image.
+struct AffineMap {
+  Eigen::Matrix2d matrix = Eigen::Matrix2d::Identity();
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  // px
+
+  Eigen::Vector2d operator*(const Eigen::Vector2d& point) const { return matrix * point + shift; }
+};
+
+// Undoes an image velocity (px/s) that is the same for a whole object. The rows of the undistorted
+// image stand for those of the image as read.
+AffineMap UndoVelocity(const Sensor& sensor, const Eigen::Vector2d& velocity) {
+  const Eigen::Vector2d per_row = velocity * sensor.readout_time / sensor.camera.height;
+  AffineMap map;
+  map.matrix.col(1) -= per_row;
+  map.shift = 0.5 * sensor.camera.height * per_row;
+  return map;
+}
+
+Line2 Transform(const AffineMap& map, const Line2& line) {
+  const Eigen::Vector2d normal = map.matrix.inverse().transpose() * line.normal;
+  const double offset = line.offset - normal.dot(map.shift);
+  return {normal.normalized(), offset / normal.norm()};
+}
+
+void Transform(const AffineMap& map, Detection& detection) {
+  std::vector<Eigen::Vector2d> contour = detection.contour.Unpack();
+  for (Eigen::Vector2d& point : contour) {
+    point = map * point;
+  }
+  detection.contour = PackedPoints<2>(contour);
+  detection.box.setEmpty();
+  for (Eigen::Vector2d& point : detection.hull) {
+    point = map * point;
+    detection.box.extend(point);
+  }
+  for (SilhouetteLine& line : detection.lines) {
+    line.line = Transform(map, line.line);
+  }
+  if (detection.ellipse) {
+    Ellipse& ellipse = *detection.ellipse;
+    ellipse.center = map * ellipse.center;
+    ellipse.shape = map.matrix * ellipse.shape * map.matrix.transpose();
+  }
+}
+
+double MedianInverseDepth(std::span<const uint32_t> keypoints,
+                          std::span<const double> inverse_depths) {
+  std::vector<double> known;
+  for (const uint32_t keypoint : keypoints) {
+    if (inverse_depths[keypoint] > 0.0) {
+      known.push_back(inverse_depths[keypoint]);
+    }
+  }
+  return known.empty() ? 0.0 : Median(std::move(known));
+}
+
+}  // namespace
+
+PointVelocity MeanVelocity(const Rigid3& cam_from_last_cam, double duration) {
+  return {LogSo3(cam_from_last_cam.rotation) / duration, cam_from_last_cam.translation / duration};
+}
+
+Eigen::Vector2d ImageVelocity(const PinholeCamera& camera, const PointVelocity& velocity,
+                              const Eigen::Vector2d& pixel, double inverse_depth) {
+  const Eigen::Vector3d ray = camera.Unproject(pixel, 1.0);
+  const Eigen::Vector3d moved = velocity.angular.cross(ray) + inverse_depth * velocity.linear;
+  return {camera.fx * (moved.x() - ray.x() * moved.z()),
+          camera.fy * (moved.y() - ray.y() * moved.z())};
+}
+
+std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor& sensor,
+                                               const PointVelocity& velocity,
+                                               std::span<const double> inverse_depths) {
+  Check(inverse_depths.size() == frame.features.size(), "there must be one depth per keypoint");
+  const PinholeCamera& camera = sensor.camera;
+  auto corrected = std::make_shared<Frame>(frame);
+  FrameFeatures& features = corrected->features;
+  for (size_t i = 0; i < features.size(); ++i) {
+    const Eigen::Vector2d pixel = features.keypoints[i].undistorted.cast<double>();
+    const double time = (camera.Distort(pixel).y() / camera.height - 0.5) * sensor.readout_time;
+    const Eigen::Vector2f moved =
+        (time * ImageVelocity(camera, velocity, pixel, inverse_depths[i])).cast<float>();
+    features.keypoints[i].undistorted -= moved;
+    if (features.depth[i] > 0.0F) {
+      features.right_u[i] -= moved.x();
+    }
+  }
+  features.grid = FeatureGrid(
+      features.keypoints, Eigen::Vector2d(sensor.bounds.min_x, sensor.bounds.min_y).cast<float>(),
+      Eigen::Vector2d(sensor.bounds.max_x, sensor.bounds.max_y).cast<float>());
+  for (Detection& detection : corrected->detections) {
+    const double inverse_depth = MedianInverseDepth(detection.keypoints, inverse_depths);
+    Transform(UndoVelocity(sensor,
+                           ImageVelocity(camera, velocity, detection.box.center(), inverse_depth)),
+              detection);
+  }
+  return corrected;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/features/frame_features.h"
+
+namespace hullslam {
+
+// How far away things are in an image: mean inverse depths (1 over the unit of the map) in cells of
+// 1/16 of its width and 1/12 of its height.
+class SeenDepths {
+ public:
+  // `bounds`: of the undistorted image, px.
+  explicit SeenDepths(const PinholeCamera::Bounds& bounds) : bounds_(bounds) {}
+
+  // A point at an undistorted pixel. Points that are not in front of the camera are left out.
+  void Add(const Eigen::Vector2d& pixel, double depth);
+  // The mean of the cell; that of the whole image if the cell is empty; 0 if all are.
+  double InverseDepthAt(const Eigen::Vector2d& pixel) const;
+  // One per keypoint: that of its own depth if it is known, else InverseDepthAt().
+  std::vector<double> InverseDepths(const FrameFeatures& features) const;
+
+ private:
+  static constexpr int kColumns = 16;
+  static constexpr int kRows = 12;
+  struct Mean {
+    double sum = 0.0;
+    int count = 0;
+  };
+
+  size_t CellOf(const Eigen::Vector2d& pixel) const;
+
+  PinholeCamera::Bounds bounds_;
+  std::array<Mean, static_cast<size_t>(kColumns* kRows)> cells_{};
+  Mean all_;
+};
+
+}  // namespace hullslam
