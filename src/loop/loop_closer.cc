@@ -11,6 +11,7 @@
 #include "loop/drift_budget.h"
 #include "loop/loop_correction.h"
 #include "loop/loop_verification.h"
+#include "loop/return_to_place.h"
 #include "map/correction.h"
 #include "map/covisibility.h"
 #include "map/islands.h"
@@ -65,7 +66,20 @@ std::optional<MapCorrection> LoopCloser::Process(LoopQuery query) {
     spdlog::debug("loop: keyframe {} is not at the place of {}: {}", keyframe,
                   candidate.keyframe.value, refusal);
   }
-  return std::nullopt;
+  return is_soon ? std::nullopt : JoinReturn(query);
+}
+
+std::optional<MapCorrection> LoopCloser::JoinReturn(const LoopQuery& query) {
+  const std::optional<Return> found =
+      FindReturn(query.map, query.keyframe, static_cast<size_t>(options_.min_landmarks));
+  if (!found) {
+    return std::nullopt;
+  }
+  MapCorrection correction = JoinVisits(query.map, sensor_, *found, object_options_.fusion);
+  spdlog::debug("loop: tracking has led keyframe {} to the place of {}: {} landmarks are merged",
+                query.keyframe.value, found->candidate.value, correction.landmarks.size());
+  last_loop_ = query.keyframe;
+  return correction;
 }
 
 std::optional<MapCorrection> LoopCloser::Close(LoopQuery& query, const LoopCandidate& candidate,

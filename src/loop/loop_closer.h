@@ -38,6 +38,8 @@ class LoopCloser {
   std::optional<MapCorrection> Close(LoopQuery& query, const LoopCandidate& candidate,
                                      std::string& refusal) const;
 
+  // Merges what was mapped twice if tracking has found the way back to the place of the query.
+  std::optional<MapCorrection> JoinReturn(const LoopQuery& query);
   std::string FindTooMuchDrift(const Map& map, const Loop& loop) const;
   bool IsConfirmedByNeighbour(const Map& corrected, const Loop& loop) const;
   size_t LandmarksNeeded(const LoopCandidate& candidate, const ObjectVotes& votes) const;

@@ -84,27 +84,38 @@ class EssentialGraph {
   PoseGraph graph_;
 };
 
-void AddLandmarkMerges(const Map& corrected, const Sensor& sensor, const Loop& loop,
-                       MapCorrection& correction) {
-  const std::vector<LandmarkId> kept =
-      ObservedLandmarks(corrected, KeyframesAround(corrected, loop.candidate));
-  IdSet<LandmarkId> at_candidate;
-  for (const LandmarkId id : kept) {
-    at_candidate.Insert(id);
+// Finds what landmarks are searched for, and merges what a keyframe shows there.
+class LandmarkMerger {
+ public:
+  LandmarkMerger(const Map& map, const std::vector<LandmarkId>& kept, MapCorrection& correction)
+      : map_(map), correction_(correction) {
+    for (const LandmarkId id : kept) {
+      kept_.Insert(id);
+    }
   }
-  IdSet<LandmarkId> merged;
-  const auto add = [&](KeyframeId keyframe, const std::vector<FoundLandmark>& found) {
+
+  // `found`: keypoints of the keyframe and the landmarks to be kept that they show.
+  void Add(KeyframeId keyframe, const std::vector<FoundLandmark>& found) {
     for (const FoundLandmark& sighting : found) {
-      const LandmarkId own = corrected.keyframes().At(keyframe).landmarks[sighting.keypoint];
-      if (own.IsValid() && !at_candidate.Contains(own) && merged.Insert(own)) {
-        correction.landmarks.push_back({.duplicate = own, .kept = sighting.landmark});
+      const LandmarkId own = map_.keyframes().At(keyframe).landmarks[sighting.keypoint];
+      if (own.IsValid() && !kept_.Contains(own) && merged_.Insert(own)) {
+        correction_.landmarks.push_back({.duplicate = own, .kept = sighting.landmark});
       }
     }
-  };
-  add(loop.query, loop.landmarks);
-  for (const KeyframeId keyframe : KeyframesAround(corrected, loop.query)) {
-    add(keyframe, FindLandmarks(corrected, sensor, *corrected.keyframes().At(keyframe).frame,
-                                corrected.keyframes().At(keyframe).cam_from_world, kept));
+  }
+
+ private:
+  const Map& map_;
+  MapCorrection& correction_;
+  IdSet<LandmarkId> kept_;
+  IdSet<LandmarkId> merged_;
+};
+
+void SearchAndMerge(const Map& map, const Sensor& sensor, const std::vector<KeyframeId>& keyframes,
+                    const std::vector<LandmarkId>& kept, LandmarkMerger& merger) {
+  for (const KeyframeId id : keyframes) {
+    const Keyframe& keyframe = map.keyframes().At(id);
+    merger.Add(id, FindLandmarks(map, sensor, *keyframe.frame, keyframe.cam_from_world, kept));
   }
 }
 
@@ -164,12 +175,19 @@ MapCorrection MoveIsland(const Map& map, const Loop& loop) {
   return correction;
 }
 
-void AddMerges(const Map& corrected, const Sensor& sensor, const Loop& loop,
-               const FusionOptions& fusion, MapCorrection& correction) {
-  AddLandmarkMerges(corrected, sensor, loop, correction);
+void AddLandmarkMerges(const Map& map, const Sensor& sensor,
+                       const std::vector<KeyframeId>& searched,
+                       const std::vector<KeyframeId>& observers, MapCorrection& correction) {
+  const std::vector<LandmarkId> kept = ObservedLandmarks(map, observers);
+  LandmarkMerger merger(map, kept, correction);
+  SearchAndMerge(map, sensor, searched, kept, merger);
+}
+
+void AddObjectMerges(const Map& map, const std::vector<KeyframeId>& observers,
+                     const FusionOptions& fusion, MapCorrection& correction) {
   std::vector<ObjectId> objects;
-  for (const KeyframeId keyframe : KeyframesAround(corrected, loop.query)) {
-    for (const ObjectId id : corrected.keyframes().At(keyframe).objects) {
+  for (const KeyframeId keyframe : observers) {
+    for (const ObjectId id : map.keyframes().At(keyframe).objects) {
       if (id.IsValid()) {
         objects.push_back(id);
       }
@@ -177,9 +195,20 @@ void AddMerges(const Map& corrected, const Sensor& sensor, const Loop& loop,
   }
   std::sort(objects.begin(), objects.end());
   objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
-  for (const auto& [kept, duplicate] : FindDuplicates(corrected, objects, fusion)) {
+  for (const auto& [kept, duplicate] : FindDuplicates(map, objects, fusion)) {
     correction.objects.push_back({.duplicate = duplicate, .kept = kept});
   }
+}
+
+void AddMerges(const Map& corrected, const Sensor& sensor, const Loop& loop,
+               const FusionOptions& fusion, MapCorrection& correction) {
+  const std::vector<LandmarkId> kept =
+      ObservedLandmarks(corrected, KeyframesAround(corrected, loop.candidate));
+  const std::vector<KeyframeId> at_query = KeyframesAround(corrected, loop.query);
+  LandmarkMerger merger(corrected, kept, correction);
+  merger.Add(loop.query, loop.landmarks);
+  SearchAndMerge(corrected, sensor, at_query, kept, merger);
+  AddObjectMerges(corrected, at_query, fusion, correction);
 }
 
 }  // namespace hullslam

@@ -26,6 +26,16 @@ MapCorrection SpreadLoopError(const Map& map, const Loop& loop, bool fix_scale);
 // whole, by the similarity of the loop. Nothing in it changes its shape, and the older one stays.
 MapCorrection MoveIsland(const Map& map, const Loop& loop);
 
+// Adds to `correction` the landmarks that the keyframes `searched` show although they show a
+// landmark of `observers` there. Those of `observers` are kept.
+void AddLandmarkMerges(const Map& map, const Sensor& sensor,
+                       const std::vector<KeyframeId>& searched,
+                       const std::vector<KeyframeId>& observers, MapCorrection& correction);
+
+// Adds the objects of the keyframes that are duplicates of others.
+void AddObjectMerges(const Map& map, const std::vector<KeyframeId>& observers,
+                     const FusionOptions& fusion, MapCorrection& correction);
+
 // Adds to `correction` what is one thing although it was mapped at both ends of the loop. Landmarks
 // around the candidate are searched in the keyframes around the query; objects around the query are
 // compared with all others. `corrected` is the map with the correction.

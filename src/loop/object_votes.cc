@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "geometry/polygon_overlap.h"
 #include "loop/loop_correction.h"
 #include "objects/visibility.h"
 
@@ -40,6 +41,29 @@ bool ShareClass(const ObjectLandmark& a, const ObjectLandmark& b) {
                      [&](const auto& vote) { return b.votes.contains(vote.first); });
 }
 
+// Whether a mask of the keyframe shows a thing of the object's class at its place. Only masks that
+// belong to no mapped object count: those of the others show where that object is.
+bool IsDetected(const Map& map, const Sensor& sensor, const ObjectLandmark& object,
+                KeyframeId keyframe_id, const AssociationOptions& options) {
+  const Keyframe& keyframe = map.keyframes().At(keyframe_id);
+  const auto ellipse =
+      ProjectEllipsoid(sensor.camera.Matrix(), keyframe.cam_from_world, object.ellipsoid);
+  if (!ellipse) {
+    return false;
+  }
+  const std::vector<Eigen::Vector2d> outline = ellipse->Polygon();
+  for (size_t i = 0; i < keyframe.objects.size(); ++i) {
+    const Detection& detection = keyframe.frame->detections[i];
+    const ObjectLandmark* const owner = map.objects().Find(keyframe.objects[i]);
+    const bool is_mapped = owner != nullptr && owner->state == ObjectState::kMapped;
+    if (!is_mapped && object.votes.contains(detection.label) &&
+        IntersectionOverUnion(outline, detection.hull) >= options.min_projection_iou) {
+      return true;
+    }
+  }
+  return false;
+}
+
 enum class Vote { kNone, kAgree, kDisagree };
 
 // What an object of one end says, compared with the objects of the other end.
@@ -57,7 +81,9 @@ Vote VoteOf(const Map& map, const Sensor& sensor, const ObjectLandmark& object,
     }
   }
   const bool is_missing =
-      is_place_taken || ViewPlace(map, sensor, other_end, object, options) == PlaceView::kVisible;
+      is_place_taken ||
+      (ViewPlace(map, sensor, other_end, object, options) == PlaceView::kVisible &&
+       !IsDetected(map, sensor, object, other_end, options.association));
   return is_missing ? Vote::kDisagree : Vote::kNone;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "loop/loop_verification.h"
@@ -10,6 +11,7 @@
 #include "loop/ring_things.h"
 #include "loop/whole_map_adjustment.h"
 #include "map/correction.h"
+#include "map/covisibility.h"
 #include "map/invariants.h"
 #include "map/islands.h"
 #include "map/made_map.h"
@@ -153,6 +155,40 @@ TEST_F(LoopCloserTest, LeavesTheMapAloneForAWhileAfterALoop) {
   EXPECT_FALSE(closer.Process(query(37)));
   EXPECT_TRUE(Make().Process(query(37))) << "it would be a loop if there had been none";
   EXPECT_TRUE(closer.Process(query(38)));
+}
+
+// Tracking has found 100 landmarks of the earlier visit, so the place is not a candidate any more.
+// All others are still there twice.
+TEST_F(LoopCloserTest, MergesAPlaceToWhichTrackingHasLedBack) {
+  RingMap made =
+      MakeRingMap(SharedRing(), {.keyframes = 58, .keyframes_per_turn = 48, .drift = Rigid3()});
+  const std::vector<uint32_t>& before = made.views[9].points;
+  size_t found = 0;
+  for (size_t i = 0; i < made.views[57].points.size() && found < 100; ++i) {
+    const auto place = std::find(before.begin(), before.end(), made.views[57].points[i]);
+    const LandmarkId own = made.map.keyframes().At(made.last()).landmarks[i];
+    if (place != before.end() && own.IsValid()) {
+      const auto keypoint = static_cast<size_t>(place - before.begin());
+      if (const LandmarkId old = made.map.keyframes().At(KeyframeId(9)).landmarks[keypoint];
+          old.IsValid()) {
+        made.map.ReplaceLandmark(own, old);
+        ++found;
+      }
+    }
+  }
+  for (uint32_t i = 0; i < 58; ++i) {
+    UpdateCovisibility(made.map, KeyframeId(i));
+  }
+  ASSERT_EQ(found, 100u);
+  LoopCloser closer = Make();
+  const std::optional<MapCorrection> correction =
+      closer.Process({made.map.Snapshot(), made.last()});
+  ASSERT_TRUE(correction);
+  EXPECT_TRUE(correction->poses.empty());
+  EXPECT_GT(correction->landmarks.size(), 100u);
+  EXPECT_FALSE(closer.Process({made.map.Snapshot(), made.last()})) << "it is too soon";
+  options_.enabled = false;
+  EXPECT_FALSE(Close(made));
 }
 
 TEST_F(LoopCloserTest, TheSameMapGivesTheSameBits) {

@@ -75,6 +75,19 @@ TEST(ObjectVotes, CandidatesDoNotVote) {
   EXPECT_EQ(votes.agree, 2);
 }
 
+// An object is mapped only after several views. Until then its masks show that it is there.
+TEST(ObjectVotes, AThingThatIsNotMappedYetIsNotMissing) {
+  RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()}, ThreeThings());
+  const auto votes = [&] {
+    return CountObjectVotes(made.map, SharedRing().sensor(), KeyframeId(29), KeyframeId(5), {});
+  };
+  made.map.MutableObject(ObjectId(3)).state = ObjectState::kCandidate;  // the cup of the last turn
+  EXPECT_EQ(votes().agree, 2);
+  EXPECT_EQ(votes().disagree, 0);
+  made.map.MutableObject(ObjectId(0)).votes = {{"vase", 1.0}};
+  EXPECT_EQ(votes().disagree, 1) << "something else is there";
+}
+
 // If the loop were wrong by more than their size, the things would be beside each other.
 TEST(ObjectVotes, ThingsBesideEachOtherDisagree) {
   const RingMap made =
