@@ -93,7 +93,7 @@ TEST_P(ShutterCorrection, OfAnEstimateNeedsTheFrameBefore) {
 InitialMap MakeViews(const SyntheticWorld& world, std::vector<SyntheticView>& seen) {
   InitialMap map;
   for (const Eigen::Vector3d& position : world.points()) {
-    map.points.push_back({.position = position});
+    map.points.push_back({.position = position, .observations = {}});
   }
   for (const uint32_t index : {kFrame - 4, kFrame, kFrame + 4}) {
     seen.push_back(world.Observe(index));

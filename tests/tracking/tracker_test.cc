@@ -870,10 +870,9 @@ ShutterErrors TrackWithRollingShutter(double known) {
   const SyntheticWorld world({.points = 300, .readout_time = 0.03});
   Sensor sensor = world.sensor();
   sensor.readout_time = known;
-  const SyntheticMap made = MakeSyntheticMap(world, {0, 15, 30});
+  SyntheticMap made = MakeSyntheticMap(world, {0, 15, 30});
   Tracker tracker(sensor, {});
-  Map copy = made.map;
-  const std::shared_ptr<const Map> map = Publish(copy);
+  const std::shared_ptr<const Map> map = Publish(made.map);
   tracker.Process(world.Observe(0).frame, nullptr, kIdle);
   ShutterErrors errors;
   for (uint32_t i = 1; i < 25; ++i) {
