@@ -278,6 +278,10 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
     }
   }
   AdjustMap(sensor_, map);
+  if (sensor_.readout_time > 0.0) {  // only now are the velocities of the views known
+    CorrectViews(sensor_, map);
+    AdjustMap(sensor_, map);
+  }
   std::erase_if(map.points, [](const auto& point) { return !(point.position.z() > 0.0); });
   if (map.points.size() < kMinPoints) {
     return fail(InitialisationFailure::kTooFewPoints);
@@ -286,13 +290,6 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
   // they have not.
   if (MedianParallax(map) < kMinAdjustedParallax) {
     return fail(InitialisationFailure::kTooLittleParallax);
-  }
-  if (sensor_.readout_time > 0.0) {
-    CorrectViews(sensor_, map);
-    AdjustMap(sensor_, map);
-    if (map.points.size() < kMinPoints) {
-      return fail(InitialisationFailure::kTooFewPoints);
-    }
   }
   Normalise(map);
   return {.map = std::move(map), .failure = {}};
