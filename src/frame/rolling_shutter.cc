@@ -56,15 +56,21 @@ void Transform(const AffineMap& map, Detection& detection) {
   }
 }
 
-double MedianInverseDepth(std::span<const uint32_t> keypoints,
-                          std::span<const double> inverse_depths) {
-  std::vector<double> known;
-  for (const uint32_t keypoint : keypoints) {
-    if (inverse_depths[keypoint] > 0.0) {
-      known.push_back(inverse_depths[keypoint]);
-    }
+// The median of those that are known; 0 if none is.
+double MedianOfKnown(std::vector<double> inverse_depths) {
+  std::erase(inverse_depths, 0.0);
+  return inverse_depths.empty() ? 0.0 : Median(std::move(inverse_depths));
+}
+
+// Of a thing without a keypoint of known depth, that of the whole image is taken (`of_image`).
+double InverseDepthOf(const Detection& detection, std::span<const double> inverse_depths,
+                      double of_image) {
+  std::vector<double> on_object;
+  for (const uint32_t keypoint : detection.keypoints) {
+    on_object.push_back(inverse_depths[keypoint]);
   }
-  return known.empty() ? 0.0 : Median(std::move(known));
+  const double median = MedianOfKnown(std::move(on_object));
+  return median > 0.0 ? median : of_image;
 }
 
 }  // namespace
@@ -101,8 +107,9 @@ std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor&
   features.grid = FeatureGrid(
       features.keypoints, Eigen::Vector2d(sensor.bounds.min_x, sensor.bounds.min_y).cast<float>(),
       Eigen::Vector2d(sensor.bounds.max_x, sensor.bounds.max_y).cast<float>());
+  const double of_image = MedianOfKnown({inverse_depths.begin(), inverse_depths.end()});
   for (Detection& detection : corrected->detections) {
-    const double inverse_depth = MedianInverseDepth(detection.keypoints, inverse_depths);
+    const double inverse_depth = InverseDepthOf(detection, inverse_depths, of_image);
     Transform(UndoVelocity(sensor,
                            ImageVelocity(camera, velocity, detection.box.center(), inverse_depth)),
               detection);

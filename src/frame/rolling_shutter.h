@@ -28,8 +28,9 @@ Eigen::Vector2d ImageVelocity(const PinholeCamera& camera, const PointVelocity& 
 // The frame of a rolling shutter as a global shutter would have taken it when the middle row was
 // exposed. A rolling shutter exposes one row after the other during Sensor::readout_time, and the
 // camera moves meanwhile. Keypoints are moved back by what their points have moved in the image
-// since the middle row; detections by what a point at their centre has moved. Their depth is the
-// median of that of their keypoints. `inverse_depths`: one per keypoint, 0 where it is unknown.
+// since the middle row; detections by what a point at their centre has moved. Their inverse depth
+// is the median of their keypoints, or of all keypoints if that of none of theirs is known.
+// `inverse_depths`: one per keypoint, 0 where it is unknown.
 std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor& sensor,
                                                const PointVelocity& velocity,
                                                std::span<const double> inverse_depths);

@@ -53,7 +53,8 @@ std::shared_ptr<const Frame> MeasureGlobalShutter(std::shared_ptr<const Frame> f
   std::vector<double> inverse_depths = seen.InverseDepths(frame->features);
   for (size_t i = 0; i < inverse_depths.size(); ++i) {
     if (const Landmark* const landmark = map.landmarks().Find(estimate.landmarks[i])) {
-      inverse_depths[i] = 1.0 / (estimate.cam_from_world * landmark->position).z();
+      const double depth = (estimate.cam_from_world * landmark->position).z();
+      inverse_depths[i] = depth > 0.0 ? 1.0 / depth : inverse_depths[i];
     }
   }
   return WithGlobalShutter(

@@ -29,8 +29,8 @@ std::shared_ptr<const Frame> MeasureGlobalShutter(std::shared_ptr<const Frame> f
                                                   const LastFrame& last,
                                                   const PoseEstimate& estimate);
 
-// For the views of an initial map: the velocity of a view is that of the motion from the view
-// before it to the one after it.
+// For the two or more views of an initial map: the velocity of a view is that of the motion from
+// the view before it to the one after it.
 void CorrectViews(const Sensor& sensor, InitialMap& map);
 
 }  // namespace hullslam

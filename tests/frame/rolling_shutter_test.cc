@@ -187,6 +187,18 @@ TEST(WithGlobalShutter, MovesDetectionsWithTheirKeypoints) {
               0.0, 1e-9);
 }
 
+// A thing without texture is not taken to be infinitely far away.
+TEST(WithGlobalShutter, ADetectionWithoutKeypointsIsAsFarAwayAsTheRest) {
+  Frame frame = FrameOf({{250.0, 20.0}, {260.0, 30.0}, {240.0, 25.0}, {10.0, 10.0}});
+  frame.detections = {SquareAtTheBottom()};
+  frame.detections[0].keypoints = {3};
+  const std::vector<double> depths = {0.5, 0.5, 0.25, 0.0};
+  const auto corrected =
+      WithGlobalShutter(frame, RollingSensor(), {.linear = {1.0, 0.0, 0.0}}, depths);
+  EXPECT_NEAR(corrected->detections[0].hull[0].x(),
+              200.0 - 250.0 * kReadout * (370.0 / 480.0 - 0.5), 1e-9);
+}
+
 TEST(WithGlobalShutter, NeedsADepthPerKeypoint) {
   EXPECT_THROW(WithGlobalShutter(FrameOf({{100.0, 450.0}}), RollingSensor(), {}, {}), CheckError);
 }

@@ -81,6 +81,20 @@ TEST_P(ShutterCorrection, AnEstimateTellsMoreThanAPrediction) {
   EXPECT_LT(ErrorOf(*measured, view), 0.1 * ErrorOf(*view.frame, view));
 }
 
+// A wrong landmark may be in the plane of the camera, where its pixel is not defined.
+TEST_P(ShutterCorrection, KeypointsStayFiniteWithLandmarksThatAreNotInFront) {
+  const SyntheticView view = world_.Observe(kFrame);
+  PoseEstimate estimate;
+  estimate.landmarks.resize(view.points.size());
+  estimate.landmarks[0] = made_.map.AddLandmark(Eigen::Vector3d::Zero(), KeyframeId(0));
+  estimate.landmarks[1] = made_.map.AddLandmark({0.0, 0.0, -3.0}, KeyframeId(0));
+  const auto measured =
+      MeasureGlobalShutter(view.frame, made_.map, world_.sensor(), last_, estimate);
+  for (const Keypoint& keypoint : measured->features.keypoints) {
+    ASSERT_TRUE(keypoint.undistorted.allFinite());
+  }
+}
+
 TEST_P(ShutterCorrection, OfAnEstimateNeedsTheFrameBefore) {
   const SyntheticView later = world_.Observe(kFrame + 1);
   PoseEstimate estimate;
