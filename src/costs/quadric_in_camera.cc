@@ -4,14 +4,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "camera/depth_error.h"
 #include "costs/pose_manifold.h"
 
 namespace hullslam {
-namespace {
-
-constexpr double kMinDepth = 1e-3;  // m; a nearer ellipsoid has no usable projection
-
-}  // namespace
 
 QuadricInCamera::QuadricInCamera(double const* const* parameters) {
   const Rigid3 cam_from_world = FromBlock(parameters[0]);

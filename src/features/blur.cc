@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kRadius = 3;
 constexpr int kRows = 2 * kRadius + 1;
-constexpr int kBlock = 32;  // px; rows are blurred in whole blocks, without a slow remainder
+constexpr int kBlurBlock = 32;  // px; rows are blurred in whole blocks, without a slow remainder
 
 // The weights of OpenCV for 8-bit images, in 1/256, from the centre outwards. They sum to 256.
 constexpr std::array<uint16_t, kRadius + 1> kWeights = {56, 48, 34, 18};
@@ -49,7 +49,7 @@ inline uint16_t SumAcross(const uint16_t* first) {
 HULLSLAM_FUNCTION_CLONES
 void BlurRow(const uint16_t* __restrict high, const uint16_t* __restrict low, int blocks,
              uint8_t* __restrict blurred) {
-  for (int x = 0; x < blocks * kBlock; ++x) {
+  for (int x = 0; x < blocks * kBlurBlock; ++x) {
     const auto carry = static_cast<uint16_t>((SumAcross(low + x) >> 8) + 128);
     blurred[x] = static_cast<uint8_t>(static_cast<uint16_t>(SumAcross(high + x) + carry) >> 8);
   }
@@ -70,9 +70,9 @@ void Mirror(std::vector<uint16_t>& row, int width) {
 const cv::Mat& OrbBlur::Blur(const cv::Mat& image) {
   Check(image.type() == CV_8UC1, "the image is not CV_8UC1");
   Check(image.cols > kRadius && image.rows > kRadius, "the image is smaller than 4 x 4 px");
-  const int blocks = (image.cols + kBlock - 1) / kBlock;
-  rows_.create(image.rows, blocks * kBlock, CV_8UC1);
-  const auto padded = static_cast<size_t>(blocks * kBlock + 2 * kRadius);
+  const int blocks = (image.cols + kBlurBlock - 1) / kBlurBlock;
+  rows_.create(image.rows, blocks * kBlurBlock, CV_8UC1);
+  const auto padded = static_cast<size_t>(blocks * kBlurBlock + 2 * kRadius);
   high_.resize(padded);
   low_.resize(padded);
   for (int y = 0; y < image.rows; ++y) {

@@ -15,7 +15,7 @@ namespace hullslam {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Points = std::vector<Kernel::Point_2>;
+using CgalPoints = std::vector<Kernel::Point_2>;
 
 // The kernel with a fast test for the point farthest from a line. The test only decides where
 // QuickHull splits, so it need not be exact. The kernel's own test uses interval arithmetic and
@@ -36,9 +36,9 @@ struct Traits : Kernel {
 
 // Among equally distant points QuickHull may split at any, so some corners lie on the line between
 // their neighbours or, by rounding, behind it. These corners are removed.
-Points WithoutFlatCorners(const Points& corners) {
+CgalPoints WithoutFlatCorners(const CgalPoints& corners) {
   const size_t size = corners.size();
-  Points strict;
+  CgalPoints strict;
   strict.reserve(size);
   for (size_t i = 0; i < size; ++i) {
     const Kernel::Point_2& before = corners[(i + size - 1) % size];
@@ -51,7 +51,7 @@ Points WithoutFlatCorners(const Points& corners) {
 
 // Removes corners until all are strict left turns by exact predicates. A true corner of the hull is
 // a left turn whatever its neighbours are, so no true corner is removed.
-Points StrictlyConvex(Points corners) {
+CgalPoints StrictlyConvex(CgalPoints corners) {
   size_t before = 0;
   while (corners.size() >= 3 && corners.size() != before) {
     before = corners.size();
@@ -63,13 +63,13 @@ Points StrictlyConvex(Points corners) {
 }  // namespace
 
 std::vector<Eigen::Vector2d> ConvexHull(std::span<const Eigen::Vector2d> points) {
-  Points input;
+  CgalPoints input;
   input.reserve(points.size());
   for (const Eigen::Vector2d& point : points) {
     Check(point.allFinite(), "the points of a hull are not finite");
     input.emplace_back(point.x(), point.y());
   }
-  Points corners;
+  CgalPoints corners;
   CGAL::ch_bykat(input.begin(), input.end(), std::back_inserter(corners), Traits());
   corners = StrictlyConvex(std::move(corners));
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());

@@ -15,17 +15,17 @@ namespace hullslam {
 namespace {
 
 // A file descriptor, or -1.
-class Descriptor {
+class FileDescriptor {
  public:
-  explicit Descriptor(const std::filesystem::path& path)
+  explicit FileDescriptor(const std::filesystem::path& path)
       : number_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
-  ~Descriptor() {
+  ~FileDescriptor() {
     if (number_ >= 0) {
       ::close(number_);
     }
   }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
+  FileDescriptor(const FileDescriptor&) = delete;
+  FileDescriptor& operator=(const FileDescriptor&) = delete;
 
   int number() const { return number_; }
 
@@ -48,7 +48,7 @@ FileBytes ReadCopy(const std::filesystem::path& path, size_t most_bytes) {
 }  // namespace
 
 FileBytes MapFile(const std::filesystem::path& path, size_t most_bytes) {
-  const Descriptor file(path);
+  const FileDescriptor file(path);
   const size_t size = file.MappableSize();
   if (size == 0 || size > most_bytes) {
     return ReadCopy(path, most_bytes);  // also reports what is wrong

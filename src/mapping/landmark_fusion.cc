@@ -15,13 +15,13 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kNeighbours = 10;
+constexpr size_t kFusionNeighbours = 10;
 constexpr size_t kSecondNeighbours = 5;
 constexpr float kRadius = 3.0f;   // px at level 0
 constexpr int kMaxDistance = 50;  // Hamming
 
 std::vector<KeyframeId> Neighbourhood(const Map& map, KeyframeId id) {
-  std::vector<KeyframeId> targets = BestCovisible(map.keyframes().At(id), kNeighbours);
+  std::vector<KeyframeId> targets = BestCovisible(map.keyframes().At(id), kFusionNeighbours);
   const std::vector<KeyframeId> first = targets;
   for (const KeyframeId neighbour : first) {
     const auto second = BestCovisible(map.keyframes().At(neighbour), kSecondNeighbours);

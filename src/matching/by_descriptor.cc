@@ -1,31 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "matching/by_descriptor.h"
 
-#include <limits>
-
 #include "util/function_clones.h"
 
 namespace hullslam {
 namespace {
 
-struct TwoBest {
-  int best = std::numeric_limits<int>::max();
-  int second = std::numeric_limits<int>::max();
-  uint32_t keypoint = 0;
-};
-
 HULLSLAM_FUNCTION_CLONES
 TwoBest FindTwoBest(const Descriptor& query, std::span<const Descriptor> descriptors) {
   TwoBest result;
   for (uint32_t i = 0; i < descriptors.size(); ++i) {
-    const int distance = HammingDistance(query, descriptors[i]);
-    if (distance < result.best) {
-      result.second = result.best;
-      result.best = distance;
-      result.keypoint = i;
-    } else if (distance < result.second) {
-      result.second = distance;
-    }
+    result.Add(i, HammingDistance(query, descriptors[i]));
   }
   return result;
 }

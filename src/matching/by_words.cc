@@ -2,7 +2,6 @@
 #include "matching/by_words.h"
 
 #include <algorithm>
-#include <limits>
 #include <tuple>
 
 #include "hullslam/util/check.h"
@@ -39,25 +38,12 @@ std::span<const NodeKeypoint> FirstNode(std::span<const NodeKeypoint> sorted) {
   return {sorted.begin(), end};
 }
 
-struct TwoBest {
-  int best = std::numeric_limits<int>::max();
-  int second = std::numeric_limits<int>::max();
-  uint32_t keypoint = 0;
-};
-
 HULLSLAM_FUNCTION_CLONES
 TwoBest FindTwoBest(const Descriptor& query, std::span<const uint32_t> candidates,
                     const std::vector<Descriptor>& descriptors) {
   TwoBest result;
   for (const uint32_t candidate : candidates) {
-    const int distance = HammingDistance(query, descriptors[candidate]);
-    if (distance < result.best) {
-      result.second = result.best;
-      result.best = distance;
-      result.keypoint = candidate;
-    } else if (distance < result.second) {
-      result.second = distance;
-    }
+    result.Add(candidate, HammingDistance(query, descriptors[candidate]));
   }
   return result;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,23 @@ struct Match {
   uint32_t query = 0;     // index of what is searched for
   uint32_t keypoint = 0;  // index of the keypoint that was found
   int distance = 0;       // Hamming, 0 to 256
+};
+
+// The candidate nearest to a descriptor, and how far away the second one is.
+struct TwoBest {
+  int best = std::numeric_limits<int>::max();
+  int second = std::numeric_limits<int>::max();
+  uint32_t keypoint = 0;
+
+  void Add(uint32_t candidate, int distance) {
+    if (distance < best) {
+      second = best;
+      best = distance;
+      keypoint = candidate;
+    } else if (distance < second) {
+      second = distance;
+    }
+  }
 };
 
 // Keeps for each keypoint the match of least distance; ties go to the lowest query. `matches` comes

@@ -16,8 +16,8 @@ namespace {
 constexpr double kReach = 3.0;  // in widths; samples farther away have almost no weight
 // Least sum of weights: that of one sample at the normal, or of several samples near it.
 constexpr double kMinWeight = 1.0;
-constexpr double kNoSlope = 0.3;    // weight of the prior that the slope is 0
-constexpr double kMinDepth = 1e-3;  // of the contact point, in units of the map
+constexpr double kNoSlope = 0.3;           // weight of the prior that the slope is 0
+constexpr double kMinContactDepth = 1e-3;  // of the contact point, in units of the map
 
 }  // namespace
 
@@ -34,7 +34,7 @@ std::optional<TangentPlane> PlaneOfLine(const PinholeCamera& camera, const Rigid
   plane.excess = -normal_in_cam.dot(cam_from_object.translation) - support;
   const Eigen::Vector3d contact = ellipsoid.half_axes.cwiseProduct(stretched) / support;
   const double depth = (cam_from_object * contact).z();
-  if (depth < kMinDepth) {
+  if (depth < kMinContactDepth) {
     return std::nullopt;
   }
   plane.pixels_per_metre = scale / depth;

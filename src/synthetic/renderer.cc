@@ -18,7 +18,7 @@ using Eigen::Vector3f;
 constexpr int kBlockColumns = 4;
 constexpr int kBlockRows = RayPacket::kSize / kBlockColumns;
 
-struct Placement {
+struct PartPlacement {
   Matrix3f part_from_world;
   Vector3f centre;  // world frame
 };
@@ -31,7 +31,7 @@ struct Occluder {
 };
 
 // The occluders whose reach includes some point of the box around the part.
-std::vector<Occluder> OccludersNear(const Part& part, const Placement& placement,
+std::vector<Occluder> OccludersNear(const Part& part, const PartPlacement& placement,
                                     const std::vector<Occluder>& all) {
   std::vector<Occluder> near;
   const Vector3f half = part.shape.half.cast<float>();
@@ -136,7 +136,7 @@ struct Renderer::Eye {
 struct Renderer::View {
   std::vector<Eye> eyes;  // one for each kBlockRows rows
   std::vector<Rigid3> world_from_object;
-  std::vector<Placement> placements;             // one per entry of RayCaster::parts()
+  std::vector<PartPlacement> placements;         // one per entry of RayCaster::parts()
   std::vector<std::vector<Occluder>> occluders;  // per part; empty for the parts of objects
 
   const Eye& EyeOf(int row) const { return eyes[static_cast<size_t>(row / kBlockRows)]; }
@@ -222,7 +222,7 @@ Renderer::Fragment Renderer::Shade(const View& view, const Eye& eye, int part, f
                                    const Vector3f& direction, int max_samples) const {
   Fragment fragment;
   const PlacedPart& placed = caster_.parts()[static_cast<size_t>(part)];
-  const Placement& placement = view.placements[static_cast<size_t>(part)];
+  const PartPlacement& placement = view.placements[static_cast<size_t>(part)];
   const Vector3f point = eye.centre + distance * direction;
   const Vector3f local = placement.part_from_world * (point - placement.centre);
   const Vector3f normal = placed.part->shape.Normal(local.cast<double>()).cast<float>();

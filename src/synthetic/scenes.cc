@@ -34,7 +34,6 @@ constexpr std::array<std::pair<std::string_view, SceneKind>, 8> kSceneNames = {
      {"twins", SceneKind::kTwins},
      {"rotation", SceneKind::kRotation},
      {"wall", SceneKind::kWall}}};
-constexpr double kFramesPerSecond = 30.0;
 constexpr double kTableHeight = 0.75;
 constexpr int kHouseFrames = 1800;
 constexpr int kTwinsFrames = 930;

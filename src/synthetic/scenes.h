@@ -15,7 +15,9 @@ enum class SceneKind { kDesk, kRoom, kLowTexture, kDynamic, kHouse, kTwins, kRot
 SceneKind ParseSceneKind(std::string_view name);
 std::string_view SceneName(SceneKind kind);
 
-// The number of frames of the sequence that the scene was designed for, at 30 frames per second.
+inline constexpr double kFramesPerSecond = 30.0;
+
+// The number of frames of the sequence that the scene was designed for.
 int DefaultFrames(SceneKind kind);
 
 // The seed of everything that differs between two visits of the same place: the motion of the hand

@@ -19,12 +19,12 @@
 #include "synthetic/mask_outline.h"
 #include "synthetic/output_swap.h"
 #include "synthetic/renderer.h"
+#include "synthetic/scenes.h"
 #include "synthetic/sensor.h"
 
 namespace hullslam::synthetic {
 namespace {
 
-constexpr double kFramesPerSecond = 30.0;
 constexpr int kMinMaskArea = 100;  // px
 
 double FrameTime(int frame) { return frame / kFramesPerSecond; }

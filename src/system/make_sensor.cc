@@ -4,6 +4,7 @@
 namespace hullslam {
 
 Sensor MakeSensor(const SystemOptions& options) {
+  options.Validate();
   Sensor sensor;
   sensor.kind = options.sensor;
   sensor.camera = options.camera;

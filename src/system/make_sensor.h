@@ -6,7 +6,7 @@
 
 namespace hullslam {
 
-// The properties of the camera of a run.
+// The properties of the camera of a run. Throws InputError if an option is not valid.
 Sensor MakeSensor(const SystemOptions& options);
 
 }  // namespace hullslam

@@ -12,11 +12,6 @@
 namespace hullslam {
 namespace {
 
-const SystemOptions& Validated(const SystemOptions& options) {
-  options.Validate();
-  return options;
-}
-
 std::shared_ptr<const Map> NotNull(std::shared_ptr<const Map> map) {
   Check(map != nullptr, "relocalisation needs a map");
   return map;
@@ -29,7 +24,7 @@ const char* ToString(RelocalisationMethod method) {
 }
 
 Relocaliser::Relocaliser(const SystemOptions& options, std::shared_ptr<const Map> map)
-    : options_(Validated(options)),
+    : options_(options),
       map_(NotNull(std::move(map))),
       sensor_(std::make_unique<const Sensor>(MakeSensor(options_))),
       object_index_(std::make_unique<const ObjectIndex>(*map_, sensor_->camera)) {}

@@ -24,11 +24,6 @@
 namespace hullslam {
 namespace {
 
-const SystemOptions& Validated(const SystemOptions& options) {
-  options.Validate();
-  return options;
-}
-
 cv::Mat ToGrey(const cv::Mat& image, bool rgb_order) {
   cv::Mat grey;
   switch (image.type()) {
@@ -80,7 +75,7 @@ class ScopedFlag {
 }  // namespace
 
 System::System(const SystemOptions& options, PipelineKind kind, SystemStart start)
-    : options_(Validated(options)),
+    : options_(options),
       kind_(kind),
       start_(std::move(start)),
       sensor_(MakeSensor(options_)),

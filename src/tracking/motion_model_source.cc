@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-constexpr double kRadius = 15.0;  // px at level 0 (Mur-Artal and Tardos 2017)
+constexpr double kSearchRadius = 15.0;  // px at level 0 (Mur-Artal and Tardos 2017)
 
 struct LevelRange {
   int min = 0;
@@ -52,7 +52,7 @@ Expected ExpectLandmarks(const Map& map, const Sensor& sensor, const LastFrame& 
     projection.pixel = pixel.cast<float>();
     projection.right_u = static_cast<float>(pixel.x() - sensor.camera.bf / point.z());
     projection.radius =
-        static_cast<float>(kRadius) * sensor.levels.scale[static_cast<size_t>(seen.level)];
+        static_cast<float>(kSearchRadius) * sensor.levels.scale[static_cast<size_t>(seen.level)];
     projection.min_level = levels.min;
     projection.max_level = levels.max;
     projection.descriptor = landmark->descriptor;

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 
+#include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
 
@@ -16,8 +17,6 @@ namespace {
 
 const PinholeCamera kCamera = SyntheticSensor().camera;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
 PointMeasurement Measure(const Eigen::Vector3d& pixel_and_disparity, bool has_depth) {
   return PointMeasurement::Create(pixel_and_disparity.head<2>(), 1.0,

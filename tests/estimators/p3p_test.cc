@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "support/pose_distance.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {
@@ -31,8 +32,6 @@ Seen RandomView(RandomGeometry& random) {
   }
   return seen;
 }
-
-double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
 double NearestDistance(const P3pPoses& poses, const Rigid3& pose) {
   double nearest = std::numeric_limits<double>::infinity();

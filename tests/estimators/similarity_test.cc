@@ -11,8 +11,6 @@
 namespace hullslam {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 SimilarityOptions Options(bool fix_scale, uint64_t seed = 0) {
   SimilarityOptions options;
   options.fix_scale = fix_scale;
@@ -111,6 +109,7 @@ TEST_P(SimilarityEstimate, SameSeedGivesTheSameBits) {
 }
 
 TEST_P(SimilarityEstimate, PassesOverMatchesThatAreNotFinite) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   MadeSimilarity made(7, {.fix_scale = GetParam()});
   auto matches = made.Make(24);
   matches[0].point_in_a.x() = kNan;

@@ -10,12 +10,12 @@ namespace {
 
 const PinholeCamera kCamera = {.fx = 500.0, .fy = 500.0, .cx = 320.0, .cy = 240.0};
 
-std::vector<Polygon2> Square(double side) {
+std::vector<Polygon2> SquarePart(double side) {
   return {{{0.0, 0.0}, {side, 0.0}, {side, side}, {0.0, side}}};
 }
 
 TEST(DetectionOutline, LongEdgesGetPoints) {
-  const Outline outline = UndistortOutline(Square(120.0), kCamera);
+  const Outline outline = UndistortOutline(SquarePart(120.0), kCamera);
   EXPECT_EQ(outline.contour.size(), 40U);
   EXPECT_EQ(outline.hull.size(), 4U);
 }
@@ -23,14 +23,14 @@ TEST(DetectionOutline, LongEdgesGetPoints) {
 // An outline may extend far beyond the image. It must not take more memory the larger it is.
 TEST(DetectionOutline, TheNumberOfPointsIsBounded) {
   for (const double side : {1e6, 1e9, 1e12}) {
-    EXPECT_LE(UndistortOutline(Square(side), kCamera).boundary.size(), 20'010U) << side;
+    EXPECT_LE(UndistortOutline(SquarePart(side), kCamera).boundary.size(), 20'010U) << side;
   }
 }
 
 TEST(DetectionOutline, SmallPartsAreLeftOut) {
-  std::vector<Polygon2> parts = Square(10.0);
-  parts.push_back(Square(100.0)[0]);
-  parts.push_back(Square(0.5)[0]);
+  std::vector<Polygon2> parts = SquarePart(10.0);
+  parts.push_back(SquarePart(100.0)[0]);
+  parts.push_back(SquarePart(0.5)[0]);
   EXPECT_EQ(LargeParts(parts, 0.001).size(), 2U);
   EXPECT_EQ(LargeParts(parts, 0.5).size(), 1U);
   EXPECT_EQ(LargeParts(parts, 0.001)[0][1].x(), 100.0);

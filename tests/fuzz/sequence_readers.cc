@@ -78,17 +78,18 @@ void FuzzEurocStates(std::string_view bytes) {
   });
 }
 
-constexpr std::array<FuzzedReader, 8> kReaders = {{{"sequence", FuzzSequence},
-                                                   {"associations", FuzzAssociations},
-                                                   {"icl_associations", FuzzIclAssociations},
-                                                   {"povray_camera", FuzzPovrayCamera},
-                                                   {"ray_depth", FuzzRayDepth},
-                                                   {"euroc_sensor", FuzzEurocSensor},
-                                                   {"euroc_images", FuzzEurocImages},
-                                                   {"euroc_states", FuzzEurocStates}}};
+constexpr std::array<FuzzedReader, 8> kSequenceReaders = {
+    {{"sequence", FuzzSequence},
+     {"associations", FuzzAssociations},
+     {"icl_associations", FuzzIclAssociations},
+     {"povray_camera", FuzzPovrayCamera},
+     {"ray_depth", FuzzRayDepth},
+     {"euroc_sensor", FuzzEurocSensor},
+     {"euroc_images", FuzzEurocImages},
+     {"euroc_states", FuzzEurocStates}}};
 
 }  // namespace
 
-std::span<const FuzzedReader> SequenceReaders() { return kReaders; }
+std::span<const FuzzedReader> SequenceReaders() { return kSequenceReaders; }
 
 }  // namespace hullslam

@@ -11,19 +11,19 @@
 namespace hullslam {
 namespace {
 
-using Points = std::vector<Eigen::Vector3d>;
+using Points3 = std::vector<Eigen::Vector3d>;
 
-Points RandomPoints(int count, unsigned seed) {
+Points3 RandomPoints(int count, unsigned seed) {
   std::mt19937 generator(seed);
   std::normal_distribution<double> normal;
-  Points points(count);
+  Points3 points(count);
   for (Eigen::Vector3d& point : points) {
     point = {normal(generator), normal(generator), normal(generator)};
   }
   return points;
 }
 
-double SquaredError(const PointAlignment& alignment, const Points& source, const Points& target) {
+double SquaredError(const PointAlignment& alignment, const Points3& source, const Points3& target) {
   double sum = 0.0;
   for (size_t i = 0; i < source.size(); ++i) {
     sum += (alignment * source[i] - target[i]).squaredNorm();
@@ -38,8 +38,8 @@ PointAlignment Similarity(double scale, const Eigen::Vector3d& turn, const Eigen
   return alignment;
 }
 
-Points Apply(const PointAlignment& alignment, const Points& points) {
-  Points moved;
+Points3 Apply(const PointAlignment& alignment, const Points3& points) {
+  Points3 moved;
   for (const Eigen::Vector3d& point : points) {
     moved.push_back(alignment * point);
   }
@@ -48,7 +48,7 @@ Points Apply(const PointAlignment& alignment, const Points& points) {
 
 TEST(Alignment, RecoversARigidMotion) {
   const PointAlignment truth = Similarity(1.0, {0.3, -2.0, 1.0}, {5.0, -1.0, 100.0});
-  const Points source = RandomPoints(20, 1);
+  const Points3 source = RandomPoints(20, 1);
   for (const AlignmentKind kind : {AlignmentKind::kSe3, AlignmentKind::kSim3}) {
     const PointAlignment found = AlignPoints(source, Apply(truth, source), kind);
     ASSERT_TRUE(found.ok()) << found.failure;
@@ -61,15 +61,15 @@ TEST(Alignment, RecoversARigidMotion) {
 
 TEST(Alignment, RecoversTheScaleOnlyForSim3) {
   const PointAlignment truth = Similarity(2.5, {0.1, 0.2, -0.3}, {1.0, 2.0, 3.0});
-  const Points source = RandomPoints(20, 2);
-  const Points target = Apply(truth, source);
+  const Points3 source = RandomPoints(20, 2);
+  const Points3 target = Apply(truth, source);
   EXPECT_NEAR(AlignPoints(source, target, AlignmentKind::kSim3).scale, 2.5, 1e-12);
   EXPECT_EQ(AlignPoints(source, target, AlignmentKind::kSe3).scale, 1.0);
 }
 
 TEST(Alignment, NeverMirrors) {
-  const Points source = RandomPoints(10, 3);
-  Points mirrored = source;
+  const Points3 source = RandomPoints(10, 3);
+  Points3 mirrored = source;
   for (Eigen::Vector3d& point : mirrored) {
     point.x() = -point.x();
   }
@@ -80,8 +80,8 @@ TEST(Alignment, NeverMirrors) {
 }
 
 TEST(Alignment, NoSmallChangeIsBetter) {
-  const Points source = RandomPoints(30, 4);
-  const Points target = RandomPoints(30, 5);
+  const Points3 source = RandomPoints(30, 4);
+  const Points3 target = RandomPoints(30, 5);
   const PointAlignment best = AlignPoints(source, target, AlignmentKind::kSim3);
   const double least = SquaredError(best, source, target);
   for (int i = 0; i < 6; ++i) {
@@ -98,27 +98,27 @@ TEST(Alignment, NoSmallChangeIsBetter) {
 }
 
 TEST(Alignment, NoneLeavesThePointsWhereTheyAre) {
-  const Points source = RandomPoints(1, 6);
+  const Points3 source = RandomPoints(1, 6);
   const PointAlignment found = AlignPoints(source, source, AlignmentKind::kNone);
   EXPECT_TRUE(found.ok());
   EXPECT_EQ(found * source[0], source[0]);
 }
 
 TEST(Alignment, PointsOnALineAreAlignedWithoutError) {
-  const Points source = {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {4, 0, 0}};
-  const Points target = {{5, 0, 0}, {5, 1, 0}, {5, 3, 0}, {5, 4, 0}};
+  const Points3 source = {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {4, 0, 0}};
+  const Points3 target = {{5, 0, 0}, {5, 1, 0}, {5, 3, 0}, {5, 4, 0}};
   const PointAlignment found = AlignPoints(source, target, AlignmentKind::kSim3);
   ASSERT_TRUE(found.ok());
   EXPECT_LT(SquaredError(found, source, target), 1e-20);
 }
 
 TEST(Alignment, FailsWithAReason) {
-  const Points two = RandomPoints(2, 7);
+  const Points3 two = RandomPoints(2, 7);
   const PointAlignment few = AlignPoints(two, two, AlignmentKind::kSe3);
   EXPECT_FALSE(few.ok());
   EXPECT_NE(few.failure.find("at least 3 pairs, there are 2"), std::string::npos);
-  const Points same(5, Eigen::Vector3d(1.0, 2.0, 3.0));
-  const Points spread = RandomPoints(5, 8);
+  const Points3 same(5, Eigen::Vector3d(1.0, 2.0, 3.0));
+  const Points3 spread = RandomPoints(5, 8);
   EXPECT_FALSE(AlignPoints(same, spread, AlignmentKind::kSim3).ok());
   EXPECT_FALSE(AlignPoints(spread, same, AlignmentKind::kSim3).ok());
   EXPECT_TRUE(AlignPoints(same, spread, AlignmentKind::kSe3).ok());
@@ -128,7 +128,7 @@ TEST(Alignment, FailsWithAReason) {
 // ---- Poses
 
 std::vector<Rigid3> RandomPoses(int count, unsigned seed) {
-  const Points values = RandomPoints(2 * count, seed);
+  const Points3 values = RandomPoints(2 * count, seed);
   std::vector<Rigid3> poses;
   for (size_t i = 0; i < values.size(); i += 2) {
     poses.emplace_back(ExpSo3(values[i]), values[i + 1]);
@@ -156,7 +156,7 @@ TEST(AlignPoses, RecoversAMotionEvenFromOnePose) {
 
 // Positions alone do not determine the rotation of a camera that moves by the noise only.
 TEST(AlignPoses, OrientationsDetermineTheRotationOfAnAlmostStillCamera) {
-  const Points noise = RandomPoints(30, 2);
+  const Points3 noise = RandomPoints(30, 2);
   std::vector<Rigid3> source;
   for (const Eigen::Vector3d& error : noise) {
     source.emplace_back(Eigen::Quaterniond::Identity(), 1e-3 * error);

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "support/pose_distance.h"
+
 namespace hullslam {
 namespace {
 
@@ -23,8 +25,6 @@ class Random {
   std::mt19937 generator_{3};
   std::uniform_real_distribution<double> distribution_{-1.0, 1.0};
 };
-
-double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
 TEST(Rigid3, MovesPointsAsComputedByHand) {
   // A quarter turn around z takes x to y.

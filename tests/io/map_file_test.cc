@@ -28,7 +28,7 @@
 namespace hullslam {
 namespace {
 
-class MapFile : public testing::Test {
+class MapFileTest : public testing::Test {
  protected:
   std::string Written(const Map& map, const MapSettings& settings = MadeSettings()) const {
     WriteMap(path_, map, settings);
@@ -76,7 +76,7 @@ Map EditedMap(RandomEdits& edits, int count) {
 
 // ---- laws
 
-TEST_F(MapFile, WritingReadingAndWritingGivesTheSameBytes) {
+TEST_F(MapFileTest, WritingReadingAndWritingGivesTheSameBytes) {
   const std::string small = Written(SmallMap());
   EXPECT_EQ(Written(ReadBack(SmallMap())), small);
   for (uint32_t seed = 0; seed < 4; ++seed) {
@@ -90,7 +90,7 @@ TEST_F(MapFile, WritingReadingAndWritingGivesTheSameBytes) {
 }
 
 // The same ids are given to new entities, and free slots are used in the same order.
-TEST_F(MapFile, WorkGoesOnAsBefore) {
+TEST_F(MapFileTest, WorkGoesOnAsBefore) {
   for (uint32_t seed = 0; seed < 4; ++seed) {
     RandomEdits edits(seed);
     Map map = EditedMap(edits, 500);
@@ -127,7 +127,7 @@ void ExpectSameDetection(const Detection& a, const Detection& b) {
   EXPECT_EQ(a.keypoints, b.keypoints);
 }
 
-TEST_F(MapFile, KeepsEveryFieldOfAFrame) {
+TEST_F(MapFileTest, KeepsEveryFieldOfAFrame) {
   Map map;
   const auto frame = FullFrame(5, 17.25);
   const int columns = DepthGrid::CountAlong(640);
@@ -156,7 +156,7 @@ TEST_F(MapFile, KeepsEveryFieldOfAFrame) {
   ExpectSameDetection(found.detections[0], frame->detections[0]);
 }
 
-TEST_F(MapFile, KeepsWhatDumpDoesNotShow) {
+TEST_F(MapFileTest, KeepsWhatDumpDoesNotShow) {
   const Map map = SmallMap();
   const Map read = ReadBack(map);
   EXPECT_EQ(Dump(read), Dump(map));
@@ -170,7 +170,7 @@ TEST_F(MapFile, KeepsWhatDumpDoesNotShow) {
   EXPECT_EQ(cup.compensated_px, 0.75);
 }
 
-TEST_F(MapFile, KeepsItsSettings) {
+TEST_F(MapFileTest, KeepsItsSettings) {
   MapSettings settings = MadeSettings();
   settings.camera.k1 = 0.01;
   settings.level_count = 5;
@@ -188,7 +188,7 @@ TEST_F(MapFile, KeepsItsSettings) {
 
 // ---- refusals
 
-TEST_F(MapFile, OtherSettingsAreRefused) {
+TEST_F(MapFileTest, OtherSettingsAreRefused) {
   WriteMap(path_, SmallMap(), MadeSettings());
   EXPECT_EQ(ReadMap(path_, MadeSettings()).keyframes().size(), 2u);
   const auto refuse = [&](const auto& change, const std::vector<std::string>& parts) {
@@ -207,7 +207,7 @@ TEST_F(MapFile, OtherSettingsAreRefused) {
   refuse([](MapSettings& s) { s.vocabulary = 9; }, {"vocabulary", "0000000000000009"});
 }
 
-TEST_F(MapFile, AMonocularMapStaysOne) {
+TEST_F(MapFileTest, AMonocularMapStaysOne) {
   MapSettings settings = MadeSettings();
   settings.sensor = SensorKind::kMonocular;
   WriteMap(path_, SmallMap(), settings);
@@ -215,7 +215,7 @@ TEST_F(MapFile, AMonocularMapStaysOne) {
   ExpectInputError([&] { ReadMap(path_, MadeSettings()); }, {"a monocular camera", "an RGB-D"});
 }
 
-TEST_F(MapFile, EveryFlippedByteIsRefused) {
+TEST_F(MapFileTest, EveryFlippedByteIsRefused) {
   const std::string good = Written(SmallMap());
   for (size_t i = 0; i < good.size(); ++i) {
     std::string bad = good;
@@ -224,7 +224,7 @@ TEST_F(MapFile, EveryFlippedByteIsRefused) {
   }
 }
 
-TEST_F(MapFile, ATruncatedFileIsRefused) {
+TEST_F(MapFileTest, ATruncatedFileIsRefused) {
   const std::string good = Written(SmallMap());
   for (size_t i = 0; i < 16; ++i) {
     ExpectRefusal(good.substr(0, i * good.size() / 16));
@@ -234,7 +234,7 @@ TEST_F(MapFile, ATruncatedFileIsRefused) {
   ExpectRefusal(good + '\0', {"damaged or cut off"});
 }
 
-TEST_F(MapFile, WhatIsNoMapOfThisVersionIsRefused) {
+TEST_F(MapFileTest, WhatIsNoMapOfThisVersionIsRefused) {
   ExpectRefusal("", {"is not a map"});
   ExpectRefusal("1.0 0 0 0 0 0 0 1\n", {"is not a map"});
   std::string bytes = Written(SmallMap());
@@ -246,7 +246,7 @@ TEST_F(MapFile, WhatIsNoMapOfThisVersionIsRefused) {
                    {"none.map", "No such file or directory"});
 }
 
-TEST_F(MapFile, AMapWithoutKeyframesIsRefused) {
+TEST_F(MapFileTest, AMapWithoutKeyframesIsRefused) {
   ExpectInputError([&] { WriteMap(path_, Map(), MadeSettings()); },
                    {path_.string(), "has no keyframe"});
   EXPECT_FALSE(std::filesystem::exists(path_));
@@ -262,7 +262,7 @@ TEST_F(MapFile, AMapWithoutKeyframesIsRefused) {
 }
 
 // A wrong byte that the checksum does not tell must not crash either. Most change only a number.
-TEST_F(MapFile, AnyBytesBelowTheChecksumAreReadOrRefused) {
+TEST_F(MapFileTest, AnyBytesBelowTheChecksumAreReadOrRefused) {
   const std::string file = Written(SmallMap());
   const std::string good = file.substr(14, file.size() - 14 - 4);
   RandomGeometry random(1);
@@ -281,7 +281,7 @@ TEST_F(MapFile, AnyBytesBelowTheChecksumAreReadOrRefused) {
   EXPECT_GT(refused, 100);
 }
 
-TEST_F(MapFile, AnInconsistentMapIsRefused) {
+TEST_F(MapFileTest, AnInconsistentMapIsRefused) {
   Map map = SmallMap();
   map.MutableCulledKeyframe(KeyframeId(1)).pose.reference = KeyframeId(1);
   ExpectRefusal(Written(map), {"is not consistent", "keyframe 1"});
@@ -289,7 +289,7 @@ TEST_F(MapFile, AnInconsistentMapIsRefused) {
 
 // ---- writing
 
-TEST_F(MapFile, AFullDiskLeavesTheOldFile) {
+TEST_F(MapFileTest, AFullDiskLeavesTheOldFile) {
   const std::string good = Written(SmallMap());
   {
     const FileSizeLimit limit(1000);
@@ -299,7 +299,7 @@ TEST_F(MapFile, AFullDiskLeavesTheOldFile) {
   EXPECT_EQ(ReadFile(path_), good);
 }
 
-TEST_F(MapFile, AKilledWriterLeavesTheOldOrTheNewFile) {
+TEST_F(MapFileTest, AKilledWriterLeavesTheOldOrTheNewFile) {
   RandomEdits edits(3);
   const Map large = EditedMap(edits, 300);
   const Map small = SmallMap();

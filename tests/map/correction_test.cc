@@ -26,6 +26,7 @@
 #include "map/made_map.h"
 #include "map/random_edits.h"
 #include "map/spanning_tree.h"
+#include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
 
@@ -37,8 +38,6 @@ constexpr uint32_t kSeeds = 12;
 ScaleLevels Levels() { return ScaleLevels::Create(8, 1.2); }
 
 Rigid3 Shift(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }
-
-double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
 std::vector<KeyframeId> AllIds(const Map& map) {
   std::vector<KeyframeId> ids;

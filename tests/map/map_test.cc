@@ -12,12 +12,11 @@
 #include "map/random_edits.h"
 #include "map/spanning_tree.h"
 #include "support/made_vocabulary.h"
+#include "support/pose_distance.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {
 namespace {
-
-double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
 TEST(Map, KeyframeHasOneEntryPerKeypoint) {
   Map map;

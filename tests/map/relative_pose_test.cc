@@ -7,12 +7,11 @@
 #include "hullslam/util/check.h"
 #include "map/made_map.h"
 #include "map/spanning_tree.h"
+#include "support/pose_distance.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {
 namespace {
-
-double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
 Rigid3 Shift(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }
 

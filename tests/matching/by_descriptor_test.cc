@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 #include "matching/made_features.h"
@@ -13,14 +12,9 @@
 namespace hullslam {
 namespace {
 
-std::vector<uint32_t> All(const FrameFeatures& features) {
-  std::vector<uint32_t> indices(features.size());
-  std::iota(indices.begin(), indices.end(), 0);
-  return indices;
-}
-
 // The keypoint of `features` that matches a query with `bits`; -1 if there is none.
-int Found(int bits, const FrameFeatures& features, const DescriptorSearch& search = {}) {
+int FoundByDescriptor(int bits, const FrameFeatures& features,
+                      const DescriptorSearch& search = {}) {
   const FrameFeatures query = MakeFeatures({{.bits = bits}});
   const auto matches = MatchByDescriptor(query, All(query), features, search);
   return matches.empty() ? -1 : static_cast<int>(matches[0].keypoint);
@@ -30,19 +24,19 @@ TEST(MatchByDescriptor, FindsTheMostSimilarKeypointAnywhere) {
   const FrameFeatures features = MakeFeatures({{.pixel = {600.0f, 400.0f}, .bits = 200},
                                                {.pixel = {10.0f, 10.0f}, .bits = 100},
                                                {.pixel = {300.0f, 10.0f}, .bits = 0}});
-  EXPECT_EQ(Found(110, features), 1);
-  EXPECT_EQ(Found(195, features), 0);
+  EXPECT_EQ(FoundByDescriptor(110, features), 1);
+  EXPECT_EQ(FoundByDescriptor(195, features), 0);
 }
 
 TEST(MatchByDescriptor, LimitsDistanceAndRatio) {
   const FrameFeatures lone = MakeFeatures({{.bits = 50}});
-  EXPECT_EQ(Found(0, lone), 0);
-  EXPECT_EQ(Found(0, lone, {.max_distance = 49}), -1);
+  EXPECT_EQ(FoundByDescriptor(0, lone), 0);
+  EXPECT_EQ(FoundByDescriptor(0, lone, {.max_distance = 49}), -1);
   const FrameFeatures two = MakeFeatures({{.bits = 21}, {.bits = 30}});
-  EXPECT_EQ(Found(0, two), -1);  // 21 is not below 0.7 times 30
-  EXPECT_EQ(Found(1, two), 0);   // 20 is below 0.7 times 29
+  EXPECT_EQ(FoundByDescriptor(0, two), -1);  // 21 is not below 0.7 times 30
+  EXPECT_EQ(FoundByDescriptor(1, two), 0);   // 20 is below 0.7 times 29
   const FrameFeatures twins = MakeFeatures({{.bits = 9}, {.bits = 9}});
-  EXPECT_EQ(Found(9, twins, {.max_ratio = 1.0}), -1);
+  EXPECT_EQ(FoundByDescriptor(9, twins, {.max_ratio = 1.0}), -1);
 }
 
 TEST(MatchByDescriptor, AKeypointIsMatchedToTheMostSimilarQuery) {
@@ -96,7 +90,7 @@ TEST(MatchByDescriptor, RotationsMustAgree) {
 
 TEST(MatchByDescriptor, EmptyInputGivesNoMatches) {
   EXPECT_TRUE(MatchByDescriptor(MakeFeatures({}), {}, MakeFeatures({}), {}).empty());
-  EXPECT_EQ(Found(0, MakeFeatures({})), -1);
+  EXPECT_EQ(FoundByDescriptor(0, MakeFeatures({})), -1);
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ Projection At(float x, float y) {
 }
 
 // The keypoint found for one projection; -1 if there is none.
-int Found(const FrameFeatures& features, const Projection& projection,
-          const ProjectionSearch& search = {}, const std::vector<uint8_t>& taken = {}) {
+int FoundNear(const FrameFeatures& features, const Projection& projection,
+              const ProjectionSearch& search = {}, const std::vector<uint8_t>& taken = {}) {
   const std::vector<Match> matches = MatchByProjection(features, {&projection, 1}, taken, search);
   EXPECT_LE(matches.size(), 1u);
   return matches.empty() ? -1 : static_cast<int>(matches[0].keypoint);
@@ -65,47 +65,47 @@ TEST(MatchByProjection, SearchesOnlyTheGivenLevels) {
   Projection projection = At(100.0f, 100.0f);
   projection.min_level = 2;
   projection.max_level = 3;
-  EXPECT_EQ(Found(features, projection), 1);
+  EXPECT_EQ(FoundNear(features, projection), 1);
   projection.min_level = 5;
   projection.max_level = 7;
-  EXPECT_EQ(Found(features, projection), -1);
+  EXPECT_EQ(FoundNear(features, projection), -1);
 }
 
 TEST(MatchByProjection, TheLimitOfTheDistanceIsInclusive) {
   const FrameFeatures features = MakeFeatures({{.pixel = {100.0f, 100.0f}, .bits = 60}});
-  EXPECT_EQ(Found(features, At(100.0f, 100.0f), {.max_distance = 60}), 0);
-  EXPECT_EQ(Found(features, At(100.0f, 100.0f), {.max_distance = 59}), -1);
+  EXPECT_EQ(FoundNear(features, At(100.0f, 100.0f), {.max_distance = 60}), 0);
+  EXPECT_EQ(FoundNear(features, At(100.0f, 100.0f), {.max_distance = 59}), -1);
 }
 
 TEST(MatchByProjection, RatioComparesOnlyKeypointsOfTheSameLevel) {
   const std::vector<MadeKeypoint> same_level = {{.pixel = {100.0f, 100.0f}, .bits = 40},
                                                 {.pixel = {101.0f, 100.0f}, .bits = 45}};
   const Projection projection = At(100.0f, 100.0f);
-  EXPECT_EQ(Found(MakeFeatures(same_level), projection, {.max_ratio = 0.8}), -1);
-  EXPECT_EQ(Found(MakeFeatures(same_level), projection, {.max_ratio = 0.9}), 0);
-  EXPECT_EQ(Found(MakeFeatures(same_level), projection, {.max_ratio = 1.0}), 0);
+  EXPECT_EQ(FoundNear(MakeFeatures(same_level), projection, {.max_ratio = 0.8}), -1);
+  EXPECT_EQ(FoundNear(MakeFeatures(same_level), projection, {.max_ratio = 0.9}), 0);
+  EXPECT_EQ(FoundNear(MakeFeatures(same_level), projection, {.max_ratio = 1.0}), 0);
 
   std::vector<MadeKeypoint> two_levels = same_level;
   two_levels[1].level = 1;  // the same corner, one level up
-  EXPECT_EQ(Found(MakeFeatures(two_levels), projection, {.max_ratio = 0.8}), 0);
+  EXPECT_EQ(FoundNear(MakeFeatures(two_levels), projection, {.max_ratio = 0.8}), 0);
 }
 
 TEST(MatchByProjection, RatioRejectsTwinsAndAcceptsASingleCandidate) {
   const FrameFeatures twins = MakeFeatures(
       {{.pixel = {100.0f, 100.0f}, .bits = 40}, {.pixel = {101.0f, 100.0f}, .bits = 40}});
-  EXPECT_EQ(Found(twins, At(100.0f, 100.0f), {.max_ratio = 0.9}), -1);
-  EXPECT_EQ(Found(twins, At(100.0f, 100.0f)), 0);  // without the test the lower index wins
+  EXPECT_EQ(FoundNear(twins, At(100.0f, 100.0f), {.max_ratio = 0.9}), -1);
+  EXPECT_EQ(FoundNear(twins, At(100.0f, 100.0f)), 0);  // without the test the lower index wins
   const FrameFeatures lone = MakeFeatures({{.pixel = {100.0f, 100.0f}, .bits = 40}});
-  EXPECT_EQ(Found(lone, At(100.0f, 100.0f), {.max_ratio = 0.1}), 0);
+  EXPECT_EQ(FoundNear(lone, At(100.0f, 100.0f), {.max_ratio = 0.1}), 0);
 }
 
 TEST(MatchByProjection, LeavesOutTakenKeypoints) {
   const FrameFeatures features = MakeFeatures(
       {{.pixel = {100.0f, 100.0f}, .bits = 0}, {.pixel = {101.0f, 100.0f}, .bits = 9}});
-  EXPECT_EQ(Found(features, At(100.0f, 100.0f), {}, {1, 0}), 1);
-  EXPECT_EQ(Found(features, At(100.0f, 100.0f), {}, {1, 1}), -1);
+  EXPECT_EQ(FoundNear(features, At(100.0f, 100.0f), {}, {1, 0}), 1);
+  EXPECT_EQ(FoundNear(features, At(100.0f, 100.0f), {}, {1, 1}), -1);
   // A taken keypoint does not count as the second best either.
-  EXPECT_EQ(Found(features, At(100.0f, 100.0f), {.max_ratio = 0.1}, {1, 0}), 1);
+  EXPECT_EQ(FoundNear(features, At(100.0f, 100.0f), {.max_ratio = 0.1}, {1, 0}), 1);
   const Projection projection = At(100.0f, 100.0f);
   const std::vector<uint8_t> too_short = {0};
   EXPECT_THROW(MatchByProjection(features, {&projection, 1}, too_short, {}), CheckError);
@@ -117,13 +117,13 @@ TEST(MatchByProjection, RightCoordinateIsComparedIfBothAreKnown) {
                     {.pixel = {101.0f, 100.0f}, .bits = 5, .right_u = 80.0f},
                     {.pixel = {102.0f, 100.0f}, .bits = 9}});
   Projection projection = At(100.0f, 100.0f);
-  EXPECT_EQ(Found(features, projection), 0);  // the projection has no right coordinate
+  EXPECT_EQ(FoundNear(features, projection), 0);  // the projection has no right coordinate
   projection.right_u = 88.0f;
-  EXPECT_EQ(Found(features, projection), 1);
+  EXPECT_EQ(FoundNear(features, projection), 1);
   projection.right_u = 69.9f;
-  EXPECT_EQ(Found(features, projection), 0);
+  EXPECT_EQ(FoundNear(features, projection), 0);
   projection.right_u = 20.0f;
-  EXPECT_EQ(Found(features, projection), 2);  // the keypoint without depth cannot disagree
+  EXPECT_EQ(FoundNear(features, projection), 2);  // the keypoint without depth cannot disagree
 }
 
 TEST(MatchByProjection, AKeypointIsMatchedToTheMostSimilarProjection) {
@@ -178,7 +178,7 @@ TEST(MatchByProjection, FindsEveryPointOfTheWorldAtItsProjection) {
 
 TEST(MatchByProjection, EmptyInputGivesNoMatches) {
   EXPECT_TRUE(MatchByProjection(MakeFeatures({}), {}, {}, {}).empty());
-  EXPECT_EQ(Found(MakeFeatures({}), At(100.0f, 100.0f)), -1);
+  EXPECT_EQ(FoundNear(MakeFeatures({}), At(100.0f, 100.0f)), -1);
 }
 
 }  // namespace

@@ -24,8 +24,8 @@ std::vector<VocabularyNodeId> Nodes(const std::vector<int>& numbers) {
 }
 
 // The keypoint that matches a query with `bits` under node 5; -1 if there is none.
-int Found(int bits, const std::vector<MadeKeypoint>& keypoints, const std::vector<int>& nodes,
-          const WordSearch& search = {}) {
+int FoundByWords(int bits, const std::vector<MadeKeypoint>& keypoints,
+                 const std::vector<int>& nodes, const WordSearch& search = {}) {
   const auto matches = MatchByWords(MakeFeatures({{.bits = bits}}), Nodes({5}),
                                     MakeFeatures(keypoints), Nodes(nodes), search);
   return matches.empty() ? -1 : static_cast<int>(matches[0].keypoint);
@@ -33,11 +33,11 @@ int Found(int bits, const std::vector<MadeKeypoint>& keypoints, const std::vecto
 
 TEST(MatchByWords, ComparesKeypointsOfTheSameNodeOnly) {
   const std::vector<MadeKeypoint> keypoints = {{.bits = 100}, {.bits = 110}, {.bits = 160}};
-  EXPECT_EQ(Found(100, keypoints, {5, 5, 5}, {.max_ratio = 1.0}), 0);
-  EXPECT_EQ(Found(100, keypoints, {4, 5, 5}), 1);
-  EXPECT_EQ(Found(100, keypoints, {4, 6, 5}, {.max_distance = 60}), 2);
-  EXPECT_EQ(Found(100, keypoints, {4, 6, 7}), -1);
-  EXPECT_EQ(Found(100, keypoints, {-1, 5, -1}), 1);
+  EXPECT_EQ(FoundByWords(100, keypoints, {5, 5, 5}, {.max_ratio = 1.0}), 0);
+  EXPECT_EQ(FoundByWords(100, keypoints, {4, 5, 5}), 1);
+  EXPECT_EQ(FoundByWords(100, keypoints, {4, 6, 5}, {.max_distance = 60}), 2);
+  EXPECT_EQ(FoundByWords(100, keypoints, {4, 6, 7}), -1);
+  EXPECT_EQ(FoundByWords(100, keypoints, {-1, 5, -1}), 1);
 }
 
 TEST(MatchByWords, KeypointsWithoutANodeAreNotMatched) {
@@ -47,12 +47,12 @@ TEST(MatchByWords, KeypointsWithoutANodeAreNotMatched) {
 
 // The second best distance is that under the same node.
 TEST(MatchByWords, LimitsDistanceAndRatio) {
-  EXPECT_EQ(Found(0, {{.bits = 50}}, {5}), 0);
-  EXPECT_EQ(Found(0, {{.bits = 51}}, {5}), -1);
-  EXPECT_EQ(Found(0, {{.bits = 21}, {.bits = 30}}, {5, 5}), -1);  // not below 0.7 times 30
-  EXPECT_EQ(Found(1, {{.bits = 21}, {.bits = 30}}, {5, 5}), 0);
-  EXPECT_EQ(Found(0, {{.bits = 21}, {.bits = 30}}, {5, 4}), 0);
-  EXPECT_EQ(Found(9, {{.bits = 9}, {.bits = 9}}, {5, 5}, {.max_ratio = 1.0}), 0);
+  EXPECT_EQ(FoundByWords(0, {{.bits = 50}}, {5}), 0);
+  EXPECT_EQ(FoundByWords(0, {{.bits = 51}}, {5}), -1);
+  EXPECT_EQ(FoundByWords(0, {{.bits = 21}, {.bits = 30}}, {5, 5}), -1);  // not below 0.7 times 30
+  EXPECT_EQ(FoundByWords(1, {{.bits = 21}, {.bits = 30}}, {5, 5}), 0);
+  EXPECT_EQ(FoundByWords(0, {{.bits = 21}, {.bits = 30}}, {5, 4}), 0);
+  EXPECT_EQ(FoundByWords(9, {{.bits = 9}, {.bits = 9}}, {5, 5}, {.max_ratio = 1.0}), 0);
 }
 
 TEST(MatchByWords, AKeypointIsMatchedToTheMostSimilarQuery) {
@@ -66,12 +66,13 @@ TEST(MatchByWords, AKeypointIsMatchedToTheMostSimilarQuery) {
 
 TEST(MatchByWords, ExcludedPairsAreNotCompared) {
   const std::vector<MadeKeypoint> keypoints = {{.bits = 10}, {.bits = 20}};
-  EXPECT_EQ(Found(10, keypoints, {5, 5}), 0);
-  EXPECT_EQ(Found(10, keypoints, {5, 5},
-                  {.may_match = [](uint32_t, uint32_t keypoint) { return keypoint == 1; }}),
+  EXPECT_EQ(FoundByWords(10, keypoints, {5, 5}), 0);
+  EXPECT_EQ(FoundByWords(10, keypoints, {5, 5},
+                         {.may_match = [](uint32_t, uint32_t keypoint) { return keypoint == 1; }}),
             1);
-  EXPECT_EQ(Found(10, keypoints, {5, 5}, {.may_match = [](uint32_t, uint32_t) { return false; }}),
-            -1);
+  EXPECT_EQ(
+      FoundByWords(10, keypoints, {5, 5}, {.may_match = [](uint32_t, uint32_t) { return false; }}),
+      -1);
 }
 
 TEST(MatchByWords, RotationsMustAgreeIfTheyAreCompared) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 #include "geometry/epipolar.h"
@@ -15,12 +14,6 @@ namespace hullslam {
 namespace {
 
 const Eigen::Vector2d kFarEpipole(1e6, 1e6);
-
-std::vector<uint32_t> All(const FrameFeatures& features) {
-  std::vector<uint32_t> indices(features.size());
-  std::iota(indices.begin(), indices.end(), 0);
-  return indices;
-}
 
 // Two cameras side by side: the epipolar line of a pixel is its row.
 Eigen::Matrix3d SideBySide() {
@@ -37,32 +30,32 @@ std::vector<Match> MatchAll(const FrameFeatures& a, const FrameFeatures& b,
 
 // The keypoint of b that matches the keypoint of a at (300, 100), whose descriptor is zero; -1 if
 // there is none.
-int Found(const std::vector<MadeKeypoint>& b, const TriangulationSearch& search = {}) {
+int FoundOnLine(const std::vector<MadeKeypoint>& b, const TriangulationSearch& search = {}) {
   const auto matches = MatchAll(MakeFeatures({{.pixel = {300.0f, 100.0f}}}), MakeFeatures(b),
                                 SideBySide(), kFarEpipole, search);
   return matches.empty() ? -1 : static_cast<int>(matches[0].keypoint);
 }
 
 TEST(MatchForTriangulation, TakesTheMostSimilarDescriptorOnTheLine) {
-  EXPECT_EQ(Found({{.pixel = {100.0f, 100.0f}, .bits = 20},
-                   {.pixel = {200.0f, 101.0f}, .bits = 10},
-                   {.pixel = {200.0f, 103.0f}, .bits = 0}}),
+  EXPECT_EQ(FoundOnLine({{.pixel = {100.0f, 100.0f}, .bits = 20},
+                         {.pixel = {200.0f, 101.0f}, .bits = 10},
+                         {.pixel = {200.0f, 103.0f}, .bits = 0}}),
             1);
 }
 
 TEST(MatchForTriangulation, TheLimitOfTheDistanceIsInclusive) {
-  EXPECT_EQ(Found({{.pixel = {100.0f, 100.0f}, .bits = 50}}), 0);
-  EXPECT_EQ(Found({{.pixel = {100.0f, 100.0f}, .bits = 51}}), -1);
+  EXPECT_EQ(FoundOnLine({{.pixel = {100.0f, 100.0f}, .bits = 50}}), 0);
+  EXPECT_EQ(FoundOnLine({{.pixel = {100.0f, 100.0f}, .bits = 51}}), -1);
 }
 
 // sqrt(3.84) is 1.96 standard deviations.
 TEST(MatchForTriangulation, DistanceToTheLineIsInSigmasOfTheLevel) {
-  EXPECT_EQ(Found({{.pixel = {100.0f, 101.9f}}}), 0);
-  EXPECT_EQ(Found({{.pixel = {100.0f, 102.0f}}}), -1);
-  EXPECT_EQ(Found({{.pixel = {100.0f, 98.1f}}}), 0);
-  EXPECT_EQ(Found({{.pixel = {100.0f, 102.0f}, .level = 1}}), 0);
-  EXPECT_EQ(Found({{.pixel = {100.0f, 102.4f}, .level = 1}}), -1);
-  EXPECT_EQ(Found({{.pixel = {100.0f, 103.0f}}}, {.max_epipolar_chi2 = 9.1}), 0);
+  EXPECT_EQ(FoundOnLine({{.pixel = {100.0f, 101.9f}}}), 0);
+  EXPECT_EQ(FoundOnLine({{.pixel = {100.0f, 102.0f}}}), -1);
+  EXPECT_EQ(FoundOnLine({{.pixel = {100.0f, 98.1f}}}), 0);
+  EXPECT_EQ(FoundOnLine({{.pixel = {100.0f, 102.0f}, .level = 1}}), 0);
+  EXPECT_EQ(FoundOnLine({{.pixel = {100.0f, 102.4f}, .level = 1}}), -1);
+  EXPECT_EQ(FoundOnLine({{.pixel = {100.0f, 103.0f}}}, {.max_epipolar_chi2 = 9.1}), 0);
 }
 
 TEST(MatchForTriangulation, WithoutDepthLeavesOutKeypointsNearTheEpipole) {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "hullslam/features/frame_features.h"
@@ -42,6 +43,13 @@ inline FrameFeatures MakeFeatures(const std::vector<MadeKeypoint>& keypoints) {
   }
   features.grid = FeatureGrid(features.keypoints, {0.0f, 0.0f}, {640.0f, 480.0f});
   return features;
+}
+
+// The indices of all keypoints.
+inline std::vector<uint32_t> All(const FrameFeatures& features) {
+  std::vector<uint32_t> indices(features.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  return indices;
 }
 
 }  // namespace hullslam

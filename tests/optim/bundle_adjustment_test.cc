@@ -18,14 +18,13 @@
 #include "map/spanning_tree.h"
 #include "optim/place_share.h"
 #include "optim/robust.h"
+#include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
 #include "support/unknown_points.h"
 
 namespace hullslam {
 namespace {
-
-double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
 std::vector<KeyframeId> Ids(const std::vector<uint32_t>& numbers) {
   std::vector<KeyframeId> ids;

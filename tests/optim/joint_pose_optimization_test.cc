@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "objects/made_objects.h"
+#include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
 namespace {
 
-double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 Eigen::Vector3d Center(const Rigid3& cam_from_world) { return Inverse(cam_from_world).translation; }
 
 // Moves the outline by (dx, dy) px.

@@ -12,13 +12,12 @@
 #include "map/made_map.h"
 #include "objects/made_objects.h"
 #include "optim/bundle_adjustment.h"
+#include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
 namespace {
-
-double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
 // The largest of the distance of the centres and the differences of the half extents along many
 // directions, relative to the size. It does not depend on the order of the axes.

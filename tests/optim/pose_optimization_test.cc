@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera/depth_error.h"
+#include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
 
@@ -17,8 +18,6 @@ namespace hullslam {
 namespace {
 
 const PinholeCamera kCamera = SyntheticSensor().camera;
-
-double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
 class PoseOptimization : public ::testing::Test {
  protected:

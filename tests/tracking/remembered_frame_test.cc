@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "objects/made_objects.h"
+#include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
 namespace {
-
-double Distance(const Rigid3& a, const Rigid3& b) { return (a.ToMatrix() - b.ToMatrix()).norm(); }
 
 // A map of two keyframes of the synthetic world, and frame 5 between them, tracked relative to the
 // first keyframe.
