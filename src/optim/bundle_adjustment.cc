@@ -224,6 +224,14 @@ class Bundle {
     }
     solver.linear_solver_type = ceres::SPARSE_SCHUR;
     solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+    // After each step of all parameters, the objects alone follow the poses. Outlines are far less
+    // linear than points. Without this, they keep the steps so short that slow changes of the whole
+    // map, such as the correction of its scale after a loop, do not come to their end.
+    if (!window_.objects.empty()) {
+      solver.use_inner_iterations = true;
+      solver.inner_iteration_tolerance = options_.function_tolerance;
+      solver.inner_iteration_ordering = objects_.OrderAlone();
+    }
     return Run(problem, solver, 2, iterations, supervision, result);
   }
 

@@ -130,6 +130,15 @@ void ObjectBundle::AddParameters(ceres::Problem& problem, PoseManifold& manifold
   }
 }
 
+std::shared_ptr<ceres::ParameterBlockOrdering> ObjectBundle::OrderAlone() {
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  for (Object& object : objects_) {
+    ordering->AddElementToGroup(object.pose.data(), 0);
+    ordering->AddElementToGroup(object.log_axes.data(), 1);
+  }
+  return ordering;
+}
+
 bool ObjectBundle::HasUndefinedView() const {
   return std::any_of(objects_.begin(), objects_.end(),
                      [](const Object& object) { return object.fixed_part->HasUndefined(); }) ||

@@ -39,6 +39,8 @@ class ObjectBundle {
   // group 2.
   void AddParameters(ceres::Problem& problem, PoseManifold& manifold, int axes_group,
                      ceres::ParameterBlockOrdering& ordering);
+  // The order of a step in which only the objects move: first their poses, then their half axes.
+  std::shared_ptr<ceres::ParameterBlockOrdering> OrderAlone();
 
   // A quadric that reaches the plane of a camera has no projected ellipse there, and the solver
   // cannot go on: the whole map would be held by one object that is beside one camera. So such a

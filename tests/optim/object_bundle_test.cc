@@ -221,6 +221,34 @@ TEST_F(ObjectBundle, OfTheWholeMapDoesNotHoldObjectsBack) {
   EXPECT_GT(MeanShapeError(Adjust(Window())), 5.0 * of_whole_map);
 }
 
+// Two iterations per round are enough for points. Objects must not slow them down, although the
+// scale is wrong by a fifth and the objects do not fit it.
+TEST_F(ObjectBundle, OfTheWholeMapFollowsAChangeOfItsScale) {
+  BundleOptions options = kPrecise.ForWholeMap();
+  options.robust_iterations = options.final_iterations = 2;
+  options.max_eliminated = 0;  // as in a large map
+  constexpr int kTrials = 10;
+  double points_alone = 0.0;
+  double with_objects = 0.0;
+  size_t failed = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Make({.points = 300, .pixel_noise = 0.3});
+    for (uint32_t i = 2; i < made_.views.size(); ++i) {
+      Rigid3 pose = made_.map.keyframes().At(KeyframeId(i)).cam_from_world;
+      pose.translation *= 0.8;
+      made_.map.SetPose(KeyframeId(i), pose);
+    }
+    PerturbObjects(0.4);
+    points_alone += MeanPoseError(Adjust(GlobalWindow(made_.map, IslandId(0)), options));
+    const BundleResult all =
+        Adjust(GlobalWindow(made_.map, IslandId(0), WindowObjects::kMapped), options);
+    with_objects += MeanPoseError(all);
+    failed += all.failed_objects.size();
+  }
+  EXPECT_LT(with_objects, 1.5 * points_alone);
+  EXPECT_LE(failed, 3u) << "of 30";
+}
+
 TEST_F(ObjectBundle, StaysAtTheTruth) {
   const BundleResult result = Adjust(Window());
   ASSERT_TRUE(result.is_usable);
