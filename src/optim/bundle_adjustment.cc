@@ -324,32 +324,6 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
 
 }  // namespace
 
-BundleOptions BundleOptions::ForWholeMap() const {
-  BundleOptions options = *this;
-  options.robust_iterations = 20;
-  options.final_iterations = 40;
-  options.function_tolerance = 1e-6;
-  // Parts of the map may move by much more than the size of an object. Objects go with them; a
-  // prior on where they are would hold the parts back.
-  constexpr double kLoose = 20.0;
-  ObjectConstraintOptions& constraint = options.objects.constraint;
-  for (QuadricPriorSigmas* const prior : {&constraint.prior, &constraint.prior_without_depth}) {
-    prior->center *= kLoose;
-    prior->rotation *= kLoose;
-  }
-  return options;
-}
-
-BundleOptions BundleOptions::WithoutDepth() const {
-  BundleOptions options = *this;
-  options.robust_iterations = std::max(robust_iterations, 10);
-  options.final_iterations = std::max(final_iterations, 20);
-  options.function_tolerance = std::min(function_tolerance, 1e-6);
-  options.follow.steps = std::max(follow.steps, 10);
-  options.follow.worthwhile = std::min(follow.worthwhile, 1e-6);
-  return options;
-}
-
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& given, const Cancellation* cancellation,
                           const ProgressCallback& on_progress) {

@@ -11,7 +11,7 @@
 #include "hullslam/map/map.h"
 #include "hullslam/objects/object_options.h"
 #include "hullslam/util/cancellation.h"
-#include "optim/bundle_points.h"
+#include "optim/bundle_options.h"
 
 namespace hullslam {
 
@@ -39,30 +39,6 @@ WindowObjects ObjectsToAdjust(const ObjectOptions& options);
 BundleWindow GlobalWindow(const Map& map, IslandId island,
                           WindowObjects objects = WindowObjects::kNone);
 
-// How the problem is solved.
-struct BundleOptions {
-  // With Huber's loss; then outliers are left out. Without depth, Cauchy's loss in both rounds.
-  int robust_iterations = 5;
-  int final_iterations = 10;  // without loss, inliers only
-  double function_tolerance = 1e-4;
-  int threads = 1;  // with more than one, the last bits differ from run to run
-  // With up to this number of moving keyframes, own code eliminates the landmarks; with more, Ceres
-  // does. Nearly all of 140 poses share landmarks, so the system that is left without the landmarks
-  // is nearly full, and a dense solver is faster (docs/performance.md).
-  size_t max_eliminated = 140;
-  internal::FollowOptions follow = {};  // of points that own code eliminates
-  ObjectBundleOptions objects = {};
-
-  // These options for a whole map. A step that changes the cost by less than the tolerance is not
-  // taken. In a global adjustment the terms that correct drift are a small share of the cost, so
-  // the tolerance must be small.
-  BundleOptions ForWholeMap() const;
-  // These options without depth, at least as precise as those of a whole map. Where the camera
-  // hardly moves, depths and motions can stand for each other, and the cost changes little on the
-  // way to its minimum.
-  BundleOptions WithoutDepth() const;
-};
-
 struct BundleResult {
   std::vector<std::pair<KeyframeId, Rigid3>> poses;
   std::vector<std::pair<LandmarkId, Eigen::Vector3d>> positions;
@@ -82,14 +58,15 @@ struct BundleResult {
 // the errors show them to be, keypoints at the same place share a weight (ShareOfPlace), and
 // Cauchy's loss is used in both rounds. Ceres solves for poses and objects. In a small window own
 // code eliminates the landmarks (EliminatedPoints); in a large one, Ceres does so
-// (BundleOptions::max_eliminated). Each object of the window adds the constraints of its detections
-// (MakeObjectConstraint) and a prior (MakeObjectPrior) at the shape that it has at the beginning. A
-// view in which the object reaches the plane of the camera is left out. If the solver fails, the
-// adjustment is repeated without objects, and all objects are reported as failed. With a monocular
-// sensor and a single fixed keyframe the result has the scale of the map (KeepScale). If
-// `cancellation` (may be null) is requested, the adjustment ends early and returns what it has. If
-// that happens in the first round, the only outliers are observations of points that are not in
-// front of the camera. `on_progress` is called after each iteration.
+// (BundleOptions::max_eliminated), and after each step the objects alone follow the poses. Each
+// object of the window adds the constraints of its detections (MakeObjectConstraint) and a prior
+// (MakeObjectPrior) at the shape that it has at the beginning. A view in which the object reaches
+// the plane of the camera is left out. If the solver fails, the adjustment is repeated without
+// objects, and all objects are reported as failed. With a monocular sensor and a single fixed
+// keyframe the result has the scale of the map (KeepScale). If `cancellation` (may be null) is
+// requested, the adjustment ends early and returns what it has. If that happens in the first round,
+// the only outliers are observations of points that are not in front of the camera. `on_progress`
+// is called after each iteration.
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& options, const Cancellation* cancellation,
                           const ProgressCallback& on_progress = {});

@@ -430,25 +430,6 @@ TEST(ObjectsToAdjust, AreTheMappedOnesIfTheOptionsSaySo) {
   EXPECT_EQ(ObjectsToAdjust(options), WindowObjects::kNone);
 }
 
-TEST(BundleOptions, WithoutDepthTheyAreNoLessPrecise) {
-  const BundleOptions local = BundleOptions().WithoutDepth();
-  EXPECT_GT(local.robust_iterations, BundleOptions().robust_iterations);
-  EXPECT_GT(local.final_iterations, BundleOptions().final_iterations);
-  EXPECT_LT(local.function_tolerance, BundleOptions().function_tolerance);
-  EXPECT_GT(local.follow.steps, BundleOptions().follow.steps);
-  EXPECT_LT(local.follow.worthwhile, BundleOptions().follow.worthwhile);
-  const BundleOptions precise = BundleOptions{.robust_iterations = 50,
-                                              .final_iterations = 60,
-                                              .function_tolerance = 1e-14,
-                                              .follow = {.steps = 20, .worthwhile = 1e-9}}
-                                    .WithoutDepth();
-  EXPECT_EQ(precise.robust_iterations, 50);
-  EXPECT_EQ(precise.final_iterations, 60);
-  EXPECT_EQ(precise.function_tolerance, 1e-14);
-  EXPECT_EQ(precise.follow.steps, 20);
-  EXPECT_EQ(precise.follow.worthwhile, 1e-9);
-}
-
 TEST_F(BundleAdjustment, APointBehindACameraIsAnOutlierThere) {
   const LandmarkId id = Window().landmarks[5];
   const Landmark& landmark = made_.map.landmarks().At(id);

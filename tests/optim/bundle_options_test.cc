@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "optim/bundle_options.h"
+
+#include <gtest/gtest.h>
+
+namespace hullslam {
+namespace {
+
+TEST(BundleOptions, WithoutDepthTheyAreNoLessPrecise) {
+  const BundleOptions local = BundleOptions().WithoutDepth();
+  EXPECT_GT(local.robust_iterations, BundleOptions().robust_iterations);
+  EXPECT_GT(local.final_iterations, BundleOptions().final_iterations);
+  EXPECT_LT(local.function_tolerance, BundleOptions().function_tolerance);
+  EXPECT_GT(local.follow.steps, BundleOptions().follow.steps);
+  EXPECT_LT(local.follow.worthwhile, BundleOptions().follow.worthwhile);
+  const BundleOptions precise = BundleOptions{.robust_iterations = 50,
+                                              .final_iterations = 60,
+                                              .function_tolerance = 1e-14,
+                                              .follow = {.steps = 20, .worthwhile = 1e-9}}
+                                    .WithoutDepth();
+  EXPECT_EQ(precise.robust_iterations, 50);
+  EXPECT_EQ(precise.final_iterations, 60);
+  EXPECT_EQ(precise.function_tolerance, 1e-14);
+  EXPECT_EQ(precise.follow.steps, 20);
+  EXPECT_EQ(precise.follow.worthwhile, 1e-9);
+}
+
+}  // namespace
+}  // namespace hullslam
