@@ -5,12 +5,14 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 #include <optional>
 #include <utility>
 
+#include "estimators/epipolar_refinement.h"
 #include "geometry/triangulation.h"
 #include "util/median.h"
 
@@ -112,7 +114,8 @@ struct Hypothesis {
   Rigid3 b_from_a;
   std::vector<TwoViews::Point> points;  // with parallax
   std::vector<double> parallaxes;       // radians; of the points and of pairs without parallax
-  size_t agreeing = 0;                  // points, and pairs without parallax that agree
+  std::vector<size_t> agreeing;         // points and pairs without parallax that agree
+  double cost = 0.0;  // of a refined motion; a pair that does not agree costs kMaxPairCost
 };
 
 double SquaredError(const PinholeCamera& camera, const Eigen::Vector3d& point,
@@ -122,7 +125,7 @@ double SquaredError(const PinholeCamera& camera, const Eigen::Vector3d& point,
 
 Hypothesis Explain(const PinholeCamera& camera, std::span<const PixelPair> pairs,
                    const Rigid3& b_from_a) {
-  Hypothesis hypothesis{.b_from_a = b_from_a, .points = {}, .parallaxes = {}};
+  Hypothesis hypothesis{.b_from_a = b_from_a, .points = {}, .parallaxes = {}, .agreeing = {}};
   for (size_t i = 0; i < pairs.size(); ++i) {
     const PixelPair& pair = pairs[i];
     const Eigen::Vector3d ray_a = camera.Unproject(pair.a, 1.0);
@@ -133,7 +136,7 @@ Hypothesis Explain(const PinholeCamera& camera, std::span<const PixelPair> pairs
       // At infinity: it agrees if the rotation alone explains it.
       if (turned.z() > 0.0 &&
           SquaredError(camera, turned, pair.b, std::hypot(pair.sigma_a, pair.sigma_b)) < kChi2) {
-        ++hypothesis.agreeing;
+        hypothesis.agreeing.push_back(i);
       }
       hypothesis.parallaxes.push_back(parallax);
       continue;
@@ -148,7 +151,7 @@ Hypothesis Explain(const PinholeCamera& camera, std::span<const PixelPair> pairs
         SquaredError(camera, in_b, pair.b, pair.sigma_b) < kChi2) {
       hypothesis.points.push_back({i, *point});
       hypothesis.parallaxes.push_back(parallax);
-      ++hypothesis.agreeing;
+      hypothesis.agreeing.push_back(i);
     }
   }
   return hypothesis;
@@ -225,22 +228,73 @@ bool AreDifferent(const Rigid3& one, const Rigid3& other) {
          std::acos(std::clamp(one.translation.dot(other.translation), -1.0, 1.0)) > kDirection;
 }
 
+// How large the errors of a motion are compared with the sigmas of the pairs.
+double MeasureNoise(const PinholeCamera& camera, std::span<const PixelPair> pairs,
+                    const Rigid3& b_from_a) {
+  constexpr double kMedianOfChi2 = 0.455;  // with one degree of freedom
+  constexpr double kLeastNoise = 0.1;
+  std::vector<double> errors;
+  for (const PixelPair& pair : pairs) {
+    errors.push_back(SampsonError(camera, b_from_a, pair));
+  }
+  return std::max(kLeastNoise, std::sqrt(Median(std::move(errors)) / kMedianOfChi2));
+}
+
+// Refines hypotheses, with the noise that the one with the smallest errors shows.
+std::vector<Hypothesis> Refine(const PinholeCamera& camera, std::span<const PixelPair> pairs,
+                               std::span<const Hypothesis> hypotheses) {
+  std::vector<Rigid3> motions;
+  double noise = std::numeric_limits<double>::infinity();
+  for (const Hypothesis& hypothesis : hypotheses) {
+    motions.push_back(RefineMotion(camera, pairs, hypothesis.b_from_a, 1.0));
+    noise = std::min(noise, MeasureNoise(camera, pairs, motions.back()));
+  }
+  std::vector<Hypothesis> refined;
+  for (const Rigid3& motion : motions) {
+    Hypothesis& result =
+        refined.emplace_back(Explain(camera, pairs, RefineMotion(camera, pairs, motion, noise)));
+    result.cost = kMaxPairCost * static_cast<double>(pairs.size());
+    for (const size_t agreeing : result.agreeing) {
+      result.cost -= kMaxPairCost - PairCost(camera, result.b_from_a, pairs[agreeing], noise);
+    }
+  }
+  return refined;
+}
+
+// In degrees; 0 if no pair agrees with the motion.
+double MedianParallax(const Hypothesis& motion) {
+  if (motion.parallaxes.empty()) {
+    return 0.0;
+  }
+  return Median(std::vector<double>(motion.parallaxes)) * 180.0 / std::numbers::pi;
+}
+
+bool HasTooLittleParallax(const PinholeCamera& camera, std::span<const PixelPair> pairs,
+                          const Hypothesis& motion, const TwoViewOptions& options) {
+  return MedianParallax(motion) < options.min_parallax ||
+         static_cast<double>(CountTurned(camera, pairs, motion)) >
+             options.max_turned_share * static_cast<double>(motion.agreeing.size());
+}
+
 // Why the best hypothesis is not good enough.
-TwoViewFailure Judge(std::span<const Hypothesis> hypotheses, const Hypothesis& best,
-                     double parallax, const TwoViewOptions& options) {
-  if (parallax < options.min_parallax) {
+TwoViewFailure Judge(const PinholeCamera& camera, std::span<const PixelPair> pairs,
+                     std::span<const Hypothesis> hypotheses, const Hypothesis& best,
+                     const TwoViewOptions& options) {
+  if (HasTooLittleParallax(camera, pairs, best, options)) {
     return TwoViewFailure::kTooLittleParallax;
   }
+  // The distances of a pair from two epipolar lines are nearly independent where these cross, so
+  // the costs of two equally good motions differ by the difference of two chi-square distributions.
+  const double deviation = std::sqrt(4.0 * static_cast<double>(best.agreeing.size()));
   for (const Hypothesis& other : hypotheses) {
     if (AreDifferent(other.b_from_a, best.b_from_a) &&
-        static_cast<double>(other.points.size()) >
-            options.max_rival_share * static_cast<double>(best.points.size())) {
+        other.cost < best.cost + options.min_rival_deviations * deviation) {
       return TwoViewFailure::kAmbiguous;
     }
   }
   const bool has_few = best.points.size() < options.min_points ||
                        static_cast<double>(best.points.size()) <
-                           options.min_share * static_cast<double>(best.agreeing);
+                           options.min_share * static_cast<double>(best.agreeing.size());
   return has_few ? TwoViewFailure::kTooFewPoints : TwoViewFailure::kNone;
 }
 
@@ -278,21 +332,33 @@ TwoViews EstimateTwoViews(const PinholeCamera& camera, std::span<const PixelPair
   for (const Rigid3& motion : motions) {
     hypotheses.push_back(Explain(camera, pairs, motion));
   }
-  const auto best = std::max_element(
-      hypotheses.begin(), hypotheses.end(),
-      [](const Hypothesis& a, const Hypothesis& b) { return a.agreeing < b.agreeing; });
-  if (best == hypotheses.end() || best->agreeing < options.min_points) {
+  const auto most = std::max_element(hypotheses.begin(), hypotheses.end(),
+                                     [](const Hypothesis& a, const Hypothesis& b) {
+                                       return a.agreeing.size() < b.agreeing.size();
+                                     });
+  if (most == hypotheses.end() || most->agreeing.size() < options.min_points) {
     result.failure = TwoViewFailure::kTooFewPoints;
     return result;
   }
-  result.parallax = Median(best->parallaxes) * 180.0 / std::numbers::pi;
-  const bool only_turned = static_cast<double>(CountTurned(camera, pairs, *best)) >
-                           options.max_turned_share * static_cast<double>(best->agreeing);
-  result.failure = only_turned ? TwoViewFailure::kTooLittleParallax
-                               : Judge(hypotheses, *best, result.parallax, options);
-  result.b_from_a = best->b_from_a;
-  result.points = best->points;
-  return result;
+  const auto conclude = [&](const Hypothesis& motion, TwoViewFailure failure) {
+    result.failure = failure;
+    result.b_from_a = motion.b_from_a;
+    result.points = motion.points;
+    result.parallax = MedianParallax(motion);
+    return result;
+  };
+  if (HasTooLittleParallax(camera, pairs, *most, options)) {
+    return conclude(*most, TwoViewFailure::kTooLittleParallax);
+  }
+  const double fewest = options.min_rival_share * static_cast<double>(most->agreeing.size());
+  std::erase_if(hypotheses, [fewest](const Hypothesis& hypothesis) {
+    return static_cast<double>(hypothesis.agreeing.size()) < fewest;
+  });
+  const std::vector<Hypothesis> refined = Refine(camera, pairs, hypotheses);
+  const auto best =
+      std::min_element(refined.begin(), refined.end(),
+                       [](const Hypothesis& a, const Hypothesis& b) { return a.cost < b.cost; });
+  return conclude(*best, Judge(camera, pairs, refined, *best, options));
 }
 
 }  // namespace hullslam

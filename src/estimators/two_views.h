@@ -28,7 +28,11 @@ struct TwoViewOptions {
   double min_parallax = 1.2;  // degrees between the two rays to a point, in the median
   // Of the pairs that agree with the best motion, the share that a rotation alone may explain.
   double max_turned_share = 0.9;
-  double max_rival_share = 0.75;  // points of the second best motion over those of the best one
+  // A motion competes if it agrees with this share of the pairs with which any other agrees. The
+  // costs of all that compete must be larger than that of the best one by more than chance
+  // explains: by this number of standard deviations.
+  double min_rival_share = 0.75;
+  double min_rival_deviations = 3.0;
 };
 
 enum class TwoViewFailure {
@@ -59,10 +63,13 @@ struct TwoViews {
 
 // The motion of a camera between two images, from pairs of which many may be wrong. Essential
 // matrix and homography are both estimated (OpenCV's USAC), and all motions that they can stand for
-// compete: a pair counts for a motion if its point lies in front of both cameras and reprojects
-// within 95 % of its noise. A general scene is explained by the essential matrix, a plane by the
-// homography. If the best motion and a different one explain about as many pairs, or if the rays
-// are nearly parallel, there is no result. The same input and seed give the same bits.
+// compete. A general scene is explained by the essential matrix, a plane by the homography. A pair
+// agrees with a motion if its point lies in front of both cameras and reprojects within 95 % of its
+// noise. The noise of keypoints is cautious, so before a plane even a wrong motion may agree with
+// all pairs. Therefore those that agree with many are refined, and the one with the least cost for
+// the noise that is measured is the result (RefineMotion). If a different one costs about as
+// little, or if the rays are nearly parallel, there is no result. The same input and seed give the
+// same bits.
 TwoViews EstimateTwoViews(const PinholeCamera& camera, std::span<const PixelPair> pairs,
                           const TwoViewOptions& options);
 

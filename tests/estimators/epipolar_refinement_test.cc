@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "estimators/epipolar_refinement.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+namespace hullslam {
+namespace {
+
+// With pixels that are not square.
+PinholeCamera UnequalCamera() {
+  PinholeCamera camera;
+  camera.fx = 500.0;
+  camera.fy = 540.0;
+  camera.cx = 320.0;
+  camera.cy = 240.0;
+  return camera;
+}
+
+Rigid3 TrueMotion() {
+  return {ExpSo3({0.02, -0.05, 0.03}), Eigen::Vector3d(-0.3, 0.1, 0.05).normalized()};
+}
+
+struct PixelNoise {
+  double a = 0.0;  // px
+  double b = 0.0;
+  double outliers = 0.0;  // share of the pairs
+};
+
+std::vector<PixelPair> SeePairs(uint64_t seed, const PixelNoise& noise, const PixelPair& sigmas) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  std::vector<PixelPair> pairs;
+  for (int i = 0; i < 400; ++i) {
+    const Eigen::Vector2d a(640.0 * share(random), 480.0 * share(random));
+    const Eigen::Vector3d point = UnequalCamera().Unproject(a, 4.0 + 8.0 * share(random));
+    const Eigen::Vector2d b = UnequalCamera().Project(TrueMotion() * point);
+    const bool is_wrong = share(random) < noise.outliers;
+    const Eigen::Vector2d wrong(640.0 * share(random), 480.0 * share(random));
+    const Eigen::Vector2d error_a = noise.a * Eigen::Vector2d(normal(random), normal(random));
+    const Eigen::Vector2d error_b = noise.b * Eigen::Vector2d(normal(random), normal(random));
+    PixelPair pair = sigmas;
+    pair.a = a + error_a;
+    pair.b = is_wrong ? wrong : Eigen::Vector2d(b + error_b);
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+double SumOfCosts(const std::vector<PixelPair>& pairs, const Rigid3& motion, double noise) {
+  double cost = 0.0;
+  for (const PixelPair& pair : pairs) {
+    cost += PairCost(UnequalCamera(), motion, pair, noise);
+  }
+  return cost;
+}
+
+TEST(SampsonError, IsZeroForExactPairs) {
+  for (const PixelPair& pair : SeePairs(1, {}, {})) {
+    EXPECT_LT(SampsonError(UnequalCamera(), TrueMotion(), pair), 1e-12);
+  }
+}
+
+TEST(SampsonError, IsOneInTheMeanIfTheSigmasAreRight) {
+  for (const PixelNoise& noise :
+       {PixelNoise{0.5, 0.5}, PixelNoise{1.0, 0.2}, PixelNoise{0.1, 0.8}}) {
+    double sum = 0.0;
+    for (const PixelPair& pair :
+         SeePairs(2, noise, {.a = {}, .b = {}, .sigma_a = noise.a, .sigma_b = noise.b})) {
+      sum += SampsonError(UnequalCamera(), TrueMotion(), pair);
+    }
+    EXPECT_NEAR(sum / 400.0, 1.0, 0.2) << noise.a;
+  }
+}
+
+TEST(SampsonError, DoesNotDependOnTheUnitOfLength) {
+  const PixelPair pair = SeePairs(3, {1.0, 1.0}, {}).front();
+  Rigid3 larger = TrueMotion();
+  larger.translation *= 7.0;
+  EXPECT_NEAR(SampsonError(UnequalCamera(), larger, pair),
+              SampsonError(UnequalCamera(), TrueMotion(), pair), 1e-9);
+}
+
+TEST(PairCost, GrowsLikeTheErrorAndIsBounded) {
+  PixelPair pair = SeePairs(4, {}, {}).front();
+  double last = 0.0;
+  for (const double shift : {0.1, 1.0, 5.0, 50.0, 200.0}) {
+    PixelPair moved = pair;
+    moved.b.y() += shift;
+    const double cost = PairCost(UnequalCamera(), TrueMotion(), moved, 0.5);
+    EXPECT_GT(cost, last);
+    EXPECT_LT(cost, kMaxPairCost);
+    last = cost;
+  }
+  pair.b.y() += 0.05;
+  const double error = SampsonError(UnequalCamera(), TrueMotion(), pair);
+  EXPECT_NEAR(PairCost(UnequalCamera(), TrueMotion(), pair, 0.5), 4.0 * error, 0.02 * error);
+}
+
+TEST(RefineMotion, FindsTheTruthFromNearby) {
+  const std::vector<PixelPair> pairs = SeePairs(5, {}, {});
+  const Rigid3 start = {ExpSo3({0.01, 0.01, -0.01}) * TrueMotion().rotation,
+                        TrueMotion().translation + Eigen::Vector3d(0.1, 0.1, -0.1)};
+  const Rigid3 found = RefineMotion(UnequalCamera(), pairs, start, 1.0);
+  EXPECT_LT(AngularDistance(found.rotation, TrueMotion().rotation), 1e-6);
+  EXPECT_LT((found.translation - TrueMotion().translation).norm(), 1e-5);
+}
+
+TEST(RefineMotion, IsNotMovedByOutliers) {
+  for (uint64_t seed = 0; seed < 10; ++seed) {
+    const std::vector<PixelPair> pairs = SeePairs(seed, {0.3, 0.3, 0.2}, {});
+    const Rigid3 start = {ExpSo3({0.005, -0.005, 0.005}) * TrueMotion().rotation,
+                          (TrueMotion().translation + Eigen::Vector3d(0.0, 0.1, 0.05))};
+    const Rigid3 found = RefineMotion(UnequalCamera(), pairs, start, 0.5);
+    EXPECT_LT(AngularDistance(found.rotation, TrueMotion().rotation), 0.003) << seed;
+    EXPECT_LT(std::acos(std::min(1.0, found.translation.dot(TrueMotion().translation))), 0.06)
+        << seed;
+    EXPECT_NEAR(found.translation.norm(), 1.0, 1e-12);
+  }
+}
+
+// The sum of squares at the result is not above that of motions nearby.
+TEST(RefineMotion, EndsAtAMinimum) {
+  const std::vector<PixelPair> pairs = SeePairs(6, {0.4, 0.4, 0.1}, {});
+  const Rigid3 found = RefineMotion(UnequalCamera(), pairs, TrueMotion(), 0.4);
+  const double least = SumOfCosts(pairs, found, 0.4);
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 50; ++i) {
+    const auto draw = [&] {
+      return Eigen::Vector3d(normal(random), normal(random), normal(random));
+    };
+    const Rigid3 other = {ExpSo3(1e-3 * draw()) * found.rotation,
+                          (found.translation + 1e-2 * draw()).normalized()};
+    EXPECT_GT(SumOfCosts(pairs, other, 0.4), least - 1e-3 * least) << i;
+  }
+}
+
+}  // namespace
+}  // namespace hullslam
