@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 
+#include "costs/defined_cost.h"
 #include "costs/pose_manifold.h"
 #include "costs/reprojection.h"
 #include "costs/reprojection_rgbd.h"
@@ -39,10 +40,13 @@ constexpr size_t kMinViews = 100;      // for a median
 
 std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
                                               const PointMeasurement& measurement) {
+  std::unique_ptr<ceres::CostFunction> cost;
   if (measurement.has_depth()) {
-    return std::make_unique<RgbdReprojectionCost>(camera, measurement);
+    cost = std::make_unique<RgbdReprojectionCost>(camera, measurement);
+  } else {
+    cost = std::make_unique<ReprojectionCost>(camera, measurement);
   }
-  return std::make_unique<ReprojectionCost>(camera, measurement);
+  return std::make_unique<DefinedCost>(std::move(cost));
 }
 
 // The parameter blocks and what connects them.

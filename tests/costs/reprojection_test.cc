@@ -7,12 +7,11 @@
 #include <optional>
 
 #include "costs/cost_laws.h"
+#include "costs/reprojection_camera.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {
 namespace {
-
-constexpr PinholeCamera kCamera{.fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
 
 PointMeasurement Measurement(const Eigen::Vector2d& pixel, double sigma) {
   return PointMeasurement::Create(pixel, sigma, std::nullopt, {.pixel_sigma = 1.0});
@@ -22,14 +21,14 @@ TEST(ReprojectionCost, ByHand) {
   // The world is turned by a quarter turn around z and moved: (0.5, 0, 1) is (1, -0.5, 2) in the
   // camera frame, which is pixel (500 / 2 + 320, -400 / 4 + 240).
   const Rigid3 cam_from_world(ExpSo3({0.0, 0.0, std::numbers::pi / 2.0}), {1.0, -1.0, 1.0});
-  const ReprojectionCost cost(kCamera, Measurement({567.0, 144.0}, 2.0));
+  const ReprojectionCost cost(kReprojectionCamera, Measurement({567.0, 144.0}, 2.0));
   const Eigen::Vector2d residual = ResidualOf<2>(cost, cam_from_world, {0.5, 0.0, 1.0});
   EXPECT_NEAR(residual.x(), 1.5, 1e-12);
   EXPECT_NEAR(residual.y(), -2.0, 1e-12);
 }
 
 TEST(ReprojectionCost, DerivativeByThePointByHand) {
-  const ReprojectionCost cost(kCamera, Measurement({0.0, 0.0}, 0.5));
+  const ReprojectionCost cost(kReprojectionCamera, Measurement({0.0, 0.0}, 0.5));
   const PoseBlock pose = ToBlock(Rigid3());
   const Eigen::Vector3d point(1.0, -0.5, 2.0);
   const double* parameters[] = {pose.data(), point.data()};
@@ -47,7 +46,7 @@ TEST(ReprojectionCost, GradientIsTrue) {
   for (int i = 0; i < 30; ++i) {
     const Rigid3 cam_from_world = random.Pose(1.0, 1.0);
     const Eigen::Vector3d in_cam = random.Vector(1.0) + Eigen::Vector3d(0.0, 0.0, 3.0);
-    const ReprojectionCost cost(kCamera,
+    const ReprojectionCost cost(kReprojectionCamera,
                                 Measurement({random.Number(0, 640), random.Number(0, 480)}, 1.44));
     ExpectTrueGradient<2>(cost, cam_from_world, Inverse(cam_from_world) * in_cam);
   }
@@ -55,7 +54,7 @@ TEST(ReprojectionCost, GradientIsTrue) {
 
 TEST(ReprojectionCost, DoesNotDependOnTheWorldFrame) {
   RandomGeometry random(2);
-  const ReprojectionCost cost(kCamera, Measurement({100.0, 200.0}, 1.2));
+  const ReprojectionCost cost(kReprojectionCamera, Measurement({100.0, 200.0}, 1.2));
   for (int i = 0; i < 30; ++i) {
     const Rigid3 cam_from_world = random.Pose(1.0, 1.0);
     const Eigen::Vector3d in_cam = random.Vector(1.0) + Eigen::Vector3d(0.0, 0.0, 3.0);
@@ -65,7 +64,7 @@ TEST(ReprojectionCost, DoesNotDependOnTheWorldFrame) {
 }
 
 TEST(ReprojectionCost, IsNotDefinedBehindTheCamera) {
-  const ReprojectionCost cost(kCamera, Measurement({320.0, 240.0}, 1.0));
+  const ReprojectionCost cost(kReprojectionCamera, Measurement({320.0, 240.0}, 1.0));
   const PoseBlock pose = ToBlock(Rigid3());
   Eigen::Vector2d residual;
   for (const double z : {-2.0, -1e-9, 0.0, 1e-6}) {

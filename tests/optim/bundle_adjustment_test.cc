@@ -443,6 +443,40 @@ TEST_F(BundleAdjustment, APointBehindACameraIsAnOutlierThere) {
   }
 }
 
+// A camera has to go past a point that it alone sees. There the cost of the point is not defined,
+// which must not hold the camera. This is how large windows are solved.
+TEST_F(BundleAdjustment, APointThatACameraGoesPastDoesNotHoldIt) {
+  const KeyframeId id(5);
+  const Rigid3 truth = made_.map.CamFromWorld(id);
+  const Rigid3 behind = Rigid3(Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.05}) * truth;
+  made_.map.SetPose(id, behind);
+  BundleWindow window = Window();
+  window.fixed = Ids({0, 1, 2});
+  window.moving = {id};
+  const Keyframe& keyframe = made_.map.keyframes().At(id);
+  Sensor sensor = world_.sensor();
+  sensor.kind = SensorKind::kMonocular;
+  uint32_t keypoint = 0;  // of a landmark without depth that all keyframes see
+  while (MeasurePoint(sensor, keyframe.frame->features, keypoint, sensor.depth_error).has_depth() ||
+         !keyframe.landmarks[keypoint].IsValid() ||
+         made_.map.landmarks().At(keyframe.landmarks[keypoint]).observations.size() <
+             made_.views.size()) {
+    ASSERT_LT(++keypoint, keyframe.landmarks.size());
+  }
+  const LandmarkId landmark = keyframe.landmarks[keypoint];
+  for (const KeyframeId other : window.fixed) {
+    made_.map.RemoveObservation(landmark, other);
+  }
+  const Eigen::Vector2d pixel =
+      keyframe.frame->features.keypoints[keypoint].undistorted.cast<double>();
+  made_.map.SetPosition(landmark, Inverse(behind) * sensor.camera.Unproject(pixel, 0.002));
+  BundleOptions options = kPrecise;
+  options.max_eliminated = 0;
+  const BundleResult result = AdjustBundle(made_.map, sensor, window, options, nullptr);
+  ASSERT_TRUE(result.is_usable);
+  EXPECT_LT(WorstPoseError(result), 1e-3);
+}
+
 TEST_F(BundleAdjustment, DoesNotChangeTheMap) {
   Perturb(0.01, 0.03);
   const std::string before = Dump(made_.map);
