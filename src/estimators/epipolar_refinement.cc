@@ -39,7 +39,9 @@ T SampsonDistance(const RayPair& pair, const Eigen::Matrix<T, 3, 3>& rotation,
   const Eigen::Matrix<T, 3, 1> line_in_a = rotation.transpose() * b.cross(translation);
   const T variance = line_in_a.template head<2>().cwiseAbs2().dot(pair.variance_a.cast<T>()) +
                      line_in_b.template head<2>().cwiseAbs2().dot(pair.variance_b.cast<T>());
-  return b.dot(line_in_b) / sqrt(variance);
+  // A pair at both epipoles has no epipolar line; it agrees with the motion.
+  constexpr double kTiny = 1e-30;
+  return b.dot(line_in_b) / sqrt(variance + kTiny);
 }
 
 // The residuals of a motion that differs from a first one by a rotation vector and by two

@@ -87,6 +87,16 @@ TEST(SampsonError, DoesNotDependOnTheUnitOfLength) {
               SampsonError(UnequalCamera(), TrueMotion(), pair), 1e-9);
 }
 
+// There is no epipolar line there.
+TEST(SampsonError, IsZeroAtTheEpipoles) {
+  const Rigid3 forward(Eigen::Quaterniond::Identity(), -Eigen::Vector3d::UnitZ());
+  const PixelPair center = {.a = {320.0, 240.0}, .b = {320.0, 240.0}};
+  EXPECT_EQ(SampsonError(UnequalCamera(), forward, center), 0.0);
+  std::vector<PixelPair> pairs(20, center);
+  const Rigid3 found = RefineMotion(UnequalCamera(), pairs, forward, 1.0);
+  EXPECT_TRUE(found.ToMatrix().allFinite());
+}
+
 TEST(PairCost, GrowsLikeTheErrorAndIsBounded) {
   PixelPair pair = SeePairs(4, {}, {}).front();
   double last = 0.0;
