@@ -59,11 +59,21 @@ class Bundle {
         options_(options),
         pose_indices_(internal::IndexPoses(window)),
         objects_(map, sensor.camera, window, pose_indices_, options.objects) {
+    std::vector<std::vector<double>> shares;  // without depth, those of the keypoints of each pose
     for (const auto& [id, index] : pose_indices_.entries()) {
-      poses_.push_back(ToBlock(map.keyframes().At(id).cam_from_world));
+      const Keyframe& keyframe = map.keyframes().At(id);
+      poses_.push_back(ToBlock(keyframe.cam_from_world));
+      if (sensor.IsMonocular()) {
+        shares.push_back(internal::SharesOfPlaces(keyframe, sensor.levels));
+      }
     }
+    size_t views = 0;
     for (const LandmarkId id : window.landmarks) {
-      AddPoint(map, sensor, map.landmarks().At(id));
+      views += map.landmarks().At(id).observations.size();
+    }
+    points_.Reserve(window.landmarks.size(), views);
+    for (const LandmarkId id : window.landmarks) {
+      AddPoint(map, sensor, map.landmarks().At(id), shares);
     }
   }
 
@@ -134,14 +144,13 @@ class Bundle {
  private:
   using View = internal::BundlePoints::View;
 
-  void AddPoint(const Map& map, const Sensor& sensor, const Landmark& landmark) {
+  void AddPoint(const Map& map, const Sensor& sensor, const Landmark& landmark,
+                const std::vector<std::vector<double>>& shares) {
     points_.AddPoint(landmark.position);
     for (const Observation& seen : landmark.observations) {
       if (const size_t* const pose = pose_indices_.Find(seen.keyframe)) {
         const Keyframe& keyframe = map.keyframes().At(seen.keyframe);
-        const double weight = sensor.IsMonocular()
-                                  ? internal::ShareOfPlace(keyframe, seen.keypoint, sensor.levels)
-                                  : 1.0;
+        const double weight = shares.empty() ? 1.0 : shares[*pose][seen.keypoint];
         points_.AddView(MeasurePoint(sensor, keyframe.frame->features, seen.keypoint,
                                      sensor.depth_error.ForAdjustment()),
                         *pose, weight);

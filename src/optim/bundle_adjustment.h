@@ -55,7 +55,7 @@ struct BundleResult {
 
 // Minimises the reprojection errors of the window's landmarks in its keyframes. Without depth, the
 // options are those of WithoutDepth(), the standard deviations of keypoints are made as small as
-// the errors show them to be, keypoints at the same place share a weight (ShareOfPlace), and
+// the errors show them to be, keypoints at the same place share a weight (SharesOfPlaces), and
 // Cauchy's loss is used in both rounds. Ceres solves for poses and objects. In a small window own
 // code eliminates the landmarks (EliminatedPoints); in a large one, Ceres does so
 // (BundleOptions::max_eliminated), and after each step the objects alone follow the poses. Each

@@ -29,6 +29,12 @@ class BundlePoints {
     bool is_inlier = true;
   };
 
+  void Reserve(size_t points, size_t views) {
+    positions_.reserve(points);
+    ends_.reserve(points);
+    views_.reserve(views);
+  }
+
   // `position`: m, world frame. Its views are added next.
   void AddPoint(const Eigen::Vector3d& position) {
     positions_.push_back(position);

@@ -392,8 +392,8 @@ TEST_F(BundleAdjustment, WithoutDepthCauchysLossIsMinimised) {
         const Keyframe& keyframe = made_.map.keyframes().At(seen.keyframe);
         const PointMeasurement measurement = MeasurePoint(
             sensor, keyframe.frame->features, seen.keypoint, sensor.depth_error.ForAdjustment());
-        sum += internal::ShareOfPlace(start.keyframes().At(seen.keyframe), seen.keypoint,
-                                      sensor.levels) *
+        sum += internal::SharesOfPlaces(start.keyframes().At(seen.keyframe),
+                                        sensor.levels)[seen.keypoint] *
                CauchyCost(PointChi2(sensor.camera, measurement, keyframe.cam_from_world * position),
                           kCauchyScale);
       }

@@ -33,8 +33,8 @@ class PlaceShare : public testing::Test {
     keyframe.frame = std::move(frame);
     return keyframe;
   }
-  double Share(const Keyframe& keyframe, uint32_t keypoint) const {
-    return ShareOfPlace(keyframe, keypoint, sensor_.levels);
+  std::vector<double> Shares(const Keyframe& keyframe) const {
+    return SharesOfPlaces(keyframe, sensor_.levels);
   }
 
   const Sensor sensor_ = SyntheticSensor();
@@ -42,25 +42,26 @@ class PlaceShare : public testing::Test {
 
 TEST_F(PlaceShare, AllAtAPlaceWeighAsMuchAsTheMostPrecise) {
   const Keyframe keyframe = Make({{100.0f, 80.0f, 2}, {101.5f, 78.0f, 0}, {100.5f, 80.5f, 5}});
+  const std::vector<double> shares = Shares(keyframe);
   double together = 0.0;
-  for (const uint32_t i : {0U, 1U, 2U}) {
+  for (const size_t i : {0U, 1U, 2U}) {
     const auto level = static_cast<size_t>(keyframe.frame->features.keypoints[i].level);
-    together += Share(keyframe, i) * static_cast<double>(sensor_.levels.inverse_sigma2[level]);
-    EXPECT_EQ(Share(keyframe, i), Share(keyframe, 0));
+    together += shares[i] * static_cast<double>(sensor_.levels.inverse_sigma2[level]);
+    EXPECT_EQ(shares[i], shares[0]);
   }
   EXPECT_NEAR(together, 1.0, 1e-6) << "that of the finest level";
 }
 
 TEST_F(PlaceShare, IsAllOfAKeypointThatIsAlone) {
   const Keyframe keyframe = Make({{100.0f, 80.0f, 3}, {103.5f, 80.0f, 0}, {100.0f, 76.5f, 0}});
-  EXPECT_EQ(Share(keyframe, 0), 1.0);
+  EXPECT_EQ(Shares(keyframe)[0], 1.0);
 }
 
 TEST_F(PlaceShare, KeypointsWithoutALandmarkDoNotCount) {
   Keyframe keyframe = Make({{100.0f, 80.0f, 1}, {100.0f, 80.0f, 0}});
-  EXPECT_LT(Share(keyframe, 0), 1.0);
+  EXPECT_LT(Shares(keyframe)[0], 1.0);
   keyframe.landmarks[1] = LandmarkId();
-  EXPECT_EQ(Share(keyframe, 0), 1.0);
+  EXPECT_EQ(Shares(keyframe), (std::vector<double>{1.0, 0.0}));
 }
 
 }  // namespace
