@@ -19,7 +19,7 @@ namespace hullslam {
 // s^2 / p_1^2 + s^2 / p_2^2. The information of landmarks is the sum of s^2 / variance, radians^2.
 class ScaleInformation {
  public:
-  // `keyframes`: those of an island, by increasing id.
+  // `keyframes`: those of an island, by increasing id. It and the map must outlive this object.
   ScaleInformation(const Map& map, const std::vector<KeyframeId>& keyframes);
 
   // Between two of them, `older` < `newer` (indices). The better one of two ways: by the landmarks
