@@ -142,8 +142,8 @@ std::vector<Candidate> PrepareAll(std::span<const InstanceMask> masks, const Fra
   return candidates;
 }
 
-// Whether two masks show the same object. The classes are not compared, because a real network can
-// report one thing under two classes.
+// Whether two masks show the same object. A real network can report one thing under two classes, so
+// classes are compared only where depth does not tell things apart.
 bool AreOneObject(const Candidate& a, const Candidate& b, const DetectionOptions& options) {
   const double shared = SharedArea(a.region, b.region);
   const double smaller = std::min(a.region.area(), b.region.area());
@@ -151,15 +151,19 @@ bool AreOneObject(const Candidate& a, const Candidate& b, const DetectionOptions
   if (shared <= 0.0) {
     return false;
   }
-  if (shared >= options.duplicate_iou * (smaller + larger - shared)) {
+  const double iou = shared / (smaller + larger - shared);
+  if (iou >= options.duplicate_iou) {
     return true;
   }
-  const bool is_fragment =
-      shared >= options.fragment_inside * smaller && smaller >= options.fragment_area * larger;
-  const bool is_as_far =
-      a.depth > 0.0 && b.depth > 0.0 &&
-      std::abs(a.depth - b.depth) <= options.fragment_depth * std::min(a.depth, b.depth);
-  return is_fragment && is_as_far;
+  if (a.depth > 0.0 && b.depth > 0.0) {
+    const bool is_fragment =
+        shared >= options.fragment_inside * smaller && smaller >= options.fragment_area * larger;
+    return is_fragment &&
+           std::abs(a.depth - b.depth) <= options.fragment_depth * std::min(a.depth, b.depth);
+  }
+  const bool are_outlines =
+      a.mask->shape == MaskShape::kContour && b.mask->shape == MaskShape::kContour;
+  return are_outlines && a.mask->label == b.mask->label && iou >= options.duplicate_class_iou;
 }
 
 // When several masks show the same object, keeps the one with the highest score; ties go to the

@@ -32,6 +32,9 @@ void DetectionOptions::Bind(OptionTable& options) {
               "masks that contain fewer keypoints are rejected");
   options.Add("objects.duplicate_iou", &duplicate_iou, Range::Between(0.1, 1.0),
               "two masks of a frame with at least this IoU are the same object");
+  options.Add("objects.duplicate_class_iou", &duplicate_class_iou, Range::Between(0.1, 1.0),
+              "two outlines of one class with at least this IoU are the same object, if the depth "
+              "of either is not known");
   options.Add("objects.fragment_inside", &fragment_inside, Range::Between(0.0, 1.0),
               "a mask may be a fragment of another mask if at least this share of it lies inside");
   options.Add("objects.fragment_area", &fragment_area, Range::Between(0.0, 1.0),

@@ -385,6 +385,39 @@ TEST(DetectionBuilder, AFragmentIsADuplicateOnlyAtTheSameDepth) {
   EXPECT_EQ(Build(masks, PlainCamera(), {}, depth).rejections[1], std::nullopt);
 }
 
+// Networks outline one thing twice: the book, and the book with the paper under it.
+TEST(DetectionBuilder, MasksOfOneClassThatOverlapAreOneObjectIfNoDepthTellsThemApart) {
+  const auto second = [](double width, const std::string& label) {
+    return std::vector<InstanceMask>{RectangleMask(200.0, 150.0, 120.0, 80.0, "book", 0.9),
+                                     RectangleMask(200.0, 150.0, width, 80.0, label, 0.5)};
+  };
+  EXPECT_EQ(Build(second(50.0, "book"), PlainCamera()).rejections[1], Reason::kDuplicate);
+  // Two instances may share their border, but not much more.
+  EXPECT_EQ(Build(second(25.0, "book"), PlainCamera()).rejections[1], std::nullopt);
+  EXPECT_EQ(Build(second(50.0, "cup"), PlainCamera()).rejections[1], std::nullopt);
+  DetectionOptions options;
+  options.duplicate_class_iou = 0.45;
+  EXPECT_EQ(Build(second(50.0, "book"), PlainCamera(), options).rejections[1], std::nullopt);
+  EXPECT_EQ(Build(second(60.0, "book"), PlainCamera(), options).rejections[1], Reason::kDuplicate);
+
+  cv::Mat depth(480, 640, CV_16UC1, cv::Scalar(2000));
+  depth(cv::Rect(200, 150, 51, 81)) = 1500;
+  EXPECT_EQ(Build(second(50.0, "book"), PlainCamera(), {}, depth).rejections[1], std::nullopt);
+  depth(cv::Rect(200, 150, 51, 81)) = 0;
+  EXPECT_EQ(Build(second(50.0, "book"), PlainCamera(), {}, depth).rejections[1],
+            Reason::kDuplicate);
+}
+
+// The box of a chair contains much of the chair behind it.
+TEST(DetectionBuilder, BoxesOfOneClassThatOverlapAreTwoObjects) {
+  std::vector<InstanceMask> boxes{RectangleMask(200.0, 150.0, 120.0, 80.0, "chair", 0.9),
+                                  RectangleMask(200.0, 150.0, 60.0, 80.0, "chair", 0.5)};
+  boxes[0].shape = MaskShape::kBox;
+  EXPECT_EQ(Build(boxes, PlainCamera()).rejections[1], std::nullopt);
+  boxes[1].shape = MaskShape::kBox;
+  EXPECT_EQ(Build(boxes, PlainCamera()).rejections[1], std::nullopt);
+}
+
 // Two masks are not the same object only because one contains the other.
 TEST(DetectionBuilder, ACupBeforeAMonitorIsADetectionOfItsOwn) {
   const InstanceMask cup = RectangleMask(260.0, 200.0, 30.0, 40.0, "cup", 0.6);

@@ -23,6 +23,9 @@ struct DetectionOptions {
   double max_area_share = 0.5;  // largest area of the hull, as a share of the image
   int min_keypoints = 0;        // inside the mask
   double duplicate_iou = 0.6;   // masks with at least this IoU show the same object
+  // The same for outlines of one class if the depth of either is not known. Two instances may share
+  // a border, but a network outlines one thing twice: a book, and the book with the paper under it.
+  double duplicate_class_iou = 0.25;
   // Two masks also show the same object if the smaller one is a fragment of the larger one. A
   // fragment lies almost completely inside the larger mask, is not much smaller, and has nearly the
   // same depth. A much smaller mask is another object in front, such as a cup in front of a
