@@ -2,6 +2,8 @@
 #include "matching/for_triangulation.h"
 
 #include <Eigen/Geometry>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "util/function_clones.h"
@@ -14,7 +16,55 @@ struct Candidate {
   int distance = 0;
 };
 
-// All keypoints of b whose descriptors are similar to that of the keypoint of a.
+// Some keypoints and how far they may be from a line. Nearly all keypoints are far from a line, and
+// this is seen for all of a block at once, in single precision.
+struct Block {
+  static constexpr int kSize = 16;
+  using Row = Eigen::Array<float, kSize, 1>;
+  Row x = Row::Zero();               // undistorted, px
+  Row y = Row::Zero();               // undistorted, px
+  Row reach = Row::Constant(-1.0f);  // largest distance from the line, px, with room for rounding
+  std::array<uint32_t, kSize> keypoints = {};
+};
+
+std::vector<Block> MakeBlocks(const FrameFeatures& features, std::span<const uint32_t> indices,
+                              const ScaleLevels& levels, double max_epipolar_chi2) {
+  constexpr float kRounding = 1e-6f;  // of a coordinate; the distance is a sum of three numbers
+  std::vector<Block> blocks((indices.size() + Block::kSize - 1) / Block::kSize);
+  for (size_t i = 0; i < indices.size(); ++i) {
+    const auto& keypoint = features.keypoints[indices[i]];
+    const double sigma2 = levels.sigma2[static_cast<size_t>(keypoint.level)];
+    Block& block = blocks[i / Block::kSize];
+    const auto place = static_cast<Eigen::Index>(i % Block::kSize);
+    block.x[place] = keypoint.undistorted.x();
+    block.y[place] = keypoint.undistorted.y();
+    block.reach[place] = static_cast<float>(std::sqrt(max_epipolar_chi2 * sigma2)) + 0.01f +
+                         kRounding * keypoint.undistorted.lpNorm<1>();
+    block.keypoints[i % Block::kSize] = indices[i];
+  }
+  return blocks;
+}
+
+// The keypoints that may be near enough to the line a x + b y + c = 0; none if a and b are zero.
+void FindNear(const Eigen::Vector3d& line, std::span<const Block> blocks,
+              std::vector<uint32_t>& near) {
+  near.clear();
+  const Eigen::Vector3f unit = (line / line.head<2>().norm()).cast<float>();
+  for (const Block& block : blocks) {
+    const Block::Row room =
+        block.reach - (unit.x() * block.x + unit.y() * block.y + unit.z()).abs();
+    if (!(room.maxCoeff() >= 0.0f)) {
+      continue;
+    }
+    for (int i = 0; i < Block::kSize; ++i) {
+      if (room[i] >= 0.0f) {
+        near.push_back(block.keypoints[static_cast<size_t>(i)]);
+      }
+    }
+  }
+}
+
+// All of these keypoints of b whose descriptors are similar to that of the keypoint of a.
 HULLSLAM_FUNCTION_CLONES
 void FindSimilar(const Descriptor& query, const std::vector<Descriptor>& descriptors,
                  std::span<const uint32_t> indices, int max_distance,
@@ -42,11 +92,14 @@ std::vector<Match> MatchForTriangulation(
     std::span<const uint32_t> b_indices, const Eigen::Matrix3d& fundamental,
     const Eigen::Vector2d& epipole, const ScaleLevels& levels, const TriangulationSearch& search) {
   std::vector<Match> matches;
+  const std::vector<Block> blocks = MakeBlocks(b, b_indices, levels, search.max_epipolar_chi2);
+  std::vector<uint32_t> near;
   std::vector<Candidate> similar;
   for (const uint32_t query : a_indices) {
-    FindSimilar(a.descriptors[query], b.descriptors, b_indices, search.max_distance, similar);
     const Eigen::Vector2d pixel_a = a.keypoints[query].undistorted.cast<double>();
     const Eigen::Vector3d line = fundamental * pixel_a.homogeneous();
+    FindNear(line, blocks, near);
+    FindSimilar(a.descriptors[query], b.descriptors, near, search.max_distance, similar);
     Match best{.query = query, .distance = std::numeric_limits<int>::max()};
     for (const auto& [keypoint, distance] : similar) {
       const Eigen::Vector2d pixel_b = b.keypoints[keypoint].undistorted.cast<double>();
