@@ -13,14 +13,13 @@ using Corners = std::vector<Eigen::Vector2d>;
 
 // The part of a convex polygon to the left of the directed line through `from` and `to` (Sutherland
 // and Hodgman 1974). The left side of an edge is the inside of a polygon with positive area.
-Corners ClipToLeft(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& from,
-                   const Eigen::Vector2d& to) {
+void ClipToLeft(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& from,
+                const Eigen::Vector2d& to, Corners& clipped) {
   const Eigen::Vector2d along = to - from;
   const auto side = [&](const Eigen::Vector2d& p) {
     return along.x() * (p.y() - from.y()) - along.y() * (p.x() - from.x());
   };
-  Corners clipped;
-  clipped.reserve(polygon.size() + 1);
+  clipped.clear();
   for (size_t i = 0; i < polygon.size(); ++i) {
     const Eigen::Vector2d& a = polygon[i];
     const Eigen::Vector2d& b = polygon[(i + 1) % polygon.size()];
@@ -33,16 +32,18 @@ Corners ClipToLeft(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector
       clipped.emplace_back(a + side_a / (side_a - side_b) * (b - a));
     }
   }
-  return clipped;
 }
 
 Corners Clip(std::span<const Eigen::Vector2d> polygon, std::span<const Eigen::Vector2d> window) {
-  if (polygon.size() < 3 || window.size() < 3) {
+  if (polygon.size() < 3 || window.size() < 3 ||
+      !BoundingBox(polygon).intersects(BoundingBox(window))) {
     return {};
   }
   Corners clipped(polygon.begin(), polygon.end());
+  Corners next;
   for (size_t i = 0; i < window.size() && !clipped.empty(); ++i) {
-    clipped = ClipToLeft(clipped, window[i], window[(i + 1) % window.size()]);
+    ClipToLeft(clipped, window[i], window[(i + 1) % window.size()], next);
+    clipped.swap(next);
   }
   return clipped.size() < 3 ? Corners() : clipped;
 }

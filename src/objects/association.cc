@@ -105,12 +105,13 @@ class Associator {
       if (!is_wanted || object.observations.empty()) {
         continue;
       }
-      const std::vector<ObjectView> views =
+      std::vector<ObjectView> views =
           LatestViews(map_, object, static_cast<size_t>(options_.recent_views));
       Prediction prediction = Locate(id, object, views.back());
       const bool is_elsewhere = std::all_of(
           seen.begin(), seen.end(), [&](const Seen& one) { return AreApart(one, prediction); });
       if (!is_elsewhere) {
+        AddSurfaceLandmarks(map_, {&views.back(), 1});  // the last hull is carried at their depth
         Predict(views, prediction);
         predictions.push_back(std::move(prediction));
       }

@@ -112,8 +112,9 @@ void ObjectMapper::Update(Map& map, ObjectId id) {
     return;
   }
   map.MutableObject(id).shaped_views = object.observations.size();
-  const std::vector<ObjectView> views =
+  std::vector<ObjectView> views =
       CollectViews(map, object, static_cast<size_t>(options_.refinement.max_views));
+  AddSurfaceLandmarks(map, views);
   if (object.state == ObjectState::kMapped) {
     Refine(map, id, views);
   } else {

@@ -50,11 +50,7 @@ std::vector<Eigen::Vector3d> FindLandmarks(const Map& map, const Keyframe& keyfr
 ObjectView MakeView(const Map& map, const ObjectObservation& observation) {
   const Keyframe& keyframe = map.keyframes().At(observation.keyframe);
   const Detection& detection = keyframe.frame->detections[observation.detection];
-  ObjectView view{observation.keyframe, keyframe.cam_from_world, &detection};
-  if (detection.points.empty()) {
-    view.landmarks = FindLandmarks(map, keyframe, detection);
-  }
-  return view;
+  return {observation.keyframe, keyframe.cam_from_world, &detection};
 }
 
 }  // namespace
@@ -80,6 +76,14 @@ std::vector<ObjectView> LatestViews(const Map& map, const ObjectLandmark& object
     views.push_back(MakeView(map, object.observations[i]));
   }
   return views;
+}
+
+void AddSurfaceLandmarks(const Map& map, std::span<ObjectView> views) {
+  for (ObjectView& view : views) {
+    if (view.detection->points.empty()) {
+      view.landmarks = FindLandmarks(map, map.keyframes().At(view.keyframe), *view.detection);
+    }
+  }
 }
 
 std::vector<Eigen::Vector3d> SurfacePoints(const ObjectView& view) {

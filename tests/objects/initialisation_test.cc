@@ -145,7 +145,9 @@ class Landmarks : public ::testing::Test {
       const Rigid3 pose = CameraOnCircle(step * i, 1.5, 0.5);
       map_.AddObservation(object, textured_.AddObserver(map_, sensor_, pose), 0);
     }
-    return CollectViews(map_, map_.objects().At(object));
+    std::vector<ObjectView> views = CollectViews(map_, map_.objects().At(object));
+    AddSurfaceLandmarks(map_, views);
+    return views;
   }
   Sensor sensor_ = MakeObjectSensor();
   MadeObject made_ = MakeObject("ball", {0.1, 0.05, 0.02}, {0.1, 0.1, 0.1});

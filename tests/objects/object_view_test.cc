@@ -85,7 +85,9 @@ class LandmarkViews : public ::testing::Test {
       const Rigid3 pose = CameraOnCircle(angle, 1.5, 0.0);
       map_.AddObservation(object, textured_.AddObserver(map_, sensor_, pose), 0);
     }
-    return CollectViews(map_, map_.objects().At(object));
+    std::vector<ObjectView> views = CollectViews(map_, map_.objects().At(object));
+    AddSurfaceLandmarks(map_, views);
+    return views;
   }
   Sensor sensor_ = MakeObjectSensor();
   TexturedObject textured_{MakeObject("cup", {0.0, 0.0, 0.0}, {0.05, 0.06, 0.08}),

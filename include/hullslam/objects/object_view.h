@@ -17,8 +17,8 @@ struct ObjectView {
   KeyframeId keyframe;
   Rigid3 cam_from_world;
   const Detection* detection = nullptr;  // owned by the keyframe's frame
-  // Where the detection has no depth points: the landmarks that its keypoints show, camera frame,
-  // in the unit of the map. Only those whose own depth is known well.
+  // The landmarks that its keypoints show, camera frame, in the unit of the map. AddSurfaceLandmarks
+  // finds them; they are empty before.
   std::vector<Eigen::Vector3d> landmarks = {};
 };
 
@@ -31,6 +31,10 @@ std::vector<ObjectView> CollectViews(const Map& map, const ObjectLandmark& objec
 // The last `count` views by increasing keyframe id, or all if there are fewer. Valid until the map
 // changes.
 std::vector<ObjectView> LatestViews(const Map& map, const ObjectLandmark& object, size_t count);
+
+// Finds the landmarks of the views whose detection has no depth points: only those whose own depth
+// is known well. This takes much longer than to collect the views.
+void AddSurfaceLandmarks(const Map& map, std::span<ObjectView> views);
 
 // Where the surface of the object is, as far as the view knows: its depth points or, without these,
 // its landmarks. Camera frame.
