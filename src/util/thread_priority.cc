@@ -11,10 +11,9 @@ namespace hullslam {
 
 // On Linux each thread has a niceness of its own. If the call fails, the thread stays as it is,
 // which changes no result.
-void RunInBackground() {
+void RunInBackground(int niceness) {
   const auto thread = static_cast<id_t>(syscall(SYS_gettid));
-  const int niceness = std::max(kBackgroundNiceness, getpriority(PRIO_PROCESS, thread));
-  setpriority(PRIO_PROCESS, thread, niceness);
+  setpriority(PRIO_PROCESS, thread, std::max(niceness, getpriority(PRIO_PROCESS, thread)));
 }
 
 }  // namespace hullslam
