@@ -17,8 +17,8 @@ struct ObjectView {
   KeyframeId keyframe;
   Rigid3 cam_from_world;
   const Detection* detection = nullptr;  // owned by the keyframe's frame
-  // The landmarks that its keypoints show, camera frame, in the unit of the map. AddSurfaceLandmarks
-  // finds them; they are empty before.
+  // The landmarks that its keypoints show, camera frame, in the unit of the map.
+  // AddSurfaceLandmarks finds them; they are empty before.
   std::vector<Eigen::Vector3d> landmarks = {};
 };
 
