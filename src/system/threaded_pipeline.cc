@@ -23,8 +23,8 @@ namespace {
 constexpr size_t kMailboxCapacity = 8;  // more than the keyframe policy lets wait
 
 // A frame waits for tracking, but nothing waits for the mapper. With this niceness it still gets
-// 29 % of a core that another thread wants too.
-constexpr int kMapperNiceness = 4;
+// a fifth of a core that another thread wants too.
+constexpr int kMapperNiceness = 6;
 
 class ThreadedPipeline final : public Pipeline {
  public:
