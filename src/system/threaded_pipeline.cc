@@ -22,14 +22,15 @@ namespace {
 
 constexpr size_t kMailboxCapacity = 8;  // more than the keyframe policy lets wait
 
-// A frame waits for tracking, but nothing waits for the mapper. With this niceness it still gets
-// a fifth of a core that another thread wants too.
-constexpr int kMapperNiceness = 6;
+// Without depth the mapper is always busy, and tracking would share its core with it all the time.
+// With this niceness the mapper still gets a fifth of a core that another thread wants too.
+constexpr int kMonocularMapperNiceness = 6;
 
 class ThreadedPipeline final : public Pipeline {
  public:
   ThreadedPipeline(const Sensor& sensor, const SystemOptions& options, Pace pace)
       : options_(options),
+        is_monocular_(sensor.IsMonocular()),
         pace_(pace),
         tracker_(sensor, options.tracking, options.objects, options.seed),
         mapper_(
@@ -164,7 +165,9 @@ class ThreadedPipeline final : public Pipeline {
   }
 
   void RunMapping() {
-    RunInBackground(kMapperNiceness);
+    if (is_monocular_) {
+      RunInBackground(kMonocularMapperNiceness);
+    }
     while (const std::optional<MapMessage> message = messages_.Receive()) {
       SetBusy(true);
       if (!EditMap([&] { mapper_.Process(*message, &hurry_); })) {
@@ -238,6 +241,7 @@ class ThreadedPipeline final : public Pipeline {
   }
 
   const SystemOptions options_;
+  const bool is_monocular_;
   const Pace pace_;
   Published<Map> map_;
   Tracker tracker_;
