@@ -17,7 +17,8 @@ struct Candidate {
 };
 
 // Some keypoints and how far they may be from a line. Nearly all keypoints are far from a line, and
-// this is seen for all of a block at once, in single precision.
+// this is seen for all of a block at once, in single precision. The few that are left are compared
+// exactly afterwards.
 struct Block {
   static constexpr int kSize = 16;
   using Row = Eigen::Array<float, kSize, 1>;
@@ -29,7 +30,9 @@ struct Block {
 
 std::vector<Block> MakeBlocks(const FrameFeatures& features, std::span<const uint32_t> indices,
                               const ScaleLevels& levels, double max_epipolar_chi2) {
-  constexpr float kRounding = 1e-6f;  // of a coordinate; the distance is a sum of three numbers
+  // Room for the rounding of the distance, which is a sum of three numbers as large as coordinates.
+  constexpr float kLeastRoom = 0.01f;  // px
+  constexpr float kRelativeRoom = 1e-6f;
   std::vector<Block> blocks((indices.size() + Block::kSize - 1) / Block::kSize);
   for (size_t i = 0; i < indices.size(); ++i) {
     const auto& keypoint = features.keypoints[indices[i]];
@@ -38,8 +41,8 @@ std::vector<Block> MakeBlocks(const FrameFeatures& features, std::span<const uin
     const auto place = static_cast<Eigen::Index>(i % Block::kSize);
     block.x[place] = keypoint.undistorted.x();
     block.y[place] = keypoint.undistorted.y();
-    block.reach[place] = static_cast<float>(std::sqrt(max_epipolar_chi2 * sigma2)) + 0.01f +
-                         kRounding * keypoint.undistorted.lpNorm<1>();
+    block.reach[place] = static_cast<float>(std::sqrt(max_epipolar_chi2 * sigma2)) + kLeastRoom +
+                         kRelativeRoom * keypoint.undistorted.lpNorm<1>();
     block.keypoints[i % Block::kSize] = indices[i];
   }
   return blocks;

@@ -116,6 +116,11 @@ TEST_F(LandmarkViews, LeaveOutWhatHasLittleParallax) {
   }
 }
 
+TEST_F(LandmarkViews, HaveNoLandmarksBeforeTheyAreSought) {
+  Views(3.0);
+  EXPECT_TRUE(CollectViews(map_, map_.objects().At(ObjectId(0))).front().landmarks.empty());
+}
+
 TEST_F(LandmarkViews, DepthPointsAreBetter) {
   ObjectView view = Views(3.0).front();
   Detection detection = *view.detection;
