@@ -75,11 +75,12 @@ def hash_file(path, work):
 
 def make_desk(folder, program_folder):
     """The synthetic desk in `folder`. It is rendered unless it exists."""
-    desk = folder / "desk"
+    desk = folder / "sequences" / "desk"
     if not desk.exists():
-        partial = folder / "desk.partial"
+        desk.parent.mkdir(exist_ok=True)
+        partial = desk.parent / "partial"
         shutil.rmtree(partial, ignore_errors=True)
-        log = folder / "desk.log"
+        log = desk.parent / "desk.log"
         if run_program(["make_synthetic", partial, "--scene", "desk"], program_folder, log) != 0:
             raise InputError(f"make_synthetic failed, see {log}")
         partial.rename(desk)

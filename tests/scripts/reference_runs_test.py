@@ -13,6 +13,7 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "reference_ru
 # Writes a trajectory into the folder after --output, and a map file if it is asked for one.
 PROGRAM = """#!/bin/sh
 content={content}
+[ -f "$1/rgb.txt" ] || exit 2
 while [ $# -gt 0 ]; do
   case "$1" in
     --output) mkdir -p "$2"; echo "$content $2" > "$2/trajectory.txt" ;;
@@ -24,6 +25,7 @@ exit {code}
 """
 SYNTHETIC = """#!/bin/sh
 mkdir -p "$1"
+echo desk > "$1/rgb.txt"
 """
 
 
@@ -32,6 +34,7 @@ class ReferenceRuns(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
+        (self.folder / "rgb.txt").touch()
         self.write_programs("poses")
 
     def write_programs(self, content, code=0):
