@@ -93,7 +93,12 @@ def run_all(arguments, work):
     saved_map = work / "saved.map"
     hashes = {}
     runs = list_runs(desk, arguments.sequence, arguments.masks, saved_map)
+    for name in arguments.only or ():
+        if name not in runs:
+            raise InputError(f"--only is '{name}', expected some of: {', '.join(runs)}")
     for name, command in runs.items():
+        if arguments.only and name not in arguments.only:
+            continue
         output = work / name
         shutil.rmtree(output, ignore_errors=True)
         log = work / f"{name}.log"
@@ -143,6 +148,7 @@ def parse_arguments():
     parser.add_argument("--masks", type=pathlib.Path, help="masks of this sequence")
     parser.add_argument("--programs", type=pathlib.Path, default=TOP / "build/release/bin",
                         help="folder of the programs (default: build/release/bin)")
+    parser.add_argument("--only", metavar="RUN", nargs="+", help="make only these runs")
     parser.add_argument("--work", type=pathlib.Path,
                         help="folder for the runs, kept (default: a temporary one)")
     arguments = parser.parse_args()
@@ -163,6 +169,8 @@ def execute(arguments):
         arguments.reference.write_text(json.dumps(after, indent=1) + "\n", encoding="utf-8")
         print(f"{len(after)} runs are stored in {arguments.reference}")
         return 0
+    if arguments.only:
+        before = {name: before[name] for name in arguments.only if name in before}
     differences = describe_differences(before, after)
     for line in differences:
         print(line)

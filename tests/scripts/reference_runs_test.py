@@ -73,6 +73,13 @@ class ReferenceRuns(unittest.TestCase):
         self.assertEqual(compared.returncode, 1)
         self.assertIn("rgbd: only after", compared.stdout)
 
+    def test_only_some_runs_can_be_compared(self):
+        self.run_script("store")
+        compared = self.run_script("compare", "--only", "desk", "desk_masks")
+        self.assertEqual(compared.returncode, 0, compared.stdout)
+        self.assertNotIn("desk_objects", compared.stdout)
+        self.assertEqual(self.run_script("compare", "--only", "nonsense").returncode, 2)
+
     def test_a_changed_exit_code_is_a_difference(self):
         self.run_script("store")
         self.write_programs("poses", code=1)
