@@ -22,11 +22,11 @@
 #include "cli/progress.h"
 #include "cli/version.h"
 #include "hullslam/frame/detection_builder.h"
-#include "hullslam/io/image_file.h"
-#include "hullslam/io/mask_source.h"
-#include "hullslam/io/output_folder.h"
-#include "hullslam/io/settings.h"
-#include "hullslam/io/tum_sequence.h"
+#include "hullslam/masks/mask_source.h"
+#include "hullslam/results/output_folder.h"
+#include "hullslam/sequences/image_file.h"
+#include "hullslam/sequences/tum_sequence.h"
+#include "hullslam/settings/settings.h"
 
 namespace hullslam {
 namespace {

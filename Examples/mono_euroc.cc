@@ -3,7 +3,7 @@
 #include "cli/program.h"
 #include "cli/run_arguments.h"
 #include "cli/slam_run.h"
-#include "hullslam/io/euroc_sequence.h"
+#include "hullslam/sequences/euroc_sequence.h"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include "cli/program.h"
 #include "cli/run_arguments.h"
 #include "cli/slam_run.h"
-#include "hullslam/io/image_stream.h"
-#include "hullslam/io/settings.h"
+#include "hullslam/sequences/image_stream.h"
+#include "hullslam/settings/settings.h"
 #include "hullslam/util/error.h"
 
 namespace {

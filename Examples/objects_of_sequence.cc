@@ -9,9 +9,9 @@
 #include <memory>
 #include <vector>
 
-#include "hullslam/io/mask_source.h"
-#include "hullslam/io/settings.h"
-#include "hullslam/io/tum_sequence.h"
+#include "hullslam/masks/mask_source.h"
+#include "hullslam/sequences/tum_sequence.h"
+#include "hullslam/settings/settings.h"
 #include "hullslam/system/system.h"
 
 namespace {

@@ -3,7 +3,7 @@
 #include "cli/program.h"
 #include "cli/run_arguments.h"
 #include "cli/slam_run.h"
-#include "hullslam/io/tum_sequence.h"
+#include "hullslam/sequences/tum_sequence.h"
 
 int main(int argc, char** argv) {
   return hullslam::RunMain(

@@ -19,8 +19,8 @@
 #include "cli/version.h"
 #include "cli/vocabulary_form.h"
 #include "hullslam/features/extractor.h"
-#include "hullslam/io/image_file.h"
-#include "hullslam/io/vocabulary_file.h"
+#include "hullslam/map_files/vocabulary_file.h"
+#include "hullslam/sequences/image_file.h"
 #include "hullslam/util/parallel_runner.h"
 
 namespace hullslam {

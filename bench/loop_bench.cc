@@ -21,11 +21,11 @@
 #include <vector>
 
 #include "hullslam/eval/ate.h"
-#include "hullslam/io/map_file.h"
-#include "hullslam/io/settings.h"
-#include "hullslam/io/trajectory_file.h"
-#include "hullslam/io/tum_sequence.h"
-#include "hullslam/io/vocabulary_file.h"
+#include "hullslam/map_files/map_file.h"
+#include "hullslam/map_files/vocabulary_file.h"
+#include "hullslam/results/trajectory_file.h"
+#include "hullslam/sequences/tum_sequence.h"
+#include "hullslam/settings/settings.h"
 #include "loop/loop_candidates.h"
 #include "loop/loop_closer.h"
 #include "system/make_sensor.h"

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "hullslam/frame/detection_builder.h"
-#include "hullslam/io/mask_source.h"
+#include "hullslam/masks/mask_source.h"
 
 namespace hullslam {
 namespace {

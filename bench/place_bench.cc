@@ -19,10 +19,10 @@
 
 #include "hullslam/bow/inverted_index.h"
 #include "hullslam/features/extractor.h"
-#include "hullslam/io/image_file.h"
-#include "hullslam/io/trajectory_file.h"
-#include "hullslam/io/tum_sequence.h"
-#include "hullslam/io/vocabulary_file.h"
+#include "hullslam/map_files/vocabulary_file.h"
+#include "hullslam/results/trajectory_file.h"
+#include "hullslam/sequences/image_file.h"
+#include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

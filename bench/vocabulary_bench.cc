@@ -12,7 +12,7 @@
 
 #include "hullslam/bow/inverted_index.h"
 #include "hullslam/bow/vocabulary.h"
-#include "hullslam/io/vocabulary_file.h"
+#include "hullslam/map_files/vocabulary_file.h"
 
 namespace hullslam {
 namespace {

@@ -17,7 +17,7 @@ import sys
 
 LEVELS = {
     "util": 0,
-    "geometry": 1,
+    "files": 1, "geometry": 1,
     "camera": 2, "features": 2,
     "bow": 3, "estimators": 3,
     "frame": 4,
@@ -29,10 +29,13 @@ LEVELS = {
     "system": 10,
     "report": 11,
     "eval": 12,
-    "io": 13,
+    "settings": 13, "map_files": 13,
+    "results": 14,
+    "sequences": 15,
+    "masks": 16,
     # A library for the programs and not a part of libhullslam. It may include every module; no
     # module may include it.
-    "synthetic": 14,
+    "synthetic": 17,
 }
 PROGRAM_SIDE = {"synthetic"}
 

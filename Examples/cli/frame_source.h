@@ -9,7 +9,7 @@
 
 #include "cli/mask_arguments.h"
 #include "hullslam/camera/pinhole.h"
-#include "hullslam/io/image_sequence.h"
+#include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/prefetcher.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/cancellation.h"

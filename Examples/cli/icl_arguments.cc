@@ -10,7 +10,7 @@
 #include "cli/messages.h"
 #include "cli/program.h"
 #include "cli/slam_run.h"
-#include "hullslam/io/settings.h"
+#include "hullslam/settings/settings.h"
 
 namespace hullslam {
 namespace {

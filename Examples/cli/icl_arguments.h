@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cli/run_arguments.h"
-#include "hullslam/io/icl_sequence.h"
+#include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/system/options.h"
 
 namespace hullslam {

@@ -5,7 +5,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "cli/mask_arguments.h"
-#include "hullslam/io/image_sequence.h"
+#include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/options.h"
 
 namespace hullslam {

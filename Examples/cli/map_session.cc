@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "cli/messages.h"
-#include "hullslam/io/atomic_file.h"
-#include "hullslam/io/map_file.h"
+#include "hullslam/files/atomic_file.h"
+#include "hullslam/map_files/map_file.h"
 #include "hullslam/system/compose_trajectory.h"
 #include "hullslam/util/error.h"
 

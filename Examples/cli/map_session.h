@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/run_arguments.h"
-#include "hullslam/io/trajectory_file.h"
+#include "hullslam/results/trajectory_file.h"
 #include "hullslam/system/options.h"
 #include "hullslam/system/system_start.h"
 

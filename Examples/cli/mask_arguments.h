@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/io/mask_source.h"
+#include "hullslam/masks/mask_source.h"
 
 namespace hullslam {
 

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "hullslam/eval/object_metrics.h"
-#include "hullslam/io/object_file.h"
-#include "hullslam/io/ply_file.h"
+#include "hullslam/results/object_file.h"
+#include "hullslam/results/ply_file.h"
 
 namespace hullslam {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
-#include "hullslam/io/output_folder.h"
-#include "hullslam/io/summary.h"
 #include "hullslam/report/object_report.h"
+#include "hullslam/results/output_folder.h"
+#include "hullslam/results/summary.h"
 #include "hullslam/system/system.h"
 
 namespace hullslam {

@@ -4,7 +4,7 @@
 #include "cli/logging.h"
 #include "cli/mask_arguments.h"
 #include "cli/version.h"
-#include "hullslam/io/settings.h"
+#include "hullslam/settings/settings.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/io/image_sequence.h"
+#include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/options.h"
 
 namespace hullslam {

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "cli/run_arguments.h"
-#include "hullslam/io/summary.h"
 #include "hullslam/map/messages.h"
 #include "hullslam/report/object_report.h"
+#include "hullslam/results/summary.h"
 #include "hullslam/system/options.h"
 
 namespace hullslam {

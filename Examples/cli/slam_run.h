@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/run_arguments.h"
-#include "hullslam/io/image_sequence.h"
+#include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/options.h"
 
 namespace hullslam {

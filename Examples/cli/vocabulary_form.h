@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "hullslam/io/vocabulary_file.h"
+#include "hullslam/map_files/vocabulary_file.h"
 
 namespace hullslam {
 

@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "cli/messages.h"
-#include "hullslam/io/vocabulary_file.h"
+#include "hullslam/map_files/vocabulary_file.h"
 
 namespace hullslam {
 

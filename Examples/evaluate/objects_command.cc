@@ -12,8 +12,8 @@
 #include "cli/object_outputs.h"
 #include "evaluate/objects_truth.h"
 #include "hullslam/eval/object_metrics.h"
-#include "hullslam/io/object_file.h"
-#include "hullslam/io/summary.h"
+#include "hullslam/results/object_file.h"
+#include "hullslam/results/summary.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

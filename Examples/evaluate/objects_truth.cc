@@ -8,10 +8,10 @@
 
 #include "cli/object_outputs.h"
 #include "hullslam/eval/ate.h"
-#include "hullslam/io/mask_source.h"
-#include "hullslam/io/trajectory_file.h"
-#include "hullslam/io/true_object_file.h"
-#include "hullslam/io/tum_sequence.h"
+#include "hullslam/masks/mask_source.h"
+#include "hullslam/results/trajectory_file.h"
+#include "hullslam/results/true_object_file.h"
+#include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

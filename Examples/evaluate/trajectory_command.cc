@@ -8,7 +8,7 @@
 #include <string>
 
 #include "hullslam/eval/rpe.h"
-#include "hullslam/io/trajectory_file.h"
+#include "hullslam/results/trajectory_file.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

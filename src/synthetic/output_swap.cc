@@ -10,8 +10,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "files/staging_folder.h"
 #include "hullslam/util/error.h"
-#include "util/staging_folder.h"
 
 namespace hullslam::synthetic {
 namespace {

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "hullslam/io/vocabulary_file.h"
+#include "hullslam/map_files/vocabulary_file.h"
 #include "hullslam/system/options.h"
 #include "hullslam/system/system.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "hullslam/io/trajectory_file.h"
+#include "hullslam/results/trajectory_file.h"
 #include "support/test_data.h"
 
 namespace hullslam {

@@ -5,11 +5,11 @@
 
 #include "fuzz/fuzzed_input.h"
 #include "fuzz/readers.h"
-#include "hullslam/io/euroc_sequence.h"
-#include "hullslam/io/icl_sequence.h"
-#include "hullslam/io/tum_sequence.h"
-#include "io/euroc_states.h"
-#include "io/icl_povray.h"
+#include "hullslam/sequences/euroc_sequence.h"
+#include "hullslam/sequences/icl_sequence.h"
+#include "hullslam/sequences/tum_sequence.h"
+#include "sequences/euroc_states.h"
+#include "sequences/icl_povray.h"
 
 namespace hullslam {
 namespace {

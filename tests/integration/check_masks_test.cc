@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/text_rows.h"
+#include "files/text_rows.h"
 #include "support/plane_sequence.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"

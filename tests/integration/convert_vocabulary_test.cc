@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/io/vocabulary_file.h"
+#include "hullslam/map_files/vocabulary_file.h"
 #include "support/made_vocabulary.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"

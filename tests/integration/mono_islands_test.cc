@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/io/trajectory_file.h"
+#include "hullslam/results/trajectory_file.h"
 #include "support/mono_program.h"
 #include "support/rendered_desk.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/io/map_file.h"
-#include "io/read_file.h"
+#include "files/read_file.h"
+#include "hullslam/map_files/map_file.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/io/trajectory_file.h"
-#include "io/read_file.h"
+#include "files/read_file.h"
+#include "hullslam/results/trajectory_file.h"
 #include "support/made_room.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"

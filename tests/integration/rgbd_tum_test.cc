@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/io/trajectory_file.h"
-#include "hullslam/io/vocabulary_file.h"
-#include "io/text_rows.h"
+#include "files/text_rows.h"
+#include "hullslam/map_files/vocabulary_file.h"
+#include "hullslam/results/trajectory_file.h"
 #include "support/made_vocabulary.h"
 #include "support/plane_sequence.h"
 #include "support/run_program.h"

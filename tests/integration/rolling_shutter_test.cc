@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/read_file.h"
+#include "files/read_file.h"
 #include "support/rendered_desk.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"

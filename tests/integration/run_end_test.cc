@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/io/trajectory_file.h"
-#include "io/text_rows.h"
+#include "files/text_rows.h"
+#include "hullslam/results/trajectory_file.h"
 #include "support/plane_sequence.h"
 #include "support/run_program.h"
 #include "support/running_program.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/io/vocabulary_file.h"
+#include "hullslam/map_files/vocabulary_file.h"
 #include "support/run_program.h"
 #include "support/running_program.h"
 #include "support/temporary_folder.h"

@@ -117,7 +117,7 @@ class CheckLayersTest(unittest.TestCase):
         self.assert_fault({"src/io/a.cc": '#include "synthetic/scene.h"\n'}, "up", "synthetic")
         self.assertEqual(faults_of({
             "src/synthetic/a.cc": '#include "synthetic/scene.h"\n#include <embree3/rtcore.h>\n'
-                                  '#include "hullslam/io/settings.h"\n'}), [])
+                                  '#include "hullslam/settings/settings.h"\n'}), [])
 
     def test_libraries_that_public_headers_may_not_include(self):
         for header in ("CGAL/convex_hull_2.h", "cholmod.h", "suitesparse/cholmod.h",

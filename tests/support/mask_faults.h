@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/text_rows.h"
+#include "files/text_rows.h"
 #include "util/random_seed.h"
 
 namespace hullslam {

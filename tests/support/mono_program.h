@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/io/trajectory_file.h"
-#include "io/read_file.h"
+#include "files/read_file.h"
+#include "hullslam/results/trajectory_file.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
 

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "hullslam/camera/pinhole.h"
-#include "hullslam/io/image_sequence.h"
-#include "hullslam/io/settings.h"
-#include "hullslam/io/tum_sequence.h"
+#include "hullslam/sequences/image_sequence.h"
+#include "hullslam/sequences/tum_sequence.h"
+#include "hullslam/settings/settings.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
 

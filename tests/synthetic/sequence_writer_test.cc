@@ -13,7 +13,7 @@
 #include <sstream>
 #include <string>
 
-#include "hullslam/io/true_object_file.h"
+#include "hullslam/results/true_object_file.h"
 #include "hullslam/util/error.h"
 #include "support/temporary_folder.h"
 #include "synthetic/object_models.h"

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "hullslam/io/map_file.h"
+#include "hullslam/map_files/map_file.h"
 #include "map/invariants.h"
 #include "map/made_map.h"
 #include "support/temporary_folder.h"

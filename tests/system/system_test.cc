@@ -12,7 +12,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "hullslam/io/map_file.h"
+#include "hullslam/map_files/map_file.h"
 #include "hullslam/system/prefetcher.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hullslam/frame/instance_mask.h"
+#include "hullslam/sequences/image_sequence.h"
+
+namespace hullslam {
+
+// A frame by the names that mask files use for it.
+struct MaskFrame {
+  std::string stem;   // of the file of the colour image: "1305031102.175304"
+  size_t number = 0;  // index of the colour image in the sequence, from 0
+};
+
+// The frames of a sequence, in order.
+std::vector<MaskFrame> MaskFrames(const ImageSequence& sequence);
+
+// The masks of one frame.
+struct FrameMasks {
+  std::vector<InstanceMask> masks;  // in the order of the file
+  bool is_missing = false;          // the frame has no file, or no entry in the file
+  size_t without_area = 0;  // ignored masks without an outline of at least 1 px^2 in the image
+  size_t crowds = 0;        // ignored masks that are marked as a group of objects
+};
+
+// The masks of a sequence in any format. All functions may be called from several threads at once.
+class MaskSource {
+ public:
+  MaskSource() = default;
+  virtual ~MaskSource() = default;
+  MaskSource(const MaskSource&) = delete;
+  MaskSource& operator=(const MaskSource&) = delete;
+
+  virtual std::string format() const = 0;                   // the name of the format: "yolo-seg"
+  virtual bool Contains(const MaskFrame& frame) const = 0;  // false: the frame is missing
+  // The name of one entry (a file or an image), for messages; empty if there is none.
+  virtual std::string Example() const = 0;
+  // Throws InputError that names the file, and the line or entry, of malformed data.
+  virtual FrameMasks Read(const MaskFrame& frame) const = 0;
+};
+
+struct MaskRequest {
+  std::filesystem::path path;  // a folder or a JSON file
+  std::string format;          // one of MaskFormatNames(); empty: it is detected
+  int width = 0;               // width of the images, px
+  int height = 0;
+};
+
+// yolo-seg, coco, label-png, paper, oa-slam, boxes (docs/masks.md).
+std::vector<std::string> MaskFormatNames();
+
+// Throws InputError if the format is unknown, if none or several formats fit (the message says what
+// was found), or if no frame has an entry. The last message shows the name of one entry and the
+// name of one frame. `frames` must not be empty.
+std::unique_ptr<const MaskSource> OpenMasks(const MaskRequest& request,
+                                            std::span<const MaskFrame> frames);
+
+struct MaskCounts {
+  size_t without_masks = 0;  // frames; the missing ones, and those whose file or entry has no mask
+  size_t missing = 0;        // frames without a file or entry
+};
+
+// Reads the masks of all frames and throws the first error.
+MaskCounts CheckMasks(const MaskSource& source, std::span<const MaskFrame> frames);
+
+}  // namespace hullslam

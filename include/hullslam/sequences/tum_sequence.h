@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+#include "hullslam/sequences/image_sequence.h"
+
+namespace hullslam {
+
+struct TumSequenceOptions {
+  std::filesystem::path associations = {};  // empty: images are paired by time
+  // False for programs that only use masks and poses. Then images may be missing, and depth.txt
+  // too; frames without a depth image have an empty path.
+  bool need_images = true;
+  // False for monocular SLAM. Then all images of rgb.txt are frames, and no frame has depth.
+  bool use_depth = true;
+  FrameSelection selection = {};
+};
+
+// Opens a sequence in TUM's format: `rgb.txt` and `depth.txt` with one line `timestamp file` per
+// image, which are paired one to one, closest first, within 0.02 s; or an association file with
+// lines `timestamp rgb timestamp depth`. The ground truth is groundtruth.txt if it exists.
+// Everything that needs no decoding is checked. InputError names file and line of malformed lines
+// and of stamps that do not increase, the first missing image, and the smallest gap if no image can
+// be paired.
+ImageSequence OpenTumSequence(const std::filesystem::path& folder,
+                              const TumSequenceOptions& options = {});
+
+}  // namespace hullslam

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "files/read_file.h"
+
+namespace hullslam {
+
+constexpr size_t kMostLineBytes = 1'000'000;  // limit for a line of a text file
+
+// Parses `text` as a finite number. Returns false if it is none or if characters are left over.
+bool ParseFinite(std::string_view text, double& value);
+
+// One line of a text file, split into columns. The views are only valid during the visit.
+struct TextRow {
+  const std::filesystem::path& path;
+  int line = 0;  // from 1
+  std::vector<std::string_view> columns;
+
+  // Throws InputError "FILE:LINE: what".
+  [[noreturn]] void Fail(const std::string& what) const;
+  // The finite number in a column; throws InputError with its `name` for anything else.
+  double Number(size_t column, std::string_view name) const;
+  // The same for a number that may not be larger than `most`, nor smaller than its negative.
+  double Number(size_t column, std::string_view name, double most) const;
+  // The unit quaternion in four columns named qw, qx, qy and qz; throws InputError for numbers that
+  // are no rotation.
+  Eigen::Quaterniond Rotation(size_t w, size_t x, size_t y, size_t z) const;
+  // A time stamp, s.
+  double Stamp(size_t column, std::string_view name = "timestamp") const;
+};
+
+// Visits the lines with data in order. Columns are separated by blanks, tabs or commas. Empty lines
+// and lines that start with '#' are skipped; CRLF line ends are accepted. Throws InputError for a
+// file that ReadFile() refuses, and for a line of more than kMostLineBytes.
+void ForEachRow(const std::filesystem::path& path,
+                const std::function<void(const TextRow& row)>& visit,
+                size_t most_bytes = kMostTextFileBytes);
+
+}  // namespace hullslam

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "map_files/map_records.h"
+
+namespace hullslam {
+namespace {
+
+// A length in metres or in pixels that cannot be negative.
+double ReadLength(ByteReader& in) {
+  const double length = in.GetFinite(kMostMapNumber);
+  in.Require(length >= 0.0, "has a negative length");
+  return length;
+}
+
+double ReadScale(ByteReader& in) {
+  const double scale = in.GetFinite(kMostMapNumber);
+  in.Require(scale > 0.0, "has a scale that is not positive");
+  return scale;
+}
+
+// The number of times that something was seen.
+int ReadTimes(ByteReader& in) {
+  constexpr int kMost = 1 << 29;  // so that sums of two do not overflow
+  const auto times = in.Get<int32_t>();
+  in.Require(times >= 0 && times <= kMost, "has a count that is out of range");
+  return times;
+}
+
+template <typename IdType>
+void WriteIds(const std::vector<IdType>& ids, ByteWriter& out) {
+  for (const IdType id : ids) {
+    out.Put(id.value);
+  }
+}
+
+template <typename IdType>
+std::vector<IdType> ReadIds(size_t count, ByteReader& in) {
+  in.Require(count <= in.left() / sizeof(uint32_t), "is cut off");
+  std::vector<IdType> ids;
+  ids.reserve(count);
+  for (size_t i = 0; i < count; ++i) {
+    ids.push_back(IdType(in.Get<uint32_t>()));
+  }
+  return ids;
+}
+
+// Every id is that of a keyframe or of a culled one, so no id is as large as their number.
+KeyframeId ReadKeyframeId(const MapHeader& header, KeyframeId next, ByteReader& in) {
+  const KeyframeId id(in.Get<uint32_t>());
+  in.Require(!(id < next) && id.value < uint64_t{header.keyframes} + header.culled,
+             "has an id that is out of order");
+  return id;
+}
+
+void WriteEllipsoid(const Ellipsoid& ellipsoid, ByteWriter& out) {
+  WritePose(ellipsoid.world_from_object, out);
+  out.PutMatrix(ellipsoid.half_axes);
+}
+
+Ellipsoid ReadEllipsoid(ByteReader& in) {
+  Ellipsoid ellipsoid;
+  ellipsoid.world_from_object = ReadPose(in);
+  ellipsoid.half_axes = in.GetMatrix<Eigen::Vector3d>(kMostMapNumber);
+  in.Require(ellipsoid.half_axes.minCoeff() > 0.0, "has half axes that are not positive");
+  return ellipsoid;
+}
+
+void WriteVotes(const std::map<std::string, double>& votes, ByteWriter& out) {
+  out.PutCount(votes.size());
+  for (const auto& [label, sum] : votes) {
+    out.PutText(label);
+    out.Put(sum);
+  }
+}
+
+std::map<std::string, double> ReadVotes(ByteReader& in) {
+  std::map<std::string, double> votes;
+  const size_t count = in.GetCount(sizeof(uint32_t) + sizeof(double));
+  for (size_t i = 0; i < count; ++i) {
+    std::string label = in.GetText();
+    in.Require(votes.empty() || votes.rbegin()->first < label, "has votes out of order");
+    votes.emplace_hint(votes.end(), std::move(label), in.GetFinite(kMostMapNumber));
+  }
+  return votes;
+}
+
+void WriteSamples(const std::vector<MisfitSample>& samples, ByteWriter& out) {
+  out.PutCount(samples.size());
+  for (const MisfitSample& sample : samples) {
+    out.PutMatrix(sample.normal);
+    out.Put(sample.excess);
+    out.Put(sample.keyframe.value);
+  }
+}
+
+std::vector<MisfitSample> ReadSamples(ByteReader& in) {
+  std::vector<MisfitSample> samples(in.GetCount(4 * sizeof(float) + sizeof(uint32_t)));
+  for (MisfitSample& sample : samples) {
+    sample.normal = in.GetMatrix<Eigen::Vector3f>(2.0f);
+    sample.excess = in.GetFinite(static_cast<float>(kMostMapNumber));
+    sample.keyframe = KeyframeId(in.Get<uint32_t>());
+  }
+  return samples;
+}
+
+}  // namespace
+
+void WritePose(const Rigid3& pose, ByteWriter& out) {
+  out.PutMatrix(pose.rotation.coeffs());
+  out.PutMatrix(pose.translation);
+}
+
+Rigid3 ReadPose(ByteReader& in) {
+  constexpr double kTolerance = 1e-6;
+  Rigid3 pose;
+  pose.rotation.coeffs() = in.GetMatrix<Eigen::Vector4d>(2.0);
+  in.Require(std::abs(pose.rotation.norm() - 1.0) < kTolerance, "has a rotation that is none");
+  pose.translation = in.GetMatrix<Eigen::Vector3d>(kMostMapNumber);
+  return pose;
+}
+
+void WriteKeyframe(KeyframeId id, const Keyframe& keyframe, ByteWriter& out) {
+  out.Put(id.value);
+  WriteFrame(*keyframe.frame, out);
+  WritePose(keyframe.cam_from_world, out);
+  out.Put(keyframe.scale);
+  WriteIds(keyframe.landmarks, out);
+  WriteIds(keyframe.objects, out);
+  out.PutCount(keyframe.covisible.size());
+  for (const Covisible& edge : keyframe.covisible) {
+    out.Put(edge.keyframe.value);
+    out.Put(static_cast<int32_t>(edge.shared));
+  }
+  out.Put(keyframe.parent.value);
+  out.PutCount(keyframe.loops.size());
+  WriteIds(keyframe.loops, out);
+}
+
+void ReadKeyframe(const MapHeader& header, ByteReader& in, MapTables& tables) {
+  const KeyframeId id = ReadKeyframeId(header, tables.keyframes.NextId(), in);
+  Keyframe keyframe;
+  keyframe.frame = ReadFrame(header.settings, in);
+  keyframe.cam_from_world = ReadPose(in);
+  keyframe.scale = ReadScale(in);
+  keyframe.landmarks = ReadIds<LandmarkId>(keyframe.frame->features.size(), in);
+  keyframe.objects = ReadIds<ObjectId>(keyframe.frame->detections.size(), in);
+  keyframe.covisible.resize(in.GetCount(2 * sizeof(uint32_t)));
+  for (Covisible& edge : keyframe.covisible) {
+    edge.keyframe = KeyframeId(in.Get<uint32_t>());
+    edge.shared = ReadTimes(in);
+  }
+  keyframe.parent = KeyframeId(in.Get<uint32_t>());
+  keyframe.loops = ReadIds<KeyframeId>(in.GetCount(sizeof(uint32_t)), in);
+  tables.keyframes.Put(id, std::move(keyframe));
+}
+
+void WriteCulled(KeyframeId id, const CulledKeyframe& culled, ByteWriter& out) {
+  out.Put(id.value);
+  out.Put(culled.frame.value);
+  out.Put(culled.pose.reference.value);
+  WritePose(culled.pose.cam_from_reference, out);
+  out.Put(culled.pose.reference_scale);
+  out.Put(culled.scale);
+}
+
+void ReadCulled(const MapHeader& header, ByteReader& in, MapTables& tables) {
+  const KeyframeId id = ReadKeyframeId(header, tables.culled.NextId(), in);
+  CulledKeyframe culled;
+  culled.frame = FrameId(in.Get<uint32_t>());
+  culled.pose.reference = KeyframeId(in.Get<uint32_t>());
+  culled.pose.cam_from_reference = ReadPose(in);
+  culled.pose.reference_scale = ReadScale(in);
+  culled.scale = ReadScale(in);
+  tables.culled.Put(id, culled);
+}
+
+void WriteLandmark(LandmarkId id, const Landmark& landmark, ByteWriter& out) {
+  out.Put(id.value);
+  out.PutMatrix(landmark.position);
+  out.PutMatrix(landmark.viewing_direction);
+  out.Put(landmark.min_distance);
+  out.Put(landmark.max_distance);
+  for (const uint64_t word : landmark.descriptor) {
+    out.Put(word);
+  }
+  out.Put(landmark.reference.value);
+  out.Put(landmark.created_by.value);
+  out.Put(static_cast<int32_t>(landmark.visible));
+  out.Put(static_cast<int32_t>(landmark.found));
+}
+
+void ReadLandmark(const MapHeader& header, ByteReader& in, MapTables& tables) {
+  const LandmarkId id(in.Get<uint32_t>());
+  in.Require(tables.landmarks.used_slots() <= id.slot() && id.slot() < header.landmark_slots,
+             "has an id that is out of order");
+  Landmark landmark;
+  landmark.position = in.GetMatrix<Eigen::Vector3d>(kMostMapNumber);
+  landmark.viewing_direction = in.GetMatrix<Eigen::Vector3d>(2.0);
+  landmark.min_distance = ReadLength(in);
+  landmark.max_distance = ReadLength(in);
+  for (uint64_t& word : landmark.descriptor) {
+    word = in.Get<uint64_t>();
+  }
+  landmark.reference = KeyframeId(in.Get<uint32_t>());
+  landmark.created_by = KeyframeId(in.Get<uint32_t>());
+  landmark.visible = ReadTimes(in);
+  landmark.found = ReadTimes(in);
+  tables.landmarks.Put(id, std::move(landmark));
+}
+
+void WriteObject(ObjectId id, const ObjectLandmark& object, ByteWriter& out) {
+  out.Put(id.value);
+  out.PutFlag(object.state == ObjectState::kMapped);
+  out.PutFlag(object.has_shape);
+  WriteEllipsoid(object.ellipsoid, out);
+  WriteEllipsoid(object.start, out);
+  WriteVotes(object.votes, out);
+  out.Put(object.reference.value);
+  out.Put(static_cast<int32_t>(object.shaped_views));
+  out.Put(object.misfit_px);
+  out.Put(object.compensated_px);
+  WriteSamples(object.misfit_samples, out);
+  out.Put(static_cast<int32_t>(object.visible));
+  out.Put(static_cast<int32_t>(object.found));
+}
+
+void ReadObject(const MapHeader& header, ByteReader& in, MapTables& tables) {
+  const ObjectId id(in.Get<uint32_t>());
+  in.Require(!(id < tables.objects.NextId()) && id.value < header.next_object,
+             "has an id that is out of order");
+  ObjectLandmark object;
+  object.state = in.GetFlag() ? ObjectState::kMapped : ObjectState::kCandidate;
+  object.has_shape = in.GetFlag();
+  object.ellipsoid = ReadEllipsoid(in);
+  object.start = ReadEllipsoid(in);
+  object.votes = ReadVotes(in);
+  object.reference = KeyframeId(in.Get<uint32_t>());
+  object.shaped_views = static_cast<size_t>(ReadTimes(in));
+  object.misfit_px = ReadLength(in);
+  object.compensated_px = ReadLength(in);
+  object.misfit_samples = ReadSamples(in);
+  object.visible = ReadTimes(in);
+  object.found = ReadTimes(in);
+  tables.objects.Put(id, std::move(object));
+}
+
+}  // namespace hullslam

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <utility>
+
+#include "map_files/map_records.h"
+
+namespace hullslam {
+namespace {
+
+// Sensors in the file.
+constexpr uint8_t kRgbd = 1;
+constexpr uint8_t kMonocular = 2;
+
+constexpr int kMostLevels = 64;
+constexpr double kMostScaleFactor = 16.0;
+
+void WriteCamera(const PinholeCamera& camera, ByteWriter& out) {
+  for (const double number : {camera.fx, camera.fy, camera.cx, camera.cy, camera.k1, camera.k2,
+                              camera.p1, camera.p2, camera.k3, camera.bf}) {
+    out.Put(number);
+  }
+  out.Put(static_cast<int32_t>(camera.width));
+  out.Put(static_cast<int32_t>(camera.height));
+}
+
+PinholeCamera ReadCamera(ByteReader& in) {
+  PinholeCamera camera;
+  for (double* number : {&camera.fx, &camera.fy, &camera.cx, &camera.cy, &camera.k1, &camera.k2,
+                         &camera.p1, &camera.p2, &camera.k3, &camera.bf}) {
+    *number = in.GetFinite(kMostMapNumber);
+  }
+  constexpr int kMostSide = 65'536;  // px; an option of the camera has a smaller bound
+  camera.width = in.Get<int32_t>();
+  camera.height = in.Get<int32_t>();
+  in.Require(camera.width > 0 && camera.width <= kMostSide && camera.height > 0 &&
+                 camera.height <= kMostSide && camera.FindFault().empty(),
+             "has a camera that cannot be");
+  return camera;
+}
+
+}  // namespace
+
+void WriteHeader(const MapHeader& header, ByteWriter& out) {
+  out.Put(header.settings.sensor == SensorKind::kMonocular ? kMonocular : kRgbd);
+  WriteCamera(header.settings.camera, out);
+  out.Put(static_cast<int32_t>(header.settings.level_count));
+  out.Put(header.settings.scale_factor);
+  out.Put(header.settings.vocabulary);
+  out.PutCount(header.sessions.size());
+  for (const Session& session : header.sessions) {
+    out.PutText(session.name);
+    out.Put(session.first_frame.value);
+  }
+  for (const uint32_t number :
+       {header.correction_count, header.keyframes, header.culled, header.landmarks,
+        header.landmark_slots, header.objects, header.next_object}) {
+    out.Put(number);
+  }
+}
+
+MapHeader ReadHeader(ByteReader& in) {
+  MapHeader header;
+  const auto sensor = in.Get<uint8_t>();
+  in.Require(sensor == kRgbd || sensor == kMonocular,
+             "is of a sensor that this version does not know");
+  header.settings.sensor = sensor == kRgbd ? SensorKind::kRgbd : SensorKind::kMonocular;
+  header.settings.camera = ReadCamera(in);
+  header.settings.level_count = in.Get<int32_t>();
+  header.settings.scale_factor = in.GetFinite(kMostScaleFactor);
+  in.Require(header.settings.level_count > 0 && header.settings.level_count <= kMostLevels &&
+                 header.settings.scale_factor > 1.0,
+             "has an image pyramid that cannot be");
+  header.settings.vocabulary = in.Get<uint64_t>();
+  const size_t sessions = in.GetCount(2 * sizeof(uint32_t));
+  for (size_t i = 0; i < sessions; ++i) {
+    Session session{.name = in.GetText(), .first_frame = FrameId(in.Get<uint32_t>())};
+    header.sessions.push_back(std::move(session));
+  }
+  for (uint32_t* number :
+       {&header.correction_count, &header.keyframes, &header.culled, &header.landmarks,
+        &header.landmark_slots, &header.objects, &header.next_object}) {
+    *number = in.Get<uint32_t>();
+  }
+  constexpr uint32_t kMostObjects = uint32_t{1} << 24;  // tables have memory for all ids
+  in.Require(header.keyframes > 0, "has no keyframes");
+  in.Require(header.landmarks <= header.landmark_slots &&
+                 header.landmark_slots <= LandmarkId::kMaxSlot &&
+                 header.objects <= header.next_object && header.next_object <= kMostObjects,
+             "has numbers of entities that cannot be");
+  return header;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "files/byte_reader.h"
+#include "files/byte_writer.h"
+#include "hullslam/frame/frame.h"
+#include "hullslam/map/map_tables.h"
+#include "hullslam/map_files/map_file.h"
+
+// The parts of a map file (docs/maps.md). For each part there is a function that writes it and one
+// that reads and checks it. What connects the parts is checked in map/restored_map.h.
+namespace hullslam {
+
+constexpr double kMostMapNumber = 1e15;  // no length, time or pixel of a map is larger
+
+// What comes first: the settings, the sessions and how many entities follow.
+struct MapHeader {
+  MapSettings settings;
+  std::vector<Session> sessions;
+  uint32_t correction_count = 0;
+  uint32_t keyframes = 0;
+  uint32_t culled = 0;
+  uint32_t landmarks = 0;
+  uint32_t landmark_slots = 0;  // RecyclingTable::used_slots()
+  uint32_t objects = 0;
+  uint32_t next_object = 0;  // CowTable::NextId()
+};
+
+// map_header.cc
+void WriteHeader(const MapHeader& header, ByteWriter& out);
+MapHeader ReadHeader(ByteReader& in);
+
+// map_frame.cc. `settings` are those of the header.
+void WriteFrame(const Frame& frame, ByteWriter& out);
+std::shared_ptr<const Frame> ReadFrame(const MapSettings& settings, ByteReader& in);
+
+// map_detection.cc. A frame has `keypoints` keypoints.
+void WriteDetection(const Detection& detection, ByteWriter& out);
+Detection ReadDetection(size_t keypoints, ByteReader& in);
+
+// map_words.cc: the visual words of a frame, one per keypoint or none. Whether they are words of
+// the vocabulary is checked in map/restored_map.h.
+void WriteWords(const Frame& frame, ByteWriter& out);
+void ReadWords(Frame& frame, ByteReader& in);
+
+// map_entities.cc. Ids increase from one to the next of a kind. What follows from other values is
+// not written: children, the observations of landmarks and objects, and the weights of landmarks.
+void WriteKeyframe(KeyframeId id, const Keyframe& keyframe, ByteWriter& out);
+void ReadKeyframe(const MapHeader& header, ByteReader& in, MapTables& tables);
+void WriteCulled(KeyframeId id, const CulledKeyframe& culled, ByteWriter& out);
+void ReadCulled(const MapHeader& header, ByteReader& in, MapTables& tables);
+void WriteLandmark(LandmarkId id, const Landmark& landmark, ByteWriter& out);
+void ReadLandmark(const MapHeader& header, ByteReader& in, MapTables& tables);
+void WriteObject(ObjectId id, const ObjectLandmark& object, ByteWriter& out);
+void ReadObject(const MapHeader& header, ByteReader& in, MapTables& tables);
+
+// A rotation is four numbers x y z w, of unit length but for rounding.
+void WritePose(const Rigid3& pose, ByteWriter& out);
+Rigid3 ReadPose(ByteReader& in);
+
+}  // namespace hullslam

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/map_files/vocabulary_file.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "files/mapped_file.h"
+#include "hullslam/files/atomic_file.h"
+#include "hullslam/util/error.h"
+#include "map_files/vocabulary_text.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMostVocabularyBytes = 1'000'000'000;
+
+// A variable of the environment; empty if it is not set.
+std::string Variable(const char* name) {
+  // Nothing in this library changes the environment, so reading it is safe.
+  // NOLINTNEXTLINE(concurrency-mt-unsafe)
+  const char* const value = std::getenv(name);
+  return value != nullptr ? value : "";
+}
+
+std::string_view AsText(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+}  // namespace
+
+Vocabulary ReadVocabulary(const fs::path& path, const ProgressCallback& on_progress) {
+  const FileBytes file = MapFile(path, kMostVocabularyBytes);
+  if (Vocabulary::IsBinary(file.bytes)) {
+    return Vocabulary::View(file.bytes, file.owner, path.string());
+  }
+  const std::string_view text = AsText(file.bytes);
+  if (text.empty()) {
+    throw InputError(path.string() + ": is empty, expected a vocabulary");
+  }
+  if (text.front() < '0' || text.front() > '9') {
+    throw InputError(path.string() +
+                     ": is not a vocabulary, expected the binary form of HullSLAM or the text "
+                     "format of DBoW2");
+  }
+  return ParseVocabularyText(text, path, on_progress);
+}
+
+void WriteVocabulary(const fs::path& path, const Vocabulary& vocabulary, VocabularyForm form) {
+  if (form == VocabularyForm::kBinary) {
+    WriteFileAtomically(path, AsText(vocabulary.bytes()));
+  } else {
+    WriteFileAtomically(path, FormatVocabularyText(vocabulary));
+  }
+}
+
+fs::path FindDefaultVocabulary() {
+  std::error_code error;
+  if (const std::string chosen = Variable("HULLSLAM_VOCABULARY"); !chosen.empty()) {
+    if (!fs::is_regular_file(chosen, error)) {
+      throw InputError("HULLSLAM_VOCABULARY: '" + chosen + "' is not a file");
+    }
+    return chosen;
+  }
+  std::vector<fs::path> places = {HULLSLAM_INSTALLED_VOCABULARY, HULLSLAM_SOURCE_VOCABULARY};
+  if (const std::string config = Variable("HULLSLAM_CONFIG"); !config.empty()) {
+    places.insert(places.begin(), fs::path(config) / ".." / "Vocabulary" / "hullslam.bow");
+  }
+  for (const fs::path& place : places) {
+    if (fs::is_regular_file(place, error)) {
+      return place;
+    }
+  }
+  throw InputError(
+      fmt::format("neither {} nor {} is a file, expected the default vocabulary "
+                  "there; set HULLSLAM_VOCABULARY or give --vocabulary FILE|none",
+                  HULLSLAM_INSTALLED_VOCABULARY, HULLSLAM_SOURCE_VOCABULARY));
+}
+
+}  // namespace hullslam

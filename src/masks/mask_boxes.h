@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "hullslam/masks/mask_source.h"
+#include "masks/mask_probe.h"
+
+namespace hullslam {
+
+// Format boxes: `<stem>.txt` with one line per box, in one of two forms. The first box of the
+// folder decides which.
+// - `class x y width height score` in pixels; x and y are the upper left corner. EAO-SLAM (Wu et
+// al.
+//   2020) reads these files.
+// - `class x y width height [confidence]` in shares of the image; x and y are the centre. YOLO
+//   (Ultralytics, save_txt) writes these files for detections.
+bool IsBoxes(const MaskProbe& probe);
+std::unique_ptr<MaskSource> OpenBoxes(const MaskRequest& request);
+
+}  // namespace hullslam

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "masks/mask_label_png.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "files/json_file.h"
+#include "files/text_rows.h"
+#include "hullslam/sequences/image_file.h"
+#include "hullslam/util/error.h"
+#include "masks/mask_checks.h"
+#include "masks/mask_outline.h"
+#include "masks/mask_text.h"
+#include "util/shown_text.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr size_t kMostClassesBytes = 16'000'000;
+constexpr const char* kClassesFile = "classes.json";
+
+// The class and score of an instance.
+struct InstanceClass {
+  std::string label;
+  double score = 1.0;
+};
+using InstanceClasses = std::map<int, InstanceClass>;
+
+// The classes of all frames, and those of single frames, which take precedence.
+struct LabelClasses {
+  InstanceClasses of_all;
+  std::map<std::string, InstanceClasses> of_frame;
+};
+
+class ClassesReader {
+ public:
+  explicit ClassesReader(std::filesystem::path path) : path_(std::move(path)) {}
+
+  LabelClasses Read() const {
+    const Json json = ReadJson(path_, {.most_bytes = kMostClassesBytes});
+    CheckObject(json, "the file");
+    LabelClasses classes;
+    for (const auto& [key, value] : json.items()) {
+      if (key != "frames") {
+        Add(key, value, classes.of_all);
+        continue;
+      }
+      CheckObject(value, "frames");
+      for (const auto& [stem, instances] : value.items()) {
+        CheckObject(instances, "frames." + ShowText(stem));
+        for (const auto& [instance, entry] : instances.items()) {
+          Add(instance, entry, classes.of_frame[stem]);
+        }
+      }
+    }
+    return classes;
+  }
+
+ private:
+  void CheckObject(const Json& json, const std::string& what) const {
+    if (!json.is_object()) {
+      throw InputError(fmt::format("{}: {} is {}, expected an object {{\"1\": \"cup\"}}",
+                                   path_.string(), what, ShowJson(json)));
+    }
+  }
+
+  void Add(const std::string& key, const Json& value, InstanceClasses& classes) const {
+    double number = 0.0;
+    if (!ParseFinite(key, number) || !(number >= 1.0 && number <= 65535.0) ||
+        number != static_cast<int>(number)) {
+      throw InputError(fmt::format("{}: key '{}', expected the number of an instance, 1 to 65535",
+                                   path_.string(), ShowText(key)));
+    }
+    InstanceClass& entry = classes[static_cast<int>(number)];
+    const Json& label = value.is_object() && value.contains("class") ? value["class"] : value;
+    if (!label.is_string() || label.get<std::string>().empty()) {
+      throw InputError(
+          fmt::format("{}: instance {} is {}, expected \"cup\" or {{\"class\": \"cup\", "
+                      "\"score\": 0.9}}",
+                      path_.string(), ShowText(key), ShowJson(value)));
+    }
+    entry.label = label.get<std::string>();
+    if (value.is_object() && value.contains("score")) {
+      entry.score = value["score"].is_number() ? value["score"].get<double>() : -1.0;
+      if (!(entry.score >= 0.0 && entry.score <= 1.0)) {
+        throw InputError(
+            fmt::format("{}: score of instance {} is {}, expected a number from 0 to 1",
+                        path_.string(), ShowText(key), ShowJson(value["score"])));
+      }
+    }
+  }
+
+  std::filesystem::path path_;
+};
+
+// The bounding box of each number in a label image.
+std::map<int, cv::Rect> FindInstances(const cv::Mat& labels) {
+  std::map<int, cv::Rect> instances;
+  for (int y = 0; y < labels.rows; ++y) {
+    const auto* const row = labels.ptr<uint16_t>(y);
+    for (int x = 0; x < labels.cols;) {
+      const int begin = x;
+      const uint16_t label = row[x];
+      while (x < labels.cols && row[x] == label) {
+        ++x;
+      }
+      if (label != 0) {
+        instances[label] |= cv::Rect(begin, y, x - begin, 1);
+      }
+    }
+  }
+  return instances;
+}
+
+class LabelPngMasks : public MaskSource {
+ public:
+  explicit LabelPngMasks(const MaskRequest& request)
+      : request_(request),
+        stems_(ListFiles(request.path, ".png")),
+        classes_(ClassesReader(request.path / kClassesFile).Read()) {}
+
+  std::string format() const override { return "label-png"; }
+  bool Contains(const MaskFrame& frame) const override { return stems_.contains(frame.stem); }
+  std::string Example() const override { return stems_.empty() ? "" : *stems_.begin() + ".png"; }
+
+  FrameMasks Read(const MaskFrame& frame) const override {
+    FrameMasks result;
+    result.is_missing = !Contains(frame);
+    if (result.is_missing) {
+      return result;
+    }
+    const cv::Mat labels = Load(frame);
+    for (const auto& [number, box] : FindInstances(labels)) {
+      AddInstance(Outline(frame, labels, number, box), result);
+      if (HasTooMany(result)) {
+        throw InputError(fmt::format("{}: too many instances, expected at most {} per frame",
+                                     Path(frame).string(), kMostInstances));
+      }
+    }
+    return result;
+  }
+
+ private:
+  std::filesystem::path Path(const MaskFrame& frame) const {
+    return request_.path / (frame.stem + ".png");
+  }
+
+  cv::Mat Load(const MaskFrame& frame) const {
+    const std::filesystem::path path = Path(frame);
+    cv::Mat labels = ReadLabelImage(path);
+    if (labels.cols != request_.width || labels.rows != request_.height) {
+      throw InputError(fmt::format("{}: {}x{} px, expected the size of the images, {}x{}",
+                                   path.string(), labels.cols, labels.rows, request_.width,
+                                   request_.height));
+    }
+    return labels;
+  }
+
+  InstanceMask Outline(const MaskFrame& frame, const cv::Mat& labels, int number,
+                       const cv::Rect& box) const {
+    const InstanceClass& entry = ClassOf(frame, number);
+    InstanceMask instance{.label = entry.label,
+                          .score = entry.score,
+                          .outlines = FindMaskOutlines(labels(box) == number)};
+    for (auto& outline : instance.outlines) {
+      for (Eigen::Vector2d& point : outline) {
+        point += Eigen::Vector2d(box.x, box.y);
+      }
+    }
+    return instance;
+  }
+
+  const InstanceClass& ClassOf(const MaskFrame& frame, int number) const {
+    const auto of_frame = classes_.of_frame.find(frame.stem);
+    if (of_frame != classes_.of_frame.end()) {
+      const auto entry = of_frame->second.find(number);
+      if (entry != of_frame->second.end()) {
+        return entry->second;
+      }
+    }
+    const auto entry = classes_.of_all.find(number);
+    if (entry == classes_.of_all.end()) {
+      throw InputError(
+          fmt::format("{}: instance {} is not in {}", Path(frame).string(), number, kClassesFile));
+    }
+    return entry->second;
+  }
+
+  MaskRequest request_;
+  std::set<std::string> stems_;
+  LabelClasses classes_;
+};
+
+}  // namespace
+
+bool IsLabelPng(const MaskProbe& probe) { return probe.has_images && probe.has_classes_json; }
+
+std::unique_ptr<MaskSource> OpenLabelPng(const MaskRequest& request) {
+  return std::make_unique<LabelPngMasks>(request);
+}
+
+}  // namespace hullslam

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "masks/mask_probe.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string_view>
+#include <system_error>
+
+#include "files/json_file.h"
+#include "files/text_rows.h"
+#include "hullslam/util/error.h"
+#include "masks/mask_checks.h"
+#include "masks/mask_text.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMostColumns = 64;  // enough to recognise a format
+
+// Returns false for a file without rows.
+bool ProbeRow(const fs::path& path, MaskProbe& probe) {
+  CheckFileSize(path, kMostFrameFileBytes);
+  ForEachRow(path, [&](const TextRow& row) {
+    if (probe.columns == 0) {
+      probe.columns = row.columns.size();
+      const size_t shown = std::min(row.columns.size(), kMostColumns);
+      probe.row.assign(row.columns.begin(), row.columns.begin() + static_cast<ptrdiff_t>(shown));
+    }
+  });
+  return probe.columns > 0;
+}
+
+void ProbeFolder(MaskProbe& probe) {
+  std::error_code error;
+  probe.has_images = !ListFiles(probe.path, ".png").empty();
+  probe.has_classes_json = fs::exists(probe.path / "classes.json", error);
+  probe.has_paper_folder = fs::is_directory(probe.path / "segmentation_txt", error);
+  std::set<std::string> json = ListFiles(probe.path, ".json");
+  json.erase("classes");
+  probe.has_json = !json.empty();
+  std::set<std::string> texts = ListFiles(probe.path, ".txt");
+  texts.erase("classes");
+  probe.texts = texts.size();
+  for (const std::string& name : texts) {
+    if (ProbeRow(probe.path / (name + ".txt"), probe)) {
+      probe.row_file = name + ".txt";
+      return;
+    }
+  }
+}
+
+std::string DescribeFolderMisfit(const MaskProbe& probe) {
+  std::error_code error;
+  if (fs::is_empty(probe.path, error)) {
+    return "the folder is empty, expected masks";
+  }
+  if (probe.columns > 0) {
+    constexpr size_t kColumnsShown = 8;
+    const size_t shown = std::min(probe.row.size(), kColumnsShown);
+    return fmt::format(
+        "'{}{}' in {} fits no format of masks, expected one that docs/masks.md shows",
+        fmt::join(probe.row.begin(), probe.row.begin() + static_cast<ptrdiff_t>(shown), " "),
+        probe.columns > shown ? " ..." : "", probe.row_file);
+  }
+  if (probe.texts > 0) {
+    return fmt::format(
+        "all {} text files are empty, so their format cannot be detected; give --masks-format",
+        probe.texts);
+  }
+  if (probe.has_images) {
+    return "has PNG files but no classes.json, which the format label-png needs";
+  }
+  if (probe.has_json) {
+    return "has JSON files but no text files; give the path of the JSON file";
+  }
+  return "has neither text files nor PNG files, expected masks";
+}
+
+void ProbeFile(MaskProbe& probe) {
+  constexpr std::array<std::string_view, 3> kKeys = {"annotations", "image_id", "detections"};
+  const std::string text = ReadFile(probe.path, kMostJsonFileBytes);
+  size_t first = std::string::npos;
+  for (const std::string_view key : kKeys) {
+    const size_t at = text.find('"' + std::string(key) + '"');
+    if (at < first) {
+      first = at;
+      probe.json_key = key;
+    }
+  }
+}
+
+}  // namespace
+
+MaskProbe ProbeMasks(const fs::path& path) {
+  MaskProbe probe;
+  probe.path = path;
+  std::error_code error;
+  if (!fs::exists(path, error)) {
+    throw InputError(path.string() + ": no such folder or file, expected masks");
+  }
+  probe.is_folder = fs::is_directory(path, error);
+  if (!probe.is_folder && !fs::is_regular_file(path, error)) {
+    throw InputError(path.string() +
+                     ": is neither a folder nor a file; give --masks-format to read it");
+  }
+  if (probe.is_folder) {
+    ProbeFolder(probe);
+  } else {
+    ProbeFile(probe);
+  }
+  return probe;
+}
+
+std::string DescribeMisfit(const MaskProbe& probe) {
+  if (probe.is_folder) {
+    return DescribeFolderMisfit(probe);
+  }
+  ReadJson(probe.path, {.most_bytes = kMostJsonFileBytes});  // throws where the JSON breaks off
+  return "is JSON, but has none of the keys 'annotations', 'image_id' (coco) and 'detections' "
+         "(oa-slam)";
+}
+
+bool IsNormalized(const MaskProbe& probe, size_t column) {
+  constexpr double kRounding = 0.01;
+  for (; column < probe.row.size(); ++column) {
+    double value = 0.0;
+    if (!ParseFinite(probe.row[column], value) || value < -kRounding || value > 1.0 + kRounding) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace hullslam

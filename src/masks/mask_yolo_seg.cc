@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "masks/mask_yolo_seg.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "masks/mask_checks.h"
+#include "masks/mask_text.h"
+
+namespace hullslam {
+namespace {
+
+// Outlines that run between pixels end half a pixel beyond the centres at the border. Rounding adds
+// to this.
+constexpr double kMostBeyond = 1.0;  // px
+
+class YoloSegMasks : public TextMasks {
+ public:
+  using TextMasks::TextMasks;
+  std::string format() const override { return "yolo-seg"; }
+
+ private:
+  // Coordinates are pixels with integer centres, divided by width and height. Ultralytics writes
+  // them so: it divides the pixels that cv::findContours() returns.
+  InstanceMask Parse(const TextRow& row) const override {
+    const size_t points = (row.columns.size() - 1) / 2;
+    if (points < 3) {
+      row.Fail(
+          fmt::format("{} column(s), expected a polygon of 3 points or more: class x1 y1 ... "
+                      "xn yn [confidence]",
+                      row.columns.size()));
+    }
+    if (points > kMostOutlinePoints) {
+      row.Fail(
+          fmt::format("a polygon of {} points, expected at most {}", points, kMostOutlinePoints));
+    }
+    InstanceMask instance{.label = ClassName(row, 0), .outlines = {}};
+    std::vector<Eigen::Vector2d> outline(points);
+    for (size_t i = 0; i < points; ++i) {
+      outline[i] = {Coordinate(row, 1 + 2 * i, "x", request().width),
+                    Coordinate(row, 2 + 2 * i, "y", request().height)};
+    }
+    if (row.columns.size() % 2 == 0) {
+      instance.score = Score(row, row.columns.size() - 1);
+    }
+    instance.outlines.push_back(std::move(outline));
+    return instance;
+  }
+
+  // A coordinate in pixels.
+  static double Coordinate(const TextRow& row, size_t column, const char* name, int size) {
+    const double value = row.Number(column, name);
+    const double pixels = value * size;
+    if (pixels < -kMostBeyond || pixels > size + kMostBeyond) {
+      row.Fail(fmt::format("{} is '{}' in column {}, expected a number from 0 to 1", name, value,
+                           column + 1));
+    }
+    return pixels;
+  }
+};
+
+}  // namespace
+
+bool IsYoloSeg(const MaskProbe& probe) { return probe.columns >= 7 && IsNormalized(probe, 1); }
+
+std::unique_ptr<MaskSource> OpenYoloSeg(const MaskRequest& request) {
+  return std::make_unique<YoloSegMasks>(request);
+}
+
+}  // namespace hullslam

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/results/object_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "hullslam/util/check.h"
+#include "results/object_file_version.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kPixel = 1e-2;
+constexpr double kMetre = 1e-9;
+constexpr double kAngle = 1e-4;  // degrees; also for shares
+
+// Rounds `value` to a multiple of `unit` (1 over a power of ten). Never returns -0.
+double Rounded(double value, double unit) {
+  Check(std::isfinite(value), "a number of an object is not finite");
+  const double units = std::round(1.0 / unit);
+  return std::round(value * units) / units + 0.0;
+}
+
+// null if the value is not known.
+Json OrNull(const std::optional<double>& value) {
+  return value ? Json(Rounded(*value, kMetre)) : Json(nullptr);
+}
+
+Json PoseJson(const Rigid3& pose) {
+  Json json = Json::array();
+  for (const double value : pose.translation) {
+    json.push_back(Rounded(value, kMetre));
+  }
+  for (const double value : pose.rotation.coeffs()) {
+    json.push_back(Rounded(value, kMetre));
+  }
+  return json;
+}
+
+Json PointsJson(const std::vector<Eigen::Vector2d>& points) {
+  Json json = Json::array();
+  for (const Eigen::Vector2d& point : points) {
+    json.push_back({Rounded(point.x(), kPixel), Rounded(point.y(), kPixel)});
+  }
+  return json;
+}
+
+Json LinesJson(const std::vector<SilhouetteLine>& lines) {
+  // Over an image of 1000 px the rounding of the normal moves the line by 0.001 px.
+  constexpr double kNormal = 1e-6;
+  constexpr double kOffset = 1e-3;
+  Json json = Json::array();
+  for (const auto& [line, is_one_sided] : lines) {
+    json.push_back({Rounded(line.normal.x(), kNormal), Rounded(line.normal.y(), kNormal),
+                    Rounded(line.offset, kOffset), is_one_sided ? 1 : 0});
+  }
+  return json;
+}
+
+Json QuadricJson(const Ellipsoid& ellipsoid) {
+  Json rows = Json::array();
+  const Eigen::Matrix4d quadric = ellipsoid.DualQuadric();
+  for (const auto& row : quadric.rowwise()) {
+    Json values = Json::array();
+    for (const double value : row) {
+      values.push_back(Rounded(value, kMetre));
+    }
+    rows.push_back(values);
+  }
+  return rows;
+}
+
+const char* ToString(ObjectState state) {
+  return state == ObjectState::kMapped ? "mapped" : "candidate";
+}
+
+Json ToJson(const PinholeCamera& camera) {
+  return {{"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx},       {"cy", camera.cy},
+          {"k1", camera.k1}, {"k2", camera.k2}, {"p1", camera.p1},       {"p2", camera.p2},
+          {"k3", camera.k3}, {"bf", camera.bf}, {"width", camera.width}, {"height", camera.height}};
+}
+
+Json ToJson(ObjectId object, const ReportedView& view) {
+  return {{"object", object.value},
+          {"keyframe", view.keyframe.value},
+          {"timestamp", Rounded(view.timestamp, kMetre)},
+          {"cam_from_world", PoseJson(view.cam_from_world)},
+          {"class", view.label},
+          {"score", Rounded(view.score, kMetre)},
+          {"cut", view.is_cut},
+          {"box", view.is_box},
+          {"hull", PointsJson(view.hull)},
+          {"contour", PointsJson(view.contour)},
+          {"lines", LinesJson(view.lines)}};
+}
+
+// Everything about an object except its views.
+Json ToJson(const ReportedObject& object) {
+  Json votes = Json::object();
+  for (const auto& [label, score] : object.votes) {
+    votes[label] = Rounded(score, kMetre);
+  }
+  const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
+  return {{"id", object.id.value},
+          {"class", object.label},
+          {"votes", votes},
+          {"state", ToString(object.state)},
+          {"world_from_object", PoseJson(object.ellipsoid.world_from_object)},
+          {"half_axes",
+           {Rounded(axes.x(), kMetre), Rounded(axes.y(), kMetre), Rounded(axes.z(), kMetre)}},
+          {"dual_quadric", QuadricJson(object.ellipsoid)},
+          {"siou", OrNull(object.fit.siou)},
+          {"siou_mask", OrNull(object.fit.siou_mask)},
+          {"mtd_m2", OrNull(object.fit.mtd_m2)},
+          {"tangent_px", OrNull(object.fit.tangent_px)},
+          {"misfit_px", Rounded(object.misfit_px, kMetre)},
+          {"parallax_deg", Rounded(ParallaxOf(object), kAngle)},
+          {"quality", Rounded(QualityOf(object), kAngle)},
+          {"observations", object.views.size()}};
+}
+
+Json ToJson(const std::optional<ObjectPlace>& place) {
+  if (!place) {
+    return nullptr;
+  }
+  const Eigen::Vector3d& axes = place->ellipsoid.half_axes;
+  return {{"object", place->object.value},
+          {"world_from_object", PoseJson(place->ellipsoid.world_from_object)},
+          {"half_axes",
+           {Rounded(axes.x(), kMetre), Rounded(axes.y(), kMetre), Rounded(axes.z(), kMetre)}}};
+}
+
+Json ToJson(const ChangedObject& changed) {
+  return {{"change", std::string(ToString(changed.change))},
+          {"class", changed.label},
+          {"now", ToJson(changed.now)},
+          {"former", ToJson(changed.former)},
+          {"expected", changed.expected},
+          {"found", changed.found}};
+}
+
+Json ToJson(const std::optional<std::vector<ChangedObject>>& changes) {
+  if (!changes) {
+    return nullptr;
+  }
+  Json list = Json::array();
+  for (const ChangedObject& changed : *changes) {
+    list.push_back(ToJson(changed));
+  }
+  return list;
+}
+
+// Labels come from the files of users and may contain any bytes.
+std::string Dump(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// The head, and then a member with the entries, each on its own line.
+std::string WithEntries(const Json& head, const char* name,
+                        const std::vector<std::string>& entries) {
+  std::string text = Dump(head);
+  text.pop_back();
+  text += fmt::format(",\"{}\":[", name);
+  for (const std::string& entry : entries) {
+    text += (&entry == &entries.front() ? "\n " : ",\n ") + entry;
+  }
+  return text + "\n]}\n";
+}
+
+// A field of a CSV file by RFC 4180: in quotes if it contains a quote, a comma or a line end.
+std::string CsvField(const std::string& text) {
+  if (text.find_first_of("\",\r\n") == std::string::npos) {
+    return text;
+  }
+  std::string quoted = "\"";
+  for (const char c : text) {
+    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  }
+  return quoted + '"';
+}
+
+std::string CsvNumber(const std::optional<double>& value) {
+  return value ? fmt::format("{}", Rounded(*value, kMetre)) : std::string();
+}
+
+}  // namespace
+
+std::string FormatObjects(const ObjectReport& report) {
+  const Json head = {{"version", kObjectFileVersion},
+                     {"sequence", report.sequence},
+                     {"camera", ToJson(report.camera)},
+                     {"candidates", report.candidates},
+                     {"changes", ToJson(report.changes)}};
+  std::vector<std::string> objects;
+  for (const ReportedObject& object : report.objects) {
+    objects.push_back(Dump(ToJson(object)));
+  }
+  return WithEntries(head, "objects", objects);
+}
+
+std::string FormatObservations(const ObjectReport& report) {
+  std::vector<std::string> views;
+  for (const ReportedObject& object : report.objects) {
+    for (const ReportedView& view : object.views) {
+      views.push_back(Dump(ToJson(object.id, view)));
+    }
+  }
+  return WithEntries({{"version", kObjectFileVersion}}, "observations", views);
+}
+
+std::string FormatObjectsCsv(const ObjectReport& report) {
+  std::string text =
+      "id,class,state,observations,tx,ty,tz,qx,qy,qz,qw,half_axis_x,half_axis_y,half_axis_z,"
+      "siou,siou_mask,mtd_m2,tangent_px,misfit_px,parallax_deg,quality\n";
+  for (const ReportedObject& object : report.objects) {
+    text += fmt::format("{},{},{},{}", object.id.value, CsvField(object.label),
+                        ToString(object.state), object.views.size());
+    const Rigid3& pose = object.ellipsoid.world_from_object;
+    for (const auto& values :
+         {Eigen::VectorXd(pose.translation), Eigen::VectorXd(pose.rotation.coeffs()),
+          Eigen::VectorXd(object.ellipsoid.half_axes)}) {
+      for (const double value : values) {
+        text += ',' + CsvNumber(value);
+      }
+    }
+    for (const std::optional<double>& value :
+         {object.fit.siou, object.fit.siou_mask, object.fit.mtd_m2, object.fit.tangent_px,
+          std::optional(object.misfit_px)}) {
+      text += ',' + CsvNumber(value);
+    }
+    text += fmt::format(",{},{}\n", Rounded(ParallaxOf(object), kAngle),
+                        Rounded(QualityOf(object), kAngle));
+  }
+  return text;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The readers of hullslam/results/object_file.h.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "files/json_file.h"
+#include "files/json_node.h"
+#include "files/plausible.h"
+#include "geometry/polyline.h"
+#include "hullslam/results/object_file.h"
+#include "hullslam/util/error.h"
+#include "results/json_pose.h"
+#include "results/object_file_version.h"
+
+namespace hullslam {
+namespace {
+
+constexpr const char* kObservationsFile = "objects_observations.json";
+
+PinholeCamera ReadCamera(const JsonNode& node) {
+  PinholeCamera camera;
+  camera.fx = node.At("fx").PositiveNumber(kMostPixels);
+  camera.fy = node.At("fy").PositiveNumber(kMostPixels);
+  camera.cx = node.At("cx").Number(kMostPixels);
+  camera.cy = node.At("cy").Number(kMostPixels);
+  camera.k1 = node.At("k1").Number();
+  camera.k2 = node.At("k2").Number();
+  camera.p1 = node.At("p1").Number();
+  camera.p2 = node.At("p2").Number();
+  camera.k3 = node.At("k3").Number();
+  camera.bf = node.At("bf").PositiveNumber(kMostPixels);
+  constexpr uint32_t kLargest = 16384;
+  const auto size = [&](const char* key) {
+    const uint32_t value = node.At(key).Count();
+    if (value == 0 || value > kLargest) {
+      node.At(key).Fail("an integer from 1 to 16384");
+    }
+    return static_cast<int>(value);
+  };
+  camera.width = size("width");
+  camera.height = size("height");
+  if (const std::string fault = camera.FindFault(); !fault.empty()) {
+    node.Fail("a camera; " + fault);
+  }
+  return camera;
+}
+
+std::vector<SilhouetteLine> ReadLines(const JsonNode& node) {
+  constexpr double kTolerance = 1e-3;
+  std::vector<SilhouetteLine> lines;
+  for (const JsonNode& entry : node.Elements()) {
+    const std::vector<double> values = entry.Numbers(4);
+    const Eigen::Vector2d normal(values[0], values[1]);
+    if (!(std::abs(normal.norm() - 1.0) <= kTolerance && std::abs(values[2]) <= kMostPixels)) {
+      entry.Fail("nx, ny of unit length, then c and 1 or 0");
+    }
+    lines.push_back({{normal.normalized(), values[2]}, values[3] != 0.0});
+  }
+  return lines;
+}
+
+ReportedView ReadView(const JsonNode& node) {
+  ReportedView view;
+  view.keyframe = KeyframeId(node.At("keyframe").Count());
+  view.timestamp = node.At("timestamp").Number(kMostSeconds);
+  view.cam_from_world = PoseOf(node.At("cam_from_world"));
+  view.label = node.At("class").Text();
+  view.score = node.At("score").Number(1.0);
+  view.is_cut = node.At("cut").Flag();
+  view.is_box = node.At("box").Flag();
+  view.hull = node.At("hull").Points();
+  if (view.hull.size() < 3 || !(SignedArea(view.hull) > 0.0)) {
+    node.At("hull").Fail("three corners or more in the order of positive area");
+  }
+  view.contour = node.At("contour").Points();
+  view.lines = ReadLines(node.At("lines"));
+  return view;
+}
+
+ObjectState ReadState(const JsonNode& node) {
+  const std::string state = node.Text();
+  if (state != "mapped" && state != "candidate") {
+    node.Fail("\"mapped\" or \"candidate\"");
+  }
+  return state == "mapped" ? ObjectState::kMapped : ObjectState::kCandidate;
+}
+
+std::map<std::string, double> ReadVotes(const JsonNode& node) {
+  constexpr double kMostVotes = 1e9;
+  std::map<std::string, double> votes;
+  for (const auto& [label, score] : node.Members()) {
+    votes[label] = score.Number(kMostVotes);
+  }
+  return votes;
+}
+
+std::optional<double> ReadOptional(const JsonNode& node, const char* key, double most) {
+  return node.Has(key) ? std::optional(node.At(key).Number(most)) : std::nullopt;
+}
+
+ReportedObject ReadObject(const JsonNode& node) {
+  ReportedObject object;
+  object.id = ObjectId(node.At("id").Count());
+  object.state = ReadState(node.At("state"));
+  object.label = node.At("class").Text();
+  object.votes = ReadVotes(node.At("votes"));
+  object.ellipsoid.world_from_object = PoseOf(node.At("world_from_object"));
+  object.ellipsoid.half_axes = node.At("half_axes").Lengths();
+  object.misfit_px = node.At("misfit_px").Number(kMostPixels);
+  object.fit.siou = ReadOptional(node, "siou", 1.0);
+  object.fit.siou_mask = ReadOptional(node, "siou_mask", 1.0);
+  object.fit.mtd_m2 = ReadOptional(node, "mtd_m2", kMostMetres);
+  object.fit.tangent_px = ReadOptional(node, "tangent_px", kMostPixels);
+  return object;
+}
+
+std::optional<ObjectPlace> ReadPlace(const JsonNode& node, const char* key) {
+  if (!node.Has(key)) {
+    return std::nullopt;
+  }
+  const JsonNode place = node.At(key);
+  return ObjectPlace{ObjectId(place.At("object").Count()),
+                     {PoseOf(place.At("world_from_object")), place.At("half_axes").Lengths()}};
+}
+
+ObjectChange ReadChange(const JsonNode& node) {
+  const std::string name = node.Text();
+  for (const ObjectChange change : kObjectChanges) {
+    if (ToString(change) == name) {
+      return change;
+    }
+  }
+  node.Fail("seen_again, moved, gone, new, not_seen or first_seen");
+}
+
+// Null in the file of a run without a map of earlier sessions.
+std::optional<std::vector<ChangedObject>> ReadChanges(const JsonNode& top) {
+  if (!top.Has("changes")) {
+    return std::nullopt;
+  }
+  std::vector<ChangedObject> changes;
+  for (const JsonNode& node : top.At("changes").Elements()) {
+    changes.push_back({.change = ReadChange(node.At("change")),
+                       .label = node.At("class").Text(),
+                       .now = ReadPlace(node, "now"),
+                       .former = ReadPlace(node, "former"),
+                       .expected = static_cast<int>(node.At("expected").Count()),
+                       .found = static_cast<int>(node.At("found").Count())});
+  }
+  return changes;
+}
+
+void CheckVersion(const JsonNode& top) {
+  if (top.At("version").Count() != kObjectFileVersion) {
+    top.At("version").Fail("2, which this version of HullSLAM writes");
+  }
+}
+
+// Adds the observations to their objects, which must have `counts` observations.
+void ReadObservations(const std::filesystem::path& path, const std::vector<uint32_t>& counts,
+                      ObjectReport& report) {
+  const nlohmann::json json = ReadJson(path);
+  const JsonNode top(path, json);
+  CheckVersion(top);
+  std::map<uint32_t, ReportedObject*> objects;
+  for (ReportedObject& object : report.objects) {
+    objects[object.id.value] = &object;
+  }
+  for (const JsonNode& view : top.At("observations").Elements()) {
+    const auto object = objects.find(view.At("object").Count());
+    if (object == objects.end()) {
+      view.At("object").Fail("the id of an object in objects.json");
+    }
+    object->second->views.push_back(ReadView(view));
+  }
+  for (size_t i = 0; i < counts.size(); ++i) {
+    const ReportedObject& object = report.objects[i];
+    if (object.views.size() != counts[i]) {
+      throw InputError(fmt::format(
+          "{}: has {} observations of object {}, expected {} as in objects.json; both files must "
+          "be of the same run",
+          path.string(), object.views.size(), object.id.value, counts[i]));
+    }
+  }
+}
+
+}  // namespace
+
+ObjectReport ReadObjects(const std::filesystem::path& path,
+                         const std::filesystem::path& observations) {
+  const nlohmann::json json = ReadJson(path);
+  const JsonNode top(path, json);
+  CheckVersion(top);
+  ObjectReport report;
+  report.sequence = top.At("sequence").Text();
+  report.camera = ReadCamera(top.At("camera"));
+  report.candidates = top.At("candidates").Count();
+  report.changes = ReadChanges(top);
+  std::vector<uint32_t> counts;
+  for (const JsonNode& object : top.At("objects").Elements()) {
+    report.objects.push_back(ReadObject(object));
+    counts.push_back(object.At("observations").Count());
+  }
+  ReadObservations(observations, counts, report);
+  return report;
+}
+
+ObjectReport ReadObjects(const std::filesystem::path& path) {
+  return ReadObjects(path, path.parent_path() / kObservationsFile);
+}
+
+}  // namespace hullslam

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/results/output_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "files/staging_folder.h"
+#include "files/synced_file.h"
+#include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Names = std::set<std::string>;
+
+constexpr const char* kPrefix = ".hullslam-";  // of staging folders
+constexpr const char* kReady = "ready";  // the content of a staging folder, when it is complete
+constexpr std::array<const char*, 2> kIndexes = {"summary.json", "pictures.json"};
+// What versions without a list of files wrote. They had no other index than summary.json.
+constexpr std::array<const char*, 6> kNamesWithoutList = {
+    "trajectory.txt", "keyframes.txt", "map.ply", "objects.json", "objects.ply", "summary.json"};
+// Pictures of a run that scripts/plot_run.py draws. They are removed with the run.
+constexpr std::array<const char*, 2> kDrawnNames = {"run.png", "overlays.png"};
+
+bool IsPlainName(const std::string& name) {
+  return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos;
+}
+
+// The names of the files of the run with this index, and of what was drawn of it. Empty if there is
+// no such index, or if no run wrote it.
+Names NamesOfRun(const fs::path& index) {
+  std::error_code error;
+  constexpr uintmax_t kMostBytes = 64'000'000;
+  if (!fs::is_regular_file(index, error) || fs::file_size(index, error) > kMostBytes) {
+    return {};
+  }
+  std::ifstream file(index);
+  const auto json = nlohmann::json::parse(file, nullptr, false);
+  if (!json.is_object()) {
+    return {};
+  }
+  Names names(kDrawnNames.begin(), kDrawnNames.end());
+  names.insert(index.filename().string());
+  if (json.contains("files") && json["files"].is_array()) {
+    for (const nlohmann::json& name : json["files"]) {
+      if (name.is_string() && IsPlainName(name.get<std::string>())) {
+        names.insert(name.get<std::string>());
+      }
+    }
+  } else if (json.contains("trajectory") && json.contains("provenance")) {
+    names.insert(kNamesWithoutList.begin(), kNamesWithoutList.end());
+  } else {
+    return {};
+  }
+  return names;
+}
+
+// The canonical path, also of a file or folder that does not exist yet.
+fs::path Canonical(const fs::path& path) {
+  std::error_code error;
+  fs::path canonical = fs::weakly_canonical(fs::absolute(path, error), error);
+  if (error) {
+    canonical = fs::absolute(path, error).lexically_normal();
+  }
+  // A path that ends in a slash has an empty last part.
+  return canonical.has_filename() ? canonical : canonical.parent_path();
+}
+
+bool IsSameOrInside(const fs::path& inner, const fs::path& outer) {
+  const auto [end, unused] = std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end());
+  return end == outer.end();
+}
+
+void CheckApartFromInputs(const fs::path& folder, std::span<const fs::path> inputs) {
+  const fs::path output = Canonical(folder);
+  for (const fs::path& path : inputs) {
+    std::error_code error;
+    if (path.empty()) {
+      continue;
+    }
+    const fs::path input = Canonical(path);
+    if (IsSameOrInside(input, output)) {
+      throw InputError(
+          fmt::format("{}: cannot be used as output folder: it contains {}, which this run reads",
+                      folder.string(), path.string()));
+    }
+    if (fs::is_directory(input, error) && IsSameOrInside(output, input)) {
+      throw InputError(
+          fmt::format("{}: cannot be used as output folder: it is inside {}, which this run reads",
+                      folder.string(), path.string()));
+    }
+  }
+}
+
+void CreateFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder, error)) {
+    throw InputError(folder.string() + ": cannot be used as output folder: " +
+                     (error ? error.message() : "it is a file"));
+  }
+}
+
+// Refuses a folder with files that no run wrote, because they would be lost or mixed with those of
+// the run.
+void CheckEntries(const fs::path& folder, const std::string& index) {
+  const Names of_run = NamesOfRun(folder / index);
+  const std::vector<std::string> kept = OutputFolder::KeptNames();
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(kPrefix) || std::ranges::count(kept, name) > 0) {
+      continue;
+    }
+    if (!of_run.contains(name)) {
+      throw InputError(fmt::format(
+          "{}: cannot be used as output folder: it contains '{}', which is not from a former run; "
+          "choose an empty or a new folder",
+          folder.string(), name));
+    }
+    if (!entry.is_regular_file()) {
+      throw InputError(entry.path().string() + ": cannot be written: it is not a regular file");
+    }
+  }
+}
+
+void Move(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error) {
+    throw InputError(fmt::format("{}: cannot be written: {}; the results of the run are in {}",
+                                 to.string(), error.message(), from.parent_path().string()));
+  }
+}
+
+// Moves the files of a run from the folder `ready` to the output folder and removes those of the
+// former run. May be repeated if it was interrupted: the former index goes before any file is
+// replaced, and the new one comes last.
+void PlaceFiles(const fs::path& ready, const fs::path& folder) {
+  const auto* const found = std::ranges::find_if(
+      kIndexes, [&](const char* name) { return fs::is_regular_file(ready / name); });
+  if (found == kIndexes.end()) {
+    return;  // the index has been moved, so all files have
+  }
+  const fs::path index = *found;
+  Names names = NamesOfRun(ready / index);
+  for (const char* const name : kDrawnNames) {
+    names.erase(name);
+  }
+  for (const std::string& former : NamesOfRun(folder / index)) {
+    if (!names.contains(former)) {
+      std::error_code ignored;
+      fs::remove(folder / former, ignored);
+    }
+  }
+  std::error_code ignored;
+  fs::remove(folder / index, ignored);
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(ready)) {
+    if (entry.path().filename() != index) {
+      files.push_back(entry.path());
+    }
+  }
+  for (const fs::path& file : files) {
+    Move(file, folder / file.filename());
+  }
+  Move(ready / index, folder / index);
+}
+
+// Finishes what killed runs began to put in place, and removes all other files that they left.
+void CleanUp(const fs::path& folder) {
+  for (StagingFolder& abandoned : StagingFolder::Abandoned(folder, kPrefix)) {
+    const fs::path ready = abandoned.path() / kReady;
+    if (fs::is_directory(ready)) {
+      abandoned.Keep();  // if a file cannot be moved, the results stay where they are
+      PlaceFiles(ready, folder);
+      abandoned.Remove();
+    }
+  }
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const fs::path& folder, std::string index,
+                           std::span<const fs::path> inputs)
+    : folder_(folder), index_(std::move(index)) {
+  Check(std::ranges::find(kIndexes, index_) != kIndexes.end(), "this index is not known");
+  CheckApartFromInputs(folder, inputs);
+  CreateFolder(folder);
+  try {
+    const FolderLock lock(folder);
+    CleanUp(folder);
+    CheckEntries(folder, index_);
+    staging_ = std::make_unique<StagingFolder>(folder, kPrefix);
+    const fs::path probe = staging_->content() / "probe";
+    WriteSyncedFile(probe, "probe", folder / index_);
+    fs::remove(probe);
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(folder.string() +
+                     ": cannot be used as output folder: " + error.code().message());
+  }
+}
+
+OutputFolder::~OutputFolder() = default;
+
+void OutputFolder::Write(const FileContent& file) {
+  Check(staging_ != nullptr && IsPlainName(file.name), "a file of a run needs a plain name");
+  WriteSyncedFile(staging_->content() / file.name, file.content, folder_ / file.name);
+  names_.push_back(file.name);
+}
+
+void OutputFolder::Commit() {
+  Check(staging_ != nullptr && std::ranges::count(names_, index_) == 1,
+        "the index of a run has not been written");
+  try {
+    const FolderLock lock(folder_);
+    const fs::path ready = staging_->path() / kReady;
+    fs::rename(staging_->content(), ready);
+    staging_->Keep();
+    PlaceFiles(ready, folder_);
+    staging_->Remove();
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(folder_.string() + ": cannot be written: " + error.code().message());
+  }
+  staging_.reset();
+}
+
+std::vector<std::string> OutputFolder::KeptNames() { return {"log.txt", "ablation_run.json"}; }
+
+}  // namespace hullslam

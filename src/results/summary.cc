@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/results/summary.h"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "files/json_file.h"
+#include "files/json_node.h"
+#include "hullslam/eval/ate.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename Value>
+Json OrNull(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json ToJson(const TrajectorySummary& summary) {
+  return {{"ate_rmse_m", OrNull(summary.ate_rmse_m)},
+          {"alignment", summary.alignment},
+          {"scale", OrNull(summary.scale)},
+          {"pairs", summary.pairs},
+          {"frames", summary.frames},
+          {"tracked", summary.tracked},
+          {"lost", summary.lost},
+          {"poses", summary.poses},
+          {"pairing", summary.pairing},
+          {"coverage", OrNull(summary.coverage)},
+          {"rpe_rmse_m", OrNull(summary.rpe_rmse_m)},
+          {"rpe_rmse_deg", OrNull(summary.rpe_rmse_deg)},
+          {"skipped", summary.skipped},
+          {"unpaired", summary.unpaired}};
+}
+
+Json ToJson(const ObjectsSummary& summary) {
+  Json rejections = Json::object();
+  for (const auto& [reason, count] : summary.rejections) {
+    rejections[reason] = count;
+  }
+  return {{"count", summary.count},
+          {"siou_mean", OrNull(summary.siou_mean)},
+          {"siou_mask_mean", OrNull(summary.siou_mask_mean)},
+          {"mtd_mean_m2", OrNull(summary.mtd_mean_m2)},
+          {"tangent_mean_px", OrNull(summary.tangent_mean_px)},
+          {"observations", summary.observations},
+          {"candidates", summary.candidates},
+          {"detections", summary.detections},
+          {"frames_with_masks", summary.frames_with_masks},
+          {"frames_without_masks", summary.frames_without_masks},
+          {"rejections", rejections},
+          {"changes", summary.changes ? Json(*summary.changes) : Json(nullptr)}};
+}
+
+Json ToJson(const InitialisationSummary& summary) {
+  return {{"seconds", OrNull(summary.seconds)},
+          {"failures", Json(summary.failures)},
+          {"islands", summary.islands},
+          {"joined_islands", summary.joined_islands}};
+}
+
+Json ToJson(const TimeStatistics& times) {
+  return {{"median", times.median}, {"mean", times.mean}, {"p95", times.p95}, {"max", times.max}};
+}
+
+Json ToJson(const TimingSummary& summary) {
+  Json stages = Json::object();
+  for (const auto& [stage, times] : summary.stages_ms) {
+    stages[stage] = ToJson(times);
+  }
+  return {{"track_ms", ToJson(summary.track_ms)},
+          {"stages_ms", stages},
+          {"total_s", summary.total_s},
+          {"frames_per_second", summary.frames_per_second}};
+}
+
+Json ToJson(const MapSummary& summary) {
+  return {{"keyframes", summary.keyframes},
+          {"landmarks", summary.landmarks},
+          {"loops", summary.loops},
+          {"sessions", summary.sessions},
+          {"reprojection_px", OrNull(summary.reprojection_px)},
+          {"known_sizes", OrNull(summary.known_sizes)}};
+}
+
+Json ToJson(const ProvenanceSummary& summary) {
+  return {{"version", OrNull(summary.version)},
+          {"git", OrNull(summary.git)},
+          {"settings_hash", OrNull(summary.settings_hash)},
+          {"preset", OrNull(summary.preset)},
+          {"seed", summary.seed},
+          {"pipeline", summary.pipeline},
+          {"masks_format", OrNull(summary.masks_format)},
+          {"sequence", OrNull(summary.sequence)},
+          {"interrupted", summary.interrupted}};
+}
+
+}  // namespace
+
+std::string FormatSummary(const RunSummary& summary) {
+  Json json = {{"trajectory", ToJson(summary.trajectory)},
+               {"objects", summary.objects ? ToJson(*summary.objects) : Json(nullptr)},
+               {"timing", ToJson(summary.timing)},
+               {"memory", {{"peak_mb", summary.peak_memory_mb}}},
+               {"map", ToJson(summary.map)},
+               {"provenance", ToJson(summary.provenance)},
+               {"files", summary.files}};
+  if (summary.initialisation) {
+    json["initialisation"] = ToJson(*summary.initialisation);
+  }
+  constexpr int kIndent = 2;
+  // The name of a folder may contain any bytes; those that are not UTF-8 are replaced.
+  return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+AlignmentKind ReadAlignment(const std::filesystem::path& path) {
+  const nlohmann::json json = ReadJson(path);
+  const JsonNode alignment = JsonNode(path, json).At("trajectory").At("alignment");
+  const std::string name = alignment.Text();
+  for (const AlignmentKind kind :
+       {AlignmentKind::kNone, AlignmentKind::kSe3, AlignmentKind::kSim3}) {
+    if (name == ToString(kind)) {
+      return kind;
+    }
+  }
+  alignment.Fail("none, se3 or sim3");
+}
+
+std::map<std::string, TimeStatistics> SummarizeStages(const StageTimes& times) {
+  std::map<std::string, TimeStatistics> stages;
+  for (const auto& [stage, samples] : times.samples()) {
+    stages[stage] = Summarize(samples);
+  }
+  return stages;
+}
+
+double PeakMemoryMb() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024.0 / 1e6;  // Linux counts in KiB
+}
+
+}  // namespace hullslam

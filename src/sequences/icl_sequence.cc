@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/sequences/icl_sequence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "files/text_rows.h"
+#include "hullslam/util/error.h"
+#include "sequences/icl_groundtruth.h"
+#include "sequences/icl_povray.h"
+#include "sequences/image_list.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+IclPackage DetectPackage(const fs::path& folder, const IclSequenceOptions& options) {
+  std::error_code error;
+  const bool is_tum =
+      !options.associations.empty() || fs::exists(folder / "associations.txt", error);
+  const bool is_povray = HasPovrayFrames(folder);
+  if (is_tum != is_povray) {
+    return is_tum ? IclPackage::kTum : IclPackage::kPovray;
+  }
+  throw InputError(fmt::format(
+      "{}: has {} associations.txt {} images scene_NN_NNNN.png, so it is unclear which package of "
+      "ICL-NUIM it is; expected --package tum or --package povray",
+      folder.string(), is_tum ? "both" : "neither", is_tum ? "and" : "nor"));
+}
+
+// ---- the package with PNG images
+
+double Index(const TextRow& row, size_t column, std::string_view name) {
+  const double index = row.Number(column, name);
+  if (index < 0.0 || index != std::floor(index) || index > kMostImages) {
+    row.Fail(
+        fmt::format("{} is '{}', expected the index of a frame; lists with times in seconds "
+                    "are those of TUM",
+                    name, row.columns[column]));
+  }
+  return index;
+}
+
+// Whether the file is in a folder of this name.
+bool IsIn(const char* folder, std::string_view file) {
+  return fs::path(file).parent_path().filename() == folder;
+}
+
+FramePaths ParsePair(const TextRow& row, const fs::path& folder) {
+  constexpr size_t kColumns = 4;
+  CheckColumns(row, kColumns, "index depth index rgb");
+  const double index = Index(row, 2, "index of the image");
+  if (Index(row, 0, "index of the depth image") != index) {
+    row.Fail(fmt::format("the indices '{}' and '{}' differ, expected depth and image of one frame",
+                         row.columns[0], row.columns[2]));
+  }
+  if (IsIn("rgb", row.columns[1]) || IsIn("depth", row.columns[3])) {
+    row.Fail(
+        fmt::format("the files are '{}' and '{}', expected the depth image first, as in "
+                    "ICL-NUIM",
+                    row.columns[1], row.columns[3]));
+  }
+  return {index / kIclFramesPerSecond, ImageFile(row, 3, folder), ImageFile(row, 1, folder)};
+}
+
+std::vector<FramePaths> ReadPairs(const fs::path& folder, const fs::path& associations) {
+  const fs::path path = associations.empty() ? folder / "associations.txt" : associations;
+  std::vector<FramePaths> frames;
+  ForEachRow(path, [&](const TextRow& row) { AddFrame(row, ParsePair(row, folder), frames); });
+  if (frames.empty()) {
+    throw InputError(path.string() + ": has no images");
+  }
+  return frames;
+}
+
+// ---- ground truth
+
+std::optional<fs::path> FindGroundtruth(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const fs::path& file : ListFolder(folder)) {
+    const std::string name = file.filename().string();
+    if (name.ends_with(".gt.freiburg") || name == "groundtruth.txt") {
+      files.push_back(file);
+    }
+  }
+  if (files.size() > 1) {
+    throw InputError(fmt::format("{}: has {} and {}, expected --groundtruth FILE to say which",
+                                 folder.string(), files[0].filename().string(),
+                                 files[1].filename().string()));
+  }
+  return files.empty() ? std::nullopt : std::optional(files.front());
+}
+
+struct ChosenAxis {
+  bool is_up = true;
+  std::string reason;
+};
+
+ChosenAxis ChooseAxis(const fs::path& path, const YAxisVotes& votes) {
+  const auto percent = [&](size_t pixels) {
+    return 100.0 * static_cast<double>(pixels) / static_cast<double>(votes.pixels);
+  };
+  if (votes.pixels == 0) {
+    throw InputError(path.string() +
+                     ": no two depth images could be compared with its poses, so it is unclear "
+                     "where the y axis of its cameras points; expected --groundtruth-y up or down");
+  }
+  const double up = percent(votes.both + votes.only_up);
+  const double down = percent(votes.both + votes.only_down);
+  // With a motion that the mirror does not change, both axes give the same.
+  constexpr double kSame = 0.5;    // % of the pixels on which only one of the axes agrees
+  constexpr double kLeast = 50.0;  // % of the pixels
+  constexpr size_t kFactor = 2;    // how many times more pixels agree with only the right axis
+  if (percent(votes.only_up + votes.only_down) < kSame && up >= kLeast) {
+    return {true, "as ICL-NUIM says; the depth images agree with y down as well"};
+  }
+  const bool is_up = votes.only_up > votes.only_down;
+  const size_t less = std::min(votes.only_up, votes.only_down);
+  if (std::max(up, down) < kLeast || std::max(votes.only_up, votes.only_down) < kFactor * less) {
+    throw InputError(fmt::format(
+        "{}: {:.0f} % of the depth agrees with poses of cameras whose y axis points up (fy < 0), "
+        "and {:.0f} % with y down, so it is unclear; expected --groundtruth-y up or down",
+        path.string(), up, down));
+  }
+  return {is_up,
+          fmt::format("{:.0f} % of the depth agrees with y up, {:.0f} % with y down", up, down)};
+}
+
+void AddGroundtruth(const fs::path& path, const PinholeCamera& camera, const DepthOptions& depth,
+                    CameraYAxis said, IclSequence& sequence) {
+  Trajectory trajectory = ReadIndexedTrajectory(path);
+  const ChosenAxis axis =
+      said == CameraYAxis::kMeasure
+          ? ChooseAxis(path, MeasureYAxis(sequence.images, trajectory, camera, depth))
+          : ChosenAxis{said == CameraYAxis::kUp, "as --groundtruth-y says"};
+  sequence.groundtruth_note = fmt::format("{}, poses of cameras with y {} ({})", path.string(),
+                                          axis.is_up ? "up, mirrored" : "down", axis.reason);
+  sequence.images.converted_groundtruth =
+      axis.is_up ? MirrorY(std::move(trajectory)) : std::move(trajectory);
+}
+
+}  // namespace
+
+IclSequence OpenIclSequence(const fs::path& folder, const PinholeCamera& camera,
+                            const DepthOptions& depth, const IclSequenceOptions& options) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    throw InputError(folder.string() + ": no such folder, expected a sequence of ICL-NUIM");
+  }
+  IclSequence sequence;
+  sequence.package =
+      options.package == IclPackage::kDetect ? DetectPackage(folder, options) : options.package;
+  const bool is_povray = sequence.package == IclPackage::kPovray;
+  sequence.images.frames =
+      is_povray ? ListPovrayFrames(folder) : ReadPairs(folder, options.associations);
+  std::optional<Trajectory> cameras;
+  if (is_povray) {
+    const double units = options.povray_units;
+    sequence.images.load = [units](const FramePaths& frame, const PinholeCamera& of_images) {
+      return LoadPovrayFrame(frame, of_images, units);
+    };
+    if (options.groundtruth.empty()) {
+      cameras = ReadPovrayTrajectory(sequence.images.frames, units);
+    }
+  }
+  SelectFrames(folder, options.selection, sequence.images);
+  if (cameras) {
+    sequence.images.converted_groundtruth = std::move(cameras);
+    sequence.groundtruth_note = "cameras of the .txt files, whose y points up, mirrored";
+  } else if (const auto file = options.groundtruth.empty() ? FindGroundtruth(folder)
+                                                           : std::optional(options.groundtruth)) {
+    AddGroundtruth(*file, camera, depth, options.groundtruth_y, sequence);
+  }
+  if (!options.use_depth) {
+    for (FramePaths& frame : sequence.images.frames) {
+      frame.depth.clear();
+    }
+  }
+  CheckImagesExist(sequence.images.frames);
+  return sequence;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sequences/image_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<FramePaths> Select(const fs::path& source, std::vector<FramePaths> frames,
+                               const FrameSelection& selection) {
+  if (selection.stride == 0) {
+    throw InputError("--stride is '0', expected an integer >= 1");
+  }
+  if (selection.first > selection.last) {
+    throw InputError(fmt::format("--first is '{}', expected at most --last, '{}'", selection.first,
+                                 selection.last));
+  }
+  if (selection.first >= frames.size()) {
+    throw InputError(fmt::format("--first is '{}', expected less than the {} frames of {}",
+                                 selection.first, frames.size(), source.string()));
+  }
+  std::vector<FramePaths> selected;
+  const size_t last = std::min(selection.last, frames.size() - 1);
+  for (size_t i = selection.first;; i += selection.stride) {
+    selected.push_back(std::move(frames[i]));
+    if (selection.stride > last - i) {
+      return selected;
+    }
+  }
+}
+
+}  // namespace
+
+void CheckColumns(const TextRow& row, size_t count, const char* names) {
+  if (row.columns.size() < count) {
+    row.Fail(fmt::format("{} column(s), expected {}: {}", row.columns.size(), count, names));
+  }
+}
+
+fs::path ImageFile(const TextRow& row, size_t column, const fs::path& folder) {
+  constexpr size_t kLongest = 1000;
+  if (row.columns[column].size() > kLongest) {
+    row.Fail(fmt::format("the name of the file has {} bytes, expected at most {}",
+                         row.columns[column].size(), kLongest));
+  }
+  return folder / row.columns[column];
+}
+
+void AddFrame(const TextRow& row, FramePaths frame, std::vector<FramePaths>& frames) {
+  if (!frames.empty() && frame.timestamp <= frames.back().timestamp) {
+    row.Fail(fmt::format("time stamp {:.6f} does not come after the previous one, {:.6f}",
+                         frame.timestamp, frames.back().timestamp));
+  }
+  frame.number = frames.size();
+  frames.push_back(std::move(frame));
+  if (frames.size() > kMostImages) {
+    row.Fail(fmt::format("more than {} images", kMostImages));
+  }
+}
+
+void SelectFrames(const fs::path& source, const FrameSelection& selection,
+                  ImageSequence& sequence) {
+  sequence.available = sequence.frames.size();
+  sequence.frames = Select(source, std::move(sequence.frames), selection);
+}
+
+std::vector<fs::path> ListFolder(const fs::path& folder) {
+  std::vector<fs::path> paths;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    paths.push_back(entry->path());
+  }
+  if (error) {
+    throw InputError(folder.string() + ": " + error.message());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+void CheckImagesExist(const std::vector<FramePaths>& frames) {
+  std::error_code error;
+  for (const FramePaths& frame : frames) {
+    for (const fs::path& image : {frame.image, frame.depth}) {
+      const bool is_without_depth = image.empty() && !frame.image.empty();
+      if (!is_without_depth && !fs::is_regular_file(image, error)) {
+        throw InputError(image.string() + ": the image is missing");
+      }
+    }
+  }
+}
+
+void CheckImageSize(const std::string& name, const cv::Mat& image, const PinholeCamera& camera) {
+  if (image.cols != camera.width || image.rows != camera.height) {
+    throw InputError(fmt::format("{}: {}x{} px, expected Camera.width x Camera.height, {}x{}", name,
+                                 image.cols, image.rows, camera.width, camera.height));
+  }
+}
+
+}  // namespace hullslam

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "settings/yaml_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <opencv2/core.hpp>
+#include <string_view>
+
+#include "files/read_file.h"
+#include "files/text_rows.h"
+#include "hullslam/util/error.h"
+#include "settings/yaml_storage.h"
+#include "util/shown_text.h"
+#include "util/trim.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A `key: value` line as it is written in the file. OpenCV's nodes have no line numbers, do not
+// notice repeated keys, and cannot represent integers above 32 bits.
+struct WrittenValue {
+  int line = 0;
+  std::string text;
+};
+using WrittenValues = std::map<std::string, WrittenValue, std::less<>>;
+
+std::string Place(const fs::path& file, int line) {
+  return fmt::format("{}:{}", file.string(), line);
+}
+
+bool HoldsKey(std::string_view line) {
+  return !line.empty() && line[0] != ' ' && line[0] != '\t' && line[0] != '\r' && line[0] != '#' &&
+         line[0] != '%' && line.find(':') != std::string_view::npos;
+}
+
+WrittenValues ScanLines(const fs::path& file, std::string_view text) {
+  WrittenValues values;
+  int number = 0;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    begin = end + 1;
+    ++number;
+    if (!HoldsKey(line)) {
+      continue;
+    }
+    const size_t colon = line.find(':');
+    const std::string key(Trim(line.substr(0, colon)));
+    const std::string_view value = line.substr(colon + 1);
+    const auto [it, is_new] = values.try_emplace(
+        key, WrittenValue{number, std::string(Trim(value.substr(0, value.find('#'))))});
+    if (!is_new) {
+      throw InputError(fmt::format("{}: key '{}' was given before, in line {}", Place(file, number),
+                                   ShowText(key), it->second.line));
+    }
+  }
+  return values;
+}
+
+// A byte order mark, which editors on Windows add, is accepted.
+std::string ReadYamlText(const fs::path& file) {
+  constexpr size_t kLargest = 1'000'000;
+  std::string text = ReadFile(file, kLargest);
+  if (text.starts_with("\xEF\xBB\xBF")) {
+    text.erase(0, 3);
+  }
+  if (!text.starts_with("%YAML")) {
+    throw InputError(Place(file, 1) + ": expected a settings file with '%YAML:1.0' as first line");
+  }
+  if (text.find('\0') != std::string::npos) {
+    throw InputError(file.string() + ": is not a text file with settings");
+  }
+  return text;
+}
+
+// The text of a single value; see WrittenSetting.
+std::string SingleText(const cv::FileNode& node, const WrittenValue& written) {
+  if (node.isString()) {
+    double value = 0.0;
+    const std::string text = node.string();
+    return ParseFinite(text, value) ? '"' + text + '"' : text;
+  }
+  double value = 0.0;
+  const bool is_plain = ParseFinite(written.text, value);
+  const bool is_whole = is_plain && std::abs(value) < 1e15 && value == std::trunc(value);
+  const bool has_exponent_or_point = written.text.find_first_of(".eE") != std::string::npos;
+  // OpenCV writes a whole number as "1000.".
+  return is_whole && has_exponent_or_point ? fmt::format("{:.0f}", value) : written.text;
+}
+
+// Nothing unless all values of the map are single.
+std::optional<std::string> MapText(const cv::FileNode& map) {
+  std::string text;
+  for (const cv::FileNode& node : map) {
+    if (!node.isString() && !node.isReal() && !node.isInt()) {
+      return std::nullopt;
+    }
+    const std::string value = node.isString() ? node.string() : fmt::format("{}", node.real());
+    text += fmt::format("{}{}:{}", text.empty() ? "" : ",", node.name(), value);
+  }
+  return text;
+}
+
+WrittenSetting ToSetting(const cv::FileNode& node, const WrittenValue& written,
+                         const fs::path& file) {
+  WrittenSetting setting{
+      .key = node.name(), .name = node.name(), .place = Place(file, written.line)};
+  // If the last key of a file has no value, OpenCV takes the mark of the end, "...", for it.
+  if (written.text.empty() && node.isString() && node.string() == "...") {
+    setting.no_value = "empty";
+  } else if (node.isMap() || node.isSeq()) {
+    setting.no_value = node.isMap() ? "a map" : "a list";
+    setting.pairs = node.isMap() ? MapText(node) : std::nullopt;
+  } else {
+    setting.text = SingleText(node, written);
+  }
+  return setting;
+}
+
+std::vector<WrittenSetting> CollectSettings(const fs::path& file, const std::string& text,
+                                            const cv::FileNode& root) {
+  if (!root.isMap()) {
+    throw InputError(file.string() + ": has no settings, expected lines of 'key: value'");
+  }
+  const WrittenValues written = ScanLines(file, text);
+  std::vector<WrittenSetting> settings;
+  for (const cv::FileNode& node : root) {
+    const auto it = written.find(node.name());
+    if (it == written.end()) {
+      throw InputError(fmt::format("{}: '{}' is not on a line of its own, expected 'key: value'",
+                                   file.string(), ShowText(node.name())));
+    }
+    settings.push_back(ToSetting(node, it->second, file));
+  }
+  return settings;
+}
+
+}  // namespace
+
+std::vector<WrittenSetting> ReadYamlSettings(const fs::path& file) {
+  const std::string text = ReadYamlText(file);
+  const cv::FileStorage storage = ParseYaml(file, text);
+  try {
+    return CollectSettings(file, text, storage.root());
+  } catch (const cv::Exception& error) {
+    FailParsing(file, error);
+  }
+}
+
+const std::string& SingleValue(const WrittenSetting& setting) {
+  if (!setting.no_value.empty()) {
+    throw InputError(fmt::format("{}: {} is {}, expected a single value", setting.place,
+                                 ShowText(setting.name), setting.no_value));
+  }
+  return setting.text;
+}
+
+}  // namespace hullslam

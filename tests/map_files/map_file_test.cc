@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/map_files/map_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <array>
+#include <csignal>
+#include <filesystem>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "files/read_file.h"
+#include "map/invariants.h"
+#include "map/random_edits.h"
+#include "map_files/made_map_file.h"
+#include "map_files/map_parser.h"
+#include "support/expect_error.h"
+#include "support/file_size_limit.h"
+#include "support/random_geometry.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+class MapFileTest : public testing::Test {
+ protected:
+  std::string Written(const Map& map, const MapSettings& settings = MadeSettings()) const {
+    WriteMap(path_, map, settings);
+    return ReadFile(path_);
+  }
+
+  Map ReadBack(const Map& map) const {
+    Written(map);
+    return ReadMap(path_).map;
+  }
+
+  // Expects that a file with these bytes is refused.
+  void ExpectRefusal(const std::string& bytes, const std::vector<std::string>& parts = {}) const {
+    folder_.Write("other.map", bytes);
+    const std::filesystem::path other = folder_.path() / "other.map";
+    std::vector<std::string> all = parts;
+    all.push_back(other.string());
+    ExpectInputError([&] { ReadMap(other); }, all);
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_.path() / "a.map";
+};
+
+// The bytes with a right checksum at their end.
+std::string WithChecksum(std::string bytes) {
+  bytes.resize(bytes.size() - 4);
+  const auto checksum = static_cast<uint32_t>(
+      ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+  for (int i = 0; i < 4; ++i) {
+    bytes.push_back(static_cast<char>(checksum >> (8 * i) & 0xff));
+  }
+  return bytes;
+}
+
+Map EditedMap(RandomEdits& edits, int count) {
+  Map map;
+  map.BeginSession({"random", FrameId(0)});
+  for (int i = 0; i < count; ++i) {
+    edits.Edit(map);
+  }
+  map.ForgetReplaced(std::numeric_limits<uint32_t>::max());
+  return map;
+}
+
+// ---- laws
+
+TEST_F(MapFileTest, WritingReadingAndWritingGivesTheSameBytes) {
+  const std::string small = Written(SmallMap());
+  EXPECT_EQ(Written(ReadBack(SmallMap())), small);
+  for (uint32_t seed = 0; seed < 4; ++seed) {
+    RandomEdits edits(seed);
+    const Map map = EditedMap(edits, 500);
+    const std::string bytes = Written(map);
+    const Map read = ReadMap(path_).map;
+    EXPECT_EQ(Dump(read), Dump(map));
+    EXPECT_EQ(Written(read), bytes);
+  }
+}
+
+// The same ids are given to new entities, and free slots are used in the same order.
+TEST_F(MapFileTest, WorkGoesOnAsBefore) {
+  for (uint32_t seed = 0; seed < 4; ++seed) {
+    RandomEdits edits(seed);
+    Map map = EditedMap(edits, 500);
+    Map read = ReadBack(map);
+    RandomEdits same = edits;
+    for (int i = 0; i < 300; ++i) {
+      edits.Edit(map);
+      same.Edit(read);
+    }
+    EXPECT_EQ(Dump(read), Dump(map));
+    EXPECT_EQ(FindViolations(read), std::vector<std::string>());
+  }
+}
+
+void ExpectSameDetection(const Detection& a, const Detection& b) {
+  EXPECT_EQ(a.label, b.label);
+  EXPECT_EQ(a.score, b.score);
+  EXPECT_EQ(a.contour, b.contour);
+  EXPECT_EQ(a.hull, b.hull);
+  EXPECT_EQ(a.box.min(), b.box.min());
+  EXPECT_EQ(a.box.max(), b.box.max());
+  EXPECT_EQ(a.primitive, b.primitive);
+  ASSERT_EQ(a.lines.size(), b.lines.size());
+  for (size_t i = 0; i < a.lines.size(); ++i) {
+    EXPECT_EQ(a.lines[i].line.Homogeneous(), b.lines[i].line.Homogeneous());
+    EXPECT_EQ(a.lines[i].is_one_sided, b.lines[i].is_one_sided);
+  }
+  ASSERT_EQ(a.ellipse.has_value(), b.ellipse.has_value());
+  EXPECT_EQ(a.ellipse->center, b.ellipse->center);
+  EXPECT_EQ(a.ellipse->shape, b.ellipse->shape);
+  EXPECT_EQ(a.is_cut, b.is_cut);
+  EXPECT_EQ(a.is_box, b.is_box);
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.keypoints, b.keypoints);
+}
+
+TEST_F(MapFileTest, KeepsEveryFieldOfAFrame) {
+  Map map;
+  const auto frame = FullFrame(5, 17.25);
+  const int columns = DepthGrid::CountAlong(640);
+  std::vector<uint16_t> samples(static_cast<size_t>(columns * DepthGrid::CountAlong(480)), 1500);
+  samples[7] = 0;
+  frame->depth = DepthGrid(columns, samples);
+  frame->features.right_u[3] = -1.0f;
+  map.AddKeyframe(frame, {});
+  const Map read = ReadBack(map);
+  const Frame& found = *read.keyframes().At(KeyframeId(0)).frame;
+  EXPECT_EQ(found.id, frame->id);
+  EXPECT_EQ(found.timestamp, frame->timestamp);
+  EXPECT_EQ(found.depth.columns(), columns);
+  EXPECT_EQ(found.depth.samples(), samples);
+  EXPECT_EQ(found.features.descriptors, frame->features.descriptors);
+  EXPECT_EQ(found.features.depth, frame->features.depth);
+  EXPECT_EQ(found.features.right_u, frame->features.right_u);
+  for (size_t i = 0; i < frame->features.size(); ++i) {
+    EXPECT_EQ(found.features.keypoints[i].undistorted, frame->features.keypoints[i].undistorted);
+    EXPECT_EQ(found.features.keypoints[i].angle, frame->features.keypoints[i].angle);
+    EXPECT_EQ(found.features.keypoints[i].level, frame->features.keypoints[i].level);
+  }
+  std::vector<uint32_t> near;
+  found.features.grid.FindNear(found.features.keypoints, {32.0f, 100.0f}, 1.5f, 0, 7, near);
+  EXPECT_EQ(near, (std::vector<uint32_t>{1, 2, 3})) << "the grid is made again";
+  ExpectSameDetection(found.detections[0], frame->detections[0]);
+}
+
+TEST_F(MapFileTest, KeepsWhatDumpDoesNotShow) {
+  const Map map = SmallMap();
+  const Map read = ReadBack(map);
+  EXPECT_EQ(Dump(read), Dump(map));
+  EXPECT_EQ(read.sessions(), map.sessions());
+  EXPECT_EQ(read.correction_count(), 1u);
+  EXPECT_EQ(read.landmarks().FreeIds(), map.landmarks().FreeIds());
+  EXPECT_EQ(read.objects().NextId(), map.objects().NextId());
+  EXPECT_EQ(read.keyframes().NextId(), map.keyframes().NextId());
+  const ObjectLandmark& cup = read.objects().At(ObjectId(1));
+  EXPECT_EQ(cup.misfit_px, 1.25);
+  EXPECT_EQ(cup.compensated_px, 0.75);
+}
+
+TEST_F(MapFileTest, KeepsItsSettings) {
+  MapSettings settings = MadeSettings();
+  settings.camera.k1 = 0.01;
+  settings.level_count = 5;
+  settings.scale_factor = 1.5;
+  settings.vocabulary = 0x1234567890abcdef;
+  WriteMap(path_, SmallMap(), settings);
+  EXPECT_EQ(ReadMap(path_).settings, settings);
+  SystemOptions options;
+  options.camera = settings.camera;
+  options.features.level_count = 5;
+  options.features.scale_factor = 1.5;
+  settings.vocabulary = 0;
+  EXPECT_EQ(MapSettingsOf(options), settings);
+}
+
+// ---- refusals
+
+TEST_F(MapFileTest, OtherSettingsAreRefused) {
+  WriteMap(path_, SmallMap(), MadeSettings());
+  EXPECT_EQ(ReadMap(path_, MadeSettings()).keyframes().size(), 2u);
+  const auto refuse = [&](const auto& change, const std::vector<std::string>& parts) {
+    MapSettings other = MadeSettings();
+    change(other);
+    ExpectInputError([&] { ReadMap(path_, other); }, parts);
+  };
+  refuse([](MapSettings& s) { s.camera.fy = 502.0; },
+         {path_.string(), "Camera.fy 501", "the settings say 502"});
+  refuse([](MapSettings& s) { s.camera.width = 320; }, {"Camera.width 640", "320"});
+  refuse([](MapSettings& s) { s.camera.k2 = 1e-4; }, {"Camera.k2 0", "1e-04"});
+  refuse([](MapSettings& s) { s.level_count = 7; }, {"ORBextractor.nLevels 8", "7"});
+  refuse([](MapSettings& s) { s.scale_factor = 1.3; }, {"ORBextractor.scaleFactor 1.2", "1.3"});
+  refuse([](MapSettings& s) { s.sensor = SensorKind::kMonocular; },
+         {path_.string(), "an RGB-D camera", "a monocular"});
+  refuse([](MapSettings& s) { s.vocabulary = 9; }, {"vocabulary", "0000000000000009"});
+}
+
+TEST_F(MapFileTest, AMonocularMapStaysOne) {
+  MapSettings settings = MadeSettings();
+  settings.sensor = SensorKind::kMonocular;
+  WriteMap(path_, SmallMap(), settings);
+  EXPECT_EQ(ReadMap(path_).settings.sensor, SensorKind::kMonocular);
+  ExpectInputError([&] { ReadMap(path_, MadeSettings()); }, {"a monocular camera", "an RGB-D"});
+}
+
+TEST_F(MapFileTest, EveryFlippedByteIsRefused) {
+  const std::string good = Written(SmallMap());
+  for (size_t i = 0; i < good.size(); ++i) {
+    std::string bad = good;
+    bad[i] = static_cast<char>(bad[i] ^ (1 << i % 8));
+    ExpectRefusal(bad);
+  }
+}
+
+TEST_F(MapFileTest, ATruncatedFileIsRefused) {
+  const std::string good = Written(SmallMap());
+  for (size_t i = 0; i < 16; ++i) {
+    ExpectRefusal(good.substr(0, i * good.size() / 16));
+  }
+  ExpectRefusal(good.substr(0, 14), {"cut off"});
+  ExpectRefusal(good.substr(0, good.size() - 1), {"damaged or cut off"});
+  ExpectRefusal(good + '\0', {"damaged or cut off"});
+}
+
+TEST_F(MapFileTest, WhatIsNoMapOfThisVersionIsRefused) {
+  ExpectRefusal("", {"is not a map"});
+  ExpectRefusal("1.0 0 0 0 0 0 0 1\n", {"is not a map"});
+  std::string bytes = Written(SmallMap());
+  bytes[10] = 2;
+  ExpectRefusal(WithChecksum(bytes), {"format version 2", "expected 1"});
+  ExpectInputError([&] { ReadMap(folder_.path()); }, {folder_.path().string(), "regular file"});
+  ExpectInputError([&] { ReadMap("/dev/null"); }, {"/dev/null", "regular file"});
+  ExpectInputError([&] { ReadMap(folder_.path() / "none.map"); },
+                   {"none.map", "No such file or directory"});
+}
+
+TEST_F(MapFileTest, AMapWithoutKeyframesIsRefused) {
+  ExpectInputError([&] { WriteMap(path_, Map(), MadeSettings()); },
+                   {path_.string(), "has no keyframe"});
+  EXPECT_FALSE(std::filesystem::exists(path_));
+  // The bytes before the number of keyframes: prefix, length, sensor, camera, pyramid, vocabulary,
+  // sessions, corrections.
+  constexpr size_t kBefore = 14 + 4 + 1 + 88 + 12 + 8 + 4 + (4 + 4 + 4) + (4 + 10 + 4) + 4;
+  std::string bytes = Written(SmallMap());
+  ASSERT_EQ(bytes[kBefore], 2);
+  bytes[kBefore] = 0;
+  ExpectRefusal(WithChecksum(bytes), {"has no keyframes"});
+  bytes.replace(kBefore, 4, "\xff\xff\xff\xff");
+  ExpectRefusal(WithChecksum(bytes), {"more entities than it has"});
+}
+
+// A wrong byte that the checksum does not tell must not crash either. Most change only a number.
+TEST_F(MapFileTest, AnyBytesBelowTheChecksumAreReadOrRefused) {
+  const std::string file = Written(SmallMap());
+  const std::string good = file.substr(14, file.size() - 14 - 4);
+  RandomGeometry random(1);
+  int refused = 0;
+  for (size_t i = 0; i < 4 * good.size(); ++i) {
+    std::string bad = good;
+    bad[i / 4] = static_cast<char>(random.Index(256));
+    std::istringstream in(bad);
+    try {
+      const Map map = ParseMap(in, bad.size(), "map", nullptr).map;
+      EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 100);
+}
+
+TEST_F(MapFileTest, AnInconsistentMapIsRefused) {
+  Map map = SmallMap();
+  map.MutableCulledKeyframe(KeyframeId(1)).pose.reference = KeyframeId(1);
+  ExpectRefusal(Written(map), {"is not consistent", "keyframe 1"});
+}
+
+// ---- writing
+
+TEST_F(MapFileTest, AFullDiskLeavesTheOldFile) {
+  const std::string good = Written(SmallMap());
+  {
+    const FileSizeLimit limit(1000);
+    ExpectInputError([&] { WriteMap(path_, SmallMap(), MadeSettings()); },
+                     {path_.string(), "cannot be written", "File too large"});
+  }
+  EXPECT_EQ(ReadFile(path_), good);
+}
+
+TEST_F(MapFileTest, AKilledWriterLeavesTheOldOrTheNewFile) {
+  RandomEdits edits(3);
+  const Map large = EditedMap(edits, 300);
+  const Map small = SmallMap();
+  const std::array<std::string, 2> whole = {Written(large), Written(small)};
+  RandomGeometry random(7);
+  std::array<int, 2> found{};
+  // On a busy computer it takes more kills until one comes between two files.
+  const auto has_both = [&] { return found[0] > 0 && found[1] > 0; };
+  for (int kill = 0; kill < 50 || (kill < 1000 && !has_both()); ++kill) {
+    const pid_t process = ::fork();
+    if (process == 0) {
+      while (true) {
+        WriteMap(path_, large, MadeSettings());
+        WriteMap(path_, small, MadeSettings());
+      }
+    }
+    ::usleep(200 + random.Index(10'000));
+    ::kill(process, SIGKILL);
+    int status = 0;
+    ::waitpid(process, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    const std::string bytes = ReadFile(path_);
+    ASSERT_TRUE(bytes == whole[0] || bytes == whole[1]) << kill;
+    ++found[bytes == whole[0] ? 0 : 1];
+  }
+  EXPECT_TRUE(has_both()) << "no kill came between";
+  Written(small);  // removes what the killed processes have left
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/results/object_file.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "hullslam/util/check.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+ReportedView MakeView(uint32_t keyframe) {
+  ReportedView view;
+  view.keyframe = KeyframeId(keyframe);
+  view.timestamp = 1305031102.175304 + keyframe;
+  view.cam_from_world = Rigid3(ExpSo3({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0});
+  view.label = "cup";
+  view.score = 0.75;
+  view.is_cut = true;
+  view.hull = {{10.123, 20.0}, {30.0, 20.0}, {30.0, 50.0}};
+  view.contour = {{10.123, 20.0}, {30.0, 20.0}, {30.0, 50.0}, {25.0, 30.0}};
+  view.lines = {{{Eigen::Vector2d(0.6, 0.8), -100.0}, false},
+                {{Eigen::Vector2d(-1.0, 0.0), 0.0}, true}};
+  return view;
+}
+
+ObjectReport MakeReport() {
+  ObjectReport report;
+  report.sequence = "data/fr1_xyz";
+  report.camera.fx = 517.3;
+  report.camera.fy = 516.5;
+  report.camera.k1 = 0.2624;
+  report.candidates = 4;
+  ReportedObject object;
+  object.id = ObjectId(7);
+  object.state = ObjectState::kMapped;
+  object.label = "cup";
+  object.votes = {{"bowl", 0.5}, {"cup", 2.25}};
+  object.ellipsoid = {Rigid3(ExpSo3({0.5, -0.2, 0.1}), {0.1, -0.2, 1.5}), {0.04, 0.05, 0.06}};
+  object.misfit_px = 3.5;
+  object.fit.siou = 0.8;
+  object.fit.mtd_m2 = 1.25e-3;
+  object.views = {MakeView(2), MakeView(5)};
+  report.objects = {object, object};
+  report.objects[1].id = ObjectId(9);
+  report.objects[1].state = ObjectState::kCandidate;
+  return report;
+}
+
+TEST(ObjectFile, HasTheKeysOfTheFormat) {
+  const Json json = Json::parse(FormatObjects(MakeReport()));
+  EXPECT_EQ(json["version"], 2);
+  EXPECT_EQ(json["sequence"], "data/fr1_xyz");
+  EXPECT_EQ(json["camera"]["fx"], 517.3);
+  EXPECT_EQ(json["candidates"], 4);
+  ASSERT_EQ(json["objects"].size(), 2U);
+  const Json& object = json["objects"][0];
+  EXPECT_EQ(object["id"], 7);
+  EXPECT_EQ(object["class"], "cup");
+  EXPECT_EQ(object["votes"]["cup"], 2.25);
+  EXPECT_EQ(object["state"], "mapped");
+  EXPECT_EQ(object["half_axes"], Json({0.04, 0.05, 0.06}));
+  EXPECT_EQ(object["siou"], 0.8);
+  EXPECT_TRUE(object["siou_mask"].is_null());
+  EXPECT_EQ(object["mtd_m2"], 1.25e-3);
+  EXPECT_TRUE(object["tangent_px"].is_null());
+  EXPECT_EQ(object["misfit_px"], 3.5);
+  EXPECT_EQ(object["observations"], 2);
+
+  const Json observations = Json::parse(FormatObservations(MakeReport()));
+  EXPECT_EQ(observations["version"], 2);
+  ASSERT_EQ(observations["observations"].size(), 4U);
+  const Json& view = observations["observations"][1];
+  EXPECT_EQ(view["object"], 7);
+  EXPECT_EQ(view["keyframe"], 5);
+  EXPECT_EQ(view["class"], "cup");
+  EXPECT_EQ(view["cut"], true);
+  EXPECT_EQ(view["box"], false);
+  EXPECT_EQ(view["hull"][0], Json({10.12, 20.0}));  // 0.01 px
+  EXPECT_EQ(view["lines"][1], Json({-1.0, 0.0, 0.0, 1}));
+}
+
+TEST(ObjectFile, TheQuadricMatchesPoseAndAxes) {
+  const ObjectReport report = MakeReport();
+  const Json json = Json::parse(FormatObjects(report));
+  const Eigen::Matrix4d expected = report.objects[0].ellipsoid.DualQuadric();
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      const size_t r = static_cast<size_t>(row);
+      const size_t c = static_cast<size_t>(column);
+      EXPECT_NEAR(json["objects"][0]["dual_quadric"][r][c].get<double>(), expected(row, column),
+                  1e-9);
+    }
+  }
+}
+
+// Writes both files of a report and reads them.
+ObjectReport WriteAndRead(const ObjectReport& report) {
+  const TemporaryFolder folder;
+  folder.Write("objects_observations.json", FormatObservations(report));
+  return ReadObjects(folder.Write("objects.json", FormatObjects(report)));
+}
+
+TEST(ObjectFile, TheListOfObjectsStaysSmall) {
+  ObjectReport report = MakeReport();
+  const size_t few = FormatObjects(report).size();
+  report.objects[0].views.assign(2000, MakeView(3));
+  EXPECT_LT(FormatObjects(report).size(), few + 10);
+}
+
+TEST(ObjectFile, TheTableHasOneLinePerObject) {
+  ObjectReport report = MakeReport();
+  report.objects[0].ellipsoid.world_from_object =
+      Rigid3(Eigen::Quaterniond::Identity(), {0.5, -0.25, 1.5});
+  report.objects[1].label = "a \"b\", c";
+  report.objects[1].ellipsoid = report.objects[0].ellipsoid;
+  EXPECT_EQ(FormatObjectsCsv(report),
+            "id,class,state,observations,tx,ty,tz,qx,qy,qz,qw,half_axis_x,half_axis_y,half_axis_z,"
+            "siou,siou_mask,mtd_m2,tangent_px,misfit_px,parallax_deg,quality\n"
+            "7,cup,mapped,2,0.5,-0.25,1.5,0,0,0,1,0.04,0.05,0.06,0.8,,0.00125,,3.5,0,0\n"
+            "9,\"a \"\"b\"\", c\",candidate,2,0.5,-0.25,1.5,0,0,0,1,0.04,0.05,0.06,0.8,,0.00125,,"
+            "3.5,0,0\n");
+}
+
+TEST(ObjectFile, ReadingAndWritingGivesTheSameBytes) {
+  const ObjectReport read = WriteAndRead(MakeReport());
+  EXPECT_EQ(FormatObjects(read), FormatObjects(MakeReport()));
+  EXPECT_EQ(FormatObservations(read), FormatObservations(MakeReport()));
+  EXPECT_EQ(read.candidates, 4U);
+  EXPECT_EQ(read.camera.k1, 0.2624);
+  ASSERT_EQ(read.objects.size(), 2U);
+  EXPECT_EQ(read.objects[1].state, ObjectState::kCandidate);
+  EXPECT_EQ(read.objects[0].fit.siou, 0.8);
+  EXPECT_FALSE(read.objects[0].fit.siou_mask);
+  const ReportedView expected = MakeView(5);
+  const ReportedView& view = read.objects[0].views.at(1);
+  EXPECT_EQ(view.keyframe, expected.keyframe);
+  EXPECT_NEAR(view.timestamp, expected.timestamp, 1e-6);
+  EXPECT_LT(AngularDistance(view.cam_from_world.rotation, expected.cam_from_world.rotation), 1e-7);
+  EXPECT_TRUE(view.is_cut);
+  EXPECT_TRUE(view.lines.at(1).is_one_sided);
+  EXPECT_NEAR(view.lines[0].line.normal.x(), 0.6, 1e-9);
+}
+
+// A report of a run that went on with a map.
+ObjectReport MakeChangedReport() {
+  ObjectReport report = MakeReport();
+  const ObjectPlace place = {ObjectId(7), report.objects[0].ellipsoid};
+  ChangedObject moved{.change = ObjectChange::kMoved, .label = "cup", .expected = 12, .found = 1};
+  moved.now = place;
+  moved.former = ObjectPlace{ObjectId(3), report.objects[0].ellipsoid};
+  ChangedObject gone{.change = ObjectChange::kGone, .label = "book", .expected = 4, .found = 0};
+  gone.former = place;
+  report.changes = {moved, gone};
+  return report;
+}
+
+TEST(ObjectFile, ChangesAreWrittenAndRead) {
+  const ObjectReport report = MakeChangedReport();
+  const Json json = Json::parse(FormatObjects(report));
+  ASSERT_EQ(json["changes"].size(), 2U);
+  EXPECT_EQ(json["changes"][0]["change"], "moved");
+  EXPECT_EQ(json["changes"][0]["former"]["object"], 3);
+  EXPECT_EQ(json["changes"][1]["class"], "book");
+  EXPECT_TRUE(json["changes"][1]["now"].is_null());
+  EXPECT_TRUE(Json::parse(FormatObjects(MakeReport()))["changes"].is_null());
+  const ObjectReport read = WriteAndRead(report);
+  EXPECT_EQ(FormatObjects(read), FormatObjects(report));
+  EXPECT_FALSE(WriteAndRead(MakeReport()).changes);
+}
+
+TEST(ObjectFile, AMapWithoutObjectsGivesAValidFile) {
+  ObjectReport empty;
+  empty.camera = MakeReport().camera;
+  const ObjectReport read = WriteAndRead(empty);
+  EXPECT_TRUE(read.objects.empty());
+  EXPECT_EQ(read.candidates, 0U);
+}
+
+TEST(ObjectFile, ClassesMayContainAnyBytes) {
+  ObjectReport report = MakeReport();
+  report.objects[0].label = "a\"b\\\xff\n";
+  report.objects[0].votes = {{report.objects[0].label, 1.0}};
+  EXPECT_TRUE(Json::accept(FormatObjects(report)));
+}
+
+TEST(ObjectFile, NonFiniteValuesAreNeverWritten) {
+  ObjectReport report = MakeReport();
+  report.objects[0].ellipsoid.half_axes.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(FormatObjects(report), CheckError);
+  report = MakeReport();
+  report.objects[1].views[0].hull[0].x() = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(FormatObservations(report), CheckError);
+}
+
+// Expects that the files are refused when the value at `pointer` of one of them is replaced.
+void ExpectRefusal(const std::string& pointer, const Json& value,
+                   const std::vector<std::string>& parts) {
+  Json objects = Json::parse(FormatObjects(MakeChangedReport()));
+  Json observations = Json::parse(FormatObservations(MakeReport()));
+  const bool is_observation = pointer.starts_with("/observations");
+  (is_observation ? observations : objects)[Json::json_pointer(pointer)] = value;
+  const TemporaryFolder folder;
+  folder.Write("objects_observations.json", observations.dump());
+  const auto path = folder.Write("objects.json", objects.dump());
+  SCOPED_TRACE(pointer);
+  ExpectInputError([&] { ReadObjects(path); }, parts);
+}
+
+TEST(ObjectFile, BrokenValuesAreReportedWithTheirPath) {
+  const std::string object = "/objects/1/";
+  const std::string view = "/observations/2/";
+  const std::string at = "objects_observations.json: observations[2].";
+  ExpectRefusal("/version", 1, {"version is 1", "expected 2"});
+  ExpectRefusal("/camera/fx", 0, {"objects.json: camera.fx is 0"});
+  ExpectRefusal("/camera/width", 0, {"camera.width is 0", "1 to 16384"});
+  ExpectRefusal("/camera/height", 1e6, {"camera.height"});
+  ExpectRefusal("/camera/fx", 1e300, {"camera.fx is 1e+300"});
+  ExpectRefusal("/camera/fx", 1e-300, {"camera is {", "Camera.fx is '1e-300'"});
+  ExpectRefusal("/camera/k1", -5, {"camera is {", "Camera.k1 is '-5'"});
+  ExpectRefusal("/candidates", -1, {"candidates is -1"});
+  ExpectRefusal("/objects", "none", {"objects is \"none\"", "an array"});
+  ExpectRefusal("/changes", 1, {"changes is 1", "an array"});
+  ExpectRefusal("/changes/0/change", "lost", {"changes[0].change is \"lost\"", "seen_again"});
+  ExpectRefusal("/changes/0/now/object", -1, {"changes[0].now.object is -1"});
+  ExpectRefusal("/changes/1/former/half_axes", {1, 0, 1}, {"changes[1].former.half_axes"});
+  ExpectRefusal("/changes/1/expected", "many", {"changes[1].expected is \"many\""});
+  ExpectRefusal(object + "id", "x", {"objects[1].id is \"x\""});
+  ExpectRefusal(object + "state", "lost", {"objects[1].state is \"lost\"", "mapped"});
+  ExpectRefusal(object + "class", 3, {"objects[1].class is 3", "a string"});
+  ExpectRefusal(object + "votes", {{"cup", "many"}}, {"objects[1].votes.cup is \"many\""});
+  ExpectRefusal(object + "world_from_object", {0, 0, 0, 0, 0, 0, 0}, {"a quaternion of length 1"});
+  ExpectRefusal(object + "half_axes", {1, 0, 1}, {"objects[1].half_axes is [1,0,1]", "> 0"});
+  ExpectRefusal(object + "half_axes", {1, 1}, {"objects[1].half_axes"});
+  ExpectRefusal(object + "siou", "good", {"objects[1].siou is \"good\""});
+  ExpectRefusal(object + "observations", -1, {"objects[1].observations is -1"});
+  ExpectRefusal(
+      object + "observations", 3,
+      {"objects_observations.json: has 2 observations of object 9, expected 3", "same run"});
+  ExpectRefusal(view + "object", 8, {at + "object is 8", "in objects.json"});
+  ExpectRefusal(view + "keyframe", 1.5, {at + "keyframe is 1.5"});
+  ExpectRefusal(view + "score", 1e308, {at + "score is 1e+308", "from -1 to 1"});
+  ExpectRefusal(object + "votes", {{"cup", 1e308}}, {"objects[1].votes.cup is 1e+308"});
+  ExpectRefusal(view + "timestamp", nullptr, {at + "timestamp is null"});
+  ExpectRefusal(view + "cam_from_world", "I", {at + "cam_from_world is \"I\""});
+  ExpectRefusal(view + "cut", 1, {at + "cut is 1", "true or false"});
+  ExpectRefusal(view + "hull", {{1, 2}, {3, 4}}, {at + "hull", "three corners"});
+  ExpectRefusal(view + "hull", {{0, 0}, {0, 5}, {5, 5}}, {at + "hull", "positive area"});
+  ExpectRefusal(view + "contour", {{1, 2, 3}}, {at + "contour is [[1,2,3]]"});
+  ExpectRefusal(view + "lines", {{1, 1, 0, 0}}, {at + "lines[0] is [1,1,0,0]", "unit length"});
+  ExpectRefusal(view + "lines", {{1, 0}}, {at + "lines[0]", "4 finite numbers"});
+}
+
+TEST(ObjectFile, TruncatedAndMissingFilesAreRefused) {
+  const TemporaryFolder folder;
+  const std::string text = FormatObjects(MakeReport());
+  for (const size_t length : {size_t{0}, text.size() / 2, text.size() - 3}) {
+    const auto path = folder.Write("objects.json", text.substr(0, length));
+    ExpectInputError([&] { ReadObjects(path); }, {"objects.json: is no valid JSON"});
+  }
+  const auto path = folder.Write("objects.json", text);
+  ExpectInputError([&] { ReadObjects(path); }, {"objects_observations.json: No such file"});
+  const std::string observations = FormatObservations(MakeReport());
+  folder.Write("objects_observations.json", observations.substr(0, observations.size() / 2));
+  ExpectInputError([&] { ReadObjects(path); }, {"objects_observations.json: is no valid JSON"});
+  ExpectInputError([&] { ReadObjects(folder.Write("empty.json", "{}")); },
+                   {"empty.json: \"version\" is missing"});
+  ExpectInputError([&] { ReadObjects(folder.path() / "none.json"); }, {"none.json"});
+}
+
+}  // namespace
+}  // namespace hullslam

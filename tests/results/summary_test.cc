@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/results/summary.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "files/text_rows.h"
+#include "hullslam/util/error.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> Keys(const Json& json) {
+  std::vector<std::string> keys;
+  for (const auto& item : json.items()) {
+    keys.push_back(item.key());
+  }
+  return keys;
+}
+
+TEST(Summary, OfAMonocularCameraTellsHowTheMapBegan) {
+  RunSummary summary;
+  EXPECT_FALSE(Json::parse(FormatSummary(summary)).contains("initialisation"));
+  summary.initialisation = InitialisationSummary();
+  summary.initialisation->failures["too little parallax"] = 3;
+  const Json without_map = Json::parse(FormatSummary(summary))["initialisation"];
+  EXPECT_TRUE(without_map["seconds"].is_null());
+  EXPECT_EQ(without_map["failures"]["too little parallax"], 3);
+  EXPECT_EQ(without_map["islands"], 0);
+  summary.initialisation->seconds = 1.5;
+  summary.initialisation->islands = 3;
+  summary.initialisation->joined_islands = 1;
+  const Json with_map = Json::parse(FormatSummary(summary))["initialisation"];
+  EXPECT_EQ(with_map["seconds"], 1.5);
+  EXPECT_EQ(with_map["islands"], 3);
+  EXPECT_EQ(with_map["joined_islands"], 1);
+}
+
+TEST(Summary, HasTheKeysOfTheFormatInOrder) {
+  const Json json = Json::parse(FormatSummary({}));
+  EXPECT_EQ(Keys(json), (std::vector<std::string>{"trajectory", "objects", "timing", "memory",
+                                                  "map", "provenance", "files"}));
+  EXPECT_EQ(Keys(json["trajectory"]),
+            (std::vector<std::string>{"ate_rmse_m", "alignment", "scale", "pairs", "frames",
+                                      "tracked", "lost", "poses", "pairing", "coverage",
+                                      "rpe_rmse_m", "rpe_rmse_deg", "skipped", "unpaired"}));
+  EXPECT_EQ(Keys(json["timing"]),
+            (std::vector<std::string>{"track_ms", "stages_ms", "total_s", "frames_per_second"}));
+  EXPECT_EQ(Keys(json["timing"]["track_ms"]),
+            (std::vector<std::string>{"median", "mean", "p95", "max"}));
+  EXPECT_EQ(Keys(json["memory"]), (std::vector<std::string>{"peak_mb"}));
+  EXPECT_EQ(Keys(json["map"]),
+            (std::vector<std::string>{"keyframes", "landmarks", "loops", "sessions",
+                                      "reprojection_px", "known_sizes"}));
+  EXPECT_EQ(Keys(json["provenance"]),
+            (std::vector<std::string>{"version", "git", "settings_hash", "preset", "seed",
+                                      "pipeline", "masks_format", "sequence", "interrupted"}));
+}
+
+TEST(Summary, HasTheKeysOfObjectsInOrder) {
+  RunSummary summary;
+  summary.objects = ObjectsSummary();
+  const Json json = Json::parse(FormatSummary(summary));
+  EXPECT_EQ(Keys(json["objects"]),
+            (std::vector<std::string>{"count", "siou_mean", "siou_mask_mean", "mtd_mean_m2",
+                                      "tangent_mean_px", "observations", "candidates", "detections",
+                                      "frames_with_masks", "frames_without_masks", "rejections",
+                                      "changes"}));
+  EXPECT_TRUE(json["objects"]["changes"].is_null());
+  EXPECT_TRUE(json["objects"]["siou_mean"].is_null());
+  EXPECT_TRUE(json["objects"]["rejections"].is_object());
+}
+
+TEST(Summary, UnknownValuesAreNull) {
+  const Json json = Json::parse(FormatSummary({}));
+  EXPECT_TRUE(json["trajectory"]["ate_rmse_m"].is_null());
+  EXPECT_TRUE(json["trajectory"]["scale"].is_null());
+  EXPECT_TRUE(json["objects"].is_null());
+  EXPECT_TRUE(json["provenance"]["git"].is_null());
+  EXPECT_TRUE(json["timing"]["stages_ms"].is_object());
+}
+
+TEST(Summary, ValuesAreWritten) {
+  StageTimes times;
+  times.Add("extract", 2.0);
+  times.Add("extract", 4.0);
+  RunSummary summary;
+  summary.trajectory.ate_rmse_m = 0.0095;
+  summary.trajectory.skipped = 3;
+  summary.objects = ObjectsSummary{.count = 6, .siou_mean = 0.8};
+  summary.objects->rejections["too few views"] = 2;
+  summary.objects->changes = {{"gone", 3}};
+  summary.timing.stages_ms = SummarizeStages(times);
+  summary.map.landmarks = 1234;
+  summary.provenance.seed = 18446744073709551615U;
+  summary.provenance.sequence = "fr1 \"xyz\" \xff";
+  const Json json = Json::parse(FormatSummary(summary));
+  EXPECT_EQ(json["trajectory"]["ate_rmse_m"], 0.0095);
+  EXPECT_EQ(json["trajectory"]["skipped"], 3);
+  EXPECT_EQ(json["objects"]["count"], 6);
+  EXPECT_EQ(json["objects"]["siou_mean"], 0.8);
+  EXPECT_EQ(json["objects"]["rejections"]["too few views"], 2);
+  EXPECT_EQ(json["objects"]["changes"]["gone"], 3);
+  EXPECT_EQ(json["timing"]["stages_ms"]["extract"]["mean"], 3.0);
+  EXPECT_EQ(json["timing"]["stages_ms"]["extract"]["max"], 4.0);
+  EXPECT_EQ(json["map"]["landmarks"], 1234);
+  EXPECT_EQ(json["provenance"]["seed"], 18446744073709551615U);
+  EXPECT_TRUE(json["provenance"]["sequence"].get<std::string>().starts_with("fr1 \"xyz\" "));
+}
+
+TEST(Summary, TheAlignmentIsReadAgain) {
+  const TemporaryFolder folder;
+  for (const auto& [name, kind] :
+       std::map<std::string, AlignmentKind>{{"none", AlignmentKind::kNone},
+                                            {"se3", AlignmentKind::kSe3},
+                                            {"sim3", AlignmentKind::kSim3}}) {
+    RunSummary summary;
+    summary.trajectory.alignment = name;
+    EXPECT_EQ(ReadAlignment(folder.Write("summary.json", FormatSummary(summary))), kind);
+  }
+}
+
+TEST(Summary, ABrokenFileIsRefusedWithItsNameAndTheKey) {
+  const TemporaryFolder folder;
+  const auto expect = [&](const std::string& text, const std::string& part) {
+    const std::string path = folder.Write("summary.json", text);
+    try {
+      ReadAlignment(path);
+      ADD_FAILURE() << text << " was read";
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      EXPECT_TRUE(message.starts_with(path)) << message;
+      EXPECT_NE(message.find(part), std::string::npos) << message;
+    }
+  };
+  expect("", "JSON");
+  expect("[]", "expected");
+  expect("{}", "\"trajectory\" is missing");
+  expect(R"({"trajectory": 3})", "trajectory is 3");
+  expect(R"({"trajectory": {"alignment": null}})", "trajectory.alignment is null");
+  expect(R"({"trajectory": {"alignment": "affine"}})",
+         "trajectory.alignment is \"affine\", expected none, se3 or sim3");
+  EXPECT_THROW(ReadAlignment(folder.path() / "none.json"), InputError);
+}
+
+TEST(Summary, PeakMemoryCountsTouchedPages) {
+  const double before = PeakMemoryMb();
+  EXPECT_GT(before, 1.0);
+  const std::vector<char> block(static_cast<size_t>(200e6), 'x');
+  EXPECT_GT(PeakMemoryMb(), 200.0) << block.back();
+  EXPECT_GE(PeakMemoryMb(), before);
+}
+
+}  // namespace
+}  // namespace hullslam

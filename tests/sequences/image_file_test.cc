@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/sequences/image_file.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <string_view>
+
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+std::string Encode(const char* extension, const cv::Mat& image) {
+  std::vector<uchar> bytes;
+  cv::imencode(extension, image, bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
+cv::Mat Ramp(int type) {
+  cv::Mat image(48, 64, type);
+  for (int y = 0; y < image.rows; ++y) {
+    image.row(y).setTo(cv::Scalar::all(5 * y));
+  }
+  return image;
+}
+
+TEST(ImageFile, DepthIsReadExactly) {
+  const TemporaryFolder folder;
+  cv::Mat depth = Ramp(CV_16UC1);
+  depth.at<uint16_t>(3, 4) = 65535;
+  const cv::Mat read = ReadDepthImage(folder.Write("d.png", Encode(".png", depth)));
+  ASSERT_EQ(read.type(), CV_16UC1);
+  EXPECT_EQ(cv::norm(read, depth, cv::NORM_INF), 0.0);
+}
+
+TEST(ImageFile, ColourBecomesLuma) {
+  const TemporaryFolder folder;
+  const cv::Mat green(48, 64, CV_8UC3, cv::Scalar(0, 255, 0));
+  for (const char* const extension : {".png", ".jpg"}) {
+    const cv::Mat grey =
+        ReadGreyImage(folder.Write(std::string("g") + extension, Encode(extension, green)));
+    ASSERT_EQ(grey.type(), CV_8UC1);
+    EXPECT_NEAR(grey.at<uint8_t>(20, 20), 0.587 * 255.0, 2.0) << extension;
+  }
+}
+
+TEST(ImageFile, OnlySixteenBitDepthIsAccepted) {
+  const TemporaryFolder folder;
+  const auto eight = folder.Write("8.png", Encode(".png", Ramp(CV_8UC1)));
+  ExpectInputError([&] { ReadDepthImage(eight); },
+                   {"8.png", "1 channel(s) of 8 bits", "one channel of 16 bits"});
+  const auto colour = folder.Write("c.png", Encode(".png", Ramp(CV_16UC3)));
+  ExpectInputError([&] { ReadDepthImage(colour); }, {"c.png", "3 channel(s) of 16 bits"});
+}
+
+TEST(ImageFile, GreyImagesHave8Bits) {
+  const TemporaryFolder folder;
+  const auto write = [&](int type) {
+    return folder.Write("a.png", Encode(".png", cv::Mat(2, 3, type, cv::Scalar::all(90))));
+  };
+  EXPECT_EQ(ReadGreyImage(write(CV_8UC1)).at<uint8_t>(1, 2), 90);
+  EXPECT_EQ(ReadGreyImage(write(CV_8UC3)).at<uint8_t>(1, 2), 90);
+  for (const int type : {CV_16UC1, CV_16UC3}) {
+    const auto path = write(type);
+    ExpectInputError([&] { ReadGreyImage(path); }, {"a.png: has 16 bits per channel", "8 bits"});
+  }
+}
+
+TEST(ImageFile, EveryTruncationIsFound) {
+  const TemporaryFolder folder;
+  const cv::Mat noise(48, 64, CV_8UC1);
+  cv::randu(noise, 0, 255);
+  for (const char* const extension : {".png", ".jpg"}) {
+    const std::string bytes = Encode(extension, noise);
+    const std::string_view whole = bytes;
+    for (size_t size = 4; size < whole.size(); size += 97) {
+      const auto path = folder.Write("cut", whole.substr(0, size));
+      EXPECT_THROW(ReadGreyImage(path), InputError) << extension << ' ' << size;
+    }
+    const auto path = folder.Write("cut", whole.substr(0, whole.size() - 1));
+    ExpectInputError([&] { ReadGreyImage(path); }, {"cut: is cut off"});
+  }
+}
+
+TEST(ImageFile, BrokenFilesAreReportedByName) {
+  const TemporaryFolder folder;
+  ExpectInputError([&] { ReadGreyImage(folder.Write("empty.png", "")); },
+                   {"empty.png", "is empty"});
+  ExpectInputError([&] { ReadGreyImage(folder.Write("text.png", "hello")); },
+                   {"text.png", "neither a PNG nor a JPEG"});
+  ExpectInputError([&] { ReadDepthImage(folder.path() / "none.png"); }, {"none.png", "No such"});
+  std::string flipped = Encode(".png", Ramp(CV_16UC1));
+  flipped[flipped.size() / 2] = static_cast<char>(~flipped[flipped.size() / 2]);
+  ExpectInputError([&] { ReadDepthImage(folder.Write("flipped.png", flipped)); },
+                   {"flipped.png", "is broken", "checksum"});
+}
+
+TEST(ImageFile, AHugeSizeIsRefusedBeforeMemoryIsAllocated) {
+  const TemporaryFolder folder;
+  std::string png = Encode(".png", Ramp(CV_8UC1));
+  png[16] = 0x7f;  // the highest byte of the width
+  ExpectInputError([&] { ReadGreyImage(folder.Write("huge.png", png)); },
+                   {"huge.png", "million px"});
+  std::string jpeg = Encode(".jpg", Ramp(CV_8UC1));
+  const size_t frame = jpeg.find("\xff\xc0");
+  ASSERT_NE(frame, std::string::npos);
+  jpeg.replace(frame + 5, 4, "\xff\xff\xff\xff");
+  ExpectInputError([&] { ReadGreyImage(folder.Write("huge.jpg", jpeg)); },
+                   {"huge.jpg", "65535x65535 px"});
+}
+
+// Such a file is not read: its size is checked first.
+TEST(ImageFile, AHugeFileIsRefusedBeforeItIsRead) {
+  const TemporaryFolder folder;
+  const auto path = folder.Write("sparse.png", "\x89PNG");
+  std::filesystem::resize_file(path, 100'000'000'000);
+  ExpectInputError([&] { ReadGreyImage(path); },
+                   {"sparse.png: 100000000000 bytes, expected at most 512 MB"});
+}
+
+TEST(ImageFile, FillBytesBeforeTheMarkersOfAJpegAreAccepted) {
+  const TemporaryFolder folder;
+  std::string jpeg = Encode(".jpg", Ramp(CV_8UC1));
+  const size_t frame = jpeg.find("\xff\xc0");
+  jpeg.insert(frame, 3, '\xff');
+  jpeg.insert(2, 2, '\xff');
+  EXPECT_EQ(ReadGreyImage(folder.Write("fill.jpg", jpeg)).size(), cv::Size(64, 48));
+}
+
+// A decoder that skips the bytes before the second frame header would find another size there.
+TEST(ImageFile, OtherBytesBetweenTheSegmentsOfAJpegAreRefused) {
+  const TemporaryFolder folder;
+  std::string jpeg = Encode(".jpg", Ramp(CV_8UC1));
+  const size_t frame = jpeg.find("\xff\xc0");
+  ASSERT_NE(frame, std::string::npos);
+  const std::string decoy("\x01\xc0\x00\x0b\x08\x00\x10\x00\x10\x01\x01\x11\x00", 13);
+  jpeg.replace(frame + 5, 4, "\x7f\xff\x7f\xff");
+  jpeg.insert(frame, decoy);
+  ExpectInputError([&] { ReadGreyImage(folder.Write("decoy.jpg", jpeg)); },
+                   {"decoy.jpg", "the header with the size of the image is missing"});
+  jpeg.erase(frame, decoy.size());
+  ExpectInputError([&] { ReadGreyImage(folder.Write("large.jpg", jpeg)); },
+                   {"large.jpg", "32767x32767 px"});
+}
+
+TEST(ImageFile, APngWithoutHeaderIsRefused) {
+  const TemporaryFolder folder;
+  const std::string png = Encode(".png", Ramp(CV_8UC1));
+  const std::string end = png.substr(png.size() - 12);
+  ExpectInputError([&] { ReadGreyImage(folder.Write("end.png", png.substr(0, 8) + end)); },
+                   {"end.png", "the header with the size of the image is missing"});
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sequences/image_list.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+ImageSequence MadeSequence(size_t count) {
+  ImageSequence sequence;
+  for (size_t i = 0; i < count; ++i) {
+    sequence.frames.push_back(
+        {.timestamp = static_cast<double>(i), .image = std::to_string(i), .number = i});
+  }
+  return sequence;
+}
+
+std::vector<size_t> Numbers(const ImageSequence& sequence) {
+  std::vector<size_t> numbers;
+  for (const FramePaths& frame : sequence.frames) {
+    numbers.push_back(frame.number);
+  }
+  return numbers;
+}
+
+TEST(ImageList, KeepsTheSelectedFrames) {
+  ImageSequence sequence = MadeSequence(10);
+  SelectFrames("folder", {.first = 2, .last = 8, .stride = 3}, sequence);
+  EXPECT_EQ(Numbers(sequence), (std::vector<size_t>{2, 5, 8}));
+  EXPECT_EQ(sequence.available, 10U);
+  sequence = MadeSequence(3);
+  SelectFrames("folder", {}, sequence);
+  EXPECT_EQ(Numbers(sequence), (std::vector<size_t>{0, 1, 2}));
+}
+
+TEST(ImageList, ASelectionOutsideOfTheSequenceIsRefused) {
+  ImageSequence sequence = MadeSequence(3);
+  ExpectInputError([&] { SelectFrames("folder", {.first = 3}, sequence); }, {"folder", "--first"});
+}
+
+TEST(ImageList, FramesAreNumberedAndTheirStampsIncrease) {
+  const TemporaryFolder folder;
+  std::vector<FramePaths> frames;
+  ForEachRow(folder.Write("list.txt", "1 a\n2 b\n2 c\n"), [&](const TextRow& row) {
+    CheckColumns(row, 2, "timestamp file");
+    ExpectInputError([&] { CheckColumns(row, 3, "x y z"); }, {"list.txt", "x y z"});
+    const FramePaths frame{.timestamp = row.Stamp(0), .image = ImageFile(row, 1, "images")};
+    if (row.line < 3) {
+      AddFrame(row, frame, frames);
+    } else {
+      ExpectInputError([&] { AddFrame(row, frame, frames); }, {"list.txt:3"});
+    }
+  });
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[1].number, 1U);
+  EXPECT_EQ(frames[1].image, fs::path("images/b"));
+}
+
+TEST(ImageList, MissingImagesAreNamed) {
+  const TemporaryFolder folder;
+  const fs::path there = folder.Write("a.png", "x");
+  CheckImagesExist({{.timestamp = 0.0, .image = there}});
+  ExpectInputError(
+      [&] { CheckImagesExist({{.timestamp = 0.0, .image = folder.path() / "b.png"}}); }, {"b.png"});
+  ExpectInputError(
+      [&] {
+        CheckImagesExist({{.timestamp = 0.0, .image = there, .depth = folder.path() / "d.png"}});
+      },
+      {"d.png"});
+}
+
+TEST(ImageList, FoldersAreListedByName) {
+  const TemporaryFolder folder;
+  for (const char* const name : {"b", "a", "c"}) {
+    folder.Write(name, "");
+  }
+  const std::vector<fs::path> paths = ListFolder(folder.path());
+  ASSERT_EQ(paths.size(), 3U);
+  EXPECT_EQ(paths[0].filename(), "a");
+  EXPECT_EQ(paths[2].filename(), "c");
+  EXPECT_THROW(ListFolder(folder.path() / "none"), InputError);
+}
+
+TEST(ImageList, ImagesOfAnotherSizeAreRefused) {
+  PinholeCamera camera;
+  CheckImageSize("a.png", cv::Mat(480, 640, CV_8UC1), camera);
+  ExpectInputError([&] { CheckImageSize("a.png", cv::Mat(480, 320, CV_8UC1), camera); },
+                   {"a.png", "320x480", "640x480"});
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/sequences/image_sequence.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+class LoadFrameTest : public ::testing::Test {
+ protected:
+  LoadFrameTest() {
+    camera_.width = 64;
+    camera_.height = 48;
+  }
+  ImageInput Load(const cv::Size& rgb, const cv::Size& depth) {
+    const FramePaths paths{1.5, folder_.path() / "rgb.png", folder_.path() / "depth.png"};
+    cv::imwrite(paths.image.string(), cv::Mat(rgb, CV_8UC3, cv::Scalar::all(9)));
+    cv::imwrite(paths.depth.string(), cv::Mat(depth, CV_16UC1, cv::Scalar::all(999)));
+    return LoadFrame(paths, camera_);
+  }
+
+  TemporaryFolder folder_;
+  PinholeCamera camera_;
+};
+
+TEST_F(LoadFrameTest, DecodesBothImages) {
+  const ImageInput image = Load({64, 48}, {64, 48});
+  EXPECT_EQ(image.timestamp, 1.5);
+  ASSERT_EQ(image.grey.type(), CV_8UC1);
+  ASSERT_EQ(image.depth.type(), CV_16UC1);
+  EXPECT_EQ(image.grey.at<uint8_t>(1, 2), 9);
+  EXPECT_EQ(image.depth.at<uint16_t>(1, 2), 999);
+}
+
+TEST_F(LoadFrameTest, ImagesMustHaveTheSizeOfTheCamera) {
+  ExpectInputError(
+      [&] {
+        Load({64, 48}, {32, 24});
+      },
+      {"depth.png: 32x24 px", "colour image rgb.png, 64x48"});
+  ExpectInputError(
+      [&] {
+        Load({32, 24}, {32, 24});
+      },
+      {"rgb.png: 32x24 px", "Camera.width x Camera.height, 64x48"});
+}
+
+TEST_F(LoadFrameTest, DepthIsOptional) {
+  const std::string image = folder_.path() / "grey.png";
+  cv::imwrite(image, cv::Mat(48, 64, CV_8UC1, cv::Scalar::all(7)));
+  const ImageInput input = LoadFrame({2.5, image}, camera_);
+  EXPECT_EQ(input.timestamp, 2.5);
+  EXPECT_EQ(input.grey.at<uint8_t>(0, 0), 7);
+  EXPECT_TRUE(input.depth.empty());
+}
+
+TEST(ReadGroundtruth, ConvertedPosesReplaceTheFile) {
+  const TemporaryFolder folder;
+  ImageSequence sequence;
+  EXPECT_FALSE(ReadGroundtruth(sequence).has_value());
+  sequence.groundtruth = folder.Write("groundtruth.txt", "7 1 2 3 0 0 0 1\n");
+  EXPECT_EQ(ReadGroundtruth(sequence).value().at(0).timestamp, 7.0);
+  sequence.converted_groundtruth = Trajectory{{.timestamp = 0.5, .world_from_cam = {}}};
+  EXPECT_EQ(ReadGroundtruth(sequence).value().at(0).timestamp, 0.5);
+  sequence.converted_groundtruth.reset();
+  sequence.groundtruth = folder.path() / "none.txt";
+  ExpectInputError([&] { ReadGroundtruth(sequence); }, {"none.txt", "No such file"});
+}
+
+}  // namespace
+}  // namespace hullslam

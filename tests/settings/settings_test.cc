@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/settings/settings.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "files/text_rows.h"
+#include "hullslam/sequences/euroc_sequence.h"
+#include "support/expect_error.h"
+#include "support/paths.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+// A file with the layout of the files of ORB-SLAM2: sections, comments and keys of its viewer.
+constexpr const char* kOrbSlam2 = R"(%YAML:1.0
+
+#--------------------------------------------------------------------------------------------
+# Camera Parameters. Adjust them!
+#--------------------------------------------------------------------------------------------
+
+# Camera calibration and distortion parameters (OpenCV)
+Camera.fx: 517.306408
+Camera.fy: 516.469215
+Camera.cx: 318.643040
+Camera.cy: 255.313989
+
+Camera.k1: 0.262383
+Camera.k2: -0.953104
+Camera.p1: -0.005358
+Camera.p2: 0.002628
+Camera.k3: 1.163314
+
+Camera.width: 640
+Camera.height: 480
+
+# Camera frames per second
+Camera.fps: 30.0
+Camera.bf: 40.0
+Camera.RGB: 1
+ThDepth: 40.0
+DepthMapFactor: 5000.0
+
+ORBextractor.nFeatures: 1000
+ORBextractor.scaleFactor: 1.2
+ORBextractor.nLevels: 8
+ORBextractor.iniThFAST: 20
+ORBextractor.minThFAST: 7
+
+Viewer.KeyFrameSize: 0.05
+Viewer.KeyFrameLineWidth: 1
+Viewer.GraphLineWidth: 0.9
+Viewer.PointSize:2
+Viewer.CameraSize: 0.08
+Viewer.CameraLineWidth: 3
+Viewer.ViewpointX: 0
+Viewer.ViewpointY: -0.7
+Viewer.ViewpointZ: -1.8
+Viewer.ViewpointF: 500
+)";
+
+constexpr const char* kMinimal =
+    "%YAML:1.0\nCamera.fx: 500.\nCamera.fy: 500.0\nCamera.cx: 320\nCamera.cy: 240\n";
+
+class Settings : public ::testing::Test {
+ protected:
+  SystemOptions Read(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    return ReadSettings(folder_.Write("camera.yaml", text), overrides);
+  }
+  void ExpectError(const std::string& text, const std::vector<std::string>& parts,
+                   const std::vector<std::string>& overrides = {}) {
+    ExpectInputError([&] { Read(text, overrides); }, parts);
+  }
+  void ExpectLineError(const std::string& line, std::vector<std::string> parts) {
+    parts.emplace_back("camera.yaml:6: ");
+    ExpectError(kMinimal + line + "\n", parts);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Settings, FilesOfOrbSlam2WorkUnchanged) {
+  const SystemOptions options = Read(kOrbSlam2);
+  EXPECT_EQ(options.camera.fx, 517.306408);
+  EXPECT_EQ(options.camera.fy, 516.469215);
+  EXPECT_EQ(options.camera.cx, 318.643040);
+  EXPECT_EQ(options.camera.cy, 255.313989);
+  EXPECT_EQ(options.camera.k2, -0.953104);
+  EXPECT_EQ(options.camera.k3, 1.163314);
+  EXPECT_EQ(options.camera.width, 640);
+  EXPECT_EQ(options.camera.bf, 40.0);
+  EXPECT_TRUE(options.rgb_order);
+  EXPECT_EQ(options.frames_per_second, 30.0);
+  EXPECT_EQ(options.depth.units_per_metre, 5000.0);
+  EXPECT_EQ(options.features.feature_count, 1000);
+  EXPECT_EQ(options.features.scale_factor, 1.2);
+}
+
+TEST_F(Settings, CarriageReturnsAndAByteOrderMarkAreAccepted) {
+  std::string text = "\xEF\xBB\xBF" + std::string(kMinimal);
+  for (size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) {
+    text.replace(at, 1, "\r\n");
+  }
+  EXPECT_EQ(Read(text).camera.fx, 500.0);
+}
+
+TEST_F(Settings, WholeNumbersMayBeWrittenWithAPoint) {
+  EXPECT_EQ(Read(std::string(kMinimal) + "ORBextractor.nFeatures: 1500.\n").features.feature_count,
+            1500);
+  ExpectLineError("ORBextractor.nFeatures: 1000.5",
+                  {"ORBextractor.nFeatures is '1000.5'", "an integer"});
+}
+
+TEST_F(Settings, OverridesReplaceValuesOfTheFile) {
+  EXPECT_EQ(Read(kMinimal, {"ORBextractor.nFeatures=700", "Camera.fx = 400"}).camera.fx, 400.0);
+  ExpectError(kMinimal, {"--set", "ORBextractor.nFeatures is '-1'", "expected an integer"},
+              {"ORBextractor.nFeatures=-1"});
+  ExpectError(kMinimal, {"--set", "unknown key 'ORBextractor.nFeature'", "ORBextractor.nFeatures"},
+              {"ORBextractor.nFeature=5"});
+  ExpectError(kMinimal, {"--set", "'Camera.fx'", "key=value"}, {"Camera.fx"});
+}
+
+TEST_F(Settings, ANegativeFyIsDecidedByTheProgram) {
+  const std::string text =
+      "%YAML:1.0\nCamera.fx: 481.2\nCamera.fy: -480.0\nCamera.cx: 319.5\nCamera.cy: 239.5\n";
+  ExpectError(text, {"camera.yaml:3: Camera.fy is '-480", "mirrored world", "rgbd_icl"});
+  const auto file = folder_.Write("camera.yaml", text);
+  EXPECT_EQ(ReadSettings(file, {}, NegativeFy::kPositive).camera.fy, 480.0);
+  const std::vector<std::string> overrides = {"Camera.fy=-480"};
+  ExpectInputError([&] { ReadSettings(file, overrides, NegativeFy::kPositive); },
+                   {"--set", "Camera.fy is '-480'"});
+}
+
+TEST_F(Settings, TheConfigurationOfIclNuimIsRightHanded) {
+  const SystemOptions options = ReadSettings(FindConfigFolder() / "ICL.yaml");
+  EXPECT_EQ(options.camera.fx, 481.2);
+  EXPECT_EQ(options.camera.fy, 480.0);
+  EXPECT_EQ(options.camera.cx, 319.5);
+  EXPECT_EQ(options.camera.cy, 239.5);
+  EXPECT_FALSE(options.camera.IsDistorted());
+  EXPECT_EQ(options.depth.units_per_metre, 5000.0);
+}
+
+// A user gets the same run from config/EuRoC.yaml as from the calibration that every sequence of
+// EuRoC brings along.
+TEST_F(Settings, TheConfigurationOfEurocIsThatOfItsSensorFile) {
+  const auto sensor = folder_.Write(
+      "sensor.yaml",
+      "T_BS:\n  cols: 4\n  rows: 4\n"
+      "  data: [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0,\n"
+      "         0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]\n"
+      "rate_hz: 20\nresolution: [752, 480]\ncamera_model: pinhole\n"
+      "intrinsics: [458.654, 457.296, 367.215, 248.375]\n"
+      "distortion_model: radial-tangential\n"
+      "distortion_coefficients: [-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05]\n");
+  const SystemOptions options = ReadSettings(SourceFolder() / "config" / "EuRoC.yaml");
+  EXPECT_EQ(FormatSettings(options),
+            FormatSettings(MakeSettings(ReadEurocCamera(sensor).calibration, sensor.string())));
+}
+
+// No file is left behind when a key is renamed.
+TEST_F(Settings, EveryFileOfTheConfigurationIsRead) {
+  size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(SourceFolder() / "config")) {
+    if (entry.path().extension() == ".yaml") {
+      ++files;
+      EXPECT_NO_THROW(ReadSettings(entry.path())) << entry.path();
+    }
+  }
+  EXPECT_GE(files, 5U);
+}
+
+TEST_F(Settings, ACalibrationReplacesASettingsFile) {
+  CameraCalibration calibration;
+  calibration.camera = {.fx = 458.654,
+                        .fy = 457.1,
+                        .cx = 367.2,
+                        .cy = 248.375,
+                        .k1 = -0.28,
+                        .k2 = 0.074,
+                        .width = 752};
+  calibration.frames_per_second = 20.0;
+  const std::vector<std::string> overrides = {"ORBextractor.nFeatures=1500", "Camera.cx=300"};
+  const SystemOptions options = MakeSettings(calibration, "sensor.yaml", overrides);
+  calibration.camera.cx = 300.0;
+  EXPECT_TRUE(options.camera == calibration.camera);
+  EXPECT_EQ(options.frames_per_second, 20.0);
+  EXPECT_EQ(options.features.feature_count, 1500);
+  calibration.camera.width = 8;
+  ExpectInputError([&] { MakeSettings(calibration, "sensor.yaml"); },
+                   {"sensor.yaml: Camera.width is '8'"});
+}
+
+TEST_F(Settings, OverridesCanGiveMissingIntrinsics) {
+  const std::string text = "%YAML:1.0\nCamera.fx: 50\nCamera.fy: 50\nCamera.cx: 5\n";
+  EXPECT_EQ(Read(text, {"Camera.cy=7"}).camera.cy, 7.0);
+  ExpectError(text, {"camera.yaml", "Camera.cy is not given"});
+}
+
+TEST_F(Settings, BrokenValuesAreReportedWithLineKeyAndExpectation) {
+  ExpectLineError("ORBextractor.nFeatures: -5", {"ORBextractor.nFeatures is '-5'", "an integer"});
+  ExpectLineError("Camera.width: 99999999999", {"Camera.width is '99999999999'", "an integer"});
+  ExpectLineError("DepthMapFactor: 0", {"DepthMapFactor is '0'", "> 0"});
+  ExpectLineError("DepthMapFactor: lots", {"DepthMapFactor is 'lots'", "a number"});
+  ExpectLineError("DepthMapFactor: \"5000\"", {"DepthMapFactor is '\"5000\"'", "a number"});
+  ExpectLineError("DepthMapFactor: .nan", {"DepthMapFactor is '.nan'"});
+  ExpectLineError("DepthMapFactor: .Inf", {"DepthMapFactor is '.Inf'"});
+  ExpectLineError("DepthMapFactor: [1, 2]", {"DepthMapFactor is a list", "a single value"});
+  ExpectLineError("DepthMapFactor: {a: 1}", {"DepthMapFactor is a map", "a single value"});
+  ExpectLineError("Camera.RGB: maybe", {"Camera.RGB is 'maybe'", "true or false"});
+  ExpectLineError("Camera.fxx: 5", {"unknown key 'Camera.fxx'", "did you mean 'Camera.fx'"});
+  ExpectLineError("Camera.fy: 5", {"'Camera.fy' was given before, in line 3"});
+}
+
+TEST_F(Settings, SizesOfObjectsAreAMapOrAText) {
+  const std::string camera =
+      "%YAML:1.0\nCamera.fx: 50\nCamera.fy: 50\nCamera.cx: 5\nCamera.cy: 5\n";
+  const std::map<std::string, double> sizes = {{"cup", 0.1}, {"potted plant", 0.5}};
+  EXPECT_EQ(Read(camera + "objects.sizes:\n  cup: 0.1\n  potted plant: 0.5\n").objects.sizes,
+            sizes);
+  EXPECT_EQ(Read(camera + "objects.sizes: {cup: 0.1, potted plant: 0.5}\n").objects.sizes, sizes);
+  EXPECT_EQ(Read(camera + "objects.sizes: \"cup: 0.1, potted plant: 0.5\"\n").objects.sizes, sizes);
+  EXPECT_TRUE(Read(camera + "objects.sizes: {}\n").objects.sizes.empty());
+  EXPECT_EQ(Read(camera, {"objects.sizes=potted plant:0.5,cup:0.1"}).objects.sizes, sizes);
+  ExpectLineError("objects.sizes: {cup: -1}", {"objects.sizes is 'cup:-1'", "name:number pairs"});
+  ExpectLineError("objects.sizes: {cup: big}", {"objects.sizes is 'cup:big'", "name:number pairs"});
+  ExpectLineError("objects.sizes: {cup: {x: 1}}", {"objects.sizes is a map", "a single value"});
+  ExpectLineError("objects.sizes: [1, 2]", {"objects.sizes is a list", "a single value"});
+  ExpectLineError("objects.sizes: 0.1", {"objects.sizes is '0.1'", "name:number pairs"});
+}
+
+TEST_F(Settings, AZeroFocalLengthIsRefused) {
+  ExpectError("%YAML:1.0\nCamera.fx: 0.0\n",
+              {"camera.yaml:2: ", "Camera.fx is '0'", "from 10 to 1e+05"});
+}
+
+TEST_F(Settings, ImpossibleCamerasAreRefusedWithTheirKey) {
+  for (const char* const value : {"1e-300", "1e300", "1e9"}) {
+    ExpectError(std::string("%YAML:1.0\nCamera.fx: ") + value + "\n",
+                {"camera.yaml:2: ", "Camera.fx is ", "from 10 to 1e+05"});
+  }
+  ExpectError(kMinimal, {"Camera.k1 is '-5'", "cannot be undone"}, {"Camera.k1=-5"});
+  ExpectError(kMinimal, {"Camera.k3 is '1e+06'", "times the width"}, {"Camera.k3=1000000"});
+}
+
+// OpenCV's parser calls itself for each level.
+TEST_F(Settings, DeepNestingIsRefused) {
+  const auto repeat = [](const std::string& text, size_t bytes) {
+    std::string repeated;
+    while (repeated.size() < bytes) {
+      repeated += text;
+    }
+    return repeated;
+  };
+  for (const char* const opening :
+       {"[", "{a: ", "- ", "a: ", "? ", "-\n", "[\r", "!!map ", "&a "}) {
+    try {
+      Read(std::string(kMinimal) + "Camera.k1: " + repeat(opening, 900'000));
+      ADD_FAILURE() << opening;
+    } catch (const InputError& error) {
+      EXPECT_LT(std::string(error.what()).size(), 400U) << opening;
+    }
+  }
+  std::string indented = kMinimal;
+  for (size_t depth = 0; depth < 1300; ++depth) {
+    indented += std::string(depth, ' ') + "a:\n";
+  }
+  ExpectError(indented, {"camera.yaml:", "nested too deep"});
+}
+
+TEST_F(Settings, LongKeysAndValuesAreCutInMessages) {
+  const std::string text(900'000, 'k');
+  for (const std::string& line : {text + ": 1\n", "Camera.fps: " + text + "\n"}) {
+    try {
+      Read(kMinimal + line);
+      ADD_FAILURE();
+    } catch (const InputError& error) {
+      EXPECT_LT(std::string(error.what()).size(), 400U);
+      EXPECT_NE(std::string(error.what()).find("kkk"), std::string::npos);
+    }
+  }
+  ExpectError(kMinimal + text + text, {"camera.yaml: 1800073 bytes", "at most 1 MB"});
+}
+
+TEST_F(Settings, FilesThatAreNotYamlAreRefused) {
+  ExpectError("", {"camera.yaml:1: ", "%YAML:1.0"});
+  ExpectError("Camera.fx: 500\n", {"camera.yaml:1: ", "%YAML:1.0"});
+  ExpectError(std::string("\x7f"
+                          "ELF\x02\0\0",
+                          7),
+              {"camera.yaml:1: ", "%YAML:1.0"});
+  ExpectError(std::string("%YAML:1.0\na\0b: 1\n", 17), {"camera.yaml", "not a text file"});
+  ExpectError("%YAML:1.0\n", {"camera.yaml", "has no settings"});
+  ExpectError("%YAML:1.0\n- 1\n- 2\n", {"camera.yaml", "has no settings"});
+  ExpectError("%YAML:1.0\n---\nCamera.fx 500\nb: 2\n", {"camera.yaml:3: "});
+  ExpectError("%YAML:1.0\nCamera.fx: \"500\n", {"camera.yaml:2: "});
+  ExpectError("%YAML:1.0\n\tCamera.fx: 500\n", {"camera.yaml:2: ", "Tabs"});
+  ExpectError("%YAML:1.0\n\"Camera.fx\": 500\n", {"camera.yaml:2: "});
+  ExpectInputError([&] { ReadSettings(folder_.path() / "none.yaml"); }, {"none.yaml", "No such"});
+  ExpectInputError([&] { ReadSettings(folder_.path()); }, {"is a folder"});
+}
+
+TEST_F(Settings, RandomBytesGiveAnInputError) {
+  uint32_t state = 1;
+  for (int i = 0; i < 300; ++i) {
+    std::string text = kOrbSlam2;
+    for (int k = 0; k < 4; ++k) {
+      state = state * 1664525 + 1013904223;
+      text[10 + (state >> 8) % (text.size() - 10)] = static_cast<char>(state >> 24);
+    }
+    try {
+      Read(text);
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()), "");
+    }
+  }
+}
+
+TEST_F(Settings, WrittenSettingsAreReadBackUnchanged) {
+  const SystemOptions options =
+      Read(kOrbSlam2, {"ORBextractor.nFeatures=1234", "objects.sizes=cup:0.1,potted plant:2"});
+  const std::string text = FormatSettings(options);
+  EXPECT_NE(text.find("\nORBextractor.nFeatures: 1234\n"), std::string::npos);
+  EXPECT_NE(text.find("\nobjects.sizes: \"cup:0.1,potted plant:2\"\n"), std::string::npos);
+  EXPECT_EQ(FormatSettings(Read(text)), text);
+}
+
+TEST_F(Settings, DifferentSettingsHaveDifferentHashes) {
+  const std::string hash = HashSettings(Read(kOrbSlam2));
+  EXPECT_EQ(hash.size(), 16U);
+  EXPECT_EQ(HashSettings(Read(FormatSettings(Read(kOrbSlam2)))), hash);
+  EXPECT_NE(HashSettings(Read(kOrbSlam2, {"Camera.fx=517.306409"})), hash);
+}
+
+TEST_F(Settings, TheDefaultFileDependsOnTheNameOfTheSequence) {
+  const auto expect = [](const char* sequence, const char* file) {
+    EXPECT_EQ(FindDefaultSettings(sequence, "/config"), std::filesystem::path("/config") / file);
+  };
+  expect("/data/rgbd_dataset_freiburg1_xyz", "TUM1.yaml");
+  expect("/data/rgbd_dataset_freiburg2_desk/", "TUM2.yaml");
+  expect("fr3_long_office_household", "TUM3.yaml");
+  expect("Freiburg3", "TUM3.yaml");
+  for (const char* name : {"/data/my_room", "/fr1/other", "fr10_x", "afr1", "fr4", "fr"}) {
+    ExpectInputError([&] { FindDefaultSettings(name, "/config"); }, {name, "--settings"});
+  }
+}
+
+TEST_F(Settings, AFileInTheSequenceTakesPrecedence) {
+  const auto own = folder_.Write("fr1_like/camera.yaml", kMinimal);
+  EXPECT_EQ(FindDefaultSettings(own.parent_path(), "/config"), own);
+}
+
+TEST_F(Settings, TheSettingsOfKnownCamerasAreFoundAndRead) {
+  // NOLINTBEGIN(concurrency-mt-unsafe): this test has one thread
+  ::setenv("HULLSLAM_CONFIG", (SourceFolder() / "config").c_str(), 1);
+  const std::filesystem::path folder = FindConfigFolder();
+  EXPECT_EQ(folder, SourceFolder() / "config");
+  for (const char* const name : {"fr1_xyz", "fr2_desk", "fr3_office"}) {
+    EXPECT_GT(ReadSettings(FindDefaultSettings(name, folder)).camera.fx, 500.0);
+  }
+  ::setenv("HULLSLAM_CONFIG", "/no/such/folder", 1);
+  ExpectInputError([] { FindConfigFolder(); }, {"HULLSLAM_CONFIG", "/no/such/folder"});
+  ::setenv("HULLSLAM_CONFIG", "", 1);
+  EXPECT_NO_THROW(FindConfigFolder()) << "an empty variable counts as not set";
+  ::unsetenv("HULLSLAM_CONFIG");
+  // NOLINTEND(concurrency-mt-unsafe)
+  EXPECT_TRUE(std::filesystem::exists(FindConfigFolder() / "TUM1.yaml"));
+}
+
+// docs/settings.md must list every key and what is expected of its value.
+TEST_F(Settings, EveryKeyIsDocumented) {
+  const std::string docs = ReadFile(SourceFolder() / "docs/settings.md");
+  SystemOptions options;
+  for (const OptionTable::Entry& entry : options.Bind().Entries()) {
+    const size_t begin = docs.find("| `" + entry.key + "` |");
+    ASSERT_NE(begin, std::string::npos) << entry.key;
+    const std::string line = docs.substr(begin, docs.find('\n', begin) - begin);
+    EXPECT_NE(line.find(" | " + entry.expected + " | "), std::string::npos) << line;
+  }
+}
+
+}  // namespace
+}  // namespace hullslam
