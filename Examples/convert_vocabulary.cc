@@ -1,45 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Converts a vocabulary between the text format of ORB-SLAM2 and the binary form of HullSLAM.
-#include <filesystem>
-#include <string>
+#include "run/tools/convert_vocabulary.h"
 
-#include "cli/messages.h"
-#include "cli/program.h"
-#include "cli/version.h"
-#include "cli/vocabulary_form.h"
-#include "cli/vocabulary_loading.h"
+#include "run/program.h"
 
-namespace hullslam {
-namespace {
-
-int Run(int argc, char** argv) {
-  CLI::App app(
-      "Converts a vocabulary between the text format of ORB-SLAM2 and the binary form of HullSLAM.",
-      "convert_vocabulary");
-  std::filesystem::path input;
-  std::filesystem::path output;
-  std::string form;
-  bool quiet = false;
-  app.add_option("IN", input, "vocabulary in either form; its content tells which")->required();
-  app.add_option("OUT", output, "vocabulary file to write; replaces an earlier one")->required();
-  AddVocabularyForm(app, form);
-  app.add_flag("--quiet", quiet, "print nothing but errors");
-  AddVersionAndExitCodes(
-      app, "done", "the program failed (then nothing is written)",
-      "bad usage, an IN that is no vocabulary, or an OUT that cannot be written");
-  if (!ParseCommandLine(app, argc, argv)) {
-    return kDone;
-  }
-  const VocabularyForm output_form = FormOf(output, form);
-  const Vocabulary vocabulary = LoadVocabulary(input, quiet);
-  WriteVocabulary(output, vocabulary, output_form);
-  if (!quiet) {
-    Print("{}: {}\n", output.string(), Describe(vocabulary));
-  }
-  return kDone;
+int main(int argc, char** argv) {
+  return hullslam::RunMain(hullslam::RunConvertVocabulary, argc, argv);
 }
-
-}  // namespace
-}  // namespace hullslam
-
-int main(int argc, char** argv) { return hullslam::RunMain(hullslam::Run, argc, argv); }

@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 
-#include "cli/interrupt.h"
-#include "cli/program.h"
-#include "cli/version.h"
+#include "run/command_line.h"
+#include "run/interrupt.h"
+#include "run/program.h"
 #include "synthetic/sequence_writer.h"
 
 namespace {

@@ -33,11 +33,10 @@ LEVELS = {
     "results": 14,
     "sequences": 15,
     "masks": 16,
-    # A library for the programs and not a part of libhullslam. It may include every module; no
-    # module may include it.
-    "synthetic": 17,
+    # What the programs share. It is no part of libhullslam and has no public headers.
+    "run": 17,
 }
-PROGRAM_SIDE = {"synthetic"}
+PROGRAM_SIDE = {"run"}
 
 KEPT_PRIVATE = re.compile(
     r"CGAL/|embree\d?/|suitesparse/|Eigen/(Cholmod|SPQR|UmfPack|KLU)Support$"

@@ -113,11 +113,11 @@ class CheckLayersTest(unittest.TestCase):
         self.assert_fault({"src/map/a.cc": '#include "hullslam/all.h"\n'}, "unknown module")
         self.assert_fault({"include/hullslam/all.h": "\n"}, "unknown module")
 
-    def test_no_module_may_include_the_renderer(self):
-        self.assert_fault({"src/io/a.cc": '#include "synthetic/scene.h"\n'}, "up", "synthetic")
+    def test_no_module_may_include_what_the_programs_share(self):
+        self.assert_fault({"src/masks/a.cc": '#include "run/progress.h"\n'}, "up", "run")
         self.assertEqual(faults_of({
-            "src/synthetic/a.cc": '#include "synthetic/scene.h"\n#include <embree3/rtcore.h>\n'
-                                  '#include "hullslam/settings/settings.h"\n'}), [])
+            "src/run/a.cc": '#include "run/progress.h"\n'
+                            '#include "hullslam/settings/settings.h"\n'}), [])
 
     def test_libraries_that_public_headers_may_not_include(self):
         for header in ("CGAL/convex_hull_2.h", "cholmod.h", "suitesparse/cholmod.h",

@@ -29,8 +29,8 @@ class CheckTestMirrorTest(unittest.TestCase):
     def test_accepts_a_mirror(self):
         self.assertEqual(faults_of({
             HEADER: "", TEST: BODY,
-            "src/synthetic/scene.h": "", "tests/synthetic/scene_test.cc": "TEST_F(S, T) {}\n",
-            "src/synthetic/untested.h": "",
+            "src/run/scene.h": "", "tests/run/scene_test.cc": "TEST_F(S, T) {}\n",
+            "src/run/untested.h": "",
             "tests/integration/run_test.cc": "", "tests/consumer/any_test.cc": ""}), [])
 
     def test_header_without_test(self):

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace hullslam {
+
+// What all programs have on their command lines. The headers of this folder only name CLI::App,
+// because compiling CLI11 takes seconds.
+
+// Parses the command line. Returns true if the program should go on, and false after options such
+// as --help. Throws InputError if the command line cannot be parsed.
+bool ParseCommandLine(CLI::App& app, int argc, char** argv);
+
+// Adds --version, and what the exit codes mean to the end of --help. Subcommands that are added
+// later show the exit codes too.
+void AddVersionAndExitCodes(CLI::App& app, const std::string& done = "done",
+                            const std::string& failed = "the program failed",
+                            const std::string& bad_input = "bad usage or input");
+
+// Adds --debug, which sends the library's log to stderr, including its debug messages on what
+// happens to each object.
+void AddDebugFlag(CLI::App& app);
+
+// Adds an option such as --set, which takes key=value and can be given several times. `meaning` is
+// its help. `overrides` must outlive the app.
+void AddOverrides(CLI::App& app, const std::string& name, const std::string& meaning,
+                  std::vector<std::string>& overrides);
+void AddOverrides(CLI::App& app, std::vector<std::string>& overrides);  // --set
+
+}  // namespace hullslam

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "hullslam/sequences/image_sequence.h"
+#include "hullslam/system/options.h"
+#include "run/run_arguments.h"
+
+namespace hullslam {
+
+// What a run of SLAM needs from a data set.
+struct DatasetInput {
+  SystemOptions options;  // the sensor is set by the caller
+  ImageSequence sequence;
+};
+
+// A data set on the command line: its help, its own options, and its reader. A new one is a class
+// that implements this, and a program in Examples that names it (docs/changing.md).
+class Dataset {
+ public:
+  Dataset() = default;
+  virtual ~Dataset() = default;
+  Dataset(const Dataset&) = delete;
+  Dataset& operator=(const Dataset&) = delete;
+
+  virtual DatasetHelp Help(SensorKind sensor) const = 0;
+  // Adds options that only this data set has.
+  virtual void AddOptions(CLI::App& /*app*/) {}
+  // Opens the sequence and reads the settings, and may print what it found. Throws InputError for
+  // bad input.
+  virtual DatasetInput Open(const RunArguments& arguments) = 0;
+};
+
+}  // namespace hullslam

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/datasets/euroc_dataset.h"
+
+#include <utility>
+
+#include "hullslam/sequences/euroc_sequence.h"
+#include "hullslam/settings/settings.h"
+
+namespace hullslam {
+namespace {
+
+class EurocDataset final : public Dataset {
+ public:
+  DatasetHelp Help(SensorKind /*sensor*/) const override {
+    return {.sequence = "folder with mav0, in the format ASL",
+            .settings = "default: the camera of cam0/sensor.yaml in SEQUENCE"};
+  }
+
+  DatasetInput Open(const RunArguments& arguments) override {
+    EurocSequence sequence = OpenEurocSequence(arguments.sequence, arguments.selection);
+    return {.options = arguments.settings.empty()
+                           ? MakeSettings(sequence.camera.calibration, arguments.sequence.string(),
+                                          arguments.overrides)
+                           : ReadSettings(arguments.settings, arguments.overrides),
+            .sequence = std::move(sequence.images)};
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Dataset> MakeEurocDataset() { return std::make_unique<EurocDataset>(); }
+
+}  // namespace hullslam

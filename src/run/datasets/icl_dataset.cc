@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/datasets/icl_dataset.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "hullslam/sequences/icl_sequence.h"
+#include "hullslam/settings/settings.h"
+#include "run/messages.h"
+
+namespace hullslam {
+namespace {
+
+// Adds an option that is one of the names and sets the field to its value.
+template <typename Enum>
+void AddNamed(CLI::App& app, const std::string& option, const std::map<std::string, Enum>& values,
+              Enum& field, const std::string& help) {
+  app.add_option_function<std::string>(
+         option, [&field, values](const std::string& name) { field = values.at(name); }, help)
+      ->check(CLI::IsMember(values).description(""))
+      ->type_name("NAME");
+}
+
+class IclDataset final : public Dataset {
+ public:
+  DatasetHelp Help(SensorKind /*sensor*/) const override {
+    return {.sequence = "folder of ICL-NUIM, of either package (--package)",
+            .settings = "default: camera.yaml in SEQUENCE; without it, config/ICL.yaml",
+            .associations =
+                "index depth index rgb (default: associations.txt in SEQUENCE; package tum only)"};
+  }
+
+  void AddOptions(CLI::App& app) override {
+    AddNamed<IclPackage>(
+        app, "--package", {{"tum", IclPackage::kTum}, {"povray", IclPackage::kPovray}},
+        icl_.package,
+        "tum: rgb/N.png, depth/N.png and associations.txt; povray: scene_00_NNNN.png, .depth and "
+        ".txt (default: by the files in SEQUENCE)");
+    app.add_option("--groundtruth", icl_.groundtruth,
+                   "true trajectory in TUM's format, with indices of frames as time stamps "
+                   "(default: the .txt files of package povray, else *.gt.freiburg or "
+                   "groundtruth.txt in SEQUENCE)");
+    AddNamed<CameraYAxis>(
+        app, "--groundtruth-y", {{"up", CameraYAxis::kUp}, {"down", CameraYAxis::kDown}},
+        icl_.groundtruth_y,
+        "where the y axis of the ground truth's cameras points; up (fy < 0) means that it is "
+        "mirrored (default: what the depth images agree with; docs/datasets.md)");
+    app.add_option("--povray-units", icl_.povray_units,
+                   "lengths in the .depth and .txt files per metre (100: centimetres)")
+        ->check(CLI::Range(1e-6, 1e6).description(""))
+        ->capture_default_str();
+  }
+
+  // A negative Camera.fy stands for its positive value.
+  DatasetInput Open(const RunArguments& arguments) override {
+    SystemOptions options =
+        ReadSettings(ChooseSettings(arguments), arguments.overrides, NegativeFy::kPositive);
+    icl_.associations = arguments.associations;
+    icl_.use_depth = arguments.sensor == SensorKind::kRgbd;
+    icl_.selection = arguments.selection;
+    IclSequence sequence = OpenIclSequence(arguments.sequence, options.camera, options.depth, icl_);
+    if (!arguments.quiet) {
+      Print("ICL-NUIM, package {}\n", sequence.package == IclPackage::kTum ? "tum" : "povray");
+      Print("ground truth: {}\n",
+            sequence.groundtruth_note.empty() ? "none" : sequence.groundtruth_note);
+    }
+    return {.options = std::move(options), .sequence = std::move(sequence.images)};
+  }
+
+ private:
+  static std::filesystem::path ChooseSettings(const RunArguments& arguments) {
+    std::error_code error;
+    if (!arguments.settings.empty()) {
+      return arguments.settings;
+    }
+    std::filesystem::path camera = arguments.sequence / "camera.yaml";
+    return std::filesystem::exists(camera, error) ? camera : FindConfigFolder() / "ICL.yaml";
+  }
+
+  IclSequenceOptions icl_;
+};
+
+}  // namespace
+
+std::unique_ptr<Dataset> MakeIclDataset() { return std::make_unique<IclDataset>(); }
+
+}  // namespace hullslam

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <semaphore>
+#include <string>
+
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/sequences/image_sequence.h"
+#include "hullslam/system/prefetcher.h"
+#include "hullslam/system/system.h"
+#include "hullslam/util/cancellation.h"
+#include "run/mask_arguments.h"
+
+namespace hullslam {
+
+// A frame that can be tracked, or the reason why its image could not be loaded.
+struct LoadedFrame {
+  std::optional<BuiltFrame> frame;
+  std::string error;
+};
+
+// When frames become available: as fast as they can be read, or at their time stamps.
+enum class Pace { kFast, kRealtime };
+
+// Loads the images of a sequence in one thread and builds their frames in another one, ahead of
+// tracking. In real time a frame is not built before the time at which the camera took it, and an
+// image is only loaded when the last frame has been tracked, so that loading takes no core from
+// tracking.
+class FrameSource {
+ public:
+  // The references must outlive this object. The time in real time begins here. `priority` is that
+  // of both threads.
+  FrameSource(Pace pace, PrefetchPriority priority, const ImageSequence& sequence,
+              const PinholeCamera& camera, const SequenceMasks& masks, System& system);
+  ~FrameSource();
+  FrameSource(const FrameSource&) = delete;
+  FrameSource& operator=(const FrameSource&) = delete;
+
+  // The next frame; null at the end, and in real time also after an interruption. The frames before
+  // it have been tracked. Throws InputError if the masks of a frame cannot be read.
+  std::optional<LoadedFrame> Next();
+
+ private:
+  // An image, or the reason why it could not be loaded.
+  struct LoadedImage {
+    std::optional<ImageInput> image;
+    std::string error;
+  };
+  using Clock = std::chrono::steady_clock;
+
+  static constexpr size_t kImagesAhead = 4;
+  static constexpr size_t kFramesAhead = 4;
+
+  std::optional<LoadedImage> LoadNext();
+  std::optional<LoadedFrame> BuildNext();
+  bool WaitFor(double stamp) const;
+
+  const bool is_realtime_;
+  const ImageSequence& sequence_;
+  const PinholeCamera& camera_;
+  const SequenceMasks& masks_;
+  System& system_;
+  const Clock::time_point start_ = Clock::now();
+  Cancellation end_;
+  std::counting_semaphore<> loads_{kImagesAhead};  // how many images may be loaded in real time
+  size_t next_ = 0;                                // image to be loaded; used by its thread only
+  Prefetcher<LoadedImage> images_;
+  Prefetcher<LoadedFrame> frames_;  // last, because its thread uses the others
+};
+
+}  // namespace hullslam

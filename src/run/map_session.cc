@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/map_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "hullslam/files/atomic_file.h"
+#include "hullslam/map_files/map_file.h"
+#include "hullslam/system/compose_trajectory.h"
+#include "hullslam/util/error.h"
+#include "run/messages.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The canonical path, also of a file or folder that does not exist yet.
+fs::path Canonical(const fs::path& path) {
+  std::error_code error;
+  const fs::path canonical = fs::weakly_canonical(fs::absolute(path, error), error);
+  const fs::path found = error ? path.lexically_normal() : canonical;
+  return found.has_filename() ? found : found.parent_path();  // without a slash at the end
+}
+
+// The name of the sequence's folder, also if the path ends in a slash.
+std::string SessionName(const fs::path& sequence) {
+  return Canonical(sequence).filename().string();
+}
+
+std::string Title(size_t number, const std::string& name) {
+  return fmt::format("session {}: {}", number, name);
+}
+
+bool IsSameOrInside(const fs::path& path, const fs::path& folder) {
+  const fs::path inner = Canonical(path);
+  const fs::path outer = Canonical(folder);
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+}  // namespace
+
+void CheckSavedMap(const RunArguments& arguments) {
+  if (arguments.save_map.empty()) {
+    return;
+  }
+  for (const fs::path& input : {arguments.sequence, arguments.masks, arguments.settings,
+                                arguments.associations, arguments.vocabulary}) {
+    if (!input.empty() && IsSameOrInside(arguments.save_map, input)) {
+      throw InputError(
+          fmt::format("--save-map is '{}', which is or is inside {}, which this run "
+                      "reads; choose another place",
+                      arguments.save_map.string(), input.string()));
+    }
+  }
+  if (IsSameOrInside(arguments.save_map, arguments.output)) {
+    throw InputError(
+        fmt::format("--save-map is '{}', which is in the output folder; the next run "
+                    "replaces what is there, so choose another place",
+                    arguments.save_map.string()));
+  }
+  ProbeFile(arguments.save_map);
+}
+
+SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& options) {
+  SystemStart start;
+  start.session_name = SessionName(arguments.sequence);
+  start.localization_only = arguments.localization;
+  if (!arguments.load_map.empty()) {
+    start.map = ReadMap(arguments.load_map, MapSettingsOf(options), options.vocabulary);
+  }
+  return start;
+}
+
+void SaveMap(const RunArguments& arguments, const SystemOptions& options, const Map& map) {
+  if (arguments.save_map.empty()) {
+    return;
+  }
+  if (map.keyframes().empty()) {
+    PrintError("warning: {}: the map has no keyframe and was not written\n",
+               arguments.save_map.string());
+    return;
+  }
+  WriteMap(arguments.save_map, map, MapSettingsOf(options));
+}
+
+std::vector<TrajectoryPart> RunParts(const RunArguments& arguments, size_t earlier_sessions,
+                                     const Trajectory& trajectory) {
+  const std::string name = SessionName(arguments.sequence);
+  if (arguments.load_map.empty()) {
+    return {{.title = {}, .poses = trajectory}};
+  }
+  return {{.title =
+               arguments.localization ? "localization: " + name : Title(earlier_sessions + 1, name),
+           .poses = trajectory}};
+}
+
+std::vector<TrajectoryPart> KeyframeParts(const RunArguments& arguments, const Map& map) {
+  if (arguments.load_map.empty()) {
+    return {{.title = {}, .poses = KeyframeTrajectory(map)}};
+  }
+  std::vector<TrajectoryPart> parts = {{.title = {}, .poses = KeyframeTrajectory(map, 0)}};
+  for (size_t number = 1; number <= map.sessions().size(); ++number) {
+    parts.push_back({.title = Title(number, map.sessions()[number - 1].name),
+                     .poses = KeyframeTrajectory(map, number)});
+  }
+  return parts;
+}
+
+}  // namespace hullslam

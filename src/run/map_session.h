@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "hullslam/results/trajectory_file.h"
+#include "hullslam/system/options.h"
+#include "hullslam/system/system_start.h"
+#include "run/run_arguments.h"
+
+namespace hullslam {
+
+// Throws InputError unless --save-map names a file that can be written and that is neither in the
+// output folder, where the next run would remove it, nor one of the other inputs or inside of one.
+// The file of --load-map may be replaced.
+void CheckSavedMap(const RunArguments& arguments);
+
+// What the run begins with: the map of --load-map if it is given. Throws InputError for a map that
+// cannot be read or that was made with another camera or image pyramid.
+SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& options);
+
+// Writes the map to the file of --save-map if it is given. A map without keyframes is not written;
+// a warning says so.
+void SaveMap(const RunArguments& arguments, const SystemOptions& options, const Map& map);
+
+// The poses of the run with the title of its session, which comes after `earlier_sessions`, and
+// those of the keyframes of the map by session. Without --load-map there are no titles.
+std::vector<TrajectoryPart> RunParts(const RunArguments& arguments, size_t earlier_sessions,
+                                     const Trajectory& trajectory);
+std::vector<TrajectoryPart> KeyframeParts(const RunArguments& arguments, const Map& map);
+
+}  // namespace hullslam

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/mask_arguments.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <utility>
+
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+
+void AddMaskFormat(CLI::App& app, std::string& format, const std::string& names) {
+  app.add_option(names, format,
+                 fmt::format("format of the masks: {} (default: detected from the files)",
+                             fmt::join(MaskFormatNames(), ", ")))
+      ->check(CLI::IsMember(MaskFormatNames()).description(""));
+}
+
+void AddMaskArguments(CLI::App& app, std::filesystem::path& path, std::string& format) {
+  app.add_option("--masks", path,
+                 "instance masks of the objects: a folder or a JSON file (docs/masks.md)");
+  AddMaskFormat(app, format, "--masks-format");
+}
+
+SequenceMasks::SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> frames)
+    : path_(request.path.string()), frames_(std::move(frames)) {
+  if (!request.path.empty()) {
+    source_ = OpenMasks(request, frames_);
+    counts_ = CheckMasks(*source_, frames_);
+  } else if (!request.format.empty()) {
+    throw InputError(fmt::format("--masks-format is '{}' without --masks, expected both or neither",
+                                 request.format));
+  }
+}
+
+std::vector<InstanceMask> SequenceMasks::Read(size_t frame) const {
+  return source_ == nullptr ? std::vector<InstanceMask>() : source_->Read(frames_.at(frame)).masks;
+}
+
+std::set<std::string> SequenceMasks::Labels() const {
+  std::set<std::string> labels;
+  for (size_t frame = 0; frame < frames_.size(); ++frame) {
+    for (const InstanceMask& mask : Read(frame)) {
+      labels.insert(mask.label);
+    }
+  }
+  return labels;
+}
+
+std::optional<std::string> SequenceMasks::format() const {
+  return source_ == nullptr ? std::nullopt : std::optional(source_->format());
+}
+
+std::string SequenceMasks::Describe() const {
+  return source_ == nullptr
+             ? std::string("no masks")
+             : fmt::format("masks: {} ({}), {} of {} frames have none, {} of them no file or entry",
+                           path_, source_->format(), counts_.without_masks, frames_.size(),
+                           counts_.missing);
+}
+
+}  // namespace hullslam

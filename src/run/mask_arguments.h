@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hullslam/masks/mask_source.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace hullslam {
+
+// Adds --masks and --masks-format, which write to `path` and `format`. Both must outlive the app.
+void AddMaskArguments(CLI::App& app, std::filesystem::path& path, std::string& format);
+// Adds only the option for the format, under the given names, for programs that take the masks as a
+// positional argument.
+void AddMaskFormat(CLI::App& app, std::string& format, const std::string& names);
+
+// The masks of a sequence. The constructor checks all of them. With an empty path there are none.
+class SequenceMasks {
+ public:
+  // Throws InputError if OpenMasks() or CheckMasks() refuses the masks, and if there is a format
+  // but no path.
+  SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> frames);
+
+  // The masks of the frame with this index. May be called by another thread.
+  std::vector<InstanceMask> Read(size_t frame) const;
+  // The classes of all masks of all frames. Reads them all.
+  std::set<std::string> Labels() const;
+  std::optional<std::string> format() const;
+  size_t without_masks() const { return counts_.without_masks; }  // frames
+  std::string Describe() const;  // "masks: PATH (yolo-seg), 6 of 798 frames have none, ..."
+
+ private:
+  std::string path_;
+  std::vector<MaskFrame> frames_;
+  std::unique_ptr<const MaskSource> source_;
+  MaskCounts counts_;
+};
+
+}  // namespace hullslam

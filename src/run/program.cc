@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/program.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <system_error>
+
+#include "run/messages.h"
+
+namespace hullslam {
+
+void PrepareStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF) {
+      // Takes the lowest free descriptor, which is `stream`. Writing to a closed stdout stays an
+      // error, since it is opened for reading only.
+      [[maybe_unused]] const int opened =
+          ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+    }
+  }
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void PrintFailure(const std::string& message) { PrintError("error: {}\n", message); }
+
+int FinishStdout(int code) {
+  errno = 0;
+  const bool is_flushed = std::fflush(stdout) == 0;
+  const int reason = errno;
+  if (is_flushed && std::ferror(stdout) == 0) {
+    return code;
+  }
+  PrintError("error: stdout cannot be written{}\n",
+             reason != 0 ? ": " + std::generic_category().message(reason) : std::string());
+  return code == kDone ? kFailed : code;
+}
+
+}  // namespace hullslam

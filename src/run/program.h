@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <exception>
+#include <string>
+
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+
+enum ExitCode { kDone = 0, kFailed = 1, kBadInput = 2 };
+
+// A stream that was closed by the caller is opened to /dev/null, because otherwise the next file
+// that the program opens would take its place and receive the messages. A closed pipe or a file
+// that may not grow becomes an error of the write instead of the end of the program.
+void PrepareStreams();
+
+// Prints one line, "error: MESSAGE", on stderr.
+void PrintFailure(const std::string& message);
+
+// Writes out what is still buffered for stdout. Returns `code`, or kFailed in place of kDone if
+// something that was printed could not be written; then prints the reason on stderr.
+int FinishStdout(int code);
+
+// Calls `run(argc, argv)` and returns its exit code. Turns an exception into one line on stderr and
+// an exit code.
+template <typename Run>
+int RunMain(const Run& run, int argc, char** argv) {
+  PrepareStreams();
+  int code = kFailed;
+  try {
+    code = run(argc, argv);
+  } catch (const InputError& error) {
+    PrintFailure(error.what());
+    code = kBadInput;
+  } catch (const std::exception& error) {
+    PrintFailure(error.what());
+  }
+  return FinishStdout(code);
+}
+
+}  // namespace hullslam

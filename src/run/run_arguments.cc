@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/run_arguments.h"
+
+#include <CLI/CLI.hpp>
+
+#include "hullslam/util/error.h"
+#include "run/command_line.h"
+#include "run/mask_arguments.h"
+#include "run/vocabularies.h"
+
+namespace hullslam {
+namespace {
+
+// Without this check CLI11 would turn -1 into the largest unsigned number. `least` is 0 or 1.
+CLI::Validator WholeNumber(int least) {
+  return CLI::Validator(
+      [least](const std::string& text) {
+        const bool is_whole =
+            !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+        const bool is_zero = text.find_first_not_of('0') == std::string::npos;
+        return is_whole && (least == 0 || !is_zero)
+                   ? std::string()
+                   : "'" + text + "', expected an integer >= " + std::to_string(least);
+      },
+      "");
+}
+
+// ORB-SLAM2's own arguments.
+std::string LongForm(SensorKind sensor) {
+  return sensor == SensorKind::kMonocular ? "VOCABULARY SETTINGS SEQUENCE"
+                                          : "VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS";
+}
+
+}  // namespace
+
+void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& arguments,
+                     std::vector<std::string>& positional) {
+  app.add_option("ARGUMENTS", positional,
+                 "SEQUENCE: " + help.sequence + "\nor " + LongForm(arguments.sensor) +
+                     ", in the order of ORB-SLAM2");
+  app.add_option("--settings", arguments.settings, "settings file (" + help.settings + ")");
+  AddVocabularyArgument(app, arguments.vocabulary);
+  if (arguments.sensor == SensorKind::kRgbd) {
+    app.add_option("--associations", arguments.associations,
+                   "file with one pair of images per line: " + help.associations);
+  }
+  AddMaskArguments(app, arguments.masks, arguments.masks_format);
+  AddOverrides(app, arguments.overrides);
+  app.add_option("--output", arguments.output,
+                 "folder for the result files; replaces the former run in it")
+      ->capture_default_str();
+  app.add_option("--save-map", arguments.save_map,
+                 "file for the map at the end of the run; replaces an earlier one");
+  auto* const load_map = app.add_option(
+      "--load-map", arguments.load_map,
+      "file of --save-map: the run goes on with this map, as a new session. Tracking "
+      "is lost until a frame is found in it");
+  app.add_flag("--localization", arguments.localization,
+               "only find the poses in the map of --load-map; nothing in it is changed")
+      ->needs(load_map);
+  app.add_flag("--threaded", arguments.threaded,
+               "run mapping in its own thread: faster, but results differ a little between runs");
+  app.add_flag("--realtime", arguments.realtime,
+               "process the images no faster than the camera took them, by their stamps");
+  app.add_option("--seed", arguments.seed,
+                 "seed of the random choices in initialisation, relocalisation and loop closing")
+      ->check(WholeNumber(0))
+      ->capture_default_str();
+  app.add_option("--first", arguments.selection.first,
+                 "number of the first frame, counted from 0 (default: 0)")
+      ->check(WholeNumber(0));
+  app.add_option("--last", arguments.selection.last,
+                 "number of the last frame, inclusive (default: last of the sequence)")
+      ->check(WholeNumber(0));
+  app.add_option("--stride", arguments.selection.stride, "use every n-th frame only (default: 1)")
+      ->check(WholeNumber(1));
+  app.add_flag("--strict", arguments.strict,
+               "stop at an image that cannot be read instead of skipping the frame");
+  AddDebugFlag(app);
+  app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
+  AddVersionAndExitCodes(
+      app, "done",
+      "the run failed, was interrupted (the results up to then are written, and summary.json says "
+      "so), lost too many frames (run.max_lost_share, run.max_lost_at_end), or could not print its "
+      "report");
+}
+
+void FinishArguments(const std::vector<std::string>& positional, RunArguments& arguments) {
+  if (positional.size() == 1) {
+    arguments.sequence = positional[0];
+    return;
+  }
+  const bool has_associations = arguments.sensor == SensorKind::kRgbd;
+  if (positional.size() != (has_associations ? 4 : 3)) {
+    throw InputError(std::to_string(positional.size()) +
+                     " positional arguments, expected SEQUENCE or " + LongForm(arguments.sensor) +
+                     " (see --help)");
+  }
+  arguments.vocabulary = positional[0];
+  arguments.settings = positional[1];
+  arguments.sequence = positional[2];
+  if (has_associations) {
+    arguments.associations = positional[3];
+  }
+}
+
+}  // namespace hullslam

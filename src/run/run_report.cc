@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/run_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "hullslam/map/initialisation_failure.h"
+#include "run/messages.h"
+#include "run/object_outputs.h"
+
+namespace hullslam {
+namespace {
+
+// "40 x too little parallax, 3 x too few matches", the most frequent one first; and what helps.
+std::string DescribeFailures(const InitialisationSummary& initialisation) {
+  std::vector<std::pair<size_t, std::string>> reasons;
+  for (const auto& [reason, count] : initialisation.failures) {
+    reasons.emplace_back(count, fmt::format("{} x {}", count, reason));
+  }
+  std::sort(reasons.rbegin(), reasons.rend());
+  std::string text;
+  for (const auto& [count, reason] : reasons) {
+    text += (text.empty() ? "" : ", ") + reason;
+  }
+  const bool lacks_parallax =
+      !reasons.empty() &&
+      reasons.front().second.ends_with(ToString(InitialisationFailure::kTooLittleParallax));
+  return text + (lacks_parallax ? "; the camera must move sideways" : "");
+}
+
+}  // namespace
+
+void PrintReport(const RunArguments& arguments, const RunSummary& summary,
+                 const ObjectReport& objects) {
+  const TrajectorySummary& trajectory = summary.trajectory;
+  Print("{} frames: {} tracked, {} lost, {} skipped", trajectory.frames, trajectory.tracked,
+        trajectory.lost, trajectory.skipped);
+  if (!summary.initialisation) {
+    Print("; {} images without depth\n", trajectory.unpaired);
+  } else if (summary.initialisation->seconds) {
+    Print("; first map after {:.2f} s\n", *summary.initialisation->seconds);
+    if (summary.initialisation->islands > 1) {
+      Print("the map was begun {} times; {} of its islands were joined, {} removed\n",
+            summary.initialisation->islands, summary.initialisation->joined_islands,
+            summary.initialisation->islands - summary.initialisation->joined_islands - 1);
+    }
+  } else {
+    Print("; no map\n");
+  }
+  if (trajectory.ate_rmse_m) {
+    Print(
+        "ATE RMSE {:.4f} m ({} alignment, {} pairs of poses, coverage {:.1f} % of the sequence)\n",
+        *trajectory.ate_rmse_m, trajectory.alignment, trajectory.pairs,
+        100.0 * trajectory.coverage.value_or(0.0));
+  }
+  if (trajectory.rpe_rmse_m && trajectory.rpe_rmse_deg) {
+    Print("RPE RMSE {:.4f} m, {:.3f} degrees over 1 s\n", *trajectory.rpe_rmse_m,
+          *trajectory.rpe_rmse_deg);
+  }
+  Print("{} keyframes, {} landmarks{}\n", summary.map.keyframes, summary.map.landmarks,
+        summary.map.reprojection_px
+            ? fmt::format(", reprojection error {:.3f} px (median)", *summary.map.reprojection_px)
+            : "");
+  if (summary.map.known_sizes) {
+    Print("{}\n", *summary.map.known_sizes > 0
+                      ? fmt::format("the unit of length is the metre (objects of known size: {})",
+                                    *summary.map.known_sizes)
+                      : "the unit of length is unknown: no object of a known size was mapped");
+  }
+  if (summary.objects) {
+    const bool is_metric =
+        trajectory.alignment != "sim3" || summary.map.known_sizes.value_or(0) > 0;
+    Print("{}\n", DescribeObjects(*summary.objects, is_metric ? "m" : "u"));
+    if (objects.changes) {
+      Print("{}", DescribeChanges(*objects.changes));
+    }
+  }
+  Print(
+      "tracking {:.1f} ms per frame (median; mean {:.1f}, p95 {:.1f}); {:.1f} frames/s overall; "
+      "peak memory {:.0f} MB\n",
+      summary.timing.track_ms.median, summary.timing.track_ms.mean, summary.timing.track_ms.p95,
+      summary.timing.frames_per_second, summary.peak_memory_mb);
+  Print("results are in {}\n", arguments.output.string());
+}
+
+std::string DescribeLoss(const RunArguments& arguments, const RunOptions& options, size_t given,
+                         const RunSummary& summary, std::span<const TrackedFrame> frames) {
+  const TrajectorySummary& trajectory = summary.trajectory;
+  if (!arguments.load_map.empty() && trajectory.tracked == 0) {
+    return fmt::format("{}: no frame was found in this map, so none of {} frames has a pose",
+                       arguments.load_map.string(), given);
+  }
+  if (summary.initialisation && !summary.initialisation->seconds) {
+    return fmt::format("no map could be made from {} frames: {}", summary.trajectory.frames,
+                       DescribeFailures(*summary.initialisation));
+  }
+  const std::string found = fmt::format("{} of {} frames have a pose", trajectory.tracked, given);
+  const auto all = static_cast<double>(given);
+  if (all - static_cast<double>(trajectory.tracked) > options.max_lost_share * all) {
+    return fmt::format("too many frames were lost: {} (run.max_lost_share {:g})", found,
+                       options.max_lost_share);
+  }
+  const auto last_tracked = std::find_if(
+      frames.rbegin(), frames.rend(),
+      [](const TrackedFrame& frame) { return frame.state == TrackingState::kTracked; });
+  if (last_tracked != frames.rend() &&
+      frames.back().timestamp - last_tracked->timestamp > options.max_lost_at_end) {
+    return fmt::format(
+        "tracking was lost and did not recover before the end: {} (run.max_lost_at_end {:g} s)",
+        found, options.max_lost_at_end);
+  }
+  return {};
+}
+
+}  // namespace hullslam

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/slam_program.h"
+
+#include <CLI/CLI.hpp>
+#include <utility>
+#include <vector>
+
+#include "run/command_line.h"
+#include "run/program.h"
+#include "run/slam_run.h"
+
+namespace hullslam {
+namespace {
+
+int Run(const SlamProgram& program, Dataset& dataset, int argc, char** argv) {
+  CLI::App app(program.description, program.name);
+  RunArguments arguments;
+  arguments.sensor = program.sensor;
+  std::vector<std::string> positional;
+  AddRunArguments(app, dataset.Help(program.sensor), arguments, positional);
+  dataset.AddOptions(app);
+  if (!ParseCommandLine(app, argc, argv)) {
+    return kDone;
+  }
+  FinishArguments(positional, arguments);
+  DatasetInput input = dataset.Open(arguments);
+  input.options.sensor = program.sensor;
+  return RunSlam(arguments, std::move(input.options), input.sequence);
+}
+
+}  // namespace
+
+int RunSlamProgram(const SlamProgram& program, std::unique_ptr<Dataset> dataset, int argc,
+                   char** argv) {
+  return RunMain([&](int count, char** words) { return Run(program, *dataset, count, words); },
+                 argc, argv);
+}
+
+}  // namespace hullslam

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/slam_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hullslam/eval/ate.h"
+#include "hullslam/eval/reprojection_error.h"
+#include "hullslam/eval/rpe.h"
+#include "hullslam/results/output_folder.h"
+#include "hullslam/results/ply_file.h"
+#include "hullslam/results/summary.h"
+#include "hullslam/results/trajectory_file.h"
+#include "hullslam/settings/settings.h"
+#include "hullslam/system/compose_trajectory.h"
+#include "hullslam/system/system.h"
+#include "hullslam/util/error.h"
+#include "run/frame_source.h"
+#include "run/input_warnings.h"
+#include "run/interrupt.h"
+#include "run/map_session.h"
+#include "run/mask_arguments.h"
+#include "run/messages.h"
+#include "run/object_outputs.h"
+#include "run/program.h"
+#include "run/progress.h"
+#include "run/run_report.h"
+#include "run/vocabularies.h"
+
+namespace hullslam {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct RunResult {
+  size_t given = 0;    // frames that were loaded or skipped before the run ended
+  size_t skipped = 0;  // those of them with an image that cannot be read
+  double seconds = 0.0;
+  bool was_interrupted = false;
+  InitialisationSummary initialisation;
+};
+
+PipelineKind ChoosePipeline(const RunArguments& arguments) {
+  if (!arguments.threaded) {
+    return PipelineKind::kSequential;
+  }
+  return arguments.realtime ? PipelineKind::kRealtime : PipelineKind::kThreaded;
+}
+
+const char* Name(TrackingState state) {
+  switch (state) {
+    case TrackingState::kTracked:
+      return "tracked";
+    case TrackingState::kLost:
+      return "LOST";
+    default:
+      return "initialising";
+  }
+}
+
+// Of a monocular camera that was lost; empty if the map is in one piece.
+std::string DescribeIslands(const Map& map) {
+  return map.islands_begun() > 1
+             ? fmt::format("  {} islands, {} joined", map.islands_begun(), map.islands_joined())
+             : "";
+}
+
+std::string DescribeState(TrackingState state, std::optional<InitialisationFailure> failure,
+                          const System& system) {
+  const auto map = system.map();
+  if (failure) {
+    return fmt::format("{}: {}", Name(state), ToString(*failure));
+  }
+  return fmt::format(
+      "{}  {} keyframes  {} landmarks{}", Name(state), map != nullptr ? map->keyframes().size() : 0,
+      map != nullptr ? map->landmarks().size() : 0, map != nullptr ? DescribeIslands(*map) : "");
+}
+
+// The bundle adjustment of the whole map is slow if the map is large. So its progress is shown.
+void FinishMap(bool is_quiet, System& system) {
+  constexpr std::chrono::seconds kStep(2);
+  if (!is_quiet && !IsInterrupted()) {
+    PrintError("finishing the map\n");
+  }
+  Clock::time_point shown = Clock::now();
+  system.Finish(&Interruption(), [&](int done, int most) {
+    if (!is_quiet && Clock::now() - shown > kStep) {
+      shown = Clock::now();
+      PrintError("finishing the map: iteration {} of at most {}\n", done, most);
+    }
+  });
+}
+
+RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
+                   const PinholeCamera& camera, const SequenceMasks& masks, System& system) {
+  RunResult result;
+  Progress progress(sequence.frames.size(), arguments.quiet);
+  std::optional<InitialisationFailure> failure;  // of the last frame
+  system.SetFrameCallback([&](const FrameReport& report) {
+    failure = report.failure;
+    if (failure) {
+      ++result.initialisation.failures[std::string(ToString(*failure))];
+    } else if (report.tracked.state == TrackingState::kTracked && !result.initialisation.seconds) {
+      result.initialisation.seconds = report.tracked.timestamp - sequence.frames.front().timestamp;
+    }
+  });
+  const Clock::time_point start = Clock::now();
+  // In the sequential pipeline the thread that tracks and maps has more to do than the others.
+  FrameSource frames(arguments.realtime ? Pace::kRealtime : Pace::kFast,
+                     arguments.threaded ? PrefetchPriority::kNormal : PrefetchPriority::kBackground,
+                     sequence, camera, masks, system);
+  while (!IsInterrupted()) {
+    std::optional<LoadedFrame> loaded = frames.Next();
+    if (!loaded) {
+      break;
+    }
+    ++result.given;
+    if (!loaded->frame) {
+      if (arguments.strict) {
+        throw InputError(loaded->error);
+      }
+      progress.Clear();
+      PrintError("warning: {}; this frame is skipped\n", loaded->error);
+      ++result.skipped;
+      continue;
+    }
+    const TrackedFrame frame = system.Track(std::move(*loaded->frame));
+    progress.Show(result.given, [&] { return DescribeState(frame.state, failure, system); });
+  }
+  progress.Clear();
+  system.SetFrameCallback({});
+  FinishMap(arguments.quiet, system);
+  result.was_interrupted = IsInterrupted();
+  result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return result;
+}
+
+Trajectory Scaled(Trajectory trajectory, double scale) {
+  for (StampedPose& pose : trajectory) {
+    pose.world_from_cam.translation *= scale;
+  }
+  return trajectory;
+}
+
+// The scale of a monocular map is not known, so it is aligned too.
+AlignmentKind AlignmentOf(SensorKind sensor) {
+  return sensor == SensorKind::kMonocular ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
+}
+
+void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory, SensorKind sensor,
+              TrajectorySummary& summary) {
+  AteOptions options;
+  options.alignment = AlignmentOf(sensor);
+  const AteReport ate = EvaluateAte(groundtruth, trajectory, options);
+  if (!ate.ok()) {
+    PrintError("warning: the trajectory error cannot be computed: {}\n", ate.failure);
+    return;
+  }
+  summary.ate_rmse_m = ate.errors.rmse;
+  summary.scale = ate.reference_from_estimate.scale;
+  summary.pairs = ate.pairs;
+  const RpeReport rpe =
+      EvaluateRpe(groundtruth, Scaled(trajectory, ate.reference_from_estimate.scale));
+  if (rpe.ok()) {
+    summary.rpe_rmse_m = rpe.translation.rmse;
+    summary.rpe_rmse_deg = rpe.rotation.rmse;
+  }
+}
+
+size_t CountLost(const System& system) {
+  return static_cast<size_t>(std::count_if(
+      system.frames().begin(), system.frames().end(),
+      [](const TrackedFrame& frame) { return frame.state != TrackingState::kTracked; }));
+}
+
+// Of a loop both ends know.
+size_t CountLoops(const Map& map) {
+  size_t ends = 0;
+  for (const auto& [id, keyframe] : map.keyframes()) {
+    ends += keyframe.loops.size();
+  }
+  return ends / 2;
+}
+
+RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options,
+                     const ImageSequence& sequence, const RunResult& result, const System& system) {
+  RunSummary summary;
+  summary.trajectory.alignment = ToString(AlignmentOf(options.sensor));
+  summary.trajectory.frames = result.given;
+  summary.trajectory.skipped = result.skipped;
+  summary.trajectory.unpaired = sequence.unpaired;
+  summary.trajectory.lost = CountLost(system);
+  summary.trajectory.tracked = system.frames().size() - summary.trajectory.lost;
+  summary.trajectory.coverage =
+      static_cast<double>(summary.trajectory.tracked) / static_cast<double>(sequence.frames.size());
+
+  summary.timing.stages_ms = SummarizeStages(system.times());
+  summary.timing.track_ms = summary.timing.stages_ms["track"];
+  summary.timing.stages_ms.erase("track");
+  summary.timing.total_s = result.seconds;
+  summary.timing.frames_per_second =
+      static_cast<double>(result.given) / std::max(result.seconds, 1e-9);
+  summary.peak_memory_mb = PeakMemoryMb();
+  if (const auto map = system.map()) {
+    summary.map.keyframes = map->keyframes().size();
+    summary.map.landmarks = map->landmarks().size();
+    summary.map.sessions = map->sessions().size();
+    summary.map.loops = CountLoops(*map);
+    summary.map.reprojection_px = MedianReprojectionError(*map, options.camera);
+    if (options.sensor == SensorKind::kMonocular && !options.objects.sizes.empty()) {
+      summary.map.known_sizes = system.sized_objects();
+    }
+  }
+  if (options.sensor == SensorKind::kMonocular && arguments.load_map.empty()) {
+    summary.initialisation = result.initialisation;
+    if (const auto map = system.map()) {
+      summary.initialisation->islands = map->islands_begun();
+      summary.initialisation->joined_islands = map->islands_joined();
+    }
+  }
+  summary.provenance.version = HULLSLAM_VERSION;
+  summary.provenance.git = HULLSLAM_GIT;
+  summary.provenance.settings_hash = HashSettings(options);
+  summary.provenance.seed = arguments.seed;
+  summary.provenance.pipeline = arguments.threaded ? "threaded" : "sequential";
+  summary.provenance.sequence = arguments.sequence.string();
+  summary.provenance.interrupted = result.was_interrupted;
+  return summary;
+}
+
+std::string MapPly(const Map& map, const Trajectory& keyframes) {
+  std::vector<Eigen::Vector3d> landmarks;
+  map.landmarks().ForEach(
+      [&](LandmarkId, const Landmark& landmark) { landmarks.push_back(landmark.position); });
+  std::vector<Eigen::Vector3d> centers;
+  for (const StampedPose& pose : keyframes) {
+    centers.push_back(pose.world_from_cam.translation);
+  }
+  return FormatMapPly(landmarks, centers);
+}
+
+// The files of objects are only written if the run has masks.
+void WriteOutputs(OutputFolder& output, const Map& map, const std::vector<TrajectoryPart>& poses,
+                  const std::vector<TrajectoryPart>& keyframes, RunSummary summary,
+                  const ObjectReport& objects, const ImageSequence& sequence) {
+  output.Write({"trajectory.txt", FormatTrajectory(poses)});
+  output.Write({"keyframes.txt", FormatTrajectory(keyframes)});
+  output.Write({"map.ply", MapPly(map, KeyframeTrajectory(map))});
+  if (sequence.converted_groundtruth) {
+    output.Write({"groundtruth.txt", FormatTrajectory(*sequence.converted_groundtruth)});
+  }
+  if (summary.objects) {
+    for (const FileContent& file : ObjectFiles(objects)) {
+      output.Write(file);
+    }
+  }
+  summary.files = output.names();
+  output.Write({"summary.json", FormatSummary(summary)});
+  output.Commit();
+}
+
+std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
+  return {arguments.sequence,     arguments.masks,      arguments.settings,
+          arguments.associations, arguments.vocabulary, arguments.load_map};
+}
+
+}  // namespace
+
+int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence) {
+  options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
+  options.seed = arguments.seed;
+  // Finds images of a wrong type or size early.
+  const ImageInput first = sequence.load(sequence.frames.front(), options.camera);
+  const std::optional<Trajectory> groundtruth = ReadGroundtruth(sequence);
+  const SequenceMasks masks(
+      {arguments.masks, arguments.masks_format, options.camera.width, options.camera.height},
+      MaskFrames(sequence));
+  CatchInterrupts();
+  CheckSavedMap(arguments);
+  SystemStart start = LoadStart(arguments, options);
+  const size_t earlier_sessions = start.map.sessions().size();
+  OutputFolder output(arguments.output, "summary.json", InputsOf(arguments));
+  WarnOfImplausibleDepth(sequence.frames.front().depth, first.depth, options.depth);
+  WarnOfUnknownClasses(options.tracking, options.objects, masks);
+  WarnOfLastFrame(arguments.selection, sequence);
+  if (!arguments.quiet && masks.format()) {
+    Print("{}\n", masks.Describe());
+  }
+  System system(options, ChoosePipeline(arguments), std::move(start));
+  const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system);
+  if (result.was_interrupted && result.given == 0) {
+    PrintFailure("the run was interrupted before the first frame; nothing was written");
+    return kFailed;
+  }
+
+  RunSummary summary = Summarize(arguments, options, sequence, result, system);
+  summary.provenance.masks_format = masks.format();
+  const Trajectory trajectory = system.trajectory();
+  if (groundtruth && !trajectory.empty()) {
+    Evaluate(*groundtruth, trajectory, options.sensor, summary.trajectory);
+  }
+  const std::shared_ptr<const Map> map =
+      system.map() != nullptr ? system.map() : std::make_shared<const Map>();
+  ObjectReport objects = CollectObjects(*map, options.camera, arguments.sequence);
+  if (map->sessions().size() > earlier_sessions && earlier_sessions > 0) {
+    objects.changes = system.object_changes();
+  }
+  if (masks.format()) {
+    summary.objects = SummarizeObjects(objects, system.object_counts());
+  }
+  WriteOutputs(output, *map, RunParts(arguments, earlier_sessions, trajectory),
+               KeyframeParts(arguments, *map), summary, objects, sequence);
+  SaveMap(arguments, options, *map);
+  if (!arguments.quiet) {
+    PrintReport(arguments, summary, objects);
+  }
+  const std::string failure =
+      result.was_interrupted
+          ? fmt::format(
+                "the run was interrupted after {} of {} frames; the results so far were "
+                "written",
+                result.given, sequence.frames.size())
+          : DescribeLoss(arguments, options.run, sequence.frames.size(), summary, system.frames());
+  if (!failure.empty()) {
+    PrintFailure(failure);
+    return kFailed;
+  }
+  return kDone;
+}
+
+}  // namespace hullslam

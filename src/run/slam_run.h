@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "hullslam/sequences/image_sequence.h"
+#include "hullslam/system/options.h"
+#include "run/run_arguments.h"
+
+namespace hullslam {
+
+// Runs SLAM on a sequence, with depth or without it (SystemOptions::sensor). Writes trajectory.txt,
+// keyframes.txt, map.ply and summary.json to the output folder, with masks also the files of the
+// objects, and groundtruth.txt if the ground truth of the sequence had to be converted; prints the
+// results. Returns the program's exit code. Throws InputError for bad input, before the first frame
+// if possible.
+int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence);
+
+}  // namespace hullslam

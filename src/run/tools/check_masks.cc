@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/tools/check_masks.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "hullslam/frame/detection_builder.h"
+#include "hullslam/masks/mask_source.h"
+#include "hullslam/results/output_folder.h"
+#include "hullslam/sequences/image_file.h"
+#include "hullslam/sequences/tum_sequence.h"
+#include "hullslam/settings/settings.h"
+#include "run/command_line.h"
+#include "run/interrupt.h"
+#include "run/mask_arguments.h"
+#include "run/messages.h"
+#include "run/program.h"
+#include "run/progress.h"
+#include "run/tools/mask_overlay.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMostFaultsShown = 20;
+
+struct Arguments {
+  fs::path sequence;
+  fs::path masks;
+  std::string format;
+  fs::path settings;
+  TumSequenceOptions tum;
+  std::vector<std::string> overrides;
+  fs::path output;  // empty: no pictures
+  size_t every = 50;
+  bool quiet = false;
+};
+
+// The instances of one class: how many there are, and how many give a detection.
+struct ClassCount {
+  size_t instances = 0;
+  size_t kept = 0;
+  double score_sum = 0.0;
+};
+
+struct Counts {
+  size_t frames = 0;
+  size_t missing = 0;
+  size_t without_masks = 0;
+  size_t without_image = 0;
+  size_t without_depth = 0;
+  size_t instances = 0;
+  size_t crowds = 0;
+  size_t without_area = 0;
+  std::array<size_t, kDetectionRejectionCount> rejections{};
+  size_t detections = 0;
+  size_t cut = 0;
+  size_t lines = 0;
+  size_t one_sided = 0;
+  std::map<std::string, ClassCount> classes;
+  std::vector<std::string> faults;
+  size_t pictures = 0;
+};
+
+void AddOptions(CLI::App& app, Arguments& arguments) {
+  app.add_option("SEQUENCE", arguments.sequence,
+                 "folder with rgb.txt (the images themselves may be missing) and, to use depth, "
+                 "depth.txt with its images")
+      ->required();
+  app.add_option("MASKS", arguments.masks,
+                 "masks of the sequence: a folder or a JSON file (docs/masks.md)")
+      ->required();
+  AddMaskFormat(app, arguments.format, "--format,--masks-format");
+  app.add_option("--settings", arguments.settings,
+                 "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
+                 "that fits the folder's name, such as TUM1.yaml for freiburg1)");
+  app.add_option(
+      "--associations", arguments.tum.associations,
+      "file with one pair of images per line: stamp rgb stamp depth (default: images are "
+      "paired by their stamps, at most 0.02 s apart)");
+  AddOverrides(app, arguments.overrides);
+  app.add_option(
+      "--output", arguments.output,
+      "folder for the pictures; replaces the former pictures in it (default: no pictures "
+      "are drawn)");
+  app.add_option("--every", arguments.every, "draw the first frame and every n-th frame after it")
+      ->check(CLI::Range(size_t{1}, size_t{1'000'000'000}).description(""))
+      ->capture_default_str();
+  app.add_flag("--quiet", arguments.quiet, "do not show the progress");
+  AddVersionAndExitCodes(app, "all masks and images can be read",
+                         "the program failed or was interrupted",
+                         "some of them cannot be read, or bad usage");
+}
+
+void CountDetections(const FrameMasks& frame, const DetectionResult& result, Counts& counts) {
+  for (size_t i = 0; i < frame.masks.size(); ++i) {
+    ClassCount& of_class = counts.classes[frame.masks[i].label];
+    ++of_class.instances;
+    of_class.score_sum += frame.masks[i].score;
+    if (const auto& rejection = result.rejections.at(i)) {
+      ++counts.rejections.at(static_cast<size_t>(*rejection));
+    } else {
+      ++of_class.kept;
+    }
+  }
+  counts.detections += result.detections.size();
+  for (const Detection& detection : result.detections) {
+    counts.cut += detection.is_cut ? 1 : 0;
+    counts.lines += detection.lines.size();
+    for (const SilhouetteLine& line : detection.lines) {
+      counts.one_sided += line.is_one_sided ? 1 : 0;
+    }
+  }
+}
+
+// The image, or a grey area of its size if the file is missing.
+cv::Mat Background(const fs::path& image, const PinholeCamera& camera) {
+  std::error_code error;
+  return fs::exists(image, error) ? ReadGreyImage(image)
+                                  : cv::Mat(camera.height, camera.width, CV_8UC1, cv::Scalar(96));
+}
+
+void DrawFrame(const std::string& name, const cv::Mat& grey, const PinholeCamera& camera,
+               const FrameMasks& frame, const DetectionResult& result, OutputFolder& output) {
+  std::vector<uchar> bytes;
+  cv::imencode(".png", DrawMasks(grey, camera, frame.masks, result), bytes);
+  output.Write({name, std::string(bytes.begin(), bytes.end())});
+}
+
+// Counts and draws one frame. If its masks or images cannot be read, this is recorded as a fault.
+// Without `output` nothing is drawn.
+void CheckFrame(const Arguments& arguments, const SystemOptions& options, const MaskSource& source,
+                const FramePaths& paths, const MaskFrame& names, OutputFolder* output,
+                Counts& counts) {
+  const bool is_drawn = output != nullptr && counts.frames % arguments.every == 0;
+  ++counts.frames;
+  std::error_code error;
+  counts.without_image += fs::exists(paths.image, error) ? 0 : 1;
+  counts.without_depth += paths.depth.empty() ? 1 : 0;
+  try {
+    const FrameMasks frame = source.Read(names);
+    counts.missing += frame.is_missing ? 1 : 0;
+    counts.without_masks += frame.masks.empty() ? 1 : 0;
+    counts.instances += frame.masks.size() + frame.without_area + frame.crowds;
+    counts.without_area += frame.without_area;
+    counts.crowds += frame.crowds;
+    const cv::Mat depth = paths.depth.empty() ? cv::Mat() : ReadDepthImage(paths.depth);
+    const DetectionBuilder builder(options.camera, options.depth.units_per_metre,
+                                   options.objects.detection);
+    const DetectionResult result = builder.Build(frame.masks, depth, {});
+    CountDetections(frame, result, counts);
+    if (is_drawn) {
+      DrawFrame(names.stem + ".png", Background(paths.image, options.camera), options.camera, frame,
+                result, *output);
+      ++counts.pictures;
+    }
+  } catch (const InputError& error) {
+    counts.faults.emplace_back(error.what());
+  }
+}
+
+void PrintClasses(const Counts& counts) {
+  Print("\n{:<20}{:>10}{:>10}{:>12}\n", "class", "instances", "kept", "mean score");
+  for (const auto& [label, of_class] : counts.classes) {
+    Print("{:<20}{:>10}{:>10}{:>12.2f}\n", label, of_class.instances, of_class.kept,
+          of_class.score_sum / static_cast<double>(of_class.instances));
+  }
+}
+
+void PrintCounts(const Arguments& arguments, const MaskSource& source, const Counts& counts) {
+  const auto print = [](const std::string& name, size_t count) {
+    Print("{:<20}{:>10}\n", name, count);
+  };
+  Print("{} ({})\n", arguments.masks.string(), source.format());
+  print("frames", counts.frames);
+  print("without image", counts.without_image);
+  print("without depth", counts.without_depth);
+  print("without masks", counts.without_masks);
+  print("  without file", counts.missing);
+  print("malformed", counts.faults.size());
+  print("instances", counts.instances);
+  print("kept", counts.detections);
+  print("  cut by the border", counts.cut);
+  print("rejected: crowd", counts.crowds);
+  print("rejected: no area", counts.without_area);
+  for (size_t i = 0; i < counts.rejections.size(); ++i) {
+    print("rejected: " + ToString(static_cast<DetectionRejection>(i)), counts.rejections[i]);
+  }
+  print("lines", counts.lines);
+  print("  one-sided", counts.one_sided);
+  if (!arguments.output.empty()) {
+    Print("{} pictures are in {}\n", counts.pictures, arguments.output.string());
+  }
+  PrintClasses(counts);
+}
+
+void PrintFaults(const std::vector<std::string>& faults) {
+  for (size_t i = 0; i < faults.size() && i < kMostFaultsShown; ++i) {
+    PrintError("error: {}\n", faults[i]);
+  }
+  if (faults.size() > kMostFaultsShown) {
+    PrintError("error: {} more frames cannot be read\n", faults.size() - kMostFaultsShown);
+  }
+}
+
+// Null if no pictures are to be drawn.
+std::unique_ptr<OutputFolder> OpenOutput(const Arguments& arguments) {
+  if (arguments.output.empty()) {
+    return nullptr;
+  }
+  const std::vector<fs::path> inputs = {arguments.sequence, arguments.masks, arguments.settings,
+                                        arguments.tum.associations};
+  return std::make_unique<OutputFolder>(arguments.output, "pictures.json", inputs);
+}
+
+void FinishOutput(OutputFolder& output) {
+  const nlohmann::ordered_json index = {{"files", output.names()}};
+  output.Write(
+      {"pictures.json",
+       index.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n'});
+  output.Commit();
+}
+
+}  // namespace
+
+int RunCheckMasks(int argc, char** argv) {
+  CLI::App app(
+      "Checks the masks of a sequence, counts the detections that they give, and can draw them.",
+      "check_masks");
+  Arguments arguments;
+  AddOptions(app, arguments);
+  if (!ParseCommandLine(app, argc, argv)) {
+    return kDone;
+  }
+  const fs::path settings = arguments.settings.empty()
+                                ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
+                                : arguments.settings;
+  SystemOptions options = ReadSettings(settings, arguments.overrides);
+  options.objects.detection.min_keypoints = 0;  // no keypoints are extracted here
+  arguments.tum.need_images = false;
+  const ImageSequence sequence = OpenTumSequence(arguments.sequence, arguments.tum);
+  const std::vector<MaskFrame> frames = MaskFrames(sequence);
+  const auto source = OpenMasks(
+      {arguments.masks, arguments.format, options.camera.width, options.camera.height}, frames);
+  CatchInterrupts();
+  const auto output = OpenOutput(arguments);
+  Counts counts;
+  Progress progress(frames.size(), arguments.quiet);
+  for (size_t i = 0; i < frames.size() && !IsInterrupted(); ++i) {
+    CheckFrame(arguments, options, *source, sequence.frames[i], frames[i], output.get(), counts);
+    progress.Show(i + 1);
+  }
+  progress.Clear();
+  if (counts.frames < frames.size()) {
+    PrintFailure(fmt::format("interrupted after {} of {} frames; no pictures were written",
+                             counts.frames, frames.size()));
+    return kFailed;
+  }
+  if (output != nullptr) {
+    FinishOutput(*output);
+  }
+  PrintCounts(arguments, *source, counts);
+  PrintFaults(counts.faults);
+  return counts.faults.empty() ? kDone : kBadInput;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/tools/map_objects.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hullslam/frame/detection_builder.h"
+#include "hullslam/frame/dynamic_mask.h"
+#include "hullslam/objects/object_mapper.h"
+#include "hullslam/objects/object_view.h"
+#include "hullslam/results/output_folder.h"
+#include "hullslam/results/trajectory_file.h"
+#include "hullslam/sequences/image_file.h"
+#include "hullslam/sequences/tum_sequence.h"
+#include "hullslam/settings/settings.h"
+#include "hullslam/system/compose_trajectory.h"
+#include "hullslam/util/error.h"
+#include "run/command_line.h"
+#include "run/input_warnings.h"
+#include "run/interrupt.h"
+#include "run/mask_arguments.h"
+#include "run/messages.h"
+#include "run/object_outputs.h"
+#include "run/program.h"
+#include "run/progress.h"
+
+namespace hullslam {
+namespace {
+
+constexpr double kMaxPoseGap = 0.1;  // s, between the two poses that a pose is interpolated from
+
+struct Arguments {
+  std::filesystem::path sequence;
+  std::filesystem::path poses;
+  std::filesystem::path masks;
+  std::string masks_format;
+  std::filesystem::path settings;
+  std::vector<std::string> overrides;
+  std::filesystem::path output = "out_objects";  // not that of rgbd_tum, whose poses may be in it
+  double min_distance = 0.05;                    // m
+  double min_angle = 5.0;                        // degrees
+  bool without_depth = false;
+  bool quiet = false;
+};
+
+void AddArguments(CLI::App& app, Arguments& arguments) {
+  app.add_option(
+         "SEQUENCE", arguments.sequence,
+         "folder with rgb.txt (the images themselves may be missing) and, to use depth, depth.txt "
+         "with its images")
+      ->required();
+  app.add_option("--poses", arguments.poses, "trajectory of the camera in TUM format")->required();
+  AddMaskArguments(app, arguments.masks, arguments.masks_format);
+  app.get_option("--masks")->required();
+  app.add_option("--settings", arguments.settings,
+                 "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
+                 "that fits the folder's name, such as TUM1.yaml for freiburg1)");
+  AddOverrides(app, arguments.overrides);
+  app.add_option("--output", arguments.output,
+                 "folder for the result files; replaces the former run in it")
+      ->capture_default_str();
+  app.add_option("--min-distance", arguments.min_distance,
+                 "a frame is used if the camera has moved this far since the last used frame, m; a "
+                 "quarter of it is enough if a mask has moved by half of its size")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--min-angle", arguments.min_angle,
+                 "a frame is also used if the camera has turned this far since then, degrees")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_flag("--without-depth", arguments.without_depth, "do not use the depth images");
+  AddDebugFlag(app);
+  app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
+  AddVersionAndExitCodes(app, "done",
+                         "the run failed or was interrupted (the results up to then are written, "
+                         "and summary.json says so)");
+}
+
+SystemOptions LoadOptions(const Arguments& arguments) {
+  const std::filesystem::path settings =
+      arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
+                                 : arguments.settings;
+  return ReadSettings(settings, arguments.overrides);
+}
+
+Sensor MakeSensor(const SystemOptions& options) {
+  Sensor sensor;
+  sensor.camera = options.camera;
+  sensor.bounds = options.camera.UndistortedBounds();
+  return sensor;
+}
+
+// A frame that is used for mapping.
+struct View {
+  size_t frame = 0;  // index in the sequence
+  Rigid3 world_from_cam;
+};
+
+struct Views {
+  std::vector<View> views;
+  size_t without_pose = 0;  // frames
+};
+
+// Whether the camera has moved by this share of the distance or the angle of the arguments.
+bool HasMoved(const Arguments& arguments, const Rigid3& last, const Rigid3& pose, double share) {
+  const double angle = AngularDistance(last.rotation, pose.rotation) * 180.0 / std::numbers::pi;
+  return (pose.translation - last.translation).norm() >= share * arguments.min_distance ||
+         angle >= share * arguments.min_angle;
+}
+
+struct LabelledBox {
+  std::string label;
+  Eigen::AlignedBox2d box;  // raw px
+};
+
+std::vector<LabelledBox> BoxesOf(const std::vector<InstanceMask>& masks) {
+  std::vector<LabelledBox> boxes;
+  for (const InstanceMask& mask : masks) {
+    LabelledBox& labelled = boxes.emplace_back();
+    labelled.label = mask.label;
+    for (const auto& outline : mask.outlines) {
+      for (const Eigen::Vector2d& point : outline) {
+        labelled.box.extend(point);
+      }
+    }
+  }
+  return boxes;
+}
+
+// Whether a mask has moved by more than half of its size, or is new.
+bool HasMaskMoved(const std::vector<LabelledBox>& last, const std::vector<LabelledBox>& boxes) {
+  constexpr double kMostMoved = 0.5;
+  return std::any_of(boxes.begin(), boxes.end(), [&](const LabelledBox& now) {
+    return std::none_of(last.begin(), last.end(), [&](const LabelledBox& then) {
+      return now.label == then.label && (now.box.center() - then.box.center()).norm() <=
+                                            kMostMoved * now.box.sizes().minCoeff();
+    });
+  });
+}
+
+// Chooses the frames to use: each one at which the camera has moved enough since the one before.
+// Where a mask has moved by more than half of its size, a quarter of that motion is enough: small
+// things that are seen for a short time need enough views, and a view must resemble the one before
+// to be recognised. Throws InputError if no frame has a pose.
+Views ChooseViews(const Arguments& arguments, const std::vector<FramePaths>& frames,
+                  const Trajectory& poses, const SequenceMasks& masks) {
+  constexpr double kSmallMotion = 0.25;
+  Views chosen;
+  std::vector<LabelledBox> last_boxes;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const auto pose = InterpolatePose(poses, frames[i].timestamp, kMaxPoseGap);
+    if (!pose) {
+      ++chosen.without_pose;
+      continue;
+    }
+    const Rigid3* const last = chosen.views.empty() ? nullptr : &chosen.views.back().world_from_cam;
+    if (last != nullptr && !HasMoved(arguments, *last, *pose, kSmallMotion)) {
+      continue;
+    }
+    std::vector<LabelledBox> boxes = BoxesOf(masks.Read(i));
+    if (last == nullptr || HasMoved(arguments, *last, *pose, 1.0) ||
+        HasMaskMoved(last_boxes, boxes)) {
+      chosen.views.push_back({i, *pose});
+      last_boxes = std::move(boxes);
+    }
+  }
+  if (chosen.views.empty()) {
+    throw InputError(
+        fmt::format("{}: no frame of {} has a pose, expected poses before and after a frame "
+                    "that are at most {} s apart",
+                    arguments.poses.string(), arguments.sequence.string(), kMaxPoseGap));
+  }
+  return chosen;
+}
+
+// Maps objects from one view after the other.
+class ObjectRun {
+ public:
+  explicit ObjectRun(const SystemOptions& options)
+      : sensor_(MakeSensor(options)),
+        dynamic_classes_(SplitNames(options.tracking.dynamic_classes)),
+        builder_(options.camera, options.depth.units_per_metre, options.objects.detection),
+        mapper_(sensor_, options.objects) {}
+
+  void AddView(double timestamp, const Rigid3& world_from_cam, std::vector<InstanceMask> masks,
+               const cv::Mat& depth) {
+    auto frame = std::make_shared<Frame>();
+    frame->id = FrameId(map_.keyframes().NextId().value);
+    frame->timestamp = timestamp;
+    std::erase_if(masks,
+                  [&](const InstanceMask& mask) { return dynamic_classes_.contains(mask.label); });
+    DetectionResult result = builder_.Build(masks, depth, {});
+    for (const auto& rejection : result.rejections) {
+      if (rejection) {
+        ++counts_.rejections["mask_" + ToString(*rejection)];
+      }
+    }
+    counts_.detections += result.detections.size();
+    frame->detections = std::move(result.detections);
+    mapper_.Process(map_, map_.AddKeyframe(std::move(frame), Inverse(world_from_cam)));
+  }
+
+  const Map& map() const { return map_; }
+  ObjectCounts counts() const {
+    ObjectCounts counts = counts_;
+    for (const auto& [reason, count] : mapper_.rejections()) {
+      counts.rejections[ToString(reason)] = count;
+    }
+    return counts;
+  }
+
+ private:
+  Sensor sensor_;
+  std::set<std::string> dynamic_classes_;
+  DetectionBuilder builder_;
+  ObjectMapper mapper_;
+  Map map_;
+  ObjectCounts counts_;
+};
+
+void PrintTable(const ObjectRun& run, const ObjectReport& report) {
+  Print("{:>4} {:<14} {:>5} {:>8} {:>20} {:>6} {:>6} {:>7}\n", "id", "class", "views", "parallax",
+        "half axes (m)", "SIoU", "mask", "misfit");
+  for (const ReportedObject& object : report.objects) {
+    if (object.state != ObjectState::kMapped) {
+      continue;
+    }
+    const ObjectLandmark& landmark = run.map().objects().At(object.id);
+    const double parallax =
+        Parallax(CollectViews(run.map(), landmark), object.ellipsoid.world_from_object.translation);
+    const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
+    Print("{:>4} {:<14} {:>5} {:>7.0f}° {:>6.3f} {:>6.3f} {:>6.3f} {:>6} {:>6} {:>5.1f}px\n",
+          object.id.value, object.label, object.views.size(), parallax, axes.x(), axes.y(),
+          axes.z(), FormatFigure(object.fit.siou, 3), FormatFigure(object.fit.siou_mask, 3),
+          object.misfit_px);
+  }
+}
+
+struct Inputs {
+  SystemOptions options;
+  ImageSequence sequence;
+  Trajectory poses;
+};
+
+Inputs OpenInputs(const Arguments& arguments) {
+  Inputs inputs;
+  inputs.options = LoadOptions(arguments);
+  inputs.sequence = OpenTumSequence(arguments.sequence, {.need_images = false});
+  inputs.poses = ReadTrajectory(arguments.poses);
+  return inputs;
+}
+
+// Returns false if a signal ended it early.
+bool MapAll(const Arguments& arguments, const SystemOptions& options,
+            const std::vector<FramePaths>& frames, const std::vector<View>& views,
+            const SequenceMasks& masks, ObjectRun& run) {
+  Progress progress(frames.size(), arguments.quiet);
+  bool is_depth_checked = false;
+  for (const View& view : views) {
+    if (IsInterrupted()) {
+      progress.Clear();
+      return false;
+    }
+    const FramePaths& frame = frames[view.frame];
+    const bool has_depth = !arguments.without_depth && !frame.depth.empty();
+    const cv::Mat depth = has_depth ? ReadDepthImage(frame.depth) : cv::Mat();
+    if (has_depth && !std::exchange(is_depth_checked, true)) {
+      WarnOfImplausibleDepth(frame.depth, depth, options.depth);
+    }
+    run.AddView(frame.timestamp, view.world_from_cam, masks.Read(view.frame), depth);
+    progress.Show(view.frame + 1);
+  }
+  progress.Clear();
+  return true;
+}
+
+RunSummary Summarize(const Arguments& arguments, const Inputs& inputs, const SequenceMasks& masks,
+                     const ObjectRun& run, size_t without_pose) {
+  RunSummary summary;
+  summary.trajectory.frames = inputs.sequence.frames.size();
+  summary.trajectory.tracked = inputs.sequence.frames.size() - without_pose;
+  summary.trajectory.lost = without_pose;
+  summary.trajectory.coverage = static_cast<double>(summary.trajectory.tracked) /
+                                static_cast<double>(summary.trajectory.frames);
+  summary.trajectory.alignment = "none";
+  summary.peak_memory_mb = PeakMemoryMb();
+  summary.map.keyframes = run.map().keyframes().size();
+  summary.provenance.version = HULLSLAM_VERSION;
+  summary.provenance.settings_hash = HashSettings(inputs.options);
+  summary.provenance.pipeline = "objects";
+  summary.provenance.masks_format = masks.format();
+  summary.provenance.sequence = arguments.sequence.string();
+  return summary;
+}
+
+void WriteOutputs(OutputFolder& output, const ObjectRun& run, const ObjectReport& report,
+                  RunSummary summary) {
+  for (const FileContent& file : ObjectFiles(report)) {
+    output.Write(file);
+  }
+  // The poses of the views, because evaluate and plot_run expect these files in every run's folder.
+  const std::string poses = FormatTrajectory(KeyframeTrajectory(run.map()));
+  output.Write({"trajectory.txt", poses});
+  output.Write({"keyframes.txt", poses});
+  summary.files = output.names();
+  output.Write({"summary.json", FormatSummary(summary)});
+  output.Commit();
+}
+
+std::vector<std::filesystem::path> InputsOf(const Arguments& arguments) {
+  return {arguments.sequence, arguments.poses, arguments.masks, arguments.settings};
+}
+
+}  // namespace
+
+int RunMapObjects(int argc, char** argv) {
+  CLI::App app("Maps objects from masks and known camera poses. Colour images are not needed.",
+               "map_objects");
+  Arguments arguments;
+  AddArguments(app, arguments);
+  if (!ParseCommandLine(app, argc, argv)) {
+    return kDone;
+  }
+  const Inputs inputs = OpenInputs(arguments);
+  const PinholeCamera& camera = inputs.options.camera;
+  const SequenceMasks masks({arguments.masks, arguments.masks_format, camera.width, camera.height},
+                            MaskFrames(inputs.sequence));
+  const auto& frames = inputs.sequence.frames;
+  const auto [views, without_pose] = ChooseViews(arguments, frames, inputs.poses, masks);
+  CatchInterrupts();
+  OutputFolder output(arguments.output, "summary.json", InputsOf(arguments));
+  WarnOfUnknownClasses(inputs.options.tracking, inputs.options.objects, masks);
+  if (!arguments.quiet) {
+    Print("{}\n", masks.Describe());
+  }
+  const auto start = std::chrono::steady_clock::now();
+  ObjectRun run(inputs.options);
+  const bool is_complete = MapAll(arguments, inputs.options, frames, views, masks, run);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+
+  const ObjectReport report = CollectObjects(run.map(), camera, arguments.sequence);
+  RunSummary summary = Summarize(arguments, inputs, masks, run, without_pose);
+  ObjectCounts counts = run.counts();
+  counts.frames_without_masks = masks.without_masks();
+  counts.frames_with_masks = frames.size() - masks.without_masks();
+  summary.objects = SummarizeObjects(report, counts);
+  summary.timing.total_s = seconds.count();
+  summary.provenance.interrupted = !is_complete;
+  WriteOutputs(output, run, report, summary);
+  if (!arguments.quiet) {
+    PrintTable(run, report);
+    Print("{} views of {} frames ({} without a pose) in {:.1f} s\n{}\nresults are in {}\n",
+          summary.map.keyframes, summary.trajectory.frames, without_pose, seconds.count(),
+          DescribeObjects(*summary.objects, "m"), arguments.output.string());
+  }
+  if (!is_complete) {
+    PrintFailure(
+        fmt::format("the run was interrupted after {} of {} views; the results so far were "
+                    "written",
+                    summary.map.keyframes, views.size()));
+    return kFailed;
+  }
+  return kDone;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/tools/objects_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include "hullslam/eval/object_metrics.h"
+#include "hullslam/results/object_file.h"
+#include "hullslam/results/summary.h"
+#include "hullslam/util/error.h"
+#include "run/object_outputs.h"
+#include "run/tools/objects_truth.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+const char* ToString(ObjectState state) {
+  return state == ObjectState::kMapped ? "mapped" : "candidate";
+}
+
+Json ToJson(const ReportedObject& object) {
+  return {{"id", object.id.value},
+          {"class", object.label},
+          {"state", ToString(object.state)},
+          {"observations", object.fit.observations},
+          {"lines", object.fit.lines},
+          {"siou", OrNull(object.fit.siou)},
+          {"siou_mask", OrNull(object.fit.siou_mask)},
+          {"mtd_m2", OrNull(object.fit.mtd_m2)},
+          {"tangent_px", OrNull(object.fit.tangent_px)},
+          {"misfit_px", object.misfit_px}};
+}
+
+void PrintJson(const ObjectReport& report, const std::optional<TruthEvaluation>& truth) {
+  const MapFit fit = SummarizeFits(report);
+  Json each = Json::array();
+  for (const ReportedObject& object : report.objects) {
+    each.push_back(ToJson(object));
+  }
+  const Json json = {{"count", fit.objects},
+                     {"siou_mean", OrNull(fit.mean.siou)},
+                     {"siou_mask_mean", OrNull(fit.mean.siou_mask)},
+                     {"mtd_mean_m2", OrNull(fit.mean.mtd_m2)},
+                     {"tangent_mean_px", OrNull(fit.mean.tangent_px)},
+                     {"observations", fit.mean.observations},
+                     {"lines", fit.mean.lines},
+                     {"candidates", report.candidates},
+                     {"each", each},
+                     {"groundtruth", truth ? ToJson(*truth) : Json(nullptr)}};
+  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+void PrintObject(const ReportedObject& object) {
+  const ObjectFit& fit = object.fit;
+  const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
+  fmt::print(
+      "{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7.1f}  {:.3f} {:.3f} {:.3f}\n",
+      object.id.value, object.label, ToString(object.state), fit.observations, fit.lines,
+      FormatFigure(fit.siou, 3), FormatFigure(fit.siou_mask, 3), FormatFigure(fit.mtd_m2, 6),
+      FormatFigure(fit.tangent_px, 2), object.misfit_px, axes.x(), axes.y(), axes.z());
+}
+
+// The unit of length is the metre, or u, that of the map, if the alignment has a scale.
+void PrintText(const ObjectReport& report, AlignmentKind alignment) {
+  const std::string unit = alignment == AlignmentKind::kSim3 ? "u" : "m";
+  fmt::print("{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7}  {}\n", "id", "class",
+             "state", "views", "lines", "SIoU", "mask", "MTD " + unit + "2", "tang. px", "misfit",
+             "half axes " + unit);
+  for (const ReportedObject& object : report.objects) {
+    PrintObject(object);
+  }
+  const MapFit fit = SummarizeFits(report);
+  fmt::print("\n{} mapped, {} candidates; {} observations and {} lines of mapped objects\n",
+             fit.objects, report.candidates, fit.mean.observations, fit.mean.lines);
+  fmt::print(
+      "mean SIoU {} with hulls, {} with masks; mean MTD {} {}2; mean tangent distance {} px\n",
+      FormatFigure(fit.mean.siou, 4), FormatFigure(fit.mean.siou_mask, 4),
+      FormatFigure(fit.mean.mtd_m2, 6), unit, FormatFigure(fit.mean.tangent_px, 2));
+  if (alignment == AlignmentKind::kSim3) {
+    fmt::print(
+        "u is the unit of length of the map, which a monocular run does not know in metres\n");
+  }
+}
+
+// The unit of length of a run is not the metre if its trajectory is to be aligned with a scale.
+// Without summary.json it is the metre.
+AlignmentKind FindAlignment(const std::filesystem::path& run) {
+  std::error_code error;
+  const std::filesystem::path summary = run / "summary.json";
+  const bool is_scaled =
+      std::filesystem::exists(summary, error) && ReadAlignment(summary) == AlignmentKind::kSim3;
+  return is_scaled ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
+}
+
+void CheckHasObjects(const std::filesystem::path& run) {
+  std::error_code error;
+  if (!std::filesystem::exists(run / "objects.json", error) &&
+      std::filesystem::exists(run / "summary.json", error)) {
+    throw InputError(
+        run.string() +
+        ": this run had no masks, so it has no objects (objects.json); give the program "
+        "that makes the run --masks");
+  }
+}
+
+}  // namespace
+
+CLI::App* AddObjectsCommand(CLI::App& app, ObjectsArguments& arguments) {
+  const std::map<std::string, AlignmentKind> alignments = {{"se3", AlignmentKind::kSe3},
+                                                           {"sim3", AlignmentKind::kSim3}};
+  CLI::App* const command =
+      app.add_subcommand("objects", "SIoU, MTD and tangent distance of the objects of a run");
+  command->add_option("RUN_DIR", arguments.run, "output folder of the run")->required();
+  command->add_option("--groundtruth", arguments.groundtruth,
+                      "groundtruth_objects.json of the sequence, which make_synthetic wrote "
+                      "(default: no comparison with true objects)");
+  command
+      ->add_option("--align", arguments.alignment,
+                   "alignment with the true trajectory: se3 or sim3, with scale (default: sim3 if "
+                   "summary.json in RUN_DIR says that the run was monocular, else se3)")
+      ->transform(CLI::CheckedTransformer(alignments).description(""));
+  command
+      ->add_option("--min-masks", arguments.min_masks,
+                   "a true object counts as visible if at least this many masks show it")
+      ->check(CLI::Range(0, 1000000).description(""))
+      ->capture_default_str();
+  command->add_flag("--json", arguments.json, "print the report as JSON");
+  return command;
+}
+
+void RunObjectsCommand(const ObjectsArguments& arguments) {
+  CheckHasObjects(arguments.run);
+  ObjectReport report = ReadObjects(arguments.run / "objects.json");
+  MeasureObjects(report);
+  const AlignmentKind alignment =
+      arguments.alignment ? *arguments.alignment : FindAlignment(arguments.run);
+  std::optional<TruthEvaluation> truth;
+  if (!arguments.groundtruth.empty()) {
+    truth = EvaluateTruth(arguments, report, alignment);
+  }
+  if (arguments.json) {
+    PrintJson(report, truth);
+    return;
+  }
+  PrintText(report, alignment);
+  if (truth) {
+    PrintTruth(*truth);
+  }
+}
+
+}  // namespace hullslam

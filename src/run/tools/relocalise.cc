@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/tools/relocalise.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hullslam/eval/ate.h"
+#include "hullslam/results/trajectory_file.h"
+#include "hullslam/sequences/image_sequence.h"
+#include "hullslam/sequences/tum_sequence.h"
+#include "hullslam/settings/settings.h"
+#include "hullslam/system/relocaliser.h"
+#include "hullslam/system/system.h"
+#include "hullslam/util/error.h"
+#include "run/command_line.h"
+#include "run/interrupt.h"
+#include "run/mask_arguments.h"
+#include "run/messages.h"
+#include "run/program.h"
+#include "run/progress.h"
+#include "run/vocabularies.h"
+
+namespace hullslam {
+namespace {
+
+constexpr double kMaxPoseGap = 0.1;  // s, between the two poses that a pose is interpolated from
+constexpr double kNear = 0.05;       // m
+constexpr double kFar = 0.1;         // m; a pose that is farther from the truth is false
+
+struct Arguments {
+  std::filesystem::path sequence;
+  std::filesystem::path masks;
+  std::string masks_format;
+  std::filesystem::path vocabulary;
+  std::filesystem::path settings;
+  std::vector<std::string> overrides;
+  std::vector<std::string> query_overrides;
+  std::string map_frames = ":";
+  std::string query_frames = ":";
+  size_t queries = 200;
+  uint64_t seed = 0;
+  bool list = false;
+  bool quiet = false;
+};
+
+void AddArguments(CLI::App& app, Arguments& arguments) {
+  app.add_option("SEQUENCE", arguments.sequence,
+                 "folder with rgb.txt, depth.txt and groundtruth.txt")
+      ->required();
+  AddMaskArguments(app, arguments.masks, arguments.masks_format);
+  AddVocabularyArgument(app, arguments.vocabulary);
+  app.add_option("--settings", arguments.settings,
+                 "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
+                 "that fits the folder's name, such as TUM1.yaml for freiburg1)");
+  AddOverrides(app, arguments.overrides);
+  AddOverrides(app, "--query-set",
+               "key=value: overrides one setting for the queries only; can be given several times",
+               arguments.query_overrides);
+  app.add_option("--map-frames", arguments.map_frames,
+                 "FIRST:LAST, inclusive: frames that the map is made from, counted from 0; a "
+                 "missing number is the first or last frame of the sequence")
+      ->capture_default_str();
+  app.add_option("--query-frames", arguments.query_frames,
+                 "FIRST:LAST: frames that the queries are chosen from")
+      ->capture_default_str();
+  app.add_option("--queries", arguments.queries,
+                 "number of frames to choose, at random and each at most once")
+      ->check(CLI::Range(size_t{1}, size_t{1'000'000}).description(""))
+      ->capture_default_str();
+  app.add_option("--seed", arguments.seed, "seed of all random choices")->capture_default_str();
+  app.add_flag("--list", arguments.list, "also print one line per query");
+  AddDebugFlag(app);
+  app.add_flag("--quiet", arguments.quiet, "do not show the progress");
+  AddVersionAndExitCodes(app, "done, however many queries succeeded",
+                         "no map was made, or the program was interrupted");
+}
+
+// Frames of a sequence, `first` to `last`, inclusive.
+struct FrameRange {
+  size_t first = 0;
+  size_t last = 0;
+};
+
+// `text` is FIRST:LAST, see --help. Throws InputError if it is malformed or not in the sequence.
+FrameRange ParseRange(const std::string& option, const std::string& text, size_t frames) {
+  const size_t colon = text.find(':');
+  const std::string expected = fmt::format(
+      "{}: '{}', expected FIRST:LAST with 0 <= FIRST <= LAST "
+      "< {}, the number of frames",
+      option, text, frames);
+  if (colon == std::string::npos) {
+    throw InputError(expected);
+  }
+  const auto parse = [&](const char* begin, const char* end, size_t missing) {
+    size_t number = missing;
+    if (begin != end) {
+      const auto [rest, error] = std::from_chars(begin, end, number);
+      if (error != std::errc() || rest != end) {
+        throw InputError(expected);
+      }
+    }
+    return number;
+  };
+  const char* const begin = text.data();
+  const FrameRange range{parse(begin, begin + colon, 0),
+                         parse(begin + colon + 1, begin + text.size(), frames - 1)};
+  if (range.first > range.last || range.last >= frames) {
+    throw InputError(expected);
+  }
+  return range;
+}
+
+SystemOptions LoadOptions(const Arguments& arguments, bool for_queries) {
+  const std::filesystem::path settings =
+      arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
+                                 : arguments.settings;
+  std::vector<std::string> overrides = arguments.overrides;
+  if (for_queries) {
+    overrides.insert(overrides.end(), arguments.query_overrides.begin(),
+                     arguments.query_overrides.end());
+  }
+  SystemOptions options = ReadSettings(settings, overrides);
+  options.seed = arguments.seed;
+  return options;
+}
+
+Trajectory NeedGroundtruth(const Arguments& arguments, const ImageSequence& sequence) {
+  std::optional<Trajectory> groundtruth = ReadGroundtruth(sequence);
+  if (!groundtruth) {
+    throw InputError(arguments.sequence.string() + ": has no groundtruth.txt");
+  }
+  return std::move(*groundtruth);
+}
+
+// Everything that is read before the first frame.
+struct Inputs {
+  ImageSequence sequence;
+  Trajectory groundtruth;
+  SystemOptions map_options;
+  SystemOptions query_options;
+  SequenceMasks masks;
+  FrameRange map_frames;
+  std::vector<size_t> queries;  // indices of frames, increasing
+};
+
+// Chooses frames of the range that have a true pose.
+std::vector<size_t> ChooseQueries(const Arguments& arguments, const ImageSequence& sequence,
+                                  const Trajectory& groundtruth, const FrameRange& range) {
+  std::vector<size_t> frames;
+  for (size_t i = range.first; i <= range.last; ++i) {
+    if (InterpolatePose(groundtruth, sequence.frames[i].timestamp, kMaxPoseGap)) {
+      frames.push_back(i);
+    }
+  }
+  if (frames.empty()) {
+    throw InputError(fmt::format("{}: no frame of --query-frames {} has a pose in groundtruth.txt",
+                                 arguments.sequence.string(), arguments.query_frames));
+  }
+  std::mt19937_64 random(arguments.seed);
+  const size_t count = std::min(arguments.queries, frames.size());
+  for (size_t i = 0; i < count; ++i) {
+    std::swap(frames[i], frames[i + random() % (frames.size() - i)]);
+  }
+  frames.resize(count);
+  std::sort(frames.begin(), frames.end());
+  return frames;
+}
+
+Inputs LoadInputs(const Arguments& arguments) {
+  ImageSequence sequence = OpenTumSequence(arguments.sequence);
+  Trajectory groundtruth = NeedGroundtruth(arguments, sequence);
+  SystemOptions map_options = LoadOptions(arguments, false);
+  SystemOptions query_options = LoadOptions(arguments, true);
+  const FrameRange map_frames =
+      ParseRange("--map-frames", arguments.map_frames, sequence.frames.size());
+  const FrameRange query_frames =
+      ParseRange("--query-frames", arguments.query_frames, sequence.frames.size());
+  std::vector<size_t> queries = ChooseQueries(arguments, sequence, groundtruth, query_frames);
+  SequenceMasks masks({arguments.masks, arguments.masks_format, map_options.camera.width,
+                       map_options.camera.height},
+                      MaskFrames(sequence));
+  map_options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
+  query_options.vocabulary = map_options.vocabulary;
+  return {std::move(sequence),      std::move(groundtruth), std::move(map_options),
+          std::move(query_options), std::move(masks),       map_frames,
+          std::move(queries)};
+}
+
+ImageInput LoadFrame(const Inputs& inputs, const PinholeCamera& camera, size_t frame) {
+  ImageInput image = inputs.sequence.load(inputs.sequence.frames[frame], camera);
+  image.masks = inputs.masks.Read(frame);
+  return image;
+}
+
+// The map of the first frames, and how it lies in the world of the ground truth.
+struct MadeMap {
+  std::shared_ptr<const Map> map;
+  Rigid3 truth_from_map;
+};
+
+// Null if the frames cannot be tracked, or after an interrupt; the reason is printed.
+std::optional<MadeMap> MakeMap(const Arguments& arguments, const Inputs& inputs) {
+  System system(inputs.map_options, PipelineKind::kSequential);
+  const FrameRange& range = inputs.map_frames;
+  Progress progress(range.last - range.first + 1, arguments.quiet);
+  for (size_t i = range.first; i <= range.last && !IsInterrupted(); ++i) {
+    system.Track(LoadFrame(inputs, inputs.map_options.camera, i));
+    progress.Show(i - range.first + 1);
+  }
+  progress.Clear();
+  system.Finish(&Interruption());
+  if (IsInterrupted()) {
+    PrintFailure("the program was interrupted");
+    return std::nullopt;
+  }
+  const AteReport ate = EvaluateAte(inputs.groundtruth, system.trajectory());
+  if (!ate.ok()) {
+    PrintFailure("the map cannot be compared with the ground truth: " + ate.failure);
+    return std::nullopt;
+  }
+  const Map& map = *system.map();
+  size_t mapped = 0;
+  map.objects().ForEach([&](ObjectId, const ObjectLandmark& object) {
+    mapped += object.state == ObjectState::kMapped ? 1 : 0;
+  });
+  Print("map of frames {} to {}: {} keyframes, {} landmarks, {} objects; ATE RMSE {:.4f} m\n",
+        range.first, range.last, map.keyframes().size(), map.landmarks().size(), mapped,
+        ate.errors.rmse);
+  return MadeMap{system.map(), ate.reference_from_estimate.target_from_source};
+}
+
+struct QueryResult {
+  std::optional<RelocalisedPose> found;
+  double error = 0.0;         // m, of the position
+  double milliseconds = 0.0;  // without building the frame
+};
+
+QueryResult RunQuery(const Inputs& inputs, const MadeMap& made, const Relocaliser& relocaliser,
+                     System& builder, size_t frame) {
+  const BuiltFrame built = builder.Build(LoadFrame(inputs, inputs.query_options.camera, frame));
+  QueryResult result;
+  const auto start = std::chrono::steady_clock::now();
+  result.found = relocaliser.Find(*built.frame);
+  result.milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  if (result.found) {
+    const Rigid3 truth =
+        InterpolatePose(inputs.groundtruth, inputs.sequence.frames[frame].timestamp, kMaxPoseGap)
+            .value();
+    const Rigid3 estimate = made.truth_from_map * Inverse(result.found->cam_from_world);
+    result.error = (estimate.translation - truth.translation).norm();
+  }
+  return result;
+}
+
+void PrintQuery(size_t frame, const QueryResult& result) {
+  if (result.found) {
+    Print("frame {}: by {}, error {:.4f} m, {} landmarks, {} objects, {:.1f} ms\n", frame,
+          ToString(result.found->method), result.error, result.found->inliers,
+          result.found->used_objects, result.milliseconds);
+  } else {
+    Print("frame {}: not found, {:.1f} ms\n", frame, result.milliseconds);
+  }
+}
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// A line about some of the `all` queries. The shares are those of all queries.
+void PrintLine(const std::string& name, const std::vector<QueryResult>& some, size_t all) {
+  size_t near = 0;
+  size_t far = 0;
+  size_t wrong = 0;
+  std::vector<double> times;
+  for (const QueryResult& result : some) {
+    times.push_back(result.milliseconds);
+    if (result.found) {
+      near += result.error <= kNear ? 1 : 0;
+      far += result.error <= kFar ? 1 : 0;
+      wrong += result.error > kFar ? 1 : 0;
+    }
+  }
+  const auto percent = [all](size_t count) {
+    return 100.0 * static_cast<double>(count) / static_cast<double>(all);
+  };
+  const std::string duration = times.empty()
+                                   ? fmt::format("{:>9}  {:>6}", "-", "-")
+                                   : fmt::format("{:>9.1f}  {:>6.1f}", Median(times),
+                                                 *std::max_element(times.begin(), times.end()));
+  Print("{:<9}  {:>7}  {:>6.1f} %  {:>7.1f} %  {:>5}  {}\n", name, some.size(), percent(near),
+        percent(far), wrong, duration);
+}
+
+void PrintReport(const std::vector<QueryResult>& results) {
+  const auto select = [&](const auto& is_wanted) {
+    std::vector<QueryResult> some;
+    std::copy_if(results.begin(), results.end(), std::back_inserter(some), is_wanted);
+    return some;
+  };
+  Print("{:<9}  {:>7}  {:>8}  {:>9}  {:>5}  {:>9}  {:>6}\n", "method", "queries", "<= 5 cm",
+        "<= 10 cm", "false", "median ms", "max ms");
+  for (const auto method : {RelocalisationMethod::kWords, RelocalisationMethod::kObjects}) {
+    PrintLine(ToString(method), select([method](const QueryResult& result) {
+                return result.found && result.found->method == method;
+              }),
+              results.size());
+  }
+  PrintLine("not found", select([](const QueryResult& result) { return !result.found; }),
+            results.size());
+  PrintLine("all", results, results.size());
+}
+
+}  // namespace
+
+int RunRelocalise(int argc, char** argv) {
+  CLI::App app(
+      "Measures how well single frames are found in a map of other frames of the same sequence.\n"
+      "Their true poses are those of groundtruth.txt, aligned with the trajectory of the map.",
+      "relocalise");
+  Arguments arguments;
+  AddArguments(app, arguments);
+  if (!ParseCommandLine(app, argc, argv)) {
+    return kDone;
+  }
+  const Inputs inputs = LoadInputs(arguments);
+  CatchInterrupts();
+  const std::optional<MadeMap> made = MakeMap(arguments, inputs);
+  if (!made) {
+    return kFailed;
+  }
+  System builder(inputs.query_options, PipelineKind::kSequential);
+  const Relocaliser relocaliser(inputs.query_options, made->map);
+  std::vector<QueryResult> results;
+  Progress progress(inputs.queries.size(), arguments.quiet);
+  for (const size_t frame : inputs.queries) {
+    if (IsInterrupted()) {
+      PrintFailure("the program was interrupted");
+      return kFailed;
+    }
+    results.push_back(RunQuery(inputs, *made, relocaliser, builder, frame));
+    if (arguments.list) {
+      progress.Clear();
+      PrintQuery(frame, results.back());
+    }
+    progress.Show(results.size());
+  }
+  progress.Clear();
+  PrintReport(results);
+  return kDone;
+}
+
+}  // namespace hullslam

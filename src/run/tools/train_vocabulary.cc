@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/tools/train_vocabulary.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "hullslam/bow/train_vocabulary.h"
+#include "hullslam/features/extractor.h"
+#include "hullslam/map_files/vocabulary_file.h"
+#include "hullslam/sequences/image_file.h"
+#include "hullslam/util/parallel_runner.h"
+#include "run/command_line.h"
+#include "run/interrupt.h"
+#include "run/messages.h"
+#include "run/program.h"
+#include "run/progress.h"
+#include "run/vocabularies.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::vector<fs::path> images;
+  fs::path output;
+  std::string form;
+  VocabularyTraining training;
+  FeatureOptions features;
+  int threads = 0;
+  bool quiet = false;
+};
+
+void AddOptions(CLI::App& app, Arguments& arguments) {
+  app.add_option("IMAGES", arguments.images,
+                 "PNG or JPEG images, or folders of them (subfolders are not searched)")
+      ->required();
+  app.add_option("--output", arguments.output, "vocabulary file to write; replaces an earlier one")
+      ->required();
+  AddVocabularyForm(app, arguments.form);
+  app.add_option("--branching", arguments.training.branching, "most children of a node")
+      ->check(CLI::Range(2, Vocabulary::kMostBranching).description(""))
+      ->capture_default_str();
+  app.add_option("--levels", arguments.training.levels,
+                 "levels of the tree; it has at most branching^levels words")
+      ->check(CLI::Range(1, Vocabulary::kMostLevels).description(""))
+      ->capture_default_str();
+  app.add_option("--features", arguments.features.feature_count, "ORB features per image")
+      ->check(CLI::Range(1, 100'000).description(""))
+      ->capture_default_str();
+  app.add_option("--seed", arguments.training.seed, "seed of the first cluster centres")
+      ->capture_default_str();
+  app.add_option("--threads", arguments.threads,
+                 "number of threads, 0 for one per core; does not change the vocabulary")
+      ->check(CLI::Range(0, 256).description(""))
+      ->capture_default_str();
+  app.add_flag("--quiet", arguments.quiet, "do not show the progress");
+  AddVersionAndExitCodes(app, "done", "interrupted or failed (then nothing is written)",
+                         "bad usage, an image that cannot be read, or no features in the images");
+}
+
+bool IsImage(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+}
+
+std::vector<fs::path> ImagesOf(const fs::path& folder) {
+  std::vector<fs::path> images;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (IsImage(it->path())) {
+      images.push_back(it->path());
+    }
+  }
+  if (error) {
+    throw InputError(folder.string() + ": " + error.message());
+  }
+  if (images.empty()) {
+    throw InputError(folder.string() + ": has no PNG or JPEG images");
+  }
+  std::sort(images.begin(), images.end());
+  return images;
+}
+
+// The images in the order of the arguments; those of a folder sorted by name.
+std::vector<fs::path> ListImages(const std::vector<fs::path>& arguments) {
+  std::vector<fs::path> images;
+  for (const fs::path& argument : arguments) {
+    std::error_code error;
+    if (fs::is_directory(argument, error)) {
+      const std::vector<fs::path> inside = ImagesOf(argument);
+      images.insert(images.end(), inside.begin(), inside.end());
+    } else {
+      images.push_back(argument);
+    }
+  }
+  return images;
+}
+
+std::vector<Descriptor> DescriptorsOf(const fs::path& path, FeatureExtractor& extractor) {
+  constexpr int kLeastSide = 64;
+  const cv::Mat image = ReadGreyImage(path);
+  if (image.cols < kLeastSide || image.rows < kLeastSide) {
+    throw InputError(fmt::format("{}: {}x{} px, expected at least {}x{} px", path.string(),
+                                 image.cols, image.rows, kLeastSide, kLeastSide));
+  }
+  return extractor.Extract(image).descriptors;
+}
+
+// The descriptors of each image; of fewer images after an interrupt.
+std::vector<std::vector<Descriptor>> ExtractAll(const std::vector<fs::path>& paths,
+                                                const Arguments& arguments, TaskRunner& runner) {
+  constexpr size_t kBatch = 16;  // images between two reports of the progress
+  std::vector<std::vector<Descriptor>> descriptors(paths.size());
+  Progress progress(paths.size(), arguments.quiet);
+  for (size_t begin = 0; begin < paths.size() && !IsInterrupted(); begin += kBatch) {
+    const size_t count = std::min(kBatch, paths.size() - begin);
+    runner.Run(count, [&](size_t i) {
+      FeatureExtractor extractor(arguments.features);
+      descriptors[begin + i] = DescriptorsOf(paths[begin + i], extractor);
+    });
+    for (size_t done = begin + 1; done <= begin + count; ++done) {
+      progress.Show(done);
+    }
+  }
+  progress.Clear();
+  return descriptors;
+}
+
+std::optional<Vocabulary> Train(const Arguments& arguments, const std::vector<fs::path>& paths) {
+  ParallelRunner runner(arguments.threads);
+  const std::vector<std::vector<Descriptor>> images = ExtractAll(paths, arguments, runner);
+  if (IsInterrupted()) {
+    return std::nullopt;
+  }
+  size_t count = 0;
+  for (const std::vector<Descriptor>& image : images) {
+    count += image.size();
+  }
+  if (count == 0) {
+    throw InputError("no features were found in the images");
+  }
+  if (!arguments.quiet) {
+    PrintError("{} features in {} images\n", count, images.size());
+  }
+  return TrainVocabulary(images, arguments.training, runner, &Interruption(),
+                         [&](int done, int most) {
+                           if (!arguments.quiet) {
+                             PrintError("level {} of {} is done\n", done, most);
+                           }
+                         });
+}
+
+}  // namespace
+
+int RunTrainVocabulary(int argc, char** argv) {
+  CLI::App app("Trains a vocabulary of visual words on images.", "train_vocabulary");
+  Arguments arguments;
+  AddOptions(app, arguments);
+  if (!ParseCommandLine(app, argc, argv)) {
+    return kDone;
+  }
+  const VocabularyForm form = FormOf(arguments.output, arguments.form);
+  const std::vector<fs::path> images = ListImages(arguments.images);
+  CatchInterrupts();
+  const std::optional<Vocabulary> vocabulary = Train(arguments, images);
+  if (!vocabulary) {
+    PrintFailure("the program was interrupted; nothing was written");
+    return kFailed;
+  }
+  WriteVocabulary(arguments.output, *vocabulary, form);
+  Print("{}: {}\n", arguments.output.string(), Describe(*vocabulary));
+  return kDone;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/tools/trajectory_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "hullslam/eval/rpe.h"
+#include "hullslam/results/trajectory_file.h"
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+struct Evaluation {
+  AteReport ate;
+  RpeReport rpe;
+  double max_difference = 0.0;  // s
+};
+
+Evaluation Evaluate(const TrajectoryArguments& arguments) {
+  const Trajectory reference = ReadTrajectory(arguments.groundtruth);
+  const Trajectory estimate = ReadTrajectory(arguments.estimate);
+  Evaluation evaluation;
+  evaluation.max_difference =
+      arguments.ate.max_difference.value_or(DefaultMaxDifference(arguments.ate.pairing));
+  evaluation.ate = EvaluateAte(reference, estimate, arguments.ate);
+  if (!evaluation.ate.ok()) {
+    throw InputError(arguments.estimate + ": " + evaluation.ate.failure);
+  }
+  evaluation.rpe = EvaluateRpe(reference, estimate,
+                               {.scale = evaluation.ate.reference_from_estimate.scale,
+                                .pairing = arguments.ate.pairing,
+                                .max_difference = arguments.ate.max_difference});
+  return evaluation;
+}
+
+nlohmann::ordered_json ToJson(const ErrorStatistics& errors) {
+  return {
+      {"rmse", errors.rmse}, {"mean", errors.mean}, {"median", errors.median}, {"max", errors.max}};
+}
+
+nlohmann::ordered_json ToJson(const RpeReport& rpe) {
+  if (!rpe.ok()) {
+    return nullptr;
+  }
+  return {{"delta_s", 1.0},
+          {"motions", rpe.motions},
+          {"translation_m", ToJson(rpe.translation)},
+          {"rotation_deg", ToJson(rpe.rotation)}};
+}
+
+void PrintJson(const TrajectoryArguments& arguments, const Evaluation& evaluation) {
+  const AteReport& ate = evaluation.ate;
+  const nlohmann::ordered_json json = {
+      {"ate_m", ToJson(ate.errors)},
+      {"alignment", ToString(arguments.ate.alignment)},
+      {"scale", ate.reference_from_estimate.scale},
+      {"pairing", ToString(arguments.ate.pairing)},
+      {"max_difference_s", evaluation.max_difference},
+      {"pairs", ate.pairs},
+      {"coverage", ate.coverage},
+      {"estimate_poses", ate.estimate_poses},
+      {"groundtruth_poses", ate.reference_poses},
+      {"paired_span_s", ate.paired_span},
+      {"rpe", ToJson(evaluation.rpe)},
+      {"scale_drift", ate.scale_drift ? nlohmann::ordered_json(*ate.scale_drift)
+                                      : nlohmann::ordered_json(nullptr)}};
+  fmt::print("{}\n", json.dump(2));
+}
+
+void PrintErrors(const char* name, const ErrorStatistics& errors, const char* unit) {
+  fmt::print("{:<12} rmse {:.6f}  mean {:.6f}  median {:.6f}  max {:.6f}  {}\n", name, errors.rmse,
+             errors.mean, errors.median, errors.max, unit);
+}
+
+void PrintText(const TrajectoryArguments& arguments, const Evaluation& evaluation) {
+  const AteReport& ate = evaluation.ate;
+  PrintErrors("ATE", ate.errors, "m");
+  if (evaluation.rpe.ok()) {
+    PrintErrors("RPE 1 s", evaluation.rpe.translation, "m");
+    PrintErrors("RPE 1 s", evaluation.rpe.rotation, "deg");
+  } else {
+    fmt::print("{:<12} none: {}\n", "RPE 1 s", evaluation.rpe.failure);
+  }
+  fmt::print("{:<12} {} of the estimate, {} of the ground truth\n", "poses", ate.estimate_poses,
+             ate.reference_poses);
+  fmt::print("{:<12} {} ({}'s rule within {} s), coverage {:.1f} % of the estimate, {:.1f} s\n",
+             "pairs", ate.pairs, ToString(arguments.ate.pairing), evaluation.max_difference,
+             100.0 * ate.coverage, ate.paired_span);
+  fmt::print("{:<12} {}, scale {:.6f}\n", "alignment", ToString(arguments.ate.alignment),
+             ate.reference_from_estimate.scale);
+  if (ate.scale_drift) {
+    fmt::print("{:<12} {:.2f} % from the first to the last tenth of the pairs\n", "scale drift",
+               100.0 * *ate.scale_drift);
+  }
+}
+
+}  // namespace
+
+CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments) {
+  const std::map<std::string, AlignmentKind> alignments = {
+      {"none", AlignmentKind::kNone}, {"se3", AlignmentKind::kSe3}, {"sim3", AlignmentKind::kSim3}};
+  const std::map<std::string, PairingRule> tools = {{"tum", PairingRule::kTum},
+                                                    {"evo", PairingRule::kEvo}};
+  CLI::App* const command =
+      app.add_subcommand("trajectory", "absolute and relative error of a trajectory (TUM format)");
+  command->add_option("GROUNDTRUTH", arguments.groundtruth, "true trajectory")->required();
+  command->add_option("ESTIMATE", arguments.estimate, "estimated trajectory")->required();
+  command
+      ->add_option("--align", arguments.ate.alignment,
+                   "alignment with the true trajectory: none, se3 (default) or sim3")
+      ->transform(CLI::CheckedTransformer(alignments).description(""));
+  command
+      ->add_option("--tool", arguments.ate.pairing,
+                   "tool whose rule pairs the poses: tum (default) or evo")
+      ->transform(CLI::CheckedTransformer(tools).description(""));
+  command
+      ->add_option("--max-diff", arguments.ate.max_difference,
+                   "largest time between two paired poses, s (default: 0.02 for tum, 0.01 for evo)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--json", arguments.json, "print the report as JSON");
+  return command;
+}
+
+void RunTrajectoryCommand(const TrajectoryArguments& arguments) {
+  const Evaluation evaluation = Evaluate(arguments);
+  if (arguments.json) {
+    PrintJson(arguments, evaluation);
+  } else {
+    PrintText(arguments, evaluation);
+  }
+}
+
+}  // namespace hullslam
