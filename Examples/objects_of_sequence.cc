@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "hullslam/masks/mask_source.h"
+#include "hullslam/masks/open_masks.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/settings/settings.h"
 #include "hullslam/system/system.h"

@@ -15,10 +15,10 @@
 
 #include "features/blur.h"
 #include "features/corners.h"
+#include "features/extractor.h"
 #include "features/orb_descriptor.h"
 #include "features/pyramid.h"
 #include "features/quadtree_selection.h"
-#include "hullslam/features/extractor.h"
 #include "hullslam/features/feature_grid.h"
 
 namespace hullslam {

@@ -12,8 +12,8 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "hullslam/frame/detection_builder.h"
-#include "hullslam/masks/mask_source.h"
+#include "frame/detection_builder.h"
+#include "hullslam/masks/open_masks.h"
 
 namespace hullslam {
 namespace {

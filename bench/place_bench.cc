@@ -17,13 +17,13 @@
 #include <string>
 #include <vector>
 
+#include "features/extractor.h"
 #include "hullslam/bow/inverted_index.h"
-#include "hullslam/features/extractor.h"
 #include "hullslam/map_files/vocabulary_file.h"
 #include "hullslam/results/trajectory_file.h"
-#include "hullslam/sequences/image_file.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/util/error.h"
+#include "sequences/image_file.h"
 
 namespace hullslam {
 namespace {

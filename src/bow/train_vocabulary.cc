@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/bow/train_vocabulary.h"
+#include "bow/train_vocabulary.h"
 
 #include <algorithm>
 #include <cmath>

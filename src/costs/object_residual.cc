@@ -5,40 +5,42 @@
 #include <array>
 #include <cstddef>
 
+#include "costs/quadric_algebraic_plane.h"
+#include "costs/quadric_algebraic_point.h"
+#include "costs/quadric_distribution.h"
+#include "costs/quadric_overlap.h"
+#include "costs/quadric_tangent.h"
+#include "costs/residual_kind.h"
+
 namespace hullslam {
 namespace {
 
 // In the order of the enumerators.
-constexpr std::array<std::string_view, 5> kNames = {"tangent", "algebraic_plane", "algebraic_point",
-                                                    "distribution", "overlap"};
+constexpr std::array<const ResidualKind*, 5> kKinds = {&kTangentResidual, &kAlgebraicPlaneResidual,
+                                                       &kAlgebraicPointResidual,
+                                                       &kDistributionResidual, &kOverlapResidual};
 
 }  // namespace
 
-std::string_view NameOf(ObjectResidual value) { return kNames.at(static_cast<size_t>(value)); }
-
-std::optional<ObjectResidual> ObjectResidualByName(std::string_view name) {
-  const auto it = std::find(kNames.begin(), kNames.end(), name);
-  if (it == kNames.end()) {
-    return std::nullopt;
-  }
-  return static_cast<ObjectResidual>(it - kNames.begin());
+const ResidualKind& KindOf(ObjectResidual residual) {
+  return *kKinds.at(static_cast<size_t>(residual));
 }
 
-std::vector<std::string> ObjectResidualNames() { return {kNames.begin(), kNames.end()}; }
+std::string_view NameOf(ObjectResidual residual) { return KindOf(residual).name; }
+
+std::vector<std::string> ObjectResidualNames() {
+  std::vector<std::string> names;
+  for (const ResidualKind* const kind : kKinds) {
+    names.emplace_back(kind->name);
+  }
+  return names;
+}
 
 bool IsSupported(ObjectResidual residual, ObjectPrimitive primitive) {
-  switch (residual) {
-    case ObjectResidual::kTangent:
-    case ObjectResidual::kAlgebraicPlane:
-      return true;
-    case ObjectResidual::kAlgebraicPoint:
-      return primitive == ObjectPrimitive::kContour;
-    case ObjectResidual::kDistribution:
-      return primitive == ObjectPrimitive::kConic;
-    case ObjectResidual::kOverlap:
-      return primitive != ObjectPrimitive::kSupport;
-  }
-  return false;
+  const auto primitives = KindOf(residual).primitives;
+  return std::find(primitives.begin(), primitives.end(), primitive) != primitives.end();
 }
+
+bool TakesLines(ObjectResidual residual) { return KindOf(residual).takes_lines; }
 
 }  // namespace hullslam

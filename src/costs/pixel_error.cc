@@ -7,6 +7,7 @@
 
 #include "costs/ellipse_projection.h"
 #include "costs/pose_manifold.h"
+#include "costs/residual_kind.h"
 
 namespace hullslam {
 
@@ -28,21 +29,8 @@ std::optional<double> ResidualOfPixelError(ObjectResidual residual, const Pinhol
   }
   const double radius = std::pow(ellipse.shape().determinant(), 0.25);
   const double metres_per_px = quadric.center().z() / std::sqrt(std::abs(camera.fx * camera.fy));
-  switch (residual) {
-    case ObjectResidual::kTangent:
-      return error_px;
-    case ObjectResidual::kAlgebraicPlane:
-      return 2.0 * radius * error_px * metres_per_px * metres_per_px;
-    case ObjectResidual::kAlgebraicPoint:
-      return 2.0 * error_px / radius;
-    case ObjectResidual::kDistribution:
-      return error_px * error_px;
-    case ObjectResidual::kOverlap: {
-      const double ratio = radius / (radius + error_px);
-      return 1.0 - ratio * ratio;
-    }
-  }
-  return std::nullopt;
+  return KindOf(residual).of_pixel_error(error_px,
+                                         {.radius_px = radius, .metres_per_px = metres_per_px});
 }
 
 }  // namespace hullslam

@@ -51,4 +51,18 @@ bool AlgebraicPlaneCost::Evaluate(double const* const* parameters, double* resid
   return true;
 }
 
+const ResidualKind kAlgebraicPlaneResidual = {
+    .name = "algebraic_plane",
+    .primitives = kAllPrimitives,
+    .takes_lines = true,
+    .of_pixel_error =
+        [](double error_px, const ProjectedSize& size) {
+          return 2.0 * size.radius_px * error_px * size.metres_per_px * size.metres_per_px;
+        },
+    .make_cost = [](const ObjectCostInput& input) -> std::unique_ptr<ceres::CostFunction> {
+      return input.lines.empty()
+                 ? nullptr
+                 : std::make_unique<AlgebraicPlaneCost>(input.camera, input.lines, input.sigma);
+    }};
+
 }  // namespace hullslam

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "costs/quadric_in_camera.h"
+#include "costs/residual_kind.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/line2.h"
 
@@ -34,5 +35,7 @@ class AlgebraicPlaneCost final : public ObjectCost {
   std::vector<Plane> planes_;
   double inverse_sigma_;
 };
+
+extern const ResidualKind kAlgebraicPlaneResidual;
 
 }  // namespace hullslam

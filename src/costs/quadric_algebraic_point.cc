@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 
 #include "util/chi_square.h"
+#include "util/thin.h"
 
 namespace hullslam {
 
@@ -56,5 +57,28 @@ std::vector<Eigen::Vector2d> GateContour(std::span<const Eigen::Vector2d> contou
   }
   return gated;
 }
+
+namespace {
+
+constexpr size_t kMaxPoints = 64;  // neighbours on a contour have the same error
+constexpr std::array kPointPrimitives = {ObjectPrimitive::kContour};
+
+std::unique_ptr<ceres::CostFunction> MakePointCost(const ObjectCostInput& input) {
+  if (input.detection.contour.size() < 3) {
+    return nullptr;
+  }
+  return std::make_unique<AlgebraicPointCost>(
+      input.camera, Thin(input.detection.contour.Unpack(), kMaxPoints), input.sigma);
+}
+
+}  // namespace
+
+const ResidualKind kAlgebraicPointResidual = {
+    .name = "algebraic_point",
+    .primitives = kPointPrimitives,
+    .takes_lines = false,
+    .of_pixel_error = [](double error_px,
+                         const ProjectedSize& size) { return 2.0 * error_px / size.radius_px; },
+    .make_cost = MakePointCost};
 
 }  // namespace hullslam

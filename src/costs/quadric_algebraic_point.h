@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "costs/ellipse_projection.h"
+#include "costs/residual_kind.h"
 
 namespace hullslam {
 
@@ -33,5 +34,7 @@ class AlgebraicPointCost final : public ObjectCost {
 // have a sigma of sigma_px.
 std::vector<Eigen::Vector2d> GateContour(std::span<const Eigen::Vector2d> contour,
                                          const Ellipse& ellipse, double sigma_px);
+
+extern const ResidualKind kAlgebraicPointResidual;
 
 }  // namespace hullslam

@@ -73,4 +73,25 @@ bool DistributionCost::Evaluate(double const* const* parameters, double* residua
   return true;
 }
 
+namespace {
+
+constexpr std::array kDistributionPrimitives = {ObjectPrimitive::kConic};
+
+std::unique_ptr<ceres::CostFunction> MakeDistributionCost(const ObjectCostInput& input) {
+  if (!input.detection.ellipse) {
+    return nullptr;
+  }
+  return std::make_unique<DistributionCost>(input.camera, *input.detection.ellipse, input.sigma);
+}
+
+}  // namespace
+
+const ResidualKind kDistributionResidual = {
+    .name = "distribution",
+    .primitives = kDistributionPrimitives,
+    .takes_lines = false,
+    .of_pixel_error = [](double error_px,
+                         const ProjectedSize& /*size*/) { return error_px * error_px; },
+    .make_cost = MakeDistributionCost};
+
 }  // namespace hullslam

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "costs/ellipse_projection.h"
+#include "costs/residual_kind.h"
 
 namespace hullslam {
 
@@ -30,5 +31,7 @@ class DistributionCost final : public ObjectCost {
   double inverse_sigma_;
   DistributionDistance distance_;
 };
+
+extern const ResidualKind kDistributionResidual;
 
 }  // namespace hullslam

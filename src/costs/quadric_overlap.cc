@@ -183,4 +183,49 @@ bool OverlapCost::Evaluate(double const* const* parameters, double* residuals,
   return true;
 }
 
+namespace {
+
+constexpr int kConicVertices = 64;
+constexpr std::array kOverlapPrimitives = {ObjectPrimitive::kHull, ObjectPrimitive::kContour,
+                                           ObjectPrimitive::kBox, ObjectPrimitive::kConic};
+
+std::unique_ptr<ceres::CostFunction> OverlapWithRegion(const ObjectCostInput& input,
+                                                       std::span<const Eigen::Vector2d> region) {
+  if (region.size() < 3) {
+    return nullptr;
+  }
+  return std::make_unique<OverlapCost>(input.camera, region, input.sigma);
+}
+
+std::unique_ptr<ceres::CostFunction> MakeOverlapCost(const ObjectCostInput& input) {
+  const Detection& detection = input.detection;
+  const ObjectPrimitive primitive = detection.primitive;
+  if (primitive == ObjectPrimitive::kHull) {
+    return OverlapWithRegion(input, detection.hull);
+  }
+  if (primitive == ObjectPrimitive::kContour) {
+    return OverlapWithRegion(input, detection.contour.Unpack());
+  }
+  if (primitive == ObjectPrimitive::kConic && detection.ellipse.has_value()) {
+    return OverlapWithRegion(input, detection.ellipse->Polygon(kConicVertices));
+  }
+  if (primitive == ObjectPrimitive::kBox && !detection.box.isEmpty()) {
+    return std::make_unique<OverlapCost>(input.camera, detection.box, input.sigma);
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+const ResidualKind kOverlapResidual = {.name = "overlap",
+                                       .primitives = kOverlapPrimitives,
+                                       .takes_lines = false,
+                                       .of_pixel_error =
+                                           [](double error_px, const ProjectedSize& size) {
+                                             const double ratio =
+                                                 size.radius_px / (size.radius_px + error_px);
+                                             return 1.0 - ratio * ratio;
+                                           },
+                                       .make_cost = MakeOverlapCost};
+
 }  // namespace hullslam

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "costs/ellipse_projection.h"
+#include "costs/residual_kind.h"
 
 namespace hullslam {
 
@@ -41,5 +42,7 @@ class OverlapCost final : public ObjectCost {
   Eigen::AlignedBox2d box_;
   double inverse_sigma_;
 };
+
+extern const ResidualKind kOverlapResidual;
 
 }  // namespace hullslam

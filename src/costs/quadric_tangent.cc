@@ -60,4 +60,15 @@ bool TangentCost::Evaluate(double const* const* parameters, double* residuals,
   return true;
 }
 
+const ResidualKind kTangentResidual = {
+    .name = "tangent",
+    .primitives = kAllPrimitives,
+    .takes_lines = true,
+    .of_pixel_error = [](double error_px, const ProjectedSize& /*size*/) { return error_px; },
+    .make_cost = [](const ObjectCostInput& input) -> std::unique_ptr<ceres::CostFunction> {
+      return input.lines.empty()
+                 ? nullptr
+                 : std::make_unique<TangentCost>(input.camera, input.lines, input.sigma);
+    }};
+
 }  // namespace hullslam

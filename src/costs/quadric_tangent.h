@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "costs/ellipse_projection.h"
+#include "costs/residual_kind.h"
 #include "hullslam/geometry/line2.h"
 
 namespace hullslam {
@@ -30,5 +31,7 @@ class TangentCost final : public ObjectCost {
   std::vector<SilhouetteLine> lines_;
   double inverse_sigma_;
 };
+
+extern const ResidualKind kTangentResidual;
 
 }  // namespace hullslam

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/eval/object_groundtruth.h"
+#include "eval/object_groundtruth.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/files/atomic_file.h"
+#include "files/atomic_file.h"
 
 #include "files/staged_file.h"
 

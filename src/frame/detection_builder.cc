@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/frame/detection_builder.h"
+#include "frame/detection_builder.h"
 
 #include <algorithm>
 #include <array>
@@ -235,13 +235,6 @@ void CheckDepth(const cv::Mat& depth, const PinholeCamera& camera) {
 }
 
 }  // namespace
-
-std::string ToString(DetectionRejection reason) {
-  constexpr std::array<const char*, kDetectionRejectionCount> kNames = {
-      "low_score",     "degenerate", "too_small",    "too_large",
-      "few_keypoints", "duplicate",  "no_silhouette"};
-  return kNames.at(static_cast<size_t>(reason));
-}
 
 DetectionResult DetectionBuilder::Build(std::span<const InstanceMask> masks, const cv::Mat& depth,
                                         std::span<const RawKeypoint> keypoints) const {

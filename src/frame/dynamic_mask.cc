@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/frame/dynamic_mask.h"
+#include "frame/dynamic_mask.h"
 
 #include <algorithm>
 #include <cmath>

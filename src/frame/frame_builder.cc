@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "hullslam/frame/dynamic_mask.h"
+#include "frame/dynamic_mask.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {

@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "features/extractor.h"
+#include "frame/detection_builder.h"
 #include "hullslam/bow/vocabulary.h"
 #include "hullslam/camera/depth.h"
-#include "hullslam/features/extractor.h"
 #include "hullslam/frame/built_frame.h"
-#include "hullslam/frame/detection_builder.h"
 #include "hullslam/frame/image_input.h"
 #include "hullslam/frame/sensor.h"
-#include "hullslam/util/task_runner.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 

@@ -8,8 +8,8 @@
 #include <system_error>
 #include <vector>
 
+#include "files/atomic_file.h"
 #include "files/mapped_file.h"
-#include "hullslam/files/atomic_file.h"
 #include "hullslam/util/error.h"
 #include "map_files/vocabulary_text.h"
 

@@ -8,8 +8,8 @@
 #include <optional>
 #include <span>
 
-#include "hullslam/objects/object_view.h"
 #include "map/islands.h"
+#include "objects/object_view.h"
 #include "objects/point_statistics.h"
 
 namespace hullslam {

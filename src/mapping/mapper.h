@@ -12,9 +12,9 @@
 #include "hullslam/map/messages.h"
 #include "hullslam/mapping/mapping_options.h"
 #include "hullslam/objects/object_changes.h"
-#include "hullslam/objects/object_mapper.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
+#include "objects/object_mapper.h"
 #include "optim/bundle_adjustment.h"
 
 namespace hullslam {

@@ -12,6 +12,8 @@
 namespace hullslam {
 namespace {
 
+constexpr std::string_view kBoxesName = "boxes";
+
 constexpr size_t kColumns = 6;
 constexpr double kRounding = 0.01;  // of shares of the image
 
@@ -23,7 +25,7 @@ class BoxMasks : public TextMasks {
  public:
   explicit BoxMasks(const MaskRequest& request)
       : TextMasks(request), is_yolo_(IsYoloBox(ProbeMasks(request.path))) {}
-  std::string format() const override { return "boxes"; }
+  std::string format() const override { return std::string(kBoxesName); }
 
  private:
   InstanceMask Parse(const TextRow& row) const override {
@@ -85,8 +87,6 @@ class BoxMasks : public TextMasks {
   const bool is_yolo_;  // decided by the first box, because a single line can be either
 };
 
-}  // namespace
-
 bool IsBoxes(const MaskProbe& probe) {
   return IsYoloBox(probe) || (probe.columns == kColumns && IsNormalized(probe, kColumns - 1));
 }
@@ -94,5 +94,9 @@ bool IsBoxes(const MaskProbe& probe) {
 std::unique_ptr<MaskSource> OpenBoxes(const MaskRequest& request) {
   return std::make_unique<BoxMasks>(request);
 }
+
+}  // namespace
+
+const MaskFormat kBoxesFormat = {.name = kBoxesName, .is_meant = IsBoxes, .open = OpenBoxes};
 
 }  // namespace hullslam

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <memory>
-
-#include "hullslam/masks/mask_source.h"
-#include "masks/mask_probe.h"
+#include "masks/mask_format.h"
 
 namespace hullslam {
 
@@ -15,7 +12,6 @@ namespace hullslam {
 //   2020) reads these files.
 // - `class x y width height [confidence]` in shares of the image; x and y are the centre. YOLO
 //   (Ultralytics, save_txt) writes these files for detections.
-bool IsBoxes(const MaskProbe& probe);
-std::unique_ptr<MaskSource> OpenBoxes(const MaskRequest& request);
+extern const MaskFormat kBoxesFormat;
 
 }  // namespace hullslam

@@ -23,6 +23,8 @@
 namespace hullslam {
 namespace {
 
+constexpr std::string_view kCocoName = "coco";
+
 using Json = nlohmann::json;
 
 constexpr const char* kNoClass = "object";  // SAM has no classes
@@ -287,7 +289,7 @@ class CocoMasks : public MaskSource {
   explicit CocoMasks(const MaskRequest& request)
       : request_(request), images_(CocoReader(request).Read()) {}
 
-  std::string format() const override { return "coco"; }
+  std::string format() const override { return std::string(kCocoName); }
   bool Contains(const MaskFrame& frame) const override { return Find(frame) != images_.end(); }
   std::string Example() const override { return images_.empty() ? "" : images_.begin()->first; }
 
@@ -328,8 +330,6 @@ class CocoMasks : public MaskSource {
   Images images_;
 };
 
-}  // namespace
-
 bool IsCoco(const MaskProbe& probe) {
   return probe.json_key == "annotations" || probe.json_key == "image_id";
 }
@@ -337,5 +337,9 @@ bool IsCoco(const MaskProbe& probe) {
 std::unique_ptr<MaskSource> OpenCoco(const MaskRequest& request) {
   return std::make_unique<CocoMasks>(request);
 }
+
+}  // namespace
+
+const MaskFormat kCocoFormat = {.name = kCocoName, .is_meant = IsCoco, .open = OpenCoco};
 
 }  // namespace hullslam

@@ -11,15 +11,17 @@
 
 #include "files/json_file.h"
 #include "files/text_rows.h"
-#include "hullslam/sequences/image_file.h"
 #include "hullslam/util/error.h"
 #include "masks/mask_checks.h"
 #include "masks/mask_outline.h"
 #include "masks/mask_text.h"
+#include "sequences/image_file.h"
 #include "util/shown_text.h"
 
 namespace hullslam {
 namespace {
+
+constexpr std::string_view kLabelPngName = "label-png";
 
 using Json = nlohmann::json;
 
@@ -126,7 +128,7 @@ class LabelPngMasks : public MaskSource {
         stems_(ListFiles(request.path, ".png")),
         classes_(ClassesReader(request.path / kClassesFile).Read()) {}
 
-  std::string format() const override { return "label-png"; }
+  std::string format() const override { return std::string(kLabelPngName); }
   bool Contains(const MaskFrame& frame) const override { return stems_.contains(frame.stem); }
   std::string Example() const override { return stems_.empty() ? "" : *stems_.begin() + ".png"; }
 
@@ -198,12 +200,15 @@ class LabelPngMasks : public MaskSource {
   LabelClasses classes_;
 };
 
-}  // namespace
-
 bool IsLabelPng(const MaskProbe& probe) { return probe.has_images && probe.has_classes_json; }
 
 std::unique_ptr<MaskSource> OpenLabelPng(const MaskRequest& request) {
   return std::make_unique<LabelPngMasks>(request);
 }
+
+}  // namespace
+
+const MaskFormat kLabelPngFormat = {
+    .name = kLabelPngName, .is_meant = IsLabelPng, .open = OpenLabelPng};
 
 }  // namespace hullslam

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <memory>
-
-#include "hullslam/masks/mask_source.h"
-#include "masks/mask_probe.h"
+#include "masks/mask_format.h"
 
 namespace hullslam {
 
@@ -12,7 +9,6 @@ namespace hullslam {
 // 0 for none; and classes.json with the classes of the instances: {"1": "cup", "2": {"class": "tv",
 // "score": 0.9}} for all frames and, with precedence, {"frames": {"<stem>": {"1": "mouse"}}} for
 // one frame.
-bool IsLabelPng(const MaskProbe& probe);
-std::unique_ptr<MaskSource> OpenLabelPng(const MaskRequest& request);
+extern const MaskFormat kLabelPngFormat;
 
 }  // namespace hullslam

@@ -20,6 +20,8 @@
 namespace hullslam {
 namespace {
 
+constexpr std::string_view kOaSlamName = "oa-slam";
+
 using Json = nlohmann::json;
 
 struct OaSlamDetection {
@@ -193,7 +195,7 @@ class OaSlamMasks : public MaskSource {
   explicit OaSlamMasks(const MaskRequest& request)
       : request_(request), images_(OaSlamReader(request).Read()), units_(FindUnits(images_)) {}
 
-  std::string format() const override { return "oa-slam"; }
+  std::string format() const override { return std::string(kOaSlamName); }
   bool Contains(const MaskFrame& frame) const override { return images_.contains(frame.stem); }
   std::string Example() const override { return images_.empty() ? "" : images_.begin()->first; }
 
@@ -223,12 +225,14 @@ class OaSlamMasks : public MaskSource {
   EllipseUnits units_;
 };
 
-}  // namespace
-
 bool IsOaSlam(const MaskProbe& probe) { return probe.json_key == "detections"; }
 
 std::unique_ptr<MaskSource> OpenOaSlam(const MaskRequest& request) {
   return std::make_unique<OaSlamMasks>(request);
 }
+
+}  // namespace
+
+const MaskFormat kOaSlamFormat = {.name = kOaSlamName, .is_meant = IsOaSlam, .open = OpenOaSlam};
 
 }  // namespace hullslam

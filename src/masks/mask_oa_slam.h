@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <memory>
-
-#include "hullslam/masks/mask_source.h"
-#include "masks/mask_probe.h"
+#include "masks/mask_format.h"
 
 namespace hullslam {
 
 // Format oa-slam: a JSON file with a list of {"file_name", "detections": [{"category_id",
 // "detection_score", "bbox": [x1, y1, x2, y2]}]}, as OA-SLAM (Zins et al. 2022) reads it;
 // optionally with "ellipse": [cx, cy, a, b, angle] as in VOOM (Wang et al. 2024).
-bool IsOaSlam(const MaskProbe& probe);
-std::unique_ptr<MaskSource> OpenOaSlam(const MaskRequest& request);
+extern const MaskFormat kOaSlamFormat;
 
 }  // namespace hullslam

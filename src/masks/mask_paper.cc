@@ -12,12 +12,14 @@
 namespace hullslam {
 namespace {
 
+constexpr std::string_view kPaperName = "paper";
+
 constexpr size_t kColumnsBeforePolygon = 4;
 
 class PaperMasks : public TextMasks {
  public:
   using TextMasks::TextMasks;
-  std::string format() const override { return "paper"; }
+  std::string format() const override { return std::string(kPaperName); }
 
  private:
   std::string FileName(const MaskFrame& frame) const override {
@@ -58,8 +60,6 @@ class PaperMasks : public TextMasks {
   }
 };
 
-}  // namespace
-
 bool IsPaper(const MaskProbe& probe) {
   double number = 0.0;
   const auto is_share = [&](size_t column) {
@@ -78,5 +78,9 @@ std::unique_ptr<MaskSource> OpenPaper(const MaskRequest& request) {
   }
   return std::make_unique<PaperMasks>(within);
 }
+
+}  // namespace
+
+const MaskFormat kPaperFormat = {.name = kPaperName, .is_meant = IsPaper, .open = OpenPaper};
 
 }  // namespace hullslam

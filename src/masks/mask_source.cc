@@ -1,85 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/masks/mask_source.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-#include <array>
-#include <string_view>
-
-#include "hullslam/util/check.h"
-#include "hullslam/util/error.h"
-#include "masks/mask_boxes.h"
 #include "masks/mask_checks.h"
-#include "masks/mask_coco.h"
-#include "masks/mask_label_png.h"
-#include "masks/mask_oa_slam.h"
-#include "masks/mask_paper.h"
-#include "masks/mask_probe.h"
-#include "masks/mask_yolo_seg.h"
 
 namespace hullslam {
-namespace {
-
-struct MaskFormat {
-  std::string_view name;
-  bool (*is_meant)(const MaskProbe& probe);
-  std::unique_ptr<MaskSource> (*open)(const MaskRequest& request);
-};
-
-constexpr std::array<MaskFormat, 6> kFormats = {{{"yolo-seg", IsYoloSeg, OpenYoloSeg},
-                                                 {"coco", IsCoco, OpenCoco},
-                                                 {"label-png", IsLabelPng, OpenLabelPng},
-                                                 {"paper", IsPaper, OpenPaper},
-                                                 {"oa-slam", IsOaSlam, OpenOaSlam},
-                                                 {"boxes", IsBoxes, OpenBoxes}}};
-
-const MaskFormat& FindFormat(const std::string& name) {
-  const auto* const found = std::find_if(kFormats.begin(), kFormats.end(),
-                                         [&](const auto& format) { return format.name == name; });
-  if (found == kFormats.end()) {
-    throw InputError(fmt::format("--masks-format is '{}', expected one of: {}", name,
-                                 fmt::join(MaskFormatNames(), ", ")));
-  }
-  return *found;
-}
-
-const MaskFormat& DetectFormat(const std::filesystem::path& path) {
-  const MaskProbe probe = ProbeMasks(path);
-  std::vector<const MaskFormat*> fitting;
-  std::vector<std::string_view> names;
-  for (const MaskFormat& format : kFormats) {
-    if (format.is_meant(probe)) {
-      fitting.push_back(&format);
-      names.push_back(format.name);
-    }
-  }
-  if (fitting.empty()) {
-    throw InputError(fmt::format("{}: {}", path.string(), DescribeMisfit(probe)));
-  }
-  if (fitting.size() > 1) {
-    throw InputError(
-        fmt::format("{}: the format of the masks is not clear, {} fit; give --masks-format",
-                    path.string(), fmt::join(names, " and ")));
-  }
-  return *fitting.front();
-}
-
-void CheckSomeFrameHasMasks(const std::filesystem::path& path, const MaskSource& source,
-                            std::span<const MaskFrame> frames) {
-  const bool found = std::any_of(frames.begin(), frames.end(),
-                                 [&](const MaskFrame& frame) { return source.Contains(frame); });
-  if (!found) {
-    const std::string example = source.Example();
-    throw InputError(fmt::format(
-        "{}: no masks ({}) for any of the {} frames: there is {}, and a frame is '{}'",
-        path.string(), source.format(), frames.size(),
-        example.empty() ? std::string("nothing") : '\'' + example + '\'', frames.front().stem));
-  }
-}
-
-}  // namespace
 
 std::vector<MaskFrame> MaskFrames(const ImageSequence& sequence) {
   std::vector<MaskFrame> frames;
@@ -87,25 +11,6 @@ std::vector<MaskFrame> MaskFrames(const ImageSequence& sequence) {
     frames.push_back({ImageStem(frame.image.string()), frame.number});
   }
   return frames;
-}
-
-std::vector<std::string> MaskFormatNames() {
-  std::vector<std::string> names;
-  for (const MaskFormat& format : kFormats) {
-    names.emplace_back(format.name);
-  }
-  return names;
-}
-
-std::unique_ptr<const MaskSource> OpenMasks(const MaskRequest& request,
-                                            std::span<const MaskFrame> frames) {
-  Check(!frames.empty() && request.width > 0 && request.height > 0,
-        "masks need frames and the size of their images");
-  const MaskFormat& format =
-      request.format.empty() ? DetectFormat(request.path) : FindFormat(request.format);
-  std::unique_ptr<const MaskSource> source = format.open(request);
-  CheckSomeFrameHasMasks(request.path, *source, frames);
-  return source;
 }
 
 MaskCounts CheckMasks(const MaskSource& source, std::span<const MaskFrame> frames) {

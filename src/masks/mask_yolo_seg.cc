@@ -11,6 +11,8 @@
 namespace hullslam {
 namespace {
 
+constexpr std::string_view kYoloSegName = "yolo-seg";
+
 // Outlines that run between pixels end half a pixel beyond the centres at the border. Rounding adds
 // to this.
 constexpr double kMostBeyond = 1.0;  // px
@@ -18,7 +20,7 @@ constexpr double kMostBeyond = 1.0;  // px
 class YoloSegMasks : public TextMasks {
  public:
   using TextMasks::TextMasks;
-  std::string format() const override { return "yolo-seg"; }
+  std::string format() const override { return std::string(kYoloSegName); }
 
  private:
   // Coordinates are pixels with integer centres, divided by width and height. Ultralytics writes
@@ -60,12 +62,15 @@ class YoloSegMasks : public TextMasks {
   }
 };
 
-}  // namespace
-
 bool IsYoloSeg(const MaskProbe& probe) { return probe.columns >= 7 && IsNormalized(probe, 1); }
 
 std::unique_ptr<MaskSource> OpenYoloSeg(const MaskRequest& request) {
   return std::make_unique<YoloSegMasks>(request);
 }
+
+}  // namespace
+
+const MaskFormat kYoloSegFormat = {
+    .name = kYoloSegName, .is_meant = IsYoloSeg, .open = OpenYoloSeg};
 
 }  // namespace hullslam

@@ -8,8 +8,8 @@
 #include "geometry/assignment.h"
 #include "geometry/convex_hull.h"
 #include "geometry/polygon_overlap.h"
-#include "hullslam/objects/object_view.h"
 #include "objects/initialisation.h"
+#include "objects/object_view.h"
 #include "objects/point_statistics.h"
 #include "util/id_set.h"
 

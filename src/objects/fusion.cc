@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hullslam/objects/object_view.h"
 #include "map/islands.h"
+#include "objects/object_view.h"
 #include "objects/point_statistics.h"
 #include "util/id_set.h"
 

@@ -9,7 +9,7 @@
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/objects/object_options.h"
-#include "hullslam/objects/object_view.h"
+#include "objects/object_view.h"
 
 namespace hullslam {
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/objects/object_view.h"
 #include "objects/object_extents.h"
+#include "objects/object_view.h"
 #include "util/median.h"
 
 namespace hullslam {

@@ -11,7 +11,7 @@
 #include "hullslam/geometry/line2.h"
 #include "hullslam/map/object_landmark.h"
 #include "hullslam/objects/object_options.h"
-#include "hullslam/objects/object_view.h"
+#include "objects/object_view.h"
 
 namespace hullslam {
 

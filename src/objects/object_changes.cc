@@ -9,7 +9,7 @@
 
 #include "geometry/assignment.h"
 #include "geometry/polygon_overlap.h"
-#include "hullslam/objects/object_view.h"
+#include "objects/object_view.h"
 #include "objects/visibility.h"
 
 namespace hullslam {

@@ -89,8 +89,4 @@ std::unique_ptr<ceres::CostFunction> MakeObjectPrior(const Ellipsoid& shape, boo
       shape, has_depth ? options.prior : options.prior_without_depth);
 }
 
-bool TakesLines(ObjectResidual residual) {
-  return residual == ObjectResidual::kTangent || residual == ObjectResidual::kAlgebraicPlane;
-}
-
 }  // namespace hullslam

@@ -9,7 +9,7 @@
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/geometry/line2.h"
 #include "hullslam/objects/object_constraint_options.h"
-#include "hullslam/objects/object_view.h"
+#include "objects/object_view.h"
 
 namespace hullslam {
 
@@ -37,8 +37,5 @@ ObjectConstraint MakeObjectConstraint(const PinholeCamera& camera, const ObjectV
 // pose and log half axes.
 std::unique_ptr<ceres::CostFunction> MakeObjectPrior(const Ellipsoid& shape, bool has_depth,
                                                      const ObjectConstraintOptions& options);
-
-// Whether the residual is computed from the lines of a detection.
-bool TakesLines(ObjectResidual residual);
 
 }  // namespace hullslam

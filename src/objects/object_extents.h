@@ -7,7 +7,7 @@
 
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/dual_quadric.h"
-#include "hullslam/objects/object_view.h"
+#include "objects/object_view.h"
 
 namespace hullslam {
 

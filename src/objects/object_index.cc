@@ -5,8 +5,8 @@
 #include <array>
 #include <limits>
 
-#include "hullslam/objects/object_view.h"
 #include "map/islands.h"
+#include "objects/object_view.h"
 #include "objects/point_statistics.h"
 
 namespace hullslam {

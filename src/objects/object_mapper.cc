@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/objects/object_mapper.h"
+#include "objects/object_mapper.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/objects/object_view.h"
 #include "map/islands.h"
 #include "objects/association.h"
 #include "objects/fusion.h"
 #include "objects/initialisation.h"
 #include "objects/misfit.h"
+#include "objects/object_view.h"
 #include "objects/point_statistics.h"
 #include "objects/refinement.h"
 #include "objects/visibility.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/objects/rejection.h"
+#include "objects/rejection.h"
 
 #include <array>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/objects/validity.h"
+#include "objects/validity.h"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "geometry/polyline.h"
-#include "hullslam/objects/object_view.h"
-#include "hullslam/objects/validity.h"
+#include "objects/object_view.h"
+#include "objects/validity.h"
 
 namespace hullslam {
 namespace {

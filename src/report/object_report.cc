@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/report/object_report.h"
+#include "report/object_report.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "hullslam/objects/object_view.h"
+#include "objects/object_view.h"
 
 namespace hullslam {
 namespace {

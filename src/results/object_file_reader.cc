@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The readers of hullslam/results/object_file.h.
+// The readers of results/object_file.h.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,9 +9,9 @@
 #include "files/json_node.h"
 #include "files/plausible.h"
 #include "geometry/polyline.h"
-#include "hullslam/results/object_file.h"
 #include "hullslam/util/error.h"
 #include "results/json_pose.h"
+#include "results/object_file.h"
 #include "results/object_file_version.h"
 
 namespace hullslam {

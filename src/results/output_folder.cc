@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/results/output_folder.h"
+#include "results/output_folder.h"
 
 #include <fmt/format.h>
 

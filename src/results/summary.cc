@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/results/summary.h"
+#include "results/summary.h"
 
 #include <sys/resource.h>
 

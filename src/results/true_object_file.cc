@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/results/true_object_file.h"
+#include "results/true_object_file.h"
 
 #include <set>
 #include <string>
@@ -66,10 +66,6 @@ TrueScene ReadTrueScene(const std::filesystem::path& path) {
     }
   }
   return scene;
-}
-
-std::vector<TrueObject> ReadTrueObjects(const std::filesystem::path& path) {
-  return ReadTrueScene(path).objects;
 }
 
 }  // namespace hullslam

@@ -9,10 +9,10 @@
 
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/sequences/image_sequence.h"
-#include "hullslam/system/prefetcher.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/cancellation.h"
 #include "run/mask_arguments.h"
+#include "system/prefetcher.h"
 
 namespace hullslam {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/frame/dynamic_mask.h"
+#include "frame/dynamic_mask.h"
 #include "run/messages.h"
 
 namespace hullslam {

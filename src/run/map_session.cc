@@ -7,11 +7,11 @@
 #include <system_error>
 #include <utility>
 
-#include "hullslam/files/atomic_file.h"
+#include "files/atomic_file.h"
 #include "hullslam/map_files/map_file.h"
-#include "hullslam/system/compose_trajectory.h"
 #include "hullslam/util/error.h"
 #include "run/messages.h"
+#include "system/compose_trajectory.h"
 
 namespace hullslam {
 namespace {

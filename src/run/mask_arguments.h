@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/masks/mask_source.h"
+#include "hullslam/masks/open_masks.h"
 
 namespace CLI {
 class App;

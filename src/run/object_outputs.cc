@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <map>
 
-#include "hullslam/eval/object_metrics.h"
-#include "hullslam/results/object_file.h"
-#include "hullslam/results/ply_file.h"
+#include "eval/object_metrics.h"
+#include "results/object_file.h"
+#include "results/ply_file.h"
 
 namespace hullslam {
 namespace {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
-#include "hullslam/report/object_report.h"
-#include "hullslam/results/output_folder.h"
-#include "hullslam/results/summary.h"
 #include "hullslam/system/system.h"
+#include "report/object_report.h"
+#include "results/output_folder.h"
+#include "results/summary.h"
 
 namespace hullslam {
 

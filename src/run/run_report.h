@@ -6,9 +6,9 @@
 #include <string>
 
 #include "hullslam/map/messages.h"
-#include "hullslam/report/object_report.h"
-#include "hullslam/results/summary.h"
 #include "hullslam/system/options.h"
+#include "report/object_report.h"
+#include "results/summary.h"
 #include "run/run_arguments.h"
 
 namespace hullslam {

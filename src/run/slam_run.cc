@@ -10,17 +10,16 @@
 #include <utility>
 #include <vector>
 
+#include "eval/reprojection_error.h"
 #include "hullslam/eval/ate.h"
-#include "hullslam/eval/reprojection_error.h"
 #include "hullslam/eval/rpe.h"
-#include "hullslam/results/output_folder.h"
-#include "hullslam/results/ply_file.h"
-#include "hullslam/results/summary.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/settings/settings.h"
-#include "hullslam/system/compose_trajectory.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"
+#include "results/output_folder.h"
+#include "results/ply_file.h"
+#include "results/summary.h"
 #include "run/frame_source.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
@@ -32,6 +31,7 @@
 #include "run/progress.h"
 #include "run/run_report.h"
 #include "run/vocabularies.h"
+#include "system/compose_trajectory.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/sequences/image_file.h"
+#include "sequences/image_file.h"
 
 #include <fmt/format.h>
 

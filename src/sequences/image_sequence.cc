@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "hullslam/results/trajectory_file.h"
-#include "hullslam/sequences/image_file.h"
 #include "hullslam/util/error.h"
+#include "sequences/image_file.h"
 #include "sequences/image_list.h"
 
 namespace hullslam {

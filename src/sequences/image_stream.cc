@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "files/natural_order.h"
-#include "hullslam/sequences/image_file.h"
 #include "hullslam/util/error.h"
+#include "sequences/image_file.h"
 #include "sequences/image_list.h"
 #include "sequences/video_file.h"
 

@@ -9,8 +9,8 @@
 #include <mutex>
 #include <thread>
 
-#include "hullslam/util/task_runner.h"
 #include "util/shared_tasks.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 

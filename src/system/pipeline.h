@@ -8,9 +8,9 @@
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
 #include "hullslam/objects/object_changes.h"
-#include "hullslam/objects/rejection.h"
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
+#include "objects/rejection.h"
 #include "system/pipeline_start.h"
 
 namespace hullslam {

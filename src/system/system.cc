@@ -7,19 +7,19 @@
 #include <thread>
 #include <utility>
 
+#include "frame/dynamic_mask.h"
 #include "frame/frame_builder.h"
-#include "hullslam/frame/dynamic_mask.h"
-#include "hullslam/system/compose_trajectory.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
-#include "hullslam/util/task_runner.h"
 #include "objects/known_sizes.h"
+#include "system/compose_trajectory.h"
 #include "system/idle_core_runner.h"
 #include "system/make_sensor.h"
 #include "system/pipeline.h"
 #include "system/sequential_pipeline.h"
 #include "system/threaded_pipeline.h"
 #include "tracking/remembered_frame.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 namespace {

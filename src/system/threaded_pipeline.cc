@@ -10,12 +10,12 @@
 
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/check.h"
-#include "hullslam/util/mailbox.h"
-#include "hullslam/util/thread_priority.h"
 #include "mapping/mapper.h"
 #include "system/loop_threads.h"
 #include "tracking/tracker.h"
+#include "util/mailbox.h"
 #include "util/published.h"
+#include "util/thread_priority.h"
 
 namespace hullslam {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "geometry/polyline.h"
 #include "hullslam/frame/instance_mask.h"
-#include "hullslam/objects/object_view.h"
-#include "hullslam/objects/validity.h"
+#include "objects/object_view.h"
+#include "objects/validity.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/util/parallel_runner.h"
+#include "util/parallel_runner.h"
 
 #include <algorithm>
 #include <thread>

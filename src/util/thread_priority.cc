@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/util/thread_priority.h"
+#include "util/thread_priority.h"
 
 #include <sys/resource.h>
 #include <sys/syscall.h>

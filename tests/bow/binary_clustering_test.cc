@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "hullslam/util/parallel_runner.h"
 #include "support/made_vocabulary.h"
+#include "util/parallel_runner.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/bow/train_vocabulary.h"
+#include "bow/train_vocabulary.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "hullslam/util/check.h"
-#include "hullslam/util/parallel_runner.h"
 #include "support/made_vocabulary.h"
+#include "util/parallel_runner.h"
 
 namespace hullslam {
 namespace {

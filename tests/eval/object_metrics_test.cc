@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/eval/object_metrics.h"
+#include "eval/object_metrics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/eval/reprojection_error.h"
+#include "eval/reprojection_error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/eval/true_object.h"
+#include "eval/true_object.h"
 
 #include <gtest/gtest.h>
 

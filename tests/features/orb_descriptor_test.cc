@@ -8,9 +8,9 @@
 #include <opencv2/features2d.hpp>
 #include <vector>
 
+#include "features/extractor.h"
 #include "features/pyramid.h"
 #include "features/test_images.h"
-#include "hullslam/features/extractor.h"
 
 namespace hullslam {
 namespace {

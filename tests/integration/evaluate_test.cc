@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/files/atomic_file.h"
-#include "hullslam/results/object_file.h"
-#include "hullslam/results/summary.h"
+#include "files/atomic_file.h"
 #include "hullslam/results/trajectory_file.h"
+#include "results/object_file.h"
+#include "results/summary.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
 #include "support/test_data.h"

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "hullslam/geometry/dual_quadric.h"
-#include "hullslam/system/compose_trajectory.h"
 #include "hullslam/util/check.h"
 #include "map/covisibility.h"
 #include "map/invariants.h"
@@ -29,6 +28,7 @@
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
+#include "system/compose_trajectory.h"
 
 namespace hullslam {
 namespace {

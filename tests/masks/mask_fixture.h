@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/masks/mask_source.h"
+#include "hullslam/masks/open_masks.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 

@@ -28,63 +28,6 @@ TEST(MaskFrames, HaveTheStemsAndNumbersOfTheImages) {
   EXPECT_EQ(frames[1].stem, "0007");
 }
 
-TEST_F(MaskSourceTest, FormatIsDetectedFromTheFirstLineOfAnyFile) {
-  Write("0.5.txt", "");
-  Write("1.5.txt", "# nothing\n\n");
-  Write("3.5.txt", kYoloSeg);
-  EXPECT_EQ(Open()->format(), "yolo-seg");
-}
-
-TEST_F(MaskSourceTest, MissingAndEmptyPathsAreRefused) {
-  ExpectRefusal({Path("none").string(), "no such"}, "none");
-  std::filesystem::create_directories(Path());
-  ExpectRefusal({Path().string(), "the folder is empty"});
-  format_ = "yolo-seg";
-  ExpectRefusal({Path().string(), "there is nothing", "'1.5'"});
-}
-
-TEST_F(MaskSourceTest, SeveralFormatsInOneFolderAreRefused) {
-  Write("1.5.txt", kYoloSeg);
-  Write("1.5.png", "");
-  Write("classes.json", "{}");
-  ExpectRefusal({"is not clear, yolo-seg and label-png fit", "--masks-format"});
-}
-
-TEST_F(MaskSourceTest, AFolderWithoutMasksIsDescribed) {
-  Write("notes.md", "");
-  ExpectRefusal({Path().string(), "has neither text files nor PNG files"});
-  Write("masks.json", "{}");
-  ExpectRefusal({"has JSON files but no text files", "give the path of the JSON file"});
-  Write("1.5.png", "");
-  ExpectRefusal({"PNG files but no classes.json", "label-png"});
-  Write("classes.txt", "cup");
-  Write("1.5.txt", "");
-  Write("2.5.txt", "# nothing\n");
-  ExpectRefusal({"all 2 text files are empty", "--masks-format"});
-}
-
-TEST_F(MaskSourceTest, LinesOfNoFormatAreShown) {
-  Write("1.5.txt", "");
-  Write("2.5.txt", "41 17 300\n");
-  ExpectRefusal({Path().string(), "'41 17 300' in 2.5.txt fits no format of masks"});
-  Write("2.5.txt", "a b c d e f g h i j\n");
-  ExpectRefusal({"'a b c d e f g h ...' in 2.5.txt"});
-}
-
-TEST_F(MaskSourceTest, FilesThatAreNoMasksAreDescribed) {
-  folder_.Write("masks/file", "some text");
-  ExpectRefusal({Path("file").string(), "is no valid JSON", "line 1"}, "file");
-  folder_.Write("masks/empty.json", "");
-  ExpectRefusal({"is no valid JSON"}, "empty.json");
-  folder_.Write("masks/cut.json", "[{\"image_");
-  ExpectRefusal({Path("cut.json").string(), "is no valid JSON", "column 10"}, "cut.json");
-  folder_.Write("masks/cut_later.json", "[{\"image_id\": \"1.5\", \"category");
-  ExpectRefusal({"is no valid JSON"}, "cut_later.json");
-  folder_.Write("masks/other.json", "{\"objects\": []}");
-  ExpectRefusal({"is JSON, but has none of the keys", "'annotations'", "'detections'"},
-                "other.json");
-}
-
 TEST_F(MaskSourceTest, FramesWithoutMasksAreCounted) {
   Write("1.5.txt", "");
   Write("3.5.txt", kYoloSeg);
@@ -92,42 +35,6 @@ TEST_F(MaskSourceTest, FramesWithoutMasksAreCounted) {
   const MaskCounts counts = CheckMasks(*Open(), frames_);
   EXPECT_EQ(counts.missing, 1U);
   EXPECT_EQ(counts.without_masks, 2U) << "one has no file, the other an empty one";
-}
-
-TEST_F(MaskSourceTest, EveryFormatIsNamed) {
-  EXPECT_EQ(MaskFormatNames(), (std::vector<std::string>{"yolo-seg", "coco", "label-png", "paper",
-                                                         "oa-slam", "boxes"}));
-  Write("1.5.txt", "");
-  for (const char* const name : {"yolo-seg", "paper", "boxes"}) {
-    format_ = name;
-    frames_ = {{name == std::string("paper") ? "x" : "1.5", 0}};
-    Write("000000.txt", "");
-    EXPECT_EQ(Open()->format(), name);
-  }
-}
-
-TEST_F(MaskSourceTest, FolderFormatsOfAFileAndFileFormatsOfAFolderAreRefused) {
-  folder_.Write("masks/file", "[]");
-  for (const char* const name : {"yolo-seg", "paper", "boxes", "label-png"}) {
-    format_ = name;
-    ExpectRefusal({Path("file").string()}, "file");
-  }
-  for (const char* const name : {"coco", "oa-slam"}) {
-    format_ = name;
-    ExpectRefusal({Path().string()});
-  }
-}
-
-TEST_F(MaskSourceTest, UnknownFormatIsRefused) {
-  Write("1.5.txt", kYoloSeg);
-  format_ = "yolo";
-  ExpectRefusal({"--masks-format is 'yolo'", "yolo-seg"});
-}
-
-TEST_F(MaskSourceTest, MasksOfOtherFramesAreRefusedWithAnExample) {
-  Write("0001.txt", kYoloSeg);
-  Write("0002.txt", kYoloSeg);
-  ExpectRefusal({Path().string(), "any of the 2 frames", "'0001.txt'", "'1.5'"});
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/objects/object_mapper.h"
 #include "objects/made_objects.h"
+#include "objects/object_mapper.h"
 
 namespace hullslam {
 namespace {

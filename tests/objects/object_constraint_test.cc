@@ -187,13 +187,5 @@ TEST(ObjectPrior, DependsOnDepth) {
   }
 }
 
-TEST(TakesLines, IsSoForTheTwoResidualsOfLines) {
-  EXPECT_TRUE(TakesLines(ObjectResidual::kTangent));
-  EXPECT_TRUE(TakesLines(ObjectResidual::kAlgebraicPlane));
-  EXPECT_FALSE(TakesLines(ObjectResidual::kAlgebraicPoint));
-  EXPECT_FALSE(TakesLines(ObjectResidual::kDistribution));
-  EXPECT_FALSE(TakesLines(ObjectResidual::kOverlap));
-}
-
 }  // namespace
 }  // namespace hullslam

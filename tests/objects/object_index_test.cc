@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "geometry/polygon_overlap.h"
-#include "hullslam/objects/object_view.h"
 #include "objects/made_objects.h"
+#include "objects/object_view.h"
 #include "objects/point_statistics.h"
 #include "support/random_geometry.h"
 

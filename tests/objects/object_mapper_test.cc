@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/objects/object_mapper.h"
+#include "objects/object_mapper.h"
 
 #include <gtest/gtest.h>
 

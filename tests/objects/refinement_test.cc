@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "hullslam/objects/validity.h"
 #include "objects/made_objects.h"
+#include "objects/validity.h"
 
 namespace hullslam {
 namespace {

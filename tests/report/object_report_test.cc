@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/report/object_report.h"
+#include "report/object_report.h"
 
 #include <gtest/gtest.h>
 

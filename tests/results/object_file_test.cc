@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/results/object_file.h"
+#include "results/object_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/results/true_object_file.h"
+#include "results/true_object_file.h"
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ Json RearrangedFile() {
 TEST(TrueObjectFile, ReadsTheFilesOfMakeSynthetic) {
   const TemporaryFolder folder;
   const std::vector<TrueObject> objects =
-      ReadTrueObjects(folder.Write("groundtruth_objects.json", File().dump()));
+      ReadTrueScene(folder.Write("groundtruth_objects.json", File().dump())).objects;
   ASSERT_EQ(objects.size(), 2U);
   EXPECT_EQ(objects[0].label, "cup");
   EXPECT_EQ(objects[0].shape, "ellipsoid");
@@ -64,7 +64,7 @@ TEST(TrueObjectFile, BrokenValuesAreReportedWithTheirPath) {
     Json json = File();
     json["objects"][1][key] = value;
     const auto path = folder.Write("truth.json", json.dump());
-    ExpectInputError([&] { ReadTrueObjects(path); },
+    ExpectInputError([&] { ReadTrueScene(path); },
                      {"truth.json: objects[1]." + std::string(key), part});
   };
   expect("id", "x", "an integer");
@@ -93,7 +93,7 @@ TEST(TrueObjectFile, ReadsRearrangedScenes) {
   ASSERT_EQ(scene.gone.size(), 1U);
   EXPECT_EQ(scene.gone[0].id, 2U);
   EXPECT_EQ(scene.gone[0].label, "bowl");
-  EXPECT_EQ(ReadTrueObjects(path).size(), 3U);
+  EXPECT_EQ(ReadTrueScene(path).objects.size(), 3U);
   const TrueScene original = ReadTrueScene(folder.Write("before.json", File().dump()));
   EXPECT_FALSE(original.is_rearranged);
   EXPECT_FALSE(original.objects[0].status.has_value());
@@ -128,13 +128,13 @@ TEST(TrueObjectFile, BrokenRearrangementsAreReportedWithTheirPath) {
 
 TEST(TrueObjectFile, OtherFilesAreRefused) {
   const TemporaryFolder folder;
-  ExpectInputError([&] { ReadTrueObjects(folder.Write("a.json", "{}")); },
+  ExpectInputError([&] { ReadTrueScene(folder.Write("a.json", "{}")); },
                    {"a.json: \"objects\" is missing"});
-  ExpectInputError([&] { ReadTrueObjects(folder.Write("a.json", R"({"objects": [{}]})")); },
+  ExpectInputError([&] { ReadTrueScene(folder.Write("a.json", R"({"objects": [{}]})")); },
                    {"objects[0]: \"id\" is missing"});
-  ExpectInputError([&] { ReadTrueObjects(folder.Write("a.json", "cup 1 2 3")); },
+  ExpectInputError([&] { ReadTrueScene(folder.Write("a.json", "cup 1 2 3")); },
                    {"is no valid JSON"});
-  ExpectInputError([&] { ReadTrueObjects(folder.path() / "none.json"); }, {"none.json"});
+  ExpectInputError([&] { ReadTrueScene(folder.path() / "none.json"); }, {"none.json"});
 }
 
 }  // namespace

@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/bow/train_vocabulary.h"
-#include "hullslam/util/task_runner.h"
+#include "bow/train_vocabulary.h"
 #include "map/covisibility.h"
 #include "map/landmark_edits.h"
 #include "support/synthetic_world.h"
 #include "support/unknown_points.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 

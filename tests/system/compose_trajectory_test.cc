@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/system/compose_trajectory.h"
+#include "system/compose_trajectory.h"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,9 @@
 #include <memory>
 #include <vector>
 
-#include "hullslam/system/compose_trajectory.h"
 #include "support/synthetic_world.h"
 #include "support/unknown_points.h"
+#include "system/compose_trajectory.h"
 #include "system/pipeline.h"
 
 // Parts that the tests of the pipelines have in common.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/system/prefetcher.h"
+#include "system/prefetcher.h"
 
 #include <gtest/gtest.h>
 

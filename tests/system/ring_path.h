@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "hullslam/geometry/alignment.h"
-#include "hullslam/system/compose_trajectory.h"
 #include "hullslam/system/options.h"
 #include "support/ring_world.h"
+#include "system/compose_trajectory.h"
 #include "system/pipeline.h"
 #include "system/sequential_pipeline.h"
 

@@ -13,12 +13,12 @@
 #include <optional>
 
 #include "hullslam/map_files/map_file.h"
-#include "hullslam/system/prefetcher.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
 #include "map/invariants.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
+#include "system/prefetcher.h"
 
 namespace hullslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/util/mailbox.h"
+#include "util/mailbox.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hullslam/util/task_runner.h"
+#include "util/task_runner.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,13 +9,12 @@
 
 namespace hullslam {
 
-// The residuals that can constrain a quadric (docs/objects.md). Each has its own file in costs/.
+// The residuals that can constrain a quadric (docs/objects.md). Each has its own file in costs/,
+// and a row in the table of costs/object_residual.cc.
 enum class ObjectResidual { kTangent, kAlgebraicPlane, kAlgebraicPoint, kDistribution, kOverlap };
 
 // The name in settings files: tangent, algebraic_plane, ...
 std::string_view NameOf(ObjectResidual residual);
-// The residual with this name; nothing for an unknown name.
-std::optional<ObjectResidual> ObjectResidualByName(std::string_view name);
 // All names, in the order of the enumerators.
 std::vector<std::string> ObjectResidualNames();
 
@@ -24,5 +22,8 @@ std::vector<std::string> ObjectResidualNames();
 // which every primitive has (a conic has its tangents). algebraic_point needs the contour and
 // distribution the conic. overlap needs a region, which every primitive but the support lines has.
 bool IsSupported(ObjectResidual residual, ObjectPrimitive primitive);
+
+// Whether the residual is computed from the lines of a detection.
+bool TakesLines(ObjectResidual residual);
 
 }  // namespace hullslam

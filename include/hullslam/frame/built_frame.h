@@ -5,11 +5,26 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <string>
 
-#include "hullslam/frame/detection_builder.h"
 #include "hullslam/frame/frame.h"
 
 namespace hullslam {
+
+// Why a mask gives no detection.
+enum class DetectionRejection {
+  kLowScore,
+  kDegenerate,    // no outline has an area
+  kTooSmall,      // its bounding box is too small
+  kTooLarge,      // its hull is too large
+  kFewKeypoints,  // too few keypoints are in it
+  kDuplicate,     // another mask with a higher score shows the same object
+  kNoSilhouette,  // all its lines are one-sided
+};
+inline constexpr int kDetectionRejectionCount = 7;
+
+// The name in summary.json, such as "low_score".
+std::string ToString(DetectionRejection reason);
 
 // What became of the masks of one or more frames.
 struct DetectionCounts {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,8 +12,6 @@ enum class ObjectPrimitive { kSupport, kHull, kContour, kBox, kConic };
 
 // The name in settings files: support, hull, contour, bbox or conic.
 std::string_view NameOf(ObjectPrimitive primitive);
-// The primitive with this name; nothing for an unknown name.
-std::optional<ObjectPrimitive> ObjectPrimitiveByName(std::string_view name);
 // All names, in the order of the enumerators.
 std::vector<std::string> ObjectPrimitiveNames();
 

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,19 +47,10 @@ class MaskSource {
 
 struct MaskRequest {
   std::filesystem::path path;  // a folder or a JSON file
-  std::string format;          // one of MaskFormatNames(); empty: it is detected
+  std::string format;          // one of MaskFormatNames() (open_masks.h); empty: it is detected
   int width = 0;               // width of the images, px
   int height = 0;
 };
-
-// yolo-seg, coco, label-png, paper, oa-slam, boxes (docs/masks.md).
-std::vector<std::string> MaskFormatNames();
-
-// Throws InputError if the format is unknown, if none or several formats fit (the message says what
-// was found), or if no frame has an entry. The last message shows the name of one entry and the
-// name of one frame. `frames` must not be empty.
-std::unique_ptr<const MaskSource> OpenMasks(const MaskRequest& request,
-                                            std::span<const MaskFrame> frames);
 
 struct MaskCounts {
   size_t without_masks = 0;  // frames; the missing ones, and those whose file or entry has no mask

@@ -7,7 +7,7 @@
 #include "hullslam/bow/vocabulary.h"
 #include "hullslam/camera/depth.h"
 #include "hullslam/camera/pinhole.h"
-#include "hullslam/features/extractor.h"
+#include "hullslam/features/feature_options.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/loop/loop_options.h"
 #include "hullslam/mapping/mapping_options.h"

@@ -16,12 +16,11 @@
 #include <system_error>
 #include <vector>
 
-#include "hullslam/frame/detection_builder.h"
-#include "hullslam/masks/mask_source.h"
-#include "hullslam/results/output_folder.h"
-#include "hullslam/sequences/image_file.h"
+#include "frame/detection_builder.h"
+#include "hullslam/masks/open_masks.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/settings/settings.h"
+#include "results/output_folder.h"
 #include "run/command_line.h"
 #include "run/interrupt.h"
 #include "run/mask_arguments.h"
@@ -29,6 +28,7 @@
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/tools/mask_overlay.h"
+#include "sequences/image_file.h"
 
 namespace hullslam {
 namespace {
@@ -37,7 +37,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMostFaultsShown = 20;
 
-struct Arguments {
+struct CheckMasksArguments {
   fs::path sequence;
   fs::path masks;
   std::string format;
@@ -56,7 +56,7 @@ struct ClassCount {
   double score_sum = 0.0;
 };
 
-struct Counts {
+struct MaskStatistics {
   size_t frames = 0;
   size_t missing = 0;
   size_t without_masks = 0;
@@ -75,7 +75,7 @@ struct Counts {
   size_t pictures = 0;
 };
 
-void AddOptions(CLI::App& app, Arguments& arguments) {
+void AddOptions(CLI::App& app, CheckMasksArguments& arguments) {
   app.add_option("SEQUENCE", arguments.sequence,
                  "folder with rgb.txt (the images themselves may be missing) and, to use depth, "
                  "depth.txt with its images")
@@ -105,7 +105,8 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                          "some of them cannot be read, or bad usage");
 }
 
-void CountDetections(const FrameMasks& frame, const DetectionResult& result, Counts& counts) {
+void CountDetections(const FrameMasks& frame, const DetectionResult& result,
+                     MaskStatistics& counts) {
   for (size_t i = 0; i < frame.masks.size(); ++i) {
     ClassCount& of_class = counts.classes[frame.masks[i].label];
     ++of_class.instances;
@@ -140,11 +141,11 @@ void DrawFrame(const std::string& name, const cv::Mat& grey, const PinholeCamera
   output.Write({name, std::string(bytes.begin(), bytes.end())});
 }
 
-// Counts and draws one frame. If its masks or images cannot be read, this is recorded as a fault.
-// Without `output` nothing is drawn.
-void CheckFrame(const Arguments& arguments, const SystemOptions& options, const MaskSource& source,
-                const FramePaths& paths, const MaskFrame& names, OutputFolder* output,
-                Counts& counts) {
+// MaskStatistics and draws one frame. If its masks or images cannot be read, this is recorded as a
+// fault. Without `output` nothing is drawn.
+void CheckFrame(const CheckMasksArguments& arguments, const SystemOptions& options,
+                const MaskSource& source, const FramePaths& paths, const MaskFrame& names,
+                OutputFolder* output, MaskStatistics& counts) {
   const bool is_drawn = output != nullptr && counts.frames % arguments.every == 0;
   ++counts.frames;
   std::error_code error;
@@ -172,7 +173,7 @@ void CheckFrame(const Arguments& arguments, const SystemOptions& options, const 
   }
 }
 
-void PrintClasses(const Counts& counts) {
+void PrintClasses(const MaskStatistics& counts) {
   Print("\n{:<20}{:>10}{:>10}{:>12}\n", "class", "instances", "kept", "mean score");
   for (const auto& [label, of_class] : counts.classes) {
     Print("{:<20}{:>10}{:>10}{:>12.2f}\n", label, of_class.instances, of_class.kept,
@@ -180,7 +181,8 @@ void PrintClasses(const Counts& counts) {
   }
 }
 
-void PrintCounts(const Arguments& arguments, const MaskSource& source, const Counts& counts) {
+void PrintCounts(const CheckMasksArguments& arguments, const MaskSource& source,
+                 const MaskStatistics& counts) {
   const auto print = [](const std::string& name, size_t count) {
     Print("{:<20}{:>10}\n", name, count);
   };
@@ -217,7 +219,7 @@ void PrintFaults(const std::vector<std::string>& faults) {
 }
 
 // Null if no pictures are to be drawn.
-std::unique_ptr<OutputFolder> OpenOutput(const Arguments& arguments) {
+std::unique_ptr<OutputFolder> OpenOutput(const CheckMasksArguments& arguments) {
   if (arguments.output.empty()) {
     return nullptr;
   }
@@ -240,7 +242,7 @@ int RunCheckMasks(int argc, char** argv) {
   CLI::App app(
       "Checks the masks of a sequence, counts the detections that they give, and can draw them.",
       "check_masks");
-  Arguments arguments;
+  CheckMasksArguments arguments;
   AddOptions(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {
     return kDone;
@@ -257,7 +259,7 @@ int RunCheckMasks(int argc, char** argv) {
       {arguments.masks, arguments.format, options.camera.width, options.camera.height}, frames);
   CatchInterrupts();
   const auto output = OpenOutput(arguments);
-  Counts counts;
+  MaskStatistics counts;
   Progress progress(frames.size(), arguments.quiet);
   for (size_t i = 0; i < frames.size() && !IsInterrupted(); ++i) {
     CheckFrame(arguments, options, *source, sequence.frames[i], frames[i], output.get(), counts);

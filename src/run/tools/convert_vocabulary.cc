@@ -11,7 +11,6 @@
 #include "run/vocabularies.h"
 
 namespace hullslam {
-namespace {}  // namespace
 
 int RunConvertVocabulary(int argc, char** argv) {
   CLI::App app(

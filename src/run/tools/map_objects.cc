@@ -15,17 +15,13 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/frame/detection_builder.h"
-#include "hullslam/frame/dynamic_mask.h"
-#include "hullslam/objects/object_mapper.h"
-#include "hullslam/objects/object_view.h"
-#include "hullslam/results/output_folder.h"
 #include "hullslam/results/trajectory_file.h"
-#include "hullslam/sequences/image_file.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/settings/settings.h"
-#include "hullslam/system/compose_trajectory.h"
+#include "hullslam/system/known_pose_mapper.h"
 #include "hullslam/util/error.h"
+#include "objects/object_view.h"
+#include "results/output_folder.h"
 #include "run/command_line.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
@@ -34,13 +30,15 @@
 #include "run/object_outputs.h"
 #include "run/program.h"
 #include "run/progress.h"
+#include "sequences/image_file.h"
+#include "system/compose_trajectory.h"
 
 namespace hullslam {
 namespace {
 
-constexpr double kMaxPoseGap = 0.1;  // s, between the two poses that a pose is interpolated from
+constexpr double kMaxGapOfPoses = 0.1;  // s, between the two poses that a pose is interpolated from
 
-struct Arguments {
+struct MapObjectsArguments {
   std::filesystem::path sequence;
   std::filesystem::path poses;
   std::filesystem::path masks;
@@ -54,7 +52,7 @@ struct Arguments {
   bool quiet = false;
 };
 
-void AddArguments(CLI::App& app, Arguments& arguments) {
+void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
   app.add_option(
          "SEQUENCE", arguments.sequence,
          "folder with rgb.txt (the images themselves may be missing) and, to use depth, depth.txt "
@@ -87,33 +85,27 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
                          "and summary.json says so)");
 }
 
-SystemOptions LoadOptions(const Arguments& arguments) {
+SystemOptions LoadOptions(const MapObjectsArguments& arguments) {
   const std::filesystem::path settings =
       arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
                                  : arguments.settings;
   return ReadSettings(settings, arguments.overrides);
 }
 
-Sensor MakeSensor(const SystemOptions& options) {
-  Sensor sensor;
-  sensor.camera = options.camera;
-  sensor.bounds = options.camera.UndistortedBounds();
-  return sensor;
-}
-
 // A frame that is used for mapping.
-struct View {
+struct ChosenView {
   size_t frame = 0;  // index in the sequence
   Rigid3 world_from_cam;
 };
 
-struct Views {
-  std::vector<View> views;
+struct ChosenViews {
+  std::vector<ChosenView> views;
   size_t without_pose = 0;  // frames
 };
 
 // Whether the camera has moved by this share of the distance or the angle of the arguments.
-bool HasMoved(const Arguments& arguments, const Rigid3& last, const Rigid3& pose, double share) {
+bool HasMoved(const MapObjectsArguments& arguments, const Rigid3& last, const Rigid3& pose,
+              double share) {
   const double angle = AngularDistance(last.rotation, pose.rotation) * 180.0 / std::numbers::pi;
   return (pose.translation - last.translation).norm() >= share * arguments.min_distance ||
          angle >= share * arguments.min_angle;
@@ -153,13 +145,13 @@ bool HasMaskMoved(const std::vector<LabelledBox>& last, const std::vector<Labell
 // Where a mask has moved by more than half of its size, a quarter of that motion is enough: small
 // things that are seen for a short time need enough views, and a view must resemble the one before
 // to be recognised. Throws InputError if no frame has a pose.
-Views ChooseViews(const Arguments& arguments, const std::vector<FramePaths>& frames,
-                  const Trajectory& poses, const SequenceMasks& masks) {
+ChosenViews ChooseViews(const MapObjectsArguments& arguments, const std::vector<FramePaths>& frames,
+                        const Trajectory& poses, const SequenceMasks& masks) {
   constexpr double kSmallMotion = 0.25;
-  Views chosen;
+  ChosenViews chosen;
   std::vector<LabelledBox> last_boxes;
   for (size_t i = 0; i < frames.size(); ++i) {
-    const auto pose = InterpolatePose(poses, frames[i].timestamp, kMaxPoseGap);
+    const auto pose = InterpolatePose(poses, frames[i].timestamp, kMaxGapOfPoses);
     if (!pose) {
       ++chosen.without_pose;
       continue;
@@ -179,57 +171,12 @@ Views ChooseViews(const Arguments& arguments, const std::vector<FramePaths>& fra
     throw InputError(
         fmt::format("{}: no frame of {} has a pose, expected poses before and after a frame "
                     "that are at most {} s apart",
-                    arguments.poses.string(), arguments.sequence.string(), kMaxPoseGap));
+                    arguments.poses.string(), arguments.sequence.string(), kMaxGapOfPoses));
   }
   return chosen;
 }
 
-// Maps objects from one view after the other.
-class ObjectRun {
- public:
-  explicit ObjectRun(const SystemOptions& options)
-      : sensor_(MakeSensor(options)),
-        dynamic_classes_(SplitNames(options.tracking.dynamic_classes)),
-        builder_(options.camera, options.depth.units_per_metre, options.objects.detection),
-        mapper_(sensor_, options.objects) {}
-
-  void AddView(double timestamp, const Rigid3& world_from_cam, std::vector<InstanceMask> masks,
-               const cv::Mat& depth) {
-    auto frame = std::make_shared<Frame>();
-    frame->id = FrameId(map_.keyframes().NextId().value);
-    frame->timestamp = timestamp;
-    std::erase_if(masks,
-                  [&](const InstanceMask& mask) { return dynamic_classes_.contains(mask.label); });
-    DetectionResult result = builder_.Build(masks, depth, {});
-    for (const auto& rejection : result.rejections) {
-      if (rejection) {
-        ++counts_.rejections["mask_" + ToString(*rejection)];
-      }
-    }
-    counts_.detections += result.detections.size();
-    frame->detections = std::move(result.detections);
-    mapper_.Process(map_, map_.AddKeyframe(std::move(frame), Inverse(world_from_cam)));
-  }
-
-  const Map& map() const { return map_; }
-  ObjectCounts counts() const {
-    ObjectCounts counts = counts_;
-    for (const auto& [reason, count] : mapper_.rejections()) {
-      counts.rejections[ToString(reason)] = count;
-    }
-    return counts;
-  }
-
- private:
-  Sensor sensor_;
-  std::set<std::string> dynamic_classes_;
-  DetectionBuilder builder_;
-  ObjectMapper mapper_;
-  Map map_;
-  ObjectCounts counts_;
-};
-
-void PrintTable(const ObjectRun& run, const ObjectReport& report) {
+void PrintTable(const KnownPoseMapper& run, const ObjectReport& report) {
   Print("{:>4} {:<14} {:>5} {:>8} {:>20} {:>6} {:>6} {:>7}\n", "id", "class", "views", "parallax",
         "half axes (m)", "SIoU", "mask", "misfit");
   for (const ReportedObject& object : report.objects) {
@@ -247,14 +194,14 @@ void PrintTable(const ObjectRun& run, const ObjectReport& report) {
   }
 }
 
-struct Inputs {
+struct MappingInputs {
   SystemOptions options;
   ImageSequence sequence;
   Trajectory poses;
 };
 
-Inputs OpenInputs(const Arguments& arguments) {
-  Inputs inputs;
+MappingInputs OpenMappingInputs(const MapObjectsArguments& arguments) {
+  MappingInputs inputs;
   inputs.options = LoadOptions(arguments);
   inputs.sequence = OpenTumSequence(arguments.sequence, {.need_images = false});
   inputs.poses = ReadTrajectory(arguments.poses);
@@ -262,12 +209,12 @@ Inputs OpenInputs(const Arguments& arguments) {
 }
 
 // Returns false if a signal ended it early.
-bool MapAll(const Arguments& arguments, const SystemOptions& options,
-            const std::vector<FramePaths>& frames, const std::vector<View>& views,
-            const SequenceMasks& masks, ObjectRun& run) {
+bool MapAll(const MapObjectsArguments& arguments, const SystemOptions& options,
+            const std::vector<FramePaths>& frames, const std::vector<ChosenView>& views,
+            const SequenceMasks& masks, KnownPoseMapper& run) {
   Progress progress(frames.size(), arguments.quiet);
   bool is_depth_checked = false;
-  for (const View& view : views) {
+  for (const ChosenView& view : views) {
     if (IsInterrupted()) {
       progress.Clear();
       return false;
@@ -285,8 +232,8 @@ bool MapAll(const Arguments& arguments, const SystemOptions& options,
   return true;
 }
 
-RunSummary Summarize(const Arguments& arguments, const Inputs& inputs, const SequenceMasks& masks,
-                     const ObjectRun& run, size_t without_pose) {
+RunSummary Summarize(const MapObjectsArguments& arguments, const MappingInputs& inputs,
+                     const SequenceMasks& masks, const KnownPoseMapper& run, size_t without_pose) {
   RunSummary summary;
   summary.trajectory.frames = inputs.sequence.frames.size();
   summary.trajectory.tracked = inputs.sequence.frames.size() - without_pose;
@@ -304,7 +251,7 @@ RunSummary Summarize(const Arguments& arguments, const Inputs& inputs, const Seq
   return summary;
 }
 
-void WriteOutputs(OutputFolder& output, const ObjectRun& run, const ObjectReport& report,
+void WriteOutputs(OutputFolder& output, const KnownPoseMapper& run, const ObjectReport& report,
                   RunSummary summary) {
   for (const FileContent& file : ObjectFiles(report)) {
     output.Write(file);
@@ -318,7 +265,7 @@ void WriteOutputs(OutputFolder& output, const ObjectRun& run, const ObjectReport
   output.Commit();
 }
 
-std::vector<std::filesystem::path> InputsOf(const Arguments& arguments) {
+std::vector<std::filesystem::path> InputsOf(const MapObjectsArguments& arguments) {
   return {arguments.sequence, arguments.poses, arguments.masks, arguments.settings};
 }
 
@@ -327,12 +274,12 @@ std::vector<std::filesystem::path> InputsOf(const Arguments& arguments) {
 int RunMapObjects(int argc, char** argv) {
   CLI::App app("Maps objects from masks and known camera poses. Colour images are not needed.",
                "map_objects");
-  Arguments arguments;
+  MapObjectsArguments arguments;
   AddArguments(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {
     return kDone;
   }
-  const Inputs inputs = OpenInputs(arguments);
+  const MappingInputs inputs = OpenMappingInputs(arguments);
   const PinholeCamera& camera = inputs.options.camera;
   const SequenceMasks masks({arguments.masks, arguments.masks_format, camera.width, camera.height},
                             MaskFrames(inputs.sequence));
@@ -345,7 +292,7 @@ int RunMapObjects(int argc, char** argv) {
     Print("{}\n", masks.Describe());
   }
   const auto start = std::chrono::steady_clock::now();
-  ObjectRun run(inputs.options);
+  KnownPoseMapper run(inputs.options);
   const bool is_complete = MapAll(arguments, inputs.options, frames, views, masks, run);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
 

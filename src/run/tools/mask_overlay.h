@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
+#include "frame/detection_builder.h"
 #include "hullslam/camera/pinhole.h"
-#include "hullslam/frame/detection_builder.h"
 #include "hullslam/frame/instance_mask.h"
 
 namespace hullslam {

@@ -10,10 +10,10 @@
 #include <string>
 #include <system_error>
 
-#include "hullslam/eval/object_metrics.h"
-#include "hullslam/results/object_file.h"
-#include "hullslam/results/summary.h"
+#include "eval/object_metrics.h"
 #include "hullslam/util/error.h"
+#include "results/object_file.h"
+#include "results/summary.h"
 #include "run/object_outputs.h"
 #include "run/tools/objects_truth.h"
 

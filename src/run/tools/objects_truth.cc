@@ -7,11 +7,11 @@
 #include <string>
 
 #include "hullslam/eval/ate.h"
-#include "hullslam/masks/mask_source.h"
+#include "hullslam/masks/open_masks.h"
 #include "hullslam/results/trajectory_file.h"
-#include "hullslam/results/true_object_file.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/util/error.h"
+#include "results/true_object_file.h"
 #include "run/object_outputs.h"
 
 namespace hullslam {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "hullslam/eval/change_groundtruth.h"
-#include "hullslam/eval/object_groundtruth.h"
+#include "eval/change_groundtruth.h"
+#include "eval/object_groundtruth.h"
 #include "run/tools/objects_command.h"
 
 namespace hullslam {

@@ -39,7 +39,7 @@ constexpr double kMaxPoseGap = 0.1;  // s, between the two poses that a pose is 
 constexpr double kNear = 0.05;       // m
 constexpr double kFar = 0.1;         // m; a pose that is farther from the truth is false
 
-struct Arguments {
+struct RelocaliseArguments {
   std::filesystem::path sequence;
   std::filesystem::path masks;
   std::string masks_format;
@@ -55,7 +55,7 @@ struct Arguments {
   bool quiet = false;
 };
 
-void AddArguments(CLI::App& app, Arguments& arguments) {
+void AddArguments(CLI::App& app, RelocaliseArguments& arguments) {
   app.add_option("SEQUENCE", arguments.sequence,
                  "folder with rgb.txt, depth.txt and groundtruth.txt")
       ->required();
@@ -122,7 +122,7 @@ FrameRange ParseRange(const std::string& option, const std::string& text, size_t
   return range;
 }
 
-SystemOptions LoadOptions(const Arguments& arguments, bool for_queries) {
+SystemOptions LoadOptions(const RelocaliseArguments& arguments, bool for_queries) {
   const std::filesystem::path settings =
       arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
                                  : arguments.settings;
@@ -136,7 +136,7 @@ SystemOptions LoadOptions(const Arguments& arguments, bool for_queries) {
   return options;
 }
 
-Trajectory NeedGroundtruth(const Arguments& arguments, const ImageSequence& sequence) {
+Trajectory NeedGroundtruth(const RelocaliseArguments& arguments, const ImageSequence& sequence) {
   std::optional<Trajectory> groundtruth = ReadGroundtruth(sequence);
   if (!groundtruth) {
     throw InputError(arguments.sequence.string() + ": has no groundtruth.txt");
@@ -145,7 +145,7 @@ Trajectory NeedGroundtruth(const Arguments& arguments, const ImageSequence& sequ
 }
 
 // Everything that is read before the first frame.
-struct Inputs {
+struct RelocaliseInputs {
   ImageSequence sequence;
   Trajectory groundtruth;
   SystemOptions map_options;
@@ -156,8 +156,9 @@ struct Inputs {
 };
 
 // Chooses frames of the range that have a true pose.
-std::vector<size_t> ChooseQueries(const Arguments& arguments, const ImageSequence& sequence,
-                                  const Trajectory& groundtruth, const FrameRange& range) {
+std::vector<size_t> ChooseQueries(const RelocaliseArguments& arguments,
+                                  const ImageSequence& sequence, const Trajectory& groundtruth,
+                                  const FrameRange& range) {
   std::vector<size_t> frames;
   for (size_t i = range.first; i <= range.last; ++i) {
     if (InterpolatePose(groundtruth, sequence.frames[i].timestamp, kMaxPoseGap)) {
@@ -178,7 +179,7 @@ std::vector<size_t> ChooseQueries(const Arguments& arguments, const ImageSequenc
   return frames;
 }
 
-Inputs LoadInputs(const Arguments& arguments) {
+RelocaliseInputs LoadInputs(const RelocaliseArguments& arguments) {
   ImageSequence sequence = OpenTumSequence(arguments.sequence);
   Trajectory groundtruth = NeedGroundtruth(arguments, sequence);
   SystemOptions map_options = LoadOptions(arguments, false);
@@ -198,7 +199,7 @@ Inputs LoadInputs(const Arguments& arguments) {
           std::move(queries)};
 }
 
-ImageInput LoadFrame(const Inputs& inputs, const PinholeCamera& camera, size_t frame) {
+ImageInput LoadFrame(const RelocaliseInputs& inputs, const PinholeCamera& camera, size_t frame) {
   ImageInput image = inputs.sequence.load(inputs.sequence.frames[frame], camera);
   image.masks = inputs.masks.Read(frame);
   return image;
@@ -211,7 +212,8 @@ struct MadeMap {
 };
 
 // Null if the frames cannot be tracked, or after an interrupt; the reason is printed.
-std::optional<MadeMap> MakeMap(const Arguments& arguments, const Inputs& inputs) {
+std::optional<MadeMap> MakeMap(const RelocaliseArguments& arguments,
+                               const RelocaliseInputs& inputs) {
   System system(inputs.map_options, PipelineKind::kSequential);
   const FrameRange& range = inputs.map_frames;
   Progress progress(range.last - range.first + 1, arguments.quiet);
@@ -247,8 +249,8 @@ struct QueryResult {
   double milliseconds = 0.0;  // without building the frame
 };
 
-QueryResult RunQuery(const Inputs& inputs, const MadeMap& made, const Relocaliser& relocaliser,
-                     System& builder, size_t frame) {
+QueryResult RunQuery(const RelocaliseInputs& inputs, const MadeMap& made,
+                     const Relocaliser& relocaliser, System& builder, size_t frame) {
   const BuiltFrame built = builder.Build(LoadFrame(inputs, inputs.query_options.camera, frame));
   QueryResult result;
   const auto start = std::chrono::steady_clock::now();
@@ -332,12 +334,12 @@ int RunRelocalise(int argc, char** argv) {
       "Measures how well single frames are found in a map of other frames of the same sequence.\n"
       "Their true poses are those of groundtruth.txt, aligned with the trajectory of the map.",
       "relocalise");
-  Arguments arguments;
+  RelocaliseArguments arguments;
   AddArguments(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {
     return kDone;
   }
-  const Inputs inputs = LoadInputs(arguments);
+  const RelocaliseInputs inputs = LoadInputs(arguments);
   CatchInterrupts();
   const std::optional<MadeMap> made = MakeMap(arguments, inputs);
   if (!made) {

@@ -12,24 +12,24 @@
 #include <system_error>
 #include <vector>
 
-#include "hullslam/bow/train_vocabulary.h"
-#include "hullslam/features/extractor.h"
+#include "bow/train_vocabulary.h"
+#include "features/extractor.h"
 #include "hullslam/map_files/vocabulary_file.h"
-#include "hullslam/sequences/image_file.h"
-#include "hullslam/util/parallel_runner.h"
 #include "run/command_line.h"
 #include "run/interrupt.h"
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/vocabularies.h"
+#include "sequences/image_file.h"
+#include "util/parallel_runner.h"
 
 namespace hullslam {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct TrainVocabularyArguments {
   std::vector<fs::path> images;
   fs::path output;
   std::string form;
@@ -39,7 +39,7 @@ struct Arguments {
   bool quiet = false;
 };
 
-void AddOptions(CLI::App& app, Arguments& arguments) {
+void AddOptions(CLI::App& app, TrainVocabularyArguments& arguments) {
   app.add_option("IMAGES", arguments.images,
                  "PNG or JPEG images, or folders of them (subfolders are not searched)")
       ->required();
@@ -119,7 +119,8 @@ std::vector<Descriptor> DescriptorsOf(const fs::path& path, FeatureExtractor& ex
 
 // The descriptors of each image; of fewer images after an interrupt.
 std::vector<std::vector<Descriptor>> ExtractAll(const std::vector<fs::path>& paths,
-                                                const Arguments& arguments, TaskRunner& runner) {
+                                                const TrainVocabularyArguments& arguments,
+                                                TaskRunner& runner) {
   constexpr size_t kBatch = 16;  // images between two reports of the progress
   std::vector<std::vector<Descriptor>> descriptors(paths.size());
   Progress progress(paths.size(), arguments.quiet);
@@ -137,7 +138,8 @@ std::vector<std::vector<Descriptor>> ExtractAll(const std::vector<fs::path>& pat
   return descriptors;
 }
 
-std::optional<Vocabulary> Train(const Arguments& arguments, const std::vector<fs::path>& paths) {
+std::optional<Vocabulary> Train(const TrainVocabularyArguments& arguments,
+                                const std::vector<fs::path>& paths) {
   ParallelRunner runner(arguments.threads);
   const std::vector<std::vector<Descriptor>> images = ExtractAll(paths, arguments, runner);
   if (IsInterrupted()) {
@@ -165,7 +167,7 @@ std::optional<Vocabulary> Train(const Arguments& arguments, const std::vector<fs
 
 int RunTrainVocabulary(int argc, char** argv) {
   CLI::App app("Trains a vocabulary of visual words on images.", "train_vocabulary");
-  Arguments arguments;
+  TrainVocabularyArguments arguments;
   AddOptions(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {
     return kDone;

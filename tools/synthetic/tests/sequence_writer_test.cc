@@ -16,8 +16,8 @@
 #include <sstream>
 #include <string>
 
-#include "hullslam/results/true_object_file.h"
 #include "hullslam/util/error.h"
+#include "results/true_object_file.h"
 #include "support/temporary_folder.h"
 #include "synthetic/object_models.h"
 

@@ -8,8 +8,8 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/objects/object_options.h"
-#include "hullslam/objects/object_view.h"
-#include "hullslam/objects/rejection.h"
+#include "objects/object_view.h"
+#include "objects/rejection.h"
 
 namespace hullslam {
 

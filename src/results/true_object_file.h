@@ -2,9 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
-#include "hullslam/eval/true_object.h"
+#include "eval/true_object.h"
 
 namespace hullslam {
 
@@ -12,8 +11,5 @@ namespace hullslam {
 // rearranged one. Throws InputError with the name of the file and the path of the key for missing
 // keys, for values of another type, and if two objects have the same id.
 TrueScene ReadTrueScene(const std::filesystem::path& path);
-
-// The objects that are in the scene. Throws the same errors.
-std::vector<TrueObject> ReadTrueObjects(const std::filesystem::path& path);
 
 }  // namespace hullslam

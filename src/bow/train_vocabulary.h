@@ -9,7 +9,7 @@
 #include "hullslam/bow/vocabulary.h"
 #include "hullslam/features/feature_set.h"
 #include "hullslam/util/cancellation.h"
-#include "hullslam/util/task_runner.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "hullslam/report/object_report.h"
+#include "report/object_report.h"
 
 namespace hullslam {
 

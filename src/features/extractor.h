@@ -5,26 +5,11 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "hullslam/features/feature_options.h"
 #include "hullslam/features/feature_set.h"
-#include "hullslam/util/option_table.h"
-#include "hullslam/util/task_runner.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
-
-// ORB features as in ORB-SLAM2 (Mur-Artal and Tardos 2017).
-struct FeatureOptions {
-  int feature_count = 1000;
-  double scale_factor = 1.2;
-  int level_count = 8;
-  int initial_fast_threshold = 20;  // grey levels
-  int minimum_fast_threshold = 7;   // for cells that have no corner at the initial threshold
-
-  bool subpixel = false;  // refine positions to a fraction of a pixel
-
-  // Binds the fields to ORB-SLAM2's keys `ORBextractor.nFeatures` and so on, and to
-  // `ORBextractor.subpixel`.
-  void Bind(OptionTable& options);
-};
 
 struct ExtractedFeatures {
   std::vector<RawKeypoint> keypoints;   // ordered by level

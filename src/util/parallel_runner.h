@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "hullslam/util/task_runner.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
 

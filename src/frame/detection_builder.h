@@ -4,32 +4,17 @@
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/features/feature_set.h"
+#include "hullslam/frame/built_frame.h"
 #include "hullslam/frame/detection.h"
 #include "hullslam/frame/detection_options.h"
 #include "hullslam/frame/instance_mask.h"
-#include "hullslam/util/task_runner.h"
+#include "util/task_runner.h"
 
 namespace hullslam {
-
-// Why a mask gives no detection.
-enum class DetectionRejection {
-  kLowScore,
-  kDegenerate,    // no outline has an area
-  kTooSmall,      // its bounding box is too small
-  kTooLarge,      // its hull is too large
-  kFewKeypoints,  // too few keypoints are in it
-  kDuplicate,     // another mask with a higher score shows the same object
-  kNoSilhouette,  // all its lines are one-sided
-};
-inline constexpr int kDetectionRejectionCount = 7;
-
-// The name in summary.json, such as "low_score".
-std::string ToString(DetectionRejection reason);
 
 struct DetectionResult {
   std::vector<Detection> detections;  // one per mask that was not rejected, in the masks' order

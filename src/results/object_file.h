@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "hullslam/report/object_report.h"
+#include "report/object_report.h"
 
 namespace hullslam {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "hullslam/eval/true_object.h"
+#include "eval/true_object.h"
 #include "hullslam/geometry/sim3.h"
 #include "hullslam/objects/object_changes.h"
 

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "hullslam/eval/true_object.h"
+#include "eval/true_object.h"
 #include "hullslam/geometry/sim3.h"
-#include "hullslam/report/object_report.h"
+#include "report/object_report.h"
 
 namespace hullslam {
 

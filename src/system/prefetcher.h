@@ -7,8 +7,8 @@
 #include <thread>
 #include <utility>
 
-#include "hullslam/util/mailbox.h"
-#include "hullslam/util/thread_priority.h"
+#include "util/mailbox.h"
+#include "util/thread_priority.h"
 
 namespace hullslam {
 

@@ -8,8 +8,8 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/objects/object_options.h"
-#include "hullslam/objects/rejection.h"
-#include "hullslam/objects/validity.h"
+#include "objects/rejection.h"
+#include "objects/validity.h"
 
 namespace hullslam {
 

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <ceres/cost_function.h>
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/costs/object_residual.h"
+#include "hullslam/frame/detection.h"
+
+namespace hullslam {
+
+// From which the cost of one detection is made.
+struct ObjectCostInput {
+  const PinholeCamera& camera;
+  const Detection& detection;
+  std::span<const SilhouetteLine> lines;  // the detection's own or moved ones
+  double sigma;                           // in the unit of the residual
+};
+
+// How large an ellipsoid appears in an image.
+struct ProjectedSize {
+  double radius_px;      // of the circle that has the area of the projected ellipse
+  double metres_per_px;  // at the depth of the ellipsoid's centre
+};
+
+// All that differs from residual to residual. Each has one constant of this type beside its cost,
+// and object_residual.cc has the table of them.
+struct ResidualKind {
+  std::string_view name;                        // in settings files
+  std::span<const ObjectPrimitive> primitives;  // from which the residual can be computed
+  bool takes_lines = false;                     // whether it is computed from the detection's lines
+  // The size of the residual where the measured outline is `error_px` outside of the true one
+  // everywhere (ResidualOfPixelError).
+  double (*of_pixel_error)(double error_px, const ProjectedSize& size);
+  // Null where the detection lacks what the residual needs. The primitive is one of `primitives`.
+  std::unique_ptr<ceres::CostFunction> (*make_cost)(const ObjectCostInput& input);
+};
+
+inline constexpr std::array kAllPrimitives = {ObjectPrimitive::kSupport, ObjectPrimitive::kHull,
+                                              ObjectPrimitive::kContour, ObjectPrimitive::kBox,
+                                              ObjectPrimitive::kConic};
+
+const ResidualKind& KindOf(ObjectResidual residual);
+
+}  // namespace hullslam

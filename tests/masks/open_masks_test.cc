@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/masks/open_masks.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "masks/mask_fixture.h"
+
+namespace hullslam {
+namespace {
+
+const char* const kYoloSeg = "41 0.25 0.25 0.5 0.25 0.25 0.75 0.9\n";
+
+// Masks whose format is detected.
+class OpenMasksTest : public MaskFixture {
+ protected:
+  OpenMasksTest() : MaskFixture("") {}
+};
+
+TEST_F(OpenMasksTest, FormatIsDetectedFromTheFirstLineOfAnyFile) {
+  Write("0.5.txt", "");
+  Write("1.5.txt", "# nothing\n\n");
+  Write("3.5.txt", kYoloSeg);
+  EXPECT_EQ(Open()->format(), "yolo-seg");
+}
+
+TEST_F(OpenMasksTest, MissingAndEmptyPathsAreRefused) {
+  ExpectRefusal({Path("none").string(), "no such"}, "none");
+  std::filesystem::create_directories(Path());
+  ExpectRefusal({Path().string(), "the folder is empty"});
+  format_ = "yolo-seg";
+  ExpectRefusal({Path().string(), "there is nothing", "'1.5'"});
+}
+
+TEST_F(OpenMasksTest, SeveralFormatsInOneFolderAreRefused) {
+  Write("1.5.txt", kYoloSeg);
+  Write("1.5.png", "");
+  Write("classes.json", "{}");
+  ExpectRefusal({"is not clear, yolo-seg and label-png fit", "--masks-format"});
+}
+
+TEST_F(OpenMasksTest, AFolderWithoutMasksIsDescribed) {
+  Write("notes.md", "");
+  ExpectRefusal({Path().string(), "has neither text files nor PNG files"});
+  Write("masks.json", "{}");
+  ExpectRefusal({"has JSON files but no text files", "give the path of the JSON file"});
+  Write("1.5.png", "");
+  ExpectRefusal({"PNG files but no classes.json", "label-png"});
+  Write("classes.txt", "cup");
+  Write("1.5.txt", "");
+  Write("2.5.txt", "# nothing\n");
+  ExpectRefusal({"all 2 text files are empty", "--masks-format"});
+}
+
+TEST_F(OpenMasksTest, LinesOfNoFormatAreShown) {
+  Write("1.5.txt", "");
+  Write("2.5.txt", "41 17 300\n");
+  ExpectRefusal({Path().string(), "'41 17 300' in 2.5.txt fits no format of masks"});
+  Write("2.5.txt", "a b c d e f g h i j\n");
+  ExpectRefusal({"'a b c d e f g h ...' in 2.5.txt"});
+}
+
+TEST_F(OpenMasksTest, FilesThatAreNoMasksAreDescribed) {
+  folder_.Write("masks/file", "some text");
+  ExpectRefusal({Path("file").string(), "is no valid JSON", "line 1"}, "file");
+  folder_.Write("masks/empty.json", "");
+  ExpectRefusal({"is no valid JSON"}, "empty.json");
+  folder_.Write("masks/cut.json", "[{\"image_");
+  ExpectRefusal({Path("cut.json").string(), "is no valid JSON", "column 10"}, "cut.json");
+  folder_.Write("masks/cut_later.json", "[{\"image_id\": \"1.5\", \"category");
+  ExpectRefusal({"is no valid JSON"}, "cut_later.json");
+  folder_.Write("masks/other.json", "{\"objects\": []}");
+  ExpectRefusal({"is JSON, but has none of the keys", "'annotations'", "'detections'"},
+                "other.json");
+}
+
+TEST_F(OpenMasksTest, EveryFormatIsNamed) {
+  EXPECT_EQ(MaskFormatNames(), (std::vector<std::string>{"yolo-seg", "coco", "label-png", "paper",
+                                                         "oa-slam", "boxes"}));
+  Write("1.5.txt", "");
+  for (const char* const name : {"yolo-seg", "paper", "boxes"}) {
+    format_ = name;
+    frames_ = {{name == std::string("paper") ? "x" : "1.5", 0}};
+    Write("000000.txt", "");
+    EXPECT_EQ(Open()->format(), name);
+  }
+}
+
+TEST_F(OpenMasksTest, FolderFormatsOfAFileAndFileFormatsOfAFolderAreRefused) {
+  folder_.Write("masks/file", "[]");
+  for (const char* const name : {"yolo-seg", "paper", "boxes", "label-png"}) {
+    format_ = name;
+    ExpectRefusal({Path("file").string()}, "file");
+  }
+  for (const char* const name : {"coco", "oa-slam"}) {
+    format_ = name;
+    ExpectRefusal({Path().string()});
+  }
+}
+
+TEST_F(OpenMasksTest, UnknownFormatIsRefused) {
+  Write("1.5.txt", kYoloSeg);
+  format_ = "yolo";
+  ExpectRefusal({"--masks-format is 'yolo'", "yolo-seg"});
+}
+
+TEST_F(OpenMasksTest, MasksOfOtherFramesAreRefusedWithAnExample) {
+  Write("0001.txt", kYoloSeg);
+  Write("0002.txt", kYoloSeg);
+  ExpectRefusal({Path().string(), "any of the 2 frames", "'0001.txt'", "'1.5'"});
+}
+
+}  // namespace
+}  // namespace hullslam
