@@ -141,7 +141,7 @@ std::vector<BinaryCluster> ClusterBinary(std::span<const Descriptor> descriptors
   std::vector<BitCounts> counts = Assign(descriptors, centres, runner, nearest);
   for (int i = 0; i < kMostIterations && MoveCentres(counts, centres); ++i) {
     counts = Assign(descriptors, centres, runner, nearest);
-    if (cancellation != nullptr && cancellation->IsRequested()) {
+    if (IsRequested(cancellation)) {
       break;
     }
   }

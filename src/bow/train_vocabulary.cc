@@ -37,7 +37,7 @@ std::vector<std::vector<BinaryCluster>> Divide(const std::vector<OpenNode>& open
   constexpr size_t kFew = 16;
   std::vector<std::vector<BinaryCluster>> divided(open.size());
   const auto divide = [&](size_t i, TaskRunner& inner) {
-    if (cancellation == nullptr || !cancellation->IsRequested()) {
+    if (!IsRequested(cancellation)) {
       const uint64_t seed = HashSeed(options.seed, static_cast<uint32_t>(i),
                                      "vocabulary level " + std::to_string(level));
       divided[i] = ClusterBinary(open[i].descriptors, options.branching, seed, inner, cancellation);
@@ -124,7 +124,7 @@ std::optional<Vocabulary> TrainVocabulary(std::span<const std::vector<Descriptor
   Check(!open.front().descriptors.empty(), "a vocabulary needs descriptors");
   for (int level = 0; level < options.levels && !open.empty(); ++level) {
     const auto divided = Divide(open, level, options, runner, cancellation);
-    if (cancellation != nullptr && cancellation->IsRequested()) {
+    if (IsRequested(cancellation)) {
       return std::nullopt;
     }
     open = AddLevel(open, divided, nodes);

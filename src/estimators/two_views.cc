@@ -14,12 +14,13 @@
 
 #include "estimators/epipolar_refinement.h"
 #include "geometry/triangulation.h"
+#include "util/chi_square.h"
 #include "util/median.h"
 
 namespace hullslam {
 namespace {
 
-constexpr double kChi2 = 5.991;  // 95 % of a chi-square distribution with two degrees of freedom
+constexpr double kChi2 = Chi2Bound(2);
 constexpr size_t kFewestPairs = 20;
 // The parallax of a point below this (radians) says nothing about its depth, so the point counts
 // neither for nor against a motion.

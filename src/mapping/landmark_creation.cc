@@ -143,11 +143,7 @@ std::vector<Match> FindPairs(const Map& map, const Keyframe& a, const Keyframe& 
   if (b_from_a.translation.norm() < MinBaseline(map, b, sensor)) {
     return {};
   }
-  Eigen::Matrix3d calibration = Eigen::Matrix3d::Identity();
-  calibration(0, 0) = sensor.camera.fx;
-  calibration(1, 1) = sensor.camera.fy;
-  calibration(0, 2) = sensor.camera.cx;
-  calibration(1, 2) = sensor.camera.cy;
+  const Eigen::Matrix3d calibration = sensor.camera.Matrix();
   return MatchForTriangulation(a.frame->features, FreeKeypoints(a), b.frame->features,
                                FreeKeypoints(b),
                                FundamentalFromPose(b_from_a, calibration, calibration),

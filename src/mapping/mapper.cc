@@ -34,8 +34,6 @@ size_t CountSizedViews(const Map& map, const std::map<std::string, double>& size
   return views;
 }
 
-bool MustHurry(const Cancellation* hurry) { return hurry != nullptr && hurry->IsRequested(); }
-
 }  // namespace
 
 Mapper::Mapper(const Sensor& sensor, const MappingOptions& options, const ObjectOptions& objects,
@@ -120,7 +118,7 @@ void Mapper::AddEntities(KeyframeId keyframe, const Cancellation* hurry) {
     CullRecentLandmarks(map_, keyframe, sensor_, recent_);
     const std::vector<LandmarkId> created = CreateLandmarks(map_, keyframe, sensor_);
     recent_.insert(recent_.end(), created.begin(), created.end());
-    if (!MustHurry(hurry)) {
+    if (!IsRequested(hurry)) {
       FuseLandmarks(map_, keyframe, sensor_);
     }
   }
@@ -128,7 +126,7 @@ void Mapper::AddEntities(KeyframeId keyframe, const Cancellation* hurry) {
 }
 
 void Mapper::Improve(KeyframeId keyframe, const Cancellation* hurry, Culling culling) {
-  if (MustHurry(hurry) || map_.keyframes().size() <= 2) {
+  if (IsRequested(hurry) || map_.keyframes().size() <= 2) {
     return;
   }
   AdjustNeighbourhood(keyframe, hurry);
@@ -180,7 +178,7 @@ void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on
   if (KeepOnlyIsland(map_, MainIsland(map_))) {
     PublishSnapshot();
   }
-  const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
+  const bool is_cancelled = IsRequested(cancellation);
   if (options_.final_bundle_adjustment && !is_cancelled && map_.keyframes().size() >= 2) {
     AdjustMap(cancellation, on_progress);
   }

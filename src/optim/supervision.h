@@ -14,7 +14,7 @@ class Supervision final : public ceres::IterationCallback {
   Supervision(const Cancellation* cancellation, const ProgressCallback& on_progress, int most)
       : cancellation_(cancellation), on_progress_(on_progress), most_(most) {}
 
-  bool IsCancelled() const { return cancellation_ != nullptr && cancellation_->IsRequested(); }
+  bool IsCancelled() const { return IsRequested(cancellation_); }
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (on_progress_ && summary.iteration > 0) {  // number 0 is the start
       on_progress_(++done_, most_);

@@ -121,7 +121,7 @@ class ThreadedPipeline final : public Pipeline {
   // Waits until a loop at one of the last keyframes is in the map. The adjustment of the whole map
   // after it is left to the final one, if there is one.
   void CloseLastLoops(const Cancellation* cancellation) {
-    const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
+    const bool is_cancelled = IsRequested(cancellation);
     const bool is_adjusted_later = options_.mapping.final_bundle_adjustment || is_cancelled;
     WaitForMapper();
     while (loops_.Settle(is_adjusted_later)) {

@@ -17,6 +17,12 @@ class Cancellation {
   std::atomic<bool> requested_{false};
 };
 
+// Whether there is a cancellation and it is requested. It may be null: such a computation runs to
+// its end.
+inline bool IsRequested(const Cancellation* cancellation) {
+  return cancellation != nullptr && cancellation->IsRequested();
+}
+
 // Is told how far a long computation is: the number of iterations that are done, and the largest
 // number that there may be. The computation may end before it.
 using ProgressCallback = std::function<void(int done, int most)>;
