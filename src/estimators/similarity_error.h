@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/sim3.h"
 

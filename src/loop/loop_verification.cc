@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "estimators/similarity.h"
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "map/covisibility.h"
 #include "optim/similarity_optimization.h"
 #include "places/similar_places.h"

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "geometry/epipolar.h"
 #include "geometry/triangulation.h"
 #include "map/covisibility.h"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "map/covisibility.h"
 #include "map/landmark_edits.h"
 #include "map/landmark_projection.h"

@@ -5,7 +5,6 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -13,30 +12,22 @@
 #include "costs/pose_manifold.h"
 #include "costs/reprojection.h"
 #include "costs/reprojection_rgbd.h"
-#include "frame/point_measurement.h"
-#include "map/landmark_edits.h"
+#include "frame/measure_point.h"
 #include "optim/bundle_points.h"
 #include "optim/bundle_scale.h"
 #include "optim/eliminated_points.h"
+#include "optim/keypoint_precision.h"
+#include "optim/keypoint_weights.h"
 #include "optim/object_bundle.h"
-#include "optim/place_share.h"
 #include "optim/reduced_points_cost.h"
 #include "optim/robust.h"
 #include "optim/supervision.h"
 #include "util/chi_square.h"
-#include "util/median.h"
 
 namespace hullslam {
 namespace {
 
 using internal::Supervision;
-
-constexpr double kMedianChi2 = 1.386;  // of two degrees of freedom: 2 ln 2
-// Where the precision of keypoints was measured, an error is an outlier from this many bounds on,
-// because errors of keypoints have longer tails than a normal distribution with the same median.
-constexpr double kTails = 2.0;
-constexpr double kMaxPrecision = 5.0;  // over that of the sensor; even exact keypoints are rounded
-constexpr size_t kMinViews = 100;      // for a median
 
 std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
                                               const PointMeasurement& measurement) {
@@ -64,7 +55,7 @@ class Bundle {
       const Keyframe& keyframe = map.keyframes().At(id);
       poses_.push_back(ToBlock(keyframe.cam_from_world));
       if (sensor.IsMonocular()) {
-        shares.push_back(internal::SharesOfPlaces(keyframe, sensor.levels));
+        shares.push_back(internal::KeypointWeights(keyframe, sensor.levels));
       }
     }
     size_t views = 0;
@@ -82,10 +73,8 @@ class Bundle {
     ForEachView([](View& view, double chi2, size_t) { view.is_inlier = std::isfinite(chi2); });
   }
 
-  // Makes the standard deviations of the keypoints as small as the errors show them to be. Those of
-  // the sensor are cautious, so an error of several true standard deviations would count as an
-  // inlier. Points that slide along the edge of a door or over the contour of a thing have such
-  // errors, and where a camera hardly moves, a few of them are enough to change the scale.
+  // Makes the standard deviations of the keypoints as small as the errors show them to be
+  // (MeasureKeypointPrecision).
   void MeasurePrecision() {
     std::vector<double> errors;
     ForEachView([&](const View& view, double chi2, size_t) {
@@ -93,28 +82,21 @@ class Bundle {
         errors.push_back(chi2);
       }
     });
-    if (errors.size() < kMinViews) {
-      return;
+    const double precision =
+        internal::MeasureKeypointPrecision(std::move(errors), points_.size(), precision_);
+    if (precision != precision_) {
+      ForEachView([&](View& view, double, size_t) {
+        view.measurement.inverse_sigma *= precision / precision_;
+      });
+      precision_ = precision;
     }
-    // Points are fitted to their views, which makes the errors smaller.
-    const double equations = 2.0 * static_cast<double>(errors.size());
-    const double free_share =
-        std::max(0.3, 1.0 - 3.0 * static_cast<double>(points_.size()) / equations);
-    const double sigma =
-        std::sqrt(Median(std::move(errors)) / (kMedianChi2 * free_share)) / precision_;
-    const double precision = std::clamp(1.0 / sigma, 1.0, kMaxPrecision);
-    ForEachView([&](View& view, double, size_t) {
-      view.measurement.inverse_sigma *= precision / precision_;
-    });
-    precision_ = precision;
   }
 
   // Decides again which views are inliers.
   void Classify() {
-    // But never beyond the bound of the sensor.
-    const double tails = std::min(kTails, precision_ * precision_);
-    ForEachView([tails](View& view, double chi2, size_t) {
-      view.is_inlier = chi2 <= tails * OutlierBound(view.measurement);
+    const double factor = internal::OutlierBoundFactor(precision_);
+    ForEachView([factor](View& view, double chi2, size_t) {
+      view.is_inlier = chi2 <= factor * OutlierBound(view.measurement);
     });
   }
 
@@ -297,7 +279,7 @@ class Bundle {
   const internal::PoseIndices pose_indices_;
   std::vector<PoseBlock> poses_;
   internal::BundlePoints points_;
-  double precision_ = 1.0;  // of the keypoints: standard deviations of the sensor over those used
+  double precision_ = 1.0;  // of the keypoints (MeasureKeypointPrecision)
   internal::ObjectBundle objects_;
   PoseManifold manifold_;
 };
@@ -355,37 +337,6 @@ BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWind
     KeepScale(map, window.fixed.front(), result);
   }
   return result;
-}
-
-void ApplyBundle(Map& map, const BundleResult& result, const ScaleLevels& levels) {
-  for (const auto& [landmark, keyframe] : result.outliers) {
-    const Landmark* seen = map.landmarks().Find(landmark);
-    if (seen == nullptr) {
-      continue;
-    }
-    const bool observed =
-        std::any_of(seen->observations.begin(), seen->observations.end(),
-                    [id = keyframe](const Observation& o) { return o.keyframe == id; });
-    if (observed) {
-      map.RemoveObservation(landmark, keyframe);
-    }
-  }
-  for (const auto& [keyframe, pose] : result.poses) {
-    if (map.keyframes().Contains(keyframe)) {
-      map.SetPose(keyframe, pose);
-    }
-  }
-  for (const auto& [landmark, position] : result.positions) {
-    if (map.landmarks().Contains(landmark)) {
-      map.SetPosition(landmark, position);
-      UpdateViewingGeometry(map, landmark, levels);
-    }
-  }
-  for (const auto& [object, ellipsoid] : result.ellipsoids) {
-    if (map.objects().Contains(object)) {
-      map.MutableObject(object).ellipsoid = ellipsoid;
-    }
-  }
 }
 
 }  // namespace hullslam

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 
 namespace hullslam::internal {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "hullslam/map/map.h"
-#include "optim/bundle_adjustment.h"
+#include "optim/bundle_result.h"
 
 namespace hullslam {
 

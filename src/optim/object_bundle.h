@@ -12,7 +12,8 @@
 #include "costs/pose_manifold.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/map/map.h"
-#include "optim/bundle_adjustment.h"
+#include "optim/bundle_result.h"
+#include "optim/bundle_window.h"
 #include "optim/object_sum_cost.h"
 #include "util/id_map.h"
 

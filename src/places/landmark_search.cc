@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "map/landmark_projection.h"
 #include "matching/by_projection.h"
 #include "matching/by_words.h"

@@ -10,7 +10,7 @@
 
 #include "estimators/absolute_pose.h"
 #include "estimators/two_views.h"
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "map/spanning_tree.h"
 #include "matching/by_descriptor.h"
 #include "optim/bundle_adjustment.h"

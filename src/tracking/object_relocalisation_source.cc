@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "estimators/absolute_pose.h"
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "map/covisibility.h"
 #include "map/islands.h"
 #include "map/landmark_projection.h"

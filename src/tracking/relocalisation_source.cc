@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "estimators/absolute_pose.h"
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "map/covisibility.h"
 #include "places/landmark_search.h"
 #include "places/similar_places.h"

@@ -8,7 +8,9 @@
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
 #include "tracking/last_frame.h"
+#include "tracking/local_map_tracking.h"
 #include "tracking/pose_estimate.h"
+#include "tracking/tracking_context.h"
 
 namespace hullslam {
 
@@ -28,6 +30,12 @@ std::shared_ptr<const Frame> MeasureGlobalShutter(std::shared_ptr<const Frame> f
                                                   const Map& map, const Sensor& sensor,
                                                   const LastFrame& last,
                                                   const PoseEstimate& estimate);
+
+// For a frame whose pose was found: as MeasureGlobalShutter. Optimises the pose with the frame that
+// it returns, if that is another one.
+std::shared_ptr<const Frame> CorrectShutter(const std::shared_ptr<const Frame>& as_read,
+                                            const Map& map, const TrackingContext& context,
+                                            const LastFrame& last, LocalTracking& tracking);
 
 // For the two or more views of an initial map: the velocity of a view is that of the motion from
 // the view before it to the one after it.

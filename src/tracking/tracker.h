@@ -11,6 +11,7 @@
 #include "hullslam/objects/object_options.h"
 #include "hullslam/tracking/tracking_options.h"
 #include "hullslam/util/stage_timer.h"
+#include "tracking/early_frames.h"
 #include "tracking/keyframe_policy.h"
 #include "tracking/last_frame.h"
 #include "tracking/local_map_tracking.h"
@@ -51,9 +52,7 @@ class Tracker {
   Result Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
                  const MapperStatus& mapper);
 
-  // To be called at the end of a monocular run, with the final map. Gives poses to the frames
-  // before the map and before each new island, which had none, and better ones to those that were
-  // tracked while their island was young. Frames that are not found in the map are left out.
+  // To be called at the end of a monocular run, with the final map. See EarlyFrames.
   std::vector<TrackedFrame> LocaliseEarlyFrames(const Map& map);
 
   const StageTimes& times() const { return times_; }
@@ -65,12 +64,8 @@ class Tracker {
   Result Initialize(std::shared_ptr<const Frame> frame);
   Result InitializeMonocular(std::shared_ptr<const Frame> frame);
   Result BeginIsland(std::shared_ptr<const Frame> frame, InitialMap initial);
-  void KeepEarlyFrame(std::shared_ptr<const Frame> frame);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
   std::optional<LocalTracking> FindPose(const Frame& frame, const Map& map) const;
-  std::shared_ptr<const Frame> CorrectShutter(const std::shared_ptr<const Frame>& as_read,
-                                              const Map& map, const LastFrame& last,
-                                              LocalTracking& tracking) const;
   Result Lose(std::shared_ptr<const Frame> frame, const Map& map);
   bool IsYoung(const Map& map) const;
   bool MayBeginIsland(const Frame& frame, const Map& map) const;
@@ -88,7 +83,7 @@ class Tracker {
   StageTimes times_;
 
   MonocularInitialiser initialiser_;
-  std::vector<std::shared_ptr<const Frame>> early_;  // for LocaliseEarlyFrames, in order of time
+  EarlyFrames early_;
 
   Relocalise relocalise_;  // may be null
   bool is_localizing_only_ = false;

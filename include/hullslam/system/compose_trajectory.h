@@ -18,7 +18,7 @@ Trajectory ComposeTrajectory(const Map& map, std::span<const TrackedFrame> frame
 // Makes tracked frames lost that have no pose in the main island.
 void LoseFramesElsewhere(const Map& map, std::span<TrackedFrame> frames);
 
-// Replaces frames by what Tracker::LocaliseEarlyFrames found for them. A tracked frame stays as it
+// Replaces frames by what EarlyFrames::Localise found for them. A tracked frame stays as it
 // was if clearly fewer of its landmarks were found: before a plane, for example, a pose has two
 // solutions. The ids of `frames` must be consecutive.
 void ReplaceEarlyFrames(std::span<const TrackedFrame> early, std::span<TrackedFrame> frames);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "optim/place_share.h"
+#include "optim/keypoint_weights.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -12,7 +12,7 @@ constexpr float kRadius = 3.0f;  // px
 
 }  // namespace
 
-std::vector<double> SharesOfPlaces(const Keyframe& keyframe, const ScaleLevels& levels) {
+std::vector<double> KeypointWeights(const Keyframe& keyframe, const ScaleLevels& levels) {
   const FrameFeatures& features = keyframe.frame->features;
   std::vector<double> shares(features.size(), 0.0);
   std::vector<uint32_t> near;

@@ -15,6 +15,6 @@ namespace hullslam::internal {
 // A corner is found at several levels of the pyramid, so it makes several landmarks with the same
 // error. Without the weights it would count as often, most of all if it is no point at all: where
 // an edge passes behind another, the corner slides along both.
-std::vector<double> SharesOfPlaces(const Keyframe& keyframe, const ScaleLevels& levels);
+std::vector<double> KeypointWeights(const Keyframe& keyframe, const ScaleLevels& levels);
 
 }  // namespace hullslam::internal
