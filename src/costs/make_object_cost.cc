@@ -62,7 +62,7 @@ bool HasInput(ObjectResidual residual, const Detection& detection,
 CostPointer MakeObjectCost(ObjectResidual residual, const PinholeCamera& camera,
                            const Detection& detection, std::span<const SilhouetteLine> lines,
                            double sigma) {
-  if (!IsSupported(residual, detection.primitive) || !HasInput(residual, detection, lines)) {
+  if (!AcceptsPrimitive(residual, detection.primitive) || !HasInput(residual, detection, lines)) {
     return nullptr;
   }
   switch (residual) {

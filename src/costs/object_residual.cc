@@ -26,7 +26,7 @@ std::optional<ObjectResidual> ObjectResidualByName(std::string_view name) {
 
 std::vector<std::string> ObjectResidualNames() { return {kNames.begin(), kNames.end()}; }
 
-bool IsSupported(ObjectResidual residual, ObjectPrimitive primitive) {
+bool AcceptsPrimitive(ObjectResidual residual, ObjectPrimitive primitive) {
   switch (residual) {
     case ObjectResidual::kTangent:
     case ObjectResidual::kAlgebraicPlane:

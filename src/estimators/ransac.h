@@ -52,9 +52,9 @@ inline int SamplesNeeded(double inlier_share, size_t sample_size, double confide
 template <size_t kSize>
 std::array<size_t, kSize> DrawSample(size_t count, std::mt19937_64& random) {
   std::array<size_t, kSize> sample;
-  for (auto place = sample.begin(); place != sample.end();) {
-    *place = random() % count;
-    place += std::find(sample.begin(), place, *place) == place ? 1 : 0;
+  for (auto index = sample.begin(); index != sample.end();) {
+    *index = random() % count;
+    index += std::find(sample.begin(), index, *index) == index ? 1 : 0;
   }
   return sample;
 }

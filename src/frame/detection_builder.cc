@@ -202,8 +202,8 @@ std::vector<LineOnOutline> LinesOf(const Candidate& candidate, const FrameView& 
 bool IsOneSided(const LineOnOutline& line, const FrameView& frame, double depth,
                 std::span<const MaskRegion* const> others) {
   const bool is_cut =
-      std::all_of(line.touching.begin(), line.touching.end(), [&](const Eigen::Vector2d& place) {
-        return IsAtBorder(place, frame.depth.camera, frame.options.border_px);
+      std::all_of(line.touching.begin(), line.touching.end(), [&](const Eigen::Vector2d& point) {
+        return IsAtBorder(point, frame.depth.camera, frame.options.border_px);
       });
   return is_cut ||
          (!frame.depth.image.empty() && IsHidden(line, frame.depth, depth, others, frame.options));

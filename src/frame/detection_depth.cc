@@ -25,9 +25,9 @@ double Step(double depth, const DetectionOptions& options) {
 
 enum class Beyond { kUnknown, kNothingNearer, kNearer };
 
-// A place on a line and the direction away from the object, both undistorted.
+// A point on a line and the direction away from the object, both undistorted.
 struct Border {
-  Eigen::Vector2d place;
+  Eigen::Vector2d point;
   Eigen::Vector2d outwards;
 };
 
@@ -37,7 +37,7 @@ struct Border {
 double DepthBeyond(const Border& border, double distance, const DepthView& view,
                    std::span<const MaskRegion* const> others) {
   const auto raw_at = [&](double beyond) {
-    return view.camera.Distort(border.place + beyond * border.outwards);
+    return view.camera.Distort(border.point + beyond * border.outwards);
   };
   const Eigen::Vector2d raw = raw_at(distance);
   const double depth = view.AtRaw(raw);
@@ -74,7 +74,7 @@ bool BeginsNearer(double own, double near, double far, double step) {
 
 Beyond Look(const Border& border, const DepthView& view, double object_depth,
             std::span<const MaskRegion* const> others, const DetectionOptions& options) {
-  const double inside = view.AtRaw(view.camera.Distort(border.place - kInside * border.outwards));
+  const double inside = view.AtRaw(view.camera.Distort(border.point - kInside * border.outwards));
   const double own = inside > 0.0 ? inside : object_depth;
   const double near = DepthBeyond(border, kBeyond[0], view, others);
   const double far = DepthBeyond(border, kBeyond[1], view, others);
@@ -137,8 +137,8 @@ bool IsHidden(const LineOnOutline& line, const DepthView& view, double object_de
               std::span<const MaskRegion* const> others, const DetectionOptions& options) {
   int known = 0;
   int hidden = 0;
-  for (const Eigen::Vector2d& place : line.near) {
-    const Beyond beyond = Look({place, line.line.normal}, view, object_depth, others, options);
+  for (const Eigen::Vector2d& point : line.near) {
+    const Beyond beyond = Look({point, line.line.normal}, view, object_depth, others, options);
     known += beyond != Beyond::kUnknown ? 1 : 0;
     hidden += beyond == Beyond::kNearer ? 1 : 0;
   }

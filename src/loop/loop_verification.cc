@@ -26,9 +26,9 @@ KeypointPairs PairsOf(const Keyframe& query, const Keyframe& candidate,
                       const std::vector<FoundLandmark>& found) {
   KeypointPairs pairs;
   for (const auto& [keypoint, landmark] : found) {
-    const auto place = std::find(candidate.landmarks.begin(), candidate.landmarks.end(), landmark);
+    const auto seen = std::find(candidate.landmarks.begin(), candidate.landmarks.end(), landmark);
     if (query.landmarks[keypoint].IsValid()) {
-      pairs.emplace_back(keypoint, static_cast<uint32_t>(place - candidate.landmarks.begin()));
+      pairs.emplace_back(keypoint, static_cast<uint32_t>(seen - candidate.landmarks.begin()));
     }
   }
   return pairs;

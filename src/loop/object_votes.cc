@@ -27,7 +27,7 @@ std::vector<ObjectId> MappedAround(const Map& map, KeyframeId keyframe) {
 }
 
 // Whether each of the quadrics, blown up by half, contains the centre of the other.
-bool AreAtOnePlace(const Ellipsoid& a, const Ellipsoid& b) {
+bool AreAtOneLocation(const Ellipsoid& a, const Ellipsoid& b) {
   const auto reaches = [](Ellipsoid from, const Ellipsoid& to) {
     from.half_axes *= 1.5;
     return from.RadialDistance(to.world_from_object.translation) <= 0.0;
@@ -70,19 +70,19 @@ enum class Vote { kNone, kAgree, kDisagree };
 Vote VoteOf(const Map& map, const Sensor& sensor, const ObjectLandmark& object,
             const std::vector<ObjectId>& others, KeyframeId other_end,
             const ObjectOptions& options) {
-  bool is_place_taken = false;
+  bool is_location_taken = false;
   for (const ObjectId id : others) {
     const ObjectLandmark& other = map.objects().At(id);
-    if (AreAtOnePlace(object.ellipsoid, other.ellipsoid)) {
+    if (AreAtOneLocation(object.ellipsoid, other.ellipsoid)) {
       if (ShareClass(object, other)) {
         return Vote::kAgree;
       }
-      is_place_taken = true;
+      is_location_taken = true;
     }
   }
   const bool is_missing =
-      is_place_taken ||
-      (ViewPlace(map, sensor, other_end, object, options) == PlaceView::kVisible &&
+      is_location_taken ||
+      (ViewLocation(map, sensor, other_end, object, options) == LocationView::kVisible &&
        !IsDetected(map, sensor, object, other_end, options.association));
   return is_missing ? Vote::kDisagree : Vote::kNone;
 }

@@ -25,7 +25,7 @@ constexpr size_t kOtherMonocularObservers = 4;
 constexpr double kRedundantShare = 0.9;
 // Without depth, two keyframes see a landmark from the same place if its parallax between them is
 // smaller than so many standard deviations.
-constexpr double kSamePlaceSigmas = 2.0;
+constexpr double kSameViewpointSigmas = 2.0;
 // With fewer landmarks, a share says little about how redundant a keyframe is.
 constexpr int kMinLandmarks = 20;
 // With fewer close landmarks, the far ones are judged too: the pose of the keyframe depends on them
@@ -44,7 +44,7 @@ Eigen::Vector3d RayTo(const Rigid3& cam_from_world, const Eigen::Vector3d& point
 bool IsSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId id, int level,
                     const Sensor& sensor) {
   const size_t enough = sensor.IsMonocular() ? kOtherMonocularObservers : kOtherObservers;
-  const double max_cos = std::cos(kSamePlaceSigmas * std::sqrt(2.0) / sensor.camera.fx);
+  const double max_cos = std::cos(kSameViewpointSigmas * std::sqrt(2.0) / sensor.camera.fx);
   std::array<Eigen::Vector3d, kOtherMonocularObservers> rays;
   size_t others = 0;
   for (const Observation& observation : landmark.observations) {
@@ -55,10 +55,10 @@ bool IsSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId id, int
     }
     if (sensor.IsMonocular()) {
       rays[others] = RayTo(keyframe.cam_from_world, landmark.position);
-      const bool is_same_place =
+      const bool is_same_viewpoint =
           std::any_of(rays.begin(), rays.begin() + others,
                       [&](const Eigen::Vector3d& ray) { return ray.dot(rays[others]) > max_cos; });
-      if (is_same_place) {
+      if (is_same_viewpoint) {
         continue;
       }
     }

@@ -38,11 +38,11 @@ std::vector<Block> MakeBlocks(const FrameFeatures& features, std::span<const uin
     const auto& keypoint = features.keypoints[indices[i]];
     const double sigma2 = levels.sigma2[static_cast<size_t>(keypoint.level)];
     Block& block = blocks[i / Block::kSize];
-    const auto place = static_cast<Eigen::Index>(i % Block::kSize);
-    block.x[place] = keypoint.undistorted.x();
-    block.y[place] = keypoint.undistorted.y();
-    block.reach[place] = static_cast<float>(std::sqrt(max_epipolar_chi2 * sigma2)) + kLeastRoom +
-                         kRelativeRoom * keypoint.undistorted.lpNorm<1>();
+    const auto lane = static_cast<Eigen::Index>(i % Block::kSize);
+    block.x[lane] = keypoint.undistorted.x();
+    block.y[lane] = keypoint.undistorted.y();
+    block.reach[lane] = static_cast<float>(std::sqrt(max_epipolar_chi2 * sigma2)) + kLeastRoom +
+                        kRelativeRoom * keypoint.undistorted.lpNorm<1>();
     block.keypoints[i % Block::kSize] = indices[i];
   }
   return blocks;

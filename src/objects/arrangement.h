@@ -17,7 +17,7 @@ struct Arrangement {
   std::vector<ObjectId> objects;  // one per detection; invalid where it shows no mapped object
   int matched = 0;                // detections that show a mapped object
   double overlap = 0.0;           // sum of their IoU with the projected ellipses
-  int missed = 0;                 // mapped objects that the frame should show (PlaceView)
+  int missed = 0;                 // mapped objects that the frame should show (LocationView)
 
   // The sum of overlaps; each missed object counts as half an overlap against it.
   double Score() const { return overlap - 0.5 * missed; }

@@ -146,7 +146,7 @@ std::optional<Ellipsoid> StartFromRays(const PinholeCamera& camera,
 std::optional<Ellipsoid> StartFromLandmarks(const PinholeCamera& camera,
                                             std::span<const ObjectView> views,
                                             const StartOptions& options) {
-  std::array<std::vector<double>, 3> places;
+  std::array<std::vector<double>, 3> coordinates;
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   for (const ObjectView& view : views) {
     const std::optional<double> depth = LandmarkDepth(view);
@@ -155,16 +155,17 @@ std::optional<Ellipsoid> StartFromLandmarks(const PinholeCamera& camera,
     }
     const Eigen::Vector3d in_camera = camera.Unproject(view.detection->box.center(), *depth);
     const Rigid3 world_from_cam = Inverse(view.cam_from_world);
-    const Eigen::Vector3d place = world_from_cam * in_camera;
+    const Eigen::Vector3d point = world_from_cam * in_camera;
     for (size_t axis = 0; axis < 3; ++axis) {
-      places[axis].push_back(place[static_cast<Eigen::Index>(axis)]);
+      coordinates[axis].push_back(point[static_cast<Eigen::Index>(axis)]);
     }
     direction += world_from_cam.rotation * in_camera.normalized();
   }
-  if (2 * places[0].size() < views.size() || places[0].empty()) {
+  if (2 * coordinates[0].size() < views.size() || coordinates[0].empty()) {
     return std::nullopt;
   }
-  const Eigen::Vector3d surface(Median(places[0]), Median(places[1]), Median(places[2]));
+  const Eigen::Vector3d surface(Median(coordinates[0]), Median(coordinates[1]),
+                                Median(coordinates[2]));
   const auto in_front = SphereAt(surface, camera, views, options);
   if (!in_front) {
     return std::nullopt;

@@ -91,7 +91,7 @@ class Comparison {
   }
 
   ChangedObject CompareAdded(ObjectId id, const ObjectLandmark& object) {
-    ChangedObject changed{.label = object.Label(), .now = ObjectPlace{id, object.ellipsoid}};
+    ChangedObject changed{.label = object.Label(), .now = LocatedObject{id, object.ellipsoid}};
     CountViews(earlier_, id, object, changed);
     changed.change = Judge(changed, ObjectChange::kNew, ObjectChange::kFirstSeen);
     if (changed.change == ObjectChange::kSeenAgain) {
@@ -131,7 +131,8 @@ class Comparison {
     return IsReplaced(keyframe, object_id, object) ||
            SeesThrough(sensor_, *keyframe.frame, keyframe.cam_from_world, object.ellipsoid,
                        limits.min_seen_through) ||
-           ViewPlace(map_, sensor_, id, object, options_, limits.min_inside) == PlaceView::kVisible;
+           ViewLocation(map_, sensor_, id, object, options_, limits.min_inside) ==
+               LocationView::kVisible;
   }
 
   // Whether the keyframe shows that something else stands where the object stood. It may hide that
@@ -234,8 +235,8 @@ class Comparison {
     }
     const ObjectLandmark& object = map_.objects().At(added.now->object);
     const auto hidden = std::count_if(earlier_.begin(), earlier_.end(), [&](KeyframeId id) {
-      return ViewPlace(map_, sensor_, id, object, options_, options_.changes.min_inside) ==
-             PlaceView::kHidden;
+      return ViewLocation(map_, sensor_, id, object, options_, options_.changes.min_inside) ==
+             LocationView::kHidden;
     });
     return hidden >= options_.changes.min_keyframes;
   }

@@ -108,19 +108,20 @@ bool IsBehindObject(const Map& map, const ImageKnowledge& image, const Ellipse& 
 
 }  // namespace
 
-PlaceView ViewPlace(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
-                    const ObjectLandmark& object, const ObjectOptions& options, double min_inside) {
+LocationView ViewLocation(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
+                          const ObjectLandmark& object, const ObjectOptions& options,
+                          double min_inside) {
   const auto ellipse =
       ProjectEllipsoid(sensor.camera.Matrix(), image.cam_from_world, object.ellipsoid);
   if (!ellipse || !(ShareInside(ellipse->Bounds(), sensor.bounds) >= min_inside)) {
-    return PlaceView::kOutside;
+    return LocationView::kOutside;
   }
   const Ellipsoid in_cam = image.cam_from_world * object.ellipsoid;
   const double distance = in_cam.world_from_object.translation.norm();
   const double farthest =
       FarthestView(CollectViews(map, object), object.ellipsoid.world_from_object.translation);
   if (distance > options.culling.max_range * farthest) {
-    return PlaceView::kOutside;
+    return LocationView::kOutside;
   }
   // What is nearer by less may be the object's own surface.
   const double depth =
@@ -133,17 +134,18 @@ PlaceView ViewPlace(const Map& map, const Sensor& sensor, const ImageKnowledge& 
                   [&](const Eigen::Vector2d& pixel, double z) { counter.Add(pixel, z); });
   }
   return counter.IsHidden(options.culling.max_hidden) || IsBehindObject(map, image, *ellipse, depth)
-             ? PlaceView::kHidden
-             : PlaceView::kVisible;
+             ? LocationView::kHidden
+             : LocationView::kVisible;
 }
 
-PlaceView ViewPlace(const Map& map, const Sensor& sensor, KeyframeId keyframe,
-                    const ObjectLandmark& object, const ObjectOptions& options, double min_inside) {
+LocationView ViewLocation(const Map& map, const Sensor& sensor, KeyframeId keyframe,
+                          const ObjectLandmark& object, const ObjectOptions& options,
+                          double min_inside) {
   const Keyframe& observer = map.keyframes().At(keyframe);
-  return ViewPlace(map, sensor,
-                   ImageKnowledge{*observer.frame, observer.cam_from_world, observer.landmarks,
-                                  observer.objects},
-                   object, options, min_inside);
+  return ViewLocation(map, sensor,
+                      ImageKnowledge{*observer.frame, observer.cam_from_world, observer.landmarks,
+                                     observer.objects},
+                      object, options, min_inside);
 }
 
 bool SeesThrough(const Sensor& sensor, const Frame& frame, const Rigid3& cam_from_world,

@@ -292,22 +292,22 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
   // Without depth, corners that slide along edges can change the scale. Poses follow them, so that
   // their errors are too small for outliers, but not as small as those of others. Under Cauchy's
   // loss such errors pull less than under Huber's.
-  const bool mono = sensor.IsMonocular();
-  if (mono) {
+  const bool is_monocular = sensor.IsMonocular();
+  if (is_monocular) {
     bundle.MeasurePrecision();
   }
-  if (!bundle.Solve(options.robust_iterations, mono ? PointLoss::kCauchy : PointLoss::kHuber,
-                    supervision, result)) {
+  if (!bundle.Solve(options.robust_iterations,
+                    is_monocular ? PointLoss::kCauchy : PointLoss::kHuber, supervision, result)) {
     return result;
   }
   // After a cancelled round the errors are not minimal, so they do not tell which are outliers.
   if (!supervision.IsCancelled()) {
-    if (mono) {
+    if (is_monocular) {
       bundle.MeasurePrecision();
     }
     bundle.Classify();
-    if (!bundle.Solve(options.final_iterations, mono ? PointLoss::kCauchy : PointLoss::kNone,
-                      supervision, result)) {
+    if (!bundle.Solve(options.final_iterations,
+                      is_monocular ? PointLoss::kCauchy : PointLoss::kNone, supervision, result)) {
       return result;
     }
     bundle.Classify();
@@ -322,7 +322,7 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& given, const Cancellation* cancellation,
                           const ProgressCallback& on_progress) {
-  const BundleOptions options = sensor.IsMonocular() ? given.WithoutDepth() : given;
+  const BundleOptions options = sensor.IsMonocular() ? given.ForMonocular() : given;
   const int most = options.robust_iterations + options.final_iterations;
   Supervision supervision(cancellation, on_progress, most);
   BundleResult result = Adjust(map, sensor, window, options, supervision);

@@ -11,7 +11,7 @@
 namespace hullslam {
 
 // Minimises the reprojection errors of the window's landmarks in its keyframes. Without depth, the
-// options are those of WithoutDepth(), the standard deviations of keypoints are made as small as
+// options are those of ForMonocular(), the standard deviations of keypoints are made as small as
 // the errors show them to be, keypoints at the same position share a weight (KeypointWeights), and
 // Cauchy's loss is used in both rounds. Ceres solves for poses and objects. In a small window own
 // code eliminates the landmarks (EliminatedPoints); in a large one, Ceres does so

@@ -21,7 +21,7 @@ BundleOptions BundleOptions::ForWholeMap() const {
   return options;
 }
 
-BundleOptions BundleOptions::WithoutDepth() const {
+BundleOptions BundleOptions::ForMonocular() const {
   BundleOptions options = *this;
   options.robust_iterations = std::max(robust_iterations, 10);
   options.final_iterations = std::max(final_iterations, 20);

@@ -29,7 +29,7 @@ struct BundleOptions {
   // These options without depth, at least as precise as those of a whole map. Where the camera
   // hardly moves, depths and motions can stand for each other, and the cost changes little on the
   // way to its minimum.
-  BundleOptions WithoutDepth() const;
+  BundleOptions ForMonocular() const;
 };
 
 }  // namespace hullslam

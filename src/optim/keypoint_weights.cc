@@ -14,9 +14,9 @@ constexpr float kRadius = 3.0f;  // px
 
 std::vector<double> KeypointWeights(const Keyframe& keyframe, const ScaleLevels& levels) {
   const FrameFeatures& features = keyframe.frame->features;
-  std::vector<double> shares(features.size(), 0.0);
+  std::vector<double> weights(features.size(), 0.0);
   std::vector<uint32_t> near;
-  for (size_t keypoint = 0; keypoint < shares.size(); ++keypoint) {
+  for (size_t keypoint = 0; keypoint < weights.size(); ++keypoint) {
     if (!keyframe.landmarks[keypoint].IsValid()) {
       continue;
     }
@@ -33,9 +33,9 @@ std::vector<double> KeypointWeights(const Keyframe& keyframe, const ScaleLevels&
         sum += information;
       }
     }
-    shares[keypoint] = sum > 0.0 ? most / sum : 1.0;
+    weights[keypoint] = sum > 0.0 ? most / sum : 1.0;
   }
-  return shares;
+  return weights;
 }
 
 }  // namespace hullslam::internal

@@ -126,17 +126,17 @@ bool AddViewBetween(const Sensor& sensor, uint64_t seed, const FramePointer& fra
     return false;
   }
   // The last view stays the last one.
-  const size_t place = map.views.size() - 1;
+  const size_t inserted = map.views.size() - 1;
   for (InitialMap::Point& point : map.points) {
     for (InitialMap::Observation& seen : point.observations) {
-      seen.view += seen.view == place ? 1 : 0;
+      seen.view += seen.view == inserted ? 1 : 0;
     }
   }
-  map.views.insert(map.views.begin() + static_cast<std::ptrdiff_t>(place),
+  map.views.insert(map.views.begin() + static_cast<std::ptrdiff_t>(inserted),
                    {frame, pose.cam_from_world});
   for (const size_t inlier : pose.inliers) {
     map.points[point_of[matches[inlier].query]].observations.push_back(
-        {place, matches[inlier].keypoint});
+        {inserted, matches[inlier].keypoint});
   }
   return true;
 }

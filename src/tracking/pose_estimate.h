@@ -17,7 +17,8 @@ struct PoseEstimate {
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
   int inliers = 0;                    // landmarks that agree with the pose
   int used_objects = 0;               // objects that constrain the pose
-  KeyframeId place;  // a keyframe that shows the same place; invalid if the landmarks tell it
+  // A keyframe that shows the same place as the frame; invalid if the landmarks tell the place.
+  KeyframeId keyframe_of_place;
 
   // How much constrains the pose, as a number of landmarks.
   int EffectiveInliers() const { return inliers + kLandmarksPerObject * used_objects; }

@@ -55,8 +55,8 @@ class IdSet {
     for (const uint32_t number : numbers) {
       const Group& group = *groups_.Find(GroupId(number));
       for (uint64_t left = group.bits; left != 0; left &= left - 1) {
-        const auto place = static_cast<uint32_t>(std::countr_zero(left));
-        ids.push_back(group.IdAt(number * kGroupSize + place));
+        const auto bit = static_cast<uint32_t>(std::countr_zero(left));
+        ids.push_back(group.IdAt(number * kGroupSize + bit));
       }
     }
     return ids;

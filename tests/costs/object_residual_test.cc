@@ -30,11 +30,11 @@ TEST(ObjectResidual, OtherNamesAreNone) {
   }
 }
 
-TEST(IsSupported, HoldsTheCombinationsThatMakeSense) {
+TEST(AcceptsPrimitive, HoldsTheCombinationsThatMakeSense) {
   std::set<std::string> supported;
   for (const std::string& residual : ObjectResidualNames()) {
     for (const std::string& primitive : ObjectPrimitiveNames()) {
-      if (IsSupported(*ObjectResidualByName(residual), *ObjectPrimitiveByName(primitive))) {
+      if (AcceptsPrimitive(*ObjectResidualByName(residual), *ObjectPrimitiveByName(primitive))) {
         supported.insert(residual + " " + primitive);
       }
     }

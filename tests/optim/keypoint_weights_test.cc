@@ -42,12 +42,12 @@ class KeypointWeightsTest : public testing::Test {
 
 TEST_F(KeypointWeightsTest, AllAtOnePositionWeighAsMuchAsTheMostPrecise) {
   const Keyframe keyframe = Make({{100.0f, 80.0f, 2}, {101.5f, 78.0f, 0}, {100.5f, 80.5f, 5}});
-  const std::vector<double> shares = Shares(keyframe);
+  const std::vector<double> weights = Shares(keyframe);
   double together = 0.0;
   for (const size_t i : {0U, 1U, 2U}) {
     const auto level = static_cast<size_t>(keyframe.frame->features.keypoints[i].level);
-    together += shares[i] * static_cast<double>(sensor_.levels.inverse_sigma2[level]);
-    EXPECT_EQ(shares[i], shares[0]);
+    together += weights[i] * static_cast<double>(sensor_.levels.inverse_sigma2[level]);
+    EXPECT_EQ(weights[i], weights[0]);
   }
   EXPECT_NEAR(together, 1.0, 1e-6) << "that of the finest level";
 }

@@ -22,7 +22,7 @@ class FeatureGrid {
               const Eigen::Vector2f& box_max);
 
   // The grid of the keypoints with these indices, which increase. Their new indices are their
-  // places in `kept`. A grid without keypoints stays as it is.
+  // indices in `kept`. A grid without keypoints stays as it is.
   FeatureGrid Select(std::span<const uint32_t> kept) const;
 
   // Appends to `found` the indices of all keypoints with |dx| < radius, |dy| < radius and a level

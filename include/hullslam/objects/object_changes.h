@@ -31,7 +31,7 @@ inline constexpr std::array kObjectChanges = {ObjectChange::kSeenAgain, ObjectCh
 std::string_view ToString(ObjectChange change);
 
 // An object at a place in the coordinates of the map after the session.
-struct ObjectPlace {
+struct LocatedObject {
   ObjectId object;
   Ellipsoid ellipsoid;
 };
@@ -40,9 +40,9 @@ struct ChangedObject {
   ObjectChange change = ObjectChange::kSeenAgain;
   std::string label;
   // Where it is; absent if it is gone, or if it was not seen and is not in the map any more.
-  std::optional<ObjectPlace> now = std::nullopt;
+  std::optional<LocatedObject> now = std::nullopt;
   // Where it was, with its id in the former map; absent if it is new or first seen.
-  std::optional<ObjectPlace> former = std::nullopt;
+  std::optional<LocatedObject> former = std::nullopt;
   // The evidence: keyframes that should show the object, and those of them in which it is found. Of
   // new and first seen objects these are keyframes of earlier sessions, of all others those of the
   // last session.
