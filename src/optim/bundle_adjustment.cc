@@ -50,12 +50,12 @@ class Bundle {
         options_(options),
         pose_indices_(internal::IndexPoses(window)),
         objects_(map, sensor.camera, window, pose_indices_, options.objects) {
-    std::vector<std::vector<double>> shares;  // without depth, those of the keypoints of each pose
+    std::vector<std::vector<double>> weights;  // of the keypoints of each pose; monocular only
     for (const auto& [id, index] : pose_indices_.entries()) {
       const Keyframe& keyframe = map.keyframes().At(id);
       poses_.push_back(ToBlock(keyframe.cam_from_world));
       if (sensor.IsMonocular()) {
-        shares.push_back(internal::KeypointWeights(keyframe, sensor.levels));
+        weights.push_back(internal::KeypointWeights(keyframe, sensor.levels));
       }
     }
     size_t views = 0;
@@ -64,7 +64,7 @@ class Bundle {
     }
     points_.Reserve(window.landmarks.size(), views);
     for (const LandmarkId id : window.landmarks) {
-      AddPoint(map, sensor, map.landmarks().At(id), shares);
+      AddPoint(map, sensor, map.landmarks().At(id), weights);
     }
   }
 
@@ -127,12 +127,12 @@ class Bundle {
   using View = internal::BundlePoints::View;
 
   void AddPoint(const Map& map, const Sensor& sensor, const Landmark& landmark,
-                const std::vector<std::vector<double>>& shares) {
+                const std::vector<std::vector<double>>& weights) {
     points_.AddPoint(landmark.position);
     for (const Observation& seen : landmark.observations) {
       if (const size_t* const pose = pose_indices_.Find(seen.keyframe)) {
         const Keyframe& keyframe = map.keyframes().At(seen.keyframe);
-        const double weight = shares.empty() ? 1.0 : shares[*pose][seen.keypoint];
+        const double weight = weights.empty() ? 1.0 : weights[*pose][seen.keypoint];
         points_.AddView(MeasurePoint(sensor, keyframe.frame->features, seen.keypoint,
                                      sensor.depth_error.ForAdjustment()),
                         *pose, weight);

@@ -43,7 +43,7 @@ TEST(Rearrangement, BoxesCollideIfTheyComeNearerThanTheGap) {
   EXPECT_FALSE(collides({0.19, 0.19, 0.0}, 0.25 * std::numbers::pi, 0.0));  // corner to side
 }
 
-bool AcceptsPrimitive(const Scene& scene, const SceneObject& object) {
+bool IsSupported(const Scene& scene, const SceneObject& object) {
   const Vector3d& at = object.world_from_object.translation;
   return std::any_of(scene.supports.begin(), scene.supports.end(), [&](const Support& support) {
     return std::abs(at.z() - object.half_extents.z() - support.height) < 1e-9 &&
@@ -73,7 +73,7 @@ void ExpectLaws(const Scene& before, const Scene& after, size_t least) {
       ExpectSamePose(object.world_from_object, before.objects[number].world_from_object);
       continue;
     }
-    EXPECT_TRUE(AcceptsPrimitive(after, object)) << object.class_name;
+    EXPECT_TRUE(IsSupported(after, object)) << object.class_name;
     for (const SceneObject& other : after.objects) {
       EXPECT_FALSE(other.id != object.id && Collide(object, other, 0.01))
           << object.class_name << " " << other.class_name;
