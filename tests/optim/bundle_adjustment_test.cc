@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "frame/measure_point.h"
+#include "map/invariants.h"
 #include "optim/keypoint_weights.h"
 #include "optim/robust.h"
 #include "support/pose_distance.h"

@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// What became of the masks of one or more frames.
+// How many masks of one or more frames became detections, and why the others did not.
 struct DetectionCounts {
   size_t detections = 0;
   size_t frames_with_masks = 0;

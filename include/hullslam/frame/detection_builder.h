@@ -19,12 +19,12 @@ namespace hullslam {
 // Why a mask gives no detection.
 enum class DetectionRejection {
   kLowScore,
-  kDegenerate,    // no outline has an area
-  kTooSmall,      // its bounding box is too small
-  kTooLarge,      // its hull is too large
-  kFewKeypoints,  // too few keypoints are in it
+  kDegenerate,    // no contour of the mask has an area
+  kTooSmall,      // the bounding box of the mask is too small
+  kTooLarge,      // the hull of the mask is too large
+  kFewKeypoints,  // too few keypoints are in the mask
   kDuplicate,     // another mask with a higher score shows the same object
-  kNoSilhouette,  // all its lines are one-sided
+  kNoSilhouette,  // all lines of the mask are one-sided
 };
 inline constexpr int kDetectionRejectionCount = 7;
 
@@ -36,13 +36,13 @@ struct DetectionResult {
   std::vector<std::optional<DetectionRejection>> rejections;  // one per mask
 };
 
-// Turns the masks of a frame into detections. The outlines are undistorted point by point. The hull
-// encloses all parts of a mask except small ones (DetectionOptions::min_part_share). The primitive
-// determines the lines. Support lines (`support`, the default) have the
-// directions of the edges of the simplified hull and some evenly spread directions. They touch the
-// full hull, while the edges of the simplified hull can cut through it. For every
-// primitive, the lines of a box mask are its sides and the lines of an ellipse mask are its
-// tangents.
+// Turns the masks of a frame into detections. The outlines of a mask are undistorted point by
+// point. The hull encloses all parts of a mask except small ones
+// (DetectionOptions::min_part_share). The primitive determines the lines. Support lines (`support`,
+// the default) have the directions of the edges of the simplified hull and some evenly spread
+// directions. They touch the full hull, while the edges of the simplified hull can cut through it.
+// Whatever the primitive is, the lines of a box mask are its sides and the lines of an ellipse mask
+// are its tangents.
 //
 // A line is one-sided if it touches the mask only at the border of the raw image. With depth it is
 // also one-sided if something nearer to the camera begins just beyond it.

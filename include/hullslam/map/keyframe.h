@@ -34,8 +34,9 @@ struct Keyframe {
 // What is kept of a culled keyframe, so that frames tracked relative to it still have a pose.
 struct CulledKeyframe {
   FrameId frame;
-  // Relative to its parent, which may be culled later itself. Without a reference: the keyframe was
-  // removed with its island, so neither it nor what refers to it has a pose.
+  // The pose relative to the parent, which may be culled later itself. It has no reference if the
+  // keyframe was removed with its island: then the keyframe has no pose, and neither have the
+  // frames that refer to it.
   RelativePose pose;
   double scale = 1.0;  // Keyframe::scale when it was culled
 };

@@ -37,7 +37,8 @@ class Map {
 
   // A copy of the map. The two share memory until one of them is changed.
   Map Snapshot();
-  // The number of snapshots that were taken of this map. Of a snapshot: its own number, from 1.
+  // The number of snapshots that were taken of this map. A snapshot returns its own number, counted
+  // from 1.
   uint32_t revision() const { return revision_; }
 
   const CowTable<KeyframeId, Keyframe, 1>& keyframes() const { return keyframes_; }
@@ -56,7 +57,7 @@ class Map {
 
   // The keyframes by the words of their frames, for place recognition.
   const InvertedIndex& index() const { return index_; }
-  // Null without one.
+  // Null for a map without a vocabulary.
   const std::shared_ptr<const Vocabulary>& vocabulary() const { return vocabulary_; }
   // The bag of words of a frame; empty without a vocabulary.
   BowVector VectorOf(const Frame& frame) const;
@@ -93,7 +94,7 @@ class Map {
   ObjectId Resolve(ObjectId object) const;
 
   // Forgets which landmarks and objects were replaced before the snapshot of this revision was
-  // taken. To be called when nobody will ask any more for ids of older snapshots.
+  // taken. To be called when no message with ids of older snapshots can arrive any more.
   void ForgetReplaced(uint32_t revision);
   // How many replaced ids are remembered.
   size_t replaced_count() const { return replaced_landmarks_.size() + replaced_objects_.size(); }
@@ -108,11 +109,12 @@ class Map {
   // earlier sessions counts as one island.
   size_t islands_begun() const { return island_sizes_.size(); }
   size_t islands_joined() const { return islands_joined_; }
-  // The number of its keyframes, without culled ones; 0 after it was joined or removed.
+  // The number of keyframes of an island, without culled ones; 0 after the island was joined or
+  // removed.
   size_t IslandSize(IslandId island) const;
 
-  // Gives a keyframe another frame and its words another place in the index. The lists of the
-  // keyframe that have one entry per keypoint or detection are left to the caller
+  // Gives a keyframe another frame and indexes the words of that frame instead of the old ones. The
+  // caller adapts the lists of the keyframe that have one entry per keypoint or detection
   // (CompactKeyframe).
   void ReplaceFrame(KeyframeId keyframe, std::shared_ptr<const Frame> frame);
 
@@ -166,7 +168,7 @@ class Map {
 
  private:
   void CountInIsland(IslandId island);
-  // Takes a keyframe out of the table and the index. `kept`: its pose from now on.
+  // Takes a keyframe out of the table and the index. `kept` is its pose from now on.
   void Erase(KeyframeId keyframe, const RelativePose& kept);
   // cam_from_reference with the translation in the current unit of length of its reference.
   Rigid3 AtCurrentScale(const RelativePose& pose) const;

@@ -41,7 +41,7 @@ struct ObjectLandmark {
   // The keyframe with which a correction moves the object: the first that observes it. It stays
   // when no observation is left, and may then be a culled keyframe.
   KeyframeId reference;
-  size_t shaped_views = 0;      // observations when its shape was last sought or refined
+  size_t shaped_views = 0;      // number of observations when its shape was last computed
   double misfit_px = 0.0;       // RMS distance of its lines from its projected ellipses
   double compensated_px = 0.0;  // the same after misfit compensation
   std::vector<MisfitSample> misfit_samples;  // one per two-sided line of its latest keyframes

@@ -10,8 +10,8 @@ namespace hullslam {
 
 // Remembers which ids were replaced by which, for messages with ids of older snapshots of a map.
 // Each replacement has the revision of the map at the time: the number of the last snapshot in
-// which the replaced id was still in use. There are few, because those that are older than all
-// messages are forgotten.
+// which the replaced id was still in use. There are few replacements, because those that are older
+// than all messages are forgotten.
 template <typename IdType>
 class Replacements {
  public:
@@ -20,7 +20,7 @@ class Replacements {
     entries_.insert(LowerBound(replaced), {replaced, by, revision});
   }
 
-  // The id that has replaced `replaced`, null for none.
+  // The id that has replaced `replaced`; null if it was not replaced.
   const IdType* Find(IdType replaced) const {
     const auto it = LowerBound(replaced);
     return it != entries_.end() && it->replaced == replaced ? &it->by : nullptr;

@@ -30,7 +30,7 @@ template <typename IdType, typename Value, size_t kChunkSize = 64>
 class CowTable {
  public:
   // Visits the values in the order of their ids. Like the pointer of Find(), it is valid until the
-  // next write. What it points to is a pair that is made on the spot, so it has no operator->.
+  // next write. operator* returns a temporary pair, so there is no operator->.
   class Iterator {
    public:
     using iterator_category = std::input_iterator_tag;
@@ -172,8 +172,8 @@ class CowTable {
   struct Block {
     std::array<std::shared_ptr<Chunk>, kFan> chunks;
     // The chunks that were created after the last snapshot; no other table can see them. The use
-    // count of the shared pointers would not do: reading it races with readers that release a
-    // snapshot. Only the table that owns the block reads this.
+    // counts of the shared pointers cannot replace these flags, because readers that release a
+    // snapshot change them at the same time. Only the table that owns the block reads the flags.
     std::bitset<kFan> owned;
     size_t used = 0;  // chunks that exist
   };
@@ -195,7 +195,7 @@ class CowTable {
     return slot ? &*slot : nullptr;
   }
 
-  // The first number from `index` on under which there is a value; Capacity() if there is none.
+  // The first number that is at least `index` and has a value; Capacity() if there is none.
   size_t NextUsed(size_t index) const {
     while (index < Capacity()) {
       const Block* block = blocks_[index / kBlockSize].get();
