@@ -40,7 +40,7 @@ std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
   return std::make_unique<DefinedCost>(std::move(cost));
 }
 
-// The parameter blocks and what connects them.
+// The parameters of a bundle adjustment and the residuals between them.
 class Bundle {
  public:
   Bundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
@@ -164,7 +164,7 @@ class Bundle {
     return options;
   }
 
-  // Own code eliminates the points, and Ceres solves for the poses and the objects.
+  // Our own code eliminates the points, and Ceres solves for the poses and the objects.
   bool SolveEliminated(int iterations, PointLoss loss, Supervision& supervision,
                        BundleResult& result) {
     internal::EliminatedPoints eliminated(camera_, points_, window_.moving.size(), loss,
@@ -175,13 +175,13 @@ class Bundle {
     ceres::Problem problem(problem_options);
     cost.AddResiduals(problem);
     ceres::Solver::Options solver;
-    // With objects, their half axes are eliminated by Ceres.
+    // If there are objects, Ceres eliminates their half axes.
     solver.linear_solver_type =
         window_.objects.empty() ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_SCHUR;
     return Run(problem, solver, 0, iterations, supervision, result);
   }
 
-  // Ceres eliminates the points. The system that is left is sparse.
+  // Ceres eliminates the points. The reduced system is sparse.
   bool SolveSparse(int iterations, PointLoss point_loss, Supervision& supervision,
                    BundleResult& result) {
     ceres::HuberLoss without_depth(std::sqrt(Chi2Bound(2)));
@@ -219,9 +219,10 @@ class Bundle {
     }
     solver.linear_solver_type = ceres::SPARSE_SCHUR;
     solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
-    // After each step of all parameters, the objects alone follow the poses. Outlines are far less
-    // linear than points. Without this, they keep the steps so short that slow changes of the whole
-    // map, such as the correction of its scale after a loop, do not come to their end.
+    // After each step of all parameters, the objects alone are optimised for the new poses. The
+    // residuals of objects are far less linear than those of points. Without this, the solver could
+    // only take short steps, and slow changes of the whole map, such as the correction of its scale
+    // after a loop, would not finish.
     if (!window_.objects.empty()) {
       solver.use_inner_iterations = true;
       solver.inner_iteration_tolerance = options_.function_tolerance;
@@ -230,7 +231,7 @@ class Bundle {
     return Run(problem, solver, 2, iterations, supervision, result);
   }
 
-  // Adds objects and poses to the problem and solves it. `axes_group`: the place of the half axes
+  // Adds objects and poses to the problem and solves it. `axes_group` is the group of the half axes
   // of the objects in the order of elimination.
   bool Run(ceres::Problem& problem, ceres::Solver::Options& solver, int axes_group, int iterations,
            Supervision& supervision, BundleResult& result) {
@@ -289,9 +290,9 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
   BundleResult result;
   Bundle bundle(map, sensor, window, options);
   bundle.ExcludeUndefined();
-  // Without depth, corners that slide along edges can change the scale. Poses follow them, so that
-  // their errors are too small for outliers, but not as small as those of others. Under Cauchy's
-  // loss such errors pull less than under Huber's.
+  // In monocular maps, corners that slide along edges can change the scale. The poses adapt to
+  // these corners, so their errors are too small to be outliers, but larger than the errors of true
+  // points. Such errors have less influence under Cauchy's loss than under Huber's.
   const bool is_monocular = sensor.IsMonocular();
   if (is_monocular) {
     bundle.MeasurePrecision();
@@ -300,7 +301,7 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
                     is_monocular ? PointLoss::kCauchy : PointLoss::kHuber, supervision, result)) {
     return result;
   }
-  // After a cancelled round the errors are not minimal, so they do not tell which are outliers.
+  // After a cancelled round the errors are not minimal, so outliers cannot be recognised.
   if (!supervision.IsCancelled()) {
     if (is_monocular) {
       bundle.MeasurePrecision();

@@ -10,20 +10,25 @@
 
 namespace hullslam {
 
-// Minimises the reprojection errors of the window's landmarks in its keyframes. Without depth, the
-// options are those of ForMonocular(), the standard deviations of keypoints are made as small as
-// the errors show them to be, keypoints at the same position share a weight (KeypointWeights), and
-// Cauchy's loss is used in both rounds. Ceres solves for poses and objects. In a small window own
-// code eliminates the landmarks (EliminatedPoints); in a large one, Ceres does so
-// (BundleOptions::max_eliminated), and after each step the objects alone follow the poses. Each
-// object of the window adds the constraints of its detections (MakeObjectConstraint) and a prior
-// (MakeObjectPrior) at the shape that it has at the beginning. A view in which the object reaches
-// the plane of the camera is left out. If the solver fails, the adjustment is repeated without
-// objects, and all objects are reported as failed. With a monocular sensor and a single fixed
-// keyframe the result has the scale of the map (KeepScale). If `cancellation` (may be null) is
-// requested, the adjustment ends early and returns what it has. If that happens in the first round,
-// the only outliers are observations of points that are not in front of the camera. `on_progress`
-// is called after each iteration.
+// Minimises the reprojection errors of the window's landmarks in its keyframes, in two rounds. The
+// second round leaves out the outliers of the first.
+//
+// Ceres solves for poses and objects. In a small window (BundleOptions::max_eliminated) our own
+// code eliminates the landmarks (EliminatedPoints). In a large window Ceres eliminates them, and
+// after each step it moves the objects alone until they fit the new poses. Each object of the
+// window adds the constraints of its detections (MakeObjectConstraint) and a prior at its initial
+// shape (MakeObjectPrior). A view in which the object reaches the plane of the camera is left out.
+// If the solver fails, the adjustment is repeated without objects, and all objects are reported as
+// failed.
+//
+// A monocular sensor differs in five points: the options are those of ForMonocular(); the standard
+// deviations of keypoints are reduced to those that the errors show (MeasureKeypointPrecision);
+// keypoints at the same position share a weight (KeypointWeights); both rounds use Cauchy's loss;
+// and with a single fixed keyframe the result keeps the scale of the map (KeepScale).
+//
+// If `cancellation` (may be null) is requested, the adjustment ends early and returns its current
+// result. If that happens in the first round, the only outliers are observations of points that are
+// not in front of the camera. `on_progress` is called after each iteration.
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& options, const Cancellation* cancellation,
                           const ProgressCallback& on_progress = {});

@@ -22,12 +22,12 @@ struct BundleResult {
   // be checked.
   std::vector<ObjectId> failed_objects;
   bool is_usable = false;  // false if the solver failed; then there is no result to apply
-  int residuals = 0;       // views of landmarks, and costs on objects
+  int residuals = 0;       // number of inlier views of landmarks and of costs on objects
   int iterations = 0;
 };
 
-// Writes the result into the map that it was computed from. The map may have changed since then:
-// what no longer exists is passed over.
+// Writes the result into the map that it was computed from. The map may have changed since then;
+// entities that no longer exist are skipped.
 void ApplyBundle(Map& map, const BundleResult& result, const ScaleLevels& levels);
 
 }  // namespace hullslam

@@ -9,20 +9,21 @@
 
 namespace hullslam {
 
-// What a bundle adjustment optimises and what it keeps fixed. Ids are in increasing order.
+// The entities that a bundle adjustment optimises or keeps fixed. Ids are in increasing order.
 struct BundleWindow {
   std::vector<KeyframeId> moving;
-  std::vector<KeyframeId> fixed;  // they observe the landmarks too
+  std::vector<KeyframeId> fixed;  // other keyframes that observe the landmarks
   std::vector<LandmarkId> landmarks;
   std::vector<ObjectId> objects;  // their quadrics are optimised; all of them have a shape
 };
 
-// The keyframe `center` and those it shares most landmarks with (at most `max_moving` in all) move.
-// The window has all landmarks that they observe. Of the other keyframes, those that observe most
-// of these landmarks are fixed (at most `max_fixed`; 0: all, so that no observation of a landmark
-// is ignored while it moves). The root of the spanning tree never moves. If no keyframe would be
-// fixed, the oldest one is. With WindowObjects::kMapped the window also has the mapped objects that
-// the moving keyframes observe.
+// The window around the keyframe `center`. The moving keyframes are `center` and those that share
+// most landmarks with it, at most `max_moving` in all. The window has all landmarks that they
+// observe. The fixed keyframes are those others that observe most of these landmarks, at most
+// `max_fixed`; 0 stands for all, so that no observation of a moving landmark is ignored. The root
+// of the spanning tree never moves. If there would be no fixed keyframe, the oldest moving one
+// becomes fixed. With WindowObjects::kMapped the window also has the mapped objects that the moving
+// keyframes observe.
 enum class WindowObjects { kNone, kMapped };
 BundleWindow LocalWindow(const Map& map, KeyframeId center, size_t max_moving, size_t max_fixed,
                          WindowObjects objects = WindowObjects::kNone);

@@ -17,7 +17,7 @@ bool IsPlausible(const Ellipsoid& after, const Ellipsoid& before, double max_cha
          (ratio < max_change).all();
 }
 
-// Where a cost is not defined at the start, the solver would fail.
+// Whether the cost is defined at the start. Otherwise the solver would fail.
 bool IsDefined(const ceres::CostFunction& cost, const PoseBlock& camera, const PoseBlock& object,
                const Eigen::Vector3d& log_axes) {
   const double* parameters[] = {camera.data(), object.data(), log_axes.data()};

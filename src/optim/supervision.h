@@ -7,7 +7,8 @@
 
 namespace hullslam::internal {
 
-// Tells the caller how far an optimisation by Ceres is, and ends it when that is requested.
+// Reports the progress of an optimisation by Ceres to the caller, and ends it when a cancellation
+// is requested.
 class Supervision final : public ceres::IterationCallback {
  public:
   // `cancellation` and `on_progress` may be null. `most`: the largest number of iterations.
