@@ -26,7 +26,7 @@ std::vector<ObjectId> MappedAround(const Map& map, KeyframeId keyframe) {
   return objects;
 }
 
-// Whether each of the quadrics, blown up by half, contains the centre of the other.
+// Whether each of the quadrics, enlarged by half, contains the centre of the other.
 bool AreAtOneLocation(const Ellipsoid& a, const Ellipsoid& b) {
   const auto reaches = [](Ellipsoid from, const Ellipsoid& to) {
     from.half_axes *= 1.5;
@@ -35,14 +35,14 @@ bool AreAtOneLocation(const Ellipsoid& a, const Ellipsoid& b) {
   return reaches(a, b) && reaches(b, a);
 }
 
-// Whether any detection of one was given a class that a detection of the other was given.
+// Whether a detection of one object has the same class as a detection of the other.
 bool ShareClass(const ObjectLandmark& a, const ObjectLandmark& b) {
   return std::any_of(a.votes.begin(), a.votes.end(),
                      [&](const auto& vote) { return b.votes.contains(vote.first); });
 }
 
-// Whether a mask of the keyframe shows a thing of the object's class at its place. Only masks that
-// belong to no mapped object count: those of the others show where that object is.
+// Whether a mask of the keyframe shows a thing of the object's class at the object's location. Only
+// masks that belong to no mapped object count, because all others show that mapped object.
 bool IsDetected(const Map& map, const Sensor& sensor, const ObjectLandmark& object,
                 KeyframeId keyframe_id, const AssociationOptions& options) {
   const Keyframe& keyframe = map.keyframes().At(keyframe_id);
@@ -66,7 +66,7 @@ bool IsDetected(const Map& map, const Sensor& sensor, const ObjectLandmark& obje
 
 enum class Vote { kNone, kAgree, kDisagree };
 
-// What an object of one end says, compared with the objects of the other end.
+// The vote of an object of one end, compared with the objects of the other end.
 Vote VoteOf(const Map& map, const Sensor& sensor, const ObjectLandmark& object,
             const std::vector<ObjectId>& others, KeyframeId other_end,
             const ObjectOptions& options) {

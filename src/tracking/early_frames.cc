@@ -42,7 +42,7 @@ void EarlyFrames::Keep(std::shared_ptr<const Frame> frame) {
 std::vector<TrackedFrame> EarlyFrames::Localise(const Map& map, const TrackingContext& context) {
   constexpr std::array<PoseSource*, 2> kSources = {&PoseByReferenceKeyframe, &PoseByRelocalisation};
   std::vector<TrackedFrame> localised;
-  LastFrame before;  // in time, of those that were found
+  LastFrame before;  // the last frame before the current one that was found
   for (const std::shared_ptr<const Frame>& frame : frames_) {
     TrackedFrame tracked;
     tracked.frame = frame->id;

@@ -27,11 +27,10 @@ constexpr int kRounds = 2;             // of matching and refinement with object
 constexpr float kWideRadius = 25.0f;   // px at level 0; objects give a pose to a few centimetres
 constexpr double kWideRatio = 0.8;
 constexpr double kLeastMeanOverlap = 0.5;  // of the objects that confirm a pose
-// Hypotheses with a smaller share of the best score of objects are not looked at any further.
+// Hypotheses with a smaller share of the best score of objects are dropped.
 constexpr double kWorthyShare = 0.5;
 constexpr int kMostSamples = 200;  // of RANSAC; most of the landmarks near a true pose agree
-// A second place that explains the frame this well, as a share of the best one, makes the frame
-// ambiguous.
+// If a second candidate reaches this share of the best score, the frame is ambiguous.
 constexpr double kAmbiguousShare = 0.75;
 
 // A pose with the arrangement of objects that is seen from it.
@@ -97,15 +96,15 @@ class Finder {
     return best;
   }
 
-  // The hypotheses, refined by objects alone, without those that are near a better one or much
-  // worse.
+  // The hypotheses, refined by objects alone. Those near a better one and much worse ones are left
+  // out.
   std::vector<Candidate> RefineHypotheses() const {
     std::vector<Candidate> candidates;
     for (Candidate& candidate : CompareHypotheses()) {
       const auto is_known = [&](const Candidate& other) { return AreSame(other, candidate); };
       if (candidates.size() == kMostRefined ||
           candidate.arrangement.Score() < kWorthyShare * BestScore(candidates)) {
-        break;  // those that follow are not better
+        break;  // the hypotheses are sorted, so those that follow are not better
       }
       if (std::none_of(candidates.begin(), candidates.end(), is_known)) {
         RefineByObjects(candidate);
@@ -154,7 +153,7 @@ class Finder {
     return observers;
   }
 
-  // Landmarks near the places where the rough pose expects them. Many of them may be wrong.
+  // Landmarks near the pixels where the rough pose expects them. Many of them may be wrong.
   std::vector<FoundLandmark> SearchWidely(const Rigid3& cam_from_world,
                                           const std::vector<LandmarkId>& landmarks) const {
     std::vector<Projection> projections;
@@ -182,8 +181,8 @@ class Finder {
     return found;
   }
 
-  // The pose of the landmarks alone, if enough of them agree with one that is near the pose of the
-  // objects.
+  // The pose from the landmarks alone, if enough of them agree with it and it is near the pose from
+  // the objects.
   std::optional<PoseEstimate> PoseOf(const std::vector<FoundLandmark>& found,
                                      const Candidate& candidate) const {
     std::vector<PoseObservation> observations;
@@ -210,7 +209,7 @@ class Finder {
     return estimate;
   }
 
-  // Of the matched objects from the camera, m; 0 if there are none.
+  // Mean distance of the matched objects from the camera, m; 0 if there are none.
   double MeanDistance(const Candidate& candidate) const {
     double sum = 0.0;
     for (const ObjectId id : candidate.arrangement.objects) {
@@ -247,7 +246,7 @@ class Finder {
     candidate.arrangement = Compare(candidate.estimate.cam_from_world);
   }
 
-  // The place with the best score. Null if there is none, or if another one is about as good.
+  // The candidate with the best score. Null if there is none, or if another place is about as good.
   const Candidate* FindBest(const std::vector<Candidate>& candidates) const {
     const Candidate* best = nullptr;
     for (const Candidate& candidate : candidates) {
@@ -263,7 +262,7 @@ class Finder {
     return is_ambiguous ? nullptr : best;
   }
 
-  // Enough landmarks or enough objects agree with the pose.
+  // Whether enough landmarks or enough objects agree with the pose.
   bool IsConfirmed(const Candidate& candidate) const {
     const Arrangement& arrangement = candidate.arrangement;
     const bool do_objects_agree =

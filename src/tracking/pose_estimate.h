@@ -8,7 +8,7 @@
 
 namespace hullslam {
 
-// A pose of a frame with the landmarks that were found in it.
+// The pose of a frame, with the landmarks that were found in the frame.
 struct PoseEstimate {
   // An object that constrains a pose counts as this many landmarks.
   static constexpr int kLandmarksPerObject = 5;
@@ -20,7 +20,7 @@ struct PoseEstimate {
   // A keyframe that shows the same place as the frame; invalid if the landmarks tell the place.
   KeyframeId keyframe_of_place;
 
-  // How much constrains the pose, as a number of landmarks.
+  // The number of landmarks that would constrain the pose as much as the landmarks and objects do.
   int EffectiveInliers() const { return inliers + kLandmarksPerObject * used_objects; }
 };
 

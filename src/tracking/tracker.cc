@@ -10,8 +10,8 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kYoungKeyframes = 10;  // a monocular island with fewer is young
-constexpr double kPatience = 1.0;       // s, lost in an island that is not young
+constexpr size_t kYoungKeyframes = 10;  // a monocular island with fewer keyframes is young
+constexpr double kPatience = 1.0;       // s without a pose, before a new island may begin
 
 KeyframePolicy MakePolicy(const Sensor& sensor, const TrackingOptions& options) {
   KeyframePolicy policy;
@@ -73,7 +73,7 @@ KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor
           .requests_waiting = mapper.requests_waiting};
 }
 
-// A frame without a pose, or one of the initial map.
+// The result for a frame without a pose or for a frame of the initial map.
 Tracker::Result MakeResult(std::shared_ptr<const Frame> frame, TrackingState state) {
   Tracker::Result result;
   result.report.tracked.frame = frame->id;
@@ -252,8 +252,8 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map
   return MakeResult(std::move(frame), TrackingState::kLost);
 }
 
-// The camera may soon be found in a grown island, and only place recognition, which needs words,
-// can join another one to it. In a young one there is little to be found.
+// In an island that is not young, the camera may soon be found again, and only place recognition,
+// which needs words, can join a new island to it. In a young island there is little to be found.
 bool Tracker::MayBeginIsland(const Frame& frame, const Map& map) const {
   if (!sensor_.IsMonocular() || is_localizing_only_) {
     return false;

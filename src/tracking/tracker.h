@@ -30,8 +30,8 @@ struct MapperStatus {
 };
 
 // Finds the pose of each frame in a snapshot of the map and decides on keyframes. A monocular
-// camera that is lost begins a new island (Map::BeginIsland). It does not change the map but sends
-// messages to the mapper. Its members are what it remembers from one frame to the next.
+// camera that is lost begins a new island (Map::BeginIsland). The tracker does not change the map;
+// it sends messages to the mapper. Its members are its memory from one frame to the next.
 class Tracker {
  public:
   // `sensor` must outlive the tracker. `seed` is that of the run.
@@ -90,11 +90,11 @@ class Tracker {
 
   std::optional<double> lost_since_;  // s, time stamp of the first lost frame; absent if not lost
   LastFrame last_;                    // has no frame before the first frame with a pose
-  // s, time stamp of the frame of the last message; of the first frame with a pose if there is no
-  // message yet.
+  // Time stamp of the frame of the last message, s. If there is no message yet, that of the first
+  // frame with a pose.
   std::optional<double> last_request_time_;
   SightingCounter sightings_;  // since the last request
-  // Map::revision() of the first map in which they were counted; absent if there are none.
+  // Map::revision() of the first map in which sightings were counted; absent if there are none.
   std::optional<uint32_t> first_sighting_revision_;
   RequestMemory object_requests_;
   ObjectIndex object_index_;  // of the map of the last frame
