@@ -9,7 +9,7 @@
 namespace hullslam {
 namespace {
 
-// The posting of a keyframe in the list of a word, or where it would be inserted.
+// The posting of a keyframe in the list of a word, or the position where it would be inserted.
 auto FindPosting(auto& postings, KeyframeId keyframe) {
   return std::lower_bound(
       postings.begin(), postings.end(), keyframe,

@@ -101,7 +101,7 @@ std::vector<float> InverseDocumentFrequencies(const Vocabulary& vocabulary,
   std::vector<float> frequencies;
   frequencies.reserve(counts.size());
   for (const uint32_t count : counts) {
-    // Every word is the nearest one of the descriptors that it was made of.
+    // Every word is the nearest word of the descriptors from which it was made.
     Check(count > 0, "a word occurs in no image");
     frequencies.push_back(static_cast<float>(
         std::log(static_cast<double>(images.size()) / static_cast<double>(count))));

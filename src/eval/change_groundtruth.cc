@@ -7,11 +7,11 @@
 namespace hullslam {
 namespace {
 
-// A change of one object, true or reported: where it was, where it is, or both.
+// A change of one object, true or reported: its centre before, after, or both.
 struct LocationChange {
   std::optional<Eigen::Vector3d> former = std::nullopt;
   std::optional<Eigen::Vector3d> now = std::nullopt;
-  double reach = 0.0;  // m; of a true object: how far off a reported place may be
+  double reach = 0.0;  // m; largest error of a reported location; for true objects only
 };
 
 std::optional<Eigen::Vector3d> CenterOf(const std::optional<LocatedObject>& object,
@@ -25,7 +25,8 @@ bool AreOne(const std::optional<Eigen::Vector3d>& truth,
   return !truth || (reported && (*truth - *reported).norm() <= reach);
 }
 
-// Each reported change is right if it is that of a true change that no earlier one was.
+// A reported change is right if it agrees with a true change with which no earlier reported change
+// agrees.
 ChangeCounts Count(const std::vector<LocationChange>& truths,
                    const std::vector<LocationChange>& reported) {
   ChangeCounts counts{truths.size(), reported.size(), 0};

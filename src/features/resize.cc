@@ -70,7 +70,7 @@ void MixRows(const uint16_t* __restrict first, const uint16_t* __restrict second
 
 }  // namespace
 
-// Where the centres of the pixels fall, as in OpenCV.
+// The source pixels of the centres of all pixels, as in OpenCV.
 std::vector<ImageShrinker::Source> ImageShrinker::SourcesOf(int from, int to) {
   const double scale = 1.0 / (static_cast<double>(to) / from);
   std::vector<Source> sources;

@@ -142,8 +142,8 @@ std::vector<Candidate> PrepareAll(std::span<const InstanceMask> masks, const Fra
   return candidates;
 }
 
-// Whether two masks show the same object. A real network can report one thing under two classes, so
-// classes are compared only where depth does not tell things apart.
+// Whether two masks show the same object. A network can report one thing under two classes, so
+// classes are compared only where the depth cannot distinguish things.
 bool AreOneObject(const Candidate& a, const Candidate& b, const DetectionOptions& options) {
   const double shared = SharedArea(a.region, b.region);
   const double smaller = std::min(a.region.area(), b.region.area());

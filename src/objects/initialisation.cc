@@ -17,8 +17,8 @@ namespace {
 // they meet, divided by the number of rays, is below this.
 constexpr double kMinRayInformation = 1e-3;
 
-// How far the centre of a sphere lies behind the surface that a camera sees, in radii: the mean
-// over its silhouette.
+// The distance of the centre of a sphere behind the surface that a camera sees, in radii, averaged
+// over the silhouette.
 constexpr double kSurfaceToCenter = 2.0 / 3.0;
 
 struct Interval {
@@ -69,7 +69,7 @@ Eigen::Matrix3d PrincipalAxes(std::span<const Eigen::Vector3d> points) {
   return axes;
 }
 
-// The points that are left after trimming along each axis in turn.
+// The points that remain after trimming along each axis in turn.
 std::vector<Eigen::Vector3d> InnerPoints(std::span<const Eigen::Vector3d> points,
                                          const Eigen::Matrix3d& axes, double trimmed) {
   std::vector<Eigen::Vector3d> inner(points.begin(), points.end());
@@ -84,8 +84,8 @@ std::vector<Eigen::Vector3d> InnerPoints(std::span<const Eigen::Vector3d> points
   return inner;
 }
 
-// A sphere with the mean size of the boxes at this place. Null if the place is not in front of all
-// cameras.
+// A sphere with this centre and the mean size of the boxes. Null if the centre is not in front of
+// all cameras.
 std::optional<Ellipsoid> SphereAt(const Eigen::Vector3d& center, const PinholeCamera& camera,
                                   std::span<const ObjectView> views, const StartOptions& options) {
   double radius = 0.0;

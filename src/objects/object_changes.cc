@@ -15,7 +15,7 @@
 namespace hullslam {
 namespace {
 
-// Where a correction of the map since then has moved the object.
+// The object's ellipsoid after the corrections of the map since then.
 Ellipsoid InMap(const Map& map, const Map& former, const ObjectLandmark& object) {
   const KeyframeId keyframe = object.reference;
   const Sim3 change(map.ScaleOf(keyframe) / former.ScaleOf(keyframe),
@@ -35,8 +35,8 @@ bool MayBe(const ObjectLandmark& object, const std::string& label) {
   return same != object.votes.end() && same->second >= kLeastShare * all;
 }
 
-// How much the sizes of two objects differ: the larger ratio of their two longest half axes. The
-// shortest one is badly known for flat things.
+// The difference of the sizes of two objects: the larger one of the ratios of their two longest
+// half axes. The shortest half axis of flat things is not known precisely.
 double SizeRatio(Eigen::Vector3d a, Eigen::Vector3d b) {
   std::sort(a.begin(), a.end());
   std::sort(b.begin(), b.end());
@@ -124,7 +124,7 @@ class Comparison {
     }
   }
 
-  // Whether a keyframe that does not show the object shows its place.
+  // Whether a keyframe that does not show the object shows its location.
   bool IsSeenWithout(KeyframeId id, ObjectId object_id, const ObjectLandmark& object) const {
     const Keyframe& keyframe = map_.keyframes().At(id);
     const ChangeOptions& limits = options_.changes;
@@ -135,8 +135,8 @@ class Comparison {
                LocationView::kVisible;
   }
 
-  // Whether the keyframe shows that something else stands where the object stood. It may hide that
-  // place. It is a new object of another class, or was taken for the object itself.
+  // Whether the keyframe shows another thing at the location of the object, or in front of it. The
+  // other thing is a new object of another class, or it was associated with the object itself.
   bool IsReplaced(const Keyframe& keyframe, ObjectId id, const ObjectLandmark& object) const {
     for (size_t i = 0; i < keyframe.objects.size(); ++i) {
       const ObjectId shown = keyframe.objects[i];
@@ -153,7 +153,7 @@ class Comparison {
     return false;
   }
 
-  // Whether a detection of the keyframe shows the object or something of its class at its place.
+  // Whether a detection of the keyframe shows the object, or a thing of its class at its location.
   bool Shows(const Keyframe& keyframe, ObjectId id, const ObjectLandmark& object) const {
     const auto ellipse =
         ProjectEllipsoid(sensor_.camera.Matrix(), keyframe.cam_from_world, object.ellipsoid);
@@ -228,7 +228,7 @@ class Comparison {
     }
   }
 
-  // Whether earlier sessions looked towards the place of an object, but something hid it from them.
+  // Whether earlier sessions looked towards the location of an object, but something hid it.
   bool WasHidden(const ChangedObject& added) const {
     if (added.change != ObjectChange::kFirstSeen || added.found > 0) {
       return false;
@@ -241,8 +241,8 @@ class Comparison {
     return hidden >= options_.changes.min_keyframes;
   }
 
-  // Nothing that the map knows tells two cups apart. So the nearest one of the same class and about
-  // the same size is taken for the one that was moved, if it is not too far away.
+  // The map cannot distinguish two cups. So the nearest new object of the same class and about the
+  // same size counts as the moved one, if it is not too far away.
   double MovingCost(const ChangedObject& gone, const ChangedObject& added) const {
     const Ellipsoid& from = gone.former->ellipsoid;
     const Ellipsoid& to = added.now->ellipsoid;
@@ -253,7 +253,7 @@ class Comparison {
         distance > options_.changes.max_move) {
       return kNever;
     }
-    // A place that was seen empty is a better one.
+    // A location that was seen empty before is more likely.
     const double doubt = added.change == ObjectChange::kNew ? 0.0 : 1.0;
     return std::log(ratio) + distance / options_.changes.max_move + doubt;
   }

@@ -38,7 +38,7 @@ ObjectConstraint MakeObjectConstraint(const PinholeCamera& camera, const ObjectV
 std::unique_ptr<ceres::CostFunction> MakeObjectPrior(const Ellipsoid& shape, bool has_depth,
                                                      const ObjectConstraintOptions& options);
 
-// Whether the residual is computed from the lines of a detection.
+// Whether the residual is computed from lines.
 bool TakesLines(ObjectResidual residual);
 
 }  // namespace hullslam

@@ -10,7 +10,7 @@
 namespace hullslam {
 namespace {
 
-constexpr int kFewSamples = 3;  // fewer samples on an object say nothing
+constexpr int kFewSamples = 3;  // with fewer samples on an object, it does not count as hidden
 
 // Counts how many of the samples on a projected ellipse are nearer than a depth.
 class HiddenCounter {
@@ -44,7 +44,8 @@ class HiddenCounter {
 template <typename Use>
 void ForEachSample(const DepthGrid& grid, const PinholeCamera& camera,
                    const Eigen::AlignedBox2d& bounds, const Use& use) {
-  // Distortion moves the corners of the box, but a sample that is missed at its rim does no harm.
+  // Distortion moves the corners of the box, so a sample at its rim may be missed; that does no
+  // harm.
   const Eigen::Vector2d first = camera.Distort(bounds.min()) / DepthGrid::kStep;
   const Eigen::Vector2d last = camera.Distort(bounds.max()) / DepthGrid::kStep;
   const int last_column = std::min(grid.columns() - 1, static_cast<int>(last.x()));
@@ -123,7 +124,7 @@ LocationView ViewLocation(const Map& map, const Sensor& sensor, const ImageKnowl
   if (distance > options.culling.max_range * farthest) {
     return LocationView::kOutside;
   }
-  // What is nearer by less may be the object's own surface.
+  // A smaller difference of depth may come from the object's own surface.
   const double depth =
       DepthsOf(in_cam).nearest - NearSurface(object.ellipsoid, distance, options.validity);
   HiddenCounter counter(*ellipse, depth);

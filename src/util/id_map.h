@@ -10,13 +10,14 @@
 
 namespace hullslam {
 
-// A hash table from ids to values. Its size depends on the number of its entries only, not on how
-// many ids there are in the map. The entries are in the order in which they were added, so the same
+// A hash table from ids to values. Its size depends only on the number of its entries, not on the
+// number of ids in the map. The entries are in the order in which they were added, so the same
 // calls give the same results.
 template <typename IdType, typename Value>
 class IdMap {
  public:
-  // The value of an id. It is added if there is none. Valid until the next one is added.
+  // The value of an id. A new value is added if there is none. The reference is valid until the
+  // next value is added.
   Value& operator[](IdType id) {
     const auto [it, is_new] = indices_.try_emplace(id, entries_.size());
     if (is_new) {
