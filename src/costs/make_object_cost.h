@@ -17,7 +17,7 @@ namespace hullslam {
 // after misfit compensation; residuals that use no lines take the detection's contour, hull,
 // ellipse or box. `sigma` is in the unit of the residual: see ResidualOfPixelError. Null where the
 // residual cannot be computed from the detection's primitive (AcceptsPrimitive) or where the
-// detection lacks what the residual needs: a line, three points of a contour, an ellipse.
+// detection lacks the data of the residual: a line, three points of a contour, or an ellipse.
 std::unique_ptr<ceres::CostFunction> MakeObjectCost(ObjectResidual residual,
                                                     const PinholeCamera& camera,
                                                     const Detection& detection,

@@ -28,9 +28,9 @@ struct TwoViewOptions {
   double min_parallax = 1.2;  // degrees between the two rays to a point, in the median
   // Largest share of the pairs that agree with the best motion that a rotation alone may explain.
   double max_turned_share = 0.9;
-  // A motion competes with the best one if it agrees with at least this share of the pairs with
-  // which the best one agrees. The costs of competing motions must exceed the cost of the best one
-  // by so many standard deviations that chance does not explain the difference.
+  // A motion competes if the number of pairs that agree with it is at least this share of the
+  // largest such number. The costs of competing motions must exceed the cost of the best one by so
+  // many standard deviations that chance does not explain the difference.
   double min_rival_share = 0.75;
   double min_rival_deviations = 3.0;
 };

@@ -16,7 +16,7 @@
 
 namespace hullslam {
 
-// A snapshot of the map for the loop closer alone, and the keyframe at which a loop is sought.
+// A snapshot of the map for the loop closer alone, and the keyframe at which it searches a loop.
 struct LoopQuery {
   Map map;
   KeyframeId keyframe;

@@ -51,13 +51,13 @@ bool IsDetected(const Map& map, const Sensor& sensor, const ObjectLandmark& obje
   if (!ellipse) {
     return false;
   }
-  const std::vector<Eigen::Vector2d> outline = ellipse->Polygon();
+  const std::vector<Eigen::Vector2d> projected = ellipse->Polygon();
   for (size_t i = 0; i < keyframe.objects.size(); ++i) {
     const Detection& detection = keyframe.frame->detections[i];
     const ObjectLandmark* const owner = map.objects().Find(keyframe.objects[i]);
     const bool is_mapped = owner != nullptr && owner->state == ObjectState::kMapped;
     if (!is_mapped && object.votes.contains(detection.label) &&
-        IntersectionOverUnion(outline, detection.hull) >= options.min_projection_iou) {
+        IntersectionOverUnion(projected, detection.hull) >= options.min_projection_iou) {
       return true;
     }
   }

@@ -18,15 +18,15 @@ struct CorrectionOutcome {
   std::vector<ObjectId> merged_objects;
 };
 
-// Moves the map as the correction says. For a keyframe of the correction C = corrected^-1 *
-// snapshot maps the old world to the new one. A keyframe that is not in the correction, because it
-// was made or culled at another time, takes the C of its nearest ancestor in the spanning tree that
-// is in the correction; without such an ancestor it does not move. A culled keyframe is moved too,
-// so that frames tracked relative to it follow. C is applied to the keyframe's current pose, so
-// that the changes of local bundle adjustment since the snapshot survive. Landmarks and objects
-// move with their reference keyframes, but a landmark with a position in the correction moves
-// there. Half axes and misfit samples of objects take the scale of C. Where the corrected pose
-// equals the snapshot's pose, to the last bit and with scale 1, nothing moves.
+// Applies a correction to the map. For a keyframe of the correction C = corrected^-1 * snapshot
+// maps the old world to the new one. A keyframe that is not in the correction, because it was made
+// or culled at another time, takes the C of its nearest ancestor in the spanning tree that is in
+// the correction; without such an ancestor it does not move. A culled keyframe is moved too, so
+// that frames tracked relative to it follow. C is applied to the keyframe's current pose, so that
+// the changes of local bundle adjustment since the snapshot survive. Landmarks and objects move
+// with their reference keyframes, but a landmark with a position in the correction moves there.
+// Half axes and misfit samples of objects take the scale of C. Where the corrected pose equals the
+// snapshot's pose, to the last bit and with scale 1, nothing moves.
 //
 // Then landmarks and objects are merged, covisibility is counted again for the keyframes whose
 // observations were merged, and the loop edge is added. If its ends belong to different islands,

@@ -24,7 +24,7 @@ constexpr size_t kOtherObservers = 3;
 constexpr size_t kOtherMonocularObservers = 4;
 constexpr double kRedundantShare = 0.9;
 // Two keyframes of a monocular camera see a landmark from the same viewpoint if its parallax
-// between them is smaller than so many standard deviations.
+// between them is smaller than this many standard deviations.
 constexpr double kSameViewpointSigmas = 2.0;
 // With fewer landmarks, the share of redundant landmarks is not reliable.
 constexpr int kMinLandmarks = 20;

@@ -22,7 +22,7 @@ constexpr size_t kNeighbours = 10;
 constexpr size_t kMonocularNeighbours = 20;  // more, because no landmarks come from depth
 constexpr double kMinBaseline = 0.005;       // over the median depth, monocular
 constexpr double kMaxCosParallax = 0.9998;   // about 1.1 degrees, if both depths are unknown
-// A monocular pair should have a parallax of so many standard deviations of its keypoints.
+// Least expected parallax of a monocular pair, in standard deviations of its keypoints.
 constexpr double kMinParallaxSigmas = 2.0;
 
 // A keypoint of a keyframe with the data that triangulation needs.

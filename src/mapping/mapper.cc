@@ -20,7 +20,7 @@
 namespace hullslam {
 namespace {
 
-// The scale of a monocular map is measured when objects of known size have so many observations.
+// The scale of a monocular map is measured once objects of known size have this many observations.
 constexpr size_t kMinSizedViews = 10;
 // Smaller changes of the scale wait for the end of the run, because every change invalidates a loop
 // that is being computed.

@@ -160,7 +160,7 @@ class Comparison {
     if (!ellipse) {
       return false;
     }
-    const std::vector<Eigen::Vector2d> outline = ellipse->Polygon();
+    const std::vector<Eigen::Vector2d> projected = ellipse->Polygon();
     for (size_t i = 0; i < keyframe.objects.size(); ++i) {
       const Detection& detection = keyframe.frame->detections[i];
       if (!MayBe(object, detection.label)) {
@@ -170,7 +170,7 @@ class Comparison {
         return true;
       }
       if (!WasMapped(keyframe.objects[i]) &&
-          IntersectionOverUnion(outline, detection.hull) >= options_.changes.min_overlap &&
+          IntersectionOverUnion(projected, detection.hull) >= options_.changes.min_overlap &&
           IsThere(keyframe, detection, object)) {
         return true;
       }

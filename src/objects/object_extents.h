@@ -24,7 +24,7 @@ struct ObjectExtents {
 // ellipsoid that fits the silhouettes of a box best is longer than the box where the corners show.
 // For the keyboard of freiburg1_xyz the longest axis is wrong by 16 %. So two bodies are fitted to
 // the planes, a box with the support function sum_i h_i |n_i| and an ellipsoid with sqrt(sum_i (h_i
-// n_i)^2), where h are the half sides and n is the normal in the frame of the body; place and
+// n_i)^2), where h are the half sides and n is the normal in the frame of the body; position and
 // rotation are free. The body that fits better is chosen. Nothing if there are too few planes or if
 // neither body fits.
 std::optional<ObjectExtents> MeasureExtents(const Sensor& sensor, const Ellipsoid& ellipsoid,

@@ -8,7 +8,7 @@
 
 namespace hullslam {
 
-// How the problem of a bundle adjustment is solved.
+// The options of the solver of a bundle adjustment.
 struct BundleOptions {
   // The first round uses Huber's loss, and outliers are left out after it. The second round has
   // inliers only and no loss. For a monocular sensor both rounds use Cauchy's loss.
@@ -23,9 +23,9 @@ struct BundleOptions {
   internal::FollowOptions follow = {};  // of points that our own code eliminates
   ObjectBundleOptions objects = {};
 
-  // These options for a whole map. The solver ends when a step changes the cost by a smaller share
-  // than the tolerance. In a global adjustment the terms that correct drift are a small share of
-  // the cost, so the tolerance must be small.
+  // These options for a whole map. When a step would change the cost by a smaller share than the
+  // tolerance, the solver ends without taking it. In a global adjustment the terms that correct
+  // drift are a small share of the cost, so the tolerance must be small.
   BundleOptions ForWholeMap() const;
   // These options for a monocular sensor, with a tolerance at least as small as that of a whole
   // map. Where the camera hardly moves, a change of the depths can compensate for a change of the

@@ -11,7 +11,8 @@
 
 namespace hullslam::internal {
 
-// How precisely a point is optimised for given poses before the cost of these poses is computed.
+// The precision with which a point is optimised for given poses, before the cost of these poses is
+// computed.
 struct FollowOptions {
   int steps = 2;  // largest number of steps
   // Another step is only taken if the last one was expected to lower the cost of the point by a

@@ -6,17 +6,17 @@
 
 namespace hullslam::internal {
 
-// The precision of keypoints: the standard deviation that the sensor states over the one that the
-// errors show.
+// Measures the precision of keypoints: the standard deviation that the sensor assumes over the one
+// that the errors show.
 //
 // The standard deviations of the sensor are cautious. With them, an error of several true standard
 // deviations would count as an inlier. Points that slide along the edge of a door or along an
-// occluding contour have such errors. Where a camera hardly moves, a few of them are enough to
+// occluding contour have such errors. If the camera hardly moves, a few such points are enough to
 // change the scale.
 //
 // `chi2`: the squared reprojection errors of the inliers, in units of the standard deviations of
-// the sensor divided by `precision`. `points`: the number of points that were fitted to them.
-// With n errors of two equations each and three unknowns per point, the share
+// the sensor divided by `precision`. `points`: the number of points that were fitted to them. With
+// n errors of two equations each and three unknowns per point, the share
 //   f = max(0.3, 1 - 3 points / (2 n))
 // of the equations is free. The median of chi-square with two degrees of freedom is 2 ln 2, so
 //   sigma = sqrt(median(chi2) / (2 ln 2 f)) / precision

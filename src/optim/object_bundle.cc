@@ -80,7 +80,7 @@ void ObjectBundle::AddView(const Map& map, const ObjectObservation& seen, double
   ObjectConstraint constraint = MakeObjectConstraint(camera_, view, detection.lines, object.before,
                                                      misfit_px, options_.constraint);
   auto moving_part = std::make_unique<ObjectSumCost>(ObjectSumCost::Camera::kMoving);
-  for (auto* const cost : {&constraint.outline, &constraint.depth}) {
+  for (auto* const cost : {&constraint.silhouette, &constraint.depth}) {
     if (*cost == nullptr || !IsDefined(**cost, camera, object.pose, object.log_axes)) {
       continue;
     }

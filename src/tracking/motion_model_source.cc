@@ -17,7 +17,7 @@ struct LevelRange {
 
 // When the camera moves forward, patches grow and are found at higher levels; when it moves
 // backward, they are found at lower levels. For a monocular sensor the motion is not known in
-// metres, so all near levels are searched.
+// metres, so only a change by one level is allowed, in both directions.
 LevelRange LevelsAfterMotion(int level, double forward, const Sensor& sensor) {
   if (sensor.IsMonocular() || std::abs(forward) <= sensor.baseline()) {
     return {level - 1, level + 1};

@@ -17,7 +17,8 @@ struct PoseEstimate {
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
   int inliers = 0;                    // landmarks that agree with the pose
   int used_objects = 0;               // objects that constrain the pose
-  // A keyframe that shows the same place as the frame; invalid if the landmarks tell the place.
+  // A keyframe that shows the same place as the frame; invalid if the landmarks determine the
+  // place.
   KeyframeId keyframe_of_place;
 
   // The number of landmarks that would constrain the pose as much as the landmarks and objects do.

@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// How many masks of one or more frames became detections, and why the others did not.
+// The numbers of masks of one or more frames that became detections, and that did not, by reason.
 struct DetectionCounts {
   size_t detections = 0;
   size_t frames_with_masks = 0;

@@ -6,9 +6,9 @@
 
 namespace hullslam {
 
-// How detections and their lines are made from instance masks.
+// The options for making detections and their lines from instance masks.
 struct DetectionOptions {
-  ObjectPrimitive primitive = ObjectPrimitive::kSupport;  // what the lines are made from
+  ObjectPrimitive primitive = ObjectPrimitive::kSupport;  // the lines are made from it
   double epsilon_px = 3.0;       // tolerance for simplifying hull or contour (Douglas-Peucker)
   int uniform_directions = 8;    // of support lines, in addition to the edges of the hull
   double min_line_px = 5.0;      // length; shorter edges give no line

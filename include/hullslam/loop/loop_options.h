@@ -17,8 +17,9 @@ struct LoopOptions {
   // consistency), twice as many landmarks are needed.
   int min_supporters = 2;
 
-  // The drift budget (as in OKVIS2, Leutenegger 2022): how much a correction may move and turn the
-  // query, relative to what the camera has travelled and turned since the candidate.
+  // The drift budget (as in OKVIS2, Leutenegger 2022): the largest translation and rotation of the
+  // query by a correction, relative to the length of the camera's way and the sum of its rotations
+  // since the candidate.
   double drift_base = 0.2;         // m
   double drift_per_metre = 0.05;   // m
   double drift_per_radian = 0.02;  // m

@@ -31,7 +31,8 @@ struct Keyframe {
   IslandId island{0};                 // the part of the map that it belongs to (Map::BeginIsland)
 };
 
-// What is kept of a culled keyframe, so that frames tracked relative to it still have a pose.
+// The record of a culled keyframe, by which frames that were tracked relative to it still have a
+// pose.
 struct CulledKeyframe {
   FrameId frame;
   // The pose relative to the parent, which may be culled later itself. It has no reference if the

@@ -30,7 +30,7 @@ class Map {
  public:
   // A map whose keyframes are not indexed by their words.
   Map() = default;
-  // `vocabulary` is the one that the words of all frames are from; null: the index stays empty.
+  // `vocabulary` is the one of the words of all frames. If it is null, the index stays empty.
   explicit Map(std::shared_ptr<const Vocabulary> vocabulary) : vocabulary_(std::move(vocabulary)) {}
   // A map that was stored. The tables are not checked; map/restored_map.h does this.
   explicit Map(MapTables tables, std::shared_ptr<const Vocabulary> vocabulary = nullptr);
@@ -96,7 +96,7 @@ class Map {
   // Forgets which landmarks and objects were replaced before the snapshot of this revision was
   // taken. To be called when no message with ids of older snapshots can arrive any more.
   void ForgetReplaced(uint32_t revision);
-  // How many replaced ids are remembered.
+  // The number of remembered replacements.
   size_t replaced_count() const { return replaced_landmarks_.size() + replaced_objects_.size(); }
 
   // Islands are parts of the map between which no relative pose is known: a monocular camera begins
@@ -105,8 +105,8 @@ class Map {
   // is number 0, and the others have larger numbers the later they were begun. map/islands.h joins
   // and removes islands.
   IslandId BeginIsland();
-  // How many islands were begun and how many were joined to an older one, in this run. A map of
-  // earlier sessions counts as one island.
+  // The numbers of islands that were begun in this run, and of those that were joined to an older
+  // one. A map of earlier sessions counts as one island.
   size_t islands_begun() const { return island_sizes_.size(); }
   size_t islands_joined() const { return islands_joined_; }
   // The number of keyframes of an island, without culled ones; 0 after the island was joined or
@@ -125,7 +125,7 @@ class Map {
   // parents (see DetachFromTree). Its loop edges become edges of its parent: without them a later
   // pose graph could open the loops again, and the parent is near enough to close them.
   void CullKeyframe(KeyframeId keyframe);
-  // What is kept of a culled keyframe; null for any other.
+  // The record of a culled keyframe; null if the keyframe is not culled.
   const CulledKeyframe* FindCulled(KeyframeId keyframe) const { return culled_.Find(keyframe); }
   // The pose of a keyframe, also of a culled one.
   Rigid3 CamFromWorld(KeyframeId keyframe) const;
@@ -142,11 +142,12 @@ class Map {
   // removed with its island; then the keyframe has no pose.
   KeyframeId NearestAlive(KeyframeId keyframe) const;
 
-  // How much the observation of a landmark at this keypoint counts: an observation with depth
-  // constrains all three coordinates, like two observations without depth.
+  // The weight of the observation of a landmark at this keypoint. It is 2 with depth and 1 without,
+  // because an observation with depth constrains all three coordinates, like two observations
+  // without depth.
   static int ObservationWeight(const Frame& frame, uint32_t keypoint);
 
-  // How many corrections have been applied (map/correction.h).
+  // The number of corrections that were applied (map/correction.h).
   uint32_t correction_count() const { return correction_count_; }
   void CountCorrection() { ++correction_count_; }
 

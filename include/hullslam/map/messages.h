@@ -52,8 +52,8 @@ struct KeyframeRequest {
   RelativePose pose;
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
   std::vector<Sighting> sightings;    // one per landmark
-  // Map::revision() of the oldest snapshot that the ids were taken from. Later requests have no
-  // older one, so the mapper forgets what was replaced before it.
+  // Map::revision() of the oldest snapshot that the ids were taken from. Later requests do not
+  // refer to older snapshots, so the mapper forgets older replacements.
   uint32_t oldest_revision = 0;
 };
 
@@ -97,7 +97,7 @@ struct MapCorrection {
   std::optional<LoopEdge> loop;
 };
 
-// What the mapper receives.
+// The messages that the mapper receives.
 using MapMessage = std::variant<InitialMap, KeyframeRequest, MapCorrection>;
 
 enum class TrackingState { kNotInitialized, kTracked, kLost };
@@ -113,7 +113,7 @@ struct TrackedFrame {
   int inliers = 0;        // landmarks found
 };
 
-// What tracking found in one frame: for viewers and callbacks.
+// The result of tracking for one frame, for viewers and callbacks.
 struct FrameReport {
   TrackedFrame tracked;
   std::shared_ptr<const Frame> frame;

@@ -41,7 +41,7 @@ class ObjectMapper {
   // before the session. Returns whether there are such observations.
   bool SplitOff(Map& map, ObjectId object, const ObjectLandmark& former, FrameId session);
 
-  // How often an object was rejected, for each reason.
+  // The number of rejections of objects, by reason.
   const std::map<ObjectRejection, size_t>& rejections() const { return rejections_; }
 
  private:

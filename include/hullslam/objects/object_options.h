@@ -91,7 +91,7 @@ struct CullingOptions {
 // The conditions for an object of a loaded map to count as gone or new; see FindObjectChanges.
 struct ChangeOptions {
   int min_keyframes = 3;         // should show an object before it can count as gone or new
-  double max_found_ratio = 0.2;  // it is found in at most this share of them
+  double max_found_ratio = 0.2;  // it is found in a smaller share of these keyframes
   double min_overlap = 0.25;     // IoU of its projected ellipse and a hull that may show it
   double min_inside = 0.6;       // share of the object that must be in the image
   // The location of an object also counts as seen if the depth image shows this share of the
@@ -145,7 +145,7 @@ struct ObjectPoseOptions {
   // common distance of all objects.
   double prior_rotation = 0.1;     // radians
   double prior_translation = 0.1;  // of the mean distance of the objects
-  int min_objects = 2;             // so many objects determine a pose without points
+  int min_objects = 2;             // number of objects that determine a pose without points
 };
 
 // Bundle adjustment: quadrics, poses and landmarks are optimised together. Detections in keyframes

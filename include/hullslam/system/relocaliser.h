@@ -38,8 +38,8 @@ class Relocaliser {
   Relocaliser(const Relocaliser&) = delete;
   Relocaliser& operator=(const Relocaliser&) = delete;
 
-  // Null if the frame is not recognised, or if what it shows is ambiguous. The same frame, options
-  // and map give the same bits.
+  // Null if the frame is not recognised, or if it fits two places of the map. The same frame,
+  // options and map give the same bits.
   std::optional<RelocalisedPose> Find(const Frame& frame) const;
 
  private:

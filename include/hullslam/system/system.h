@@ -35,7 +35,7 @@ enum class PipelineKind {
   kRealtime,    // like kThreaded, but never waits; for live cameras
 };
 
-// How many masks of a run became detections, and why the others did not.
+// The numbers of masks of a run that became detections, and that did not, by reason.
 struct ObjectCounts {
   size_t detections = 0;
   size_t frames_with_masks = 0;
@@ -63,14 +63,14 @@ class System {
   System(const SystemOptions& options, PipelineKind kind, SystemStart start = {});
   ~System();
 
-  // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order that Camera.RGB says; `depth` as in
+  // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order that Camera.RGB sets; `depth` as in
   // ImageInput, empty if SystemOptions::sensor is monocular. `masks` are those of the objects in
   // the image, in its raw pixels. Throws InputError for images of another type or size and for
   // masks that ValidateMasks() refuses. Time stamps (s) must increase; throws CheckError otherwise.
   // A refused frame changes nothing.
   //
   // If mapping fails, this call or a later one throws its exception, and so do all calls of Track
-  // and Finish after it. map() and trajectory() then give what was published before.
+  // and Finish after it. map() and trajectory() then give the last published state.
   TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
                      std::vector<InstanceMask> masks = {});
   TrackedFrame Track(const ImageInput& image);

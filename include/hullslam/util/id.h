@@ -23,7 +23,7 @@ inline constexpr bool kIsRecycled<struct LandmarkTag> = true;
 // Most ids are assigned in increasing order and are never used again. An id of a recycled kind
 // consists of a slot, which is used again, and of a generation, which counts these uses. So the id
 // of an erased entity never equals that of a later one. Ids of a recycled kind are ordered by their
-// slots and say nothing about age.
+// slots, which does not depend on age.
 template <typename Tag>
 struct Id {
   static constexpr bool kHasGeneration = kIsRecycled<Tag>;

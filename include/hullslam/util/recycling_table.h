@@ -140,7 +140,7 @@ class RecyclingTable {
     cells_.Put(SlotId(id.slot()), {.id = id, .value = std::nullopt, .next_free = first_free_});
     first_free_ = id.slot();
   }
-  // Of the slots below `count`, those that neither hold a value nor are free will not be used
+  // After this call, slots below `count` that neither hold a value nor are free will not be used
   // again.
   void SkipSlots(uint32_t count) { cells_.SkipIds(SlotId(count)); }
 
