@@ -13,6 +13,7 @@
 
 #include "frame/measure_point.h"
 #include "map/invariants.h"
+#include "map/made_map.h"
 #include "optim/keypoint_weights.h"
 #include "optim/robust.h"
 #include "support/pose_distance.h"
