@@ -211,8 +211,8 @@ double ParallaxAt(double depth, const View& a, const View& b) {
 // The pair's own parallax must not decide, because noise would select pairs that are too near. The
 // scale of the map would then shrink wherever the camera only turns. So the expected parallax is
 // computed from the depth of the landmarks that are nearest in the image.
-std::optional<Eigen::Vector3d> LocateWithoutDepth(const View& a, const View& b,
-                                                  const NearbyDepth& nearby, const Sensor& sensor) {
+std::optional<Eigen::Vector3d> LocateMonocular(const View& a, const View& b,
+                                               const NearbyDepth& nearby, const Sensor& sensor) {
   const std::optional<double> depth = nearby.At(a.pixel);
   const double noise = std::hypot(a.scale, b.scale) / sensor.camera.fx;
   if (!depth || ParallaxAt(*depth, a, b) < kMinParallaxSigmas * noise) {
@@ -237,7 +237,7 @@ std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId id, const Sensor& s
       const View a = MakeView(map.keyframes().At(id), pair.query, sensor);
       const View b = MakeView(map.keyframes().At(neighbour), pair.keypoint, sensor);
       const std::optional<Eigen::Vector3d> point =
-          nearby ? LocateWithoutDepth(a, b, *nearby, sensor) : Locate(a, b, sensor);
+          nearby ? LocateMonocular(a, b, *nearby, sensor) : Locate(a, b, sensor);
       if (!point || !IsConsistent(a, b, *point, sensor)) {
         continue;
       }

@@ -204,7 +204,7 @@ TEST_F(BundleAdjustment, AnObservationIsAnOutlierFromAFewStandardDeviationsOn) {
 }
 
 // Two standard deviations of the sensor, but seven of the errors that the keypoints have here.
-TEST_F(BundleAdjustment, WithoutDepthErrorsAreMeasuredByThoseOfTheOtherKeypoints) {
+TEST_F(BundleAdjustment, MonocularErrorsAreMeasuredByThoseOfTheOtherKeypoints) {
   constexpr uint32_t kShifted = 20;  // keypoint
   const SyntheticWorld world({.points = 300, .pixel_noise = 0.3, .depth_share = 0.0});
   made_ = MakeSyntheticMap(world, {0, 10, 20, 30, 40, 50}, [&](Frame& frame, const Rigid3&) {
@@ -227,7 +227,7 @@ TEST_F(BundleAdjustment, WithoutDepthErrorsAreMeasuredByThoseOfTheOtherKeypoints
 
 // A fifth of the standard deviations of the sensor is the least that is believed. Otherwise the
 // rounding of exact keypoints would make outliers.
-TEST_F(BundleAdjustment, WithoutDepthExactKeypointsAreNoOutliers) {
+TEST_F(BundleAdjustment, MonocularExactKeypointsAreNoOutliers) {
   Sensor sensor = world_.sensor();
   sensor.kind = SensorKind::kMonocular;
   Perturb(0.002, 0.005);
@@ -239,7 +239,7 @@ TEST_F(BundleAdjustment, WithoutDepthExactKeypointsAreNoOutliers) {
 
 // Where an edge passes behind another, there is a corner that slides along both. It is found at
 // several levels of the pyramid, so that it makes several landmarks.
-TEST_F(BundleAdjustment, WithoutDepthACornerCountsOnceHoweverOftenItIsFound) {
+TEST_F(BundleAdjustment, MonocularACornerCountsOnceHoweverOftenItIsFound) {
   const SyntheticWorld world({.points = 60, .pixel_noise = 0.1, .depth_share = 0.0});
   Sensor sensor = world.sensor();
   sensor.kind = SensorKind::kMonocular;
@@ -279,7 +279,7 @@ TEST_F(BundleAdjustment, WithoutDepthACornerCountsOnceHoweverOftenItIsFound) {
 }
 
 // A step of Newton from where a point is goes nowhere, because Cauchy's loss is least there.
-TEST_F(BundleAdjustment, WithoutDepthCauchysLossIsMinimised) {
+TEST_F(BundleAdjustment, MonocularCauchysLossIsMinimised) {
   // So much noise that the precision of the keypoints is taken for that of the sensor.
   const SyntheticWorld world({.points = 300, .pixel_noise = 1.2, .depth_share = 0.0});
   Sensor sensor = world.sensor();

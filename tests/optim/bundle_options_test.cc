@@ -6,7 +6,7 @@
 namespace hullslam {
 namespace {
 
-TEST(BundleOptions, WithoutDepthTheyAreNoLessPrecise) {
+TEST(BundleOptions, ForMonocularTheyAreNoLessPrecise) {
   const BundleOptions local = BundleOptions().ForMonocular();
   EXPECT_GT(local.robust_iterations, BundleOptions().robust_iterations);
   EXPECT_GT(local.final_iterations, BundleOptions().final_iterations);
