@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 #include "estimators/absolute_pose.h"
 #include "estimators/similarity.h"
 

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 #include "optim/joint_pose_optimization.h"
 #include "optim/pose_optimization.h"
 

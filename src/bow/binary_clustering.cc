@@ -15,7 +15,7 @@ constexpr size_t kBits = 256;
 constexpr size_t kChunk = 4096;      // descriptors per task
 constexpr int kMostIterations = 30;  // the last changes of a large set are small
 
-// How many descriptors of a cluster have each bit.
+// For each bit, the number of descriptors of a cluster that have it.
 struct BitCounts {
   std::array<uint32_t, kBits> ones{};
   uint32_t members = 0;
@@ -30,7 +30,8 @@ void AddBits(const Descriptor& descriptor, uint32_t* ones) {
   }
 }
 
-// Lowers each distance to that to `centre`, if that is less. Returns their sum.
+// Replaces each distance by the distance to `centre` if that is smaller. Returns the sum of the
+// distances.
 HULLSLAM_FUNCTION_CLONES
 uint64_t LowerDistances(std::span<const Descriptor> descriptors, const Descriptor& centre,
                         int* distances) {
@@ -116,7 +117,8 @@ Descriptor Majority(const BitCounts& counts) {
   return centre;
 }
 
-// Moves the centres to the majorities of their clusters. A centre without descriptors stays.
+// Moves the centres to the majorities of their clusters. A centre without descriptors does not
+// move.
 bool MoveCentres(const std::vector<BitCounts>& counts, std::vector<Descriptor>& centres) {
   bool has_moved = false;
   for (size_t c = 0; c < centres.size(); ++c) {
@@ -141,7 +143,7 @@ std::vector<BinaryCluster> ClusterBinary(std::span<const Descriptor> descriptors
   std::vector<BitCounts> counts = Assign(descriptors, centres, runner, nearest);
   for (int i = 0; i < kMostIterations && MoveCentres(counts, centres); ++i) {
     counts = Assign(descriptors, centres, runner, nearest);
-    if (cancellation != nullptr && cancellation->IsRequested()) {
+    if (IsRequested(cancellation)) {
       break;
     }
   }

@@ -9,8 +9,8 @@
 namespace hullslam {
 namespace {
 
-// The place of a keyframe in the list of a word, or where it would be inserted.
-auto PlaceOf(auto& postings, KeyframeId keyframe) {
+// The posting of a keyframe in the list of a word, or the position where it would be inserted.
+auto FindPosting(auto& postings, KeyframeId keyframe) {
   return std::lower_bound(
       postings.begin(), postings.end(), keyframe,
       [](const Posting& posting, KeyframeId id) { return posting.keyframe < id; });
@@ -32,9 +32,10 @@ void InvertedIndex::Add(KeyframeId keyframe, const BowVector& vector) {
       continue;
     }
     std::vector<Posting>& list = postings_.Mutable(word);
-    const auto place = PlaceOf(list, keyframe);
-    Check(place == list.end() || place->keyframe != keyframe, "the keyframe has the word already");
-    list.insert(place, {keyframe, weight});
+    const auto posting = FindPosting(list, keyframe);
+    Check(posting == list.end() || posting->keyframe != keyframe,
+          "the keyframe has the word already");
+    list.insert(posting, {keyframe, weight});
   }
   keyframe_end_ = std::max(keyframe_end_, keyframe.value + 1);
 }
@@ -43,12 +44,12 @@ void InvertedIndex::Remove(KeyframeId keyframe, const BowVector& vector) {
   for (const auto& [word, weight] : vector) {
     const std::vector<Posting>* const old = postings_.Find(word);
     Check(old != nullptr, "no keyframe has the word");
-    const auto place = PlaceOf(*old, keyframe);
-    Check(place != old->end() && place->keyframe == keyframe, "the keyframe lacks the word");
+    const auto posting = FindPosting(*old, keyframe);
+    Check(posting != old->end() && posting->keyframe == keyframe, "the keyframe lacks the word");
     if (old->size() == 1) {
       postings_.Erase(word);
     } else {
-      const auto index = place - old->begin();
+      const auto index = posting - old->begin();
       std::vector<Posting>& list = postings_.Mutable(word);
       list.erase(list.begin() + index);
     }

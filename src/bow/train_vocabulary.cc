@@ -37,7 +37,7 @@ std::vector<std::vector<BinaryCluster>> Divide(const std::vector<OpenNode>& open
   constexpr size_t kFew = 16;
   std::vector<std::vector<BinaryCluster>> divided(open.size());
   const auto divide = [&](size_t i, TaskRunner& inner) {
-    if (cancellation == nullptr || !cancellation->IsRequested()) {
+    if (!IsRequested(cancellation)) {
       const uint64_t seed = HashSeed(options.seed, static_cast<uint32_t>(i),
                                      "vocabulary level " + std::to_string(level));
       divided[i] = ClusterBinary(open[i].descriptors, options.branching, seed, inner, cancellation);
@@ -101,7 +101,7 @@ std::vector<float> InverseDocumentFrequencies(const Vocabulary& vocabulary,
   std::vector<float> frequencies;
   frequencies.reserve(counts.size());
   for (const uint32_t count : counts) {
-    // Every word is the nearest one of the descriptors that it was made of.
+    // Every word is the nearest word of the descriptors from which it was made.
     Check(count > 0, "a word occurs in no image");
     frequencies.push_back(static_cast<float>(
         std::log(static_cast<double>(images.size()) / static_cast<double>(count))));
@@ -124,7 +124,7 @@ std::optional<Vocabulary> TrainVocabulary(std::span<const std::vector<Descriptor
   Check(!open.front().descriptors.empty(), "a vocabulary needs descriptors");
   for (int level = 0; level < options.levels && !open.empty(); ++level) {
     const auto divided = Divide(open, level, options, runner, cancellation);
-    if (cancellation != nullptr && cancellation->IsRequested()) {
+    if (IsRequested(cancellation)) {
       return std::nullopt;
     }
     open = AddLevel(open, divided, nodes);

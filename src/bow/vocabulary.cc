@@ -25,7 +25,7 @@ class Reader {
     throw InputError(fmt::format("{}: {}", name_, what));
   }
 
-  // Everything that the header alone can tell.
+  // Reads the header and checks everything that can be checked without the rest of the file.
   VocabularyHeader ReadHeader() const {
     if (!Vocabulary::IsBinary(bytes_)) {
       Fail("is not a vocabulary of HullSLAM");
@@ -71,8 +71,9 @@ class Reader {
   std::string_view name_;
 };
 
-// What is wrong with the tree; empty if it is one. If the children of node 0 begin at node 1, and
-// those of each node where those of the node before it end, then every other node has one parent.
+// The fault of the tree; empty if it is valid. If the children of node 0 begin at node 1, and those
+// of each other node begin where those of the node before it end, then every node but the root has
+// one parent.
 std::string FindTreeFault(std::span<const uint32_t> first_child, const VocabularyHeader& header) {
   const uint32_t count = header.node_count;
   if (first_child[0] != 1 || first_child[count] != count) {
@@ -94,7 +95,7 @@ std::string FindTreeFault(std::span<const uint32_t> first_child, const Vocabular
              : std::string();
 }
 
-// What is wrong with the numbers of the words; empty if they are in depth-first order.
+// The fault of the numbers of the words; empty if they are in depth-first order.
 std::string FindWordFault(std::span<const uint32_t> first_child,
                           std::span<const uint32_t> first_word, const VocabularyHeader& header) {
   if (first_word[0] != 0) {

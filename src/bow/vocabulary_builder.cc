@@ -80,7 +80,7 @@ std::vector<uint32_t> NumberWords(const std::vector<uint32_t>& first_child) {
   return first_word;
 }
 
-// `bytes` comes with room for the file.
+// `bytes` has the size of the file.
 void WriteParts(const LevelOrder& order, std::span<const TreeNode> nodes,
                 const VocabularyLayout& layout, std::byte* bytes) {
   const size_t count = order.given.size();

@@ -16,9 +16,10 @@ struct TreeNode {
   float weight = 0.0f;  // inverse document frequency; only used if the node has no children
 };
 
-// Makes a vocabulary of the nodes other than the root. The order of siblings stays. Nodes without
-// children are its words. Throws CheckError if there are no nodes, a parent is not an earlier node,
-// a node has more than `branching` children, or a leaf is more than `levels` steps from the root.
+// Makes a vocabulary from all nodes except the root, which is not given. The order of siblings is
+// kept. Nodes without children are the words. Throws CheckError if there are no nodes, a parent is
+// not an earlier node, a node has more than `branching` children, or a leaf is more than `levels`
+// steps from the root.
 Vocabulary BuildVocabulary(int branching, int levels, std::span<const TreeNode> nodes);
 
 }  // namespace hullslam

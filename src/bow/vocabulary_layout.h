@@ -20,7 +20,7 @@ inline bool IsPossibleWeight(float weight) {
   return weight >= 0.0f && weight <= kMostWordWeight;  // false for NaN
 }
 
-// The first 64 bytes of a binary vocabulary. After it follow, for N nodes and W words:
+// The first 64 bytes of a binary vocabulary. They are followed, for N nodes and W words, by:
 //   N descriptors of 32 bytes        first_child: N + 1 numbers of 4 bytes
 //   first_word: N numbers of 4 bytes weights: W floats
 // See class Vocabulary for their meaning.
@@ -37,7 +37,7 @@ struct VocabularyHeader {
 };
 static_assert(sizeof(VocabularyHeader) == 64);
 
-// Where the parts of the file begin, in bytes.
+// The offsets of the parts of the file, in bytes.
 struct VocabularyLayout {
   uint64_t descriptors = sizeof(VocabularyHeader);
   uint64_t first_child = 0;
@@ -52,8 +52,8 @@ struct VocabularyLayout {
         size(weights + 4 * word_count) {}
 };
 
-// XXH3 with 64 bits of everything except the hash itself: the hash of the header, with 0 in place
-// of the hash, is the seed for what follows the header. `bytes` must contain a header.
+// The 64-bit XXH3 hash of everything except the hash itself. The hash of the header, with 0 instead
+// of the stored hash, is the seed for the rest of the file. `bytes` must contain a header.
 uint64_t HashVocabulary(std::span<const std::byte> bytes);
 
 }  // namespace hullslam

@@ -12,7 +12,7 @@
 namespace hullslam {
 namespace {
 
-// With up to six digits.
+// The number with up to six digits.
 std::string Print(double value) {
   std::ostringstream text;
   text << value;
@@ -56,7 +56,7 @@ std::string Describe(const char* key, double value, const Range& range) {
                                      "', expected a number " + range.ToString();
 }
 
-// The coefficient that moves a raw pixel most.
+// The name of the coefficient that moves a raw pixel most.
 std::string NameCoefficient(const PinholeCamera& camera, const Eigen::Vector2d& raw) {
   const double r = std::hypot((raw.x() - camera.cx) / camera.fx, (raw.y() - camera.cy) / camera.fy);
   struct Term {

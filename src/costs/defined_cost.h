@@ -7,9 +7,10 @@
 
 namespace hullslam {
 
-// A cost that is that of a far outlier where another one is not defined: all residuals are kFar and
-// do not change. Ceres refuses every step to a place where a cost is not defined, so one point that
-// a step brings behind one camera would hold the whole map.
+// Wraps a cost. Where it is undefined, returns large constant residuals (kFar) with zero
+// derivatives, as for a far outlier. Ceres rejects every step to parameters at which a cost is
+// undefined. So without the wrapper, a single point that a step moves behind one camera would hold
+// the whole map.
 class DefinedCost final : public ceres::CostFunction {
  public:
   static constexpr double kFar = 100.0;  // sigmas

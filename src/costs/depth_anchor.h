@@ -9,9 +9,9 @@
 
 namespace hullslam {
 
-// Constrains an ellipsoid by points of its surface that a depth camera measured. These constrain
-// what silhouettes from nearby views do not. There is one residual per point p (m, camera frame):
-// its distance from the surface along the ray to the centre,
+// Constrains an ellipsoid by points of its surface that a depth camera measured. They constrain the
+// parts of the shape that silhouettes from nearby views leave free. There is one residual per point
+// p (m, camera frame), its distance from the surface along the ray to the centre:
 //   |y| (1 - 1 / |A^-1 y|) / sigma
 // with y = p - t, the half axes A of QuadricInCamera, and sigma in m. It is negative inside the
 // ellipsoid. At the centre, where the ray has no direction, its derivative is zero. Parameters:

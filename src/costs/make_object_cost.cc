@@ -10,7 +10,7 @@ std::unique_ptr<ceres::CostFunction> MakeObjectCost(ObjectResidual residual,
                                                     const Detection& detection,
                                                     std::span<const SilhouetteLine> lines,
                                                     double sigma) {
-  if (!IsSupported(residual, detection.primitive)) {
+  if (!AcceptsPrimitive(residual, detection.primitive)) {
     return nullptr;
   }
   return KindOf(residual).make_cost(

@@ -13,11 +13,11 @@
 namespace hullslam {
 
 // The residual of a detection over the parameters of QuadricInCamera: one row per line or contour
-// point (at most 64, evenly chosen), or a single row. `lines` are the detection's own or moved
-// ones; the other residuals take the detection's contour, hull, ellipse or box. `sigma` is in the
-// unit of the residual: see ResidualOfPixelError. Null where the residual cannot be computed from
-// the detection's primitive (IsSupported) or where the detection lacks what the residual needs: a
-// line, three points of a contour, an ellipse.
+// point (at most 64, evenly chosen), or a single row. `lines` are the detection's lines, possibly
+// after misfit compensation; residuals that use no lines take the detection's contour, hull,
+// ellipse or box. `sigma` is in the unit of the residual: see ResidualOfPixelError. Null where the
+// residual cannot be computed from the detection's primitive (AcceptsPrimitive) or where the
+// detection lacks the data of the residual: a line, three points of a contour, or an ellipse.
 std::unique_ptr<ceres::CostFunction> MakeObjectCost(ObjectResidual residual,
                                                     const PinholeCamera& camera,
                                                     const Detection& detection,

@@ -36,7 +36,7 @@ std::vector<std::string> ObjectResidualNames() {
   return names;
 }
 
-bool IsSupported(ObjectResidual residual, ObjectPrimitive primitive) {
+bool AcceptsPrimitive(ObjectResidual residual, ObjectPrimitive primitive) {
   const auto primitives = KindOf(residual).primitives;
   return std::find(primitives.begin(), primitives.end(), primitive) != primitives.end();
 }

@@ -10,10 +10,11 @@
 
 namespace hullslam {
 
-// The approximate size of a residual, in its own unit, when the measured outline is `error_px`
-// outside of the true one everywhere. Used as the sigma of a residual whose outline has a sigma of
-// `error_px`, it gives all kinds of residuals the same weight. With r the radius of the circle that
-// has the area of the projected ellipse, and z the depth of the ellipsoid's centre:
+// The approximate size of a residual, in its own unit, when the whole measured silhouette is
+// `error_px` outside of the true one. As the sigma of a residual whose silhouette has a sigma of
+// `error_px`, it gives all kinds of residuals the same weight. Let r be the radius of the circle
+// that has the area of the projected ellipse, z the depth of the ellipsoid's centre and f the focal
+// length:
 //   tangent          error_px
 //   algebraic_plane  2 h e with h = r z / f and e = error_px z / f
 //   algebraic_point  2 error_px / r

@@ -19,7 +19,7 @@ Rigid3 FromBlock(const double* block);
 //
 // Costs on such a block write their derivative with respect to these six numbers into the first six
 // columns of the block's Jacobian, and zero into the seventh. PlusJacobian is [I; 0] to match. So
-// no residual needs the derivative with respect to a quaternion, nor a product that undoes it.
+// no residual has to compute a derivative with respect to a quaternion.
 class PoseManifold final : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 7; }

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 #include "costs/pose_manifold.h"
 
 namespace hullslam {

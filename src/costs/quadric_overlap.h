@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// How much an ellipse and a region overlap: area of the intersection over area of the union.
+// The overlap of an ellipse and a region: area of the intersection over area of the union.
 struct Overlap {
   double iou = 0.0;  // 0 to 1; its derivative is zero if they are disjoint
   ByEllipse by_ellipse = ByEllipse::Zero();

@@ -10,9 +10,9 @@
 
 namespace hullslam {
 
-// Pulls an ellipsoid towards a given shape (R0, t0, half axes s0). Outlines over a small angle
-// leave a part of the shape free; without the prior it could become flat or run away there. Nine
-// residuals, each over its sigma:
+// Pulls an ellipsoid towards a given shape (R0, t0, half axes s0). Silhouettes from a small range
+// of viewing directions leave a part of the shape free; without the prior the ellipsoid could
+// become flat or grow without limit. Nine residuals, each divided by its sigma:
 //   log s - log s0,  (t - t0) / (s0_1 s0_2 s0_3)^1/3,  2 sin(angle / 2) axis of R R0^T
 // Parameters: world_from_object (PoseBlock, with PoseManifold), log half axes (3, log m).
 class QuadricPriorCost final : public ceres::SizedCostFunction<9, 7, 3> {

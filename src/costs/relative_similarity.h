@@ -9,7 +9,7 @@
 
 namespace hullslam {
 
-// How far two keyframes are from a measured similarity between them. With
+// The deviation of the poses of two keyframes from a measured similarity between them. With
 //   e = measured_b_from_a * a_from_world * b_from_world^-1,
 // which is the identity if they agree, the residual is
 //   r = inverse_sigma * (log of e's rotation (radians), e's translation, log of e's scale).

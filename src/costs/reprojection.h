@@ -3,7 +3,7 @@
 
 #include <ceres/sized_cost_function.h>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 
 namespace hullslam {
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 #include "costs/pose_manifold.h"
 
 namespace hullslam::internal {

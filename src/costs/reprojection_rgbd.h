@@ -3,16 +3,16 @@
 
 #include <ceres/sized_cost_function.h>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 
 namespace hullslam {
 
 // Reprojection error of a landmark seen with depth, in standard deviations: PointResidual at
 // cam_from_world * point,
 //   r = ((u, v, bf / z)(cam_from_world * point) - measured) / (sigma, sigma, disparity_sigma)
-// with sigma = pixel_sigma * scale of the level.
-// Parameters: cam_from_world (PoseBlock, with PoseManifold), point (m, world frame). Not defined
-// for a point that is not in front of the camera: Evaluate is false there.
+// with sigma = pixel_sigma * scale of the level. Parameters: cam_from_world (PoseBlock, with
+// PoseManifold), point (m, world frame). Not defined for a point that is not in front of the
+// camera: then Evaluate returns false.
 class RgbdReprojectionCost final : public ceres::SizedCostFunction<3, 7, 3> {
  public:
   RgbdReprojectionCost(const PinholeCamera& camera, const PointMeasurement& measurement)

@@ -8,8 +8,8 @@
 namespace hullslam {
 namespace {
 
-// Squared residual below which every loss is quadratic. Ceres' losses keep few digits there, as
-// ln(1 + x), and none below 1e-16, where the slope would be 1 / 0.
+// Below this squared residual every loss is treated as quadratic. There the losses of Ceres, such
+// as ln(1 + x), lose most digits; below 1e-16 they lose all digits, and the slope would be 1 / 0.
 constexpr double kQuadratic = 1e-8;
 
 // The loss of a squared residual and its derivative.

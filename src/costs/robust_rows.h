@@ -8,10 +8,11 @@
 
 namespace hullslam {
 
-// A cost whose residuals are robust one by one: each r becomes sqrt(weight) sign(r) sqrt(rho(r^2)).
-// Ceres itself applies a loss to all residuals of a block together, so one bad line of an object
-// would silence its good ones; and a block a line would cost several times as much. The minimum is
-// that of the sum of weight rho(r^2); `loss` may be null for none.
+// Wraps a cost and applies a robust loss to each residual separately: each residual r becomes
+// sqrt(weight) sign(r) sqrt(rho(r^2)). Ceres itself applies a loss to the squared norm of all
+// residuals of a block. With all lines of an object in one block, a single bad line would take away
+// the influence of the good ones. One residual block per line would be several times slower. The
+// cost that is minimised is 1/2 the sum of weight rho(r^2). `loss` is null for rho(s) = s.
 class RobustRowsCost final : public ceres::CostFunction {
  public:
   RobustRowsCost(std::unique_ptr<ceres::CostFunction> cost,
@@ -23,8 +24,8 @@ class RobustRowsCost final : public ceres::CostFunction {
   // The residuals without loss and weight.
   const ceres::CostFunction& plain() const { return *cost_; }
 
-  // What a plain residual r adds to the sum that is minimised, and the weight of its square in
-  // iteratively reweighted least squares: weight rho(r^2) and weight rho'(r^2).
+  // The contribution of a plain residual r to the sum, weight rho(r^2), and the weight of its
+  // square in iteratively reweighted least squares, weight rho'(r^2).
   double CostOf(double residual) const;
   double WeightOf(double residual) const;
 

@@ -82,7 +82,7 @@ class PoseProblem {
   }
 
  private:
-  // Of PointResidual by the parameters of Retract.
+  // Derivative of PointResidual by the parameters of Retract.
   Eigen::Matrix<double, 3, 6> JacobianAt(const Eigen::Vector3d& in_cam, size_t match) const {
     Eigen::Matrix<double, 3, 6> jacobian;
     jacobian.rightCols<3>() = PointResidualJacobian(camera_, matches_[match].measurement, in_cam);

@@ -23,14 +23,14 @@ struct AbsolutePose {
   bool ok() const { return failure.empty(); }
 };
 
-// The pose of a camera from matches between landmarks and keypoints, of which many may be wrong and
-// nothing is known before. RANSAC with P3P; an inlier has an error of pixel and, where it is known,
-// depth (PointChi2) below OutlierBound. The pose is fitted to all inliers, without a robust loss;
-// OptimizePose is good to refine it. Matches whose numbers are not finite are never inliers.
+// The pose of a camera from matches between landmarks and keypoints, without an initial pose; many
+// matches may be wrong. The method is RANSAC with P3P. A match is an inlier if its error
+// (PointChi2) in pixel and, where it is known, depth is below OutlierBound. The pose is fitted to
+// all inliers, without a robust loss; OptimizePose can refine it. Matches whose numbers are not
+// finite are never inliers.
 //
-// The failure says which of these happened: there are too few matches, no three of them span a
-// triangle, too few agree, or the inliers do not determine the rotation because all but one of them
-// are nearly on one line.
+// Possible failures: there are too few matches; no three of them span a triangle; too few agree; or
+// the inliers do not determine the rotation because all but one of them are nearly on one line.
 AbsolutePose EstimateAbsolutePose(const PinholeCamera& camera,
                                   std::span<const PoseObservation> matches,
                                   const RansacOptions& options);

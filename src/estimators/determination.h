@@ -11,10 +11,11 @@
 namespace hullslam::internal {
 
 // Whether the matches of an estimate determine some of its parameters, which are angles (radians)
-// or logarithms of scales, and not one match alone does: without the match that says most, the
-// standard deviations of these parameters are still below 0.1. `informations`: for each match its
-// part of the Hessian, J^T J with J in 1 / sigmas. The result is false for points on a line with a
-// single point beside it. If that point is an outlier, they all agree on a wrong rotation.
+// or logarithms of scales, and not one match alone does. For this, the standard deviations of these
+// parameters must still be below 0.1 without the match that constrains them most. `informations`
+// has for each match its part of the Hessian, J^T J with J in 1 / sigmas. The result is false, for
+// example, for points on a line with a single point beside it: if that point is an outlier, all
+// points agree on a wrong rotation.
 template <int kSize>
 bool DetermineParameters(const std::vector<Eigen::Matrix<double, kSize, kSize>>& informations,
                          std::initializer_list<int> parameters) {

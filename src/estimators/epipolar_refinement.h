@@ -13,7 +13,7 @@ namespace hullslam {
 // variance, to first order (Sampson 1982). With correct pairs and sigmas its mean is 1.
 double SampsonError(const PinholeCamera& camera, const Rigid3& b_from_a, const PixelPair& pair);
 
-// A robust cost of a pair that grows with its error and stays below kMaxPairCost: e / (1 + e /
+// A robust cost of a pair. It grows with the error and stays below kMaxPairCost: e / (1 + e /
 // kMaxPairCost) (Geman and McClure 1987). `noise` is the true sigma of keypoints divided by the
 // sigma of the pairs.
 inline constexpr double kMaxPairCost = 9.0;

@@ -22,7 +22,8 @@ struct RansacOptions {
   // better model.
   double confidence = 0.999;
   int max_iterations = 1000;
-  // Fewer inliers are a failure. A model always needs one inlier more than a sample has.
+  // With fewer inliers the search fails. A model always needs more inliers than a sample has
+  // matches.
   size_t min_inliers = 10;
 };
 
@@ -52,9 +53,9 @@ inline int SamplesNeeded(double inlier_share, size_t sample_size, double confide
 template <size_t kSize>
 std::array<size_t, kSize> DrawSample(size_t count, std::mt19937_64& random) {
   std::array<size_t, kSize> sample;
-  for (auto place = sample.begin(); place != sample.end();) {
-    *place = random() % count;
-    place += std::find(sample.begin(), place, *place) == place ? 1 : 0;
+  for (auto index = sample.begin(); index != sample.end();) {
+    *index = random() % count;
+    index += std::find(sample.begin(), index, *index) == index ? 1 : 0;
   }
   return sample;
 }
@@ -106,7 +107,7 @@ class RansacSearch {
     return cost;
   }
 
-  // Keeps the model if it is better than all before; the first of equal ones stays.
+  // Keeps the model if it is better than all before; ties go to the first.
   bool Consider(const Model& model) {
     const double cost = Cost(model, lowest_cost_);
     if (!(cost < lowest_cost_)) {
@@ -124,7 +125,7 @@ class RansacSearch {
   }
 
   // Local optimisation (Chum, Matas and Kittler 2003): fits the model to all its inliers and
-  // chooses these again, as long as that helps.
+  // chooses the inliers again, as long as the cost falls.
   void Improve() {
     constexpr int kRounds = 6;
     for (int round = 0; round < kRounds && result_.inliers.size() > Problem::kSampleSize; ++round) {
@@ -166,7 +167,7 @@ class RansacSearch {
 //   double Error(const Model&, size_t)    squared error of a match; 1 is the bound of an inlier
 //   std::optional<Model> Refine(const Model&, const std::vector<size_t>& inliers)
 //                                         a model that fits the inliers better, if there is one
-// A failed result has the best model that was found, which is good for messages only.
+// A failed result has the best model that was found; use it in messages only.
 template <typename Problem>
 RansacResult<typename Problem::Model> Ransac(const Problem& problem, const RansacOptions& options) {
   const size_t least = std::max(options.min_inliers, Problem::kSampleSize + 1);

@@ -99,7 +99,7 @@ class SimilarityProblem {
   }
 
  private:
-  // Of the first parameters of Retract.
+  // The information of each inlier about the first kSize parameters of Retract.
   template <int kSize>
   std::vector<Eigen::Matrix<double, kSize, kSize>> InformationsOf(
       const Model& model, const std::vector<size_t>& inliers) const {

@@ -14,8 +14,8 @@
 namespace hullslam {
 
 struct SimilarityOptions {
-  // In RGB-D the scale is known: it is 1. Otherwise the quotients of the landmarks' depths take
-  // part in the fit with a low weight (SimilarityDepthResidual).
+  // In RGB-D the scale is known to be 1. For a monocular sensor the quotients of the landmarks'
+  // depths are part of the fit, with a low weight (SimilarityDepthResidual).
   bool fix_scale = false;
   RansacOptions ransac;
 };
@@ -30,15 +30,15 @@ struct Similarity {
   bool ok() const { return failure.empty(); }
 };
 
-// The similarity between the camera frames of two keyframes that see the same place, from matches
-// of which many may be wrong. RANSAC: three matches are aligned (AlignPoints); inliers are those
-// with a SimilarityError below 1, so each landmark must be seen where the other keyframe has its
-// keypoint. The similarity is fitted to all inliers, without a robust loss; OptimizeSimilarity is
-// good to refine it. Matches whose numbers are not finite, or with a landmark behind its own
-// keyframe's camera, are never inliers.
+// The similarity between the camera frames of two keyframes that see the same place, from matches,
+// many of which may be wrong. RANSAC aligns three matches at a time (AlignPoints). A match is an
+// inlier if its SimilarityError is below 1: each of the two landmarks must project to the keypoint
+// of the other keyframe. The similarity is fitted to all inliers, without a robust loss;
+// OptimizeSimilarity can refine it. Matches whose numbers are not finite, or with a landmark behind
+// its own keyframe's camera, are never inliers.
 //
-// The failure says which of these happened: there are too few matches, no three of them span a
-// triangle, too few agree, or the inliers do not determine rotation and scale.
+// Possible failures: there are too few matches; no three of them span a triangle; too few agree; or
+// the inliers do not determine rotation and scale.
 Similarity EstimateSimilarity(const PinholeCamera& camera, std::span<const SimilarityMatch> matches,
                               const SimilarityOptions& options);
 

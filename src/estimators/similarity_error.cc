@@ -21,7 +21,7 @@ SimilarityResidual SimilarityResidualInA(const PinholeCamera& camera, const Simi
   const Eigen::Vector3d in_a = a_from_b * match.point_in_b;
   const Eigen::Matrix3d by_point_in_b = PointResidualJacobian(camera, match.measured_in_a, in_a) *
                                         (a_from_b.scale * a_from_b.rotation.toRotationMatrix());
-  // The inverse of the moved similarity moves the point by the inverse step before it maps it.
+  // The inverse of the moved similarity applies the inverse step to the point and then maps it.
   return {PointResidual(camera, match.measured_in_a, in_a),
           -by_point_in_b * MotionOf(match.point_in_b)};
 }

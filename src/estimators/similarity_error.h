@@ -4,14 +4,14 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/sim3.h"
 
 namespace hullslam {
 
-// A place that two keyframes a and b see. Each of them has a landmark for it; the two landmarks
-// differ by the drift between the keyframes.
+// A point of the world that two keyframes a and b see. Each keyframe has its own landmark for it.
+// The positions of the two landmarks differ by the drift between the keyframes.
 struct SimilarityMatch {
   Eigen::Vector3d point_in_a = Eigen::Vector3d::Zero();  // a's landmark in a's camera frame
   Eigen::Vector3d point_in_b = Eigen::Vector3d::Zero();  // b's landmark in b's camera frame
@@ -41,7 +41,8 @@ struct SimilarityChi2 {
   double in_b;
 };
 
-// The larger of the two errors over its OutlierBound: up to 1, the match is an inlier.
+// The larger one of the two errors over its OutlierBound. The match is an inlier if it is at
+// most 1.
 inline double SimilarityError(const PinholeCamera& camera, const SimilarityMatch& match,
                               const TwoWaySimilarity& similarity) {
   const SimilarityChi2 chi2(camera, match, similarity);
@@ -56,17 +57,17 @@ struct SimilarityResidual {
   Eigen::Matrix<double, 3, 7> jacobian;
 };
 
-// In a's image, and in b's. The point must be in front of the camera.
+// The residuals in a's image and in b's. The point must be in front of the camera.
 SimilarityResidual SimilarityResidualInA(const PinholeCamera& camera, const SimilarityMatch& match,
                                          const TwoWaySimilarity& similarity);
 SimilarityResidual SimilarityResidualInB(const PinholeCamera& camera, const SimilarityMatch& match,
                                          const TwoWaySimilarity& similarity);
 
-// How well the two landmarks agree about the depth in b's frame:
+// The difference of the two landmarks' depths in b's frame:
 //   r = (log z(b_from_a * point_in_a) - log z(point_in_b)) / 0.2,
-// with its derivative as above. If both keyframes are at the same place, the reprojection errors do
-// not depend on the scale, and only this constrains it. Depths that were triangulated may be wrong
-// by some 10 %, so the weight is low. Both points must be in front of camera b.
+// with its derivative as above. If both cameras are at the same position, the reprojection errors
+// do not depend on the scale, and only this residual constrains it. Triangulated depths may be
+// wrong by some 10 %, so the weight is low. Both points must be in front of camera b.
 struct SimilarityDepthResidual {
   SimilarityDepthResidual(const SimilarityMatch& match, const TwoWaySimilarity& similarity);
 

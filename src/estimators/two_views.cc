@@ -14,15 +14,16 @@
 
 #include "estimators/epipolar_refinement.h"
 #include "geometry/triangulation.h"
+#include "util/chi_square.h"
 #include "util/median.h"
 
 namespace hullslam {
 namespace {
 
-constexpr double kChi2 = 5.991;  // 95 % of a chi-square distribution with two degrees of freedom
+constexpr double kChi2 = Chi2Bound(2);
 constexpr size_t kFewestPairs = 20;
-// The parallax of a point below this (radians) says nothing about its depth, so the point counts
-// neither for nor against a motion.
+// A point with less parallax than this (radians) has no measurable depth, so it counts neither for
+// nor against a motion.
 constexpr double kNoParallax = 0.3 * std::numbers::pi / 180.0;
 
 cv::UsacParams MakeUsacParams(double threshold, uint64_t seed) {
@@ -68,7 +69,7 @@ Rigid3 MakeMotion(const cv::Mat& rotation, const cv::Mat& translation, double si
   return {Eigen::Quaterniond(matrix).normalized(), sign * vector.normalized()};
 }
 
-// The four motions that an essential matrix can stand for.
+// Adds the four motions that follow from an essential matrix.
 void AddMotionsOfEssential(const CvPairs& points, const cv::Mat& k, uint64_t seed,
                            std::vector<Rigid3>& motions) {
   cv::Mat mask;
@@ -88,8 +89,8 @@ void AddMotionsOfEssential(const CvPairs& points, const cv::Mat& k, uint64_t see
   }
 }
 
-// The motions that a homography can stand for (Malis and Vargas 2007). A plane and its homography
-// do not tell the sign of the motion, so both are tried.
+// Adds the motions that follow from a homography (Malis and Vargas 2007). The homography of a plane
+// does not determine the sign of the motion, so both signs are tried.
 void AddMotionsOfHomography(const CvPairs& points, const cv::Mat& k, uint64_t seed,
                             std::vector<Rigid3>& motions) {
   cv::Mat mask;
@@ -109,7 +110,7 @@ void AddMotionsOfHomography(const CvPairs& points, const cv::Mat& k, uint64_t se
   }
 }
 
-// What a motion makes of the pairs.
+// A motion and the pairs that agree with it.
 struct Hypothesis {
   Rigid3 b_from_a;
   std::vector<TwoViews::Point> points;  // with parallax
@@ -157,13 +158,13 @@ Hypothesis Explain(const PinholeCamera& camera, std::span<const PixelPair> pairs
   return hypothesis;
 }
 
-// What a rotation that turns rays of a into rays of b is computed from (Kabsch 1976).
+// The covariance from which the rotation of the rays of a to those of b is computed (Kabsch 1976).
 Eigen::Matrix3d RayCovariance(const PinholeCamera& camera, const PixelPair& pair) {
   return camera.Unproject(pair.b, 1.0).normalized() *
          camera.Unproject(pair.a, 1.0).normalized().transpose();
 }
 
-// The rotation with the least squares for a sum of covariances.
+// The least-squares rotation for a sum of such covariances.
 Eigen::Quaterniond FitRotation(const Eigen::Matrix3d& covariance) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -182,14 +183,15 @@ Eigen::Quaterniond NearestTurn(const PinholeCamera& camera, std::span<const Pixe
   return FitRotation(covariance);
 }
 
-// How many of the pairs a rotation alone explains. It is fitted again and again to those that it
-// explains.
+// The number of pairs that a rotation alone explains. The rotation is fitted repeatedly to the
+// pairs that it explains.
 size_t CountTurnedFrom(const PinholeCamera& camera, std::span<const PixelPair> pairs,
                        Eigen::Quaterniond rotation) {
   constexpr int kRounds = 10;
   size_t explained = 0;
   for (int round = 0; round < kRounds; ++round) {
-    const double slack = round < kRounds / 2 ? 16.0 : 1.0;  // at first far off, because of parallax
+    const double slack =
+        round < kRounds / 2 ? 16.0 : 1.0;  // parallax makes the first fits imprecise
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     explained = 0;
     for (const PixelPair& pair : pairs) {
@@ -210,8 +212,8 @@ size_t CountTurnedFrom(const PinholeCamera& camera, std::span<const PixelPair> p
   return explained;
 }
 
-// The same for the better one of two starts. A motion's own rotation may be far from any that
-// explains the pairs, because a step to the side can stand for a large part of a turn.
+// The same for the better one of two starts. A motion's own rotation may be far from any rotation
+// that explains the pairs, because a sideways translation can replace a large part of a rotation.
 size_t CountTurned(const PinholeCamera& camera, std::span<const PixelPair> pairs,
                    const Hypothesis& motion) {
   const size_t from_motion = CountTurnedFrom(camera, pairs, motion.b_from_a.rotation);
@@ -228,7 +230,7 @@ bool AreDifferent(const Rigid3& one, const Rigid3& other) {
          std::acos(std::clamp(one.translation.dot(other.translation), -1.0, 1.0)) > kDirection;
 }
 
-// How large the errors of a motion are compared with the sigmas of the pairs.
+// The true sigma of the pairs over the assumed sigma, from the errors of a motion.
 double MeasureNoise(const PinholeCamera& camera, std::span<const PixelPair> pairs,
                     const Rigid3& b_from_a) {
   constexpr double kMedianOfChi2 = 0.455;  // with one degree of freedom
@@ -240,7 +242,7 @@ double MeasureNoise(const PinholeCamera& camera, std::span<const PixelPair> pair
   return std::max(kLeastNoise, std::sqrt(Median(std::move(errors)) / kMedianOfChi2));
 }
 
-// Refines hypotheses, with the noise that the one with the smallest errors shows.
+// Refines hypotheses, with the noise that is measured from the one with the smallest errors.
 std::vector<Hypothesis> Refine(const PinholeCamera& camera, std::span<const PixelPair> pairs,
                                std::span<const Hypothesis> hypotheses) {
   std::vector<Rigid3> motions;
@@ -261,7 +263,7 @@ std::vector<Hypothesis> Refine(const PinholeCamera& camera, std::span<const Pixe
   return refined;
 }
 
-// In degrees; 0 if no pair agrees with the motion.
+// The median parallax in degrees; 0 if no pair agrees with the motion.
 double MedianParallax(const Hypothesis& motion) {
   if (motion.parallaxes.empty()) {
     return 0.0;
@@ -276,7 +278,7 @@ bool HasTooLittleParallax(const PinholeCamera& camera, std::span<const PixelPair
              options.max_turned_share * static_cast<double>(motion.agreeing.size());
 }
 
-// Why the best hypothesis is not good enough.
+// The reason why the best hypothesis is not good enough.
 TwoViewFailure Judge(const PinholeCamera& camera, std::span<const PixelPair> pairs,
                      std::span<const Hypothesis> hypotheses, const Hypothesis& best,
                      const TwoViewOptions& options) {

@@ -24,13 +24,13 @@ struct PixelPair {
 struct TwoViewOptions {
   uint64_t seed = 0;
   size_t min_points = 50;     // that must be seen in front of both cameras
-  double min_share = 0.7;     // of the pairs that agree with any motion, which must be such points
+  double min_share = 0.7;     // of such points among the pairs that agree with any motion
   double min_parallax = 1.2;  // degrees between the two rays to a point, in the median
-  // Of the pairs that agree with the best motion, the share that a rotation alone may explain.
+  // Largest share of the pairs that agree with the best motion that a rotation alone may explain.
   double max_turned_share = 0.9;
-  // A motion competes if it agrees with this share of the pairs with which any other agrees. The
-  // costs of all that compete must be larger than that of the best one by more than chance
-  // explains: by this number of standard deviations.
+  // A motion competes if the number of pairs that agree with it is at least this share of the
+  // largest such number. The costs of competing motions must exceed the cost of the best one by so
+  // many standard deviations that chance does not explain the difference.
   double min_rival_share = 0.75;
   double min_rival_deviations = 3.0;
 };
@@ -61,15 +61,15 @@ struct TwoViews {
   bool ok() const { return failure == TwoViewFailure::kNone; }
 };
 
-// The motion of a camera between two images, from pairs of which many may be wrong. Essential
-// matrix and homography are both estimated (OpenCV's USAC), and all motions that they can stand for
-// compete. A general scene is explained by the essential matrix, a plane by the homography. A pair
-// agrees with a motion if its point lies in front of both cameras and reprojects within 95 % of its
-// noise. The noise of keypoints is cautious, so before a plane even a wrong motion may agree with
-// all pairs. Therefore those that agree with many are refined, and the one with the least cost for
-// the noise that is measured is the result (RefineMotion). If a different one costs about as
-// little, or if the rays are nearly parallel, there is no result. The same input and seed give the
-// same bits.
+// The motion of a camera between two images, from pairs of keypoints, many of which may be wrong.
+// Essential matrix and homography are both estimated (OpenCV's USAC), and all motions that follow
+// from them compete. A general scene is explained by the essential matrix, a plane by the
+// homography. A pair agrees with a motion if its point lies in front of both cameras and reprojects
+// within 95 % of its noise. The assumed noise of keypoints is cautious, so in front of a plane even
+// a wrong motion may agree with all pairs. Therefore the motions that agree with many pairs are
+// refined, and the result is the motion with the least cost under the measured noise
+// (RefineMotion). If a different motion has about the same cost, or if the rays are nearly
+// parallel, there is no result. The same input and seed give the same bits.
 TwoViews EstimateTwoViews(const PinholeCamera& camera, std::span<const PixelPair> pairs,
                           const TwoViewOptions& options);
 

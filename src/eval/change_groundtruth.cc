@@ -7,17 +7,17 @@
 namespace hullslam {
 namespace {
 
-// A change of one object, true or reported: where it was, where it is, or both.
-struct PlaceChange {
+// A change of one object, true or reported: its centre before, after, or both.
+struct LocationChange {
   std::optional<Eigen::Vector3d> former = std::nullopt;
   std::optional<Eigen::Vector3d> now = std::nullopt;
-  double reach = 0.0;  // m; of a true object: how far off a reported place may be
+  double reach = 0.0;  // m; largest error of a reported location; for true objects only
 };
 
-std::optional<Eigen::Vector3d> CenterOf(const std::optional<ObjectPlace>& place,
+std::optional<Eigen::Vector3d> CenterOf(const std::optional<LocatedObject>& object,
                                         const Sim3& truth_from_map) {
-  return place ? std::optional(truth_from_map * place->ellipsoid.world_from_object.translation)
-               : std::nullopt;
+  return object ? std::optional(truth_from_map * object->ellipsoid.world_from_object.translation)
+                : std::nullopt;
 }
 
 bool AreOne(const std::optional<Eigen::Vector3d>& truth,
@@ -25,12 +25,13 @@ bool AreOne(const std::optional<Eigen::Vector3d>& truth,
   return !truth || (reported && (*truth - *reported).norm() <= reach);
 }
 
-// Each reported change is right if it is that of a true change that no earlier one was.
-ChangeCounts Count(const std::vector<PlaceChange>& truths,
-                   const std::vector<PlaceChange>& reported) {
+// A reported change is right if it agrees with a true change with which no earlier reported change
+// agrees.
+ChangeCounts Count(const std::vector<LocationChange>& truths,
+                   const std::vector<LocationChange>& reported) {
   ChangeCounts counts{truths.size(), reported.size(), 0};
   std::vector<bool> is_used(truths.size(), false);
-  for (const PlaceChange& change : reported) {
+  for (const LocationChange& change : reported) {
     for (size_t i = 0; i < truths.size(); ++i) {
       if (!is_used[i] && AreOne(truths[i].former, change.former, truths[i].reach) &&
           AreOne(truths[i].now, change.now, truths[i].reach)) {
@@ -45,22 +46,22 @@ ChangeCounts Count(const std::vector<PlaceChange>& truths,
 
 // Changes by their kind; see ChangeComparison.
 struct ChangesByKind {
-  std::vector<PlaceChange> moved = {};
-  std::vector<PlaceChange> gone = {};
-  std::vector<PlaceChange> added = {};
-  std::vector<PlaceChange> left = {};
-  std::vector<PlaceChange> taken = {};
+  std::vector<LocationChange> moved = {};
+  std::vector<LocationChange> gone = {};
+  std::vector<LocationChange> added = {};
+  std::vector<LocationChange> left = {};
+  std::vector<LocationChange> taken = {};
 
-  void AddMoved(const PlaceChange& change) {
+  void AddMoved(const LocationChange& change) {
     moved.push_back(change);
     left.push_back({change.former, std::nullopt, change.reach});
     taken.push_back({std::nullopt, change.now, change.reach});
   }
-  void AddGone(const PlaceChange& change) {
+  void AddGone(const LocationChange& change) {
     gone.push_back(change);
     left.push_back(change);
   }
-  void AddNew(const PlaceChange& change) {
+  void AddNew(const LocationChange& change) {
     added.push_back(change);
     taken.push_back(change);
   }
@@ -92,8 +93,8 @@ ChangesByKind TrueChanges(const TrueScene& scene, std::span<const size_t> sighti
 ChangesByKind ReportedChanges(std::span<const ChangedObject> reported, const Sim3& truth_from_map) {
   ChangesByKind changes;
   for (const ChangedObject& changed : reported) {
-    const PlaceChange said{CenterOf(changed.former, truth_from_map),
-                           CenterOf(changed.now, truth_from_map)};
+    const LocationChange said{CenterOf(changed.former, truth_from_map),
+                              CenterOf(changed.now, truth_from_map)};
     if (changed.change == ObjectChange::kMoved) {
       changes.AddMoved(said);
     } else if (changed.change == ObjectChange::kGone) {

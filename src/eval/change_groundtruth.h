@@ -10,7 +10,7 @@
 
 namespace hullslam {
 
-// How many changes of one kind there are in truth, were reported, and were reported rightly.
+// The numbers of changes of one kind: true ones, reported ones, and rightly reported ones.
 struct ChangeCounts {
   size_t in_truth = 0;
   size_t reported = 0;
@@ -21,17 +21,17 @@ struct ChangeComparison {
   ChangeCounts moved;
   ChangeCounts gone;
   ChangeCounts added;  // ObjectChange::kNew
-  // Places that an object left, and places where there is one that was not there: a moved object
-  // counts in both, so it does not matter which of two cups was moved.
+  // Locations that an object left, and locations that an object newly takes. A moved object counts
+  // in both, so it does not matter which of two cups was moved.
   ChangeCounts left;
   ChangeCounts taken;
 };
 
-// Compares the reported changes with a rearranged scene. A reported place is that of a true object
-// of any class if its centre is at most half of the Size() of the object away. Each true object is
-// counted once. Moving true objects are left out, and so are those of `scene.objects` whose entry
-// in `sightings` is less than `min_sightings`; `sightings` may be empty. The scene is in metres;
-// `truth_from_map` has the scale 1 if the map is in metres too.
+// Compares the reported changes with a rearranged scene. A reported location is that of a true
+// object of any class if the distance of the two centres is at most half of the Size() of the true
+// object. Each true object is counted once. Moving true objects are left out, and so are those of
+// `scene.objects` whose entry in `sightings` is less than `min_sightings`; `sightings` may be
+// empty. The scene is in metres; `truth_from_map` has the scale 1 if the map is in metres too.
 ChangeComparison CompareChanges(const TrueScene& scene, std::span<const ChangedObject> changes,
                                 const Sim3& truth_from_map, std::span<const size_t> sightings,
                                 size_t min_sightings);

@@ -57,7 +57,7 @@ class FitMean {
   size_t lines_ = 0;
 };
 
-// The part of a camera that the projection depends on.
+// The parameters of a camera that the projection depends on.
 struct ImagePlane {
   Eigen::Matrix3d k;
   Eigen::AlignedBox2d bounds;

@@ -8,7 +8,7 @@
 
 namespace hullslam {
 
-// How well the projected ellipse of an ellipsoid agrees with its views:
+// Measures the agreement of the projected ellipses of an ellipsoid with its views:
 //   siou        intersection over union with the hull, both clipped to the undistorted image. If
 //               the view has only a box, the bounding box of the ellipse is compared with it.
 //   siou_mask   the same with the contour; absent for a box

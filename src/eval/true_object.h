@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// What happened to an object between two visits of a synthetic scene.
+// The change of an object between two visits of a synthetic scene.
 enum class TrueObjectStatus { kUnchanged, kMoved, kNew };
 
 // A true object of a synthetic sequence (docs/synthetic.md).

@@ -16,8 +16,8 @@ namespace {
 
 constexpr int kSmallestSide = 64;  // px
 
-// Distributes the features over the levels: their number falls by the scale factor from level to
-// level. The top level gets the rest.
+// Distributes the features over the levels. Their number falls by the scale factor from level to
+// level, and the top level gets the rest.
 std::vector<size_t> LevelQuotas(const FeatureOptions& options) {
   const double ratio = 1.0 / options.scale_factor;
   double wanted =

@@ -67,10 +67,10 @@ FeatureGrid FeatureGrid::Select(std::span<const uint32_t> kept) const {
   selected.cells_per_pixel_ = cells_per_pixel_;
   selected.order_.reserve(kept.size());
   selected.cell_start_.reserve(cell_start_.size());
-  size_t place = 0;
+  size_t position = 0;
   for (const uint16_t start : cell_start_) {
-    for (; place < start; ++place) {
-      if (const uint16_t index = new_index[order_[place]]; index != kRemoved) {
+    for (; position < start; ++position) {
+      if (const uint16_t index = new_index[order_[position]]; index != kRemoved) {
         selected.order_.push_back(index);
       }
     }
@@ -90,8 +90,8 @@ void FeatureGrid::FindNear(std::span<const Keypoint> keypoints, const Eigen::Vec
   const int last_row = Row(center.y() + radius);
   for (int column = Column(center.x() - radius); column <= last_column; ++column) {
     const uint16_t* const cell = cell_start_.data() + column * kRows;
-    for (size_t place = cell[first_row]; place < cell[last_row + 1]; ++place) {
-      const uint16_t index = order_[place];
+    for (size_t position = cell[first_row]; position < cell[last_row + 1]; ++position) {
+      const uint16_t index = order_[position];
       const Keypoint& keypoint = keypoints[index];
       if (keypoint.level >= min_level && keypoint.level <= max_level &&
           std::abs(keypoint.undistorted.x() - center.x()) < radius &&

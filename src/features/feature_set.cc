@@ -24,7 +24,7 @@ ScaleLevels ScaleLevels::Create(int levels, double factor) {
 
 int ScaleLevels::PredictLevel(double distance, double max_distance) const {
   Check(distance > 0.0 && max_distance > 0.0, "a distance is not positive");
-  // A small tolerance, so that rounding does not add a level. It is far below the precision of any
+  // A small tolerance prevents that rounding adds a level. It is far below the precision of any
   // distance.
   constexpr double kSlack = 1e-3;
   const double level = std::ceil(std::log(max_distance / distance) / log_factor - kSlack);

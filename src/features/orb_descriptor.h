@@ -8,7 +8,7 @@
 
 namespace hullslam {
 
-// Neither orientation nor descriptor reads pixels farther than this from the centre, px.
+// The orientation and the descriptor read only pixels within this distance of the centre, px.
 constexpr int kPatchReach = 19;
 
 // The direction from the centre of a patch to the centroid of its intensity (Rosin 1999), as a unit

@@ -70,16 +70,16 @@ void MixRows(const uint16_t* __restrict first, const uint16_t* __restrict second
 
 }  // namespace
 
-// Where the centres of the pixels fall, as in OpenCV.
+// The source pixels of the centres of all pixels, as in OpenCV.
 std::vector<ImageShrinker::Source> ImageShrinker::SourcesOf(int from, int to) {
   const double scale = 1.0 / (static_cast<double>(to) / from);
   std::vector<Source> sources;
   sources.reserve(static_cast<size_t>(to));
   for (int i = 0; i < to; ++i) {
-    const double place = scale * (i + 0.5) - 0.5;
-    const int first = static_cast<int>(std::floor(place));
+    const double position = scale * (i + 0.5) - 0.5;
+    const int first = static_cast<int>(std::floor(position));
     if (first + 1 < from) {
-      const auto weight = static_cast<uint16_t>(cvRound(kOne * (place - first)));
+      const auto weight = static_cast<uint16_t>(cvRound(kOne * (position - first)));
       sources.push_back({.first = first, .second_weight = weight});
     } else {
       sources.push_back({.first = from - 2, .second_weight = kOne});

@@ -10,7 +10,8 @@
 
 namespace hullslam {
 
-// Eight neighbouring pixels of a shrunk row, and how they are made from 16 pixels of the row.
+// The indices and weights by which eight neighbouring pixels of a shrunk row are computed from 16
+// pixels of the row.
 struct ShrinkBlock {
   static constexpr size_t kPixels = 8;
   using Bytes = std::array<uint8_t, 2 * kPixels>;
@@ -49,7 +50,7 @@ class ImageShrinker {
   std::vector<Source> rows_;
   std::vector<uint8_t> row_;             // a row of the image, and room to read beyond its end
   std::vector<uint16_t> shrunk_rows_;    // row y is the first if y is even, else the second
-  std::array<int, 2> shrunk_y_{-1, -1};  // which rows these are
+  std::array<int, 2> shrunk_y_{-1, -1};  // the numbers of these rows
 };
 
 }  // namespace hullslam

@@ -61,8 +61,8 @@ int CreateAndLock(const fs::path& file) {
   return descriptor;
 }
 
-// Removes a folder in which there is at most the file of the lock, and fails with the reason that
-// errno had before.
+// Removes a folder that contains at most the file of the lock, and throws the error that errno had
+// before.
 [[noreturn]] void FailAndRemove(const char* what, const fs::path& folder) {
   const int reason = errno;
   ::unlink((folder / kLockName).c_str());

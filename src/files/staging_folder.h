@@ -28,7 +28,7 @@ class StagingFolder {
   // The folder for the files. It has the permissions of an ordinary new folder, so it may be
   // renamed when it is finished.
   std::filesystem::path content() const { return path_ / "content"; }
-  // From now on the destructor leaves the folder where it is.
+  // After this call the destructor does not remove the folder.
   void Keep() { is_kept_ = true; }
   // Removes the folder now.
   void Remove();

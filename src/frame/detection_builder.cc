@@ -142,8 +142,8 @@ std::vector<Candidate> PrepareAll(std::span<const InstanceMask> masks, const Fra
   return candidates;
 }
 
-// Whether two masks show the same object. A real network can report one thing under two classes, so
-// classes are compared only where depth does not tell things apart.
+// Whether two masks show the same object. A network can report one thing under two classes, so
+// classes are compared only where the depth cannot distinguish things.
 bool AreOneObject(const Candidate& a, const Candidate& b, const DetectionOptions& options) {
   const double shared = SharedArea(a.region, b.region);
   const double smaller = std::min(a.region.area(), b.region.area());
@@ -202,8 +202,8 @@ std::vector<LineOnOutline> LinesOf(const Candidate& candidate, const FrameView& 
 bool IsOneSided(const LineOnOutline& line, const FrameView& frame, double depth,
                 std::span<const MaskRegion* const> others) {
   const bool is_cut =
-      std::all_of(line.touching.begin(), line.touching.end(), [&](const Eigen::Vector2d& place) {
-        return IsAtBorder(place, frame.depth.camera, frame.options.border_px);
+      std::all_of(line.touching.begin(), line.touching.end(), [&](const Eigen::Vector2d& point) {
+        return IsAtBorder(point, frame.depth.camera, frame.options.border_px);
       });
   return is_cut ||
          (!frame.depth.image.empty() && IsHidden(line, frame.depth, depth, others, frame.options));

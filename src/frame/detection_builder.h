@@ -21,13 +21,13 @@ struct DetectionResult {
   std::vector<std::optional<DetectionRejection>> rejections;  // one per mask
 };
 
-// Turns the masks of a frame into detections. The outlines are undistorted point by point. The hull
-// encloses all parts of a mask except small ones (DetectionOptions::min_part_share). The primitive
-// determines the lines. Support lines (`support`, the default) have the
-// directions of the edges of the simplified hull and some evenly spread directions. They touch the
-// full hull, while the edges of the simplified hull can cut through it. For every
-// primitive, the lines of a box mask are its sides and the lines of an ellipse mask are its
-// tangents.
+// Turns the masks of a frame into detections. The outlines of a mask are undistorted point by
+// point. The hull encloses all parts of a mask except small ones
+// (DetectionOptions::min_part_share). The primitive determines the lines. Support lines (`support`,
+// the default) have the directions of the edges of the simplified hull and some evenly spread
+// directions. They touch the full hull, while the edges of the simplified hull can cut through it.
+// Whatever the primitive is, the lines of a box mask are its sides and the lines of an ellipse mask
+// are its tangents.
 //
 // A line is one-sided if it touches the mask only at the border of the raw image. With depth it is
 // also one-sided if something nearer to the camera begins just beyond it.

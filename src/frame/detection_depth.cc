@@ -11,11 +11,12 @@
 namespace hullslam {
 namespace {
 
-constexpr double kInside = 4.0;                     // px, from the line towards the object
-constexpr std::array<double, 2> kBeyond{4.0, 8.0};  // px; two places, because masks are not exact
-constexpr double kFarthestInMask = 32.0;            // px beyond the line
-constexpr double kLargestMargin = 5.0;              // px, for eroding the mask
-constexpr double kMarginShare = 0.1;                // of the mask's smaller side
+constexpr double kInside = 4.0;  // px, from the line towards the object
+constexpr std::array<double, 2> kBeyond{4.0,
+                                        8.0};  // px; two distances, because masks are not exact
+constexpr double kFarthestInMask = 32.0;       // px beyond the line
+constexpr double kLargestMargin = 5.0;         // px, for eroding the mask
+constexpr double kMarginShare = 0.1;           // of the mask's smaller side
 
 // Something that is nearer than the object by more than this is another object. A smaller
 // difference can be noise or the object's own surface. m.
@@ -25,19 +26,19 @@ double Step(double depth, const DetectionOptions& options) {
 
 enum class Beyond { kUnknown, kNothingNearer, kNearer };
 
-// A place on a line and the direction away from the object, both undistorted.
+// A point on a line and the direction away from the object, both undistorted.
 struct Border {
-  Eigen::Vector2d place;
+  Eigen::Vector2d point;
   Eigen::Vector2d outwards;
 };
 
 // Depth at a distance (px) beyond the line, m; 0 if it is unknown. If the image has no depth there
-// but another mask contains the place, this is the first known depth of that mask further out, so
-// that it is the other object's depth along this border and not that of its middle.
+// but another mask contains the point, returns the first known depth of that mask farther out. This
+// is the depth of the other object along this border, not at its centre.
 double DepthBeyond(const Border& border, double distance, const DepthView& view,
                    std::span<const MaskRegion* const> others) {
   const auto raw_at = [&](double beyond) {
-    return view.camera.Distort(border.place + beyond * border.outwards);
+    return view.camera.Distort(border.point + beyond * border.outwards);
   };
   const Eigen::Vector2d raw = raw_at(distance);
   const double depth = view.AtRaw(raw);
@@ -59,8 +60,8 @@ double DepthBeyond(const Border& border, double distance, const DepthView& view,
 }
 
 // Whether a surface that is nearer than the object begins at the line. The surface that the object
-// stands on also comes nearer with the distance from the line, but it meets the object there. So
-// the depths at the two places are continued as a straight line to the place inside the object.
+// stands on also comes nearer with the distance from the line, but it meets the object at the line.
+// So the depths at the two outer points are extrapolated linearly to the point inside the object.
 bool BeginsNearer(double own, double near, double far, double step) {
   if (near <= 0.0 || far <= 0.0) {
     return std::max(near, far) > 0.0 && std::max(near, far) < own - step;
@@ -74,7 +75,7 @@ bool BeginsNearer(double own, double near, double far, double step) {
 
 Beyond Look(const Border& border, const DepthView& view, double object_depth,
             std::span<const MaskRegion* const> others, const DetectionOptions& options) {
-  const double inside = view.AtRaw(view.camera.Distort(border.place - kInside * border.outwards));
+  const double inside = view.AtRaw(view.camera.Distort(border.point - kInside * border.outwards));
   const double own = inside > 0.0 ? inside : object_depth;
   const double near = DepthBeyond(border, kBeyond[0], view, others);
   const double far = DepthBeyond(border, kBeyond[1], view, others);
@@ -137,8 +138,8 @@ bool IsHidden(const LineOnOutline& line, const DepthView& view, double object_de
               std::span<const MaskRegion* const> others, const DetectionOptions& options) {
   int known = 0;
   int hidden = 0;
-  for (const Eigen::Vector2d& place : line.near) {
-    const Beyond beyond = Look({place, line.line.normal}, view, object_depth, others, options);
+  for (const Eigen::Vector2d& point : line.near) {
+    const Beyond beyond = Look({point, line.line.normal}, view, object_depth, others, options);
     known += beyond != Beyond::kUnknown ? 1 : 0;
     hidden += beyond == Beyond::kNearer ? 1 : 0;
   }

@@ -28,7 +28,7 @@ struct DepthView {
 std::vector<Eigen::Vector3d> DepthPoints(const DepthView& view, const MaskRegion& region,
                                          int max_points);
 
-// Median of z; 0 for no points.
+// Median of z; 0 if there are no points.
 double MedianDepth(std::span<const Eigen::Vector3d> points);
 
 // Removes the points whose z differs from the median by more than `max_offset` times the size that
@@ -37,9 +37,9 @@ void RemoveFarFromMedian(const PinholeCamera& camera, double side, double max_of
                          std::vector<Eigen::Vector3d>& points);
 
 // Whether something nearer than the object begins just beyond the line. This is tested at several
-// places along the line, with the depth image. Where it has no depth, the nearest known depth of
-// the mask there is used (`others`: the frame's other masks). It must be true at half or more of
-// the places where the depths are known.
+// points along the line, with the depth image. Where it has no depth, the nearest known depth of
+// the mask there is used (`others`: the frame's other masks). The condition must hold at half or
+// more of the points with known depths.
 bool IsHidden(const LineOnOutline& line, const DepthView& view, double object_depth,
               std::span<const MaskRegion* const> others, const DetectionOptions& options);
 

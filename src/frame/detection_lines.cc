@@ -15,7 +15,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kTouch = 1.0;  // px; a point this near to a line touches it
 constexpr double kNear = 3.0;   // px, about the error of a mask's border
-constexpr size_t kMaxPlaces = 9;
+constexpr size_t kMaxPoints = 9;
 
 Eigen::Vector2d Direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
@@ -27,16 +27,16 @@ double Reach(const Polygon2& points, const Eigen::Vector2d& direction) {
   return reach;
 }
 
-// At most kMaxPlaces of the points with these indices, evenly chosen.
-Polygon2 Places(const Polygon2& points, const std::vector<Eigen::Index>& indices) {
-  Polygon2 places;
-  const size_t used = std::min(kMaxPlaces, indices.size());
-  places.reserve(used);
+// At most kMaxPoints of the points with these indices, evenly chosen.
+Polygon2 ChooseEvenly(const Polygon2& points, const std::vector<Eigen::Index>& indices) {
+  Polygon2 chosen;
+  const size_t used = std::min(kMaxPoints, indices.size());
+  chosen.reserve(used);
   for (size_t i = 0; i < used; ++i) {
     const Eigen::Index index = indices[used == 1 ? 0 : i * (indices.size() - 1) / (used - 1)];
-    places.push_back(points[static_cast<size_t>(index)]);
+    chosen.push_back(points[static_cast<size_t>(index)]);
   }
-  return places;
+  return chosen;
 }
 
 LineOnOutline LineAlong(const Outline& outline, const Line2& line) {
@@ -55,8 +55,8 @@ LineOnOutline LineAlong(const Outline& outline, const Line2& line) {
   std::copy_if(near.begin(), near.end(), std::back_inserter(touching),
                [&](Eigen::Index i) { return reaches[i] >= most - kTouch; });
   return {.line = line,
-          .touching = Places(outline.boundary, touching),
-          .near = Places(outline.boundary, near)};
+          .touching = ChooseEvenly(outline.boundary, touching),
+          .near = ChooseEvenly(outline.boundary, near)};
 }
 
 LineOnOutline SupportLine(const Outline& outline, const Eigen::Vector2d& direction) {

@@ -13,7 +13,7 @@
 
 namespace hullslam {
 
-// A line with the points of the outline (undistorted, px) that are used to find out whether it is
+// A line with those points of the mask's outline (undistorted, px) that decide whether it is
 // one-sided.
 struct LineOnOutline {
   Line2 line;

@@ -72,7 +72,8 @@ Outline UndistortOutline(std::span<const Polygon2> parts, const PinholeCamera& c
       outline.contour = std::move(contour);
     }
   }
-  // Points that were added on a straight edge are off it by rounding errors; this removes them.
+  // Rounding moves the points that were added on a straight edge away from the edge; this removes
+  // them.
   outline.hull = SimplifyPolygon(ConvexHull(outline.boundary), 1e-6);
   return outline;
 }

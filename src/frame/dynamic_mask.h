@@ -17,8 +17,8 @@ namespace hullslam {
 // two names.
 std::set<std::string> SplitNames(std::string_view names);
 
-// The pixels of the raw image that show things of these classes (CV_8UC1, 255), with a small margin
-// around their outlines. Empty if there are no such things.
+// A mask (CV_8UC1) that is 255 at the pixels of the raw image that show things of these classes,
+// and in a small margin around them. Empty if there are no such things.
 cv::Mat DynamicMask(std::span<const InstanceMask> masks, const std::set<std::string>& classes,
                     cv::Size size);
 

@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-// What is wrong with the mask; empty if nothing is.
+// The fault of the mask; empty if it has none.
 std::string FindFault(const InstanceMask& mask, int width, int height) {
   if (mask.label.empty()) {
     return "the label is empty, expected the name of a class";

@@ -7,18 +7,18 @@
 namespace hullslam {
 namespace {
 
-// The places in `kept` of those `indices` that are there. Both increase.
-std::vector<uint32_t> PlacesIn(std::span<const uint32_t> kept,
-                               const std::vector<uint32_t>& indices) {
-  std::vector<uint32_t> places;
+// The positions in `kept` of those `indices` that it contains. Both increase.
+std::vector<uint32_t> PositionsIn(std::span<const uint32_t> kept,
+                                  const std::vector<uint32_t>& indices) {
+  std::vector<uint32_t> positions;
   for (const uint32_t index : indices) {
     const auto it = std::lower_bound(kept.begin(), kept.end(), index);
     if (it != kept.end() && *it == index) {
-      places.push_back(static_cast<uint32_t>(it - kept.begin()));
+      positions.push_back(static_cast<uint32_t>(it - kept.begin()));
     }
   }
-  places.shrink_to_fit();
-  return places;
+  positions.shrink_to_fit();
+  return positions;
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ std::shared_ptr<const Frame> ReduceFrame(const Frame& frame, std::span<const uin
   reduced->detections.reserve(detections.size());
   for (const uint32_t index : detections) {
     Detection& detection = reduced->detections.emplace_back(frame.detections.at(index));
-    detection.keypoints = PlacesIn(keypoints, detection.keypoints);
+    detection.keypoints = PositionsIn(keypoints, detection.keypoints);
   }
   return reduced;
 }

@@ -10,10 +10,11 @@
 namespace hullslam {
 
 // A frame with the same id and time that has only the given keypoints and detections. Both lists
-// are of increasing indices; the new index of a keypoint or detection is its place in the list.
+// are of increasing indices; the new index of a keypoint or detection is its position in the list.
 // Detections lose the indices of keypoints that are removed. The depth grid is removed.
 //
-// A part of a frame that has one entry per keypoint must be reduced here, or in SelectKeypoints.
+// Every member of a frame that has one entry per keypoint must be reduced here or in
+// SelectKeypoints.
 std::shared_ptr<const Frame> ReduceFrame(const Frame& frame, std::span<const uint32_t> keypoints,
                                          std::span<const uint32_t> detections);
 

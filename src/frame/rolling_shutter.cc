@@ -20,7 +20,7 @@ struct AffineMap {
 };
 
 // Undoes an image velocity (px/s) that is the same for a whole object. The rows of the undistorted
-// image stand for those of the image as read.
+// image are used as an approximation of the rows as read.
 AffineMap UndoVelocity(const Sensor& sensor, const Eigen::Vector2d& velocity) {
   const Eigen::Vector2d per_row = velocity * sensor.readout_time / sensor.camera.height;
   AffineMap map;
@@ -56,13 +56,14 @@ void Transform(const AffineMap& map, Detection& detection) {
   }
 }
 
-// The median of those that are known; 0 if none is.
+// The median of the known ones; 0 if none is known.
 double MedianOfKnown(std::vector<double> inverse_depths) {
   std::erase(inverse_depths, 0.0);
   return inverse_depths.empty() ? 0.0 : Median(std::move(inverse_depths));
 }
 
-// Of a thing without a keypoint of known depth, that of the whole image is taken (`of_image`).
+// The inverse depth of a detection; `of_image`, that of the whole image, if none of its keypoints
+// has a known depth.
 double InverseDepthOf(const Detection& detection, std::span<const double> inverse_depths,
                       double of_image) {
   std::vector<double> on_object;

@@ -64,8 +64,8 @@ std::vector<Eigen::Vector2d> SimplifyPolygon(std::span<const Eigen::Vector2d> po
   if (!(epsilon > 0.0) || polygon.size() < 3) {
     return {polygon.begin(), polygon.end()};
   }
-  // A closed polygon has no end points to start from, so two corners that are far apart take their
-  // place.
+  // The algorithm needs two end points. A closed polygon has none, so two corners that are far
+  // apart are used.
   size_t first = Farthest(polygon, 0);
   size_t second = Farthest(polygon, first);
   if (first > second) {

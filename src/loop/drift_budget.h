@@ -6,18 +6,18 @@
 
 namespace hullslam {
 
-// How far a camera has travelled and turned.
+// The length of a camera's way and the sum of its rotations.
 struct Travel {
   double metres = 0.0;
   double radians = 0.0;
 };
 
 // The travel along all keyframes, also culled ones, made between two keyframes of one island.
-// Keyframes of other islands are passed over.
+// Keyframes of other islands are skipped.
 Travel TravelBetween(const Map& map, KeyframeId first, KeyframeId last);
 
-// Whether drift on this way can explain that a camera, which was at one pose by tracking, is at
-// another one by a loop.
+// Whether drift along this way can explain the difference between the tracked pose of a camera and
+// its pose by a loop.
 bool CanBeDrift(const Travel& travel, const Rigid3& tracked_cam_from_world,
                 const Rigid3& corrected_cam_from_world, const LoopOptions& options);
 

@@ -12,8 +12,8 @@ namespace {
 
 constexpr size_t kSupporters = 5;  // keyframes that may support a candidate
 
-// What a keyframe looks like, other than what it is connected to: at least as much as the least
-// similar of its covisible keyframes.
+// The keyframes that look like the query and are not connected to it. They are at least as similar
+// to it as the least similar of its covisible keyframes.
 std::vector<SimilarKeyframe> FindSimilar(const Map& map, KeyframeId query) {
   const Keyframe& keyframe = map.keyframes().At(query);
   std::vector<SimilarKeyframe> similar = map.index().Query(map.VectorOf(*keyframe.frame));
@@ -35,7 +35,8 @@ std::vector<SimilarKeyframe> FindSimilar(const Map& map, KeyframeId query) {
 
 using KeyframeSet = IdSet<KeyframeId>;
 
-// For each of the keyframes that are most covisible with the query: what it looks like.
+// For each of the keyframes that are most covisible with the query, the keyframes that look like
+// it.
 std::vector<KeyframeSet> SeenByNeighbours(const Map& map, KeyframeId query) {
   std::vector<KeyframeSet> seen;
   for (const KeyframeId neighbour : BestCovisible(map.keyframes().At(query), kSupporters)) {

@@ -21,7 +21,7 @@
 namespace hullslam {
 namespace {
 
-constexpr uint32_t kKeyframesAfterLoop = 10;  // in which no other loop is sought
+constexpr uint32_t kKeyframesAfterLoop = 10;  // without a search for another loop
 
 // The query's pose if the loop is right, at the scale of the query.
 Rigid3 PoseByLoop(const Map& map, const Loop& loop) {
@@ -129,7 +129,7 @@ std::optional<MapCorrection> LoopCloser::Close(LoopQuery& query, const LoopCandi
   return correction;
 }
 
-// What speaks against the loop by the drift budget; empty if nothing does.
+// The reason why the loop exceeds the drift budget; empty if it does not.
 std::string LoopCloser::FindTooMuchDrift(const Map& map, const Loop& loop) const {
   const Travel travel = TravelBetween(map, loop.candidate, loop.query);
   const Rigid3& tracked = map.keyframes().At(loop.query).cam_from_world;
@@ -140,9 +140,9 @@ std::string LoopCloser::FindTooMuchDrift(const Map& map, const Loop& loop) const
                            CameraDistance(by_loop, tracked), travel.metres);
 }
 
-// Whether a second keyframe at the query, which the similarity was not computed from, shows enough
-// of the landmarks around the candidate. There is no drift budget between islands, so this takes
-// its place.
+// Whether a second keyframe near the query, from which the similarity was not computed, shows
+// enough of the landmarks around the candidate. This check replaces the drift budget, which does
+// not exist between islands.
 bool LoopCloser::IsConfirmedByNeighbour(const Map& corrected, const Loop& loop) const {
   const std::vector<LandmarkId> landmarks =
       ObservedLandmarks(corrected, PlaceOf(corrected, loop.candidate));

@@ -16,14 +16,15 @@
 
 namespace hullslam {
 
-// A snapshot of the map for the loop closer alone, and the keyframe at which a loop is sought.
+// A snapshot of the map for the loop closer alone, and the keyframe at which it searches a loop.
 struct LoopQuery {
   Map map;
   KeyframeId keyframe;
 };
 
-// Finds loops in snapshots of the map and says how they correct it. A loop whose ends belong to
-// different islands joins them. It does not change the map but sends corrections to the mapper.
+// Finds loops in snapshots of the map and computes the corrections that close them. A loop whose
+// ends belong to different islands joins the islands. The loop closer does not change the map; it
+// sends corrections to the mapper.
 class LoopCloser {
  public:
   // `sensor` must outlive the loop closer. `seed` is that of the run.
@@ -38,7 +39,8 @@ class LoopCloser {
   std::optional<MapCorrection> Close(LoopQuery& query, const LoopCandidate& candidate,
                                      std::string& refusal) const;
 
-  // Merges what was mapped twice if tracking has found the way back to the place of the query.
+  // Merges landmarks and objects that were mapped twice, if tracking itself has found back to the
+  // place of the query.
   std::optional<MapCorrection> JoinReturn(const LoopQuery& query);
   std::string FindTooMuchDrift(const Map& map, const Loop& loop) const;
   bool IsConfirmedByNeighbour(const Map& corrected, const Loop& loop) const;

@@ -17,10 +17,10 @@ namespace hullslam {
 namespace {
 
 constexpr int kStrong = 100;  // shared landmarks of an edge of the essential graph
-// The weight of a loop's edge against the others, so that it is not pulled open again by the many
-// edges that lead along the way between its ends.
+// The weight of a loop's edge relative to other edges. It is high, because the many edges along the
+// way between the ends of the loop would otherwise open the loop again.
 constexpr double kLoopWeight = 10.0;
-constexpr double kLeastScaleWeight = 1e-3;  // where nothing tells the scale
+constexpr double kLeastScaleWeight = 1e-3;  // where no landmark determines the scale
 
 KeyframeId RootOf(const Map& map, KeyframeId keyframe) {
   while (map.keyframes().At(keyframe).parent.IsValid()) {
@@ -53,9 +53,9 @@ class EssentialGraph {
     edge.b_from_a = b_from_a;
     edge.inverse_sigma.setConstant(weight);
   }
-  // For a map without depth. Where landmarks tell less about the scale of one end of an edge by
-  // that of the other than most do, the scale may change. Otherwise the error of a scale that broke
-  // in a single place, such as a door, would be spread over the whole loop.
+  // For a monocular map. The scale may change along an edge where landmarks determine the relative
+  // scale of its ends less precisely than along other edges. Otherwise a scale error that arose in
+  // a single place, such as a door, would be spread over the whole loop.
   void WeighScales() {
     const ScaleInformation information(map_, ids_);
     std::vector<std::pair<PoseGraph::Edge*, double>> weights;
@@ -108,7 +108,7 @@ class EssentialGraph {
   PoseGraph graph_;
 };
 
-// Finds what landmarks are searched for, and merges what a keyframe shows there.
+// Collects the merges of landmarks that were found with the landmarks that keyframes show there.
 class LandmarkMerger {
  public:
   LandmarkMerger(const Map& map, const std::vector<LandmarkId>& kept, MapCorrection& correction)
@@ -187,7 +187,7 @@ MapCorrection MoveIsland(const Map& map, const Loop& loop) {
   const Rigid3& candidate = map.keyframes().At(loop.candidate).cam_from_world;
   const IslandId of_query = IslandOf(map, loop.query);
   const IslandId of_candidate = IslandOf(map, loop.candidate);
-  // From the world of the older island to that of the younger one.
+  // The transform from the world of the older island to that of the younger one.
   const Sim3 candidate_from_query =
       Inverse(Sim3(candidate)) * Inverse(loop.query_from_candidate) * Sim3(query);
   const Sim3 younger_from_older =

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "estimators/similarity.h"
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "map/covisibility.h"
 #include "optim/similarity_optimization.h"
 #include "places/similar_places.h"
@@ -20,15 +20,16 @@ namespace {
 // Pairs of keypoints of the query and of the candidate.
 using KeypointPairs = std::vector<std::pair<uint32_t, uint32_t>>;
 
-// The pairs of the query's keypoints that show landmarks of their own with those of the candidate
-// that show the landmarks that were found.
+// The keypoints of the query at which landmarks of the candidate were found, paired with the
+// candidate's keypoints that show these landmarks. Only keypoints of the query that show a landmark
+// of their own are included.
 KeypointPairs PairsOf(const Keyframe& query, const Keyframe& candidate,
                       const std::vector<FoundLandmark>& found) {
   KeypointPairs pairs;
   for (const auto& [keypoint, landmark] : found) {
-    const auto place = std::find(candidate.landmarks.begin(), candidate.landmarks.end(), landmark);
+    const auto seen = std::find(candidate.landmarks.begin(), candidate.landmarks.end(), landmark);
     if (query.landmarks[keypoint].IsValid()) {
-      pairs.emplace_back(keypoint, static_cast<uint32_t>(place - candidate.landmarks.begin()));
+      pairs.emplace_back(keypoint, static_cast<uint32_t>(seen - candidate.landmarks.begin()));
     }
   }
   return pairs;
@@ -64,8 +65,8 @@ std::vector<SimilarityMatch> MakeMatches(const Map& map, const Sensor& sensor,
   return matches;
 }
 
-// The pose of the query's camera in the candidate's part of the map. A camera does not see scale,
-// so this is a rigid motion.
+// The pose of the query's camera in the candidate's part of the map. An image does not depend on
+// the scale, so the pose is a rigid motion.
 Rigid3 PoseAtCandidate(const Sim3& query_from_candidate, const Keyframe& candidate) {
   const Sim3 pose = query_from_candidate * Sim3(candidate.cam_from_world);
   return {pose.rotation, pose.translation / pose.scale};

@@ -17,11 +17,11 @@ namespace hullslam {
 
 // Two keyframes that see the same place although tracking did not lead from one to the other.
 struct Loop {
-  KeyframeId query;      // the newer one
-  KeyframeId candidate;  // the older one
+  KeyframeId query;      // the newer end
+  KeyframeId candidate;  // the older end
   // Between the camera frames. The unit of length of each is that of the map at this keyframe.
   Sim3 query_from_candidate;
-  // Keypoints of the query and the landmarks around the candidate that they show.
+  // The landmarks around the candidate that were found in the query, with their keypoints.
   std::vector<FoundLandmark> landmarks;
 };
 
@@ -31,9 +31,9 @@ struct LoopVerdict {
   std::string refusal;  // empty if there is a loop
 };
 
-// Whether a candidate really shows the query's place. Landmarks are matched by words, a similarity
-// is found by RANSAC and refined while more landmarks are found with it (Mur-Artal and Tardos 2014
-// and 2017), and then the landmarks around the candidate are searched in the query. `fix_scale`:
+// Checks whether a candidate really shows the query's place. Landmarks are matched by words. RANSAC
+// finds a similarity, which is refined while more landmarks are found with it (Mur-Artal and Tardos
+// 2014 and 2017). Then the landmarks around the candidate are searched in the query. `fix_scale`:
 // the similarity has scale 1, as in RGB-D. `seed` is that of the run. The map must have a
 // vocabulary.
 LoopVerdict VerifyLoop(const Map& map, const Sensor& sensor, KeyframeId query, KeyframeId candidate,

@@ -26,8 +26,8 @@ std::vector<ObjectId> MappedAround(const Map& map, KeyframeId keyframe) {
   return objects;
 }
 
-// Whether each of the quadrics, blown up by half, contains the centre of the other.
-bool AreAtOnePlace(const Ellipsoid& a, const Ellipsoid& b) {
+// Whether each of the quadrics, enlarged by half, contains the centre of the other.
+bool AreAtOneLocation(const Ellipsoid& a, const Ellipsoid& b) {
   const auto reaches = [](Ellipsoid from, const Ellipsoid& to) {
     from.half_axes *= 1.5;
     return from.RadialDistance(to.world_from_object.translation) <= 0.0;
@@ -35,14 +35,14 @@ bool AreAtOnePlace(const Ellipsoid& a, const Ellipsoid& b) {
   return reaches(a, b) && reaches(b, a);
 }
 
-// Whether any detection of one was given a class that a detection of the other was given.
+// Whether a detection of one object has the same class as a detection of the other.
 bool ShareClass(const ObjectLandmark& a, const ObjectLandmark& b) {
   return std::any_of(a.votes.begin(), a.votes.end(),
                      [&](const auto& vote) { return b.votes.contains(vote.first); });
 }
 
-// Whether a mask of the keyframe shows a thing of the object's class at its place. Only masks that
-// belong to no mapped object count: those of the others show where that object is.
+// Whether a mask of the keyframe shows a thing of the object's class at the object's location. Only
+// masks that belong to no mapped object count, because all others show that mapped object.
 bool IsDetected(const Map& map, const Sensor& sensor, const ObjectLandmark& object,
                 KeyframeId keyframe_id, const AssociationOptions& options) {
   const Keyframe& keyframe = map.keyframes().At(keyframe_id);
@@ -51,13 +51,13 @@ bool IsDetected(const Map& map, const Sensor& sensor, const ObjectLandmark& obje
   if (!ellipse) {
     return false;
   }
-  const std::vector<Eigen::Vector2d> outline = ellipse->Polygon();
+  const std::vector<Eigen::Vector2d> projected = ellipse->Polygon();
   for (size_t i = 0; i < keyframe.objects.size(); ++i) {
     const Detection& detection = keyframe.frame->detections[i];
     const ObjectLandmark* const owner = map.objects().Find(keyframe.objects[i]);
     const bool is_mapped = owner != nullptr && owner->state == ObjectState::kMapped;
     if (!is_mapped && object.votes.contains(detection.label) &&
-        IntersectionOverUnion(outline, detection.hull) >= options.min_projection_iou) {
+        IntersectionOverUnion(projected, detection.hull) >= options.min_projection_iou) {
       return true;
     }
   }
@@ -66,23 +66,23 @@ bool IsDetected(const Map& map, const Sensor& sensor, const ObjectLandmark& obje
 
 enum class Vote { kNone, kAgree, kDisagree };
 
-// What an object of one end says, compared with the objects of the other end.
+// The vote of an object of one end, compared with the objects of the other end.
 Vote VoteOf(const Map& map, const Sensor& sensor, const ObjectLandmark& object,
             const std::vector<ObjectId>& others, KeyframeId other_end,
             const ObjectOptions& options) {
-  bool is_place_taken = false;
+  bool is_location_taken = false;
   for (const ObjectId id : others) {
     const ObjectLandmark& other = map.objects().At(id);
-    if (AreAtOnePlace(object.ellipsoid, other.ellipsoid)) {
+    if (AreAtOneLocation(object.ellipsoid, other.ellipsoid)) {
       if (ShareClass(object, other)) {
         return Vote::kAgree;
       }
-      is_place_taken = true;
+      is_location_taken = true;
     }
   }
   const bool is_missing =
-      is_place_taken ||
-      (ViewPlace(map, sensor, other_end, object, options) == PlaceView::kVisible &&
+      is_location_taken ||
+      (ViewLocation(map, sensor, other_end, object, options) == LocationView::kVisible &&
        !IsDetected(map, sensor, object, other_end, options.association));
   return is_missing ? Vote::kDisagree : Vote::kNone;
 }

@@ -14,7 +14,7 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kElsewhere = 10;  // keyframes from elsewhere between two visits
+constexpr size_t kElsewhere = 10;  // least number of keyframes from elsewhere between two visits
 
 // The keyframes of the query's island and session that are older than the query and not connected
 // to it, by increasing id.
@@ -57,7 +57,8 @@ std::optional<Return> FindReturn(const Map& map, KeyframeId query, size_t min_la
   if (elsewhere.size() < kElsewhere) {
     return std::nullopt;
   }
-  // Before it, there are enough keyframes from elsewhere on the way to the query.
+  // From a keyframe before `bound`, there are enough keyframes from elsewhere on the way to the
+  // query.
   const KeyframeId bound = elsewhere[elsewhere.size() - kElsewhere];
   const Covisible* best = nullptr;
   for (const Covisible& other : map.keyframes().At(query).covisible) {

@@ -10,7 +10,7 @@ namespace {
 constexpr double kLeastInformation = 1e-6;  // radians^2: one landmark seen over 1 mrad
 constexpr double kLeastVariance = 1e-9;
 
-// Of the rays of a group of keyframes.
+// The sum of the squared deviations of the rays of a group of keyframes from their mean.
 class SumOfSquaredDeviations {
  public:
   void Add(const Eigen::Vector3d& ray) {
@@ -26,8 +26,8 @@ class SumOfSquaredDeviations {
   double count_ = 0.0;
 };
 
-// Of a landmark about the ratio of the scale of the keyframes up to `before` and that of those from
-// `after` on.
+// The information of a landmark about the ratio of two scales: that of the keyframes up to `before`
+// and that of the keyframes from `after` on.
 double InformationOf(const Map& map, const Landmark& landmark, KeyframeId before,
                      KeyframeId after) {
   SumOfSquaredDeviations older;
@@ -53,7 +53,7 @@ bool IsSeenBy(const Landmark& landmark, KeyframeId keyframe) {
 
 }  // namespace
 
-// Of the landmarks that both show.
+// The information of the landmarks that both keyframes show.
 double ScaleInformation::Shared(KeyframeId older, KeyframeId newer) const {
   double information = 0.0;
   for (const LandmarkId id : map_.keyframes().At(older).landmarks) {
@@ -68,7 +68,7 @@ ScaleInformation::ScaleInformation(const Map& map, const std::vector<KeyframeId>
     : map_(map), keyframes_(keyframes) {
   double sum = 0.0;
   for (size_t i = 0; i < keyframes.size(); ++i) {
-    // The first and the last one have no parallax on one side.
+    // The first and the last keyframe have no parallax on one side.
     const bool is_inside = i > 0 && i + 1 < keyframes.size();
     const double half =
         is_inside ? 0.5 / std::max(Shared(keyframes[i], keyframes[i]), kLeastInformation) : 0.0;

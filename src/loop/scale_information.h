@@ -8,24 +8,29 @@
 
 namespace hullslam {
 
-// How well the landmarks of a map without depth tell the scale around one keyframe by that around
-// another. Where a camera turns in a door, all that it sees leaves the image before it was seen
-// from several places on the other side. The scales of the two rooms hardly depend on each other
-// there.
+// Measures how precisely landmarks fix the relative scale of two keyframes. For monocular maps.
+// Where a camera turns in a door, for example, each landmark leaves the image before it has been
+// seen from several positions in the next room. So few landmarks connect the scales of the two
+// rooms.
 //
-// A landmark tells the ratio of the scales of two groups of keyframes by the depths that both
-// measure. With p^2, the sum of the squared deviations of the rays of a group from their mean
-// (radians^2), and the standard deviation s of a ray, the variance of its logarithm is
-// s^2 / p_1^2 + s^2 / p_2^2. The information of landmarks is the sum of s^2 / variance, radians^2.
+// If two groups of keyframes both measure the depth of a landmark, the quotient of the two depths
+// is a measurement of the ratio of their scales. Let s be the standard deviation of a ray
+// (radians), and p_k^2 the sum of the squared deviations of the rays of group k from their mean
+// (radians^2). The logarithm of a depth from group k has the variance s^2 / p_k^2, so the logarithm
+// of the quotient has the variance
+//   v = s^2 / p_1^2 + s^2 / p_2^2.
+// The information of several landmarks is the sum of s^2 / v (radians^2).
 class ScaleInformation {
  public:
-  // `keyframes`: those of an island, by increasing id. It and the map must outlive this object.
+  // `keyframes` are those of an island, by increasing id. They and the map must outlive this
+  // object.
   ScaleInformation(const Map& map, const std::vector<KeyframeId>& keyframes);
 
-  // Between two of them, `older` < `newer` (indices). The better one of two ways: by the landmarks
-  // that both show, with the groups of keyframes up to the older one and from the newer one on; and
-  // from keyframe to keyframe, where each is in the groups of both its sides and half of its
-  // variance counts on each side.
+  // The information about the relative scale of two keyframes, `older` < `newer` (indices). It is
+  // the larger one of two estimates. The first uses the landmarks that both keyframes show; the two
+  // groups are the keyframes up to the older one and those from the newer one on. The second adds
+  // up variances from keyframe to keyframe; each keyframe belongs to the groups on both its sides,
+  // and half of its variance counts for each side.
   double Between(size_t older, size_t newer) const;
 
  private:
@@ -33,7 +38,7 @@ class ScaleInformation {
 
   const Map& map_;
   const std::vector<KeyframeId>& keyframes_;
-  std::vector<double> variances_;  // of the way from the first keyframe to each, over s^2
+  std::vector<double> variances_;  // from the first keyframe to each keyframe, over s^2
 };
 
 }  // namespace hullslam

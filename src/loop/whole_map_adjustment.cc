@@ -9,10 +9,6 @@
 namespace hullslam {
 namespace {
 
-bool IsRequested(const Cancellation* cancellation) {
-  return cancellation != nullptr && cancellation->IsRequested();
-}
-
 void Append(const Map& map, const BundleResult& result, MapCorrection& correction) {
   for (const auto& [id, pose] : result.poses) {
     correction.poses.push_back({id, map.keyframes().At(id).cam_from_world, Sim3(pose)});

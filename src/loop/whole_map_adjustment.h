@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// Bundle adjustment of the whole map, one island after the other, to be done after a loop was
+// Bundle adjustment of the whole map, one island after the other. To be called after a loop was
 // closed. The correction moves all keyframes and landmarks; objects follow their keyframes. Null if
 // `cancellation` (may be null) was requested, or if the solver failed.
 std::optional<MapCorrection> AdjustWholeMap(const Map& map, const Sensor& sensor,

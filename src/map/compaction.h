@@ -10,8 +10,8 @@ namespace hullslam {
 // map stays consistent; nothing else changes. Snapshots keep the former frame and indices. Indices
 // that were taken from the keyframe before are invalid afterwards.
 //
-// This is the only place where the frame of a keyframe changes. Whatever else the map derives from
-// the keypoints of a keyframe when it is added, such as an index of its words, must follow here.
+// Only this function changes the frame of a keyframe. All data that the map derives from the
+// keypoints of a keyframe when it is added, such as an index of its words, must be updated here.
 void CompactKeyframe(Map& map, KeyframeId keyframe);
 
 }  // namespace hullslam

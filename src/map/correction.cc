@@ -24,7 +24,7 @@ bool IsIdentity(const MapCorrection::Pose& pose) {
          corrected.translation == snapshot.translation;
 }
 
-// How the world around each keyframe, culled or not, moves.
+// The motion of the world around each keyframe, culled or not.
 class WorldChanges {
  public:
   WorldChanges(const Map& map, const MapCorrection& correction)
@@ -146,7 +146,7 @@ std::vector<MapCorrection::Position> NewPositions(const Map& map, const MapCorre
       positions.push_back({id, *change * landmark.position});
     }
   });
-  // The given positions come last, so they win if a landmark has both.
+  // The given positions come last, so they count if a landmark has both.
   for (const MapCorrection::Position& given : correction.positions) {
     const Landmark* landmark = map.landmarks().Find(given.landmark);
     if (landmark != nullptr && landmark->position != given.position) {
@@ -198,7 +198,7 @@ void SortUnique(std::vector<Type>& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-// The ids that now stand for `ids`, each once.
+// The ids that have replaced `ids`, each once.
 template <typename IdType>
 std::vector<IdType> ResolveAll(const Map& map, std::vector<IdType> ids) {
   for (IdType& id : ids) {
@@ -258,7 +258,7 @@ std::vector<ObjectId> MergeObjects(Map& map, const MapCorrection& correction) {
   return merged;
 }
 
-// The ends of the loop edge, as far as they are still keyframes of the map.
+// The loop edge between the nearest ancestors of its ends that are still keyframes of the map.
 std::optional<MapCorrection::LoopEdge> FindLoop(const Map& map, const MapCorrection& correction) {
   if (!correction.loop) {
     return std::nullopt;

@@ -18,14 +18,16 @@ std::vector<IslandId> Islands(const Map& map);
 // The keyframes of an island, without culled ones, by increasing id.
 std::vector<KeyframeId> KeyframesOf(const Map& map, IslandId island);
 
-// The island that stays when a run ends: the one with most keyframes, culled ones included; of
-// equal ones the oldest. But if the map has keyframes of earlier sessions, it is the island of the
-// oldest one, because the run must not remove what others have mapped. Invalid for an empty map.
+// The island that stays when a run ends. It is the island with most keyframes, culled ones
+// included; ties go to the oldest. If the map has keyframes of earlier sessions, it is the island
+// of the oldest keyframe, because the run must not remove the work of earlier sessions. Invalid for
+// an empty map.
 IslandId MainIsland(const Map& map);
 
-// Makes one island of those of two keyframes: the younger one gets the number of the older one, and
-// its spanning tree becomes a branch of the other tree at the given keyframes. Does nothing if the
-// keyframes belong to one island already. Poses stay as they are; they must agree already.
+// Joins the islands of two keyframes. The younger island gets the number of the older one, and its
+// spanning tree becomes a branch of the other tree, connected by the given keyframes. Does nothing
+// if the keyframes already belong to one island. Poses are not changed; the two islands must
+// already have the same world frame.
 void JoinIslands(Map& map, KeyframeId a, KeyframeId b);
 
 // Removes all islands but one, with their keyframes, landmarks and objects. A removed keyframe, and

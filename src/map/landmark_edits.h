@@ -12,7 +12,7 @@ void UpdateDescriptor(Map& map, LandmarkId landmark);
 
 // Sets the viewing direction and the range of distances in which the landmark can be recognised.
 // They follow from the keyframes that observe it and from the level at which the reference keyframe
-// does.
+// observes it.
 void UpdateViewingGeometry(Map& map, LandmarkId landmark, const ScaleLevels& levels);
 
 }  // namespace hullslam

@@ -10,7 +10,7 @@
 
 namespace hullslam {
 
-// How a camera should see a landmark.
+// The expected view of a landmark by a camera.
 struct LandmarkView {
   Eigen::Vector3d point_in_cam = Eigen::Vector3d::Zero();  // m
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();         // px, undistorted

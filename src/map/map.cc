@@ -12,14 +12,14 @@ namespace hullslam {
 namespace {
 
 // The position of the observation by `keyframe`, or where it would be inserted.
-auto PlaceOfObservation(auto& observations, KeyframeId keyframe) {
+auto LowerBoundOfObservation(auto& observations, KeyframeId keyframe) {
   return std::lower_bound(
       observations.begin(), observations.end(), keyframe,
       [](const auto& observation, KeyframeId id) { return observation.keyframe < id; });
 }
 
 auto FindObservation(auto& observations, KeyframeId keyframe) {
-  const auto it = PlaceOfObservation(observations, keyframe);
+  const auto it = LowerBoundOfObservation(observations, keyframe);
   return it != observations.end() && it->keyframe == keyframe ? it : observations.end();
 }
 
@@ -134,7 +134,7 @@ bool Map::AddObservation(LandmarkId landmark, KeyframeId keyframe, uint32_t keyp
     return false;
   }
   Landmark& changed = landmarks_.Mutable(landmark);
-  changed.observations.insert(PlaceOfObservation(changed.observations, keyframe),
+  changed.observations.insert(LowerBoundOfObservation(changed.observations, keyframe),
                               {keyframe, keypoint});
   changed.observation_weight += ObservationWeight(*observer.frame, keypoint);
   keyframes_.Mutable(keyframe).landmarks[keypoint] = landmark;
@@ -193,7 +193,7 @@ bool Map::AddObservation(ObjectId object, KeyframeId keyframe, uint32_t detectio
     return false;
   }
   ObjectLandmark& changed = objects_.Mutable(object);
-  changed.observations.insert(PlaceOfObservation(changed.observations, keyframe),
+  changed.observations.insert(LowerBoundOfObservation(changed.observations, keyframe),
                               {keyframe, detection});
   changed.reference = changed.observations.front().keyframe;
   const Detection& seen = observer.frame->detections[detection];

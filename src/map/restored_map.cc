@@ -86,8 +86,8 @@ void CheckReference(const MapTables& tables, KeyframeId reference, const std::st
   }
 }
 
-// The same; and the keyframe was not removed with its island, so it has a pose. CheckCulled has
-// found no cycle.
+// Checks that the keyframe exists, culled or not, and has a pose because it was not removed with
+// its island. CheckCulled has found no cycle before.
 void CheckPose(const MapTables& tables, KeyframeId reference, const std::string& kind,
                uint32_t id) {
   CheckReference(tables, reference, kind, id);

@@ -16,17 +16,17 @@ namespace hullslam {
 namespace {
 
 constexpr double kMinFoundRatio = 0.25;
-constexpr uint32_t kTrialKeyframes = 2;  // from this age on a small weight is a reason to erase
-// An observation with depth weighs as much as two without.
+constexpr uint32_t kTrialKeyframes = 2;  // at this age landmarks of small weight are erased
+// An observation with depth weighs as much as two without depth.
 constexpr int kMaxWeakWeight = 3;
 constexpr int kMaxWeakMonocularWeight = 2;
 constexpr size_t kOtherObservers = 3;
 constexpr size_t kOtherMonocularObservers = 4;
 constexpr double kRedundantShare = 0.9;
-// Without depth, two keyframes see a landmark from the same place if its parallax between them is
-// smaller than so many standard deviations.
-constexpr double kSamePlaceSigmas = 2.0;
-// With fewer landmarks, a share says little about how redundant a keyframe is.
+// Two keyframes of a monocular camera see a landmark from the same viewpoint if its parallax
+// between them is smaller than this many standard deviations.
+constexpr double kSameViewpointSigmas = 2.0;
+// With fewer landmarks, the share of redundant landmarks is not reliable.
 constexpr int kMinLandmarks = 20;
 // With fewer close landmarks, the far ones are judged too: the pose of the keyframe depends on them
 // (the bound of Mur-Artal and Tardos 2017 for a frame that lacks close points).
@@ -38,13 +38,13 @@ Eigen::Vector3d RayTo(const Rigid3& cam_from_world, const Eigen::Vector3d& point
   return (point - Inverse(cam_from_world).translation).normalized();
 }
 
-// Whether enough other keyframes see the landmark; without depth, from different places. Only
-// landmarks that are seen from three places carry the scale of a single camera from one pair of
-// keyframes to the next.
+// Whether enough other keyframes see the landmark, in the monocular case from different viewpoints.
+// Only landmarks that are seen from three viewpoints transfer the scale of a monocular map from one
+// pair of keyframes to the next.
 bool IsSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId id, int level,
                     const Sensor& sensor) {
   const size_t enough = sensor.IsMonocular() ? kOtherMonocularObservers : kOtherObservers;
-  const double max_cos = std::cos(kSamePlaceSigmas * std::sqrt(2.0) / sensor.camera.fx);
+  const double max_cos = std::cos(kSameViewpointSigmas * std::sqrt(2.0) / sensor.camera.fx);
   std::array<Eigen::Vector3d, kOtherMonocularObservers> rays;
   size_t others = 0;
   for (const Observation& observation : landmark.observations) {
@@ -55,10 +55,10 @@ bool IsSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId id, int
     }
     if (sensor.IsMonocular()) {
       rays[others] = RayTo(keyframe.cam_from_world, landmark.position);
-      const bool is_same_place =
+      const bool is_same_viewpoint =
           std::any_of(rays.begin(), rays.begin() + others,
                       [&](const Eigen::Vector3d& ray) { return ray.dot(rays[others]) > max_cos; });
-      if (is_same_place) {
+      if (is_same_viewpoint) {
         continue;
       }
     }
@@ -69,7 +69,7 @@ bool IsSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId id, int
   return false;
 }
 
-// How many landmarks of a keyframe others see too.
+// The number of landmarks of a keyframe, and of those that enough other keyframes see too.
 struct Redundancy {
   int landmarks = 0;
   int redundant = 0;
@@ -106,7 +106,8 @@ bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor) {
          (has_many_close || all.MostAreRedundant());
 }
 
-// Where the object is, as far as that is known: null for a candidate without shape and depth.
+// The centre of the object. Null for a candidate without shape and depth, whose location is not
+// known.
 std::optional<Eigen::Vector3d> CenterOf(const ObjectLandmark& object,
                                         std::span<const ObjectView> views) {
   if (object.has_shape) {

@@ -11,8 +11,8 @@ namespace hullslam {
 // Removes `recent` landmarks from the map if they were found in less than a quarter of the frames
 // in which they should have been visible, or if their observation weight is still too small two
 // keyframes after they were made (Mur-Artal and Tardos 2015, section VI.B). Landmarks that no
-// longer exist or that are three keyframes old leave the list, and so do those of other islands
-// than that of `current`: the camera was lost before it could see them again.
+// longer exist or that are three keyframes old leave the list. Landmarks of islands other than that
+// of `current` leave it too, because the camera was lost before it could see them again.
 void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
                          std::vector<LandmarkId>& recent);
 
@@ -21,13 +21,14 @@ void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
 std::vector<LandmarkId> FindRecentLandmarks(const Map& map);
 
 // Removes redundant keyframes among those covisible with `current`. A keyframe is redundant if more
-// than nine tenths of its close landmarks are each seen by at least three others, at most one level
-// coarser than it sees them (section VI.E). Without depth, four are needed, and those between which
-// the landmark has no measurable parallax count as one. If it has fewer than 100 close landmarks,
-// the same must hold for all of its landmarks, and with fewer than 20 landmarks it is not
-// redundant. A keyframe also stays if an object (mapped or candidate) needs its view: because fewer
-// than `min_object_views` would be left, or because no other keyframe sees the object from a
-// similar direction. Returns how many were removed.
+// than nine tenths of its close landmarks are each seen by at least three other keyframes, at most
+// one level coarser than by this keyframe (section VI.E). For a monocular sensor four other
+// keyframes are needed, and keyframes between which the landmark has no measurable parallax count
+// as one. If the keyframe has fewer than 100 close landmarks, the same must hold for all of its
+// landmarks. With fewer than 20 landmarks it is not redundant. A keyframe also stays if an object
+// (mapped or candidate) needs its view: because fewer than `min_object_views` views would be left,
+// or because no other keyframe sees the object from a similar direction. Returns how many were
+// removed.
 int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views);
 
 }  // namespace hullslam

@@ -23,7 +23,7 @@ void ApplySightings(Map& map, const std::vector<Sighting>& sightings) {
   }
 }
 
-// Adds an observation and updates what depends on the observations of the landmark.
+// Adds an observation and updates the values that follow from the observations of the landmark.
 void Observe(Map& map, LandmarkId landmark, KeyframeId keyframe, uint32_t keypoint,
              const ScaleLevels& levels) {
   if (map.AddObservation(landmark, keyframe, keypoint)) {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "geometry/epipolar.h"
 #include "geometry/triangulation.h"
 #include "map/covisibility.h"
@@ -19,13 +19,13 @@ namespace hullslam {
 namespace {
 
 constexpr size_t kNeighbours = 10;
-constexpr size_t kMonocularNeighbours = 20;  // without depth, all landmarks are made here
-constexpr double kMinBaseline = 0.005;       // over the median depth, without depth images
-constexpr double kMaxCosParallax = 0.9998;   // about 1.1 degrees, for pairs without depth
-// A monocular pair should have a parallax of so many standard deviations of its keypoints.
+constexpr size_t kMonocularNeighbours = 20;  // more, because no landmarks come from depth
+constexpr double kMinBaseline = 0.005;       // over the median depth, monocular
+constexpr double kMaxCosParallax = 0.9998;   // about 1.1 degrees, if both depths are unknown
+// Least expected parallax of a monocular pair, in standard deviations of its keypoints.
 constexpr double kMinParallaxSigmas = 2.0;
 
-// A keypoint of a keyframe with what triangulation needs.
+// A keypoint of a keyframe with the data that triangulation needs.
 struct View {
   const Keyframe* keyframe = nullptr;
   uint32_t keypoint = 0;
@@ -67,7 +67,8 @@ std::optional<Eigen::Vector3d> Triangulate(const View& a, const View& b) {
                           b.normalized);
 }
 
-// Where the point is that both views show; null if that cannot be told. For sensors with depth.
+// The position of the point that both views show; null if the views do not determine it. For
+// sensors with depth.
 std::optional<Eigen::Vector3d> Locate(const View& a, const View& b, const Sensor& sensor) {
   const double cos_parallax = a.ray_in_world.dot(b.ray_in_world);
   const double cos_a = CosStereoParallax(a, sensor.baseline());
@@ -87,8 +88,7 @@ bool Reprojects(const View& view, const Eigen::Vector3d& point, const Sensor& se
   return IsInlier(sensor.camera, view.measurement, view.keyframe->cam_from_world * point);
 }
 
-// The farther away a patch is, the finer is the level at which it is found. Distance times scale is
-// constant.
+// A patch that is farther away is found at a finer level, so distance times scale is constant.
 bool HasConsistentScale(const View& a, const View& b, const Eigen::Vector3d& point,
                         const Sensor& sensor) {
   const double distance_a = (a.keyframe->cam_from_world * point).norm();
@@ -111,16 +111,17 @@ std::vector<uint32_t> FreeKeypoints(const Keyframe& keyframe) {
   return free;
 }
 
-// Where the line through both camera centres meets the image plane of b, px. It is far outside the
-// image if the line is parallel to the plane.
+// The pixel where the line through both camera centres meets the image plane of b. It is far
+// outside the image if the line is parallel to the plane.
 Eigen::Vector2d EpipoleOf(const Rigid3& b_from_a, const PinholeCamera& camera) {
   const Eigen::Vector3d& center = b_from_a.translation;
   const bool is_parallel = std::abs(center.z()) <= 1e-6 * center.norm();
   return is_parallel ? Eigen::Vector2d::Constant(-1e6) : camera.Project(center);
 }
 
-// The shortest baseline from which landmarks are made. Depth images are more precise than a shorter
-// one than their own; without them it depends on how far away the landmarks are.
+// The shortest baseline from which landmarks are made. Below the virtual stereo baseline, depth is
+// more precise than triangulation. For a monocular sensor the shortest baseline depends on the
+// depths of the landmarks.
 double MinBaseline(const Map& map, const Keyframe& keyframe, const Sensor& sensor) {
   if (!sensor.IsMonocular()) {
     return sensor.baseline();
@@ -143,11 +144,7 @@ std::vector<Match> FindPairs(const Map& map, const Keyframe& a, const Keyframe& 
   if (b_from_a.translation.norm() < MinBaseline(map, b, sensor)) {
     return {};
   }
-  Eigen::Matrix3d calibration = Eigen::Matrix3d::Identity();
-  calibration(0, 0) = sensor.camera.fx;
-  calibration(1, 1) = sensor.camera.fy;
-  calibration(0, 2) = sensor.camera.cx;
-  calibration(1, 2) = sensor.camera.cy;
+  const Eigen::Matrix3d calibration = sensor.camera.Matrix();
   return MatchForTriangulation(a.frame->features, FreeKeypoints(a), b.frame->features,
                                FreeKeypoints(b),
                                FundamentalFromPose(b_from_a, calibration, calibration),
@@ -160,7 +157,7 @@ bool IsConsistent(const View& a, const View& b, const Eigen::Vector3d& point,
          HasConsistentScale(a, b, point, sensor);
 }
 
-// Where the landmarks of a keyframe are in its image and how far away.
+// The pixels and depths of the landmarks of a keyframe.
 class NearbyDepth {
  public:
   NearbyDepth(const Map& map, const Keyframe& keyframe) {
@@ -210,12 +207,12 @@ double ParallaxAt(double depth, const View& a, const View& b) {
   return (point.hnormalized() - infinite.hnormalized()).norm();
 }
 
-// Triangulates a pair of a monocular camera if its parallax should be large enough. Whether it is
-// must not be told by the pair itself: of many pairs with too little parallax, those would be taken
-// whose noise makes it larger. They are too near, and the scale of the map would shrink wherever
-// the camera only turns. So the depth of the landmarks beside it tells it.
-std::optional<Eigen::Vector3d> LocateWithoutDepth(const View& a, const View& b,
-                                                  const NearbyDepth& nearby, const Sensor& sensor) {
+// Triangulates a pair of a monocular camera if the parallax expected for its depth is large enough.
+// The pair's own parallax must not decide, because noise would select pairs that are too near. The
+// scale of the map would then shrink wherever the camera only turns. So the expected parallax is
+// computed from the depth of the landmarks that are nearest in the image.
+std::optional<Eigen::Vector3d> LocateMonocular(const View& a, const View& b,
+                                               const NearbyDepth& nearby, const Sensor& sensor) {
   const std::optional<double> depth = nearby.At(a.pixel);
   const double noise = std::hypot(a.scale, b.scale) / sensor.camera.fx;
   if (!depth || ParallaxAt(*depth, a, b) < kMinParallaxSigmas * noise) {
@@ -240,7 +237,7 @@ std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId id, const Sensor& s
       const View a = MakeView(map.keyframes().At(id), pair.query, sensor);
       const View b = MakeView(map.keyframes().At(neighbour), pair.keypoint, sensor);
       const std::optional<Eigen::Vector3d> point =
-          nearby ? LocateWithoutDepth(a, b, *nearby, sensor) : Locate(a, b, sensor);
+          nearby ? LocateMonocular(a, b, *nearby, sensor) : Locate(a, b, sensor);
       if (!point || !IsConsistent(a, b, *point, sensor)) {
         continue;
       }

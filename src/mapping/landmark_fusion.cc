@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "map/covisibility.h"
 #include "map/landmark_edits.h"
 #include "map/landmark_projection.h"
@@ -45,7 +45,8 @@ void Join(Map& map, LandmarkId landmark, LandmarkId other, const ScaleLevels& le
   UpdateViewingGeometry(map, kept, levels);
 }
 
-// Searches the landmarks in one keyframe, and merges or adds what is found.
+// Searches the landmarks in one keyframe. Merges them with the landmarks found there, or adds
+// observations.
 void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landmarks,
               const Sensor& sensor) {
   const std::shared_ptr<const Frame> frame = map.keyframes().At(target).frame;
@@ -72,7 +73,7 @@ void FuseInto(Map& map, KeyframeId target, const std::vector<LandmarkId>& landma
     ids.push_back(id);
     points_in_cam.push_back(view->point_in_cam);
   }
-  // Of the keypoints where the landmark may be, the one with the most similar descriptor is taken.
+  // Only keypoints at which the landmark may be are compared by their descriptors.
   const auto reprojects = [&](uint32_t query, uint32_t keypoint) {
     return IsInlier(sensor.camera,
                     MeasurePoint(sensor, frame->features, keypoint, sensor.depth_error),

@@ -20,9 +20,10 @@
 namespace hullslam {
 namespace {
 
-// The scale of a single camera is measured when objects of known size have so many observations.
+// The scale of a monocular map is measured once objects of known size have this many observations.
 constexpr size_t kMinSizedViews = 10;
-// During the run a smaller change is not made: every change makes loops in work useless.
+// Smaller changes of the scale wait for the end of the run, because every change invalidates a loop
+// that is being computed.
 constexpr double kScaleTolerance = 0.01;
 
 size_t CountSizedViews(const Map& map, const std::map<std::string, double>& sizes) {
@@ -33,8 +34,6 @@ size_t CountSizedViews(const Map& map, const std::map<std::string, double>& size
   });
   return views;
 }
-
-bool MustHurry(const Cancellation* hurry) { return hurry != nullptr && hurry->IsRequested(); }
 
 }  // namespace
 
@@ -112,7 +111,7 @@ void Mapper::Apply(const MapCorrection& correction, const Cancellation*) {
   }
 }
 
-// The landmarks and objects that follow from a new keyframe.
+// Creates the landmarks and objects that follow from a new keyframe.
 void Mapper::AddEntities(KeyframeId keyframe, const Cancellation* hurry) {
   newest_keyframe_ = keyframe;
   {
@@ -120,7 +119,7 @@ void Mapper::AddEntities(KeyframeId keyframe, const Cancellation* hurry) {
     CullRecentLandmarks(map_, keyframe, sensor_, recent_);
     const std::vector<LandmarkId> created = CreateLandmarks(map_, keyframe, sensor_);
     recent_.insert(recent_.end(), created.begin(), created.end());
-    if (!MustHurry(hurry)) {
+    if (!IsRequested(hurry)) {
       FuseLandmarks(map_, keyframe, sensor_);
     }
   }
@@ -128,7 +127,7 @@ void Mapper::AddEntities(KeyframeId keyframe, const Cancellation* hurry) {
 }
 
 void Mapper::Improve(KeyframeId keyframe, const Cancellation* hurry, Culling culling) {
-  if (MustHurry(hurry) || map_.keyframes().size() <= 2) {
+  if (IsRequested(hurry) || map_.keyframes().size() <= 2) {
     return;
   }
   AdjustNeighbourhood(keyframe, hurry);
@@ -180,7 +179,7 @@ void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on
   if (KeepOnlyIsland(map_, MainIsland(map_))) {
     PublishSnapshot();
   }
-  const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
+  const bool is_cancelled = IsRequested(cancellation);
   if (options_.final_bundle_adjustment && !is_cancelled && map_.keyframes().size() >= 2) {
     AdjustMap(cancellation, on_progress);
   }
@@ -200,8 +199,7 @@ void Mapper::AdjustMap(const Cancellation* cancellation, const ProgressCallback&
   PublishSnapshot();
 }
 
-// Finds out what has become of the objects of earlier sessions. Those that are not there any more
-// are removed from the map.
+// Finds the changes of the objects of earlier sessions. Removes objects that are gone from the map.
 void Mapper::FinishObjects() {
   if (!object_options_.enabled || former_.objects().empty()) {
     return;
@@ -225,8 +223,8 @@ std::vector<ChangedObject> Mapper::FindChanges() const {
   return FindObjectChanges(former_, map_, former_.NextFrame(), sensor_, object_options_);
 }
 
-// The object of the map that is not any more where it was; invalid if the change is another one or
-// if the object was removed already.
+// The object of the map that is gone or was moved away; invalid if the change is another one or if
+// the object was removed already.
 ObjectId Mapper::FindLeft(const ChangedObject& changed) const {
   const bool has_left =
       changed.change == ObjectChange::kGone || changed.change == ObjectChange::kMoved;
@@ -234,7 +232,7 @@ ObjectId Mapper::FindLeft(const ChangedObject& changed) const {
   return map_.objects().Contains(id) ? id : ObjectId();
 }
 
-// Returns whether there are any.
+// Splits off new objects that took the location of old ones. Returns whether there are any.
 bool Mapper::SplitReplacedObjects() {
   bool has_split = false;
   for (const ChangedObject& changed : object_changes_) {
@@ -257,7 +255,7 @@ void Mapper::FollowKnownSizes(bool is_final) {
   const size_t views = CountSizedViews(map_, sizes);
   const bool is_due = is_final || views >= std::max(kMinSizedViews, 2 * sized_views_);
   if (!is_due || Islands(map_).size() != 1) {
-    return;  // each island has a unit of its own
+    return;  // each island has its own unit of length
   }
   const ScopedTimer timer(times_, "known_sizes");
   sized_views_ = views;

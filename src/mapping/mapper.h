@@ -35,15 +35,15 @@ class Mapper {
   // called at most once, before all other functions.
   void Begin(Map map, Session session);
 
-  // Does what the message asks for. `hurry` (may be null) is requested while another message waits.
-  // The mapper then leaves out what is not necessary. An initial map becomes a new island if the
+  // Processes a message. `hurry` (may be null) is requested while another message waits. The mapper
+  // then leaves out the steps that are not necessary. An initial map becomes a new island if the
   // map is not empty.
   void Process(const MapMessage& message, const Cancellation* hurry);
 
   // To be called once, at the end. Removes all islands but the main one (map/islands.h). Then it
-  // adjusts the whole map if mapping.final_bundle_adjustment is set,
-  // and publishes it; but not a map of earlier sessions to which no keyframe was added. If
-  // `cancellation` (may be null) is requested, it ends early with what it has.
+  // adjusts the whole map, if mapping.final_bundle_adjustment is set, and publishes it. A map of
+  // earlier sessions to which no keyframe was added is not changed. If `cancellation` (may be null)
+  // is requested, the adjustment ends early with its current result.
   void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress = {});
 
   // A snapshot of the live map for a stage that needs one of its own, and the keyframe that was
@@ -51,7 +51,7 @@ class Mapper {
   Map Snapshot() { return map_.Snapshot(); }
   std::optional<KeyframeId> NewestKeyframe() const;
 
-  // What the session has changed among the objects of the map of earlier sessions; complete after
+  // The changes of objects between the map of earlier sessions and this session. Complete after
   // Finish, which removes objects that are gone or were moved away. Empty if there was no such map
   // or no keyframe was added.
   const std::vector<ChangedObject>& object_changes() const { return object_changes_; }

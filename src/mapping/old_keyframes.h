@@ -7,14 +7,14 @@
 
 namespace hullslam {
 
-// Compacts the keyframes that later work hardly needs in full (map/compaction.h): those that are
-// more than 20 keyframes older than `current` and are covisible neither with it nor with a keyframe
-// that is. `full` are the keyframes that may have to be compacted, by increasing id. Those that are
-// compacted, or culled, are removed from it.
+// Compacts the keyframes of which later steps hardly need all keypoints (map/compaction.h). These
+// are the keyframes that are more than 20 keyframes older than `current` and are covisible neither
+// with `current` nor with a keyframe that is covisible with it. `full` are the keyframes that may
+// have to be compacted, by increasing id. Those that are compacted, or culled, are removed from it.
 //
-// Keypoints that show no landmark are there to be triangulated with new keyframes. With every
-// keyframe that was made near this one, that was tried already. Place recognition and
-// relocalisation need keypoints that show landmarks.
+// Keypoints that show no landmark are only kept so that they can be triangulated with new
+// keyframes. This was already tried with all keyframes near an old one. Place recognition and
+// relocalisation need only the keypoints that show landmarks.
 void CompactOldKeyframes(Map& map, KeyframeId current, std::vector<KeyframeId>& full);
 
 }  // namespace hullslam

@@ -12,7 +12,7 @@
 
 namespace hullslam {
 
-// The place in an image where something seen before is expected.
+// The expected view of a point in an image, and the search window around it.
 struct Projection {
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // px, undistorted
   float right_u = -1.0f;  // px in the virtual right image; below 0: not compared

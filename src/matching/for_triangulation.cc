@@ -16,9 +16,9 @@ struct Candidate {
   int distance = 0;
 };
 
-// Some keypoints and how far they may be from a line. Nearly all keypoints are far from a line, and
-// this is seen for all of a block at once, in single precision. The few that are left are compared
-// exactly afterwards.
+// A block of keypoints with their largest allowed distances from a line. Nearly all keypoints are
+// far from a given line. These are excluded for a whole block at once, in single precision; the few
+// others are compared exactly afterwards.
 struct Block {
   static constexpr int kSize = 16;
   using Row = Eigen::Array<float, kSize, 1>;
@@ -30,7 +30,8 @@ struct Block {
 
 std::vector<Block> MakeBlocks(const FrameFeatures& features, std::span<const uint32_t> indices,
                               const ScaleLevels& levels, double max_epipolar_chi2) {
-  // Room for the rounding of the distance, which is a sum of three numbers as large as coordinates.
+  // Room for the rounding of the distance, which is a sum of three numbers of the size of
+  // coordinates.
   constexpr float kLeastRoom = 0.01f;  // px
   constexpr float kRelativeRoom = 1e-6f;
   std::vector<Block> blocks((indices.size() + Block::kSize - 1) / Block::kSize);
@@ -38,11 +39,11 @@ std::vector<Block> MakeBlocks(const FrameFeatures& features, std::span<const uin
     const auto& keypoint = features.keypoints[indices[i]];
     const double sigma2 = levels.sigma2[static_cast<size_t>(keypoint.level)];
     Block& block = blocks[i / Block::kSize];
-    const auto place = static_cast<Eigen::Index>(i % Block::kSize);
-    block.x[place] = keypoint.undistorted.x();
-    block.y[place] = keypoint.undistorted.y();
-    block.reach[place] = static_cast<float>(std::sqrt(max_epipolar_chi2 * sigma2)) + kLeastRoom +
-                         kRelativeRoom * keypoint.undistorted.lpNorm<1>();
+    const auto lane = static_cast<Eigen::Index>(i % Block::kSize);
+    block.x[lane] = keypoint.undistorted.x();
+    block.y[lane] = keypoint.undistorted.y();
+    block.reach[lane] = static_cast<float>(std::sqrt(max_epipolar_chi2 * sigma2)) + kLeastRoom +
+                        kRelativeRoom * keypoint.undistorted.lpNorm<1>();
     block.keypoints[i % Block::kSize] = indices[i];
   }
   return blocks;
@@ -67,7 +68,7 @@ void FindNear(const Eigen::Vector3d& line, std::span<const Block> blocks,
   }
 }
 
-// All of these keypoints of b whose descriptors are similar to that of the keypoint of a.
+// Those of the given keypoints of b whose descriptors are similar to that of the keypoint of a.
 HULLSLAM_FUNCTION_CLONES
 void FindSimilar(const Descriptor& query, const std::vector<Descriptor>& descriptors,
                  std::span<const uint32_t> indices, int max_distance,

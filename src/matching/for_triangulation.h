@@ -20,10 +20,10 @@ struct TriangulationSearch {
 
 // Pairs keypoints of image a (`a_indices`) with keypoints of image b (`b_indices`) that have
 // similar descriptors and lie on the epipolar line. `fundamental` maps a pixel of a to its line in
-// b: x_b^T F x_a = 0. `epipole` is where the line through both camera centres meets image b, px. It
-// is the image of camera a if a is in front of b. If a is behind b, points near it move along the
-// viewing direction too and have as little parallax. Pairs without any depth are not made near the
-// epipole.
+// b: x_b^T F x_a = 0. `epipole` is the pixel where the line through both camera centres meets image
+// b. If camera a is in front of b, it is the image of a. Points near the epipole have little
+// parallax, also if a is behind b. So no pairs are made near the epipole if both depths are
+// unknown.
 std::vector<Match> MatchForTriangulation(
     const FrameFeatures& a, std::span<const uint32_t> a_indices, const FrameFeatures& b,
     std::span<const uint32_t> b_indices, const Eigen::Matrix3d& fundamental,

@@ -11,12 +11,12 @@
 namespace hullslam {
 
 struct Match {
-  uint32_t query = 0;     // index of what is searched for
+  uint32_t query = 0;     // index of the query
   uint32_t keypoint = 0;  // index of the keypoint that was found
   int distance = 0;       // Hamming, 0 to 256
 };
 
-// The candidate nearest to a descriptor, and how far away the second one is.
+// The candidate nearest to a descriptor, and the distance of the second nearest one.
 struct TwoBest {
   int best = std::numeric_limits<int>::max();
   int second = std::numeric_limits<int>::max();

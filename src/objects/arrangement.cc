@@ -86,7 +86,7 @@ Arrangement CompareArrangement(const Map& map, const ObjectIndex& index, const S
     const bool is_found = std::find(arrangement.objects.begin(), arrangement.objects.end(), id) !=
                           arrangement.objects.end();
     if (!is_found &&
-        ViewPlace(map, sensor, image, map.objects().At(id), options) == PlaceView::kVisible) {
+        ViewLocation(map, sensor, image, map.objects().At(id), options) == LocationView::kVisible) {
       ++arrangement.missed;
     }
   }

@@ -11,15 +11,14 @@
 
 namespace hullslam {
 
-// How well the arrangement of the mapped objects explains what a frame shows, if it is seen from a
-// certain pose.
+// The agreement of the detections of a frame with the mapped objects, as seen from a certain pose.
 struct Arrangement {
   std::vector<ObjectId> objects;  // one per detection; invalid where it shows no mapped object
   int matched = 0;                // detections that show a mapped object
-  double overlap = 0.0;           // sum of their IoU with the projected ellipses
-  int missed = 0;                 // mapped objects that the frame should show (PlaceView)
+  double overlap = 0.0;           // sum of the IoU of their hulls with the projected ellipses
+  int missed = 0;                 // mapped objects that the frame should show (LocationView)
 
-  // The sum of overlaps; each missed object counts as half an overlap against it.
+  // The sum of the overlaps, minus one half for each missed object.
   double Score() const { return overlap - 0.5 * missed; }
 };
 

@@ -18,21 +18,21 @@ namespace {
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
-constexpr int kDepthSteps = 4;  // between the places of a carried hull of unknown depth
+constexpr int kDepthSteps = 4;  // between the positions of a carried hull of unknown depth
 
-// What is expected of an object in the frame.
+// The expected appearance of an object in the frame.
 struct Prediction {
   ObjectId id;
   const ObjectLandmark* object = nullptr;
   Polygon ellipse;                         // projected, clipped to the image; empty without a shape
   std::vector<Polygon> carried;            // the last hull, moved to the frame's pose
-  std::vector<LandmarkId> landmarks;       // that its latest views show, sorted
+  std::vector<LandmarkId> landmarks;       // in its latest views, sorted
   std::vector<Eigen::Vector3d> cloud;      // depth points of its last view, world
   std::vector<Eigen::Vector3d> centroids;  // one per latest view with depth, world
-  double size = 0.0;                       // of its cloud, see SizeOf
+  double size = 0.0;                       // of its cloud (SizeOf)
 };
 
-// A detection with everything that is compared.
+// A detection with all its data that is compared.
 struct Seen {
   const Detection* detection = nullptr;
   std::vector<LandmarkId> landmarks;  // sorted
@@ -177,8 +177,8 @@ class Associator {
     SortUnique(prediction.landmarks);
   }
 
-  // The last hull of an object, moved to the frame's pose. All its corners get one inverse depth
-  // (1 / m): that of the depth points, or that of the place where the rays to the object meet. If
+  // The last hull of an object, moved to the frame's pose. All its corners get one inverse depth (1
+  // / m): that of the depth points, or that of the point where the rays to the object meet. If
   // neither is known, there is one hull per possible inverse depth.
   std::vector<Polygon> Carry(std::span<const ObjectView> views) const {
     const ObjectView& last = views.back();
@@ -200,7 +200,7 @@ class Associator {
     if (const auto sphere = StartFromRays(sensor_.camera, views, {})) {
       return {1.0 / (last.cam_from_world * sphere->world_from_object.translation).z()};
     }
-    // From infinitely far to as near that the hull moves by its own size.
+    // The inverse depths range from 0 to the value at which the hull moves by its own size.
     const Rigid3 now_from_then = cam_from_world_ * Inverse(last.cam_from_world);
     const Eigen::Vector3d ray = sensor_.camera.Unproject(last.detection->box.center(), 1.0);
     const Eigen::Vector3d far = now_from_then.rotation * ray;
@@ -214,7 +214,7 @@ class Associator {
                           far.head<2>() * now_from_then.translation.z() / (far.z() * far.z()));
     const double size = last.detection->box.sizes().minCoeff();
     std::vector<double> inverse_depths = {0.0};
-    if (slope.norm() > 1.0) {  // px m; a smaller one moves nothing
+    if (slope.norm() > 1.0) {  // px m; a smaller slope moves the hull too little
       for (int i = 1; i <= kDepthSteps; ++i) {
         inverse_depths.push_back(i * size / (kDepthSteps * slope.norm()));
       }
@@ -298,8 +298,8 @@ class Associator {
     return total > 0.0 ? same / total : 0.0;
   }
 
-  // The largest IoU with a carried hull. Where the depth of the object is not known, a hull can be
-  // carried to many places, so the class must agree too.
+  // The largest IoU with a carried hull. If the depth of the object is not known, the hull can be
+  // carried to many positions, so the class must agree too.
   double CarriedOverlap(const Seen& seen, const Prediction& prediction) const {
     if (prediction.carried.size() > 1 && seen.detection->label != prediction.object->Label()) {
       return 0.0;

@@ -11,17 +11,17 @@
 
 namespace hullslam {
 
-// Which objects detections are associated with.
+// The objects with which detections may be associated.
 enum class AssociationScope { kAll, kMapped };
 
-// Returns the object that each detection of a frame shows; an invalid id if it shows no known
-// object (Wu et al. 2023). The similarity of a detection and an object combines the IoU with the
-// projected ellipse and with the last hull, shared landmarks, rank-sum and t-tests of depth points,
-// and the class. Another class makes a pair less similar but does not exclude it. A pair is
-// excluded if the clouds of depth points are too far apart. The assignment with the largest total
-// similarity is chosen. `island` is that of the map which the pose belongs to; objects of others
-// are not considered. `landmarks` has one entry per keypoint of the frame, or it is empty. `index`
-// is that of the map; the map may have more objects.
+// Returns the object that each detection of a frame shows. The id is invalid if the detection shows
+// no known object (Wu et al. 2023). The similarity of a detection and an object combines the IoU
+// with the projected ellipse and with the last hull, shared landmarks, rank-sum and t-tests of
+// depth points, and the class. Another class makes a pair less similar but does not exclude it. A
+// pair is excluded if the clouds of depth points are too far apart. The assignment with the largest
+// total similarity is chosen. `island` is the island of the map that the pose belongs to; objects
+// of other islands are not considered. `landmarks` has one entry per keypoint of the frame, or it
+// is empty. `index` is that of the map; the map may have more objects.
 std::vector<ObjectId> AssociateDetections(const Map& map, const ObjectIndex& index,
                                           const Sensor& sensor, const Frame& frame,
                                           const Rigid3& cam_from_world, IslandId island,

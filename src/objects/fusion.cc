@@ -113,7 +113,7 @@ bool AreOne(const Map& map, const ObjectLandmark& a, const ObjectLandmark& b,
          (in_each_other && MayHaveOneCentroid(map, a, b, options));
 }
 
-// An object with a shape, as far as AreNear needs it.
+// The data of an object with a shape that AreNear needs.
 struct Ball {
   ObjectId id;
   IslandId island;

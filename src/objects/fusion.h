@@ -12,11 +12,11 @@
 
 namespace hullslam {
 
-// Pairs of objects of one island that are the same thing. The first of a pair has more observations
-// and should be kept. Two objects form a pair if few or no keyframes observe both and their
-// quadrics overlap enough. For objects that no keyframe observes together, it is also enough that
-// each quadric contains the centre of the other and the t-test finds no difference between their
-// centroids. Each object is in at most one pair.
+// Pairs of objects of one island that are copies of one thing. The first object of a pair has more
+// observations and should be kept. Two objects form a pair if few or no keyframes observe both and
+// their quadrics overlap enough. For objects that no keyframe observes together, it is also enough
+// that each quadric contains the centre of the other and the t-test finds no difference between
+// their centroids. Each object is in at most one pair.
 std::vector<std::pair<ObjectId, ObjectId>> FindDuplicates(const Map& map,
                                                           const FusionOptions& options = {});
 // The same, but only pairs with at least one of the objects `changed` (by increasing id).

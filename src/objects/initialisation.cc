@@ -17,8 +17,8 @@ namespace {
 // they meet, divided by the number of rays, is below this.
 constexpr double kMinRayInformation = 1e-3;
 
-// How far the centre of a sphere lies behind the surface that a camera sees, in radii: the mean
-// over its silhouette.
+// The distance of the centre of a sphere behind the surface that a camera sees, in radii, averaged
+// over the silhouette.
 constexpr double kSurfaceToCenter = 2.0 / 3.0;
 
 struct Interval {
@@ -69,7 +69,7 @@ Eigen::Matrix3d PrincipalAxes(std::span<const Eigen::Vector3d> points) {
   return axes;
 }
 
-// The points that are left after trimming along each axis in turn.
+// The points that remain after trimming along each axis in turn.
 std::vector<Eigen::Vector3d> InnerPoints(std::span<const Eigen::Vector3d> points,
                                          const Eigen::Matrix3d& axes, double trimmed) {
   std::vector<Eigen::Vector3d> inner(points.begin(), points.end());
@@ -84,8 +84,8 @@ std::vector<Eigen::Vector3d> InnerPoints(std::span<const Eigen::Vector3d> points
   return inner;
 }
 
-// A sphere with the mean size of the boxes at this place. Null if the place is not in front of all
-// cameras.
+// A sphere with this centre and the mean size of the boxes. Null if the centre is not in front of
+// all cameras.
 std::optional<Ellipsoid> SphereAt(const Eigen::Vector3d& center, const PinholeCamera& camera,
                                   std::span<const ObjectView> views, const StartOptions& options) {
   double radius = 0.0;
@@ -146,7 +146,7 @@ std::optional<Ellipsoid> StartFromRays(const PinholeCamera& camera,
 std::optional<Ellipsoid> StartFromLandmarks(const PinholeCamera& camera,
                                             std::span<const ObjectView> views,
                                             const StartOptions& options) {
-  std::array<std::vector<double>, 3> places;
+  std::array<std::vector<double>, 3> coordinates;
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   for (const ObjectView& view : views) {
     const std::optional<double> depth = LandmarkDepth(view);
@@ -155,16 +155,17 @@ std::optional<Ellipsoid> StartFromLandmarks(const PinholeCamera& camera,
     }
     const Eigen::Vector3d in_camera = camera.Unproject(view.detection->box.center(), *depth);
     const Rigid3 world_from_cam = Inverse(view.cam_from_world);
-    const Eigen::Vector3d place = world_from_cam * in_camera;
+    const Eigen::Vector3d point = world_from_cam * in_camera;
     for (size_t axis = 0; axis < 3; ++axis) {
-      places[axis].push_back(place[static_cast<Eigen::Index>(axis)]);
+      coordinates[axis].push_back(point[static_cast<Eigen::Index>(axis)]);
     }
     direction += world_from_cam.rotation * in_camera.normalized();
   }
-  if (2 * places[0].size() < views.size() || places[0].empty()) {
+  if (2 * coordinates[0].size() < views.size() || coordinates[0].empty()) {
     return std::nullopt;
   }
-  const Eigen::Vector3d surface(Median(places[0]), Median(places[1]), Median(places[2]));
+  const Eigen::Vector3d surface(Median(coordinates[0]), Median(coordinates[1]),
+                                Median(coordinates[2]));
   const auto in_front = SphereAt(surface, camera, views, options);
   if (!in_front) {
     return std::nullopt;

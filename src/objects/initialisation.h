@@ -28,7 +28,7 @@ std::optional<Ellipsoid> StartFromRays(const PinholeCamera& camera,
                                        std::span<const ObjectView> views,
                                        const StartOptions& options);
 
-// The start of an object without depth whose landmarks say how far away it is: a sphere with the
+// The start of an object without depth points whose landmarks have a known depth: a sphere with the
 // mean size of the boxes, whose surface is at the depth of the landmarks. Nothing if fewer than
 // half of the views have such a depth or if the sphere is not in front of all cameras.
 std::optional<Ellipsoid> StartFromLandmarks(const PinholeCamera& camera,

@@ -13,7 +13,7 @@
 namespace hullslam {
 namespace {
 
-constexpr double kReach = 3.0;  // in widths; samples farther away have almost no weight
+constexpr double kReach = 3.0;  // in widths; samples farther away have nearly no weight
 // Least sum of weights: that of one sample at the normal, or of several samples near it.
 constexpr double kMinWeight = 1.0;
 constexpr double kNoSlope = 0.3;           // weight of the prior that the slope is 0

@@ -43,8 +43,8 @@ std::optional<double> PredictExcess(std::span<const MisfitSample> samples,
                                     const Eigen::Vector3d& normal, KeyframeId left_out,
                                     const MisfitOptions& options = {});
 
-// The lines of a detection, moved by the predicted excess. They are where they would be if the real
-// object were the quadric. Lines whose excess cannot be predicted are not moved. `known` gets one
+// The lines of a detection, moved by the predicted excess. The moved lines are those that the
+// quadric itself would give. Lines whose excess cannot be predicted are not moved. `known` gets one
 // entry per line: 1 if it was moved, else 0.
 std::vector<SilhouetteLine> CompensateLines(const PinholeCamera& camera,
                                             const Rigid3& cam_from_world,

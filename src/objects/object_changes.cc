@@ -15,7 +15,7 @@
 namespace hullslam {
 namespace {
 
-// Where a correction of the map since then has moved the object.
+// The object's ellipsoid after the corrections of the map since then.
 Ellipsoid InMap(const Map& map, const Map& former, const ObjectLandmark& object) {
   const KeyframeId keyframe = object.reference;
   const Sim3 change(map.ScaleOf(keyframe) / former.ScaleOf(keyframe),
@@ -35,8 +35,8 @@ bool MayBe(const ObjectLandmark& object, const std::string& label) {
   return same != object.votes.end() && same->second >= kLeastShare * all;
 }
 
-// How much the sizes of two objects differ: the larger ratio of their two longest half axes. The
-// shortest one is badly known for flat things.
+// The difference of the sizes of two objects: the larger one of the ratios of their two longest
+// half axes. The shortest half axis of flat things is not known precisely.
 double SizeRatio(Eigen::Vector3d a, Eigen::Vector3d b) {
   std::sort(a.begin(), a.end());
   std::sort(b.begin(), b.end());
@@ -91,7 +91,7 @@ class Comparison {
   }
 
   ChangedObject CompareAdded(ObjectId id, const ObjectLandmark& object) {
-    ChangedObject changed{.label = object.Label(), .now = ObjectPlace{id, object.ellipsoid}};
+    ChangedObject changed{.label = object.Label(), .now = LocatedObject{id, object.ellipsoid}};
     CountViews(earlier_, id, object, changed);
     changed.change = Judge(changed, ObjectChange::kNew, ObjectChange::kFirstSeen);
     if (changed.change == ObjectChange::kSeenAgain) {
@@ -124,18 +124,19 @@ class Comparison {
     }
   }
 
-  // Whether a keyframe that does not show the object shows its place.
+  // Whether a keyframe that does not show the object shows its location.
   bool IsSeenWithout(KeyframeId id, ObjectId object_id, const ObjectLandmark& object) const {
     const Keyframe& keyframe = map_.keyframes().At(id);
     const ChangeOptions& limits = options_.changes;
     return IsReplaced(keyframe, object_id, object) ||
            SeesThrough(sensor_, *keyframe.frame, keyframe.cam_from_world, object.ellipsoid,
                        limits.min_seen_through) ||
-           ViewPlace(map_, sensor_, id, object, options_, limits.min_inside) == PlaceView::kVisible;
+           ViewLocation(map_, sensor_, id, object, options_, limits.min_inside) ==
+               LocationView::kVisible;
   }
 
-  // Whether the keyframe shows that something else stands where the object stood. It may hide that
-  // place. It is a new object of another class, or was taken for the object itself.
+  // Whether the keyframe shows another thing at the location of the object, or in front of it. The
+  // other thing is a new object of another class, or it was associated with the object itself.
   bool IsReplaced(const Keyframe& keyframe, ObjectId id, const ObjectLandmark& object) const {
     for (size_t i = 0; i < keyframe.objects.size(); ++i) {
       const ObjectId shown = keyframe.objects[i];
@@ -152,14 +153,14 @@ class Comparison {
     return false;
   }
 
-  // Whether a detection of the keyframe shows the object or something of its class at its place.
+  // Whether a detection of the keyframe shows the object, or a thing of its class at its location.
   bool Shows(const Keyframe& keyframe, ObjectId id, const ObjectLandmark& object) const {
     const auto ellipse =
         ProjectEllipsoid(sensor_.camera.Matrix(), keyframe.cam_from_world, object.ellipsoid);
     if (!ellipse) {
       return false;
     }
-    const std::vector<Eigen::Vector2d> outline = ellipse->Polygon();
+    const std::vector<Eigen::Vector2d> projected = ellipse->Polygon();
     for (size_t i = 0; i < keyframe.objects.size(); ++i) {
       const Detection& detection = keyframe.frame->detections[i];
       if (!MayBe(object, detection.label)) {
@@ -169,7 +170,7 @@ class Comparison {
         return true;
       }
       if (!WasMapped(keyframe.objects[i]) &&
-          IntersectionOverUnion(outline, detection.hull) >= options_.changes.min_overlap &&
+          IntersectionOverUnion(projected, detection.hull) >= options_.changes.min_overlap &&
           IsThere(keyframe, detection, object)) {
         return true;
       }
@@ -227,21 +228,21 @@ class Comparison {
     }
   }
 
-  // Whether earlier sessions looked towards the place of an object, but something hid it from them.
+  // Whether earlier sessions looked towards the location of an object, but something hid it.
   bool WasHidden(const ChangedObject& added) const {
     if (added.change != ObjectChange::kFirstSeen || added.found > 0) {
       return false;
     }
     const ObjectLandmark& object = map_.objects().At(added.now->object);
     const auto hidden = std::count_if(earlier_.begin(), earlier_.end(), [&](KeyframeId id) {
-      return ViewPlace(map_, sensor_, id, object, options_, options_.changes.min_inside) ==
-             PlaceView::kHidden;
+      return ViewLocation(map_, sensor_, id, object, options_, options_.changes.min_inside) ==
+             LocationView::kHidden;
     });
     return hidden >= options_.changes.min_keyframes;
   }
 
-  // Nothing that the map knows tells two cups apart. So the nearest one of the same class and about
-  // the same size is taken for the one that was moved, if it is not too far away.
+  // The map cannot distinguish two cups. So the nearest new object of the same class and about the
+  // same size counts as the moved one, if it is not too far away.
   double MovingCost(const ChangedObject& gone, const ChangedObject& added) const {
     const Ellipsoid& from = gone.former->ellipsoid;
     const Ellipsoid& to = added.now->ellipsoid;
@@ -252,7 +253,7 @@ class Comparison {
         distance > options_.changes.max_move) {
       return kNever;
     }
-    // A place that was seen empty is a better one.
+    // A location that was seen empty before is more likely.
     const double doubt = added.change == ObjectChange::kNew ? 0.0 : 1.0;
     return std::log(ratio) + distance / options_.changes.max_move + doubt;
   }

@@ -40,10 +40,10 @@ std::unique_ptr<RobustRowsCost> MakeRobust(std::unique_ptr<ceres::CostFunction> 
   return std::make_unique<RobustRowsCost>(std::move(cost), std::move(loss), weight);
 }
 
-std::unique_ptr<RobustRowsCost> MakeOutline(const PinholeCamera& camera, const ObjectView& view,
-                                            std::span<const SilhouetteLine> lines,
-                                            const Ellipsoid& ellipsoid, double misfit_px,
-                                            const ObjectConstraintOptions& options) {
+std::unique_ptr<RobustRowsCost> MakeSilhouette(const PinholeCamera& camera, const ObjectView& view,
+                                               std::span<const SilhouetteLine> lines,
+                                               const Ellipsoid& ellipsoid, double misfit_px,
+                                               const ObjectConstraintOptions& options) {
   const double sigma_px = std::hypot(options.sigma_px, options.misfit_factor * misfit_px);
   const auto sigma =
       ResidualOfPixelError(options.residual, camera, view.cam_from_world, ellipsoid, sigma_px);
@@ -79,7 +79,7 @@ ObjectConstraint MakeObjectConstraint(const PinholeCamera& camera, const ObjectV
                                       std::span<const SilhouetteLine> lines,
                                       const Ellipsoid& ellipsoid, double misfit_px,
                                       const ObjectConstraintOptions& options) {
-  return {.outline = MakeOutline(camera, view, lines, ellipsoid, misfit_px, options),
+  return {.silhouette = MakeSilhouette(camera, view, lines, ellipsoid, misfit_px, options),
           .depth = MakeDepth(view, options.depth)};
 }
 

@@ -17,7 +17,7 @@ namespace hullslam {
 // costs are those of QuadricInCamera (pose of the camera, pose of the object, log half axes).
 struct ObjectConstraint {
   std::unique_ptr<RobustRowsCost>
-      outline;  // null if MakeObjectCost gives null or the object is not in front
+      silhouette;  // null if MakeObjectCost gives null or the object is not in front
   std::unique_ptr<RobustRowsCost> depth;  // null without depth points
 };
 

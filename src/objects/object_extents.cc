@@ -17,7 +17,7 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kMinPlanes = 30;    // for nine unknowns, with neighbours that are nearly equal
+constexpr size_t kMinPlanes = 30;    // for nine unknowns; neighbouring planes are nearly equal
 constexpr double kLossScale = 0.04;  // of the largest half axis
 constexpr double kBorderPx = 20.0;   // lines that touch the mask nearer to the border are left out
 constexpr double kMaxMisfit = 0.1;   // of the longest side

@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// How large an object is.
+// The size of an object.
 struct ObjectExtents {
   // Lengths of the sides of the box around the object, the shortest first, in the unit of the map.
   Eigen::Vector3d sides = Eigen::Vector3d::Zero();
@@ -22,11 +22,11 @@ struct ObjectExtents {
 // it (objects/misfit.h). Lines near the border of the image are left out, because networks end
 // masks some pixels before it. The axes of the quadric are not the sides of the object: the
 // ellipsoid that fits the silhouettes of a box best is longer than the box where the corners show.
-// For the keyboard of freiburg1_xyz the longest axis is wrong by 16 %. So two bodies are
-// fitted to the planes, a box with the support function sum_i h_i |n_i| and an ellipsoid with
-// sqrt(sum_i (h_i n_i)^2), where h are the half sides and n is the normal in the frame of the body;
-// place and rotation are free. The body that fits better is taken. Nothing if there are too few
-// planes or if neither body fits.
+// For the keyboard of freiburg1_xyz the longest axis is wrong by 16 %. So two bodies are fitted to
+// the planes, a box with the support function sum_i h_i |n_i| and an ellipsoid with sqrt(sum_i (h_i
+// n_i)^2), where h are the half sides and n is the normal in the frame of the body; position and
+// rotation are free. The body that fits better is chosen. Nothing if there are too few planes or if
+// neither body fits.
 std::optional<ObjectExtents> MeasureExtents(const Sensor& sensor, const Ellipsoid& ellipsoid,
                                             std::span<const ObjectView> views);
 

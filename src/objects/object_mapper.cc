@@ -84,7 +84,8 @@ void ObjectMapper::CountVisible(Map& map, const ObjectIndex& index, KeyframeId k
       continue;
     }
     const bool is_found = std::find(observed.begin(), observed.end(), id) != observed.end();
-    if (is_found || ViewPlace(map, sensor_, keyframe, *object, options_) == PlaceView::kVisible) {
+    if (is_found ||
+        ViewLocation(map, sensor_, keyframe, *object, options_) == LocationView::kVisible) {
       visible.emplace_back(id, is_found);
     }
   }

@@ -35,13 +35,13 @@ class ObjectMapper {
   void RefineMerged(Map& map, std::span<const ObjectId> objects);
 
   // For a map of earlier sessions, at the end of a session whose frames have the id `session` or a
-  // larger one. What stands where something else stood before may have been taken for it. So the
-  // session's observations of `object` in which it has another class than before are moved to a
-  // new object, whose shape is sought. `former` is the object before the session. Returns whether
-  // there are such observations.
+  // larger one. A new thing may stand where another one stood before, and its detections may have
+  // been associated with the old object. So the session's observations of `object` with another
+  // class than before are moved to a new object, whose shape is computed. `former` is the object
+  // before the session. Returns whether there are such observations.
   bool SplitOff(Map& map, ObjectId object, const ObjectLandmark& former, FrameId session);
 
-  // How often an object was rejected, for each reason.
+  // The number of rejections of objects, by reason.
   const std::map<ObjectRejection, size_t>& rejections() const { return rejections_; }
 
  private:
@@ -60,7 +60,7 @@ class ObjectMapper {
   const Sensor& sensor_;
   ObjectOptions options_;
   std::map<ObjectRejection, size_t> rejections_;
-  // The objects that may have changed since duplicates were last sought, in any order.
+  // The objects that may have changed since the last search for duplicates, in any order.
   std::vector<ObjectId> changed_;
   bool may_all_have_changed_ = true;
 };

@@ -199,7 +199,7 @@ void BindChanges(OptionTable& options, ChangeOptions& changes) {
 }
 
 void CheckResidual(const std::string& use, ObjectResidual residual, ObjectPrimitive primitive) {
-  if (!IsSupported(residual, primitive)) {
+  if (!AcceptsPrimitive(residual, primitive)) {
     throw InputError("settings: objects." + use + ".residual '" + std::string(NameOf(residual)) +
                      "' cannot be computed from objects.primitive '" +
                      std::string(NameOf(primitive)) + "'");

@@ -13,10 +13,10 @@
 namespace hullslam {
 namespace {
 
-// Degrees between the rays to a landmark that says where an object is. With less, the depth of the
-// landmark is not known well.
+// Least angle (degrees) between the rays to a landmark from which the depth of an object is
+// computed. With a smaller angle the depth of the landmark is not precise.
 constexpr double kMinLandmarkParallax = 1.5;
-constexpr size_t kMinLandmarks = 3;  // that tell the depth of an object
+constexpr size_t kMinLandmarks = 3;  // for the depth of an object
 
 bool HasParallax(const Map& map, const Landmark& landmark) {
   static const double max_cosine = std::cos(kMinLandmarkParallax * std::numbers::pi / 180.0);

@@ -36,8 +36,8 @@ std::vector<ObjectView> LatestViews(const Map& map, const ObjectLandmark& object
 // is known well. This takes much longer than to collect the views.
 void AddSurfaceLandmarks(const Map& map, std::span<ObjectView> views);
 
-// Where the surface of the object is, as far as the view knows: its depth points or, without these,
-// its landmarks. Camera frame.
+// Known points of the object's surface: the depth points of the view or, without these, its
+// landmarks. Camera frame.
 std::vector<Eigen::Vector3d> SurfacePoints(const ObjectView& view);
 
 // The median depth (z) of its landmarks, in the unit of the map; nothing if there are fewer than

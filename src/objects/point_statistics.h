@@ -23,7 +23,7 @@ bool MayBeOneCloud(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Ve
 // of `samples`, MayHaveOneMean whether two samples may have the same mean (Welch 1947). Both are
 // false for fewer than three samples. `noise` is a standard deviation in the unit of the points;
 // its square is added to the variance, because a few samples that agree by chance must not make the
-// test stricter than the sensor is precise.
+// test stricter than the precision of the sensor.
 bool MayBeTheMean(const Eigen::Vector3d& value, std::span<const Eigen::Vector3d> samples,
                   double alpha, double noise);
 bool MayHaveOneMean(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b,

@@ -18,14 +18,15 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kMostTriples = 3000;  // that are tried
-constexpr size_t kMostPairs = 60;      // of which the angle is searched
+constexpr size_t kMostTriples = 3000;  // largest number of triples that are tried
+constexpr size_t kMostPairs = 60;      // largest number of pairs whose angle is searched
 constexpr int kAngles = 36;            // about the line through two centres
-constexpr size_t kMostPoses = 24;      // that are returned
-// Of two poses at the same place, in radians and as a share of the depth.
+constexpr size_t kMostPoses = 24;      // largest number of poses that are returned
+// Largest difference of two poses at the same place, in radians and as a share of the depth.
 constexpr double kSameAngle = 0.15;
 constexpr double kSameDistance = 0.15;
-// How far a centre may be from its place, in shares of its distance and of its radius.
+// Largest deviation of a centre from its expected position, in shares of its distance and of its
+// radius.
 constexpr double kDistanceShare = 0.02;
 constexpr double kRadiusShare = 0.3;
 
@@ -190,8 +191,8 @@ class Proposer {
     }
   }
 
-  // The poses that bring the two centres to their places, at all angles about the line through
-  // them.
+  // Adds the poses that bring the two centres to their expected positions, at all angles about the
+  // line through them.
   void TryAngles(size_t i, const Candidate& a, size_t j, const Candidate& b) {
     const Eigen::Vector3d in_map = CenterOf(b) - CenterOf(a);
     const Eigen::Vector3d in_cam = b.center_in_cam - a.center_in_cam;
@@ -218,7 +219,7 @@ class Proposer {
   }
 
   void AddPose(const Rigid3& cam_from_world) {
-    constexpr double kLeast = 1.0;  // a triple whose centres are far from their places
+    constexpr double kLeast = 1.0;  // below it the centres are far from their expected positions
     double agreement = 0.0;
     for (const Seen& seen : seen_) {
       double best = 0.0;
@@ -232,7 +233,7 @@ class Proposer {
     }
   }
 
-  // 1 if the object is where the detection shows it, 0 from twice the tolerance on.
+  // 1 if the object has the position that the detection shows, falling to 0 at twice the tolerance.
   static double Agreement(const Rigid3& cam_from_world, const Seen& seen,
                           const Candidate& candidate) {
     const Eigen::Vector3d center = cam_from_world * CenterOf(candidate);
@@ -268,7 +269,8 @@ class Proposer {
     return best;
   }
 
-  // Of the detections; infinite if none has depth, so that only the rotations are compared.
+  // Mean distance of the detections; infinite if none has depth, so that only the rotations are
+  // compared.
   double MeanDistance() const {
     double sum = 0.0;
     double count = 0.0;

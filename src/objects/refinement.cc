@@ -37,7 +37,7 @@ class RefinementProblem {
       poses_.push_back(ToBlock(view.cam_from_world));
       ObjectConstraint constraint = MakeObjectConstraint(sensor.camera, view, view.detection->lines,
                                                          ellipsoid, misfit_px, options);
-      Add(std::move(constraint.outline), poses_.back());
+      Add(std::move(constraint.silhouette), poses_.back());
       Add(std::move(constraint.depth), poses_.back());
       has_depth = has_depth || !view.detection->points.empty();
     }

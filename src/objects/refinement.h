@@ -20,8 +20,8 @@ struct Refinement {
 // fixed. The lines of the detections constrain the ellipsoid, and depth points constrain its
 // surface. A prior about `start` is needed because views from similar directions do not determine
 // the extent along the viewing direction. The better an object fits an ellipsoid, the more precise
-// its lines are. The misfit measures this, so `misfit_px`, clamped to the bounds of the options, is
-// their sigma.
+// its lines are. The misfit measures this, so it sets the sigma of the lines: `misfit_px`, clamped
+// to the bounds of the options.
 Refinement RefineEllipsoid(const Ellipsoid& ellipsoid, const Ellipsoid& start, const Sensor& sensor,
                            std::span<const ObjectView> views, double misfit_px,
                            const ObjectRefinementOptions& options);

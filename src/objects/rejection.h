@@ -16,7 +16,7 @@ enum class ObjectRejection {
   kLowOverlap,      // small mean IoU of projected ellipse and hull
   kOffPoints,       // too few depth points are inside it or near its surface
   kStretched,       // it reaches far beyond its depth points
-  kLargeMisfit,     // its projected ellipses are far from its outlines, for its size
+  kLargeMisfit,     // its projected ellipses are far from its masks, for its size
   kElongated,       // long or flat along the view, which needs more parallax
   kPart,            // it is a part of a mapped object
   kSeldomSeen,      // culled, because few of the keyframes that should see it do

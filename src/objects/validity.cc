@@ -36,13 +36,13 @@ std::optional<Objection> CheckPoints(const Ellipsoid& ellipsoid,
   }
   for (size_t axis = 0; axis < 3; ++axis) {
     std::vector<double>& extent = extents[axis];
-    const auto place = extent.begin() + static_cast<std::ptrdiff_t>(0.9 * extent.size());
-    std::nth_element(extent.begin(), place, extent.end());
+    const auto quantile = extent.begin() + static_cast<std::ptrdiff_t>(0.9 * extent.size());
+    std::nth_element(extent.begin(), quantile, extent.end());
     const double half = ellipsoid.half_axes[static_cast<Eigen::Index>(axis)];
-    if (half > options.max_stretch * *place + margin) {
+    if (half > options.max_stretch * *quantile + margin) {
       return Objection{
           ObjectRejection::kStretched,
-          fmt::format("half axis {:.3g}, but the points extend only to {:.3g}", half, *place)};
+          fmt::format("half axis {:.3g}, but the points extend only to {:.3g}", half, *quantile)};
     }
   }
   return std::nullopt;

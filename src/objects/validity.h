@@ -32,8 +32,9 @@ std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor&
                                        std::span<const ObjectView> views,
                                        const ValidityOptions& options);
 
-// How much longer a quadric is along the mean viewing direction than across it, or a quarter of how
-// much shorter it is, whichever is larger (ValidityOptions::max_elongation). At least 0.5.
+// Let q be the extent of a quadric along the mean viewing direction over its extent across it. The
+// elongation is the larger one of q and 1 / (4 q) (ValidityOptions::max_elongation). It is at least
+// 0.5.
 double Elongation(const Ellipsoid& ellipsoid, std::span<const ObjectView> views);
 
 // Mean over the views of the IoU of hull and projected ellipse, which is clipped to the image. If

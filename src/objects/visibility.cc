@@ -10,7 +10,7 @@
 namespace hullslam {
 namespace {
 
-constexpr int kFewSamples = 3;  // fewer samples on an object say nothing
+constexpr int kFewSamples = 3;  // with fewer samples on an object, it does not count as hidden
 
 // Counts how many of the samples on a projected ellipse are nearer than a depth.
 class HiddenCounter {
@@ -44,7 +44,8 @@ class HiddenCounter {
 template <typename Use>
 void ForEachSample(const DepthGrid& grid, const PinholeCamera& camera,
                    const Eigen::AlignedBox2d& bounds, const Use& use) {
-  // Distortion moves the corners of the box, but a sample that is missed at its rim does no harm.
+  // Distortion moves the corners of the box, so a sample at its rim may be missed; that does no
+  // harm.
   const Eigen::Vector2d first = camera.Distort(bounds.min()) / DepthGrid::kStep;
   const Eigen::Vector2d last = camera.Distort(bounds.max()) / DepthGrid::kStep;
   const int last_column = std::min(grid.columns() - 1, static_cast<int>(last.x()));
@@ -108,21 +109,22 @@ bool IsBehindObject(const Map& map, const ImageKnowledge& image, const Ellipse& 
 
 }  // namespace
 
-PlaceView ViewPlace(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
-                    const ObjectLandmark& object, const ObjectOptions& options, double min_inside) {
+LocationView ViewLocation(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
+                          const ObjectLandmark& object, const ObjectOptions& options,
+                          double min_inside) {
   const auto ellipse =
       ProjectEllipsoid(sensor.camera.Matrix(), image.cam_from_world, object.ellipsoid);
   if (!ellipse || !(ShareInside(ellipse->Bounds(), sensor.bounds) >= min_inside)) {
-    return PlaceView::kOutside;
+    return LocationView::kOutside;
   }
   const Ellipsoid in_cam = image.cam_from_world * object.ellipsoid;
   const double distance = in_cam.world_from_object.translation.norm();
   const double farthest =
       FarthestView(CollectViews(map, object), object.ellipsoid.world_from_object.translation);
   if (distance > options.culling.max_range * farthest) {
-    return PlaceView::kOutside;
+    return LocationView::kOutside;
   }
-  // What is nearer by less may be the object's own surface.
+  // A smaller difference of depth may come from the object's own surface.
   const double depth =
       DepthsOf(in_cam).nearest - NearSurface(object.ellipsoid, distance, options.validity);
   HiddenCounter counter(*ellipse, depth);
@@ -133,17 +135,18 @@ PlaceView ViewPlace(const Map& map, const Sensor& sensor, const ImageKnowledge& 
                   [&](const Eigen::Vector2d& pixel, double z) { counter.Add(pixel, z); });
   }
   return counter.IsHidden(options.culling.max_hidden) || IsBehindObject(map, image, *ellipse, depth)
-             ? PlaceView::kHidden
-             : PlaceView::kVisible;
+             ? LocationView::kHidden
+             : LocationView::kVisible;
 }
 
-PlaceView ViewPlace(const Map& map, const Sensor& sensor, KeyframeId keyframe,
-                    const ObjectLandmark& object, const ObjectOptions& options, double min_inside) {
+LocationView ViewLocation(const Map& map, const Sensor& sensor, KeyframeId keyframe,
+                          const ObjectLandmark& object, const ObjectOptions& options,
+                          double min_inside) {
   const Keyframe& observer = map.keyframes().At(keyframe);
-  return ViewPlace(map, sensor,
-                   ImageKnowledge{*observer.frame, observer.cam_from_world, observer.landmarks,
-                                  observer.objects},
-                   object, options, min_inside);
+  return ViewLocation(map, sensor,
+                      ImageKnowledge{*observer.frame, observer.cam_from_world, observer.landmarks,
+                                     observer.objects},
+                      object, options, min_inside);
 }
 
 bool SeesThrough(const Sensor& sensor, const Frame& frame, const Rigid3& cam_from_world,

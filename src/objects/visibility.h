@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// What is known of an image in which an object is expected.
+// The known contents of an image in which an object is expected.
 struct ImageKnowledge {
   const Frame& frame;
   const Rigid3& cam_from_world;
@@ -19,29 +19,30 @@ struct ImageKnowledge {
   std::span<const ObjectId> objects;      // one per detection
 };
 
-// What an image shows of the place of an object.
-enum class PlaceView {
-  kOutside,  // it is not in the image, or much farther away than the object was ever seen
+// The view of the location of an object in an image.
+enum class LocationView {
+  kOutside,  // the location is not in the image, or farther away than the object was ever seen
   kHidden,   // something nearer hides it
   kVisible,
 };
 
-// A place is in the image if at least the share `min_inside` of the box of the projected ellipse
-// is. What hides it is known from the frame's depth grid or, without depth, from its landmarks, and
-// from the mapped objects that it shows. Where nothing is known, nothing hides the place.
-PlaceView ViewPlace(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
-                    const ObjectLandmark& object, const ObjectOptions& options,
-                    double min_inside = 1.0);
+// A location is in the image if at least the share `min_inside` of the box of the projected ellipse
+// is. Whether something hides it is decided from the frame's depth grid or, without depth, from its
+// landmarks, and from the mapped objects that the frame shows. If none of these is known there, the
+// location counts as visible.
+LocationView ViewLocation(const Map& map, const Sensor& sensor, const ImageKnowledge& image,
+                          const ObjectLandmark& object, const ObjectOptions& options,
+                          double min_inside = 1.0);
 
 // The same for the image of a keyframe.
-PlaceView ViewPlace(const Map& map, const Sensor& sensor, KeyframeId keyframe,
-                    const ObjectLandmark& object, const ObjectOptions& options,
-                    double min_inside = 1.0);
+LocationView ViewLocation(const Map& map, const Sensor& sensor, KeyframeId keyframe,
+                          const ObjectLandmark& object, const ObjectOptions& options,
+                          double min_inside = 1.0);
 
 // Whether the depth of an image shows that the ellipsoid is not there: at least the share
-// `min_share` of the samples on its middle were measured behind it. False if they are too few.
-// Unlike ViewPlace this does not ask whether a detector would have found the object so far away or
-// cut by the border of the image.
+// `min_share` of the depth samples near its centre were measured behind it. False if there are too
+// few samples. Unlike ViewLocation this does not ask whether a detector would have found the object
+// so far away or cut by the border of the image.
 bool SeesThrough(const Sensor& sensor, const Frame& frame, const Rigid3& cam_from_world,
                  const Ellipsoid& ellipsoid, double min_share);
 

@@ -5,7 +5,6 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -13,30 +12,22 @@
 #include "costs/pose_manifold.h"
 #include "costs/reprojection.h"
 #include "costs/reprojection_rgbd.h"
-#include "frame/point_measurement.h"
-#include "map/landmark_edits.h"
+#include "frame/measure_point.h"
 #include "optim/bundle_points.h"
 #include "optim/bundle_scale.h"
 #include "optim/eliminated_points.h"
+#include "optim/keypoint_precision.h"
+#include "optim/keypoint_weights.h"
 #include "optim/object_bundle.h"
-#include "optim/place_share.h"
 #include "optim/reduced_points_cost.h"
 #include "optim/robust.h"
 #include "optim/supervision.h"
 #include "util/chi_square.h"
-#include "util/median.h"
 
 namespace hullslam {
 namespace {
 
 using internal::Supervision;
-
-constexpr double kMedianChi2 = 1.386;  // of two degrees of freedom: 2 ln 2
-// Where the precision of keypoints was measured, an error is an outlier from this many bounds on,
-// because errors of keypoints have longer tails than a normal distribution with the same median.
-constexpr double kTails = 2.0;
-constexpr double kMaxPrecision = 5.0;  // over that of the sensor; even exact keypoints are rounded
-constexpr size_t kMinViews = 100;      // for a median
 
 std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
                                               const PointMeasurement& measurement) {
@@ -49,7 +40,7 @@ std::unique_ptr<ceres::CostFunction> MakeCost(const PinholeCamera& camera,
   return std::make_unique<DefinedCost>(std::move(cost));
 }
 
-// The parameter blocks and what connects them.
+// The parameters of a bundle adjustment and the residuals between them.
 class Bundle {
  public:
   Bundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
@@ -59,12 +50,12 @@ class Bundle {
         options_(options),
         pose_indices_(internal::IndexPoses(window)),
         objects_(map, sensor.camera, window, pose_indices_, options.objects) {
-    std::vector<std::vector<double>> shares;  // without depth, those of the keypoints of each pose
+    std::vector<std::vector<double>> weights;  // of the keypoints of each pose; monocular only
     for (const auto& [id, index] : pose_indices_.entries()) {
       const Keyframe& keyframe = map.keyframes().At(id);
       poses_.push_back(ToBlock(keyframe.cam_from_world));
       if (sensor.IsMonocular()) {
-        shares.push_back(internal::SharesOfPlaces(keyframe, sensor.levels));
+        weights.push_back(internal::KeypointWeights(keyframe, sensor.levels));
       }
     }
     size_t views = 0;
@@ -73,7 +64,7 @@ class Bundle {
     }
     points_.Reserve(window.landmarks.size(), views);
     for (const LandmarkId id : window.landmarks) {
-      AddPoint(map, sensor, map.landmarks().At(id), shares);
+      AddPoint(map, sensor, map.landmarks().At(id), weights);
     }
   }
 
@@ -82,10 +73,8 @@ class Bundle {
     ForEachView([](View& view, double chi2, size_t) { view.is_inlier = std::isfinite(chi2); });
   }
 
-  // Makes the standard deviations of the keypoints as small as the errors show them to be. Those of
-  // the sensor are cautious, so an error of several true standard deviations would count as an
-  // inlier. Points that slide along the edge of a door or over the contour of a thing have such
-  // errors, and where a camera hardly moves, a few of them are enough to change the scale.
+  // Makes the standard deviations of the keypoints as small as the errors show them to be
+  // (MeasureKeypointPrecision).
   void MeasurePrecision() {
     std::vector<double> errors;
     ForEachView([&](const View& view, double chi2, size_t) {
@@ -93,28 +82,21 @@ class Bundle {
         errors.push_back(chi2);
       }
     });
-    if (errors.size() < kMinViews) {
-      return;
+    const double precision =
+        internal::MeasureKeypointPrecision(std::move(errors), points_.size(), precision_);
+    if (precision != precision_) {
+      ForEachView([&](View& view, double, size_t) {
+        view.measurement.inverse_sigma *= precision / precision_;
+      });
+      precision_ = precision;
     }
-    // Points are fitted to their views, which makes the errors smaller.
-    const double equations = 2.0 * static_cast<double>(errors.size());
-    const double free_share =
-        std::max(0.3, 1.0 - 3.0 * static_cast<double>(points_.size()) / equations);
-    const double sigma =
-        std::sqrt(Median(std::move(errors)) / (kMedianChi2 * free_share)) / precision_;
-    const double precision = std::clamp(1.0 / sigma, 1.0, kMaxPrecision);
-    ForEachView([&](View& view, double, size_t) {
-      view.measurement.inverse_sigma *= precision / precision_;
-    });
-    precision_ = precision;
   }
 
   // Decides again which views are inliers.
   void Classify() {
-    // But never beyond the bound of the sensor.
-    const double tails = std::min(kTails, precision_ * precision_);
-    ForEachView([tails](View& view, double chi2, size_t) {
-      view.is_inlier = chi2 <= tails * OutlierBound(view.measurement);
+    const double factor = internal::OutlierBoundFactor(precision_);
+    ForEachView([factor](View& view, double chi2, size_t) {
+      view.is_inlier = chi2 <= factor * OutlierBound(view.measurement);
     });
   }
 
@@ -145,12 +127,12 @@ class Bundle {
   using View = internal::BundlePoints::View;
 
   void AddPoint(const Map& map, const Sensor& sensor, const Landmark& landmark,
-                const std::vector<std::vector<double>>& shares) {
+                const std::vector<std::vector<double>>& weights) {
     points_.AddPoint(landmark.position);
     for (const Observation& seen : landmark.observations) {
       if (const size_t* const pose = pose_indices_.Find(seen.keyframe)) {
         const Keyframe& keyframe = map.keyframes().At(seen.keyframe);
-        const double weight = shares.empty() ? 1.0 : shares[*pose][seen.keypoint];
+        const double weight = weights.empty() ? 1.0 : weights[*pose][seen.keypoint];
         points_.AddView(MeasurePoint(sensor, keyframe.frame->features, seen.keypoint,
                                      sensor.depth_error.ForAdjustment()),
                         *pose, weight);
@@ -182,7 +164,7 @@ class Bundle {
     return options;
   }
 
-  // Own code eliminates the points, and Ceres solves for the poses and the objects.
+  // Our own code eliminates the points, and Ceres solves for the poses and the objects.
   bool SolveEliminated(int iterations, PointLoss loss, Supervision& supervision,
                        BundleResult& result) {
     internal::EliminatedPoints eliminated(camera_, points_, window_.moving.size(), loss,
@@ -193,13 +175,13 @@ class Bundle {
     ceres::Problem problem(problem_options);
     cost.AddResiduals(problem);
     ceres::Solver::Options solver;
-    // With objects, their half axes are eliminated by Ceres.
+    // If there are objects, Ceres eliminates their half axes.
     solver.linear_solver_type =
         window_.objects.empty() ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_SCHUR;
     return Run(problem, solver, 0, iterations, supervision, result);
   }
 
-  // Ceres eliminates the points. The system that is left is sparse.
+  // Ceres eliminates the points. The reduced system is sparse.
   bool SolveSparse(int iterations, PointLoss point_loss, Supervision& supervision,
                    BundleResult& result) {
     ceres::HuberLoss without_depth(std::sqrt(Chi2Bound(2)));
@@ -237,9 +219,10 @@ class Bundle {
     }
     solver.linear_solver_type = ceres::SPARSE_SCHUR;
     solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
-    // After each step of all parameters, the objects alone follow the poses. Outlines are far less
-    // linear than points. Without this, they keep the steps so short that slow changes of the whole
-    // map, such as the correction of its scale after a loop, do not come to their end.
+    // After each step of all parameters, the objects alone are optimised for the new poses. The
+    // residuals of objects are far less linear than those of points. Without this, the solver could
+    // only take short steps, and slow changes of the whole map, such as the correction of its scale
+    // after a loop, would not finish.
     if (!window_.objects.empty()) {
       solver.use_inner_iterations = true;
       solver.inner_iteration_tolerance = options_.function_tolerance;
@@ -248,7 +231,7 @@ class Bundle {
     return Run(problem, solver, 2, iterations, supervision, result);
   }
 
-  // Adds objects and poses to the problem and solves it. `axes_group`: the place of the half axes
+  // Adds objects and poses to the problem and solves it. `axes_group` is the group of the half axes
   // of the objects in the order of elimination.
   bool Run(ceres::Problem& problem, ceres::Solver::Options& solver, int axes_group, int iterations,
            Supervision& supervision, BundleResult& result) {
@@ -297,7 +280,7 @@ class Bundle {
   const internal::PoseIndices pose_indices_;
   std::vector<PoseBlock> poses_;
   internal::BundlePoints points_;
-  double precision_ = 1.0;  // of the keypoints: standard deviations of the sensor over those used
+  double precision_ = 1.0;  // of the keypoints (MeasureKeypointPrecision)
   internal::ObjectBundle objects_;
   PoseManifold manifold_;
 };
@@ -307,25 +290,25 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
   BundleResult result;
   Bundle bundle(map, sensor, window, options);
   bundle.ExcludeUndefined();
-  // Without depth, corners that slide along edges can change the scale. Poses follow them, so that
-  // their errors are too small for outliers, but not as small as those of others. Under Cauchy's
-  // loss such errors pull less than under Huber's.
-  const bool mono = sensor.IsMonocular();
-  if (mono) {
+  // In monocular maps, corners that slide along edges can change the scale. The poses adapt to
+  // these corners, so their errors are too small to be outliers, but larger than the errors of true
+  // points. Such errors have less influence under Cauchy's loss than under Huber's.
+  const bool is_monocular = sensor.IsMonocular();
+  if (is_monocular) {
     bundle.MeasurePrecision();
   }
-  if (!bundle.Solve(options.robust_iterations, mono ? PointLoss::kCauchy : PointLoss::kHuber,
-                    supervision, result)) {
+  if (!bundle.Solve(options.robust_iterations,
+                    is_monocular ? PointLoss::kCauchy : PointLoss::kHuber, supervision, result)) {
     return result;
   }
-  // After a cancelled round the errors are not minimal, so they do not tell which are outliers.
+  // After a cancelled round the errors are not minimal, so outliers cannot be recognised.
   if (!supervision.IsCancelled()) {
-    if (mono) {
+    if (is_monocular) {
       bundle.MeasurePrecision();
     }
     bundle.Classify();
-    if (!bundle.Solve(options.final_iterations, mono ? PointLoss::kCauchy : PointLoss::kNone,
-                      supervision, result)) {
+    if (!bundle.Solve(options.final_iterations,
+                      is_monocular ? PointLoss::kCauchy : PointLoss::kNone, supervision, result)) {
       return result;
     }
     bundle.Classify();
@@ -340,7 +323,7 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& given, const Cancellation* cancellation,
                           const ProgressCallback& on_progress) {
-  const BundleOptions options = sensor.IsMonocular() ? given.WithoutDepth() : given;
+  const BundleOptions options = sensor.IsMonocular() ? given.ForMonocular() : given;
   const int most = options.robust_iterations + options.final_iterations;
   Supervision supervision(cancellation, on_progress, most);
   BundleResult result = Adjust(map, sensor, window, options, supervision);
@@ -355,37 +338,6 @@ BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWind
     KeepScale(map, window.fixed.front(), result);
   }
   return result;
-}
-
-void ApplyBundle(Map& map, const BundleResult& result, const ScaleLevels& levels) {
-  for (const auto& [landmark, keyframe] : result.outliers) {
-    const Landmark* seen = map.landmarks().Find(landmark);
-    if (seen == nullptr) {
-      continue;
-    }
-    const bool observed =
-        std::any_of(seen->observations.begin(), seen->observations.end(),
-                    [id = keyframe](const Observation& o) { return o.keyframe == id; });
-    if (observed) {
-      map.RemoveObservation(landmark, keyframe);
-    }
-  }
-  for (const auto& [keyframe, pose] : result.poses) {
-    if (map.keyframes().Contains(keyframe)) {
-      map.SetPose(keyframe, pose);
-    }
-  }
-  for (const auto& [landmark, position] : result.positions) {
-    if (map.landmarks().Contains(landmark)) {
-      map.SetPosition(landmark, position);
-      UpdateViewingGeometry(map, landmark, levels);
-    }
-  }
-  for (const auto& [object, ellipsoid] : result.ellipsoids) {
-    if (map.objects().Contains(object)) {
-      map.MutableObject(object).ellipsoid = ellipsoid;
-    }
-  }
 }
 
 }  // namespace hullslam

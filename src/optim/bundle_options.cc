@@ -10,8 +10,8 @@ BundleOptions BundleOptions::ForWholeMap() const {
   options.robust_iterations = 20;
   options.final_iterations = 40;
   options.function_tolerance = 1e-6;
-  // Parts of the map may move by much more than the size of an object. Objects go with them; a
-  // prior on where they are would hold the parts back.
+  // Parts of the map may move by much more than the size of an object, together with their objects.
+  // A tight prior on the positions of the objects would hold these parts back.
   constexpr double kLoose = 20.0;
   ObjectConstraintOptions& constraint = options.objects.constraint;
   for (QuadricPriorSigmas* const prior : {&constraint.prior, &constraint.prior_without_depth}) {
@@ -21,7 +21,7 @@ BundleOptions BundleOptions::ForWholeMap() const {
   return options;
 }
 
-BundleOptions BundleOptions::WithoutDepth() const {
+BundleOptions BundleOptions::ForMonocular() const {
   BundleOptions options = *this;
   options.robust_iterations = std::max(robust_iterations, 10);
   options.final_iterations = std::max(final_iterations, 20);

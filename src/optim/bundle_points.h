@@ -7,19 +7,20 @@
 #include <span>
 #include <vector>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 
 namespace hullslam::internal {
 
-// How far a point goes towards its best place before the cost of the poses is known.
+// The precision with which a point is optimised for given poses, before the cost of these poses is
+// computed.
 struct FollowOptions {
-  int steps = 2;  // at most
+  int steps = 2;  // largest number of steps
   // Another step is only taken if the last one was expected to lower the cost of the point by a
-  // larger share.
+  // larger share than this.
   double worthwhile = 1e-3;
 };
 
-// The points of a bundle adjustment, and where its poses see them.
+// The points of a bundle adjustment and their measurements in its images.
 class BundlePoints {
  public:
   struct View {
@@ -35,12 +36,12 @@ class BundlePoints {
     views_.reserve(views);
   }
 
-  // `position`: m, world frame. Its views are added next.
+  // `position`: m, world frame. The views of the point are added next.
   void AddPoint(const Eigen::Vector3d& position) {
     positions_.push_back(position);
     ends_.push_back(views_.size());
   }
-  // Of the point that was added last.
+  // Adds a view of the point that was added last.
   void AddView(const PointMeasurement& measurement, size_t pose, double weight = 1.0) {
     views_.push_back({measurement, pose, weight, true});
     ends_.back() = views_.size();

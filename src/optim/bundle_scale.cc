@@ -15,7 +15,7 @@ void KeepScale(const Map& map, KeyframeId fixed, BundleResult& result) {
   }
   const double scale = before / after;
   if (!(scale > 0.0) || !std::isfinite(scale)) {
-    return;  // all cameras are in one place
+    return;  // all cameras are at the same position
   }
   const auto move = [&](const Eigen::Vector3d& point) -> Eigen::Vector3d {
     return center + scale * (point - center);

@@ -2,14 +2,14 @@
 #pragma once
 
 #include "hullslam/map/map.h"
-#include "optim/bundle_adjustment.h"
+#include "optim/bundle_result.h"
 
 namespace hullslam {
 
-// Without depth, a bundle adjustment with a single fixed keyframe does not determine the scale: the
-// whole result may shrink towards the centre of that camera. This gives the result the scale that
-// the map had: the sum of the distances of the moving cameras from the fixed one is as before. The
-// residuals do not change.
+// A monocular bundle adjustment with a single fixed keyframe does not determine the scale: the
+// whole result may shrink towards the centre of that camera without a change of the residuals.
+// KeepScale scales the result about this centre, so that the sum of the distances of the moving
+// cameras from the fixed one is the same as before the adjustment.
 void KeepScale(const Map& map, KeyframeId fixed, BundleResult& result);
 
 }  // namespace hullslam

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "optim/bundle_window.h"
+
 #include <algorithm>
 #include <map>
 #include <set>
 
 #include "map/covisibility.h"
 #include "map/islands.h"
-#include "optim/bundle_adjustment.h"
 
 namespace hullslam {
 namespace {

@@ -12,18 +12,19 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// Levenberg-Marquardt of a single point. A step that is expected to lower the cost by less than
-// kNegligible, or by a smaller share, is lost in rounding.
+// Levenberg-Marquardt of a single point. If a step is expected to lower the cost by less than
+// kNegligible times (1 + cost), the decrease is smaller than the rounding errors.
 constexpr int kTrialsPerStep = 3;
 constexpr double kNegligible = 1e-9;
 constexpr double kLeastDamping = 1e-8;   // relative to the diagonal
 constexpr double kFailedDamping = 1e-2;  // after the first step that failed
 constexpr double kMostDamping = 1e6;
 
-// `lower`: the Hessian, of which the lower half counts.
+// `lower`: the Hessian; only its lower half is used.
 Eigen::Matrix3d DampedInverse(const Eigen::Matrix3d& lower, double damping) {
   Eigen::Matrix3d hessian = lower.selfadjointView<Eigen::Lower>();
-  // A point in a single view without depth is free along its ray. The second term holds it.
+  // A point in a single view without depth is not constrained along its ray. `floor` keeps its
+  // Hessian invertible.
   const double floor = 1e-9 * hessian.trace();
   hessian.diagonal() += damping * hessian.diagonal() + Eigen::Vector3d::Constant(floor);
   return hessian.inverse();

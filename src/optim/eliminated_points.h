@@ -14,40 +14,47 @@
 
 namespace hullslam::internal {
 
-// Removes the points from a bundle adjustment. For given poses each point has a best place of its
-// own, which does not depend on the other points. With all points at their best places the cost
-//   sum over inlier views of weight / 2 rho(|PointResidual|^2)
-// is a function of the poses alone. This class evaluates it and gives its Gauss-Newton
-// approximation: the Schur complement of the points (Triggs et al. 2000, "Bundle Adjustment: A
-// Modern Synthesis", section 6.1). rho is the loss (PointLoss).
+// Eliminates the points from a bundle adjustment. The cost is
+//   F(p, x) = sum over inlier views (j, i) of weight / 2 rho(|PointResidual(p_j x_i)|^2)
+// for poses p_j and points x_i, where rho is the loss (PointLoss). For given poses, the best
+// position x_i*(p) of each point does not depend on the other points. So f(p) = F(p, x*(p)) is a
+// function of the poses alone. This class evaluates f and its Gauss-Newton approximation.
+//
+// A Gauss-Newton step of poses and points solves the normal equations, in which a point is only
+// coupled with the poses that see it:
+//   H_pp dp + sum_i H_pi dx_i = -g_p   and   H_ip dp + H_ii dx_i = -g_i  for each point i.
+// The second equation gives dx_i = -H_ii^-1 (g_i + H_ip dp). Inserted into the first one, it leaves
+// the reduced normal equations S dp = -s of the poses, the Schur complement of the points:
+//   S = H_pp - sum_i H_pi H_ii^-1 H_ip,   s = g_p - sum_i H_pi H_ii^-1 g_i
+// (Triggs et al. 2000, "Bundle Adjustment: A Modern Synthesis", section 6.1). At x*(p) all g_i are
+// zero, and s is the gradient of f. Follow() returns f, Linearize() returns S and s.
 //
 // Poses are cam_from_world. Derivatives are by the six parameters of Retract.
 class EliminatedPoints {
  public:
-  // The poses with the first `moving` indices move, the others are fixed. `points` must outlive
-  // this object.
+  // The first `moving` poses move, the others are fixed. `points` must outlive this object.
   EliminatedPoints(const PinholeCamera& camera, BundlePoints& points, size_t moving, PointLoss loss,
                    const FollowOptions& follow = {});
 
   size_t moving() const { return moving_; }
 
-  // Moves every point towards its best place for these poses and returns the cost there. The points
-  // start at the positions that were accepted last, which stay as they are until Accept(). Infinite
-  // if an inlier view is not at least kMinDepth in front of its camera.
+  // Moves every point towards its best position for these poses and returns the cost f. Each point
+  // starts at its accepted position, which does not change before Accept(). The cost is infinite if
+  // a point is nearer than kMinDepth to a camera that sees it as an inlier, or behind it.
   double Follow(std::span<const Rigid3> poses);
-  // Keeps the places that the last Follow() found.
+  // Accepts the positions that the last Follow() found.
   void Accept();
 
-  // The Gauss-Newton approximation at the accepted positions and the poses of the last Follow():
-  // the Hessian (6 moving x 6 moving, lower half) and the gradient. The three parameters of the
-  // rotation of a pose come before those of its translation.
+  // Computes S as `hessian` (6 moving x 6 moving, lower half) and s as `gradient`, at the accepted
+  // positions and the poses of the last Follow(). The three parameters of the rotation of a pose
+  // come before those of its translation.
   void Linearize(Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient);
 
  private:
   // The cost of one point and its derivatives by the point.
   struct PointSystem {
     // Adds weight / 2 times the squared norm of a view's residual, whose derivative by the point is
-    // `jacobian`. Of the Hessian only the lower half.
+    // `jacobian`. Only the lower half of the Hessian is computed.
     void Add(double weight, const Eigen::Vector3d& residual, const Eigen::Matrix3d& jacobian) {
       const Eigen::Matrix3d weighted = weight * jacobian;
       for (int column = 0; column < 3; ++column) {
@@ -85,9 +92,9 @@ class EliminatedPoints {
   PointLoss loss_;
   FollowOptions follow_;
   std::vector<MatrixPose> poses_;
-  std::vector<Eigen::Vector3d> moved_;  // the places of the last Follow()
-  // A point whose steps failed keeps its damping, and the Schur complement uses it too: such a
-  // point does not move as far as the undamped equations say.
+  std::vector<Eigen::Vector3d> moved_;  // the positions that the last Follow() found
+  // The damping of each point's own Levenberg-Marquardt steps. The Schur complement uses it too,
+  // because a point whose steps failed does not move as far as the undamped equations predict.
   std::vector<double> damping_;
   std::vector<Coupling> couplings_;  // of one point; kept to save allocations
 };

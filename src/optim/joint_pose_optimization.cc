@@ -33,8 +33,8 @@ class JointProblem {
   }
 
  private:
-  // The motion from the start to `pose`, in the camera frame. Linearize takes the identity as its
-  // derivative, which is exact at the start only but good enough for a weak prior.
+  // The motion from the start to `pose`, in the camera frame. Linearize uses the identity as its
+  // derivative. That is exact only at the start, but good enough for a weak prior.
   Vector6d Motion(const Rigid3& pose) const {
     const Rigid3 moved_from_start = pose * world_from_start_;
     Vector6d motion;

@@ -16,8 +16,8 @@ namespace hullslam {
 struct PoseObject {
   Ellipsoid ellipsoid;                   // world frame
   const Detection* detection = nullptr;  // must outlive the call
-  std::vector<SilhouetteLine> lines;     // of the detection, maybe moved by misfit compensation
-  double misfit_px = 0.0;                // the misfit that is left in these lines
+  std::vector<SilhouetteLine> lines;     // of the detection, possibly after misfit compensation
+  double misfit_px = 0.0;                // the remaining misfit of these lines
 };
 
 struct JointPoseOptions {
@@ -26,15 +26,15 @@ struct JointPoseOptions {
 };
 
 struct JointPoseResult {
-  PoseOptimizationResult points;     // the pose too
+  PoseOptimizationResult points;     // has the pose
   std::vector<uint8_t> object_used;  // one per object; 0 if dropped or without residual
   int used_objects = 0;
-  int dropped_objects = 0;  // half of their residuals or more were outliers
+  int dropped_objects = 0;  // because half of their residuals or more were outliers
 };
 
 // Like OptimizePose, but mapped objects constrain the pose together with the points. It minimises
 //   sum over inlier points of rho_Huber(chi^2)
-//   + the outline constraints of the used objects (MakeObjectConstraint); their quadrics are fixed
+//   + the silhouette constraints of the used objects (MakeObjectConstraint) with fixed quadrics
 //   + |rotation / prior_rotation|^2 + |translation / (prior_translation * d)|^2 of the motion from
 //     the start, where d is the mean distance of the objects.
 // After each round the inlier points and the used objects are chosen again. An object is dropped if

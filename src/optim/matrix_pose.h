@@ -7,7 +7,7 @@
 
 namespace hullslam::internal {
 
-// A pose whose rotation is a matrix, which moves many points faster than a quaternion.
+// A pose whose rotation is a matrix. A matrix transforms many points faster than a quaternion does.
 struct MatrixPose {
   explicit MatrixPose(const Rigid3& pose)
       : rotation(pose.rotation.toRotationMatrix()), translation(pose.translation) {}

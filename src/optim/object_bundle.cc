@@ -17,7 +17,7 @@ bool IsPlausible(const Ellipsoid& after, const Ellipsoid& before, double max_cha
          (ratio < max_change).all();
 }
 
-// Where a cost is not defined at the start, the solver would fail.
+// Whether the cost is defined at the start. Otherwise the solver would fail.
 bool IsDefined(const ceres::CostFunction& cost, const PoseBlock& camera, const PoseBlock& object,
                const Eigen::Vector3d& log_axes) {
   const double* parameters[] = {camera.data(), object.data(), log_axes.data()};
@@ -80,7 +80,7 @@ void ObjectBundle::AddView(const Map& map, const ObjectObservation& seen, double
   ObjectConstraint constraint = MakeObjectConstraint(camera_, view, detection.lines, object.before,
                                                      misfit_px, options_.constraint);
   auto moving_part = std::make_unique<ObjectSumCost>(ObjectSumCost::Camera::kMoving);
-  for (auto* const cost : {&constraint.outline, &constraint.depth}) {
+  for (auto* const cost : {&constraint.silhouette, &constraint.depth}) {
     if (*cost == nullptr || !IsDefined(**cost, camera, object.pose, object.log_axes)) {
       continue;
     }

@@ -12,25 +12,27 @@
 #include "costs/pose_manifold.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/map/map.h"
-#include "optim/bundle_adjustment.h"
+#include "optim/bundle_result.h"
+#include "optim/bundle_window.h"
 #include "optim/object_sum_cost.h"
 #include "util/id_map.h"
 
 namespace hullslam::internal {
 
-// The places of the keyframes of a window among its poses: the moving ones come before the fixed
-// ones.
+// The index of the pose of each keyframe of a window. The poses of moving keyframes come before
+// those of fixed ones.
 using PoseIndices = IdMap<KeyframeId, size_t>;
 PoseIndices IndexPoses(const BundleWindow& window);
 
 // The objects of a bundle adjustment: their parameters, their priors, and the constraints between
-// them and the poses that their detections give.
+// objects and poses that the detections give.
 class ObjectBundle {
  public:
   ObjectBundle(const Map& map, const PinholeCamera& camera, const BundleWindow& window,
                const PoseIndices& pose_indices, const ObjectBundleOptions& options);
 
-  // Priors, outlines, and depth points of detections.
+  // The number of costs: a prior per object, and for each detection its silhouette and its depth
+  // points.
   size_t CountCosts() const;
   // `poses` are those of the window's keyframes, the moving ones before the fixed ones. They and
   // this object must outlive the problem.
@@ -42,14 +44,15 @@ class ObjectBundle {
   // The order of a step in which only the objects move: first their poses, then their half axes.
   std::shared_ptr<ceres::ParameterBlockOrdering> OrderAlone();
 
-  // A quadric that reaches the plane of a camera has no projected ellipse there, and the solver
-  // cannot go on: the whole map would be held by one object that is beside one camera. So such a
-  // view has to be left out. Whether there is one where the solver has tried to go:
+  // Returns whether a view was undefined at the last evaluation. A quadric that reaches the plane
+  // of a camera has no projected ellipse there, so the cost of this view is undefined, and Ceres
+  // rejects the step. One object beside one camera would then hold the whole map, so such a view
+  // has to be left out.
   bool HasUndefinedView() const;
-  // Leaves these views out. False if there are none.
+  // Leaves the undefined views out. Returns whether there were any.
   bool LeaveOutUndefinedViews();
 
-  // An object that is not in front of a camera whose view was left out has failed.
+  // Writes the quadrics. An object fails if it is not in front of a camera whose view was left out.
   void Write(const std::vector<PoseBlock>& poses, BundleResult& result) const;
 
  private:
@@ -62,7 +65,7 @@ class ObjectBundle {
     // The prior and the views from keyframes that do not move.
     std::unique_ptr<ObjectSumCost> fixed_part;
   };
-  // The outline and the depth points of one detection in a moving keyframe.
+  // The silhouette and the depth points of one detection in a moving keyframe.
   struct View {
     size_t object = 0;
     size_t pose = 0;  // index into the window's poses
@@ -81,7 +84,7 @@ class ObjectBundle {
   std::vector<View> views_;
 };
 
-// Ends a solution where a view of an object would become undefined.
+// Ends the solution when a view of an object becomes undefined.
 class UndefinedViewStop final : public ceres::IterationCallback {
  public:
   explicit UndefinedViewStop(const ObjectBundle& objects) : objects_(objects) {}

@@ -18,7 +18,7 @@ ObjectTerms::ObjectTerms(const PinholeCamera& camera, const Rigid3& start,
     Term& term = terms_[i];
     term.cost = MakeObjectConstraint(camera, view, object.lines, object.ellipsoid, object.misfit_px,
                                      options.constraint)
-                    .outline;
+                    .silhouette;
     if (term.cost == nullptr) {
       continue;
     }

@@ -13,7 +13,7 @@
 
 namespace hullslam::internal {
 
-// The robust errors of the outlines of objects as a function of the camera's pose. Only the
+// The robust silhouette residuals of objects as a function of the camera's pose. Only the
 // constructor allocates memory.
 class ObjectTerms {
  public:
@@ -33,13 +33,13 @@ class ObjectTerms {
 
  private:
   struct Term {
-    std::unique_ptr<RobustRowsCost> cost;  // null: the object has no residual
+    std::unique_ptr<RobustRowsCost> cost;  // null if the object has no residual
     PoseBlock world_from_object{};
     Eigen::Vector3d log_axes = Eigen::Vector3d::Zero();
     bool is_used = false;
   };
   // Writes the plain residuals and, if asked for, their derivative by the pose into the buffers
-  // below. False if they are not defined at this pose.
+  // below. Returns false if they are undefined at this pose.
   bool Evaluate(const Term& term, const PoseBlock& pose, bool with_derivative) const;
 
   std::vector<Term> terms_;

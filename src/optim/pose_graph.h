@@ -30,13 +30,13 @@ struct PoseGraph {
 };
 
 struct PoseGraphOptions {
-  bool fix_scale = false;  // nodes keep their scales to the last bit, as RGB-D needs it
+  bool fix_scale = false;  // nodes keep their scales to the last bit, as in RGB-D
   int max_iterations = 50;
   double function_tolerance = 1e-6;  // of the relative decrease of the cost
 };
 
 struct PoseGraphResult {
-  std::vector<Sim3> cam_from_world;  // one per node; if not usable, as in the graph
+  std::vector<Sim3> cam_from_world;  // one per node; as in the graph if it is not usable
   bool is_usable = false;            // false if a number is not finite or the solver failed
   bool is_cancelled = false;         // it ended early; the result is usable but not the optimum
   int iterations = 0;
@@ -44,12 +44,12 @@ struct PoseGraphResult {
   double final_cost = 0.0;
 };
 
-// The poses that agree best with all edges. Fixed nodes and nodes without an edge stay as they are,
-// to the last bit; so do all if the edges agree already. At least one node of every connected part
-// should be fixed, because the edges do not say where a part as a whole is. If `cancellation` (may
-// be null) is requested, the optimisation ends early. `on_progress` is called after each iteration.
-// One thread: same input, same bits. Throws CheckError if an edge does not connect two different
-// nodes of the graph.
+// The poses that agree best with all edges. Fixed nodes and nodes without an edge do not change by
+// a single bit, and neither does any node if the edges agree already. At least one node of every
+// connected part should be fixed, because the edges do not determine the pose of a part as a whole.
+// If `cancellation` (may be null) is requested, the optimisation ends early. `on_progress` is
+// called after each iteration. It runs in one thread, so the same input gives the same bits. Throws
+// CheckError if an edge does not connect two different nodes of the graph.
 PoseGraphResult OptimizePoseGraph(const PoseGraph& graph, const PoseGraphOptions& options,
                                   const Cancellation* cancellation = nullptr,
                                   const ProgressCallback& on_progress = {});

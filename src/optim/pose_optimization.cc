@@ -11,8 +11,8 @@ PoseOptimizationResult OptimizePose(const PinholeCamera& camera, const Rigid3& c
   PoseOptimizationResult result;
   result.cam_from_world = cam_from_world;
   result.is_inlier.assign(observations.size(), 0);
-  // At first all are inliers but those behind the camera: their error is infinite, so the sum would
-  // be infinite too.
+  // In the first round all points in front of the camera are inliers. The error of a point behind
+  // the camera is infinite, so it would make the sum infinite.
   internal::ChooseInliers(camera, observations, internal::InlierRule::kInFront, result);
   for (int round = 0; round < options.rounds && result.inlier_count >= 3; ++round) {
     const internal::PointTerms problem(camera, observations, result.is_inlier,

@@ -12,9 +12,9 @@
 namespace hullslam {
 
 struct PoseOptimizationOptions {
-  int rounds = 4;         // after each of them the inliers are chosen again
-  int robust_rounds = 3;  // the first ones use Huber's loss
-  int iterations = 10;    // at most, per round
+  int rounds = 4;         // the inliers are chosen again after each round
+  int robust_rounds = 3;  // the first rounds, which use Huber's loss
+  int iterations = 10;    // largest number per round
   double min_relative_decrease =
       1e-5;  // of the cost at the start of a round; a smaller one ends it
 };

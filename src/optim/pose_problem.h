@@ -30,8 +30,8 @@ class PointTerms {
 
   // Infinite if an inlier is behind the camera.
   double Cost(const Rigid3& pose) const;
-  // Sets hessian and gradient with respect to the six parameters of Retract, both without the
-  // factor 2.
+  // Sets hessian and gradient with respect to the six parameters of Retract: those of half of the
+  // cost.
   void Linearize(const Rigid3& pose, Matrix6d& hessian, Vector6d& gradient) const;
 
  private:
@@ -41,21 +41,21 @@ class PointTerms {
   bool robust_;
 };
 
-// Decides which observations are inliers at the result's pose: those whose error is below their
+// Decides which observations are inliers at the result's pose: those with an error of at most their
 // OutlierBound, or all that are in front of the camera.
 enum class InlierRule { kBelowBound, kInFront };
 void ChooseInliers(const PinholeCamera& camera, std::span<const PoseObservation> observations,
                    InlierRule rule, PoseOptimizationResult& result);
 
-// A problem as ceres::TinySolver wants it: six residuals, the SquareRootForm of the normal
-// equations, and one that makes their squared norm the cost. A Problem has functions Cost and
-// Linearize like those of PointTerms.
+// A problem in the form that ceres::TinySolver needs: six residuals, which are the SquareRootForm
+// of the normal equations, and one more, which makes the squared norm of all seven equal to the
+// cost. A Problem has functions Cost and Linearize like those of PointTerms.
 //
-// TinySolver adds steps to its parameters and knows no manifold. So the parameters are only a sum
-// of steps: a pose is that of the last linearisation, moved by the steps since then with Retract.
-// The derivatives are then those that Linearize gives.
+// TinySolver adds steps to its parameters and does not support manifolds. So the parameters are
+// only the sum of all steps. The pose is that of the last linearisation, moved with Retract by the
+// steps since then. The derivatives by the parameters are then those of Linearize.
 //
-// A Pose may also be a Sim3, which has seven parameters; there is one residual more then.
+// A Pose may also be a Sim3, which has seven parameters and therefore eight residuals.
 template <typename Problem, typename Pose = Rigid3>
 class TinyPoseFunction {
  public:
@@ -73,7 +73,8 @@ class TinyPoseFunction {
   bool operator()(const double* parameters, double* residuals, double* jacobian) const {
     const Vector steps = Eigen::Map<const Vector>(parameters);
     const Pose pose = PoseAt(steps);
-    // TinySolver asks for the derivatives at the parameters whose cost it has just been told.
+    // TinySolver asks for the derivatives at the same parameters for which it has just asked for
+    // the cost, so the cost is still known.
     if (steps != cost_steps_) {
       cost_ = problem_.Cost(pose);
       cost_steps_ = steps;
@@ -91,7 +92,7 @@ class TinyPoseFunction {
     problem_.Linearize(pose, hessian, gradient);
     Eigen::Map<Eigen::Matrix<double, kSize + 1, kSize>> by_parameters(jacobian);
     by_parameters.setZero();
-    // Without a form the derivative is zero, and the solver stays where it is.
+    // Without a factorisation the derivative is zero, so the solver takes no step.
     if (form_.Compute(hessian, gradient)) {
       all << form_.residual(), form_.LastResidual(cost_);
       by_parameters.template topRows<kSize>() = Matrix(form_.jacobian());
@@ -104,19 +105,19 @@ class TinyPoseFunction {
   mutable Pose pose_;  // of the last linearisation
   mutable Vector steps_ = Vector::Zero();
   mutable double cost_ = 0.0;
-  // The parameters that cost_ belongs to. NaN at first, which no parameters are equal to.
+  // The parameters that cost_ belongs to. They start as NaN, which equals no parameters.
   mutable Vector cost_steps_ = Vector::Constant(std::numeric_limits<double>::quiet_NaN());
   mutable SquareRootForm<kSize> form_;
 };
 
-// The pose (Rigid3 or Sim3) with the least cost, by Levenberg-Marquardt from `pose` on.
+// The pose (Rigid3 or Sim3) with the least cost, by Levenberg-Marquardt, starting at `pose`.
 template <typename Problem, typename Pose>
 Pose Minimize(const Problem& problem, const Pose& pose, const PoseOptimizationOptions& options) {
   using Function = TinyPoseFunction<Problem, Pose>;
   const Function function(problem, pose);
   ceres::TinySolver<Function> solver;
-  solver.options.max_num_iterations = options.iterations + 1;  // it counts from one
-  // In units of the squared norm of the residuals, which is the cost.
+  solver.options.max_num_iterations = options.iterations + 1;  // TinySolver counts from one
+  // The tolerance is in units of the squared norm of the residuals, which is the cost.
   solver.options.function_tolerance = options.min_relative_decrease * problem.Cost(pose);
   typename Function::Vector steps = Function::Vector::Zero();
   solver.Solve(function, &steps);

@@ -19,7 +19,7 @@ bool ReducedPointsCost::RowsOfPose::Evaluate(double const* const* /*parameters*/
   if (!std::isfinite(all_.cost_)) {
     return false;
   }
-  // Without derivatives Ceres needs the cost alone, and all of it is in the last residual.
+  // Without derivatives Ceres needs only the cost, so the last residual contains all of it.
   const double twice_cost = 2.0 * all_.cost_;
   Eigen::Map<Eigen::VectorXd> values(residuals, num_residuals());
   values.setZero();
@@ -61,7 +61,7 @@ void ReducedPointsCost::AddResiduals(ceres::Problem& problem) {
   }
 }
 
-// Ceres asks for derivatives only at poses that it keeps.
+// Ceres asks for derivatives only at poses that it accepts.
 void ReducedPointsCost::PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) {
   if (new_evaluation_point) {
     cam_from_world_.clear();

@@ -18,33 +18,35 @@ class Problem;
 
 namespace hullslam::internal {
 
-// What EliminatedPoints leaves of the points, as costs on the moving poses, which Ceres can solve
-// together with other costs on these poses.
+// The reduced normal equations of EliminatedPoints as costs on the moving poses, which Ceres can
+// minimise together with other costs on these poses.
 //
-// The residuals are the SquareRootForm of the normal equations, six for each moving pose, and one
-// more that makes half of their squared norm the true cost. The Jacobian is an upper triangular
-// matrix: the six residuals of a pose depend on this pose and on those after it. So each six are a
-// cost of their own, and Ceres never multiplies the zeros.
+// EliminatedPoints gives the cost f(p), the Hessian S and the gradient s. With S = L L^T, the
+// residuals are r = L^-1 s, six per moving pose, with the Jacobian L^T (SquareRootForm), and one
+// more residual, sqrt(2 f - |r|^2), whose derivative is zero. Half of the squared norm of all
+// residuals is f. The Jacobian L^T is upper triangular, so the six residuals of a pose depend only
+// on this pose and the poses after it. So the residuals of each pose are a residual block of their
+// own, and Ceres does not multiply the zeros.
 //
-// The problem must have this object as its evaluation callback: that is how it learns when Ceres
-// tries other poses and when it keeps them.
+// This object must be the evaluation callback of the problem, because it has to know when Ceres
+// tries other poses and when it accepts them.
 class ReducedPointsCost final : public ceres::EvaluationCallback {
  public:
-  // `poses` are all poses that see the points, the moving ones first. The parameter blocks are the
-  // moving ones, with PoseManifold. Both arguments must outlive this object.
+  // `poses` are all poses that see the points, with the moving ones first. The parameter blocks are
+  // the moving ones, with PoseManifold. Both arguments must outlive this object.
   ReducedPointsCost(EliminatedPoints& points, std::vector<PoseBlock>& poses);
   ReducedPointsCost(const ReducedPointsCost&) = delete;
   ReducedPointsCost& operator=(const ReducedPointsCost&) = delete;
 
   // Adds one residual block per moving pose. The problem must not own its cost functions, and this
-  // object must outlive it. The blocks cannot be evaluated where a point is not in front of a
+  // object must outlive it. The evaluation fails at poses for which a point is not in front of a
   // camera that sees it as an inlier.
   void AddResiduals(ceres::Problem& problem);
 
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
 
  private:
-  // The residuals of one pose. The last pose has the one that completes the cost too.
+  // The residuals of one pose. Those of the last pose include the one that completes the cost.
   class RowsOfPose final : public ceres::CostFunction {
    public:
     RowsOfPose(const ReducedPointsCost& all, size_t pose);

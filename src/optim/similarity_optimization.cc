@@ -69,7 +69,7 @@ class SimilarityTerms {
       }
     }
     if (fix_scale_) {
-      // No step changes the scale: its gradient is zero, and nothing is coupled with it.
+      // With a zero gradient and without coupling to other parameters, no step changes the scale.
       hessian.row(6).setZero();
       hessian.col(6).setZero();
       hessian(6, 6) = 1.0;
@@ -116,7 +116,7 @@ SimilarityOptimizationResult OptimizeSimilarity(const PinholeCamera& camera, con
   SimilarityOptimizationResult result;
   result.b_from_a = b_from_a;
   result.is_inlier.assign(matches.size(), 0);
-  // At first all are inliers but those behind a camera.
+  // In the first round all points in front of both cameras are inliers.
   ChooseInliers(camera, matches, std::numeric_limits<double>::max(), result);
   for (int round = 0; round < options.rounds.rounds && result.inlier_count >= 3; ++round) {
     const SimilarityTerms problem(camera, matches, result.is_inlier,

@@ -8,22 +8,32 @@
 
 namespace hullslam::internal {
 
-// Normal equations as residuals r and their Jacobian J, which is what the solvers of Ceres ask for.
-// With the Cholesky factor S = L L^T of the Hessian and the gradient g,
-//   r = L^-1 g and J = L^T give J^T J = S and J^T r = g.
-// One more residual, whose derivative is zero, makes the squared norm of all residuals what it is
-// said to be.
+// Converts normal equations into residuals and their Jacobian.
+//
+// The solvers of Ceres minimise 1/2 |r(x)|^2 and need r and its Jacobian J. They use them only
+// through the cost 1/2 |r|^2, the gradient g = J^T r and the Gauss-Newton Hessian H = J^T J. Where
+// our own code sums up H, g and the squared norm N = |r|^2 directly, any residuals with the same
+// three values give the same steps. The smallest such set follows from the Cholesky factor L of H =
+// L L^T:
+//   r' = L^-1 g,   J' = L^T
+// because J'^T J' = L L^T = H and J'^T r' = L L^-1 g = g. Its squared norm is |r'|^2 = g^T H^-1 g,
+// which is at most N. One more residual
+//   r_last = sqrt(N - |r'|^2)
+// with zero derivative makes the squared norm equal to N.
+//
+// Compute() factorises; residual(), jacobian() and LastResidual() return r', J' and r_last.
 template <int kSize>
 class SquareRootForm {
  public:
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
   using Vector = Eigen::Matrix<double, kSize, 1>;
 
-  // `hessian`: its lower half is enough. False if it is not positive semidefinite or not finite.
+  // Only the lower half of `hessian` is used. Returns false if it is not positive semidefinite or
+  // not finite.
   bool Compute(const Matrix& hessian, const Vector& gradient) {
     Matrix held = hessian;
-    // The factor would not exist if a parameter had no influence, or if rounding had eaten a small
-    // eigenvalue.
+    // A small diagonal term makes the factor exist even if a parameter has no influence, or if a
+    // small eigenvalue is lost in rounding.
     held.diagonal() += 1e-9 * hessian.diagonal();
     held.diagonal().array() += 1e-12 * hessian.diagonal().maxCoeff() + 1e-30;
     factor_.compute(held);
@@ -33,7 +43,7 @@ class SquareRootForm {
   }
 
   const Vector& residual() const { return residual_; }
-  // The residual that is missing if the squares of all residuals add up to `squared_norm`.
+  // The last residual, if the squares of all residuals add up to `squared_norm`.
   double LastResidual(double squared_norm) const {
     return std::sqrt(std::max(0.0, squared_norm - residual_.squaredNorm()));
   }

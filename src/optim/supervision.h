@@ -7,14 +7,15 @@
 
 namespace hullslam::internal {
 
-// Tells the caller how far an optimisation by Ceres is, and ends it when that is requested.
+// Reports the progress of an optimisation by Ceres to the caller, and ends it when a cancellation
+// is requested.
 class Supervision final : public ceres::IterationCallback {
  public:
   // `cancellation` and `on_progress` may be null. `most`: the largest number of iterations.
   Supervision(const Cancellation* cancellation, const ProgressCallback& on_progress, int most)
       : cancellation_(cancellation), on_progress_(on_progress), most_(most) {}
 
-  bool IsCancelled() const { return cancellation_ != nullptr && cancellation_->IsRequested(); }
+  bool IsCancelled() const { return IsRequested(cancellation_); }
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (on_progress_ && summary.iteration > 0) {  // number 0 is the start
       on_progress_(++done_, most_);

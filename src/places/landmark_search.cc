@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "map/landmark_projection.h"
 #include "matching/by_projection.h"
 #include "matching/by_words.h"
@@ -13,8 +13,9 @@ namespace {
 
 constexpr float kRadius = 8.0f;    // px at level 0
 constexpr int kMaxDistance = 100;  // Hamming
-// The level of the vocabulary at which keypoints are compared. Below a node are then about a
-// hundred words of a vocabulary with ten branches: with fewer, too many matches are lost.
+// The level of the vocabulary at which keypoints are compared. In a vocabulary with ten branches, a
+// node of this level has about a hundred words; with fewer words per node, too many matches are
+// lost.
 constexpr int kNodeLevel = 2;
 
 }  // namespace

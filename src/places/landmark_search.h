@@ -16,8 +16,8 @@ struct FoundLandmark {
   LandmarkId landmark;
 };
 
-// Searches landmarks in a frame as seen from `cam_from_world`, a pose that a place of the map gives
-// and that may differ from the pose of tracking. Each keypoint and each landmark is found at most
+// Searches landmarks in a frame as seen from `cam_from_world`. This pose comes from a place of the
+// map and may differ from the pose of tracking. Each keypoint and each landmark is found at most
 // once, and where a landmark is found it agrees with the keypoint (IsInlier).
 std::vector<FoundLandmark> FindLandmarks(const Map& map, const Sensor& sensor, const Frame& frame,
                                          const Rigid3& cam_from_world,

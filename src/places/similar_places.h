@@ -7,15 +7,15 @@
 
 namespace hullslam {
 
-// The keyframe and those that share most landmarks with it: they show one place.
+// A place: the keyframe and those that share most landmarks with it.
 std::vector<KeyframeId> PlaceOf(const Map& map, KeyframeId keyframe);
 
-// Of keyframes that look like an image (InvertedIndex::Query), those that have nearly as many words
-// in common with it as the best one (80 %, Mur-Artal and Tardos 2014).
+// Keeps, among the keyframes that look like an image (InvertedIndex::Query), those that have nearly
+// as many words in common with it as the best one (80 %, Mur-Artal and Tardos 2014).
 void KeepMostCommon(std::vector<SimilarKeyframe>& similar);
 
-// The most similar keyframe of each place, if the scores of the keyframes of this place add up to
-// nearly as much as those of the best place (75 %, Mur-Artal and Tardos 2014). The order of
+// The most similar keyframe of each good place. A place is good if the scores of its keyframes add
+// up to at least 75 % of the sum of the best place (Mur-Artal and Tardos 2014). The order of
 // `similar` is kept.
 std::vector<KeyframeId> BestOfPlaces(const Map& map, const std::vector<SimilarKeyframe>& similar);
 

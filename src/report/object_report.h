@@ -30,7 +30,7 @@ struct ReportedView {
   std::vector<SilhouetteLine> lines;
 };
 
-// How well an ellipsoid agrees with its views (measured by eval/object_metrics.h): means over the
+// The agreement of an ellipsoid with its views (measured by eval/object_metrics.h): means over the
 // views that have a value; absent if no view has one.
 struct ObjectFit {
   std::optional<double> siou = std::nullopt;       // with the hull, 0 to 1
@@ -55,18 +55,18 @@ struct ReportedObject {
 // The largest angle between the rays from the cameras of the views to the centre, degrees.
 double ParallaxOf(const ReportedObject& object);
 
-// How far the shape can be trusted, from 0 to 1: the mean SIoU times the shares that the parallax
-// has of 20 degrees and the number of views of 10, both at most 1. 0 if the SIoU is unknown. Masks
-// from one side agree with many shapes, so the SIoU alone says little about the shape.
+// The reliability of the shape, from 0 to 1: the mean SIoU times min(1, parallax / 20 degrees)
+// times min(1, views / 10). 0 if the SIoU is unknown. Masks from one side agree with many shapes,
+// so the SIoU alone is not enough.
 double QualityOf(const ReportedObject& object);
 
-// What a run reports about its objects. It does not refer to the map that it was made from.
+// The report of a run about its objects. It does not refer to the map that it was made from.
 struct ObjectReport {
   std::string sequence;  // the folder of the sequence
   PinholeCamera camera;
   size_t candidates = 0;                // objects that are not mapped, with or without a shape
   std::vector<ReportedObject> objects;  // objects with a shape, by increasing id
-  // Of a run that has added keyframes to a map of earlier sessions: what it has changed.
+  // The changes of objects, if the run has added keyframes to a map of earlier sessions.
   std::optional<std::vector<ChangedObject>> changes;
 };
 

@@ -123,13 +123,13 @@ Json ToJson(const ReportedObject& object) {
           {"observations", object.views.size()}};
 }
 
-Json ToJson(const std::optional<ObjectPlace>& place) {
-  if (!place) {
+Json ToJson(const std::optional<LocatedObject>& located) {
+  if (!located) {
     return nullptr;
   }
-  const Eigen::Vector3d& axes = place->ellipsoid.half_axes;
-  return {{"object", place->object.value},
-          {"world_from_object", PoseJson(place->ellipsoid.world_from_object)},
+  const Eigen::Vector3d& axes = located->ellipsoid.half_axes;
+  return {{"object", located->object.value},
+          {"world_from_object", PoseJson(located->ellipsoid.world_from_object)},
           {"half_axes",
            {Rounded(axes.x(), kMetre), Rounded(axes.y(), kMetre), Rounded(axes.z(), kMetre)}}};
 }

@@ -116,13 +116,14 @@ ReportedObject ReadObject(const JsonNode& node) {
   return object;
 }
 
-std::optional<ObjectPlace> ReadPlace(const JsonNode& node, const char* key) {
+std::optional<LocatedObject> ReadLocatedObject(const JsonNode& node, const char* key) {
   if (!node.Has(key)) {
     return std::nullopt;
   }
-  const JsonNode place = node.At(key);
-  return ObjectPlace{ObjectId(place.At("object").Count()),
-                     {PoseOf(place.At("world_from_object")), place.At("half_axes").Lengths()}};
+  const JsonNode located = node.At(key);
+  return LocatedObject{
+      ObjectId(located.At("object").Count()),
+      {PoseOf(located.At("world_from_object")), located.At("half_axes").Lengths()}};
 }
 
 ObjectChange ReadChange(const JsonNode& node) {
@@ -144,8 +145,8 @@ std::optional<std::vector<ChangedObject>> ReadChanges(const JsonNode& top) {
   for (const JsonNode& node : top.At("changes").Elements()) {
     changes.push_back({.change = ReadChange(node.At("change")),
                        .label = node.At("class").Text(),
-                       .now = ReadPlace(node, "now"),
-                       .former = ReadPlace(node, "former"),
+                       .now = ReadLocatedObject(node, "now"),
+                       .former = ReadLocatedObject(node, "former"),
                        .expected = static_cast<int>(node.At("expected").Count()),
                        .found = static_cast<int>(node.At("found").Count())});
   }

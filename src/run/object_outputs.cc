@@ -29,8 +29,8 @@ std::string At(const Eigen::Vector3d& position) {
 }
 
 std::string Describe(const ChangedObject& changed) {
-  const auto position = [](const std::optional<ObjectPlace>& place) {
-    return At(place->ellipsoid.world_from_object.translation);
+  const auto position = [](const std::optional<LocatedObject>& object) {
+    return At(object->ellipsoid.world_from_object.translation);
   };
   switch (changed.change) {
     case ObjectChange::kMoved:

@@ -9,7 +9,8 @@ namespace hullslam {
 
 namespace {
 
-// A pose in the final map that shows a smaller share of the landmarks that tracking found is wrong.
+// A pose in the final map is wrong if it finds a smaller share of the landmarks that tracking
+// found.
 constexpr double kMinFoundAgain = 0.9;
 
 // The pose of a tracked frame, if it is in this island.

@@ -15,11 +15,11 @@ namespace hullslam {
 // keyframe has the keyframe's pose. Frames without a pose are left out.
 Trajectory ComposeTrajectory(const Map& map, std::span<const TrackedFrame> frames);
 
-// Makes tracked frames lost that have no pose in the main island.
+// Marks tracked frames that have no pose in the main island as lost.
 void LoseFramesElsewhere(const Map& map, std::span<TrackedFrame> frames);
 
-// Replaces frames by what Tracker::LocaliseEarlyFrames found for them. A tracked frame stays as it
-// was if clearly fewer of its landmarks were found: before a plane, for example, a pose has two
+// Replaces frames by the results of EarlyFrames::Localise. A tracked frame stays as it was if
+// clearly fewer of its landmarks were found: in front of a plane, for example, a pose has two
 // solutions. The ids of `frames` must be consecutive.
 void ReplaceEarlyFrames(std::span<const TrackedFrame> early, std::span<TrackedFrame> frames);
 

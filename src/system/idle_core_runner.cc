@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::chrono::microseconds kPatience(300);
 
-// Looks for a short time whether the condition holds.
+// Polls the condition for a short time. Returns whether it holds.
 template <typename Condition>
 void Await(const Condition& condition) {
   const auto end = std::chrono::steady_clock::now() + kPatience;
@@ -38,8 +38,8 @@ IdleCoreRunner::~IdleCoreRunner() {
   helper_.join();
 }
 
-// The scheduler may wake the helper on the core of the thread that wakes it. There it would take
-// the place of that thread while the other core stays idle.
+// The scheduler may wake the helper on the core of the thread that wakes it. It would then compete
+// with that thread while the other core stays idle.
 void IdleCoreRunner::KeepHelperOffThisCore() {
   const int core = sched_getcpu();
   if (core < 0 || core == avoided_core_) {
@@ -47,7 +47,7 @@ void IdleCoreRunner::KeepHelperOffThisCore() {
   }
   cpu_set_t others = cores_;
   CPU_CLR(core, &others);
-  // If no other core is allowed, this fails, and the helper stays where it is.
+  // If no other core is allowed, this fails, and the helper stays on its core.
   pthread_setaffinity_np(helper_.native_handle(), sizeof(others), &others);
   avoided_core_ = core;
 }

@@ -16,7 +16,7 @@
 
 namespace hullslam {
 
-// Seeks loops in one thread, and adjusts the whole map after them in another one.
+// Searches loops in one thread, and adjusts the whole map after a loop in another one.
 class LoopThreads {
  public:
   // `sensor` must outlive this object. `send` is called by both threads with corrections for the
@@ -27,19 +27,19 @@ class LoopThreads {
 
   bool is_enabled() const { return options_.loop.enabled && options_.vocabulary != nullptr; }
 
-  // Seeks a loop at a new keyframe. A query that still waits is dropped.
+  // Searches a loop at a new keyframe. A query that still waits is dropped.
   void Seek(LoopQuery query);
-  // Adjusts the whole map, to be called with the map in which a loop was closed. When the next loop
-  // is found, the adjustment is given up.
+  // Adjusts the whole map. To be called with the map in which a loop was closed. If the next loop
+  // is found before the end, the adjustment is cancelled.
   void Adjust(std::shared_ptr<const Map> corrected);
 
-  // Waits until all queries are done and, unless `give_up_adjustment`, the adjustment. Returns
-  // whether a correction was sent since the last call.
+  // Waits until all queries are done. Also waits for the adjustment, or cancels it with
+  // `give_up_adjustment`. Returns whether a correction was sent since the last call.
   bool Settle(bool give_up_adjustment);
 
   int busy_threads() const;
   StageTimes times() const;
-  // Throws what one of the threads has thrown.
+  // Rethrows the exception of one of the threads, if there was one.
   void RethrowFailure() const;
 
  private:
@@ -57,12 +57,12 @@ class LoopThreads {
   const std::function<void(MapCorrection)> send_;
   LoopCloser closer_;  // used by the first thread only
 
-  mutable std::mutex mutex_;                    // guards the next three
+  mutable std::mutex mutex_;                    // guards the next three members
   std::shared_ptr<Cancellation> cancellation_;  // of the newest adjustment
   StageTimes times_;
   bool has_sent_ = false;
 
-  LatestWorker<LoopQuery> seeker_;  // these two are last, because their threads use the others
+  LatestWorker<LoopQuery> seeker_;  // the last two members, because their threads use the others
   LatestWorker<Adjustment> adjuster_;
 };
 

@@ -24,25 +24,25 @@ class Pipeline {
   // keyframes belong to no session.
   virtual void Begin(PipelineStart start) = 0;
   // Frames come in order of time. Throws what a stage throws, and CheckError after Finish. After
-  // mapping has thrown an exception, its live map may be half edited. So nothing more is mapped,
-  // all later calls of Track and Finish throw the same exception, and map() stays as it was
-  // published.
+  // mapping has thrown an exception, its live map may be half edited. So mapping stops, all later
+  // calls of Track and Finish throw the same exception, and map() stays the last published map.
   virtual FrameReport Track(std::shared_ptr<const Frame> frame) = 0;
   // Waits until all keyframes are in the map. Then it adjusts the whole map if
-  // mapping.final_bundle_adjustment is set. That ends early if `cancellation` (may be null) is
-  // requested. `on_progress` is called after each of its iterations.
+  // mapping.final_bundle_adjustment is set. The adjustment ends early if `cancellation` (may be
+  // null) is requested. `on_progress` is called after each of its iterations.
   virtual void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) = 0;
   void Finish() { Finish(nullptr, {}); }
   // See Tracker::LocaliseEarlyFrames. To be called after Finish; the second call gives nothing.
   virtual std::vector<TrackedFrame> TakeEarlyFrames() = 0;
   // The newest snapshot; null before the first keyframe.
   virtual std::shared_ptr<const Map> map() const = 0;
-  // How many other threads than that of Track work on the map now. May be called by any thread.
+  // The number of threads, besides the thread of Track, that currently work on the map. May be
+  // called by any thread.
   virtual int busy_threads() const = 0;
   // Durations of the stages; complete after Finish. These two may be called at any time by the
   // thread that calls Track.
   virtual StageTimes times() const = 0;
-  // How often an object was not mapped, by reason; complete after Finish.
+  // The number of rejections of objects, by reason; complete after Finish.
   virtual std::map<ObjectRejection, size_t> object_rejections() const = 0;
   // See Mapper::object_changes. To be called after Finish, which fills it in.
   virtual const std::vector<ChangedObject>& object_changes() const = 0;

@@ -6,10 +6,10 @@
 
 namespace hullslam {
 
-// What a pipeline begins with.
+// The initial state of a pipeline.
 struct PipelineStart {
-  Map map = {};          // of earlier sessions; without keyframes: a new map
-  Session session = {};  // that the keyframes of the run will belong to
+  Map map = {};          // of earlier sessions; a new map if it has no keyframes
+  Session session = {};  // the session of the keyframes of this run
   // There are no keyframe requests, so nothing in the map is changed.
   bool localization_only = false;
   Relocalise relocalise = nullptr;  // asked while tracking is lost; may be null

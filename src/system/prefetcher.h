@@ -12,10 +12,10 @@
 
 namespace hullslam {
 
-// What the thread of a Prefetcher does when other threads need its core.
+// The priority of the thread of a Prefetcher when other threads need its core.
 enum class PrefetchPriority {
   kNormal,
-  kBackground,  // it steps back, as is best if the consumer is slower than the producer
+  kBackground,  // low; best if the consumer is slower than the producer
 };
 
 // Runs a producer ahead of its consumer in a thread of its own, by at most `capacity` items.

@@ -105,7 +105,7 @@ class SequentialPipeline final : public Pipeline {
     }
   }
 
-  // Calls `edit`, which changes the live map, and remembers its exception.
+  // Calls `edit`, which changes the live map, and stores its exception.
   template <typename Edit>
   void EditMap(const Edit& edit) {
     try {

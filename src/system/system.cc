@@ -60,7 +60,7 @@ std::unique_ptr<FrameBuilder> MakeFrameBuilder(const Sensor& sensor, const Syste
       SplitNames(options.tracking.dynamic_classes), options.vocabulary);
 }
 
-// Sets a flag as long as it lives.
+// Sets a flag during its lifetime.
 class ScopedFlag {
  public:
   explicit ScopedFlag(std::atomic<bool>& flag) : flag_(flag) { flag_ = true; }
@@ -141,13 +141,13 @@ void System::CheckStamp(double timestamp) const {
   Check(frames_.empty() || timestamp > frames_.back().timestamp, "time stamps must increase");
 }
 
-// Only a camera that waits for its poses gains by a second thread. A run that is as fast as it can
-// be uses all cores already.
+// A second thread for building frames helps only a live camera, which waits for its poses. A run at
+// full speed already uses all cores.
 std::unique_ptr<TaskRunner> System::MakeRunner() {
   if (kind_ != PipelineKind::kRealtime) {
     return std::make_unique<SerialRunner>();
   }
-  // Asking for the number of cores reads a file, which takes too long for every frame.
+  // The number of cores is read from a file, which would take too long for every frame.
   return std::make_unique<IdleCoreRunner>([this, cores = std::thread::hardware_concurrency()] {
     const int busy = 1 + (is_tracking_ ? 1 : 0) + pipeline_->busy_threads();
     return busy < static_cast<int>(cores);

@@ -20,10 +20,11 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kMailboxCapacity = 8;  // more than the keyframe policy lets wait
+constexpr size_t kMailboxCapacity = 8;  // larger than the number of requests that may wait
 
-// Without depth the mapper is always busy, and tracking would share its core with it all the time.
-// With this niceness the mapper still gets a fifth of a core that another thread wants too.
+// In a monocular run the mapper is always busy, and tracking would have to share its core with the
+// mapper all the time. With this niceness the mapper still gets a fifth of a core that another
+// thread needs too.
 constexpr int kMonocularMapperNiceness = 6;
 
 class ThreadedPipeline final : public Pipeline {
@@ -43,7 +44,7 @@ class ThreadedPipeline final : public Pipeline {
 
   ~ThreadedPipeline() override { Stop(); }
 
-  // The mapper's thread waits for its first message meanwhile.
+  // Meanwhile the mapper's thread waits for its first message.
   void Begin(PipelineStart start) override {
     tracker_.Begin(std::move(start.relocalise), start.localization_only);
     mapper_.Begin(std::move(start.map), std::move(start.session));
@@ -59,7 +60,7 @@ class ThreadedPipeline final : public Pipeline {
       if (is_initial || pace_ == Pace::kWaitForMapper) {
         PostAndWait(std::move(*result.message));
         if (is_initial) {
-          WaitForMapper();  // what was published may also be the correction of a loop
+          WaitForMapper();  // the published map may also be that of a loop correction
         }
       } else {
         Post(std::move(*result.message));
@@ -118,10 +119,10 @@ class ThreadedPipeline final : public Pipeline {
     changed_.wait(lock, [this] { return (!is_busy_ && waiting_ == 0) || failure_; });
   }
 
-  // Waits until a loop at one of the last keyframes is in the map. The adjustment of the whole map
-  // after it is left to the final one, if there is one.
+  // Waits until loops at the last keyframes are in the map. If there is a final adjustment, the
+  // adjustment of the whole map after such a loop is cancelled.
   void CloseLastLoops(const Cancellation* cancellation) {
-    const bool is_cancelled = cancellation != nullptr && cancellation->IsRequested();
+    const bool is_cancelled = IsRequested(cancellation);
     const bool is_adjusted_later = options_.mapping.final_bundle_adjustment || is_cancelled;
     WaitForMapper();
     while (loops_.Settle(is_adjusted_later)) {
@@ -179,7 +180,7 @@ class ThreadedPipeline final : public Pipeline {
     }
   }
 
-  // After a new keyframe, a loop is sought; after a loop was closed, the whole map is adjusted.
+  // Searches a loop after a new keyframe, and adjusts the whole map after a loop was closed.
   void TellLoops(const MapMessage& message) {
     if (!loops_.is_enabled()) {
       return;
@@ -193,8 +194,8 @@ class ThreadedPipeline final : public Pipeline {
     }
   }
 
-  // Calls `edit`, which changes the live map, and copies what other threads may ask of the mapper.
-  // Returns false if there was an exception.
+  // Calls `edit`, which changes the live map, and copies the results of the mapper that other
+  // threads may read. Returns false if there was an exception.
   template <typename Edit>
   bool EditMap(const Edit& edit) {
     std::exception_ptr failure;

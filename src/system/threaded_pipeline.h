@@ -9,10 +9,10 @@
 
 namespace hullslam {
 
-// What Track does with a keyframe while the mapper is still busy with an earlier one.
+// The behaviour of Track with a keyframe while the mapper is still busy with an earlier one.
 enum class Pace {
-  kWaitForMapper,  // waits, so no keyframe is left out
-  kNeverWait,      // leaves it out, or if it is urgent, hurries the mapper, like ORB-SLAM2
+  kWaitForMapper,  // waits, so that no keyframe is dropped
+  kNeverWait,      // drops the keyframe, or if it is urgent, hurries the mapper, as in ORB-SLAM2
 };
 
 // Mapping runs in a thread of its own, so Track returns as soon as the frame has its pose. Results

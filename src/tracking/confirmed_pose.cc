@@ -14,7 +14,8 @@ std::optional<ConfirmedPose> FindConfirmedPose(const Frame& frame, const Map& ma
     if (!start) {
       continue;
     }
-    const KeyframeId near = start->place.IsValid() ? start->place : last.reference;
+    const KeyframeId near =
+        start->keyframe_of_place.IsValid() ? start->keyframe_of_place : last.reference;
     LocalTracking tracking = TrackLocalMap(frame, map, context, near, std::move(*start));
     if (tracking.estimate.EffectiveInliers() >= context.options.min_inliers) {
       return ConfirmedPose{std::move(tracking), i};

@@ -14,7 +14,7 @@
 
 namespace hullslam {
 
-// A frame whose pose is confirmed by its local map, and which source gave its first pose.
+// A frame whose pose is confirmed by its local map, and the source of its first pose.
 struct ConfirmedPose {
   LocalTracking tracking;
   size_t source = 0;  // index into the sources that were asked

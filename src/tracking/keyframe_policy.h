@@ -6,7 +6,7 @@
 
 namespace hullslam {
 
-// What the decision for a new keyframe is based on.
+// The facts on which the decision for a new keyframe is based.
 struct KeyframeEvidence {
   double time_since_keyframe = 0.0;  // s
   int inliers = 0;                   // landmarks found in the frame
@@ -21,7 +21,7 @@ struct KeyframeEvidence {
 };
 
 struct KeyframePolicy {
-  int min_landmarks = 15;         // that the frame must find, so that the keyframe is connected
+  int min_landmarks = 15;         // a frame with fewer would be a keyframe without connections
   double min_time_between = 0.2;  // s, unless tracking has weakened abruptly
   double max_time_between = 1.0;  // s; after this time, also if the mapper is busy
   double time_for_objects = 1.0 / 3.0;  // s; after this time, also for objects that are not mapped
@@ -29,7 +29,7 @@ struct KeyframePolicy {
   // one doubles the time for objects, up to the largest factor.
   int patient_requests = 4;
   double max_time_factor = 16.0;
-  // s; a time that is reached within this tolerance counts as reached. Half the time between two
+  // s. A time limit counts as reached up to this much earlier. It is half the time between two
   // frames, because time stamps are not exactly regular.
   double time_tolerance = 1.0 / 60.0;
   double min_reference_ratio = 0.9;    // of inliers to reference landmarks
@@ -39,12 +39,12 @@ struct KeyframePolicy {
   int max_close_untracked = 70;
   int max_requests_waiting = 3;
 
-  // A keyframe is needed if the frame finds too few landmarks of the reference keyframe or close
-  // points would be lost, and the mapper is idle or it is urgent (Mur-Artal and Tardos 2017,
-  // section III.E). Two things differ from the paper. Keyframes are spread evenly in time: a
-  // smaller loss of landmarks is enough, but there is a least time between keyframes
-  // (docs/decisions.md). Objects that are not mapped yet are another, less urgent reason, because
-  // objects are mapped from keyframes.
+  // A keyframe is needed under two conditions (Mur-Artal and Tardos 2017, section III.E). The frame
+  // finds too few landmarks of the reference keyframe, or close points would be lost; and the
+  // mapper is idle, or the need is urgent. Two things differ from the paper. Keyframes are spread
+  // evenly in time: a smaller loss of landmarks is enough, but there is a least time between
+  // keyframes (docs/decisions.md). Objects that are not mapped yet are another, less urgent reason,
+  // because objects are mapped from keyframes.
   //
   // A frame with fewer than `min_landmarks` landmarks is never a keyframe, even if objects give its
   // pose. Covisibility and bundle adjustment could not connect it with the others, and its new

@@ -7,10 +7,11 @@
 namespace hullslam {
 namespace {
 
-constexpr double kMaxExtrapolation = 4.0;  // time step over that of the measured motion
+constexpr double kMaxExtrapolation = 4.0;  // time step over the duration of the measured motion
 
-// Replaces each landmark by the one that has replaced it. If two of them have become one, only the
-// first keypoint keeps it: a frame observes a landmark at one keypoint.
+// Replaces each landmark by the one that has replaced it in the map. If two of them were merged,
+// only the first keypoint keeps the result, because a frame observes a landmark at one keypoint
+// only.
 void ResolveAll(const Map& map, std::vector<LandmarkId>& landmarks) {
   IdSet<LandmarkId> taken;
   for (LandmarkId& landmark : landmarks) {

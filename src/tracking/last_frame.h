@@ -17,7 +17,7 @@ struct CameraMotion {
   double duration = 0.0;  // s
 };
 
-// What tracking remembers of the frame that was tracked last.
+// The frame that was tracked last, as tracking remembers it.
 struct LastFrame {
   std::shared_ptr<const Frame> frame;
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
@@ -26,7 +26,7 @@ struct LastFrame {
   // The keyframe that shares most landmarks with the frame.
   KeyframeId reference;
   Rigid3 cam_from_world;               // in the map that FollowMap was given
-  std::optional<CameraMotion> motion;  // that led to this frame; absent after lost frames
+  std::optional<CameraMotion> motion;  // to this frame; absent after lost frames
 };
 
 // Brings the last frame up to date with the current map: its pose, the scale of its motion, its
@@ -34,14 +34,15 @@ struct LastFrame {
 // of that keyframe. Throws CheckError if the map knows neither the frame nor its reference.
 LastFrame FollowMap(const Map& map, LastFrame last);
 
-// The motion from the last frame to this one. Absent if there is no last frame or if frames between
-// the two were lost: a motion that took long says little about the velocity at its end.
+// The motion from the last frame to this one. Absent if there is no last frame, or if frames
+// between the two were lost, because the mean velocity over a long time differs from the current
+// velocity.
 std::optional<CameraMotion> MotionSince(const LastFrame& last, const Frame& frame,
                                         const Rigid3& cam_from_world);
 
 // The motion from the last frame to a frame at `timestamp` (s), if the camera keeps its velocity.
-// Null if the velocity is not known, or if the time step is so much longer than that in which the
-// velocity was measured that it says little about the new motion.
+// Null if the velocity is not known, or if the time step is much longer than the one over which the
+// velocity was measured: then the velocity may have changed.
 std::optional<Rigid3> PredictMotion(const LastFrame& last, double timestamp);
 
 }  // namespace hullslam

@@ -69,8 +69,8 @@ void AddNeighbours(const Map& map, KeyframeSet& set) {
   }
 }
 
-// The same as ObservedLandmarks, but with a set of bits instead of sorting. This is faster for the
-// 80 keyframes of every frame.
+// The same as ObservedLandmarks, but with a bit set instead of sorting, which is faster for the 80
+// keyframes of a local map.
 std::vector<LandmarkId> LandmarksOf(const Map& map, const std::vector<KeyframeId>& keyframes) {
   IdSet<LandmarkId> local;
   for (const KeyframeId id : keyframes) {

@@ -22,9 +22,9 @@ namespace {
 constexpr double kRadius = 4.0;
 constexpr double kRadiusFrontal = 2.5;
 constexpr double kCosFrontal = 0.998;
-constexpr double kDepthRadiusFactor = 3.0;  // first poses and landmarks from depth are less precise
+constexpr double kDepthRadiusFactor = 3.0;  // because first poses and depths are less precise
 
-// Where a landmark is searched. Null if the camera cannot recognise it (ViewLandmark).
+// The search window of a landmark. Null if the camera cannot recognise it (ViewLandmark).
 std::optional<Projection> ExpectLandmark(const Sensor& sensor, const Rigid3& cam_from_world,
                                          const Landmark& landmark) {
   const std::optional<LandmarkView> view = ViewLandmark(sensor, cam_from_world, landmark);
@@ -60,8 +60,8 @@ class LandmarkSearch {
   }
 
   // Searches `candidates` at the keypoints that show no landmark yet and are not excluded
-  // (`is_excluded`: one entry per keypoint, or empty). What is found goes into `landmarks`, one
-  // entry per keypoint.
+  // (`is_excluded`: one entry per keypoint, or empty). Writes the landmarks that are found into
+  // `landmarks`, which has one entry per keypoint.
   void Run(std::span<const LandmarkId> candidates, std::span<const uint8_t> is_excluded,
            std::vector<LandmarkId>& landmarks) {
     std::vector<Projection> projections;

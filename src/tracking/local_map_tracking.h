@@ -25,8 +25,8 @@ struct LocalTracking {
 // Improves a first pose: searches the landmarks of the local map in the frame, then those on mapped
 // objects that the local map lacks (objects.guided_matching), and optimises the pose with all
 // landmarks found and all mapped objects (objects.joint_pose). `last_reference` is the reference
-// keyframe of the last frame; it tells which part of the map is local if the first pose comes
-// without landmarks.
+// keyframe of the last frame. It determines the local map if the first pose comes without
+// landmarks.
 LocalTracking TrackLocalMap(const Frame& frame, const Map& map, const TrackingContext& context,
                             KeyframeId last_reference, PoseEstimate start);
 

@@ -10,7 +10,7 @@
 
 #include "estimators/absolute_pose.h"
 #include "estimators/two_views.h"
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "map/spanning_tree.h"
 #include "matching/by_descriptor.h"
 #include "optim/bundle_adjustment.h"
@@ -29,8 +29,8 @@ constexpr uint32_t kReferenceInterval = 3;    // frames from one reference to th
 constexpr size_t kViewsBetween = 3;           // most frames between the first and the last view
 constexpr double kMinAdjustedParallax = 1.0;  // degrees, in the median
 constexpr double kMinConfirmed = 0.6;  // share of its matches that a frame in between must confirm
-// Images without parallax are recognised by how little keypoints have moved, as a share of the
-// image's width, before a motion is estimated.
+// If the keypoints have moved by less than this share of the image's width, the images have too
+// little parallax, and no motion is estimated.
 constexpr double kMinShift = 0.015;
 
 using FramePointer = std::shared_ptr<const Frame>;
@@ -95,8 +95,9 @@ InitialMap MakeMap(const FramePointer& first, const FramePointer& last,
   return map;
 }
 
-// Adds a frame that was taken between the views of a map at its place in time, if the map explains
-// it. Returns whether it does; a frame that shows too little of the map says nothing.
+// Adds a frame that was taken between the views of a map, in the order of time, if the map explains
+// the frame. Returns false only if the map contradicts the frame; a frame that shows too little of
+// the map is not added and does not count.
 bool AddViewBetween(const Sensor& sensor, uint64_t seed, const FramePointer& frame,
                     InitialMap& map) {
   const Frame& first = *map.views.front().frame;
@@ -125,23 +126,23 @@ bool AddViewBetween(const Sensor& sensor, uint64_t seed, const FramePointer& fra
                         kMinConfirmed * static_cast<double>(matches.size())) {
     return false;
   }
-  // The last view stays the last one.
-  const size_t place = map.views.size() - 1;
+  // The new view comes before the last one.
+  const size_t inserted = map.views.size() - 1;
   for (InitialMap::Point& point : map.points) {
     for (InitialMap::Observation& seen : point.observations) {
-      seen.view += seen.view == place ? 1 : 0;
+      seen.view += seen.view == inserted ? 1 : 0;
     }
   }
-  map.views.insert(map.views.begin() + static_cast<std::ptrdiff_t>(place),
+  map.views.insert(map.views.begin() + static_cast<std::ptrdiff_t>(inserted),
                    {frame, pose.cam_from_world});
   for (const size_t inlier : pose.inliers) {
     map.points[point_of[matches[inlier].query]].observations.push_back(
-        {place, matches[inlier].keypoint});
+        {inserted, matches[inlier].keypoint});
   }
   return true;
 }
 
-// Only what bundle adjustment needs of a frame.
+// A copy of the frame with only the features, which are all that bundle adjustment needs.
 FramePointer WithoutWords(const Frame& frame) {
   auto reduced = std::make_shared<Frame>();
   reduced->id = frame.id;
@@ -150,7 +151,7 @@ FramePointer WithoutWords(const Frame& frame) {
   return reduced;
 }
 
-// Bundle adjustment of all views and points. Points that are left with one view are removed.
+// Bundle adjustment of all views and points. Points with only one view after it are removed.
 void AdjustMap(const Sensor& sensor, InitialMap& initial) {
   Map map;
   std::vector<KeyframeId> keyframes;
@@ -236,7 +237,7 @@ MonocularInitialiser::Result MonocularInitialiser::Process(FramePointer frame) {
   return result;
 }
 
-// The failure is that of the reference with which the frame came farthest.
+// Returns the failure of the reference with which the frame came nearest to a map.
 MonocularInitialiser::Result MonocularInitialiser::TryReferences(const FramePointer& frame) const {
   Result farthest{.map = std::nullopt, .failure = InitialisationFailure::kTooFewMatches};
   for (size_t i = 0; i < references_.size(); ++i) {
@@ -278,7 +279,7 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
     }
   }
   AdjustMap(sensor_, map);
-  if (sensor_.readout_time > 0.0) {  // only now are the velocities of the views known
+  if (sensor_.readout_time > 0.0) {  // the velocities of the views are not known before
     CorrectViews(sensor_, map);
     AdjustMap(sensor_, map);
   }
@@ -286,8 +287,8 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
   if (map.points.size() < kMinPoints) {
     return fail(InitialisationFailure::kTooFewPoints);
   }
-  // Two views with wrong matches may seem to have parallax. Together with the views between them
-  // they have not.
+  // Two views with wrong matches may seem to have parallax. The adjustment with the views between
+  // them reveals that they have none.
   if (MedianParallax(map) < kMinAdjustedParallax) {
     return fail(InitialisationFailure::kTooLittleParallax);
   }
@@ -295,8 +296,9 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
   return {.map = std::move(map), .failure = {}};
 }
 
-// When there are too many, the one goes that is nearest in time to the one before it. So the
-// references reach farther and farther back, and are the sparser the older they are.
+// Adds the frame. If there are too many references, removes the reference with the smallest time
+// gap to its predecessor. So the references reach far back, and older references have larger gaps
+// between them.
 void MonocularInitialiser::KeepAsReference(FramePointer frame) {
   if (!references_.empty() && frame->id.value < references_.back()->id.value + kReferenceInterval) {
     return;

@@ -14,8 +14,8 @@
 namespace hullslam {
 
 // Makes the first map of a monocular camera from two frames with enough parallax and some frames
-// between them. Several earlier frames stay candidates for the first view, so a frame without
-// parallax to the last one costs nothing.
+// between them. Several earlier frames stay candidates for the first view, so a frame that has no
+// parallax to the newest candidate does not delay the map.
 class MonocularInitialiser {
  public:
   // `sensor` must outlive the initialiser. `seed` is that of the run.
@@ -23,7 +23,7 @@ class MonocularInitialiser {
 
   struct Result {
     // The first view is at the origin, and the median depth of the points in it is 1. The frame is
-    // the last view. Null: there is a failure instead.
+    // the last view. Null if there is a failure.
     std::optional<InitialMap> map;
     InitialisationFailure failure = InitialisationFailure::kTooFewFeatures;
   };

@@ -16,7 +16,8 @@ struct LevelRange {
 };
 
 // When the camera moves forward, patches grow and are found at higher levels; when it moves
-// backward, at lower levels. Without metres nothing is known of how much they grow.
+// backward, they are found at lower levels. For a monocular sensor the motion is not known in
+// metres, so only a change by one level is allowed, in both directions.
 LevelRange LevelsAfterMotion(int level, double forward, const Sensor& sensor) {
   if (sensor.IsMonocular() || std::abs(forward) <= sensor.baseline()) {
     return {level - 1, level + 1};
@@ -29,7 +30,7 @@ struct Expected {
   std::vector<LandmarkId> landmarks;  // one per projection
 };
 
-// Where the last frame's landmarks are expected by a camera at `cam_from_world`.
+// The expected pixels of the last frame's landmarks for a camera at `cam_from_world`.
 Expected ExpectLandmarks(const Map& map, const Sensor& sensor, const LastFrame& last,
                          const Rigid3& cam_from_world, double forward) {
   Expected expected;
@@ -87,7 +88,7 @@ std::optional<PoseEstimate> PoseByMotionModel(const Frame& frame, const Map& map
   for (const Match& match : matches) {
     estimate.landmarks[match.keypoint] = expected.landmarks[match.query];
   }
-  // Objects are only looked for if there are too few landmarks without them.
+  // Objects are only searched if there are too few landmarks without them.
   PoseObjects objects;
   if (matches.size() < context.min_motion_matches() && context.objects.joint_pose) {
     const IslandId island = IslandOf(map, last.reference);

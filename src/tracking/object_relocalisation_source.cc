@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "estimators/absolute_pose.h"
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "map/covisibility.h"
 #include "map/islands.h"
 #include "map/landmark_projection.h"
@@ -27,15 +27,14 @@ constexpr int kRounds = 2;             // of matching and refinement with object
 constexpr float kWideRadius = 25.0f;   // px at level 0; objects give a pose to a few centimetres
 constexpr double kWideRatio = 0.8;
 constexpr double kLeastMeanOverlap = 0.5;  // of the objects that confirm a pose
-// Hypotheses with a smaller share of the best score of objects are not looked at any further.
+// Hypotheses with a smaller share of the best score of objects are dropped.
 constexpr double kWorthyShare = 0.5;
 constexpr int kMostSamples = 200;  // of RANSAC; most of the landmarks near a true pose agree
-// A second place that explains the frame this well, as a share of the best one, makes the frame
-// ambiguous.
+// If a second candidate reaches this share of the best score, the frame is ambiguous.
 constexpr double kAmbiguousShare = 0.75;
 
 // A pose with the arrangement of objects that is seen from it.
-struct Place {
+struct Candidate {
   PoseEstimate estimate;
   Arrangement arrangement;
 
@@ -51,16 +50,16 @@ class Finder {
       : frame_(frame), map_(map), context_(context), island_(island) {}
 
   std::optional<PoseEstimate> Run() const {
-    std::vector<Place> places = RefineHypotheses();
-    const double best_score = BestScore(places);
-    std::erase_if(places, [&](const Place& place) {
-      return place.arrangement.matched < context_.objects.pose.min_objects ||
-             place.arrangement.Score() < kWorthyShare * best_score;
+    std::vector<Candidate> candidates = RefineHypotheses();
+    const double best_score = BestScore(candidates);
+    std::erase_if(candidates, [&](const Candidate& candidate) {
+      return candidate.arrangement.matched < context_.objects.pose.min_objects ||
+             candidate.arrangement.Score() < kWorthyShare * best_score;
     });
-    for (Place& place : places) {
-      AddLandmarks(place);
+    for (Candidate& candidate : candidates) {
+      AddLandmarks(candidate);
     }
-    const Place* const best = FindBest(places);
+    const Candidate* const best = FindBest(candidates);
     if (best == nullptr || !IsConfirmed(*best)) {
       return std::nullopt;
     }
@@ -74,59 +73,60 @@ class Finder {
   }
 
   // The hypotheses, those whose projected ellipses agree best with the hulls first.
-  std::vector<Place> CompareHypotheses() const {
-    std::vector<Place> places;
+  std::vector<Candidate> CompareHypotheses() const {
+    std::vector<Candidate> candidates;
     for (const PoseHypothesis& hypothesis :
          ProposePoses(map_, context_.sensor.camera, frame_, island_)) {
-      Place& place = places.emplace_back();
-      place.estimate.cam_from_world = hypothesis.cam_from_world;
-      place.arrangement = Compare(hypothesis.cam_from_world);
+      Candidate& candidate = candidates.emplace_back();
+      candidate.estimate.cam_from_world = hypothesis.cam_from_world;
+      candidate.arrangement = Compare(hypothesis.cam_from_world);
     }
-    std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
-      return a.arrangement.Score() > b.arrangement.Score();
-    });
-    return places;
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) {
+                       return a.arrangement.Score() > b.arrangement.Score();
+                     });
+    return candidates;
   }
 
-  static double BestScore(const std::vector<Place>& places) {
+  static double BestScore(const std::vector<Candidate>& candidates) {
     double best = 0.0;
-    for (const Place& place : places) {
-      best = std::max(best, place.arrangement.Score());
+    for (const Candidate& candidate : candidates) {
+      best = std::max(best, candidate.arrangement.Score());
     }
     return best;
   }
 
-  // The hypotheses, refined by objects alone, without those that are near a better one or much
-  // worse.
-  std::vector<Place> RefineHypotheses() const {
-    std::vector<Place> places;
-    for (Place& place : CompareHypotheses()) {
-      const auto is_known = [&](const Place& other) { return AreSame(other, place); };
-      if (places.size() == kMostRefined ||
-          place.arrangement.Score() < kWorthyShare * BestScore(places)) {
-        break;  // those that follow are not better
+  // The hypotheses, refined by objects alone. Those near a better one and much worse ones are left
+  // out.
+  std::vector<Candidate> RefineHypotheses() const {
+    std::vector<Candidate> candidates;
+    for (Candidate& candidate : CompareHypotheses()) {
+      const auto is_known = [&](const Candidate& other) { return AreSame(other, candidate); };
+      if (candidates.size() == kMostRefined ||
+          candidate.arrangement.Score() < kWorthyShare * BestScore(candidates)) {
+        break;  // the hypotheses are sorted, so those that follow are not better
       }
-      if (std::none_of(places.begin(), places.end(), is_known)) {
-        RefineByObjects(place);
-        places.push_back(std::move(place));
+      if (std::none_of(candidates.begin(), candidates.end(), is_known)) {
+        RefineByObjects(candidate);
+        candidates.push_back(std::move(candidate));
       }
     }
-    return places;
+    return candidates;
   }
 
   // The pose that the hull lines of the matched objects and the landmarks of the estimate explain.
-  PoseEstimate Refine(const Place& place, PoseEstimate estimate) const {
+  PoseEstimate Refine(const Candidate& candidate, PoseEstimate estimate) const {
     const PoseObjects objects =
         MakePoseObjects(map_, context_.sensor, frame_, estimate.cam_from_world,
-                        place.arrangement.objects, context_.objects);
+                        candidate.arrangement.objects, context_.objects);
     return RefinePose(frame_, map_, context_, objects.objects, std::move(estimate));
   }
 
-  void RefineByObjects(Place& place) const {
-    place.estimate.landmarks.resize(frame_.features.size());
+  void RefineByObjects(Candidate& candidate) const {
+    candidate.estimate.landmarks.resize(frame_.features.size());
     for (int round = 0; round < kRounds; ++round) {
-      place.estimate = Refine(place, std::move(place.estimate));
-      place.arrangement = Compare(place.estimate.cam_from_world);
+      candidate.estimate = Refine(candidate, std::move(candidate.estimate));
+      candidate.arrangement = Compare(candidate.estimate.cam_from_world);
     }
   }
 
@@ -153,7 +153,7 @@ class Finder {
     return observers;
   }
 
-  // Landmarks near the places where the rough pose expects them. Many of them may be wrong.
+  // Landmarks near the pixels where the rough pose expects them. Many of them may be wrong.
   std::vector<FoundLandmark> SearchWidely(const Rigid3& cam_from_world,
                                           const std::vector<LandmarkId>& landmarks) const {
     std::vector<Projection> projections;
@@ -181,10 +181,10 @@ class Finder {
     return found;
   }
 
-  // The pose of the landmarks alone, if enough of them agree with one that is near the pose of the
-  // objects.
+  // The pose from the landmarks alone, if enough of them agree with it and it is near the pose from
+  // the objects.
   std::optional<PoseEstimate> PoseOf(const std::vector<FoundLandmark>& found,
-                                     const Place& place) const {
+                                     const Candidate& candidate) const {
     std::vector<PoseObservation> observations;
     for (const auto& [keypoint, landmark] : found) {
       observations.push_back({.point = map_.landmarks().At(landmark).position,
@@ -196,8 +196,8 @@ class Finder {
     ransac.min_inliers = static_cast<size_t>(context_.min_start_inliers());
     ransac.max_iterations = kMostSamples;
     const AbsolutePose pose = EstimateAbsolutePose(context_.sensor.camera, observations, ransac);
-    if (!pose.ok() ||
-        !AreSamePlace(place.estimate.cam_from_world, pose.cam_from_world, MeanDistance(place))) {
+    if (!pose.ok() || !AreSamePlace(candidate.estimate.cam_from_world, pose.cam_from_world,
+                                    MeanDistance(candidate))) {
       return std::nullopt;
     }
     PoseEstimate estimate;
@@ -209,63 +209,66 @@ class Finder {
     return estimate;
   }
 
-  // Of the matched objects from the camera, m; 0 if there are none.
-  double MeanDistance(const Place& place) const {
+  // Mean distance of the matched objects from the camera, m; 0 if there are none.
+  double MeanDistance(const Candidate& candidate) const {
     double sum = 0.0;
-    for (const ObjectId id : place.arrangement.objects) {
+    for (const ObjectId id : candidate.arrangement.objects) {
       if (id.IsValid()) {
         const Ellipsoid& ellipsoid = map_.objects().At(id).ellipsoid;
-        sum += (place.estimate.cam_from_world * ellipsoid.world_from_object.translation).norm();
+        sum += (candidate.estimate.cam_from_world * ellipsoid.world_from_object.translation).norm();
       }
     }
-    return sum / std::max(1, place.arrangement.matched);
+    return sum / std::max(1, candidate.arrangement.matched);
   }
 
-  bool AreSame(const Place& a, const Place& b) const {
+  bool AreSame(const Candidate& a, const Candidate& b) const {
     return AreSamePlace(a.estimate.cam_from_world, b.estimate.cam_from_world, MeanDistance(a));
   }
 
   // Searches landmarks of the keyframes that observe the objects, and refines the pose with both.
-  void AddLandmarks(Place& place) const {
-    const std::vector<KeyframeId> observers = ObserversOf(place.arrangement);
-    place.estimate.place = observers.front();
+  void AddLandmarks(Candidate& candidate) const {
+    const std::vector<KeyframeId> observers = ObserversOf(candidate.arrangement);
+    candidate.estimate.keyframe_of_place = observers.front();
     const std::vector<LandmarkId> landmarks = ObservedLandmarks(map_, observers);
-    if (auto estimate = PoseOf(SearchWidely(place.estimate.cam_from_world, landmarks), place)) {
-      estimate->place = place.estimate.place;
-      place.estimate = Refine(place, std::move(*estimate));
-      place.arrangement = Compare(place.estimate.cam_from_world);
+    if (auto estimate =
+            PoseOf(SearchWidely(candidate.estimate.cam_from_world, landmarks), candidate)) {
+      estimate->keyframe_of_place = candidate.estimate.keyframe_of_place;
+      candidate.estimate = Refine(candidate, std::move(*estimate));
+      candidate.arrangement = Compare(candidate.estimate.cam_from_world);
     }
-    std::vector<LandmarkId>& known = place.estimate.landmarks;
+    std::vector<LandmarkId>& known = candidate.estimate.landmarks;
     std::fill(known.begin(), known.end(), LandmarkId());
-    for (const auto& [keypoint, landmark] :
-         FindLandmarks(map_, context_.sensor, frame_, place.estimate.cam_from_world, landmarks)) {
+    for (const auto& [keypoint, landmark] : FindLandmarks(
+             map_, context_.sensor, frame_, candidate.estimate.cam_from_world, landmarks)) {
       known[keypoint] = landmark;
     }
-    place.estimate = Refine(place, std::move(place.estimate));
-    place.arrangement = Compare(place.estimate.cam_from_world);
+    candidate.estimate = Refine(candidate, std::move(candidate.estimate));
+    candidate.arrangement = Compare(candidate.estimate.cam_from_world);
   }
 
-  // The place with the best score. Null if there is none, or if another one is about as good.
-  const Place* FindBest(const std::vector<Place>& places) const {
-    const Place* best = nullptr;
-    for (const Place& place : places) {
-      if (best == nullptr || place.Score() > best->Score()) {
-        best = &place;
+  // The candidate with the best score. Null if there is none, or if another place is about as good.
+  const Candidate* FindBest(const std::vector<Candidate>& candidates) const {
+    const Candidate* best = nullptr;
+    for (const Candidate& candidate : candidates) {
+      if (best == nullptr || candidate.Score() > best->Score()) {
+        best = &candidate;
       }
     }
     const bool is_ambiguous =
-        best != nullptr && std::any_of(places.begin(), places.end(), [&](const Place& other) {
+        best != nullptr &&
+        std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
           return other.Score() >= kAmbiguousShare * best->Score() && !AreSame(*best, other);
         });
     return is_ambiguous ? nullptr : best;
   }
 
-  // Enough landmarks or enough objects agree with the pose.
-  bool IsConfirmed(const Place& place) const {
-    const Arrangement& arrangement = place.arrangement;
+  // Whether enough landmarks or enough objects agree with the pose.
+  bool IsConfirmed(const Candidate& candidate) const {
+    const Arrangement& arrangement = candidate.arrangement;
     const bool do_objects_agree =
         arrangement.Score() > 0.0 && arrangement.overlap >= kLeastMeanOverlap * arrangement.matched;
-    return do_objects_agree && place.estimate.EffectiveInliers() >= context_.options.min_inliers;
+    return do_objects_agree &&
+           candidate.estimate.EffectiveInliers() >= context_.options.min_inliers;
   }
 
   const Frame& frame_;

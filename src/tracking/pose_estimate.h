@@ -8,7 +8,7 @@
 
 namespace hullslam {
 
-// A pose of a frame with the landmarks that were found in it.
+// The pose of a frame, with the landmarks that were found in the frame.
 struct PoseEstimate {
   // An object that constrains a pose counts as this many landmarks.
   static constexpr int kLandmarksPerObject = 5;
@@ -17,9 +17,11 @@ struct PoseEstimate {
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
   int inliers = 0;                    // landmarks that agree with the pose
   int used_objects = 0;               // objects that constrain the pose
-  KeyframeId place;  // a keyframe that shows the same place; invalid if the landmarks tell it
+  // A keyframe that shows the same place as the frame; invalid if the landmarks determine the
+  // place.
+  KeyframeId keyframe_of_place;
 
-  // How much constrains the pose, as a number of landmarks.
+  // The number of landmarks that would constrain the pose as much as the landmarks and objects do.
   int EffectiveInliers() const { return inliers + kLandmarksPerObject * used_objects; }
 };
 

@@ -10,7 +10,8 @@
 namespace hullslam {
 namespace {
 
-// The lines whose excess is known, moved by it. Empty if these are less than half of the lines.
+// The lines whose excess is known, moved by the excess. Empty if these are fewer than half of the
+// lines.
 std::vector<SilhouetteLine> KnownLines(const Sensor& sensor, const Rigid3& cam_from_world,
                                        const ObjectLandmark& object,
                                        std::span<const SilhouetteLine> lines,

@@ -19,17 +19,17 @@ struct PoseObjects {
   std::vector<PoseObject> objects;  // one per id
 };
 
-// The mapped object that each detection of a frame shows, invalid for none; one entry per
-// detection. The objects are those of the island that the pose belongs to. All are invalid where
-// objects take no part in tracking. See AssociateDetections.
+// The mapped object that each detection of a frame shows. One entry per detection; invalid where it
+// shows no mapped object. The objects are those of the island that the pose belongs to. All entries
+// are invalid if objects are not used in tracking. See AssociateDetections.
 std::vector<ObjectId> FindMappedObjects(const Frame& frame, const Map& map,
                                         const TrackingContext& context,
                                         const PoseEstimate& estimate, IslandId island);
 
 // The detections of a frame that show mapped objects (`ids`: one per detection). With misfit
-// compensation each line is moved by the excess that the keyframes have measured at its normal;
-// lines at normals that no keyframe has seen are left out. If fewer than half of a detection's
-// lines would remain, the detection is taken as it is.
+// compensation each line is moved by the excess that the keyframes have measured for its normal;
+// lines with normals that no keyframe has measured are left out. If fewer than half of a
+// detection's lines would remain, its lines are used without compensation.
 PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& frame,
                             const Rigid3& cam_from_world, std::span<const ObjectId> ids,
                             const ObjectOptions& options);

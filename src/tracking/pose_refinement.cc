@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 
 namespace hullslam {
 

@@ -23,9 +23,9 @@ using PoseSource = std::optional<PoseEstimate>(const Frame& frame, const Map& ma
 // without a prediction (PredictMotion, motion_model_source.cc).
 PoseSource PoseByMotionModel;
 
-// Keypoints are compared with those of the last frame's reference keyframe wherever they are in the
-// image: those of one node of the vocabulary or, without words, all. The last frame's pose is where
-// refinement begins (reference_keyframe_source.cc).
+// Keypoints are compared with those of the last frame's reference keyframe, whatever their
+// positions in the image: with those of the same node of the vocabulary or, without words, with
+// all. The refinement begins at the last frame's pose (reference_keyframe_source.cc).
 PoseSource PoseByReferenceKeyframe;
 
 // Keyframes that look like the frame by their words give matches with their landmarks, from which
@@ -35,7 +35,7 @@ PoseSource PoseByRelocalisation;
 
 // The arrangement of the mapped objects in the frame gives a pose, and hull lines and landmarks
 // refine and confirm it. Null if another pose explains the frame about as well. The last frame is
-// not used. Of several islands, the one that agrees best is taken
+// not used. If there are several islands, the one that agrees best is chosen
 // (object_relocalisation_source.cc).
 PoseSource PoseByObjects;
 
@@ -44,11 +44,11 @@ PoseSource PoseByObjects;
 using Relocalise = std::function<std::optional<PoseEstimate>(const Frame& frame, const Map& map,
                                                              const TrackingContext& context)>;
 
-// All sources, in the order in which they are tried.
+// All sources, in the order in which they are asked.
 inline constexpr std::array<PoseSource*, 4> kPoseSources = {
     &PoseByMotionModel, &PoseByReferenceKeyframe, &PoseByRelocalisation, &PoseByObjects};
 
-// Those of them that need no last frame, in the same order.
+// The sources that need no last frame, in the same order.
 inline constexpr std::array<PoseSource*, 2> kRelocalisationSources = {&PoseByRelocalisation,
                                                                       &PoseByObjects};
 

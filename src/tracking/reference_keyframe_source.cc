@@ -7,7 +7,7 @@
 namespace hullslam {
 namespace {
 
-// Without a prediction of the place of a keypoint in the image. Words save most comparisons.
+// Matches keypoints without a prediction of their pixels. Words save most comparisons.
 std::vector<FoundLandmark> FindByDescriptor(const Map& map, const Frame& frame, KeyframeId id) {
   if (map.vocabulary() != nullptr && !frame.words.empty()) {
     return MatchLandmarksByWords(map, frame, id, {});

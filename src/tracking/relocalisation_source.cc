@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "estimators/absolute_pose.h"
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "map/covisibility.h"
 #include "places/landmark_search.h"
 #include "places/similar_places.h"
@@ -17,7 +17,7 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kMostPlaces = 8;  // that are tried for a frame
+constexpr size_t kMostPlaces = 8;  // largest number of places that are tried for a frame
 
 // The keyframes that look like the frame, one per place.
 std::vector<KeyframeId> FindPlaces(const Frame& frame, const Map& map) {

@@ -16,7 +16,7 @@ namespace {
 constexpr size_t kMostLandmarks = 400;
 constexpr double kMinInlierShare = 0.5;  // of the landmarks that were found
 
-// Only what the residual in the pose is computed from.
+// The detection with only the data that the residuals of the pose are computed from.
 Detection Slim(Detection detection, const ObjectOptions& options) {
   if (TakesLines(options.pose.constraint.residual)) {
     detection.contour = {};
@@ -27,7 +27,7 @@ Detection Slim(Detection detection, const ObjectOptions& options) {
   return detection;
 }
 
-// What has become of the landmark; invalid if it is gone.
+// The landmark that has replaced the landmark, or the landmark itself; invalid if it was erased.
 LandmarkId Newest(const Map& map, LandmarkId landmark) { return map.Resolve(landmark); }
 
 // The same of an object; only mapped ones constrain poses.

@@ -9,18 +9,18 @@
 
 namespace hullslam {
 
-// Remembers how many keyframes were requested for the sake of objects without success.
+// Counts the keyframes that were requested because of objects and led to no new mapped object.
 class RequestMemory {
  public:
-  // The number of requests since an object was last mapped that had never been mapped before. (An
-  // object that is rejected and mapped again is no success.) Looks through the objects only if the
-  // map has another revision than before.
+  // The number of requests since an object was last mapped for the first time. (An object that is
+  // rejected and mapped again does not count as success.) Visits the objects only if the revision
+  // of the map has changed.
   int CountFruitless(const Map& map);
   void AddRequest() { ++requests_; }
 
  private:
-  std::set<ObjectId> mapped_;         // all that were ever mapped
-  std::optional<uint32_t> revision_;  // of the map that was looked at last
+  std::set<ObjectId> mapped_;         // all objects that were ever mapped
+  std::optional<uint32_t> revision_;  // of the map at the last call
   int requests_ = 0;
 };
 

@@ -11,18 +11,19 @@
 
 namespace hullslam {
 
-// How far away things are in an image: mean inverse depths (1 over the unit of the map) in cells of
-// 1/16 of its width and 1/12 of its height.
+// A coarse inverse depth image: mean inverse depths (1 over the unit of the map) in cells of 1/16
+// of the image's width and 1/12 of its height.
 class SeenDepths {
  public:
   // `bounds`: of the undistorted image, px.
   explicit SeenDepths(const PinholeCamera::Bounds& bounds) : bounds_(bounds) {}
 
-  // A point at an undistorted pixel. Points that are not in front of the camera are left out.
+  // Adds a point at an undistorted pixel. Points that are not in front of the camera are left out.
   void Add(const Eigen::Vector2d& pixel, double depth);
-  // The mean of the cell; that of the whole image if the cell is empty; 0 if all are.
+  // The mean of the cell; if the cell is empty, the mean of the whole image; 0 if all cells are
+  // empty.
   double InverseDepthAt(const Eigen::Vector2d& pixel) const;
-  // One per keypoint: that of its own depth if it is known, else InverseDepthAt().
+  // One inverse depth per keypoint: from its own depth if that is known, else InverseDepthAt().
   std::vector<double> InverseDepths(const FrameFeatures& features) const;
 
  private:

@@ -61,6 +61,17 @@ std::shared_ptr<const Frame> MeasureGlobalShutter(std::shared_ptr<const Frame> f
       *frame, sensor, MeanVelocity(motion->cam_from_last_cam, motion->duration), inverse_depths);
 }
 
+std::shared_ptr<const Frame> CorrectShutter(const std::shared_ptr<const Frame>& as_read,
+                                            const Map& map, const TrackingContext& context,
+                                            const LastFrame& last, LocalTracking& tracking) {
+  std::shared_ptr<const Frame> corrected =
+      MeasureGlobalShutter(as_read, map, context.sensor, last, tracking.estimate);
+  if (corrected != as_read) {
+    RefineTracking(*corrected, map, context, tracking);
+  }
+  return corrected;
+}
+
 void CorrectViews(const Sensor& sensor, InitialMap& map) {
   if (sensor.readout_time == 0.0) {
     return;

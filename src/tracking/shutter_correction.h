@@ -8,7 +8,9 @@
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
 #include "tracking/last_frame.h"
+#include "tracking/local_map_tracking.h"
 #include "tracking/pose_estimate.h"
+#include "tracking/tracking_context.h"
 
 namespace hullslam {
 
@@ -16,21 +18,27 @@ namespace hullslam {
 // the frame itself if the shutter is global (Sensor::readout_time is 0) or the velocity of the
 // camera is not known. `last` is up to date with the map (FollowMap).
 
-// For a frame that is not tracked yet: the camera keeps the velocity of the last frame, and what it
-// shows is as far away as what the last frame showed there.
+// For a frame that is not tracked yet. Assumes that the camera keeps the velocity of the last
+// frame, and that the depths are those of the last frame at the same pixels.
 std::shared_ptr<const Frame> PredictGlobalShutter(std::shared_ptr<const Frame> frame,
                                                   const Map& map, const Sensor& sensor,
                                                   const LastFrame& last);
 
-// For a tracked frame: the velocity is that of the motion since the last frame, and the landmarks
-// that were found tell the depths. `frame` is as it was read, not as it was predicted.
+// For a tracked frame. The velocity is that of the motion since the last frame, and the depths are
+// those of the landmarks that were found. `frame` is the frame as read, not the predicted one.
 std::shared_ptr<const Frame> MeasureGlobalShutter(std::shared_ptr<const Frame> frame,
                                                   const Map& map, const Sensor& sensor,
                                                   const LastFrame& last,
                                                   const PoseEstimate& estimate);
 
-// For the two or more views of an initial map: the velocity of a view is that of the motion from
-// the view before it to the one after it.
+// Like MeasureGlobalShutter. If the corrected frame differs from the frame as read, the pose is
+// optimised again with it.
+std::shared_ptr<const Frame> CorrectShutter(const std::shared_ptr<const Frame>& as_read,
+                                            const Map& map, const TrackingContext& context,
+                                            const LastFrame& last, LocalTracking& tracking);
+
+// For the two or more views of an initial map. The velocity of a view is that of the motion from
+// the view before it to the view after it.
 void CorrectViews(const Sensor& sensor, InitialMap& map);
 
 }  // namespace hullslam

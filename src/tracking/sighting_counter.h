@@ -8,8 +8,8 @@
 
 namespace hullslam {
 
-// Counts in how many frames each landmark should have been visible, and in how many it was found,
-// between two messages to the mapper.
+// Counts, between two messages to the mapper, the frames in which each landmark should have been
+// visible and the frames in which it was found.
 class SightingCounter {
  public:
   void CountVisible(LandmarkId landmark) { ++counts_[landmark].visible; }

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tracking/tracker.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "map/islands.h"
@@ -14,9 +10,8 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kYoungKeyframes = 10;    // a monocular island with fewer is young
-constexpr double kPatience = 1.0;         // s, lost in an island that is not young
-constexpr size_t kMostEarlyFrames = 300;  // the first ones are forgotten if there are more
+constexpr size_t kYoungKeyframes = 10;  // a monocular island with fewer keyframes is young
+constexpr double kPatience = 1.0;       // s without a pose, before a new island may begin
 
 KeyframePolicy MakePolicy(const Sensor& sensor, const TrackingOptions& options) {
   KeyframePolicy policy;
@@ -78,20 +73,7 @@ KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor
           .requests_waiting = mapper.requests_waiting};
 }
 
-KeyframeId NearestInTime(const Map& map, double timestamp) {
-  KeyframeId nearest;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const auto& [id, keyframe] : map.keyframes()) {
-    const double gap = std::abs(keyframe.frame->timestamp - timestamp);
-    if (gap < smallest) {
-      smallest = gap;
-      nearest = id;
-    }
-  }
-  return nearest;
-}
-
-// A frame without a pose, or one of the initial map.
+// The result for a frame without a pose or for a frame of the initial map.
 Tracker::Result MakeResult(std::shared_ptr<const Frame> frame, TrackingState state) {
   Tracker::Result result;
   result.report.tracked.frame = frame->id;
@@ -130,13 +112,6 @@ Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared
   return Track(std::move(frame), *map, mapper);
 }
 
-void Tracker::KeepEarlyFrame(std::shared_ptr<const Frame> frame) {
-  if (early_.size() == kMostEarlyFrames) {
-    early_.erase(early_.begin());
-  }
-  early_.push_back(std::move(frame));
-}
-
 Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
   const std::vector<uint32_t> with_depth = KeypointsByDepth(frame->features);
   if (with_depth.size() < static_cast<size_t>(options_.min_initial_points)) {
@@ -151,7 +126,7 @@ Tracker::Result Tracker::InitializeMonocular(std::shared_ptr<const Frame> frame)
   if (initial.map) {
     return BeginIsland(std::move(frame), std::move(*initial.map));
   }
-  KeepEarlyFrame(frame);
+  early_.Keep(frame);
   Result result = MakeResult(std::move(frame), TrackingState::kNotInitialized);
   result.report.failure = initial.failure;
   return result;
@@ -170,39 +145,8 @@ Tracker::Result Tracker::BeginIsland(std::shared_ptr<const Frame> frame, Initial
 }
 
 std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map) {
-  constexpr std::array<PoseSource*, 2> kSources = {&PoseByReferenceKeyframe, &PoseByRelocalisation};
-  std::vector<TrackedFrame> localised;
-  LastFrame before;  // in time, of those that were found
-  for (const std::shared_ptr<const Frame>& frame : early_) {
-    TrackedFrame tracked;
-    tracked.frame = frame->id;
-    tracked.timestamp = frame->timestamp;
-    tracked.state = TrackingState::kTracked;
-    const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame->id);
-    if (keyframe && IslandOf(map, *keyframe).IsValid()) {
-      localised.push_back(tracked);
-      before.frame = frame;
-      before.cam_from_world = map.CamFromWorld({*keyframe, Rigid3(), map.ScaleOf(*keyframe)});
-      continue;
-    }
-    object_index_.Follow(map, sensor_.camera);
-    LastFrame nearest;
-    nearest.reference = NearestInTime(map, frame->timestamp);
-    nearest.frame = map.keyframes().At(nearest.reference).frame;
-    nearest.cam_from_world = map.keyframes().At(nearest.reference).cam_from_world;
-    if (auto found = FindConfirmedPose(*frame, map, Context(), nearest, kSources)) {
-      CorrectShutter(frame, map, before, found->tracking);
-      const PoseEstimate& estimate = found->tracking.estimate;
-      before.frame = frame;
-      before.cam_from_world = estimate.cam_from_world;
-      tracked.pose = map.RelativeTo(found->tracking.reference, estimate.cam_from_world);
-      tracked.cam_from_world = estimate.cam_from_world;
-      tracked.inliers = estimate.inliers;
-      localised.push_back(tracked);
-    }
-  }
-  early_.clear();
-  return localised;
+  object_index_.Follow(map, sensor_.camera);
+  return early_.Localise(map, Context());
 }
 
 Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& map,
@@ -211,7 +155,7 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
     last_ = FollowMap(map, std::move(last_));
   }
   if (sensor_.IsMonocular() && !is_localizing_only_ && IsYoung(map)) {
-    KeepEarlyFrame(frame);
+    early_.Keep(frame);
   }
   if (!frame->detections.empty()) {
     object_index_.Follow(map, sensor_.camera);
@@ -225,7 +169,7 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   lost_since_.reset();
   initialiser_.Forget();
   LocalTracking& tracking = *found;
-  frame = CorrectShutter(as_read, map, last_, tracking);
+  frame = CorrectShutter(as_read, map, Context(), last_, tracking);
   if (!is_localizing_only_) {
     CountSightings(map, tracking);
   }
@@ -253,19 +197,6 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
            .cam_from_world = estimate.cam_from_world,
            .motion = motion};
   return result;
-}
-
-// Removes the effect of a rolling shutter from a frame whose pose was found, and optimises the pose
-// with the frame that it returns.
-std::shared_ptr<const Frame> Tracker::CorrectShutter(const std::shared_ptr<const Frame>& as_read,
-                                                     const Map& map, const LastFrame& last,
-                                                     LocalTracking& tracking) const {
-  std::shared_ptr<const Frame> corrected =
-      MeasureGlobalShutter(as_read, map, sensor_, last, tracking.estimate);
-  if (corrected != as_read) {
-    RefineTracking(*corrected, map, Context(), tracking);
-  }
-  return corrected;
 }
 
 // The first pose that the local map confirms. Null if there is none.
@@ -312,7 +243,7 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map
   if (MayBeginIsland(*frame, map)) {
     MonocularInitialiser::Result initial = initialiser_.Process(frame);
     if (!IsYoung(map)) {
-      KeepEarlyFrame(frame);
+      early_.Keep(frame);
     }
     if (initial.map) {
       return BeginIsland(std::move(frame), std::move(*initial.map));
@@ -321,8 +252,8 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map
   return MakeResult(std::move(frame), TrackingState::kLost);
 }
 
-// The camera may soon be found in a grown island, and only place recognition, which needs words,
-// can join another one to it. In a young one there is little to be found.
+// In an island that is not young, the camera may soon be found again, and only place recognition,
+// which needs words, can join a new island to it. In a young island there is little to be found.
 bool Tracker::MayBeginIsland(const Frame& frame, const Map& map) const {
   if (!sensor_.IsMonocular() || is_localizing_only_) {
     return false;

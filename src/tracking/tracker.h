@@ -11,6 +11,7 @@
 #include "hullslam/objects/object_options.h"
 #include "hullslam/tracking/tracking_options.h"
 #include "hullslam/util/stage_timer.h"
+#include "tracking/early_frames.h"
 #include "tracking/keyframe_policy.h"
 #include "tracking/last_frame.h"
 #include "tracking/local_map_tracking.h"
@@ -29,8 +30,8 @@ struct MapperStatus {
 };
 
 // Finds the pose of each frame in a snapshot of the map and decides on keyframes. A monocular
-// camera that is lost begins a new island (Map::BeginIsland). It does not change the map but sends
-// messages to the mapper. Its members are what it remembers from one frame to the next.
+// camera that is lost begins a new island (Map::BeginIsland). The tracker does not change the map;
+// it sends messages to the mapper. Its members are its memory from one frame to the next.
 class Tracker {
  public:
   // `sensor` must outlive the tracker. `seed` is that of the run.
@@ -51,9 +52,7 @@ class Tracker {
   Result Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
                  const MapperStatus& mapper);
 
-  // To be called at the end of a monocular run, with the final map. Gives poses to the frames
-  // before the map and before each new island, which had none, and better ones to those that were
-  // tracked while their island was young. Frames that are not found in the map are left out.
+  // To be called at the end of a monocular run, with the final map. See EarlyFrames.
   std::vector<TrackedFrame> LocaliseEarlyFrames(const Map& map);
 
   const StageTimes& times() const { return times_; }
@@ -65,12 +64,8 @@ class Tracker {
   Result Initialize(std::shared_ptr<const Frame> frame);
   Result InitializeMonocular(std::shared_ptr<const Frame> frame);
   Result BeginIsland(std::shared_ptr<const Frame> frame, InitialMap initial);
-  void KeepEarlyFrame(std::shared_ptr<const Frame> frame);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
   std::optional<LocalTracking> FindPose(const Frame& frame, const Map& map) const;
-  std::shared_ptr<const Frame> CorrectShutter(const std::shared_ptr<const Frame>& as_read,
-                                              const Map& map, const LastFrame& last,
-                                              LocalTracking& tracking) const;
   Result Lose(std::shared_ptr<const Frame> frame, const Map& map);
   bool IsYoung(const Map& map) const;
   bool MayBeginIsland(const Frame& frame, const Map& map) const;
@@ -88,18 +83,18 @@ class Tracker {
   StageTimes times_;
 
   MonocularInitialiser initialiser_;
-  std::vector<std::shared_ptr<const Frame>> early_;  // for LocaliseEarlyFrames, in order of time
+  EarlyFrames early_;
 
   Relocalise relocalise_;  // may be null
   bool is_localizing_only_ = false;
 
   std::optional<double> lost_since_;  // s, time stamp of the first lost frame; absent if not lost
   LastFrame last_;                    // has no frame before the first frame with a pose
-  // s, time stamp of the frame of the last message; of the first frame with a pose if there is no
-  // message yet.
+  // Time stamp of the frame of the last message, s. If there is no message yet, that of the first
+  // frame with a pose.
   std::optional<double> last_request_time_;
   SightingCounter sightings_;  // since the last request
-  // Map::revision() of the first map in which they were counted; absent if there are none.
+  // Map::revision() of the first map in which sightings were counted; absent if there are none.
   std::optional<uint32_t> first_sighting_revision_;
   RequestMemory object_requests_;
   ObjectIndex object_index_;  // of the map of the last frame

@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// What every step of tracking needs besides the frame and the map. Its parts must outlive it.
+// The data that every step of tracking needs besides the frame and the map. They must outlive it.
 struct TrackingContext {
   const Sensor& sensor;
   const TrackingOptions& options;

@@ -15,9 +15,9 @@
 
 namespace hullslam {
 
-// A set of ids of one map, of which at most one has a slot at any time. It has a bit per id, but
-// only for those groups of 64 slots that have a member. So adding an id costs little, and the cost
-// does not depend on how many ids there are in the map.
+// A set of ids of one map. At most one id of the set may have a given slot. The set has one bit per
+// slot, but only for those groups of 64 slots that contain a member. So adding an id is cheap, and
+// its cost does not depend on the number of ids in the map.
 template <typename IdType>
 class IdSet {
  public:
@@ -55,8 +55,8 @@ class IdSet {
     for (const uint32_t number : numbers) {
       const Group& group = *groups_.Find(GroupId(number));
       for (uint64_t left = group.bits; left != 0; left &= left - 1) {
-        const auto place = static_cast<uint32_t>(std::countr_zero(left));
-        ids.push_back(group.IdAt(number * kGroupSize + place));
+        const auto bit = static_cast<uint32_t>(std::countr_zero(left));
+        ids.push_back(group.IdAt(number * kGroupSize + bit));
       }
     }
     return ids;

@@ -11,12 +11,12 @@
 
 namespace hullslam {
 
-// Works in a thread of its own on the newest of the tasks that it is given: a task that waits is
-// dropped when another one comes.
+// Works in its own thread on the newest of its tasks. A waiting task is dropped when another one
+// arrives.
 template <typename Task>
 class LatestWorker {
  public:
-  // After `work` has thrown an exception, no task is worked on any more.
+  // After `work` has thrown an exception, no further task is begun.
   explicit LatestWorker(std::function<void(Task)> work)
       : work_(std::move(work)), thread_([this] { Run(); }) {}
 
@@ -48,7 +48,7 @@ class LatestWorker {
     changed_.wait(lock, [this] { return !IsBusyLocked(); });
   }
 
-  // Throws what `work` has thrown.
+  // Rethrows the exception of `work`, if there was one.
   void RethrowFailure() const {
     const std::lock_guard lock(mutex_);
     if (failure_) {

@@ -220,7 +220,8 @@ void OptionTable::AddShared(std::string key, std::vector<std::string> members, s
   }
   AddOption(std::move(key), {.parse =
                                  [options](const std::string& text) {
-                                   // One that refuses leaves those before it set: the run ends.
+                                   // If a member refuses, earlier ones stay set; the run ends
+                                   // anyway.
                                    return std::all_of(
                                        options.begin(), options.end(),
                                        [&](const Option& option) { return option.parse(text); });

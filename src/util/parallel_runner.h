@@ -8,8 +8,8 @@
 
 namespace hullslam {
 
-// Runs tasks in the calling thread and in others that it starts for each Run, so it is for long
-// tasks.
+// Runs tasks in the calling thread and in other threads. Each Run starts its own threads, so only
+// long tasks become faster.
 class ParallelRunner final : public TaskRunner {
  public:
   // `threads` counts the calling thread; 0: one per core of the computer.

@@ -9,7 +9,7 @@
 
 namespace hullslam {
 
-// Tasks that several threads work on. Each thread takes the next task that is not begun.
+// Tasks for several threads. Each thread takes the next task that is not begun.
 class SharedTasks {
  public:
   // `task` must outlive this object.

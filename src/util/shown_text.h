@@ -8,7 +8,7 @@
 
 namespace hullslam {
 
-// A text of a user as messages show it: in printable ASCII, and cut if it is long.
+// A user's text for messages: in printable ASCII, and shortened if it is long.
 inline std::string ShowText(std::string_view text, size_t longest = 120) {
   std::string shown(text.substr(0, longest));
   std::replace_if(

@@ -7,7 +7,7 @@
 
 namespace hullslam {
 
-// At most `count` of the elements, evenly chosen, the first one among them.
+// At most `count` of the elements, evenly chosen, including the first one.
 template <typename T>
 std::vector<T> Thin(const std::vector<T>& all, size_t count) {
   count = std::min(count, all.size());
@@ -19,7 +19,7 @@ std::vector<T> Thin(const std::vector<T>& all, size_t count) {
   return thinned;
 }
 
-// Every k-th element from the first one on, with the least k by which at most `count` are left.
+// Every k-th element, beginning with the first, with the least k for which at most `count` remain.
 template <typename T>
 std::vector<T> EveryKth(const std::vector<T>& all, size_t count) {
   std::vector<T> thinned;

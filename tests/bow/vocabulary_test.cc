@@ -40,8 +40,8 @@ class Content {
     SetHeader(signed_header);
   }
   template <typename Value>
-  void Set(uint64_t place, const Value& value) {
-    std::memcpy(bytes().data() + place, &value, sizeof(value));
+  void Set(uint64_t offset, const Value& value) {
+    std::memcpy(bytes().data() + offset, &value, sizeof(value));
   }
 
  private:

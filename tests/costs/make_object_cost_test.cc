@@ -43,7 +43,7 @@ class MakeObjectCostTest : public ::testing::Test {
 TEST_F(MakeObjectCostTest, MakesWhatIsSupportedAndNothingElse) {
   for (const ObjectResidual residual : kResiduals) {
     for (const ObjectPrimitive primitive : kPrimitives) {
-      EXPECT_EQ(Make(residual, primitive) != nullptr, IsSupported(residual, primitive))
+      EXPECT_EQ(Make(residual, primitive) != nullptr, AcceptsPrimitive(residual, primitive))
           << NameOf(residual) << " " << NameOf(primitive);
     }
   }

@@ -78,9 +78,7 @@ inline std::vector<OutlinePoint> OutlineOf(const SeenEllipsoid& state, int count
   const Rigid3 cam_from_object = state.cam_from_world * state.ellipsoid.world_from_object;
   const Eigen::Matrix3d axes =
       cam_from_object.rotation.toRotationMatrix() * state.ellipsoid.half_axes.asDiagonal();
-  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
-  k << kObjectCamera.fx, 0.0, kObjectCamera.cx, 0.0, kObjectCamera.fy, kObjectCamera.cy, 0.0, 0.0,
-      1.0;
+  const Eigen::Matrix3d k = kObjectCamera.Matrix();
   const Eigen::Vector3d viewer = -axes.inverse() * cam_from_object.translation;
   const Eigen::Vector3d e1 = viewer.unitOrthogonal();
   const Eigen::Vector3d e2 = viewer.normalized().cross(e1);

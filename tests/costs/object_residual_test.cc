@@ -32,13 +32,13 @@ TEST(ObjectResidual, OnlyTwoTakeLines) {
   EXPECT_FALSE(TakesLines(ObjectResidual::kOverlap));
 }
 
-TEST(IsSupported, HoldsTheCombinationsThatMakeSense) {
+TEST(AcceptsPrimitive, HoldsTheCombinationsThatMakeSense) {
   std::set<std::string> supported;
   const std::vector<std::string> residuals = ObjectResidualNames();
   const std::vector<std::string> primitives = ObjectPrimitiveNames();
   for (size_t i = 0; i < residuals.size(); ++i) {
     for (size_t k = 0; k < primitives.size(); ++k) {
-      if (IsSupported(static_cast<ObjectResidual>(i), static_cast<ObjectPrimitive>(k))) {
+      if (AcceptsPrimitive(static_cast<ObjectResidual>(i), static_cast<ObjectPrimitive>(k))) {
         supported.insert(residuals[i] + " " + primitives[k]);
       }
     }

@@ -26,8 +26,7 @@ TEST(AlgebraicPlaneCost, IsThePapersResidual) {
   const std::vector<SilhouetteLine> lines = TangentsOf(RandomSeenEllipsoid(random), 8);
   const AlgebraicPlaneCost cost(kObjectCamera, lines, 1.0);
   const Eigen::VectorXd residuals = ObjectResidualsOf(cost, state);
-  Eigen::Matrix3d k;
-  k << kObjectCamera.fx, 0.0, kObjectCamera.cx, 0.0, kObjectCamera.fy, kObjectCamera.cy, 0, 0, 1;
+  const Eigen::Matrix3d k = kObjectCamera.Matrix();
   Eigen::Matrix4d z = Eigen::Matrix4d::Identity();
   z.topRows<3>() = state.ellipsoid.world_from_object.ToMatrix();
   Eigen::Vector4d squares(0.0, 0.0, 0.0, -1.0);

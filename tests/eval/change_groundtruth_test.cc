@@ -25,14 +25,16 @@ TrueObject Truth(double x, TrueObjectStatus status, double former = 0.0) {
 
 ChangedObject Changed(ObjectChange change, std::optional<double> former, std::optional<double> now,
                       const Rigid3& map_from_truth = Rigid3()) {
-  const auto place = [&](double x) { return ObjectPlace{ObjectId(1), {map_from_truth * At(x)}}; };
+  const auto located = [&](double x) {
+    return LocatedObject{ObjectId(1), {map_from_truth * At(x)}};
+  };
   ChangedObject changed;
   changed.change = change;
   if (former) {
-    changed.former = place(*former);
+    changed.former = located(*former);
   }
   if (now) {
-    changed.now = place(*now);
+    changed.now = located(*now);
   }
   return changed;
 }

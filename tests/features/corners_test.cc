@@ -143,10 +143,10 @@ TEST(CornerDetector, RespectsTheBorderAndTheRasterOrder) {
     }
   }
   cv::Mat edge(64, 64, CV_8UC1, cv::Scalar(100));
-  for (const int place : {18, 19, 44, 45}) {
+  for (const int pixel : {18, 19, 44, 45}) {
     edge.setTo(100);
-    edge.at<uint8_t>(place, place) = 200;
-    EXPECT_EQ(Detect(edge, 20, 20).size(), place == 19 || place == 44 ? 1u : 0u) << place;
+    edge.at<uint8_t>(pixel, pixel) = 200;
+    EXPECT_EQ(Detect(edge, 20, 20).size(), pixel == 19 || pixel == 44 ? 1u : 0u) << pixel;
   }
 }
 

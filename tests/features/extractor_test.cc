@@ -120,19 +120,19 @@ TEST(FeatureExtractor, SubpixelOnlyChangesPositions) {
 
 // The dot is small compared with the FAST circle. A wider dot would reach the circle, and then the
 // score would be highest beside the centre of the dot.
-cv::Mat MakeDot(const Eigen::Vector2f& place) {
+cv::Mat MakeDot(const Eigen::Vector2f& pixel_of_dot) {
   cv::Mat image(128, 128, CV_8UC1);
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < image.cols; ++x) {
       const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
-      const float r2 = (pixel - place).squaredNorm();
+      const float r2 = (pixel - pixel_of_dot).squaredNorm();
       image.at<uint8_t>(y, x) = static_cast<uint8_t>(30.5f + 200.0f * std::exp(-r2 / 2.0f));
     }
   }
   return image;
 }
 
-// Mean distance between the only feature and its dot, over places within a pixel.
+// Mean distance between the only feature and its dot, over positions within a pixel.
 float MeanErrorOfDots(bool subpixel) {
   FeatureOptions options;
   options.level_count = 1;
@@ -141,11 +141,11 @@ float MeanErrorOfDots(bool subpixel) {
   float sum = 0.0f;
   constexpr int kSteps = 10;
   for (int i = 0; i < kSteps * kSteps; ++i) {
-    const Eigen::Vector2f place(60.0f + static_cast<float>(i % kSteps) / kSteps,
-                                70.0f + static_cast<float>(i / kSteps) / kSteps);
-    const ExtractedFeatures features = extractor.Extract(MakeDot(place));
+    const Eigen::Vector2f pixel_of_dot(60.0f + static_cast<float>(i % kSteps) / kSteps,
+                                       70.0f + static_cast<float>(i / kSteps) / kSteps);
+    const ExtractedFeatures features = extractor.Extract(MakeDot(pixel_of_dot));
     EXPECT_EQ(features.keypoints.size(), 1u);
-    sum += features.keypoints.empty() ? 1.0f : (features.keypoints[0].raw - place).norm();
+    sum += features.keypoints.empty() ? 1.0f : (features.keypoints[0].raw - pixel_of_dot).norm();
   }
   return sum / (kSteps * kSteps);
 }

@@ -85,10 +85,8 @@ std::vector<bool> SidesOneSided(const Detection& detection) {
 // middle of the image.
 Ellipse SeenEllipsoid() {
   const PinholeCamera camera = DistortedCamera();
-  Eigen::Matrix3d k;
-  k << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0;
   const Ellipsoid ellipsoid{{ExpSo3({0.3, 0.5, -0.2}), {-0.62, -0.4, 1.6}}, {0.25, 0.15, 0.2}};
-  return ProjectEllipsoid(k, Rigid3(), ellipsoid).value();
+  return ProjectEllipsoid(camera.Matrix(), Rigid3(), ellipsoid).value();
 }
 
 TEST(DetectionBuilder, SupportLinesOfADistortedMaskTouchTheTrueEllipse) {

@@ -165,10 +165,10 @@ TEST_F(LoopCloserTest, MergesAPlaceToWhichTrackingHasLedBack) {
   const std::vector<uint32_t>& before = made.views[9].points;
   size_t found = 0;
   for (size_t i = 0; i < made.views[57].points.size() && found < 100; ++i) {
-    const auto place = std::find(before.begin(), before.end(), made.views[57].points[i]);
+    const auto seen_at = std::find(before.begin(), before.end(), made.views[57].points[i]);
     const LandmarkId own = made.map.keyframes().At(made.last()).landmarks[i];
-    if (place != before.end() && own.IsValid()) {
-      const auto keypoint = static_cast<size_t>(place - before.begin());
+    if (seen_at != before.end() && own.IsValid()) {
+      const auto keypoint = static_cast<size_t>(seen_at - before.begin());
       if (const LandmarkId old = made.map.keyframes().At(KeyframeId(9)).landmarks[keypoint];
           old.IsValid()) {
         made.map.ReplaceLandmark(own, old);

@@ -31,14 +31,14 @@ class ReturnToPlace : public testing::Test {
     const std::vector<uint32_t>& before = made_.views[kBefore].points;
     size_t joined = 0;
     for (size_t i = 0; i < now.size() && joined < most; ++i) {
-      const auto place = std::find(before.begin(), before.end(), now[i]);
-      if (place == before.end()) {
+      const auto seen_at = std::find(before.begin(), before.end(), now[i]);
+      if (seen_at == before.end()) {
         continue;
       }
       const LandmarkId own = map.keyframes().At(KeyframeId(last)).landmarks[i];
       const LandmarkId old = map.keyframes()
                                  .At(KeyframeId(kBefore))
-                                 .landmarks[static_cast<size_t>(place - before.begin())];
+                                 .landmarks[static_cast<size_t>(seen_at - before.begin())];
       if (own.IsValid() && old.IsValid() && own != old) {
         map.ReplaceLandmark(own, old);
         ++joined;
@@ -90,10 +90,11 @@ TEST_F(ReturnToPlace, IsMadeInOneSession) {
     const KeyframeId keyframe = map.AddKeyframe(view.frame, pose);
     const std::vector<uint32_t>& before = made_.views[kBefore].points;
     for (size_t i = 0; i < before.size(); ++i) {
-      const auto place = std::find(view.points.begin(), view.points.end(), before[i]);
+      const auto seen_at = std::find(view.points.begin(), view.points.end(), before[i]);
       const LandmarkId landmark = map.keyframes().At(KeyframeId(kBefore)).landmarks[i];
-      if (place != view.points.end() && landmark.IsValid()) {
-        map.AddObservation(landmark, keyframe, static_cast<uint32_t>(place - view.points.begin()));
+      if (seen_at != view.points.end() && landmark.IsValid()) {
+        map.AddObservation(landmark, keyframe,
+                           static_cast<uint32_t>(seen_at - view.points.begin()));
       }
     }
     UpdateCovisibility(map, keyframe);

@@ -63,8 +63,8 @@ inline RingMap MakeRingMap(const RingWorld& world, const RingMapOptions& options
       ObjectId id;
       for (uint32_t k = 0; k < options.keyframes; ++k) {
         const std::vector<size_t> seen = visible(3 * k, made.true_cam_from_world[k]);
-        const auto place = std::find(seen.begin(), seen.end(), i);
-        if ((3 * k >= first_frame_of_last) != is_last || place == seen.end()) {
+        const auto seen_at = std::find(seen.begin(), seen.end(), i);
+        if ((3 * k >= first_frame_of_last) != is_last || seen_at == seen.end()) {
           continue;
         }
         if (!id.IsValid()) {
@@ -75,7 +75,7 @@ inline RingMap MakeRingMap(const RingWorld& world, const RingMapOptions& options
           object.ellipsoid = made.drifted_from_world[k] * things[i].object.ellipsoid;
           object.start = object.ellipsoid;
         }
-        made.map.AddObservation(id, KeyframeId(k), static_cast<uint32_t>(place - seen.begin()));
+        made.map.AddObservation(id, KeyframeId(k), static_cast<uint32_t>(seen_at - seen.begin()));
       }
     }
   }

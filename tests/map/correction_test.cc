@@ -931,8 +931,7 @@ TEST_F(UniformCorrection, KeepsTheProjectedEllipsesOfObjects) {
                               world_.sensor().levels)
                   .is_applied);
   const PinholeCamera& camera = world_.sensor().camera;
-  Eigen::Matrix3d k;
-  k << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0;
+  const Eigen::Matrix3d k = camera.Matrix();
   before.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
     for (const ObjectObservation& observation : object.observations) {
       const auto expected =

@@ -159,7 +159,7 @@ TEST(CullKeyframes, RemovesNoneOfThreeKeyframes) {
 
 // What carries the scale of a single camera from one pair of keyframes to the next is a landmark
 // that is seen from a third place. Keyframes at the places of others do not replace it.
-TEST(CullKeyframes, WithoutDepthOthersAtTheSamePlaceCountOnce) {
+TEST(CullKeyframes, MonocularOthersAtTheSameViewpointCountOnce) {
   const SyntheticWorld world({.points = 1200, .depth_share = 0.0});
   Sensor sensor = world.sensor();
   sensor.kind = SensorKind::kMonocular;

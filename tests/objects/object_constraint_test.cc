@@ -12,7 +12,7 @@
 namespace hullslam {
 namespace {
 
-// Three lines that the outline of SphereAhead (x from -55 to 695) misses by 0, 1 and 16 px, and a
+// Three lines that the ellipse of SphereAhead (x from -55 to 695) misses by 0, 1 and 16 px, and a
 // point of the optical axis 0.3 m before its surface at z = 0.4 m.
 class ObjectConstraintTest : public ::testing::Test {
  protected:
@@ -31,9 +31,9 @@ class ObjectConstraintTest : public ::testing::Test {
     return MakeObjectConstraint(kObjectCamera, {KeyframeId(), Rigid3(), &detection_},
                                 detection_.lines, SphereAhead().ellipsoid, misfit_px_, options_);
   }
-  // What the outline's line that is 16 px off adds to the sum.
+  // The contribution of the line that is 16 px off to the sum.
   double WorstSquare() const {
-    const double worst = ObjectResidualsOf(*Make().outline, SphereAhead())[2];
+    const double worst = ObjectResidualsOf(*Make().silhouette, SphereAhead())[2];
     return worst * worst;
   }
 
@@ -44,11 +44,11 @@ class ObjectConstraintTest : public ::testing::Test {
 
 TEST_F(ObjectConstraintTest, ByHandWithoutLoss) {
   const ObjectConstraint constraint = Make();
-  const Eigen::VectorXd outline = ObjectResidualsOf(*constraint.outline, SphereAhead());
-  ASSERT_EQ(outline.size(), 3);
-  EXPECT_NEAR(outline[0], 0.0, 1e-9);
-  EXPECT_NEAR(outline[1], 0.5, 1e-9);
-  EXPECT_NEAR(outline[2], -8.0, 1e-9);
+  const Eigen::VectorXd silhouette = ObjectResidualsOf(*constraint.silhouette, SphereAhead());
+  ASSERT_EQ(silhouette.size(), 3);
+  EXPECT_NEAR(silhouette[0], 0.0, 1e-9);
+  EXPECT_NEAR(silhouette[1], 0.5, 1e-9);
+  EXPECT_NEAR(silhouette[2], -8.0, 1e-9);
   // 0.3 m at 0.1 m are 3 sigmas; six points count as one.
   const Eigen::VectorXd depth = ObjectResidualsOf(*constraint.depth, SphereAhead());
   ASSERT_EQ(depth.size(), 6);
@@ -123,11 +123,11 @@ TEST_F(ObjectConstraintTest, DepthHasALossAndANumberOfPointsOfItsOwn) {
 
 TEST_F(ObjectConstraintTest, IsNothingWithoutWhatItIsMadeOf) {
   options_.residual = ObjectResidual::kAlgebraicPoint;  // not of support lines
-  EXPECT_EQ(Make().outline, nullptr);
+  EXPECT_EQ(Make().silhouette, nullptr);
   options_.residual = ObjectResidual::kTangent;
   detection_.lines.clear();
   detection_.points.clear();
-  EXPECT_EQ(Make().outline, nullptr);
+  EXPECT_EQ(Make().silhouette, nullptr);
   EXPECT_EQ(Make().depth, nullptr);
 }
 
@@ -137,7 +137,7 @@ TEST_F(ObjectConstraintTest, AnObjectBehindTheCameraHasNoOutline) {
   const ObjectConstraint constraint =
       MakeObjectConstraint(kObjectCamera, {KeyframeId(), Rigid3(), &detection_}, detection_.lines,
                            behind, 0.0, options_);
-  EXPECT_EQ(constraint.outline, nullptr);
+  EXPECT_EQ(constraint.silhouette, nullptr);
 }
 
 // All lines lie 20 px outside and all points 1 m from the centre, so that no difference straddles
@@ -165,7 +165,7 @@ TEST_F(ObjectConstraintTest, HasTrueDerivatives) {
       const ObjectConstraint constraint =
           MakeObjectConstraint(kObjectCamera, {KeyframeId(), state.cam_from_world, &detection_},
                                detection_.lines, state.ellipsoid, 0.0, options_);
-      ExpectTrueObjectGradient(*constraint.outline, state);
+      ExpectTrueObjectGradient(*constraint.silhouette, state);
       ExpectTrueObjectGradient(*constraint.depth, state);
     }
   }

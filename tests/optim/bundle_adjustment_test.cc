@@ -11,12 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "frame/point_measurement.h"
-#include "map/covisibility.h"
+#include "frame/measure_point.h"
 #include "map/invariants.h"
 #include "map/made_map.h"
-#include "map/spanning_tree.h"
-#include "optim/place_share.h"
+#include "optim/keypoint_weights.h"
 #include "optim/robust.h"
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"
@@ -32,98 +30,6 @@ std::vector<KeyframeId> Ids(const std::vector<uint32_t>& numbers) {
     ids.emplace_back(number);
   }
   return ids;
-}
-
-// Keyframes in a row, each sharing 20 landmarks with the next and 16 with the one after it.
-Map MakeChain(uint32_t length) {
-  Map map;
-  for (uint32_t i = 0; i < length; ++i) {
-    AddKeyframe(map, 100);
-    if (i >= 1) {
-      Share(map, Ids({i - 1, i}), 20);
-    }
-    if (i >= 2) {
-      Share(map, Ids({i - 2, i}), 16);
-    }
-    UpdateCovisibility(map, KeyframeId(i));
-  }
-  return map;
-}
-
-TEST(LocalWindow, MovesTheNeighboursAndFixesOtherObservers) {
-  const Map map = MakeChain(10);
-  const BundleWindow window = LocalWindow(map, KeyframeId(9), 20, 40);
-  EXPECT_EQ(window.moving, Ids({7, 8, 9}));
-  EXPECT_EQ(window.fixed, Ids({5, 6}));
-  // Each of the three shares 20 + 16 landmarks with older keyframes; none is counted twice.
-  EXPECT_EQ(window.landmarks.size(), 3u * 36u);
-  EXPECT_TRUE(std::is_sorted(window.landmarks.begin(), window.landmarks.end()));
-}
-
-TEST(LocalWindow, RootNeverMoves) {
-  const Map map = MakeChain(10);
-  const BundleWindow window = LocalWindow(map, KeyframeId(1), 20, 40);
-  EXPECT_EQ(window.moving, Ids({1, 2, 3}));
-  EXPECT_EQ(window.fixed, Ids({0, 4, 5}));
-  const BundleWindow at_root = LocalWindow(map, KeyframeId(0), 20, 40);
-  EXPECT_EQ(at_root.moving, Ids({1, 2}));
-  EXPECT_EQ(at_root.fixed, Ids({0, 3, 4}));
-}
-
-TEST(LocalWindow, IsLimitedToTheKeyframesThatShareMost) {
-  const Map map = MakeChain(10);
-  const BundleWindow two = LocalWindow(map, KeyframeId(9), 2, 40);
-  EXPECT_EQ(two.moving, Ids({8, 9}));  // 8 shares 20, 7 only 16
-  EXPECT_EQ(two.fixed, Ids({6, 7}));
-  const BundleWindow one_fixed = LocalWindow(map, KeyframeId(9), 2, 1);
-  EXPECT_EQ(one_fixed.fixed, Ids({7}));  // it has 36 observations, 6 has 16
-  EXPECT_EQ(LocalWindow(map, KeyframeId(9), 1, 40).moving, Ids({9}));
-}
-
-TEST(LocalWindow, AKeyframeIsAlwaysFixed) {
-  Map map = MakeChain(1);
-  EXPECT_EQ(LocalWindow(map, KeyframeId(0), 20, 40).fixed, Ids({0}));
-  EXPECT_TRUE(LocalWindow(map, KeyframeId(0), 20, 40).moving.empty());
-  // Two more keyframes, which share no landmark with the root.
-  for (int i = 0; i < 2; ++i) {
-    SetParent(map, AddKeyframe(map, 50), KeyframeId(0));
-  }
-  Share(map, Ids({1, 2}), 20);
-  UpdateCovisibility(map, KeyframeId(2));
-  const BundleWindow window = LocalWindow(map, KeyframeId(2), 20, 40);
-  EXPECT_EQ(window.moving, Ids({2}));
-  EXPECT_EQ(window.fixed, Ids({1}));
-}
-
-// Each of 60 keyframes shares landmarks with the last one. Without their observations, the
-// landmarks would leave the place where these keyframes saw them.
-TEST(LocalWindow, WithoutALimitAllObserversAreFixed) {
-  Map map;
-  for (uint32_t i = 0; i < 60; ++i) {
-    AddKeyframe(map, 1000);
-  }
-  for (uint32_t i = 0; i < 59; ++i) {
-    Share(map, Ids({i, 59}), 15);
-    UpdateCovisibility(map, KeyframeId(i));
-    if (i > 0) {
-      SetParent(map, KeyframeId(i), KeyframeId(0));
-    }
-  }
-  UpdateCovisibility(map, KeyframeId(59));
-  const BundleWindow window = LocalWindow(map, KeyframeId(59), 20, 0);
-  EXPECT_EQ(window.moving.size(), 20u);
-  EXPECT_EQ(window.fixed.size(), 40u);
-  EXPECT_EQ(LocalWindow(map, KeyframeId(59), 20, 30).fixed.size(), 30u);
-}
-
-TEST(GlobalWindow, MovesAllButTheRoot) {
-  const Map map = MakeChain(5);
-  const BundleWindow window = GlobalWindow(map, IslandId(0));
-  EXPECT_EQ(window.moving, Ids({1, 2, 3, 4}));
-  EXPECT_EQ(window.fixed, Ids({0}));
-  EXPECT_EQ(window.landmarks.size(), 4u * 20u + 3u * 16u);
-  EXPECT_TRUE(std::is_sorted(window.landmarks.begin(), window.landmarks.end()));
-  EXPECT_TRUE(window.objects.empty());
 }
 
 // A map of the synthetic world. Perturb moves its points and all but the first two poses away from
@@ -298,7 +204,7 @@ TEST_F(BundleAdjustment, AnObservationIsAnOutlierFromAFewStandardDeviationsOn) {
 }
 
 // Two standard deviations of the sensor, but seven of the errors that the keypoints have here.
-TEST_F(BundleAdjustment, WithoutDepthErrorsAreMeasuredByThoseOfTheOtherKeypoints) {
+TEST_F(BundleAdjustment, MonocularErrorsAreMeasuredByThoseOfTheOtherKeypoints) {
   constexpr uint32_t kShifted = 20;  // keypoint
   const SyntheticWorld world({.points = 300, .pixel_noise = 0.3, .depth_share = 0.0});
   made_ = MakeSyntheticMap(world, {0, 10, 20, 30, 40, 50}, [&](Frame& frame, const Rigid3&) {
@@ -321,7 +227,7 @@ TEST_F(BundleAdjustment, WithoutDepthErrorsAreMeasuredByThoseOfTheOtherKeypoints
 
 // A fifth of the standard deviations of the sensor is the least that is believed. Otherwise the
 // rounding of exact keypoints would make outliers.
-TEST_F(BundleAdjustment, WithoutDepthExactKeypointsAreNoOutliers) {
+TEST_F(BundleAdjustment, MonocularExactKeypointsAreNoOutliers) {
   Sensor sensor = world_.sensor();
   sensor.kind = SensorKind::kMonocular;
   Perturb(0.002, 0.005);
@@ -333,7 +239,7 @@ TEST_F(BundleAdjustment, WithoutDepthExactKeypointsAreNoOutliers) {
 
 // Where an edge passes behind another, there is a corner that slides along both. It is found at
 // several levels of the pyramid, so that it makes several landmarks.
-TEST_F(BundleAdjustment, WithoutDepthACornerCountsOnceHoweverOftenItIsFound) {
+TEST_F(BundleAdjustment, MonocularACornerCountsOnceHoweverOftenItIsFound) {
   const SyntheticWorld world({.points = 60, .pixel_noise = 0.1, .depth_share = 0.0});
   Sensor sensor = world.sensor();
   sensor.kind = SensorKind::kMonocular;
@@ -373,7 +279,7 @@ TEST_F(BundleAdjustment, WithoutDepthACornerCountsOnceHoweverOftenItIsFound) {
 }
 
 // A step of Newton from where a point is goes nowhere, because Cauchy's loss is least there.
-TEST_F(BundleAdjustment, WithoutDepthCauchysLossIsMinimised) {
+TEST_F(BundleAdjustment, MonocularCauchysLossIsMinimised) {
   // So much noise that the precision of the keypoints is taken for that of the sensor.
   const SyntheticWorld world({.points = 300, .pixel_noise = 1.2, .depth_share = 0.0});
   Sensor sensor = world.sensor();
@@ -392,8 +298,8 @@ TEST_F(BundleAdjustment, WithoutDepthCauchysLossIsMinimised) {
         const Keyframe& keyframe = made_.map.keyframes().At(seen.keyframe);
         const PointMeasurement measurement = MeasurePoint(
             sensor, keyframe.frame->features, seen.keypoint, sensor.depth_error.ForAdjustment());
-        sum += internal::SharesOfPlaces(start.keyframes().At(seen.keyframe),
-                                        sensor.levels)[seen.keypoint] *
+        sum += internal::KeypointWeights(start.keyframes().At(seen.keyframe),
+                                         sensor.levels)[seen.keypoint] *
                CauchyCost(PointChi2(sensor.camera, measurement, keyframe.cam_from_world * position),
                           kCauchyScale);
       }
@@ -417,17 +323,6 @@ TEST_F(BundleAdjustment, WithoutDepthCauchysLossIsMinimised) {
     }
     EXPECT_LT(longest, 1e-6) << max_eliminated;
   }
-}
-
-TEST(ObjectsToAdjust, AreTheMappedOnesIfTheOptionsSaySo) {
-  ObjectOptions options;
-  options.enabled = true;
-  EXPECT_EQ(ObjectsToAdjust(options), WindowObjects::kMapped);
-  options.bundle_adjustment = false;
-  EXPECT_EQ(ObjectsToAdjust(options), WindowObjects::kNone);
-  options.bundle_adjustment = true;
-  options.enabled = false;
-  EXPECT_EQ(ObjectsToAdjust(options), WindowObjects::kNone);
 }
 
 TEST_F(BundleAdjustment, APointBehindACameraIsAnOutlierThere) {
@@ -610,57 +505,6 @@ TEST_F(BundleAdjustment, OfAnEmptyWindowIsEmpty) {
   for (const auto& [id, pose] : idle.poses) {
     EXPECT_LT(Distance(pose, made_.map.keyframes().At(id).cam_from_world), 1e-14);
   }
-}
-
-TEST_F(BundleAdjustment, ApplyingWritesPosesPositionsAndRemovesOutliers) {
-  const auto planted = PlantOutliers(KeyframeId(3), 5);
-  Perturb(0.005, 0.02);
-  const BundleResult result = AdjustBundle(made_.map, world_.sensor(), Window(), kPrecise, nullptr);
-  ApplyBundle(made_.map, result, world_.sensor().levels);
-  EXPECT_EQ(FindViolations(made_.map), std::vector<std::string>());
-  for (const auto& [id, pose] : result.poses) {
-    EXPECT_EQ(Distance(made_.map.keyframes().At(id).cam_from_world, pose), 0.0);
-  }
-  for (const auto& [id, position] : result.positions) {
-    const Landmark& landmark = made_.map.landmarks().At(id);
-    EXPECT_EQ(landmark.position, position);
-    // The distances are computed from the new camera centres.
-    const Keyframe& reference = made_.map.keyframes().At(landmark.reference);
-    EXPECT_GE(landmark.max_distance, (reference.cam_from_world * position).norm() * (1.0 - 1e-9));
-  }
-  for (const auto& [landmark, keyframe] : planted) {
-    for (const Observation& observation : made_.map.landmarks().At(landmark).observations) {
-      EXPECT_NE(observation.keyframe, keyframe);
-    }
-  }
-}
-
-TEST_F(BundleAdjustment, ApplyingPassesOverWhatNoLongerExists) {
-  const auto planted = PlantOutliers(KeyframeId(3), 5);
-  Perturb(0.005, 0.02);
-  const BundleResult result = AdjustBundle(made_.map, world_.sensor(), Window(), kPrecise, nullptr);
-  ASSERT_EQ(result.outliers.size(), planted.size());
-  made_.map.CullKeyframe(KeyframeId(4));
-  const auto [first, keyframe] = result.outliers[0];
-  made_.map.EraseLandmark(first);
-  made_.map.RemoveObservation(result.outliers[1].first, keyframe);
-  const LandmarkId newcomer = made_.map.AddLandmark({1.0, 1.0, 3.0}, KeyframeId(5));
-  const Rigid3 culled_from_parent =
-      made_.map.CamFromWorld(KeyframeId(4)) *
-      Inverse(made_.map.CamFromWorld(made_.map.NearestAlive(KeyframeId(4))));
-
-  ApplyBundle(made_.map, result, world_.sensor().levels);
-  EXPECT_EQ(FindViolations(made_.map), std::vector<std::string>());
-  EXPECT_FALSE(made_.map.keyframes().Contains(KeyframeId(4)));
-  EXPECT_FALSE(made_.map.landmarks().Contains(first));
-  EXPECT_EQ(made_.map.landmarks().At(newcomer).position, Eigen::Vector3d(1.0, 1.0, 3.0));
-  // The culled keyframe moves with its parent.
-  EXPECT_LT(
-      Distance(made_.map.CamFromWorld(KeyframeId(4)),
-               culled_from_parent * made_.map.CamFromWorld(made_.map.NearestAlive(KeyframeId(4)))),
-      1e-12);
-  EXPECT_LT(Distance(made_.map.CamFromWorld(KeyframeId(5)), SyntheticWorld::CamFromWorld(50)),
-            1e-5);
 }
 
 }  // namespace

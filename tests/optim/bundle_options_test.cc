@@ -6,8 +6,8 @@
 namespace hullslam {
 namespace {
 
-TEST(BundleOptions, WithoutDepthTheyAreNoLessPrecise) {
-  const BundleOptions local = BundleOptions().WithoutDepth();
+TEST(BundleOptions, ForMonocularTheyAreNoLessPrecise) {
+  const BundleOptions local = BundleOptions().ForMonocular();
   EXPECT_GT(local.robust_iterations, BundleOptions().robust_iterations);
   EXPECT_GT(local.final_iterations, BundleOptions().final_iterations);
   EXPECT_LT(local.function_tolerance, BundleOptions().function_tolerance);
@@ -17,7 +17,7 @@ TEST(BundleOptions, WithoutDepthTheyAreNoLessPrecise) {
                                               .final_iterations = 60,
                                               .function_tolerance = 1e-14,
                                               .follow = {.steps = 20, .worthwhile = 1e-9}}
-                                    .WithoutDepth();
+                                    .ForMonocular();
   EXPECT_EQ(precise.robust_iterations, 50);
   EXPECT_EQ(precise.final_iterations, 60);
   EXPECT_EQ(precise.function_tolerance, 1e-14);

@@ -53,11 +53,11 @@ class JointPose : public ::testing::Test {
       detections_.push_back(std::move(detection));
     }
   }
-  // Points within `reach` (m) of a place in the camera frame, measured with noise of `noise` px.
-  void AddPoints(int count, const Eigen::Vector3d& place, const Eigen::Vector3d& reach,
+  // Points within `reach` (m) of a position in the camera frame, measured with noise of `noise` px.
+  void AddPoints(int count, const Eigen::Vector3d& position, const Eigen::Vector3d& reach,
                  double noise) {
     for (int i = 0; i < count; ++i) {
-      const Eigen::Vector3d in_cam = place + random_.Vector(1.0).cwiseProduct(reach);
+      const Eigen::Vector3d in_cam = position + random_.Vector(1.0).cwiseProduct(reach);
       PoseObservation& observation = observations_.emplace_back();
       observation.point = Inverse(true_pose_) * in_cam;
       Eigen::Vector3d measured = ProjectRgbd(sensor_.camera, in_cam);

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/rigid3.h"
 #include "optim/bundle_points.h"

@@ -105,7 +105,7 @@ TEST_F(ObjectSumCostTest, AViewOfAMovingCameraHasTheNormalEquationsOfItsCosts) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(15);
   double squared_norm = 0.0;
   ObjectConstraint constraint = ConstraintOf(0);
-  for (auto* const cost : {&constraint.outline, &constraint.depth}) {
+  for (auto* const cost : {&constraint.silhouette, &constraint.depth}) {
     ASSERT_NE(*cost, nullptr);
     const Evaluation one = Evaluate(**cost, Parameters(0));
     hessian += one.jacobian.transpose() * one.jacobian;
@@ -127,12 +127,12 @@ TEST_F(ObjectSumCostTest, FixedViewsAndThePriorAreTenRows) {
   sum.AddPrior(Prior());
   for (size_t i = 0; i < cameras_.size(); ++i) {
     ObjectConstraint constraint = ConstraintOf(i);
-    const Evaluation one = Evaluate(*constraint.outline, Parameters(i));
+    const Evaluation one = Evaluate(*constraint.silhouette, Parameters(i));
     const Eigen::MatrixXd by_object = one.jacobian.rightCols<9>();
     hessian += by_object.transpose() * by_object;
     gradient += by_object.transpose() * one.residuals;
     squared_norm += one.residuals.squaredNorm();
-    sum.Add(std::move(constraint.outline), cameras_[i]);
+    sum.Add(std::move(constraint.silhouette), cameras_[i]);
   }
   EXPECT_EQ(sum.num_residuals(), 10);
   ExpectSameNormalEquations(Evaluate(sum, ObjectParameters()), hessian, gradient, squared_norm);
@@ -140,7 +140,7 @@ TEST_F(ObjectSumCostTest, FixedViewsAndThePriorAreTenRows) {
 
 TEST_F(ObjectSumCostTest, WithoutDerivativesTheNormIsTheSame) {
   ObjectSumCost sum(Camera::kMoving);
-  sum.Add(ConstraintOf(1).outline);
+  sum.Add(ConstraintOf(1).silhouette);
   const double expected = Evaluate(sum, Parameters(1)).residuals.squaredNorm();
   Eigen::VectorXd residuals(sum.num_residuals());
   ASSERT_TRUE(sum.Evaluate(Parameters(1).data(), residuals.data(), nullptr));
@@ -149,7 +149,7 @@ TEST_F(ObjectSumCostTest, WithoutDerivativesTheNormIsTheSame) {
 
 TEST_F(ObjectSumCostTest, DerivativesThatAreNotAskedForAreNotWritten) {
   ObjectSumCost sum(Camera::kMoving);
-  sum.Add(ConstraintOf(1).outline);
+  sum.Add(ConstraintOf(1).silhouette);
   const Evaluation all = Evaluate(sum, Parameters(1));
   Eigen::VectorXd residuals(sum.num_residuals());
   Jacobian by_axes(sum.num_residuals(), 3);
@@ -160,7 +160,7 @@ TEST_F(ObjectSumCostTest, DerivativesThatAreNotAskedForAreNotWritten) {
 
 TEST_F(ObjectSumCostTest, IsDefinedWhereAllCostsAre) {
   ObjectSumCost sum(Camera::kMoving);
-  sum.Add(ConstraintOf(0).outline);
+  sum.Add(ConstraintOf(0).silhouette);
   EXPECT_TRUE(Evaluate(sum, Parameters(0)).is_defined);
   sum.Add(std::make_unique<UndefinedCost>());
   EXPECT_FALSE(Evaluate(sum, Parameters(0)).is_defined);
@@ -170,7 +170,7 @@ TEST_F(ObjectSumCostTest, IsDefinedWhereAllCostsAre) {
 
 TEST_F(ObjectSumCostTest, AnUndefinedCostCanBeLeftOut) {
   ObjectSumCost sum(Camera::kMoving);
-  sum.Add(ConstraintOf(0).outline);
+  sum.Add(ConstraintOf(0).silhouette);
   const Evaluation expected = Evaluate(sum, Parameters(0));
   EXPECT_FALSE(sum.HasUndefined());
   sum.Add(std::make_unique<UndefinedCost>());
@@ -190,7 +190,7 @@ TEST_F(ObjectSumCostTest, AnUndefinedCostCanBeLeftOut) {
 // It may be defined again elsewhere.
 TEST_F(ObjectSumCostTest, ACostIsUndefinedOnlyWhereItWasEvaluatedLast) {
   ObjectSumCost sum(Camera::kMoving);
-  sum.Add(ConstraintOf(0).outline);
+  sum.Add(ConstraintOf(0).silhouette);
   std::vector<const double*> behind = Parameters(0);
   const PoseBlock turned =
       ToBlock({Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0), Eigen::Vector3d::Zero()});

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"

@@ -13,9 +13,9 @@ namespace {
 
 // The squared distance, in units of 1 cm, of the moved point (0, 0, 2) and of two others from where
 // they should be: a problem whose minimum is the pose `goal`.
-class PointsToPlaces {
+class PointsToPositions {
  public:
-  explicit PointsToPlaces(const Rigid3& goal) : goal_(goal) {}
+  explicit PointsToPositions(const Rigid3& goal) : goal_(goal) {}
 
   double Cost(const Rigid3& pose) const {
     double cost = 0.0;
@@ -58,7 +58,7 @@ class NowhereDefined {
 
 TEST(TinyPoseFunction, TheSquaredResidualsAreTheCost) {
   RandomGeometry random(1);
-  const PointsToPlaces problem(random.Pose(0.5, 0.3));
+  const PointsToPositions problem(random.Pose(0.5, 0.3));
   const TinyPoseFunction function(problem, random.Pose(0.5, 0.3));
   const Vector6d steps = Vector6d::Constant(0.1);
   Eigen::Matrix<double, 7, 1> residuals;
@@ -73,7 +73,7 @@ TEST(TinyPoseFunction, TheSquaredResidualsAreTheCost) {
 // Twice J^T r is the derivative of the cost by the parameters, also after several linearisations.
 TEST(TinyPoseFunction, TheDerivativeIsThatOfTheCost) {
   RandomGeometry random(2);
-  const PointsToPlaces problem(random.Pose(0.5, 0.3));
+  const PointsToPositions problem(random.Pose(0.5, 0.3));
   const TinyPoseFunction function(problem, random.Pose(0.5, 0.3));
   Vector6d steps = Vector6d::Zero();
   for (int round = 0; round < 3; ++round) {
@@ -95,7 +95,7 @@ TEST(Minimize, FindsThePose) {
   RandomGeometry random(3);
   for (int i = 0; i < 20; ++i) {
     const Rigid3 goal = random.Pose(0.4, 0.5);
-    const Rigid3 found = Minimize(PointsToPlaces(goal), random.Pose(0.4, 0.5),
+    const Rigid3 found = Minimize(PointsToPositions(goal), random.Pose(0.4, 0.5),
                                   {.iterations = 30, .min_relative_decrease = 1e-15});
     EXPECT_LT((found.ToMatrix() - goal.ToMatrix()).norm(), 1e-6);
   }

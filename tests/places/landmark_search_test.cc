@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 #include "map/covisibility.h"
 #include "support/random_geometry.h"
 #include "support/ring_world.h"

@@ -151,10 +151,10 @@ TEST(ObjectFile, ReadingAndWritingGivesTheSameBytes) {
 // A report of a run that went on with a map.
 ObjectReport MakeChangedReport() {
   ObjectReport report = MakeReport();
-  const ObjectPlace place = {ObjectId(7), report.objects[0].ellipsoid};
+  const LocatedObject place = {ObjectId(7), report.objects[0].ellipsoid};
   ChangedObject moved{.change = ObjectChange::kMoved, .label = "cup", .expected = 12, .found = 1};
   moved.now = place;
-  moved.former = ObjectPlace{ObjectId(3), report.objects[0].ellipsoid};
+  moved.former = LocatedObject{ObjectId(3), report.objects[0].ellipsoid};
   ChangedObject gone{.change = ObjectChange::kGone, .label = "book", .expected = 4, .found = 0};
   gone.former = place;
   report.changes = {moved, gone};

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 #include "estimators/similarity_error.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"

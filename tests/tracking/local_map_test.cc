@@ -49,10 +49,10 @@ class PlantedMap {
  private:
   void AddHalfEdge(uint32_t from, uint32_t to, int shared) {
     auto& edges = map.MutableKeyframe(KeyframeId(from)).covisible;
-    const auto place =
+    const auto position =
         std::upper_bound(edges.begin(), edges.end(), KeyframeId(to),
                          [](KeyframeId id, const Covisible& edge) { return id < edge.keyframe; });
-    edges.insert(place, {KeyframeId(to), shared});
+    edges.insert(position, {KeyframeId(to), shared});
   }
 
   std::vector<uint32_t> used_;  // number of used keypoints of each keyframe

@@ -255,7 +255,7 @@ TEST_F(ByObjects, FindThePoseInSpiteOfNoise) {
   ASSERT_TRUE(exact);
   EXPECT_LT(Error(*exact, truth_), 0.01);
   EXPECT_EQ(exact->used_objects, 7);
-  EXPECT_EQ(exact->place, KeyframeId(0));
+  EXPECT_EQ(exact->keyframe_of_place, KeyframeId(0));
   const auto noisy = Find(map, SeeRoom(sensor_, room_, truth_, 0.02));
   ASSERT_TRUE(noisy);
   EXPECT_LT(Error(*noisy, truth_), 0.1);

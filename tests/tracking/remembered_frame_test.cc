@@ -143,7 +143,7 @@ TEST_F(RefinePosesTest, AFrameFollowsItsLandmarks) {
   EXPECT_LT(Distance(Refined(), moved), 1e-4);
 }
 
-TEST_F(RefinePosesTest, WithoutDepthToo) {
+TEST_F(RefinePosesTest, MonocularToo) {
   Make({.points = 150, .depth_share = 0.0});
   Track(wrong_);
   EXPECT_LT(Distance(Refined(), truth_), 1e-4);

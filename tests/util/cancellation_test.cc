@@ -19,6 +19,14 @@ TEST(Cancellation, StaysRequestedUntilReset) {
   EXPECT_FALSE(cancellation.IsRequested());
 }
 
+TEST(Cancellation, IsNotRequestedWithoutOne) {
+  Cancellation cancellation;
+  EXPECT_FALSE(IsRequested(nullptr));
+  EXPECT_FALSE(IsRequested(&cancellation));
+  cancellation.Request();
+  EXPECT_TRUE(IsRequested(&cancellation));
+}
+
 // Writes made before the request are visible after it; ThreadSanitizer checks this.
 TEST(Cancellation, EndsALoopOnAnotherThread) {
   Cancellation cancellation;

@@ -29,7 +29,8 @@ struct SimilarKeyframe {
 // memory until one of them is changed.
 class InvertedIndex {
  public:
-  // Words are scattered over the whole table, so that larger chunks would be copied for one change.
+  // One value per chunk: the words of an image are scattered over the whole table, so each change
+  // of a word would copy a larger chunk.
   using Table = CowTable<WordId, std::vector<Posting>, 1>;
 
   InvertedIndex Snapshot();

@@ -8,7 +8,7 @@
 
 namespace hullslam {
 
-// The error of a point seen with or without depth (src/camera/depth_error.h).
+// The error of a point seen with or without depth (src/camera/point_measurement.h).
 struct DepthErrorOptions {
   // Standard deviation of the coordinates of a keypoint of level 0 of the image pyramid, px. At
   // other levels it is multiplied by the scale of the level.

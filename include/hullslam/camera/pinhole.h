@@ -67,7 +67,7 @@ struct PinholeCamera {
   };
   Bounds UndistortedBounds() const;
 
-  // Why this cannot be the camera of a real image, with the key in question: a number that is not
+  // The reason why this cannot be the camera of a real image, with its key: a number that is not
   // finite or out of range, a distortion that has no inverse at a pixel of the image, or an
   // undistorted image of a very different size. Empty if there is nothing wrong.
   std::string FindFault() const;

@@ -8,7 +8,7 @@
 
 namespace hullslam {
 
-// How the poses of two trajectories are paired by time.
+// The rule by which the poses of two trajectories are paired by time.
 enum class PairingRule {
   // TUM's associate.py: |dt| < limit, the closest pairs first, one to one.
   kTum,

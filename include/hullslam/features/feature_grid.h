@@ -11,7 +11,7 @@
 namespace hullslam {
 
 // Keypoints sorted into cells of the image, to find the keypoints near a pixel. Every keyframe
-// keeps one, so it is small: two bytes per keypoint and two per cell.
+// keeps a grid, so a grid is small: two bytes per keypoint and two per cell.
 class FeatureGrid {
  public:
   FeatureGrid() = default;
@@ -22,7 +22,7 @@ class FeatureGrid {
               const Eigen::Vector2f& box_max);
 
   // The grid of the keypoints with these indices, which increase. Their new indices are their
-  // places in `kept`. A grid without keypoints stays as it is.
+  // indices in `kept`. A grid without keypoints stays as it is.
   FeatureGrid Select(std::span<const uint32_t> kept) const;
 
   // Appends to `found` the indices of all keypoints with |dx| < radius, |dy| < radius and a level
@@ -35,8 +35,8 @@ class FeatureGrid {
   int Column(float x) const;
   int Row(float y) const;
 
-  // With half of this size a search looks at half as many keypoints, but at more cells, and takes
-  // as long. The table of cells would be four times as large.
+  // With cells of half this size, a search visits half as many keypoints but more cells, and takes
+  // as long; the table of cells would be four times as large.
   static constexpr int kColumns = 32;
   static constexpr int kRows = 24;
   Eigen::Vector2f min_ = Eigen::Vector2f::Zero();

@@ -21,7 +21,7 @@ inline int HammingDistance(const Descriptor& a, const Descriptor& b) {
   return distance;
 }
 
-// What a keyframe keeps of a keypoint.
+// The data of a keypoint that a keyframe keeps.
 struct Keypoint {
   Eigen::Vector2f undistorted;  // px after undistortion
   float angle = 0.0f;           // radians, clockwise from +x in the image (y down), 0 to 2 pi

@@ -23,7 +23,7 @@ struct FrameFeatures {
 };
 
 // The features of the keypoints with these indices, which increase. Their new indices are their
-// places in `kept`.
+// indices in `kept`.
 FrameFeatures SelectKeypoints(const FrameFeatures& features, std::span<const uint32_t> kept);
 
 // The indices of the keypoints whose depth is known, nearest first; equal depths by index.

@@ -14,19 +14,19 @@ namespace hullslam {
 // Why a mask gives no detection.
 enum class DetectionRejection {
   kLowScore,
-  kDegenerate,    // no outline has an area
-  kTooSmall,      // its bounding box is too small
-  kTooLarge,      // its hull is too large
-  kFewKeypoints,  // too few keypoints are in it
+  kDegenerate,    // no contour of the mask has an area
+  kTooSmall,      // the bounding box of the mask is too small
+  kTooLarge,      // the hull of the mask is too large
+  kFewKeypoints,  // too few keypoints are in the mask
   kDuplicate,     // another mask with a higher score shows the same object
-  kNoSilhouette,  // all its lines are one-sided
+  kNoSilhouette,  // all lines of the mask are one-sided
 };
 inline constexpr int kDetectionRejectionCount = 7;
 
 // The name in summary.json, such as "low_score".
 std::string ToString(DetectionRejection reason);
 
-// What became of the masks of one or more frames.
+// The numbers of masks of one or more frames that became detections, and that did not, by reason.
 struct DetectionCounts {
   size_t detections = 0;
   size_t frames_with_masks = 0;

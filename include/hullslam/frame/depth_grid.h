@@ -8,8 +8,8 @@
 
 namespace hullslam {
 
-// The depth image at every kStep-th pixel of every kStep-th row. Keyframes keep it to find out
-// later whether something hid an object.
+// The depth image at every kStep-th pixel of every kStep-th row. Keyframes keep it, so that later
+// steps can find out whether something hid an object.
 class DepthGrid {
  public:
   static constexpr int kStep = 8;  // px

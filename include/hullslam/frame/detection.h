@@ -19,10 +19,10 @@ namespace hullslam {
 struct Detection {
   std::string label;
   double score = 1.0;
-  PackedPoints<2> contour;            // outline of the largest part of the mask, closed, px
+  PackedPoints<2> contour;            // closed contour of the largest part of the mask, px
   std::vector<Eigen::Vector2d> hull;  // convex hull of all parts, positive signed area, px
   Eigen::AlignedBox2d box;            // bounding box of the hull, px
-  // What the residuals are computed from; equal to DetectionOptions::primitive.
+  // The primitive that the residuals are computed from; equal to DetectionOptions::primitive.
   ObjectPrimitive primitive = ObjectPrimitive::kSupport;
   std::vector<SilhouetteLine> lines;  // the lines that constrain the quadric
   std::optional<Ellipse>

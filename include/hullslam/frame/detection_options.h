@@ -6,9 +6,9 @@
 
 namespace hullslam {
 
-// How detections and their lines are made from instance masks.
+// The options for making detections and their lines from instance masks.
 struct DetectionOptions {
-  ObjectPrimitive primitive = ObjectPrimitive::kSupport;  // what the lines are made from
+  ObjectPrimitive primitive = ObjectPrimitive::kSupport;  // the lines are made from it
   double epsilon_px = 3.0;       // tolerance for simplifying hull or contour (Douglas-Peucker)
   int uniform_directions = 8;    // of support lines, in addition to the edges of the hull
   double min_line_px = 5.0;      // length; shorter edges give no line
@@ -23,8 +23,9 @@ struct DetectionOptions {
   double max_area_share = 0.5;  // largest area of the hull, as a share of the image
   int min_keypoints = 0;        // inside the mask
   double duplicate_iou = 0.6;   // masks with at least this IoU show the same object
-  // The same for outlines of one class if the depth of either is not known. Two instances may share
-  // a border, but a network outlines one thing twice: a book, and the book with the paper under it.
+  // The same for two masks of one class if the depth of at least one of them is not known. A
+  // network often segments one thing twice, for example a book, and the book with the paper under
+  // it.
   double duplicate_class_iou = 0.25;
   // Two masks also show the same object if the smaller one is a fragment of the larger one. A
   // fragment lies almost completely inside the larger mask, is not much smaller, and has nearly the
@@ -34,11 +35,12 @@ struct DetectionOptions {
   double fragment_area = 0.4;     // least area of the smaller mask over that of the larger
   double fragment_depth = 0.05;   // largest relative difference of the median depths
   int max_depth_points = 200;     // per mask, approximately
-  // Depth points farther than this from the median depth of the mask are left out: they show the
-  // background. As a share of the larger side of the mask, at the median depth.
+  // Depth points farther than this from the median depth of the mask are left out, because they
+  // show the background. The number is a share of the larger side of the mask, in metres at the
+  // median depth.
   double max_depth_offset = 0.75;
-  // Something hides an object if it is nearer by more than both steps. The first one is the noise
-  // of a depth camera. Both are used only with depth images.
+  // Something hides an object if it is nearer by more than both steps. The first step is the noise
+  // of a depth camera. Both steps are used only with depth images.
   double occlusion_step = 0.03;        // m
   double occlusion_step_share = 0.04;  // of the object's depth
 

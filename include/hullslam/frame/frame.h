@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// What was extracted from one image. A frame does not change after it is built; the stages share
+// The data extracted from one image. A frame does not change after it is built; the stages share
 // it.
 struct Frame {
   FrameId id;

@@ -8,11 +8,11 @@
 
 namespace hullslam {
 
-// Keypoints this near to a mask count as in it, px. The patch of a corner at a silhouette is half
-// background, and masks tend to be too small.
+// Keypoints that are this near to a mask count as inside it, px. Half of the patch of a corner at a
+// silhouette shows the background, and masks tend to be too small.
 inline constexpr int kMaskMarginPx = 7;
 
-// What the outlines of an instance are: those of a mask, or only a bounding box or an ellipse.
+// The origin of the outlines of an instance: a mask, or only a bounding box or an ellipse.
 enum class MaskShape { kContour, kBox, kEllipse };
 
 // One instance that a detector or segmenter found in an image, in **raw** (distorted) pixels. Pixel
@@ -26,9 +26,9 @@ struct InstanceMask {
   std::vector<std::vector<Eigen::Vector2d>> outlines;
 };
 
-// Throws InputError, with the number of the mask and what is wrong, for a mask without a label, a
-// score that is not between 0 and 1, an outline of fewer than three points, and a point that is not
-// finite or is farther outside the image (width x height px) than the image is wide or high.
+// Throws InputError for a mask without a label, a score that is not between 0 and 1, an outline of
+// fewer than three points, and a point that is not finite or is farther outside the image (width x
+// height px) than the image is wide or high. The message has the number of the mask and the reason.
 void ValidateMasks(std::span<const InstanceMask> masks, int width, int height);
 
 }  // namespace hullslam

@@ -11,8 +11,8 @@ namespace hullslam {
 
 enum class SensorKind {
   kRgbd,
-  // One camera without depth. The unit of length of a map is then not known in metres: it is the
-  // median depth of the first points.
+  // A monocular camera. The unit of length of its map is not known in metres; it is the median
+  // depth of the first points.
   kMonocular,
 };
 
@@ -25,12 +25,12 @@ struct Sensor {
   double close_depth = 0.0;  // m; smaller depths are precise enough for a landmark from one view
   DepthErrorOptions depth_error;
   double frames_per_second = 30.0;
-  // s, from the exposure of the first row of an image to that of the last one. 0: a global shutter
-  // exposes all rows at the same time.
+  // Time from the exposure of the first row of an image to that of the last one, s. 0 for a global
+  // shutter, which exposes all rows at the same time.
   double readout_time = 0.0;
 
   bool IsMonocular() const { return kind == SensorKind::kMonocular; }
-  // Of the virtual stereo pair, m; 0 without depth.
+  // Baseline of the virtual stereo pair, m; 0 for a monocular camera.
   double baseline() const { return IsMonocular() ? 0.0 : camera.bf / camera.fx; }
 };
 

@@ -39,8 +39,8 @@ PointAlignment AlignPoints(std::span<const Eigen::Vector3d> source,
 // from camera), both positions and orientations. It has the least sum of squared distances between
 // target and aligned source points, where each pose counts by six points: those at the distance
 // `lever` (m, > 0) from its position on both sides of each of its axes. So an error of the
-// orientation counts by what it moves at this distance. One pose is enough. Both lists have the
-// same length, which is not 0.
+// orientation counts as the shift that it causes at this distance. One pose is enough. Both lists
+// have the same length, which is not 0.
 Rigid3 AlignPoses(std::span<const Rigid3> source, std::span<const Rigid3> target, double lever);
 
 }  // namespace hullslam

@@ -9,7 +9,7 @@ namespace hullslam {
 // A directed line in the image: points p satisfy normal . p + offset = 0, and the normal has unit
 // length. If the line bounds a silhouette, the normal points away from the object.
 struct Line2 {
-  // Without alignment to 16 bytes, which would make a SilhouetteLine half as large again.
+  // Not aligned to 16 bytes, because the alignment would enlarge a SilhouetteLine by half.
   Eigen::Matrix<double, 2, 1, Eigen::DontAlign> normal = Eigen::Vector2d::UnitX();
   double offset = 0.0;  // px
 
@@ -19,8 +19,8 @@ struct Line2 {
   Eigen::Vector3d Homogeneous() const { return {normal.x(), normal.y(), offset}; }
 };
 
-// A line that bounds an object in the image. It is one-sided if the object is cut by the image
-// border or hidden by something nearer: then the object reaches at least as far as the line.
+// A line that bounds an object in the image. It is one-sided if the image border cuts the object
+// there or something nearer hides it. The object then reaches at least as far as the line.
 struct SilhouetteLine {
   Line2 line;
   bool is_one_sided = false;

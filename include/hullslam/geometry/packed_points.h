@@ -67,7 +67,8 @@ class PackedPoints {
   }
   bool operator==(const PackedPoints&) const = default;
 
-  // What is stored: point = min + step * packed. For files, which must give the same points again.
+  // The stored numbers: point = min + step * packed. Map files store them, so that reading gives
+  // exactly the same points.
   using Corner = Eigen::Matrix<float, N, 1>;
   using Packed = std::array<uint16_t, N>;
   PackedPoints(const Corner& min, const Corner& step, std::vector<Packed> packed)

@@ -7,7 +7,7 @@
 namespace hullslam {
 
 // A rigid transform of points: a Rigid3 named `b_from_a` maps x_b = rotation * x_a + translation.
-// Lengths are in metres (in monocular SLAM: in units of the map).
+// Lengths are in metres; in monocular SLAM, in units of the map.
 struct Rigid3 {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();

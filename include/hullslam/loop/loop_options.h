@@ -5,20 +5,21 @@
 
 namespace hullslam {
 
-// Loop closing: when the camera comes back to a place that it has seen before, and when the
-// correction of the map is believed.
+// Loop closing: the conditions under which the camera is back at a place that it has seen before,
+// and under which the correction of the map is accepted.
 struct LoopOptions {
   bool enabled = true;
 
-  // Landmarks that must agree: with the candidate alone, and with its neighbourhood.
+  // Least numbers of matching landmarks: with the candidate alone, and with its neighbourhood.
   int min_matches = 20;
   int min_landmarks = 40;
-  // If fewer of the query's neighbours look like the candidate's place (temporal and covisibility
+  // If fewer neighbours of the query look like the candidate's place (temporal and covisibility
   // consistency), twice as many landmarks are needed.
   int min_supporters = 2;
 
-  // The drift budget (as in OKVIS2, Leutenegger 2022): how much a correction may move and turn the
-  // query, relative to what the camera has travelled and turned since the candidate.
+  // The drift budget (as in OKVIS2, Leutenegger 2022): the largest translation and rotation of the
+  // query by a correction, relative to the length of the camera's way and the sum of its rotations
+  // since the candidate.
   double drift_base = 0.2;         // m
   double drift_per_metre = 0.05;   // m
   double drift_per_radian = 0.02;  // m

@@ -9,7 +9,7 @@ namespace hullslam {
 // Why a monocular camera has no map yet.
 enum class InitialisationFailure {
   kTooFewFeatures,     // the image has little texture
-  kTooFewMatches,      // it shows too little of what earlier images showed
+  kTooFewMatches,      // the image shows too little of what earlier images showed
   kTooLittleParallax,  // the camera has not moved enough, or has only turned
   kAmbiguous,          // two different motions explain the images
   kTooFewPoints,       // the motion explains too few matches

@@ -31,11 +31,13 @@ struct Keyframe {
   IslandId island{0};                 // the part of the map that it belongs to (Map::BeginIsland)
 };
 
-// What is kept of a culled keyframe, so that frames tracked relative to it still have a pose.
+// The record of a culled keyframe, by which frames that were tracked relative to it still have a
+// pose.
 struct CulledKeyframe {
   FrameId frame;
-  // Relative to its parent, which may be culled later itself. Without a reference: the keyframe was
-  // removed with its island, so neither it nor what refers to it has a pose.
+  // The pose relative to the parent, which may be culled later itself. It has no reference if the
+  // keyframe was removed with its island: then the keyframe has no pose, and neither have the
+  // frames that refer to it.
   RelativePose pose;
   double scale = 1.0;  // Keyframe::scale when it was culled
 };

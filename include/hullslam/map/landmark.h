@@ -23,7 +23,7 @@ struct Landmark {
   double max_distance = 0.0;              // m; at this distance it is seen at level 0
   Descriptor descriptor{};                // the most typical of the observed ones
   std::vector<Observation> observations;  // by increasing keyframe id, one per keyframe
-  KeyframeId reference;                   // the keyframe that level and distance refer to
+  KeyframeId reference;                   // the keyframe that the two distances are computed from
   KeyframeId created_by;
   int observation_weight = 0;  // number of observations; those with depth count twice
   int visible = 1;             // number of frames in which it should have been seen

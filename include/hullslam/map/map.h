@@ -30,14 +30,15 @@ class Map {
  public:
   // A map whose keyframes are not indexed by their words.
   Map() = default;
-  // `vocabulary` is the one that the words of all frames are from; null: the index stays empty.
+  // `vocabulary` is the one of the words of all frames. If it is null, the index stays empty.
   explicit Map(std::shared_ptr<const Vocabulary> vocabulary) : vocabulary_(std::move(vocabulary)) {}
   // A map that was stored. The tables are not checked; map/restored_map.h does this.
   explicit Map(MapTables tables, std::shared_ptr<const Vocabulary> vocabulary = nullptr);
 
   // A copy of the map. The two share memory until one of them is changed.
   Map Snapshot();
-  // The number of snapshots that were taken of this map. Of a snapshot: its own number, from 1.
+  // The number of snapshots that were taken of this map. A snapshot returns its own number, counted
+  // from 1.
   uint32_t revision() const { return revision_; }
 
   const CowTable<KeyframeId, Keyframe, 1>& keyframes() const { return keyframes_; }
@@ -56,7 +57,7 @@ class Map {
 
   // The keyframes by the words of their frames, for place recognition.
   const InvertedIndex& index() const { return index_; }
-  // Null without one.
+  // Null for a map without a vocabulary.
   const std::shared_ptr<const Vocabulary>& vocabulary() const { return vocabulary_; }
   // The bag of words of a frame; empty without a vocabulary.
   BowVector VectorOf(const Frame& frame) const;
@@ -93,9 +94,9 @@ class Map {
   ObjectId Resolve(ObjectId object) const;
 
   // Forgets which landmarks and objects were replaced before the snapshot of this revision was
-  // taken. To be called when nobody will ask any more for ids of older snapshots.
+  // taken. To be called when no message with ids of older snapshots can arrive any more.
   void ForgetReplaced(uint32_t revision);
-  // How many replaced ids are remembered.
+  // The number of remembered replacements.
   size_t replaced_count() const { return replaced_landmarks_.size() + replaced_objects_.size(); }
 
   // Islands are parts of the map between which no relative pose is known: a monocular camera begins
@@ -104,15 +105,16 @@ class Map {
   // is number 0, and the others have larger numbers the later they were begun. map/islands.h joins
   // and removes islands.
   IslandId BeginIsland();
-  // How many islands were begun and how many were joined to an older one, in this run. A map of
-  // earlier sessions counts as one island.
+  // The numbers of islands that were begun in this run, and of those that were joined to an older
+  // one. A map of earlier sessions counts as one island.
   size_t islands_begun() const { return island_sizes_.size(); }
   size_t islands_joined() const { return islands_joined_; }
-  // The number of its keyframes, without culled ones; 0 after it was joined or removed.
+  // The number of keyframes of an island, without culled ones; 0 after the island was joined or
+  // removed.
   size_t IslandSize(IslandId island) const;
 
-  // Gives a keyframe another frame and its words another place in the index. The lists of the
-  // keyframe that have one entry per keypoint or detection are left to the caller
+  // Gives a keyframe another frame and indexes the words of that frame instead of the old ones. The
+  // caller adapts the lists of the keyframe that have one entry per keypoint or detection
   // (CompactKeyframe).
   void ReplaceFrame(KeyframeId keyframe, std::shared_ptr<const Frame> frame);
 
@@ -123,7 +125,7 @@ class Map {
   // parents (see DetachFromTree). Its loop edges become edges of its parent: without them a later
   // pose graph could open the loops again, and the parent is near enough to close them.
   void CullKeyframe(KeyframeId keyframe);
-  // What is kept of a culled keyframe; null for any other.
+  // The record of a culled keyframe; null if the keyframe is not culled.
   const CulledKeyframe* FindCulled(KeyframeId keyframe) const { return culled_.Find(keyframe); }
   // The pose of a keyframe, also of a culled one.
   Rigid3 CamFromWorld(KeyframeId keyframe) const;
@@ -140,11 +142,12 @@ class Map {
   // removed with its island; then the keyframe has no pose.
   KeyframeId NearestAlive(KeyframeId keyframe) const;
 
-  // How much the observation of a landmark at this keypoint counts: an observation with depth
-  // constrains all three coordinates, like two observations without depth.
+  // The weight of the observation of a landmark at this keypoint. It is 2 with depth and 1 without,
+  // because an observation with depth constrains all three coordinates, like two observations
+  // without depth.
   static int ObservationWeight(const Frame& frame, uint32_t keypoint);
 
-  // How many corrections have been applied (map/correction.h).
+  // The number of corrections that were applied (map/correction.h).
   uint32_t correction_count() const { return correction_count_; }
   void CountCorrection() { ++correction_count_; }
 
@@ -166,7 +169,7 @@ class Map {
 
  private:
   void CountInIsland(IslandId island);
-  // Takes a keyframe out of the table and the index. `kept`: its pose from now on.
+  // Takes a keyframe out of the table and the index. `kept` is its pose from now on.
   void Erase(KeyframeId keyframe, const RelativePose& kept);
   // cam_from_reference with the translation in the current unit of length of its reference.
   Rigid3 AtCurrentScale(const RelativePose& pose) const;

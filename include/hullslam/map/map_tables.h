@@ -14,8 +14,9 @@
 
 namespace hullslam {
 
-// What a map consists of: for making a map again that was stored in a file. (A map also remembers
-// which ids were replaced, for messages that are under way. No message survives its run.)
+// The contents of a map, from which a stored map is restored. A map also remembers which ids were
+// replaced, for messages that are under way; that is not stored, because no message survives its
+// run.
 struct MapTables {
   CowTable<KeyframeId, Keyframe, 1> keyframes;
   RecyclingTable<LandmarkId, Landmark> landmarks;

@@ -38,7 +38,8 @@ struct InitialMap {
   std::vector<Point> points;  // in the order in which their landmarks get ids
 };
 
-// In how many frames since the last message a landmark should have been visible, and was found.
+// The number of frames since the last message in which a landmark should have been visible, and the
+// number in which it was found.
 struct Sighting {
   LandmarkId landmark;
   int visible = 0;
@@ -51,14 +52,14 @@ struct KeyframeRequest {
   RelativePose pose;
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
   std::vector<Sighting> sightings;    // one per landmark
-  // Map::revision() of the oldest snapshot that the ids were taken from. Later requests have no
-  // older one, so the mapper forgets what was replaced before it.
+  // Map::revision() of the oldest snapshot that the ids were taken from. Later requests do not
+  // refer to older snapshots, so the mapper forgets older replacements.
   uint32_t oldest_revision = 0;
 };
 
-// Moves keyframes to where a loop closure or a global bundle adjustment has put them, and with them
-// everything that depends on their poses. It was computed from a snapshot of the map; the map may
-// have changed since then. map/correction.h applies it.
+// The result of a loop closure or a global bundle adjustment: new poses of keyframes. Everything
+// that depends on these poses moves with them. The result was computed from a snapshot of the map,
+// and the map may have changed since then. map/correction.h applies it.
 struct MapCorrection {
   // A keyframe's pose in the snapshot and its new pose.
   struct Pose {
@@ -86,8 +87,8 @@ struct MapCorrection {
     KeyframeId b;
   };
 
-  // Map::correction_count() of the snapshot. A correction of a map that was corrected again since
-  // then is refused, because the snapshot's world is not the map's any more.
+  // Map::correction_count() of the snapshot. A correction is refused if the map was corrected after
+  // the snapshot, because the world frame of the snapshot is then no longer that of the map.
   uint32_t snapshot_corrections = 0;
   std::vector<Pose> poses;          // by increasing keyframe id, each keyframe once
   std::vector<Position> positions;  // only where a global bundle adjustment has moved landmarks
@@ -96,7 +97,7 @@ struct MapCorrection {
   std::optional<LoopEdge> loop;
 };
 
-// What the mapper receives.
+// The messages that the mapper receives.
 using MapMessage = std::variant<InitialMap, KeyframeRequest, MapCorrection>;
 
 enum class TrackingState { kNotInitialized, kTracked, kLost };
@@ -106,19 +107,19 @@ struct TrackedFrame {
   FrameId frame;
   double timestamp = 0.0;  // seconds
   TrackingState state = TrackingState::kNotInitialized;
-  // Absent unless the frame is tracked, and for a frame of the initial map, which is a keyframe.
+  // Absent if the frame is not tracked, or if it belongs to the initial map: then it is a keyframe.
   std::optional<RelativePose> pose;
   Rigid3 cam_from_world;  // when the frame was tracked; later corrections do not change it
   int inliers = 0;        // landmarks found
 };
 
-// What tracking found in one frame: for viewers and callbacks.
+// The result of tracking for one frame, for viewers and callbacks.
 struct FrameReport {
   TrackedFrame tracked;
   std::shared_ptr<const Frame> frame;
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
   std::vector<ObjectId> objects;      // one per detection; invalid where it shows no mapped object
-  // Only before a monocular camera has a map: why it has none.
+  // The reason why a monocular camera has no map yet; absent once there is a map.
   std::optional<InitialisationFailure> failure = std::nullopt;
 };
 

@@ -22,8 +22,9 @@ struct ObjectObservation {
   uint32_t detection = 0;  // index into the frame's detections
 };
 
-// How far the real object reaches beyond its quadric in one direction, measured by one line of one
-// keyframe (objects/misfit.h). An object keeps hundreds of them, so they have single precision.
+// The distance by which the real object reaches beyond its quadric in one direction, measured by
+// one line of one keyframe (objects/misfit.h). An object keeps hundreds of samples, so they have
+// single precision.
 struct MisfitSample {
   Eigen::Vector3f normal = Eigen::Vector3f::UnitX();  // outwards, object frame, unit
   float excess = 0.0f;                                // m; negative if it reaches less far
@@ -33,15 +34,15 @@ struct MisfitSample {
 // An object of the world that keyframes observe.
 struct ObjectLandmark {
   ObjectState state = ObjectState::kCandidate;
-  bool has_shape = false;  // whether the ellipsoids below are set
-  Ellipsoid ellipsoid;     // world frame
-  Ellipsoid start;         // what it was initialised with; centre of the prior in refinement
-  std::map<std::string, double> votes;          // sum of scores by class
+  bool has_shape = false;               // whether the ellipsoids below are set
+  Ellipsoid ellipsoid;                  // world frame
+  Ellipsoid start;                      // the initial shape; centre of the prior in refinement
+  std::map<std::string, double> votes;  // sum of scores by class
   std::vector<ObjectObservation> observations;  // by increasing keyframe id, one per keyframe
-  // The keyframe with which a correction moves the object: the first that observes it. It stays
-  // when no observation is left, and may then be a culled keyframe.
+  // The keyframe with which a correction moves the object: the first one that observes it. It is
+  // kept even if no observation is left, and may then be a culled keyframe.
   KeyframeId reference;
-  size_t shaped_views = 0;      // observations when its shape was last sought or refined
+  size_t shaped_views = 0;      // number of observations when its shape was last computed
   double misfit_px = 0.0;       // RMS distance of its lines from its projected ellipses
   double compensated_px = 0.0;  // the same after misfit compensation
   std::vector<MisfitSample> misfit_samples;  // one per two-sided line of its latest keyframes

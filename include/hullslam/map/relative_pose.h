@@ -12,7 +12,7 @@ struct RelativePose {
   KeyframeId reference;
   Rigid3 cam_from_reference;  // translation in the unit of length that the reference had then
   // Keyframe::scale of the reference when the relative pose was made. If the reference has another
-  // scale later, the translation is multiplied by the quotient of the later and this scale.
+  // scale later, the translation is multiplied by the later scale over this one.
   double reference_scale = 1.0;
 };
 

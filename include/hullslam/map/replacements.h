@@ -10,19 +10,19 @@ namespace hullslam {
 
 // Remembers which ids were replaced by which, for messages with ids of older snapshots of a map.
 // Each replacement has the revision of the map at the time: the number of the last snapshot in
-// which the replaced id was still in use. There are few, because those that are older than all
-// messages are forgotten.
+// which the replaced id was still in use. There are few replacements, because those that are older
+// than all messages are forgotten.
 template <typename IdType>
 class Replacements {
  public:
   // `revision` does not decrease from call to call. An id is replaced at most once.
   void Add(IdType replaced, IdType by, uint32_t revision) {
-    entries_.insert(PlaceOf(replaced), {replaced, by, revision});
+    entries_.insert(LowerBound(replaced), {replaced, by, revision});
   }
 
-  // The id that has replaced `replaced`, null for none.
+  // The id that has replaced `replaced`; null if it was not replaced.
   const IdType* Find(IdType replaced) const {
-    const auto it = PlaceOf(replaced);
+    const auto it = LowerBound(replaced);
     return it != entries_.end() && it->replaced == replaced ? &it->by : nullptr;
   }
 
@@ -40,7 +40,7 @@ class Replacements {
     uint32_t revision = 0;
   };
 
-  auto PlaceOf(IdType id) const {
+  auto LowerBound(IdType id) const {
     return std::lower_bound(
         entries_.begin(), entries_.end(), id,
         [](const Entry& entry, IdType wanted) { return entry.replaced < wanted; });

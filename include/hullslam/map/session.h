@@ -18,9 +18,8 @@ struct Session {
   bool operator==(const Session&) const = default;
 };
 
-// The number of sessions that had begun before this frame or with it. So it is the number of the
-// frame's session, counted from 1, and 0 for a frame of no session. `sessions` are in the order in
-// which they began.
+// The number of the session of this frame, counted from 1; 0 if the frame is older than all
+// sessions. `sessions` are in the order in which they began.
 size_t SessionNumber(std::span<const Session> sessions, FrameId frame);
 
 }  // namespace hullslam

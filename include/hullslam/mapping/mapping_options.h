@@ -6,8 +6,9 @@
 namespace hullslam {
 
 struct MappingOptions {
-  int local_keyframes = 20;  // at most so many move in local bundle adjustment
-  // At most so many are fixed in local bundle adjustment; 0: all that observe its landmarks.
+  int local_keyframes = 20;  // largest number of moving keyframes in local bundle adjustment
+  // Largest number of fixed keyframes in local bundle adjustment; 0: all that observe its
+  // landmarks.
   int fixed_keyframes = 0;
   bool cull_keyframes = true;
   bool final_bundle_adjustment = true;  // of the whole map, at the end of the run

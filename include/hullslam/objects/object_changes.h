@@ -13,13 +13,13 @@
 
 namespace hullslam {
 
-// What has become of an object between earlier sessions of a map and the last one.
+// The change of an object between the earlier sessions of a map and the last one.
 enum class ObjectChange {
   kSeenAgain,
-  kMoved,      // it is gone from its place, and a new object of its class and size is elsewhere
+  kMoved,      // it is gone, and there is a new object of its class and size elsewhere
   kGone,       // it should have been visible, but was not found
   kNew,        // earlier sessions should have seen it, but did not
-  kNotSeen,    // too few keyframes of the session should show its place
+  kNotSeen,    // too few keyframes of the session should show its location
   kFirstSeen,  // mapped for the first time, and not known to be new
 };
 
@@ -30,8 +30,8 @@ inline constexpr std::array kObjectChanges = {ObjectChange::kSeenAgain, ObjectCh
 // The name in files: "seen_again", "moved", "gone", "new", "not_seen", "first_seen".
 std::string_view ToString(ObjectChange change);
 
-// An object at a place in the coordinates of the map after the session.
-struct ObjectPlace {
+// An object with its location and shape, in the coordinates of the map after the session.
+struct LocatedObject {
   ObjectId object;
   Ellipsoid ellipsoid;
 };
@@ -39,21 +39,23 @@ struct ObjectPlace {
 struct ChangedObject {
   ObjectChange change = ObjectChange::kSeenAgain;
   std::string label;
-  // Where it is; absent if it is gone, or if it was not seen and is not in the map any more.
-  std::optional<ObjectPlace> now = std::nullopt;
-  // Where it was, with its id in the former map; absent if it is new or first seen.
-  std::optional<ObjectPlace> former = std::nullopt;
-  // The evidence: keyframes that should show the object, and those of them in which it is found. Of
-  // new and first seen objects these are keyframes of earlier sessions, of all others those of the
-  // last session.
+  // The object after the session; absent if it is gone, or if it was not seen and is no longer in
+  // the map.
+  std::optional<LocatedObject> now = std::nullopt;
+  // The object before the session, with its id in the former map; absent if it is new or first
+  // seen.
+  std::optional<LocatedObject> former = std::nullopt;
+  // The evidence: the number of keyframes that should show the object, and the number of those in
+  // which it is found. For new and first seen objects these are keyframes of earlier sessions, for
+  // all others keyframes of the last session.
   int expected = 0;
   int found = 0;
 };
 
-// Compares the mapped objects of `former`, a map of earlier sessions, with `map`, which went on
-// with it in a session whose frames have the id `session` or a larger one. The objects of the
-// former map come first, by increasing id, then those that are new or were first seen. Keyframes
-// without any detection count as not seen, so a session without masks changes nothing.
+// Compares the mapped objects of `former`, a map of earlier sessions, with `map`, the same map
+// after a session whose frames have the id `session` or a larger one. The objects of the former map
+// come first, by increasing id, then those that are new or were first seen. Keyframes without any
+// detection count as not seen, so a session without masks changes nothing.
 std::vector<ChangedObject> FindObjectChanges(const Map& former, const Map& map, FrameId session,
                                              const Sensor& sensor, const ObjectOptions& options);
 

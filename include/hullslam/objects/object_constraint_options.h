@@ -15,29 +15,30 @@ enum class RobustLoss { kNone, kHuber, kCauchy, kTukey };
 // The names in settings, in the order of the enumerators: none, huber, cauchy, tukey.
 std::vector<std::string> RobustLossNames();
 
-// How depth points are chosen when a detection has more than the largest number: exactly that
+// The choice of depth points when a detection has more than the largest number: exactly that
 // number, evenly spread, or every k-th point.
 enum class PointChoice { kEven, kEveryKth };
 
-// How the depth points of one detection constrain an object.
+// The constraint on an object from the depth points of one detection.
 struct ObjectDepthOptions {
   double sigma = 0.10;  // m, of the distance of a point from the surface
-  // The same of a landmark, where there is no depth, as a share of its distance.
+  // The same for a landmark, which is used where there is no depth, as a share of its distance.
   double landmark_sigma = 0.05;
   int max_points = 0;  // per detection; 0: depth is not used
   PointChoice choice = PointChoice::kEven;
-  double max_effective_points = 1.0;  // largest number that the points of one detection count as
+  double max_effective_points = 1.0;  // the points of one detection count as at most this many
   RobustLoss loss = RobustLoss::kCauchy;
   double loss_scale = 2.5;  // sigmas
 };
 
-// How one detection constrains an object and the pose of the camera, and the prior of the object.
+// The constraint of one detection on an object and the pose of the camera, and the prior of the
+// object.
 struct ObjectConstraintOptions {
   ObjectResidual residual = ObjectResidual::kTangent;
   // The sigma of a line is hypot(sigma_px, misfit_factor * misfit of the object), px.
   double sigma_px = 0.5;
   double misfit_factor = 1.0;
-  // The largest number of independent lines that the lines of one detection count as. Their errors
+  // The lines of one detection count as at most this many independent lines, because their errors
   // are strongly correlated.
   double max_effective_lines = 8.0;
   RobustLoss loss = RobustLoss::kCauchy;

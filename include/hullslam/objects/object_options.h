@@ -13,7 +13,7 @@ namespace hullslam {
 // Lengths are given as shares of the object's distance from the cameras, so that they also make
 // sense in a map of unknown scale.
 
-// When a detection shows an object of the map; see AssociateDetections.
+// The conditions for a detection to show an object of the map; see AssociateDetections.
 struct AssociationOptions {
   double min_projection_iou = 0.25;  // of hull and projected ellipse
   double min_carried_iou = 0.5;      // of hull and last hull, moved to the new pose
@@ -37,7 +37,7 @@ struct AssociationOptions {
   double min_similarity = 0.2;  // of a detection and an object that are matched
 };
 
-// When the shape of a candidate is computed, and from which start.
+// The conditions for computing the shape of a candidate, and its start.
 struct StartOptions {
   int min_views = 3;                         // keyframes
   double min_parallax = 3.0;                 // degrees between viewing rays, with depth
@@ -66,7 +66,7 @@ struct ValidityOptions {
   double elongation_parallax = 6.0;
 };
 
-// When two objects are fused; see FindDuplicates.
+// The conditions for fusing two objects; see FindDuplicates.
 struct FusionOptions {
   double min_overlap = 0.25;          // IoU of the volumes, of objects never seen together
   double min_overlap_together = 0.5;  // of objects seen together in few keyframes
@@ -75,7 +75,7 @@ struct FusionOptions {
   double centroid_noise = 0.02;       // sigma of a centroid, as a share of its distance
 };
 
-// When an object is removed.
+// The conditions for removing an object.
 struct CullingOptions {
   int candidate_keyframes = 20;  // removes candidates last seen more keyframes ago than this
   // A mapped object is removed if it is found in a smaller share of the keyframes that should show
@@ -88,27 +88,28 @@ struct CullingOptions {
   double max_hidden = 0.3;
 };
 
-// When an object of a loaded map counts as gone or new; see FindObjectChanges.
+// The conditions for an object of a loaded map to count as gone or new; see FindObjectChanges.
 struct ChangeOptions {
-  int min_keyframes = 3;         // that should show an object before it is called gone or new
-  double max_found_ratio = 0.2;  // it is found in a smaller share of them
+  int min_keyframes = 3;         // should show an object before it can count as gone or new
+  double max_found_ratio = 0.2;  // it is found in a smaller share of these keyframes
   double min_overlap = 0.25;     // IoU of its projected ellipse and a hull that may show it
   double min_inside = 0.6;       // share of the object that must be in the image
-  // Or the depth image shows this share of what is behind its place, wherever that is.
+  // The location of an object also counts as seen if the depth image shows this share of the
+  // surfaces behind it.
   double min_seen_through = 0.8;
-  // An object that is farther away than this (m; in the unit of the map if its scale is unknown) is
-  // another one, and not the one that is gone.
+  // An object that is farther away than this (m; in the unit of the map if its scale is unknown)
+  // cannot be the one that is gone.
   double max_move = 4.0;
   double max_size_ratio = 2.5;  // of the half axes of an object before and after it was moved
 };
 
-// How the misfit of an object is measured; see objects/misfit.h.
+// The measurement of the misfit of an object; see objects/misfit.h.
 struct MisfitOptions {
   int views = 40;      // number of latest keyframes that samples are taken from
   double width = 4.0;  // degrees, sigma of the Gaussian weights of the samples
 };
 
-// Which landmarks lie on an object, for guided matching.
+// The search for landmarks on an object, for guided matching.
 struct GuideOptions {
   int views = 20;  // largest number of keyframes whose masks are used
 };
@@ -122,8 +123,8 @@ struct ObjectRefinementOptions {
       .max_effective_lines = 4.0,
       .loss = RobustLoss::kHuber,
       .depth = {.max_points = 20, .choice = PointChoice::kEveryKth, .loss_scale = 1.0},
-      // The prior is about the start. The start shows only the side that was seen first, so the
-      // sigmas of centre and rotation are large.
+      // The centre of the prior is the start. The start represents only the side that was seen
+      // first, so the sigmas of centre and rotation are large.
       .prior = {.log_axes = 0.5, .center = 2.0, .rotation = 1.0},
       .prior_without_depth = {.log_axes = 0.15, .center = 2.0, .rotation = 1.0}};
   int max_views = 20;   // keyframes, evenly chosen
@@ -144,7 +145,7 @@ struct ObjectPoseOptions {
   // common distance of all objects.
   double prior_rotation = 0.1;     // radians
   double prior_translation = 0.1;  // of the mean distance of the objects
-  int min_objects = 2;             // that are enough to determine a pose without points
+  int min_objects = 2;             // number of objects that determine a pose without points
 };
 
 // Bundle adjustment: quadrics, poses and landmarks are optimised together. Detections in keyframes
@@ -172,7 +173,8 @@ struct ObjectOptions {
   bool bundle_adjustment = true;  // quadrics are adjusted together with poses and landmarks
   bool misfit_compensation = true;
   bool guided_matching = true;  // search landmarks on objects that are not in the local map
-  // Longest side (m) by class. Without depth, objects of known size make the unit of the map 1 m.
+  // Longest side (m) by class. In a monocular map, objects of known size make the unit of length 1
+  // m.
   std::map<std::string, double> sizes;
   DetectionOptions detection;
   AssociationOptions association;

@@ -17,7 +17,7 @@
 
 namespace hullslam {
 
-// When a run counts as failed because too many frames were lost.
+// The conditions for a run to count as failed because too many frames were lost.
 struct RunOptions {
   double max_lost_share = 0.1;   // largest share of the frames without a pose
   double max_lost_at_end = 1.0;  // s, longest time without a pose at the end
@@ -40,8 +40,8 @@ struct SystemOptions {
   ObjectOptions objects;
   LoopOptions loop;
   RunOptions run;
-  // For the words of frames and the index of the map. Null: frames have no words. It is not a
-  // setting of the table; see ReadVocabulary() and FindDefaultVocabulary().
+  // The vocabulary for the words of frames and the index of the map. Null: frames have no words. It
+  // is not a setting of the table; see ReadVocabulary() and FindDefaultVocabulary().
   std::shared_ptr<const Vocabulary> vocabulary;
   uint64_t seed = 0;  // of all random choices
 

@@ -14,7 +14,7 @@ namespace hullslam {
 struct Sensor;
 class ObjectIndex;
 
-// What the first pose of a frame was found by.
+// The method by which the first pose of a frame was found.
 enum class RelocalisationMethod { kWords, kObjects };
 
 const char* ToString(RelocalisationMethod method);
@@ -26,8 +26,8 @@ struct RelocalisedPose {
   int used_objects = 0;  // objects that constrain the pose
 };
 
-// Finds the poses of single frames in a map, as a tracker does that has just lost its way: without
-// the frames before. Frames come from System::Build() of a system with the same camera and image
+// Finds the poses of single frames in a map without the frames before them, as a tracker that has
+// lost track does. Frames come from System::Build() of a system with the same camera and image
 // pyramid as that of the map.
 class Relocaliser {
  public:
@@ -38,8 +38,8 @@ class Relocaliser {
   Relocaliser(const Relocaliser&) = delete;
   Relocaliser& operator=(const Relocaliser&) = delete;
 
-  // Null if the frame is not recognised, or if what it shows is ambiguous. The same frame, options
-  // and map give the same bits.
+  // Null if the frame is not recognised, or if it fits two places of the map. The same frame,
+  // options and map give the same bits.
   std::optional<RelocalisedPose> Find(const Frame& frame) const;
 
  private:

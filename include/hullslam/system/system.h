@@ -32,16 +32,16 @@ struct RememberedFrame;
 enum class PipelineKind {
   kSequential,  // reproducible to the bit
   kThreaded,    // mapping in a thread of its own; waits for it and leaves out no keyframe
-  kRealtime,    // like kThreaded, but never waits: for live cameras
+  kRealtime,    // like kThreaded, but never waits; for live cameras
 };
 
-// What became of the masks of a run.
+// The numbers of masks of a run that became detections, and that did not, by reason.
 struct ObjectCounts {
   size_t detections = 0;
   size_t frames_with_masks = 0;
   size_t frames_without_masks = 0;
-  // How often a mask gave no detection ("mask_too_small") or an object was not mapped
-  // ("low_overlap").
+  // The number of masks that gave no detection ("mask_too_small") and of objects that were not
+  // mapped ("low_overlap"), by reason.
   std::map<std::string, size_t> rejections;
 };
 
@@ -63,14 +63,14 @@ class System {
   System(const SystemOptions& options, PipelineKind kind, SystemStart start = {});
   ~System();
 
-  // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order that Camera.RGB says; `depth` as in
+  // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order that Camera.RGB sets; `depth` as in
   // ImageInput, empty if SystemOptions::sensor is monocular. `masks` are those of the objects in
   // the image, in its raw pixels. Throws InputError for images of another type or size and for
   // masks that ValidateMasks() refuses. Time stamps (s) must increase; throws CheckError otherwise.
   // A refused frame changes nothing.
   //
   // If mapping fails, this call or a later one throws its exception, and so do all calls of Track
-  // and Finish after it. map() and trajectory() then give what was published before.
+  // and Finish after it. map() and trajectory() then give the last published state.
   TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
                      std::vector<InstanceMask> masks = {});
   TrackedFrame Track(const ImageInput& image);
@@ -90,19 +90,19 @@ class System {
   }
 
   // Waits until all keyframes are in the map. Then it adjusts the whole map if
-  // mapping.final_bundle_adjustment is set. The adjustment ends early with what it has if
+  // mapping.final_bundle_adjustment is set. The adjustment ends early with its current result if
   // `cancellation` (may be null) is requested. `on_progress` is called after each of its
-  // iterations, in this thread. Of a monocular camera that was lost, only the main island of the
-  // map stays (Map::BeginIsland), and frames in others become lost. Then the poses of all frames
-  // are computed again from the final places of their landmarks, unless the map was fixed, and
-  // frames before a monocular map and before each island are located in it. So frames() may change.
-  // Track must not be called after Finish.
+  // iterations, in this thread. If a monocular camera was lost, only the main island of the map
+  // stays (Map::BeginIsland), and frames in other islands become lost. Then the poses of all frames
+  // are computed again from the final positions of their landmarks, unless the map was fixed, and
+  // frames before a monocular map and before each island are localised in it. So frames() may
+  // change. Track must not be called after Finish.
   void Finish(const Cancellation* cancellation = nullptr, const ProgressCallback& on_progress = {});
 
-  // Makes the system as it was after its construction: with the map that it was given, without
+  // Sets the system back to its state after construction: with the map that it was given, without
   // frames, times and counts, and ready for Track, also after Finish. Ids begin again, and time
-  // stamps may. Waits until the
-  // mapper has ended. Snapshots that were taken before are not changed.
+  // stamps may begin again. Waits until the mapper has ended. Snapshots that were taken before are
+  // not changed.
   void Reset();
 
   // The newest snapshot; null before the first keyframe of a new map.
@@ -116,13 +116,13 @@ class System {
   // frames may be built long before they are tracked, and "track" is the sum of the two. May be
   // called at any time by the thread that calls Track; complete after Finish.
   StageTimes times() const;
-  // What has become of the objects of the map that the system began with, and which objects are
-  // new (docs/maps.md). Empty before Finish, and if no keyframe was added.
+  // The changes of the objects of the map that the system began with, and the new objects
+  // (docs/maps.md). Empty before Finish, and if no keyframe was added.
   const std::vector<ChangedObject>& object_changes() const;
-  // How many mapped objects have a size in ObjectOptions::sizes and could be measured. If there are
-  // any, they make the unit of length of a monocular map the metre.
+  // The number of mapped objects that have a size in ObjectOptions::sizes and could be measured. If
+  // there are any, they set the unit of length of a monocular map to the metre.
   size_t sized_objects() const;
-  // What became of the masks. May be called like times().
+  // The counts of masks. May be called like times().
   ObjectCounts object_counts() const;
 
  private:

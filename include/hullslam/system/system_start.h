@@ -7,11 +7,11 @@
 
 namespace hullslam {
 
-// What a System begins with.
+// The initial state of a System.
 struct SystemStart {
-  // The map of earlier sessions, for example from ReadMap(). It was made with the same camera,
-  // image pyramid and vocabulary. Tracking is lost until a frame is found in it. Without
-  // keyframes: a new map.
+  // The map of earlier sessions, for example from ReadMap(), made with the same camera, image
+  // pyramid and vocabulary. Tracking is lost until a frame is found in it. A map without keyframes
+  // stands for a new map.
   Map map = {};
   std::string session_name = {};  // for Map::sessions(), such as the name of the sequence
   // Whether poses are found in the map without changing anything in it.

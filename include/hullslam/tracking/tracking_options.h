@@ -10,7 +10,7 @@ namespace hullslam {
 struct TrackingOptions {
   int min_initial_points = 50;  // keypoints with depth in the first frame
   int min_inliers = 30;         // landmarks that must be found; with fewer a frame is lost
-  int local_keyframes = 80;     // at most so many give the landmarks of the local map
+  int local_keyframes = 80;     // largest number of keyframes in the local map
 
   // A keyframe is due if a frame finds a smaller share of the reference keyframe's landmarks.
   double keyframe_ratio = 0.95;
@@ -22,7 +22,7 @@ struct TrackingOptions {
   // mapped.
   std::string dynamic_classes = "person";
 
-  // How a lost frame is found in the map. By words needs a vocabulary, by objects needs masks.
+  // The methods that find a lost frame in the map. Words need a vocabulary, objects need masks.
   bool relocalise_by_words = true;
   bool relocalise_by_objects = true;
 

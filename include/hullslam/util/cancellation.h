@@ -17,8 +17,13 @@ class Cancellation {
   std::atomic<bool> requested_{false};
 };
 
-// Is told how far a long computation is: the number of iterations that are done, and the largest
-// number that there may be. The computation may end before it.
+// Whether the computation should stop. Null means that it cannot be cancelled.
+inline bool IsRequested(const Cancellation* cancellation) {
+  return cancellation != nullptr && cancellation->IsRequested();
+}
+
+// Called with the progress of a long computation: the number of iterations that are done, and the
+// largest possible number of iterations. The computation may end earlier.
 using ProgressCallback = std::function<void(int done, int most)>;
 
 }  // namespace hullslam

@@ -30,7 +30,7 @@ template <typename IdType, typename Value, size_t kChunkSize = 64>
 class CowTable {
  public:
   // Visits the values in the order of their ids. Like the pointer of Find(), it is valid until the
-  // next write. What it points to is a pair that is made on the spot, so it has no operator->.
+  // next write. operator* returns a temporary pair, so there is no operator->.
   class Iterator {
    public:
     using iterator_category = std::input_iterator_tag;
@@ -100,13 +100,13 @@ class CowTable {
   void Put(IdType id, Value value) {
     Check(id.IsValid() && !Contains(id), "the id is invalid or has a value");
     Block& block = WritableBlock(id.value / kBlockSize);
-    const size_t place = PlaceInBlock(id.value);
-    if (block.chunks[place] == nullptr) {
-      block.chunks[place] = std::make_shared<Chunk>();
-      block.owned.set(place);
+    const size_t chunk_index = IndexInBlock(id.value);
+    if (block.chunks[chunk_index] == nullptr) {
+      block.chunks[chunk_index] = std::make_shared<Chunk>();
+      block.owned.set(chunk_index);
       ++block.used;
     }
-    Chunk& chunk = WritableChunk(block, place);
+    Chunk& chunk = WritableChunk(block, chunk_index);
     chunk.slots[id.value % kChunkSize].emplace(std::move(value));
     ++chunk.used;
     ++size_;
@@ -129,19 +129,19 @@ class CowTable {
   Value& Mutable(IdType id) {
     Check(Find(id) != nullptr, "no value with this id");
     Block& block = WritableBlock(id.value / kBlockSize);
-    return *WritableChunk(block, PlaceInBlock(id.value)).slots[id.value % kChunkSize];
+    return *WritableChunk(block, IndexInBlock(id.value)).slots[id.value % kChunkSize];
   }
 
   void Erase(IdType id) {
     Check(Find(id) != nullptr, "no value with this id");
     Block& block = WritableBlock(id.value / kBlockSize);
-    const size_t place = PlaceInBlock(id.value);
-    if (block.chunks[place]->used > 1) {
-      Chunk& chunk = WritableChunk(block, place);
+    const size_t chunk_index = IndexInBlock(id.value);
+    if (block.chunks[chunk_index]->used > 1) {
+      Chunk& chunk = WritableChunk(block, chunk_index);
       chunk.slots[id.value % kChunkSize].reset();
       --chunk.used;
     } else if (block.used > 1) {
-      block.chunks[place] = nullptr;
+      block.chunks[chunk_index] = nullptr;
       --block.used;
     } else {
       blocks_[id.value / kBlockSize] = nullptr;
@@ -172,13 +172,13 @@ class CowTable {
   struct Block {
     std::array<std::shared_ptr<Chunk>, kFan> chunks;
     // The chunks that were created after the last snapshot; no other table can see them. The use
-    // count of the shared pointers would not do: reading it races with readers that release a
-    // snapshot. Only the table that owns the block reads this.
+    // counts of the shared pointers cannot replace these flags, because readers that release a
+    // snapshot change them at the same time. Only the table that owns the block reads the flags.
     std::bitset<kFan> owned;
     size_t used = 0;  // chunks that exist
   };
 
-  static size_t PlaceInBlock(size_t index) { return index / kChunkSize % kFan; }
+  static size_t IndexInBlock(size_t index) { return index / kChunkSize % kFan; }
   size_t Capacity() const { return kBlockSize * blocks_.size(); }
 
   // Null if there is no value under the id with this number.
@@ -187,7 +187,7 @@ class CowTable {
       return nullptr;
     }
     const Block* block = blocks_[index / kBlockSize].get();
-    const Chunk* chunk = block != nullptr ? block->chunks[PlaceInBlock(index)].get() : nullptr;
+    const Chunk* chunk = block != nullptr ? block->chunks[IndexInBlock(index)].get() : nullptr;
     if (chunk == nullptr) {
       return nullptr;
     }
@@ -195,7 +195,7 @@ class CowTable {
     return slot ? &*slot : nullptr;
   }
 
-  // The first number from `index` on under which there is a value; Capacity() if there is none.
+  // The first number that is at least `index` and has a value; Capacity() if there is none.
   size_t NextUsed(size_t index) const {
     while (index < Capacity()) {
       const Block* block = blocks_[index / kBlockSize].get();
@@ -203,7 +203,7 @@ class CowTable {
         index = (index / kBlockSize + 1) * kBlockSize;  // skips the whole block
         continue;
       }
-      const Chunk* chunk = block->chunks[PlaceInBlock(index)].get();
+      const Chunk* chunk = block->chunks[IndexInBlock(index)].get();
       if (chunk == nullptr) {
         index = (index / kChunkSize + 1) * kChunkSize;  // skips the whole chunk
       } else if (chunk->slots[index % kChunkSize]) {
@@ -233,12 +233,12 @@ class CowTable {
   }
 
   // A chunk of a block that this table owns.
-  static Chunk& WritableChunk(Block& block, size_t place) {
-    if (!block.owned[place]) {
-      block.chunks[place] = std::make_shared<Chunk>(*block.chunks[place]);
-      block.owned.set(place);
+  static Chunk& WritableChunk(Block& block, size_t chunk_index) {
+    if (!block.owned[chunk_index]) {
+      block.chunks[chunk_index] = std::make_shared<Chunk>(*block.chunks[chunk_index]);
+      block.owned.set(chunk_index);
     }
-    return *block.chunks[place];
+    return *block.chunks[chunk_index];
   }
 
   std::vector<std::shared_ptr<Block>> blocks_;

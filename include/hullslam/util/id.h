@@ -21,9 +21,9 @@ inline constexpr bool kIsRecycled<struct LandmarkTag> = true;
 // default value is invalid.
 //
 // Most ids are assigned in increasing order and are never used again. An id of a recycled kind
-// consists of a slot, which is used again, and of a generation, which counts how often it was. So
-// the id of an erased entity never equals that of a later one. Ids of a recycled kind are ordered
-// by their slots and say nothing about age.
+// consists of a slot, which is used again, and of a generation, which counts these uses. So the id
+// of an erased entity never equals that of a later one. Ids of a recycled kind are ordered by their
+// slots, which does not depend on age.
 template <typename Tag>
 struct Id {
   static constexpr bool kHasGeneration = kIsRecycled<Tag>;
@@ -40,7 +40,7 @@ struct Id {
       : value(generation << kSlotBits | slot) {}
   constexpr bool IsValid() const { return value != kInvalid; }
 
-  // The number of the place where a table keeps the entity.
+  // The number of the slot in which a table keeps the entity.
   constexpr uint32_t slot() const {
     if constexpr (kIsRecycled<Tag>) {
       return value & kMaxSlot;

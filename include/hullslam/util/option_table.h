@@ -13,7 +13,7 @@
 
 namespace hullslam {
 
-// An interval of allowed numbers; its lower end may be open.
+// An interval of allowed numbers. Its lower end may be excluded.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -47,8 +47,8 @@ class OptionTable {
   }
   // Numbers by name: `name:number` pairs that are separated by commas.
   void Add(std::string key, std::map<std::string, double>* field, Range range, std::string help);
-  // A key that sets several others at once, all bound before with the same type and value. What is
-  // set later wins, be it this key or one of the others.
+  // A key that sets several other keys at once. They must be bound before, with the same type and
+  // value. The last key that is set wins, whether it is this one or one of the others.
   void AddShared(std::string key, std::vector<std::string> members, std::string help);
   // Any text.
   void AddText(std::string key, std::string* field, std::string help);

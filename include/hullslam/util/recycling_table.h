@@ -16,8 +16,8 @@ namespace hullslam {
 
 // A table like CowTable whose ids are used again: the slot of an erased value is given to a later
 // value with the next generation. So the table is as large as the largest number of values that it
-// ever had at one time. An id of an erased value is found absent for ever, in this table and in its
-// snapshots: a slot whose generations are used up is not used again.
+// ever had at one time. The id of an erased value never finds another value, neither in this table
+// nor in its snapshots, because a slot whose generations are used up is not used again.
 //
 // The slot that was freed last is used first, so the same calls give the same ids. Iteration is in
 // the order of ids, which is that of their slots.
@@ -125,8 +125,8 @@ class RecyclingTable {
     return cell.id;
   }
 
-  // The next three functions make a table again of which the values, FreeIds() and used_slots() are
-  // known. The first two throw CheckError if the slot of the id is used.
+  // The next three functions restore a table from its values, FreeIds() and used_slots(). The first
+  // two throw CheckError if the slot of the id is used.
 
   // Stores a value under an id whose slot has not been used.
   void Put(IdType id, Value value) {
@@ -140,7 +140,8 @@ class RecyclingTable {
     cells_.Put(SlotId(id.slot()), {.id = id, .value = std::nullopt, .next_free = first_free_});
     first_free_ = id.slot();
   }
-  // The slots below `count` that hold no value and are not free are not used again.
+  // After this call, slots below `count` that neither hold a value nor are free will not be used
+  // again.
   void SkipSlots(uint32_t count) { cells_.SkipIds(SlotId(count)); }
 
   // Null if the id was never used or was erased. The pointer is valid until the next write.

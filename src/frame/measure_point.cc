@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "frame/point_measurement.h"
+#include "frame/measure_point.h"
 
 #include <optional>
 

@@ -10,10 +10,10 @@
 #include "hullslam/camera/pinhole.h"
 #include "util/chi_square.h"
 
-// The error of a point that a keypoint shows, with or without depth. Depth z counts as the
-// disparity bf / z of a virtual stereo pair, in which a sensor of structured light has about the
-// same error at all distances (Khoshelham and Elberink 2012). Pose estimation, bundle adjustment
-// and the creation and fusion of landmarks all use this error.
+// The measurement of a point by a keypoint, with or without depth, and its error. A depth z is
+// converted to the disparity bf / z of a virtual stereo pair, because the disparity of a
+// structured-light sensor has about the same error at all distances (Khoshelham and Elberink 2012).
+// Pose estimation, bundle adjustment and the creation and fusion of landmarks all use this error.
 namespace hullslam {
 
 inline constexpr double kMinDepth = 1e-3;  // m; the projection of nearer points has no meaning
@@ -40,10 +40,10 @@ inline Eigen::Matrix3d ProjectRgbdJacobian(const PinholeCamera& camera,
   return jacobian;
 }
 
-// What a keypoint says about its point.
+// The measurement of a point by a keypoint.
 struct PointMeasurement {
   Eigen::Vector3d measured = Eigen::Vector3d::Zero();  // u, v, disparity; px, undistorted
-  // Inverse standard deviations of the three, 1 / px; that of an unknown disparity is 0.
+  // Inverse standard deviations of the three numbers, 1 / px; 0 for an unknown disparity.
   Eigen::Vector3d inverse_sigma = Eigen::Vector3d(1.0, 1.0, 0.0);
 
   // `scale` is that of the keypoint's pyramid level. No disparity where the depth is unknown.
@@ -75,8 +75,8 @@ inline Eigen::Matrix3d PointResidualJacobian(const PinholeCamera& camera,
   return measurement.inverse_sigma.asDiagonal() * ProjectRgbdJacobian(camera, point);
 }
 
-// PointResidual and its derivative without the four zeros of the latter, for loops in which the
-// time to multiply zeros counts:
+// PointResidual and its derivative without the four zeros of the derivative, for inner loops, in
+// which multiplying by zeros would take time:
 //   du by (x, y, z) is (u_by_x, 0, u_by_z), dv is (0, v_by_y, v_by_z), d disparity (0, 0, d_by_z).
 struct PointLinearization {
   PointLinearization(const PinholeCamera& camera, const PointMeasurement& measurement,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "optim/place_share.h"
+#include "optim/keypoint_weights.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -12,11 +12,11 @@ constexpr float kRadius = 3.0f;  // px
 
 }  // namespace
 
-std::vector<double> SharesOfPlaces(const Keyframe& keyframe, const ScaleLevels& levels) {
+std::vector<double> KeypointWeights(const Keyframe& keyframe, const ScaleLevels& levels) {
   const FrameFeatures& features = keyframe.frame->features;
-  std::vector<double> shares(features.size(), 0.0);
+  std::vector<double> weights(features.size(), 0.0);
   std::vector<uint32_t> near;
-  for (size_t keypoint = 0; keypoint < shares.size(); ++keypoint) {
+  for (size_t keypoint = 0; keypoint < weights.size(); ++keypoint) {
     if (!keyframe.landmarks[keypoint].IsValid()) {
       continue;
     }
@@ -33,9 +33,9 @@ std::vector<double> SharesOfPlaces(const Keyframe& keyframe, const ScaleLevels& 
         sum += information;
       }
     }
-    shares[keypoint] = sum > 0.0 ? most / sum : 1.0;
+    weights[keypoint] = sum > 0.0 ? most / sum : 1.0;
   }
-  return shares;
+  return weights;
 }
 
 }  // namespace hullslam::internal

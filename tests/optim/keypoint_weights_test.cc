@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "optim/place_share.h"
+#include "optim/keypoint_weights.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace hullslam::internal {
 namespace {
 
 // A keyframe in which all keypoints show landmarks.
-class PlaceShare : public testing::Test {
+class KeypointWeightsTest : public testing::Test {
  protected:
   struct Seen {
     float u;
@@ -34,30 +34,30 @@ class PlaceShare : public testing::Test {
     return keyframe;
   }
   std::vector<double> Shares(const Keyframe& keyframe) const {
-    return SharesOfPlaces(keyframe, sensor_.levels);
+    return KeypointWeights(keyframe, sensor_.levels);
   }
 
   const Sensor sensor_ = SyntheticSensor();
 };
 
-TEST_F(PlaceShare, AllAtAPlaceWeighAsMuchAsTheMostPrecise) {
+TEST_F(KeypointWeightsTest, AllAtOnePositionWeighAsMuchAsTheMostPrecise) {
   const Keyframe keyframe = Make({{100.0f, 80.0f, 2}, {101.5f, 78.0f, 0}, {100.5f, 80.5f, 5}});
-  const std::vector<double> shares = Shares(keyframe);
+  const std::vector<double> weights = Shares(keyframe);
   double together = 0.0;
   for (const size_t i : {0U, 1U, 2U}) {
     const auto level = static_cast<size_t>(keyframe.frame->features.keypoints[i].level);
-    together += shares[i] * static_cast<double>(sensor_.levels.inverse_sigma2[level]);
-    EXPECT_EQ(shares[i], shares[0]);
+    together += weights[i] * static_cast<double>(sensor_.levels.inverse_sigma2[level]);
+    EXPECT_EQ(weights[i], weights[0]);
   }
   EXPECT_NEAR(together, 1.0, 1e-6) << "that of the finest level";
 }
 
-TEST_F(PlaceShare, IsAllOfAKeypointThatIsAlone) {
+TEST_F(KeypointWeightsTest, IsAllOfAKeypointThatIsAlone) {
   const Keyframe keyframe = Make({{100.0f, 80.0f, 3}, {103.5f, 80.0f, 0}, {100.0f, 76.5f, 0}});
   EXPECT_EQ(Shares(keyframe)[0], 1.0);
 }
 
-TEST_F(PlaceShare, KeypointsWithoutALandmarkDoNotCount) {
+TEST_F(KeypointWeightsTest, KeypointsWithoutALandmarkDoNotCount) {
   Keyframe keyframe = Make({{100.0f, 80.0f, 1}, {100.0f, 80.0f, 0}});
   EXPECT_LT(Shares(keyframe)[0], 1.0);
   keyframe.landmarks[1] = LandmarkId();

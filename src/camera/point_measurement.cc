@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 
 namespace hullslam {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "camera/depth_error.h"
+#include "camera/point_measurement.h"
 #include "hullslam/features/frame_features.h"
 #include "hullslam/frame/sensor.h"
 
