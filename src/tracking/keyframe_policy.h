@@ -43,8 +43,8 @@ struct KeyframePolicy {
   // finds too few landmarks of the reference keyframe, or close points would be lost; and the
   // mapper is idle, or the need is urgent. Two things differ from the paper. Keyframes are spread
   // evenly in time: a smaller loss of landmarks is enough, but there is a least time between
-  // keyframes (docs/decisions.md). Objects that are not mapped yet are another, less urgent reason,
-  // because objects are mapped from keyframes.
+  // keyframes (docs/decisions/tracking.md). Objects that are not mapped yet are another, less
+  // urgent reason, because objects are mapped from keyframes.
   //
   // A frame with fewer than `min_landmarks` landmarks is never a keyframe, even if objects give its
   // pose. Covisibility and bundle adjustment could not connect it with the others, and its new

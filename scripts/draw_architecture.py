@@ -1,0 +1,165 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws the pictures of docs/architecture.md into docs/images.
+
+architecture_modules.dot is written from LEVELS of check_layers.py, and
+architecture_data_flow.dot is written by hand. Both become SVG files by the program `dot` of
+Graphviz (Debian package graphviz). With --check nothing is drawn, and `dot` is not needed: the
+script fails if architecture_modules.dot is not what LEVELS says, or if a picture lacks a text of
+its .dot file.
+"""
+
+import argparse
+import html
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+from check_layers import LEVELS
+
+IMAGES = pathlib.Path(__file__).resolve().parent.parent / "docs" / "images"
+MODULES = "architecture_modules"
+DATA_FLOW = "architecture_data_flow"
+
+# What is in a module. A module without an entry is drawn by its name only.
+CONTENTS = {
+    "util": "ids, tables, checks, options",
+    "files": "safe reading and writing",
+    "geometry": "poses, conics, quadrics, hulls",
+    "camera": "pinhole, depth errors",
+    "features": "ORB",
+    "estimators": "RANSAC: poses, similarities",
+    "bow": "vocabulary, words",
+    "frame": "image, masks, detections",
+    "costs": "one residual per file",
+    "matching": "keypoints with landmarks",
+    "map": "keyframes, landmarks, objects",
+    "objects": "start, refinement, validity",
+    "places": "similar keyframes",
+    "optim": "bundle adjustment, pose graph",
+    "tracking": "pose of a frame",
+    "mapping": "keyframes, local map",
+    "loop": "loops, returns, islands",
+    "system": "class System, pipelines",
+    "report": "what a run reports",
+    "eval": "ATE, RPE, SIoU",
+    "io": "settings, sequences, files",
+    "settings": "YAML, ORB-SLAM3's keys",
+    "results": "trajectories, objects, PLY",
+    "sequences": "TUM, ICL, EuRoC, video",
+    "masks": "six formats",
+    "map_files": "maps, vocabularies",
+    "run": "what all programs share",
+    "synthetic": "renderer of scenes",
+}
+
+# Colours of the boxes: the foundation, the parts of the map, the stages, what a user calls. A
+# colour begins at the level of a module.
+COLOURS = (("util", "#e8f0f8"), ("frame", "#e3f2e1"), ("objects", "#fdf0d5"), ("system", "#f3e6f2"))
+
+
+def colour(level, levels):
+    """The colour of a module at `level`."""
+    return [shade for first, shade in COLOURS if levels.get(first, 0) <= level][-1]
+
+
+def cell(module, shade):
+    """A table cell with the name of a module and what is in it."""
+    text = f"<B>{html.escape(module)}</B>"
+    if module in CONTENTS:
+        text += f'  <FONT POINT-SIZE="12">{html.escape(CONTENTS[module])}</FONT>'
+    return (f'<TD BORDER="1" COLOR="#8a94a0" STYLE="ROUNDED" BGCOLOR="{shade}" '
+            f'CELLPADDING="7">{text}</TD>')
+
+
+def rows(levels):
+    """The rows of the picture, from the highest level down: (level, modules)."""
+    by_level = {}
+    for module, level in levels.items():
+        by_level.setdefault(level, []).append(module)
+    return sorted(by_level.items(), reverse=True)
+
+
+def modules_dot(levels):
+    """The text of architecture_modules.dot."""
+    lines = [
+        "// Written by scripts/draw_architecture.py from LEVELS of scripts/check_layers.py.",
+        "digraph modules {",
+        '  graph [bgcolor="white", pad=0.2]',
+        '  node [shape=plain, fontname="Helvetica,Arial,sans-serif", fontsize=14]',
+        '  modules [label=<<TABLE BORDER="0" CELLSPACING="0" CELLPADDING="2">',
+        '    <TR><TD COLSPAN="2" ALIGN="LEFT"><FONT POINT-SIZE="12">Modules and their levels. '
+        "A module includes only modules of lower levels.</FONT></TD></TR>",
+    ]
+    for level, modules in rows(levels):
+        cells = "".join(cell(module, colour(level, levels)) for module in modules)
+        lines.append(f'    <TR><TD ALIGN="RIGHT">{level}</TD><TD ALIGN="LEFT"><TABLE BORDER="0" '
+                     f'CELLSPACING="4" CELLPADDING="0"><TR>{cells}</TR></TABLE></TD></TR>')
+    lines += ["  </TABLE>>]", "}", ""]
+    return "\n".join(lines)
+
+
+def words(text):
+    """The words of a .dot or .svg text, without tags and entities."""
+    text = re.sub(r"<[^>]*>|\\[nlr]", " ", text)
+    return set(re.findall(r"\w+", html.unescape(text)))
+
+
+def labels(dot):
+    """The words that a .dot text shows: those of its HTML labels and of its quoted labels."""
+    shown = re.findall(r"label=<(.*?)>\]", dot, re.DOTALL)
+    shown += re.findall(r'label="([^"]*)"', dot)
+    return set().union(*(words(text) for text in shown)) if shown else set()
+
+
+def faults(folder, levels):
+    """What is wrong with the stored pictures in `folder`, as a list of lines."""
+    found = []
+    stored = folder / f"{MODULES}.dot"
+    if not stored.exists() or stored.read_text(encoding="utf-8") != modules_dot(levels):
+        found.append(f"{stored}: is not what LEVELS of check_layers.py says")
+    for name in (MODULES, DATA_FLOW):
+        dot, svg = folder / f"{name}.dot", folder / f"{name}.svg"
+        for path in (dot, svg):
+            if not path.exists():
+                found.append(f"{path}: there is no such file")
+        if dot.exists() and svg.exists():
+            missing = labels(dot.read_text(encoding="utf-8"))
+            missing -= words(svg.read_text(encoding="utf-8"))
+            if missing:
+                found.append(f"{svg}: lacks {', '.join(sorted(missing))}, which {dot.name} has")
+    return found
+
+
+def draw(folder, levels):
+    """Writes architecture_modules.dot and both pictures into `folder`."""
+    (folder / f"{MODULES}.dot").write_text(modules_dot(levels), encoding="utf-8")
+    for name in (MODULES, DATA_FLOW):
+        subprocess.run(["dot", "-Tsvg", f"{name}.dot", "-o", f"{name}.svg"], cwd=folder, check=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--check", action="store_true", help="only compare the stored pictures")
+    parser.add_argument("--images", type=pathlib.Path, default=IMAGES, metavar="DIR",
+                        help="folder of the .dot and .svg files (default: docs/images)")
+    arguments = parser.parse_args()
+    if arguments.check:
+        found = faults(arguments.images, LEVELS)
+        if found:
+            print("\n".join(found), file=sys.stderr)
+            print("run scripts/draw_architecture.py", file=sys.stderr)
+        return 1 if found else 0
+    if shutil.which("dot") is None:
+        print("error: the program dot is missing; install the Debian package graphviz",
+              file=sys.stderr)
+        return 2
+    draw(arguments.images, LEVELS)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
