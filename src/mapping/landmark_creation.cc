@@ -12,16 +12,14 @@
 #include "geometry/triangulation.h"
 #include "map/covisibility.h"
 #include "map/landmark_edits.h"
+#include "mapping/sensor_rules.h"
 #include "matching/for_triangulation.h"
 #include "util/median.h"
 
 namespace hullslam {
 namespace {
 
-constexpr size_t kNeighbours = 10;
-constexpr size_t kMonocularNeighbours = 20;  // without depth, all landmarks are made here
-constexpr double kMinBaseline = 0.005;       // over the median depth, without depth images
-constexpr double kMaxCosParallax = 0.9998;   // about 1.1 degrees, for pairs without depth
+constexpr double kMaxCosParallax = 0.9998;  // about 1.1 degrees, for pairs without depth
 // A monocular pair should have a parallax of so many standard deviations of its keypoints.
 constexpr double kMinParallaxSigmas = 2.0;
 
@@ -119,11 +117,10 @@ Eigen::Vector2d EpipoleOf(const Rigid3& b_from_a, const PinholeCamera& camera) {
   return is_parallel ? Eigen::Vector2d::Constant(-1e6) : camera.Project(center);
 }
 
-// The shortest baseline from which landmarks are made. Depth images are more precise than a shorter
-// one than their own; without them it depends on how far away the landmarks are.
-double MinBaseline(const Map& map, const Keyframe& keyframe, const Sensor& sensor) {
-  if (!sensor.IsMonocular()) {
-    return sensor.baseline();
+// The shortest baseline from which landmarks are made.
+double MinBaseline(const Map& map, const Keyframe& keyframe, const LandmarkRules& rules) {
+  if (rules.min_baseline) {
+    return *rules.min_baseline;
   }
   std::vector<double> depths;
   for (const LandmarkId id : keyframe.landmarks) {
@@ -134,13 +131,13 @@ double MinBaseline(const Map& map, const Keyframe& keyframe, const Sensor& senso
   if (depths.empty()) {
     return 0.0;
   }
-  return kMinBaseline * Median(std::move(depths));
+  return rules.min_baseline_share * Median(std::move(depths));
 }
 
 std::vector<Match> FindPairs(const Map& map, const Keyframe& a, const Keyframe& b,
-                             const Sensor& sensor) {
+                             const Sensor& sensor, const LandmarkRules& rules) {
   const Rigid3 b_from_a = b.cam_from_world * Inverse(a.cam_from_world);
-  if (b_from_a.translation.norm() < MinBaseline(map, b, sensor)) {
+  if (b_from_a.translation.norm() < MinBaseline(map, b, rules)) {
     return {};
   }
   Eigen::Matrix3d calibration = Eigen::Matrix3d::Identity();
@@ -227,16 +224,17 @@ std::optional<Eigen::Vector3d> LocateWithoutDepth(const View& a, const View& b,
 }  // namespace
 
 std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId id, const Sensor& sensor) {
-  const std::vector<KeyframeId> neighbours = BestCovisible(
-      map.keyframes().At(id), sensor.IsMonocular() ? kMonocularNeighbours : kNeighbours);
+  const LandmarkRules rules = LandmarkRules::ForSensor(sensor);
+  const std::vector<KeyframeId> neighbours =
+      BestCovisible(map.keyframes().At(id), rules.neighbours);
   std::optional<NearbyDepth> nearby;
-  if (sensor.IsMonocular()) {
+  if (rules.nearby_landmarks_decide) {
     nearby.emplace(map, map.keyframes().At(id));
   }
   std::vector<LandmarkId> created;
   for (const KeyframeId neighbour : neighbours) {
     for (const Match& pair :
-         FindPairs(map, map.keyframes().At(id), map.keyframes().At(neighbour), sensor)) {
+         FindPairs(map, map.keyframes().At(id), map.keyframes().At(neighbour), sensor, rules)) {
       const View a = MakeView(map.keyframes().At(id), pair.query, sensor);
       const View b = MakeView(map.keyframes().At(neighbour), pair.keypoint, sensor);
       const std::optional<Eigen::Vector3d> point =
