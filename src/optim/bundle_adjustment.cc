@@ -16,6 +16,7 @@
 #include "frame/point_measurement.h"
 #include "map/landmark_edits.h"
 #include "optim/bundle_points.h"
+#include "optim/bundle_rules.h"
 #include "optim/bundle_scale.h"
 #include "optim/eliminated_points.h"
 #include "optim/object_bundle.h"
@@ -63,7 +64,7 @@ class Bundle {
     for (const auto& [id, index] : pose_indices_.entries()) {
       const Keyframe& keyframe = map.keyframes().At(id);
       poses_.push_back(ToBlock(keyframe.cam_from_world));
-      if (sensor.IsMonocular()) {
+      if (BundleRules::ForSensor(sensor.kind).keypoints_share_weights) {
         shares.push_back(internal::SharesOfPlaces(keyframe, sensor.levels));
       }
     }
@@ -307,25 +308,20 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
   BundleResult result;
   Bundle bundle(map, sensor, window, options);
   bundle.ExcludeUndefined();
-  // Without depth, corners that slide along edges can change the scale. Poses follow them, so that
-  // their errors are too small for outliers, but not as small as those of others. Under Cauchy's
-  // loss such errors pull less than under Huber's.
-  const bool mono = sensor.IsMonocular();
-  if (mono) {
+  const BundleRules rules = BundleRules::ForSensor(sensor.kind);
+  if (rules.precision_is_measured) {
     bundle.MeasurePrecision();
   }
-  if (!bundle.Solve(options.robust_iterations, mono ? PointLoss::kCauchy : PointLoss::kHuber,
-                    supervision, result)) {
+  if (!bundle.Solve(options.robust_iterations, rules.robust_loss, supervision, result)) {
     return result;
   }
   // After a cancelled round the errors are not minimal, so they do not tell which are outliers.
   if (!supervision.IsCancelled()) {
-    if (mono) {
+    if (rules.precision_is_measured) {
       bundle.MeasurePrecision();
     }
     bundle.Classify();
-    if (!bundle.Solve(options.final_iterations, mono ? PointLoss::kCauchy : PointLoss::kNone,
-                      supervision, result)) {
+    if (!bundle.Solve(options.final_iterations, rules.final_loss, supervision, result)) {
       return result;
     }
     bundle.Classify();
@@ -340,7 +336,8 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& given, const Cancellation* cancellation,
                           const ProgressCallback& on_progress) {
-  const BundleOptions options = sensor.IsMonocular() ? given.WithoutDepth() : given;
+  const BundleRules rules = BundleRules::ForSensor(sensor.kind);
+  const BundleOptions options = rules.is_solved_precisely ? given.WithoutDepth() : given;
   const int most = options.robust_iterations + options.final_iterations;
   Supervision supervision(cancellation, on_progress, most);
   BundleResult result = Adjust(map, sensor, window, options, supervision);
@@ -351,7 +348,7 @@ BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWind
     result = Adjust(map, sensor, points_only, options, again);
     result.failed_objects = window.objects;
   }
-  if (sensor.IsMonocular() && result.is_usable && window.fixed.size() == 1) {
+  if (rules.keeps_scale && result.is_usable && window.fixed.size() == 1) {
     KeepScale(map, window.fixed.front(), result);
   }
   return result;
