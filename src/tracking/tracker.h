@@ -11,6 +11,7 @@
 #include "hullslam/objects/object_options.h"
 #include "hullslam/tracking/tracking_options.h"
 #include "hullslam/util/stage_timer.h"
+#include "tracking/island_rules.h"
 #include "tracking/keyframe_policy.h"
 #include "tracking/last_frame.h"
 #include "tracking/local_map_tracking.h"
@@ -81,6 +82,7 @@ class Tracker {
                               const RelativePose& pose);
 
   const Sensor& sensor_;
+  const IslandRules island_rules_;
   const TrackingOptions options_;
   const ObjectOptions object_options_;
   const uint64_t seed_;
