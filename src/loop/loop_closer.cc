@@ -85,8 +85,9 @@ std::optional<MapCorrection> LoopCloser::JoinReturn(const LoopQuery& query) {
 std::optional<MapCorrection> LoopCloser::Close(LoopQuery& query, const LoopCandidate& candidate,
                                                std::string& refusal) const {
   const Map& map = query.map;
-  const LoopVerdict verdict = VerifyLoop(map, sensor_, query.keyframe, candidate.keyframe,
-                                         !sensor_.IsMonocular(), seed_, options_);
+  const bool fix_scale = !sensor_.IsMonocular();
+  const LoopVerdict verdict =
+      VerifyLoop(map, sensor_, query.keyframe, candidate.keyframe, fix_scale, seed_, options_);
   if (!verdict.loop) {
     refusal = verdict.refusal;
     return std::nullopt;
@@ -100,7 +101,7 @@ std::optional<MapCorrection> LoopCloser::Close(LoopQuery& query, const LoopCandi
     }
   }
   MapCorrection correction =
-      is_join ? MoveIsland(map, loop) : SpreadLoopError(map, loop, !sensor_.IsMonocular());
+      is_join ? MoveIsland(map, loop) : SpreadLoopError(map, loop, fix_scale);
   if (correction.poses.empty()) {
     refusal = "the pose graph could not be solved";
     return std::nullopt;

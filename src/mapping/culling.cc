@@ -9,6 +9,7 @@
 #include <span>
 
 #include "map/islands.h"
+#include "mapping/sensor_rules.h"
 #include "objects/object_view.h"
 #include "objects/point_statistics.h"
 
@@ -17,14 +18,9 @@ namespace {
 
 constexpr double kMinFoundRatio = 0.25;
 constexpr uint32_t kTrialKeyframes = 2;  // at this age landmarks of small weight are erased
-// An observation with depth weighs as much as two without depth.
-constexpr int kMaxWeakWeight = 3;
-constexpr int kMaxWeakMonocularWeight = 2;
-constexpr size_t kOtherObservers = 3;
-constexpr size_t kOtherMonocularObservers = 4;
 constexpr double kRedundantShare = 0.9;
-// Two keyframes of a monocular camera see a landmark from the same viewpoint if its parallax
-// between them is smaller than this many standard deviations.
+// Two keyframes see a landmark from the same viewpoint if its parallax between them is smaller than
+// this many standard deviations.
 constexpr double kSameViewpointSigmas = 2.0;
 // With fewer landmarks, the share of redundant landmarks is not reliable.
 constexpr int kMinLandmarks = 20;
@@ -38,14 +34,12 @@ Eigen::Vector3d RayTo(const Rigid3& cam_from_world, const Eigen::Vector3d& point
   return (point - Inverse(cam_from_world).translation).normalized();
 }
 
-// Whether enough other keyframes see the landmark, in the monocular case from different viewpoints.
-// Only landmarks that are seen from three viewpoints transfer the scale of a monocular map from one
-// pair of keyframes to the next.
+// Whether enough other keyframes see the landmark. If the rules say so, only keyframes with
+// different viewpoints count.
 bool IsSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId id, int level,
-                    const Sensor& sensor) {
-  const size_t enough = sensor.IsMonocular() ? kOtherMonocularObservers : kOtherObservers;
+                    const Sensor& sensor, const CullingRules& rules) {
   const double max_cos = std::cos(kSameViewpointSigmas * std::sqrt(2.0) / sensor.camera.fx);
-  std::array<Eigen::Vector3d, kOtherMonocularObservers> rays;
+  std::array<Eigen::Vector3d, CullingRules::kMaxOtherObservers> rays;
   size_t others = 0;
   for (const Observation& observation : landmark.observations) {
     const Keyframe& keyframe = map.keyframes().At(observation.keyframe);
@@ -53,7 +47,7 @@ bool IsSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId id, int
         keyframe.frame->features.keypoints[observation.keypoint].level > level + 1) {
       continue;
     }
-    if (sensor.IsMonocular()) {
+    if (rules.observers_need_parallax) {
       rays[others] = RayTo(keyframe.cam_from_world, landmark.position);
       const bool is_same_viewpoint =
           std::any_of(rays.begin(), rays.begin() + others,
@@ -62,7 +56,7 @@ bool IsSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId id, int
         continue;
       }
     }
-    if (++others == enough) {
+    if (++others == rules.other_observers) {
       return true;
     }
   }
@@ -83,7 +77,7 @@ struct Redundancy {
   }
 };
 
-bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor) {
+bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor, const CullingRules& rules) {
   const Keyframe& keyframe = map.keyframes().At(id);
   const FrameFeatures& features = keyframe.frame->features;
   Redundancy close;
@@ -94,7 +88,7 @@ bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor) {
     }
     const Landmark& landmark = map.landmarks().At(keyframe.landmarks[i]);
     const bool is_redundant =
-        IsSeenByOthers(map, landmark, id, features.keypoints[i].level, sensor);
+        IsSeenByOthers(map, landmark, id, features.keypoints[i].level, sensor, rules);
     const double depth = static_cast<double>(features.depth[i]);
     all.Count(is_redundant);
     if (depth > 0.0 && depth <= sensor.close_depth) {
@@ -146,7 +140,7 @@ bool IsNeededByAnObject(const Map& map, KeyframeId id, size_t min_views) {
 void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
                          std::vector<LandmarkId>& recent) {
   const IslandId island = IslandOf(map, current);
-  const int max_weak = sensor.IsMonocular() ? kMaxWeakMonocularWeight : kMaxWeakWeight;
+  const int max_weak = CullingRules::ForSensor(sensor.kind).max_weak_weight;
   std::erase_if(recent, [&](LandmarkId id) {
     const Landmark* landmark = map.landmarks().Find(id);
     if (landmark == nullptr || IslandOf(map, landmark->reference) != island) {
@@ -175,12 +169,13 @@ std::vector<LandmarkId> FindRecentLandmarks(const Map& map) {
 }
 
 int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views) {
+  const CullingRules rules = CullingRules::ForSensor(sensor.kind);
   int culled = 0;
   const std::vector<Covisible> candidates = map.keyframes().At(current).covisible;
   for (const Covisible& candidate : candidates) {
     const Keyframe* keyframe = map.keyframes().Find(candidate.keyframe);
     const bool is_root = keyframe == nullptr || !keyframe->parent.IsValid();
-    if (!is_root && IsRedundant(map, candidate.keyframe, sensor) &&
+    if (!is_root && IsRedundant(map, candidate.keyframe, sensor, rules) &&
         !IsNeededByAnObject(map, candidate.keyframe, min_object_views)) {
       map.CullKeyframe(candidate.keyframe);
       ++culled;

@@ -12,16 +12,14 @@
 #include "geometry/triangulation.h"
 #include "map/covisibility.h"
 #include "map/landmark_edits.h"
+#include "mapping/sensor_rules.h"
 #include "matching/for_triangulation.h"
 #include "util/median.h"
 
 namespace hullslam {
 namespace {
 
-constexpr size_t kNeighbours = 10;
-constexpr size_t kMonocularNeighbours = 20;  // more, because no landmarks come from depth
-constexpr double kMinBaseline = 0.005;       // over the median depth, monocular
-constexpr double kMaxCosParallax = 0.9998;   // about 1.1 degrees, if both depths are unknown
+constexpr double kMaxCosParallax = 0.9998;  // about 1.1 degrees, if both depths are unknown
 // Least expected parallax of a monocular pair, in standard deviations of its keypoints.
 constexpr double kMinParallaxSigmas = 2.0;
 
@@ -122,9 +120,9 @@ Eigen::Vector2d EpipoleOf(const Rigid3& b_from_a, const PinholeCamera& camera) {
 // The shortest baseline from which landmarks are made. Below the virtual stereo baseline, depth is
 // more precise than triangulation. For a monocular sensor the shortest baseline depends on the
 // depths of the landmarks.
-double MinBaseline(const Map& map, const Keyframe& keyframe, const Sensor& sensor) {
-  if (!sensor.IsMonocular()) {
-    return sensor.baseline();
+double MinBaseline(const Map& map, const Keyframe& keyframe, const LandmarkRules& rules) {
+  if (rules.min_baseline) {
+    return *rules.min_baseline;
   }
   std::vector<double> depths;
   for (const LandmarkId id : keyframe.landmarks) {
@@ -135,13 +133,13 @@ double MinBaseline(const Map& map, const Keyframe& keyframe, const Sensor& senso
   if (depths.empty()) {
     return 0.0;
   }
-  return kMinBaseline * Median(std::move(depths));
+  return rules.min_baseline_share * Median(std::move(depths));
 }
 
 std::vector<Match> FindPairs(const Map& map, const Keyframe& a, const Keyframe& b,
-                             const Sensor& sensor) {
+                             const Sensor& sensor, const LandmarkRules& rules) {
   const Rigid3 b_from_a = b.cam_from_world * Inverse(a.cam_from_world);
-  if (b_from_a.translation.norm() < MinBaseline(map, b, sensor)) {
+  if (b_from_a.translation.norm() < MinBaseline(map, b, rules)) {
     return {};
   }
   const Eigen::Matrix3d calibration = sensor.camera.Matrix();
@@ -224,16 +222,17 @@ std::optional<Eigen::Vector3d> LocateMonocular(const View& a, const View& b,
 }  // namespace
 
 std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId id, const Sensor& sensor) {
-  const std::vector<KeyframeId> neighbours = BestCovisible(
-      map.keyframes().At(id), sensor.IsMonocular() ? kMonocularNeighbours : kNeighbours);
+  const LandmarkRules rules = LandmarkRules::ForSensor(sensor);
+  const std::vector<KeyframeId> neighbours =
+      BestCovisible(map.keyframes().At(id), rules.neighbours);
   std::optional<NearbyDepth> nearby;
-  if (sensor.IsMonocular()) {
+  if (rules.nearby_landmarks_decide) {
     nearby.emplace(map, map.keyframes().At(id));
   }
   std::vector<LandmarkId> created;
   for (const KeyframeId neighbour : neighbours) {
     for (const Match& pair :
-         FindPairs(map, map.keyframes().At(id), map.keyframes().At(neighbour), sensor)) {
+         FindPairs(map, map.keyframes().At(id), map.keyframes().At(neighbour), sensor, rules)) {
       const View a = MakeView(map.keyframes().At(id), pair.query, sensor);
       const View b = MakeView(map.keyframes().At(neighbour), pair.keypoint, sensor);
       const std::optional<Eigen::Vector3d> point =

@@ -34,6 +34,58 @@ bool IsDue(const ObjectLandmark& object) {
   return views < object.shaped_views || views > object.shaped_views + object.shaped_views / 8;
 }
 
+// The spheres that an object without depth can start from.
+struct StartSpheres {
+  std::optional<Ellipsoid> by_landmarks;
+  std::optional<Ellipsoid> by_rays;
+
+  const std::optional<Ellipsoid>& Better() const { return by_landmarks ? by_landmarks : by_rays; }
+};
+
+StartSpheres FindStartSpheres(const PinholeCamera& camera, std::span<const ObjectView> views,
+                              const StartOptions& options) {
+  return {.by_landmarks = StartFromLandmarks(camera, views, options),
+          .by_rays = StartFromRays(camera, views, options)};
+}
+
+// The starts of an object with depth are boxes of its points, those of others are the spheres.
+std::vector<Ellipsoid> CollectStarts(bool has_depth, const StartSpheres& spheres,
+                                     std::span<const ObjectView> views,
+                                     const Eigen::Vector3d& center, const StartOptions& options) {
+  if (has_depth) {
+    return StartsFromPoints(CollectPoints(views, static_cast<size_t>(options.max_points)),
+                            MeanDistance(views, center), options);
+  }
+  std::vector<Ellipsoid> starts;
+  for (const auto* sphere : {&spheres.by_landmarks, &spheres.by_rays}) {
+    if (*sphere) {
+      starts.push_back(**sphere);
+    }
+  }
+  return starts;
+}
+
+struct RefinedStart {
+  Ellipsoid start;
+  Refinement refinement;
+};
+
+// Refines every start and returns the one with the least cost. Its refinement is not usable if the
+// solver failed for all of them.
+RefinedStart RefineBest(std::span<const Ellipsoid> starts, const Sensor& sensor,
+                        std::span<const ObjectView> views, const ObjectRefinementOptions& options) {
+  RefinedStart best;
+  best.refinement.cost = std::numeric_limits<double>::infinity();
+  for (const Ellipsoid& start : starts) {
+    const Refinement refined =
+        RefineEllipsoid(start, start, sensor, views, options.max_misfit_px, options);
+    if (refined.is_usable && refined.cost < best.refinement.cost) {
+      best = {.start = start, .refinement = refined};
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 ObjectMapper::ObjectMapper(const Sensor& sensor, const ObjectOptions& options)
@@ -126,11 +178,9 @@ void ObjectMapper::Update(Map& map, ObjectId id) {
 // Computes the shape of a candidate: refines several starts and takes the best result.
 void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> views) {
   const bool has_depth = HasDepth(views);
-  const auto by_landmarks =
-      has_depth ? std::nullopt : StartFromLandmarks(sensor_.camera, views, options_.start);
-  const auto by_rays =
-      has_depth ? std::nullopt : StartFromRays(sensor_.camera, views, options_.start);
-  const auto& sphere = by_landmarks ? by_landmarks : by_rays;
+  const StartSpheres spheres =
+      has_depth ? StartSpheres{} : FindStartSpheres(sensor_.camera, views, options_.start);
+  const std::optional<Ellipsoid>& sphere = spheres.Better();
   if (!has_depth && !sphere) {
     Reject(map, id, {ObjectRejection::kNoStart, "the rays to the object do not meet"});
     return;
@@ -138,8 +188,9 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
   const Eigen::Vector3d center =
       sphere ? sphere->world_from_object.translation : MeanOf(CollectPoints(views, kFewPoints));
   const double parallax = Parallax(views, center);
-  const double min_parallax = has_depth || by_landmarks ? options_.start.min_parallax
-                                                        : options_.start.min_parallax_without_depth;
+  const double min_parallax = has_depth || spheres.by_landmarks
+                                  ? options_.start.min_parallax
+                                  : options_.start.min_parallax_without_depth;
   if (parallax < min_parallax) {
     Reject(
         map, id,
@@ -147,40 +198,22 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
          fmt::format("parallax {:.1f} degrees, expected at least {:.1f}", parallax, min_parallax)});
     return;
   }
-  std::vector<Ellipsoid> starts;
-  if (has_depth) {
-    starts = StartsFromPoints(CollectPoints(views, static_cast<size_t>(options_.start.max_points)),
-                              MeanDistance(views, center), options_.start);
-  }
-  for (const auto* start : {&by_landmarks, &by_rays}) {
-    if (*start) {
-      starts.push_back(**start);
-    }
-  }
+  const std::vector<Ellipsoid> starts =
+      CollectStarts(has_depth, spheres, views, center, options_.start);
   if (starts.empty()) {
     Reject(map, id, {ObjectRejection::kNoStart, "too few depth points for a start"});
     return;
   }
-  Refinement best;
-  best.cost = std::numeric_limits<double>::infinity();
-  Ellipsoid best_start;
-  for (const Ellipsoid& start : starts) {
-    const Refinement refined = RefineEllipsoid(
-        start, start, sensor_, views, options_.refinement.max_misfit_px, options_.refinement);
-    if (refined.is_usable && refined.cost < best.cost) {
-      best = refined;
-      best_start = start;
-    }
-  }
-  if (!best.is_usable) {
+  const RefinedStart best = RefineBest(starts, sensor_, views, options_.refinement);
+  if (!best.refinement.is_usable) {
     Reject(map, id, {ObjectRejection::kNotRefined, "the solver failed"});
     return;
   }
   ObjectLandmark& object = map.MutableObject(id);
   object.has_shape = true;
-  object.ellipsoid = best.ellipsoid;
-  object.start = best_start;
-  if (const auto objection = FindObjection(best.ellipsoid, sensor_, views, options_.validity)) {
+  object.ellipsoid = best.refinement.ellipsoid;
+  object.start = best.start;
+  if (const auto objection = FindObjection(object.ellipsoid, sensor_, views, options_.validity)) {
     Reject(map, id, *objection);
     return;
   }

@@ -13,6 +13,7 @@
 #include "costs/reprojection.h"
 #include "costs/reprojection_rgbd.h"
 #include "frame/measure_point.h"
+#include "optim/bundle_options.h"
 #include "optim/bundle_points.h"
 #include "optim/bundle_scale.h"
 #include "optim/eliminated_points.h"
@@ -54,7 +55,7 @@ class Bundle {
     for (const auto& [id, index] : pose_indices_.entries()) {
       const Keyframe& keyframe = map.keyframes().At(id);
       poses_.push_back(ToBlock(keyframe.cam_from_world));
-      if (sensor.IsMonocular()) {
+      if (BundleRules::ForSensor(sensor.kind).keypoints_share_weights) {
         weights.push_back(internal::KeypointWeights(keyframe, sensor.levels));
       }
     }
@@ -290,25 +291,20 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
   BundleResult result;
   Bundle bundle(map, sensor, window, options);
   bundle.ExcludeUndefined();
-  // In monocular maps, corners that slide along edges can change the scale. The poses adapt to
-  // these corners, so their errors are too small to be outliers, but larger than the errors of true
-  // points. Such errors have less influence under Cauchy's loss than under Huber's.
-  const bool is_monocular = sensor.IsMonocular();
-  if (is_monocular) {
+  const BundleRules rules = BundleRules::ForSensor(sensor.kind);
+  if (rules.precision_is_measured) {
     bundle.MeasurePrecision();
   }
-  if (!bundle.Solve(options.robust_iterations,
-                    is_monocular ? PointLoss::kCauchy : PointLoss::kHuber, supervision, result)) {
+  if (!bundle.Solve(options.robust_iterations, rules.robust_loss, supervision, result)) {
     return result;
   }
   // After a cancelled round the errors are not minimal, so outliers cannot be recognised.
   if (!supervision.IsCancelled()) {
-    if (is_monocular) {
+    if (rules.precision_is_measured) {
       bundle.MeasurePrecision();
     }
     bundle.Classify();
-    if (!bundle.Solve(options.final_iterations,
-                      is_monocular ? PointLoss::kCauchy : PointLoss::kNone, supervision, result)) {
+    if (!bundle.Solve(options.final_iterations, rules.final_loss, supervision, result)) {
       return result;
     }
     bundle.Classify();
@@ -323,7 +319,8 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& given, const Cancellation* cancellation,
                           const ProgressCallback& on_progress) {
-  const BundleOptions options = sensor.IsMonocular() ? given.ForMonocular() : given;
+  const BundleRules rules = BundleRules::ForSensor(sensor.kind);
+  const BundleOptions options = rules.is_solved_precisely ? given.ForMonocular() : given;
   const int most = options.robust_iterations + options.final_iterations;
   Supervision supervision(cancellation, on_progress, most);
   BundleResult result = Adjust(map, sensor, window, options, supervision);
@@ -334,7 +331,7 @@ BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWind
     result = Adjust(map, sensor, points_only, options, again);
     result.failed_objects = window.objects;
   }
-  if (sensor.IsMonocular() && result.is_usable && window.fixed.size() == 1) {
+  if (rules.keeps_scale && result.is_usable && window.fixed.size() == 1) {
     KeepScale(map, window.fixed.front(), result);
   }
   return result;

@@ -8,7 +8,7 @@
 #include "hullslam/map/map.h"
 #include "hullslam/objects/object_options.h"
 #include "optim/joint_pose_optimization.h"
-#include "tracking/pose_estimate.h"
+#include "tracking/pose_refinement.h"
 #include "tracking/tracking_context.h"
 
 namespace hullslam {

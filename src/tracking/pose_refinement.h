@@ -2,14 +2,33 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "hullslam/frame/frame.h"
+#include "hullslam/geometry/rigid3.h"
 #include "hullslam/map/map.h"
+#include "hullslam/util/id.h"
 #include "optim/joint_pose_optimization.h"
-#include "tracking/pose_estimate.h"
 #include "tracking/tracking_context.h"
 
 namespace hullslam {
+
+// The pose of a frame, with the landmarks that were found in the frame.
+struct PoseEstimate {
+  // An object that constrains a pose counts as this many landmarks.
+  static constexpr int kLandmarksPerObject = 5;
+
+  Rigid3 cam_from_world;
+  std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it shows no landmark
+  int inliers = 0;                    // landmarks that agree with the pose
+  int used_objects = 0;               // objects that constrain the pose
+  // A keyframe that shows the same place as the frame; invalid if the landmarks determine the
+  // place.
+  KeyframeId keyframe_of_place;
+
+  // The number of landmarks that would constrain the pose as much as the landmarks and objects do.
+  int EffectiveInliers() const { return inliers + kLandmarksPerObject * used_objects; }
+};
 
 // The estimate with the pose that its landmarks and the objects explain best (OptimizeJointPose).
 // Landmarks that do not agree with this pose are left out of it.

@@ -8,7 +8,7 @@
 #include "hullslam/frame/frame.h"
 #include "hullslam/map/map.h"
 #include "tracking/last_frame.h"
-#include "tracking/pose_estimate.h"
+#include "tracking/pose_refinement.h"
 #include "tracking/tracking_context.h"
 
 namespace hullslam {

@@ -9,7 +9,7 @@
 #include "hullslam/map/messages.h"
 #include "tracking/last_frame.h"
 #include "tracking/local_map_tracking.h"
-#include "tracking/pose_estimate.h"
+#include "tracking/pose_refinement.h"
 #include "tracking/tracking_context.h"
 
 namespace hullslam {

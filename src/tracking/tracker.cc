@@ -90,6 +90,7 @@ Tracker::Result MakeResult(std::shared_ptr<const Frame> frame, TrackingState sta
 Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects,
                  uint64_t seed)
     : sensor_(sensor),
+      island_rules_(IslandRules::ForSensor(sensor.kind)),
       options_(options),
       object_options_(objects),
       seed_(seed),
@@ -106,8 +107,8 @@ Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared
   const ScopedTimer timer(times_, "pose");
   const bool has_map = map != nullptr && !map->keyframes().empty();
   if (!has_map) {
-    return sensor_.IsMonocular() ? InitializeMonocular(std::move(frame))
-                                 : Initialize(std::move(frame));
+    return island_rules_.needs_motion ? InitializeMonocular(std::move(frame))
+                                      : Initialize(std::move(frame));
   }
   return Track(std::move(frame), *map, mapper);
 }
@@ -154,7 +155,7 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   if (last_.frame != nullptr) {
     last_ = FollowMap(map, std::move(last_));
   }
-  if (sensor_.IsMonocular() && !is_localizing_only_ && IsYoung(map)) {
+  if (island_rules_.needs_motion && !is_localizing_only_ && IsYoung(map)) {
     early_.Keep(frame);
   }
   if (!frame->detections.empty()) {
@@ -255,7 +256,7 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map
 // In an island that is not young, the camera may soon be found again, and only place recognition,
 // which needs words, can join a new island to it. In a young island there is little to be found.
 bool Tracker::MayBeginIsland(const Frame& frame, const Map& map) const {
-  if (!sensor_.IsMonocular() || is_localizing_only_) {
+  if (!island_rules_.begins_when_lost || is_localizing_only_) {
     return false;
   }
   const bool has_waited = frame.timestamp - *lost_since_ >= kPatience;

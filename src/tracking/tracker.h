@@ -76,6 +76,7 @@ class Tracker {
                               const RelativePose& pose);
 
   const Sensor& sensor_;
+  const IslandRules island_rules_;
   const TrackingOptions options_;
   const ObjectOptions object_options_;
   const uint64_t seed_;

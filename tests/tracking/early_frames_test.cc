@@ -76,5 +76,17 @@ TEST_F(EarlyFramesTest, TheOldestAreForgottenIfThereAreTooMany) {
   EXPECT_EQ(found.front().frame, FrameId(1005));
 }
 
+TEST(IslandRules, WithDepthOneFrameMakesTheOnlyIsland) {
+  const IslandRules rules = IslandRules::ForSensor(SensorKind::kRgbd);
+  EXPECT_FALSE(rules.needs_motion);
+  EXPECT_FALSE(rules.begins_when_lost);
+}
+
+TEST(IslandRules, AMonocularCameraNeedsMotionAndGoesOnWhenLost) {
+  const IslandRules rules = IslandRules::ForSensor(SensorKind::kMonocular);
+  EXPECT_TRUE(rules.needs_motion);
+  EXPECT_TRUE(rules.begins_when_lost);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -905,7 +905,10 @@ TEST(Tracker, RemovesTheEffectOfARollingShutter) {
 // Frames without depth of a moving camera, before there is a map.
 class MonocularTracker : public testing::Test {
  protected:
-  MonocularTracker() { sensor_.kind = SensorKind::kMonocular; }
+  static Sensor WithoutDepth(Sensor sensor) {
+    sensor.kind = SensorKind::kMonocular;
+    return sensor;
+  }
   // Gives frames to the tracker until it sends a map; returns the number of the last one.
   uint32_t WaitForMap() {
     for (uint32_t i = 0; i < 40; ++i) {
@@ -923,7 +926,7 @@ class MonocularTracker : public testing::Test {
   }
 
   const SyntheticWorld world_{{.points = 300, .depth_share = 0.0}};
-  Sensor sensor_ = world_.sensor();
+  const Sensor sensor_ = WithoutDepth(world_.sensor());
   TrackingOptions options_;
   Tracker tracker_{sensor_, options_};
 };

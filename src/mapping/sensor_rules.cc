@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mapping/sensor_rules.h"
+
+namespace hullslam {
+
+CullingRules CullingRules::ForSensor(SensorKind kind) {
+  if (kind == SensorKind::kMonocular) {
+    // Only landmarks that are seen from three viewpoints carry the scale from one pair of keyframes
+    // to the next. So the two keyframes that a landmark is made of are not enough, and a keyframe
+    // is needed until four others see its landmarks from different viewpoints.
+    return {.max_weak_weight = 2, .other_observers = 4, .observers_need_parallax = true};
+  }
+  // Depth gives every keyframe the scale. One observation with depth and one without are too few.
+  return {.max_weak_weight = 3, .other_observers = 3, .observers_need_parallax = false};
+}
+
+LandmarkRules LandmarkRules::ForSensor(const Sensor& sensor) {
+  if (sensor.IsMonocular()) {
+    // All landmarks are made from pairs, so more pairs are tried. There are no metres, so the
+    // shortest baseline depends on how far away the landmarks are. Without depth to fall back on, a
+    // pair whose parallax is only noise gives a landmark that is too near.
+    return {.neighbours = 20,
+            .min_baseline = std::nullopt,
+            .min_baseline_share = 0.005,
+            .nearby_landmarks_decide = true};
+  }
+  // Keyframes have made landmarks of their depth already. Depth is more precise than triangulation
+  // over a baseline that is shorter than that of the virtual stereo pair.
+  return {.neighbours = 10,
+          .min_baseline = sensor.baseline(),
+          .min_baseline_share = 0.0,
+          .nearby_landmarks_decide = false};
+}
+
+}  // namespace hullslam

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "hullslam/frame/sensor.h"
+
+namespace hullslam {
+
+// How the mapping of points depends on the sensor.
+
+// When landmarks and keyframes are removed.
+struct CullingRules {
+  static constexpr size_t kMaxOtherObservers = 4;  // of all sensors
+
+  // After its trial a landmark is removed if its observation weight is not larger than this. An
+  // observation with depth weighs 2, one without weighs 1.
+  int max_weak_weight = 0;
+  // A keyframe adds nothing to a landmark that so many other keyframes see too.
+  size_t other_observers = 0;
+  // Whether keyframes between which the landmark has no measurable parallax count as one.
+  bool observers_need_parallax = false;
+
+  static CullingRules ForSensor(SensorKind kind);
+};
+
+// From which pairs of keyframes landmarks are made, and where they are put.
+struct LandmarkRules {
+  size_t neighbours = 0;  // number of best covisible keyframes that are paired with a new one
+  // Shortest baseline of a pair, m. Absent: `min_baseline_share` of the median depth of the
+  // landmarks.
+  std::optional<double> min_baseline;
+  double min_baseline_share = 0.0;
+  // Whether the landmarks beside a pair of keypoints decide if its parallax is large enough.
+  // Otherwise the parallax of the pair itself decides, and its depth is used if it is too small.
+  bool nearby_landmarks_decide = false;
+
+  static LandmarkRules ForSensor(const Sensor& sensor);
+};
+
+}  // namespace hullslam
