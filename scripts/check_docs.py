@@ -3,10 +3,10 @@
 """Checks the documents of HullSLAM (README.md, docs/ and the other Markdown files) by these rules:
 
 1. Every key of a setting or of summary.json that a document names in code exists. Keys are the names
-   in the first column of the tables of docs/settings.md (settings, old names, names of ORB-SLAM3)
-   and of docs/outputs.md (summary.json). `objects.pose.*` stands for the keys that begin so; it
-   needs one. A name is taken for a key if it begins like one of a table whose first column is called
-   key or name.
+   in the first column of the tables of docs/settings.md (settings, names of ORB-SLAM3) and of
+   docs/outputs.md (summary.json), and earlier names of settings, which src pairs with the new ones.
+   `objects.pose.*` stands for the keys that begin so; it needs one. A name is taken for a key if it
+   begins like one of a table whose first column is called key or name.
 2. Every link to a file, an image or a heading of this repository leads somewhere.
 3. Every file of this repository that a document names in code exists, for example `scripts/demo.sh`
    or `map/map.h`, which may be in src or in include/hullslam. `costs/quadric_*.h` needs one such
@@ -30,6 +30,7 @@ DOCUMENTS = ("README.md", "docs/**/*.md", "config/**/*.md", "Vocabulary/*.md", "
 FOLDERS = ("src", "include", "scripts", "config", "docs", "tests", "Examples", "tools", "bench",
            "python", "web", "Vocabulary", "Thirdparty")
 
+EARLIER_NAME = re.compile(r'\{\s*"([\w.]+)",\s*"([\w.]+)"\s*\}')
 FENCE = re.compile(r"^\s*(```|~~~)")
 INLINE_CODE = re.compile(r"(`+)(?!`)(.+?)(?<!`)\1(?!`)")
 KEY = re.compile(r"(?<![\w./-])[A-Za-z_]\w*(?:\.\w+)*(?:\.\w+|\.\*|\.(?=<))")
@@ -125,7 +126,7 @@ def keys_in(cells):
 class Keys:
     """The keys that exist, and the first parts by which a name is taken for a key."""
 
-    def __init__(self, documents):
+    def __init__(self, documents, root):
         self.keys, self.first_parts = set(), set()
         for document in documents:
             for cells in tables(document) if document.name in KEY_TABLES else []:
@@ -133,6 +134,9 @@ class Keys:
                 self.keys |= keys
                 if KEY_COLUMN.search(cells[0]):
                     self.first_parts |= {key.partition(".")[0] for key in keys if "." in key}
+        self.keys |= {earlier for path in (root / "src").rglob("*.cc")
+                      for earlier, key in EARLIER_NAME.findall(path.read_text(encoding="utf-8"))
+                      if key in self.keys}
 
     def exists(self, name):
         if name.endswith(".*"):
@@ -226,7 +230,7 @@ def check_tree(root):
     documents = {path: Document(path, root) for path in paths}
     if not documents:
         return [f"{root}: no documents"]
-    keys = Keys(documents.values())
+    keys = Keys(documents.values(), root)
     modules = modules_of(root)
     faults = []
     for document in documents.values():

@@ -23,10 +23,6 @@ SETTINGS = """# Settings
 | `Camera.fx` | none | a number | focal length, px |
 | `ThDepth` | 40 | a number | depth |
 | `objects.pose.sigma` | 0.5 | a number | sigma |
-
-| old name | name |
-|---|---|
-| `objects.sigma` | `objects.pose.sigma` |
 """
 OUTPUTS = """| key | meaning |
 |---|---|
@@ -34,6 +30,8 @@ OUTPUTS = """| key | meaning |
 | `objects.rejections` | by reason |
 """
 BASE = {"docs/settings.md": SETTINGS, "docs/outputs.md": OUTPUTS, "src/map/map.cc": "",
+        "src/map/names.cc": '    {"objects.sigma", "objects.pose.sigma"},\n'
+                            '    {"objects.other", "no key"},\n',
         "include/hullslam/map/map.h": "", "scripts/demo.sh": ""}
 
 
@@ -73,6 +71,7 @@ class KeysTest(CheckDocsTest):
                            ("objects.start.*", "objects.start.*"),
                            ("--set objects.all=0", "objects.all"),
                            ("--set ThDepht=35", "ThDepht"),
+                           ("objects.other", "objects.other"),
                            ("map.keyframe", "map.keyframe")):
             with self.subTest(code):
                 self.assert_fault(f"\nThe key `{code}`.\n", "README.md:2:", f'no key "{name}"')
