@@ -14,6 +14,7 @@
 #include <system_error>
 #include <vector>
 
+#include "cli/input_warnings.h"
 #include "cli/interrupt.h"
 #include "cli/mask_arguments.h"
 #include "cli/mask_overlay.h"
@@ -247,7 +248,7 @@ int Run(int argc, char** argv) {
   const fs::path settings = arguments.settings.empty()
                                 ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
                                 : arguments.settings;
-  SystemOptions options = ReadSettings(settings, arguments.overrides);
+  SystemOptions options = LoadSettings(settings, arguments.overrides);
   options.objects.detection.min_keypoints = 0;  // no keypoints are extracted here
   arguments.tum.need_images = false;
   const ImageSequence sequence = OpenTumSequence(arguments.sequence, arguments.tum);

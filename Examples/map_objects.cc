@@ -94,7 +94,7 @@ SystemOptions LoadOptions(const Arguments& arguments) {
   const std::filesystem::path settings =
       arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
                                  : arguments.settings;
-  return ReadSettings(settings, arguments.overrides);
+  return LoadSettings(settings, arguments.overrides);
 }
 
 Sensor MakeSensor(const SystemOptions& options) {

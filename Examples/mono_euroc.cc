@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs monocular SLAM on the images of the left camera of a sequence of EuRoC.
+#include "cli/input_warnings.h"
 #include "cli/program.h"
 #include "cli/run_arguments.h"
 #include "cli/slam_run.h"
@@ -12,9 +13,9 @@ hullslam::SystemOptions LoadEurocOptions(const hullslam::RunArguments& arguments
                                          const hullslam::EurocSequence& sequence) {
   hullslam::SystemOptions options =
       arguments.settings.empty()
-          ? hullslam::MakeSettings(sequence.camera.calibration, arguments.sequence.string(),
+          ? hullslam::LoadSettings(sequence.camera.calibration, arguments.sequence.string(),
                                    arguments.overrides)
-          : hullslam::ReadSettings(arguments.settings, arguments.overrides);
+          : hullslam::LoadSettings(arguments.settings, arguments.overrides);
   options.sensor = arguments.sensor;
   return options;
 }

@@ -2,6 +2,7 @@
 // Runs monocular SLAM on a video file or a folder of images.
 #include <optional>
 
+#include "cli/input_warnings.h"
 #include "cli/messages.h"
 #include "cli/program.h"
 #include "cli/run_arguments.h"
@@ -42,11 +43,11 @@ hullslam::SystemOptions LoadVideoOptions(const hullslam::RunArguments& arguments
                                          const FieldOfView& fov,
                                          const hullslam::ImageStream& stream) {
   hullslam::SystemOptions options =
-      fov ? hullslam::MakeSettings(
+      fov ? hullslam::LoadSettings(
                 {hullslam::CameraOfFieldOfView(*fov, stream.width, stream.height),
                  stream.frames_per_second},
                 "--fov", arguments.overrides)
-          : hullslam::ReadSettings(arguments.settings, arguments.overrides);
+          : hullslam::LoadSettings(arguments.settings, arguments.overrides);
   options.sensor = arguments.sensor;
   return options;
 }

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/input_warnings.h"
 #include "cli/interrupt.h"
 #include "cli/logging.h"
 #include "cli/mask_arguments.h"
@@ -138,7 +139,9 @@ SystemOptions LoadOptions(const Arguments& arguments, bool for_queries) {
     overrides.insert(overrides.end(), arguments.query_overrides.begin(),
                      arguments.query_overrides.end());
   }
-  SystemOptions options = ReadSettings(settings, overrides);
+  // The overrides of queries contain those of the map, so all warnings are printed once.
+  SystemOptions options =
+      for_queries ? LoadSettings(settings, overrides) : ReadSettings(settings, overrides);
   options.seed = arguments.seed;
   return options;
 }

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "cli/input_warnings.h"
 #include "cli/messages.h"
 #include "cli/program.h"
 #include "cli/slam_run.h"
@@ -63,7 +64,7 @@ SystemOptions LoadIclOptions(const RunArguments& arguments) {
       settings = FindConfigFolder() / "ICL.yaml";
     }
   }
-  SystemOptions options = ReadSettings(settings, arguments.overrides, NegativeFy::kPositive);
+  SystemOptions options = LoadSettings(settings, arguments.overrides, NegativeFy::kPositive);
   options.sensor = arguments.sensor;
   return options;
 }

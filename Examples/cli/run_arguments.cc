@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/run_arguments.h"
 
+#include "cli/input_warnings.h"
 #include "cli/logging.h"
 #include "cli/mask_arguments.h"
 #include "cli/version.h"
@@ -109,7 +110,7 @@ void FinishArguments(const std::vector<std::string>& positional, RunArguments& a
 }
 
 SystemOptions LoadOptions(const RunArguments& arguments) {
-  SystemOptions options = ReadSettings(
+  SystemOptions options = LoadSettings(
       arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
                                  : arguments.settings,
       arguments.overrides);
