@@ -263,9 +263,9 @@ void ObjectOptions::BindOldNames(OptionTable& options) const {
   scope.AddFixed("misfit.width", misfit.width);
   scope.AddFixed("guide.views", guide.views);
   for (const std::string name : {"depth_sigma", "prior_sigma", "prior_sigma_without_depth"}) {
-    for (const std::string use : {"refinement", "bundle"}) {
-      options.AddRetired("objects." + use + "." + name, "objects." + name + " sets it");
-    }
+    const std::string reason = "objects." + name + " sets it";
+    options.AddRetired("objects.refinement." + name, reason);
+    options.AddRetired("objects.bundle." + name, reason);
   }
 }
 

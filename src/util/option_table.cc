@@ -224,7 +224,8 @@ void OptionTable::AddChoice(std::string key, std::vector<std::string> names,
              .help = std::move(help)});
 }
 
-void OptionTable::AddShared(std::string key, std::vector<std::string> members, std::string help) {
+void OptionTable::AddShared(std::string key, const std::vector<std::string>& members,
+                            std::string help) {
   std::vector<Option> options;
   for (const std::string& member : members) {
     const auto it = options_.find(member);
@@ -358,7 +359,7 @@ void OptionScope::AddShared(const std::string& name, std::vector<std::string> me
   for (std::string& member : members) {
     member = Key(member);
   }
-  table_.AddShared(Key(name), std::move(members), std::move(help));
+  table_.AddShared(Key(name), members, std::move(help));
 }
 
 void OptionScope::AddFixed(const std::string& name, double value) const {

@@ -53,7 +53,7 @@ class OptionTable {
   void Add(std::string key, std::map<std::string, double>* field, Range range, std::string help);
   // A key that sets several others at once, all bound before with the same type and value. What is
   // set later wins, be it this key or one of the others.
-  void AddShared(std::string key, std::vector<std::string> members, std::string help);
+  void AddShared(std::string key, const std::vector<std::string>& members, std::string help);
   // Any text.
   void AddText(std::string key, std::string* field, std::string help);
   // A key of other programs' settings files that has no meaning here: it is accepted and ignored.
