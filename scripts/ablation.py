@@ -6,7 +6,7 @@ OUT/ablation.md and OUT/ablation.json.
 
     scripts/ablation.py --sequence SEQUENCE --out OUT --seeds 5 --common "--masks MASKS" \
         --variant off:objects.enabled=false --variant default: \
-        --variant plane:objects.residual=algebraic_plane,objects.primitive=hull
+        --variant plane:objects.residual=algebraic_plane,objects.detection.primitive=hull
 
 A variant is NAME:KEY=VALUE,KEY=VALUE,... Each pair becomes an argument --set KEY=VALUE. An item
 that begins with a dash is passed on unchanged (NAME:--threaded). Write "\," for a comma in a value.

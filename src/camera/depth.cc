@@ -15,12 +15,13 @@ DepthErrorOptions DepthErrorOptions::ForAdjustment() const {
 }
 
 void DepthErrorOptions::Bind(OptionTable& options) {
-  options.Add("depth.pixel_sigma", &pixel_sigma, Range::Between(0.01, 100.0),
-              "error of a keypoint of pyramid level 0 in tracking and mapping, px");
-  options.Add("depth.adjustment_pixel_sigma", &adjustment_pixel_sigma, Range::Between(0.01, 100.0),
-              "error of a keypoint of pyramid level 0 in bundle adjustment, px");
-  options.Add("depth.disparity_sigma", &disparity_sigma, Range::Between(0.01, 100.0),
-              "error of a depth, as an error of the disparity Camera.bf / depth, px");
+  const OptionScope scope(options, "depth");
+  scope.Add("pixel_sigma", &pixel_sigma, Range::Between(0.01, 100.0),
+            "error of a keypoint of pyramid level 0 in tracking and mapping, px");
+  scope.Add("adjustment_pixel_sigma", &adjustment_pixel_sigma, Range::Between(0.01, 100.0),
+            "error of a keypoint of pyramid level 0 in bundle adjustment, px");
+  scope.Add("disparity_sigma", &disparity_sigma, Range::Between(0.01, 100.0),
+            "error of a depth, as an error of the disparity Camera.bf / depth, px");
 }
 
 void DepthOptions::Bind(OptionTable& options) {

@@ -120,23 +120,24 @@ std::string FindDistortionFault(const PinholeCamera& camera) {
 }  // namespace
 
 void PinholeCamera::Bind(OptionTable& options) {
-  options.Add("Camera.fx", &fx, Range::Between(kLeastFocalLength, kMostFocalLength),
-              "focal length in x, px");
-  options.Add("Camera.fy", &fy, Range::Between(kLeastFocalLength, kMostFocalLength),
-              "focal length in y, px");
-  options.Add("Camera.cx", &cx, Range::Between(-kMostPrincipalPoint, kMostPrincipalPoint),
-              "principal point in x, px");
-  options.Add("Camera.cy", &cy, Range::Between(-kMostPrincipalPoint, kMostPrincipalPoint),
-              "principal point in y, px");
-  options.Add("Camera.k1", &k1, Range::Any(), "radial distortion, second order");
-  options.Add("Camera.k2", &k2, Range::Any(), "radial distortion, fourth order");
-  options.Add("Camera.p1", &p1, Range::Any(), "tangential distortion");
-  options.Add("Camera.p2", &p2, Range::Any(), "tangential distortion");
-  options.Add("Camera.k3", &k3, Range::Any(), "radial distortion, sixth order");
-  options.Add("Camera.width", &width, Range::Between(16, 16384), "width of the images, px");
-  options.Add("Camera.height", &height, Range::Between(16, 16384), "height of the images, px");
-  options.Add("Camera.bf", &bf, Range::Between(kLeastBaselineTimesFx, kMostBaselineTimesFx),
-              "baseline of the virtual stereo camera (m) times fx (px)");
+  const OptionScope scope(options, "Camera");
+  scope.Add("fx", &fx, Range::Between(kLeastFocalLength, kMostFocalLength),
+            "focal length in x, px");
+  scope.Add("fy", &fy, Range::Between(kLeastFocalLength, kMostFocalLength),
+            "focal length in y, px");
+  scope.Add("cx", &cx, Range::Between(-kMostPrincipalPoint, kMostPrincipalPoint),
+            "principal point in x, px");
+  scope.Add("cy", &cy, Range::Between(-kMostPrincipalPoint, kMostPrincipalPoint),
+            "principal point in y, px");
+  scope.Add("k1", &k1, Range::Any(), "radial distortion, second order");
+  scope.Add("k2", &k2, Range::Any(), "radial distortion, fourth order");
+  scope.Add("p1", &p1, Range::Any(), "tangential distortion");
+  scope.Add("p2", &p2, Range::Any(), "tangential distortion");
+  scope.Add("k3", &k3, Range::Any(), "radial distortion, sixth order");
+  scope.Add("width", &width, Range::Between(16, 16384), "width of the images, px");
+  scope.Add("height", &height, Range::Between(16, 16384), "height of the images, px");
+  scope.Add("bf", &bf, Range::Between(kLeastBaselineTimesFx, kMostBaselineTimesFx),
+            "baseline of the virtual stereo camera (m) times fx (px)");
 }
 
 Eigen::Vector2d PinholeCamera::Distort(const Eigen::Vector2d& undistorted) const {

@@ -4,16 +4,17 @@
 namespace hullslam {
 
 void MappingOptions::Bind(OptionTable& options) {
-  options.Add("mapping.local_keyframes", &local_keyframes, Range::AtLeast(2),
-              "largest number of keyframes that local bundle adjustment moves");
-  options.Add("mapping.fixed_keyframes", &fixed_keyframes, Range::AtLeast(0),
-              "largest number of fixed keyframes in local bundle adjustment; 0: all that observe "
-              "its landmarks");
-  options.Add("mapping.cull_keyframes", &cull_keyframes, "remove redundant keyframes");
-  options.Add("mapping.compact_keyframes", &compact_keyframes,
-              "remove keypoints that show no landmark from keyframes far from the newest one");
-  options.Add("mapping.final_bundle_adjustment", &final_bundle_adjustment,
-              "run a global bundle adjustment once at the end of the run");
+  const OptionScope scope(options, "mapping");
+  scope.Add("local_keyframes", &local_keyframes, Range::AtLeast(2),
+            "largest number of keyframes that local bundle adjustment moves");
+  scope.Add("fixed_keyframes", &fixed_keyframes, Range::AtLeast(0),
+            "largest number of fixed keyframes in local bundle adjustment; 0: all that observe "
+            "its landmarks");
+  scope.Add("cull_keyframes", &cull_keyframes, "remove redundant keyframes");
+  scope.Add("compact_keyframes", &compact_keyframes,
+            "remove keypoints that show no landmark from keyframes far from the newest one");
+  scope.Add("final_bundle_adjustment", &final_bundle_adjustment,
+            "run a global bundle adjustment once at the end of the run");
 }
 
 }  // namespace hullslam

@@ -3,12 +3,22 @@
 
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
+#include <span>
+#include <string>
 
 #include "hullslam/sequences/image_sequence.h"
+#include "hullslam/settings/settings.h"
 #include "hullslam/system/options.h"
 #include "run/mask_arguments.h"
 
 namespace hullslam {
+
+// As ReadSettings() and MakeSettings(). Their warnings are printed on stderr.
+SystemOptions LoadSettings(const std::filesystem::path& file,
+                           std::span<const std::string> overrides,
+                           NegativeFy negative_fy = NegativeFy::kError);
+SystemOptions LoadSettings(const CameraCalibration& calibration, const std::string& source,
+                           std::span<const std::string> overrides);
 
 // Each prints a warning on stderr about input that can be used but is probably not what the user
 // meant.

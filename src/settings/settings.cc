@@ -52,6 +52,9 @@ void ApplyFile(const fs::path& file, NegativeFy negative_fy, OptionTable& table,
       throw InputError(
           fmt::format("{}: {} was given before under another name", setting.place, setting.name));
     }
+    if (table.SkipRetired(setting.key, setting.place)) {
+      continue;
+    }
     // An unknown key is reported before anything that is wrong with its value.
     std::string text;
     if (table.IsMap(setting.key) && setting.pairs) {
@@ -77,6 +80,12 @@ void ApplyOverrides(std::span<const std::string> overrides, OptionTable& table,
     const std::string key(Trim(assignment.substr(0, equals)));
     table.Set(key, std::string(Trim(assignment.substr(equals + 1))), "--set");
     given.insert(key);
+  }
+}
+
+void HandOver(const OptionTable& table, std::vector<std::string>* warnings) {
+  if (warnings != nullptr) {
+    *warnings = table.warnings();
   }
 }
 
@@ -108,7 +117,7 @@ std::string FolderName(const fs::path& folder) {
 }  // namespace
 
 SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> overrides,
-                           NegativeFy negative_fy) {
+                           NegativeFy negative_fy, std::vector<std::string>* warnings) {
   SystemOptions options;
   OptionTable table = options.Bind();
   std::set<std::string> given;
@@ -121,11 +130,13 @@ SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> ov
     }
   }
   options.Validate();
+  HandOver(table, warnings);
   return options;
 }
 
 SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
-                           std::span<const std::string> overrides) {
+                           std::span<const std::string> overrides,
+                           std::vector<std::string>* warnings) {
   SystemOptions options;
   OptionTable table = options.Bind();
   SystemOptions given;
@@ -143,6 +154,7 @@ SystemOptions MakeSettings(const CameraCalibration& calibration, const std::stri
   std::set<std::string> changed;
   ApplyOverrides(overrides, table, changed);
   options.Validate();
+  HandOver(table, warnings);
   return options;
 }
 

@@ -9,19 +9,21 @@
 namespace hullslam {
 
 void RunOptions::Bind(OptionTable& options) {
-  options.Add("run.max_lost_share", &max_lost_share, Range::Between(0.0, 1.0),
-              "the run fails (exit code 1) if a larger share of its frames has no pose");
-  options.Add("run.max_lost_at_end", &max_lost_at_end, Range::AtLeast(0.0),
-              "the run fails (exit code 1) if no frame of a longer time at its end has a pose, s");
+  const OptionScope scope(options, "run");
+  scope.Add("max_lost_share", &max_lost_share, Range::Share(),
+            "the run fails (exit code 1) if a larger share of its frames has no pose");
+  scope.Add("max_lost_at_end", &max_lost_at_end, Range::AtLeast(0.0),
+            "the run fails (exit code 1) if no frame of a longer time at its end has a pose, s");
 }
 
 OptionTable SystemOptions::Bind() {
   OptionTable table;
   camera.Bind(table);
-  table.Add("Camera.fps", &frames_per_second, Range::Positive(), "frame rate of the camera, 1/s");
-  table.Add("Camera.readout_time", &readout_time, Range::Between(0.0, 0.1),
+  const OptionScope scope(table, "Camera");
+  scope.Add("fps", &frames_per_second, Range::Positive(), "frame rate of the camera, 1/s");
+  scope.Add("readout_time", &readout_time, Range::Between(0.0, 0.1),
             "rolling shutter: time from the first to the last row of an image, s; 0: all at once");
-  table.Add("Camera.RGB", &rgb_order,
+  scope.Add("RGB", &rgb_order,
             "colour images that the library receives from memory are RGB (else BGR)");
   depth.Bind(table);
   features.Bind(table);

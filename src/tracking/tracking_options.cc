@@ -4,24 +4,25 @@
 namespace hullslam {
 
 void TrackingOptions::Bind(OptionTable& options) {
-  options.Add("tracking.min_initial_points", &min_initial_points, Range::AtLeast(10),
-              "number of keypoints with depth that the first frame needs");
-  options.Add("tracking.min_inliers", &min_inliers, Range::AtLeast(6),
-              "number of landmarks that must be found in a frame; with fewer it is lost");
-  options.Add("tracking.local_keyframes", &local_keyframes, Range::AtLeast(1),
-              "largest number of keyframes whose landmarks form the local map");
-  options.Add(
-      "tracking.keyframe_ratio", &keyframe_ratio, Range::Between(0.1, 1.0),
+  const OptionScope scope(options, "tracking");
+  scope.Add("min_initial_points", &min_initial_points, Range::AtLeast(10),
+            "number of keypoints with depth that the first frame needs");
+  scope.Add("min_inliers", &min_inliers, Range::AtLeast(6),
+            "number of landmarks that must be found in a frame; with fewer it is lost");
+  scope.Add("local_keyframes", &local_keyframes, Range::AtLeast(1),
+            "largest number of keyframes whose landmarks form the local map");
+  scope.Add(
+      "keyframe_ratio", &keyframe_ratio, Range::Between(0.1, 1.0),
       "a keyframe is due if a frame finds a smaller share of the reference keyframe's landmarks");
-  options.AddText(
-      "tracking.dynamic_classes", &dynamic_classes,
+  scope.AddText(
+      "dynamic_classes", &dynamic_classes,
       "classes of dynamic objects, separated by commas; keypoints on their masks are removed");
-  options.Add("tracking.keyframe_interval", &keyframe_interval, Range::Between(0.0, 60.0),
-              "least time between keyframes, unless tracking weakens abruptly, s");
-  options.Add("tracking.relocalise_by_words", &relocalise_by_words,
-              "find a lost frame by keyframes that look like it (needs a vocabulary)");
-  options.Add("tracking.relocalise_by_objects", &relocalise_by_objects,
-              "find a lost frame by the arrangement of the mapped objects in it (needs masks)");
+  scope.Add("keyframe_interval", &keyframe_interval, Range::Between(0.0, 60.0),
+            "least time between keyframes, unless tracking weakens abruptly, s");
+  scope.Add("relocalise_by_words", &relocalise_by_words,
+            "find a lost frame by keyframes that look like it (needs a vocabulary)");
+  scope.Add("relocalise_by_objects", &relocalise_by_objects,
+            "find a lost frame by the arrangement of the mapped objects in it (needs masks)");
 }
 
 }  // namespace hullslam

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <type_traits>
@@ -118,34 +119,46 @@ void OptionTable::AddOption(std::string key, Option option) {
   Check(inserted, "an option is bound twice");
 }
 
-// Both strings are moved from, but clang-tidy does not see this in a template.
+// The arguments are moved from, but clang-tidy does not see this in a template.
 template <typename Number>
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
-void OptionTable::AddNumber(std::string key, Number* field, Range range, std::string help) {
+void OptionTable::AddNumber(std::string key, std::vector<Number*> fields, Range range,
+                            // NOLINTNEXTLINE(performance-unnecessary-value-param)
+                            std::string help) {
   const char* const kind = std::is_integral_v<Number> ? "an integer " : "a number ";
-  AddOption(std::move(key), {.parse =
-                                 [field, range](const std::string& text) {
-                                   const auto value = ParseNumber<Number>(text);
-                                   const bool good =
-                                       value && range.Contains(static_cast<double>(*value));
-                                   if (good) *field = *value;
-                                   return good;
-                                 },
-                             .print = [field] { return PrintNumber(*field); },
+  const auto parse = [fields, range](const std::string& text) {
+    const auto value = ParseNumber<Number>(text);
+    if (!value || !range.Contains(static_cast<double>(*value))) {
+      return false;
+    }
+    for (Number* const field : fields) {
+      *field = *value;
+    }
+    return true;
+  };
+  AddOption(std::move(key), {.parse = parse,
+                             .print = [field = fields.front()] { return PrintNumber(*field); },
                              .expected = kind + range.ToString(),
                              .help = std::move(help)});
 }
 
 void OptionTable::Add(std::string key, double* field, Range range, std::string help) {
-  AddNumber(std::move(key), field, range, std::move(help));
+  AddNumber<double>(std::move(key), {field}, range, std::move(help));
+}
+
+void OptionTable::Add(std::string key, std::vector<double*> fields, Range range, std::string help) {
+  const bool are_equal = std::all_of(
+      fields.begin(), fields.end(), [&](const double* field) { return *field == *fields.front(); });
+  Check(!fields.empty() && are_equal, "an option is for fields that are not equal");
+  AddNumber<double>(std::move(key), std::move(fields), range, std::move(help));
 }
 
 void OptionTable::Add(std::string key, int* field, Range range, std::string help) {
-  AddNumber(std::move(key), field, range, std::move(help));
+  AddNumber<int>(std::move(key), {field}, range, std::move(help));
 }
 
 void OptionTable::Add(std::string key, uint64_t* field, Range range, std::string help) {
-  AddNumber(std::move(key), field, range, std::move(help));
+  AddNumber<uint64_t>(std::move(key), {field}, range, std::move(help));
 }
 
 void OptionTable::Add(std::string key, bool* field, std::string help) {
@@ -211,7 +224,8 @@ void OptionTable::AddChoice(std::string key, std::vector<std::string> names,
              .help = std::move(help)});
 }
 
-void OptionTable::AddShared(std::string key, std::vector<std::string> members, std::string help) {
+void OptionTable::AddShared(std::string key, const std::vector<std::string>& members,
+                            std::string help) {
   std::vector<Option> options;
   for (const std::string& member : members) {
     const auto it = options_.find(member);
@@ -250,33 +264,84 @@ void OptionTable::AddIgnored(std::string key) {
   AddOption(std::move(key), std::move(option));
 }
 
+void OptionTable::AddOldName(std::string name, std::string key) {
+  Check(options_.contains(key), "an old name is for a key that is not bound");
+  Check(!options_.contains(name), "an old name is still bound");
+  old_names_.emplace(std::move(name), std::move(key));
+}
+
+void OptionTable::AddRetired(std::string key, std::string reason) {
+  Check(!options_.contains(key), "a retired key is still bound");
+  retired_.emplace(std::move(key), std::move(reason));
+}
+
+std::string_view OptionTable::CurrentName(std::string_view key) const {
+  const auto it = old_names_.find(key);
+  return it != old_names_.end() ? std::string_view(it->second) : key;
+}
+
 bool OptionTable::Contains(std::string_view key) const {
-  return options_.find(key) != options_.end();
+  return options_.contains(CurrentName(key));
 }
 
 bool OptionTable::IsMap(std::string_view key) const {
-  const auto it = options_.find(key);
+  const auto it = options_.find(CurrentName(key));
   return it != options_.end() && it->second.is_map;
 }
 
-void OptionTable::Set(const std::string& key, const std::string& value, const std::string& origin) {
+// A misspelt old name gets its current name. Empty if the table is empty.
+std::string OptionTable::MostSimilarKey(const std::string& key) const {
   constexpr size_t kLongestKey = 100;
-  const auto it = options_.find(key);
-  if (it == options_.end()) {
-    const std::string compared = key.substr(0, kLongestKey);
-    const auto nearest =
-        std::min_element(options_.begin(), options_.end(), [&](const auto& a, const auto& b) {
-          return EditDistance(compared, a.first) < EditDistance(compared, b.first);
-        });
-    std::string message = origin + ": unknown key '" + ShowText(key) + "'";
-    if (nearest != options_.end()) {
-      message += "; did you mean '" + nearest->first + "'?";
+  const std::string compared = key.substr(0, kLongestKey);
+  std::string most_similar;
+  size_t least_distance = std::numeric_limits<size_t>::max();
+  const auto compare = [&](const std::string& name, const std::string& current) {
+    if (const size_t distance = EditDistance(compared, name); distance < least_distance) {
+      least_distance = distance;
+      most_similar = current;
     }
-    throw InputError(message);
+  };
+  for (const auto& [name, option] : options_) {
+    compare(name, name);
+  }
+  for (const auto& [name, current] : old_names_) {
+    compare(name, current);
+  }
+  return most_similar;
+}
+
+void OptionTable::WarnOnce(const std::string& key, const std::string& warning) {
+  if (warned_keys_.insert(key).second) {
+    warnings_.push_back(warning);
+  }
+}
+
+bool OptionTable::SkipRetired(const std::string& key, const std::string& origin) {
+  const auto it = retired_.find(key);
+  if (it == retired_.end()) {
+    return false;
+  }
+  WarnOnce(key, origin + ": " + key + " is no setting any more and is ignored; " + it->second);
+  return true;
+}
+
+void OptionTable::Set(const std::string& key, const std::string& value, const std::string& origin) {
+  if (const auto retired = retired_.find(key); retired != retired_.end()) {
+    throw InputError(origin + ": " + key + " is no setting any more; " + retired->second);
+  }
+  const std::string current(CurrentName(key));
+  const auto it = options_.find(current);
+  if (it == options_.end()) {
+    const std::string similar = MostSimilarKey(key);
+    throw InputError(origin + ": unknown key '" + ShowText(key) + "'" +
+                     (similar.empty() ? "" : "; did you mean '" + similar + "'?"));
   }
   if (!it->second.parse(value)) {
     throw InputError(origin + ": " + key + " is '" + ShowText(value) + "', expected " +
                      it->second.expected);
+  }
+  if (current != key) {
+    WarnOnce(key, origin + ": " + key + " is now called " + current);
   }
 }
 
@@ -288,6 +353,18 @@ std::vector<OptionTable::Entry> OptionTable::Entries() const {
     }
   }
   return entries;
+}
+
+void OptionScope::AddShared(const std::string& name, std::vector<std::string> members,
+                            std::string help) const {
+  for (std::string& member : members) {
+    member = Key(member);
+  }
+  table_.AddShared(Key(name), members, std::move(help));
+}
+
+void OptionScope::AddFixed(const std::string& name, double value) const {
+  table_.AddRetired(Key(name), "its value is fixed at " + PrintNumber(value));
 }
 
 }  // namespace hullslam

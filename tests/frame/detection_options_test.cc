@@ -11,10 +11,10 @@ namespace {
 TEST(DetectionOptions, AreSetByTheirKeys) {
   DetectionOptions options;
   OptionTable table;
-  options.Bind(table);
-  table.Set("objects.primitive", "bbox", "test");
-  table.Set("objects.epsilon_px", "6", "test");
-  table.Set("objects.min_score", "0.5", "test");
+  options.Bind(OptionScope(table, "objects.detection"));
+  table.Set("objects.detection.primitive", "bbox", "test");
+  table.Set("objects.detection.epsilon_px", "6", "test");
+  table.Set("objects.detection.min_score", "0.5", "test");
   EXPECT_EQ(options.primitive, ObjectPrimitive::kBox);
   EXPECT_EQ(options.epsilon_px, 6.0);
   EXPECT_EQ(options.min_score, 0.5);
@@ -23,13 +23,14 @@ TEST(DetectionOptions, AreSetByTheirKeys) {
 TEST(DetectionOptions, TellWhatIsExpected) {
   DetectionOptions options;
   OptionTable table;
-  options.Bind(table);
-  ExpectInputError([&] { table.Set("objects.primitive", "outline", "--set"); },
-                   {"objects.primitive", "'outline'", "support, hull, contour, bbox, conic"});
-  ExpectInputError([&] { table.Set("objects.epsilon_px", "-1", "--set"); },
-                   {"objects.epsilon_px", "'-1'", "from 0 to 100"});
-  ExpectInputError([&] { table.Set("objects.min_score", "1.5", "--set"); },
-                   {"objects.min_score", "'1.5'", "from 0 to 1"});
+  options.Bind(OptionScope(table, "objects.detection"));
+  ExpectInputError(
+      [&] { table.Set("objects.detection.primitive", "outline", "--set"); },
+      {"objects.detection.primitive", "'outline'", "support, hull, contour, bbox, conic"});
+  ExpectInputError([&] { table.Set("objects.detection.epsilon_px", "-1", "--set"); },
+                   {"objects.detection.epsilon_px", "'-1'", "from 0 to 100"});
+  ExpectInputError([&] { table.Set("objects.detection.min_score", "1.5", "--set"); },
+                   {"objects.detection.min_score", "'1.5'", "from 0 to 1"});
 }
 
 }  // namespace

@@ -72,11 +72,25 @@ TEST_F(CheckMasks, ShowsProgress) {
 }
 
 TEST_F(CheckMasks, AppliesTheSettings) {
-  const ProgramResult result = Run({"--set", "objects.min_score=0.85"});
+  const ProgramResult result = Run({"--set", "objects.detection.min_score=0.85"});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_EQ(Count(result, "kept"), "2");
   EXPECT_EQ(Count(result, "rejected: low_score"), "1");
-  EXPECT_EQ(Count(Run({"--set", "objects.min_keypoints=5"}), "kept"), "3");
+  EXPECT_EQ(Count(Run({"--set", "objects.detection.min_keypoints=5"}), "kept"), "3");
+}
+
+TEST_F(CheckMasks, WarnsOfAnOldNameOfASettingAndUsesIt) {
+  const ProgramResult result = Run({"--quiet", "--set", "objects.min_score=0.85"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.errors,
+            "warning: --set: objects.min_score is now called objects.detection.min_score\n");
+  EXPECT_EQ(Count(result, "kept"), "2");
+}
+
+TEST_F(CheckMasks, RefusesASettingThatIsNoneAnyMore) {
+  const ProgramResult result = Run({"--set", "objects.conic_lines=8"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.errors.find("objects.conic_lines is no setting any more"), std::string::npos);
 }
 
 TEST_F(CheckMasks, DrawsThePicturesAskedFor) {

@@ -100,7 +100,7 @@ TEST_F(SettingsOrbSlam3, AreTranslated) {
 
 TEST_F(SettingsOrbSlam3, OurOwnKeysAndOverridesWorkToo) {
   const SystemOptions options =
-      Read(With("", "objects.min_score: 0.5"), {"Camera.bf=40", "Camera.fx=500"});
+      Read(With("", "objects.detection.min_score: 0.5"), {"Camera.bf=40", "Camera.fx=500"});
   EXPECT_EQ(options.objects.detection.min_score, 0.5);
   EXPECT_EQ(options.camera.bf, 40.0);
   EXPECT_EQ(options.camera.fx, 500.0);

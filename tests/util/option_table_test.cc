@@ -6,8 +6,10 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
 #include "support/expect_error.h"
 
 namespace hullslam {
@@ -190,6 +192,107 @@ TEST(OptionTable, AKeyCannotBeBoundTwice) {
   Fields fields;
   OptionTable table = fields.Bind();
   EXPECT_THROW(table.Add("flag", &fields.flag, "again"), CheckError);
+}
+
+TEST(OptionTable, OneKeySetsSeveralFieldsThatAreEqual) {
+  double first = 1.0;
+  double second = 1.0;
+  double other = 2.0;
+  OptionTable table;
+  table.Add("both", std::vector<double*>{&first, &second}, Range::Positive(), "both");
+  table.Set("both", "3", "test");
+  EXPECT_EQ(first, 3.0);
+  EXPECT_EQ(second, 3.0);
+  EXPECT_THROW(table.Set("both", "0", "test"), InputError);
+  EXPECT_EQ(table.Entries().front().value, "3");
+  EXPECT_THROW(table.Add("all", std::vector<double*>{&first, &other}, Range::Positive(), "all"),
+               CheckError);
+}
+
+class RenamedOption : public ::testing::Test {
+ protected:
+  RenamedOption() {
+    table_.Add("start.length", &length_, Range::Positive(), "length, m");
+    table_.AddOldName("length", "start.length");
+    table_.AddRetired("width", "its value is fixed at 2");
+  }
+  double length_ = 1.0;
+  OptionTable table_;
+};
+
+TEST_F(RenamedOption, IsSetByBothNamesAndTheLaterWins) {
+  table_.Set("length", "2", "x.yaml:3");
+  EXPECT_EQ(length_, 2.0);
+  table_.Set("start.length", "3", "test");
+  EXPECT_EQ(length_, 3.0);
+  table_.Set("length", "4", "--set");
+  EXPECT_EQ(length_, 4.0);
+  EXPECT_TRUE(table_.Contains("length"));
+  ASSERT_EQ(table_.Entries().size(), 1u);
+  EXPECT_EQ(table_.Entries().front().key, "start.length");
+}
+
+TEST_F(RenamedOption, WarnsOnceOfItsOldName) {
+  table_.Set("start.length", "2", "test");
+  EXPECT_TRUE(table_.warnings().empty());
+  table_.Set("length", "2", "x.yaml:3");
+  table_.Set("length", "3", "--set");
+  EXPECT_EQ(table_.warnings(),
+            std::vector<std::string>{"x.yaml:3: length is now called start.length"});
+}
+
+TEST_F(RenamedOption, ErrorsSpeakOfTheGivenName) {
+  ExpectInputError([&] { table_.Set("length", "0", "--set"); }, {"--set: length is '0'", "> 0"});
+  EXPECT_TRUE(table_.warnings().empty());
+  ExpectInputError([&] { table_.Set("lenght", "1", "--set"); }, {"did you mean 'start.length'?"});
+}
+
+TEST_F(RenamedOption, OldNamesAreOfBoundKeysAndAreNotBound) {
+  EXPECT_THROW(table_.AddOldName("breadth", "start.breadth"), CheckError);
+  EXPECT_THROW(table_.AddOldName("start.length", "start.length"), CheckError);
+  EXPECT_THROW(table_.AddRetired("start.length", "it is gone"), CheckError);
+}
+
+TEST_F(RenamedOption, ARetiredKeyIsSkippedWithAWarningOrRefused) {
+  EXPECT_FALSE(table_.SkipRetired("length", "x.yaml:3"));
+  EXPECT_TRUE(table_.SkipRetired("width", "x.yaml:4"));
+  EXPECT_EQ(table_.warnings(),
+            std::vector<std::string>{
+                "x.yaml:4: width is no setting any more and is ignored; its value is fixed at 2"});
+  ExpectInputError([&] { table_.Set("width", "2", "--set"); },
+                   {"--set: width is no setting any more; its value is fixed at 2"});
+  EXPECT_FALSE(table_.Contains("width"));
+}
+
+TEST(OptionScope, NamesItsOptionsByTheirPath) {
+  double length = 1.0;
+  double width = 1.0;
+  double both = 1.0;
+  bool flag = false;
+  std::string text = "a";
+  enum class Colour { kRed, kGreen };
+  Colour colour = Colour::kRed;
+  OptionTable table;
+  const OptionScope outer(table, "outer");
+  const OptionScope inner = outer.Inner("inner");
+  inner.Add("length", &length, Range::Positive(), "length, m");
+  inner.Add("width", &width, Range::Positive(), "width, m");
+  inner.AddShared("size", {"length", "width"}, "length and width, m");
+  outer.Add("both", {&both, &both}, Range::Positive(), "both");
+  outer.Add("flag", &flag, "whether");
+  outer.AddText("text", &text, "any");
+  outer.AddEnum("colour", &colour, {"red", "green"}, "of the wall");
+  outer.AddFixed("height", 2.5);
+  std::vector<std::string> keys;
+  for (const OptionTable::Entry& entry : table.Entries()) {
+    keys.push_back(entry.key);
+  }
+  EXPECT_EQ(keys, (std::vector<std::string>{"outer.both", "outer.colour", "outer.flag",
+                                            "outer.inner.length", "outer.inner.size",
+                                            "outer.inner.width", "outer.text"}));
+  table.Set("outer.inner.size", "3", "test");
+  EXPECT_EQ(width, 3.0);
+  ExpectInputError([&] { table.Set("outer.height", "1", "test"); }, {"fixed at 2.5"});
 }
 
 TEST(OptionTable, TextIsStoredUnchanged) {

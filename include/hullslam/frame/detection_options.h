@@ -44,8 +44,7 @@ struct DetectionOptions {
   double occlusion_step = 0.03;        // m
   double occlusion_step_share = 0.04;  // of the object's depth
 
-  // Binds the keys `objects.primitive`, `objects.epsilon_px` ...
-  void Bind(OptionTable& options);
+  void Bind(const OptionScope& scope);
 };
 
 }  // namespace hullslam

@@ -11,7 +11,8 @@
 namespace hullslam {
 
 // Lengths are given as shares of the object's distance from the cameras, so that they also make
-// sense in a map of unknown scale.
+// sense in a map of unknown scale. Each struct binds those of its fields that are settings, in the
+// scope of its own path; the others are fixed.
 
 // The conditions for a detection to show an object of the map; see AssociateDetections.
 struct AssociationOptions {
@@ -35,6 +36,8 @@ struct AssociationOptions {
   double centroid_weight = 0.1;
   double class_weight = 0.2;
   double min_similarity = 0.2;  // of a detection and an object that are matched
+
+  void Bind(const OptionScope& scope);
 };
 
 // The conditions for computing the shape of a candidate, and its start.
@@ -46,6 +49,8 @@ struct StartOptions {
   double trimmed = 0.03;        // share of the points that is left out at each end of each axis
   double inflation = 1.2;       // factor on the oriented bounding box of the points
   double min_half_axis = 0.01;  // of the distance, for flat things
+
+  void Bind(const OptionScope& scope);
 };
 
 // The conditions that a mapped object must satisfy; see FindObjection.
@@ -64,6 +69,8 @@ struct ValidityOptions {
   // large enough to observe it: this many degrees per elongation.
   double max_elongation = 1.5;
   double elongation_parallax = 6.0;
+
+  void Bind(const OptionScope& scope);
 };
 
 // The conditions for fusing two objects; see FindDuplicates.
@@ -73,6 +80,8 @@ struct FusionOptions {
   double max_shared_keyframes = 0.2;  // of the object with fewer keyframes
   double alpha = 0.05;                // significance level of the t-test of centroids
   double centroid_noise = 0.02;       // sigma of a centroid, as a share of its distance
+
+  void Bind(const OptionScope& scope);
 };
 
 // The conditions for removing an object.
@@ -86,6 +95,8 @@ struct CullingOptions {
   // in the farthest keyframe that observes it, and if at most this share of it is hidden.
   double max_range = 1.25;
   double max_hidden = 0.3;
+
+  void Bind(const OptionScope& scope);
 };
 
 // The conditions for an object of a loaded map to count as gone or new; see FindObjectChanges.
@@ -101,6 +112,8 @@ struct ChangeOptions {
   // cannot be the one that is gone.
   double max_move = 4.0;
   double max_size_ratio = 2.5;  // of the half axes of an object before and after it was moved
+
+  void Bind(const OptionScope& scope);
 };
 
 // The measurement of the misfit of an object; see objects/misfit.h.
@@ -132,6 +145,8 @@ struct ObjectRefinementOptions {
   double min_misfit_px = 1.0;
   double max_misfit_px = 5.0;  // also used for a start, whose misfit is not known yet
   double loss_px = 8.0;        // loss scale of a line whose sigma is max_misfit_px
+
+  void Bind(const OptionScope& scope);
 };
 
 // Joint pose estimation: the pose is optimised, objects are fixed. Depth points and the prior of
@@ -146,6 +161,8 @@ struct ObjectPoseOptions {
   double prior_rotation = 0.1;     // radians
   double prior_translation = 0.1;  // of the mean distance of the objects
   int min_objects = 2;             // number of objects that determine a pose without points
+
+  void Bind(const OptionScope& scope);
 };
 
 // Bundle adjustment: quadrics, poses and landmarks are optimised together. Detections in keyframes
@@ -164,6 +181,8 @@ struct ObjectBundleOptions {
   int max_outer_views = 5;  // keyframes outside the window, evenly chosen
   // A quadric is left as it was if the adjustment changes a half axis by a larger factor.
   double max_axis_change = 3.0;
+
+  void Bind(const OptionScope& scope);
 };
 
 // All options of objects as landmarks.
@@ -189,9 +208,15 @@ struct ObjectOptions {
   ObjectPoseOptions pose;
   ObjectBundleOptions bundle;
 
+  // Binds the keys `objects.*`; a key is the path of the field, as in `objects.start.min_views`.
+  // Earlier names of the keys work too.
   void Bind(OptionTable& options);
   // Throws InputError if the residual of a use cannot be computed from the primitive.
   void Validate() const;
+
+ private:
+  void BindShared(const OptionScope& scope);
+  void BindOldNames(OptionTable& options) const;
 };
 
 }  // namespace hullslam

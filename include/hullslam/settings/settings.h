@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/system/options.h"
@@ -22,10 +23,12 @@ enum class NegativeFy {
 // line `%YAML:1.0`) or of ORB-SLAM3 (format 1.0, docs/settings.md), then applies `overrides` of the
 // form `key=value`, then validates the result. Missing keys keep their defaults; Camera.fx, fy, cx
 // and cy have no default. Throws InputError that names file, line, key, value and what was
-// expected.
+// expected. `warnings`, unless it is null, receives what the user should know about keys that have
+// a new name, and about keys of the file that are no settings any more and are ignored.
 SystemOptions ReadSettings(const std::filesystem::path& file,
                            std::span<const std::string> overrides = {},
-                           NegativeFy negative_fy = NegativeFy::kError);
+                           NegativeFy negative_fy = NegativeFy::kError,
+                           std::vector<std::string>* warnings = nullptr);
 
 // A camera as its calibration or its data set describes it.
 struct CameraCalibration {
@@ -34,10 +37,11 @@ struct CameraCalibration {
 };
 
 // The settings for a camera without a settings file: the defaults, then `overrides` as in
-// ReadSettings(). Throws InputError for what ReadSettings() would refuse; `source` is the name of
-// what the calibration is from.
+// ReadSettings(), with the same warnings. Throws InputError for what ReadSettings() would refuse;
+// `source` is the name of what the calibration is from.
 SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
-                           std::span<const std::string> overrides = {});
+                           std::span<const std::string> overrides = {},
+                           std::vector<std::string>* warnings = nullptr);
 
 // The default settings file of a sequence: `camera.yaml` in its folder, else the file in
 // `config_folder` for the camera that the name of the folder contains (freiburg1 or fr1: TUM1.yaml,

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,6 +23,7 @@ struct Range {
   static Range Positive() { return {.low = 0.0, .low_open = true}; }
   static Range AtLeast(double low) { return {.low = low}; }
   static Range Between(double low, double high) { return {.low = low, .high = high}; }
+  static Range Share() { return Between(0.0, 1.0); }
   static Range Any() { return {}; }
   bool Contains(double value) const;
   std::string ToString() const;  // "> 0", ">= 1", "from 0 to 1", "of any size"
@@ -33,6 +35,8 @@ struct Range {
 class OptionTable {
  public:
   void Add(std::string key, double* field, Range range, std::string help);
+  // One number for several fields, whose defaults are equal.
+  void Add(std::string key, std::vector<double*> fields, Range range, std::string help);
   void Add(std::string key, int* field, Range range, std::string help);
   void Add(std::string key, uint64_t* field, Range range, std::string help);
   void Add(std::string key, bool* field, std::string help);  // accepts 0, 1, true, false
@@ -49,19 +53,30 @@ class OptionTable {
   void Add(std::string key, std::map<std::string, double>* field, Range range, std::string help);
   // A key that sets several other keys at once. They must be bound before, with the same type and
   // value. The last key that is set wins, whether it is this one or one of the others.
-  void AddShared(std::string key, std::vector<std::string> members, std::string help);
+  void AddShared(std::string key, const std::vector<std::string>& members, std::string help);
   // Any text.
   void AddText(std::string key, std::string* field, std::string help);
   // A key of other programs' settings files that has no meaning here: it is accepted and ignored.
   void AddIgnored(std::string key);
+  // An earlier name of a key that is bound. It sets the same field, and the first use of each such
+  // name adds a warning.
+  void AddOldName(std::string name, std::string key);
+  // A key that earlier versions had. `reason` says what holds instead: "its value is fixed at 4".
+  void AddRetired(std::string key, std::string reason);
 
+  // Whether Set() accepts the key.
   bool Contains(std::string_view key) const;
   // Whether the option is one of numbers by name.
   bool IsMap(std::string_view key) const;
   // Sets an option from text. Throws InputError that starts with `origin` (a file name or "--set")
   // and names the key, the value and what was expected. For an unknown key the message suggests the
-  // most similar known key.
+  // most similar known key; for a retired one it says what holds instead.
   void Set(const std::string& key, const std::string& value, const std::string& origin);
+  // For files that were written for an earlier version: if the key is retired, adds a warning that
+  // starts with `origin` and returns true.
+  bool SkipRetired(const std::string& key, const std::string& origin);
+  // What the user should be told about the keys that were set, in the order of their first use.
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
   struct Entry {
     std::string key;
@@ -73,6 +88,8 @@ class OptionTable {
   // All options but the ignored, sorted by key. The value of a shared one is that of its first
   // member.
   std::vector<Entry> Entries() const;
+  // Earlier names and the keys that they stand for.
+  const std::map<std::string, std::string, std::less<>>& old_names() const { return old_names_; }
 
  private:
   struct Option {
@@ -88,9 +105,56 @@ class OptionTable {
   void AddChoice(std::string key, std::vector<std::string> names, std::function<void(size_t)> set,
                  std::function<size_t()> get, std::string help);
   template <typename Number>
-  void AddNumber(std::string key, Number* field, Range range, std::string help);
+  void AddNumber(std::string key, std::vector<Number*> fields, Range range, std::string help);
+  std::string_view CurrentName(std::string_view key) const;
+  std::string MostSimilarKey(const std::string& key) const;
+  void WarnOnce(const std::string& key, const std::string& warning);
 
   std::map<std::string, Option, std::less<>> options_;
+  std::map<std::string, std::string, std::less<>> old_names_;  // to keys of options_
+  std::map<std::string, std::string, std::less<>> retired_;    // to reasons
+  std::set<std::string> warned_keys_;
+  std::vector<std::string> warnings_;
+};
+
+// Binds the options of one struct. Their keys begin with the path of the struct: in the scope
+// "objects.start" the name "min_views" is the key `objects.start.min_views`.
+class OptionScope {
+ public:
+  OptionScope(OptionTable& table, std::string path) : table_(table), path_(std::move(path)) {}
+  // The scope of a struct in this one.
+  OptionScope Inner(const std::string& name) const { return {table_, Key(name)}; }
+
+  // These bind as the functions of OptionTable do.
+  template <typename Field>
+  void Add(const std::string& name, Field* field, Range range, std::string help) const {
+    table_.Add(Key(name), field, range, std::move(help));
+  }
+  void Add(const std::string& name, std::vector<double*> fields, Range range,
+           std::string help) const {
+    table_.Add(Key(name), std::move(fields), range, std::move(help));
+  }
+  void Add(const std::string& name, bool* field, std::string help) const {
+    table_.Add(Key(name), field, std::move(help));
+  }
+  template <typename Enum>
+  void AddEnum(const std::string& name, Enum* field, const std::vector<std::string>& names,
+               const std::string& help) const {
+    table_.AddEnum(Key(name), field, names, help);
+  }
+  void AddText(const std::string& name, std::string* field, std::string help) const {
+    table_.AddText(Key(name), field, std::move(help));
+  }
+  // The members are names in this scope too.
+  void AddShared(const std::string& name, std::vector<std::string> members, std::string help) const;
+  // A retired key, whose field has this value.
+  void AddFixed(const std::string& name, double value) const;
+
+ private:
+  std::string Key(const std::string& name) const { return path_ + "." + name; }
+
+  OptionTable& table_;
+  std::string path_;
 };
 
 }  // namespace hullslam

@@ -5,6 +5,7 @@
 
 #include "hullslam/sequences/euroc_sequence.h"
 #include "hullslam/settings/settings.h"
+#include "run/input_warnings.h"
 
 namespace hullslam {
 namespace {
@@ -19,9 +20,9 @@ class EurocDataset final : public Dataset {
   DatasetInput Open(const RunArguments& arguments) override {
     EurocSequence sequence = OpenEurocSequence(arguments.sequence, arguments.selection);
     return {.options = arguments.settings.empty()
-                           ? MakeSettings(sequence.camera.calibration, arguments.sequence.string(),
+                           ? LoadSettings(sequence.camera.calibration, arguments.sequence.string(),
                                           arguments.overrides)
-                           : ReadSettings(arguments.settings, arguments.overrides),
+                           : LoadSettings(arguments.settings, arguments.overrides),
             .sequence = std::move(sequence.images)};
   }
 };

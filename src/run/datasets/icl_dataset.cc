@@ -10,6 +10,7 @@
 
 #include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/settings/settings.h"
+#include "run/input_warnings.h"
 #include "run/messages.h"
 
 namespace hullslam {
@@ -58,7 +59,7 @@ class IclDataset final : public Dataset {
   // A negative Camera.fy stands for its positive value.
   DatasetInput Open(const RunArguments& arguments) override {
     SystemOptions options =
-        ReadSettings(ChooseSettings(arguments), arguments.overrides, NegativeFy::kPositive);
+        LoadSettings(ChooseSettings(arguments), arguments.overrides, NegativeFy::kPositive);
     icl_.associations = arguments.associations;
     icl_.use_depth = arguments.sensor == SensorKind::kRgbd;
     icl_.selection = arguments.selection;

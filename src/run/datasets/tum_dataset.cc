@@ -5,6 +5,7 @@
 
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/settings/settings.h"
+#include "run/input_warnings.h"
 
 namespace hullslam {
 namespace {
@@ -28,7 +29,7 @@ class TumDataset final : public Dataset {
                                              .use_depth = arguments.sensor == SensorKind::kRgbd,
                                              .selection = arguments.selection});
     return {
-        .options = ReadSettings(arguments.settings.empty()
+        .options = LoadSettings(arguments.settings.empty()
                                     ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
                                     : arguments.settings,
                                 arguments.overrides),

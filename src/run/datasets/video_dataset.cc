@@ -8,6 +8,7 @@
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/settings/settings.h"
 #include "hullslam/util/error.h"
+#include "run/input_warnings.h"
 #include "run/messages.h"
 
 namespace hullslam {
@@ -35,10 +36,10 @@ class VideoDataset final : public Dataset {
     stream_options_.selection = arguments.selection;
     ImageStream stream = OpenImageStream(arguments.sequence, stream_options_);
     SystemOptions options =
-        fov_ ? MakeSettings({CameraOfFieldOfView(*fov_, stream.width, stream.height),
+        fov_ ? LoadSettings({CameraOfFieldOfView(*fov_, stream.width, stream.height),
                              stream.frames_per_second},
                             "--fov", arguments.overrides)
-             : ReadSettings(arguments.settings, arguments.overrides);
+             : LoadSettings(arguments.settings, arguments.overrides);
     if (!arguments.quiet) {
       PrintInput(stream, options);
     }

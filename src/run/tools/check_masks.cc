@@ -22,6 +22,7 @@
 #include "hullslam/settings/settings.h"
 #include "results/output_folder.h"
 #include "run/command_line.h"
+#include "run/input_warnings.h"
 #include "run/interrupt.h"
 #include "run/mask_arguments.h"
 #include "run/messages.h"
@@ -250,7 +251,7 @@ int RunCheckMasks(int argc, char** argv) {
   const fs::path settings = arguments.settings.empty()
                                 ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
                                 : arguments.settings;
-  SystemOptions options = ReadSettings(settings, arguments.overrides);
+  SystemOptions options = LoadSettings(settings, arguments.overrides);
   options.objects.detection.min_keypoints = 0;  // no keypoints are extracted here
   arguments.tum.need_images = false;
   const ImageSequence sequence = OpenTumSequence(arguments.sequence, arguments.tum);

@@ -89,7 +89,7 @@ SystemOptions LoadOptions(const MapObjectsArguments& arguments) {
   const std::filesystem::path settings =
       arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
                                  : arguments.settings;
-  return ReadSettings(settings, arguments.overrides);
+  return LoadSettings(settings, arguments.overrides);
 }
 
 // A frame that is used for mapping.

@@ -25,6 +25,7 @@
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
+#include "run/input_warnings.h"
 #include "run/interrupt.h"
 #include "run/mask_arguments.h"
 #include "run/messages.h"
@@ -131,7 +132,9 @@ SystemOptions LoadOptions(const RelocaliseArguments& arguments, bool for_queries
     overrides.insert(overrides.end(), arguments.query_overrides.begin(),
                      arguments.query_overrides.end());
   }
-  SystemOptions options = ReadSettings(settings, overrides);
+  // The overrides of queries contain those of the map, so all warnings are printed once.
+  SystemOptions options =
+      for_queries ? LoadSettings(settings, overrides) : ReadSettings(settings, overrides);
   options.seed = arguments.seed;
   return options;
 }
