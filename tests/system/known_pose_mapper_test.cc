@@ -36,7 +36,8 @@ class KnownPoseMapperTest : public ::testing::Test {
     for (const MadeObject& object : MakeTable()) {
       for (const Eigen::Vector3d& point : VisibleSurface(object.ellipsoid, cam_from_world)) {
         const Eigen::Vector2d pixel = sensor_.camera.Project(point);
-        const cv::Rect square(static_cast<int>(pixel.x()) - 2, static_cast<int>(pixel.y()) - 2, 5, 5);
+        const cv::Rect square(static_cast<int>(pixel.x()) - 2, static_cast<int>(pixel.y()) - 2, 5,
+                              5);
         depth(square & cv::Rect(0, 0, depth.cols, depth.rows)) = point.z();
       }
     }
