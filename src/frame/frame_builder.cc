@@ -23,19 +23,6 @@ void CheckSize(const char* name, const cv::Mat& image, const cv::Size& size) {
   }
 }
 
-void CheckDepth(const cv::Mat& depth, SensorKind sensor, const cv::Size& size) {
-  if (sensor == SensorKind::kMonocular) {
-    if (!depth.empty()) {
-      throw InputError("there is a depth image, expected none from a monocular camera");
-    }
-    return;
-  }
-  CheckSize("depth image", depth, size);
-  if (depth.type() != CV_16UC1 && depth.type() != CV_32FC1) {
-    throw InputError("the depth image is neither CV_16UC1 nor CV_32FC1");
-  }
-}
-
 // Adds the undistorted keypoints and their depths, which are unknown without a depth image.
 void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& camera,
                   const cv::Mat& depth, double units_per_metre, TaskRunner& runner,
@@ -74,6 +61,13 @@ std::vector<WordId> WordsOf(const Vocabulary& vocabulary, std::span<const Descri
 
 }  // namespace
 
+void CheckDepthImage(const cv::Mat& depth, const PinholeCamera& camera) {
+  CheckSize("depth image", depth, cv::Size(camera.width, camera.height));
+  if (depth.type() != CV_16UC1 && depth.type() != CV_32FC1) {
+    throw InputError("the depth image is neither CV_16UC1 nor CV_32FC1");
+  }
+}
+
 FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
                            const FeatureOptions& features,
                            const std::optional<DetectionOptions>& detection,
@@ -85,7 +79,7 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
       dynamic_classes_(std::move(dynamic_classes)),
       vocabulary_(std::move(vocabulary)) {
   if (detection) {
-    detection_builder_.emplace(sensor.camera, depth.units_per_metre, *detection);
+    detector_.emplace(sensor.camera, depth, *detection, dynamic_classes_);
   }
 }
 
@@ -96,7 +90,11 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
   if (image.grey.type() != CV_8UC1) {
     throw InputError("the image is not CV_8UC1");
   }
-  CheckDepth(image.depth, sensor_.kind, size);
+  if (sensor_.kind != SensorKind::kMonocular) {
+    CheckDepthImage(image.depth, sensor_.camera);
+  } else if (!image.depth.empty()) {
+    throw InputError("there is a depth image, expected none from a monocular camera");
+  }
   BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = Clock::now()};
   built.frame->timestamp = image.timestamp;
   const std::vector<RawKeypoint> keypoints = AddFeatures(image, runner, built.frame->features);
@@ -104,12 +102,8 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
     built.frame->words = WordsOf(*vocabulary_, built.frame->features.descriptors, runner);
   }
   built.masks.frames_with_masks = image.masks.empty() ? 0 : 1;
-  has_seen_masks_ |= !image.masks.empty();
-  if (detection_builder_ && !image.masks.empty()) {
-    AddDetections(image, keypoints, runner, built);
-  }
-  if (detection_builder_ && has_seen_masks_) {
-    built.frame->depth = DepthGrid(image.depth, depth_.units_per_metre);
+  if (detector_) {
+    detector_->AddDetections(image.masks, image.depth, keypoints, runner, built);
   }
   built.milliseconds =
       std::chrono::duration<double, std::milli>(Clock::now() - built.begin).count();
@@ -131,21 +125,6 @@ std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, Task
       FeatureGrid(features.keypoints, Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),
                   Eigen::Vector2d(bounds.max_x, bounds.max_y).cast<float>());
   return std::move(extracted.keypoints);
-}
-
-void FrameBuilder::AddDetections(const ImageInput& image, std::span<const RawKeypoint> keypoints,
-                                 TaskRunner& runner, BuiltFrame& built) const {
-  std::vector<InstanceMask> masks = image.masks;
-  std::erase_if(masks,
-                [&](const InstanceMask& mask) { return dynamic_classes_.contains(mask.label); });
-  DetectionResult result = detection_builder_->Build(masks, image.depth, keypoints, runner);
-  for (const std::optional<DetectionRejection>& rejection : result.rejections) {
-    if (rejection) {
-      ++built.masks.rejections[*rejection];
-    }
-  }
-  built.masks.detections = result.detections.size();
-  built.frame->detections = std::move(result.detections);
 }
 
 }  // namespace hullslam

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "features/extractor.h"
-#include "frame/detection_builder.h"
+#include "frame/frame_detector.h"
 #include "hullslam/bow/vocabulary.h"
 #include "hullslam/camera/depth.h"
 #include "hullslam/frame/built_frame.h"
@@ -18,6 +18,10 @@
 #include "util/task_runner.h"
 
 namespace hullslam {
+
+// Throws InputError unless the depth image has the size of the camera and a type that ImageInput
+// allows.
+void CheckDepthImage(const cv::Mat& depth, const PinholeCamera& camera);
 
 // Turns images into frames: extracts and undistorts keypoints, looks up their depths and virtual
 // right coordinates, builds the grid, and makes the detections of objects. Things of the dynamic
@@ -40,16 +44,13 @@ class FrameBuilder {
   // Returns the keypoints as they are in the raw image.
   std::vector<RawKeypoint> AddFeatures(const ImageInput& image, TaskRunner& runner,
                                        FrameFeatures& features);
-  void AddDetections(const ImageInput& image, std::span<const RawKeypoint> keypoints,
-                     TaskRunner& runner, BuiltFrame& built) const;
 
   const Sensor& sensor_;
   DepthOptions depth_;
   FeatureExtractor extractor_;
-  std::optional<DetectionBuilder> detection_builder_;
+  std::optional<FrameDetector> detector_;
   std::set<std::string> dynamic_classes_;
   std::shared_ptr<const Vocabulary> vocabulary_;
-  bool has_seen_masks_ = false;
 };
 
 }  // namespace hullslam

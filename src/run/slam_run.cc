@@ -270,6 +270,12 @@ std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
           arguments.associations, arguments.vocabulary, arguments.load_map};
 }
 
+std::string DescribeInterruption(const RunResult& result, const ImageSequence& sequence) {
+  return fmt::format(
+      "the run was interrupted after {} of {} frames; the results so far were written",
+      result.given, sequence.frames.size());
+}
+
 }  // namespace
 
 int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence) {
@@ -322,10 +328,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   }
   const std::string failure =
       result.was_interrupted
-          ? fmt::format(
-                "the run was interrupted after {} of {} frames; the results so far were "
-                "written",
-                result.given, sequence.frames.size())
+          ? DescribeInterruption(result, sequence)
           : DescribeLoss(arguments, options.run, sequence.frames.size(), summary, system.frames());
   if (!failure.empty()) {
     PrintFailure(failure);

@@ -1,40 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/system/known_pose_mapper.h"
 
-#include <set>
-#include <string>
+#include <cmath>
 #include <utility>
 
-#include "frame/detection_builder.h"
 #include "frame/dynamic_mask.h"
+#include "frame/frame_builder.h"
+#include "frame/frame_detector.h"
+#include "hullslam/util/check.h"
 #include "objects/object_mapper.h"
+#include "system/count_objects.h"
+#include "system/make_sensor.h"
 
 namespace hullslam {
-namespace {
-
-Sensor SensorOfViews(const SystemOptions& options) {
-  options.Validate();
-  Sensor sensor;
-  sensor.camera = options.camera;
-  sensor.bounds = options.camera.UndistortedBounds();
-  return sensor;
-}
-
-}  // namespace
-
 struct KnownPoseMapper::State {
   explicit State(const SystemOptions& options)
-      : sensor(SensorOfViews(options)),
-        dynamic_classes(SplitNames(options.tracking.dynamic_classes)),
-        builder(options.camera, options.depth.units_per_metre, options.objects.detection),
+      : sensor(MakeSensor(options)),
+        detector(options.camera, options.depth, options.objects.detection,
+                 SplitNames(options.tracking.dynamic_classes)),
         mapper(sensor, options.objects) {}
 
   Sensor sensor;
-  std::set<std::string> dynamic_classes;
-  DetectionBuilder builder;
+  FrameDetector detector;
   ObjectMapper mapper;
   Map map;
-  ObjectCounts counts;
+  DetectionCounts masks;
 };
 
 KnownPoseMapper::KnownPoseMapper(const SystemOptions& options)
@@ -45,30 +35,29 @@ KnownPoseMapper::~KnownPoseMapper() = default;
 void KnownPoseMapper::AddView(double timestamp, const Rigid3& world_from_cam,
                               std::vector<InstanceMask> masks, const cv::Mat& depth) {
   State& state = *state_;
-  auto frame = std::make_shared<Frame>();
-  frame->id = FrameId(state.map.keyframes().NextId().value);
-  frame->timestamp = timestamp;
-  std::erase_if(
-      masks, [&](const InstanceMask& mask) { return state.dynamic_classes.contains(mask.label); });
-  DetectionResult result = state.builder.Build(masks, depth, {});
-  for (const auto& rejection : result.rejections) {
-    if (rejection) {
-      ++state.counts.rejections["mask_" + ToString(*rejection)];
-    }
+  Check(std::isfinite(timestamp), "the time stamp is not a number");
+  Check(world_from_cam.translation.allFinite() && world_from_cam.rotation.coeffs().allFinite(),
+        "the pose is not finite");
+  const PinholeCamera& camera = state.sensor.camera;
+  ValidateMasks(masks, camera.width, camera.height);
+  if (!depth.empty()) {
+    CheckDepthImage(depth, camera);
   }
-  state.counts.detections += result.detections.size();
-  frame->detections = std::move(result.detections);
-  state.mapper.Process(state.map, state.map.AddKeyframe(std::move(frame), Inverse(world_from_cam)));
+  SerialRunner runner;
+  BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = {}};
+  built.frame->id = FrameId(state.map.keyframes().NextId().value);
+  built.frame->timestamp = timestamp;
+  built.masks.frames_with_masks = masks.empty() ? 0 : 1;
+  state.detector.AddDetections(masks, depth, {}, runner, built);
+  state.masks.Add(built.masks);
+  state.mapper.Process(state.map,
+                       state.map.AddKeyframe(std::move(built.frame), Inverse(world_from_cam)));
 }
 
 const Map& KnownPoseMapper::map() const { return state_->map; }
 
 ObjectCounts KnownPoseMapper::counts() const {
-  ObjectCounts counts = state_->counts;
-  for (const auto& [reason, count] : state_->mapper.rejections()) {
-    counts.rejections[ToString(reason)] = count;
-  }
-  return counts;
+  return CountObjects(state_->masks, state_->map.keyframes().size(), state_->mapper.rejections());
 }
 
 }  // namespace hullslam

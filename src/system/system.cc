@@ -13,6 +13,7 @@
 #include "hullslam/util/error.h"
 #include "objects/known_sizes.h"
 #include "system/compose_trajectory.h"
+#include "system/count_objects.h"
 #include "system/idle_core_runner.h"
 #include "system/make_sensor.h"
 #include "system/pipeline.h"
@@ -209,17 +210,7 @@ size_t System::sized_objects() const {
 }
 
 ObjectCounts System::object_counts() const {
-  ObjectCounts counts;
-  counts.detections = mask_counts_.detections;
-  counts.frames_with_masks = mask_counts_.frames_with_masks;
-  counts.frames_without_masks = frames_.size() - counts.frames_with_masks;
-  for (const auto& [reason, count] : mask_counts_.rejections) {
-    counts.rejections["mask_" + ToString(reason)] = count;
-  }
-  for (const auto& [reason, count] : pipeline_->object_rejections()) {
-    counts.rejections[ToString(reason)] = count;
-  }
-  return counts;
+  return CountObjects(mask_counts_, frames_.size(), pipeline_->object_rejections());
 }
 
 }  // namespace hullslam

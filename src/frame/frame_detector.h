@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <set>
+#include <span>
+#include <string>
+
+#include "frame/detection_builder.h"
+#include "hullslam/camera/depth.h"
+#include "hullslam/frame/built_frame.h"
+#include "hullslam/frame/instance_mask.h"
+#include "util/task_runner.h"
+
+namespace hullslam {
+
+// Gives frames their detections: from the masks of all classes that are not dynamic.
+class FrameDetector {
+ public:
+  FrameDetector(const PinholeCamera& camera, const DepthOptions& depth,
+                const DetectionOptions& options, std::set<std::string> dynamic_classes);
+
+  // Adds the detections to the frame and counts the masks that gave none. From the first frame with
+  // masks on, frames also get the grid of their depth image, which tells later whether something
+  // hid an object. `depth` and `keypoints` are as in DetectionBuilder.
+  void AddDetections(std::span<const InstanceMask> masks, const cv::Mat& depth,
+                     std::span<const RawKeypoint> keypoints, TaskRunner& runner, BuiltFrame& built);
+
+ private:
+  DetectionBuilder builder_;
+  double units_per_metre_;
+  std::set<std::string> dynamic_classes_;
+  bool has_seen_masks_ = false;
+};
+
+}  // namespace hullslam
