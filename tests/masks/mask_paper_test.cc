@@ -22,11 +22,11 @@ class PaperTest : public MaskFixture {
   }
 };
 
-const char* const kTriangle = "10 20 300.5 20 10 400";
+const char* const kPixelTriangle = "10 20 300.5 20 10 400";
 
 TEST_F(PaperTest, FilesAreNamedByFrameNumberAndUsePixels) {
-  Write("segmentation_txt/000000.txt", std::string("0 5 cup 0.5 ") + kTriangle + '\n');
-  Write("segmentation_txt/000017.txt", std::string("3 -1 62 1 ") + kTriangle + '\n');
+  Write("segmentation_txt/000000.txt", std::string("0 5 cup 0.5 ") + kPixelTriangle + '\n');
+  Write("segmentation_txt/000017.txt", std::string("3 -1 62 1 ") + kPixelTriangle + '\n');
   const InstanceMask cup = ReadFrame(0).masks.at(0);
   EXPECT_EQ(cup.label, "cup");
   EXPECT_EQ(cup.score, 0.5);
@@ -37,7 +37,7 @@ TEST_F(PaperTest, FilesAreNamedByFrameNumberAndUsePixels) {
 }
 
 TEST_F(PaperTest, OuterAndInnerFolderAreAccepted) {
-  Write("segmentation_txt/000000.txt", std::string("0 5 41 0.5 ") + kTriangle + '\n');
+  Write("segmentation_txt/000000.txt", std::string("0 5 41 0.5 ") + kPixelTriangle + '\n');
   format_ = "";
   EXPECT_EQ(Open()->format(), "paper");
   EXPECT_EQ(Open("segmentation_txt")->format(), "paper");
@@ -45,7 +45,7 @@ TEST_F(PaperTest, OuterAndInnerFolderAreAccepted) {
 }
 
 TEST_F(PaperTest, MalformedLinesAreRefused) {
-  const std::string triangle = kTriangle;
+  const std::string triangle = kPixelTriangle;
   ExpectRefusedLine("0 5 cup 0.5 10 20 30 40", {"8 column(s)", "3 points"});
   ExpectRefusedLine("0 5 cup 0.5 " + triangle + " 7", {"11 column(s)"});
   ExpectRefusedLine("a 5 cup 0.5 " + triangle, {"instance is 'a'"});

@@ -10,7 +10,7 @@
 namespace hullslam {
 namespace {
 
-const char* const kYoloSeg = "41 0.25 0.25 0.5 0.25 0.25 0.75 0.9\n";
+const char* const kMaskOfSource = "41 0.25 0.25 0.5 0.25 0.25 0.75 0.9\n";
 
 // Masks whose format is detected.
 class MaskSourceTest : public MaskFixture {
@@ -30,7 +30,7 @@ TEST(MaskFrames, HaveTheStemsAndNumbersOfTheImages) {
 
 TEST_F(MaskSourceTest, FramesWithoutMasksAreCounted) {
   Write("1.5.txt", "");
-  Write("3.5.txt", kYoloSeg);
+  Write("3.5.txt", kMaskOfSource);
   frames_ = {{"1.5", 0}, {"2.5", 1}, {"3.5", 2}};
   const MaskCounts counts = CheckMasks(*Open(), frames_);
   EXPECT_EQ(counts.missing, 1U);

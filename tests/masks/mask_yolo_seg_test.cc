@@ -23,10 +23,10 @@ class YoloSegTest : public MaskFixture {
   }
 };
 
-const char* const kTriangle = "0.25 0.25 0.5 0.25 0.25 0.75";
+const char* const kShareTriangle = "0.25 0.25 0.5 0.25 0.25 0.75";
 
 TEST_F(YoloSegTest, CoordinatesArePixelCentresInFractionsOfTheSize) {
-  Write("1.5.txt", std::string("41 ") + kTriangle + " 0.9\r\n62 " + kTriangle + '\n');
+  Write("1.5.txt", std::string("41 ") + kShareTriangle + " 0.9\r\n62 " + kShareTriangle + '\n');
   const FrameMasks frame = ReadFrame(0);
   ASSERT_EQ(frame.masks.size(), 2U);
   EXPECT_FALSE(frame.is_missing);
@@ -68,13 +68,13 @@ TEST_F(YoloSegTest, OutlinesMayCrossThemselves) {
 
 TEST_F(YoloSegTest, ClassesFileNamesTheClasses) {
   Write("classes.txt", "robot\nred ball\r\n\n");
-  Write("1.5.txt", std::string("1 ") + kTriangle + '\n');
+  Write("1.5.txt", std::string("1 ") + kShareTriangle + '\n');
   EXPECT_EQ(ReadFrame(0).masks.at(0).label, "red ball");
-  ExpectRefusedLine(std::string("2 ") + kTriangle, {"class is '2'", "from 0 to 1"});
+  ExpectRefusedLine(std::string("2 ") + kShareTriangle, {"class is '2'", "from 0 to 1"});
 }
 
 TEST_F(YoloSegTest, MalformedLinesAreRefused) {
-  const std::string triangle = kTriangle;
+  const std::string triangle = kShareTriangle;
   ExpectRefusedLine("41", {"1 column(s)", "3 points"});
   ExpectRefusedLine("41 0.1 0.1 0.2 0.2", {"5 column(s)", "3 points"});
   ExpectRefusedLine("41 0.1 0.1 0.2 0.2 0.9", {"6 column(s)", "3 points"});
@@ -94,7 +94,7 @@ TEST_F(YoloSegTest, MalformedLinesAreRefused) {
 TEST_F(YoloSegTest, HugeFilesAreRefused) {
   std::string many;
   for (int i = 0; i < 10'001; ++i) {
-    many += std::string("0 ") + kTriangle + '\n';
+    many += std::string("0 ") + kShareTriangle + '\n';
   }
   Write("1.5.txt", many);
   ExpectRefusal({"1.5.txt:1001: ", "too many instances", "1000"});

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "synthetic/hash_noise.h"
-#include "synthetic/implicit_shape.h"
 #include "synthetic/object_models.h"
 #include "synthetic/scene_builder.h"
+#include "synthetic/tests/implicit_shape.h"
 
 namespace hullslam::synthetic {
 namespace {

@@ -7,11 +7,11 @@
 #include <opencv2/core.hpp>
 
 #include "synthetic/camera_path.h"
-#include "synthetic/implicit_shape.h"
 #include "synthetic/mask_outline.h"
 #include "synthetic/object_models.h"
 #include "synthetic/scene_builder.h"
 #include "synthetic/sequence_writer.h"
+#include "synthetic/tests/implicit_shape.h"
 
 namespace hullslam::synthetic {
 namespace {

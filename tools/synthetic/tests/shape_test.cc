@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "synthetic/implicit_shape.h"
+#include "synthetic/tests/implicit_shape.h"
 
 namespace hullslam::synthetic {
 namespace {
