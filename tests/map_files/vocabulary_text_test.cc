@@ -24,8 +24,8 @@ std::string Node(int parent, bool is_leaf, int byte, const std::string& weight =
 
 Vocabulary Parse(const std::string& text) { return ParseVocabularyText(text, "voc.txt", {}); }
 
-void ExpectRefused(const std::string& text, const std::string& place, const std::string& why) {
-  ExpectInputError([&] { Parse(text); }, {place, why});
+void ExpectRefused(const std::string& text, const std::string& position, const std::string& why) {
+  ExpectInputError([&] { Parse(text); }, {position, why});
 }
 
 TEST(VocabularyText, IsReadLineByLine) {
