@@ -21,6 +21,8 @@ namespace hullslam {
 //   for (const auto& [id, object] : mapper.map().objects()) ...
 //
 // A view should differ from the one before: of a camera that hardly moves, use only some frames.
+// Without depth, an object is recognised only while the motion of the camera from one view to the
+// next moves its outline by less than its own size in the image, rotation aside.
 class KnownPoseMapper {
  public:
   // Uses the camera, depth, objects and tracking.dynamic_classes of the options. Throws InputError
