@@ -24,7 +24,7 @@ struct ObjectCostInput {
 
 // How large an ellipsoid appears in an image.
 struct ProjectedSize {
-  double radius_px;      // of the circle that has the area of the projected ellipse
+  double radius_px;      // radius of the circle with the area of the projected ellipse
   double metres_per_px;  // at the depth of the ellipsoid's centre
 };
 

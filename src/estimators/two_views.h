@@ -23,8 +23,8 @@ struct PixelPair {
 
 struct TwoViewOptions {
   uint64_t seed = 0;
-  size_t min_points = 50;     // that must be seen in front of both cameras
-  double min_share = 0.7;     // of such points among the pairs that agree with any motion
+  size_t min_points = 50;  // that must be seen in front of both cameras
+  double min_share = 0.7;  // least share of such points among the pairs that agree with any motion
   double min_parallax = 1.2;  // degrees between the two rays to a point, in the median
   // Largest share of the pairs that agree with the best motion that a rotation alone may explain.
   double max_turned_share = 0.9;

@@ -62,7 +62,7 @@ class RecordReader {
   std::istream& in_;
   uint64_t left_;  // number of bytes that were not read yet
   std::string name_;
-  std::string bytes_;  // of the current record
+  std::string bytes_;  // bytes of the current record
   std::optional<ByteReader> record_;
   size_t number_ = 0;
 };

@@ -8,11 +8,11 @@
 
 namespace hullslam {
 
-// How the mapping of points depends on the sensor.
+// The rules of mapping that depend on the sensor.
 
-// When landmarks and keyframes are removed.
+// The rules by which landmarks and keyframes are removed.
 struct CullingRules {
-  static constexpr size_t kMaxOtherObservers = 4;  // of all sensors
+  static constexpr size_t kMaxOtherObservers = 4;  // the same for all sensors
 
   // After its trial a landmark is removed if its observation weight is not larger than this. An
   // observation with depth weighs 2, one without weighs 1.

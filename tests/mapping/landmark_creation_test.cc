@@ -254,7 +254,7 @@ TEST(LandmarkCreation, NoiseDoesNotChooseMonocularPairs) {
   TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead(center));
   const std::vector<LandmarkId> created =
       CreateLandmarks(pair.map, KeyframeId(1), Monocular(world));
-  std::vector<double> ratios;  // of inverse depth to the true one, of far points
+  std::vector<double> ratios;  // estimated over true inverse depth of far points
   for (const LandmarkId id : created) {
     const Landmark& landmark = pair.map.landmarks().At(id);
     const double depth = world.points()[PointOf(world, landmark)].z();

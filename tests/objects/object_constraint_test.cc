@@ -115,7 +115,7 @@ TEST_F(ObjectConstraintTest, DepthHasALossAndANumberOfPointsOfItsOwn) {
   EXPECT_NEAR(depth.squaredNorm(), 2.0 * std::log(5.0), 1e-7);
   options_.depth.max_points = 5;
   EXPECT_EQ(Make().depth->num_residuals(), 5);
-  options_.depth.choice = PointChoice::kEveryKth;  // of six every second
+  options_.depth.choice = PointChoice::kEveryKth;  // takes every second of six points
   EXPECT_EQ(Make().depth->num_residuals(), 3);
   options_.depth.max_points = 0;
   EXPECT_EQ(Make().depth, nullptr);

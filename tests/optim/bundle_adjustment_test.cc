@@ -351,7 +351,7 @@ TEST_F(BundleAdjustment, APointThatACameraGoesPastDoesNotHoldIt) {
   const Keyframe& keyframe = made_.map.keyframes().At(id);
   Sensor sensor = world_.sensor();
   sensor.kind = SensorKind::kMonocular;
-  uint32_t keypoint = 0;  // of a landmark without depth that all keyframes see
+  uint32_t keypoint = 0;  // keypoint of a landmark without depth that all keyframes see
   while (MeasurePoint(sensor, keyframe.frame->features, keypoint, sensor.depth_error).has_depth() ||
          !keyframe.landmarks[keypoint].IsValid() ||
          made_.map.landmarks().At(keyframe.landmarks[keypoint]).observations.size() <

@@ -18,8 +18,8 @@ namespace hullslam {
 struct MapSettings {
   SensorKind sensor = SensorKind::kRgbd;
   PinholeCamera camera;
-  int level_count = 8;        // of the image pyramid
-  double scale_factor = 1.2;  // between two levels
+  int level_count = 8;        // number of levels of the image pyramid
+  double scale_factor = 1.2;  // scale between two levels
   uint64_t vocabulary = 0;    // hash of the vocabulary of the words; 0: the frames have no words
 
   bool operator==(const MapSettings&) const = default;

@@ -16,8 +16,8 @@ namespace hullslam {
 
 // The conditions for a detection to show an object of the map; see AssociateDetections.
 struct AssociationOptions {
-  double min_projection_iou = 0.25;  // of hull and projected ellipse
-  double min_carried_iou = 0.5;      // of hull and last hull, moved to the new pose
+  double min_projection_iou = 0.25;  // IoU of hull and projected ellipse
+  double min_carried_iou = 0.5;      // IoU of the hull and the last hull moved to the new pose
   double min_depth_iou = 0.1;        // the larger of both, if the depth points agree
   int min_shared_landmarks = 3;
   double min_shared_ratio = 0.5;  // common landmarks over those of the one that has fewer
@@ -35,7 +35,7 @@ struct AssociationOptions {
   double cloud_weight = 0.1;
   double centroid_weight = 0.1;
   double class_weight = 0.2;
-  double min_similarity = 0.2;  // of a detection and an object that are matched
+  double min_similarity = 0.2;  // least similarity of a matched detection and object
 
   void Bind(const OptionScope& scope);
 };
@@ -48,15 +48,15 @@ struct StartOptions {
   int max_points = 2000;                     // approximate largest number of depth points
   double trimmed = 0.03;        // share of the points that is left out at each end of each axis
   double inflation = 1.2;       // factor on the oriented bounding box of the points
-  double min_half_axis = 0.01;  // of the distance, for flat things
+  double min_half_axis = 0.01;  // share of the distance to the object, for flat things
 
   void Bind(const OptionScope& scope);
 };
 
 // The conditions that a mapped object must satisfy; see FindObjection.
 struct ValidityOptions {
-  double min_half_axis = 0.005;     // of the distance
-  double max_half_axis = 3.0;       // of the distance
+  double min_half_axis = 0.005;     // share of the distance to the object
+  double max_half_axis = 3.0;       // share of the distance to the object
   double min_overlap = 0.6;         // mean IoU of projected ellipse and hull
   double min_points_near = 0.4;     // share of depth points inside the quadric or near its surface
   double near_surface = 0.03;       // near: outside by at most this share of the distance
@@ -76,8 +76,8 @@ struct ValidityOptions {
 // The conditions for fusing two objects; see FindDuplicates.
 struct FusionOptions {
   double min_overlap = 0.25;          // IoU of the volumes, of objects never seen together
-  double min_overlap_together = 0.5;  // of objects seen together in few keyframes
-  double max_shared_keyframes = 0.2;  // of the object with fewer keyframes
+  double min_overlap_together = 0.5;  // least overlap if few keyframes see both objects
+  double max_shared_keyframes = 0.2;  // share of the keyframes of the object that has fewer
   double alpha = 0.05;                // significance level of the t-test of centroids
   double centroid_noise = 0.02;       // sigma of a centroid, as a share of its distance
 
@@ -111,7 +111,7 @@ struct ChangeOptions {
   // An object that is farther away than this (m; in the unit of the map if its scale is unknown)
   // cannot be the one that is gone.
   double max_move = 4.0;
-  double max_size_ratio = 2.5;  // of the half axes of an object before and after it was moved
+  double max_size_ratio = 2.5;  // ratio of half axes before and after a move
 
   void Bind(const OptionScope& scope);
 };
@@ -159,7 +159,7 @@ struct ObjectPoseOptions {
   // that objects alone do not determine, such as the rotation around a single object and the
   // common distance of all objects.
   double prior_rotation = 0.1;     // radians
-  double prior_translation = 0.1;  // of the mean distance of the objects
+  double prior_translation = 0.1;  // share of the mean distance of the objects
   int min_objects = 2;             // number of objects that determine a pose without points
 
   void Bind(const OptionScope& scope);

@@ -138,7 +138,7 @@ class System {
   std::unique_ptr<Pipeline> pipeline_;
   std::atomic<bool> is_tracking_ = false;
   std::unique_ptr<TaskRunner> runner_;  // for building frames
-  DetectionCounts mask_counts_;         // of the frames that were tracked
+  DetectionCounts mask_counts_;         // counts of the tracked frames
   std::function<void(const FrameReport&)> frame_callback_;
   std::vector<TrackedFrame> frames_;
   std::vector<RememberedFrame> remembered_;  // until Finish
