@@ -33,10 +33,10 @@ struct StoredMap {
   MapSettings settings;
 };
 
-// Writes a map that has a keyframe, with its sessions, to one file (docs/maps.md). The file is
-// complete or not there at all, as with WriteFileAtomically(). The same map gives the same bytes,
-// also after it was read from a file. Throws InputError with `path` and the reason if the map has
-// no keyframe or the file cannot be written.
+// Writes a map and its sessions to one file (docs/maps.md). The map must have a keyframe. The file
+// is complete or not there at all, as with WriteFileAtomically(). The same map gives the same
+// bytes, also after it was read from a file. Throws InputError with `path` and the reason if the
+// map has no keyframe or the file cannot be written.
 void WriteMap(const std::filesystem::path& path, const Map& map, const MapSettings& settings);
 
 // Reads a file of WriteMap(). The map has no index of its words. It has the same values, ids and

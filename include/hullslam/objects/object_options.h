@@ -18,16 +18,17 @@ namespace hullslam {
 struct AssociationOptions {
   double min_projection_iou = 0.25;  // IoU of hull and projected ellipse
   double min_carried_iou = 0.5;      // IoU of the hull and the last hull moved to the new pose
-  double min_depth_iou = 0.1;        // the larger of both, if the depth points agree
+  double min_depth_iou = 0.1;        // the larger of the two IoUs, if the depth points agree
   int min_shared_landmarks = 3;
-  double min_shared_ratio = 0.5;  // common landmarks over those of the one that has fewer
-  int recent_views = 5;           // number of latest keyframes that represent an object
-  int cloud_points = 40;          // largest number of points of a cloud that are compared, about
-  int min_cloud = 20;             // number of points that the rank-sum test needs
-  double max_rank_sum = 1.282;    // standard score
-  double alpha = 0.001;           // significance level of the t-test of centroids
-  double centroid_noise = 0.02;   // sigma of a centroid, as a share of its distance
-  double max_offset = 1.0;        // between centroids, in sizes of the object
+  double min_shared_ratio =
+      0.5;                      // common landmarks over the smaller number of landmarks of the two
+  int recent_views = 5;         // number of latest keyframes that represent an object
+  int cloud_points = 40;        // approximate largest number of points of a cloud that are compared
+  int min_cloud = 20;           // number of points that the rank-sum test needs
+  double max_rank_sum = 1.282;  // standard score
+  double alpha = 0.001;         // significance level of the t-test of centroids
+  double centroid_noise = 0.02;  // sigma of a centroid, as a share of its distance
+  double max_offset = 1.0;       // between centroids, in sizes of the object
   // Weights in the similarity of a match: the larger IoU, shared landmarks, agreeing clouds,
   // agreeing centroids, votes for the class.
   double iou_weight = 0.6;
@@ -75,7 +76,7 @@ struct ValidityOptions {
 
 // The conditions for fusing two objects; see FindDuplicates.
 struct FusionOptions {
-  double min_overlap = 0.25;          // IoU of the volumes, of objects never seen together
+  double min_overlap = 0.25;          // IoU of the volumes if no keyframe sees both objects
   double min_overlap_together = 0.5;  // least overlap if few keyframes see both objects
   double max_shared_keyframes = 0.2;  // share of the keyframes of the object that has fewer
   double alpha = 0.05;                // significance level of the t-test of centroids
@@ -101,7 +102,7 @@ struct CullingOptions {
 
 // The conditions for an object of a loaded map to count as gone or new; see FindObjectChanges.
 struct ChangeOptions {
-  int min_keyframes = 3;         // should show an object before it can count as gone or new
+  int min_keyframes = 3;         // least number of keyframes that should show the object
   double max_found_ratio = 0.2;  // it is found in a smaller share of these keyframes
   double min_overlap = 0.25;     // IoU of its projected ellipse and a hull that may show it
   double min_inside = 0.6;       // share of the object that must be in the image
