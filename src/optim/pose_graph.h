@@ -10,7 +10,7 @@
 
 namespace hullslam {
 
-// Keyframes and measured similarities between them, as the essential graph of ORB-SLAM.
+// Keyframes and measured similarities between them, like the essential graph of ORB-SLAM.
 struct PoseGraph {
   struct Node {
     Sim3 cam_from_world;
