@@ -40,7 +40,7 @@ TEST(BundleRules, ForMonocularTheScaleIsProtected) {
   EXPECT_TRUE(rules.precision_is_measured);
   EXPECT_TRUE(rules.keypoints_share_weights);
   EXPECT_TRUE(rules.keeps_scale);
-  // Points that slide along edges are in both rounds.
+  // Points that slide along edges take part in both rounds.
   EXPECT_EQ(rules.robust_loss, PointLoss::kCauchy);
   EXPECT_EQ(rules.final_loss, PointLoss::kCauchy);
 }
