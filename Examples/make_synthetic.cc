@@ -100,7 +100,7 @@ int Run(int argc, char** argv) {
   if (!hullslam::ParseCommandLine(app, argc, argv)) {
     return kDone;
   }
-  hullslam::CatchInterrupts();  // so that no half-written sequence is left
+  hullslam::CatchInterrupts();  // then an interrupted program can remove its unfinished sequence
   return Render(arguments);
 }
 

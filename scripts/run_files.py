@@ -133,7 +133,7 @@ def read_trajectory(path):
 
 
 def read_ply_header(file, path):
-    """The number of vertices and the numpy type of a vertex. `file` is left at the first vertex."""
+    """The number of vertices and the numpy type of a vertex. Reads `file` up to the first vertex."""
     if file.readline(100).strip() != b"ply":
         raise InputError(f"{path}: not a PLY file")
     count, fields, binary, element, is_first = 0, [], False, "", True

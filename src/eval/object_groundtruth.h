@@ -40,7 +40,7 @@ struct GroundtruthComparison {
 GroundtruthComparison CompareWithTruth(std::span<const TrueObject> truths,
                                        const ObjectReport& report, const Sim3& truth_from_map);
 
-// Counts how often the true objects that should be mapped were mapped.
+// How many of the true objects that should be mapped were mapped, and how often.
 struct TruthCounts {
   size_t visible = 0;  // seen often enough and not moving
   size_t once = 0;     // visible objects that were mapped as one object

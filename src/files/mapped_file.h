@@ -14,8 +14,8 @@ struct FileBytes {
   std::shared_ptr<const void> owner;
 };
 
-// Maps a regular file into memory, without copying it. Replacing the file by another one meanwhile
-// is harmless, but it must not be made shorter. A pipe is read instead. Throws InputError like
+// Maps a regular file into memory, without copying it. While it is mapped, the file may be replaced
+// by another one, but it must not become shorter. A pipe is read instead. Throws InputError like
 // ReadFile().
 FileBytes MapFile(const std::filesystem::path& path, size_t most_bytes);
 

@@ -68,7 +68,8 @@ double TextRow::Number(size_t column, std::string_view name, double most) const 
 }
 
 Eigen::Quaterniond TextRow::Rotation(size_t w, size_t x, size_t y, size_t z) const {
-  // One after the other: the order of the arguments of a call is not specified.
+  // Read in separate statements, because C++ does not specify in which order the arguments of a
+  // call are evaluated.
   const double qw = Number(w, "qw");
   const double qx = Number(x, "qx");
   const double qy = Number(y, "qy");

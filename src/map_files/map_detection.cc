@@ -6,7 +6,8 @@
 namespace hullslam {
 namespace {
 
-constexpr double kMostDouble = std::numeric_limits<double>::max();  // an empty box has such corners
+constexpr double kMostDouble =
+    std::numeric_limits<double>::max();  // an empty box has corners of this size
 constexpr auto kMostFloat = static_cast<float>(kMostMapNumber);
 
 template <int N>

@@ -10,7 +10,7 @@
 namespace hullslam {
 namespace {
 
-// A length in metres or in pixels that cannot be negative.
+// Reads a length in metres or pixels. Refuses negative ones.
 double ReadLength(ByteReader& in) {
   const double length = in.GetFinite(kMostMapNumber);
   in.Require(length >= 0.0, "has a negative length");
@@ -23,9 +23,9 @@ double ReadScale(ByteReader& in) {
   return scale;
 }
 
-// The number of times that something was seen.
+// Reads how many times something was seen.
 int ReadTimes(ByteReader& in) {
-  constexpr int kMost = 1 << 29;  // so that sums of two do not overflow
+  constexpr int kMost = 1 << 29;  // the sum of two such numbers does not overflow
   const auto times = in.Get<int32_t>();
   in.Require(times >= 0 && times <= kMost, "has a count that is out of range");
   return times;
@@ -49,7 +49,8 @@ std::vector<IdType> ReadIds(size_t count, ByteReader& in) {
   return ids;
 }
 
-// Every id is that of a keyframe or of a culled one, so no id is as large as their number.
+// Reads the id of a keyframe. Every id belongs to a keyframe or to a culled keyframe, so it is
+// smaller than the number of both.
 KeyframeId ReadKeyframeId(const MapHeader& header, KeyframeId next, ByteReader& in) {
   const KeyframeId id(in.Get<uint32_t>());
   in.Require(!(id < next) && id.value < uint64_t{header.keyframes} + header.culled,

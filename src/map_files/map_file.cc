@@ -23,13 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::string_view_literals;
 
-// The byte above 127 and the line feed tell a transfer as text, which would have changed them.
+// A transfer in text mode would change the byte above 127 or the line ends. So it is noticed.
 constexpr std::string_view kMagic = "\x89HULLMAP\r\n"sv;
 constexpr uint32_t kVersion = 1;
 constexpr size_t kPrefixBytes = kMagic.size() + sizeof(kVersion);
 constexpr size_t kChecksumBytes = sizeof(uint32_t);
 
-// CRC-32 (ISO 3309). It finds every change of up to 32 bits in a row.
+// CRC-32 (ISO 3309). It detects every change within 32 consecutive bits.
 uint32_t AddToChecksum(uint32_t checksum, std::string_view bytes) {
   return static_cast<uint32_t>(
       ::crc32_z(checksum, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
@@ -47,8 +47,8 @@ class RecordWriter {
   explicit RecordWriter(const fs::path& path) : file_(path) { Write(Prefix()); }
 
   ByteWriter& Record() { return record_; }
-  // Ends the current record if it has at least this many bytes. Records of many small entities are
-  // as good as one large one, but need little memory.
+  // Ends the current record if it has at least this many bytes. Small entities share a record, and
+  // the data is divided into many records so that reading needs little memory.
   void End(size_t least_bytes = 1) {
     if (record_.bytes().size() >= least_bytes) {
       ByteWriter length;
@@ -134,7 +134,7 @@ std::ifstream Open(const fs::path& path) {
   return in;
 }
 
-// Reads this many bytes, or those that are left.
+// Reads `count` bytes, or fewer if the file ends before.
 std::string ReadSome(std::istream& in, uint64_t count) {
   std::string bytes(count, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(count));
@@ -155,8 +155,8 @@ void CheckPrefix(std::istream& in, const fs::path& path) {
   }
 }
 
-// Compares the checksum of `size` bytes, of which the prefix has been read, with the one that
-// follows them.
+// Compares the checksum of the first `size` bytes with the checksum that follows them. The prefix
+// has already been read.
 void CheckChecksum(std::istream& in, uint64_t size, const fs::path& path) {
   constexpr uint64_t kBlock = 1 << 20;
   uint32_t checksum = AddToChecksum(0, Prefix());

@@ -15,13 +15,13 @@
 namespace hullslam {
 namespace {
 
-// The records of a file, one after the other. Each is read as a whole.
+// Gives the records of a file one after the other. Each record is read as a whole.
 class RecordReader {
  public:
   RecordReader(std::istream& in, uint64_t size, std::string name)
       : in_(in), left_(size), name_(std::move(name)) {}
 
-  // The current record, or the next one if the current has been read.
+  // The current record, or the next one if the current one was read to its end.
   ByteReader& Record() {
     if (!record_ || record_->left() == 0) {
       Next();
@@ -60,7 +60,7 @@ class RecordReader {
   }
 
   std::istream& in_;
-  uint64_t left_;  // bytes that have not been loaded
+  uint64_t left_;  // number of bytes that were not read yet
   std::string name_;
   std::string bytes_;  // of the current record
   std::optional<ByteReader> record_;
@@ -106,8 +106,8 @@ void RequireSettings(const MapSettings& found, const MapSettings& expected,
   throw InputError(name + ": was made with a camera or image pyramid of other settings");
 }
 
-// Each entity takes at least some bytes, so a number of entities that do not fit into the file is
-// found before memory is reserved for their ids.
+// Refuses numbers of entities that cannot fit into the file, since each entity needs some bytes.
+// This is checked before memory is allocated for their ids.
 void CheckCounts(const MapHeader& header, uint64_t bytes, const std::string& name) {
   constexpr uint64_t kLeastBytes = 64;
   const uint64_t entities =

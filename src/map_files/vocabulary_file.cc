@@ -67,13 +67,13 @@ fs::path FindDefaultVocabulary() {
     }
     return chosen;
   }
-  std::vector<fs::path> places = {HULLSLAM_INSTALLED_VOCABULARY, HULLSLAM_SOURCE_VOCABULARY};
+  std::vector<fs::path> paths = {HULLSLAM_INSTALLED_VOCABULARY, HULLSLAM_SOURCE_VOCABULARY};
   if (const std::string config = Variable("HULLSLAM_CONFIG"); !config.empty()) {
-    places.insert(places.begin(), fs::path(config) / ".." / "Vocabulary" / "hullslam.bow");
+    paths.insert(paths.begin(), fs::path(config) / ".." / "Vocabulary" / "hullslam.bow");
   }
-  for (const fs::path& place : places) {
-    if (fs::is_regular_file(place, error)) {
-      return place;
+  for (const fs::path& path : paths) {
+    if (fs::is_regular_file(path, error)) {
+      return path;
     }
   }
   throw InputError(

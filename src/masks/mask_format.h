@@ -9,8 +9,8 @@
 
 namespace hullslam {
 
-// A format of mask files. Each has its own file, which defines one constant of this type; the table
-// in open_masks.cc names them all.
+// A format of mask files. Each format has its own file, which defines one constant of this type.
+// The table in open_masks.cc lists all formats.
 struct MaskFormat {
   std::string_view name;                     // the name of --masks-format
   bool (*is_meant)(const MaskProbe& probe);  // whether the files look like this format

@@ -10,20 +10,20 @@ class App;
 
 namespace hullslam {
 
-// What all programs have on their command lines. The headers of this folder only name CLI::App,
-// because compiling CLI11 takes seconds.
+// The parts of the command line that all programs share. The headers of this folder only declare
+// CLI::App, because compiling CLI11 takes seconds.
 
 // Parses the command line. Returns true if the program should go on, and false after options such
 // as --help. Throws InputError if the command line cannot be parsed.
 bool ParseCommandLine(CLI::App& app, int argc, char** argv);
 
-// Adds --version, and what the exit codes mean to the end of --help. Subcommands that are added
-// later show the exit codes too.
+// Adds --version, and adds the meaning of the exit codes to the end of --help. Subcommands that are
+// added later show the exit codes too.
 void AddVersionAndExitCodes(CLI::App& app, const std::string& done = "done",
                             const std::string& failed = "the program failed",
                             const std::string& bad_input = "bad usage or input");
 
-// Adds --debug, which sends the library's log to stderr, including its debug messages on what
+// Adds --debug. It sends the library's log to stderr, including the debug messages that tell what
 // happens to each object.
 void AddDebugFlag(CLI::App& app);
 

@@ -35,7 +35,7 @@ std::optional<double> MedianOf(const cv::Mat& depth) {
   return *middle;
 }
 
-// Names the classes of a setting that no mask has.
+// Warns about the classes of a setting that no mask has.
 void WarnOfClassesWithoutMasks(const char* key, std::set<std::string> classes,
                                const std::set<std::string>& labels) {
   for (const std::string& label : labels) {

@@ -52,14 +52,14 @@ void CheckSavedMap(const RunArguments& arguments) {
     if (!input.empty() && IsSameOrInside(arguments.save_map, input)) {
       throw InputError(
           fmt::format("--save-map is '{}', which is or is inside {}, which this run "
-                      "reads; choose another place",
+                      "reads; choose another path",
                       arguments.save_map.string(), input.string()));
     }
   }
   if (IsSameOrInside(arguments.save_map, arguments.output)) {
     throw InputError(
         fmt::format("--save-map is '{}', which is in the output folder; the next run "
-                    "replaces what is there, so choose another place",
+                    "replaces the files there, so choose another path",
                     arguments.save_map.string()));
   }
   ProbeFile(arguments.save_map);

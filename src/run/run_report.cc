@@ -14,7 +14,8 @@
 namespace hullslam {
 namespace {
 
-// "40 x too little parallax, 3 x too few matches", the most frequent one first; and what helps.
+// A text such as "40 x too little parallax, 3 x too few matches", the most frequent reason first,
+// with advice for the user.
 std::string DescribeFailures(const InitialisationSummary& initialisation) {
   std::vector<std::pair<size_t, std::string>> reasons;
   for (const auto& [reason, count] : initialisation.failures) {

@@ -40,7 +40,7 @@ using Clock = std::chrono::steady_clock;
 
 struct RunResult {
   size_t given = 0;    // frames that were loaded or skipped before the run ended
-  size_t skipped = 0;  // those of them with an image that cannot be read
+  size_t skipped = 0;  // frames with an image that cannot be read
   double seconds = 0.0;
   bool was_interrupted = false;
   InitialisationSummary initialisation;
@@ -64,7 +64,7 @@ const char* Name(TrackingState state) {
   }
 }
 
-// Of a monocular camera that was lost; empty if the map is in one piece.
+// The numbers of islands of a monocular run; empty if the map has only one island.
 std::string DescribeIslands(const Map& map) {
   return map.islands_begun() > 1
              ? fmt::format("  {} islands, {} joined", map.islands_begun(), map.islands_joined())
@@ -82,7 +82,7 @@ std::string DescribeState(TrackingState state, std::optional<InitialisationFailu
       map != nullptr ? map->landmarks().size() : 0, map != nullptr ? DescribeIslands(*map) : "");
 }
 
-// The bundle adjustment of the whole map is slow if the map is large. So its progress is shown.
+// Shows the progress, because the bundle adjustment of the whole map is slow if the map is large.
 void FinishMap(bool is_quiet, System& system) {
   constexpr std::chrono::seconds kStep(2);
   if (!is_quiet && !IsInterrupted()) {
@@ -111,7 +111,8 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
     }
   });
   const Clock::time_point start = Clock::now();
-  // In the sequential pipeline the thread that tracks and maps has more to do than the others.
+  // In the sequential pipeline the thread that tracks and maps has more work than the threads that
+  // load and build frames, so these get a lower priority.
   FrameSource frames(arguments.realtime ? Pace::kRealtime : Pace::kFast,
                      arguments.threaded ? PrefetchPriority::kNormal : PrefetchPriority::kBackground,
                      sequence, camera, masks, system);
@@ -148,7 +149,7 @@ Trajectory Scaled(Trajectory trajectory, double scale) {
   return trajectory;
 }
 
-// The scale of a monocular map is not known, so it is aligned too.
+// The scale of a monocular map is not known, so the alignment includes the scale.
 AlignmentKind AlignmentOf(SensorKind sensor) {
   return sensor == SensorKind::kMonocular ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
 }
@@ -179,7 +180,7 @@ size_t CountLost(const System& system) {
       [](const TrackedFrame& frame) { return frame.state != TrackingState::kTracked; }));
 }
 
-// Of a loop both ends know.
+// Each loop is stored in both keyframes, so it is counted twice.
 size_t CountLoops(const Map& map) {
   size_t ends = 0;
   for (const auto& [id, keyframe] : map.keyframes()) {
@@ -245,7 +246,7 @@ std::string MapPly(const Map& map, const Trajectory& keyframes) {
   return FormatMapPly(landmarks, centers);
 }
 
-// The files of objects are only written if the run has masks.
+// Writes the results. The files of objects are only written if the run has masks.
 void WriteOutputs(OutputFolder& output, const Map& map, const std::vector<TrajectoryPart>& poses,
                   const std::vector<TrajectoryPart>& keyframes, RunSummary summary,
                   const ObjectReport& objects, const ImageSequence& sequence) {
@@ -281,7 +282,7 @@ std::string DescribeInterruption(const RunResult& result, const ImageSequence& s
 int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence) {
   options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
   options.seed = arguments.seed;
-  // Finds images of a wrong type or size early.
+  // The first image is loaded now, so that a wrong type or size is reported early.
   const ImageInput first = sequence.load(sequence.frames.front(), options.camera);
   const std::optional<Trajectory> groundtruth = ReadGroundtruth(sequence);
   const SequenceMasks masks(

@@ -21,7 +21,8 @@ VideoFile::VideoFile(std::filesystem::path path) : path_(std::move(path)) {
 }
 
 void VideoFile::Rewind() {
-  // With another backend than FFmpeg, OpenCV would take some names for a pattern of image files.
+  // FFmpeg is chosen explicitly, because other backends of OpenCV take some names for patterns of
+  // image files.
   if (!capture_.open(path_.string(), cv::CAP_FFMPEG)) {
     throw InputError(path_.string() +
                      ": cannot be decoded, expected a video that FFmpeg can read, or a folder of "

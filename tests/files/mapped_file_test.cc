@@ -42,7 +42,7 @@ TEST(MappedFile, APipeIsRead) {
   EXPECT_EQ(Text(MapFile(pipe, 10)), "content");
 }
 
-TEST(MappedFile, WhatCannotBeReadIsAnError) {
+TEST(MappedFile, UnreadableFilesAreRefused) {
   const TemporaryFolder folder;
   ExpectInputError([&] { MapFile(folder.path() / "none", 10); }, {"none", "No such file"});
   ExpectInputError([&] { MapFile(folder.path(), 10); }, {"folder"});

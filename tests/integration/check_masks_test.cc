@@ -87,7 +87,7 @@ TEST_F(CheckMasks, WarnsOfAnOldNameOfASettingAndUsesIt) {
   EXPECT_EQ(Count(result, "kept"), "2");
 }
 
-TEST_F(CheckMasks, RefusesASettingThatIsNoneAnyMore) {
+TEST_F(CheckMasks, RefusesARetiredSetting) {
   const ProgramResult result = Run({"--set", "objects.conic_lines=8"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.errors.find("objects.conic_lines is no setting any more"), std::string::npos);

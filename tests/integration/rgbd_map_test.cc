@@ -92,7 +92,8 @@ TEST_F(RgbdMap, ASecondSessionGoesOnWithTheMap) {
   EXPECT_GE(Summary()["map"]["keyframes"].get<size_t>(), keyframes);
 }
 
-// Without a vocabulary and masks nothing is recognised, so a run on a loaded map stays lost.
+// Without a vocabulary and without masks no frame is recognised, so a run on a loaded map stays
+// lost.
 TEST_F(RgbdMap, ARunOnALoadedMapFailsIfNoFrameIsFound) {
   const Arguments no_words = {"--vocabulary", "none"};
   Save(no_words);

@@ -169,7 +169,8 @@ TEST_F(RunEnd, TwoRunsAtOnceLeaveTheFilesOfOne) {
             0);
   const bool has_objects = fs::exists(output_ / "objects.json");
   EXPECT_EQ(Summary()["objects"].is_null(), !has_objects);
-  EXPECT_EQ(ReadFolder(output_).size(), Summary()["files"].size() + 1) << "and summary.json";
+  EXPECT_EQ(ReadFolder(output_).size(), Summary()["files"].size() + 1)
+      << "the list does not name summary.json";
 }
 
 // ---- messages that cannot be written
@@ -198,7 +199,7 @@ TEST_F(RunEnd, AReportThatCannotBePrintedIsAFailure) {
   }
 }
 
-TEST(Programs, HelpTellsTheExitCodes) {
+TEST(Programs, HelpNamesTheExitCodes) {
   for (const char* const program :
        {"rgbd_tum", "map_objects", "check_masks", "make_synthetic", "evaluate"}) {
     const ProgramResult help = RunProgram(program, {"--help"});
@@ -277,8 +278,8 @@ TEST_F(RunEnd, AnInterruptedRendererWritesNothing) {
 
 // ---- lost frames
 
-// Writes an association file, black.txt: the frames from 6 to 21 are black, 27 in all. Those after
-// it repeat the frames before it, so tracking recovers.
+// Writes an association file, black.txt, with 27 frames, of which those from 6 to 21 are black. The
+// frames after the black ones repeat those before, so tracking recovers.
 void Blacken(const PlaneSequence& sequence) {
   cv::imwrite(sequence.path() / "rgb/black.png", cv::Mat(480, 640, CV_8UC1, cv::Scalar(0)));
   std::string pairs;

@@ -89,8 +89,9 @@ TEST_F(MapFileTest, WritingReadingAndWritingGivesTheSameBytes) {
   }
 }
 
-// The same ids are given to new entities, and free slots are used in the same order.
-TEST_F(MapFileTest, WorkGoesOnAsBefore) {
+// In a map that was read again, new entities get the same ids, and free slots are used in the same
+// order.
+TEST_F(MapFileTest, NewEntitiesGetTheSameIdsAsWithoutTheFile) {
   for (uint32_t seed = 0; seed < 4; ++seed) {
     RandomEdits edits(seed);
     Map map = EditedMap(edits, 500);
@@ -234,7 +235,7 @@ TEST_F(MapFileTest, ATruncatedFileIsRefused) {
   ExpectRefusal(good + '\0', {"damaged or cut off"});
 }
 
-TEST_F(MapFileTest, WhatIsNoMapOfThisVersionIsRefused) {
+TEST_F(MapFileTest, OtherFilesAndVersionsAreRefused) {
   ExpectRefusal("", {"is not a map"});
   ExpectRefusal("1.0 0 0 0 0 0 0 1\n", {"is not a map"});
   std::string bytes = Written(SmallMap());
@@ -261,7 +262,8 @@ TEST_F(MapFileTest, AMapWithoutKeyframesIsRefused) {
   ExpectRefusal(WithChecksum(bytes), {"more entities than it has"});
 }
 
-// A wrong byte that the checksum does not tell must not crash either. Most change only a number.
+// Wrong bytes must not crash the reader even if the checksum is right. Most of them only change a
+// number.
 TEST_F(MapFileTest, AnyBytesBelowTheChecksumAreReadOrRefused) {
   const std::string file = Written(SmallMap());
   const std::string good = file.substr(14, file.size() - 14 - 4);
@@ -306,7 +308,7 @@ TEST_F(MapFileTest, AKilledWriterLeavesTheOldOrTheNewFile) {
   const std::array<std::string, 2> whole = {Written(large), Written(small)};
   RandomGeometry random(7);
   std::array<int, 2> found{};
-  // On a busy computer it takes more kills until one comes between two files.
+  // On a busy computer it takes more attempts until both files have been found.
   const auto has_both = [&] { return found[0] > 0 && found[1] > 0; };
   for (int kill = 0; kill < 50 || (kill < 1000 && !has_both()); ++kill) {
     const pid_t process = ::fork();
@@ -325,7 +327,7 @@ TEST_F(MapFileTest, AKilledWriterLeavesTheOldOrTheNewFile) {
     ASSERT_TRUE(bytes == whole[0] || bytes == whole[1]) << kill;
     ++found[bytes == whole[0] ? 0 : 1];
   }
-  EXPECT_TRUE(has_both()) << "no kill came between";
+  EXPECT_TRUE(has_both()) << "every killed process left the same one of the two maps";
   Written(small);  // removes what the killed processes have left
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
 }

@@ -51,7 +51,7 @@ TEST(VocabularyFile, OtherFilesAreRefused) {
   ExpectInputError([&] { ReadVocabulary(folder.path()); }, {"is a folder"});
 }
 
-TEST(VocabularyFile, WhatCannotBeWrittenIsAnError) {
+TEST(VocabularyFile, AMissingFolderIsAnError) {
   const TemporaryFolder folder;
   ExpectInputError(
       [&] {

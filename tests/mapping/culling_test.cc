@@ -157,8 +157,8 @@ TEST(CullKeyframes, RemovesNoneOfThreeKeyframes) {
   EXPECT_EQ(Cull(made.map, KeyframeId(2), world.sensor()), 0);
 }
 
-// What carries the scale of a single camera from one pair of keyframes to the next is a landmark
-// that is seen from a third place. Keyframes at the places of others do not replace it.
+// In a monocular map, landmarks that are seen from a third viewpoint carry the scale from one pair
+// of keyframes to the next. Keyframes at the viewpoints of others cannot replace such a keyframe.
 TEST(CullKeyframes, MonocularOthersAtTheSameViewpointCountOnce) {
   const SyntheticWorld world({.points = 1200, .depth_share = 0.0});
   Sensor sensor = world.sensor();

@@ -28,7 +28,7 @@ class LandmarkSearch : public testing::Test {
   std::vector<FoundLandmark> Find(const Rigid3& cam_from_world) const {
     return FindLandmarks(made_.map, world_.sensor(), *view_.frame, cam_from_world, asked_);
   }
-  // The point that a landmark shows.
+  // The index of the point of the world that is this landmark.
   uint32_t PointOf(LandmarkId id) const {
     const Observation& observation = made_.map.landmarks().At(id).observations.front();
     return made_.views[observation.keyframe.value].points[observation.keypoint];
@@ -67,7 +67,7 @@ TEST_F(LandmarkSearch, FindsNearlyAllFromTheRightPoseAndNoneWrongly) {
   EXPECT_EQ(CountRight(found), found.size());
 }
 
-TEST_F(LandmarkSearch, WhatIsFoundAgreesWithTheKeypoint) {
+TEST_F(LandmarkSearch, FoundLandmarksAgreeWithTheirKeypoints) {
   RandomGeometry random(1);
   size_t count = 0;
   for (int run = 0; run < 20; ++run) {
@@ -83,7 +83,7 @@ TEST_F(LandmarkSearch, WhatIsFoundAgreesWithTheKeypoint) {
   EXPECT_GT(count, 100u);
 }
 
-TEST_F(LandmarkSearch, FindsNothingFromAWrongPlace) {
+TEST_F(LandmarkSearch, FindsNothingFromAWrongPose) {
   EXPECT_TRUE(Find(RingWorld::CamFromWorld(kTurns + 0.5)).empty());
   EXPECT_LT(Find(RingWorld::CamFromWorld(kTurns + 0.05)).size(), 5u);
 }
@@ -117,7 +117,7 @@ TEST_F(LandmarkWords, MatchesLandmarksOfTheKeyframeWithoutAPose) {
   EXPECT_GT(CountRight(found), found.size() * 19 / 20);
 }
 
-TEST_F(LandmarkWords, LeavesOutKeypointsThatAreNotAsked) {
+TEST_F(LandmarkWords, LeavesOutKeypointsThatAreNotAskedFor) {
   const size_t keypoints = view_.frame->features.size();
   std::vector<uint8_t> is_asked(keypoints, 1);
   const std::vector<FoundLandmark> all = Match();

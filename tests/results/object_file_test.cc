@@ -148,15 +148,15 @@ TEST(ObjectFile, ReadingAndWritingGivesTheSameBytes) {
   EXPECT_NEAR(view.lines[0].line.normal.x(), 0.6, 1e-9);
 }
 
-// A report of a run that went on with a map.
+// The report of a run that went on with a map of earlier sessions.
 ObjectReport MakeChangedReport() {
   ObjectReport report = MakeReport();
-  const LocatedObject place = {ObjectId(7), report.objects[0].ellipsoid};
+  const LocatedObject located = {ObjectId(7), report.objects[0].ellipsoid};
   ChangedObject moved{.change = ObjectChange::kMoved, .label = "cup", .expected = 12, .found = 1};
-  moved.now = place;
+  moved.now = located;
   moved.former = LocatedObject{ObjectId(3), report.objects[0].ellipsoid};
   ChangedObject gone{.change = ObjectChange::kGone, .label = "book", .expected = 4, .found = 0};
-  gone.former = place;
+  gone.former = located;
   report.changes = {moved, gone};
   return report;
 }
@@ -199,7 +199,7 @@ TEST(ObjectFile, NonFiniteValuesAreNeverWritten) {
   EXPECT_THROW(FormatObservations(report), CheckError);
 }
 
-// Expects that the files are refused when the value at `pointer` of one of them is replaced.
+// Expects that the files are refused if the value at `pointer` in one of them is replaced.
 void ExpectRefusal(const std::string& pointer, const Json& value,
                    const std::vector<std::string>& parts) {
   Json objects = Json::parse(FormatObjects(MakeChangedReport()));

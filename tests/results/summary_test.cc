@@ -24,7 +24,7 @@ std::vector<std::string> Keys(const Json& json) {
   return keys;
 }
 
-TEST(Summary, OfAMonocularCameraTellsHowTheMapBegan) {
+TEST(Summary, OfAMonocularRunTellsHowTheMapBegan) {
   RunSummary summary;
   EXPECT_FALSE(Json::parse(FormatSummary(summary)).contains("initialisation"));
   summary.initialisation = InitialisationSummary();

@@ -23,7 +23,7 @@ TEST(TrajectoryFile, ReadsPosesAndNormalisesTheirRotations) {
   ASSERT_EQ(trajectory.size(), 1U);
   EXPECT_EQ(trajectory[0].timestamp, 1.5);
   EXPECT_EQ(trajectory[0].world_from_cam.translation, Eigen::Vector3d(1, 2, -0.3));
-  // The quaternion of half a right angle: a quarter turn about z.
+  // The file has a rotation by 90 degrees about z.
   const Eigen::Vector3d turned = trajectory[0].world_from_cam.rotation * Eigen::Vector3d::UnitX();
   EXPECT_LT((turned - Eigen::Vector3d::UnitY()).norm(), 1e-15);
 }

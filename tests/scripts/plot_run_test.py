@@ -211,7 +211,7 @@ class PlotRunTest(unittest.TestCase):
         self.assertIn("0.0100 m (SE3, all frames, 40 pairs)", result.stdout)
         self.assertIn("9.5 ms median", result.stdout)
 
-    def test_the_scale_of_a_single_camera_is_aligned(self):
+    def test_the_scale_of_a_monocular_run_is_aligned(self):
         stamps = 1000 + np.arange(40) / 30
         positions = np.stack([np.cos(stamps), np.sin(stamps), 0.1 * np.cos(3 * stamps)], axis=1)
         self.write("trajectory.txt", trajectory_text(stamps, 0.2 * positions))
@@ -272,7 +272,7 @@ class PlotRunTest(unittest.TestCase):
             self.addCleanup(plot_run.plt.close, figure)
             plot_run.draw_view(plot, plot_run.Run(self.dir), view)
             turns = plot.transData.transform(np.eye(2)) - plot.transData.transform([[0, 0], [0, 0]])
-            # Seen along +y the order is x to the right and z up, along +z x to the right, y down.
+            # Along +y, x is to the right and z is up. Along +z, x is to the right and y is down.
             self.assertEqual(np.linalg.det(turns) > 0, view.axes == [0, 2])
 
     def write_summary(self, sequence):
@@ -463,13 +463,13 @@ class PlotRunTest(unittest.TestCase):
                    (["objects", 0, "observations", 0, "hull", 1, 1], 1e300),
                    (["objects", 0, "observations", 0, "cam_from_world"], [0, 0, 0, 1]),
                    (["objects", 0, "observations", 0, "cam_from_world", 0], True)]
-        for place, value in changes:
-            with self.subTest(place=place, value=str(value)[:20]):
+        for keys, value in changes:
+            with self.subTest(keys=keys, value=str(value)[:20]):
                 content = copy.deepcopy(good)
                 parent = content
-                for key in place[:-1]:
+                for key in keys[:-1]:
                     parent = parent[key]
-                parent[place[-1]] = value
+                parent[keys[-1]] = value
                 self.write("objects.json", json.dumps(content))
                 self.assert_refused(self.plot(), "objects.json")
         self.write("objects.json", "[" * 100000)
@@ -489,7 +489,7 @@ class PlotRunTest(unittest.TestCase):
                 self.write("map.ply", data)
                 self.assert_refused(self.plot(), "map.ply")
 
-    def test_folders_and_other_bytes_in_the_place_of_files(self):
+    def test_folders_and_other_bytes_instead_of_files(self):
         for name in ("map.ply", "keyframes.txt", "summary.json", "objects.json"):
             with self.subTest(name):
                 (self.dir / name).mkdir()

@@ -10,7 +10,7 @@ namespace {
 
 TEST(Check, PassesIfTheConditionHolds) { EXPECT_NO_THROW(Check(true, "never said")); }
 
-TEST(Check, NamesReasonAndPlace) {
+TEST(Check, NamesReasonFileAndLine) {
   const int line = __LINE__ + 2;
   try {
     Check(false, "the sky is not blue");

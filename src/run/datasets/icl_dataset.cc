@@ -16,7 +16,7 @@
 namespace hullslam {
 namespace {
 
-// Adds an option that is one of the names and sets the field to its value.
+// Adds an option whose value is one of the names. The field is set to the enumerator of this name.
 template <typename Enum>
 void AddNamed(CLI::App& app, const std::string& option, const std::map<std::string, Enum>& values,
               Enum& field, const std::string& help) {
@@ -56,7 +56,7 @@ class IclDataset final : public Dataset {
         ->capture_default_str();
   }
 
-  // A negative Camera.fy stands for its positive value.
+  // A negative Camera.fy in the settings is replaced by its positive value.
   DatasetInput Open(const RunArguments& arguments) override {
     SystemOptions options =
         LoadSettings(ChooseSettings(arguments), arguments.overrides, NegativeFy::kPositive);

@@ -128,7 +128,7 @@ void CountDetections(const FrameMasks& frame, const DetectionResult& result,
   }
 }
 
-// The image, or a grey area of its size if the file is missing.
+// The image. If its file is missing, a grey area of the size of the camera's images.
 cv::Mat Background(const fs::path& image, const PinholeCamera& camera) {
   std::error_code error;
   return fs::exists(image, error) ? ReadGreyImage(image)
@@ -142,8 +142,8 @@ void DrawFrame(const std::string& name, const cv::Mat& grey, const PinholeCamera
   output.Write({name, std::string(bytes.begin(), bytes.end())});
 }
 
-// MaskStatistics and draws one frame. If its masks or images cannot be read, this is recorded as a
-// fault. Without `output` nothing is drawn.
+// Counts the masks of one frame and, if `output` is given, draws them. If its masks or images
+// cannot be read, this is recorded as a fault.
 void CheckFrame(const CheckMasksArguments& arguments, const SystemOptions& options,
                 const MaskSource& source, const FramePaths& paths, const MaskFrame& names,
                 OutputFolder* output, MaskStatistics& counts) {

@@ -70,7 +70,8 @@ void PrintObject(const ReportedObject& object) {
       FormatFigure(fit.tangent_px, 2), object.misfit_px, axes.x(), axes.y(), axes.z());
 }
 
-// The unit of length is the metre, or u, that of the map, if the alignment has a scale.
+// Prints the objects. Lengths are in metres or, if the alignment has a scale, in "u", the unit of
+// length of the map.
 void PrintText(const ObjectReport& report, AlignmentKind alignment) {
   const std::string unit = alignment == AlignmentKind::kSim3 ? "u" : "m";
   fmt::print("{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7}  {}\n", "id", "class",
@@ -92,8 +93,8 @@ void PrintText(const ObjectReport& report, AlignmentKind alignment) {
   }
 }
 
-// The unit of length of a run is not the metre if its trajectory is to be aligned with a scale.
-// Without summary.json it is the metre.
+// The alignment that summary.json names, kSe3 without this file. If it is kSim3, the unit of length
+// of the run is not the metre.
 AlignmentKind FindAlignment(const std::filesystem::path& run) {
   std::error_code error;
   const std::filesystem::path summary = run / "summary.json";

@@ -33,8 +33,8 @@ std::vector<SeenBox> BoxesOf(const std::vector<InstanceMask>& masks, const Pinho
   return boxes;
 }
 
-// For each true object, the number of masks during the run that show it. Empty if the folder has no
-// sequence with masks.
+// For each true object, the number of masks that show it in the frames of the run. Empty if the
+// folder has no sequence with masks.
 std::vector<size_t> ReadSightings(const std::filesystem::path& folder,
                                   const std::vector<TrueObject>& truths,
                                   const PinholeCamera& camera, const Trajectory& groundtruth,
@@ -125,9 +125,9 @@ void PrintTrueObject(const TruthEvaluation& evaluation, size_t index) {
   }
 }
 
-// The distance at which errors of orientation count (m): the mean distance of the mapped objects
-// from the keyframes that observe them. 1 if no object is mapped. `scale` is the length of one unit
-// of the map in metres.
+// The factor that converts errors of orientation (radians) to errors of position (m): the mean
+// distance of the mapped objects from the keyframes that observe them. 1 if no object is mapped.
+// `scale` is the length of one unit of the map in metres.
 double MeanDistance(const ObjectReport& report, double scale) {
   double sum = 0.0;
   size_t count = 0;
@@ -142,8 +142,9 @@ double MeanDistance(const ObjectReport& report, double scale) {
   return sum > 0.0 ? scale * sum / static_cast<double>(count) : 1.0;
 }
 
-// Maps the world of the run, whose unit of length is `scale` metres, to the true one. Positions
-// alone would not determine the rotation of a run whose camera hardly moved.
+// The transform from the world of the run, whose unit of length is `scale` metres, to the true
+// world. The orientations are used too, because the positions do not determine the rotation of the
+// world if the camera hardly moved.
 Sim3 AlignWorlds(const Trajectory& groundtruth, const Trajectory& run, double scale, double lever) {
   std::vector<Rigid3> truths;
   std::vector<Rigid3> estimates;
