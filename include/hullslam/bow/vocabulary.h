@@ -26,8 +26,8 @@ using VocabularyNodeId = Id<struct VocabularyNodeTag>;
 // in depth-first order, so that the words below a node are a range, and the node of a word at any
 // level follows from the word alone. This is the direct index: a frame only keeps its words.
 //
-// The memory is that of the binary file (docs/vocabulary.md), usually a mapped one. Copies share
-// it. All functions are const and may be called by several threads.
+// The memory has the content of the binary file (docs/vocabulary.md). Copies share it. All
+// functions are const and may be called by several threads.
 class Vocabulary {
  public:
   static constexpr int kMostBranching = 100;
