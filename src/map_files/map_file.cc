@@ -157,10 +157,12 @@ void CheckPrefix(std::istream& in, const fs::path& path) {
 
 // Compares the checksum of `size` bytes, of which the prefix has been read, with the one that
 // follows them.
-void CheckChecksum(std::istream& in, uint64_t size, const fs::path& path) {
+void CheckChecksum(std::istream& in, uint64_t size, const fs::path& path,
+                   const Cancellation* cancellation) {
   constexpr uint64_t kBlock = 1 << 20;
   uint32_t checksum = AddToChecksum(0, Prefix());
   for (uint64_t left = size - kPrefixBytes; left > 0;) {
+    EndIfCancelled(cancellation, path.string());
     const std::string bytes = ReadSome(in, std::min(left, kBlock));
     if (bytes.empty()) {
       throw InputError(path.string() + ": cannot be read");
@@ -175,7 +177,7 @@ void CheckChecksum(std::istream& in, uint64_t size, const fs::path& path) {
 }
 
 StoredMap Read(const fs::path& path, const MapSettings* expected,
-               std::shared_ptr<const Vocabulary> vocabulary) {
+               std::shared_ptr<const Vocabulary> vocabulary, const Cancellation* cancellation) {
   std::ifstream in = Open(path);
   CheckPrefix(in, path);
   const uint64_t bytes = fs::file_size(path);
@@ -183,10 +185,11 @@ StoredMap Read(const fs::path& path, const MapSettings* expected,
     throw InputError(path.string() + ": is cut off");
   }
   const uint64_t size = bytes - kChecksumBytes;
-  CheckChecksum(in, size, path);
+  CheckChecksum(in, size, path, cancellation);
   in.clear();
   in.seekg(kPrefixBytes);
-  return ParseMap(in, size - kPrefixBytes, path.string(), expected, std::move(vocabulary));
+  return ParseMap(in, size - kPrefixBytes, path.string(), expected, std::move(vocabulary),
+                  cancellation);
 }
 
 }  // namespace
@@ -210,11 +213,11 @@ void WriteMap(const fs::path& path, const Map& map, const MapSettings& settings)
   records.Commit();
 }
 
-StoredMap ReadMap(const fs::path& path) { return Read(path, nullptr, nullptr); }
+StoredMap ReadMap(const fs::path& path) { return Read(path, nullptr, nullptr, nullptr); }
 
 Map ReadMap(const fs::path& path, const MapSettings& expected,
-            std::shared_ptr<const Vocabulary> vocabulary) {
-  return Read(path, &expected, std::move(vocabulary)).map;
+            std::shared_ptr<const Vocabulary> vocabulary, const Cancellation* cancellation) {
+  return Read(path, &expected, std::move(vocabulary), cancellation).map;
 }
 
 }  // namespace hullslam

@@ -17,7 +17,8 @@ namespace hullslam {
 void CheckSavedMap(const RunArguments& arguments);
 
 // What the run begins with: the map of --load-map if it is given. Throws InputError for a map that
-// cannot be read or that was made with another camera or image pyramid.
+// cannot be read or that was made with another camera or image pyramid, and ReadingCancelled after
+// a signal.
 SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& options);
 
 // Writes the map to the file of --save-map if it is given. A map without keyframes is not written;

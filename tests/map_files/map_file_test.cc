@@ -287,6 +287,18 @@ TEST_F(MapFileTest, AnInconsistentMapIsRefused) {
   ExpectRefusal(Written(map), {"is not consistent", "keyframe 1"});
 }
 
+TEST_F(MapFileTest, ReadingCanBeCancelled) {
+  const std::string bytes = Written(SmallMap());
+  Cancellation cancellation;
+  EXPECT_NO_THROW(ReadMap(path_, MadeSettings(), nullptr, &cancellation));
+  cancellation.Request();
+  EXPECT_THROW(ReadMap(path_, MadeSettings(), nullptr, &cancellation), ReadingCancelled);
+  constexpr size_t kPrefix = 14;
+  std::istringstream records(bytes.substr(kPrefix, bytes.size() - kPrefix - 4));
+  EXPECT_THROW(ParseMap(records, records.str().size(), "map", nullptr, nullptr, &cancellation),
+               Cancelled);
+}
+
 // ---- writing
 
 TEST_F(MapFileTest, AFullDiskLeavesTheOldFile) {
