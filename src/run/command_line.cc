@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/command_line.h"
 
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -26,6 +27,19 @@ void AddVersionAndExitCodes(CLI::App& app, const std::string& done, const std::s
                             const std::string& bad_input) {
   app.set_version_flag("--version", HULLSLAM_VERSION);
   app.footer("Exit codes: 0 " + done + ", 1 " + failed + ", 2 " + bad_input + ".");
+}
+
+void ExpectNumber(CLI::Option& option, double least, double most) {
+  option.check(CLI::Validator(
+      [least, most](const std::string& text) {
+        double value = 0.0;
+        const bool is_good =
+            CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+        return is_good
+                   ? std::string()
+                   : fmt::format("'{}', expected a number from {:g} to {:g}", text, least, most);
+      },
+      ""));
 }
 
 void AddDebugFlag(CLI::App& app) {

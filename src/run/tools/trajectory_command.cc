@@ -8,9 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "files/plausible.h"
 #include "hullslam/eval/rpe.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/util/error.h"
+#include "run/command_line.h"
 
 namespace hullslam {
 namespace {
@@ -118,10 +120,10 @@ CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments) {
       ->add_option("--tool", arguments.ate.pairing,
                    "tool whose rule pairs the poses: tum (default) or evo")
       ->transform(CLI::CheckedTransformer(tools).description(""));
-  command
-      ->add_option("--max-diff", arguments.ate.max_difference,
-                   "largest time between two paired poses, s (default: 0.02 for tum, 0.01 for evo)")
-      ->check(CLI::PositiveNumber);
+  auto* const max_difference = command->add_option(
+      "--max-diff", arguments.ate.max_difference,
+      "largest time between two paired poses, s (default: 0.02 for tum, 0.01 for evo)");
+  ExpectNumber(*max_difference, 1e-9, kMostSeconds);
   command->add_flag("--json", arguments.json, "print the report as JSON");
   return command;
 }
