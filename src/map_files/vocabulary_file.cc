@@ -26,7 +26,7 @@ constexpr size_t kMostVocabularyBytes = 1'000'000'000;
 
 // A variable of the environment; empty if it is not set.
 std::string Variable(const char* name) {
-  // Nothing in this library changes the environment, so reading it is safe.
+  // This library changes the environment only when a video is opened, so reading it is safe.
   // NOLINTNEXTLINE(concurrency-mt-unsafe)
   const char* const value = std::getenv(name);
   return value != nullptr ? value : "";
