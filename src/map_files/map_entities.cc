@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "files/plausible.h"
 #include "map_files/map_records.h"
 
 namespace hullslam {
@@ -18,8 +19,9 @@ double ReadLength(ByteReader& in) {
 }
 
 double ReadScale(ByteReader& in) {
-  const double scale = in.GetFinite(kMostMapNumber);
-  in.Require(scale > 0.0, "has a scale that is not positive");
+  constexpr double kMost = 1e9;
+  const double scale = in.GetFinite(kMost);
+  in.Require(scale >= 1.0 / kMost, "has a scale that is out of range");
   return scale;
 }
 
@@ -65,7 +67,7 @@ void WriteEllipsoid(const Ellipsoid& ellipsoid, ByteWriter& out) {
 Ellipsoid ReadEllipsoid(ByteReader& in) {
   Ellipsoid ellipsoid;
   ellipsoid.world_from_object = ReadPose(in);
-  ellipsoid.half_axes = in.GetMatrix<Eigen::Vector3d>(kMostMapNumber);
+  ellipsoid.half_axes = in.GetMatrix<Eigen::Vector3d>(kMostMetres);
   in.Require(ellipsoid.half_axes.minCoeff() > 0.0, "has half axes that are not positive");
   return ellipsoid;
 }
@@ -120,7 +122,7 @@ Rigid3 ReadPose(ByteReader& in) {
   Rigid3 pose;
   pose.rotation.coeffs() = in.GetMatrix<Eigen::Vector4d>(2.0);
   in.Require(std::abs(pose.rotation.norm() - 1.0) < kTolerance, "has a rotation that is none");
-  pose.translation = in.GetMatrix<Eigen::Vector3d>(kMostMapNumber);
+  pose.translation = in.GetMatrix<Eigen::Vector3d>(kMostMetres);
   return pose;
 }
 

@@ -142,6 +142,18 @@ std::string ReadSome(std::istream& in, uint64_t count) {
   return bytes;
 }
 
+// The size of the file that was opened. The file of this name may be another one by now.
+uint64_t SizeOf(std::istream& in, const fs::path& path) {
+  const std::streampos place = in.tellg();
+  in.seekg(0, std::ios::end);
+  const std::streamoff size = in.tellg();
+  in.seekg(place);
+  if (!in || size < 0) {
+    throw InputError(path.string() + ": cannot be read");
+  }
+  return static_cast<uint64_t>(size);
+}
+
 void CheckPrefix(std::istream& in, const fs::path& path) {
   const std::string prefix = ReadSome(in, kPrefixBytes);
   if (prefix.size() < kPrefixBytes || !prefix.starts_with(kMagic)) {
@@ -180,7 +192,7 @@ StoredMap Read(const fs::path& path, const MapSettings* expected,
                std::shared_ptr<const Vocabulary> vocabulary, const Cancellation* cancellation) {
   std::ifstream in = Open(path);
   CheckPrefix(in, path);
-  const uint64_t bytes = fs::file_size(path);
+  const uint64_t bytes = SizeOf(in, path);
   if (bytes < kPrefixBytes + kChecksumBytes) {
     throw InputError(path.string() + ": is cut off");
   }
