@@ -7,6 +7,7 @@
 
 #include "files/plausible.h"
 #include "map_files/map_records.h"
+#include "util/printable.h"
 
 namespace hullslam {
 namespace {
@@ -83,10 +84,12 @@ void WriteVotes(const std::map<std::string, double>& votes, ByteWriter& out) {
 std::map<std::string, double> ReadVotes(ByteReader& in) {
   std::map<std::string, double> votes;
   const size_t count = in.GetCount(sizeof(uint32_t) + sizeof(double));
+  std::string last;
   for (size_t i = 0; i < count; ++i) {
     std::string label = in.GetText();
-    in.Require(votes.empty() || votes.rbegin()->first < label, "has votes out of order");
-    votes.emplace_hint(votes.end(), std::move(label), in.GetFinite(kMostMapNumber));
+    in.Require(i == 0 || last < label, "has votes out of order");
+    votes[Printable(label)] += in.GetFinite(kMostMapNumber);
+    last = std::move(label);
   }
   return votes;
 }

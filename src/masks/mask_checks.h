@@ -33,8 +33,8 @@ bool IsNearImage(const Eigen::Vector2d& point, const MaskRequest& request);
 std::vector<Eigen::Vector2d> BoxOutline(double left, double top, double right, double bottom,
                                         const MaskRequest& request);
 
-// Adds an instance with its outlines sorted by area. Outlines smaller than kSmallestArea are
-// removed; an instance without any outline left is only counted.
+// Adds an instance with its label in printable characters and its outlines sorted by area. Outlines
+// smaller than kSmallestArea are removed; an instance without any outline left is only counted.
 void AddInstance(InstanceMask instance, FrameMasks& frame);
 // Whether there are more instances than kMostInstances, including those that were left out.
 bool HasTooMany(const FrameMasks& frame);

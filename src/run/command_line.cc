@@ -2,14 +2,32 @@
 #include "run/command_line.h"
 
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <memory>
+#include <mutex>
+#include <string_view>
 
 #include "hullslam/util/error.h"
+#include "run/messages.h"
 
 namespace hullslam {
+namespace {
+
+// Prints the messages of the library's log like those of the program.
+class MessageSink final : public spdlog::sinks::base_sink<std::mutex> {
+ private:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t line;
+    formatter_->format(message, line);
+    PrintError("{}", std::string_view(line.data(), line.size()));
+  }
+  void flush_() override {}
+};
+
+}  // namespace
 
 bool ParseCommandLine(CLI::App& app, int argc, char** argv) {
   try {
@@ -46,7 +64,8 @@ void AddDebugFlag(CLI::App& app) {
   app.add_flag_callback(
       "--debug",
       [] {
-        spdlog::set_default_logger(spdlog::stderr_logger_mt("hullslam"));
+        spdlog::set_default_logger(
+            std::make_shared<spdlog::logger>("hullslam", std::make_shared<MessageSink>()));
         spdlog::set_pattern("%l: %v");
         spdlog::set_level(spdlog::level::debug);
       },

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -189,6 +190,25 @@ TEST_F(MapFileTest, KeepsItsSettings) {
   options.features.scale_factor = 1.5;
   settings.vocabulary = 0;
   EXPECT_EQ(MapSettingsOf(options), settings);
+}
+
+// A map file may come from a stranger, or from a program that did not check its labels.
+TEST_F(MapFileTest, LabelsAreMadePrintable) {
+  Map map;
+  const auto frame = FullFrame(0, 1.0);
+  frame->detections = {FullDetection(), FullDetection()};
+  frame->detections[0].label = "cup\x1b[2J";
+  frame->detections[1].label = "cup\x02[2J";
+  const KeyframeId a = map.AddKeyframe(frame, {});
+  const auto next = FullFrame(1, 2.0);
+  next->detections = {frame->detections[1]};
+  const KeyframeId b = map.AddKeyframe(next, {});
+  const ObjectId object = map.AddObject();
+  map.AddObservation(object, a, 0);
+  map.AddObservation(object, b, 0);
+  const Map read = ReadBack(map);
+  EXPECT_EQ(read.keyframes().At(a).frame->detections[1].label, "cup?[2J");
+  EXPECT_EQ(read.objects().At(object).votes, (std::map<std::string, double>{{"cup?[2J", 1.625}}));
 }
 
 // ---- refusals
