@@ -10,6 +10,7 @@
 
 #include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/settings/settings.h"
+#include "run/command_line.h"
 #include "run/input_warnings.h"
 #include "run/messages.h"
 
@@ -50,10 +51,10 @@ class IclDataset final : public Dataset {
         icl_.groundtruth_y,
         "where the y axis of the ground truth's cameras points; up (fy < 0) means that it is "
         "mirrored (default: what the depth images agree with; docs/datasets.md)");
-    app.add_option("--povray-units", icl_.povray_units,
-                   "lengths in the .depth and .txt files per metre (100: centimetres)")
-        ->check(CLI::Range(1e-6, 1e6).description(""))
-        ->capture_default_str();
+    auto* const units =
+        app.add_option("--povray-units", icl_.povray_units,
+                       "lengths in the .depth and .txt files per metre (100: centimetres)");
+    ExpectNumber(*units->capture_default_str(), 1e-6, 1e6);
   }
 
   // A negative Camera.fy in the settings is replaced by its positive value.
