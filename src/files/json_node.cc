@@ -10,6 +10,7 @@
 #include "files/json_file.h"
 #include "files/plausible.h"
 #include "hullslam/util/error.h"
+#include "util/printable.h"
 #include "util/shown_text.h"
 
 namespace hullslam {
@@ -72,7 +73,7 @@ std::string JsonNode::Text() const {
   if (!value_->is_string()) {
     Fail("a string");
   }
-  return value_->get<std::string>();
+  return Printable(value_->get<std::string>());
 }
 
 bool JsonNode::Flag() const {

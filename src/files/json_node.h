@@ -27,7 +27,7 @@ class JsonNode {
   std::vector<std::pair<std::string, JsonNode>> Members() const;
   std::vector<JsonNode> Elements() const;
 
-  std::string Text() const;
+  std::string Text() const;  // in printable characters
   bool Flag() const;
   double Number() const;                     // finite
   double Number(double most) const;          // from -most to most

@@ -34,7 +34,7 @@ bool IsStillAt(int descriptor, const fs::path& path) {
 // The descriptor of the locked file; -1 if it cannot be opened, if another process has locked it,
 // or if it was removed.
 int OpenAndLock(const fs::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
   if (descriptor < 0) {
     return -1;
   }

@@ -103,6 +103,9 @@ void ForEachRow(const std::filesystem::path& path,
       row.Fail(fmt::format("a line of {} bytes, expected at most {} MB", end - begin,
                            kMostLineBytes / 1'000'000));
     }
+    if (text.substr(begin, end - begin).find('\0') != std::string_view::npos) {
+      row.Fail("has a byte that is 0, expected text");
+    }
     SplitColumns(text.substr(begin, end - begin), row.columns);
     if (!row.columns.empty() && !row.columns[0].starts_with('#')) {
       visit(row);

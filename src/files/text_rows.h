@@ -39,7 +39,8 @@ struct TextRow {
 
 // Visits the lines with data in order. Columns are separated by blanks, tabs or commas. Empty lines
 // and lines that start with '#' are skipped; CRLF line ends are accepted. Throws InputError for a
-// file that ReadFile() refuses, and for a line of more than kMostLineBytes.
+// file that ReadFile() refuses, and for a line of more than kMostLineBytes or with a byte 0, which
+// would cut messages.
 void ForEachRow(const std::filesystem::path& path,
                 const std::function<void(const TextRow& row)>& visit,
                 size_t most_bytes = kMostTextFileBytes);

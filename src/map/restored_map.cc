@@ -55,28 +55,30 @@ void CheckFrames(const MapTables& tables) {
   }
 }
 
-// The pose of a culled keyframe is that of another one, which may be culled too, and so on. The
-// last one must be alive, or have been removed with its island.
-void CheckCulled(const MapTables& tables) {
-  enum class Mark : uint8_t { kNew, kOnPath, kGood };
-  std::vector<Mark> marks(CountKeyframes(tables), Mark::kNew);
+enum class Pose : uint8_t { kUnknown, kSought, kKnown, kNone };
+
+// Whether each keyframe has a pose, by its id. That of a culled keyframe is relative to another
+// one, which may be culled too, and so on. The last one must be alive, or have been removed with
+// its island: then none of them has a pose.
+std::vector<Pose> FindPoses(const MapTables& tables) {
+  std::vector<Pose> poses(CountKeyframes(tables), Pose::kUnknown);
+  tables.keyframes.ForEach([&](KeyframeId id, const Keyframe&) { poses[id.value] = Pose::kKnown; });
   tables.culled.ForEach([&](KeyframeId id, const CulledKeyframe&) {
     std::vector<KeyframeId> path;
-    while (const CulledKeyframe* culled = tables.culled.Find(id)) {
-      Require(marks[id.value] != Mark::kOnPath, id, "is culled and refers to itself");
-      if (marks[id.value] == Mark::kGood) {
-        break;
-      }
-      marks[id.value] = Mark::kOnPath;
+    while (id.value < poses.size() && poses[id.value] == Pose::kUnknown) {
+      poses[id.value] = Pose::kSought;
       path.push_back(id);
-      id = culled->pose.reference;
+      id = tables.culled.At(id).pose.reference;
     }
-    Require(!id.IsValid() || tables.keyframes.Contains(id) || tables.culled.Contains(id), id,
+    Require(!id.IsValid() || id.value < poses.size(), id,
             "does not exist but a culled keyframe refers to it");
+    const Pose found = id.IsValid() ? poses[id.value] : Pose::kNone;
+    Require(found != Pose::kSought, id, "is culled and refers to itself");
     for (const KeyframeId passed : path) {
-      marks[passed.value] = Mark::kGood;
+      poses[passed.value] = found;
     }
   });
+  return poses;
 }
 
 void CheckReference(const MapTables& tables, KeyframeId reference, const std::string& kind,
@@ -87,26 +89,23 @@ void CheckReference(const MapTables& tables, KeyframeId reference, const std::st
 }
 
 // Checks that the keyframe exists, culled or not, and has a pose because it was not removed with
-// its island. CheckCulled has found no cycle before.
-void CheckPose(const MapTables& tables, KeyframeId reference, const std::string& kind,
-               uint32_t id) {
+// its island.
+void CheckPose(const MapTables& tables, const std::vector<Pose>& poses, KeyframeId reference,
+               const std::string& kind, uint32_t id) {
   CheckReference(tables, reference, kind, id);
-  const bool has_reference = reference.IsValid();
-  while (const CulledKeyframe* culled = tables.culled.Find(reference)) {
-    reference = culled->pose.reference;
-  }
-  if (has_reference && !reference.IsValid()) {
+  if (reference.IsValid() && poses[reference.value] == Pose::kNone) {
     Fail(kind, id, "refers to a keyframe without a pose");
   }
 }
 
 void CheckReferences(const MapTables& tables) {
+  const std::vector<Pose> poses = FindPoses(tables);
   tables.landmarks.ForEach([&](LandmarkId id, const Landmark& landmark) {
-    CheckPose(tables, landmark.reference, "landmark", id.value);
+    CheckPose(tables, poses, landmark.reference, "landmark", id.value);
     CheckReference(tables, landmark.created_by, "landmark", id.value);
   });
   tables.objects.ForEach([&](ObjectId id, const ObjectLandmark& object) {
-    CheckPose(tables, object.reference, "object", id.value);
+    CheckPose(tables, poses, object.reference, "object", id.value);
     for (const MisfitSample& sample : object.misfit_samples) {
       CheckReference(tables, sample.keyframe, "object", id.value);
     }
@@ -172,7 +171,6 @@ Map RestoreMap(MapTables tables, std::shared_ptr<const Vocabulary> vocabulary) {
   if (vocabulary != nullptr) {
     CheckWords(tables, *vocabulary);
   }
-  CheckCulled(tables);
   CheckReferences(tables);
   DeriveChildren(tables);
   DeriveObservations(tables);

@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "files/plausible.h"
 #include "map_files/map_records.h"
+#include "util/printable.h"
 
 namespace hullslam {
 namespace {
@@ -18,8 +20,9 @@ double ReadLength(ByteReader& in) {
 }
 
 double ReadScale(ByteReader& in) {
-  const double scale = in.GetFinite(kMostMapNumber);
-  in.Require(scale > 0.0, "has a scale that is not positive");
+  constexpr double kMost = 1e9;
+  const double scale = in.GetFinite(kMost);
+  in.Require(scale >= 1.0 / kMost, "has a scale that is out of range");
   return scale;
 }
 
@@ -66,7 +69,7 @@ void WriteEllipsoid(const Ellipsoid& ellipsoid, ByteWriter& out) {
 Ellipsoid ReadEllipsoid(ByteReader& in) {
   Ellipsoid ellipsoid;
   ellipsoid.world_from_object = ReadPose(in);
-  ellipsoid.half_axes = in.GetMatrix<Eigen::Vector3d>(kMostMapNumber);
+  ellipsoid.half_axes = in.GetMatrix<Eigen::Vector3d>(kMostMetres);
   in.Require(ellipsoid.half_axes.minCoeff() > 0.0, "has half axes that are not positive");
   return ellipsoid;
 }
@@ -82,10 +85,12 @@ void WriteVotes(const std::map<std::string, double>& votes, ByteWriter& out) {
 std::map<std::string, double> ReadVotes(ByteReader& in) {
   std::map<std::string, double> votes;
   const size_t count = in.GetCount(sizeof(uint32_t) + sizeof(double));
+  std::string last;
   for (size_t i = 0; i < count; ++i) {
     std::string label = in.GetText();
-    in.Require(votes.empty() || votes.rbegin()->first < label, "has votes out of order");
-    votes.emplace_hint(votes.end(), std::move(label), in.GetFinite(kMostMapNumber));
+    in.Require(i == 0 || last < label, "has votes out of order");
+    votes[Printable(label)] += in.GetFinite(kMostMapNumber);
+    last = std::move(label);
   }
   return votes;
 }
@@ -121,7 +126,7 @@ Rigid3 ReadPose(ByteReader& in) {
   Rigid3 pose;
   pose.rotation.coeffs() = in.GetMatrix<Eigen::Vector4d>(2.0);
   in.Require(std::abs(pose.rotation.norm() - 1.0) < kTolerance, "has a rotation that is none");
-  pose.translation = in.GetMatrix<Eigen::Vector3d>(kMostMapNumber);
+  pose.translation = in.GetMatrix<Eigen::Vector3d>(kMostMetres);
   return pose;
 }
 

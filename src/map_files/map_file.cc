@@ -142,6 +142,18 @@ std::string ReadSome(std::istream& in, uint64_t count) {
   return bytes;
 }
 
+// The size of the file that was opened. The file of this name may be another one by now.
+uint64_t SizeOf(std::istream& in, const fs::path& path) {
+  const std::streampos place = in.tellg();
+  in.seekg(0, std::ios::end);
+  const std::streamoff size = in.tellg();
+  in.seekg(place);
+  if (!in || size < 0) {
+    throw InputError(path.string() + ": cannot be read");
+  }
+  return static_cast<uint64_t>(size);
+}
+
 void CheckPrefix(std::istream& in, const fs::path& path) {
   const std::string prefix = ReadSome(in, kPrefixBytes);
   if (prefix.size() < kPrefixBytes || !prefix.starts_with(kMagic)) {
@@ -155,12 +167,14 @@ void CheckPrefix(std::istream& in, const fs::path& path) {
   }
 }
 
-// Compares the checksum of the first `size` bytes with the checksum that follows them. The prefix
-// has already been read.
-void CheckChecksum(std::istream& in, uint64_t size, const fs::path& path) {
+// Compares the checksum of `size` bytes, of which the prefix has been read, with the one that
+// follows them.
+void CheckChecksum(std::istream& in, uint64_t size, const fs::path& path,
+                   const Cancellation* cancellation) {
   constexpr uint64_t kBlock = 1 << 20;
   uint32_t checksum = AddToChecksum(0, Prefix());
   for (uint64_t left = size - kPrefixBytes; left > 0;) {
+    EndIfCancelled(cancellation, path.string());
     const std::string bytes = ReadSome(in, std::min(left, kBlock));
     if (bytes.empty()) {
       throw InputError(path.string() + ": cannot be read");
@@ -175,18 +189,19 @@ void CheckChecksum(std::istream& in, uint64_t size, const fs::path& path) {
 }
 
 StoredMap Read(const fs::path& path, const MapSettings* expected,
-               std::shared_ptr<const Vocabulary> vocabulary) {
+               std::shared_ptr<const Vocabulary> vocabulary, const Cancellation* cancellation) {
   std::ifstream in = Open(path);
   CheckPrefix(in, path);
-  const uint64_t bytes = fs::file_size(path);
+  const uint64_t bytes = SizeOf(in, path);
   if (bytes < kPrefixBytes + kChecksumBytes) {
     throw InputError(path.string() + ": is cut off");
   }
   const uint64_t size = bytes - kChecksumBytes;
-  CheckChecksum(in, size, path);
+  CheckChecksum(in, size, path, cancellation);
   in.clear();
   in.seekg(kPrefixBytes);
-  return ParseMap(in, size - kPrefixBytes, path.string(), expected, std::move(vocabulary));
+  return ParseMap(in, size - kPrefixBytes, path.string(), expected, std::move(vocabulary),
+                  cancellation);
 }
 
 }  // namespace
@@ -210,11 +225,11 @@ void WriteMap(const fs::path& path, const Map& map, const MapSettings& settings)
   records.Commit();
 }
 
-StoredMap ReadMap(const fs::path& path) { return Read(path, nullptr, nullptr); }
+StoredMap ReadMap(const fs::path& path) { return Read(path, nullptr, nullptr, nullptr); }
 
 Map ReadMap(const fs::path& path, const MapSettings& expected,
-            std::shared_ptr<const Vocabulary> vocabulary) {
-  return Read(path, &expected, std::move(vocabulary)).map;
+            std::shared_ptr<const Vocabulary> vocabulary, const Cancellation* cancellation) {
+  return Read(path, &expected, std::move(vocabulary), cancellation).map;
 }
 
 }  // namespace hullslam

@@ -84,9 +84,10 @@ MapHeader ReadHeader(ByteReader& in) {
       uint32_t{1}
       << 24;  // limits the memory, because a table has memory for all ids up to the largest
   in.Require(header.keyframes > 0, "has no keyframes");
-  in.Require(header.landmarks <= header.landmark_slots &&
-                 header.landmark_slots <= LandmarkId::kMaxSlot &&
-                 header.objects <= header.next_object && header.next_object <= kMostObjects,
+  // A run that goes on with the map needs as many slots again.
+  in.Require(header.landmark_slots <= LandmarkId::kMaxSlot / 2, "has too many landmarks to go on");
+  in.Require(header.landmarks <= header.landmark_slots && header.objects <= header.next_object &&
+                 header.next_object <= kMostObjects,
              "has numbers of entities that cannot be");
   return header;
 }

@@ -18,8 +18,8 @@ namespace {
 // Gives the records of a file one after the other. Each record is read as a whole.
 class RecordReader {
  public:
-  RecordReader(std::istream& in, uint64_t size, std::string name)
-      : in_(in), left_(size), name_(std::move(name)) {}
+  RecordReader(std::istream& in, uint64_t size, std::string name, const Cancellation* cancellation)
+      : in_(in), left_(size), name_(std::move(name)), cancellation_(cancellation) {}
 
   // The current record, or the next one if the current one was read to its end.
   ByteReader& Record() {
@@ -38,6 +38,7 @@ class RecordReader {
 
  private:
   void Next() {
+    EndIfCancelled(cancellation_, name_);
     const std::string name = fmt::format("{}: record {}", name_, ++number_);
     constexpr size_t kLengthBytes = sizeof(uint32_t);
     Load(kLengthBytes, name);
@@ -62,6 +63,7 @@ class RecordReader {
   std::istream& in_;
   uint64_t left_;  // number of bytes that were not read yet
   std::string name_;
+  const Cancellation* cancellation_;
   std::string bytes_;  // bytes of the current record
   std::optional<ByteReader> record_;
   size_t number_ = 0;
@@ -158,8 +160,9 @@ MapTables ReadTables(const MapHeader& header, RecordReader& records) {
 }  // namespace
 
 StoredMap ParseMap(std::istream& in, uint64_t size, const std::string& name,
-                   const MapSettings* expected, std::shared_ptr<const Vocabulary> vocabulary) {
-  RecordReader records(in, size, name);
+                   const MapSettings* expected, std::shared_ptr<const Vocabulary> vocabulary,
+                   const Cancellation* cancellation) {
+  RecordReader records(in, size, name, cancellation);
   ByteReader& first = records.Record();
   const MapHeader header = ReadHeader(first);
   first.ExpectEnd();
@@ -173,6 +176,13 @@ StoredMap ParseMap(std::istream& in, uint64_t size, const std::string& name,
     return {RestoreMap(std::move(tables), std::move(vocabulary)), header.settings};
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: is not consistent: {}", name, error.what()));
+  }
+}
+
+void EndIfCancelled(const Cancellation* cancellation, const std::string& name) {
+  if (IsRequested(cancellation)) {
+    throw ReadingCancelled(name +
+                           ": the map was not read to its end, because this was interrupted");
   }
 }
 

@@ -16,7 +16,9 @@
 // that reads and checks it. The relations between the parts are checked in map/restored_map.h.
 namespace hullslam {
 
-constexpr double kMostMapNumber = 1e15;  // no length, time or pixel of a map is larger
+// No length, time or pixel of a map is larger. Poses are at most at kMostMetres
+// (files/plausible.h); a landmark of a camera without depth may be almost at infinity.
+constexpr double kMostMapNumber = 1e15;
 
 // The first part: the settings, the sessions and how many entities follow.
 struct MapHeader {

@@ -34,8 +34,8 @@ bool IsNearImage(const Eigen::Vector2d& point, const MaskRequest& request);
 std::vector<Eigen::Vector2d> BoxOutline(double left, double top, double right, double bottom,
                                         const MaskRequest& request);
 
-// Adds an instance with its outlines sorted by area, the largest first. Outlines smaller than
-// kSmallestArea are removed. If no outline remains, the instance is only counted.
+// Adds an instance with its label in printable characters and its outlines sorted by area. Outlines
+// smaller than kSmallestArea are removed; an instance without any outline left is only counted.
 void AddInstance(InstanceMask instance, FrameMasks& frame);
 // Whether the frame has more than kMostInstances instances, including those that are only counted.
 bool HasTooMany(const FrameMasks& frame);

@@ -38,7 +38,8 @@ struct Candidate {
   double radius = 0.0;                                      // m, mean of the half axes
 };
 
-struct Seen {
+// A detection and the objects that it may show.
+struct DetectionCandidates {
   const Detection* detection = nullptr;
   ObjectSighting sighting;
   std::vector<Candidate> candidates;
@@ -55,15 +56,15 @@ double Tolerance(const Candidate& candidate, double distance) {
 }
 
 // The detections that may show mapped objects, those with the fewest candidates first.
-std::vector<Seen> FindCandidates(const Map& map, const PinholeCamera& camera, const Frame& frame,
-                                 IslandId island) {
-  std::vector<Seen> all;
+std::vector<DetectionCandidates> FindCandidates(const Map& map, const PinholeCamera& camera,
+                                                const Frame& frame, IslandId island) {
+  std::vector<DetectionCandidates> all;
   for (const Detection& detection : frame.detections) {
     const std::optional<ObjectSighting> sighting = SightObject(camera, detection);
     if (!sighting) {
       continue;
     }
-    Seen seen{&detection, *sighting, {}};
+    DetectionCandidates seen{&detection, *sighting, {}};
     map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
       if (object.state != ObjectState::kMapped || IslandOf(map, object) != island ||
           !MayHaveClass(object, detection.label)) {
@@ -84,15 +85,16 @@ std::vector<Seen> FindCandidates(const Map& map, const PinholeCamera& camera, co
       all.push_back(std::move(seen));
     }
   }
-  std::stable_sort(all.begin(), all.end(), [](const Seen& a, const Seen& b) {
-    return a.candidates.size() < b.candidates.size();
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const DetectionCandidates& a, const DetectionCandidates& b) {
+                     return a.candidates.size() < b.candidates.size();
+                   });
   return all;
 }
 
 class Proposer {
  public:
-  Proposer(const PinholeCamera& camera, std::vector<Seen> seen)
+  Proposer(const PinholeCamera& camera, std::vector<DetectionCandidates> seen)
       : camera_(camera), seen_(std::move(seen)) {}
 
   std::vector<PoseHypothesis> Run() {
@@ -221,7 +223,7 @@ class Proposer {
   void AddPose(const Rigid3& cam_from_world) {
     constexpr double kLeast = 1.0;  // below it the centres are far from their expected positions
     double agreement = 0.0;
-    for (const Seen& seen : seen_) {
+    for (const DetectionCandidates& seen : seen_) {
       double best = 0.0;
       for (const Candidate& candidate : seen.candidates) {
         best = std::max(best, Agreement(cam_from_world, seen, candidate));
@@ -234,7 +236,7 @@ class Proposer {
   }
 
   // 1 if the object has the position that the detection shows, falling to 0 at twice the tolerance.
-  static double Agreement(const Rigid3& cam_from_world, const Seen& seen,
+  static double Agreement(const Rigid3& cam_from_world, const DetectionCandidates& seen,
                           const Candidate& candidate) {
     const Eigen::Vector3d center = cam_from_world * CenterOf(candidate);
     const double along = center.dot(seen.sighting.ray);
@@ -274,7 +276,7 @@ class Proposer {
   double MeanDistance() const {
     double sum = 0.0;
     double count = 0.0;
-    for (const Seen& seen : seen_) {
+    for (const DetectionCandidates& seen : seen_) {
       sum += seen.sighting.surface;
       count += seen.has_depth() ? 1.0 : 0.0;
     }
@@ -282,7 +284,7 @@ class Proposer {
   }
 
   const PinholeCamera& camera_;
-  const std::vector<Seen> seen_;
+  const std::vector<DetectionCandidates> seen_;
   std::vector<PoseHypothesis> poses_;
   size_t triples_ = 0;
 };

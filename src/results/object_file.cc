@@ -8,6 +8,7 @@
 
 #include "hullslam/util/check.h"
 #include "results/object_file_version.h"
+#include "util/printable.h"
 
 namespace hullslam {
 namespace {
@@ -172,9 +173,14 @@ std::string WithEntries(const Json& head, const char* name,
   return text + "\n]}\n";
 }
 
-// A field of a CSV file by RFC 4180: in quotes if it contains a quote, a comma or a line end.
-std::string CsvField(const std::string& text) {
-  if (text.find_first_of("\",\r\n") == std::string::npos) {
+// A field of a CSV file by RFC 4180: in quotes if it contains a quote or a comma. A spreadsheet
+// takes a text that begins with one of = + - @ for a formula, so ' is put before it.
+std::string CsvField(const std::string& label) {
+  std::string text = Printable(label);
+  if (text.find_first_of("=+-@") == 0) {
+    text.insert(0, "'");
+  }
+  if (text.find_first_of("\",") == std::string::npos) {
     return text;
   }
   std::string quoted = "\"";

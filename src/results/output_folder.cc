@@ -40,8 +40,15 @@ bool IsPlainName(const std::string& name) {
   return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos;
 }
 
-// The names of the files of the run with this index, and of the pictures drawn of it. Empty if
-// there is no such index, or if no run wrote it.
+// What a path is, if it is not a link. Only this program writes to a staging folder, and it makes
+// no links there. They would lead to files of others, which must stay as they are.
+fs::file_type TypeOf(const fs::path& path) {
+  std::error_code error;
+  return fs::symlink_status(path, error).type();
+}
+
+// The names of the files of the run with this index, and of what was drawn of it. Empty if there is
+// no such index, or if no run wrote it.
 Names NamesOfRun(const fs::path& index) {
   std::error_code error;
   constexpr uintmax_t kMostBytes = 64'000'000;
@@ -151,7 +158,7 @@ void Move(const fs::path& from, const fs::path& to) {
 // file is replaced, and the new one is moved last.
 void MoveFiles(const fs::path& ready, const fs::path& folder) {
   const auto* const found = std::ranges::find_if(
-      kIndexes, [&](const char* name) { return fs::is_regular_file(ready / name); });
+      kIndexes, [&](const char* name) { return TypeOf(ready / name) == fs::file_type::regular; });
   if (found == kIndexes.end()) {
     return;  // the index is moved last, so all files have been moved
   }
@@ -170,7 +177,7 @@ void MoveFiles(const fs::path& ready, const fs::path& folder) {
   fs::remove(folder / index, ignored);
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(ready)) {
-    if (entry.path().filename() != index) {
+    if (entry.path().filename() != index && TypeOf(entry.path()) == fs::file_type::regular) {
       files.push_back(entry.path());
     }
   }
@@ -185,7 +192,7 @@ void MoveFiles(const fs::path& ready, const fs::path& folder) {
 void CleanUp(const fs::path& folder) {
   for (StagingFolder& abandoned : StagingFolder::Abandoned(folder, kPrefix)) {
     const fs::path ready = abandoned.path() / kReady;
-    if (fs::is_directory(ready)) {
+    if (TypeOf(ready) == fs::file_type::directory) {
       abandoned.Keep();  // if a file cannot be moved, the results stay where they are
       MoveFiles(ready, folder);
       abandoned.Remove();

@@ -6,6 +6,7 @@
 
 namespace CLI {
 class App;
+class Option;
 }  // namespace CLI
 
 namespace hullslam {
@@ -23,7 +24,11 @@ void AddVersionAndExitCodes(CLI::App& app, const std::string& done = "done",
                             const std::string& failed = "the program failed",
                             const std::string& bad_input = "bad usage or input");
 
-// Adds --debug. It sends the library's log to stderr, including the debug messages that tell what
+// Refuses values of an option that are not a number from `least` to `most`. (CLI::Range accepts
+// "nan".)
+void ExpectNumber(CLI::Option& option, double least, double most);
+
+// Adds --debug, which sends the library's log to stderr, including its debug messages on what
 // happens to each object.
 void AddDebugFlag(CLI::App& app);
 

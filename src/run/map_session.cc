@@ -10,6 +10,7 @@
 #include "files/atomic_file.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
+#include "run/interrupt.h"
 #include "run/messages.h"
 #include "system/compose_trajectory.h"
 
@@ -70,7 +71,8 @@ SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& option
   start.session_name = SessionName(arguments.sequence);
   start.localization_only = arguments.localization;
   if (!arguments.load_map.empty()) {
-    start.map = ReadMap(arguments.load_map, MapSettingsOf(options), options.vocabulary);
+    start.map =
+        ReadMap(arguments.load_map, MapSettingsOf(options), options.vocabulary, &Interruption());
   }
   return start;
 }

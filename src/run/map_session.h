@@ -16,8 +16,9 @@ namespace hullslam {
 // The file of --load-map may be replaced.
 void CheckSavedMap(const RunArguments& arguments);
 
-// The start of the run: the map of --load-map if it is given, else a new map. Throws InputError for
-// a map that cannot be read or that was made with another camera or image pyramid.
+// What the run begins with: the map of --load-map if it is given. Throws InputError for a map that
+// cannot be read or that was made with another camera or image pyramid, and ReadingCancelled after
+// a signal.
 SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& options);
 
 // Writes the map to the file of --save-map if it is given. A map without keyframes is not written;

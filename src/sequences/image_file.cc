@@ -124,15 +124,14 @@ void CheckBytes(const std::filesystem::path& path, std::string_view bytes) {
   if (state == ImageState::kCutOff) {
     Fail(path, "is cut off, the end of the image is missing");
   }
-  constexpr uint64_t kMostPixels = 64'000'000;
   const ImageSize size = is_png ? PngSize(bytes) : JpegSize(bytes);
   if (size.width == 0 && size.height == 0) {
     Fail(path, "is broken, the header with the size of the image is missing");
   }
-  if (size.width == 0 || size.height == 0 || size.width > kMostPixels ||
-      size.width * size.height > kMostPixels) {
+  if (size.width == 0 || size.height == 0 || size.width > kMostImagePixels ||
+      size.width * size.height > kMostImagePixels) {
     Fail(path, fmt::format("has a size of {}x{} px, expected up to {} million px", size.width,
-                           size.height, kMostPixels / 1'000'000));
+                           size.height, kMostImagePixels / 1'000'000));
   }
   if (state == ImageState::kBroken) {
     Fail(path, "is broken, a checksum of the PNG is wrong");

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
 
 namespace hullslam {
 
+constexpr uint64_t kMostImagePixels = 64'000'000;
+
 // All functions throw InputError with the file and the reason if the file is missing, empty, cut
-// off, neither PNG nor JPEG, larger than 512 MB or 64 million pixels, or cannot be decoded.
+// off, neither PNG nor JPEG, larger than 512 MB or kMostImagePixels, or cannot be decoded.
 // (Flipped bits inside a JPEG cannot be detected.)
 
 // The luma of a PNG or JPEG image, CV_8UC1. An orientation in the EXIF data is ignored, because the

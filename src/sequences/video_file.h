@@ -9,10 +9,14 @@
 
 namespace hullslam {
 
-// The frames of a video file, decoded with FFmpeg one after the other.
+// The frames of a video file, decoded with FFmpeg one after the other. Only containers that are
+// common for videos are read, because FFmpeg also knows lists of files, which would let a video
+// open other files. OpenCV only takes such options of FFmpeg from the environment: the constructor
+// sets OPENCV_FFMPEG_CAPTURE_OPTIONS, unless the user has set it.
 class VideoFile {
  public:
-  // Throws InputError if `path` is not a file or cannot be decoded.
+  // Throws InputError if it is no file, none that can be decoded, or if its images have more than
+  // kMostImagePixels (image_file.h).
   explicit VideoFile(std::filesystem::path path);
 
   // The time stamps of all frames, s. Decodes the whole video. Throws InputError if no frame can be

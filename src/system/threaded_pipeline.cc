@@ -171,11 +171,14 @@ class ThreadedPipeline final : public Pipeline {
     }
     while (const std::optional<MapMessage> message = messages_.Receive()) {
       SetBusy(true);
-      if (!EditMap([&] { mapper_.Process(*message, &hurry_); })) {
+      const bool is_done = EditMap([&] {
+        mapper_.Process(*message, &hurry_);
+        TellLoops(*message);
+      });
+      if (!is_done) {
         messages_.Close();
         return;
       }
-      TellLoops(*message);
       SetBusy(false);
     }
   }
@@ -195,20 +198,21 @@ class ThreadedPipeline final : public Pipeline {
   }
 
   // Calls `edit`, which changes the live map, and copies the results of the mapper that other
-  // threads may read. Returns false if there was an exception.
+  // threads may read. Returns false if there was an exception; also the copies may lack memory.
   template <typename Edit>
   bool EditMap(const Edit& edit) {
     std::exception_ptr failure;
     try {
       edit();
+      StageTimes times = mapper_.times();
+      std::map<ObjectRejection, size_t> rejections = mapper_.object_rejections();
+      const std::lock_guard lock(mutex_);
+      mapper_times_ = std::move(times);
+      object_rejections_ = std::move(rejections);
     } catch (...) {
       failure = std::current_exception();
     }
-    StageTimes times = mapper_.times();
-    std::map<ObjectRejection, size_t> rejections = mapper_.object_rejections();
     const std::lock_guard lock(mutex_);
-    mapper_times_ = std::move(times);
-    object_rejections_ = std::move(rejections);
     failure_ = failure;
     changed_.notify_all();
     return failure == nullptr;

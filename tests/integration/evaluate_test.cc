@@ -92,6 +92,7 @@ TEST_F(Evaluate, BadUsageIsRefusedWithOneLine) {
   ExpectRefusal({"trajectory", truth_}, "ESTIMATE");
   ExpectRefusal({"trajectory", truth_, half_, "--align", "affine"}, "affine");
   ExpectRefusal({"trajectory", truth_, half_, "--max-diff", "0"}, "--max-diff");
+  ExpectRefusal({"trajectory", truth_, half_, "--max-diff", "nan"}, "--max-diff");
   ExpectRefusal({"trajectory", truth_, half_, "--no-such"}, "--no-such");
 }
 

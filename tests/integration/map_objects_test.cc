@@ -111,6 +111,8 @@ TEST_F(MapObjectsRefuses, BadSettings) {
   Expect(poses_, {"--masks", masks_, "--set", "objects.epsilon=3"},
          {"--set", "unknown key 'objects.epsilon'"});
   Expect(poses_, {"--masks", masks_, "--min-distance", "-1"}, {"--min-distance"});
+  Expect(poses_, {"--masks", masks_, "--min-distance", "nan"}, {"--min-distance", "'nan'"});
+  Expect(poses_, {"--masks", masks_, "--min-angle", "nan"}, {"--min-angle", "'nan'"});
 }
 
 }  // namespace

@@ -129,6 +129,7 @@ TEST_F(RgbdIcl, AsksForThePackageIfTheFolderDoesNotTell) {
   ExpectRefusal({path_, "--package", "0"}, {"--package", "0"});
   ExpectRefusal({path_, "--groundtruth-y", "left"}, {"--groundtruth-y", "left"});
   ExpectRefusal({path_, "--povray-units", "0"}, {"--povray-units"});
+  ExpectRefusal({path_, "--povray-units", "nan"}, {"--povray-units", "'nan'"});
   ExpectRefusal({path_, "--package", "tum"}, {"associations.txt", "No such file"});
 }
 

@@ -307,6 +307,32 @@ TEST_F(RunEnd, TooManyLostFramesAreAFailure) {
   ExpectError(Run(strict), 1, {"did not recover", "6 of 22", "run.max_lost_at_end 0.4"});
 }
 
+// ---- messages
+
+// Names of files and classes may come from strangers. They must not control the terminal, and no
+// name can begin a line of its own.
+TEST_F(RunEnd, MessagesHaveNoControlCharacters) {
+  const auto expect_clean = [](const std::string& text) {
+    EXPECT_EQ(text.find_first_of("\x1b\x07\r"), std::string::npos) << text;
+    EXPECT_EQ(text.find("\nforged"), std::string::npos) << text;
+  };
+  const std::string name = "no\x1b[2J\nforged";
+  const ProgramResult missing = RunProgram("rgbd_tum", {name});
+  ExpectError(missing, 2, {"error: ", "no?[2J?forged"});
+  expect_clean(missing.errors);
+  std::string classes;
+  for (int i = 0; i < 41; ++i) {
+    classes += "other\n";
+  }
+  folder_.Write("masks/classes.txt", classes + "cup\x1b]0;x\x07\rforged\n");
+  const ProgramResult masks = RunProgram("check_masks", {path_, masks_, "--quiet"});
+  EXPECT_NE(masks.output.find("cup?]0;x??forged"), std::string::npos) << masks.output;
+  expect_clean(masks.output);
+  const ProgramResult run = Run({"--masks", masks_, "--debug"});
+  EXPECT_EQ(run.exit_code, 0) << run.errors;
+  expect_clean(run.output + run.errors);
+}
+
 // ---- input that is probably not what the user meant
 
 TEST_F(RunEnd, DoubtfulInputIsReported) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <functional>
 #include <sstream>
 #include <string>
@@ -199,6 +200,28 @@ TEST(RestoreMap, KeyframesThatWereRemovedWithTheirIslandHaveNoPose) {
   tables.landmarks.Mutable(landmark).reference = KeyframeId(1);
   ExpectInputError([&] { RestoreMap(std::move(tables)); },
                    {"landmark", "a keyframe without a pose"});
+}
+
+// Each of these keyframes refers to the one before it, and the landmarks to the last one. If the
+// chain were followed from each of them, this would take minutes.
+TEST(RestoreMap, TheTimeForALongChainIsProportionalToItsLength) {
+  constexpr uint32_t kHalf = 50'000;
+  MapTables tables;
+  for (uint32_t i = 0; i < kHalf; ++i) {
+    Keyframe keyframe;
+    keyframe.frame = MakeFrame(i, 0);
+    keyframe.parent = i > 0 ? KeyframeId(i - 1) : KeyframeId();
+    tables.keyframes.Put(KeyframeId(i), std::move(keyframe));
+  }
+  for (uint32_t i = kHalf; i < 2 * kHalf; ++i) {
+    tables.culled.Put(KeyframeId(i), Culled(i, i - 1));
+    Landmark landmark;
+    landmark.reference = KeyframeId(2 * kHalf - 1);
+    tables.landmarks.Put(LandmarkId(i - kHalf, 0), landmark);
+  }
+  const std::clock_t start = std::clock();
+  EXPECT_EQ(RestoreMap(std::move(tables)).landmarks().size(), kHalf);
+  EXPECT_LT((std::clock() - start) / CLOCKS_PER_SEC, 5);
 }
 
 }  // namespace

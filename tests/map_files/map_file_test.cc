@@ -10,6 +10,7 @@
 #include <csignal>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -52,6 +53,11 @@ class MapFileTest : public testing::Test {
   TemporaryFolder folder_;
   std::filesystem::path path_ = folder_.path() / "a.map";
 };
+
+// Where the file of SmallMap() has the number of keyframes, and then those of culled keyframes,
+// landmarks, and slots of landmarks. Before it are prefix, length, sensor, camera, pyramid,
+// vocabulary, sessions, corrections.
+constexpr size_t kCounts = 14 + 4 + 1 + 88 + 12 + 8 + 4 + (4 + 4 + 4) + (4 + 10 + 4) + 4;
 
 // The bytes with a right checksum at their end.
 std::string WithChecksum(std::string bytes) {
@@ -187,6 +193,25 @@ TEST_F(MapFileTest, KeepsItsSettings) {
   EXPECT_EQ(MapSettingsOf(options), settings);
 }
 
+// A map file may come from a stranger, or from a program that did not check its labels.
+TEST_F(MapFileTest, LabelsAreMadePrintable) {
+  Map map;
+  const auto frame = FullFrame(0, 1.0);
+  frame->detections = {FullDetection(), FullDetection()};
+  frame->detections[0].label = "cup\x1b[2J";
+  frame->detections[1].label = "cup\x02[2J";
+  const KeyframeId a = map.AddKeyframe(frame, {});
+  const auto next = FullFrame(1, 2.0);
+  next->detections = {frame->detections[1]};
+  const KeyframeId b = map.AddKeyframe(next, {});
+  const ObjectId object = map.AddObject();
+  map.AddObservation(object, a, 0);
+  map.AddObservation(object, b, 0);
+  const Map read = ReadBack(map);
+  EXPECT_EQ(read.keyframes().At(a).frame->detections[1].label, "cup?[2J");
+  EXPECT_EQ(read.objects().At(object).votes, (std::map<std::string, double>{{"cup?[2J", 1.625}}));
+}
+
 // ---- refusals
 
 TEST_F(MapFileTest, OtherSettingsAreRefused) {
@@ -251,14 +276,11 @@ TEST_F(MapFileTest, AMapWithoutKeyframesIsRefused) {
   ExpectInputError([&] { WriteMap(path_, Map(), MadeSettings()); },
                    {path_.string(), "has no keyframe"});
   EXPECT_FALSE(std::filesystem::exists(path_));
-  // The bytes before the number of keyframes: prefix, length, sensor, camera, pyramid, vocabulary,
-  // sessions, corrections.
-  constexpr size_t kBefore = 14 + 4 + 1 + 88 + 12 + 8 + 4 + (4 + 4 + 4) + (4 + 10 + 4) + 4;
   std::string bytes = Written(SmallMap());
-  ASSERT_EQ(bytes[kBefore], 2);
-  bytes[kBefore] = 0;
+  ASSERT_EQ(bytes[kCounts], 2);
+  bytes[kCounts] = 0;
   ExpectRefusal(WithChecksum(bytes), {"has no keyframes"});
-  bytes.replace(kBefore, 4, "\xff\xff\xff\xff");
+  bytes.replace(kCounts, 4, "\xff\xff\xff\xff");
   ExpectRefusal(WithChecksum(bytes), {"more entities than it has"});
 }
 
@@ -287,6 +309,41 @@ TEST_F(MapFileTest, AnInconsistentMapIsRefused) {
   Map map = SmallMap();
   map.MutableCulledKeyframe(KeyframeId(1)).pose.reference = KeyframeId(1);
   ExpectRefusal(Written(map), {"is not consistent", "keyframe 1"});
+}
+
+TEST_F(MapFileTest, PosesAndScalesThatCannotBeAreRefused) {
+  const auto refuse = [&](const auto& change) {
+    Map map = SmallMap();
+    change(map);
+    ExpectRefusal(Written(map), {"out of range"});
+  };
+  const Rigid3 far{Eigen::Quaterniond::Identity(), {0.0, -1e12, 0.0}};
+  refuse([&](Map& map) { map.SetPose(KeyframeId(2), far); });
+  refuse([&](Map& map) { map.MutableCulledKeyframe(KeyframeId(1)).pose.cam_from_reference = far; });
+  refuse([&](Map& map) { map.MutableObject(ObjectId(1)).ellipsoid.world_from_object = far; });
+  refuse([](Map& map) { map.MutableObject(ObjectId(1)).ellipsoid.half_axes.y() = 1e12; });
+  refuse([](Map& map) { map.MutableKeyframe(KeyframeId(0)).scale = 1e-100; });
+  refuse([](Map& map) { map.MutableKeyframe(KeyframeId(0)).scale = 1e12; });
+}
+
+// A run that goes on with a map needs free slots for its landmarks.
+TEST_F(MapFileTest, AMapWithoutRoomForLandmarksIsRefused) {
+  std::string bytes = Written(SmallMap());
+  ASSERT_EQ(bytes[kCounts + 12], 3) << "landmark slots";
+  bytes.replace(kCounts + 12, 4, std::string("\xff\xff\xff\x00", 4));
+  ExpectRefusal(WithChecksum(bytes), {"too many landmarks"});
+}
+
+TEST_F(MapFileTest, ReadingCanBeCancelled) {
+  const std::string bytes = Written(SmallMap());
+  Cancellation cancellation;
+  EXPECT_NO_THROW(ReadMap(path_, MadeSettings(), nullptr, &cancellation));
+  cancellation.Request();
+  EXPECT_THROW(ReadMap(path_, MadeSettings(), nullptr, &cancellation), ReadingCancelled);
+  constexpr size_t kPrefix = 14;
+  std::istringstream records(bytes.substr(kPrefix, bytes.size() - kPrefix - 4));
+  EXPECT_THROW(ParseMap(records, records.str().size(), "map", nullptr, nullptr, &cancellation),
+               Cancelled);
 }
 
 // ---- writing

@@ -128,6 +128,34 @@ TEST(ObjectFile, TheTableHasOneLinePerObject) {
             "3.5,0,0\n");
 }
 
+// Classes come from files of others. The table is opened with a spreadsheet.
+TEST(ObjectFile, TheTableIsValidTextWithoutFormulas) {
+  const auto class_in_table = [](const std::string& label) {
+    ObjectReport report = MakeReport();
+    report.objects.resize(1);
+    report.objects[0].label = label;
+    const std::string table = FormatObjectsCsv(report);
+    const size_t begin = table.find("\n7,") + 3;
+    return table.substr(begin, table.find(",mapped") - begin);
+  };
+  EXPECT_EQ(class_in_table("=HYPERLINK(A1)"), "'=HYPERLINK(A1)");
+  EXPECT_EQ(class_in_table("=A(\"x\")"), "\"'=A(\"\"x\"\")\"");
+  EXPECT_EQ(class_in_table("+1"), "'+1");
+  EXPECT_EQ(class_in_table("-1"), "'-1");
+  EXPECT_EQ(class_in_table("@SUM"), "'@SUM");
+  EXPECT_EQ(class_in_table("a=b-c"), "a=b-c");
+  EXPECT_EQ(class_in_table("a\xff\nb"), "a??b");
+}
+
+TEST(ObjectFile, LabelsAreReadInPrintableCharacters) {
+  ObjectReport report = MakeReport();
+  report.objects[0].label = "cup\x1b[2J";
+  report.objects[0].votes = {{"cup\x1b[2J", 2.0}};
+  const ObjectReport read = WriteAndRead(report);
+  EXPECT_EQ(read.objects[0].label, "cup?[2J");
+  EXPECT_EQ(read.objects[0].votes.begin()->first, "cup?[2J");
+}
+
 TEST(ObjectFile, ReadingAndWritingGivesTheSameBytes) {
   const ObjectReport read = WriteAndRead(MakeReport());
   EXPECT_EQ(FormatObjects(read), FormatObjects(MakeReport()));

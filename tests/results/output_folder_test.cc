@@ -282,5 +282,28 @@ TEST_F(OutputFolderTest, TheNextRunFinishesWhatAKilledRunBegan) {
   }
 }
 
+// A folder from a stranger may have links to files of others in what looks like a staging folder.
+TEST_F(OutputFolderTest, LinksInAStagingFolderAreNotFollowed) {
+  const Files foreign = {{"a.txt", "1"}, {"summary.json", Index({"a.txt"})}};
+  const fs::path elsewhere = folder_.path() / "elsewhere";
+  for (const auto& [name, content] : foreign) {
+    folder_.Write("elsewhere/" + name, content);
+  }
+  for (const bool is_folder_linked : {true, false}) {
+    folder_.Write("a/out/.hullslam-000000/lock", "");
+    const fs::path ready = out_ / ".hullslam-000000" / "ready";
+    if (is_folder_linked) {
+      fs::create_directory_symlink(elsewhere, ready);
+    } else {
+      fs::create_directory(ready);
+      fs::create_symlink(elsewhere / "a.txt", ready / "a.txt");
+      fs::create_symlink(elsewhere / "summary.json", ready / "summary.json");
+    }
+    { const OutputFolder next(out_, "summary.json", {}); }
+    EXPECT_EQ(ReadFolder(elsewhere), foreign);
+    EXPECT_TRUE(fs::is_empty(out_));
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

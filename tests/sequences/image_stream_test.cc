@@ -167,6 +167,18 @@ TEST_F(ImageStreamTest, BrokenVideosAreRefusedByName) {
   ExpectError("/dev/null", {"/dev/null: is not a file"});
 }
 
+TEST_F(ImageStreamTest, AVideoDoesNotOpenOtherFiles) {
+  WriteVideo("private.avi", 10);
+  ExpectError(folder_.Write("list.mp4", "ffconcat version 1.0\nfile private.avi\n"),
+              {"list.mp4: cannot be decoded"});
+}
+
+// The size is in the header, so that no memory is needed to refuse it.
+TEST_F(ImageStreamTest, AVideoOfHugeImagesIsRefused) {
+  ExpectError(folder_.Write("huge.y4m", "YUV4MPEG2 W16000 H16000 F25:1 Cmono\nFRAME\n0123456789"),
+              {"huge.y4m: has images of 16000x16000 px", "64 million px"});
+}
+
 TEST(CameraOfFieldOfView, TheBordersAreSeenAtHalfTheAngle) {
   const PinholeCamera camera = CameraOfFieldOfView(90.0, 640, 480);
   EXPECT_NEAR(camera.fx, 320.0, 1e-9);

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr double kEyeHeight = 1.4;               // metres
+constexpr double kEyeAboveFloor = 1.4;           // metres
 constexpr double kFirst = -0.5 * kTwinDistance;  // x of the middle of the first room
 constexpr double kSecond = 0.5 * kTwinDistance;
 
@@ -120,7 +120,7 @@ WaypointPath TwinsPath() {
   std::vector<Waypoint> waypoints;
   const auto add = [&](double x, double y, double yaw, double pitch = -14.0, double seconds = 0.0) {
     waypoints.push_back(
-        {.eye = {x, y, kEyeHeight}, .yaw = yaw, .pitch = pitch, .seconds = seconds});
+        {.eye = {x, y, kEyeAboveFloor}, .yaw = yaw, .pitch = pitch, .seconds = seconds});
   };
   const auto look_around = [&](double x) {
     add(x + 0.55, 2.5, 182.0);

@@ -27,9 +27,8 @@ using VocabularyNodeId = Id<struct VocabularyNodeTag>;
 // level follows from the word alone. This replaces a stored direct index: a frame only keeps its
 // words.
 //
-// A vocabulary refers to the bytes of a binary file (docs/vocabulary.md), which is usually mapped
-// into memory. Copies share these bytes. All functions are const and may be called by several
-// threads.
+// The memory has the content of the binary file (docs/vocabulary.md). Copies share it. All
+// functions are const and may be called by several threads.
 class Vocabulary {
  public:
   static constexpr int kMostBranching = 100;

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 
 #include "hullslam/bow/vocabulary.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/system/options.h"
+#include "hullslam/util/cancellation.h"
 
 namespace hullslam {
 
@@ -33,6 +35,12 @@ struct StoredMap {
   MapSettings settings;
 };
 
+// Reading a map was cancelled before it was complete.
+class ReadingCancelled : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 // Writes a map and its sessions to one file (docs/maps.md). The map must have a keyframe. The file
 // is complete or not there at all, as with WriteFileAtomically(). The same map gives the same
 // bytes, also after it was read from a file. Throws InputError with `path` and the reason if the
@@ -45,10 +53,12 @@ void WriteMap(const std::filesystem::path& path, const Map& map, const MapSettin
 // InputError with `path` and the reason if the file is damaged or cut off, if another version wrote
 // it, or if its map is not consistent.
 StoredMap ReadMap(const std::filesystem::path& path);
-// Reads a map for a run with the settings `expected`. Throws InputError if the file has other
-// settings; the message names one that differs. They are checked before the keyframes are read.
-// `vocabulary` is the one whose hash is in `expected`; null if there is none.
+// Reads a map that a run with these settings is to go on with. Also throws InputError, before it
+// reads the keyframes, if the file has other settings; the message says which. `vocabulary` is the
+// one of `expected`; null if there is none. Throws ReadingCancelled soon after a request of
+// `cancellation`.
 Map ReadMap(const std::filesystem::path& path, const MapSettings& expected,
-            std::shared_ptr<const Vocabulary> vocabulary = nullptr);
+            std::shared_ptr<const Vocabulary> vocabulary = nullptr,
+            const Cancellation* cancellation = nullptr);
 
 }  // namespace hullslam

@@ -10,6 +10,7 @@
 
 #include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/settings/settings.h"
+#include "run/command_line.h"
 #include "run/input_warnings.h"
 #include "run/messages.h"
 
@@ -50,10 +51,10 @@ class IclDataset final : public Dataset {
         icl_.groundtruth_y,
         "direction of the y axis of the ground truth's cameras; with up (fy < 0) the ground truth "
         "is mirrored (default: the direction that agrees with the depth images)");
-    app.add_option("--povray-units", icl_.povray_units,
-                   "lengths in the .depth and .txt files per metre (100: centimetres)")
-        ->check(CLI::Range(1e-6, 1e6).description(""))
-        ->capture_default_str();
+    auto* const units =
+        app.add_option("--povray-units", icl_.povray_units,
+                       "lengths in the .depth and .txt files per metre (100: centimetres)");
+    ExpectNumber(*units->capture_default_str(), 1e-6, 1e6);
   }
 
   // A negative Camera.fy in the settings is replaced by its positive value.

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "files/plausible.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/settings/settings.h"
@@ -70,15 +71,15 @@ void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
   app.add_option("--output", arguments.output,
                  "folder for the result files; replaces the former run in it")
       ->capture_default_str();
-  app.add_option("--min-distance", arguments.min_distance,
-                 "a frame is used if the camera has moved this far since the last used frame, m; a "
-                 "quarter of it is enough if a mask has moved by half of its size")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  app.add_option("--min-angle", arguments.min_angle,
-                 "a frame is also used if the camera has turned this far since then, degrees")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  auto* const min_distance = app.add_option(
+      "--min-distance", arguments.min_distance,
+      "a frame is used if the camera has moved this far since the last used frame, m; a "
+      "quarter of it is enough if a mask has moved by half of its size");
+  ExpectNumber(*min_distance->capture_default_str(), 0.0, kMostMetres);
+  auto* const min_angle =
+      app.add_option("--min-angle", arguments.min_angle,
+                     "a frame is also used if the camera has turned this far since then, degrees");
+  ExpectNumber(*min_angle->capture_default_str(), 0.0, 360.0);
   app.add_flag("--without-depth", arguments.without_depth, "do not use the depth images");
   AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");

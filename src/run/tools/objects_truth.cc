@@ -12,6 +12,7 @@
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/util/error.h"
 #include "results/true_object_file.h"
+#include "run/messages.h"
 #include "run/object_outputs.h"
 
 namespace hullslam {
@@ -113,14 +114,14 @@ void PrintTrueObject(const TruthEvaluation& evaluation, size_t index) {
   const std::string name =
       fmt::format("{:>4} {:<14} {:<12} {:>5}", truth.id, truth.label, truth.shape, masks);
   if (evaluation.comparison.times_mapped[index] == 0) {
-    fmt::print("{}  {}\n", name, truth.is_dynamic ? "not mapped (it moves)" : "not mapped");
+    Print("{}  {}\n", name, truth.is_dynamic ? "not mapped (it moves)" : "not mapped");
     return;
   }
   for (const ObjectError& error : evaluation.comparison.errors) {
     if (error.truth == index) {
-      fmt::print("{}  {:>4}  {:>6.1f} {:>6.1f}  {}  {}\n", name, error.object.value,
-                 1e3 * error.center_m, 100.0 * error.center_share,
-                 DescribeRatios(error.axis_ratios), DescribeRatios(error.extent_ratios));
+      Print("{}  {:>4}  {:>6.1f} {:>6.1f}  {}  {}\n", name, error.object.value,
+            1e3 * error.center_m, 100.0 * error.center_share, DescribeRatios(error.axis_ratios),
+            DescribeRatios(error.extent_ratios));
     }
   }
 }
@@ -190,17 +191,17 @@ TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectRep
 }
 
 void PrintTruth(const TruthEvaluation& evaluation) {
-  fmt::print(
+  Print(
       "\ntrue objects, after {} alignment of the poses with scale {:.6f} (ATE RMSE of the run "
       "{:.4f} m)\n",
       ToString(evaluation.alignment), evaluation.scale, evaluation.ate_rmse_m);
-  fmt::print("{:>4} {:<14} {:<12} {:>5}  {:>4}  {:>6} {:>6}  {:<17}  {}\n", "id", "class", "shape",
-             "masks", "id", "mm", "% size", "axes, mapped/true", "extents, mapped/true");
+  Print("{:>4} {:<14} {:<12} {:>5}  {:>4}  {:>6} {:>6}  {:<17}  {}\n", "id", "class", "shape",
+        "masks", "id", "mm", "% size", "axes, mapped/true", "extents, mapped/true");
   for (size_t i = 0; i < evaluation.truths.size(); ++i) {
     PrintTrueObject(evaluation, i);
   }
   const TruthCounts& counts = evaluation.counts;
-  fmt::print(
+  Print(
       "{} visible ({}): {} mapped once, {} more than once, {} never; {} mapped objects match no "
       "true "
       "object\n",
@@ -209,7 +210,7 @@ void PrintTruth(const TruthEvaluation& evaluation) {
                                    : fmt::format("in {} masks or more", evaluation.min_masks),
       counts.once, counts.more, counts.never, evaluation.comparison.without_truth.size());
   for (const auto& [shape, errors] : SummarizeByShape(evaluation.truths, evaluation.comparison)) {
-    fmt::print(
+    Print(
         "{:<12} {} mapped: mean centre error {:.1f} % of the size (largest {:.1f} %), mean ratio "
         "of "
         "mapped to true axes {:.3f} (largest error {:.1f} %), mean SIoU {}\n",
@@ -219,10 +220,10 @@ void PrintTruth(const TruthEvaluation& evaluation) {
   }
   if (evaluation.changes) {
     const ChangeComparison& changes = *evaluation.changes;
-    fmt::print("{}{}{}{}{}", DescribeChange("moved", changes.moved),
-               DescribeChange("gone", changes.gone), DescribeChange("new", changes.added),
-               DescribeChange("places left", changes.left),
-               DescribeChange("places taken", changes.taken));
+    Print("{}{}{}{}{}", DescribeChange("moved", changes.moved),
+          DescribeChange("gone", changes.gone), DescribeChange("new", changes.added),
+          DescribeChange("places left", changes.left),
+          DescribeChange("places taken", changes.taken));
   }
 }
 

@@ -15,14 +15,14 @@
 namespace hullslam::synthetic {
 namespace {
 
-constexpr double kFrame = 1.0 / 30.0;  // seconds
+constexpr double kFrameTime = 1.0 / 30.0;  // seconds
 
 // The time at which the camera has the same pose in the second room as at `time` in the first one.
 double TwinTime(const WaypointPath& path, double time) {
   const Rigid3 twin = Shift(kTwinDistance, 0.0, 0.0) * path.WorldFromCam(time);
   double best = 0.0;
   double least = 10.0;
-  for (double other = 0.5 * path.duration(); other < path.duration(); other += kFrame) {
+  for (double other = 0.5 * path.duration(); other < path.duration(); other += kFrameTime) {
     const Rigid3 motion = Inverse(twin) * path.WorldFromCam(other);
     const double difference = motion.translation.norm() + LogSo3(motion.rotation).norm();
     if (difference < least) {
