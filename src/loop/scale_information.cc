@@ -7,7 +7,7 @@
 namespace hullslam {
 namespace {
 
-constexpr double kLeastInformation = 1e-6;  // radians^2: one landmark seen over 1 mrad
+constexpr double kLeastInformation = 1e-6;  // radians^2: that of one landmark with 1 mrad parallax
 constexpr double kLeastVariance = 1e-9;
 
 // The sum of the squared deviations of the rays of a group of keyframes from their mean.
@@ -26,8 +26,8 @@ class SumOfSquaredDeviations {
   double count_ = 0.0;
 };
 
-// The information of a landmark about the ratio of two scales: that of the keyframes up to `before`
-// and that of the keyframes from `after` on.
+// The information of a landmark about the ratio of two scales: the scale of the keyframes up to
+// `before` over that of the keyframes from `after` on.
 double InformationOf(const Map& map, const Landmark& landmark, KeyframeId before,
                      KeyframeId after) {
   SumOfSquaredDeviations older;

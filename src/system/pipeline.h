@@ -32,7 +32,8 @@ class Pipeline {
   // null) is requested. `on_progress` is called after each of its iterations.
   virtual void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) = 0;
   void Finish() { Finish(nullptr, {}); }
-  // See Tracker::LocaliseEarlyFrames. To be called after Finish; the second call gives nothing.
+  // See Tracker::LocaliseEarlyFrames. To be called after Finish. A second call returns an empty
+  // list.
   virtual std::vector<TrackedFrame> TakeEarlyFrames() = 0;
   // The newest snapshot; null before the first keyframe.
   virtual std::shared_ptr<const Map> map() const = 0;

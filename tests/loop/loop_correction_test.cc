@@ -99,8 +99,8 @@ TEST(SpreadLoopError, AMapWithoutDriftStaysAsItIs) {
   }
 }
 
-// A loop in the middle of the way says that keyframe 16 is somewhere else. What is known to be at
-// the place of an old keyframe by an earlier loop does not follow it.
+// A loop in the middle of the path moves keyframe 16. Keyframes that an earlier loop connects to an
+// old keyframe do not follow it.
 TEST(SpreadLoopError, EarlierLoopsHoldTheMap) {
   const auto moved = [](bool has_loop) {
     RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()});
@@ -116,8 +116,8 @@ TEST(SpreadLoopError, EarlierLoopsHoldTheMap) {
   EXPECT_LT(moved(true), 0.05);
 }
 
-// A ring without drift whose unit of length changes at keyframe `first`. No landmark tells that:
-// those that are seen before and after it are seen by a single keyframe on each side.
+// A ring map without drift whose unit of length changes at keyframe `first`. Landmarks do not show
+// the change, because those on both sides are seen by a single keyframe on each side.
 RingMap MakeRingOfTwoScales(uint32_t first, double scale) {
   RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()});
   const KeyframeId newer(first);
@@ -146,7 +146,7 @@ RingMap MakeRingOfTwoScales(uint32_t first, double scale) {
   return made;
 }
 
-TEST(SpreadLoopError, AScaleThatBrokeInOnePlaceIsMendedThere) {
+TEST(SpreadLoopError, AScaleErrorOfOnePlaceIsCorrectedThere) {
   constexpr double kScale = 0.5;
   RingMap made = MakeRingOfTwoScales(14, kScale);
   Loop loop = TrueLoop(made, 29, 5);
@@ -189,7 +189,7 @@ TEST_F(LoopMerges, JoinLandmarksOfOnePoint) {
   }
 }
 
-// Not only what the query sees itself: its neighbours also see old landmarks.
+// Landmarks that only the neighbours of the query see are merged too.
 TEST_F(LoopMerges, JoinTheNeighbourhoodToo) {
   const std::vector<LandmarkId>& of_query = made_.map.keyframes().At(KeyframeId(29)).landmarks;
   EXPECT_TRUE(std::any_of(
@@ -217,8 +217,8 @@ TEST_F(LoopMerges, AreAppliedToAConsistentMapWithOneLandmarkPerPoint) {
   })) << "both ends see the same landmarks now";
 }
 
-// Of the two ends, either may belong to the younger island; that one moves.
-TEST(MoveIsland, PutsTheYoungerIslandToWhereItIsAndLeavesTheOtherOne) {
+// Either end of the loop may belong to the younger island. The younger island moves.
+TEST(MoveIsland, MovesTheYoungerIslandToItsTruePoseAndLeavesTheOther) {
   const Sim3 island_from_world(2.5, ExpSo3({0.3, -0.4, 0.2}), {3.0, -1.0, 0.5});
   for (const bool query_is_younger : {true, false}) {
     RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()});

@@ -61,7 +61,8 @@ TEST_F(ScaleInformationTest, FollowsFromTheDepthsOnBothSidesOfTheKeyframesBetwee
   const double at_2 = 5.0 * Information(Spread({0, 1, 2}), Spread({2, 3}));
   EXPECT_NEAR(Between(1, 2), 1.0 / (0.5 / at_1 + 0.5 / at_2), 1e-9);
   EXPECT_NEAR(Between(0, 2), 1.0 / (1.0 / at_1 + 0.5 / at_2), 1e-9);
-  EXPECT_NEAR(Between(0, 3), 1.0 / (1.0 / at_1 + 1.0 / at_2), 1e-9) << "the ends have one side";
+  EXPECT_NEAR(Between(0, 3), 1.0 / (1.0 / at_1 + 1.0 / at_2), 1e-9)
+      << "the first and the last keyframe have neighbours on one side only";
 }
 
 TEST_F(ScaleInformationTest, IsNoneWhereNoLandmarkIsSeenByThreeKeyframes) {
@@ -75,7 +76,7 @@ TEST_F(ScaleInformationTest, IsNoneWhereNoLandmarkIsSeenByThreeKeyframes) {
   EXPECT_LT(Between(0, 5), 1e-5);
 }
 
-TEST_F(ScaleInformationTest, IsThatOfTheLandmarksOfBothIfTheWayBetweenTellsLess) {
+TEST_F(ScaleInformationTest, IsThatOfCommonLandmarksIfThePathBetweenGivesLess) {
   Make(8);
   for (const uint32_t i : {0U, 1U, 2U, 3U, 4U, 5U}) {
     ShareAt({i, i + 1}, 3);

@@ -45,7 +45,7 @@ struct SystemOptions {
   std::shared_ptr<const Vocabulary> vocabulary;
   uint64_t seed = 0;  // seed of all random choices
 
-  // Names every option once; the struct must outlive the table. `Viewer.*` keys of ORB-SLAM2 are
+  // Binds every option once. The struct must outlive the table. `Viewer.*` keys of ORB-SLAM2 are
   // accepted and ignored.
   OptionTable Bind();
   // Throws InputError if the options are in their ranges but cannot be used: a camera without focal
