@@ -115,7 +115,7 @@ void CheckCounts(const MapHeader& header, uint64_t bytes, const std::string& nam
   const uint64_t entities =
       uint64_t{header.keyframes} + header.culled + header.landmarks + header.objects;
   if (entities > bytes / kLeastBytes) {
-    throw InputError(name + ": is cut off, or says that it has more entities than it has");
+    throw InputError(name + ": is cut off, or has fewer entities than its header says");
   }
 }
 
