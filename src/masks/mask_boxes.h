@@ -10,8 +10,7 @@ namespace hullslam {
 // - `class x y width height score` in pixels; x and y are the upper left corner. EAO-SLAM reads
 //   these files (Wu et al. 2020).
 // - `class x y width height [confidence]` in shares of the image; x and y are the centre. YOLO
-// writes
-//   these files for detections (Ultralytics, save_txt).
+//   writes these files for detections (Ultralytics, save_txt).
 extern const MaskFormat kBoxesFormat;
 
 }  // namespace hullslam
