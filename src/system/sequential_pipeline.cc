@@ -25,7 +25,9 @@ class SequentialPipeline final : public Pipeline {
         loop_closer_(sensor, options.loop, options.objects, options.seed) {}
 
   void Begin(PipelineStart start) override {
-    tracker_.Begin(std::move(start.relocalise), start.localization_only);
+    if (start.localization_only) {
+      tracker_.LocaliseOnly();
+    }
     EditMap([&] { mapper_.Begin(std::move(start.map), std::move(start.session)); });
   }
 

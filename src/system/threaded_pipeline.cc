@@ -46,7 +46,9 @@ class ThreadedPipeline final : public Pipeline {
 
   // Meanwhile the mapper's thread waits for its first message.
   void Begin(PipelineStart start) override {
-    tracker_.Begin(std::move(start.relocalise), start.localization_only);
+    if (start.localization_only) {
+      tracker_.LocaliseOnly();
+    }
     mapper_.Begin(std::move(start.map), std::move(start.session));
   }
 
