@@ -11,6 +11,7 @@
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/check.h"
 #include "mapping/mapper.h"
+#include "system/loop_stages.h"
 #include "system/loop_threads.h"
 #include "tracking/tracker.h"
 #include "util/mailbox.h"
@@ -173,26 +174,15 @@ class ThreadedPipeline final : public Pipeline {
     }
     while (const std::optional<MapMessage> message = messages_.Receive()) {
       SetBusy(true);
-      if (!EditMap([&] { mapper_.Process(*message, &hurry_); })) {
+      const bool is_done = EditMap([&] {
+        mapper_.Process(*message, &hurry_);
+        StartNextStage(*message, options_, mapper_, map_.Get(), loops_);
+      });
+      if (!is_done) {
         messages_.Close();
         return;
       }
-      TellLoops(*message);
       SetBusy(false);
-    }
-  }
-
-  // Searches a loop after a new keyframe, and adjusts the whole map after a loop was closed.
-  void TellLoops(const MapMessage& message) {
-    if (!loops_.is_enabled()) {
-      return;
-    }
-    if (const auto* correction = std::get_if<MapCorrection>(&message)) {
-      if (correction->loop) {
-        loops_.Adjust(map_.Get());
-      }
-    } else if (const std::optional<KeyframeId> keyframe = mapper_.NewestKeyframe()) {
-      loops_.Seek({mapper_.Snapshot(), *keyframe});
     }
   }
 
