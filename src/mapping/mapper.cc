@@ -16,6 +16,8 @@
 #include "mapping/landmark_fusion.h"
 #include "mapping/old_keyframes.h"
 #include "objects/known_sizes.h"
+#include "optim/bundle_adjustment.h"
+#include "optim/island_adjustment.h"
 
 namespace hullslam {
 namespace {
@@ -167,7 +169,7 @@ void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry)
     window = LocalWindow(map_, keyframe, static_cast<size_t>(options_.local_keyframes),
                          static_cast<size_t>(options_.fixed_keyframes),
                          ObjectsToAdjust(object_options_));
-    Adjust(window, {.objects = object_options_.bundle}, hurry);
+    Apply(AdjustBundle(map_, sensor_, window, {.objects = object_options_.bundle}, hurry));
   }
   RecheckObjects(window.objects);
 }
@@ -188,14 +190,14 @@ void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on
 }
 
 void Mapper::AdjustMap(const Cancellation* cancellation, const ProgressCallback& on_progress) {
-  BundleWindow window;
+  IslandAdjustment adjustment;
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
-    window = GlobalWindow(map_, MainIsland(map_), ObjectsToAdjust(object_options_));
-    Adjust(window, BundleOptions{.objects = object_options_.bundle}.ForWholeMap(), cancellation,
-           on_progress);
+    adjustment =
+        AdjustIsland(map_, MainIsland(map_), sensor_, object_options_, cancellation, on_progress);
+    Apply(adjustment.result);
   }
-  RecheckObjects(window.objects);
+  RecheckObjects(adjustment.objects);
   PublishSnapshot();
 }
 
@@ -267,10 +269,7 @@ void Mapper::FollowKnownSizes(bool is_final) {
   }
 }
 
-void Mapper::Adjust(const BundleWindow& window, const BundleOptions& options,
-                    const Cancellation* cancellation, const ProgressCallback& on_progress) {
-  const BundleResult result =
-      AdjustBundle(map_, sensor_, window, options, cancellation, on_progress);
+void Mapper::Apply(const BundleResult& result) {
   if (result.is_usable) {
     ApplyBundle(map_, result, sensor_.levels);
   }

@@ -15,7 +15,7 @@
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
 #include "objects/object_mapper.h"
-#include "optim/bundle_adjustment.h"
+#include "optim/bundle_result.h"
 
 namespace hullslam {
 
@@ -77,8 +77,7 @@ class Mapper {
   void PublishSnapshot();
   void MapObjects(KeyframeId keyframe);
   void AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry);
-  void Adjust(const BundleWindow& window, const BundleOptions& options,
-              const Cancellation* cancellation, const ProgressCallback& on_progress = {});
+  void Apply(const BundleResult& result);
   void FollowKnownSizes(bool is_final);
   void RecheckObjects(const std::vector<ObjectId>& objects);
 
