@@ -174,22 +174,17 @@ void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry)
   RecheckObjects(window.objects);
 }
 
-void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
-  if (session_) {
-    return;  // the run has added no keyframe
-  }
+void Mapper::KeepMainIsland() {
   if (KeepOnlyIsland(map_, MainIsland(map_))) {
     PublishSnapshot();
   }
-  const bool is_cancelled = IsRequested(cancellation);
-  if (options_.final_bundle_adjustment && !is_cancelled && map_.keyframes().size() >= 2) {
-    AdjustMap(cancellation, on_progress);
-  }
-  FollowKnownSizes(true);
-  FinishObjects();
 }
 
 void Mapper::AdjustMap(const Cancellation* cancellation, const ProgressCallback& on_progress) {
+  if (!options_.final_bundle_adjustment || IsRequested(cancellation) ||
+      map_.keyframes().size() < 2) {
+    return;
+  }
   IslandAdjustment adjustment;
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
@@ -201,7 +196,6 @@ void Mapper::AdjustMap(const Cancellation* cancellation, const ProgressCallback&
   PublishSnapshot();
 }
 
-// Finds the changes of the objects of earlier sessions. Removes objects that are gone from the map.
 void Mapper::FinishObjects() {
   if (!object_options_.enabled || former_.objects().empty()) {
     return;

@@ -8,6 +8,7 @@
 #include "loop/loop_closer.h"
 #include "loop/whole_map_adjustment.h"
 #include "mapping/mapper.h"
+#include "system/finish_run.h"
 #include "system/loop_stages.h"
 #include "tracking/tracker.h"
 
@@ -45,7 +46,7 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
   void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) override {
     RethrowFailure();
     if (!std::exchange(is_finished_, true)) {
-      EditMap([&] { mapper_.Finish(cancellation, on_progress); });
+      EditMap([&] { FinishMap(mapper_, cancellation, on_progress); });
     }
   }
 

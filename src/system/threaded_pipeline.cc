@@ -11,6 +11,7 @@
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/check.h"
 #include "mapping/mapper.h"
+#include "system/finish_run.h"
 #include "system/loop_stages.h"
 #include "system/loop_threads.h"
 #include "tracking/tracker.h"
@@ -80,7 +81,7 @@ class ThreadedPipeline final : public Pipeline {
     Stop();
     RethrowFailure();
     if (is_first) {  // the mapper's thread has ended
-      EditMap([&] { mapper_.Finish(cancellation, on_progress); });
+      EditMap([&] { FinishMap(mapper_, cancellation, on_progress); });
       RethrowFailure();
     }
   }
