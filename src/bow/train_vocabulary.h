@@ -16,7 +16,7 @@ namespace hullslam {
 struct VocabularyTraining {
   int branching = 10;  // 2 to Vocabulary::kMostBranching
   int levels = 5;      // 1 to Vocabulary::kMostLevels
-  uint64_t seed = 0;   // of the first centres
+  uint64_t seed = 0;   // seed of the first cluster centres
 };
 
 // Trains a vocabulary on the descriptors of images (Nister and Stewenius 2006; Galvez-Lopez and

@@ -6,7 +6,7 @@
 
 namespace hullslam {
 
-// The length of a camera's way and the sum of its rotations.
+// The length of a camera's path and the sum of its rotations.
 struct Travel {
   double metres = 0.0;
   double radians = 0.0;
@@ -16,8 +16,8 @@ struct Travel {
 // Keyframes of other islands are skipped.
 Travel TravelBetween(const Map& map, KeyframeId first, KeyframeId last);
 
-// Whether drift along this way can explain the difference between the tracked pose of a camera and
-// its pose by a loop.
+// Whether drift along this path can explain the difference between the tracked pose of a camera and
+// the pose that a loop gives it.
 bool CanBeDrift(const Travel& travel, const Rigid3& tracked_cam_from_world,
                 const Rigid3& corrected_cam_from_world, const LoopOptions& options);
 

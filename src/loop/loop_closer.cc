@@ -23,7 +23,7 @@ namespace {
 
 constexpr uint32_t kKeyframesAfterLoop = 10;  // without a search for another loop
 
-// The query's pose if the loop is right, at the scale of the query.
+// The pose that the loop gives the query, at the scale of the query.
 Rigid3 PoseByLoop(const Map& map, const Loop& loop) {
   const Sim3 pose =
       loop.query_from_candidate * Sim3(map.keyframes().At(loop.candidate).cam_from_world);

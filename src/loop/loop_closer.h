@@ -39,8 +39,8 @@ class LoopCloser {
   std::optional<MapCorrection> Close(LoopQuery& query, const LoopCandidate& candidate,
                                      std::string& refusal) const;
 
-  // Merges landmarks and objects that were mapped twice, if tracking itself has found back to the
-  // place of the query.
+  // Merges landmarks and objects that were mapped twice, if tracking has recognised the place of
+  // the query by itself.
   std::optional<MapCorrection> JoinReturn(const LoopQuery& query);
   std::string FindTooMuchDrift(const Map& map, const Loop& loop) const;
   bool IsConfirmedByNeighbour(const Map& corrected, const Loop& loop) const;

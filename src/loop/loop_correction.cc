@@ -14,8 +14,8 @@ namespace hullslam {
 namespace {
 
 constexpr int kStrong = 100;  // shared landmarks of an edge of the essential graph
-// The weight of a loop's edge relative to other edges. It is high, because the many edges along the
-// way between the ends of the loop would otherwise open the loop again.
+// The weight of a loop's edge relative to other edges. It is high, because otherwise the many edges
+// along the path between the ends of the loop would open the loop again.
 constexpr double kLoopWeight = 10.0;
 
 KeyframeId RootOf(const Map& map, KeyframeId keyframe) {
@@ -25,7 +25,8 @@ KeyframeId RootOf(const Map& map, KeyframeId keyframe) {
   return keyframe;
 }
 
-// The graph of all keyframes of an island with edges as the map measures them.
+// The graph of all keyframes of an island. Its edges are the relative poses of keyframes in the
+// map.
 class EssentialGraph {
  public:
   EssentialGraph(const Map& map, IslandId island) : map_(map), ids_(KeyframesOf(map, island)) {
@@ -85,7 +86,8 @@ class EssentialGraph {
   PoseGraph graph_;
 };
 
-// Collects the merges of landmarks that were found with the landmarks that keyframes show there.
+// Collects merges: a landmark that is found at a keypoint is merged with the landmark that the
+// keypoint shows.
 class LandmarkMerger {
  public:
   LandmarkMerger(const Map& map, const std::vector<LandmarkId>& kept, MapCorrection& correction)

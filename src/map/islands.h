@@ -7,8 +7,9 @@
 
 namespace hullslam {
 
-// The island of a keyframe, which may be culled; of an object, that of its reference keyframe.
-// Invalid if the keyframe has no pose (Map::NearestAlive).
+// The first function gives the island of a keyframe, which may be culled. The second one gives the
+// island of an object, which is that of its reference keyframe. Invalid if the keyframe has no pose
+// (Map::NearestAlive).
 IslandId IslandOf(const Map& map, KeyframeId keyframe);
 IslandId IslandOf(const Map& map, const ObjectLandmark& object);
 

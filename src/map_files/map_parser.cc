@@ -64,7 +64,7 @@ class RecordReader {
   uint64_t left_;  // number of bytes that were not read yet
   std::string name_;
   const Cancellation* cancellation_;
-  std::string bytes_;  // of the current record
+  std::string bytes_;  // bytes of the current record
   std::optional<ByteReader> record_;
   size_t number_ = 0;
 };
@@ -115,7 +115,7 @@ void CheckCounts(const MapHeader& header, uint64_t bytes, const std::string& nam
   const uint64_t entities =
       uint64_t{header.keyframes} + header.culled + header.landmarks + header.objects;
   if (entities > bytes / kLeastBytes) {
-    throw InputError(name + ": is cut off, or says that it has more entities than it has");
+    throw InputError(name + ": is cut off, or has fewer entities than its header says");
   }
 }
 

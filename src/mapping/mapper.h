@@ -98,7 +98,7 @@ class Mapper {
   KeyframeId newest_keyframe_;
   std::vector<LandmarkId> recent_;  // new landmarks that CullRecentLandmarks checks
   std::vector<KeyframeId> full_;    // keyframes that CompactOldKeyframes checks, by increasing id
-  size_t sized_views_ = 0;          // of objects of known size when the scale was last measured
+  size_t sized_views_ = 0;  // views of objects of known size when the scale was last measured
   std::optional<Session> session_;  // until its first keyframe
   std::vector<ChangedObject> object_changes_;
 };

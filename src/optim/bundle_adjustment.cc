@@ -51,7 +51,8 @@ class Bundle {
         options_(options),
         pose_indices_(internal::IndexPoses(window)),
         objects_(map, sensor.camera, window, pose_indices_, options.objects) {
-    std::vector<std::vector<double>> weights;  // of the keypoints of each pose; monocular only
+    std::vector<std::vector<double>>
+        weights;  // weights of the keypoints of each pose; monocular only
     for (const auto& [id, index] : pose_indices_.entries()) {
       const Keyframe& keyframe = map.keyframes().At(id);
       poses_.push_back(ToBlock(keyframe.cam_from_world));
@@ -281,7 +282,7 @@ class Bundle {
   const internal::PoseIndices pose_indices_;
   std::vector<PoseBlock> poses_;
   internal::BundlePoints points_;
-  double precision_ = 1.0;  // of the keypoints (MeasureKeypointPrecision)
+  double precision_ = 1.0;  // precision of the keypoints (MeasureKeypointPrecision)
   internal::ObjectBundle objects_;
   PoseManifold manifold_;
 };

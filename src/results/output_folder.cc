@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 using Names = std::set<std::string>;
 
-constexpr const char* kPrefix = ".hullslam-";  // of staging folders
+constexpr const char* kPrefix = ".hullslam-";  // prefix of the names of staging folders
 constexpr const char* kReady =
     "ready";  // name of the folder with the files of a complete run, inside a staging folder
 constexpr std::array<const char*, 2> kIndexes = {"summary.json", "pictures.json"};

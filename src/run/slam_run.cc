@@ -101,7 +101,7 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
                    const PinholeCamera& camera, const SequenceMasks& masks, System& system) {
   RunResult result;
   Progress progress(sequence.frames.size(), arguments.quiet);
-  std::optional<InitialisationFailure> failure;  // of the last frame
+  std::optional<InitialisationFailure> failure;  // failure of the last frame
   system.SetFrameCallback([&](const FrameReport& report) {
     failure = report.failure;
     if (failure) {

@@ -18,9 +18,9 @@ Trajectory ComposeTrajectory(const Map& map, std::span<const TrackedFrame> frame
 // Marks tracked frames that have no pose in the main island as lost.
 void LoseFramesElsewhere(const Map& map, std::span<TrackedFrame> frames);
 
-// Replaces frames by the results of EarlyFrames::Localise. A tracked frame stays as it was if
-// clearly fewer of its landmarks were found: in front of a plane, for example, a pose has two
-// solutions. The ids of `frames` must be consecutive.
+// Replaces frames by the results of EarlyFrames::Localise. A tracked frame stays as it was if the
+// new pose finds clearly fewer of its landmarks. Such a pose is wrong: in front of a plane, for
+// example, there are two solutions for a pose. The ids of `frames` must be consecutive.
 void ReplaceEarlyFrames(std::span<const TrackedFrame> early, std::span<TrackedFrame> frames);
 
 // The poses of the keyframes of the main island.

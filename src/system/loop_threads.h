@@ -56,7 +56,7 @@ class LoopThreads final : public LoopStages {
   LoopCloser closer_;  // used by the first thread only
 
   mutable std::mutex mutex_;                    // guards the next three members
-  std::shared_ptr<Cancellation> cancellation_;  // of the newest adjustment
+  std::shared_ptr<Cancellation> cancellation_;  // cancels the newest adjustment
   StageTimes times_;
   bool has_sent_ = false;
 

@@ -31,7 +31,8 @@ class Pipeline {
   // (FinishMap, system/finish_run.h).
   virtual void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) = 0;
   void Finish() { Finish(nullptr, {}); }
-  // See Tracker::LocaliseEarlyFrames. To be called after Finish; the second call gives nothing.
+  // See Tracker::LocaliseEarlyFrames. To be called after Finish. A second call returns an empty
+  // list.
   virtual std::vector<TrackedFrame> TakeEarlyFrames() = 0;
   // The newest snapshot; null before the first keyframe.
   virtual std::shared_ptr<const Map> map() const = 0;

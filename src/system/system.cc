@@ -91,7 +91,7 @@ std::unique_ptr<Pipeline> System::BeginPipeline() {
   Check(!start_.localization_only || !start_.map.keyframes().empty(),
         "localization needs a map with keyframes");
   Check(start_.map.keyframes().empty() || start_.map.vocabulary() == options_.vocabulary,
-        "the map's vocabulary is not that of the options");
+        "the map's vocabulary differs from that of the options");
   auto pipeline = MakePipeline(kind_, sensor_, options_);
   pipeline->Begin({.map = start_.map.Snapshot(),
                    .session = {.name = start_.session_name, .first_frame = start_.map.NextFrame()},

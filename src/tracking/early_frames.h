@@ -12,10 +12,12 @@
 
 namespace hullslam {
 
-// How a map, or a new island of it (Map::BeginIsland), begins. It depends on the sensor.
+// The rules, which depend on the sensor, for the beginning of a map or of a new island
+// (Map::BeginIsland).
 struct IslandRules {
-  // Whether it takes several frames, between which the camera moves. The first frames then have no
-  // poses, and those of a young island have uncertain ones, so they are located at the end.
+  // Whether an island can only begin with several frames, between which the camera moves. The
+  // frames before have no poses, and the poses of the first frames after it are uncertain. So the
+  // poses of these frames are computed at the end of the run.
   bool needs_motion = false;
   // Whether a camera that is lost begins a new island.
   bool begins_when_lost = false;

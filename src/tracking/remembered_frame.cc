@@ -14,7 +14,7 @@ namespace hullslam {
 namespace {
 
 constexpr size_t kMostLandmarks = 400;
-constexpr double kMinInlierShare = 0.5;  // of the landmarks that were found
+constexpr double kMinInlierShare = 0.5;  // least share of the landmarks that were found
 
 // The detection with only the data that the residuals of the pose are computed from.
 Detection Slim(Detection detection, const ObjectOptions& options) {

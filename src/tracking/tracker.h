@@ -96,7 +96,7 @@ class Tracker {
   // Map::revision() of the first map in which sightings were counted; absent if there are none.
   std::optional<uint32_t> first_sighting_revision_;
   RequestMemory object_requests_;
-  ObjectIndex object_index_;  // of the map of the last frame
+  ObjectIndex object_index_;  // index of the map of the last frame
 };
 
 }  // namespace hullslam

@@ -40,7 +40,7 @@ class MakeObjectCostTest : public ::testing::Test {
   Detection detection_;
 };
 
-TEST_F(MakeObjectCostTest, MakesWhatIsSupportedAndNothingElse) {
+TEST_F(MakeObjectCostTest, MakesTheAcceptedCombinationsOnly) {
   for (const ObjectResidual residual : kResiduals) {
     for (const ObjectPrimitive primitive : kPrimitives) {
       EXPECT_EQ(Make(residual, primitive) != nullptr, AcceptsPrimitive(residual, primitive))
@@ -51,7 +51,7 @@ TEST_F(MakeObjectCostTest, MakesWhatIsSupportedAndNothingElse) {
 
 // The measured outline is the projected ellipse, so all residuals are zero, or nearly zero where a
 // polygon with a slightly smaller area stands for the ellipse.
-TEST_F(MakeObjectCostTest, AllAreSmallAtTheTruth) {
+TEST_F(MakeObjectCostTest, AllResidualsAreSmallAtTheTruth) {
   for (const ObjectResidual residual : kResiduals) {
     for (const ObjectPrimitive primitive : kPrimitives) {
       if (const auto cost = Make(residual, primitive)) {
@@ -95,7 +95,7 @@ TEST_F(MakeObjectCostTest, TakesTheLinesThatAreGiven) {
   EXPECT_EQ(cost->num_residuals(), 3);
 }
 
-TEST_F(MakeObjectCostTest, IsNothingOfAnEmptyDetection) {
+TEST_F(MakeObjectCostTest, IsNullForAnEmptyDetection) {
   detection_ = {};
   for (const ObjectResidual residual : kResiduals) {
     for (const ObjectPrimitive primitive : kPrimitives) {

@@ -32,7 +32,7 @@ TEST(ObjectResidual, OnlyTwoTakeLines) {
   EXPECT_FALSE(TakesLines(ObjectResidual::kOverlap));
 }
 
-TEST(AcceptsPrimitive, HoldsTheCombinationsThatMakeSense) {
+TEST(AcceptsPrimitive, AcceptsTheCombinationsThatMakeSense) {
   std::set<std::string> supported;
   const std::vector<std::string> residuals = ObjectResidualNames();
   const std::vector<std::string> primitives = ObjectPrimitiveNames();

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: GPL-3.0-or-later Bad masks do no harm: whatever is wrong with them, the
-// camera is tracked about as well as without masks.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bad masks do no harm: whatever is wrong with them, the camera is tracked about as well as without
+// masks.
 #include "support/mask_faults.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later A desk is visited twice. Between the visits some
-// objects were moved, taken away or added.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A desk is visited twice. Between the visits some objects were moved, taken away or added.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: GPL-3.0-or-later Runs of rgbd_tum with masks: the files that they write,
-// and which of these equal the files of a run without objects.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs of rgbd_tum with masks: the files that they write, and which of these equal the files of a
+// run without objects.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

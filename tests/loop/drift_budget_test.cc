@@ -22,7 +22,7 @@ class TravelTest : public testing::Test {
   RingMap made_ = MakeRingMap(SharedRing(), {.drift = Rigid3()});
 };
 
-TEST_F(TravelTest, IsTheLengthAndTurnOfTheWayAndNotOfTheShortCut) {
+TEST_F(TravelTest, IsTheLengthAndTurnOfThePathAndNotOfTheShortCut) {
   const Travel turn = Between(0, 24);
   EXPECT_NEAR(turn.radians, 2.0 * kPi, 1e-9);
   EXPECT_NEAR(turn.metres, 24 * 2.0 * RingWorld::kRadius * std::sin(kPi / 24), 1e-9);
@@ -47,7 +47,7 @@ TEST_F(TravelTest, GoesAlongCulledKeyframesToo) {
   EXPECT_NEAR(Between(3, 20).radians, before.radians, 1e-12);
 }
 
-TEST_F(TravelTest, PassesOverOtherIslands) {
+TEST_F(TravelTest, SkipsOtherIslands) {
   const Travel before = Between(3, 20);
   const IslandId island = made_.map.BeginIsland();
   for (const uint32_t i : {8u, 9u}) {
@@ -62,7 +62,7 @@ TEST_F(TravelTest, PassesOverOtherIslands) {
 Rigid3 Moved(double metres) { return {Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}}; }
 Rigid3 Turned(double radians) { return {ExpSo3({0.0, radians, 0.0}), Eigen::Vector3d::Zero()}; }
 
-// Each of the numbers allows what it says, and no more.
+// Each option allows exactly the drift that it gives.
 TEST(DriftBudget, GrowsWithTheTravel) {
   const LoopOptions none{.drift_base = 0.0,
                          .drift_per_metre = 0.0,

@@ -99,8 +99,8 @@ TEST(SpreadLoopError, AMapWithoutDriftStaysAsItIs) {
   }
 }
 
-// A loop in the middle of the way says that keyframe 16 is somewhere else. What is known to be at
-// the place of an old keyframe by an earlier loop does not follow it.
+// A loop in the middle of the path moves keyframe 16. Keyframes that an earlier loop connects to an
+// old keyframe do not follow it.
 TEST(SpreadLoopError, EarlierLoopsHoldTheMap) {
   const auto moved = [](bool has_loop) {
     RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()});
@@ -165,7 +165,7 @@ TEST_F(LoopMerges, JoinLandmarksOfOnePoint) {
   }
 }
 
-// Not only what the query sees itself: its neighbours also see old landmarks.
+// Landmarks that only the neighbours of the query see are merged too.
 TEST_F(LoopMerges, JoinTheNeighbourhoodToo) {
   const std::vector<LandmarkId>& of_query = made_.map.keyframes().At(KeyframeId(29)).landmarks;
   EXPECT_TRUE(std::any_of(
@@ -193,8 +193,8 @@ TEST_F(LoopMerges, AreAppliedToAConsistentMapWithOneLandmarkPerPoint) {
   })) << "both ends see the same landmarks now";
 }
 
-// Of the two ends, either may belong to the younger island; that one moves.
-TEST(MoveIsland, PutsTheYoungerIslandToWhereItIsAndLeavesTheOtherOne) {
+// Either end of the loop may belong to the younger island. The younger island moves.
+TEST(MoveIsland, MovesTheYoungerIslandToItsTruePoseAndLeavesTheOther) {
   const Sim3 island_from_world(2.5, ExpSo3({0.3, -0.4, 0.2}), {3.0, -1.0, 0.5});
   for (const bool query_is_younger : {true, false}) {
     RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()});

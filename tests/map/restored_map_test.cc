@@ -19,7 +19,7 @@
 namespace hullslam {
 namespace {
 
-// The tables of a map without what can be derived.
+// The tables of a map without the values that can be derived.
 MapTables TablesOf(const Map& map) {
   MapTables tables;
   map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
@@ -41,7 +41,7 @@ MapTables TablesOf(const Map& map) {
   return tables;
 }
 
-TEST(RestoreMap, DerivesWhatIsMissing) {
+TEST(RestoreMap, DerivesTheMissingValues) {
   for (uint32_t seed = 0; seed < 5; ++seed) {
     Map map;
     RandomEdits edits(seed);
@@ -51,7 +51,7 @@ TEST(RestoreMap, DerivesWhatIsMissing) {
     map.ForgetReplaced(UINT32_MAX);
     ASSERT_FALSE(map.culled().empty());
     const Map restored = RestoreMap(TablesOf(map));
-    // Free slots are not in these tables, so Dump would differ in the absent ids that it resolves.
+    // These tables have no free slots, so Dump would give other results for ids that are absent.
     EXPECT_EQ(FindViolations(restored), std::vector<std::string>());
     map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
       EXPECT_EQ(restored.keyframes().At(id).children, keyframe.children);
@@ -101,7 +101,7 @@ void ExpectRefusal(const std::function<void(MapTables&)>& change,
   ExpectInputError([&] { RestoreMap(std::move(tables)); }, parts);
 }
 
-TEST(RestoreMap, AcceptsWhatAMapConsistsOf) {
+TEST(RestoreMap, AcceptsTheTablesOfAMap) {
   EXPECT_EQ(Dump(RestoreMap(TablesOf(MadeMap()))), Dump(MadeMap()));
 }
 
@@ -140,7 +140,7 @@ TEST(RestoreMap, RefusesCulledKeyframesWithoutAPose) {
       {"itself"});
 }
 
-TEST(RestoreMap, RefusesReferencesToWhatDoesNotExist) {
+TEST(RestoreMap, RefusesReferencesToMissingEntities) {
   const auto first = [](MapTables& t) -> LandmarkId { return (*t.landmarks.begin()).first; };
   ExpectRefusal([&](MapTables& t) { t.landmarks.Mutable(first(t)).reference = KeyframeId(8); },
                 {"landmark", "keyframe that does not exist"});
@@ -164,7 +164,7 @@ TEST(RestoreMap, RefusesReferencesToWhatDoesNotExist) {
                 {"keyframe 1", "object that does not exist"});
 }
 
-TEST(RestoreMap, RefusesWhatViolatesTheInvariants) {
+TEST(RestoreMap, RefusesTablesThatViolateTheInvariants) {
   ExpectRefusal([](MapTables& t) { t.keyframes.Mutable(KeyframeId(1)).covisible[0].shared = 3; },
                 {"keyframe", "edge"});
   ExpectRefusal(

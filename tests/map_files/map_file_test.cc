@@ -281,7 +281,7 @@ TEST_F(MapFileTest, AMapWithoutKeyframesIsRefused) {
   bytes[kCounts] = 0;
   ExpectRefusal(WithChecksum(bytes), {"has no keyframes"});
   bytes.replace(kCounts, 4, "\xff\xff\xff\xff");
-  ExpectRefusal(WithChecksum(bytes), {"more entities than it has"});
+  ExpectRefusal(WithChecksum(bytes), {"fewer entities than its header says"});
 }
 
 // Wrong bytes must not crash the reader even if the checksum is right. Most of them only change a

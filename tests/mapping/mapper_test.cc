@@ -116,7 +116,8 @@ class MapperTest : public testing::Test {
 TEST_F(MapperTest, PublishesBeforeAndAfterItsWork) {
   ProcessFrame(0);
   ASSERT_EQ(published_.size(), 2u);
-  EXPECT_EQ(published_[0]->keyframes().size(), 1u) << "tracking does not have to wait for the rest";
+  EXPECT_EQ(published_[0]->keyframes().size(), 1u)
+      << "tracking gets the keyframe before the other steps are done";
   ProcessFrame(5);
   EXPECT_EQ(published_.size(), 4u);
 }
@@ -198,7 +199,7 @@ TEST_F(MapperTest, SameRequestsGiveTheSameBits) {
   EXPECT_EQ(first, run());
 }
 
-TEST_F(MapperTest, RedundantKeyframesAreCulledIfThatIsWanted) {
+TEST_F(MapperTest, RedundantKeyframesAreCulledIfTheOptionIsSet) {
   const auto count = [&](bool cull) {
     MappingOptions options;
     options.cull_keyframes = cull;
@@ -214,7 +215,7 @@ TEST_F(MapperTest, RedundantKeyframesAreCulledIfThatIsWanted) {
 }
 
 // Each keyframe is at another place, 100 m from the last one, so none is covisible with another.
-TEST_F(MapperTest, DistantKeyframesAreCompactedIfThatIsWanted) {
+TEST_F(MapperTest, DistantKeyframesAreCompactedIfTheOptionIsSet) {
   for (const bool compact : {false, true}) {
     MappingOptions options;
     options.compact_keyframes = compact;
@@ -238,7 +239,7 @@ TEST_F(MapperTest, DistantKeyframesAreCompactedIfThatIsWanted) {
   }
 }
 
-TEST_F(MapperTest, ARequestMayReferToWhatNoLongerExists) {
+TEST_F(MapperTest, ARequestMayReferToEntitiesThatNoLongerExist) {
   for (uint32_t index = 0; index < 8; ++index) {
     ProcessFrame(index);
   }
@@ -285,7 +286,7 @@ TEST_F(MapperTest, RemembersReplacedIdsOnlyWhileRequestsMayHaveThem) {
     return map().replaced_count();
   };
   const size_t all = run(false);
-  ASSERT_GT(all, 0u) << "nothing was replaced, so the test shows nothing";
+  ASSERT_GT(all, 0u) << "no landmark was replaced, so nothing was tested";
   EXPECT_LT(run(true), all);
 }
 
@@ -318,7 +319,7 @@ TEST_F(MapperTest, ACorrectionIsAppliedAndPublished) {
   EXPECT_EQ(published_.size(), published) << "the same correction again is refused";
 }
 
-TEST_F(MapperTest, InAHurryItLeavesOutWhatIsNotNecessary) {
+TEST_F(MapperTest, InAHurryItLeavesOutStepsThatAreNotNecessary) {
   Cancellation hurry;
   hurry.Request();
   for (uint32_t index = 0; index <= 30; index += 5) {
@@ -331,7 +332,7 @@ TEST_F(MapperTest, InAHurryItLeavesOutWhatIsNotNecessary) {
   EXPECT_EQ(mapper_->times().samples().at("map_insert").size(), 8u);
 }
 
-TEST_F(MapperTest, FinishAdjustsTheWholeMapIfThatIsWanted) {
+TEST_F(MapperTest, FinishAdjustsTheWholeMapIfTheOptionIsSet) {
   const auto map_path = [&](bool wanted) {
     MappingOptions options;
     options.local_keyframes = 2;

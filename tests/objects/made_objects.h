@@ -64,7 +64,7 @@ inline std::vector<Eigen::Vector3d> VisibleSurface(const Ellipsoid& ellipsoid,
   return points;
 }
 
-// The object as an exact mask shows it: 16 tangents, all of them two-sided.
+// The detection of the object with an exact mask: 16 tangents, all of them two-sided.
 inline Detection Detect(const MadeObject& object, const Sensor& sensor,
                         const Rigid3& cam_from_world) {
   const Ellipse ellipse =
@@ -148,7 +148,7 @@ inline MadeObject MakeObject(const std::string& label, const Eigen::Vector3d& ce
   return object;
 }
 
-// Three things on a table, apart from one another.
+// Three things on a table that do not touch.
 inline std::vector<MadeObject> MakeTable() {
   return {MakeObject("cup", {0.3, 0.1, 0.0}, {0.06, 0.05, 0.08}, 0.3),
           MakeObject("book", {-0.2, 0.2, 0.0}, {0.15, 0.10, 0.04}, 1.0),

@@ -46,7 +46,7 @@ TEST_F(PoseHypotheses, TheBestOneIsTrueWithNoiseOfCentimetres) {
   }
 }
 
-TEST_F(PoseHypotheses, DoNotDependOnWhereTheWorldIs) {
+TEST_F(PoseHypotheses, DoNotDependOnTheWorldFrame) {
   const Rigid3 motion(ExpSo3({0.4, -0.8, 1.9}), {3.0, -2.0, 7.0});
   const std::vector<MadeObject> moved = Moved(motion, room_);
   Map map;
@@ -75,7 +75,7 @@ TEST_F(PoseHypotheses, WithoutDepthTheRaysAreEnough) {
   EXPECT_LT(PositionError(found[0].cam_from_world, truth_), 0.1);
 }
 
-TEST_F(PoseHypotheses, OfTwoDetectionsTheAngleIsSearched) {
+TEST_F(PoseHypotheses, WithTwoDetectionsTheAngleIsSearched) {
   const std::vector<MadeObject> two = {room_[2], room_[3]};  // long things
   Map map;
   AddRoom(map, sensor_, two);
@@ -116,7 +116,7 @@ TEST_F(PoseHypotheses, AreDifferentPlaces) {
   EXPECT_FALSE(AreSamePlace(found[0].cam_from_world, found[1].cam_from_world, 2.0));
 }
 
-TEST(SamePlace, DependsOnTheDepthOfWhatIsSeen) {
+TEST(SamePlace, DependsOnTheDepthOfTheScene) {
   const Rigid3 moved(Eigen::Quaterniond::Identity(), {0.2, 0.0, 0.0});
   EXPECT_TRUE(AreSamePlace(Rigid3(), moved, 2.0));
   EXPECT_FALSE(AreSamePlace(Rigid3(), moved, 1.0));

@@ -78,7 +78,7 @@ class ObjectBundle : public ::testing::Test {
       object.start = object.ellipsoid;
     }
   }
-  // Of an object that is not wholly in front of the camera only the far end is seen.
+  // If an object is not wholly in front of the camera, only its far end is seen.
   MadeObject SeenPart(const MadeObject& object, const Rigid3& cam_from_world) const {
     MadeObject part = object;
     while (!ProjectEllipsoid(world_->sensor().camera.Matrix(), cam_from_world, part.ellipsoid)) {
@@ -160,7 +160,7 @@ class ObjectBundle : public ::testing::Test {
   ObjectPrimitive primitive_ = ObjectPrimitive::kSupport;
   std::optional<SyntheticWorld> world_;
   std::vector<MadeObject> objects_;
-  std::optional<MadeObject> couch_;  // in place of the book
+  std::optional<MadeObject> couch_;  // replaces the book
   SyntheticMap made_;
   std::vector<ObjectId> ids_;
 };
@@ -208,7 +208,8 @@ TEST_F(ObjectBundle, OfTheWholeMapImprovesPosesAndShapes) {
   EXPECT_LT(MeanShapeError(result), 0.25 * before);
 }
 
-// Outlines that say little compared with the prior, and objects two sizes beside their places.
+// The outlines are weak compared with the prior, and the objects start two sizes away from their
+// true positions.
 TEST_F(ObjectBundle, OfTheWholeMapDoesNotHoldObjectsBack) {
   for (const ObjectId id : ids_) {
     ObjectLandmark& object = made_.map.MutableObject(id);
@@ -221,8 +222,8 @@ TEST_F(ObjectBundle, OfTheWholeMapDoesNotHoldObjectsBack) {
   EXPECT_GT(MeanShapeError(Adjust(Window())), 5.0 * of_whole_map);
 }
 
-// Two iterations per round are enough for points. Objects must not slow them down, although the
-// scale is wrong by a fifth and the objects do not fit it.
+// The scale is wrong by a fifth. Points alone need two iterations per round to correct it, and
+// objects must not slow this down.
 TEST_F(ObjectBundle, OfTheWholeMapFollowsAChangeOfItsScale) {
   BundleOptions options = kPrecise.ForWholeMap();
   options.robust_iterations = options.final_iterations = 2;
@@ -386,8 +387,8 @@ TEST_F(ObjectBundle, TheStartOfAnObjectHasNoInfluence) {
   EXPECT_EQ(MeanShapeError(result), MeanShapeError(expected));
 }
 
-// A couch reaches from before the first camera to beside the last ones, where it has no projected
-// ellipse. Its end must not be a wall to all poses.
+// A couch is in front of the first camera and reaches beside the last ones, in which it has no
+// projected ellipse. This must not stop all poses.
 TEST_F(ObjectBundle, AnObjectThatReachesACameraDoesNotHoldThePoses) {
   const MadeObject couch = MakeObject("couch", {1.2, 0.3, 1.6}, {0.3, 0.2, 1.4});
   couch_ = couch;
@@ -443,7 +444,7 @@ TEST_F(ObjectBundle, CancelledAtOnceItKeepsTheShapes) {
   }
 }
 
-TEST_F(ObjectBundle, ApplyingWritesShapesAndPassesOverWhatNoLongerExists) {
+TEST_F(ObjectBundle, ApplyingWritesShapesAndSkipsObjectsThatNoLongerExist) {
   PerturbObjects(0.2);
   const BundleResult result = Adjust(Window());
   const std::string before = Dump(made_.map);

@@ -14,7 +14,8 @@
 namespace hullslam {
 namespace {
 
-// The frame and the landmarks of the keyframes 2 to 6 of a ring without drift.
+// A map of the ring world without drift. `view_` is a new frame between the keyframes 4 and 5, and
+// `asked_` are the landmarks of the keyframes 2 to 6.
 class LandmarkSearch : public testing::Test {
  protected:
   static constexpr double kTurns = 4.3 / 24.0;

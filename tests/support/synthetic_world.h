@@ -39,7 +39,7 @@ struct SyntheticWorldOptions {
   // px, standard deviation of u and v at level 0, and of the disparity at every level.
   double pixel_noise = 0.0;
   double depth_share = 1.0;   // share of the points that have a depth in every frame that sees them
-  int flipped_bits = 0;       // of each descriptor; every frame flips other bits
+  int flipped_bits = 0;       // flipped bits of each descriptor; every frame flips other bits
   double readout_time = 0.0;  // s; the frames of the path are those of a rolling shutter
   uint64_t seed = 1;
 };

@@ -65,7 +65,7 @@ TEST(ComposeTrajectory, HasTheFramesOfTheMainIslandOnly) {
     EXPECT_EQ(frames[i].state, i < 2 ? TrackingState::kLost : TrackingState::kTracked);
     EXPECT_EQ(frames[i].pose.has_value(), i >= 2);
   }
-  // A frame of a removed keyframe that was located in the main island at the end.
+  // A frame whose keyframe was removed, but which was found in the main island at the end.
   frames[0].state = TrackingState::kTracked;
   frames[0].pose = RelativePose{second, Shift(-0.25), 1.0};
   EXPECT_EQ(ComposeTrajectory(map, frames).front().world_from_cam.translation.x(), 2.25);
@@ -82,7 +82,7 @@ TEST(ReplaceEarlyFrames, KeepsATrackedFrameWithClearlyMoreLandmarks) {
     early[i].pose = RelativePose{KeyframeId(0), Shift(1.0), 1.0};
   }
   frames[2].state = TrackingState::kLost;
-  early.pop_back();  // was not found
+  early.pop_back();  // this frame was not found
   ReplaceEarlyFrames(early, frames);
   EXPECT_FALSE(frames[0].pose);
   EXPECT_TRUE(frames[1].pose);

@@ -15,7 +15,8 @@
 namespace hullslam {
 namespace {
 
-// Collects what is sent. It can be told to stay in the first call until it is let go.
+// Collects the corrections that are sent. A test can keep it in its first call until it releases
+// it.
 class Receiver {
  public:
   ~Receiver() { LetGo(); }

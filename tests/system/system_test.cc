@@ -165,7 +165,7 @@ TEST_P(SystemTest, FinishAdjustsTheWholeMapUnlessCancelled) {
   }
 }
 
-// From the final places of their landmarks.
+// The poses are computed from the final positions of the landmarks.
 TEST_P(SystemTest, FinishComputesThePosesOfFramesAgain) {
   System system(Wall::Options(), GetParam());
   for (int i = 0; i < 15; ++i) {
@@ -371,8 +371,8 @@ TEST(System, AFrameThatIsOnlyBuiltChangesNothing) {
   EXPECT_THROW(system.Track(system.Build(GreyInput(1))), CheckError) << "the same time stamp";
 }
 
-// In real time the user also waits while a frame that is built waits to be tracked. Otherwise it
-// may have been built long ago.
+// In real time the user also waits while a built frame waits to be tracked. At full speed frames
+// may be built long before they are tracked, so this time does not count.
 TEST(System, TrackTimesCountWaitingOnlyInRealTime) {
   constexpr std::chrono::milliseconds kWait(50);
   for (const PipelineKind kind : {PipelineKind::kThreaded, PipelineKind::kRealtime}) {

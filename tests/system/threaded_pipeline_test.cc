@@ -157,8 +157,8 @@ TEST(ThreadedPipeline, AFailureOfMappingIsThrownByTheNextTrack) {
   EXPECT_THROW(track_on(), CheckError);
 }
 
-// The way ends soon after the keyframe that closes the loop, while the whole map is adjusted or the
-// loop is even still sought.
+// The run ends soon after the keyframe that closes the loop. At that time the loop is still
+// searched, or the whole map is being adjusted.
 TEST(ThreadedPipeline, FinishWaitsForTheLastLoop) {
   RingPath path;
   path.options().mapping.final_bundle_adjustment = false;

@@ -56,7 +56,7 @@ TEST_F(EarlyFramesTest, AreForgottenOnceTheyAreLocalised) {
   EXPECT_TRUE(early_.Localise(made.map, Context()).empty());
 }
 
-TEST_F(EarlyFramesTest, AreLeftOutWhereTheMapDoesNotShowThem) {
+TEST_F(EarlyFramesTest, AreLeftOutIfTheMapDoesNotShowTheirPlace) {
   early_.Keep(world_.Observe(1).frame);
   const SyntheticWorld other({.points = 300, .depth_share = 0.0, .seed = 77});
   const SyntheticMap made = MakeSyntheticMap(other, {2, 12});

@@ -34,7 +34,7 @@ class RefinePosesTest : public ::testing::Test {
     report_.tracked.state = TrackingState::kTracked;
     Track(truth_);
   }
-  // As if this pose had been found.
+  // The remembered frame, as if tracking had found this pose.
   void Track(const Rigid3& cam_from_world) {
     report_.tracked.pose = made_.map.RelativeTo(KeyframeId(0), cam_from_world);
   }
@@ -81,7 +81,7 @@ class RefinePosesTest : public ::testing::Test {
     frame->detections.push_back(frame->detections.back());
     report_.frame = frame;
   }
-  // So that only the first landmarks were found.
+  // Leaves only the first landmarks, as if no others had been found.
   void ForgetLandmarksAfter(size_t count) {
     size_t found = 0;
     for (LandmarkId& id : report_.landmarks) {
@@ -134,7 +134,7 @@ TEST_F(RefinePosesTest, RemembersAtMost400Landmarks) {
   EXPECT_LT(Distance(Refined(), truth_), 1e-4);
 }
 
-// The trap: a relative pose follows its reference keyframe, and not the map around the frame.
+// A relative pose alone would follow the reference keyframe, and not the map around the frame.
 TEST_F(RefinePosesTest, AFrameFollowsItsLandmarks) {
   const Eigen::Vector3d shift(0.04, 0.02, -0.03);
   MoveLandmarks(shift);
@@ -149,8 +149,8 @@ TEST_F(RefinePosesTest, MonocularToo) {
   EXPECT_LT(Distance(Refined(), truth_), 1e-4);
 }
 
-// Depth counts: the landmarks have become 5 % nearer, which no pixel tells.
-TEST_F(RefinePosesTest, DepthHoldsThePose) {
+// The landmarks have become 5 % nearer. Pixels do not show this, but depth does.
+TEST_F(RefinePosesTest, DepthConstrainsThePose) {
   const auto error_of = [&](double depth_share) {
     Make({.points = 150, .depth_share = depth_share});
     for (const LandmarkId id : Seen()) {

@@ -105,8 +105,9 @@ class TrackerTest : public testing::Test {
   std::shared_ptr<const Map> map_;
 };
 
-// Every keyframe has as many landmarks that only it observes as common ones. The frame shows the
-// common ones, so it needs no keyframe if the others do not count.
+// Half of the landmarks of every keyframe are common ones, the other half only this keyframe
+// observes. The frame shows the common ones. So no keyframe is needed if landmarks with a single
+// observation do not count.
 TEST_F(TrackerTest, LandmarksOfASingleObservationAreNotExpected) {
   std::vector<uint32_t> common;  // points
   for (uint32_t point = 0; point < made_.landmarks.size(); ++point) {
@@ -145,13 +146,13 @@ TEST_F(TrackerTest, LandmarksOfASingleObservationAreNotExpected) {
 }
 
 // A camera stands still before something that is detected but can never be mapped.
-TEST_F(TrackerTest, AnObjectThatIsNeverMappedAsksForKeyframesMoreAndMoreSeldom) {
+TEST_F(TrackerTest, AnObjectThatIsNeverMappedCausesFewerAndFewerRequests) {
   Begin();
   const SyntheticView view = world_.Observe(10);
   std::vector<uint32_t> requests;
   for (uint32_t i = 1; i <= 600; ++i) {
     auto frame = Select(*view.frame, AllKeypoints(*view.frame));
-    frame->id = FrameId(100 + i);  // not that of a keyframe
+    frame->id = FrameId(100 + i);  // no keyframe has this id
     frame->timestamp = i / 30.0;
     frame->detections.emplace_back().hull = {{10.0, 10.0}, {60.0, 10.0}, {60.0, 60.0}};
     const Tracker::Result result = Process(frame);
@@ -464,8 +465,8 @@ TEST_F(TrackerTest, TheMotionModelIsNotUsedAfterALostOrMissingFrame) {
     return frame;
   };
   struct Case {
-    std::vector<uint32_t> frames;  // tracked
-    bool has_lost_frame = false;   // after them
+    std::vector<uint32_t> frames;  // frames that are tracked
+    bool has_lost_frame = false;   // whether a lost frame follows them
     TrackingState expected = TrackingState::kLost;
   };
   for (const Case& given : {Case{{0, 1, 2, 3, 4}, false, TrackingState::kTracked},
@@ -553,7 +554,7 @@ TEST_F(TrackerTest, ARequestHasThePoseTheLandmarksAndTheSightings) {
   }
 }
 
-// The mapper forgets what was replaced before the oldest snapshot that requests still refer to.
+// The mapper forgets replacements that are older than the oldest snapshot that requests refer to.
 TEST_F(TrackerTest, ARequestNamesTheOldestSnapshotOfItsIds) {
   Begin();
   const uint32_t oldest = map_->revision();
@@ -695,7 +696,8 @@ class ObjectTrackerTest : public TrackerTest {
                                           MakeObject("ball", {1.0, 0.6, 4.0}, {0.25, 0.25, 0.25})};
 };
 
-// Such a keyframe would have no edge to the others, and its new landmarks would be a second map.
+// Such a keyframe would have no edge to the others, and its new landmarks would be second copies of
+// landmarks of the map.
 TEST_F(ObjectTrackerTest, AFrameThatOnlyObjectsLocateIsNoKeyframe) {
   Begin();
   for (uint32_t i = 1; i <= 2; ++i) {
@@ -891,7 +893,7 @@ ShutterErrors TrackWithRollingShutter(double known) {
     const Tracker::Result result = tracker.Process(view.frame, map, kIdle);
     EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked) << i;
     if (i < 10) {
-      continue;  // the first velocities are those of a frame that was not corrected
+      continue;  // the first velocities were measured with frames that were not corrected
     }
     const Rigid3 truth = SyntheticWorld::CamFromWorld(i);
     errors.pose = std::max(
@@ -973,7 +975,7 @@ TEST_F(MonocularTracker, FramesThatTheMapDoesNotShowAreLeftOut) {
 // A monocular camera that has a young map of one world and is then in another one.
 class LostMonocularTracker : public MonocularTracker {
  protected:
-  // Frame `number` of a world, taken at its place `index`.
+  // A frame of a world with the id `number`, seen from the pose `index` of its path.
   static std::shared_ptr<const Frame> FrameOf(const SyntheticWorld& world, uint32_t number,
                                               uint32_t index) {
     auto frame = std::make_shared<Frame>(*world.Observe(index).frame);
@@ -981,8 +983,8 @@ class LostMonocularTracker : public MonocularTracker {
     frame->timestamp = number / world.sensor().frames_per_second;
     return frame;
   }
-  // Begins with a map of this many keyframes, and is lost from frame 100 on for so many frames.
-  // Returns the frame that begins an island; 0 if there is none.
+  // Begins with a map of the given number of keyframes. Then tracking is lost from frame 100 on,
+  // for the given number of frames. Returns the frame that begins an island; 0 if there is none.
   uint32_t BeginAndLose(uint32_t keyframes, uint32_t frames) {
     const uint32_t last = WaitForMap();
     std::vector<uint32_t> indices;
@@ -1021,7 +1023,7 @@ TEST_F(LostMonocularTracker, BeginsAnIslandAndFollowsIt) {
   const uint32_t begin = BeginAndLose(3, 40);
   ASSERT_GT(begin, 100u);
   EXPECT_EQ(island_.views.back().frame->id, FrameId(begin));
-  EXPECT_GE(island_.views.front().frame->id, FrameId(100)) << "only frames since it was lost";
+  EXPECT_GE(island_.views.front().frame->id, FrameId(100)) << "only frames after tracking was lost";
   std::vector<LandmarkId> created;
   const std::vector<KeyframeId> ids = InsertInitialMap(made_.map, island_, sensor_, created);
   map_ = Publish(made_.map);

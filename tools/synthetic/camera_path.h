@@ -49,8 +49,7 @@ struct LoopPath {
 // A place that the camera passes, and where it looks there.
 struct Waypoint {
   Eigen::Vector3d eye = Eigen::Vector3d::Zero();
-  double yaw =
-      0.0;  // degrees from +x towards +y; not reduced to 360, so a path can make full turns
+  double yaw = 0.0;      // degrees from +x towards +y; a path may go beyond 360
   double pitch = 0.0;    // degrees, negative to look down
   double seconds = 0.0;  // least time from the previous waypoint; not used for the first one
 };

@@ -13,7 +13,7 @@ namespace hullslam {
 // A keyframe that contains a word.
 struct Posting {
   KeyframeId keyframe;
-  float weight = 0.0f;  // of the word in the vector of the keyframe
+  float weight = 0.0f;  // weight of the word in the keyframe's vector
 
   friend bool operator==(const Posting&, const Posting&) = default;
 };
@@ -22,7 +22,7 @@ struct Posting {
 struct SimilarKeyframe {
   KeyframeId keyframe;
   uint32_t common_words = 0;  // at least 1
-  double score = 0.0;         // of the two vectors, 0 to 1; see Score()
+  double score = 0.0;         // similarity to the image, 0 to 1; see Score()
 };
 
 // Stores for each word the keyframes that contain it. Like the map, it is a value whose snapshots

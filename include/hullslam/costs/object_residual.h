@@ -20,7 +20,8 @@ std::vector<std::string> ObjectResidualNames();
 
 // Whether the residual can be computed from the primitive. tangent and algebraic_plane need lines,
 // which every primitive has (a conic has its tangents). algebraic_point needs the contour and
-// distribution the conic. overlap needs a region, which every primitive but the support lines has.
+// distribution the conic. overlap needs a region, which every primitive except the support lines
+// has.
 bool AcceptsPrimitive(ObjectResidual residual, ObjectPrimitive primitive);
 
 // Whether the residual is computed from the lines of a detection.

@@ -20,8 +20,8 @@ namespace hullslam {
 struct MapSettings {
   SensorKind sensor = SensorKind::kRgbd;
   PinholeCamera camera;
-  int level_count = 8;        // of the image pyramid
-  double scale_factor = 1.2;  // between two levels
+  int level_count = 8;        // number of levels of the image pyramid
+  double scale_factor = 1.2;  // scale between two levels
   uint64_t vocabulary = 0;    // hash of the vocabulary of the words; 0: the frames have no words
 
   bool operator==(const MapSettings&) const = default;
@@ -41,10 +41,10 @@ class ReadingCancelled : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Writes a map that has a keyframe, with its sessions, to one file (docs/maps.md). The file is
-// complete or not there at all, as with WriteFileAtomically(). The same map gives the same bytes,
-// also after it was read from a file. Throws InputError with `path` and the reason if the map has
-// no keyframe or the file cannot be written.
+// Writes a map and its sessions to one file (docs/maps.md). The map must have a keyframe. The file
+// is complete or not there at all, as with WriteFileAtomically(). The same map gives the same
+// bytes, also after it was read from a file. Throws InputError with `path` and the reason if the
+// map has no keyframe or the file cannot be written.
 void WriteMap(const std::filesystem::path& path, const Map& map, const MapSettings& settings);
 
 // Reads a file of WriteMap(). The map has no index of its words. It has the same values, ids and

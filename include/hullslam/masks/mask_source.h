@@ -14,7 +14,7 @@ namespace hullslam {
 
 // The names that mask files use for a frame.
 struct MaskFrame {
-  std::string stem;   // of the file of the colour image: "1305031102.175304"
+  std::string stem;   // stem of the file of the colour image: "1305031102.175304"
   size_t number = 0;  // index of the colour image in the sequence, from 0
 };
 

@@ -12,7 +12,7 @@ namespace hullslam {
 
 // The packages in which ICL-NUIM (Handa et al., ICRA 2014) is published; see docs/datasets.md.
 enum class IclPackage {
-  kDetect,  // by the files of the folder
+  kDetect,  // kTum or kPovray, depending on the files in the folder
   kTum,     // the PNG images compatible with TUM: rgb/N.png, depth/N.png, associations.txt
   kPovray,  // the original one: scene_00_NNNN.png, .depth and .txt
 };

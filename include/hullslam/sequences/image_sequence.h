@@ -16,7 +16,7 @@ namespace hullslam {
 
 // The files of one frame.
 struct FramePaths {
-  double timestamp = 0.0;  // of the image, s
+  double timestamp = 0.0;  // time stamp of the image, s
   std::filesystem::path image;
   std::filesystem::path depth = {};  // empty: no depth
   size_t number = 0;                 // index among all images of the sequence, from 0

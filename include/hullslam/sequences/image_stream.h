@@ -20,7 +20,7 @@ struct ImageStreamOptions {
 // Images without depth and without ground truth, from a video file or a folder.
 struct ImageStream {
   ImageSequence images;
-  int width = 0;  // of the first image, px
+  int width = 0;  // width of the first image, px
   int height = 0;
   double frames_per_second = 0.0;  // the mean over all frames
   std::string stamps_note;         // tells the user where the time stamps are from

@@ -26,7 +26,7 @@ class RecyclingTable {
   static constexpr uint32_t kNone = UINT32_MAX;
 
   struct Cell {
-    IdType id;                   // of the value, or of the next value that gets this slot
+    IdType id;                   // id of the value, or of the next value that gets this slot
     std::optional<Value> value;  // absent if the slot is free
     uint32_t next_free = kNone;  // the slot that was freed before this one
   };

@@ -49,8 +49,8 @@ class IclDataset final : public Dataset {
     AddNamed<CameraYAxis>(
         app, "--groundtruth-y", {{"up", CameraYAxis::kUp}, {"down", CameraYAxis::kDown}},
         icl_.groundtruth_y,
-        "where the y axis of the ground truth's cameras points; up (fy < 0) means that it is "
-        "mirrored (default: what the depth images agree with; docs/datasets.md)");
+        "direction of the y axis of the ground truth's cameras; with up (fy < 0) the ground truth "
+        "is mirrored (default: the direction that agrees with the depth images)");
     auto* const units =
         app.add_option("--povray-units", icl_.povray_units,
                        "lengths in the .depth and .txt files per metre (100: centimetres)");

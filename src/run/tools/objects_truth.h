@@ -22,7 +22,7 @@ struct TruthEvaluation {
       changes;  // only of a run that went on with a map from before the rearrangement
   AlignmentKind alignment = AlignmentKind::kSe3;  // kSe3 or kSim3
   double scale = 1.0;                             // metres per unit of the map
-  double ate_rmse_m = 0.0;                        // of the run, aligned by positions
+  double ate_rmse_m = 0.0;                        // ATE of the run, aligned by positions
   size_t min_masks = 0;
 };
 
