@@ -338,7 +338,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   WriteOutputs(output, MapPly(landmarks.positions, KeyframeTrajectory(*map)),
                RunParts(arguments, earlier_sessions, trajectory), KeyframeParts(arguments, *map),
                summary, objects, sequence);
-  SaveMap(arguments, options, *map);
+  const std::string unsaved = SaveMap(arguments, options, *map);
   if (!arguments.quiet) {
     PrintReport(arguments, summary, objects);
   }
@@ -346,7 +346,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
       result.was_interrupted
           ? DescribeInterruption(result, sequence)
           : DescribeLoss(arguments, options.run, sequence.frames.size(), summary, system.frames());
-  return FailIfAny({failure});
+  return FailIfAny({failure, unsaved});
 }
 
 }  // namespace hullslam
