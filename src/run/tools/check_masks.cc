@@ -189,7 +189,7 @@ void PrintClasses(const MaskStatistics& counts) {
 
 void PrintCounts(const CheckMasksArguments& arguments, const MaskSource& source,
                  const MaskStatistics& counts) {
-  constexpr int kWidth = 24;  // more than the longest name has
+  static constexpr int kWidth = 24;  // more than the longest name has
   const auto print = [](const std::string& name, size_t count) {
     Print("{:<{}}{:>10}\n", name, kWidth, count);
   };
