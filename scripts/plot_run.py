@@ -85,7 +85,10 @@ class Run:
             self.keyframes = read_trajectory(run_dir / "keyframes.txt")[1][:, :3]
         self.points, self.colours = np.empty((0, 3)), None
         if (run_dir / "map.ply").exists():
-            self.points, self.colours = read_map(run_dir / "map.ply", MAX_POINTS)
+            self.points, self.colours, dropped = read_map(run_dir / "map.ply", MAX_POINTS)
+            if dropped:
+                print(f"note: {dropped} points of {run_dir / 'map.ply'} are not drawn: their "
+                      "positions are no numbers, or too far away", file=sys.stderr)
         self.summary = Summary(run_dir / "summary.json")
         self.gives_poses = self.summary.text("provenance", "pipeline") != "objects"
         self.camera, self.objects = run_objects.read_objects(run_dir / "objects.json")

@@ -77,16 +77,21 @@ SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& option
   return start;
 }
 
-void SaveMap(const RunArguments& arguments, const SystemOptions& options, const Map& map) {
+std::string SaveMap(const RunArguments& arguments, const SystemOptions& options, const Map& map) {
   if (arguments.save_map.empty()) {
-    return;
+    return {};
   }
   if (map.keyframes().empty()) {
     PrintError("warning: {}: the map has no keyframe and was not written\n",
                arguments.save_map.string());
-    return;
+    return {};
   }
-  WriteMap(arguments.save_map, map, MapSettingsOf(options));
+  try {
+    WriteMap(arguments.save_map, map, MapSettingsOf(options));
+  } catch (const InputError& error) {
+    return fmt::format("{}; the map is lost, the other results were written", error.what());
+  }
+  return {};
 }
 
 std::vector<TrajectoryPart> RunParts(const RunArguments& arguments, size_t earlier_sessions,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "hullslam/results/trajectory_file.h"
@@ -22,8 +23,9 @@ void CheckSavedMap(const RunArguments& arguments);
 SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& options);
 
 // Writes the map to the file of --save-map if it is given. A map without keyframes is not written;
-// a warning says so.
-void SaveMap(const RunArguments& arguments, const SystemOptions& options, const Map& map);
+// a warning says so. Returns why the map could not be written, for example because the disk is
+// full; empty if there was no error.
+std::string SaveMap(const RunArguments& arguments, const SystemOptions& options, const Map& map);
 
 // RunParts() gives the trajectory of the run, with the title of its session: the map had
 // `earlier_sessions` sessions before. KeyframeParts() gives the poses of the keyframes, with one

@@ -2,6 +2,7 @@
 #include "run/program.h"
 
 #include <fcntl.h>
+#include <glog/logging.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -22,6 +23,8 @@ void PrepareStreams() {
           ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
     }
   }
+  // Ceres logs with glog what the results of its solvers say too.
+  FLAGS_minloglevel = google::GLOG_FATAL;
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }

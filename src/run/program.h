@@ -10,10 +10,10 @@ namespace hullslam {
 
 enum ExitCode { kDone = 0, kFailed = 1, kBadInput = 2 };
 
-// Prepares stdin, stdout and stderr. A stream that the caller has closed is opened to /dev/null,
-// because otherwise the next file that the program opens would get its descriptor and receive the
-// messages. Writing to a closed pipe, or beyond the limit of file sizes, becomes an error instead
-// of a signal that ends the program.
+// A stream that was closed by the caller is opened to /dev/null, because otherwise the next file
+// that the program opens would take its place and receive the messages. A closed pipe or a file
+// that may not grow becomes an error of the write instead of the end of the program. The log of
+// Ceres does not go to stderr.
 void PrepareStreams();
 
 // Prints one line, "error: MESSAGE", on stderr.

@@ -82,8 +82,9 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   AddVersionAndExitCodes(
       app, "done",
       "the run failed, was interrupted (the results up to then are written, and summary.json says "
-      "so), lost too many frames (run.max_lost_share, run.max_lost_at_end), or could not print its "
-      "report");
+      "so), lost too many frames (run.max_lost_share, run.max_lost_at_end), or could not save its "
+      "map "
+      "or print its report");
 }
 
 void FinishArguments(const std::vector<std::string>& positional, RunArguments& arguments) {

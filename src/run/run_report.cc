@@ -61,7 +61,11 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
     Print("RPE RMSE {:.4f} m, {:.3f} degrees over 1 s\n", *trajectory.rpe_rmse_m,
           *trajectory.rpe_rmse_deg);
   }
-  Print("{} keyframes, {} landmarks{}\n", summary.map.keyframes, summary.map.landmarks,
+  Print("{} keyframes, {} landmarks{}{}\n", summary.map.keyframes, summary.map.landmarks,
+        summary.map.landmarks_at_infinity > 0
+            ? fmt::format(" ({} of them as good as infinitely far away)",
+                          summary.map.landmarks_at_infinity)
+            : "",
         summary.map.reprojection_px
             ? fmt::format(", reprojection error {:.3f} px (median)", *summary.map.reprojection_px)
             : "");

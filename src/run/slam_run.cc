@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "eval/located_landmarks.h"
 #include "eval/reprojection_error.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/eval/rpe.h"
@@ -32,6 +34,7 @@
 #include "run/run_report.h"
 #include "run/vocabularies.h"
 #include "system/compose_trajectory.h"
+#include "system/make_sensor.h"
 
 namespace hullslam {
 namespace {
@@ -235,10 +238,7 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
   return summary;
 }
 
-std::string MapPly(const Map& map, const Trajectory& keyframes) {
-  std::vector<Eigen::Vector3d> landmarks;
-  map.landmarks().ForEach(
-      [&](LandmarkId, const Landmark& landmark) { landmarks.push_back(landmark.position); });
+std::string MapPly(const std::vector<Eigen::Vector3d>& landmarks, const Trajectory& keyframes) {
   std::vector<Eigen::Vector3d> centers;
   for (const StampedPose& pose : keyframes) {
     centers.push_back(pose.world_from_cam.translation);
@@ -246,13 +246,14 @@ std::string MapPly(const Map& map, const Trajectory& keyframes) {
   return FormatMapPly(landmarks, centers);
 }
 
-// Writes the results. The files of objects are only written if the run has masks.
-void WriteOutputs(OutputFolder& output, const Map& map, const std::vector<TrajectoryPart>& poses,
+// The files of objects are only written if the run has masks.
+void WriteOutputs(OutputFolder& output, std::string map_ply,
+                  const std::vector<TrajectoryPart>& poses,
                   const std::vector<TrajectoryPart>& keyframes, RunSummary summary,
                   const ObjectReport& objects, const ImageSequence& sequence) {
   output.Write({"trajectory.txt", FormatTrajectory(poses)});
   output.Write({"keyframes.txt", FormatTrajectory(keyframes)});
-  output.Write({"map.ply", MapPly(map, KeyframeTrajectory(map))});
+  output.Write({"map.ply", std::move(map_ply)});
   if (sequence.converted_groundtruth) {
     output.Write({"groundtruth.txt", FormatTrajectory(*sequence.converted_groundtruth)});
   }
@@ -275,6 +276,18 @@ std::string DescribeInterruption(const RunResult& result, const ImageSequence& s
   return fmt::format(
       "the run was interrupted after {} of {} frames; the results so far were written",
       result.given, sequence.frames.size());
+}
+
+// Prints the failures that are not empty. Returns the exit code.
+int FailIfAny(std::initializer_list<std::string> failures) {
+  int code = kDone;
+  for (const std::string& failure : failures) {
+    if (!failure.empty()) {
+      PrintFailure(failure);
+      code = kFailed;
+    }
+  }
+  return code;
 }
 
 }  // namespace
@@ -321,9 +334,12 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   if (masks.format()) {
     summary.objects = SummarizeObjects(objects, system.object_counts());
   }
-  WriteOutputs(output, *map, RunParts(arguments, earlier_sessions, trajectory),
-               KeyframeParts(arguments, *map), summary, objects, sequence);
-  SaveMap(arguments, options, *map);
+  const LocatedLandmarks landmarks = LocateLandmarks(*map, MakeSensor(options));
+  summary.map.landmarks_at_infinity = landmarks.at_infinity;
+  WriteOutputs(output, MapPly(landmarks.positions, KeyframeTrajectory(*map)),
+               RunParts(arguments, earlier_sessions, trajectory), KeyframeParts(arguments, *map),
+               summary, objects, sequence);
+  const std::string unsaved = SaveMap(arguments, options, *map);
   if (!arguments.quiet) {
     PrintReport(arguments, summary, objects);
   }
@@ -331,11 +347,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
       result.was_interrupted
           ? DescribeInterruption(result, sequence)
           : DescribeLoss(arguments, options.run, sequence.frames.size(), summary, system.frames());
-  if (!failure.empty()) {
-    PrintFailure(failure);
-    return kFailed;
-  }
-  return kDone;
+  return FailIfAny({failure, unsaved});
 }
 
 }  // namespace hullslam

@@ -67,6 +67,29 @@ TEST_F(CheckMasks, CountsFramesInstancesAndClasses) {
   EXPECT_EQ(Count(result, "person"), "1");
 }
 
+TEST_F(CheckMasks, ItsColumnsAreAligned) {
+  std::string classes;
+  for (int i = 0; i <= 62; ++i) {
+    classes += i == 41 ? "a cup with a handle and a saucer\n" : "other\n";
+  }
+  folder_.Write("masks/classes.txt", classes);
+  const std::string output = Run({"--quiet"}).output;
+  const auto column_of = [&](const std::string& begin, int word) {
+    size_t at = output.find('\n' + begin) + 1 + begin.size();
+    const size_t line = output.rfind('\n', at);
+    for (int i = 0; i < word; ++i) {
+      at = output.find_first_of(" \n", output.find_first_not_of(' ', at));
+    }
+    return at - line;
+  };
+  EXPECT_EQ(column_of("rejected: few_keypoints", 1), column_of("frames", 1));
+  EXPECT_EQ(column_of("rejected: no_silhouette", 1), column_of("frames", 1));
+  for (const int number : {1, 2}) {
+    EXPECT_EQ(column_of("a cup with a handle and a saucer", number), column_of("class", number));
+    EXPECT_EQ(column_of("other", number), column_of("class", number));
+  }
+}
+
 TEST_F(CheckMasks, ShowsProgress) {
   EXPECT_NE(Run().errors.find("frame 2/4  "), std::string::npos);
 }

@@ -10,6 +10,7 @@
 
 #include "files/read_file.h"
 #include "hullslam/map_files/map_file.h"
+#include "support/file_size_limit.h"
 #include "support/plane_sequence.h"
 #include "support/run_program.h"
 #include "support/running_program.h"
@@ -117,6 +118,20 @@ TEST_F(RgbdMap, ARunOnALoadedMapFailsIfNoFrameIsFound) {
     EXPECT_TRUE(ReadFile(output_ / "keyframes.txt").starts_with(head + "# session 1: " + name));
     EXPECT_EQ(ReadFile(map_), bytes) << "nothing was added to the map";
   }
+}
+
+TEST_F(RgbdMap, AMapThatCannotBeSavedHidesNoOtherResults) {
+  Save();
+  const FileSizeLimit limit(fs::file_size(map_) - 1);  // all other files are smaller
+  fs::remove(map_);
+  const ProgramResult result = Run({"--save-map", map_});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.output.find("12 frames: 12 tracked"), std::string::npos) << result.output;
+  EXPECT_NE(result.errors.find(map_.string() + ": cannot be written: File too large"),
+            std::string::npos)
+      << result.errors;
+  EXPECT_FALSE(fs::exists(map_));
+  EXPECT_EQ(Summary()["trajectory"]["tracked"], 12);
 }
 
 TEST_F(RgbdMap, AnInterruptedRunSavesItsMap) {

@@ -343,7 +343,7 @@ TEST_F(MapFileTest, ReadingCanBeCancelled) {
   constexpr size_t kPrefix = 14;
   std::istringstream records(bytes.substr(kPrefix, bytes.size() - kPrefix - 4));
   EXPECT_THROW(ParseMap(records, records.str().size(), "map", nullptr, nullptr, &cancellation),
-               Cancelled);
+               ReadingCancelled);
 }
 
 // ---- writing

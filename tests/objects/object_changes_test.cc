@@ -85,7 +85,41 @@ TEST_F(ObjectChanges, AnObjectThatIsStillThereIsSeenAgain) {
   }
 }
 
-TEST_F(ObjectChanges, AMissingObjectIsGone) {
+// An object may be removed from the map although some keyframes show it.
+TEST_F(ObjectChanges, WhatIsNoLongerInTheMapIsNotSeenAgain) {
+  Visit(MakeTable());
+  EndFirstSession();
+  Visit(MakeTable());
+  const std::vector<ChangedObject> before = Changes();
+  const auto cup = std::find_if(before.begin(), before.end(),
+                                [](const auto& changed) { return changed.label == "cup"; });
+  ASSERT_NE(cup, before.end());
+  map_.EraseObject(cup->now->object);
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kGone);
+  for (const ChangedObject& changed : Changes()) {
+    EXPECT_EQ(changed.now.has_value(), changed.change == ObjectChange::kSeenAgain);
+  }
+}
+
+TEST_F(ObjectChanges, ANewObjectInPlaceOfARemovedOneIsTheSame) {
+  Visit(MakeTable());
+  EndFirstSession();
+  ObjectId cup;
+  for (const auto& [id, object] : former_.objects()) {
+    cup = object.Label() == "cup" ? id : cup;
+  }
+  map_.EraseObject(cup);
+  Visit(MakeTable());
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kSeenAgain);
+  const std::vector<ChangedObject> changes = Changes();
+  EXPECT_EQ(changes.size(), 3U);
+  for (const ChangedObject& changed : changes) {
+    ASSERT_TRUE(changed.now && changed.former);
+    EXPECT_EQ(changed.now->object == changed.former->object, changed.label != "cup");
+  }
+}
+
+TEST_F(ObjectChanges, WhatIsMissingIsGone) {
   Visit(MakeTable());
   EndFirstSession();
   std::vector<MadeObject> table = MakeTable();

@@ -38,11 +38,11 @@ TEST(TrajectoryFile, TheLastOfEqualStampsIsUsed) {
 
 TEST(TrajectoryFile, WritesFixedDecimals) {
   const Trajectory trajectory = {
-      {1305031102.1753, Rigid3(Eigen::Quaterniond(-1, 0, 0, 0), {1.0 / 3.0, -2.0, 1e-12})}};
+      {1305031102.1753, Rigid3(Eigen::Quaterniond(-1, 0, 0, 0), {1.0 / 3.0, -2.0, -4.9e-10})}};
   EXPECT_EQ(FormatTrajectory(trajectory),
             "# timestamp tx ty tz qx qy qz qw\n"
             "1305031102.175300 0.333333333 -2.000000000 0.000000000 "
-            "-0.000000000 -0.000000000 -0.000000000 1.000000000\n");
+            "0.000000000 0.000000000 0.000000000 1.000000000\n");
 }
 
 TEST(TrajectoryFile, ReadingInvertsWriting) {

@@ -338,9 +338,20 @@ class PlotRunTest(unittest.TestCase):
 
     def test_reads_points_and_colours(self):
         self.write("map.ply", ply_bytes([[1, 2, 3], [4, 5, 6]]))
-        points, colours = run_files.read_map(self.dir / "map.ply", 100)
+        points, colours, dropped = run_files.read_map(self.dir / "map.ply", 100)
         np.testing.assert_array_equal(points, [[1, 2, 3], [4, 5, 6]])
         np.testing.assert_allclose(colours[1], np.array([10, 20, 30]) / 255)
+        self.assertEqual(dropped, 0)
+
+    def test_points_that_cannot_be_drawn_are_left_out(self):
+        points = [[1, 2, 3], [np.nan, 0, 0], [0, np.inf, 0], [0, 0, -5.9e6], [4, 5, 6]]
+        self.write("map.ply", ply_bytes(points))
+        drawn, colours, dropped = run_files.read_map(self.dir / "map.ply", 2)
+        np.testing.assert_array_equal(drawn, [[1, 2, 3], [4, 5, 6]])
+        self.assertEqual((len(colours), dropped), (2, 3))
+        result = self.plot()
+        self.assert_drawn(result, self.dir / "run.png")
+        self.assertIn("note: 3 points of", result.stderr)
 
     def write_objects(self, stamps=(1000.0, 1000.5), images=True):
         self.write("objects.json", json.dumps(objects_file(stamps)))
@@ -482,7 +493,6 @@ class PlotRunTest(unittest.TestCase):
                   good.replace(b"vertex 2", b"vertex " + b"9" * 9000),
                   good.replace(b"float y", b"float x"), good.replace(b"float y", b"float w"),
                   good.replace(b"element vertex", b"element face 1\nelement vertex"),
-                  ply_bytes([[np.nan, 0, 0]]), ply_bytes([[np.inf, 0, 0]]), ply_bytes([[1e30, 0, 0]]),
                   good.replace(b"uchar red", b"float red")]
         for i, data in enumerate(broken):
             with self.subTest(i):

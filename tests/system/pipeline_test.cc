@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <ostream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -22,6 +23,9 @@ namespace {
 struct Kind {
   std::string name;
   std::unique_ptr<Pipeline> (*make)(const Sensor&, const SystemOptions&);
+
+  // For the name of the test, which would have addresses in it.
+  friend void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
 };
 
 std::unique_ptr<Pipeline> MakePatient(const Sensor& sensor, const SystemOptions& options) {

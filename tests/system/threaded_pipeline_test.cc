@@ -209,6 +209,11 @@ TEST(ThreadedPipeline, OtherThreadsMayReadTheMapDuringTracking) {
 }  // namespace
 }  // namespace hullslam
 
-void* operator new(size_t size) { return hullslam::MemoryShortage::Allocate(size); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, size_t /*size*/) noexcept { std::free(memory); }
+// If GCC inlines only some of these, it warns that they do not belong together.
+[[gnu::noinline]] void* operator new(size_t size) {
+  return hullslam::MemoryShortage::Allocate(size);
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, size_t /*size*/) noexcept {
+  std::free(memory);
+}

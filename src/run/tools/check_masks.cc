@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -175,17 +176,22 @@ void CheckFrame(const CheckMasksArguments& arguments, const SystemOptions& optio
 }
 
 void PrintClasses(const MaskStatistics& counts) {
-  Print("\n{:<20}{:>10}{:>10}{:>12}\n", "class", "instances", "kept", "mean score");
+  size_t width = std::string("class").size();
   for (const auto& [label, of_class] : counts.classes) {
-    Print("{:<20}{:>10}{:>10}{:>12.2f}\n", label, of_class.instances, of_class.kept,
+    width = std::max(width, label.size());
+  }
+  Print("\n{:<{}}{:>12}{:>10}{:>12}\n", "class", width, "instances", "kept", "mean score");
+  for (const auto& [label, of_class] : counts.classes) {
+    Print("{:<{}}{:>12}{:>10}{:>12.2f}\n", label, width, of_class.instances, of_class.kept,
           of_class.score_sum / static_cast<double>(of_class.instances));
   }
 }
 
 void PrintCounts(const CheckMasksArguments& arguments, const MaskSource& source,
                  const MaskStatistics& counts) {
+  static constexpr int kWidth = 24;  // more than the longest name has
   const auto print = [](const std::string& name, size_t count) {
-    Print("{:<20}{:>10}\n", name, count);
+    Print("{:<{}}{:>10}\n", name, kWidth, count);
   };
   Print("{} ({})\n", arguments.masks.string(), source.format());
   print("frames", counts.frames);

@@ -32,6 +32,7 @@
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/vocabularies.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
@@ -280,14 +281,7 @@ void PrintQuery(size_t frame, const QueryResult& result) {
   }
 }
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-// Prints a line of the table about the queries `some`. Its percentages are shares of `all`, the
-// number of all queries.
+// A line about some of the `all` queries. The shares are those of all queries.
 void PrintLine(const std::string& name, const std::vector<QueryResult>& some, size_t all) {
   size_t near = 0;
   size_t far = 0;
