@@ -14,6 +14,7 @@
 #include "objects/known_sizes.h"
 #include "system/compose_trajectory.h"
 #include "system/count_objects.h"
+#include "system/finish_run.h"
 #include "system/idle_core_runner.h"
 #include "system/make_sensor.h"
 #include "system/pipeline.h"
@@ -156,16 +157,8 @@ std::unique_ptr<TaskRunner> System::MakeRunner() {
 }
 
 void System::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
-  pipeline_->Finish(cancellation, on_progress);
-  if (const auto final_map = map()) {
-    LoseFramesElsewhere(*final_map, frames_);
-    const ObjectIndex object_index(*final_map, sensor_.camera);
-    RefinePoses(*final_map,
-                {sensor_, options_.tracking, options_.objects, object_index, options_.seed},
-                remembered_, frames_);
-    remembered_.clear();
-  }
-  ReplaceEarlyFrames(pipeline_->TakeEarlyFrames(), frames_);
+  FinishRun(*pipeline_, sensor_, options_, remembered_, frames_, cancellation, on_progress);
+  remembered_.clear();
 }
 
 void System::Reset() {

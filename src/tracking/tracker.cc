@@ -97,11 +97,6 @@ Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const Obj
       policy_(MakePolicy(sensor, options)),
       initialiser_(sensor, seed) {}
 
-void Tracker::Begin(Relocalise relocalise, bool localization_only) {
-  relocalise_ = std::move(relocalise);
-  is_localizing_only_ = localization_only;
-}
-
 Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
                                  const MapperStatus& mapper) {
   const ScopedTimer timer(times_, "pose");
@@ -163,13 +158,14 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   }
   const std::shared_ptr<const Frame> as_read = frame;
   frame = PredictGlobalShutter(as_read, map, sensor_, last_);
-  std::optional<LocalTracking> found = FindPose(*frame, map);
+  std::optional<ConfirmedPose> found =
+      FindConfirmedPose(*frame, map, Context(), last_, kPoseSources);
   if (!found) {
     return Lose(as_read, map);
   }
   lost_since_.reset();
   initialiser_.Forget();
-  LocalTracking& tracking = *found;
+  LocalTracking& tracking = found->tracking;
   frame = CorrectShutter(as_read, map, Context(), last_, tracking);
   if (!is_localizing_only_) {
     CountSightings(map, tracking);
@@ -198,22 +194,6 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
            .cam_from_world = estimate.cam_from_world,
            .motion = motion};
   return result;
-}
-
-// The first pose that the local map confirms. Null if there is none.
-std::optional<LocalTracking> Tracker::FindPose(const Frame& frame, const Map& map) const {
-  if (auto found = FindConfirmedPose(frame, map, Context(), last_, kPoseSources)) {
-    return std::move(found->tracking);
-  }
-  std::optional<PoseEstimate> start =
-      relocalise_ ? relocalise_(frame, map, Context()) : std::nullopt;
-  if (!start) {
-    return std::nullopt;
-  }
-  LocalTracking tracking = TrackLocalMap(frame, map, Context(), last_.reference, std::move(*start));
-  return tracking.estimate.EffectiveInliers() >= options_.min_inliers
-             ? std::optional(std::move(tracking))
-             : std::nullopt;
 }
 
 bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,

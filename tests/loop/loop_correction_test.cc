@@ -116,46 +116,22 @@ TEST(SpreadLoopError, EarlierLoopsHoldTheMap) {
   EXPECT_LT(moved(true), 0.05);
 }
 
-// A ring without drift whose unit of length changes at keyframe `first`. No landmark tells that:
-// those that are seen before and after it are seen by a single keyframe on each side.
-RingMap MakeRingOfTwoScales(uint32_t first, double scale) {
+// The keyframes between the ends of the loop have scales between those of its ends.
+TEST(SpreadLoopError, AnErrorOfScaleIsSpreadOverTheWay) {
+  constexpr double kScale = 0.8;
   RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()});
-  const KeyframeId newer(first);
-  const KeyframeId older(first - 1);
-  std::vector<std::pair<LandmarkId, KeyframeId>> removed;
-  made.map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
-    const bool is_on_both_sides = landmark.observations.front().keyframe < newer &&
-                                  landmark.observations.back().keyframe >= newer;
-    for (const Observation& seen : landmark.observations) {
-      if (is_on_both_sides && seen.keyframe != older && seen.keyframe != newer) {
-        removed.emplace_back(id, seen.keyframe);
-      }
-    }
-  });
-  for (const auto& [landmark, keyframe] : removed) {
-    made.map.RemoveObservation(landmark, keyframe);
-  }
-  for (uint32_t i = 0; i < made.views.size(); ++i) {
-    UpdateCovisibility(made.map, KeyframeId(i));
-  }
-  const Eigen::Vector3d center = Inverse(made.true_cam_from_world[first]).translation;
-  MapCorrection change =
-      MakeCorrection(made.map, Sim3(scale, Eigen::Quaterniond::Identity(), (1.0 - scale) * center));
-  change.poses.erase(change.poses.begin(), change.poses.begin() + first);
-  EXPECT_TRUE(ApplyCorrection(made.map, change, SharedRing().sensor().levels).is_applied);
-  return made;
-}
-
-TEST(SpreadLoopError, AScaleThatBrokeInOnePlaceIsMendedThere) {
-  constexpr double kScale = 0.5;
-  RingMap made = MakeRingOfTwoScales(14, kScale);
   Loop loop = TrueLoop(made, 29, 5);
   loop.query_from_candidate =
       Sim3(kScale, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero()) *
       loop.query_from_candidate;
-  const Map corrected = Corrected(made, SpreadLoopError(made.map, loop, false));
-  for (uint32_t i = 0; i < 30; ++i) {
-    EXPECT_LT(PoseError(made, corrected, KeyframeId(i)), 0.03) << i;
+  const MapCorrection correction = SpreadLoopError(made.map, loop, false);
+  ASSERT_EQ(correction.poses.size(), 30u);
+  EXPECT_NEAR(correction.poses[5].corrected_cam_from_world.scale, 1.0, 0.02);
+  EXPECT_NEAR(correction.poses[29].corrected_cam_from_world.scale, kScale, 0.02);
+  for (uint32_t i = 6; i < 29; ++i) {
+    EXPECT_LT(correction.poses[i].corrected_cam_from_world.scale,
+              correction.poses[i - 1].corrected_cam_from_world.scale)
+        << i;
   }
 }
 

@@ -15,6 +15,7 @@
 #include "map/invariants.h"
 #include "objects/made_objects.h"
 #include "support/synthetic_world.h"
+#include "system/finish_run.h"
 
 namespace hullslam {
 namespace {
@@ -341,7 +342,7 @@ TEST_F(MapperTest, FinishAdjustsTheWholeMapIfThatIsWanted) {
       ProcessFrame(index);
     }
     const size_t published = published_.size();
-    mapper_->Finish(nullptr);
+    FinishMap(*mapper_);
     EXPECT_EQ(published_.size(), published + (wanted ? 1 : 0));
     EXPECT_EQ(mapper_->times().samples().contains("global_bundle_adjustment"), wanted);
     Learn();
@@ -355,14 +356,14 @@ TEST_F(MapperTest, FinishDoesNothingWithFewerThanTwoKeyframesOrCancelled) {
   MappingOptions options;
   options.final_bundle_adjustment = true;
   Restart(options);
-  mapper_->Finish(nullptr);
+  FinishMap(*mapper_);
   EXPECT_TRUE(published_.empty());
   ProcessFrame(0);
-  mapper_->Finish(nullptr);
+  FinishMap(*mapper_);
   ProcessFrame(5);
   Cancellation cancellation;
   cancellation.Request();
-  mapper_->Finish(&cancellation);
+  FinishMap(*mapper_, &cancellation);
   EXPECT_EQ(published_.size(), 4u);
   EXPECT_FALSE(mapper_->times().samples().contains("global_bundle_adjustment"));
 }
@@ -377,14 +378,14 @@ TEST_F(MapperTest, ASessionBeginsWithItsFirstKeyframe) {
     ASSERT_EQ(published_.size(), 1u) << "the map is there before the first message";
   };
   begin();
-  mapper_->Finish(nullptr);
+  FinishMap(*mapper_);
   EXPECT_EQ(published_.size(), 1u) << "a map without new keyframes is not adjusted";
   EXPECT_TRUE(map().sessions().empty());
   begin();
   Process(Request(20, KeyframeId(2)));
   EXPECT_EQ(map().sessions(), (std::vector<Session>{{"second", FrameId(15)}}));
   EXPECT_EQ(map().keyframes().NextId(), KeyframeId(4));
-  mapper_->Finish(nullptr);
+  FinishMap(*mapper_);
   EXPECT_TRUE(mapper_->times().samples().contains("global_bundle_adjustment"));
 }
 
@@ -499,7 +500,7 @@ TEST_F(MapperKnownSizesTest, ASizeMakesTheUnitTheMetreDuringTheRun) {
   Run({{"cup", 0.8}});
   EXPECT_NEAR(Unit(), 1.0, 0.02);
   EXPECT_EQ(FindViolations(*map_), std::vector<std::string>());
-  mapper_->Finish(nullptr);
+  FinishMap(*mapper_);
   EXPECT_NEAR(Unit(), 1.0, 0.01);
 }
 

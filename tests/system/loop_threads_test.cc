@@ -79,15 +79,6 @@ class LoopThreadsTest : public testing::Test {
   Receiver receiver_;
 };
 
-TEST_F(LoopThreadsTest, NeedAVocabularyAndTheOption) {
-  EXPECT_TRUE(Make()->is_enabled());
-  options_.loop.enabled = false;
-  EXPECT_FALSE(Make()->is_enabled());
-  options_.loop.enabled = true;
-  options_.vocabulary = nullptr;
-  EXPECT_FALSE(Make()->is_enabled());
-}
-
 TEST_F(LoopThreadsTest, SettleWaitsForTheLoopThatIsSought) {
   const auto threads = Make();
   threads->Seek(Query(made_.last()));
@@ -114,14 +105,6 @@ TEST_F(LoopThreadsTest, SettleWaitsForTheAdjustment) {
   EXPECT_FALSE(receiver_.sent()[0].loop);
   EXPECT_FALSE(receiver_.sent()[0].positions.empty());
   EXPECT_EQ(threads->times().samples().at("loop_adjustment").size(), 1u);
-}
-
-TEST_F(LoopThreadsTest, WithoutTheOptionTheMapIsNotAdjusted) {
-  options_.loop.global_adjustment = false;
-  const auto threads = Make();
-  threads->Adjust(Published());
-  EXPECT_FALSE(threads->Settle(false));
-  EXPECT_TRUE(receiver_.sent().empty());
 }
 
 // The next loop corrects the map, so that an adjustment of the former map would be refused.

@@ -722,46 +722,7 @@ TEST_F(ObjectTrackerTest, FindsLandmarksAgainAfterAFrameWithoutThem) {
 
 // ---- a map of an earlier session
 
-// Finds a frame by keyframe 0 when it is asked for the third time and later; counts how often it
-// was asked.
-Relocalise ByKeyframe0(int& asked) {
-  return [&asked](const Frame& frame, const Map& map,
-                  const TrackingContext& context) -> std::optional<PoseEstimate> {
-    if (++asked < 3) {
-      return std::nullopt;
-    }
-    LastFrame last;
-    last.reference = KeyframeId(0);
-    last.frame = map.keyframes().At(last.reference).frame;
-    last.cam_from_world = map.keyframes().At(last.reference).cam_from_world;
-    return PoseByReferenceKeyframe(frame, map, context, last);
-  };
-}
-
-TEST_F(TrackerTest, WithAMapButNoPoseItIsLostUntilAFrameIsFound) {
-  map_ = Publish(made_.map);
-  int asked = 0;
-  Tracker tracker(world_.sensor(), {});
-  tracker.Begin(ByKeyframe0(asked), false);
-  uint32_t first_request = 0;
-  for (uint32_t i = 10; i < 25; ++i) {
-    const Tracker::Result result = tracker.Process(DemandingFrame(i), map_, kIdle);
-    const bool is_found = i >= 12;
-    EXPECT_EQ(result.report.tracked.state,
-              is_found ? TrackingState::kTracked : TrackingState::kLost);
-    EXPECT_EQ(result.message.has_value() && !is_found, false);
-    if (is_found) {
-      ExpectNear(result.report.tracked.cam_from_world, SyntheticWorld::CamFromWorld(i), 1e-3);
-    }
-    if (first_request == 0 && RequestOf(result) != nullptr) {
-      first_request = i;
-    }
-  }
-  EXPECT_EQ(asked, 3) << "the last frame leads to the next";
-  EXPECT_EQ(first_request, 18u) << "0.2 s after the first pose";
-}
-
-TEST_F(TrackerTest, WithoutASourceItStaysLost) {
+TEST_F(TrackerTest, WithAMapAndWithoutWordsItStaysLost) {
   map_ = Publish(made_.map);
   for (uint32_t i = 0; i < 3; ++i) {
     const Tracker::Result result = Process(DemandingFrame(i));
@@ -770,12 +731,62 @@ TEST_F(TrackerTest, WithoutASourceItStaysLost) {
   }
 }
 
-TEST_F(TrackerTest, LocalizationRequestsNoKeyframes) {
-  map_ = Publish(made_.map);
-  int asked = 2;
-  tracker_.Begin(ByKeyframe0(asked), true);
+// The map of an earlier session shows two thirds of the ring world. The tracker has seen nothing.
+class TrackerWithMap : public testing::Test {
+ protected:
+  TrackerWithMap() : map_(Publish(made_.map)) {}
+
+  // A frame with unknown close points, and with few keypoints that show landmarks, so that it
+  // needs a keyframe. It is the frame after `turns` turns.
+  std::shared_ptr<Frame> DemandingFrame(uint32_t id, double turns) const {
+    constexpr uint32_t kKnown = 150;
+    const SyntheticView view = world_.Observe(FrameId(id), RingWorld::CamFromWorld(turns));
+    std::vector<uint32_t> keypoints = AllKeypoints(*view.frame);
+    keypoints.resize(std::min<size_t>(keypoints.size(), kKnown));
+    auto frame = Select(*view.frame, keypoints);
+    AddUnknownPoints(world_.sensor(), 80, 0, *frame);
+    frame->words = world_.vocabulary()->WordsOf(frame->features.descriptors);
+    return frame;
+  }
+  Tracker::Result Process(std::shared_ptr<const Frame> frame) {
+    return tracker_.Process(std::move(frame), map_, kIdle);
+  }
+
+  const RingWorld& world_ = SharedRing();
+  RingMap made_ = MakeRingMap(world_, {.keyframes = 16, .drift = Rigid3()});
+  const std::shared_ptr<const Map> map_;
+  Tracker tracker_{world_.sensor(), TrackingOptions()};
+};
+
+TEST_F(TrackerWithMap, IsLostUntilItSeesAPlaceOfTheMap) {
+  constexpr double kUnknownPlace = 0.82;  // turns
+  uint32_t first_request = 0;
+  for (uint32_t i = 10; i < 25; ++i) {
+    const bool is_known = i >= 12;
+    const double turns = is_known ? 0.25 + 0.002 * i : kUnknownPlace;
+    const std::shared_ptr<Frame> frame = DemandingFrame(i, turns);
+    if (i > 12) {
+      frame->words.clear();  // the last frame leads to this one
+    }
+    const Tracker::Result result = Process(frame);
+    EXPECT_EQ(result.report.tracked.state,
+              is_known ? TrackingState::kTracked : TrackingState::kLost)
+        << i;
+    EXPECT_FALSE(result.message && !is_known);
+    if (is_known) {
+      ExpectNear(result.report.tracked.cam_from_world, RingWorld::CamFromWorld(turns), 0.005);
+    }
+    if (first_request == 0 && RequestOf(result) != nullptr) {
+      first_request = i;
+    }
+  }
+  EXPECT_EQ(first_request, 18u) << "0.2 s after the first pose";
+}
+
+TEST_F(TrackerWithMap, LocalizationRequestsNoKeyframes) {
+  tracker_.LocaliseOnly();
   for (uint32_t i = 0; i < 60; ++i) {
-    const Tracker::Result result = Process(DemandingFrame(i));
+    const Tracker::Result result = Process(DemandingFrame(i, 0.25 + 0.002 * i));
     EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked) << i;
     EXPECT_FALSE(result.message);
   }
@@ -1039,7 +1050,7 @@ TEST_F(LostMonocularTracker, WithoutWordsAGrownMapIsNotGivenUp) {
 }
 
 TEST_F(LostMonocularTracker, WithLocalizationOnlyNoIslandIsBegun) {
-  tracker_.Begin({}, true);
+  tracker_.LocaliseOnly();
   EXPECT_EQ(BeginAndLose(3, 40), 0u);
 }
 

@@ -32,6 +32,7 @@
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/vocabularies.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
@@ -278,12 +279,6 @@ void PrintQuery(size_t frame, const QueryResult& result) {
   } else {
     Print("frame {}: not found, {:.1f} ms\n", frame, result.milliseconds);
   }
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // A line about some of the `all` queries. The shares are those of all queries.

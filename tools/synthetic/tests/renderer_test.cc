@@ -43,12 +43,6 @@ Scene EllipsoidScene() {
   return builder.Finish();
 }
 
-Matrix3d Calibration(const PinholeCamera& camera) {
-  Matrix3d k;
-  k << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0;
-  return k;
-}
-
 // C* = P Q* P^T of an ellipsoid with the true pose and half extents.
 Matrix3d DualConic(const SceneObject& object, const Rigid3& cam_from_world,
                    const PinholeCamera& camera) {
@@ -57,7 +51,7 @@ Matrix3d DualConic(const SceneObject& object, const Rigid3& cam_from_world,
   Vector4d shape;
   shape << object.half_extents.cwiseAbs2(), -1.0;
   const Matrix4d quadric = pose * shape.asDiagonal() * pose.transpose();
-  const Eigen::Matrix<double, 3, 4> projection = Calibration(camera) * cam_from_world.ToMatrix();
+  const Eigen::Matrix<double, 3, 4> projection = camera.Matrix() * cam_from_world.ToMatrix();
   return projection * quadric * projection.transpose();
 }
 
