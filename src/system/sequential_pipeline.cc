@@ -77,8 +77,8 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
  private:
   // Processes a message and runs the stages that follow it, whose corrections are messages too.
   void Process(const MapMessage& message) {
-    mapper_.Process(message, nullptr);
-    StartNextStage(message, options_, mapper_, map_, *this);
+    const bool is_applied = mapper_.Process(message, nullptr);
+    StartNextStage(message, is_applied, options_, mapper_, map_, *this);
   }
 
   void Seek(LoopQuery query) override {

@@ -176,8 +176,8 @@ class ThreadedPipeline final : public Pipeline {
     while (const std::optional<MapMessage> message = messages_.Receive()) {
       SetBusy(true);
       const bool is_done = EditMap([&] {
-        mapper_.Process(*message, &hurry_);
-        StartNextStage(*message, options_, mapper_, map_.Get(), loops_);
+        const bool is_applied = mapper_.Process(*message, &hurry_);
+        StartNextStage(*message, is_applied, options_, mapper_, map_.Get(), loops_);
       });
       if (!is_done) {
         messages_.Close();
