@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tracking/early_frames.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -32,18 +33,20 @@ KeyframeId NearestInTime(const Map& map, double timestamp) {
 
 }  // namespace
 
-void EarlyFrames::Keep(std::shared_ptr<const Frame> frame) {
+void EarlyFrames::Keep(std::shared_ptr<const Frame> frame, bool is_tracked) {
   if (frames_.size() == kMostFrames) {
-    frames_.erase(frames_.begin());
+    const auto tracked = std::find_if(frames_.begin(), frames_.end(),
+                                      [](const Kept& kept) { return kept.is_tracked; });
+    frames_.erase(tracked != frames_.end() ? tracked : frames_.begin());
   }
-  frames_.push_back(std::move(frame));
+  frames_.push_back({std::move(frame), is_tracked});
 }
 
 std::vector<TrackedFrame> EarlyFrames::Localise(const Map& map, const TrackingContext& context) {
   constexpr std::array<PoseSource*, 2> kSources = {&PoseByReferenceKeyframe, &PoseByRelocalisation};
   std::vector<TrackedFrame> localised;
   LastFrame before;  // the last frame before the current one that was found
-  for (const std::shared_ptr<const Frame>& frame : frames_) {
+  for (const auto& [frame, is_tracked] : frames_) {
     TrackedFrame tracked;
     tracked.frame = frame->id;
     tracked.timestamp = frame->timestamp;
