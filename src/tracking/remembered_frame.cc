@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "objects/object_constraint.h"
 #include "tracking/pose_objects.h"
@@ -46,6 +47,16 @@ std::vector<Id> Newest(const Map& map, std::vector<Id> ids) {
   return ids;
 }
 
+// The pose in the map that a culled keyframe has. Null if the frame did not become a keyframe, if
+// that is still in the map, or if it was removed with its island.
+std::optional<RelativePose> PoseOfCulled(const Map& map, FrameId frame) {
+  const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame);
+  const bool is_culled =
+      keyframe && map.FindCulled(*keyframe) != nullptr && map.NearestAlive(*keyframe).IsValid();
+  return is_culled ? std::optional(RelativePose{*keyframe, Rigid3(), map.ScaleOf(*keyframe)})
+                   : std::nullopt;
+}
+
 }  // namespace
 
 RememberedFrame Remember(const FrameReport& report, const ObjectOptions& options) {
@@ -77,6 +88,9 @@ void RefinePoses(const Map& map, const TrackingContext& context,
                  std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames) {
   for (const RememberedFrame& seen : remembered) {
     TrackedFrame& tracked = frames[seen.frame.id.value - frames.front().frame.value];
+    if (const std::optional<RelativePose> culled = PoseOfCulled(map, tracked.frame)) {
+      tracked.pose = culled;
+    }
     if (!tracked.pose) {
       continue;
     }
