@@ -18,11 +18,16 @@ namespace {
 
 constexpr size_t kMostFrames = 300;
 
-KeyframeId NearestInTime(const Map& map, double timestamp) {
+// The keyframe of the frame's session that is nearest to it in time. If there is none, one of an
+// earlier session, whose time stamps say nothing about the frame.
+KeyframeId NearestInTime(const Map& map, const Frame& frame) {
+  const auto session_of = [&](FrameId id) { return SessionNumber(map.sessions(), id); };
+  const size_t session = session_of(frame.id);
   KeyframeId nearest;
-  double smallest = std::numeric_limits<double>::infinity();
+  std::pair smallest(true, std::numeric_limits<double>::infinity());  // is elsewhere, seconds
   for (const auto& [id, keyframe] : map.keyframes()) {
-    const double gap = std::abs(keyframe.frame->timestamp - timestamp);
+    const std::pair gap(session_of(keyframe.frame->id) != session,
+                        std::abs(keyframe.frame->timestamp - frame.timestamp));
     if (gap < smallest) {
       smallest = gap;
       nearest = id;
@@ -59,7 +64,7 @@ std::vector<TrackedFrame> EarlyFrames::Localise(const Map& map, const TrackingCo
       continue;
     }
     LastFrame nearest;
-    nearest.reference = NearestInTime(map, frame->timestamp);
+    nearest.reference = NearestInTime(map, *frame);
     nearest.frame = map.keyframes().At(nearest.reference).frame;
     nearest.cam_from_world = map.keyframes().At(nearest.reference).cam_from_world;
     if (auto found = FindConfirmedPose(*frame, map, context, nearest, kSources)) {
