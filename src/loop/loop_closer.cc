@@ -163,10 +163,11 @@ std::string LoopCloser::FindTooMuchDrift(const Map& map, const Loop& loop) const
   const Travel travel = TravelBetween(map, loop.candidate, loop.query);
   const Rigid3& tracked = map.keyframes().At(loop.query).cam_from_world;
   const Rigid3 by_loop = PoseByLoop(map, loop);
-  return CanBeDrift(travel, tracked, by_loop, options_)
+  const double metre = MetreOf(map, loop.query, sensor_);
+  return CanBeDrift(travel, tracked, by_loop, metre, options_)
              ? std::string()
              : fmt::format("it would move the camera by {:.2f} m after {:.1f} m",
-                           CameraDistance(by_loop, tracked), travel.metres);
+                           CameraDistance(by_loop, tracked) / metre, travel.length / metre);
 }
 
 // Whether a second keyframe near the query, from which the similarity was not computed, shows

@@ -258,6 +258,20 @@ TEST_F(IslandJoin, GivesTheYoungerIslandThePoseAndTheScaleOfTheOlderOne) {
   EXPECT_EQ(map.keyframes().At(made_.last()).loops.size(), 1u);
 }
 
+// Two rooms that look the same, 5 m apart, in maps of other units of length.
+TEST_F(IslandJoin, TheDriftBudgetDoesNotDependOnTheUnitOfLength) {
+  for (const double unit : {0.01, 1.0, 100.0}) {
+    for (const double drift : {0.0, 5.0}) {
+      RingMap made = MakeRingMap(
+          MonocularRing(), {.drift = Rigid3(Eigen::Quaterniond::Identity(), {drift, 0.0, 0.0})});
+      ApplyCorrection(made.map, ScalingOf(made.map, unit), sensor_.levels);
+      LoopCloser closer(sensor_, options_, objects_, 1);
+      EXPECT_EQ(closer.Process({made.map.Snapshot(), made.last()}).has_value(), drift == 0.0)
+          << "unit " << unit << ", drift " << drift;
+    }
+  }
+}
+
 // At the last keyframe no loop within an island would be sought so soon after another one.
 TEST_F(IslandJoin, IsSoughtAlsoSoonAfterALoop) {
   RingMap one = MakeRingMap(SharedRing());
