@@ -201,6 +201,8 @@ TEST_F(MapFileTest, KeepsItsSettings) {
   options.features.scale_factor = 1.5;
   settings.vocabulary = 0;
   EXPECT_EQ(MapSettingsOf(options), settings);
+  options.readout_time = 0.02;
+  EXPECT_EQ(MapSettingsOf(options), settings) << "frames with and without it fit together";
 }
 
 // ---- refusals
