@@ -32,7 +32,9 @@ class Pipeline {
   virtual void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) = 0;
   void Finish() { Finish(nullptr, {}); }
   // See Tracker::LocaliseEarlyFrames. To be called after Finish; the second call gives nothing.
-  virtual std::vector<TrackedFrame> TakeEarlyFrames() = 0;
+  virtual std::vector<TrackedFrame> TakeEarlyFrames(const Cancellation* cancellation,
+                                                    const ProgressCallback& on_progress) = 0;
+  std::vector<TrackedFrame> TakeEarlyFrames() { return TakeEarlyFrames(nullptr, {}); }
   // The newest snapshot; null before the first keyframe.
   virtual std::shared_ptr<const Map> map() const = 0;
   // The number of threads, besides the thread of Track, that currently work on the map. May be

@@ -50,9 +50,11 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
     }
   }
 
-  std::vector<TrackedFrame> TakeEarlyFrames() override {
+  std::vector<TrackedFrame> TakeEarlyFrames(const Cancellation* cancellation,
+                                            const ProgressCallback& on_progress) override {
     const std::shared_ptr<const Map> newest = map();
-    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest) : std::vector<TrackedFrame>();
+    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest, cancellation, on_progress)
+                             : std::vector<TrackedFrame>();
   }
 
   std::shared_ptr<const Map> map() const override { return map_; }

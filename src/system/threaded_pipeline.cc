@@ -86,9 +86,11 @@ class ThreadedPipeline final : public Pipeline {
     }
   }
 
-  std::vector<TrackedFrame> TakeEarlyFrames() override {
+  std::vector<TrackedFrame> TakeEarlyFrames(const Cancellation* cancellation,
+                                            const ProgressCallback& on_progress) override {
     const std::shared_ptr<const Map> newest = map();
-    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest) : std::vector<TrackedFrame>();
+    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest, cancellation, on_progress)
+                             : std::vector<TrackedFrame>();
   }
 
   std::shared_ptr<const Map> map() const override { return map_.Get(); }

@@ -8,6 +8,7 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
+#include "hullslam/util/cancellation.h"
 #include "tracking/tracking_context.h"
 
 namespace hullslam {
@@ -39,9 +40,12 @@ class EarlyFrames {
   // otherwise push out those without a pose. Then the oldest of the others are forgotten.
   void Keep(std::shared_ptr<const Frame> frame, bool is_tracked);
 
-  // Finds the frames in the final map and forgets them. Frames that are not found are left out.
-  // `context` has the object index of this map.
-  std::vector<TrackedFrame> Localise(const Map& map, const TrackingContext& context);
+  // Finds the frames in the final map and forgets them. Frames that are not found are left out, and
+  // so are those that are left when `cancellation` (may be null) is requested. `on_progress` is
+  // called after each frame. `context` has the object index of this map.
+  std::vector<TrackedFrame> Localise(const Map& map, const TrackingContext& context,
+                                     const Cancellation* cancellation = nullptr,
+                                     const ProgressCallback& on_progress = {});
 
  private:
   struct Kept {

@@ -140,9 +140,11 @@ Tracker::Result Tracker::BeginIsland(std::shared_ptr<const Frame> frame, Initial
   return result;
 }
 
-std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map) {
+std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map,
+                                                       const Cancellation* cancellation,
+                                                       const ProgressCallback& on_progress) {
   object_index_.Follow(map, sensor_.camera);
-  return early_.Localise(map, Context());
+  return early_.Localise(map, Context(), cancellation, on_progress);
 }
 
 Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& map,

@@ -56,6 +56,26 @@ TEST_F(EarlyFramesTest, AreForgottenOnceTheyAreLocalised) {
   EXPECT_TRUE(early_.Localise(made.map, Context()).empty());
 }
 
+TEST_F(EarlyFramesTest, AreLeftOutOnceItIsCancelled) {
+  for (uint32_t i = 0; i < 8; ++i) {
+    early_.Keep(world_.Observe(i).frame, false);
+  }
+  const SyntheticMap made = MakeSyntheticMap(world_, {2, 5, 12});
+  Cancellation cancellation;
+  int last = 0;
+  const std::vector<TrackedFrame> found =
+      early_.Localise(made.map, Context(), &cancellation, [&](int done, int most) {
+        last = done;
+        EXPECT_EQ(most, 8);
+        if (done == 3) {
+          cancellation.Request();
+        }
+      });
+  EXPECT_EQ(last, 3);
+  EXPECT_EQ(found.size(), 3u);
+  EXPECT_TRUE(early_.Localise(made.map, Context()).empty()) << "all are forgotten";
+}
+
 TEST_F(EarlyFramesTest, AreLeftOutWhereTheMapDoesNotShowThem) {
   early_.Keep(world_.Observe(1).frame, false);
   const SyntheticWorld other({.points = 300, .depth_share = 0.0, .seed = 77});

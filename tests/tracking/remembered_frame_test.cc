@@ -261,6 +261,25 @@ TEST_F(RefinePosesTest, TheFrameOfACulledKeyframeIsRefinedToo) {
   EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].pose), wrong_), 1e-12);
 }
 
+TEST_F(RefinePosesTest, OnceItIsCancelledTheOtherFramesKeepTheirPoses) {
+  Track(wrong_);
+  std::vector<TrackedFrame> frames(2, report_.tracked);
+  frames[1].frame = FrameId(6);
+  std::vector<RememberedFrame> remembered(2, Remember(report_, objects_));
+  remembered[1].frame.id = FrameId(6);
+  Cancellation cancellation;
+  std::vector<int> progress;
+  const ObjectIndex index(made_.map, world_->sensor().camera);
+  RefinePoses(made_.map, {world_->sensor(), options_, objects_, index}, remembered, frames,
+              &cancellation, [&](int done, int most) {
+                progress.insert(progress.end(), {done, most});
+                cancellation.Request();
+              });
+  EXPECT_EQ(progress, (std::vector<int>{1, 2}));
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].pose), truth_), 1e-4);
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[1].pose), wrong_), 1e-12);
+}
+
 TEST_F(RefinePosesTest, AFrameWithoutAPoseStaysWithoutOne) {
   report_.tracked.pose.reset();
   std::vector<TrackedFrame> frames = {report_.tracked};
