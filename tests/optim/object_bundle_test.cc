@@ -431,7 +431,7 @@ TEST_F(ObjectBundle, AnObjectThatIsNotFiniteDoesNotStopThePoints) {
   EXPECT_EQ(result.failed_objects, ids_);
   EXPECT_TRUE(result.ellipsoids.empty());
   EXPECT_EQ(result.positions, expected.positions);
-  EXPECT_NE(log.text().find("bundle adjustment of 4 keyframes"), std::string::npos) << log.text();
+  EXPECT_NE(log.text().find("bundle adjustment of"), std::string::npos) << log.text();
   EXPECT_NE(log.text().find("failed"), std::string::npos) << log.text();
 }
 
