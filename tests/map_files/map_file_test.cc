@@ -185,6 +185,8 @@ TEST_F(MapFileTest, ReadsTheFormerVersionOfTheFormat) {
   const std::filesystem::path former = SourceFolder() / "tests/fuzz/corpus/map/small.map";
   ASSERT_EQ(ReadFile(former)[10], 1);
   EXPECT_EQ(Dump(ReadMap(former).map), Dump(SmallMap()));
+  const Map islands = ReadMap(SourceFolder() / "tests/fuzz/corpus/map/two_islands.map").map;
+  EXPECT_EQ(Islands(islands).size(), 2u) << "a start of the search for faults";
 }
 
 TEST_F(MapFileTest, KeepsItsSettings) {
