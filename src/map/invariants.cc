@@ -229,6 +229,20 @@ void CheckIsland(const Map& map, KeyframeId id, const Keyframe& keyframe,
   }
 }
 
+// Each island has one spanning tree.
+void CheckRoots(const Map& map, std::vector<std::string>& violations) {
+  std::map<IslandId, KeyframeId> roots;
+  map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    if (keyframe.parent.IsValid()) {
+      return;
+    }
+    const auto [root, is_first] = roots.emplace(keyframe.island, id);
+    if (!is_first) {
+      violations.push_back(Name(id) + " is a second root of the island of " + Name(root->second));
+    }
+  });
+}
+
 // Each keyframe has the entries of its words, and there are no others.
 void CheckIndex(const Map& map, std::vector<std::string>& violations) {
   size_t expected = 0;
@@ -285,6 +299,7 @@ std::vector<std::string> FindViolations(const Map& map) {
     CheckAncestors(map, id, ancestors, violations);
     CheckIsland(map, id, keyframe, violations);
   });
+  CheckRoots(map, violations);
   CheckIndex(map, violations);
   return violations;
 }

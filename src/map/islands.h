@@ -20,9 +20,9 @@ std::vector<IslandId> Islands(const Map& map);
 std::vector<KeyframeId> KeyframesOf(const Map& map, IslandId island);
 
 // The island that stays when a run ends. It is the island with most keyframes, culled ones
-// included; ties go to the oldest. If the map has keyframes of earlier sessions, it is the island
-// of the oldest keyframe, because the run must not remove the work of earlier sessions. Invalid for
-// an empty map.
+// included; ties go to the oldest. If the map has keyframes of earlier sessions, only these are
+// counted, because the run must not remove the work of earlier sessions. (A map can be saved while
+// it has several islands.) Invalid for an empty map.
 IslandId MainIsland(const Map& map);
 
 // Joins the islands of two keyframes. The younger island gets the number of the older one, and its

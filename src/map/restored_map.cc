@@ -136,6 +136,30 @@ void DeriveChildren(MapTables& tables) {
   }
 }
 
+// Numbers the islands by their roots, which have no parent, if the keyframes do not tell theirs.
+void DeriveIslands(MapTables& tables) {
+  IslandId island(0);
+  for (const KeyframeId root : IdsOf(tables)) {
+    if (tables.keyframes.At(root).parent.IsValid() || tables.keyframes.At(root).island.IsValid()) {
+      continue;
+    }
+    std::vector<KeyframeId> tree = {root};
+    for (size_t i = 0; i < tree.size(); ++i) {
+      Keyframe& keyframe = tables.keyframes.Mutable(tree[i]);
+      keyframe.island = island;
+      tree.insert(tree.end(), keyframe.children.begin(), keyframe.children.end());
+    }
+    ++island.value;
+  }
+}
+
+// An island begins with a keyframe, so there have been no more islands than keyframes.
+void CheckIslands(const MapTables& tables) {
+  tables.keyframes.ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    Require(keyframe.island.value < CountKeyframes(tables), id, "is in an island that cannot be");
+  });
+}
+
 // Adds the observation of an entity by a keyframe. Keyframes come in the order of their ids.
 template <typename Observations>
 void AppendObservation(Observations& observations, KeyframeId keyframe, uint32_t index) {
@@ -173,6 +197,8 @@ Map RestoreMap(MapTables tables, std::shared_ptr<const Vocabulary> vocabulary) {
   }
   CheckReferences(tables);
   DeriveChildren(tables);
+  DeriveIslands(tables);
+  CheckIslands(tables);
   DeriveObservations(tables);
   tables.keyframes.SkipIds(KeyframeId(CountKeyframes(tables)));
   Map map(std::move(tables), std::move(vocabulary));

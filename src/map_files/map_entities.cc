@@ -143,6 +143,7 @@ void WriteKeyframe(KeyframeId id, const Keyframe& keyframe, ByteWriter& out) {
     out.Put(static_cast<int32_t>(edge.shared));
   }
   out.Put(keyframe.parent.value);
+  out.Put(keyframe.island.value);
   out.PutCount(keyframe.loops.size());
   WriteIds(keyframe.loops, out);
 }
@@ -161,6 +162,7 @@ void ReadKeyframe(const MapHeader& header, ByteReader& in, MapTables& tables) {
     edge.shared = ReadTimes(in);
   }
   keyframe.parent = KeyframeId(in.Get<uint32_t>());
+  keyframe.island = header.version == 1 ? IslandId() : IslandId(in.Get<uint32_t>());
   keyframe.loops = ReadIds<KeyframeId>(in.GetCount(sizeof(uint32_t)), in);
   tables.keyframes.Put(id, std::move(keyframe));
 }

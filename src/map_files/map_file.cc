@@ -25,8 +25,7 @@ using namespace std::string_view_literals;
 
 // A transfer in text mode would change the byte above 127 or the line ends. So it is noticed.
 constexpr std::string_view kMagic = "\x89HULLMAP\r\n"sv;
-constexpr uint32_t kVersion = 1;
-constexpr size_t kPrefixBytes = kMagic.size() + sizeof(kVersion);
+constexpr size_t kPrefixBytes = kMagic.size() + sizeof(kMapVersion);
 constexpr size_t kChecksumBytes = sizeof(uint32_t);
 
 // CRC-32 (ISO 3309). It detects every change within 32 consecutive bits.
@@ -35,16 +34,16 @@ uint32_t AddToChecksum(uint32_t checksum, std::string_view bytes) {
       ::crc32_z(checksum, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-std::string Prefix() {
-  ByteWriter version;
-  version.Put(kVersion);
-  return std::string(kMagic) + version.bytes();
+std::string Prefix(uint32_t version) {
+  ByteWriter bytes;
+  bytes.Put(version);
+  return std::string(kMagic) + bytes.bytes();
 }
 
 // Writes a map file record by record, so that the file is never in memory as a whole.
 class RecordWriter {
  public:
-  explicit RecordWriter(const fs::path& path) : file_(path) { Write(Prefix()); }
+  explicit RecordWriter(const fs::path& path) : file_(path) { Write(Prefix(kMapVersion)); }
 
   ByteWriter& Record() { return record_; }
   // Ends the current record if it has at least this many bytes. Small entities share a record, and
@@ -142,37 +141,26 @@ std::string ReadSome(std::istream& in, uint64_t count) {
   return bytes;
 }
 
-// The size of the file that was opened. The file of this name may be another one by now.
-uint64_t SizeOf(std::istream& in, const fs::path& path) {
-  const std::streampos place = in.tellg();
-  in.seekg(0, std::ios::end);
-  const std::streamoff size = in.tellg();
-  in.seekg(place);
-  if (!in || size < 0) {
-    throw InputError(path.string() + ": cannot be read");
-  }
-  return static_cast<uint64_t>(size);
-}
-
-void CheckPrefix(std::istream& in, const fs::path& path) {
+// Returns the version of the format.
+uint32_t ReadPrefix(std::istream& in, const fs::path& path) {
   const std::string prefix = ReadSome(in, kPrefixBytes);
   if (prefix.size() < kPrefixBytes || !prefix.starts_with(kMagic)) {
     throw InputError(path.string() + ": is not a map of HullSLAM");
   }
   const auto version =
       ByteReader(std::string_view(prefix).substr(kMagic.size()), path.string()).Get<uint32_t>();
-  if (version != kVersion) {
-    throw InputError(fmt::format("{}: is a map of format version {}, expected {}", path.string(),
-                                 version, kVersion));
+  if (version < kOldestMapVersion || version > kMapVersion) {
+    throw InputError(fmt::format("{}: is a map of format version {}, expected {} to {}",
+                                 path.string(), version, kOldestMapVersion, kMapVersion));
   }
+  return version;
 }
 
 // Compares the checksum of `size` bytes, of which the prefix has been read, with the one that
 // follows them.
-void CheckChecksum(std::istream& in, uint64_t size, const fs::path& path,
-                   const Cancellation* cancellation) {
+void CheckChecksum(std::istream& in, uint64_t size, uint32_t version, const fs::path& path) {
   constexpr uint64_t kBlock = 1 << 20;
-  uint32_t checksum = AddToChecksum(0, Prefix());
+  uint32_t checksum = AddToChecksum(0, Prefix(version));
   for (uint64_t left = size - kPrefixBytes; left > 0;) {
     EndIfCancelled(cancellation, path.string());
     const std::string bytes = ReadSome(in, std::min(left, kBlock));
@@ -191,17 +179,16 @@ void CheckChecksum(std::istream& in, uint64_t size, const fs::path& path,
 StoredMap Read(const fs::path& path, const MapSettings* expected,
                std::shared_ptr<const Vocabulary> vocabulary, const Cancellation* cancellation) {
   std::ifstream in = Open(path);
-  CheckPrefix(in, path);
-  const uint64_t bytes = SizeOf(in, path);
+  const uint32_t version = ReadPrefix(in, path);
+  const uint64_t bytes = fs::file_size(path);
   if (bytes < kPrefixBytes + kChecksumBytes) {
     throw InputError(path.string() + ": is cut off");
   }
   const uint64_t size = bytes - kChecksumBytes;
-  CheckChecksum(in, size, path, cancellation);
+  CheckChecksum(in, size, version, path);
   in.clear();
   in.seekg(kPrefixBytes);
-  return ParseMap(in, size - kPrefixBytes, path.string(), expected, std::move(vocabulary),
-                  cancellation);
+  return ParseMap(in, size - kPrefixBytes, version, path.string(), expected, std::move(vocabulary));
 }
 
 }  // namespace

@@ -20,8 +20,13 @@ namespace hullslam {
 // (files/plausible.h); a landmark of a camera without depth may be almost at infinity.
 constexpr double kMostMapNumber = 1e15;
 
-// The first part: the settings, the sessions and how many entities follow.
+// Version 1 has no islands.
+constexpr uint32_t kOldestMapVersion = 1;
+constexpr uint32_t kMapVersion = 2;
+
+// What comes first: the settings, the sessions and how many entities follow.
 struct MapHeader {
+  uint32_t version = kMapVersion;  // of the file; WriteHeader does not write it
   MapSettings settings;
   std::vector<Session> sessions;
   uint32_t correction_count = 0;

@@ -64,11 +64,11 @@ void Mapper::BeginSession() {
   }
 }
 
-void Mapper::Process(const MapMessage& message, const Cancellation* hurry) {
-  std::visit([&](const auto& content) { Apply(content, hurry); }, message);
+bool Mapper::Process(const MapMessage& message, const Cancellation* hurry) {
+  return std::visit([&](const auto& content) { return Apply(content, hurry); }, message);
 }
 
-void Mapper::Apply(const InitialMap& initial, const Cancellation* hurry) {
+bool Mapper::Apply(const InitialMap& initial, const Cancellation* hurry) {
   std::vector<KeyframeId> keyframes;
   {
     const ScopedTimer timer(times_, "map_insert");
@@ -82,9 +82,10 @@ void Mapper::Apply(const InitialMap& initial, const Cancellation* hurry) {
   Improve(keyframes.back(), hurry, Culling::kNone);
   full_.insert(full_.end(), keyframes.begin(), keyframes.end());
   PublishSnapshot();
+  return true;
 }
 
-void Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
+bool Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
   KeyframeId keyframe;
   {
     const ScopedTimer timer(times_, "map_insert");
@@ -102,15 +103,17 @@ void Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
   }
   FollowKnownSizes(false);
   PublishSnapshot();
+  return true;
 }
 
-void Mapper::Apply(const MapCorrection& correction, const Cancellation*) {
+bool Mapper::Apply(const MapCorrection& correction, const Cancellation*) {
   const ScopedTimer timer(times_, "map_correction");
   const CorrectionOutcome outcome = ApplyCorrection(map_, correction, sensor_.levels);
   if (outcome.is_applied) {
     object_mapper_.RefineMerged(map_, outcome.merged_objects);
     PublishSnapshot();
   }
+  return outcome.is_applied;
 }
 
 // Creates the landmarks and objects that follow from a new keyframe.

@@ -37,8 +37,9 @@ class Mapper {
 
   // Processes a message. `hurry` (may be null) is requested while another message waits. The mapper
   // then leaves out the steps that are not necessary. An initial map becomes a new island if the
-  // map is not empty.
-  void Process(const MapMessage& message, const Cancellation* hurry);
+  // map is not empty. Returns false for a correction that was dropped, because the map was
+  // corrected since the snapshot.
+  bool Process(const MapMessage& message, const Cancellation* hurry);
 
   // The next five functions are for the end of a run (system/finish_run.h).
   // False for a map of earlier sessions to which no keyframe was added.
@@ -70,9 +71,9 @@ class Mapper {
   }
 
  private:
-  void Apply(const InitialMap& initial, const Cancellation* hurry);
-  void Apply(const KeyframeRequest& request, const Cancellation* hurry);
-  void Apply(const MapCorrection& correction, const Cancellation* hurry);
+  bool Apply(const InitialMap& initial, const Cancellation* hurry);
+  bool Apply(const KeyframeRequest& request, const Cancellation* hurry);
+  bool Apply(const MapCorrection& correction, const Cancellation* hurry);
   void BeginSession();
   std::vector<ChangedObject> FindChanges() const;
   ObjectId FindLeft(const ChangedObject& changed) const;

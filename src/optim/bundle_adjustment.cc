@@ -4,6 +4,7 @@
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
+#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <memory>
@@ -259,6 +260,11 @@ class Bundle {
     } while (summary.IsSolutionUsable() && solver.max_num_iterations > 0 &&
              objects_.LeaveOutUndefinedViews());
     result.residuals = points_.CountInliers() + static_cast<int>(objects_.CountCosts());
+    if (!summary.IsSolutionUsable()) {
+      spdlog::debug("bundle adjustment of {} keyframes, {} landmarks and {} objects failed: {}",
+                    window_.moving.size(), points_.positions().size(), window_.objects.size(),
+                    summary.message);
+    }
     return summary.IsSolutionUsable();
   }
 

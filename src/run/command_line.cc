@@ -69,7 +69,7 @@ void AddDebugFlag(CLI::App& app) {
         spdlog::set_pattern("%l: %v");
         spdlog::set_level(spdlog::level::debug);
       },
-      "log to stderr what happens to each object, and why");
+      "log to stderr what happens to each object and loop, and why, and adjustments that fail");
 }
 
 void AddOverrides(CLI::App& app, const std::string& name, const std::string& meaning,

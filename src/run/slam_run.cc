@@ -85,19 +85,31 @@ std::string DescribeState(TrackingState state, std::optional<InitialisationFailu
       map != nullptr ? map->landmarks().size() : 0, map != nullptr ? DescribeIslands(*map) : "");
 }
 
-// Shows the progress, because the bundle adjustment of the whole map is slow if the map is large.
+// The bundle adjustment of a large map and the final poses of many frames take long. So their
+// progress is shown.
 void FinishMap(bool is_quiet, System& system) {
   constexpr std::chrono::seconds kStep(2);
   if (!is_quiet && !IsInterrupted()) {
     PrintError("finishing the map\n");
   }
   Clock::time_point shown = Clock::now();
-  system.Finish(&Interruption(), [&](int done, int most) {
-    if (!is_quiet && Clock::now() - shown > kStep) {
-      shown = Clock::now();
-      PrintError("finishing the map: iteration {} of at most {}\n", done, most);
-    }
-  });
+  const auto is_due = [&] {
+    const bool is_late = !is_quiet && Clock::now() - shown > kStep;
+    shown = is_late ? Clock::now() : shown;
+    return is_late;
+  };
+  system.Finish(
+      &Interruption(),
+      [&](int done, int most) {
+        if (is_due()) {
+          PrintError("finishing the map: iteration {} of at most {}\n", done, most);
+        }
+      },
+      [&](int done, int most) {
+        if (is_due()) {
+          PrintError("finishing the poses: frame {} of {}\n", done, most);
+        }
+      });
 }
 
 RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,

@@ -16,7 +16,8 @@ constexpr double kMinFoundAgain = 0.9;
 // The pose of a tracked frame, if it is in this island.
 std::optional<Rigid3> FindPose(const Map& map, IslandId island, const TrackedFrame& frame) {
   const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame.frame);
-  if (keyframe && IslandOf(map, *keyframe) == island) {
+  const bool is_refined = frame.pose && frame.pose->reference == keyframe;
+  if (keyframe && !is_refined && IslandOf(map, *keyframe) == island) {
     return map.CamFromWorld(*keyframe);
   }
   if (frame.pose && IslandOf(map, frame.pose->reference) == island) {

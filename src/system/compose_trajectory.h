@@ -11,8 +11,9 @@
 namespace hullslam {
 
 // The poses of all tracked frames in the main island of the current map (Map::BeginIsland). The
-// pose of a frame is relative to its reference keyframe, so it follows the map; a frame that is a
-// keyframe has the keyframe's pose. Frames without a pose are left out.
+// pose of a frame is relative to its reference keyframe, so it follows the map. A frame that is or
+// was a keyframe has the keyframe's pose, until RefinePoses makes its pose relative to this
+// keyframe. Frames without a pose are left out.
 Trajectory ComposeTrajectory(const Map& map, std::span<const TrackedFrame> frames);
 
 // Marks tracked frames that have no pose in the main island as lost.

@@ -21,8 +21,9 @@ void FinishMap(Mapper& mapper, const Cancellation* cancellation,
 
 void FinishRun(Pipeline& pipeline, const Sensor& sensor, const SystemOptions& options,
                std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames,
-               const Cancellation* cancellation, const ProgressCallback& on_progress) {
-  pipeline.Finish(cancellation, on_progress);  // the last keyframes and loops, then FinishMap
+               const Cancellation* cancellation, const ProgressCallback& on_map,
+               const ProgressCallback& on_poses) {
+  pipeline.Finish(cancellation, on_map);  // the last keyframes and loops, then FinishMap
   const std::shared_ptr<const Map> map = pipeline.map();
   if (map == nullptr) {
     return;
@@ -30,8 +31,8 @@ void FinishRun(Pipeline& pipeline, const Sensor& sensor, const SystemOptions& op
   LoseFramesElsewhere(*map, frames);
   const ObjectIndex object_index(*map, sensor.camera);
   RefinePoses(*map, {sensor, options.tracking, options.objects, object_index, options.seed},
-              remembered, frames);
-  ReplaceEarlyFrames(pipeline.TakeEarlyFrames(), frames);
+              remembered, frames, cancellation, on_poses);
+  ReplaceEarlyFrames(pipeline.TakeEarlyFrames(cancellation, on_poses), frames);
 }
 
 }  // namespace hullslam

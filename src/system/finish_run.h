@@ -22,9 +22,10 @@ void FinishMap(Mapper& mapper, const Cancellation* cancellation = nullptr,
                const ProgressCallback& on_progress = {});
 
 // Finishes the map, then the poses of the frames. `remembered` is a part of the `frames`, which are
-// all frames of the run in order.
+// all frames of the run in order. `on_map` and `on_poses` are told the progress of the two parts.
 void FinishRun(Pipeline& pipeline, const Sensor& sensor, const SystemOptions& options,
                std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames,
-               const Cancellation* cancellation, const ProgressCallback& on_progress);
+               const Cancellation* cancellation, const ProgressCallback& on_map,
+               const ProgressCallback& on_poses);
 
 }  // namespace hullslam

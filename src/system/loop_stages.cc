@@ -6,13 +6,16 @@
 
 namespace hullslam {
 
-void StartNextStage(const MapMessage& message, const SystemOptions& options, Mapper& mapper,
-                    const std::shared_ptr<const Map>& published, LoopStages& stages) {
-  if (!options.loop.enabled || options.vocabulary == nullptr) {
+void StartNextStage(const MapMessage& message, bool is_applied, const SystemOptions& options,
+                    Mapper& mapper, const std::shared_ptr<const Map>& published,
+                    LoopStages& stages) {
+  const auto* const correction = std::get_if<MapCorrection>(&message);
+  const bool is_adjustment = correction != nullptr && !correction->loop;
+  if (!options.loop.enabled || options.vocabulary == nullptr || is_adjustment) {
     return;
   }
-  if (const auto* correction = std::get_if<MapCorrection>(&message)) {
-    if (correction->loop && options.loop.global_adjustment) {
+  if (correction != nullptr && is_applied) {
+    if (options.loop.global_adjustment) {
       stages.Adjust(published);
     }
   } else if (const std::optional<KeyframeId> keyframe = mapper.NewestKeyframe()) {

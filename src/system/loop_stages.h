@@ -24,9 +24,12 @@ class LoopStages {
 };
 
 // Starts the stage that follows a message. To be called when the mapper has processed the message;
-// `published` is the newest published map. After a new keyframe a loop is sought (loop.enabled, and
-// a vocabulary is needed). After a loop the whole map is adjusted (loop.global_adjustment).
-void StartNextStage(const MapMessage& message, const SystemOptions& options, Mapper& mapper,
-                    const std::shared_ptr<const Map>& published, LoopStages& stages);
+// `is_applied` is the result of Mapper::Process, and `published` is the newest published map. After
+// a new keyframe a loop is sought (loop.enabled, and a vocabulary is needed). After a loop the
+// whole map is adjusted (loop.global_adjustment). A loop that was dropped is sought again at the
+// newest keyframe.
+void StartNextStage(const MapMessage& message, bool is_applied, const SystemOptions& options,
+                    Mapper& mapper, const std::shared_ptr<const Map>& published,
+                    LoopStages& stages);
 
 }  // namespace hullslam

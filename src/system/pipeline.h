@@ -31,9 +31,10 @@ class Pipeline {
   // (FinishMap, system/finish_run.h).
   virtual void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) = 0;
   void Finish() { Finish(nullptr, {}); }
-  // See Tracker::LocaliseEarlyFrames. To be called after Finish. A second call returns an empty
-  // list.
-  virtual std::vector<TrackedFrame> TakeEarlyFrames() = 0;
+  // See Tracker::LocaliseEarlyFrames. To be called after Finish; the second call gives nothing.
+  virtual std::vector<TrackedFrame> TakeEarlyFrames(const Cancellation* cancellation,
+                                                    const ProgressCallback& on_progress) = 0;
+  std::vector<TrackedFrame> TakeEarlyFrames() { return TakeEarlyFrames(nullptr, {}); }
   // The newest snapshot; null before the first keyframe.
   virtual std::shared_ptr<const Map> map() const = 0;
   // The number of threads, besides the thread of Track, that currently work on the map. May be

@@ -50,9 +50,11 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
     }
   }
 
-  std::vector<TrackedFrame> TakeEarlyFrames() override {
+  std::vector<TrackedFrame> TakeEarlyFrames(const Cancellation* cancellation,
+                                            const ProgressCallback& on_progress) override {
     const std::shared_ptr<const Map> newest = map();
-    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest) : std::vector<TrackedFrame>();
+    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest, cancellation, on_progress)
+                             : std::vector<TrackedFrame>();
   }
 
   std::shared_ptr<const Map> map() const override { return map_; }
@@ -77,8 +79,8 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
  private:
   // Processes a message and runs the stages that follow it, whose corrections are messages too.
   void Process(const MapMessage& message) {
-    mapper_.Process(message, nullptr);
-    StartNextStage(message, options_, mapper_, map_, *this);
+    const bool is_applied = mapper_.Process(message, nullptr);
+    StartNextStage(message, is_applied, options_, mapper_, map_, *this);
   }
 
   void Seek(LoopQuery query) override {

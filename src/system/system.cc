@@ -156,8 +156,9 @@ std::unique_ptr<TaskRunner> System::MakeRunner() {
   });
 }
 
-void System::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
-  FinishRun(*pipeline_, sensor_, options_, remembered_, frames_, cancellation, on_progress);
+void System::Finish(const Cancellation* cancellation, const ProgressCallback& on_map,
+                    const ProgressCallback& on_poses) {
+  FinishRun(*pipeline_, sensor_, options_, remembered_, frames_, cancellation, on_map, on_poses);
   remembered_.clear();
 }
 

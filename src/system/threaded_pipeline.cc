@@ -86,9 +86,11 @@ class ThreadedPipeline final : public Pipeline {
     }
   }
 
-  std::vector<TrackedFrame> TakeEarlyFrames() override {
+  std::vector<TrackedFrame> TakeEarlyFrames(const Cancellation* cancellation,
+                                            const ProgressCallback& on_progress) override {
     const std::shared_ptr<const Map> newest = map();
-    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest) : std::vector<TrackedFrame>();
+    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest, cancellation, on_progress)
+                             : std::vector<TrackedFrame>();
   }
 
   std::shared_ptr<const Map> map() const override { return map_.Get(); }
@@ -176,8 +178,8 @@ class ThreadedPipeline final : public Pipeline {
     while (const std::optional<MapMessage> message = messages_.Receive()) {
       SetBusy(true);
       const bool is_done = EditMap([&] {
-        mapper_.Process(*message, &hurry_);
-        StartNextStage(*message, options_, mapper_, map_.Get(), loops_);
+        const bool is_applied = mapper_.Process(*message, &hurry_);
+        StartNextStage(*message, is_applied, options_, mapper_, map_.Get(), loops_);
       });
       if (!is_done) {
         messages_.Close();

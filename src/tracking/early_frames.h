@@ -8,6 +8,7 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
+#include "hullslam/util/cancellation.h"
 #include "tracking/tracking_context.h"
 
 namespace hullslam {
@@ -36,15 +37,24 @@ struct IslandRules {
 // their island was young.
 class EarlyFrames {
  public:
-  // Frames come in order of time. At most 300 are kept; the oldest ones are forgotten first.
-  void Keep(std::shared_ptr<const Frame> frame);
+  // Frames come in order of time. At most 300 are kept. The oldest ones that have a pose, because
+  // they were tracked, are forgotten first: a camera that stands still in a young island would
+  // otherwise push out those without a pose. Then the oldest of the others are forgotten.
+  void Keep(std::shared_ptr<const Frame> frame, bool is_tracked);
 
-  // Finds the frames in the final map and forgets them. Frames that are not found are left out.
-  // `context` has the object index of this map.
-  std::vector<TrackedFrame> Localise(const Map& map, const TrackingContext& context);
+  // Finds the frames in the final map and forgets them. Frames that are not found are left out, and
+  // so are those that are left when `cancellation` (may be null) is requested. `on_progress` is
+  // called after each frame. `context` has the object index of this map.
+  std::vector<TrackedFrame> Localise(const Map& map, const TrackingContext& context,
+                                     const Cancellation* cancellation = nullptr,
+                                     const ProgressCallback& on_progress = {});
 
  private:
-  std::vector<std::shared_ptr<const Frame>> frames_;  // in order of time
+  struct Kept {
+    std::shared_ptr<const Frame> frame;
+    bool is_tracked = false;
+  };
+  std::vector<Kept> frames_;  // in order of time
 };
 
 }  // namespace hullslam

@@ -122,7 +122,7 @@ Tracker::Result Tracker::InitializeMonocular(std::shared_ptr<const Frame> frame)
   if (initial.map) {
     return BeginIsland(std::move(frame), std::move(*initial.map));
   }
-  early_.Keep(frame);
+  early_.Keep(frame, false);
   Result result = MakeResult(std::move(frame), TrackingState::kNotInitialized);
   result.report.failure = initial.failure;
   return result;
@@ -140,18 +140,17 @@ Tracker::Result Tracker::BeginIsland(std::shared_ptr<const Frame> frame, Initial
   return result;
 }
 
-std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map) {
+std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map,
+                                                       const Cancellation* cancellation,
+                                                       const ProgressCallback& on_progress) {
   object_index_.Follow(map, sensor_.camera);
-  return early_.Localise(map, Context());
+  return early_.Localise(map, Context(), cancellation, on_progress);
 }
 
 Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& map,
                                const MapperStatus& mapper) {
   if (last_.frame != nullptr) {
     last_ = FollowMap(map, std::move(last_));
-  }
-  if (island_rules_.needs_motion && !is_localizing_only_ && IsYoung(map)) {
-    early_.Keep(frame);
   }
   if (!frame->detections.empty()) {
     object_index_.Follow(map, sensor_.camera);
@@ -162,6 +161,9 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
       FindConfirmedPose(*frame, map, Context(), last_, kPoseSources);
   if (!found) {
     return Lose(as_read, map);
+  }
+  if (island_rules_.needs_motion && !is_localizing_only_ && IsYoung(map)) {
+    early_.Keep(as_read, true);
   }
   lost_since_.reset();
   initialiser_.Forget();
@@ -223,9 +225,7 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map
   lost_since_ = lost_since_.value_or(frame->timestamp);
   if (MayBeginIsland(*frame, map)) {
     MonocularInitialiser::Result initial = initialiser_.Process(frame);
-    if (!IsYoung(map)) {
-      early_.Keep(frame);
-    }
+    early_.Keep(frame, false);
     if (initial.map) {
       return BeginIsland(std::move(frame), std::move(*initial.map));
     }

@@ -53,7 +53,9 @@ class Tracker {
                  const MapperStatus& mapper);
 
   // To be called at the end of a monocular run, with the final map. See EarlyFrames.
-  std::vector<TrackedFrame> LocaliseEarlyFrames(const Map& map);
+  std::vector<TrackedFrame> LocaliseEarlyFrames(const Map& map,
+                                                const Cancellation* cancellation = nullptr,
+                                                const ProgressCallback& on_progress = {});
 
   const StageTimes& times() const { return times_; }
 

@@ -158,6 +158,26 @@ TEST_F(LoopCloserTest, LeavesTheMapAloneForAWhileAfterALoop) {
   EXPECT_TRUE(closer.Process(query(38)));
 }
 
+// The mapper drops a correction if the map was corrected since the snapshot.
+TEST_F(LoopCloserTest, SeeksALoopAgainThatIsNotInTheCorrectedMap) {
+  RingMap made = MakeRingMap(SharedRing(), {.keyframes = 40});
+  const auto query = [](Map& map, uint32_t keyframe) {
+    return LoopQuery{map.Snapshot(), KeyframeId(keyframe)};
+  };
+  LoopCloser closer = Make();
+  const std::optional<MapCorrection> loop = closer.Process(query(made.map, 28));
+  ASSERT_TRUE(loop);
+  EXPECT_FALSE(closer.Process(query(made.map, 29))) << "the mapper has not processed it yet";
+  Map closed = Corrected(made, *loop);
+  Map dropped = made.map.Snapshot();
+  dropped.CountCorrection();
+  LoopCloser other = closer;
+  EXPECT_FALSE(other.Process(query(closed, 30))) << "it is in the map";
+  EXPECT_FALSE(other.Process(query(closed, 37)));
+  EXPECT_TRUE(closer.Process(query(dropped, 30)));
+  EXPECT_FALSE(closer.Process(query(dropped, 31)));
+}
+
 // Tracking has found 100 landmarks of the earlier visit, so the place is not a candidate any more.
 // All other landmarks of the place are still in the map twice.
 TEST_F(LoopCloserTest, MergesAPlaceToWhichTrackingHasLedBack) {
@@ -239,9 +259,24 @@ TEST_F(IslandJoin, GivesTheYoungerIslandThePoseAndTheScaleOfTheOlderOne) {
   EXPECT_EQ(map.keyframes().At(made_.last()).loops.size(), 1u);
 }
 
+// Two rooms that look the same, 5 m apart, in maps of other units of length.
+TEST_F(IslandJoin, TheDriftBudgetDoesNotDependOnTheUnitOfLength) {
+  for (const double unit : {0.01, 1.0, 100.0}) {
+    for (const double drift : {0.0, 5.0}) {
+      RingMap made = MakeRingMap(
+          MonocularRing(), {.drift = Rigid3(Eigen::Quaterniond::Identity(), {drift, 0.0, 0.0})});
+      ApplyCorrection(made.map, ScalingOf(made.map, unit), sensor_.levels);
+      LoopCloser closer(sensor_, options_, objects_, 1);
+      EXPECT_EQ(closer.Process({made.map.Snapshot(), made.last()}).has_value(), drift == 0.0)
+          << "unit " << unit << ", drift " << drift;
+    }
+  }
+}
+
 // At the last keyframe no loop within an island would be sought so soon after another one.
 TEST_F(IslandJoin, IsSoughtAlsoSoonAfterALoop) {
   RingMap one = MakeRingMap(SharedRing());
+  one.map.CountCorrection();  // as in the other map, so that the loop is not taken for dropped
   LoopCloser closer(sensor_, options_, objects_, 1);
   ASSERT_TRUE(closer.Process({one.map.Snapshot(), KeyframeId(28)}));
   EXPECT_FALSE(closer.Process({one.map.Snapshot(), made_.last()}));

@@ -10,6 +10,7 @@
 #include "map/invariants.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
+#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {
@@ -53,6 +54,7 @@ TEST(Compaction, KeepsKeypointsWithLandmarksAndDetectionsWithObjects) {
   Map map;
   const KeyframeId a = AddDistinctKeyframe(map, 0);
   const KeyframeId b = AddDistinctKeyframe(map, 1);
+  SetParent(map, b, a);
   const LandmarkId landmark = map.AddLandmark({0.0, 0.0, 2.0}, a);
   map.AddObservation(landmark, a, 17);
   map.AddObservation(landmark, b, 5);

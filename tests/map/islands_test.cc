@@ -85,6 +85,13 @@ TEST_F(IslandsTest, TheMainOneIsThatOfEarlierSessions) {
   EXPECT_EQ(MainIsland(map), IslandId(0));
 }
 
+// A map may have been saved before its islands were joined.
+TEST_F(IslandsTest, TheMainOneOfEarlierSessionsIsTheLargestOne) {
+  map_.BeginSession({.name = "second", .first_frame = map_.NextFrame()});
+  AddKeyframes(first_, 2);
+  EXPECT_EQ(MainIsland(map_), second_) << "earlier sessions made more keyframes of it";
+}
+
 TEST_F(IslandsTest, BecomeOneWithOneTree) {
   for (const bool swap : {false, true}) {
     Map before = map_.Snapshot();

@@ -14,6 +14,7 @@
 #include "map/islands.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
+#include "map/spanning_tree.h"
 #include "support/expect_error.h"
 
 namespace hullslam {
@@ -179,13 +180,74 @@ TEST(RestoreMap, RefusesTablesThatViolateTheInvariants) {
                 {"object 0", "votes"});
 }
 
+// Two islands of which the second one was begun first but one.
+Map MadeIslands() {
+  Map map;
+  map.BeginIsland();
+  map.BeginIsland();
+  for (const IslandId island : {IslandId(0), map.BeginIsland()}) {
+    std::vector<KeyframeId> ids;
+    for (int i = 0; i < 3; ++i) {
+      ids.push_back(map.AddKeyframe(MakeFrame(map.keyframes().NextId().value, 40), {}, island));
+    }
+    Share(map, ids, 20);
+    for (const KeyframeId id : ids) {
+      UpdateCovisibility(map, id);
+    }
+  }
+  return map;
+}
+
+TEST(RestoreMap, KeepsIslands) {
+  const Map map = MadeIslands();
+  Map restored = RestoreMap(TablesOf(map));
+  EXPECT_EQ(Dump(restored), Dump(map));
+  EXPECT_EQ(Islands(restored), (std::vector<IslandId>{IslandId(0), IslandId(2)}));
+  EXPECT_EQ(restored.BeginIsland(), IslandId(3));
+}
+
+TEST(RestoreMap, TakesEachTreeForAnIslandIfThereAreNone) {
+  Map map = MadeIslands();
+  MakeRoot(map, KeyframeId(5));
+  MapTables tables = TablesOf(map);
+  for (uint32_t i = 0; i < 6; ++i) {
+    tables.keyframes.Mutable(KeyframeId(i)).island = IslandId();
+  }
+  const Map restored = RestoreMap(std::move(tables));
+  for (uint32_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(restored.keyframes().At(KeyframeId(i)).island, IslandId(i / 3)) << i;
+  }
+}
+
+TEST(RestoreMap, RefusesIslandsThatCannotBe) {
+  ExpectRefusal([](MapTables& t) { t.keyframes.Mutable(KeyframeId(3)).island = IslandId(1); },
+                {"keyframe", "another island"});
+  const auto all_in = [](IslandId island) {
+    return [island](MapTables& t) {
+      for (const uint32_t i : {0U, 1U, 3U, 4U}) {
+        t.keyframes.Mutable(KeyframeId(i)).island = island;
+      }
+    };
+  };
+  ExpectRefusal(all_in(IslandId(5)), {"keyframe 0", "island that cannot be"});
+  ExpectRefusal(
+      [&](MapTables& t) {
+        all_in(IslandId())(t);
+        t.keyframes.Mutable(KeyframeId(0)).parent = KeyframeId(4);  // a tree without a root
+      },
+      {"keyframe 0", "island that cannot be"});
+  ExpectRefusal([](MapTables& t) { t.keyframes.Mutable(KeyframeId(3)).parent = KeyframeId(); },
+                {"keyframe 3", "second root"});
+}
+
 TEST(RestoreMap, KeyframesThatWereRemovedWithTheirIslandHaveNoPose) {
   Map map;
-  for (int i = 0; i < 2; ++i) {
+  for (uint32_t i = 0; i < 2; ++i) {
     const IslandId island = map.BeginIsland();
     for (int k = 0; k < 2; ++k) {
       map.AddKeyframe(MakeFrame(map.keyframes().NextId().value, 20), Rigid3(), island);
     }
+    SetParent(map, KeyframeId(2 * i + 1), KeyframeId(2 * i));
   }
   ASSERT_TRUE(KeepOnlyIsland(map, IslandId(1)));
   const Map restored = RestoreMap(TablesOf(map));

@@ -18,11 +18,14 @@
 
 #include "files/read_file.h"
 #include "map/invariants.h"
+#include "map/islands.h"
 #include "map/random_edits.h"
 #include "map_files/made_map_file.h"
 #include "map_files/map_parser.h"
+#include "map_files/map_records.h"
 #include "support/expect_error.h"
 #include "support/file_size_limit.h"
+#include "support/paths.h"
 #include "support/random_geometry.h"
 #include "support/temporary_folder.h"
 
@@ -177,6 +180,22 @@ TEST_F(MapFileTest, KeepsWhatDumpDoesNotShow) {
   EXPECT_EQ(cup.compensated_px, 0.75);
 }
 
+TEST_F(MapFileTest, KeepsIslandsApart) {
+  const Map map = MapOfTwoIslands();
+  const Map read = ReadBack(map);
+  EXPECT_EQ(Dump(read), Dump(map));
+  EXPECT_EQ(Islands(read), (std::vector<IslandId>{IslandId(0), IslandId(1)}));
+}
+
+// The file was written by an earlier version of the program.
+TEST_F(MapFileTest, ReadsTheFormerVersionOfTheFormat) {
+  const std::filesystem::path former = SourceFolder() / "tests/fuzz/corpus/map/small.map";
+  ASSERT_EQ(ReadFile(former)[10], 1);
+  EXPECT_EQ(Dump(ReadMap(former).map), Dump(SmallMap()));
+  const Map islands = ReadMap(SourceFolder() / "tests/fuzz/corpus/map/two_islands.map").map;
+  EXPECT_EQ(Islands(islands).size(), 2u) << "a start of the search for faults";
+}
+
 TEST_F(MapFileTest, KeepsItsSettings) {
   MapSettings settings = MadeSettings();
   settings.camera.k1 = 0.01;
@@ -191,6 +210,8 @@ TEST_F(MapFileTest, KeepsItsSettings) {
   options.features.scale_factor = 1.5;
   settings.vocabulary = 0;
   EXPECT_EQ(MapSettingsOf(options), settings);
+  options.readout_time = 0.02;
+  EXPECT_EQ(MapSettingsOf(options), settings) << "frames with and without it fit together";
 }
 
 // A map file may come from a stranger, or from a program that did not check its labels.
@@ -264,8 +285,10 @@ TEST_F(MapFileTest, OtherFilesAndVersionsAreRefused) {
   ExpectRefusal("", {"is not a map"});
   ExpectRefusal("1.0 0 0 0 0 0 0 1\n", {"is not a map"});
   std::string bytes = Written(SmallMap());
-  bytes[10] = 2;
-  ExpectRefusal(WithChecksum(bytes), {"format version 2", "expected 1"});
+  bytes[10] = 3;
+  ExpectRefusal(WithChecksum(bytes), {"format version 3", "expected 1 to 2"});
+  bytes[10] = 0;
+  ExpectRefusal(WithChecksum(bytes), {"format version 0", "expected 1 to 2"});
   ExpectInputError([&] { ReadMap(folder_.path()); }, {folder_.path().string(), "regular file"});
   ExpectInputError([&] { ReadMap("/dev/null"); }, {"/dev/null", "regular file"});
   ExpectInputError([&] { ReadMap(folder_.path() / "none.map"); },
@@ -296,7 +319,7 @@ TEST_F(MapFileTest, AnyBytesBelowTheChecksumAreReadOrRefused) {
     bad[i / 4] = static_cast<char>(random.Index(256));
     std::istringstream in(bad);
     try {
-      const Map map = ParseMap(in, bad.size(), "map", nullptr).map;
+      const Map map = ParseMap(in, bad.size(), kMapVersion, "map", nullptr).map;
       EXPECT_EQ(FindViolations(map), std::vector<std::string>());
     } catch (const InputError&) {
       ++refused;

@@ -10,6 +10,7 @@
 
 #include "map/invariants.h"
 #include "map/made_map.h"
+#include "map/spanning_tree.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
@@ -21,6 +22,9 @@ class RecentLandmarksTest : public testing::Test {
   RecentLandmarksTest() {
     for (uint32_t i = 0; i < 5; ++i) {
       map_.AddKeyframe(world_.Observe(i).frame, SyntheticWorld::CamFromWorld(i));
+      if (i > 0) {
+        SetParent(map_, KeyframeId(i), KeyframeId(0));
+      }
     }
   }
 

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "map/invariants.h"
+#include "map/spanning_tree.h"
 #include "support/synthetic_world.h"
 #include "util/median.h"
 
@@ -50,6 +51,7 @@ TwoKeyframes MakePair(const SyntheticWorld& world, const Rigid3& a_from_world,
     }
   }
   UpdateCovisibility(pair.map, b);
+  SetParent(pair.map, b, a);
   return pair;
 }
 

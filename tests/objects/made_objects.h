@@ -13,6 +13,7 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/map/map.h"
+#include "map/spanning_tree.h"
 
 namespace hullslam {
 
@@ -85,6 +86,16 @@ inline Detection Detect(const MadeObject& object, const Sensor& sensor,
   return detection;
 }
 
+// Adds a keyframe to the spanning tree of the map.
+inline KeyframeId AddToTree(Map& map, std::shared_ptr<const Frame> frame,
+                            const Rigid3& cam_from_world) {
+  const KeyframeId added = map.AddKeyframe(std::move(frame), cam_from_world);
+  if (added != KeyframeId(0)) {
+    SetParent(map, added, KeyframeId(0));
+  }
+  return added;
+}
+
 // A keyframe without keypoints that sees these objects.
 inline KeyframeId AddObserver(Map& map, const Sensor& sensor, const Rigid3& cam_from_world,
                               const std::vector<MadeObject>& objects) {
@@ -93,7 +104,7 @@ inline KeyframeId AddObserver(Map& map, const Sensor& sensor, const Rigid3& cam_
   for (const MadeObject& object : objects) {
     frame->detections.push_back(Detect(object, sensor, cam_from_world));
   }
-  return map.AddKeyframe(std::move(frame), cam_from_world);
+  return AddToTree(map, std::move(frame), cam_from_world);
 }
 
 // A textured object, which keyframes without depth see together with landmarks on its surface.
@@ -121,7 +132,7 @@ class TexturedObject {
     frame->features.descriptors.resize(points_.size());
     frame->features.depth.resize(points_.size(), 0.0f);
     frame->features.right_u.resize(points_.size(), -1.0f);
-    const KeyframeId keyframe = map.AddKeyframe(std::move(frame), cam_from_world);
+    const KeyframeId keyframe = AddToTree(map, std::move(frame), cam_from_world);
     for (uint32_t i = 0; i < points_.size(); ++i) {
       if (landmarks_.size() == i) {
         landmarks_.push_back(map.AddLandmark(points_[i], keyframe));

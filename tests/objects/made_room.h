@@ -70,4 +70,12 @@ inline Frame SeeRoom(const Sensor& sensor, const std::vector<MadeObject>& object
   return frame;
 }
 
+// The same frame from a camera without depth.
+inline Frame WithoutDepth(Frame frame) {
+  for (Detection& detection : frame.detections) {
+    detection.points.clear();
+  }
+  return frame;
+}
+
 }  // namespace hullslam

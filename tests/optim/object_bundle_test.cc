@@ -12,6 +12,7 @@
 #include "map/made_map.h"
 #include "objects/made_objects.h"
 #include "optim/bundle_adjustment.h"
+#include "support/captured_log.h"
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
@@ -425,11 +426,14 @@ TEST_F(ObjectBundle, AnObjectThatIsNotFiniteDoesNotStopThePoints) {
   const BundleResult expected = Adjust(PointsOnly());
   made_.map.MutableObject(ids_[0]).ellipsoid.half_axes.x() =
       std::numeric_limits<double>::quiet_NaN();
+  const CapturedLog log;
   const BundleResult result = Adjust(Window());
   ASSERT_TRUE(result.is_usable);
   EXPECT_EQ(result.failed_objects, ids_);
   EXPECT_TRUE(result.ellipsoids.empty());
   EXPECT_EQ(result.positions, expected.positions);
+  EXPECT_NE(log.text().find("bundle adjustment of"), std::string::npos) << log.text();
+  EXPECT_NE(log.text().find("failed"), std::string::npos) << log.text();
 }
 
 TEST_F(ObjectBundle, CancelledAtOnceItKeepsTheShapes) {

@@ -50,9 +50,9 @@ class StartNextStageTest : public testing::Test {
     }
     return correction;
   }
-  RecordingStages Start(const MapMessage& message) {
+  RecordingStages Start(const MapMessage& message, bool is_applied = true) {
     RecordingStages stages;
-    StartNextStage(message, options_, mapper_, published_, stages);
+    StartNextStage(message, is_applied, options_, mapper_, published_, stages);
     return stages;
   }
 
@@ -79,8 +79,16 @@ TEST_F(StartNextStageTest, AdjustsTheMapAfterALoop) {
 }
 
 TEST_F(StartNextStageTest, NothingFollowsTheAdjustment) {
-  const RecordingStages stages = Start(Correction(false));
-  EXPECT_TRUE(stages.sought.empty());
+  for (const bool is_applied : {true, false}) {
+    const RecordingStages stages = Start(Correction(false), is_applied);
+    EXPECT_TRUE(stages.sought.empty());
+    EXPECT_TRUE(stages.adjusted.empty());
+  }
+}
+
+TEST_F(StartNextStageTest, SeeksALoopAgainThatWasDropped) {
+  const RecordingStages stages = Start(Correction(true), false);
+  EXPECT_EQ(stages.sought, std::vector<KeyframeId>{KeyframeId(0)});
   EXPECT_TRUE(stages.adjusted.empty());
 }
 

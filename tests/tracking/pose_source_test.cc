@@ -285,7 +285,17 @@ TEST_F(ByObjects, AreAmbiguousInTwoEqualRooms) {
   const Rigid3 aside(Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0});
   std::vector<MadeObject> other = Moved(aside, room_);
   AddRoom(map, sensor_, other, aside);
-  EXPECT_FALSE(Find(map, SeeRoom(sensor_, room_, truth_)));
+  const Frame frame = SeeRoom(sensor_, room_, truth_);
+  EXPECT_FALSE(Find(map, frame));
+  EXPECT_FALSE(Find(map, WithoutDepth(frame)));
+}
+
+TEST_F(ByObjects, FindThePoseWithoutDepth) {
+  Map map;
+  AddRoom(map, sensor_, room_);
+  const auto found = Find(map, WithoutDepth(SeeRoom(sensor_, room_, truth_)));
+  ASSERT_TRUE(found);
+  EXPECT_LT(Error(*found, truth_), 0.01);
 }
 
 TEST_F(ByObjects, RefuseAnUnknownArrangement) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "map/spanning_tree.h"
 #include "objects/made_objects.h"
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"
@@ -235,6 +236,48 @@ TEST_F(RefinePosesTest, ObjectsTakePart) {
   made_.map.MutableObject(other).state = ObjectState::kCandidate;
   made_.map.EraseObject(report_.objects[1]);
   EXPECT_LT(Distance(Refined(), wrong_), 1e-12);
+}
+
+// Since it was culled, nothing has adjusted its pose.
+TEST_F(RefinePosesTest, TheFrameOfACulledKeyframeIsRefinedToo) {
+  auto frame = std::make_shared<Frame>(*report_.frame);
+  frame->id = FrameId(15);  // later than the keyframes of the map
+  report_.frame = frame;
+  report_.tracked.frame = frame->id;
+  const KeyframeId culled = made_.map.AddKeyframe(frame, wrong_);
+  SetParent(made_.map, culled, KeyframeId(0));
+  made_.map.CullKeyframe(culled);
+  ASSERT_EQ(made_.map.KeyframeOfFrame(report_.tracked.frame), culled);
+  std::vector<TrackedFrame> frames = {report_.tracked};
+  const std::vector<RememberedFrame> remembered = {Remember(report_, objects_)};
+  Refine(remembered, frames);
+  ASSERT_EQ(frames[0].pose->reference, culled);
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].pose), truth_), 1e-4);
+
+  // Without enough landmarks it keeps the pose of the keyframe and not that of tracking.
+  ForgetLandmarksAfter(29);
+  frames = {report_.tracked};
+  Refine({Remember(report_, objects_)}, frames);
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].pose), wrong_), 1e-12);
+}
+
+TEST_F(RefinePosesTest, OnceItIsCancelledTheOtherFramesKeepTheirPoses) {
+  Track(wrong_);
+  std::vector<TrackedFrame> frames(2, report_.tracked);
+  frames[1].frame = FrameId(6);
+  std::vector<RememberedFrame> remembered(2, Remember(report_, objects_));
+  remembered[1].frame.id = FrameId(6);
+  Cancellation cancellation;
+  std::vector<int> progress;
+  const ObjectIndex index(made_.map, world_->sensor().camera);
+  RefinePoses(made_.map, {world_->sensor(), options_, objects_, index}, remembered, frames,
+              &cancellation, [&](int done, int most) {
+                progress.insert(progress.end(), {done, most});
+                cancellation.Request();
+              });
+  EXPECT_EQ(progress, (std::vector<int>{1, 2}));
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].pose), truth_), 1e-4);
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[1].pose), wrong_), 1e-12);
 }
 
 TEST_F(RefinePosesTest, AFrameWithoutAPoseStaysWithoutOne) {

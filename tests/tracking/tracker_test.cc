@@ -1047,6 +1047,22 @@ TEST_F(LostMonocularTracker, TheFramesBeforeTheIslandGetPosesAtTheEnd) {
   }
 }
 
+// The island stays young because nothing new is seen.
+TEST_F(LostMonocularTracker, TheFirstFramesGetPosesAlthoughTheCameraThenStandsStill) {
+  const uint32_t last = WaitForMap();
+  made_ = MakeSyntheticMap(world_, {last, last + 2, last + 4});
+  map_ = Publish(made_.map);
+  for (uint32_t i = 0; i < 310; ++i) {
+    ASSERT_EQ(Process(FrameOf(world_, 100 + i, last + 1)).report.tracked.state,
+              TrackingState::kTracked);
+  }
+  const std::vector<TrackedFrame> early = tracker_.LocaliseEarlyFrames(made_.map);
+  ASSERT_EQ(early.size(), 300u);
+  for (uint32_t i = 0; i < last; ++i) {
+    EXPECT_EQ(early[i].frame, FrameId(i));
+  }
+}
+
 TEST_F(LostMonocularTracker, WithoutWordsAGrownMapIsNotGivenUp) {
   EXPECT_EQ(BeginAndLose(12, 60), 0u);
 }
