@@ -141,6 +141,18 @@ std::string ReadSome(std::istream& in, uint64_t count) {
   return bytes;
 }
 
+// The size of the file that was opened. The file of this name may be another one by now.
+uint64_t SizeOf(std::istream& in, const fs::path& path) {
+  const std::streampos position = in.tellg();
+  in.seekg(0, std::ios::end);
+  const std::streamoff size = in.tellg();
+  in.seekg(position);
+  if (!in || size < 0) {
+    throw InputError(path.string() + ": cannot be read");
+  }
+  return static_cast<uint64_t>(size);
+}
+
 // Returns the version of the format.
 uint32_t ReadPrefix(std::istream& in, const fs::path& path) {
   const std::string prefix = ReadSome(in, kPrefixBytes);
@@ -156,9 +168,10 @@ uint32_t ReadPrefix(std::istream& in, const fs::path& path) {
   return version;
 }
 
-// Compares the checksum of `size` bytes, of which the prefix has been read, with the one that
-// follows them.
-void CheckChecksum(std::istream& in, uint64_t size, uint32_t version, const fs::path& path) {
+// Compares the checksum of the first `size` bytes with the checksum that follows them. The prefix
+// has already been read.
+void CheckChecksum(std::istream& in, uint64_t size, uint32_t version, const fs::path& path,
+                   const Cancellation* cancellation) {
   constexpr uint64_t kBlock = 1 << 20;
   uint32_t checksum = AddToChecksum(0, Prefix(version));
   for (uint64_t left = size - kPrefixBytes; left > 0;) {
@@ -180,15 +193,16 @@ StoredMap Read(const fs::path& path, const MapSettings* expected,
                std::shared_ptr<const Vocabulary> vocabulary, const Cancellation* cancellation) {
   std::ifstream in = Open(path);
   const uint32_t version = ReadPrefix(in, path);
-  const uint64_t bytes = fs::file_size(path);
+  const uint64_t bytes = SizeOf(in, path);
   if (bytes < kPrefixBytes + kChecksumBytes) {
     throw InputError(path.string() + ": is cut off");
   }
   const uint64_t size = bytes - kChecksumBytes;
-  CheckChecksum(in, size, version, path);
+  CheckChecksum(in, size, version, path, cancellation);
   in.clear();
   in.seekg(kPrefixBytes);
-  return ParseMap(in, size - kPrefixBytes, version, path.string(), expected, std::move(vocabulary));
+  return ParseMap(in, size - kPrefixBytes, version, path.string(), expected, std::move(vocabulary),
+                  cancellation);
 }
 
 }  // namespace

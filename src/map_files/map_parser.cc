@@ -160,8 +160,9 @@ MapTables ReadTables(const MapHeader& header, RecordReader& records) {
 }  // namespace
 
 StoredMap ParseMap(std::istream& in, uint64_t size, uint32_t version, const std::string& name,
-                   const MapSettings* expected, std::shared_ptr<const Vocabulary> vocabulary) {
-  RecordReader records(in, size, name);
+                   const MapSettings* expected, std::shared_ptr<const Vocabulary> vocabulary,
+                   const Cancellation* cancellation) {
+  RecordReader records(in, size, name, cancellation);
   ByteReader& first = records.Record();
   MapHeader header = ReadHeader(first);
   header.version = version;

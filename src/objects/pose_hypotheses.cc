@@ -224,7 +224,7 @@ class Proposer {
     constexpr double kLeast = 1.0;  // below it the centres are far from their expected positions
     double agreement = 0.0;
     double distances = 0.0;  // weighted by the agreements
-    for (const Seen& seen : seen_) {
+    for (const DetectionCandidates& seen : seen_) {
       double best = 0.0;
       double distance = 0.0;
       for (const Candidate& candidate : seen.candidates) {

@@ -122,7 +122,8 @@ TEST(DriftBudget, WithoutDepthTheDepthOfTheSceneIsTheMetre) {
   EXPECT_GT(depth, 0.5);
   ApplyCorrection(made.map, ScalingOf(made.map, 50.0), sensor.levels);
   EXPECT_NEAR(MetreOf(made.map, KeyframeId(3), sensor), 50.0 * depth, 1e-6);
-  for (const auto& [id, landmark] : made.map.Snapshot().landmarks()) {
+  const Map before = made.map.Snapshot();
+  for (const auto& [id, landmark] : before.landmarks()) {
     made.map.EraseLandmark(id);
   }
   EXPECT_EQ(MetreOf(made.map, KeyframeId(3), sensor), 1.0) << "nothing is known";

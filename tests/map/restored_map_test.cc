@@ -173,7 +173,7 @@ TEST(RestoreMap, RefusesTablesThatViolateTheInvariants) {
         std::vector<Covisible>& edges = t.keyframes.Mutable(KeyframeId(1)).covisible;
         std::swap(edges[0], edges[1]);
       },
-      {"keyframe 1", "out of order"});
+      {"keyframe", "edge"});
   ExpectRefusal([](MapTables& t) { t.keyframes.Mutable(KeyframeId(0)).parent = KeyframeId(4); },
                 {"ancestor"});
   ExpectRefusal([](MapTables& t) { t.objects.Mutable(ObjectId(0)).votes["cup"] += 1.0; },
@@ -272,6 +272,7 @@ TEST(RestoreMap, TheTimeForALongChainIsProportionalToItsLength) {
   for (uint32_t i = 0; i < kHalf; ++i) {
     Keyframe keyframe;
     keyframe.frame = MakeFrame(i, 0);
+    keyframe.objects.resize(keyframe.frame->detections.size());
     keyframe.parent = i > 0 ? KeyframeId(i - 1) : KeyframeId();
     tables.keyframes.Put(KeyframeId(i), std::move(keyframe));
   }

@@ -365,7 +365,8 @@ TEST_F(MapFileTest, ReadingCanBeCancelled) {
   EXPECT_THROW(ReadMap(path_, MadeSettings(), nullptr, &cancellation), ReadingCancelled);
   constexpr size_t kPrefix = 14;
   std::istringstream records(bytes.substr(kPrefix, bytes.size() - kPrefix - 4));
-  EXPECT_THROW(ParseMap(records, records.str().size(), "map", nullptr, nullptr, &cancellation),
+  EXPECT_THROW(ParseMap(records, records.str().size(), kMapVersion, "map", nullptr, nullptr,
+                        &cancellation),
                ReadingCancelled);
 }
 
