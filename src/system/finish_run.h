@@ -21,8 +21,9 @@ namespace hullslam {
 void FinishMap(Mapper& mapper, const Cancellation* cancellation = nullptr,
                const ProgressCallback& on_progress = {});
 
-// Finishes the map, then the poses of the frames. `remembered` is a part of the `frames`, which are
-// all frames of the run in order. `on_map` and `on_poses` are told the progress of the two parts.
+// Finishes the map, then the poses of the frames. `frames` are all frames of the run in order;
+// `remembered` are those whose poses can be computed again. `on_map` and `on_poses` are told the
+// progress of the two parts.
 void FinishRun(Pipeline& pipeline, const Sensor& sensor, const SystemOptions& options,
                std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames,
                const Cancellation* cancellation, const ProgressCallback& on_map,
