@@ -189,9 +189,8 @@ void PrintClasses(const MaskStatistics& counts) {
 
 void PrintCounts(const CheckMasksArguments& arguments, const MaskSource& source,
                  const MaskStatistics& counts) {
-  static constexpr int kWidth = 24;  // more than the longest name has
   const auto print = [](const std::string& name, size_t count) {
-    Print("{:<{}}{:>10}\n", name, kWidth, count);
+    Print("{:<24}{:>10}\n", name, count);
   };
   Print("{} ({})\n", arguments.masks.string(), source.format());
   print("frames", counts.frames);
