@@ -77,7 +77,8 @@ void AddOverrides(CLI::App& app, const std::string& name, const std::string& mea
   app.add_option(name, overrides, meaning)
       ->type_name("KEY=VALUE")
       ->take_all()
-      ->expected(1);  // else it would also take the positional arguments after it
+      ->expected(1)
+      ->allow_extra_args(false);  // else it would also take the positional arguments after it
 }
 
 void AddOverrides(CLI::App& app, std::vector<std::string>& overrides) {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <set>
 #include <regex>
+#include <set>
 #include <string>
 #include <vector>
 

@@ -124,7 +124,8 @@ TEST_F(RgbdMap, AMapThatCannotBeSavedHidesNoOtherResults) {
   Save();
   const FileSizeLimit limit(fs::file_size(map_) - 1);  // all other files are smaller
   fs::remove(map_);
-  const ProgramResult result = Run({"--save-map", map_});
+  const ProgramResult result =
+      RunProgram("rgbd_tum", {path_, "--output", output_, "--save-map", map_});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.output.find("12 frames: 12 tracked"), std::string::npos) << result.output;
   EXPECT_NE(result.errors.find(map_.string() + ": cannot be written: File too large"),

@@ -20,6 +20,7 @@
 #include "map/invariants.h"
 #include "map/islands.h"
 #include "map/random_edits.h"
+#include "map/spanning_tree.h"
 #include "map_files/made_map_file.h"
 #include "map_files/map_parser.h"
 #include "map_files/map_records.h"
@@ -225,6 +226,7 @@ TEST_F(MapFileTest, LabelsAreMadePrintable) {
   const auto next = FullFrame(1, 2.0);
   next->detections = {frame->detections[1]};
   const KeyframeId b = map.AddKeyframe(next, {});
+  SetParent(map, b, a);
   const ObjectId object = map.AddObject();
   map.AddObservation(object, a, 0);
   map.AddObservation(object, b, 0);
@@ -365,9 +367,9 @@ TEST_F(MapFileTest, ReadingCanBeCancelled) {
   EXPECT_THROW(ReadMap(path_, MadeSettings(), nullptr, &cancellation), ReadingCancelled);
   constexpr size_t kPrefix = 14;
   std::istringstream records(bytes.substr(kPrefix, bytes.size() - kPrefix - 4));
-  EXPECT_THROW(ParseMap(records, records.str().size(), kMapVersion, "map", nullptr, nullptr,
-                        &cancellation),
-               ReadingCancelled);
+  EXPECT_THROW(
+      ParseMap(records, records.str().size(), kMapVersion, "map", nullptr, nullptr, &cancellation),
+      ReadingCancelled);
 }
 
 // ---- writing

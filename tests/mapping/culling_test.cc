@@ -73,6 +73,7 @@ TEST_F(RecentLandmarksTest, AreErasedIfTheirWeightIsSmallAfterTwoKeyframes) {
 
 TEST_F(RecentLandmarksTest, OfAnotherIslandStayAndAreNotCheckedAgain) {
   const LandmarkId id = Add(1, 1, 100, 1);
+  DetachFromTree(map_, KeyframeId(4));
   map_.MoveToIsland(KeyframeId(4), map_.BeginIsland());
   ExpectKept(id, 4, false, "the camera cannot see it any more");
   ExpectCulled(id, 3, "the camera could see it");
