@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "optim/keypoint_precision.h"
+#include "estimators/keypoint_precision.h"
 
 #include <algorithm>
 #include <cmath>
