@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "files/staged_file.h"
@@ -212,9 +214,9 @@ void WriteMap(const fs::path& path, const Map& map, const MapSettings& settings)
 
 StoredMap ReadMap(const fs::path& path) { return Read(path, nullptr, nullptr); }
 
-Map ReadMap(const fs::path& path, const MapSettings& expected,
-            std::shared_ptr<const Vocabulary> vocabulary) {
-  return Read(path, &expected, std::move(vocabulary)).map;
+Map ReadMap(const fs::path& path, const SystemOptions& options) {
+  const MapSettings expected = MapSettingsOf(options);
+  return Read(path, &expected, options.vocabulary).map;
 }
 
 }  // namespace hullslam

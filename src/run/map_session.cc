@@ -70,7 +70,7 @@ SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& option
   start.session_name = SessionName(arguments.sequence);
   start.localization_only = arguments.localization;
   if (!arguments.load_map.empty()) {
-    start.map = ReadMap(arguments.load_map, MapSettingsOf(options), options.vocabulary);
+    start.map = ReadMap(arguments.load_map, options);
   }
   return start;
 }

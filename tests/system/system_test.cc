@@ -17,6 +17,7 @@
 #include "hullslam/util/error.h"
 #include "map/invariants.h"
 #include "support/expect_error.h"
+#include "support/made_vocabulary.h"
 #include "support/temporary_folder.h"
 #include "system/prefetcher.h"
 
@@ -243,7 +244,7 @@ TEST_P(SystemTest, BeginsWithTheMapOfAnEarlierSession) {
     first.Finish();
     WriteMap(path, *first.map(), MapSettingsOf(Wall::Options()));
   }
-  SystemStart start{.map = ReadMap(path, MapSettingsOf(Wall::Options())), .session_name = "second"};
+  SystemStart start{.map = ReadMap(path, Wall::Options()), .session_name = "second"};
   ASSERT_EQ(start.map.sessions(), (std::vector<Session>{{"first", FrameId(0)}}));
   const FrameId next = start.map.NextFrame();
   const size_t landmarks = start.map.landmarks().size();
@@ -260,6 +261,35 @@ TEST_P(SystemTest, BeginsWithTheMapOfAnEarlierSession) {
     EXPECT_TRUE(second.trajectory().empty());
     second.Reset();
   }
+}
+
+// Words can be compared if the vocabularies have the same content, in one object or in two.
+TEST(System, VocabulariesAreComparedByTheirContent) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "map";
+  SystemOptions options = Wall::Options();
+  options.vocabulary = SharedVocabulary();
+  {
+    System first(options, PipelineKind::kSequential);
+    for (int i = 0; i < 6; ++i) {
+      TrackFrame(first, i);
+    }
+    first.Finish();
+    WriteMap(path, *first.map(), MapSettingsOf(options));
+  }
+  const auto begin = [](const SystemOptions& with, Map map) {
+    System system(with, PipelineKind::kSequential, {.map = std::move(map)});
+    return TrackFrame(system, 2).state;
+  };
+  SystemOptions again = options;
+  again.vocabulary = SharedVocabulary();
+  ASSERT_NE(again.vocabulary, options.vocabulary);
+  EXPECT_EQ(begin(again, ReadMap(path, options)), TrackingState::kTracked);
+  again.vocabulary = SharedVocabulary(3, 3);
+  ExpectInputError([&] { begin(again, ReadMap(path, options)); }, {"vocabulary", "the same"});
+  again.vocabulary = nullptr;
+  ExpectInputError([&] { begin(again, ReadMap(path, options)); }, {"vocabulary", "not set"});
+  ExpectInputError([&] { begin(options, ReadMap(path).map); }, {"ReadMap(path, options)"});
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SystemTest,

@@ -57,8 +57,8 @@ struct ObjectCounts {
 // has more about threads.
 class System {
  public:
-  // Throws InputError if SystemOptions::Validate does, and CheckError for localization without a
-  // map. With a map of earlier sessions, frame and keyframe ids go on after the largest of the map,
+  // Throws InputError if SystemOptions::Validate does and for a map whose vocabulary has another
+  // content than that of the options, and CheckError for localization without a map. With a map of earlier sessions, frame and keyframe ids go on after the largest of the map,
   // and time stamps may begin anywhere.
   System(const SystemOptions& options, PipelineKind kind, SystemStart start = {});
   ~System();
