@@ -19,8 +19,8 @@ std::optional<Rigid3> FindPose(const Map& map, IslandId island, const TrackedFra
   if (keyframe && IslandOf(map, *keyframe) == island) {
     return map.CamFromWorld(*keyframe);
   }
-  if (frame.pose && IslandOf(map, frame.pose->reference) == island) {
-    return map.CamFromWorld(*frame.pose);
+  if (frame.from_keyframe && IslandOf(map, frame.from_keyframe->reference) == island) {
+    return map.CamFromWorld(*frame.from_keyframe);
   }
   return std::nullopt;
 }
@@ -46,7 +46,7 @@ void LoseFramesElsewhere(const Map& map, std::span<TrackedFrame> frames) {
   for (TrackedFrame& frame : frames) {
     if (frame.state == TrackingState::kTracked && !FindPose(map, island, frame)) {
       frame.state = TrackingState::kLost;
-      frame.pose.reset();
+      frame.from_keyframe.reset();
     }
   }
 }

@@ -64,7 +64,7 @@ std::vector<TrackedFrame> EarlyFrames::Localise(const Map& map, const TrackingCo
       const PoseEstimate& estimate = found->tracking.estimate;
       before.frame = frame;
       before.cam_from_world = estimate.cam_from_world;
-      tracked.pose = map.RelativeTo(found->tracking.reference, estimate.cam_from_world);
+      tracked.from_keyframe = map.RelativeTo(found->tracking.reference, estimate.cam_from_world);
       tracked.cam_from_world = estimate.cam_from_world;
       tracked.inliers = estimate.inliers;
       localised.push_back(tracked);

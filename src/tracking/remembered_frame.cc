@@ -77,11 +77,11 @@ void RefinePoses(const Map& map, const TrackingContext& context,
                  std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames) {
   for (const RememberedFrame& seen : remembered) {
     TrackedFrame& tracked = frames[seen.frame.id.value - frames.front().frame.value];
-    if (!tracked.pose) {
+    if (!tracked.from_keyframe) {
       continue;
     }
     PoseEstimate start;
-    start.cam_from_world = map.CamFromWorld(*tracked.pose);
+    start.cam_from_world = map.CamFromWorld(*tracked.from_keyframe);
     start.landmarks = Newest(map, seen.landmarks);
     const PoseObjects objects =
         MakePoseObjects(map, context.sensor, seen.frame, start.cam_from_world,
@@ -90,7 +90,8 @@ void RefinePoses(const Map& map, const TrackingContext& context,
         RefinePose(seen.frame, map, context, objects.objects, std::move(start));
     if (refined.EffectiveInliers() >= context.options.min_inliers &&
         refined.inliers >= kMinInlierShare * static_cast<double>(seen.landmarks.size())) {
-      tracked.pose = map.RelativeTo(tracked.pose->reference, refined.cam_from_world);
+      tracked.from_keyframe =
+          map.RelativeTo(tracked.from_keyframe->reference, refined.cam_from_world);
     }
   }
 }

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "hullslam/frame/mask_image.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/map_files/vocabulary_file.h"
 #include "hullslam/sequences/tum_sequence.h"

@@ -109,7 +109,7 @@ TEST_P(PipelineStartTest, WithoutASourceARunStaysLostAndChangesNothing) {
       {.map = first.Snapshot(), .session = {.name = "second", .first_frame = first.NextFrame()}});
   for (const TrackedFrame& frame : TrackAgain(*pipeline, first.NextFrame())) {
     EXPECT_EQ(frame.state, TrackingState::kLost);
-    EXPECT_FALSE(frame.pose);
+    EXPECT_FALSE(frame.from_keyframe);
   }
   pipeline->Finish();
   EXPECT_EQ(Dump(*pipeline->map()), Dump(first));

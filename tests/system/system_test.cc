@@ -56,7 +56,7 @@ class Wall {
     return {rotation, -(rotation * center)};
   }
 
-  // Colour image, channels in the order red, green, blue.
+  // Colour image, channels in the order blue, green, red.
   cv::Mat Photograph(int index) const {
     const PinholeCamera camera = Options().camera;
     Eigen::Matrix3d calibration = Eigen::Matrix3d::Identity();
@@ -177,10 +177,10 @@ TEST_P(SystemTest, FinishComputesThePosesOfFramesAgain) {
   int changed = 0;
   for (size_t i = 0; i < before.size(); ++i) {
     const TrackedFrame& after = system.frames()[i];
-    ASSERT_EQ(after.pose.has_value(), before[i].pose.has_value());
+    ASSERT_EQ(after.from_keyframe.has_value(), before[i].from_keyframe.has_value());
     EXPECT_EQ(after.inliers, before[i].inliers);
-    changed += after.pose && after.pose->cam_from_reference.translation !=
-                                 before[i].pose->cam_from_reference.translation;
+    changed += after.from_keyframe && after.from_keyframe->cam_from_reference.translation !=
+                                          before[i].from_keyframe->cam_from_reference.translation;
   }
   EXPECT_GT(changed, 0);
 }
@@ -485,18 +485,18 @@ TEST(System, MasksThatCannotBeUsedAreRefused) {
 }
 
 // The features of the first keyframe, which is made from one image.
-FrameFeatures FeaturesOf(const cv::Mat& image, bool rgb_order) {
+FrameFeatures FeaturesOf(const cv::Mat& image, std::optional<bool> rgb_order) {
   SystemOptions options = Wall::Options();
-  options.rgb_order = rgb_order;
+  options.rgb_order = rgb_order.value_or(options.rgb_order);
   System system(options, PipelineKind::kSequential);
   system.Track(1.0, image, Wall::Depth(0));
   return system.map()->keyframes().At(KeyframeId(0)).frame->features;
 }
 
 TEST(System, TheOrderOfColoursFollowsTheOption) {
-  const cv::Mat rgb = TheWall().Photograph(0);
-  cv::Mat bgr;
-  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  const cv::Mat bgr = TheWall().Photograph(0);
+  cv::Mat rgb;
+  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
   cv::Mat rgba;
   cv::cvtColor(rgb, rgba, cv::COLOR_RGB2RGBA);
   cv::Mat bgra;
@@ -511,6 +511,7 @@ TEST(System, TheOrderOfColoursFollowsTheOption) {
   EXPECT_EQ(FeaturesOf(bgra, false).descriptors, expected);
   EXPECT_EQ(FeaturesOf(grey, false).descriptors, expected);
   EXPECT_NE(FeaturesOf(bgr, true).descriptors, expected);
+  EXPECT_EQ(FeaturesOf(bgr, std::nullopt).descriptors, expected) << "as cv::imread gives them";
 }
 
 TEST(System, TrackAfterFinishIsRefused) {
@@ -531,6 +532,25 @@ TEST(System, SixteenBitDepthIsScaledByTheOption) {
   system.map()->landmarks().ForEach([](LandmarkId, const Landmark& landmark) {
     EXPECT_NEAR(landmark.position.z(), kWallDistance, 1e-3);
   });
+}
+
+TEST(System, AMonocularCameraNeedsNoDepthImage) {
+  SystemOptions options = Wall::Options();
+  options.sensor = SensorKind::kMonocular;
+  System monocular(options, PipelineKind::kSequential);
+  EXPECT_EQ(monocular.Track(1.0, TheWall().Photograph(0)).state, TrackingState::kNotInitialized);
+  System rgbd(Wall::Options(), PipelineKind::kSequential);
+  ExpectInputError([&] { rgbd.Track(1.0, TheWall().Photograph(0)); },
+                   {"no depth image", "SensorKind::kMonocular"});
+}
+
+TEST(System, AFrameHasThePoseOfItsCamera) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  for (int i = 0; i < 8; ++i) {
+    const TrackedFrame frame = TrackFrame(system, i);
+    const Rigid3 expected = Inverse(Wall::CamFromWorld(i));
+    EXPECT_LT((frame.world_from_cam().translation - expected.translation).norm(), 0.01) << i;
+  }
 }
 
 TEST(System, TheCallbackGetsAReportOfEachFrame) {

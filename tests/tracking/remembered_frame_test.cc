@@ -36,7 +36,7 @@ class RefinePosesTest : public ::testing::Test {
   }
   // As if this pose had been found.
   void Track(const Rigid3& cam_from_world) {
-    report_.tracked.pose = made_.map.RelativeTo(KeyframeId(0), cam_from_world);
+    report_.tracked.from_keyframe = made_.map.RelativeTo(KeyframeId(0), cam_from_world);
   }
   void Refine(const std::vector<RememberedFrame>& remembered,
               std::vector<TrackedFrame>& frames) const {
@@ -50,9 +50,9 @@ class RefinePosesTest : public ::testing::Test {
     frames.push_back(report_.tracked);
     const std::vector<RememberedFrame> remembered = {Remember(report_, objects_)};
     Refine(remembered, frames);
-    EXPECT_FALSE(frames[0].pose.has_value());
-    EXPECT_EQ(frames[1].pose->reference, KeyframeId(0));
-    return made_.map.CamFromWorld(*frames[1].pose);
+    EXPECT_FALSE(frames[0].from_keyframe.has_value());
+    EXPECT_EQ(frames[1].from_keyframe->reference, KeyframeId(0));
+    return made_.map.CamFromWorld(*frames[1].from_keyframe);
   }
   // Moves the whole map except for the first keyframe, as a loop or an adjustment could.
   void MoveLandmarks(const Eigen::Vector3d& shift) {
@@ -139,7 +139,7 @@ TEST_F(RefinePosesTest, AFrameFollowsItsLandmarks) {
   const Eigen::Vector3d shift(0.04, 0.02, -0.03);
   MoveLandmarks(shift);
   const Rigid3 moved = truth_ * Rigid3{Eigen::Quaterniond::Identity(), -shift};
-  EXPECT_GT(Distance(made_.map.CamFromWorld(*report_.tracked.pose), moved), 0.05);
+  EXPECT_GT(Distance(made_.map.CamFromWorld(*report_.tracked.from_keyframe), moved), 0.05);
   EXPECT_LT(Distance(Refined(), moved), 1e-4);
 }
 
@@ -238,11 +238,11 @@ TEST_F(RefinePosesTest, ObjectsTakePart) {
 }
 
 TEST_F(RefinePosesTest, AFrameWithoutAPoseStaysWithoutOne) {
-  report_.tracked.pose.reset();
+  report_.tracked.from_keyframe.reset();
   std::vector<TrackedFrame> frames = {report_.tracked};
   const std::vector<RememberedFrame> remembered = {Remember(report_, objects_)};
   Refine(remembered, frames);
-  EXPECT_FALSE(frames[0].pose.has_value());
+  EXPECT_FALSE(frames[0].from_keyframe.has_value());
 }
 
 }  // namespace
