@@ -17,6 +17,12 @@ struct FileContent {
   std::string content;
 };
 
+// The program that writes a run, and whether it may replace a run of another program.
+struct OutputOwner {
+  std::string program = {};  // empty: any
+  bool may_replace_others = false;
+};
+
 // The folder that a run writes its files to. The files of a run are put in place together at its
 // end, and the files of the former run are removed, so the folder never mixes two runs. A run is
 // known by its index: a JSON file with the names of all its other files in the list "files".
@@ -32,10 +38,12 @@ class OutputFolder {
   // ignored.
   //
   // Throws InputError if the folder is inside an input folder or contains an input; if it contains
-  // files that are not from a former run with an index of the same name; or if files cannot be
-  // written there. Then nothing is changed. Files of the names that KeptNames() gives do no harm.
+  // files that are not from a former run with an index of the same name; if the former run is of
+  // another program, which its index names in provenance.program, unless the owner may replace it;
+  // or if files cannot be written there. Then nothing is changed. Files of the names that
+  // KeptNames() gives do no harm.
   OutputFolder(const std::filesystem::path& folder, std::string index,
-               std::span<const std::filesystem::path> inputs);
+               std::span<const std::filesystem::path> inputs, const OutputOwner& owner = {});
   // Removes the files that were not put in place.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;

@@ -87,15 +87,11 @@ Json ToJson(const MapSummary& summary) {
 }
 
 Json ToJson(const ProvenanceSummary& summary) {
-  return {{"version", OrNull(summary.version)},
-          {"git", OrNull(summary.git)},
-          {"settings_hash", OrNull(summary.settings_hash)},
-          {"preset", OrNull(summary.preset)},
-          {"seed", summary.seed},
-          {"pipeline", summary.pipeline},
-          {"masks_format", OrNull(summary.masks_format)},
-          {"sequence", OrNull(summary.sequence)},
-          {"interrupted", summary.interrupted}};
+  return {{"program", OrNull(summary.program)},   {"version", OrNull(summary.version)},
+          {"git", OrNull(summary.git)},           {"settings_hash", OrNull(summary.settings_hash)},
+          {"preset", OrNull(summary.preset)},     {"seed", summary.seed},
+          {"pipeline", summary.pipeline},         {"masks_format", OrNull(summary.masks_format)},
+          {"sequence", OrNull(summary.sequence)}, {"interrupted", summary.interrupted}};
 }
 
 }  // namespace

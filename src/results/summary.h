@@ -81,6 +81,7 @@ struct MapSummary {
 };
 
 struct ProvenanceSummary {
+  std::optional<std::string> program = std::nullopt;  // "rgbd_tum"
   std::optional<std::string> version = std::nullopt;
   std::optional<std::string> git = std::nullopt;
   std::optional<std::string> settings_hash = std::nullopt;

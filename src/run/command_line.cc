@@ -28,6 +28,11 @@ void AddVersionAndExitCodes(CLI::App& app, const std::string& done, const std::s
   app.footer("Exit codes: 0 " + done + ", 1 " + failed + ", 2 " + bad_input + ".");
 }
 
+void AddOverwriteFlag(CLI::App& app, bool& overwrite) {
+  app.add_flag("--overwrite", overwrite,
+               "also replace a run of another program in the folder of --output");
+}
+
 void AddDebugFlag(CLI::App& app) {
   app.add_flag_callback(
       "--debug",

@@ -23,6 +23,9 @@ void AddVersionAndExitCodes(CLI::App& app, const std::string& done = "done",
                             const std::string& failed = "the program failed",
                             const std::string& bad_input = "bad usage or input");
 
+// Adds --overwrite, without which a run does not replace one of another program.
+void AddOverwriteFlag(CLI::App& app, bool& overwrite);
+
 // Adds --debug, which sends the library's log to stderr, including its debug messages on what
 // happens to each object.
 void AddDebugFlag(CLI::App& app);

@@ -47,8 +47,9 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
   AddOverrides(app, arguments.overrides);
   app.add_option("--output", arguments.output,
-                 "folder for the result files; replaces the former run in it")
+                 "folder for the result files; replaces the former run of this program in it")
       ->capture_default_str();
+  AddOverwriteFlag(app, arguments.overwrite);
   app.add_option("--save-map", arguments.save_map,
                  "file for the map at the end of the run; replaces an earlier one");
   auto* const load_map = app.add_option(

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -224,6 +225,7 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
       summary.initialisation->joined_islands = map->islands_joined();
     }
   }
+  summary.provenance.program = arguments.program;
   summary.provenance.version = HULLSLAM_VERSION;
   summary.provenance.git = HULLSLAM_GIT;
   summary.provenance.settings_hash = HashSettings(options);
@@ -270,6 +272,19 @@ std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
           arguments.associations, arguments.vocabulary, arguments.load_map};
 }
 
+void PrintInput(const RunArguments& arguments, std::span<const std::string> notes,
+                const SequenceMasks& masks) {
+  if (arguments.quiet) {
+    return;
+  }
+  for (const std::string& note : notes) {
+    Print("{}\n", note);
+  }
+  if (masks.format()) {
+    Print("{}\n", masks.Describe());
+  }
+}
+
 std::string DescribeInterruption(const RunResult& result, const ImageSequence& sequence) {
   return fmt::format(
       "the run was interrupted after {} of {} frames; the results so far were written",
@@ -278,7 +293,8 @@ std::string DescribeInterruption(const RunResult& result, const ImageSequence& s
 
 }  // namespace
 
-int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence) {
+int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence,
+            std::span<const std::string> notes) {
   options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
   options.seed = arguments.seed;
   // Finds images of a wrong type or size early.
@@ -291,13 +307,12 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   CheckSavedMap(arguments);
   SystemStart start = LoadStart(arguments, options);
   const size_t earlier_sessions = start.map.sessions().size();
-  OutputFolder output(arguments.output, "summary.json", InputsOf(arguments));
+  OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
+                      {arguments.program, arguments.overwrite});
   WarnOfImplausibleDepth(sequence.frames.front().depth, first.depth, options.depth);
   WarnOfUnknownClasses(options.tracking, options.objects, masks);
   WarnOfLastFrame(arguments.selection, sequence);
-  if (!arguments.quiet && masks.format()) {
-    Print("{}\n", masks.Describe());
-  }
+  PrintInput(arguments, notes, masks);
   System system(options, ChoosePipeline(arguments), std::move(start));
   const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system);
   if (result.was_interrupted && result.given == 0) {

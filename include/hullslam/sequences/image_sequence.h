@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
@@ -47,6 +48,8 @@ struct ImageSequence {
   // The true trajectory, if its file must not be compared with that of a run as it is, because its
   // stamps, its axes or its format are others.
   std::optional<Trajectory> converted_groundtruth;
+  // How the time stamps were found, for the user; empty if a list of the data set has them.
+  std::string stamps_note = {};
   // How a frame is decoded: in order, by one thread at a time.
   FrameLoader load = LoadFrame;
 };

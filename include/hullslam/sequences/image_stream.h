@@ -13,6 +13,7 @@ namespace hullslam {
 struct ImageStreamOptions {
   // The time stamps are index / frames_per_second. Absent: those of the video; 30 for a folder.
   std::optional<double> frames_per_second = {};
+  double stamp_offset = 0.0;  // s, added to all time stamps
   FrameSelection selection = {};
 };
 
@@ -22,7 +23,6 @@ struct ImageStream {
   int width = 0;  // of the first image, px
   int height = 0;
   double frames_per_second = 0.0;  // the mean over all frames
-  std::string stamps_note;         // where the time stamps are from, for the user
 };
 
 // Opens a video file or a folder.
