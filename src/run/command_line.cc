@@ -5,10 +5,69 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "hullslam/util/error.h"
 
 namespace hullslam {
+
+namespace {
+
+// The number of characters to insert, remove or replace to make `a` from `b` (Levenshtein 1966).
+size_t EditDistance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t diagonal = std::exchange(row[0], i + 1);
+    for (size_t j = 0; j < b.size(); ++j) {
+      const size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+// The long option that is spelled most like `name`, which is without dashes and a value; empty if
+// none is like it.
+std::string NearestOption(const CLI::App& app, std::string_view name) {
+  std::string nearest;
+  size_t least = std::max<size_t>(2, name.size() / 3) + 1;
+  for (const CLI::Option* const option : app.get_options()) {
+    for (const std::string& known : option->get_lnames()) {
+      if (const size_t distance = EditDistance(name, known); distance < least) {
+        least = distance;
+        nearest = known;
+      }
+    }
+  }
+  return nearest;
+}
+
+// "; did you mean --masks?" for the first argument that is an unknown option; else empty.
+std::string SuggestOption(const CLI::App& app) {
+  for (const std::string& argument : app.remaining(true)) {
+    if (!argument.starts_with("--")) {
+      continue;
+    }
+    const std::string name = argument.substr(2, argument.find('=') - 2);
+    for (const CLI::App* const parsed :
+         {app.get_subcommands().empty() ? &app : app.get_subcommands().front(), &app}) {
+      if (const std::string nearest = NearestOption(*parsed, name); !nearest.empty()) {
+        return "; did you mean --" + nearest + "?";
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
 
 bool ParseCommandLine(CLI::App& app, int argc, char** argv) {
   try {
@@ -17,6 +76,8 @@ bool ParseCommandLine(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& request) {
     app.exit(request);
     return false;
+  } catch (const CLI::ExtrasError& error) {
+    throw InputError(error.what() + SuggestOption(app));
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
   }

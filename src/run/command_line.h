@@ -14,7 +14,8 @@ namespace hullslam {
 // because compiling CLI11 takes seconds.
 
 // Parses the command line. Returns true if the program should go on, and false after options such
-// as --help. Throws InputError if the command line cannot be parsed.
+// as --help. Throws InputError if the command line cannot be parsed. If an option is not known, the
+// message names the one that is spelled most like it.
 bool ParseCommandLine(CLI::App& app, int argc, char** argv);
 
 // Adds --version, and what the exit codes mean to the end of --help. Subcommands that are added

@@ -62,6 +62,12 @@ void CheckSavedMap(const RunArguments& arguments) {
                     "replaces what is there, so choose another place",
                     arguments.save_map.string()));
   }
+  const fs::path folder = Canonical(arguments.save_map).parent_path();
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    throw InputError(fmt::format("--save-map is '{}', but there is no folder {}",
+                                 arguments.save_map.string(), folder.string()));
+  }
   ProbeFile(arguments.save_map);
 }
 

@@ -97,6 +97,10 @@ void FinishArguments(const std::vector<std::string>& positional, RunArguments& a
                      " positional arguments, expected SEQUENCE or " + LongForm(arguments.sensor) +
                      " (see --help)");
   }
+  if (IsVocabularyFile(positional[1])) {
+    throw InputError(positional[1] + " is a vocabulary; the order is " +
+                     LongForm(arguments.sensor));
+  }
   arguments.vocabulary = positional[0];
   arguments.settings = positional[1];
   arguments.sequence = positional[2];

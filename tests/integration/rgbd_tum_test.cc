@@ -395,6 +395,31 @@ TEST_F(RgbdTumRefuses, AFolderOneLevelTooHighOrTooLow) {
                 {"did you mean " + (fs::canonical(folder_.path()) / "desk").string() + "?"});
 }
 
+TEST_F(RgbdTumRefuses, AVocabularyInThePlaceOfTheSettings) {
+  const fs::path text = folder_.path() / "ORBvoc.txt";
+  WriteVocabulary(text, MadeVocabulary(), VocabularyForm::kText);
+  const std::string settings = path_ + "/camera.yaml";
+  for (const std::string& vocabulary : {text.string(), FindDefaultVocabulary().string()}) {
+    ExpectRefusal({settings, vocabulary, path_, path_ + "/associations.txt"},
+                  {vocabulary + " is a vocabulary",
+                   "the order is VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS"});
+  }
+}
+
+TEST_F(RgbdTumRefuses, AnUnknownOptionIsComparedWithTheKnownOnes) {
+  ExpectRefusal({path_, "--mask", "masks"}, {"--mask", "did you mean --masks?"});
+  ExpectRefusal({path_, "--localisation"}, {"did you mean --localization?"});
+  ExpectRefusal({path_, "--ouptut=a"}, {"did you mean --output?"});
+  const ProgramResult other = RunProgram("rgbd_tum", {path_, "--aardvark"});
+  EXPECT_EQ(other.errors.find("did you mean"), std::string::npos) << other.errors;
+}
+
+TEST_F(RgbdTumRefuses, AMapInAFolderThatDoesNotExist) {
+  const fs::path map = folder_.path() / "maps" / "desk.map";
+  ExpectRefusal({path_, "--save-map", map},
+                {"--save-map is '" + map.string() + "'", "there is no folder", "/maps"});
+}
+
 TEST_F(RgbdTumRefuses, ToReplaceARunOfAnotherProgram) {
   const fs::path other = folder_.path() / "other";
   fs::create_directory(other);
