@@ -280,7 +280,7 @@ void ObjectOptions::Bind(OptionTable& options) {
   scope.Add("guided_matching", &guided_matching,
             "search landmarks on mapped objects that are not in the local map, inside the hulls of "
             "their detections");
-  scope.Add("sizes", &sizes, Range::Between(0.001, 1000.0),
+  scope.Add("sizes", &sizes, Range::Between(0.001, 20.0),
             "longest side of objects by class, m; a single camera without depth gets its scale "
             "from objects of known size");
   detection.Bind(scope.Inner("detection"));

@@ -420,6 +420,24 @@ TEST_F(RgbdTumRefuses, AMapInAFolderThatDoesNotExist) {
                 {"--save-map is '" + map.string() + "'", "there is no folder", "/maps"});
 }
 
+TEST_F(RgbdTumRefuses, SizesThatAreNotInMetres) {
+  ExpectRefusal({path_, "--set", "objects.sizes=keyboard:46"}, {"keyboard:46", "0.001 to 20"});
+  const ProgramResult result = RunProgram("rgbd_tum", {path_, "--last", "2", "--quiet", "--output",
+                                                       output_, "--set", "objects.sizes=cup:10"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  ExpectParts(result.errors, {"warning: objects.sizes", "'cup' is 10 m", "in metres"});
+}
+
+TEST_F(RgbdTum, WarnsOfDepthInAnotherUnit) {
+  for (const auto& [factor, metres] : {std::pair("800", "6.25 m"), std::pair("20000", "0.25 m")}) {
+    const ProgramResult result =
+        RunProgram("rgbd_tum", {path_, "--last", "2", "--quiet", "--output", output_, "--set",
+                                std::string("DepthMapFactor=") + factor});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    ExpectParts(result.errors, {"warning: ", metres, "is DepthMapFactor right?"});
+  }
+}
+
 TEST_F(RgbdTumRefuses, ToReplaceARunOfAnotherProgram) {
   const fs::path other = folder_.path() / "other";
   fs::create_directory(other);
