@@ -106,7 +106,7 @@ int Run(const std::string& folder, const std::string& map_file) {
   const ImageSequence sequence = OpenTumSequence(folder);
   SystemOptions options = ReadSettings(FindDefaultSettings(folder, FindConfigFolder()), {});
   options.vocabulary = std::make_shared<const Vocabulary>(ReadVocabulary(FindDefaultVocabulary()));
-  Map map = ReadMap(map_file, MapSettingsOf(options), options.vocabulary);
+  Map map = ReadMap(map_file, options);
   const Counts counts = Judge(std::move(map), options, ReadGroundtruth(sequence).value());
   const auto percent = [](size_t part, size_t whole) {
     return 100.0 * static_cast<double>(part) / static_cast<double>(std::max<size_t>(whole, 1));

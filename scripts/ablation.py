@@ -10,6 +10,10 @@ OUT/ablation.md and OUT/ablation.json.
 
 A variant is NAME:KEY=VALUE,KEY=VALUE,... Each pair becomes an argument --set KEY=VALUE. An item
 that begins with a dash is passed on unchanged (NAME:--threaded). Write "\," for a comma in a value.
+--variants FILE has one variant per line; lines that begin with # are comments.
+
+--sequence PROGRAM=SEQUENCE runs another program of the same folder on this sequence, for example
+--sequence mono_tum=data/fr1_xyz beside --sequence data/fr1_xyz.
 
 In every argument of a run, {seed} is replaced by the run's seed and {sequence} by the folder of its
 sequence. Nothing in a sequential run is random, so repetitions differ only if their input does. For
@@ -18,23 +22,35 @@ a synthetic sequence render it with several seeds (--sequence "desk-{seed}" --co
 
 Each run is stored in OUT/SEQUENCE/NAME/seed-N. A run is skipped if it is complete there and was
 made by the same command and the same program. A run that fails is reported and counted, and is
-repeated when the script is started again.
+repeated when the script is started again. --jobs N makes N runs at once; times of runs are only
+comparable with --jobs 1.
+
+The change of the ATE is that of the geometric mean over pairs of runs with the same sequence and
+seed. p is the probability of a change as large as this or larger if the variants did not differ
+(two-sided sign-flip test of the logarithms). With n pairs it is at least 2 / 2^n, so a few runs
+cannot show a difference.
 """
 
 import argparse
+import concurrent.futures
 import hashlib
+import itertools
 import json
+import math
 import pathlib
+import random
 import re
 import shlex
 import statistics
 import subprocess
 import sys
+import threading
 
 RECORD = "ablation_run.json"  # beside the outputs of a run: the command that made them
 COLUMNS = [  # heading, keys in summary.json, format
     ("ATE m", ("trajectory", "ate_rmse_m"), ".5f"),
     ("tracked", ("trajectory", "tracked"), ".0f"),
+    ("lost %", None, ".1f"),
     ("objects", ("objects", "count"), ".1f"),
     ("SIoU", ("objects", "siou_mean"), ".3f"),
     ("SIoU mask", ("objects", "siou_mask_mean"), ".3f"),
@@ -42,6 +58,11 @@ COLUMNS = [  # heading, keys in summary.json, format
     ("tangent px", ("objects", "tangent_mean_px"), ".2f"),
     ("median ms", ("timing", "track_ms", "median"), ".1f"),
 ]
+
+
+ALL = "mean"  # in place of a sequence: all of them together
+EXACT_PAIRS = 14  # up to so many pairs, all 2^n sign flips are tried
+DRAWS = 20000  # of random sign flips for more pairs
 
 
 class InputError(Exception):
@@ -66,6 +87,29 @@ def parse_variant(text):
     return name, arguments
 
 
+def read_variants(path):
+    """The texts of the variants in a file."""
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot read {path}: {error}") from error
+    return [line.strip() for line in lines if line.strip() and not line.strip().startswith("#")]
+
+
+class Sequence:
+    """A sequence, the program that runs on it, and the name of the two in the tables."""
+
+    def __init__(self, text, default_program):
+        program, equals, path = text.partition("=")
+        is_named = bool(equals) and re.fullmatch(r"[a-z][a-z_]*", program) is not None
+        self.path = pathlib.Path(path if is_named else text)
+        self.program = default_program.with_name(program) if is_named else default_program
+        self.name = name_of(self.path) + (f"-{program}" if is_named else "")
+        if not self.program.is_file():
+            raise InputError(f"{self.program}: no such program; build it or give another one by "
+                             "--program")
+
+
 def parse_common(text):
     """The list of arguments in the text of --common."""
     try:
@@ -83,10 +127,10 @@ def check_names(sequences):
     """Each sequence needs a name of its own: its runs are stored under it."""
     known = {}
     for sequence in sequences:
-        other = known.setdefault(name_of(sequence), sequence)
+        other = known.setdefault(sequence.name, sequence)
         if other is not sequence:
-            raise InputError(f"{other} and {sequence} have the same name '{name_of(sequence)}'; use "
-                             "another --out for one of them")
+            raise InputError(f"{other.path} and {sequence.path} have the same name "
+                             f"'{sequence.name}'; use another --out for one of them")
 
 
 def fingerprint(command):
@@ -137,6 +181,12 @@ def run_once(command, folder, seconds):
     return summary, ""
 
 
+def lost_percent(summary):
+    """The share of the frames without a pose; None if it is not known."""
+    frames, tracked = (value_at(summary, ("trajectory", key)) for key in ("frames", "tracked"))
+    return 100.0 * (1.0 - tracked / frames) if frames and tracked is not None else None
+
+
 def value_at(summary, keys):
     """The number under these keys of the summary; None if there is no number."""
     for key in keys:
@@ -149,12 +199,51 @@ def collect(summaries):
     """Mean, sample standard deviation (0 for a single run) and values of every column."""
     row = {}
     for heading, keys, _ in COLUMNS:
-        values = [value for value in (value_at(summary, keys) for summary in summaries)
-                  if value is not None]
+        found = [value_at(summary, keys) if keys else lost_percent(summary)
+                 for summary in summaries]
+        values = [value for value in found if value is not None]
         row[heading] = {"mean": statistics.fmean(values) if values else None,
                         "sd": statistics.stdev(values) if len(values) > 1 else 0.0,
                         "values": values}
     return row
+
+
+def mean_of(results):
+    """The figures of a variant on all sequences: the means of the means, each sequence counted
+    once. A figure that a sequence does not have has no mean."""
+    row = {}
+    for heading, _, _ in COLUMNS:
+        means = [result["figures"][heading]["mean"] for result in results]
+        is_known = bool(means) and None not in means
+        row[heading] = {"mean": statistics.fmean(means) if is_known else None, "sd": 0.0,
+                        "values": []}
+    return row
+
+
+def flip_probability(differences):
+    """The two-sided p of Fisher's sign-flip test that the mean of paired differences is 0."""
+    observed = abs(sum(differences)) * (1 - 1e-12)  # rounding must not exclude the observed signs
+    if len(differences) <= EXACT_PAIRS:
+        flips = list(itertools.product((1, -1), repeat=len(differences)))
+        drawn = 0
+    else:
+        draw = random.Random(1)
+        flips = [[draw.choice((1, -1)) for _ in differences] for _ in range(DRAWS)]
+        drawn = 1  # the observed signs are one of the draws
+    extreme = sum(abs(sum(sign * value for sign, value in zip(signs, differences))) >= observed
+                  for signs in flips)
+    return (extreme + drawn) / (len(flips) + drawn)
+
+
+def compare(base, other):
+    """(change, p, pairs) of the ATE of `other` against `base`, both {(sequence, seed): ATE};
+    (None, None, 0) without a pair. The change is a ratio minus 1."""
+    pairs = [(base[key], other[key]) for key in sorted(base.keys() & other.keys())
+             if base[key] > 0 and other[key] > 0]
+    if not pairs:
+        return None, None, 0
+    logs = [math.log(after / before) for before, after in pairs]
+    return math.exp(statistics.fmean(logs)) - 1.0, flip_probability(logs), len(logs)
 
 
 def cell(entry, form, with_deviation):
@@ -166,22 +255,43 @@ def cell(entry, form, with_deviation):
     return text
 
 
+def with_means(results):
+    """The results, followed by one per variant for all sequences if there are several and the
+    variant has run on all of them."""
+    sequences = list(dict.fromkeys(result["sequence"] for result in results))
+    means = []
+    for variant in dict.fromkeys(result["variant"] for result in results):
+        of_variant = [result for result in results if result["variant"] == variant]
+        if len(sequences) > 1 and len(of_variant) == len(sequences):
+            means.append({"sequence": ALL, "variant": variant,
+                          "runs": sum(result["runs"] for result in of_variant),
+                          "failed": sum(result["failed"] for result in of_variant),
+                          "ates": {key: ate for result in of_variant
+                                   for key, ate in result["ates"].items()},
+                          "figures": mean_of(of_variant)})
+    return results + means
+
+
 def table(results):
-    """A Markdown table with one row per sequence and variant.
+    """A Markdown table with one row per sequence and variant, and one per variant for the mean over
+    the sequences.
 
     The ATE has its standard deviation and its change against the first variant of the sequence.
     """
-    lines = ["| sequence | variant | runs | " + " | ".join(c[0] for c in COLUMNS) + " | ATE change |",
-             "|---|---|---|" + "---|" * (len(COLUMNS) + 1)]
+    lines = ["| sequence | variant | runs | " + " | ".join(c[0] for c in COLUMNS)
+             + " | ATE change | p | pairs |",
+             "|---|---|---|" + "---|" * (len(COLUMNS) + 3)]
     first = {}
-    for result in results:
-        row, ate = result["figures"], result["figures"]["ATE m"]["mean"]
-        base = first.setdefault(result["sequence"], ate)
-        change = f"{100 * (ate / base - 1):+.1f} %" if ate is not None and base else "-"
+    for result in with_means(results):
+        row, base = result["figures"], first.setdefault(result["sequence"], result)
+        change, p, pairs = (None, None, 0) if result is base else compare(base["ates"],
+                                                                          result["ates"])
         runs = str(result["runs"]) + (f" ({result['failed']} failed)" if result["failed"] else "")
         cells = [cell(row[heading], form, heading == "ATE m") for heading, _, form in COLUMNS]
+        cells += ["-" if change is None else f"{100 * change:+.1f} %",
+                  "-" if p is None else f"{p:.2g}", str(pairs or "-")]
         lines.append(f"| {result['sequence']} | {result['variant']} | {runs} | "
-                     + " | ".join(cells) + f" | {change} |")
+                     + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
@@ -192,48 +302,90 @@ def write(path, text):
     temporary.replace(path)
 
 
-def run_variant(arguments, sequence, name, settings):
-    """Makes all runs of a variant on a sequence and returns their result."""
-    summaries, failures = [], []
-    title = name_of(sequence)
-    for seed in range(arguments.first_seed, arguments.first_seed + arguments.seeds):
-        folder = arguments.out / title / name / f"seed-{seed}"
-        path = str(sequence).replace("{seed}", str(seed))
-        given = [item.replace("{seed}", str(seed)).replace("{sequence}", path)
-                 for item in [*arguments.common, *settings]]
-        command = [str(arguments.program), path, *given, "--seed", str(seed), "--quiet",
-                   "--output", str(folder)]
-        summary, failure = run_once(command, folder, arguments.timeout)
-        if failure:
-            failures.append(f"seed {seed}: {failure}")
-            print(f"{title} {name} seed {seed}: {failure}; see {folder / 'log.txt'}",
-                  file=sys.stderr)
-        else:
-            summaries.append(summary)
-            ate = value_at(summary, ("trajectory", "ate_rmse_m"))
-            print(f"{title} {name} seed {seed}: ATE "
-                  f"{'unknown' if ate is None else f'{ate:.4f} m'}", flush=True)
-    return {"sequence": title, "variant": name, "arguments": settings,
-            "runs": len(summaries), "failed": len(failures), "failures": failures,
-            "figures": collect(summaries)}
+def run_seed(arguments, sequence, name, settings, seed):
+    """Makes one run. Returns (summary, error) as run_once() does."""
+    folder = arguments.out / sequence.name / name / f"seed-{seed}"
+    path = str(sequence.path).replace("{seed}", str(seed))
+    given = [item.replace("{seed}", str(seed)).replace("{sequence}", path)
+             for item in [*arguments.common, *settings]]
+    command = [str(sequence.program), path, *given, "--seed", str(seed), "--quiet",
+               "--output", str(folder)]
+    summary, failure = run_once(command, folder, arguments.timeout)
+    if failure:
+        print(f"{sequence.name} {name} seed {seed}: {failure}; see {folder / 'log.txt'}",
+              file=sys.stderr)
+    else:
+        ate = value_at(summary, ("trajectory", "ate_rmse_m"))
+        print(f"{sequence.name} {name} seed {seed}: ATE "
+              f"{'unknown' if ate is None else f'{ate:.4f} m'}", flush=True)
+    return summary, failure
 
 
-def find_program(given):
+def result_of(sequence, name, settings, runs):
+    """The result of a variant on a sequence. `runs` is {seed: (summary, error)}."""
+    good = {seed: summary for seed, (summary, failure) in runs.items() if not failure}
+    failures = [f"seed {seed}: {failure}" for seed, (_, failure) in runs.items() if failure]
+    ates = {seed: value_at(summary, ("trajectory", "ate_rmse_m")) for seed, summary in good.items()}
+    return {"sequence": sequence.name, "variant": name, "arguments": settings,
+            "runs": len(good), "failed": len(failures), "failures": failures,
+            "ates": {f"{sequence.name} {seed}": ate for seed, ate in ates.items()
+                     if ate is not None},
+            "figures": collect(good.values())}
+
+
+def run_all(arguments, sequences, variants):
+    """Makes all runs, `arguments.jobs` at once, and returns the results in order. The tables are
+    written after each variant, so that they can be read while others run."""
+    seeds = range(arguments.first_seed, arguments.first_seed + arguments.seeds)
+    results, failed = [], threading.Event()
+
+    def run(*job):
+        if failed.is_set():  # bad input has ended the script
+            return None, "not begun"
+        try:
+            return run_seed(arguments, *job)
+        except BaseException:
+            failed.set()
+            raise
+
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        jobs = {(sequence.name, name, seed): pool.submit(run, sequence, name, settings, seed)
+                for sequence in sequences for name, settings in variants for seed in seeds}
+        try:
+            for sequence in sequences:
+                for name, settings in variants:
+                    runs = {seed: jobs[sequence.name, name, seed].result() for seed in seeds}
+                    results.append(result_of(sequence, name, settings, runs))
+                    write(arguments.out / "ablation.md", table(results))
+                    write(arguments.out / "ablation.json", json.dumps(results, indent=1) + "\n")
+        except BaseException:  # also Ctrl-C
+            failed.set()
+            raise
+    return results
+
+
+def default_program():
+    """rgbd_tum of the installation, in which this script is in share/hullslam/scripts, or of the
+    build."""
     top = pathlib.Path(__file__).resolve().parent.parent
-    program = given or top / "build" / "release" / "bin" / "rgbd_tum"
-    if not program.is_file():
-        raise InputError(f"{program}: no such program; build it or give another one by --program")
-    return program
+    places = [top.parent.parent / "libexec" / "hullslam" / "rgbd_tum",
+              top / "build" / "release" / "bin" / "rgbd_tum"]
+    return next((place for place in places if place.is_file()), places[-1])
 
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--sequence", type=pathlib.Path, action="append", required=True,
-                        help="folder of a sequence, may contain {seed}; can be repeated")
-    parser.add_argument("--variant", action="append", required=True,
+    parser.add_argument("--sequence", action="append", required=True, metavar="[PROGRAM=]SEQUENCE",
+                        help="folder of a sequence, may contain {seed}, and the program for it if "
+                             "it is not that of --program; can be repeated")
+    parser.add_argument("--variant", action="append", default=[],
                         help="NAME:KEY=VALUE,...; can be repeated, the others are compared "
                              "with the first")
+    parser.add_argument("--variants", type=pathlib.Path, metavar="FILE",
+                        help="file with one variant per line, which come before those of --variant")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N",
+                        help="number of runs at once (default 1)")
     parser.add_argument("--out", type=pathlib.Path, required=True,
                         help="folder for runs and tables")
     parser.add_argument("--seeds", type=int, default=5,
@@ -241,13 +393,18 @@ def parse_arguments():
     parser.add_argument("--first-seed", type=int, default=0,
                         help="seed of the first run; the next have the next numbers (default 0)")
     parser.add_argument("--common", default="", help="arguments of every run, as one string")
-    parser.add_argument("--program", type=pathlib.Path,
-                        help="program to run (default: build/release/bin/rgbd_tum)")
+    parser.add_argument("--program", type=pathlib.Path, default=default_program(),
+                        help="program to run (default: rgbd_tum of this installation or of "
+                             "build/release/bin)")
     parser.add_argument("--timeout", type=float, default=3600.0,
                         help="longest time of a run, s (default 3600)")
     arguments = parser.parse_args()
     if arguments.seeds < 1 or arguments.first_seed < 0:
         parser.error("--seeds must be 1 or more, --first-seed 0 or more")
+    if arguments.jobs < 1:
+        parser.error("--jobs must be 1 or more")
+    if not arguments.variant and not arguments.variants:
+        parser.error("--variant or --variants is needed")
     if not 0.0 < arguments.timeout < 1e9:
         parser.error("--timeout must be a number of seconds")
     return arguments
@@ -256,20 +413,17 @@ def parse_arguments():
 def main():
     arguments = parse_arguments()
     try:
-        arguments.program = find_program(arguments.program)
-        variants = [parse_variant(text) for text in arguments.variant]
+        sequences = [Sequence(text, arguments.program) for text in arguments.sequence]
+        texts = read_variants(arguments.variants) if arguments.variants else []
+        variants = [parse_variant(text) for text in texts + arguments.variant]
         names = [name for name, _ in variants]
+        if not variants:
+            raise InputError(f"{arguments.variants}: has no variant")
         if len(set(names)) != len(names):
             raise InputError(f"two variants have the same name: {', '.join(names)}")
-        check_names(arguments.sequence)
+        check_names(sequences)
         arguments.common = parse_common(arguments.common)
-        results = []
-        for sequence in arguments.sequence:
-            for name, settings in variants:
-                results.append(run_variant(arguments, sequence, name, settings))
-                # Written after each variant, so that the table can be read while others run.
-                write(arguments.out / "ablation.md", table(results))
-                write(arguments.out / "ablation.json", json.dumps(results, indent=1) + "\n")
+        results = run_all(arguments, sequences, variants)
     except (InputError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

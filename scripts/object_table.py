@@ -12,11 +12,14 @@ import argparse
 import pathlib
 import sys
 
-import numpy as np
+from python_packages import require
 
-from object_entries import attach_observations
-from run_files import InputError, one_line, read_json
-from run_objects import rotation
+require("numpy", "matplotlib")
+import numpy as np  # noqa: E402
+
+from object_entries import attach_observations  # noqa: E402
+from run_files import InputError, one_line, read_json  # noqa: E402
+from run_objects import rotation  # noqa: E402
 
 HEADER = ("| run | id | class | views | angle ° | half axes m | SIoU | SIoU mask | tangent px |\n"
           "|---|---|---|---|---|---|---|---|---|")

@@ -15,7 +15,10 @@ import pathlib
 import re
 import sys
 
-import matplotlib
+from python_packages import require
+
+require("numpy", "matplotlib")
+import matplotlib  # noqa: E402
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 

@@ -193,16 +193,16 @@ def read_map(path, max_points):
     return points, colours, dropped
 
 
-def find_folder(text, run_dir):
-    """The folder that summary.json names; None if it is not found.
+def find_sequence_at(text, run_dir):
+    """The folder or video file that summary.json names; None if it is not found.
 
     A relative path was relative to the folder in which the run was started. It is looked for in the
     working directory, then in the folder of the run and in those above it.
     """
     for base in (run_dir.cwd(), *[run_dir.resolve(), *run_dir.resolve().parents]):
         try:
-            if (base / text / "rgb.txt").is_file():
+            if (base / text).exists():
                 return base / text
-        except OSError:  # a name that is too long
+        except (OSError, ValueError):  # a name that is too long, or with a zero byte
             return None
     return None

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads the objects of a finished run from objects.json and draws them for plot_run.py."""
 
-import pathlib
-
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -126,24 +124,6 @@ def distort(points, camera):
     return np.stack([u * camera["fx"] + camera["cx"], v * camera["fy"] + camera["cy"]], axis=1)
 
 
-def image_list(sequence):
-    """Stamps and paths of the images that are listed in rgb.txt of the sequence."""
-    path = pathlib.Path(sequence) / "rgb.txt"
-    try:
-        rows = [line.split() for line in path.read_text(encoding="utf-8").splitlines()]
-        rows = [row for row in rows if row and not row[0].startswith("#")]
-        stamps = np.array([float(row[0]) for row in rows])
-        files = [path.parent / row[1] for row in rows]
-    except (OSError, ValueError, IndexError) as error:
-        raise InputError(f"{path}: not a list of images with one line `stamp file` per image: "
-                         f"{one_line(error)}; give the folder of the images by --sequence") from error
-    if not np.isfinite(stamps).all():
-        raise InputError(f"{path}: a time stamp is not finite")
-    if not files:
-        raise InputError(f"{path}: lists no images")
-    return stamps, files
-
-
 def choose_evenly(stamps, count):
     """`count` evenly chosen stamps, with the first and the last; all if there are fewer."""
     stamps = sorted(stamps)
@@ -179,25 +159,16 @@ def draw_overlay(plot, image, stamp, camera, objects):
     return labels
 
 
-def read_image(path):
-    try:
-        image = plt.imread(path)
-    except Exception as error:  # noqa: BLE001: the decoders raise errors of many types
-        raise InputError(f"{path}: not an image: {one_line(error)}") from error
-    if image.ndim == 3 and image.shape[2] == 2:  # grey with transparency
-        image = image[:, :, 0]
-    return image
-
-
-def draw_overlays(path, sequence, camera, objects, count):
-    """Draws `count` evenly chosen keyframes with objects into one picture.
+def draw_overlays(path, open_images, camera, objects, count):
+    """Draws `count` evenly chosen keyframes with objects into one picture. `open_images` gives
+    what run_images.open_images() does.
 
     Returns the number of keyframes that were drawn.
     """
     chosen = choose_evenly({stamp for item in objects for stamp in item.views}, count)
     if not chosen:
         return 0
-    stamps, files = image_list(sequence)
+    images = open_images()
     columns, labels = min(3, len(chosen)), []
     rows = -(-len(chosen) // columns)
     figure, plots = plt.subplots(rows, columns, figsize=(6.4 * columns, 5.1 * rows), squeeze=False,
@@ -205,11 +176,7 @@ def draw_overlays(path, sequence, camera, objects, count):
     for plot in plots.flat[len(chosen):]:
         plot.axis("off")
     for plot, stamp in zip(plots.flat, chosen):
-        nearest = int(np.argmin(np.abs(stamps - stamp)))
-        if abs(stamps[nearest] - stamp) > 1e-3:
-            raise InputError(f"{sequence}/rgb.txt: no image of {stamp:.6f}; "
-                             "is it the sequence of the run?")
-        labels.append(draw_overlay(plot, read_image(files[nearest]), stamp, camera, objects))
+        labels.append(draw_overlay(plot, images.at(stamp), stamp, camera, objects))
     figure.canvas.draw()
     figure.set_layout_engine("none")
     for plot, of_plot in zip(plots.flat, labels):

@@ -1,5 +1,5 @@
 # Installs the public headers, the library, the settings of known cameras, the default vocabulary,
-# the scripts that draw runs, and a CMake package for find_package(hullslam). Examples/CMakeLists.txt installs the
+# the scripts that make, draw and compare runs, and a CMake package for find_package(hullslam). Examples/CMakeLists.txt installs the
 # programs.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -23,9 +23,11 @@ install(FILES ${PROJECT_SOURCE_DIR}/Vocabulary/hullslam.bow ${PROJECT_SOURCE_DIR
         DESTINATION ${HULLSLAM_INSTALL_VOCABULARYDIR})
 file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/plot_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/run_*.py
-                                   ${PROJECT_SOURCE_DIR}/scripts/object_*.py)
+                                   ${PROJECT_SOURCE_DIR}/scripts/object_*.py
+                                   ${PROJECT_SOURCE_DIR}/scripts/python_packages.py
+                                   ${PROJECT_SOURCE_DIR}/scripts/ablation.py)
 install(PROGRAMS ${scripts} DESTINATION ${CMAKE_INSTALL_DATADIR}/hullslam/scripts)
-foreach(script plot_run plot_ablation object_table)
+foreach(script plot_run ablation plot_ablation object_table)
   hullslam_install_link(hullslam-${script} ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/${script}.py)
 endforeach()
 install(EXPORT hullslamTargets NAMESPACE hullslam:: DESTINATION ${package_dir})

@@ -91,6 +91,11 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
     throw InputError("the image is not CV_8UC1");
   }
   if (sensor_.kind != SensorKind::kMonocular) {
+    if (image.depth.empty()) {
+      throw InputError(
+          "there is no depth image, expected one of an RGB-D camera; without depth, "
+          "SystemOptions::sensor is SensorKind::kMonocular");
+    }
     CheckDepthImage(image.depth, sensor_.camera);
   } else if (!image.depth.empty()) {
     throw InputError("there is a depth image, expected none from a monocular camera");

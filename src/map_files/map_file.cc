@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "files/staged_file.h"
@@ -228,9 +230,9 @@ void WriteMap(const fs::path& path, const Map& map, const MapSettings& settings)
 
 StoredMap ReadMap(const fs::path& path) { return Read(path, nullptr, nullptr, nullptr); }
 
-Map ReadMap(const fs::path& path, const MapSettings& expected,
-            std::shared_ptr<const Vocabulary> vocabulary, const Cancellation* cancellation) {
-  return Read(path, &expected, std::move(vocabulary), cancellation).map;
+Map ReadMap(const fs::path& path, const SystemOptions& options, const Cancellation* cancellation) {
+  const MapSettings expected = MapSettingsOf(options);
+  return Read(path, &expected, options.vocabulary, cancellation).map;
 }
 
 }  // namespace hullslam

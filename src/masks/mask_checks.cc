@@ -3,35 +3,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <utility>
 
-#include "geometry/polyline.h"
+#include "frame/label_image.h"
 #include "util/printable.h"
 
 namespace hullslam {
-namespace {
-
-using Outline = std::vector<Eigen::Vector2d>;
-
-void SortByArea(std::vector<Outline>& outlines) {
-  std::vector<std::pair<double, size_t>> areas;
-  for (size_t i = 0; i < outlines.size(); ++i) {
-    areas.emplace_back(-std::abs(SignedArea(outlines[i])),
-                       i);  // the largest first; ties in the original order
-  }
-  std::sort(areas.begin(), areas.end());
-  std::vector<Outline> sorted;
-  for (const auto& [negative_area, i] : areas) {
-    if (-negative_area >= kSmallestArea) {
-      sorted.push_back(std::move(outlines[i]));
-    }
-  }
-  outlines = std::move(sorted);
-}
-
-}  // namespace
-
 std::string ImageStem(std::string_view name) {
   name.remove_prefix(std::min(name.find_last_of("/\\") + 1, name.size()));
   const size_t dot = name.find_last_of('.');

@@ -17,7 +17,6 @@ constexpr size_t kMostOutlinePoints = 100'000;      // limit for one polygon
 constexpr size_t kMostFrameFileBytes = 16'000'000;  // limit for the text file of one frame
 constexpr size_t kMostJsonFileBytes = 512'000'000;  // limit for a JSON file of all frames
 constexpr double kMostBeyondImage = 1.0;  // px; how far an outline may extend beyond the border
-constexpr double kSmallestArea = 1.0;     // px^2
 
 // The file name without folders and without an extension of letters: "rgb/12.5.png" and "12.5" both
 // give 12.5.
@@ -35,7 +34,8 @@ std::vector<Eigen::Vector2d> BoxOutline(double left, double top, double right, d
                                         const MaskRequest& request);
 
 // Adds an instance with its label in printable characters and its outlines sorted by area. Outlines
-// smaller than kSmallestArea are removed; an instance without any outline left is only counted.
+// smaller than kSmallestOutlineArea are removed; an instance without any outline left is only
+// counted.
 void AddInstance(InstanceMask instance, FrameMasks& frame);
 // Whether the frame has more than kMostInstances instances, including those that are only counted.
 bool HasTooMany(const FrameMasks& frame);

@@ -11,9 +11,10 @@
 
 #include "files/json_file.h"
 #include "files/text_rows.h"
+#include "frame/label_image.h"
+#include "hullslam/frame/mask_image.h"
 #include "hullslam/util/error.h"
 #include "masks/mask_checks.h"
-#include "masks/mask_outline.h"
 #include "masks/mask_text.h"
 #include "sequences/image_file.h"
 #include "util/shown_text.h"
@@ -28,11 +29,6 @@ using Json = nlohmann::json;
 constexpr size_t kMostClassesBytes = 16'000'000;
 constexpr const char* kClassesFile = "classes.json";
 
-// The class and score of an instance.
-struct InstanceClass {
-  std::string label;
-  double score = 1.0;
-};
 using InstanceClasses = std::map<int, InstanceClass>;
 
 // The classes of all frames, and those of single frames, which take precedence.
@@ -102,25 +98,6 @@ class ClassesReader {
   std::filesystem::path path_;
 };
 
-// The bounding box of each number in a label image.
-std::map<int, cv::Rect> FindInstances(const cv::Mat& labels) {
-  std::map<int, cv::Rect> instances;
-  for (int y = 0; y < labels.rows; ++y) {
-    const auto* const row = labels.ptr<uint16_t>(y);
-    for (int x = 0; x < labels.cols;) {
-      const int begin = x;
-      const uint16_t label = row[x];
-      while (x < labels.cols && row[x] == label) {
-        ++x;
-      }
-      if (label != 0) {
-        instances[label] |= cv::Rect(begin, y, x - begin, 1);
-      }
-    }
-  }
-  return instances;
-}
-
 class LabelPngMasks : public MaskSource {
  public:
   explicit LabelPngMasks(const MaskRequest& request)
@@ -168,15 +145,8 @@ class LabelPngMasks : public MaskSource {
   InstanceMask Outline(const MaskFrame& frame, const cv::Mat& labels, int number,
                        const cv::Rect& box) const {
     const InstanceClass& entry = ClassOf(frame, number);
-    InstanceMask instance{.label = entry.label,
-                          .score = entry.score,
-                          .outlines = FindMaskOutlines(labels(box) == number)};
-    for (auto& outline : instance.outlines) {
-      for (Eigen::Vector2d& point : outline) {
-        point += Eigen::Vector2d(box.x, box.y);
-      }
-    }
-    return instance;
+    return {
+        .label = entry.label, .score = entry.score, .outlines = OutlinesOf(labels, number, box)};
   }
 
   const InstanceClass& ClassOf(const MaskFrame& frame, int number) const {

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <opencv2/core.hpp>
 
+#include "frame/mask_outline.h"
 #include "hullslam/util/check.h"
-#include "masks/mask_outline.h"
 
 namespace hullslam {
 namespace {

@@ -281,7 +281,7 @@ void ObjectOptions::Bind(OptionTable& options) {
             "search landmarks on mapped objects that are not in the local map, inside the hulls of "
             "their detections");
   scope.Add(
-      "sizes", &sizes, Range::Between(0.001, 1000.0),
+      "sizes", &sizes, Range::Between(0.001, 20.0),
       "longest side of objects by class, m; a monocular run gets its scale from objects of known "
       "size");
   detection.Bind(scope.Inner("detection"));

@@ -17,6 +17,7 @@
 #include "files/synced_file.h"
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
+#include "util/shown_text.h"
 
 namespace hullslam {
 namespace {
@@ -47,16 +48,21 @@ fs::file_type TypeOf(const fs::path& path) {
   return fs::symlink_status(path, error).type();
 }
 
-// The names of the files of the run with this index, and of what was drawn of it. Empty if there is
-// no such index, or if no run wrote it.
-Names NamesOfRun(const fs::path& index) {
+// The content of an index; null if there is none.
+nlohmann::json ReadIndex(const fs::path& index) {
   std::error_code error;
   constexpr uintmax_t kMostBytes = 64'000'000;
   if (!fs::is_regular_file(index, error) || fs::file_size(index, error) > kMostBytes) {
-    return {};
+    return nullptr;
   }
   std::ifstream file(index);
-  const auto json = nlohmann::json::parse(file, nullptr, false);
+  return nlohmann::json::parse(file, nullptr, false);
+}
+
+// The names of the files of the run with this index, and of what was drawn of it. Empty if there is
+// no such index, or if no run wrote it.
+Names NamesOfRun(const fs::path& index) {
+  const nlohmann::json json = ReadIndex(index);
   if (!json.is_object()) {
     return {};
   }
@@ -144,6 +150,24 @@ void CheckEntries(const fs::path& folder, const std::string& index) {
   }
 }
 
+// Refuses to replace the run of another program. Runs of versions that did not say their program
+// may be replaced.
+void CheckOwner(const fs::path& index, const OutputOwner& owner) {
+  const nlohmann::json json = ReadIndex(index);
+  const nlohmann::json::json_pointer key("/provenance/program");
+  if (owner.program.empty() || owner.may_replace_others || !json.contains(key) ||
+      !json[key].is_string()) {
+    return;
+  }
+  const auto former = json[key].get<std::string>();
+  if (former != owner.program) {
+    throw InputError(
+        fmt::format("{}: has a run of {}, which this run of {} would replace; choose another "
+                    "folder with --output, or give --overwrite",
+                    index.parent_path().string(), ShowText(former), owner.program));
+  }
+}
+
 void Move(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::rename(from, to, error);
@@ -203,7 +227,7 @@ void CleanUp(const fs::path& folder) {
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& folder, std::string index,
-                           std::span<const fs::path> inputs)
+                           std::span<const fs::path> inputs, const OutputOwner& owner)
     : folder_(folder), index_(std::move(index)) {
   Check(std::ranges::find(kIndexes, index_) != kIndexes.end(), "this index is not known");
   CheckApartFromInputs(folder, inputs);
@@ -212,6 +236,7 @@ OutputFolder::OutputFolder(const fs::path& folder, std::string index,
     const FolderLock lock(folder);
     CleanUp(folder);
     CheckEntries(folder, index_);
+    CheckOwner(folder / index_, owner);
     staging_ = std::make_unique<StagingFolder>(folder, kPrefix);
     const fs::path probe = staging_->content() / "probe";
     WriteSyncedFile(probe, "probe", folder / index_);

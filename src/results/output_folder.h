@@ -17,6 +17,12 @@ struct FileContent {
   std::string content;
 };
 
+// The program that writes a run, and whether it may replace a run of another program.
+struct OutputOwner {
+  std::string program = {};  // empty: any
+  bool may_replace_others = false;
+};
+
 // The folder that a run writes its files to. At the end of a run all its files are moved into the
 // folder together, and the files of the former run are removed, so the folder never mixes two runs.
 // Every run has an index: a JSON file whose list "files" names all its other files.
@@ -32,11 +38,12 @@ class OutputFolder {
   // ignored.
   //
   // Throws InputError if the folder is inside an input folder or contains an input; if it contains
-  // files that are not from a former run with an index of the same name; or if files cannot be
-  // written there. In these cases nothing is changed. Files with the names of KeptNames() are
-  // allowed.
+  // files that are not from a former run with an index of the same name; if the former run is of
+  // another program, which its index names in provenance.program, unless the owner may replace it;
+  // or if files cannot be written there. In these cases nothing is changed. Files with the names of
+  // KeptNames() are allowed.
   OutputFolder(const std::filesystem::path& folder, std::string index,
-               std::span<const std::filesystem::path> inputs);
+               std::span<const std::filesystem::path> inputs, const OutputOwner& owner = {});
   // Removes the files if Commit() was not called.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;

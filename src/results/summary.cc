@@ -84,19 +84,16 @@ Json ToJson(const MapSummary& summary) {
           {"loops", summary.loops},
           {"sessions", summary.sessions},
           {"reprojection_px", OrNull(summary.reprojection_px)},
+          {"depth_deviation", OrNull(summary.depth_deviation)},
           {"known_sizes", OrNull(summary.known_sizes)}};
 }
 
 Json ToJson(const ProvenanceSummary& summary) {
-  return {{"version", OrNull(summary.version)},
-          {"git", OrNull(summary.git)},
-          {"settings_hash", OrNull(summary.settings_hash)},
-          {"preset", OrNull(summary.preset)},
-          {"seed", summary.seed},
-          {"pipeline", summary.pipeline},
-          {"masks_format", OrNull(summary.masks_format)},
-          {"sequence", OrNull(summary.sequence)},
-          {"interrupted", summary.interrupted}};
+  return {{"program", OrNull(summary.program)},   {"version", OrNull(summary.version)},
+          {"git", OrNull(summary.git)},           {"settings_hash", OrNull(summary.settings_hash)},
+          {"preset", OrNull(summary.preset)},     {"seed", summary.seed},
+          {"pipeline", summary.pipeline},         {"masks_format", OrNull(summary.masks_format)},
+          {"sequence", OrNull(summary.sequence)}, {"interrupted", summary.interrupted}};
 }
 
 }  // namespace

@@ -6,9 +6,15 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <mutex>
+#include <numeric>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "hullslam/util/error.h"
 #include "run/messages.h"
@@ -29,6 +35,58 @@ class MessageSink final : public spdlog::sinks::base_sink<std::mutex> {
 
 }  // namespace
 
+namespace {
+
+// The number of characters to insert, remove or replace to make `a` from `b` (Levenshtein 1966).
+size_t EditDistance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t diagonal = std::exchange(row[0], i + 1);
+    for (size_t j = 0; j < b.size(); ++j) {
+      const size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+// The long option that is spelled most like `name`, which is without dashes and a value; empty if
+// none is like it.
+std::string NearestOption(const CLI::App& app, std::string_view name) {
+  std::string nearest;
+  size_t least = std::max<size_t>(2, name.size() / 3) + 1;
+  for (const CLI::Option* const option : app.get_options()) {
+    for (const std::string& known : option->get_lnames()) {
+      if (const size_t distance = EditDistance(name, known); distance < least) {
+        least = distance;
+        nearest = known;
+      }
+    }
+  }
+  return nearest;
+}
+
+// "; did you mean --masks?" for the first argument that is an unknown option; else empty.
+std::string SuggestOption(const CLI::App& app) {
+  for (const std::string& argument : app.remaining(true)) {
+    if (!argument.starts_with("--")) {
+      continue;
+    }
+    const std::string name = argument.substr(2, argument.find('=') - 2);
+    for (const CLI::App* const parsed :
+         {app.get_subcommands().empty() ? &app : app.get_subcommands().front(), &app}) {
+      if (const std::string nearest = NearestOption(*parsed, name); !nearest.empty()) {
+        return "; did you mean --" + nearest + "?";
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
 bool ParseCommandLine(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -36,6 +94,8 @@ bool ParseCommandLine(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& request) {
     app.exit(request);
     return false;
+  } catch (const CLI::ExtrasError& error) {
+    throw InputError(error.what() + SuggestOption(app));
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
   }
@@ -58,6 +118,11 @@ void ExpectNumber(CLI::Option& option, double least, double most) {
                    : fmt::format("'{}', expected a number from {:g} to {:g}", text, least, most);
       },
       ""));
+}
+
+void AddOverwriteFlag(CLI::App& app, bool& overwrite) {
+  app.add_flag("--overwrite", overwrite,
+               "also replace a run of another program in the folder of --output");
 }
 
 void AddDebugFlag(CLI::App& app) {

@@ -15,7 +15,8 @@ namespace hullslam {
 // CLI::App, because compiling CLI11 takes seconds.
 
 // Parses the command line. Returns true if the program should go on, and false after options such
-// as --help. Throws InputError if the command line cannot be parsed.
+// as --help. Throws InputError if the command line cannot be parsed. If an option is not known, the
+// message names the one that is spelled most like it.
 bool ParseCommandLine(CLI::App& app, int argc, char** argv);
 
 // Adds --version, and adds the meaning of the exit codes to the end of --help. Subcommands that are
@@ -27,6 +28,9 @@ void AddVersionAndExitCodes(CLI::App& app, const std::string& done = "done",
 // Refuses values of an option that are not a number from `least` to `most`. (CLI::Range accepts
 // "nan".)
 void ExpectNumber(CLI::Option& option, double least, double most);
+
+// Adds --overwrite, without which a run does not replace one of another program.
+void AddOverwriteFlag(CLI::App& app, bool& overwrite);
 
 // Adds --debug, which sends the library's log to stderr, including its debug messages on what
 // happens to each object.

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "eval/depth_agreement.h"
+#include "eval/reprojection_error.h"
 #include "frame/dynamic_mask.h"
 #include "run/messages.h"
 #include "util/median.h"
@@ -71,8 +73,8 @@ SystemOptions LoadSettings(const CameraCalibration& calibration, const std::stri
 
 void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& depth,
                             const DepthOptions& options) {
-  constexpr double kNearest = 0.2;    // m
-  constexpr double kFarthest = 20.0;  // m
+  constexpr double kNearest = 0.3;   // m
+  constexpr double kFarthest = 5.0;  // m
   const bool is_in_units = depth.type() == CV_16UC1;
   if (!is_in_units && depth.type() != CV_32FC1) {
     return;
@@ -97,9 +99,16 @@ void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& 
   for (const std::string& name : SplitNames(TrackingOptions().dynamic_classes)) {
     dynamic.erase(name);
   }
+  constexpr double kLargeSize = 3.0;  // m; few objects that are mapped are larger
   std::set<std::string> sized;
   for (const auto& [name, size] : objects.sizes) {
     sized.insert(name);
+    if (size > kLargeSize) {
+      PrintError(
+          "warning: objects.sizes says that the longest side of '{}' is {:g} m; sizes are in "
+          "metres, is this one right?\n",
+          name, size);
+    }
   }
   if (dynamic.empty() && sized.empty()) {
     return;
@@ -115,6 +124,34 @@ void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& seque
     PrintError("warning: --last is '{}', but the last frame of the sequence is {}\n",
                selection.last, sequence.available - 1);
   }
+}
+
+std::optional<std::vector<std::string>> FindCameraFaults(const Map* map,
+                                                         const PinholeCamera& camera) {
+  constexpr size_t kKeyframes = 10;
+  constexpr double kMostError = 1.5;       // px
+  constexpr double kMostDeviation = 0.05;  // of the depth
+  constexpr size_t kLeastPoints = 100;
+  if (map == nullptr || map->keyframes().size() < kKeyframes) {
+    return std::nullopt;
+  }
+  std::vector<std::string> faults;
+  const std::optional<double> error = MedianReprojectionError(*map, camera);
+  if (error && *error > kMostError) {
+    faults.push_back(fmt::format(
+        "the points of the map are {:.2f} px away from their keypoints (median), expected less "
+        "than {} px; are the settings those of this camera?",
+        *error, kMostError));
+  }
+  const std::optional<DepthAgreement> depth = CompareDepth(*map, camera);
+  if (depth && depth->points >= kLeastPoints && depth->deviation > kMostDeviation) {
+    faults.push_back(fmt::format(
+        "the depth images differ by {:.1f} % (median) from the depth that follows from the motion, "
+        "expected less than {} %; are they registered to the colour images, and are the settings "
+        "those of this camera?",
+        100.0 * depth->deviation, 100.0 * kMostDeviation));
+  }
+  return faults;
 }
 
 }  // namespace hullslam

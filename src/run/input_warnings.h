@@ -3,9 +3,12 @@
 
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "hullslam/map/map.h"
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/settings/settings.h"
 #include "hullslam/system/options.h"
@@ -23,15 +26,22 @@ SystemOptions LoadSettings(const CameraCalibration& calibration, const std::stri
 // Each function below prints a warning on stderr if the input can be used but is probably not what
 // the user meant.
 
-// Warns if the median depth of an image is outside the range of indoor sensors (0.2 to 20 m).
+// Warns if the median depth of an image is outside the usual range of indoor sensors (0.3 to 5 m).
 // DepthMapFactor may then be wrong.
 void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& depth,
                             const DepthOptions& options);
 // Warns if no mask has a class that tracking.dynamic_classes or objects.sizes names. Classes that
-// are there by default are not reported.
+// are there by default are not reported. Also warns of sizes above 3 m, which may be in another
+// unit.
 void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& objects,
                           const SequenceMasks& masks);
 // Warns if --last is beyond the end of the sequence.
 void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& sequence);
+
+// What the first keyframes of a map show: that the settings are those of another camera, or that
+// the depth images are not registered to the colour images. One text per fault. Absent as long as
+// `map`, which may be null, has too few keyframes to tell.
+std::optional<std::vector<std::string>> FindCameraFaults(const Map* map,
+                                                         const PinholeCamera& camera);
 
 }  // namespace hullslam

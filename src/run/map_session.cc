@@ -63,6 +63,12 @@ void CheckSavedMap(const RunArguments& arguments) {
                     "replaces the files there, so choose another path",
                     arguments.save_map.string()));
   }
+  const fs::path folder = Canonical(arguments.save_map).parent_path();
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    throw InputError(fmt::format("--save-map is '{}', but there is no folder {}",
+                                 arguments.save_map.string(), folder.string()));
+  }
   ProbeFile(arguments.save_map);
 }
 
@@ -71,8 +77,7 @@ SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& option
   start.session_name = SessionName(arguments.sequence);
   start.localization_only = arguments.localization;
   if (!arguments.load_map.empty()) {
-    start.map =
-        ReadMap(arguments.load_map, MapSettingsOf(options), options.vocabulary, &Interruption());
+    start.map = ReadMap(arguments.load_map, options, &Interruption());
   }
   return start;
 }

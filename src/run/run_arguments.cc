@@ -48,8 +48,9 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
   AddOverrides(app, arguments.overrides);
   app.add_option("--output", arguments.output,
-                 "folder for the result files; replaces the former run in it")
+                 "folder for the result files; replaces the former run of this program in it")
       ->capture_default_str();
+  AddOverwriteFlag(app, arguments.overwrite);
   app.add_option("--save-map", arguments.save_map,
                  "file for the map at the end of the run; replaces an earlier one");
   auto* const load_map = app.add_option(
@@ -97,6 +98,10 @@ void FinishArguments(const std::vector<std::string>& positional, RunArguments& a
     throw InputError(std::to_string(positional.size()) +
                      " positional arguments, expected SEQUENCE or " + LongForm(arguments.sensor) +
                      " (see --help)");
+  }
+  if (IsVocabularyFile(positional[1])) {
+    throw InputError(positional[1] + " is a vocabulary; the order is " +
+                     LongForm(arguments.sensor));
   }
   arguments.vocabulary = positional[0];
   arguments.settings = positional[1];

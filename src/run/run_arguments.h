@@ -19,6 +19,7 @@ namespace hullslam {
 struct RunArguments {
   // Not an option: each program sets its own. Monocular programs have no --associations.
   SensorKind sensor = SensorKind::kRgbd;
+  std::string program = {};  // its name; not an option either
   std::filesystem::path sequence;
   std::filesystem::path settings;      // empty: chosen by FindDefaultSettings()
   std::filesystem::path vocabulary;    // empty: the default one; "none": none
@@ -28,6 +29,7 @@ struct RunArguments {
   std::string masks_format;            // empty: detected
   std::vector<std::string> overrides;  // key=value
   std::filesystem::path output = "out";
+  bool overwrite = false;
   std::filesystem::path save_map;  // empty: not saved
   std::filesystem::path load_map;  // empty: a new map
   bool localization = false;

@@ -16,6 +16,7 @@ int Run(const SlamProgram& program, Dataset& dataset, int argc, char** argv) {
   CLI::App app(program.description, program.name);
   RunArguments arguments;
   arguments.sensor = program.sensor;
+  arguments.program = program.name;
   std::vector<std::string> positional;
   AddRunArguments(app, dataset.Help(program.sensor), arguments, positional);
   dataset.AddOptions(app);
@@ -25,7 +26,7 @@ int Run(const SlamProgram& program, Dataset& dataset, int argc, char** argv) {
   FinishArguments(positional, arguments);
   DatasetInput input = dataset.Open(arguments);
   input.options.sensor = program.sensor;
-  return RunSlam(arguments, std::move(input.options), input.sequence);
+  return RunSlam(arguments, std::move(input.options), input.sequence, input.notes);
 }
 
 }  // namespace

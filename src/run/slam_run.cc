@@ -7,10 +7,12 @@
 #include <chrono>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "eval/depth_agreement.h"
 #include "eval/located_landmarks.h"
 #include "eval/reprojection_error.h"
 #include "hullslam/eval/ate.h"
@@ -112,11 +114,22 @@ void FinishMap(bool is_quiet, System& system) {
       });
 }
 
+// Warns once if the map does not fit the camera. Returns false as long as the map is too small.
+bool WarnOfCamera(const Map* map, const PinholeCamera& camera, Progress& progress) {
+  const auto faults = FindCameraFaults(map, camera);
+  for (const std::string& fault : faults.value_or(std::vector<std::string>())) {
+    progress.Clear();
+    PrintError("warning: {}\n", fault);
+  }
+  return faults.has_value();
+}
+
 RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
                    const PinholeCamera& camera, const SequenceMasks& masks, System& system) {
   RunResult result;
   Progress progress(sequence.frames.size(), arguments.quiet);
   std::optional<InitialisationFailure> failure;  // failure of the last frame
+  bool is_checked = false;                       // whether the camera fits the map
   system.SetFrameCallback([&](const FrameReport& report) {
     failure = report.failure;
     if (failure) {
@@ -147,6 +160,7 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
       continue;
     }
     const TrackedFrame frame = system.Track(std::move(*loaded->frame));
+    is_checked = is_checked || WarnOfCamera(system.map().get(), camera, progress);
     progress.Show(result.given, [&] { return DescribeState(frame.state, failure, system); });
   }
   progress.Clear();
@@ -229,6 +243,9 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
     summary.map.sessions = map->sessions().size();
     summary.map.loops = CountLoops(*map);
     summary.map.reprojection_px = MedianReprojectionError(*map, options.camera);
+    if (const auto agreement = CompareDepth(*map, options.camera)) {
+      summary.map.depth_deviation = agreement->deviation;
+    }
     if (options.sensor == SensorKind::kMonocular && !options.objects.sizes.empty()) {
       summary.map.known_sizes = system.sized_objects();
     }
@@ -240,6 +257,7 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
       summary.initialisation->joined_islands = map->islands_joined();
     }
   }
+  summary.provenance.program = arguments.program;
   summary.provenance.version = HULLSLAM_VERSION;
   summary.provenance.git = HULLSLAM_GIT;
   summary.provenance.settings_hash = HashSettings(options);
@@ -284,6 +302,19 @@ std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
           arguments.associations, arguments.vocabulary, arguments.load_map};
 }
 
+void PrintInput(const RunArguments& arguments, std::span<const std::string> notes,
+                const SequenceMasks& masks) {
+  if (arguments.quiet) {
+    return;
+  }
+  for (const std::string& note : notes) {
+    Print("{}\n", note);
+  }
+  if (masks.format()) {
+    Print("{}\n", masks.Describe());
+  }
+}
+
 std::string DescribeInterruption(const RunResult& result, const ImageSequence& sequence) {
   return fmt::format(
       "the run was interrupted after {} of {} frames; the results so far were written",
@@ -304,7 +335,8 @@ int FailIfAny(std::initializer_list<std::string> failures) {
 
 }  // namespace
 
-int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence) {
+int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence,
+            std::span<const std::string> notes) {
   options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
   options.seed = arguments.seed;
   // The first image is loaded now, so that a wrong type or size is reported early.
@@ -317,13 +349,12 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   CheckSavedMap(arguments);
   SystemStart start = LoadStart(arguments, options);
   const size_t earlier_sessions = start.map.sessions().size();
-  OutputFolder output(arguments.output, "summary.json", InputsOf(arguments));
+  OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
+                      {arguments.program, arguments.overwrite});
   WarnOfImplausibleDepth(sequence.frames.front().depth, first.depth, options.depth);
   WarnOfUnknownClasses(options.tracking, options.objects, masks);
   WarnOfLastFrame(arguments.selection, sequence);
-  if (!arguments.quiet && masks.format()) {
-    Print("{}\n", masks.Describe());
-  }
+  PrintInput(arguments, notes, masks);
   System system(options, ChoosePipeline(arguments), std::move(start));
   const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system);
   if (result.was_interrupted && result.given == 0) {

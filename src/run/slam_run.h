@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
+#include <string>
+
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/options.h"
 #include "run/run_arguments.h"
@@ -11,7 +14,8 @@ namespace hullslam {
 // keyframes.txt, map.ply and summary.json to the output folder, with masks also the files of the
 // objects, and groundtruth.txt if the ground truth of the sequence had to be converted; prints the
 // results. Returns the program's exit code. Throws InputError for bad input, before the first frame
-// if possible.
-int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence);
+// if possible. `notes` are lines about the input, which are printed before the first frame.
+int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence,
+            std::span<const std::string> notes);
 
 }  // namespace hullslam

@@ -5,6 +5,11 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <fstream>
+#include <span>
+#include <sstream>
+#include <string>
+#include <system_error>
 
 #include "hullslam/util/error.h"
 #include "run/messages.h"
@@ -36,6 +41,30 @@ Vocabulary LoadVocabulary(const std::filesystem::path& path, bool is_quiet) {
       PrintError("reading {}: {} of {} MB\n", path.string(), done, most);
     }
   });
+}
+
+bool IsVocabularyFile(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    return false;
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::string begin(200, '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<size_t>(file.gcount()));
+  if (Vocabulary::IsBinary(std::as_bytes(std::span(begin)))) {
+    return true;
+  }
+  // The text form begins with four whole numbers: branching, levels, score and weight.
+  const std::string line = begin.substr(0, begin.find_first_of("\r\n"));
+  std::istringstream words(line);
+  size_t numbers = 0;
+  for (std::string word; words >> word; ++numbers) {
+    if (word.find_first_not_of("0123456789") != std::string::npos) {
+      return false;
+    }
+  }
+  return numbers == 4;
 }
 
 void AddVocabularyForm(CLI::App& app, std::string& form) {

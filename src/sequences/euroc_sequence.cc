@@ -183,8 +183,12 @@ fs::path FindRoot(const fs::path& folder) {
       return root;
     }
   }
+  const auto is_sequence = [&](const fs::path& other) {
+    return fs::is_directory(other / "mav0" / "cam0", error);
+  };
   throw InputError(folder.string() +
-                   ": has no folder mav0/cam0, expected a sequence of EuRoC in the format ASL");
+                   ": has no folder mav0/cam0, expected a sequence of EuRoC in the format ASL" +
+                   SuggestFolder(folder, is_sequence));
 }
 
 }  // namespace

@@ -86,6 +86,25 @@ std::vector<fs::path> ListFolder(const fs::path& folder) {
   return paths;
 }
 
+std::string SuggestFolder(const fs::path& folder,
+                          const std::function<bool(const fs::path&)>& is_sequence) {
+  std::error_code error;
+  const fs::path here = fs::weakly_canonical(fs::absolute(folder, error), error);
+  std::vector<fs::path> found;
+  if (is_sequence(here.parent_path())) {
+    found.push_back(here.parent_path());
+  }
+  for (fs::directory_iterator entry(here, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_directory(ignored) && is_sequence(entry->path())) {
+      found.push_back(entry->path());
+    }
+  }
+  return found.size() == 1 ? fmt::format("; did you mean {}?", found.front().string())
+                           : std::string();
+}
+
 void CheckImagesExist(const std::vector<FramePaths>& frames) {
   std::error_code error;
   for (const FramePaths& frame : frames) {

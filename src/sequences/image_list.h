@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,11 @@ void SelectFrames(const std::filesystem::path& source, const FrameSelection& sel
 
 // The paths in a folder, sorted by name.
 std::vector<std::filesystem::path> ListFolder(const std::filesystem::path& folder);
+
+// If `folder` is one level too high or too low: "; did you mean FOLDER?" with the parent, or the
+// only subfolder, that `is_sequence` accepts. Empty if there is no such folder, or more than one.
+std::string SuggestFolder(const std::filesystem::path& folder,
+                          const std::function<bool(const std::filesystem::path&)>& is_sequence);
 
 // Refuses a frame if the file of its image or of its depth image is missing. The path of the depth
 // image may be empty.

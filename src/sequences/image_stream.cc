@@ -3,20 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <string_view>
 #include <system_error>
 #include <vector>
 
-#include "files/natural_order.h"
 #include "hullslam/util/error.h"
 #include "sequences/image_file.h"
 #include "sequences/image_list.h"
+#include "sequences/named_images.h"
 #include "sequences/video_file.h"
 
 namespace hullslam {
@@ -25,40 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kDefaultFramesPerSecond = 30.0;
-
-std::string LowerExtension(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
-// The images of a folder in natural order.
-std::vector<fs::path> ListImages(const fs::path& folder) {
-  constexpr std::array<std::string_view, 3> kRead = {".png", ".jpg", ".jpeg"};
-  constexpr std::array<std::string_view, 7> kOthers = {".bmp", ".tif", ".tiff", ".webp",
-                                                       ".pgm", ".ppm", ".gif"};
-  std::vector<fs::path> images;
-  for (const fs::path& file : ListFolder(folder)) {
-    const std::string extension = LowerExtension(file);
-    if (std::find(kOthers.begin(), kOthers.end(), extension) != kOthers.end()) {
-      throw InputError(file.string() + ": is neither a PNG nor a JPEG image, expected only those");
-    }
-    if (std::find(kRead.begin(), kRead.end(), extension) != kRead.end()) {
-      images.push_back(file);
-    }
-  }
-  if (images.empty()) {
-    throw InputError(folder.string() + ": has no PNG or JPEG images");
-  }
-  if (images.size() > kMostImages) {
-    throw InputError(fmt::format("{}: more than {} images", folder.string(), kMostImages));
-  }
-  std::sort(images.begin(), images.end(), [](const fs::path& a, const fs::path& b) {
-    return IsNaturallyBefore(a.filename().string(), b.filename().string());
-  });
-  return images;
-}
 
 ImageInput LoadPicture(const FramePaths& frame, const PinholeCamera& camera) {
   ImageInput image{frame.timestamp, ReadGreyImage(frame.image), cv::Mat()};
@@ -75,10 +37,18 @@ void CheckFrameRate(const std::optional<double>& frames_per_second) {
   }
 }
 
+void CheckOffset(double seconds) {
+  constexpr double kLargest = 1e11;  // later than any clock that counts from 1970
+  if (!(std::abs(seconds) <= kLargest)) {
+    throw InputError(
+        fmt::format("--stamp-offset is '{:g}', expected a number of seconds", seconds));
+  }
+}
+
 ImageStream OpenFolder(const fs::path& folder, const ImageStreamOptions& options) {
   ImageStream stream;
   stream.frames_per_second = options.frames_per_second.value_or(kDefaultFramesPerSecond);
-  stream.stamps_note =
+  stream.images.stamps_note =
       fmt::format("time stamps: {:g} images per second{}", stream.frames_per_second,
                   options.frames_per_second ? " (--fps)" : ", the default (--fps says another)");
   for (const fs::path& image : ListImages(folder)) {
@@ -113,7 +83,7 @@ ImageStream OpenVideo(const fs::path& file, const ImageStreamOptions& options) {
   ImageStream stream;
   if (options.frames_per_second) {
     stream.frames_per_second = *options.frames_per_second;
-    stream.stamps_note =
+    stream.images.stamps_note =
         fmt::format("time stamps: {:g} images per second (--fps)", stream.frames_per_second);
     for (size_t i = 0; i < stamps.size(); ++i) {
       stamps[i] = static_cast<double>(i) / stream.frames_per_second;
@@ -123,8 +93,8 @@ ImageStream OpenVideo(const fs::path& file, const ImageStreamOptions& options) {
     stream.frames_per_second =
         stamps.size() < 2 ? kDefaultFramesPerSecond
                           : static_cast<double>(stamps.size() - 1) / (stamps.back() - stamps[0]);
-    stream.stamps_note = fmt::format("time stamps: those of the video, {:.4g} images per second",
-                                     stream.frames_per_second);
+    stream.images.stamps_note = fmt::format(
+        "time stamps: those of the video, {:.4g} images per second", stream.frames_per_second);
   }
   for (size_t i = 0; i < stamps.size(); ++i) {
     stream.images.frames.push_back({stamps[i], file / fmt::format("{:06}", i), {}, i});
@@ -145,13 +115,19 @@ ImageStream OpenVideo(const fs::path& file, const ImageStreamOptions& options) {
 
 ImageStream OpenImageStream(const fs::path& path, const ImageStreamOptions& options) {
   CheckFrameRate(options.frames_per_second);
+  CheckOffset(options.stamp_offset);
   std::error_code error;
   if (!fs::exists(path, error)) {
     throw InputError(path.string() +
                      ": no such file or folder, expected a video or a folder of "
                      "images");
   }
-  return fs::is_directory(path, error) ? OpenFolder(path, options) : OpenVideo(path, options);
+  ImageStream stream =
+      fs::is_directory(path, error) ? OpenFolder(path, options) : OpenVideo(path, options);
+  for (FramePaths& frame : stream.images.frames) {
+    frame.timestamp += options.stamp_offset;
+  }
+  return stream;
 }
 
 PinholeCamera CameraOfFieldOfView(double degrees, int width, int height) {

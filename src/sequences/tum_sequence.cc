@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "hullslam/util/error.h"
 #include "hullslam/util/stamp_pairing.h"
 #include "sequences/image_list.h"
+#include "sequences/named_images.h"
 
 namespace hullslam {
 namespace {
@@ -19,8 +22,13 @@ namespace fs = std::filesystem;
 
 constexpr double kMaxDifference = 0.02;  // s, as in TUM's associate.py
 
+bool HasColourImages(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / "rgb.txt", error) || fs::is_directory(folder / "rgb", error);
+}
+
 // The images of a list, as frames without depth.
-std::vector<FramePaths> ReadImageList(const fs::path& folder, const char* name) {
+std::vector<FramePaths> ReadImageList(const fs::path& folder, const std::string& name) {
   const fs::path path = folder / name;
   std::vector<FramePaths> images;
   ForEachRow(path, [&](const TextRow& row) {
@@ -41,23 +49,88 @@ std::vector<double> StampsOf(const std::vector<FramePaths>& images) {
   return stamps;
 }
 
-ImageSequence PairLists(const fs::path& folder, bool need_depth) {
-  ImageSequence sequence;
-  std::vector<FramePaths> images = ReadImageList(folder, "rgb.txt");
+void CheckFolder(const fs::path& folder) {
   std::error_code error;
-  if (!need_depth && !fs::exists(folder / "depth.txt", error)) {
-    sequence.unpaired = images.size();
-    sequence.frames = std::move(images);
+  if (!fs::is_directory(folder, error)) {
+    throw InputError(folder.string() + ": no such folder, expected a sequence in TUM's format");
+  }
+}
+
+// The colour or depth images of a sequence and where they are listed.
+struct ImageList {
+  std::vector<FramePaths> frames;
+  std::string source;  // for messages
+  bool is_listed = true;
+  bool are_numbered = false;
+};
+
+// From NAME.txt or, if the sequence has no lists, from the names of the images in the folder NAME.
+// Null if there is neither.
+std::optional<ImageList> FindImages(const fs::path& folder, const std::string& name,
+                                    bool may_be_unlisted, const TumSequenceOptions& options) {
+  std::error_code error;
+  const std::string list = name + ".txt";
+  if (fs::exists(folder / list, error)) {
+    return ImageList{.frames = ReadImageList(folder, list), .source = list};
+  }
+  if (may_be_unlisted && fs::is_directory(folder / name, error)) {
+    NamedImages named = FindNamedImages(folder / name, options.frames_per_second);
+    return ImageList{.frames = std::move(named.frames),
+                     .source = "the folder " + name,
+                     .is_listed = false,
+                     .are_numbered = named.are_numbered};
+  }
+  return std::nullopt;
+}
+
+// How the time stamps were found; empty if a list has them.
+std::string NoteOf(const ImageList& images, const TumSequenceOptions& options) {
+  if (images.is_listed) {
+    return {};
+  }
+  return images.are_numbered
+             ? fmt::format(
+                   "no rgb.txt: the names of the images are numbers of frames, {:g} per "
+                   "second (Camera.fps)",
+                   options.frames_per_second)
+             : std::string("no rgb.txt: the names of the images are time stamps");
+}
+
+ImageList FindColourImages(const fs::path& folder, const TumSequenceOptions& options) {
+  CheckTumFolder(folder);
+  return FindImages(folder, "rgb", true, options).value();
+}
+
+ImageSequence PairImages(const fs::path& folder, const TumSequenceOptions& options) {
+  ImageSequence sequence;
+  ImageList colour = FindColourImages(folder, options);
+  std::optional<ImageList> of_depth = FindImages(folder, "depth", !colour.is_listed, options);
+  sequence.stamps_note = NoteOf(colour, options);
+  if (!options.need_images && !of_depth) {
+    sequence.unpaired = colour.frames.size();
+    sequence.frames = std::move(colour.frames);
     return sequence;
   }
-  std::vector<FramePaths> depth = ReadImageList(folder, "depth.txt");
-  const std::vector<double> of_images = StampsOf(images);
-  const std::vector<double> of_depth = StampsOf(depth);
-  const auto pairs = PairStampsGreedily(of_images, of_depth, kMaxDifference);
+  if (!of_depth) {
+    throw InputError(fmt::format("{}: has no depth.txt{}; without depth: mono_tum", folder.string(),
+                                 colour.is_listed ? "" : " and no folder depth"));
+  }
+  std::vector<FramePaths>& images = colour.frames;
+  std::vector<FramePaths>& depth = of_depth->frames;
+  // Frames with the same number belong together, whatever the frame rate is.
+  const bool by_number = colour.are_numbered && of_depth->are_numbered;
+  const double max_difference = by_number ? 0.5 / options.frames_per_second : kMaxDifference;
+  const std::vector<double> image_stamps = StampsOf(images);
+  const std::vector<double> depth_stamps = StampsOf(depth);
+  const auto pairs = PairStampsGreedily(image_stamps, depth_stamps, max_difference);
   if (pairs.empty()) {
-    throw InputError(fmt::format(
-        "{}: no image of rgb.txt has one of depth.txt within {} s, the smallest gap is {:.6f} s",
-        folder.string(), kMaxDifference, SmallestGap(of_images, of_depth)));
+    throw InputError(
+        by_number
+            ? fmt::format("{}: no image of rgb has the number of one of depth", folder.string())
+            : fmt::format(
+                  "{}: no image of {} has one of {} within {} s, the smallest gap is {:.6f} s",
+                  folder.string(), colour.source, of_depth->source, max_difference,
+                  SmallestGap(image_stamps, depth_stamps)));
   }
   sequence.unpaired = images.size() - pairs.size();
   for (const auto& [i, j] : pairs) {
@@ -67,9 +140,11 @@ ImageSequence PairLists(const fs::path& folder, bool need_depth) {
   return sequence;
 }
 
-ImageSequence ReadColourList(const fs::path& folder) {
+ImageSequence ReadColourImages(const fs::path& folder, const TumSequenceOptions& options) {
+  ImageList images = FindColourImages(folder, options);
   ImageSequence sequence;
-  sequence.frames = ReadImageList(folder, "rgb.txt");
+  sequence.stamps_note = NoteOf(images, options);
+  sequence.frames = std::move(images.frames);
   return sequence;
 }
 
@@ -91,7 +166,7 @@ ImageSequence ReadAssociations(const fs::path& folder, const fs::path& path) {
 
 ImageSequence ReadLists(const fs::path& folder, const TumSequenceOptions& options) {
   if (options.associations.empty()) {
-    return options.use_depth ? PairLists(folder, options.need_images) : ReadColourList(folder);
+    return options.use_depth ? PairImages(folder, options) : ReadColourImages(folder, options);
   }
   ImageSequence sequence = ReadAssociations(folder, options.associations);
   if (!options.use_depth) {
@@ -113,11 +188,17 @@ void DropMissingDepth(std::vector<FramePaths>& frames) {
 
 }  // namespace
 
-ImageSequence OpenTumSequence(const fs::path& folder, const TumSequenceOptions& options) {
-  std::error_code error;
-  if (!fs::is_directory(folder, error)) {
-    throw InputError(folder.string() + ": no such folder, expected a sequence in TUM's format");
+void CheckTumFolder(const fs::path& folder) {
+  CheckFolder(folder);
+  if (!HasColourImages(folder)) {
+    throw InputError(fmt::format(
+        "{}: has neither rgb.txt nor a folder rgb, expected a sequence in TUM's format{}",
+        folder.string(), SuggestFolder(folder, HasColourImages)));
   }
+}
+
+ImageSequence OpenTumSequence(const fs::path& folder, const TumSequenceOptions& options) {
+  CheckFolder(folder);
   ImageSequence sequence = ReadLists(folder, options);
   SelectFrames(folder, options.selection, sequence);
   if (options.need_images) {
@@ -125,6 +206,7 @@ ImageSequence OpenTumSequence(const fs::path& folder, const TumSequenceOptions& 
   } else {
     DropMissingDepth(sequence.frames);
   }
+  std::error_code error;
   const fs::path groundtruth = folder / "groundtruth.txt";
   if (fs::exists(groundtruth, error)) {
     sequence.groundtruth = groundtruth;

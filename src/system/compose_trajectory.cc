@@ -17,13 +17,13 @@ constexpr double kMinFoundAgain = 0.9;
 std::optional<Rigid3> FindPose(const Map& map, IslandId island, const TrackedFrame& frame) {
   const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame.frame);
   // A frame of a culled keyframe whose pose was refined is relative to where the keyframe was.
-  const bool is_refined = keyframe && !map.keyframes().Contains(*keyframe) && frame.pose &&
-                          frame.pose->reference == keyframe;
+  const bool is_refined = keyframe && !map.keyframes().Contains(*keyframe) && frame.from_keyframe &&
+                          frame.from_keyframe->reference == keyframe;
   if (keyframe && !is_refined && IslandOf(map, *keyframe) == island) {
     return map.CamFromWorld(*keyframe);
   }
-  if (frame.pose && IslandOf(map, frame.pose->reference) == island) {
-    return map.CamFromWorld(*frame.pose);
+  if (frame.from_keyframe && IslandOf(map, frame.from_keyframe->reference) == island) {
+    return map.CamFromWorld(*frame.from_keyframe);
   }
   return std::nullopt;
 }
@@ -49,7 +49,7 @@ void LoseFramesElsewhere(const Map& map, std::span<TrackedFrame> frames) {
   for (TrackedFrame& frame : frames) {
     if (frame.state == TrackingState::kTracked && !FindPose(map, island, frame)) {
       frame.state = TrackingState::kLost;
-      frame.pose.reset();
+      frame.from_keyframe.reset();
     }
   }
 }

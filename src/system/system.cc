@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/system/system.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -62,6 +64,25 @@ std::unique_ptr<FrameBuilder> MakeFrameBuilder(const Sensor& sensor, const Syste
       SplitNames(options.tracking.dynamic_classes), options.vocabulary);
 }
 
+// Words of two vocabularies can be compared if their contents are equal. It does not matter whether
+// they are one object or were read twice.
+void RequireSameVocabulary(const Map& map, const Vocabulary* expected) {
+  const Vocabulary* const found = map.vocabulary().get();
+  if (map.keyframes().empty() || found == expected) {
+    return;
+  }
+  if (found == nullptr) {
+    throw InputError(
+        "the map has no index of visual words, but SystemOptions::vocabulary is set; "
+        "read the map with ReadMap(path, options)");
+  }
+  if (expected == nullptr || found->hash() != expected->hash()) {
+    throw InputError(fmt::format(
+        "the map has the vocabulary {:016x}, SystemOptions::vocabulary is {}; expected the same",
+        found->hash(), expected != nullptr ? fmt::format("{:016x}", expected->hash()) : "not set"));
+  }
+}
+
 // Sets a flag during its lifetime.
 class ScopedFlag {
  public:
@@ -90,8 +111,7 @@ System::~System() = default;
 std::unique_ptr<Pipeline> System::BeginPipeline() {
   Check(!start_.localization_only || !start_.map.keyframes().empty(),
         "localization needs a map with keyframes");
-  Check(start_.map.keyframes().empty() || start_.map.vocabulary() == options_.vocabulary,
-        "the map's vocabulary differs from that of the options");
+  RequireSameVocabulary(start_.map, options_.vocabulary.get());
   auto pipeline = MakePipeline(kind_, sensor_, options_);
   pipeline->Begin({.map = start_.map.Snapshot(),
                    .session = {.name = start_.session_name, .first_frame = start_.map.NextFrame()},

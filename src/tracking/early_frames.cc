@@ -64,7 +64,7 @@ std::optional<TrackedFrame> LocaliseFrame(const Map& map, const TrackingContext&
   const PoseEstimate& estimate = found->tracking.estimate;
   before.frame = frame;
   before.cam_from_world = estimate.cam_from_world;
-  tracked.pose = map.RelativeTo(found->tracking.reference, estimate.cam_from_world);
+  tracked.from_keyframe = map.RelativeTo(found->tracking.reference, estimate.cam_from_world);
   tracked.cam_from_world = estimate.cam_from_world;
   tracked.inliers = estimate.inliers;
   return tracked;

@@ -60,13 +60,13 @@ std::optional<RelativePose> PoseOfCulled(const Map& map, FrameId frame) {
 void RefineFrame(const Map& map, const TrackingContext& context, const RememberedFrame& seen,
                  TrackedFrame& tracked) {
   if (const std::optional<RelativePose> culled = PoseOfCulled(map, tracked.frame)) {
-    tracked.pose = culled;
+    tracked.from_keyframe = culled;
   }
-  if (!tracked.pose) {
+  if (!tracked.from_keyframe) {
     return;
   }
   PoseEstimate start;
-  start.cam_from_world = map.CamFromWorld(*tracked.pose);
+  start.cam_from_world = map.CamFromWorld(*tracked.from_keyframe);
   start.landmarks = Newest(map, seen.landmarks);
   const PoseObjects objects = MakePoseObjects(map, context.sensor, seen.frame, start.cam_from_world,
                                               Newest(map, seen.objects), context.objects);
@@ -74,7 +74,8 @@ void RefineFrame(const Map& map, const TrackingContext& context, const Remembere
       RefinePose(seen.frame, map, context, objects.objects, std::move(start));
   if (refined.EffectiveInliers() >= context.options.min_inliers &&
       refined.inliers >= kMinInlierShare * static_cast<double>(seen.landmarks.size())) {
-    tracked.pose = map.RelativeTo(tracked.pose->reference, refined.cam_from_world);
+    tracked.from_keyframe =
+        map.RelativeTo(tracked.from_keyframe->reference, refined.cam_from_world);
   }
 }
 

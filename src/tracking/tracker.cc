@@ -182,7 +182,7 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   result.report = {.tracked = {.frame = frame->id,
                                .timestamp = frame->timestamp,
                                .state = TrackingState::kTracked,
-                               .pose = pose,
+                               .from_keyframe = pose,
                                .cam_from_world = estimate.cam_from_world,
                                .inliers = estimate.inliers},
                    .frame = frame,

@@ -78,6 +78,26 @@ TEST_F(MonoVideo, AVideoAndAFolderOfImagesMakeAMap) {
   EXPECT_LE(AteOf(desk), 0.005);
 }
 
+TEST_F(MonoVideo, TheErrorAgainstGroundTruthNeedsStampsThatFit) {
+  const RenderedDesk desk(kFrames);
+  const std::string images = desk.path() / "rgb";
+  const std::string truth = desk.path() / "groundtruth.txt";
+  const double start = ReadGroundtruth(desk.images())->front().timestamp;
+  folder_.Write("late.txt", fmt::format("{:.6f} 0 0 0 0 0 0 1\n", start + 1000.0));
+  const Arguments camera = {"--settings", desk.settings()};
+  Arguments arguments = {images, "--groundtruth", truth, "--stamp-offset",
+                         fmt::format("{:.6f}", start)};
+  arguments.insert(arguments.end(), camera.begin(), camera.end());
+  ExpectMap(arguments, kFrames);
+  EXPECT_LE(Ate(), 0.005);
+  EXPECT_EQ(Summary()["trajectory"]["pairs"], kFrames);
+  EXPECT_NEAR(Poses().front().timestamp, start, 1e-6);
+  ExpectRefusal({images, "--fov", "60", "--groundtruth", Path("late.txt")},
+                {"late.txt", "but the images are from 0.000000 to 0.5", "--stamp-offset"});
+  ExpectRefusal({images, "--fov", "60", "--groundtruth", Path("none.txt")}, {"none.txt"});
+  ExpectRefusal({images, "--fov", "60", "--stamp-offset", "nan"}, {"--stamp-offset", "nan"});
+}
+
 TEST_F(MonoVideo, BlackImagesMakeNoMap) {
   ExpectNoMap({WriteBlack(12), "--fov", "60"}, 12, "too few features");
 }

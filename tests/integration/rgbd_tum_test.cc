@@ -130,6 +130,43 @@ TEST_F(RgbdTum, WritesAllResults) {
   EXPECT_EQ(trajectory["skipped"], 0);
 }
 
+TEST_F(RgbdTum, PrintsWhichSettingsItTakesAndWhy) {
+  const std::string own = path_ + "/camera.yaml";
+  ExpectParts(RunWell({path_, "--last", "2"}).output,
+              {"settings: " + own + " (in the folder of the sequence)"});
+  ExpectParts(RunWell({path_, "--last", "2", "--settings", own}).output,
+              {"settings: " + own + " (as --settings says)"});
+  const fs::path by_name = folder_.path() / "rgbd_dataset_freiburg1_wall";
+  fs::copy(path_, by_name, fs::copy_options::recursive);
+  fs::remove(by_name / "camera.yaml");
+  ExpectParts(RunWell({by_name, "--last", "2"}).output,
+              {"TUM1.yaml (by the name of the folder of the sequence)"});
+}
+
+// A recording of a user: images that are named by their numbers or time stamps, and no lists.
+TEST_F(RgbdTum, FoldersWithoutListsSimplyRun) {
+  RunWell({path_, "--quiet"});
+  const Trajectory listed = Poses();
+  for (const char* const list : {"rgb.txt", "depth.txt", "groundtruth.txt", "associations.txt"}) {
+    fs::remove(sequence_.path() / list);
+  }
+  ExpectParts(RunWell({path_}).output, {"no rgb.txt", "numbers of frames, 30 per second"});
+  const Trajectory numbered = Poses();
+  ASSERT_EQ(numbered.size(), listed.size());
+  EXPECT_NEAR(numbered[3].timestamp, 3 / 30.0, 1e-6);
+  EXPECT_LT((numbered.back().world_from_cam.translation - listed.back().world_from_cam.translation)
+                .norm(),
+            0.005);
+  for (int i = 0; i < 12; ++i) {
+    for (const char* const kind : {"rgb", "depth"}) {
+      fs::rename(sequence_.path() / kind / fmt::format("{:02}.png", i),
+                 sequence_.path() / kind / fmt::format("{:.6f}.png", sequence_.Stamp(i)));
+    }
+  }
+  ExpectParts(RunWell({path_}).output, {"the names of the images are time stamps"});
+  EXPECT_NEAR(Poses().back().timestamp, sequence_.Stamp(11), 1e-6);
+}
+
 TEST_F(RgbdTum, SummaryHasAllKeys) {
   RunWell({path_, "--seed", "7"});
   const Json summary = Summary();
@@ -140,7 +177,7 @@ TEST_F(RgbdTum, SummaryHasAllKeys) {
       {"memory", {"peak_mb"}},
       {"map", {"keyframes", "landmarks", "loops"}},
       {"provenance",
-       {"version", "git", "settings_hash", "preset", "seed", "pipeline", "masks_format",
+       {"program", "version", "git", "settings_hash", "preset", "seed", "pipeline", "masks_format",
         "sequence"}}};
   for (const auto& [group, names] : keys) {
     for (const std::string& name : names) {
@@ -347,7 +384,77 @@ TEST_F(RgbdTumRefuses, WhatIsMissing) {
   fs::remove(sequence_.path() / "rgb/07.png");
   ExpectRefusal({path_}, {path_ + "/rgb/07.png", "missing"});
   fs::remove(sequence_.path() / "depth.txt");
-  ExpectRefusal({path_}, {path_ + "/depth.txt"});
+  ExpectRefusal({path_}, {path_, "has no depth.txt", "without depth: mono_tum"});
+}
+
+TEST_F(RgbdTumRefuses, AFolderOneLevelTooHighOrTooLow) {
+  const std::string meant = "did you mean " + fs::canonical(path_).string() + "?";
+  ExpectRefusal({path_ + "/rgb"}, {meant});
+  fs::create_directory_symlink(path_, folder_.path() / "desk");
+  ExpectRefusal({folder_.path()},
+                {"did you mean " + (fs::canonical(folder_.path()) / "desk").string() + "?"});
+}
+
+TEST_F(RgbdTumRefuses, AVocabularyInThePlaceOfTheSettings) {
+  const fs::path text = folder_.path() / "ORBvoc.txt";
+  WriteVocabulary(text, MadeVocabulary(), VocabularyForm::kText);
+  const std::string settings = path_ + "/camera.yaml";
+  for (const std::string& vocabulary : {text.string(), FindDefaultVocabulary().string()}) {
+    ExpectRefusal({settings, vocabulary, path_, path_ + "/associations.txt"},
+                  {vocabulary + " is a vocabulary",
+                   "the order is VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS"});
+  }
+}
+
+TEST_F(RgbdTumRefuses, AnUnknownOptionIsComparedWithTheKnownOnes) {
+  ExpectRefusal({path_, "--mask", "masks"}, {"--mask", "did you mean --masks?"});
+  ExpectRefusal({path_, "--localisation"}, {"did you mean --localization?"});
+  ExpectRefusal({path_, "--ouptut=a"}, {"did you mean --output?"});
+  const ProgramResult other = RunProgram("rgbd_tum", {path_, "--aardvark"});
+  EXPECT_EQ(other.errors.find("did you mean"), std::string::npos) << other.errors;
+}
+
+TEST_F(RgbdTumRefuses, AMapInAFolderThatDoesNotExist) {
+  const fs::path map = folder_.path() / "maps" / "desk.map";
+  ExpectRefusal({path_, "--save-map", map},
+                {"--save-map is '" + map.string() + "'", "there is no folder", "/maps"});
+}
+
+TEST_F(RgbdTumRefuses, SizesThatAreNotInMetres) {
+  ExpectRefusal({path_, "--set", "objects.sizes=keyboard:46"}, {"keyboard:46", "0.001 to 20"});
+  const ProgramResult result = RunProgram("rgbd_tum", {path_, "--last", "2", "--quiet", "--output",
+                                                       output_, "--set", "objects.sizes=cup:10"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  ExpectParts(result.errors, {"warning: objects.sizes", "'cup' is 10 m", "in metres"});
+}
+
+TEST_F(RgbdTum, WarnsOfDepthInAnotherUnit) {
+  for (const auto& [factor, metres] : {std::pair("800", "6.25 m"), std::pair("20000", "0.25 m")}) {
+    const ProgramResult result =
+        RunProgram("rgbd_tum", {path_, "--last", "2", "--quiet", "--output", output_, "--set",
+                                std::string("DepthMapFactor=") + factor});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    ExpectParts(result.errors, {"warning: ", metres, "is DepthMapFactor right?"});
+  }
+}
+
+TEST_F(RgbdTumRefuses, ToReplaceARunOfAnotherProgram) {
+  const fs::path other = folder_.path() / "other";
+  fs::create_directory(other);
+  for (const auto& [name, bytes] : former_) {
+    std::string text = bytes;
+    if (const size_t at = text.find("rgbd_tum");
+        name == "summary.json" && at != std::string::npos) {
+      text.replace(at, 8, "mono_tum");
+    }
+    std::ofstream(other / name, std::ios::binary) << text;
+  }
+  Expect({path_, "--output", other}, {other.string(), "a run of mono_tum", "--overwrite"});
+  EXPECT_EQ(ReadFolder(other).size(), former_.size());
+  const ProgramResult result =
+      RunProgram("rgbd_tum", {path_, "--last", "2", "--output", other, "--overwrite"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(Json::parse(ReadFile(other / "summary.json"))["provenance"]["program"], "rgbd_tum");
 }
 
 TEST_F(RgbdTumRefuses, BadSettings) {

@@ -182,7 +182,7 @@ class LateCorrection : public ::testing::TestWithParam<uint32_t> {
       frame.frame = FrameId(kFramesPerKeyframe * id.value + 1);
       frame.timestamp = static_cast<double>(frames_.size());
       frame.state = TrackingState::kTracked;
-      frame.pose = map_.RelativeTo(id, random_.Pose(1.0, 2.0));
+      frame.from_keyframe = map_.RelativeTo(id, random_.Pose(1.0, 2.0));
     }
   }
 
@@ -250,7 +250,7 @@ class LateCorrection : public ::testing::TestWithParam<uint32_t> {
     for (size_t i = 0; i < frames_.size(); ++i) {
       ExpectMoved(Inverse(new_trajectory[i].world_from_cam),
                   Inverse(old_trajectory[i].world_from_cam),
-                  ExpectedChange(before, frames_[i].pose->reference).value_or(Sim3()),
+                  ExpectedChange(before, frames_[i].from_keyframe->reference).value_or(Sim3()),
                   "frame " + std::to_string(i));
     }
   }
@@ -389,7 +389,9 @@ TEST_P(LateCorrection, ComposesWithTheNextCorrection) {
   EXPECT_TRUE(ApplyCorrection(map_, correction, levels_).is_applied);
   ExpectNear(twice, map_, 1e-9);
   for (const TrackedFrame& frame : frames_) {
-    EXPECT_LT(Distance(twice.CamFromWorld(*frame.pose), map_.CamFromWorld(*frame.pose)), 1e-9);
+    EXPECT_LT(
+        Distance(twice.CamFromWorld(*frame.from_keyframe), map_.CamFromWorld(*frame.from_keyframe)),
+        1e-9);
   }
 }
 
@@ -418,8 +420,9 @@ TEST_P(LateCorrection, CommutesWithCulling) {
     EXPECT_NEAR(map_.ScaleOf(id), culled_after.ScaleOf(id), 1e-9) << id.value;
   }
   for (const TrackedFrame& frame : frames_) {
-    if (frame.pose->reference < snapshot_.keyframes().NextId()) {
-      EXPECT_LT(Distance(map_.CamFromWorld(*frame.pose), culled_after.CamFromWorld(*frame.pose)),
+    if (frame.from_keyframe->reference < snapshot_.keyframes().NextId()) {
+      EXPECT_LT(Distance(map_.CamFromWorld(*frame.from_keyframe),
+                         culled_after.CamFromWorld(*frame.from_keyframe)),
                 1e-9);
     }
   }
@@ -460,7 +463,9 @@ TEST_P(LateCorrection, FramesKeepTheirPosesInChainsOfCulledKeyframes) {
       }
     });
     for (const TrackedFrame& frame : frames_) {
-      EXPECT_LT(Distance(map_.CamFromWorld(*frame.pose), before.CamFromWorld(*frame.pose)), 1e-9);
+      EXPECT_LT(Distance(map_.CamFromWorld(*frame.from_keyframe),
+                         before.CamFromWorld(*frame.from_keyframe)),
+                1e-9);
     }
     for (const KeyframeId id : AllIds(map_)) {
       EXPECT_NEAR(map_.ScaleOf(id), before.ScaleOf(id), 1e-9);

@@ -13,7 +13,7 @@ TEST(TrackedFrame, IsNotTrackedAtFirst) {
   const TrackedFrame frame;
   EXPECT_EQ(frame.state, TrackingState::kNotInitialized);
   EXPECT_FALSE(frame.frame.IsValid());
-  EXPECT_FALSE(frame.pose.has_value());
+  EXPECT_FALSE(frame.from_keyframe.has_value());
   EXPECT_EQ(frame.inliers, 0);
 }
 

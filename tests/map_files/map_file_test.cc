@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/map_files/map_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +12,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -26,6 +28,7 @@
 #include "map_files/map_records.h"
 #include "support/expect_error.h"
 #include "support/file_size_limit.h"
+#include "support/made_vocabulary.h"
 #include "support/paths.h"
 #include "support/random_geometry.h"
 #include "support/temporary_folder.h"
@@ -62,6 +65,17 @@ class MapFileTest : public testing::Test {
 // landmarks, and slots of landmarks. Before it are prefix, length, sensor, camera, pyramid,
 // vocabulary, sessions, corrections.
 constexpr size_t kCounts = 14 + 4 + 1 + 88 + 12 + 8 + 4 + (4 + 4 + 4) + (4 + 10 + 4) + 4;
+
+// Options whose maps have the settings MadeSettings().
+SystemOptions MadeOptions() {
+  const MapSettings settings = MadeSettings();
+  SystemOptions options;
+  options.sensor = settings.sensor;
+  options.camera = settings.camera;
+  options.features.level_count = settings.level_count;
+  options.features.scale_factor = settings.scale_factor;
+  return options;
+}
 
 // The bytes with a right checksum at their end.
 std::string WithChecksum(std::string bytes) {
@@ -239,21 +253,24 @@ TEST_F(MapFileTest, LabelsAreMadePrintable) {
 
 TEST_F(MapFileTest, OtherSettingsAreRefused) {
   WriteMap(path_, SmallMap(), MadeSettings());
-  EXPECT_EQ(ReadMap(path_, MadeSettings()).keyframes().size(), 2u);
+  EXPECT_EQ(ReadMap(path_, MadeOptions()).keyframes().size(), 2u);
   const auto refuse = [&](const auto& change, const std::vector<std::string>& parts) {
-    MapSettings other = MadeSettings();
+    SystemOptions other = MadeOptions();
     change(other);
     ExpectInputError([&] { ReadMap(path_, other); }, parts);
   };
-  refuse([](MapSettings& s) { s.camera.fy = 502.0; },
+  refuse([](SystemOptions& o) { o.camera.fy = 502.0; },
          {path_.string(), "Camera.fy 501", "the settings say 502"});
-  refuse([](MapSettings& s) { s.camera.width = 320; }, {"Camera.width 640", "320"});
-  refuse([](MapSettings& s) { s.camera.k2 = 1e-4; }, {"Camera.k2 0", "1e-04"});
-  refuse([](MapSettings& s) { s.level_count = 7; }, {"ORBextractor.nLevels 8", "7"});
-  refuse([](MapSettings& s) { s.scale_factor = 1.3; }, {"ORBextractor.scaleFactor 1.2", "1.3"});
-  refuse([](MapSettings& s) { s.sensor = SensorKind::kMonocular; },
+  refuse([](SystemOptions& o) { o.camera.width = 320; }, {"Camera.width 640", "320"});
+  refuse([](SystemOptions& o) { o.camera.k2 = 1e-4; }, {"Camera.k2 0", "1e-04"});
+  refuse([](SystemOptions& o) { o.features.level_count = 7; }, {"ORBextractor.nLevels 8", "7"});
+  refuse([](SystemOptions& o) { o.features.scale_factor = 1.3; },
+         {"ORBextractor.scaleFactor 1.2", "1.3"});
+  refuse([](SystemOptions& o) { o.sensor = SensorKind::kMonocular; },
          {path_.string(), "an RGB-D camera", "a monocular"});
-  refuse([](MapSettings& s) { s.vocabulary = 9; }, {"vocabulary", "0000000000000009"});
+  const std::shared_ptr<const Vocabulary> vocabulary = SharedVocabulary();
+  refuse([&](SystemOptions& o) { o.vocabulary = vocabulary; },
+         {"vocabulary 0000000000000000", fmt::format("{:016x}", vocabulary->hash())});
 }
 
 TEST_F(MapFileTest, AMonocularMapStaysOne) {
@@ -261,7 +278,7 @@ TEST_F(MapFileTest, AMonocularMapStaysOne) {
   settings.sensor = SensorKind::kMonocular;
   WriteMap(path_, SmallMap(), settings);
   EXPECT_EQ(ReadMap(path_).settings.sensor, SensorKind::kMonocular);
-  ExpectInputError([&] { ReadMap(path_, MadeSettings()); }, {"a monocular camera", "an RGB-D"});
+  ExpectInputError([&] { ReadMap(path_, MadeOptions()); }, {"a monocular camera", "an RGB-D"});
 }
 
 TEST_F(MapFileTest, EveryFlippedByteIsRefused) {
@@ -362,9 +379,9 @@ TEST_F(MapFileTest, AMapWithoutRoomForLandmarksIsRefused) {
 TEST_F(MapFileTest, ReadingCanBeCancelled) {
   const std::string bytes = Written(SmallMap());
   Cancellation cancellation;
-  EXPECT_NO_THROW(ReadMap(path_, MadeSettings(), nullptr, &cancellation));
+  EXPECT_NO_THROW(ReadMap(path_, MadeOptions(), &cancellation));
   cancellation.Request();
-  EXPECT_THROW(ReadMap(path_, MadeSettings(), nullptr, &cancellation), ReadingCancelled);
+  EXPECT_THROW(ReadMap(path_, MadeOptions(), &cancellation), ReadingCancelled);
   constexpr size_t kPrefix = 14;
   std::istringstream records(bytes.substr(kPrefix, bytes.size() - kPrefix - 4));
   EXPECT_THROW(

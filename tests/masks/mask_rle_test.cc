@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "masks/mask_outline.h"
+#include "frame/mask_outline.h"
 
 namespace hullslam {
 namespace {

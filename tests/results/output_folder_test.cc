@@ -127,6 +127,22 @@ TEST_F(OutputFolderTest, AFormerRunOfAnotherKindIsRefused) {
   ExpectInputError([&] { OutputFolder(out_, "pictures.json", {}); }, {out_.string(), "former run"});
 }
 
+TEST_F(OutputFolderTest, ARunOfAnotherProgramIsOnlyReplacedOnDemand) {
+  const auto open = [&](const std::string& program, bool may_replace) {
+    const OutputFolder output(out_, "summary.json", {}, {program, may_replace});
+  };
+  const std::string index = R"({"files": ["a.txt"], "provenance": {"program": "mono_tum"}})";
+  folder_.Write("a/out/summary.json", index);
+  folder_.Write("a/out/a.txt", "1");
+  ExpectInputError([&] { open("rgbd_tum", false); },
+                   {out_.string(), "a run of mono_tum", "this run of rgbd_tum", "--overwrite"});
+  EXPECT_EQ(ReadFolder(out_), (Files{{"a.txt", "1"}, {"summary.json", index}}));
+  EXPECT_NO_THROW(open("mono_tum", false));
+  EXPECT_NO_THROW(open("rgbd_tum", true));
+  folder_.Write("a/out/summary.json", R"({"files": ["a.txt"], "provenance": {"seed": 0}})");
+  EXPECT_NO_THROW(open("rgbd_tum", false)) << "a version that did not say its program";
+}
+
 TEST_F(OutputFolderTest, TheLogOfARunMayLieBesideIt) {
   folder_.Write("a/out/log.txt", "log");
   Run({{"a.txt", "1"}});

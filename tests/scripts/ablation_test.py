@@ -31,7 +31,7 @@ out.mkdir(parents=True, exist_ok=True)
 ate = (0.01 + 0.001 * int(value("--seed"))) * (2 if "objects.residual=bad" in arguments else 1)
 objects = None if "--no-masks" in arguments else {"count": 6, "siou_mean": 0.8, "mtd_mean_m2": 1e-3}
 (out / "summary.json").write_text(json.dumps({
-    "trajectory": {"ate_rmse_m": ate, "tracked": 798}, "objects": objects,
+    "trajectory": {"ate_rmse_m": ate, "tracked": 798, "frames": 800}, "objects": objects,
     "timing": {"track_ms": {"median": 9.5}}}))
 """
 
@@ -51,6 +51,12 @@ class VariantTest(unittest.TestCase):
                 ablation.parse_variant(text)
 
 
+def result(sequence, variant, ate):
+    return {"sequence": sequence, "variant": variant, "runs": 1, "failed": 0,
+            "ates": {f"{sequence} 0": ate},
+            "figures": ablation.collect([{"trajectory": {"ate_rmse_m": ate}}])}
+
+
 class FiguresTest(unittest.TestCase):
     def test_mean_and_deviation_of_known_values(self):
         runs = [{"trajectory": {"ate_rmse_m": ate}, "objects": None} for ate in (1.0, 3.0, None)]
@@ -62,14 +68,48 @@ class FiguresTest(unittest.TestCase):
         self.assertIsNone(ablation.collect([])["ATE m"]["mean"])
 
     def test_change_is_against_the_first_of_the_same_sequence(self):
-        def result(sequence, variant, ate):
-            figures = ablation.collect([{"trajectory": {"ate_rmse_m": ate}}])
-            return {"sequence": sequence, "variant": variant, "runs": 1, "failed": 0,
-                    "figures": figures}
         text = ablation.table([result("a", "off", 0.02), result("a", "on", 0.01),
                                result("b", "off", 0.1), result("b", "on", 0.11)])
-        changes = [line.split("|")[-2].strip() for line in text.splitlines()[2:]]
-        self.assertEqual(changes, ["+0.0 %", "-50.0 %", "+0.0 %", "+10.0 %"])
+        changes = [line.split("|")[-4].strip() for line in text.splitlines()[2:]]
+        self.assertEqual(changes[:4], ["-", "-50.0 %", "-", "+10.0 %"])
+
+    def test_mean_over_the_sequences(self):
+        text = ablation.table([result("a", "off", 0.02), result("a", "on", 0.01),
+                               result("b", "off", 0.1), result("b", "on", 0.11)])
+        rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines()]
+        self.assertEqual(rows[-2][:4], ["mean", "off", "2", "0.06000"])
+        # The geometric mean of 0.5 and 1.1. Two pairs of which one rises and one falls prove nothing.
+        self.assertEqual(rows[-1][:4] + rows[-1][-3:],
+                         ["mean", "on", "2", "0.06000", "-25.8 %", "1", "2"])
+        one = ablation.table([result("a", "off", 0.02), result("a", "on", 0.01)])
+        self.assertNotIn("mean", one)
+        incomplete = ablation.table([result("a", "off", 0.02), result("b", "off", 0.01),
+                                     result("a", "on", 0.01)])
+        self.assertIn("| mean | off |", incomplete)
+        self.assertNotIn("| mean | on |", incomplete)
+
+    def test_lost_frames_are_a_share(self):
+        row = ablation.collect([{"trajectory": {"frames": 200, "tracked": 150}},
+                                {"trajectory": {"frames": 200, "tracked": 200}}])
+        self.assertEqual(row["lost %"]["mean"], 12.5)
+        self.assertIsNone(ablation.collect([{"trajectory": {"tracked": 5}}])["lost %"]["mean"])
+
+    def test_p_of_the_sign_flip_test(self):
+        self.assertEqual(ablation.flip_probability([0.3]), 1.0)
+        self.assertEqual(ablation.flip_probability([-0.1, -0.2]), 0.5)
+        self.assertEqual(ablation.flip_probability([1.0, 2.0, 3.0, 4.0, 5.0]), 2 / 32)
+        self.assertEqual(ablation.flip_probability([1.0, 1.0, -1.0]), 1.0)
+        # +-1 +-2 +-4 has 8 sums; 7 and -7, 5 and -5 are at least as large as 5.
+        self.assertEqual(ablation.flip_probability([-1.0, 2.0, 4.0]), 0.5)
+        many = [0.1] * 20
+        self.assertLess(ablation.flip_probability(many), 1e-3)
+        self.assertGreater(ablation.flip_probability([0.1, -0.1] * 10), 0.9)
+
+    def test_only_runs_of_the_same_sequence_and_seed_are_paired(self):
+        change, p, pairs = ablation.compare({"a 0": 1.0, "a 1": 2.0}, {"a 1": 4.0, "a 2": 1.0})
+        self.assertAlmostEqual(change, 1.0)
+        self.assertEqual((p, pairs), (1.0, 1))
+        self.assertEqual(ablation.compare({"a 0": 1.0}, {}), (None, None, 0))
 
 
 class AblationTest(unittest.TestCase):
@@ -103,9 +143,9 @@ class AblationTest(unittest.TestCase):
         self.assertIn("--masks a b --set objects.residual=bad --seed 2 --quiet", self.calls()[5])
         table = (self.dir / "out" / "ablation.md").read_text()
         self.assertTrue(result.stdout.endswith(table))
-        self.assertIn("| desk | good | 3 | 0.01100 ± 0.00100 | 798 | 6.0 | 0.800 | - | 1.00e-03 |",
+        self.assertIn("| desk | good | 3 | 0.01100 ± 0.00100 | 798 | 0.2 | 6.0 | 0.800 | - | 1.00e-03 |",
                       table)
-        self.assertIn("| 9.5 | +100.0 % |", table)
+        self.assertIn("| 9.5 | +100.0 % | 0.25 | 3 |", table)
         results = json.loads((self.dir / "out" / "ablation.json").read_text())
         self.assertEqual(results[1]["arguments"], ["--set", "objects.residual=bad"])
         self.assertEqual(len(results[1]["figures"]["ATE m"]["values"]), 3)
@@ -132,7 +172,7 @@ class AblationTest(unittest.TestCase):
     def test_runs_without_masks(self):
         result = self.run_script("--seeds", "1", "--variant", "none:--no-masks")
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("| desk | none | 1 | 0.01000 | 798 | - | - |", result.stdout)
+        self.assertIn("| desk | none | 1 | 0.01000 | 798 | 0.2 | - | - |", result.stdout)
 
     def test_finished_runs_are_not_repeated(self):
         once = ["--seeds", "2", "--variant", "v:"]
@@ -169,6 +209,53 @@ class AblationTest(unittest.TestCase):
     def test_bad_input_ends_the_script_at_once(self):
         self.assert_refused(self.run_script("--variant", "v:mode=refuse"), "mode is 'refuse'")
         self.assertEqual(len(self.calls()), 1)
+
+    def test_variants_of_a_file(self):
+        path = self.dir / "variants.txt"
+        path.write_text("# first\ngood:\n\nbad:objects.residual=bad\n")
+        result = self.run_script("--seeds", "1", "--variants", path, "--variant", "last:x=1")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        names = [line.split("|")[2].strip() for line in result.stdout.splitlines() if "|" in line]
+        self.assertEqual(names[2:], ["good", "bad", "last"])
+        path.write_text("# nothing\n")
+        self.assert_refused(self.run_script("--variants", path), "has no variant")
+        self.assert_refused(self.run_script("--variants", self.dir / "none"), "cannot read")
+        self.assert_refused(self.run_script(), "--variant")
+
+    def test_a_sequence_may_have_another_program(self):
+        other = self.dir / "mono_tum"
+        other.write_text(PROGRAM.replace('"calls"', '"mono_calls"'))
+        other.chmod(0o755)
+        result = self.run_script("--seeds", "1", "--sequence", f"mono_tum={self.dir}/desk",
+                                 "--variant", "v:")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(len(self.calls()), 1)
+        self.assertEqual(len((self.dir / "mono_calls").read_text().splitlines()), 1)
+        self.assertIn("| desk-mono_tum | v | 1 |", result.stdout)
+        self.assertIn("| mean | v | 2 |", result.stdout)
+        self.assert_refused(self.run_script("--sequence", f"rgbd_icl={self.dir}/desk", "--variant",
+                                            "v:"), "rgbd_icl: no such program")
+
+    def test_several_runs_at_once_give_the_same_table(self):
+        arguments = ["--seeds", "3", "--variant", "good:", "--variant", "bad:objects.residual=bad"]
+        one = self.run_script(*arguments)
+        table = (self.dir / "out" / "ablation.md").read_text()
+        (self.dir / "out").rename(self.dir / "one")
+        several = self.run_script(*arguments, "--jobs", "4")
+        self.assertEqual(several.returncode, 0, several.stderr)
+        self.assertEqual((self.dir / "out" / "ablation.md").read_text(), table)
+        self.assertEqual(len(self.calls()), 12)
+        self.assertTrue(one.stdout.endswith(table))
+
+    def test_several_runs_are_made_at_once(self):
+        """Each waits for the other one, so one after the other would never end."""
+        self.program.write_text(PROGRAM.replace("out = pathlib", """import time
+(here / f"began-{value('--seed')}").touch()
+while len(list(here.glob("began-*"))) < 2:
+    time.sleep(0.01)
+out = pathlib"""))
+        result = self.run_script("--seeds", "2", "--variant", "v:", "--jobs", "2", "--timeout", "20")
+        self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_bad_usage(self):
         self.assert_refused(self.run_script("--variant", "v"), "NAME:KEY=VALUE")

@@ -71,7 +71,7 @@ TEST_F(ImageStreamTest, AFolderIsReadInNaturalOrder) {
   EXPECT_EQ(stream.width, kWidth);
   EXPECT_EQ(stream.height, kHeight);
   EXPECT_EQ(stream.frames_per_second, 30.0);
-  EXPECT_NE(stream.stamps_note.find("30 images per second, the default"), std::string::npos);
+  EXPECT_NE(stream.images.stamps_note.find("30 images per second, the default"), std::string::npos);
   EXPECT_NEAR(GreyOf(stream, 0), 10, 1);
   EXPECT_NEAR(GreyOf(stream, 2), 30, 1);
   const ImageInput image = stream.images.load(stream.images.frames[1], CameraOf(stream));
@@ -90,7 +90,7 @@ TEST_F(ImageStreamTest, TheFrameRateOfAFolderCanBeGiven) {
   EXPECT_EQ(stream.images.frames[1].timestamp, 3.0 / 12.5);
   EXPECT_EQ(stream.images.frames[1].number, 3U);
   EXPECT_EQ(stream.images.available, 4U);
-  EXPECT_NE(stream.stamps_note.find("12.5 images per second (--fps)"), std::string::npos);
+  EXPECT_NE(stream.images.stamps_note.find("12.5 images per second (--fps)"), std::string::npos);
   for (const double rate : {0.0, -1.0, 1e9, std::nan("")}) {
     ExpectError(folder_.path(), {"--fps is '"}, {.frames_per_second = rate});
   }
@@ -135,7 +135,7 @@ TEST_F(ImageStreamTest, AVideoHasItsOwnTimeStamps) {
     EXPECT_NEAR(stream.frames_per_second, 25.0, 0.1);
     EXPECT_NEAR(stream.images.frames[7].timestamp - stream.images.frames[0].timestamp, 0.28, 1e-3);
     EXPECT_EQ(stream.images.frames[7].image.stem(), "000007");
-    EXPECT_NE(stream.stamps_note.find("of the video"), std::string::npos);
+    EXPECT_NE(stream.images.stamps_note.find("of the video"), std::string::npos);
   }
 }
 

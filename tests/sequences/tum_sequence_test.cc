@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "hullslam/util/error.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 #include "support/test_data.h"
@@ -157,7 +158,7 @@ TEST_F(TumSequenceTest, MissingFilesAreReportedByName) {
   // Images of frames that are not selected need not exist.
   EXPECT_EQ(Open({.associations = {}, .selection = {.last = 0}}).frames.size(), 1U);
   std::filesystem::remove(folder_.path() / "depth.txt");
-  ExpectError({"depth.txt", "No such file"});
+  ExpectError({"has no depth.txt", "without depth: mono_tum"});
   ExpectInputError([] { OpenTumSequence("/no/such"); }, {"/no/such", "no such folder"});
 }
 
@@ -173,6 +174,104 @@ TEST(TumSequenceData, RealSequencesAreRead) {
   EXPECT_EQ(given.frames.size(), 792U);
   EXPECT_EQ(sequence.frames.size(), given.frames.size());
   EXPECT_EQ(sequence.load(sequence.frames[0], PinholeCamera()).depth.cols, 640);
+}
+
+// ---- folders without lists
+
+class UnlistedSequenceTest : public ::testing::Test {
+ protected:
+  void Add(const std::vector<std::string>& files) {
+    for (const std::string& file : files) {
+      folder_.Write(file, "");
+    }
+  }
+  ImageSequence Open(const TumSequenceOptions& options = {}) {
+    return OpenTumSequence(folder_.path(), options);
+  }
+  void ExpectError(const std::vector<std::string>& parts, const TumSequenceOptions& options = {}) {
+    ExpectInputError([&] { Open(options); }, parts);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(UnlistedSequenceTest, NumbersOfFramesArePairedAndBecomeStamps) {
+  Add({"rgb/frame-2.color.jpg", "rgb/frame-10.color.jpg", "rgb/frame-11.color.jpg",
+       "depth/frame-10.depth.png", "depth/frame-000002.depth.png", "depth/frame-12.depth.png"});
+  const ImageSequence sequence = Open({.frames_per_second = 60.0});
+  ASSERT_EQ(sequence.frames.size(), 2U);
+  EXPECT_EQ(sequence.unpaired, 1U);
+  EXPECT_EQ(sequence.frames[0].image, folder_.path() / "rgb/frame-2.color.jpg");
+  EXPECT_EQ(sequence.frames[0].depth, folder_.path() / "depth/frame-000002.depth.png");
+  EXPECT_EQ(sequence.frames[1].depth, folder_.path() / "depth/frame-10.depth.png");
+  EXPECT_DOUBLE_EQ(sequence.frames[1].timestamp - sequence.frames[0].timestamp, 8.0 / 60.0);
+  EXPECT_NE(sequence.stamps_note.find("numbers of frames, 60 per second"), std::string::npos);
+  const ImageSequence monocular = Open({.use_depth = false});
+  EXPECT_EQ(monocular.frames.size(), 3U);
+  EXPECT_TRUE(monocular.frames[0].depth.empty());
+}
+
+TEST_F(UnlistedSequenceTest, StampsInNamesArePairedByTime) {
+  Add({"rgb/1305031102.175304.png", "rgb/1305031102.211214.png", "depth/1305031102.160407.png",
+       "depth/1305031102.226738.png"});
+  const ImageSequence sequence = Open();
+  ASSERT_EQ(sequence.frames.size(), 2U);
+  EXPECT_DOUBLE_EQ(sequence.frames[0].timestamp, 1305031102.175304);
+  EXPECT_EQ(sequence.frames[1].depth, folder_.path() / "depth/1305031102.226738.png");
+  EXPECT_NE(sequence.stamps_note.find("time stamps"), std::string::npos);
+}
+
+TEST_F(UnlistedSequenceTest, TheUnitOfAClockFollowsFromItsDigits) {
+  Add({"rgb/1403636579763555584.png", "rgb/1403636579813555456.png"});
+  EXPECT_NEAR(Open({.use_depth = false}).frames[1].timestamp, 1403636579.813555456, 1e-6);
+}
+
+TEST_F(UnlistedSequenceTest, AListIsPreferred) {
+  Add({"rgb/1.png", "rgb/2.png", "depth/1.png", "depth/2.png"});
+  folder_.Write("rgb.txt", "5.0 rgb/1.png\n");
+  EXPECT_EQ(Open({.use_depth = false}).frames.size(), 1U);
+  ExpectError({"has no depth.txt", "without depth: mono_tum"});
+}
+
+TEST_F(UnlistedSequenceTest, OtherNamesAreRefused) {
+  Add({"rgb/1.png"});
+  ExpectError({"has no depth.txt and no folder depth", "without depth: mono_tum"});
+  Add({"rgb/2.5.png"});
+  ExpectError({"2.5.png", "of another kind than that of 1.png"});
+  Add({"rgb/cup.png"});
+  ExpectError({"cup.png", "neither the number of a frame nor a time stamp"});
+}
+
+TEST_F(UnlistedSequenceTest, NumbersThatCannotBeFramesAreRefused) {
+  Add({"rgb/1-000000.png", "rgb/2-000033369.png"});
+  ExpectError({"3.337e+04 apart", "expected a list"}, {.use_depth = false});
+}
+
+TEST_F(UnlistedSequenceTest, NumbersThatOccurTwiceAreRefused) {
+  Add({"rgb/a1.png", "rgb/b1.png"});
+  ExpectError({"b1.png", "that of a1.png"}, {.use_depth = false});
+}
+
+TEST_F(UnlistedSequenceTest, FramesWithoutACommonNumberAreRefused) {
+  Add({"rgb/1.png", "depth/2.png"});
+  ExpectError({"no image of rgb has the number of one of depth"});
+}
+
+// ---- a folder one level too high or too low
+
+TEST_F(UnlistedSequenceTest, TheRightFolderIsNamed) {
+  Add({"desk/rgb/1.png", "desk/depth/1.png", "notes/a.txt"});
+  const std::string desk = std::filesystem::canonical(folder_.path() / "desk").string();
+  ExpectError({"neither rgb.txt nor a folder rgb", "did you mean " + desk + "?"});
+  ExpectInputError([&] { OpenTumSequence(folder_.path() / "desk" / "rgb"); },
+                   {"did you mean " + desk + "?"});
+  Add({"room/rgb/1.png"});  // now it is not known which of the two is meant
+  try {
+    Open();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find("did you mean"), std::string::npos);
+  }
 }
 
 }  // namespace

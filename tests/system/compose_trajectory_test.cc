@@ -24,7 +24,7 @@ TEST(ComposeTrajectory, FramesFollowTheirKeyframes) {
   for (TrackedFrame& frame : frames) {
     frame.timestamp = frame.frame.value;
     frame.state = TrackingState::kTracked;
-    frame.pose = RelativePose{keyframe, Shift(-0.5), 1.0};
+    frame.from_keyframe = RelativePose{keyframe, Shift(-0.5), 1.0};
   }
   frames[2].state = TrackingState::kLost;
   map.SetPose(keyframe, Shift(-3.0));
@@ -46,9 +46,9 @@ TEST(ComposeTrajectory, ARefinedPoseReplacesThatOfACulledKeyframe) {
   std::vector<TrackedFrame> frames(1);
   frames[0].frame = FrameId(7);
   frames[0].state = TrackingState::kTracked;
-  frames[0].pose = RelativePose{root, Shift(-9.0), 1.0};  // when it was tracked
+  frames[0].from_keyframe = RelativePose{root, Shift(-9.0), 1.0};  // when it was tracked
   EXPECT_EQ(ComposeTrajectory(map, frames)[0].world_from_cam.translation.x(), 2.0);
-  frames[0].pose = RelativePose{keyframe, Shift(-0.25), 1.0};  // refined
+  frames[0].from_keyframe = RelativePose{keyframe, Shift(-0.25), 1.0};  // refined
   EXPECT_EQ(ComposeTrajectory(map, frames)[0].world_from_cam.translation.x(), 2.25);
 }
 
@@ -65,7 +65,7 @@ TEST(ComposeTrajectory, HasTheFramesOfTheMainIslandOnly) {
     frames[i].frame = FrameId(std::vector<uint32_t>{1, 2, 4, 5}[i]);
     frames[i].timestamp = frames[i].frame.value;
     frames[i].state = TrackingState::kTracked;
-    frames[i].pose = RelativePose{i < 2 ? first : second, Shift(-0.5), 1.0};
+    frames[i].from_keyframe = RelativePose{i < 2 ? first : second, Shift(-0.5), 1.0};
   }
   const auto expect_main_only = [&] {
     const Trajectory trajectory = ComposeTrajectory(map, frames);
@@ -80,11 +80,11 @@ TEST(ComposeTrajectory, HasTheFramesOfTheMainIslandOnly) {
   LoseFramesElsewhere(map, frames);
   for (uint32_t i = 0; i < 4; ++i) {
     EXPECT_EQ(frames[i].state, i < 2 ? TrackingState::kLost : TrackingState::kTracked);
-    EXPECT_EQ(frames[i].pose.has_value(), i >= 2);
+    EXPECT_EQ(frames[i].from_keyframe.has_value(), i >= 2);
   }
   // A frame whose keyframe was removed, but which was found in the main island at the end.
   frames[0].state = TrackingState::kTracked;
-  frames[0].pose = RelativePose{second, Shift(-0.25), 1.0};
+  frames[0].from_keyframe = RelativePose{second, Shift(-0.25), 1.0};
   EXPECT_EQ(ComposeTrajectory(map, frames).front().world_from_cam.translation.x(), 2.25);
 }
 
@@ -96,16 +96,16 @@ TEST(ReplaceEarlyFrames, KeepsATrackedFrameWithClearlyMoreLandmarks) {
     frames[i].state = early[i].state = TrackingState::kTracked;
     frames[i].inliers = 600;
     early[i].inliers = i == 1 ? 590 : 259;
-    early[i].pose = RelativePose{KeyframeId(0), Shift(1.0), 1.0};
+    early[i].from_keyframe = RelativePose{KeyframeId(0), Shift(1.0), 1.0};
   }
   frames[2].state = TrackingState::kLost;
   early.pop_back();  // this frame was not found
   ReplaceEarlyFrames(early, frames);
-  EXPECT_FALSE(frames[0].pose);
-  EXPECT_TRUE(frames[1].pose);
-  EXPECT_TRUE(frames[2].pose);
+  EXPECT_FALSE(frames[0].from_keyframe);
+  EXPECT_TRUE(frames[1].from_keyframe);
+  EXPECT_TRUE(frames[2].from_keyframe);
   EXPECT_EQ(frames[2].state, TrackingState::kTracked);
-  EXPECT_FALSE(frames[3].pose);
+  EXPECT_FALSE(frames[3].from_keyframe);
 }
 
 TEST(KeyframeTrajectory, HasThePosesOfTheKeyframes) {

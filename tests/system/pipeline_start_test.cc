@@ -38,10 +38,10 @@ class PipelineStartTest : public testing::TestWithParam<bool> {
     pipeline->Begin({.session = {.name = "first", .first_frame = FrameId(0)}});
     Track(*pipeline, FrameId(0), Walk(0));
     pipeline->Finish();
-    const MapSettings settings = {.camera = world_.sensor().camera,
-                                  .vocabulary = options_.vocabulary->hash()};
-    WriteMap(folder.path() / "map", *pipeline->map(), settings);
-    return ReadMap(folder.path() / "map", settings, options_.vocabulary);
+    SystemOptions options = options_;
+    options.camera = world_.sensor().camera;
+    WriteMap(folder.path() / "map", *pipeline->map(), MapSettingsOf(options));
+    return ReadMap(folder.path() / "map", options);
   }
 
   // The poses of kFrames frames from step `begin` of the circle on, in turns.
@@ -130,7 +130,7 @@ TEST_P(PipelineStartTest, WithoutRelocalisationARunStaysLostAndChangesNothing) {
       {.map = first.Snapshot(), .session = {.name = "second", .first_frame = first.NextFrame()}});
   for (const TrackedFrame& frame : Track(*pipeline, first.NextFrame(), Walk(0))) {
     EXPECT_EQ(frame.state, TrackingState::kLost);
-    EXPECT_FALSE(frame.pose);
+    EXPECT_FALSE(frame.from_keyframe);
   }
   pipeline->Finish();
   EXPECT_EQ(Dump(*pipeline->map()), Dump(first));

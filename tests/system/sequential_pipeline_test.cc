@@ -37,11 +37,12 @@ TEST(SequentialPipeline, TwoRunsGiveTheSameFramesToTheBit) {
   ASSERT_EQ(a.frames.size(), b.frames.size());
   for (size_t i = 0; i < a.frames.size(); ++i) {
     EXPECT_EQ(a.frames[i].state, b.frames[i].state);
-    ASSERT_EQ(a.frames[i].pose.has_value(), b.frames[i].pose.has_value());
+    ASSERT_EQ(a.frames[i].from_keyframe.has_value(), b.frames[i].from_keyframe.has_value());
     EXPECT_EQ(a.frames[i].inliers, b.frames[i].inliers);
-    if (a.frames[i].pose) {
-      EXPECT_EQ(a.frames[i].pose->reference, b.frames[i].pose->reference);
-      ExpectSameBits(a.frames[i].pose->cam_from_reference, b.frames[i].pose->cam_from_reference);
+    if (a.frames[i].from_keyframe) {
+      EXPECT_EQ(a.frames[i].from_keyframe->reference, b.frames[i].from_keyframe->reference);
+      ExpectSameBits(a.frames[i].from_keyframe->cam_from_reference,
+                     b.frames[i].from_keyframe->cam_from_reference);
     }
     ExpectSameBits(a.frames[i].cam_from_world, b.frames[i].cam_from_world);
   }
@@ -88,7 +89,7 @@ TEST(SequentialPipeline, FramesFollowTheKeyframesThatFinishAdjusts) {
   for (size_t i = 0; i < a.size(); ++i) {
     const TrackedFrame& frame = after.frames[i];
     const std::optional<KeyframeId> keyframe = after.map->KeyframeOfFrame(frame.frame);
-    const KeyframeId own = keyframe ? *keyframe : frame.pose->reference;
+    const KeyframeId own = keyframe ? *keyframe : frame.from_keyframe->reference;
     const double moved = (a[i].world_from_cam.translation - b[i].world_from_cam.translation).norm();
     if (after.map->NearestAlive(own) == KeyframeId(0)) {
       EXPECT_EQ(moved, 0.0) << i;

@@ -17,6 +17,7 @@
 #include "hullslam/util/error.h"
 #include "map/invariants.h"
 #include "support/expect_error.h"
+#include "support/made_vocabulary.h"
 #include "support/temporary_folder.h"
 #include "system/prefetcher.h"
 
@@ -55,7 +56,7 @@ class Wall {
     return {rotation, -(rotation * center)};
   }
 
-  // Colour image, channels in the order red, green, blue.
+  // Colour image, channels in the order blue, green, red.
   cv::Mat Photograph(int index) const {
     const PinholeCamera camera = Options().camera;
     Eigen::Matrix3d calibration = Eigen::Matrix3d::Identity();
@@ -169,10 +170,10 @@ TEST_P(SystemTest, FinishAdjustsTheWholeMapUnlessCancelled) {
     EXPECT_EQ(iterations > 0, is_adjusted);
     EXPECT_EQ(poses, is_cancelled ? 0 : 15);
     for (size_t i = 0; is_cancelled && i < before.size(); ++i) {
-      const std::optional<RelativePose>& pose = system.frames()[i].pose;
-      ASSERT_EQ(pose.has_value(), before[i].pose.has_value());
+      const std::optional<RelativePose>& pose = system.frames()[i].from_keyframe;
+      ASSERT_EQ(pose.has_value(), before[i].from_keyframe.has_value());
       EXPECT_TRUE(!pose || pose->cam_from_reference.translation ==
-                               before[i].pose->cam_from_reference.translation);
+                               before[i].from_keyframe->cam_from_reference.translation);
     }
     ASSERT_EQ(system.trajectory().size(), 15u);
     EXPECT_LT(MaxError(system.trajectory()), 0.01);
@@ -190,10 +191,10 @@ TEST_P(SystemTest, FinishComputesThePosesOfFramesAgain) {
   int changed = 0;
   for (size_t i = 0; i < before.size(); ++i) {
     const TrackedFrame& after = system.frames()[i];
-    ASSERT_EQ(after.pose.has_value(), before[i].pose.has_value());
+    ASSERT_EQ(after.from_keyframe.has_value(), before[i].from_keyframe.has_value());
     EXPECT_EQ(after.inliers, before[i].inliers);
-    changed += after.pose && after.pose->cam_from_reference.translation !=
-                                 before[i].pose->cam_from_reference.translation;
+    changed += after.from_keyframe && after.from_keyframe->cam_from_reference.translation !=
+                                          before[i].from_keyframe->cam_from_reference.translation;
   }
   EXPECT_GT(changed, 0);
 }
@@ -257,7 +258,7 @@ TEST_P(SystemTest, BeginsWithTheMapOfAnEarlierSession) {
     first.Finish();
     WriteMap(path, *first.map(), MapSettingsOf(Wall::Options()));
   }
-  SystemStart start{.map = ReadMap(path, MapSettingsOf(Wall::Options())), .session_name = "second"};
+  SystemStart start{.map = ReadMap(path, Wall::Options()), .session_name = "second"};
   ASSERT_EQ(start.map.sessions(), (std::vector<Session>{{"first", FrameId(0)}}));
   const FrameId next = start.map.NextFrame();
   const size_t landmarks = start.map.landmarks().size();
@@ -274,6 +275,35 @@ TEST_P(SystemTest, BeginsWithTheMapOfAnEarlierSession) {
     EXPECT_TRUE(second.trajectory().empty());
     second.Reset();
   }
+}
+
+// Words can be compared if the vocabularies have the same content, in one object or in two.
+TEST(System, VocabulariesAreComparedByTheirContent) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "map";
+  SystemOptions options = Wall::Options();
+  options.vocabulary = SharedVocabulary();
+  {
+    System first(options, PipelineKind::kSequential);
+    for (int i = 0; i < 6; ++i) {
+      TrackFrame(first, i);
+    }
+    first.Finish();
+    WriteMap(path, *first.map(), MapSettingsOf(options));
+  }
+  const auto begin = [](const SystemOptions& with, Map map) {
+    System system(with, PipelineKind::kSequential, {.map = std::move(map)});
+    return TrackFrame(system, 2).state;
+  };
+  SystemOptions again = options;
+  again.vocabulary = SharedVocabulary();
+  ASSERT_NE(again.vocabulary, options.vocabulary);
+  EXPECT_EQ(begin(again, ReadMap(path, options)), TrackingState::kTracked);
+  again.vocabulary = SharedVocabulary(3, 3);
+  ExpectInputError([&] { begin(again, ReadMap(path, options)); }, {"vocabulary", "the same"});
+  again.vocabulary = nullptr;
+  ExpectInputError([&] { begin(again, ReadMap(path, options)); }, {"vocabulary", "not set"});
+  ExpectInputError([&] { begin(options, ReadMap(path).map); }, {"ReadMap(path, options)"});
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SystemTest,
@@ -469,18 +499,18 @@ TEST(System, MasksThatCannotBeUsedAreRefused) {
 }
 
 // The features of the first keyframe, which is made from one image.
-FrameFeatures FeaturesOf(const cv::Mat& image, bool rgb_order) {
+FrameFeatures FeaturesOf(const cv::Mat& image, std::optional<bool> rgb_order) {
   SystemOptions options = Wall::Options();
-  options.rgb_order = rgb_order;
+  options.rgb_order = rgb_order.value_or(options.rgb_order);
   System system(options, PipelineKind::kSequential);
   system.Track(1.0, image, Wall::Depth(0));
   return system.map()->keyframes().At(KeyframeId(0)).frame->features;
 }
 
 TEST(System, TheOrderOfColoursFollowsTheOption) {
-  const cv::Mat rgb = TheWall().Photograph(0);
-  cv::Mat bgr;
-  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  const cv::Mat bgr = TheWall().Photograph(0);
+  cv::Mat rgb;
+  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
   cv::Mat rgba;
   cv::cvtColor(rgb, rgba, cv::COLOR_RGB2RGBA);
   cv::Mat bgra;
@@ -495,6 +525,7 @@ TEST(System, TheOrderOfColoursFollowsTheOption) {
   EXPECT_EQ(FeaturesOf(bgra, false).descriptors, expected);
   EXPECT_EQ(FeaturesOf(grey, false).descriptors, expected);
   EXPECT_NE(FeaturesOf(bgr, true).descriptors, expected);
+  EXPECT_EQ(FeaturesOf(bgr, std::nullopt).descriptors, expected) << "as cv::imread gives them";
 }
 
 TEST(System, TrackAfterFinishIsRefused) {
@@ -515,6 +546,25 @@ TEST(System, SixteenBitDepthIsScaledByTheOption) {
   system.map()->landmarks().ForEach([](LandmarkId, const Landmark& landmark) {
     EXPECT_NEAR(landmark.position.z(), kWallDistance, 1e-3);
   });
+}
+
+TEST(System, AMonocularCameraNeedsNoDepthImage) {
+  SystemOptions options = Wall::Options();
+  options.sensor = SensorKind::kMonocular;
+  System monocular(options, PipelineKind::kSequential);
+  EXPECT_EQ(monocular.Track(1.0, TheWall().Photograph(0)).state, TrackingState::kNotInitialized);
+  System rgbd(Wall::Options(), PipelineKind::kSequential);
+  ExpectInputError([&] { rgbd.Track(1.0, TheWall().Photograph(0)); },
+                   {"no depth image", "SensorKind::kMonocular"});
+}
+
+TEST(System, AFrameHasThePoseOfItsCamera) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  for (int i = 0; i < 8; ++i) {
+    const TrackedFrame frame = TrackFrame(system, i);
+    const Rigid3 expected = Inverse(Wall::CamFromWorld(i));
+    EXPECT_LT((frame.world_from_cam().translation - expected.translation).norm(), 0.01) << i;
+  }
 }
 
 TEST(System, TheCallbackGetsAReportOfEachFrame) {

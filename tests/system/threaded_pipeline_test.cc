@@ -89,8 +89,8 @@ TEST(ThreadedPipeline, FinishProcessesTheKeyframesThatWait) {
   const auto map = pipeline->map();
   EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
   for (const TrackedFrame& frame : frames) {
-    if (frame.pose) {
-      EXPECT_LT(frame.pose->reference.value, map->keyframes().NextId().value);
+    if (frame.from_keyframe) {
+      EXPECT_LT(frame.from_keyframe->reference.value, map->keyframes().NextId().value);
     } else {
       EXPECT_TRUE(map->KeyframeOfFrame(frame.frame));
     }

@@ -39,12 +39,13 @@ TEST_F(EarlyFramesTest, GetPosesInTheFinalMap) {
     EXPECT_EQ(found[i].frame, FrameId(i));
     EXPECT_EQ(found[i].state, TrackingState::kTracked);
     if (i == 2 || i == 5) {
-      EXPECT_FALSE(found[i].pose) << "it is a keyframe";
+      EXPECT_FALSE(found[i].from_keyframe) << "it is a keyframe";
     } else {
-      ASSERT_TRUE(found[i].pose) << i;
+      ASSERT_TRUE(found[i].from_keyframe) << i;
       const Rigid3 truth = SyntheticWorld::CamFromWorld(i);
-      EXPECT_LT((made.map.CamFromWorld(*found[i].pose).translation - truth.translation).norm(),
-                0.02);
+      EXPECT_LT(
+          (made.map.CamFromWorld(*found[i].from_keyframe).translation - truth.translation).norm(),
+          0.02);
     }
   }
 }

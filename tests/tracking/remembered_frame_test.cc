@@ -37,7 +37,7 @@ class RefinePosesTest : public ::testing::Test {
   }
   // The remembered frame, as if tracking had found this pose.
   void Track(const Rigid3& cam_from_world) {
-    report_.tracked.pose = made_.map.RelativeTo(KeyframeId(0), cam_from_world);
+    report_.tracked.from_keyframe = made_.map.RelativeTo(KeyframeId(0), cam_from_world);
   }
   void Refine(const std::vector<RememberedFrame>& remembered,
               std::vector<TrackedFrame>& frames) const {
@@ -51,9 +51,9 @@ class RefinePosesTest : public ::testing::Test {
     frames.push_back(report_.tracked);
     const std::vector<RememberedFrame> remembered = {Remember(report_, objects_)};
     Refine(remembered, frames);
-    EXPECT_FALSE(frames[0].pose.has_value());
-    EXPECT_EQ(frames[1].pose->reference, KeyframeId(0));
-    return made_.map.CamFromWorld(*frames[1].pose);
+    EXPECT_FALSE(frames[0].from_keyframe.has_value());
+    EXPECT_EQ(frames[1].from_keyframe->reference, KeyframeId(0));
+    return made_.map.CamFromWorld(*frames[1].from_keyframe);
   }
   // Moves the whole map except for the first keyframe, as a loop or an adjustment could.
   void MoveLandmarks(const Eigen::Vector3d& shift) {
@@ -140,7 +140,7 @@ TEST_F(RefinePosesTest, AFrameFollowsItsLandmarks) {
   const Eigen::Vector3d shift(0.04, 0.02, -0.03);
   MoveLandmarks(shift);
   const Rigid3 moved = truth_ * Rigid3{Eigen::Quaterniond::Identity(), -shift};
-  EXPECT_GT(Distance(made_.map.CamFromWorld(*report_.tracked.pose), moved), 0.05);
+  EXPECT_GT(Distance(made_.map.CamFromWorld(*report_.tracked.from_keyframe), moved), 0.05);
   EXPECT_LT(Distance(Refined(), moved), 1e-4);
 }
 
@@ -251,14 +251,14 @@ TEST_F(RefinePosesTest, TheFrameOfACulledKeyframeIsRefinedToo) {
   std::vector<TrackedFrame> frames = {report_.tracked};
   const std::vector<RememberedFrame> remembered = {Remember(report_, objects_)};
   Refine(remembered, frames);
-  ASSERT_EQ(frames[0].pose->reference, culled);
-  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].pose), truth_), 1e-4);
+  ASSERT_EQ(frames[0].from_keyframe->reference, culled);
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].from_keyframe), truth_), 1e-4);
 
   // Without enough landmarks it keeps the pose of the keyframe and not that of tracking.
   ForgetLandmarksAfter(29);
   frames = {report_.tracked};
   Refine({Remember(report_, objects_)}, frames);
-  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].pose), wrong_), 1e-12);
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].from_keyframe), wrong_), 1e-12);
 }
 
 TEST_F(RefinePosesTest, OnceItIsCancelledTheOtherFramesKeepTheirPoses) {
@@ -276,16 +276,16 @@ TEST_F(RefinePosesTest, OnceItIsCancelledTheOtherFramesKeepTheirPoses) {
                 cancellation.Request();
               });
   EXPECT_EQ(progress, (std::vector<int>{1, 2}));
-  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].pose), truth_), 1e-4);
-  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[1].pose), wrong_), 1e-12);
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].from_keyframe), truth_), 1e-4);
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[1].from_keyframe), wrong_), 1e-12);
 }
 
 TEST_F(RefinePosesTest, AFrameWithoutAPoseStaysWithoutOne) {
-  report_.tracked.pose.reset();
+  report_.tracked.from_keyframe.reset();
   std::vector<TrackedFrame> frames = {report_.tracked};
   const std::vector<RememberedFrame> remembered = {Remember(report_, objects_)};
   Refine(remembered, frames);
-  EXPECT_FALSE(frames[0].pose.has_value());
+  EXPECT_FALSE(frames[0].from_keyframe.has_value());
 }
 
 }  // namespace

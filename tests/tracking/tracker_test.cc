@@ -168,7 +168,7 @@ TEST_F(TrackerTest, TheFirstFrameWithEnoughDepthDefinesTheWorldFrame) {
   const auto frame = world_.Observe(0).frame;
   const Tracker::Result result = Process(frame);
   EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked);
-  EXPECT_FALSE(result.report.tracked.pose) << "it is a keyframe";
+  EXPECT_FALSE(result.report.tracked.from_keyframe) << "it is a keyframe";
   EXPECT_EQ(result.report.tracked.frame, frame->id);
   EXPECT_EQ(result.report.tracked.timestamp, frame->timestamp);
   ExpectNear(result.report.tracked.cam_from_world, Rigid3(), 1e-15);
@@ -199,7 +199,7 @@ TEST_F(TrackerTest, InitialisesWithExactlyTheRequiredPoints) {
   Tracker strict(world_.sensor(), options_);
   const Tracker::Result refused = strict.Process(frame, nullptr, kIdle);
   EXPECT_EQ(refused.report.tracked.state, TrackingState::kNotInitialized);
-  EXPECT_FALSE(refused.report.tracked.pose);
+  EXPECT_FALSE(refused.report.tracked.from_keyframe);
   EXPECT_FALSE(refused.message);
   options_.min_initial_points = static_cast<int>(with_depth);
   Tracker content(world_.sensor(), options_);
@@ -221,7 +221,7 @@ TEST_F(TrackerTest, FindsThePoseOfExactFrames) {
     const Tracker::Result result = Process(world_.Observe(i).frame);
     ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked) << i;
     ExpectNear(result.report.tracked.cam_from_world, SyntheticWorld::CamFromWorld(i), 1e-6);
-    ExpectNear(map_->CamFromWorld(*result.report.tracked.pose),
+    ExpectNear(map_->CamFromWorld(*result.report.tracked.from_keyframe),
                result.report.tracked.cam_from_world, 1e-12);
     EXPECT_GT(result.report.tracked.inliers, 100);
   }
@@ -252,7 +252,7 @@ TEST_F(TrackerTest, ALostFrameDoesNotChangeTheReferenceKeyframe) {
   Begin();
   TrackFrames(1, 5);
   const Tracker::Result before = Process(world_.Observe(6).frame);
-  ASSERT_TRUE(before.report.tracked.pose);
+  ASSERT_TRUE(before.report.tracked.from_keyframe);
   const size_t too_few = static_cast<size_t>(options_.min_inliers) - 1;
   EXPECT_EQ(Process(FrameWithKnown(7, too_few)).report.tracked.state, TrackingState::kLost);
   const Tracker::Result after = Process(world_.Observe(8).frame);
@@ -281,13 +281,14 @@ TEST_F(TrackerTest, ContinuesWhenItsReferenceKeyframeIsCulled) {
   Begin();
   TrackFrames(1, 4);
   const Tracker::Result before = Process(world_.Observe(5).frame);
-  ASSERT_NE(before.report.tracked.pose->reference, KeyframeId(0)) << "the root cannot be culled";
-  made_.map.CullKeyframe(before.report.tracked.pose->reference);
+  ASSERT_NE(before.report.tracked.from_keyframe->reference, KeyframeId(0))
+      << "the root cannot be culled";
+  made_.map.CullKeyframe(before.report.tracked.from_keyframe->reference);
   map_ = Publish(made_.map);
   for (uint32_t i = 6; i <= 8; ++i) {
     const Tracker::Result result = Process(world_.Observe(i).frame);
     ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked) << i;
-    EXPECT_TRUE(map_->keyframes().Contains(result.report.tracked.pose->reference));
+    EXPECT_TRUE(map_->keyframes().Contains(result.report.tracked.from_keyframe->reference));
     ExpectNear(result.report.tracked.cam_from_world, SyntheticWorld::CamFromWorld(i), 1e-6);
   }
 }
@@ -401,7 +402,7 @@ TEST_F(TrackerTest, IsLostInAnotherWorldAndRecoversInItsOwn) {
     const Tracker::Result lost = Process(other.Observe(i).frame);
     EXPECT_EQ(lost.report.tracked.state, TrackingState::kLost);
     EXPECT_EQ(lost.report.tracked.frame, FrameId(i));
-    EXPECT_FALSE(lost.report.tracked.pose);
+    EXPECT_FALSE(lost.report.tracked.from_keyframe);
     EXPECT_FALSE(lost.message);
   }
   const Tracker::Result found = Process(world_.Observe(9).frame);
@@ -587,14 +588,14 @@ TEST(Tracker, SameFramesGiveTheSameBits) {
   const std::vector<TrackedFrame> b = run();
   for (size_t i = 0; i < a.size(); ++i) {
     ASSERT_EQ(a[i].state, TrackingState::kTracked);
-    ASSERT_EQ(a[i].pose.has_value(), b[i].pose.has_value());
+    ASSERT_EQ(a[i].from_keyframe.has_value(), b[i].from_keyframe.has_value());
     EXPECT_EQ(a[i].inliers, b[i].inliers);
     EXPECT_EQ(a[i].cam_from_world.rotation.coeffs(), b[i].cam_from_world.rotation.coeffs());
     EXPECT_EQ(a[i].cam_from_world.translation, b[i].cam_from_world.translation);
-    if (a[i].pose) {
-      EXPECT_EQ(a[i].pose->reference, b[i].pose->reference);
-      EXPECT_EQ(a[i].pose->cam_from_reference.translation,
-                b[i].pose->cam_from_reference.translation);
+    if (a[i].from_keyframe) {
+      EXPECT_EQ(a[i].from_keyframe->reference, b[i].from_keyframe->reference);
+      EXPECT_EQ(a[i].from_keyframe->cam_from_reference.translation,
+                b[i].from_keyframe->cam_from_reference.translation);
     }
   }
 }
@@ -830,7 +831,7 @@ TEST_F(RelocalisingTracker, ContinuesAtAnotherPlaceOfTheMap) {
     const TrackedFrame tracked = Process(Look(1010 + i, turns));
     ASSERT_EQ(tracked.state, TrackingState::kTracked) << i;
     ExpectNear(tracked.cam_from_world, RingWorld::CamFromWorld(turns), 0.005);
-    EXPECT_GT(tracked.pose->reference, KeyframeId(8)) << "a keyframe of the new place";
+    EXPECT_GT(tracked.from_keyframe->reference, KeyframeId(8)) << "a keyframe of the new place";
   }
 }
 
@@ -954,12 +955,13 @@ TEST_F(MonocularTracker, WaitsForAMapAndGivesTheFirstFramesPosesAtTheEnd) {
     EXPECT_EQ(early[i].frame, FrameId(i));
     EXPECT_EQ(early[i].state, TrackingState::kTracked);
     if (i == 2 || i == last / 2) {
-      EXPECT_FALSE(early[i].pose) << "it is a keyframe";
+      EXPECT_FALSE(early[i].from_keyframe) << "it is a keyframe";
     } else {
-      ASSERT_TRUE(early[i].pose) << i;
+      ASSERT_TRUE(early[i].from_keyframe) << i;
       const Rigid3 truth = SyntheticWorld::CamFromWorld(i);
-      EXPECT_LT((made.map.CamFromWorld(*early[i].pose).translation - truth.translation).norm(),
-                0.02);
+      EXPECT_LT(
+          (made.map.CamFromWorld(*early[i].from_keyframe).translation - truth.translation).norm(),
+          0.02);
     }
   }
   EXPECT_TRUE(tracker_.LocaliseEarlyFrames(made.map).empty());
@@ -1001,7 +1003,7 @@ class LostMonocularTracker : public MonocularTracker {
       if (result.message) {
         EXPECT_TRUE(std::holds_alternative<InitialMap>(*result.message));
         EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked);
-        EXPECT_FALSE(result.report.tracked.pose) << "it is a keyframe";
+        EXPECT_FALSE(result.report.tracked.from_keyframe) << "it is a keyframe";
         island_ = std::get<InitialMap>(*result.message);
         return i;
       }
@@ -1030,7 +1032,7 @@ TEST_F(LostMonocularTracker, BeginsAnIslandAndFollowsIt) {
   for (uint32_t i = begin + 1; i < begin + 4; ++i) {
     const Tracker::Result result = Process(FrameOf(other_, i, i - 100));
     ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked);
-    EXPECT_EQ(IslandOf(*map_, result.report.tracked.pose->reference), IslandId(1));
+    EXPECT_EQ(IslandOf(*map_, result.report.tracked.from_keyframe->reference), IslandId(1));
   }
 }
 

@@ -84,7 +84,7 @@ std::string CameraSettings(const PinholeCamera& camera, double readout_time) {
   std::string text = fmt::format(
       "%YAML:1.0\n---\nCamera.fx: {:.6f}\nCamera.fy: {:.6f}\nCamera.cx: {:.6f}\nCamera.cy: {:.6f}\n"
       "Camera.k1: 0.0\nCamera.k2: 0.0\nCamera.p1: 0.0\nCamera.p2: 0.0\n"
-      "Camera.width: {}\nCamera.height: {}\nCamera.fps: 30.0\nCamera.bf: {:.1f}\nCamera.RGB: 1\n"
+      "Camera.width: {}\nCamera.height: {}\nCamera.fps: 30.0\nCamera.bf: {:.1f}\n"
       "ThDepth: 40.0\nDepthMapFactor: {:.1f}\n"
       "ORBextractor.nFeatures: 1000\nORBextractor.scaleFactor: 1.2\nORBextractor.nLevels: 8\n"
       "ORBextractor.iniThFAST: 20\nORBextractor.minThFAST: 7\n",

@@ -107,10 +107,16 @@ struct TrackedFrame {
   FrameId frame;
   double timestamp = 0.0;  // seconds
   TrackingState state = TrackingState::kNotInitialized;
-  // Absent if the frame is not tracked, or if it belongs to the initial map: then it is a keyframe.
-  std::optional<RelativePose> pose;
-  Rigid3 cam_from_world;  // when the frame was tracked; later corrections do not change it
-  int inliers = 0;        // landmarks found
+  // The pose relative to a keyframe, which follows that keyframe when the map is corrected. Absent
+  // if the frame is not tracked, or if it belongs to the initial map: then it is a keyframe.
+  std::optional<RelativePose> from_keyframe;
+  // The pose when the frame was tracked. Later corrections of the map do not change it;
+  // System::trajectory() has the corrected poses.
+  Rigid3 cam_from_world;
+  int inliers = 0;  // landmarks found
+
+  // The pose of the camera in the world, when the frame was tracked.
+  Rigid3 world_from_cam() const { return Inverse(cam_from_world); }
 };
 
 // The result of tracking for one frame, for viewers and callbacks.

@@ -3,10 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <stdexcept>
 
-#include "hullslam/bow/vocabulary.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
@@ -53,12 +51,11 @@ void WriteMap(const std::filesystem::path& path, const Map& map, const MapSettin
 // InputError with `path` and the reason if the file is damaged or cut off, if another version wrote
 // it, or if its map is not consistent.
 StoredMap ReadMap(const std::filesystem::path& path);
-// Reads a map that a run with these settings is to go on with. Also throws InputError, before it
-// reads the keyframes, if the file has other settings; the message says which. `vocabulary` is the
-// one of `expected`; null if there is none. Throws ReadingCancelled soon after a request of
-// `cancellation`.
-Map ReadMap(const std::filesystem::path& path, const MapSettings& expected,
-            std::shared_ptr<const Vocabulary> vocabulary = nullptr,
+// Reads a map that a System with these options is to go on with. Its keyframes are indexed by the
+// words of SystemOptions::vocabulary. Also throws InputError, before it reads the keyframes, if the
+// map was made with other settings or another vocabulary; the message says which. Throws
+// ReadingCancelled soon after a request of `cancellation`.
+Map ReadMap(const std::filesystem::path& path, const SystemOptions& options,
             const Cancellation* cancellation = nullptr);
 
 }  // namespace hullslam

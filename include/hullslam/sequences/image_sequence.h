@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
@@ -47,6 +48,8 @@ struct ImageSequence {
   // The converted true trajectory, if the stamps, axes or format of its file differ from those of a
   // run.
   std::optional<Trajectory> converted_groundtruth;
+  // Tells the user where the time stamps are from; empty if a list of the data set has them.
+  std::string stamps_note = {};
   // Decodes a frame. To be called for the frames in order, by one thread at a time.
   FrameLoader load = LoadFrame;
 };

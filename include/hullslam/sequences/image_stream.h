@@ -14,6 +14,7 @@ struct ImageStreamOptions {
   // If it is given, the time stamps are index / frames_per_second. Otherwise a video has its own
   // time stamps, and a folder has 30 images per second.
   std::optional<double> frames_per_second = {};
+  double stamp_offset = 0.0;  // s, added to all time stamps
   FrameSelection selection = {};
 };
 
@@ -23,7 +24,6 @@ struct ImageStream {
   int width = 0;  // width of the first image, px
   int height = 0;
   double frames_per_second = 0.0;  // the mean over all frames
-  std::string stamps_note;         // tells the user where the time stamps are from
 };
 
 // Opens a video file or a folder.

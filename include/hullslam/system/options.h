@@ -32,7 +32,7 @@ struct SystemOptions {
   PinholeCamera camera;
   double frames_per_second = 30.0;  // frame rate of the camera
   double readout_time = 0.0;  // s, from the first to the last row of an image; 0: global shutter
-  bool rgb_order = true;      // order of channels of colour images from memory: RGB, else BGR
+  bool rgb_order = false;     // order of channels of colour images from memory: RGB, else BGR
   DepthOptions depth;
   FeatureOptions features;
   TrackingOptions tracking;

@@ -57,21 +57,23 @@ struct ObjectCounts {
 // has more about threads.
 class System {
  public:
-  // Throws InputError if SystemOptions::Validate does, and CheckError for localization without a
-  // map. With a map of earlier sessions, frame and keyframe ids go on after the largest of the map,
-  // and time stamps may begin anywhere.
+  // Throws InputError if SystemOptions::Validate does and for a map whose vocabulary has another
+  // content than that of the options, and CheckError for localization without a map. With a map of
+  // earlier sessions, frame and keyframe ids go on after the largest of the map, and time stamps
+  // may begin anywhere.
   System(const SystemOptions& options, PipelineKind kind, SystemStart start = {});
   ~System();
 
-  // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order that Camera.RGB sets; `depth` as in
-  // ImageInput, empty if SystemOptions::sensor is monocular. `masks` are those of the objects in
-  // the image, in its raw pixels. Throws InputError for images of another type or size and for
-  // masks that ValidateMasks() refuses. Time stamps (s) must increase; throws CheckError otherwise.
-  // A refused frame changes nothing.
+  // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order of cv::imread, blue first, unless
+  // SystemOptions::rgb_order says that red is first. `depth` is as in ImageInput, and empty if and
+  // only if SystemOptions::sensor is monocular. `masks` are those of the objects in the image, in
+  // its raw pixels (hullslam/frame/mask_image.h makes them from images). Throws InputError for
+  // images of another type or size and for masks that ValidateMasks() refuses. Time stamps (s) must
+  // increase; throws CheckError otherwise. A refused frame changes nothing.
   //
   // If mapping fails, this call or a later one throws its exception, and so do all calls of Track
   // and Finish after it. map() and trajectory() then give the last published state.
-  TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
+  TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& depth = {},
                      std::vector<InstanceMask> masks = {});
   TrackedFrame Track(const ImageInput& image);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/system/options.h"
@@ -13,6 +14,7 @@ namespace hullslam {
 struct DatasetInput {
   SystemOptions options;  // the sensor is set by the caller
   ImageSequence sequence;
+  std::vector<std::string> notes = {};  // lines that the run prints when its input was checked
 };
 
 // A data set on the command line: its help, its own options, and its reader. A new data set is a

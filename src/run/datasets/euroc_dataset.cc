@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "hullslam/sequences/euroc_sequence.h"
-#include "hullslam/settings/settings.h"
 #include "run/input_warnings.h"
+#include "run/settings_choice.h"
 
 namespace hullslam {
 namespace {
@@ -19,11 +19,15 @@ class EurocDataset final : public Dataset {
 
   DatasetInput Open(const RunArguments& arguments) override {
     EurocSequence sequence = OpenEurocSequence(arguments.sequence, arguments.selection);
-    return {.options = arguments.settings.empty()
-                           ? LoadSettings(sequence.camera.calibration, arguments.sequence.string(),
-                                          arguments.overrides)
-                           : LoadSettings(arguments.settings, arguments.overrides),
-            .sequence = std::move(sequence.images)};
+    if (!arguments.settings.empty()) {
+      return {.options = LoadSettings(arguments.settings, arguments.overrides),
+              .sequence = std::move(sequence.images),
+              .notes = {Describe(GivenSettings(arguments.settings))}};
+    }
+    return {.options = LoadSettings(sequence.camera.calibration, arguments.sequence.string(),
+                                    arguments.overrides),
+            .sequence = std::move(sequence.images),
+            .notes = {Describe({"cam0/sensor.yaml", "the camera of the sequence"})}};
   }
 };
 

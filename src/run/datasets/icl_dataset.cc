@@ -2,17 +2,15 @@
 #include "run/datasets/icl_dataset.h"
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <map>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "hullslam/sequences/icl_sequence.h"
-#include "hullslam/settings/settings.h"
 #include "run/command_line.h"
 #include "run/input_warnings.h"
 #include "run/messages.h"
+#include "run/settings_choice.h"
 
 namespace hullslam {
 namespace {
@@ -59,8 +57,8 @@ class IclDataset final : public Dataset {
 
   // A negative Camera.fy in the settings is replaced by its positive value.
   DatasetInput Open(const RunArguments& arguments) override {
-    SystemOptions options =
-        LoadSettings(ChooseSettings(arguments), arguments.overrides, NegativeFy::kPositive);
+    const SettingsChoice settings = ChooseIclSettings(arguments.settings, arguments.sequence);
+    SystemOptions options = LoadSettings(settings.file, arguments.overrides, NegativeFy::kPositive);
     icl_.associations = arguments.associations;
     icl_.use_depth = arguments.sensor == SensorKind::kRgbd;
     icl_.selection = arguments.selection;
@@ -70,19 +68,12 @@ class IclDataset final : public Dataset {
       Print("ground truth: {}\n",
             sequence.groundtruth_note.empty() ? "none" : sequence.groundtruth_note);
     }
-    return {.options = std::move(options), .sequence = std::move(sequence.images)};
+    return {.options = std::move(options),
+            .sequence = std::move(sequence.images),
+            .notes = {Describe(settings)}};
   }
 
  private:
-  static std::filesystem::path ChooseSettings(const RunArguments& arguments) {
-    std::error_code error;
-    if (!arguments.settings.empty()) {
-      return arguments.settings;
-    }
-    std::filesystem::path camera = arguments.sequence / "camera.yaml";
-    return std::filesystem::exists(camera, error) ? camera : FindConfigFolder() / "ICL.yaml";
-  }
-
   IclSequenceOptions icl_;
 };
 

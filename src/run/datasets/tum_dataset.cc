@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/datasets/tum_dataset.h"
 
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "hullslam/sequences/tum_sequence.h"
-#include "hullslam/settings/settings.h"
 #include "run/input_warnings.h"
+#include "run/settings_choice.h"
 
 namespace hullslam {
 namespace {
@@ -14,7 +16,10 @@ class TumDataset final : public Dataset {
  public:
   DatasetHelp Help(SensorKind sensor) const override {
     const bool has_depth = sensor == SensorKind::kRgbd;
-    return {.sequence = has_depth ? "folder with rgb.txt and depth.txt" : "folder with rgb.txt",
+    return {.sequence = has_depth ? "folder with rgb.txt and depth.txt, or with images in rgb and "
+                                    "depth that are named by numbers or time stamps"
+                                  : "folder with rgb.txt, or with images in rgb that are named by "
+                                    "numbers or time stamps",
             .settings =
                 "default: camera.yaml in SEQUENCE; without it, the file in config/ that "
                 "fits the folder's name, such as TUM1.yaml for freiburg1",
@@ -24,16 +29,22 @@ class TumDataset final : public Dataset {
   }
 
   DatasetInput Open(const RunArguments& arguments) override {
+    if (arguments.associations.empty()) {
+      CheckTumFolder(arguments.sequence);  // before a settings file is sought by its name
+    }
+    const SettingsChoice settings = ChooseTumSettings(arguments.settings, arguments.sequence);
+    SystemOptions options = LoadSettings(settings.file, arguments.overrides);
     ImageSequence sequence =
         OpenTumSequence(arguments.sequence, {.associations = arguments.associations,
                                              .use_depth = arguments.sensor == SensorKind::kRgbd,
+                                             .frames_per_second = options.frames_per_second,
                                              .selection = arguments.selection});
+    std::vector<std::string> notes = {Describe(settings)};
+    if (!sequence.stamps_note.empty()) {
+      notes.push_back(sequence.stamps_note);
+    }
     return {
-        .options = LoadSettings(arguments.settings.empty()
-                                    ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
-                                    : arguments.settings,
-                                arguments.overrides),
-        .sequence = std::move(sequence)};
+        .options = std::move(options), .sequence = std::move(sequence), .notes = std::move(notes)};
   }
 };
 

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/datasets/video_dataset.h"
 
-#include <CLI/CLI.hpp>
-#include <optional>
-#include <utility>
+#include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hullslam/results/trajectory_file.h"
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/settings/settings.h"
 #include "hullslam/util/error.h"
 #include "run/input_warnings.h"
 #include "run/messages.h"
+#include "run/settings_choice.h"
 
 namespace hullslam {
 namespace {
@@ -29,6 +36,14 @@ class VideoDataset final : public Dataset {
                    "horizontal field of view, for a first try with a camera whose calibration is "
                    "unknown: the lens is taken for free of distortion, so the map may be bent")
         ->type_name("DEGREES");
+    app.add_option("--groundtruth", groundtruth_,
+                   "true trajectory in TUM's format, for the error of the run; its time stamps are "
+                   "those of the images, which --stamp-offset can move")
+        ->type_name("FILE");
+    app.add_option("--stamp-offset", stream_options_.stamp_offset,
+                   "seconds that are added to the time stamps of the images, which begin at 0, for "
+                   "example the time at which a recording was started")
+        ->type_name("SECONDS");
   }
 
   DatasetInput Open(const RunArguments& arguments) override {
@@ -43,7 +58,17 @@ class VideoDataset final : public Dataset {
     if (!arguments.quiet) {
       PrintInput(stream, options);
     }
-    return {.options = std::move(options), .sequence = std::move(stream.images)};
+    if (!groundtruth_.empty()) {
+      CheckGroundtruth(stream.images);
+      stream.images.groundtruth = groundtruth_;
+    }
+    std::vector<std::string> notes;
+    if (!fov_) {
+      notes.push_back(Describe(GivenSettings(arguments.settings)));
+    }
+    return {.options = std::move(options),
+            .sequence = std::move(stream.images),
+            .notes = std::move(notes)};
   }
 
  private:
@@ -61,9 +86,27 @@ class VideoDataset final : public Dataset {
     }
   }
 
+  // Throws InputError if no true pose has the time of an image, because the error of the run would
+  // silently be missing.
+  void CheckGroundtruth(const ImageSequence& images) const {
+    const Trajectory truth = ReadTrajectory(groundtruth_);
+    const double first = images.frames.front().timestamp;
+    const double last = images.frames.back().timestamp;
+    if (truth.empty() || truth.back().timestamp < first || truth.front().timestamp > last) {
+      throw InputError(fmt::format(
+          "{}: {}, but the images are from {:.6f} to {:.6f} s; expected --stamp-offset SECONDS, "
+          "which is added to the stamps of the images",
+          groundtruth_.string(),
+          truth.empty() ? std::string("has no poses")
+                        : fmt::format("has poses from {:.6f} to {:.6f} s", truth.front().timestamp,
+                                      truth.back().timestamp),
+          first, last));
+    }
+  }
+
   void PrintInput(const ImageStream& stream, const SystemOptions& options) const {
     Print("{} images of {}x{} px, {}\n", stream.images.available, stream.width, stream.height,
-          stream.stamps_note);
+          stream.images.stamps_note);
     if (fov_) {
       Print(
           "camera: a field of view of {:g} degrees (focal length {:.1f} px) without distortion, "
@@ -74,6 +117,7 @@ class VideoDataset final : public Dataset {
 
   ImageStreamOptions stream_options_;
   std::optional<double> fov_;  // degrees, horizontal
+  std::filesystem::path groundtruth_;
 };
 
 }  // namespace

@@ -259,6 +259,7 @@ int RunCheckMasks(int argc, char** argv) {
   SystemOptions options = LoadSettings(settings, arguments.overrides);
   options.objects.detection.min_keypoints = 0;  // no keypoints are extracted here
   arguments.tum.need_images = false;
+  arguments.tum.frames_per_second = options.frames_per_second;
   const ImageSequence sequence = OpenTumSequence(arguments.sequence, arguments.tum);
   const std::vector<MaskFrame> frames = MaskFrames(sequence);
   const auto source = OpenMasks(

@@ -31,12 +31,14 @@
 #include "run/object_outputs.h"
 #include "run/program.h"
 #include "run/progress.h"
+#include "run/settings_choice.h"
 #include "sequences/image_file.h"
 #include "system/compose_trajectory.h"
 
 namespace hullslam {
 namespace {
 
+constexpr const char* kProgram = "map_objects";
 constexpr double kMaxGapOfPoses =
     0.1;  // s, between the two poses from which a pose is interpolated
 
@@ -51,6 +53,7 @@ struct MapObjectsArguments {
       "out_objects";  // not the default of rgbd_tum, whose folder may contain the poses to be used
   double min_distance = 0.05;  // m
   double min_angle = 5.0;      // degrees
+  bool overwrite = false;
   bool without_depth = false;
   bool quiet = false;
 };
@@ -69,8 +72,9 @@ void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
                  "that fits the folder's name, such as TUM1.yaml for freiburg1)");
   AddOverrides(app, arguments.overrides);
   app.add_option("--output", arguments.output,
-                 "folder for the result files; replaces the former run in it")
+                 "folder for the result files; replaces the former run of this program in it")
       ->capture_default_str();
+  AddOverwriteFlag(app, arguments.overwrite);
   auto* const min_distance = app.add_option(
       "--min-distance", arguments.min_distance,
       "a frame is used if the camera has moved this far since the last used frame, m; a "
@@ -86,13 +90,6 @@ void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
   AddVersionAndExitCodes(app, "done",
                          "the run failed or was interrupted (the results up to then are written, "
                          "and summary.json says so)");
-}
-
-SystemOptions LoadOptions(const MapObjectsArguments& arguments) {
-  const std::filesystem::path settings =
-      arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
-                                 : arguments.settings;
-  return LoadSettings(settings, arguments.overrides);
 }
 
 // A frame that is used for mapping.
@@ -199,6 +196,7 @@ void PrintTable(const KnownPoseMapper& run, const ObjectReport& report) {
 }
 
 struct MappingInputs {
+  SettingsChoice settings;
   SystemOptions options;
   ImageSequence sequence;
   Trajectory poses;
@@ -206,8 +204,11 @@ struct MappingInputs {
 
 MappingInputs OpenMappingInputs(const MapObjectsArguments& arguments) {
   MappingInputs inputs;
-  inputs.options = LoadOptions(arguments);
-  inputs.sequence = OpenTumSequence(arguments.sequence, {.need_images = false});
+  inputs.settings = ChooseTumSettings(arguments.settings, arguments.sequence);
+  inputs.options = LoadSettings(inputs.settings.file, arguments.overrides);
+  inputs.sequence = OpenTumSequence(
+      arguments.sequence,
+      {.need_images = false, .frames_per_second = inputs.options.frames_per_second});
   inputs.poses = ReadTrajectory(arguments.poses);
   return inputs;
 }
@@ -247,6 +248,7 @@ RunSummary Summarize(const MapObjectsArguments& arguments, const MappingInputs& 
   summary.trajectory.alignment = "none";
   summary.peak_memory_mb = PeakMemoryMb();
   summary.map.keyframes = run.map().keyframes().size();
+  summary.provenance.program = kProgram;
   summary.provenance.version = HULLSLAM_VERSION;
   summary.provenance.settings_hash = HashSettings(inputs.options);
   summary.provenance.pipeline = "objects";
@@ -277,7 +279,7 @@ std::vector<std::filesystem::path> InputsOf(const MapObjectsArguments& arguments
 
 int RunMapObjects(int argc, char** argv) {
   CLI::App app("Maps objects from masks and known camera poses. Colour images are not needed.",
-               "map_objects");
+               kProgram);
   MapObjectsArguments arguments;
   AddArguments(app, arguments);
   if (!ParseCommandLine(app, argc, argv)) {
@@ -290,10 +292,11 @@ int RunMapObjects(int argc, char** argv) {
   const auto& frames = inputs.sequence.frames;
   const auto [views, without_pose] = ChooseViews(arguments, frames, inputs.poses, masks);
   CatchInterrupts();
-  OutputFolder output(arguments.output, "summary.json", InputsOf(arguments));
+  OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
+                      {kProgram, arguments.overwrite});
   WarnOfUnknownClasses(inputs.options.tracking, inputs.options.objects, masks);
   if (!arguments.quiet) {
-    Print("{}\n", masks.Describe());
+    Print("{}\n{}\n", Describe(inputs.settings), masks.Describe());
   }
   const auto start = std::chrono::steady_clock::now();
   KnownPoseMapper run(inputs.options);

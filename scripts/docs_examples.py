@@ -1,0 +1,64 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes a test program with the C++ examples of documents, so that they are compiled and run.
+
+Each block that begins with ```cpp becomes the body of one test. Blocks of a page use names that the
+page explains before, such as `options` and `system`; the class DocsExample of tests/docs/given.h has
+them. Errors of the compiler name the document and its line.
+"""
+
+import argparse
+import pathlib
+import re
+import sys
+
+HEAD = """// SPDX-License-Identifier: GPL-3.0-or-later
+// Written by scripts/docs_examples.py.
+#include "docs/given.h"
+
+namespace {
+"""
+
+
+def blocks_of(text):
+    """The line number of the first line of code and the code, of each C++ block."""
+    begin, code = None, []
+    for number, line in enumerate(text.splitlines(), start=1):
+        if begin is None:
+            if line.strip() == "```cpp":
+                begin, code = number + 1, []
+        elif line.strip() == "```":
+            yield begin, "\n".join(code)
+            begin = None
+        else:
+            code.append(line)
+    if begin is not None:
+        raise ValueError(f"line {begin - 1}: the block has no end")
+
+
+def program(documents):
+    """`documents` are pairs of a path and its text."""
+    parts = [HEAD]
+    for path, text in documents:
+        name = re.sub(r"\W", "_", path.stem)
+        for line, code in blocks_of(text):
+            parts.append(f"TEST_F(DocsExample, {name}_line_{line}) {{\n#line {line} \"{path}\"\n"
+                         f"{code}\n}}\n")
+    return "\n".join([*parts, "}  // namespace", ""])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("documents", nargs="+", type=pathlib.Path, metavar="DOCUMENT")
+    parser.add_argument("--output", required=True, type=pathlib.Path, metavar="FILE.cc")
+    arguments = parser.parse_args()
+    try:
+        text = program([(path, path.read_text(encoding="utf-8")) for path in arguments.documents])
+    except (OSError, ValueError) as error:
+        sys.exit(f"docs_examples.py: {error}")
+    arguments.output.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
