@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hullslam {
@@ -21,16 +23,16 @@ struct MaskProbe {
   bool has_json = false;    // has JSON files other than classes.json
   bool has_classes_json = false;
   bool has_paper_folder = false;  // has a folder segmentation_txt
-  // For a file: the first of the keys "annotations", "image_id" and "detections" that occurs in it.
-  std::string json_key;
+  std::string json_key;           // for a file: that of the given keys that comes first in it
 };
 
-// Throws InputError if the path does not exist or cannot be read.
-MaskProbe ProbeMasks(const std::filesystem::path& path);
+// Searches a file for the keys. Throws InputError if the path does not exist or cannot be read.
+MaskProbe ProbeMasks(const std::filesystem::path& path,
+                     std::span<const std::string_view> json_keys = {});
 
-// Why no format fits, and what to do about it; a sentence without its first capital letter. Throws
-// InputError if the file is not JSON.
-std::string DescribeMisfit(const MaskProbe& probe);
+// Why no format fits, and what to do about it; a sentence without its first capital letter.
+// `json_keys` describes the keys of all formats. Throws InputError if the file is not JSON.
+std::string DescribeMisfit(const MaskProbe& probe, const std::string& json_keys);
 
 // Whether all numbers of the row from `column` on are between 0 and 1, up to rounding.
 bool IsNormalized(const MaskProbe& probe, size_t column);
