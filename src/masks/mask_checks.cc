@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/polyline.h"
+#include "util/printable.h"
 
 namespace hullslam {
 namespace {
@@ -61,6 +62,7 @@ std::vector<Eigen::Vector2d> BoxOutline(double left, double top, double right, d
 }
 
 void AddInstance(InstanceMask instance, FrameMasks& frame) {
+  instance.label = Printable(instance.label);
   SortByArea(instance.outlines);
   if (instance.outlines.empty()) {
     ++frame.without_area;

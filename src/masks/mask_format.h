@@ -10,8 +10,8 @@
 
 namespace hullslam {
 
-// A format of mask files. Each has its own file, which defines one constant of this type; the table
-// in open_masks.cc names them all.
+// A format of mask files. Each format has its own file, which defines one constant of this type.
+// The table in open_masks.cc lists all formats.
 struct MaskFormat {
   std::string_view name;  // the name of --masks-format
   // How the format is recognised if its name is not given: a folder by its files, a JSON file by

@@ -48,8 +48,8 @@ Eigen::Vector2d HalfSize(const std::array<double, 5>& ellipse, const EllipseUnit
   return {std::hypot(a * cosine, b * sine), std::hypot(a * sine, b * cosine)};
 }
 
-// Files do not say which units they use. Each ellipse comes with its box, and it only fits the box
-// in the right units.
+// Finds the units of the ellipses, which files do not name. Each ellipse comes with its box, and
+// the ellipse only fits the box in the right units.
 EllipseUnits FindUnits(const OaSlamImages& images) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   constexpr std::array<EllipseUnits, 4> kUnits = {

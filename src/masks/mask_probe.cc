@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMostColumns = 64;  // enough to recognise a format
 
-// Returns false for a file without rows.
+// Stores the first row of a text file. Returns false if the file has no rows.
 bool ProbeRow(const fs::path& path, MaskProbe& probe) {
   CheckFileSize(path, kMostFrameFileBytes);
   ForEachRow(path, [&](const TextRow& row) {
@@ -119,7 +119,7 @@ std::string DescribeMisfit(const MaskProbe& probe, const std::string& json_keys)
   if (probe.is_folder) {
     return DescribeFolderMisfit(probe);
   }
-  ReadJson(probe.path, {.most_bytes = kMostJsonFileBytes});  // throws where the JSON breaks off
+  ReadJson(probe.path, {.most_bytes = kMostJsonFileBytes});  // throws if the file is not valid JSON
   return "is JSON, but has none of the keys " + json_keys;
 }
 

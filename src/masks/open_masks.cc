@@ -22,7 +22,7 @@
 namespace hullslam {
 namespace {
 
-// All formats. A new one needs a row here.
+// The table of all formats. A new format needs a row here.
 constexpr std::array kFormats = {&kYoloSegFormat, &kCocoFormat,   &kLabelPngFormat,
                                  &kPaperFormat,   &kOaSlamFormat, &kBoxesFormat};
 

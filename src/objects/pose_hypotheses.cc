@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -209,7 +208,8 @@ class Proposer {
       const double overlap =
           BoxOverlap(pose, *seen_[i].detection, a) + BoxOverlap(pose, *seen_[j].detection, b);
       if (overlap > 0.0) {
-        poses_.push_back({pose, overlap});
+        const double distance = 0.5 * (a.center_in_cam.norm() + b.center_in_cam.norm());
+        poses_.push_back({pose, overlap, distance});
       }
     }
   }
@@ -223,15 +223,21 @@ class Proposer {
   void AddPose(const Rigid3& cam_from_world) {
     constexpr double kLeast = 1.0;  // below it the centres are far from their expected positions
     double agreement = 0.0;
+    double distances = 0.0;  // weighted by the agreements
     for (const DetectionCandidates& seen : seen_) {
       double best = 0.0;
+      double distance = 0.0;
       for (const Candidate& candidate : seen.candidates) {
-        best = std::max(best, Agreement(cam_from_world, seen, candidate));
+        if (const double share = Agreement(cam_from_world, seen, candidate); share > best) {
+          best = share;
+          distance = (cam_from_world * CenterOf(candidate)).norm();
+        }
       }
       agreement += best;
+      distances += best * distance;
     }
     if (agreement >= kLeast) {
-      poses_.push_back({cam_from_world, agreement});
+      poses_.push_back({cam_from_world, agreement, distances / agreement});
     }
   }
 
@@ -255,11 +261,10 @@ class Proposer {
     std::stable_sort(
         poses_.begin(), poses_.end(),
         [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.agreement > b.agreement; });
-    const double depth = MeanDistance();
     std::vector<PoseHypothesis> best;
     for (const PoseHypothesis& pose : poses_) {
       const bool is_known = std::any_of(best.begin(), best.end(), [&](const auto& better) {
-        return AreSamePlace(better.cam_from_world, pose.cam_from_world, depth);
+        return AreSamePlace(better.cam_from_world, pose.cam_from_world, better.distance);
       });
       if (!is_known) {
         best.push_back(pose);
@@ -269,18 +274,6 @@ class Proposer {
       }
     }
     return best;
-  }
-
-  // Mean distance of the detections; infinite if none has depth, so that only the rotations are
-  // compared.
-  double MeanDistance() const {
-    double sum = 0.0;
-    double count = 0.0;
-    for (const DetectionCandidates& seen : seen_) {
-      sum += seen.sighting.surface;
-      count += seen.has_depth() ? 1.0 : 0.0;
-    }
-    return count > 0.0 ? sum / count : std::numeric_limits<double>::infinity();
   }
 
   const PinholeCamera& camera_;

@@ -14,6 +14,7 @@
 #include "objects/known_sizes.h"
 #include "system/compose_trajectory.h"
 #include "system/count_objects.h"
+#include "system/finish_run.h"
 #include "system/idle_core_runner.h"
 #include "system/make_sensor.h"
 #include "system/pipeline.h"
@@ -90,7 +91,7 @@ std::unique_ptr<Pipeline> System::BeginPipeline() {
   Check(!start_.localization_only || !start_.map.keyframes().empty(),
         "localization needs a map with keyframes");
   Check(start_.map.keyframes().empty() || start_.map.vocabulary() == options_.vocabulary,
-        "the map's vocabulary is not that of the options");
+        "the map's vocabulary differs from that of the options");
   auto pipeline = MakePipeline(kind_, sensor_, options_);
   pipeline->Begin({.map = start_.map.Snapshot(),
                    .session = {.name = start_.session_name, .first_frame = start_.map.NextFrame()},
@@ -155,17 +156,10 @@ std::unique_ptr<TaskRunner> System::MakeRunner() {
   });
 }
 
-void System::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
-  pipeline_->Finish(cancellation, on_progress);
-  if (const auto final_map = map()) {
-    LoseFramesElsewhere(*final_map, frames_);
-    const ObjectIndex object_index(*final_map, sensor_.camera);
-    RefinePoses(*final_map,
-                {sensor_, options_.tracking, options_.objects, object_index, options_.seed},
-                remembered_, frames_);
-    remembered_.clear();
-  }
-  ReplaceEarlyFrames(pipeline_->TakeEarlyFrames(), frames_);
+void System::Finish(const Cancellation* cancellation, const ProgressCallback& on_map,
+                    const ProgressCallback& on_poses) {
+  FinishRun(*pipeline_, sensor_, options_, remembered_, frames_, cancellation, on_map, on_poses);
+  remembered_.clear();
 }
 
 void System::Reset() {

@@ -33,7 +33,7 @@ class MakeObjectCostTest : public ::testing::Test {
   Detection detection_;
 };
 
-TEST_F(MakeObjectCostTest, MakesWhatIsSupportedAndNothingElse) {
+TEST_F(MakeObjectCostTest, MakesTheAcceptedCombinationsOnly) {
   for (const ObjectResidual residual : AllResiduals()) {
     for (const ObjectPrimitive primitive : kAllPrimitives) {
       EXPECT_EQ(Make(residual, primitive) != nullptr, AcceptsPrimitive(residual, primitive))
@@ -44,7 +44,7 @@ TEST_F(MakeObjectCostTest, MakesWhatIsSupportedAndNothingElse) {
 
 // The measured outline is the projected ellipse, so all residuals are zero, or nearly zero where a
 // polygon with a slightly smaller area stands for the ellipse.
-TEST_F(MakeObjectCostTest, AllAreSmallAtTheTruth) {
+TEST_F(MakeObjectCostTest, AllResidualsAreSmallAtTheTruth) {
   for (const ObjectResidual residual : AllResiduals()) {
     for (const ObjectPrimitive primitive : kAllPrimitives) {
       if (const auto cost = Make(residual, primitive)) {
@@ -88,7 +88,7 @@ TEST_F(MakeObjectCostTest, TakesTheLinesThatAreGiven) {
   EXPECT_EQ(cost->num_residuals(), 3);
 }
 
-TEST_F(MakeObjectCostTest, IsNothingOfAnEmptyDetection) {
+TEST_F(MakeObjectCostTest, IsNullForAnEmptyDetection) {
   detection_ = {};
   for (const ObjectResidual residual : AllResiduals()) {
     for (const ObjectPrimitive primitive : kAllPrimitives) {

@@ -12,7 +12,7 @@
 namespace hullslam {
 namespace {
 
-TEST(InstanceMask, IsACertainContourUnlessSaidOtherwise) {
+TEST(InstanceMask, IsAContourWithScoreOneByDefault) {
   const InstanceMask mask;
   EXPECT_EQ(mask.shape, MaskShape::kContour);
   EXPECT_EQ(mask.score, 1.0);

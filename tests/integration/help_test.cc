@@ -46,6 +46,16 @@ std::vector<std::string> ProgramNames() {
 INSTANTIATE_TEST_SUITE_P(Programs, Help, ::testing::ValuesIn(ProgramNames()),
                          [](const auto& info) { return info.param; });
 
+// Each --set takes one setting, so the help must not promise more.
+TEST(HelpOfSettings, ShowsOneKeyAndValue) {
+  for (const char* const program : {"rgbd_tum", "mono_video", "check_masks", "map_objects"}) {
+    const std::string help = RunProgram(program, {"--help"}).output;
+    const size_t at = help.find("--set KEY=VALUE");
+    ASSERT_NE(at, std::string::npos) << help;
+    EXPECT_NE(help.substr(at, 19), "--set KEY=VALUE ...");
+  }
+}
+
 TEST(HelpOfSubcommands, NamesTheExitCodes) {
   for (const char* const command : {"trajectory", "objects"}) {
     const ProgramResult result = RunProgram("evaluate", {command, "--help"});

@@ -68,7 +68,7 @@ TEST(RecyclingTable, FindsStaleIdsAbsent) {
       EXPECT_THROW(table.Erase(id), CheckError);
     }
     if (round == 0) {
-      EXPECT_FALSE(table.Contains(LandmarkId(1, 1))) << "it was not given to a value yet";
+      EXPECT_FALSE(table.Contains(LandmarkId(1, 1))) << "no value has this id yet";
       table.Insert("again");
     }
   }
@@ -84,7 +84,7 @@ TEST(RecyclingTable, NeverGivesAnIdTwice) {
     EXPECT_TRUE(id.IsValid());
     table.Erase(id);
   }
-  EXPECT_LE(table.slots(), 1u) << "slots without generations are no longer kept";
+  EXPECT_LE(table.slots(), 1u) << "a slot without unused generations is not kept";
   for (const LandmarkId id : given) {
     EXPECT_FALSE(table.Contains(id));
   }
@@ -205,7 +205,7 @@ TEST(RecyclingTable, SnapshotsAreReadWhileTheTableIsWritten) {
   }
 }
 
-TEST(RecyclingTable, IsMadeAgainFromItsValuesAndFreeIds) {
+TEST(RecyclingTable, IsRestoredFromItsValuesAndFreeIds) {
   TextTable table = MakeTextTable(10);
   for (const uint32_t slot : {7u, 2u, 5u}) {
     table.Erase(LandmarkId(slot));

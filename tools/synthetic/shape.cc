@@ -56,8 +56,9 @@ Vector3d TorusNormal(const Shape& shape, const Vector3d& point) {
   return point - ring * flat.normalized();
 }
 
-// Adds the vertices of a grid of `rows` x `columns` quads, which are split into triangles.
-// Neighbouring faces of a cube have bit-identical common vertices, so no ray passes between them.
+// Adds the vertices of a grid of `rows` x `columns` quads, which are split into triangles. The
+// common vertices of neighbouring faces of a cube have the same bits, so no ray passes between the
+// faces.
 void AddGrid(int rows, int columns, const std::function<Vector3d(double, double)>& point,
              TriangleMesh& mesh) {
   const auto first = static_cast<uint32_t>(mesh.vertices.size());

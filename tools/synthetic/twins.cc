@@ -25,8 +25,8 @@ void AddTwinRoom(const Palette& palette, SceneBuilder& builder) {
   builder.AddShelf(Shift(0.2, 4.09, 0.0), palette);
 }
 
-// Moves what was added to the background since `parts` and `supports` by x = kFirst, and adds a
-// copy of it at x = kSecond.
+// Moves all parts and supports of the background from the indices `parts` and `supports` on by
+// kFirst along x, and adds a copy of them that is moved by kSecond.
 void Duplicate(size_t parts, size_t supports, Scene& scene) {
   for (size_t i = parts, end = scene.background.size(); i < end; ++i) {
     Part twin = scene.background[i];

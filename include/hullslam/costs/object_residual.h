@@ -19,8 +19,9 @@ std::string_view NameOf(ObjectResidual residual);
 std::vector<std::string> ObjectResidualNames();
 
 // Whether the residual can be computed from the primitive. Each residual names its primitives
-// beside its cost. Every primitive has lines (a conic has its tangents); a contour, a conic or a
-// region belongs to some primitives only.
+// beside its cost. Every primitive has lines (a conic has its tangents). A contour, a conic or a
+// region belongs to some primitives only, so a residual that needs one of these does not accept all
+// primitives.
 bool AcceptsPrimitive(ObjectResidual residual, ObjectPrimitive primitive);
 
 // Whether the residual is computed from the lines of a detection.
