@@ -32,8 +32,8 @@ MaskProbe ProbeMasks(const std::filesystem::path& path,
                      std::span<const std::string_view> json_keys = {});
 
 // Says why no format fits and what the user can do. The text continues a message, so it begins with
-// a small letter. `json_keys` describes the keys of all formats. Throws InputError if the file is not
-// JSON.
+// a small letter. `json_keys` describes the keys of all formats. Throws InputError if the file is
+// not JSON.
 std::string DescribeMisfit(const MaskProbe& probe, const std::string& json_keys);
 
 // Whether all numbers of the row, from the column with index `column` on, are between 0 and 1 up to
