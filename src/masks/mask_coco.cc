@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -330,9 +331,7 @@ class CocoMasks : public MaskSource {
   Images images_;
 };
 
-bool IsCoco(const MaskProbe& probe) {
-  return probe.json_key == "annotations" || probe.json_key == "image_id";
-}
+constexpr std::array<std::string_view, 2> kCocoKeys = {"annotations", "image_id"};
 
 std::unique_ptr<MaskSource> OpenCoco(const MaskRequest& request) {
   return std::make_unique<CocoMasks>(request);
@@ -340,6 +339,6 @@ std::unique_ptr<MaskSource> OpenCoco(const MaskRequest& request) {
 
 }  // namespace
 
-const MaskFormat kCocoFormat = {.name = kCocoName, .is_meant = IsCoco, .open = OpenCoco};
+const MaskFormat kCocoFormat = {.name = kCocoName, .json_keys = kCocoKeys, .open = OpenCoco};
 
 }  // namespace hullslam

@@ -225,7 +225,7 @@ class OaSlamMasks : public MaskSource {
   EllipseUnits units_;
 };
 
-bool IsOaSlam(const MaskProbe& probe) { return probe.json_key == "detections"; }
+constexpr std::array<std::string_view, 1> kOaSlamKeys = {"detections"};
 
 std::unique_ptr<MaskSource> OpenOaSlam(const MaskRequest& request) {
   return std::make_unique<OaSlamMasks>(request);
@@ -233,6 +233,7 @@ std::unique_ptr<MaskSource> OpenOaSlam(const MaskRequest& request) {
 
 }  // namespace
 
-const MaskFormat kOaSlamFormat = {.name = kOaSlamName, .is_meant = IsOaSlam, .open = OpenOaSlam};
+const MaskFormat kOaSlamFormat = {
+    .name = kOaSlamName, .json_keys = kOaSlamKeys, .open = OpenOaSlam};
 
 }  // namespace hullslam

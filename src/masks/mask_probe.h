@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hullslam {
@@ -22,16 +24,17 @@ struct MaskProbe {
   bool has_json = false;    // has JSON files other than classes.json
   bool has_classes_json = false;
   bool has_paper_folder = false;  // has a folder segmentation_txt
-  // For a file: the first of the keys "annotations", "image_id" and "detections" that occurs in it.
-  std::string json_key;
+  std::string json_key;           // for a file: that of the given keys that comes first in it
 };
 
-// Throws InputError if the path does not exist or cannot be read.
-MaskProbe ProbeMasks(const std::filesystem::path& path);
+// Searches a file for the keys. Throws InputError if the path does not exist or cannot be read.
+MaskProbe ProbeMasks(const std::filesystem::path& path,
+                     std::span<const std::string_view> json_keys = {});
 
 // Says why no format fits and what the user can do. The text continues a message, so it begins with
-// a small letter. Throws InputError if the file is not JSON.
-std::string DescribeMisfit(const MaskProbe& probe);
+// a small letter. `json_keys` describes the keys of all formats. Throws InputError if the file is
+// not JSON.
+std::string DescribeMisfit(const MaskProbe& probe, const std::string& json_keys);
 
 // Whether all numbers of the row, from the column with index `column` on, are between 0 and 1 up to
 // rounding.

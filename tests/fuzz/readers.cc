@@ -238,25 +238,25 @@ void FuzzMap(std::string_view bytes) {
   });
 }
 
-constexpr std::array<FuzzedReader, 19> kReaders = {{{"trajectory", FuzzTrajectory},
-                                                    {"settings", FuzzSettings},
-                                                    {"grey_image", FuzzGreyImage},
-                                                    {"depth_image", FuzzDepthImage},
-                                                    {"objects", FuzzObjects},
-                                                    {"true_objects", FuzzTrueObjects},
-                                                    {"summary", FuzzSummary},
-                                                    {"mask_probe", FuzzMaskProbe},
-                                                    {"classes", FuzzClasses},
-                                                    {"yolo_seg", FuzzYoloSeg},
-                                                    {"paper", FuzzPaper},
-                                                    {"boxes", FuzzBoxes},
-                                                    {"coco", FuzzCoco},
-                                                    {"oa_slam", FuzzOaSlam},
-                                                    {"label_png", FuzzLabelPng},
-                                                    {"classes_json", FuzzClassesJson},
-                                                    {"vocabulary_binary", FuzzVocabularyBinary},
-                                                    {"vocabulary_text", FuzzVocabularyText},
-                                                    {"map", FuzzMap}}};
+constexpr auto kReaders = std::to_array<FuzzedReader>({{"trajectory", FuzzTrajectory},
+                                                       {"settings", FuzzSettings},
+                                                       {"grey_image", FuzzGreyImage},
+                                                       {"depth_image", FuzzDepthImage},
+                                                       {"objects", FuzzObjects},
+                                                       {"true_objects", FuzzTrueObjects},
+                                                       {"summary", FuzzSummary},
+                                                       {"mask_probe", FuzzMaskProbe},
+                                                       {"classes", FuzzClasses},
+                                                       {"yolo_seg", FuzzYoloSeg},
+                                                       {"paper", FuzzPaper},
+                                                       {"boxes", FuzzBoxes},
+                                                       {"coco", FuzzCoco},
+                                                       {"oa_slam", FuzzOaSlam},
+                                                       {"label_png", FuzzLabelPng},
+                                                       {"classes_json", FuzzClassesJson},
+                                                       {"vocabulary_binary", FuzzVocabularyBinary},
+                                                       {"vocabulary_text", FuzzVocabularyText},
+                                                       {"map", FuzzMap}});
 
 }  // namespace
 

@@ -37,6 +37,8 @@ constexpr uint32_t kSeeds = 12;
 
 ScaleLevels Levels() { return ScaleLevels::Create(8, 1.2); }
 
+Rigid3 Shift(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }
+
 std::vector<KeyframeId> AllIds(const Map& map) {
   std::vector<KeyframeId> ids;
   for (uint32_t i = 0; i < map.keyframes().NextId().value; ++i) {
@@ -478,7 +480,7 @@ class CorrectionByHand : public ::testing::Test {
  protected:
   CorrectionByHand() {
     for (int i = 0; i < 3; ++i) {
-      AddKeyframe(map_, 40, 10, AlongX(-1.0 - i));
+      AddKeyframe(map_, 40, 10, Shift(-1.0 - i));
     }
     SetParent(map_, b_, a_);
     SetParent(map_, c_, b_);
@@ -508,8 +510,8 @@ TEST_F(CorrectionByHand, MovesAndScales) {
   const ObjectId object = map_.AddObject();
   ASSERT_TRUE(map_.AddObservation(object, b_, 0));
   GiveShape(map_, object, random);
-  map_.MutableObject(object).ellipsoid = {AlongX(4.0), {0.1, 0.2, 0.3}};
-  map_.MutableObject(object).start = {AlongX(5.0), {0.2, 0.3, 0.4}};
+  map_.MutableObject(object).ellipsoid = {Shift(4.0), {0.1, 0.2, 0.3}};
+  map_.MutableObject(object).start = {Shift(5.0), {0.2, 0.3, 0.4}};
   map_.MutableObject(object).misfit_samples[0].excess = -0.01f;
   Name(a_, 1.0, 0.0);
   Name(b_, 2.0, 10.0);
@@ -558,7 +560,7 @@ TEST_F(CorrectionByHand, ACulledKeyframeWithIdentityStays) {
   Name(a_, 2.0, 5.0);
   Name(b_, 1.0, 0.0);
   Name(c_, 1.0, 0.0);
-  const RelativePose frame = map_.RelativeTo(c_, AlongX(-7.0));
+  const RelativePose frame = map_.RelativeTo(c_, Shift(-7.0));
   map_.CullKeyframe(c_);
   map_.CullKeyframe(b_);
   EXPECT_TRUE(Apply().is_applied);
@@ -573,10 +575,10 @@ TEST_F(CorrectionByHand, ACulledKeyframeWithIdentityStays) {
 
 TEST_F(CorrectionByHand, MovesKeyframesThatItDoesNotNameWithTheirAncestor) {
   Name(a_, 1.0, 5.0);
-  const KeyframeId alone = AddKeyframe(map_, 1, 0, AlongX(-20.0));
+  const KeyframeId alone = AddKeyframe(map_, 1, 0, Shift(-20.0));
   const LandmarkId still = map_.AddLandmark({1.0, 2.0, 3.0}, alone);
   map_.CullKeyframe(b_);
-  const KeyframeId late = AddKeyframe(map_, 1, 0, AlongX(-4.0));
+  const KeyframeId late = AddKeyframe(map_, 1, 0, Shift(-4.0));
   SetParent(map_, late, c_);
   EXPECT_TRUE(Apply().is_applied);
   EXPECT_DOUBLE_EQ(CenterX(a_), 6.0);
@@ -593,7 +595,7 @@ TEST_F(CorrectionByHand, MovesAnObjectWithItsCulledReference) {
   const ObjectId object = map_.AddObject();
   ASSERT_TRUE(map_.AddObservation(object, b_, 0));
   GiveShape(map_, object, random);
-  map_.MutableObject(object).ellipsoid = {AlongX(4.0), {0.1, 0.2, 0.3}};
+  map_.MutableObject(object).ellipsoid = {Shift(4.0), {0.1, 0.2, 0.3}};
   Name(a_, 1.0, 5.0);
   Name(b_, 1.0, 7.0);
   map_.CullKeyframe(b_);
@@ -613,7 +615,7 @@ TEST_F(CorrectionByHand, MovesAnObjectWithItsCulledReference) {
 TEST_F(CorrectionByHand, KeepsLocalAdjustments) {
   const LandmarkId landmark = Share(map_, {b_, c_}).front();
   Name(b_, 2.0, 10.0);
-  map_.SetPose(b_, AlongX(-2.25));
+  map_.SetPose(b_, Shift(-2.25));
   map_.SetPosition(landmark, {0.5, 0.0, 2.0});
   EXPECT_TRUE(Apply().is_applied);
   EXPECT_DOUBLE_EQ(CenterX(b_), 14.5);
@@ -801,7 +803,7 @@ TEST_F(CorrectionByHand, FollowsTheIdsOfMergedObjects) {
 TEST_F(CorrectionByHand, SkipsKeyframesThatTheMapNeverHad) {
   Name(a_, 1.0, 5.0);
   for (const KeyframeId id : {KeyframeId(99), KeyframeId()}) {
-    correction_.poses.push_back({id, Rigid3(), Sim3(AlongX(1.0))});
+    correction_.poses.push_back({id, Rigid3(), Sim3(Shift(1.0))});
   }
   EXPECT_TRUE(Apply().is_applied);
   EXPECT_DOUBLE_EQ(CenterX(a_), 6.0);
@@ -820,7 +822,7 @@ TEST_F(CorrectionByHand, NeedsPositiveScales) {
 }
 
 TEST_F(CorrectionByHand, KeepsTheLoopEdgeAtBothEnds) {
-  const KeyframeId d = AddKeyframe(map_, 1, 0, AlongX(-4.0));
+  const KeyframeId d = AddKeyframe(map_, 1, 0, Shift(-4.0));
   SetParent(map_, d, c_);
   map_.AddLoop(a_, d);
   correction_.loop = {d, b_};
@@ -835,7 +837,7 @@ TEST_F(CorrectionByHand, KeepsTheLoopEdgeAtBothEnds) {
 }
 
 TEST_F(CorrectionByHand, TheLoopEdgeOfACulledKeyframeGoesToItsNearestAncestor) {
-  const KeyframeId d = AddKeyframe(map_, 1, 0, AlongX(-4.0));
+  const KeyframeId d = AddKeyframe(map_, 1, 0, Shift(-4.0));
   SetParent(map_, d, c_);
   map_.CullKeyframe(c_);
   map_.CullKeyframe(b_);

@@ -13,6 +13,8 @@
 namespace hullslam {
 namespace {
 
+Rigid3 AlongX(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }
+
 TEST(RelativePose, HasNoReferenceAtFirst) {
   const RelativePose pose;
   EXPECT_FALSE(pose.reference.IsValid());
