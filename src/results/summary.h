@@ -75,8 +75,6 @@ struct MapSummary {
   size_t sessions = 0;  // runs that added keyframes
   // Median of the distances between keypoints and projected landmarks. Absent without a map.
   std::optional<double> reprojection_px = std::nullopt;
-  // CompareDepth() of the map. Absent without depth.
-  std::optional<double> depth_deviation = std::nullopt;
   // Objects of known size that the unit of length is from. Absent with depth, or without
   // objects.sizes.
   std::optional<size_t> known_sizes = std::nullopt;
