@@ -84,7 +84,6 @@ Json ToJson(const MapSummary& summary) {
           {"loops", summary.loops},
           {"sessions", summary.sessions},
           {"reprojection_px", OrNull(summary.reprojection_px)},
-          {"depth_deviation", OrNull(summary.depth_deviation)},
           {"known_sizes", OrNull(summary.known_sizes)}};
 }
 

@@ -76,8 +76,6 @@ struct MapSummary {
   size_t sessions = 0;  // runs that added keyframes
   // Median of the distances between keypoints and projected landmarks. Absent without a map.
   std::optional<double> reprojection_px = std::nullopt;
-  // CompareDepth() of the map. Absent without depth.
-  std::optional<double> depth_deviation = std::nullopt;
   // The number of objects of known size that determine the unit of length. Absent in RGB-D runs,
   // and without objects.sizes.
   std::optional<size_t> known_sizes = std::nullopt;

@@ -5,16 +5,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
-#include "eval/depth_agreement.h"
-#include "eval/reprojection_error.h"
+#include "eval/depth_registration.h"
 #include "frame/dynamic_mask.h"
+#include "hullslam/util/error.h"
 #include "run/messages.h"
 #include "util/median.h"
 
@@ -93,6 +95,56 @@ void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& de
              is_in_units ? "DepthMapFactor" : "its unit (--povray-units)");
 }
 
+void WarnOfUnregisteredDepth(const ImageSequence& sequence, const PinholeCamera& camera) {
+  constexpr size_t kFrames = 7;
+  constexpr size_t kLeastEdges = 2000;  // px
+  constexpr double kLeastContrast =
+      1.2;  // 1 if depth and colour have nothing to do with each other
+  DepthRegistration registration;
+  const size_t step = std::max<size_t>(1, sequence.frames.size() / kFrames);
+  for (size_t i = 0; i < sequence.frames.size(); i += step) {
+    try {
+      const ImageInput image = sequence.load(sequence.frames[i], camera);
+      if (!image.depth.empty()) {
+        registration.Add(image.grey, image.depth);
+      }
+    } catch (const InputError&) {  // the run will report this image
+      continue;
+    }
+  }
+  if (registration.edges() >= kLeastEdges && registration.Contrast() < kLeastContrast) {
+    PrintError(
+        "warning: the borders in the depth images are not where those in the colour images are "
+        "(contrast {:.2f}, expected at least {}); are the depth images registered to the colour "
+        "images?\n",
+        registration.Contrast(), kLeastContrast);
+  }
+}
+
+void WarnOfOtherSettings(const std::filesystem::path& given, const PinholeCamera& camera,
+                         const std::filesystem::path& sequence) {
+  constexpr double kMost = 0.005;  // of the focal length; a new calibration differs by less
+  std::filesystem::path file;
+  PinholeCamera own;
+  try {
+    file = FindDefaultSettings(sequence, FindConfigFolder());
+    own = ReadSettings(file).camera;
+  } catch (const InputError&) {
+    return;  // the sequence has no settings of its own
+  }
+  for (const auto& [name, value, expected] :
+       {std::tuple("fx", camera.fx, own.fx), std::tuple("fy", camera.fy, own.fy),
+        std::tuple("cx", camera.cx, own.cx), std::tuple("cy", camera.cy, own.cy)}) {
+    if (std::abs(value - expected) > kMost * own.fx) {
+      PrintError(
+          "warning: {}: Camera.{} is {:g}, but the settings of this sequence, {}, have {:g}; are "
+          "these the settings of another camera?\n",
+          given.string(), name, value, file.string(), expected);
+      return;
+    }
+  }
+}
+
 void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& objects,
                           const SequenceMasks& masks) {
   std::set<std::string> dynamic = SplitNames(tracking.dynamic_classes);
@@ -124,34 +176,6 @@ void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& seque
     PrintError("warning: --last is '{}', but the last frame of the sequence is {}\n",
                selection.last, sequence.available - 1);
   }
-}
-
-std::optional<std::vector<std::string>> FindCameraFaults(const Map* map,
-                                                         const PinholeCamera& camera) {
-  constexpr size_t kKeyframes = 10;
-  constexpr double kMostError = 1.5;       // px
-  constexpr double kMostDeviation = 0.05;  // of the depth
-  constexpr size_t kLeastPoints = 100;
-  if (map == nullptr || map->keyframes().size() < kKeyframes) {
-    return std::nullopt;
-  }
-  std::vector<std::string> faults;
-  const std::optional<double> error = MedianReprojectionError(*map, camera);
-  if (error && *error > kMostError) {
-    faults.push_back(fmt::format(
-        "the points of the map are {:.2f} px away from their keypoints (median), expected less "
-        "than {} px; are the settings those of this camera?",
-        *error, kMostError));
-  }
-  const std::optional<DepthAgreement> depth = CompareDepth(*map, camera);
-  if (depth && depth->points >= kLeastPoints && depth->deviation > kMostDeviation) {
-    faults.push_back(fmt::format(
-        "the depth images differ by {:.1f} % (median) from the depth that follows from the motion, "
-        "expected less than {} %; are they registered to the colour images, and are the settings "
-        "those of this camera?",
-        100.0 * depth->deviation, 100.0 * kMostDeviation));
-  }
-  return faults;
 }
 
 }  // namespace hullslam

@@ -3,12 +3,9 @@
 
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
-#include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
-#include "hullslam/map/map.h"
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/settings/settings.h"
 #include "hullslam/system/options.h"
@@ -30,6 +27,14 @@ SystemOptions LoadSettings(const CameraCalibration& calibration, const std::stri
 // DepthMapFactor may then be wrong.
 void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& depth,
                             const DepthOptions& options);
+// Warns if some of the depth images are not registered to their colour images: where the depth has
+// a step, the colour changes no more than elsewhere (DepthRegistration). Nothing is printed if
+// there is too little to tell.
+void WarnOfUnregisteredDepth(const ImageSequence& sequence, const PinholeCamera& camera);
+// Warns if the settings that the user gave have other intrinsics than those that belong to the
+// sequence, which are camera.yaml in its folder or found by its name.
+void WarnOfOtherSettings(const std::filesystem::path& given, const PinholeCamera& camera,
+                         const std::filesystem::path& sequence);
 // Warns if no mask has a class that tracking.dynamic_classes or objects.sizes names. Classes that
 // are there by default are not reported. Also warns of sizes above 3 m, which may be in another
 // unit.
@@ -37,11 +42,5 @@ void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& 
                           const SequenceMasks& masks);
 // Warns if --last is beyond the end of the sequence.
 void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& sequence);
-
-// What the first keyframes of a map show: that the settings are those of another camera, or that
-// the depth images are not registered to the colour images. One text per fault. Absent as long as
-// `map`, which may be null, has too few keyframes to tell.
-std::optional<std::vector<std::string>> FindCameraFaults(const Map* map,
-                                                         const PinholeCamera& camera);
 
 }  // namespace hullslam

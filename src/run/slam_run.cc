@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "eval/depth_agreement.h"
 #include "eval/located_landmarks.h"
 #include "eval/reprojection_error.h"
 #include "hullslam/eval/ate.h"
@@ -114,22 +113,11 @@ void FinishMap(bool is_quiet, System& system) {
       });
 }
 
-// Warns once if the map does not fit the camera. Returns false as long as the map is too small.
-bool WarnOfCamera(const Map* map, const PinholeCamera& camera, Progress& progress) {
-  const auto faults = FindCameraFaults(map, camera);
-  for (const std::string& fault : faults.value_or(std::vector<std::string>())) {
-    progress.Clear();
-    PrintError("warning: {}\n", fault);
-  }
-  return faults.has_value();
-}
-
 RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
                    const PinholeCamera& camera, const SequenceMasks& masks, System& system) {
   RunResult result;
   Progress progress(sequence.frames.size(), arguments.quiet);
   std::optional<InitialisationFailure> failure;  // failure of the last frame
-  bool is_checked = false;                       // whether the camera fits the map
   system.SetFrameCallback([&](const FrameReport& report) {
     failure = report.failure;
     if (failure) {
@@ -160,7 +148,6 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
       continue;
     }
     const TrackedFrame frame = system.Track(std::move(*loaded->frame));
-    is_checked = is_checked || WarnOfCamera(system.map().get(), camera, progress);
     progress.Show(result.given, [&] { return DescribeState(frame.state, failure, system); });
   }
   progress.Clear();
@@ -243,9 +230,6 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
     summary.map.sessions = map->sessions().size();
     summary.map.loops = CountLoops(*map);
     summary.map.reprojection_px = MedianReprojectionError(*map, options.camera);
-    if (const auto agreement = CompareDepth(*map, options.camera)) {
-      summary.map.depth_deviation = agreement->deviation;
-    }
     if (options.sensor == SensorKind::kMonocular && !options.objects.sizes.empty()) {
       summary.map.known_sizes = system.sized_objects();
     }
@@ -302,6 +286,17 @@ std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
           arguments.associations, arguments.vocabulary, arguments.load_map};
 }
 
+void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
+                 const ImageSequence& sequence, const ImageInput& first,
+                 const SequenceMasks& masks) {
+  WarnOfImplausibleDepth(sequence.frames.front().depth, first.depth, options.depth);
+  if (options.sensor == SensorKind::kRgbd) {
+    WarnOfUnregisteredDepth(sequence, options.camera);
+  }
+  WarnOfUnknownClasses(options.tracking, options.objects, masks);
+  WarnOfLastFrame(arguments.selection, sequence);
+}
+
 void PrintInput(const RunArguments& arguments, std::span<const std::string> notes,
                 const SequenceMasks& masks) {
   if (arguments.quiet) {
@@ -351,9 +346,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   const size_t earlier_sessions = start.map.sessions().size();
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
                       {arguments.program, arguments.overwrite});
-  WarnOfImplausibleDepth(sequence.frames.front().depth, first.depth, options.depth);
-  WarnOfUnknownClasses(options.tracking, options.objects, masks);
-  WarnOfLastFrame(arguments.selection, sequence);
+  WarnOfInput(arguments, options, sequence, first, masks);
   PrintInput(arguments, notes, masks);
   System system(options, ChoosePipeline(arguments), std::move(start));
   const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system);

@@ -311,6 +311,41 @@ TEST_F(RgbdTum, HelpAndVersionAreNoErrors) {
   EXPECT_EQ(help.errors + version.errors, "");
 }
 
+// The settings of the sequence itself are in its folder.
+TEST_F(RgbdTum, WarnsOfSettingsOfAnotherCamera) {
+  const auto run = [&](const std::string& focal_length) {
+    const std::string settings =
+        folder_.Write("other.yaml", "%YAML:1.0\nCamera.fx: " + focal_length +
+                                        "\nCamera.fy: 500.0\nCamera.cx: 319.5\nCamera.cy: 239.5\n"
+                                        "Camera.bf: 40.0\nDepthMapFactor: 5000.0\n");
+    return RunWell({path_, "--last", "2", "--quiet", "--settings", settings}).errors;
+  };
+  EXPECT_EQ(run("500.5"), "");
+  ExpectParts(run("520.0"), {"warning: ", "other.yaml: Camera.fx is 520", path_ + "/camera.yaml",
+                             "have 500", "another camera?"});
+}
+
+TEST(RgbdTumData, DepthThatIsNotRegisteredIsReported) {
+  const TemporaryFolder folder;
+  const fs::path desk = folder.path() / "desk";
+  ASSERT_EQ(RunProgram("make_synthetic", {desk, "--frames", "8", "--quiet"}).exit_code, 0);
+  const auto run = [&] {
+    const ProgramResult result =
+        RunProgram("rgbd_tum", {desk, "--output", folder.path() / "out", "--quiet"});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return result.errors;
+  };
+  EXPECT_EQ(run(), "");
+  for (const fs::directory_entry& file : fs::directory_iterator(desk / "depth")) {
+    const cv::Mat depth = cv::imread(file.path().string(), cv::IMREAD_UNCHANGED);
+    cv::Mat moved = cv::Mat::zeros(depth.size(), depth.type());
+    const cv::Size size(depth.cols - 14, depth.rows - 8);
+    depth(cv::Rect({0, 0}, size)).copyTo(moved(cv::Rect({14, 8}, size)));
+    cv::imwrite(file.path().string(), moved);
+  }
+  ExpectParts(run(), {"warning: ", "registered to the colour images?"});
+}
+
 TEST(RgbdTumData, RenderedDeskIsTracked) {
   const TemporaryFolder folder;
   const std::string desk = folder.path() / "desk";

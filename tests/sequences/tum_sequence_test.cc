@@ -238,6 +238,7 @@ TEST_F(UnlistedSequenceTest, OtherNamesAreRefused) {
   ExpectError({"has no depth.txt and no folder depth", "without depth: mono_tum"});
   Add({"rgb/2.5.png"});
   ExpectError({"2.5.png", "of another kind than that of 1.png"});
+  std::filesystem::remove(folder_.path() / "rgb/2.5.png");
   Add({"rgb/cup.png"});
   ExpectError({"cup.png", "neither the number of a frame nor a time stamp"});
 }

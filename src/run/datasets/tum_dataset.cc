@@ -39,6 +39,9 @@ class TumDataset final : public Dataset {
                                              .use_depth = arguments.sensor == SensorKind::kRgbd,
                                              .frames_per_second = options.frames_per_second,
                                              .selection = arguments.selection});
+    if (!arguments.settings.empty()) {
+      WarnOfOtherSettings(arguments.settings, options.camera, arguments.sequence);
+    }
     std::vector<std::string> notes = {Describe(settings)};
     if (!sequence.stamps_note.empty()) {
       notes.push_back(sequence.stamps_note);

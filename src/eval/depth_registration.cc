@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eval/depth_registration.h"
+
+#include <algorithm>
+#include <numeric>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+constexpr int kShifts = 25;  // per direction; an odd number, so that no shift is the middle one
+
+// Magnitude of the gradient, divided by its mean. Strong edges are limited, so that a few of them
+// do not decide.
+cv::Mat GradientOf(const cv::Mat& grey) {
+  constexpr double kMost = 200.0;
+  cv::Mat dx;
+  cv::Mat dy;
+  cv::Sobel(grey, dx, CV_32F, 1, 0);
+  cv::Sobel(grey, dy, CV_32F, 0, 1);
+  cv::Mat gradient;
+  cv::magnitude(dx, dy, gradient);
+  gradient = cv::min(gradient, kMost);
+  const double mean = cv::mean(gradient)[0];
+  return mean > 0.0 ? cv::Mat(gradient / mean) : gradient;
+}
+
+// The pixels on the near side of a step: something at most two pixels away is farther by a tenth,
+// and nothing there is nearer.
+std::vector<cv::Point> FindSteps(const cv::Mat& depth, const cv::Rect& inside) {
+  constexpr float kFarther = 1.1f;
+  constexpr float kNearer = 0.97f;
+  constexpr float kUnknown = 1e9f;
+  cv::Mat known;
+  depth.convertTo(known, CV_32F);
+  cv::patchNaNs(known, 0.0);
+  cv::Mat nearest;
+  cv::Mat farthest;
+  const cv::Mat window = cv::Mat::ones(5, 5, CV_8UC1);
+  cv::dilate(known, farthest, window);
+  cv::Mat without_holes = known.clone();
+  without_holes.setTo(kUnknown, known <= 0.0);
+  cv::erode(without_holes, nearest, window);
+  std::vector<cv::Point> steps;
+  for (int y = inside.y; y < inside.br().y; ++y) {
+    for (int x = inside.x; x < inside.br().x; ++x) {
+      const float z = known.at<float>(y, x);
+      if (z > 0.0f && z < kUnknown && farthest.at<float>(y, x) > kFarther * z &&
+          nearest.at<float>(y, x) > kNearer * z) {
+        steps.emplace_back(x, y);
+      }
+    }
+  }
+  return steps;
+}
+
+}  // namespace
+
+void DepthRegistration::Add(const cv::Mat& grey, const cv::Mat& depth) {
+  Check(grey.type() == CV_8UC1 && grey.size() == depth.size(), "the two images do not fit");
+  constexpr int kShare = 160;  // the shifts are multiples of this share of the image
+  constexpr int kHalf = kShifts / 2;
+  const cv::Point step(std::max(1, grey.cols / kShare), std::max(1, grey.rows / kShare));
+  const cv::Point margin = kHalf * step;
+  const cv::Rect inside(margin.x, margin.y, std::max(0, grey.cols - 2 * margin.x),
+                        std::max(0, grey.rows - 2 * margin.y));
+  const cv::Mat gradient = GradientOf(grey);
+  const std::vector<cv::Point> steps = FindSteps(depth, inside);
+  edges_ += steps.size();
+  gradients_.resize(static_cast<size_t>(kShifts) * kShifts);
+  for (int row = 0; row < kShifts; ++row) {
+    for (int column = 0; column < kShifts; ++column) {
+      const cv::Point shift((column - kHalf) * step.x, (row - kHalf) * step.y);
+      double& sum = gradients_[static_cast<size_t>(row * kShifts + column)];
+      for (const cv::Point& point : steps) {
+        sum += gradient.at<float>(point + shift);
+      }
+    }
+  }
+}
+
+double DepthRegistration::Contrast() const {
+  Check(edges_ > 0, "there are no steps of the depth");
+  const double mean = std::accumulate(gradients_.begin(), gradients_.end(), 0.0) /
+                      static_cast<double>(gradients_.size());
+  return mean > 0.0 ? gradients_[gradients_.size() / 2] / mean : 1.0;
+}
+
+}  // namespace hullslam

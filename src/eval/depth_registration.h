@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+namespace hullslam {
+
+// Measures whether depth images are registered to their colour images. Where the depth has a step,
+// there is the border of something near, and the colour image usually changes there too. If the
+// depth image is moved or scaled against the colour image, it changes there no more than elsewhere.
+class DepthRegistration {
+ public:
+  // Adds an image (CV_8UC1) and its depth image of the same size, CV_16UC1 or CV_32FC1 in any unit.
+  void Add(const cv::Mat& grey, const cv::Mat& depth);
+
+  // The number of pixels at steps of the depth.
+  size_t edges() const { return edges_; }
+  // The gradient of the colour images at the steps, divided by its mean if the depth images are
+  // moved by up to a thirteenth of their size. It is about 1 if they are not registered. Requires
+  // edges() > 0.
+  double Contrast() const;
+
+ private:
+  size_t edges_ = 0;
+  std::vector<double> gradients_;  // sum over the steps for each shift; the middle one is no shift
+};
+
+}  // namespace hullslam

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eval/depth_registration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "hullslam/util/check.h"
+
+namespace hullslam {
+namespace {
+
+// Textured boxes, 1 m away, before a textured wall, 2 m away.
+struct Scene {
+  explicit Scene(int seed) : grey(480, 640, CV_8UC1), depth(480, 640, CV_16UC1, cv::Scalar(2000)) {
+    cv::RNG random(static_cast<uint64_t>(seed));
+    random.fill(grey, cv::RNG::NORMAL, 90, 12);
+    for (int i = 0; i < 12; ++i) {
+      const cv::Rect box(random.uniform(40, 500), random.uniform(40, 380), 70, 50);
+      cv::Mat inside = grey(box);
+      random.fill(inside, cv::RNG::NORMAL, 150, 12);
+      depth(box).setTo(1000);
+    }
+  }
+
+  // Moves and scales the depth image against the colour image.
+  cv::Mat Moved(double scale, double x, double y) const {
+    const cv::Matx23d motion(scale, 0, 320 * (1 - scale) + x, 0, scale, 240 * (1 - scale) + y);
+    cv::Mat moved;
+    cv::warpAffine(depth, moved, motion, depth.size(), cv::INTER_NEAREST);
+    return moved;
+  }
+
+  cv::Mat grey;
+  cv::Mat depth;
+};
+
+double ContrastOf(double scale, double x, double y) {
+  DepthRegistration registration;
+  for (int seed = 1; seed <= 4; ++seed) {
+    const Scene scene(seed);
+    registration.Add(scene.grey, scene.Moved(scale, x, y));
+  }
+  EXPECT_GT(registration.edges(), 2000u);
+  return registration.Contrast();
+}
+
+TEST(DepthRegistration, RegisteredDepthChangesWhereTheColourDoes) {
+  EXPECT_GT(ContrastOf(1.0, 0.0, 0.0), 1.5);
+  EXPECT_GT(ContrastOf(1.0, 1.0, -1.0), 1.4) << "depth sensors are off by a pixel";
+}
+
+TEST(DepthRegistration, MovedOrScaledDepthDoesNot) {
+  EXPECT_LT(ContrastOf(1.0, 14.0, 6.0), 1.15);
+  EXPECT_LT(ContrastOf(1.0, -18.0, 14.0), 1.15);
+  EXPECT_LT(ContrastOf(580.0 / 525.0, 12.0, 0.0), 1.15) << "the depth camera of a Kinect";
+}
+
+TEST(DepthRegistration, TheUnitAndUnknownDepthDoNotMatter) {
+  const Scene scene(1);
+  DepthRegistration units;
+  units.Add(scene.grey, scene.depth);
+  cv::Mat metres;
+  scene.depth.convertTo(metres, CV_32F, 0.001);
+  DepthRegistration as_metres;
+  as_metres.Add(scene.grey, metres);
+  EXPECT_EQ(as_metres.edges(), units.edges());
+  EXPECT_NEAR(as_metres.Contrast(), units.Contrast(), 1e-9);
+  metres.rowRange(0, 200).setTo(std::nanf(""));
+  DepthRegistration with_holes;
+  with_holes.Add(scene.grey, metres);
+  EXPECT_GT(with_holes.edges(), 0u);
+  EXPECT_LT(with_holes.edges(), units.edges());
+}
+
+TEST(DepthRegistration, AWallHasNoSteps) {
+  DepthRegistration registration;
+  const cv::Mat grey(480, 640, CV_8UC1, cv::Scalar(90));
+  registration.Add(grey, cv::Mat(480, 640, CV_16UC1, cv::Scalar(2000)));
+  registration.Add(grey, cv::Mat(480, 640, CV_16UC1, cv::Scalar(0)));
+  EXPECT_EQ(registration.edges(), 0u);
+  EXPECT_THROW(registration.Contrast(), CheckError);
+}
+
+}  // namespace
+}  // namespace hullslam
