@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -814,6 +815,7 @@ class RelocalisingTracker : public testing::Test {
   void LoseTrack() {
     auto blank = std::make_shared<Frame>();
     blank->id = FrameId(1004);
+    blank->timestamp = 1004 / world_.sensor().frames_per_second;
     RebuildGrid(world_.sensor(), *blank);
     EXPECT_EQ(Process(blank).state, TrackingState::kLost);
   }
@@ -1067,6 +1069,63 @@ TEST_F(LostMonocularTracker, TheFirstFramesGetPosesAlthoughTheCameraThenStandsSt
 
 TEST_F(LostMonocularTracker, WithoutWordsAGrownMapIsNotGivenUp) {
   EXPECT_EQ(BeginAndLose(12, 60), 0u);
+}
+
+// A camera with depth that knows one world and is then in another one.
+class LostDepthTracker : public TrackerTest {
+ protected:
+  // Is lost from frame `first` on until it begins an island; returns how long that took, s, or
+  // nothing if it did not within 40 frames.
+  std::optional<double> LoseUntilIsland(uint32_t first) {
+    for (uint32_t i = first; i < first + 40; ++i) {
+      const Tracker::Result result = Process(other_.Observe(i).frame);
+      if (result.message) {
+        island_ = std::get<InitialMap>(*result.message);
+        EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked);
+        return (i - first) / world_.sensor().frames_per_second;
+      }
+      EXPECT_EQ(result.report.tracked.state, TrackingState::kLost);
+      EXPECT_FALSE(result.report.failure) << "only a monocular camera waits for motion";
+    }
+    return std::nullopt;
+  }
+
+  const SyntheticWorld other_{{.points = 300, .seed = 77}};
+  InitialMap island_;
+};
+
+TEST_F(LostDepthTracker, BeginsAnIslandAfterASecondAndFollowsIt) {
+  Begin();
+  TrackFrames(1, 3);
+  const std::optional<double> waited = LoseUntilIsland(4);
+  ASSERT_TRUE(waited);
+  EXPECT_NEAR(*waited, 1.0, 0.04);
+  ASSERT_EQ(island_.views.size(), 1u);
+  std::vector<LandmarkId> created;
+  InsertInitialMap(made_.map, island_, world_.sensor(), created);
+  map_ = Publish(made_.map);
+  const uint32_t next = island_.views.front().frame->id.value + 1;
+  const Tracker::Result result = Process(other_.Observe(next).frame);
+  ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked);
+  EXPECT_EQ(IslandOf(*map_, result.report.tracked.pose->reference), IslandId(1));
+}
+
+TEST_F(LostDepthTracker, TheLostFramesGetPosesInTheIslandAtTheEnd) {
+  Begin();
+  TrackFrames(1, 3);
+  ASSERT_TRUE(LoseUntilIsland(4));
+  std::vector<LandmarkId> created;
+  InsertInitialMap(made_.map, island_, world_.sensor(), created);
+  ASSERT_TRUE(KeepOnlyIsland(made_.map, IslandId(1)));
+  const std::vector<TrackedFrame> found = tracker_.LocaliseEarlyFrames(made_.map);
+  ASSERT_GE(found.size(), 25u);
+  EXPECT_GE(found.front().frame, FrameId(4));
+}
+
+TEST_F(LostDepthTracker, WithLocalizationOnlyNoIslandIsBegun) {
+  tracker_.LocaliseOnly();
+  map_ = Publish(made_.map);
+  EXPECT_FALSE(LoseUntilIsland(4));
 }
 
 TEST_F(LostMonocularTracker, WithLocalizationOnlyNoIslandIsBegun) {
