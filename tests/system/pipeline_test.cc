@@ -298,6 +298,15 @@ TEST_P(LoopPipelineTest, IfIslandsAreNotJoinedTheLargestStays) {
   ASSERT_FALSE(trajectory.empty());
   EXPECT_GE(trajectory.front().timestamp, 60 / path_.sensor().frames_per_second);
   EXPECT_LT(RingPath::AlignedError(trajectory), 0.03);
+  // The smaller one is a map of its own.
+  ASSERT_EQ(pipeline->left_islands().size(), 1u);
+  const Map& left = *pipeline->left_islands().front();
+  EXPECT_EQ(FindViolations(left), std::vector<std::string>());
+  EXPECT_EQ(Islands(left), std::vector<IslandId>{IslandId(0)});
+  const Trajectory first = ComposeTrajectory(left, frames);
+  ASSERT_GE(first.size(), 5u);
+  EXPECT_LT(first.back().timestamp, 22 / path_.sensor().frames_per_second);
+  EXPECT_LT(RingPath::AlignedError(first), 0.03);
 }
 
 INSTANTIATE_TEST_SUITE_P(Loops, LoopPipelineTest,
