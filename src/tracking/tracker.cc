@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "map/islands.h"
-#include "tracking/confirmed_pose.h"
 #include "tracking/shutter_correction.h"
 
 namespace hullslam {
@@ -85,6 +84,20 @@ Tracker::Result MakeResult(std::shared_ptr<const Frame> frame, TrackingState sta
   return result;
 }
 
+// Why this frame was not found, although there is a map. `last` is the frame before.
+TrackingFailure WhyLost(const Frame& frame, const TrackingContext& context, const LastFrame& last,
+                        const PoseSearch& search) {
+  if (frame.features.size() < static_cast<size_t>(context.min_relocalisation_inliers())) {
+    return TrackingFailure::kTooFewFeatures;
+  }
+  if (last.motion && !PredictMotion(last, frame.timestamp)) {
+    return TrackingFailure::kImagesMissing;
+  }
+  return search.most_unconfirmed >= context.options.min_inliers / 2
+             ? TrackingFailure::kTooFewLandmarks
+             : TrackingFailure::kNotRecognised;
+}
+
 }  // namespace
 
 Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects,
@@ -158,17 +171,16 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   }
   const std::shared_ptr<const Frame> as_read = frame;
   frame = PredictGlobalShutter(as_read, map, sensor_, last_);
-  std::optional<ConfirmedPose> found =
-      FindConfirmedPose(*frame, map, Context(), last_, kPoseSources);
-  if (!found) {
-    return Lose(as_read, map);
+  PoseSearch search = FindConfirmedPose(*frame, map, Context(), last_, kPoseSources);
+  if (!search.found) {
+    return Lose(as_read, map, WhyLost(*frame, Context(), last_, search));
   }
   if (island_rules_.needs_motion && !is_localizing_only_ && IsYoung(map)) {
     early_.Keep(as_read, true);
   }
   lost_since_.reset();
   initialiser_.Forget();
-  LocalTracking& tracking = found->tracking;
+  LocalTracking& tracking = search.found->tracking;
   frame = CorrectShutter(as_read, map, Context(), last_, tracking);
   if (!is_localizing_only_) {
     CountSightings(map, tracking);
@@ -221,7 +233,8 @@ bool Tracker::IsYoung(const Map& map) const {
 }
 
 // A camera that stays lost begins a new island, which may be joined to the others later.
-Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map) {
+Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map,
+                              TrackingFailure reason) {
   last_.motion.reset();
   lost_since_ = lost_since_.value_or(frame->timestamp);
   if (!is_localizing_only_) {
@@ -233,7 +246,9 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map
       return BeginIsland(std::move(frame), std::move(*initial.map));
     }
   }
-  return MakeResult(std::move(frame), TrackingState::kLost);
+  Result result = MakeResult(std::move(frame), TrackingState::kLost);
+  result.report.loss = reason;
+  return result;
 }
 
 // In an island that is not young, the camera may soon be found again, and only place recognition,

@@ -11,6 +11,7 @@
 #include "hullslam/objects/object_options.h"
 #include "hullslam/tracking/tracking_options.h"
 #include "hullslam/util/stage_timer.h"
+#include "tracking/confirmed_pose.h"
 #include "tracking/early_frames.h"
 #include "tracking/keyframe_policy.h"
 #include "tracking/last_frame.h"
@@ -67,7 +68,7 @@ class Tracker {
   MonocularInitialiser::Result FindInitialMap(const std::shared_ptr<const Frame>& frame);
   Result BeginIsland(std::shared_ptr<const Frame> frame, InitialMap initial);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
-  Result Lose(std::shared_ptr<const Frame> frame, const Map& map);
+  Result Lose(std::shared_ptr<const Frame> frame, const Map& map, TrackingFailure reason);
   bool IsYoung(const Map& map) const;
   bool MayBeginIsland(const Frame& frame, const Map& map) const;
   bool NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,

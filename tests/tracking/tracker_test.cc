@@ -692,6 +692,29 @@ TEST_F(MotionModelTest, TheWindowGrowsWithTheMotion) {
   EXPECT_EQ(FoundShare(640, 0.28, 0.0), 0.0) << "no motion was seen before";
 }
 
+TEST_F(TrackerTest, SaysWhyAFrameIsLost) {
+  const SyntheticWorld other({.points = 300, .seed = 77});
+  const size_t enough = static_cast<size_t>(options_.min_inliers);
+  auto late = std::make_shared<Frame>(*other.Observe(5).frame);
+  late->timestamp += 1.0;
+  const std::vector<std::pair<std::shared_ptr<const Frame>, TrackingFailure>> frames = {
+      {Select(*world_.Observe(5).frame, {}), TrackingFailure::kTooFewFeatures},
+      {FrameWithKnown(5, enough - 1), TrackingFailure::kTooFewLandmarks},
+      {other.Observe(5).frame, TrackingFailure::kNotRecognised},
+      {late, TrackingFailure::kImagesMissing}};
+  for (const auto& [frame, reason] : frames) {
+    Tracker tracker(world_.sensor(), options_);
+    tracker.Process(world_.Observe(0).frame, nullptr, kIdle);
+    const auto map = Publish(made_.map);
+    for (uint32_t i = 1; i < 5; ++i) {
+      EXPECT_FALSE(tracker.Process(world_.Observe(i).frame, map, kIdle).report.loss);
+    }
+    const Tracker::Result lost = tracker.Process(frame, map, kIdle);
+    EXPECT_EQ(lost.report.tracked.state, TrackingState::kLost) << ToString(reason);
+    EXPECT_EQ(lost.report.loss, reason) << ToString(reason);
+  }
+}
+
 // The synthetic world with six balls, which all keyframes and frames detect.
 class ObjectTrackerTest : public TrackerTest {
  protected:
