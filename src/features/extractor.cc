@@ -14,8 +14,6 @@
 namespace hullslam {
 namespace {
 
-constexpr int kSmallestSide = 64;  // px
-
 // Distributes the features over the levels. Their number falls by the scale factor from level to
 // level, and the top level gets the rest.
 std::vector<size_t> LevelQuotas(const FeatureOptions& options) {
@@ -144,7 +142,8 @@ ExtractedFeatures FeatureExtractor::Extract(const cv::Mat& grey) {
 
 ExtractedFeatures FeatureExtractor::Extract(const cv::Mat& grey, TaskRunner& runner) {
   Check(grey.type() == CV_8UC1, "the image is not CV_8UC1");
-  Check(std::min(grey.cols, grey.rows) >= kSmallestSide, "the image is smaller than 64 x 64 px");
+  Check(std::min(grey.cols, grey.rows) >= FeatureOptions::kSmallestSide,
+        "the image is smaller than 64 x 64 px");
   impl_->pyramid.Build(grey);
   // The largest level comes first, so that all threads end at about the same time.
   runner.Run(impl_->extractors.size(),

@@ -177,8 +177,26 @@ void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry)
   RecheckObjects(window.objects);
 }
 
-void Mapper::KeepMainIsland() {
-  if (KeepOnlyIsland(map_, MainIsland(map_))) {
+void Mapper::SplitIslands(const Cancellation* cancellation) {
+  const IslandId main = MainIsland(map_);
+  for (const IslandId island : Islands(map_)) {
+    if (island == main) {
+      continue;
+    }
+    Map left = map_.Snapshot();
+    KeepOnlyIsland(left, island);
+    if (options_.final_bundle_adjustment && !IsRequested(cancellation) &&
+        left.keyframes().size() >= 2) {
+      const ScopedTimer timer(times_, "global_bundle_adjustment");
+      const BundleResult result =
+          AdjustIsland(left, island, sensor_, object_options_, cancellation).result;
+      if (result.is_usable) {
+        ApplyBundle(left, result, sensor_.levels);
+      }
+    }
+    left_islands_.push_back(std::make_shared<const Map>(std::move(left)));
+  }
+  if (KeepOnlyIsland(map_, main)) {
     PublishSnapshot();
   }
 }

@@ -44,8 +44,9 @@ class Mapper {
   // The next five functions are for the end of a run (system/finish_run.h).
   // False for a map of earlier sessions to which no keyframe was added.
   bool HasChangedMap() const { return !session_; }
-  // Removes all islands but the main one (map/islands.h).
-  void KeepMainIsland();
+  // Removes all islands but the main one (map/islands.h), and keeps each of them as a map of its
+  // own. These are adjusted as AdjustMap adjusts the main island.
+  void SplitIslands(const Cancellation* cancellation);
   // Adjusts the main island, if mapping.final_bundle_adjustment is set, and publishes the map. Does
   // nothing if `cancellation` (may be null) was requested before. If it is requested meanwhile, the
   // adjustment ends early with its current result. `on_progress` is called after each iteration.
@@ -64,6 +65,9 @@ class Mapper {
   // The changes of objects between the map of earlier sessions and this session, which
   // FinishObjects finds. Empty if there was no such map or no keyframe was added.
   const std::vector<ChangedObject>& object_changes() const { return object_changes_; }
+  // The islands that were not joined to the main one, in the order in which they were begun. Each
+  // map has one island only. SplitIslands fills it in.
+  const std::vector<std::shared_ptr<const Map>>& left_islands() const { return left_islands_; }
 
   const StageTimes& times() const { return times_; }
   const std::map<ObjectRejection, size_t>& object_rejections() const {
@@ -102,6 +106,7 @@ class Mapper {
   size_t sized_views_ = 0;  // views of objects of known size when the scale was last measured
   std::optional<Session> session_;  // until its first keyframe
   std::vector<ChangedObject> object_changes_;
+  std::vector<std::shared_ptr<const Map>> left_islands_;
 };
 
 }  // namespace hullslam

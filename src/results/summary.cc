@@ -19,7 +19,20 @@ Json OrNull(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
+Json ToJson(const LostStretch& stretch) {
+  return {{"first_frame", stretch.first_frame},
+          {"last_frame", stretch.last_frame},
+          {"first_timestamp", stretch.first_timestamp},
+          {"last_timestamp", stretch.last_timestamp},
+          {"frames", stretch.frames},
+          {"reason", ToString(stretch.reason)}};
+}
+
 Json ToJson(const TrajectorySummary& summary) {
+  Json losses = Json::array();
+  for (const LostStretch& stretch : summary.losses) {
+    losses.push_back(ToJson(stretch));
+  }
   return {{"ate_rmse_m", OrNull(summary.ate_rmse_m)},
           {"alignment", summary.alignment},
           {"scale", OrNull(summary.scale)},
@@ -33,7 +46,8 @@ Json ToJson(const TrajectorySummary& summary) {
           {"rpe_rmse_m", OrNull(summary.rpe_rmse_m)},
           {"rpe_rmse_deg", OrNull(summary.rpe_rmse_deg)},
           {"skipped", summary.skipped},
-          {"unpaired", summary.unpaired}};
+          {"unpaired", summary.unpaired},
+          {"losses", losses}};
 }
 
 Json ToJson(const ObjectsSummary& summary) {
@@ -56,10 +70,26 @@ Json ToJson(const ObjectsSummary& summary) {
 }
 
 Json ToJson(const InitialisationSummary& summary) {
-  return {{"seconds", OrNull(summary.seconds)},
-          {"failures", Json(summary.failures)},
-          {"islands", summary.islands},
-          {"joined_islands", summary.joined_islands}};
+  return {{"seconds", OrNull(summary.seconds)}, {"failures", Json(summary.failures)}};
+}
+
+Json ToJson(const IslandSummary& island) {
+  return {{"number", island.number},
+          {"main", island.is_main},
+          {"keyframes", island.keyframes},
+          {"landmarks", island.landmarks},
+          {"frames", island.frames},
+          {"first_timestamp", OrNull(island.first_timestamp)},
+          {"last_timestamp", OrNull(island.last_timestamp)},
+          {"ate_rmse_m", OrNull(island.ate_rmse_m)}};
+}
+
+Json ToJson(const IslandsSummary& summary) {
+  Json at_end = Json::array();
+  for (const IslandSummary& island : summary.at_end) {
+    at_end.push_back(ToJson(island));
+  }
+  return {{"begun", summary.begun}, {"joined", summary.joined}, {"at_end", at_end}};
 }
 
 Json ToJson(const TimeStatistics& times) {
@@ -107,6 +137,9 @@ std::string FormatSummary(const RunSummary& summary) {
                {"files", summary.files}};
   if (summary.initialisation) {
     json["initialisation"] = ToJson(*summary.initialisation);
+  }
+  if (summary.islands) {
+    json["islands"] = ToJson(*summary.islands);
   }
   constexpr int kIndent = 2;
   // The name of a folder may contain any bytes; those that are not UTF-8 are replaced.

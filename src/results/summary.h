@@ -11,6 +11,7 @@
 
 #include "hullslam/geometry/alignment.h"
 #include "hullslam/util/stage_timer.h"
+#include "report/lost_frames.h"
 
 namespace hullslam {
 
@@ -30,8 +31,9 @@ struct TrajectorySummary {
   std::optional<double> coverage = std::nullopt;
   std::optional<double> rpe_rmse_m = std::nullopt;  // over one second
   std::optional<double> rpe_rmse_deg = std::nullopt;
-  size_t skipped = 0;   // frames with a broken image
-  size_t unpaired = 0;  // colour images without depth
+  size_t skipped = 0;                    // frames with a broken image
+  size_t unpaired = 0;                   // colour images without depth
+  std::vector<LostStretch> losses = {};  // where frames have no pose, in order of time
 };
 
 // Mapped objects: means over the observations of each object, and then over the objects.
@@ -57,8 +59,24 @@ struct ObjectsSummary {
 struct InitialisationSummary {
   std::optional<double> seconds = std::nullopt;  // from the first image to the map; absent: no map
   std::map<std::string, size_t> failures = {};   // frames that made no map, by reason
-  size_t islands = 0;                            // islands that were begun, including the first one
-  size_t joined_islands = 0;                     // islands that were joined to an older one
+};
+
+// An island of the map (Map::BeginIsland) at the end of a run.
+struct IslandSummary {
+  size_t number = 0;     // counted from 1, in the order in which the islands were begun
+  bool is_main = false;  // it is the map of the run; the others could not be joined to it
+  size_t keyframes = 0;
+  size_t landmarks = 0;
+  size_t frames = 0;                                     // with a pose in this island
+  std::optional<double> first_timestamp = std::nullopt;  // s, of these frames
+  std::optional<double> last_timestamp = std::nullopt;
+  std::optional<double> ate_rmse_m = std::nullopt;  // after an alignment of its own
+};
+
+struct IslandsSummary {
+  size_t begun = 0;                        // parts of the map, the first one included
+  size_t joined = 0;                       // those that were joined to an older one
+  std::vector<IslandSummary> at_end = {};  // the main one first
 };
 
 struct TimingSummary {
@@ -97,6 +115,7 @@ struct ProvenanceSummary {
 struct RunSummary {
   TrajectorySummary trajectory;
   std::optional<InitialisationSummary> initialisation = std::nullopt;  // only of monocular runs
+  std::optional<IslandsSummary> islands = std::nullopt;                // only of SLAM
   std::optional<ObjectsSummary> objects = std::nullopt;  // absent for a run without masks
   TimingSummary timing;
   double peak_memory_mb = 0.0;

@@ -99,6 +99,24 @@ std::string SaveMap(const RunArguments& arguments, const SystemOptions& options,
   return {};
 }
 
+std::string IslandSuffix(IslandId island) { return fmt::format("_island{}", island.value + 1); }
+
+std::string SaveIslands(const RunArguments& arguments, const SystemOptions& options,
+                        std::span<const LeftIsland> islands) {
+  for (const LeftIsland& island : islands) {
+    RunArguments of_island = arguments;
+    if (!arguments.save_map.empty()) {
+      of_island.save_map.replace_filename(arguments.save_map.stem().string() +
+                                          IslandSuffix(island.id) +
+                                          arguments.save_map.extension().string());
+    }
+    if (std::string error = SaveMap(of_island, options, *island.map); !error.empty()) {
+      return error;
+    }
+  }
+  return {};
+}
+
 std::vector<TrajectoryPart> RunParts(const RunArguments& arguments, size_t earlier_sessions,
                                      const Trajectory& trajectory) {
   const std::string name = SessionName(arguments.sequence);

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/system/options.h"
+#include "hullslam/system/system.h"
 #include "hullslam/system/system_start.h"
 #include "run/run_arguments.h"
 
@@ -26,6 +28,14 @@ SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& option
 // a warning says so. Returns why the map could not be written, for example because the disk is
 // full; empty if there was no error.
 std::string SaveMap(const RunArguments& arguments, const SystemOptions& options, const Map& map);
+
+// "_island2" for the second island that was begun: part of the names of its files.
+std::string IslandSuffix(IslandId island);
+
+// Writes the maps of these islands beside the file of --save-map if it is given: desk_island2.map
+// beside desk.map. They replace earlier ones. Returns the first error as SaveMap does.
+std::string SaveIslands(const RunArguments& arguments, const SystemOptions& options,
+                        std::span<const LeftIsland> islands);
 
 // RunParts() gives the trajectory of the run, with the title of its session: the map had
 // `earlier_sessions` sessions before. KeyframeParts() gives the poses of the keyframes, with one

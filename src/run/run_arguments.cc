@@ -60,6 +60,10 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   app.add_flag("--localization", arguments.localization,
                "only find the poses in the map of --load-map; nothing in it is changed")
       ->needs(load_map);
+  app.add_flag("--keep-islands", arguments.keep_islands,
+               "also write the parts of the map that could not be joined to the rest after the "
+               "camera was lost, each with its own trajectory (trajectory_island2.txt and so on) "
+               "and, with --save-map, its own map file");
   app.add_flag("--threaded", arguments.threaded,
                "run mapping in its own thread: faster, but results differ a little between runs");
   app.add_flag("--realtime", arguments.realtime,

@@ -33,6 +33,7 @@ struct RunArguments {
   std::filesystem::path save_map;  // empty: not saved
   std::filesystem::path load_map;  // empty: a new map
   bool localization = false;
+  bool keep_islands = false;
   bool threaded = false;
   bool realtime = false;
   bool strict = false;

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -32,6 +34,54 @@ std::string DescribeFailures(const InitialisationSummary& initialisation) {
   return text + (lacks_parallax ? "; the camera must move sideways" : "");
 }
 
+// Of a camera that was lost and went on elsewhere; nothing if the map is in one piece.
+void PrintIslands(const IslandsSummary& islands, bool are_kept) {
+  if (islands.begun < 2) {
+    return;
+  }
+  const size_t left = islands.begun - islands.joined - 1;
+  Print("the map was begun {} times; {} of its islands were joined, {} {}\n", islands.begun,
+        islands.joined, left, are_kept ? "written on their own" : "removed");
+  for (const IslandSummary& island : islands.at_end) {
+    if (!island.is_main && island.first_timestamp && island.last_timestamp) {
+      Print("  island {}: {} frames from {:.3f} to {:.3f} s, {} keyframes{}\n", island.number,
+            island.frames, *island.first_timestamp, *island.last_timestamp, island.keyframes,
+            island.ate_rmse_m ? fmt::format(", ATE RMSE {:.4f} m", *island.ate_rmse_m) : "");
+    }
+  }
+}
+
+// Where frames were lost, why, and what the user can try. Only the longest stretches are shown.
+void PrintLosses(std::span<const LostStretch> losses) {
+  constexpr size_t kMostShown = 5;
+  std::vector<const LostStretch*> shown;
+  for (const LostStretch& stretch : losses) {
+    shown.push_back(&stretch);
+  }
+  std::stable_sort(shown.begin(), shown.end(), [](const LostStretch* a, const LostStretch* b) {
+    return a->frames > b->frames;
+  });
+  shown.resize(std::min(shown.size(), kMostShown));
+  std::sort(shown.begin(), shown.end());
+  std::set<LossReason> reasons;
+  for (const LostStretch* stretch : shown) {
+    Print("lost: frames {} to {} ({}; {:.3f} to {:.3f} s): {}\n", stretch->first_frame,
+          stretch->last_frame, stretch->frames, stretch->first_timestamp, stretch->last_timestamp,
+          ToString(stretch->reason));
+    reasons.insert(stretch->reason);
+  }
+  if (losses.size() > shown.size()) {
+    Print("and {} shorter stretches (trajectory.losses in summary.json)\n",
+          losses.size() - shown.size());
+  }
+  for (const LossReason reason : reasons) {
+    Print("  {}: {}\n", ToString(reason), AdviceFor(reason));
+  }
+  if (!shown.empty()) {
+    Print("docs/my-run-fails.md has more about each reason\n");
+  }
+}
+
 }  // namespace
 
 void PrintReport(const RunArguments& arguments, const RunSummary& summary,
@@ -43,14 +93,11 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
     Print("; {} images without depth\n", trajectory.unpaired);
   } else if (summary.initialisation->seconds) {
     Print("; first map after {:.2f} s\n", *summary.initialisation->seconds);
-    if (summary.initialisation->islands > 1) {
-      Print("the map was begun {} times; {} of its islands were joined, {} removed\n",
-            summary.initialisation->islands, summary.initialisation->joined_islands,
-            summary.initialisation->islands - summary.initialisation->joined_islands - 1);
-    }
   } else {
     Print("; no map\n");
   }
+  PrintIslands(summary.islands.value_or(IslandsSummary()), arguments.keep_islands);
+  PrintLosses(trajectory.losses);
   if (trajectory.ate_rmse_m) {
     Print(
         "ATE RMSE {:.4f} m ({} alignment, {} pairs of poses, coverage {:.1f} % of the sequence)\n",

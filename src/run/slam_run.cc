@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,6 +21,8 @@
 #include "hullslam/settings/settings.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"
+#include "map/islands.h"
+#include "report/lost_frames.h"
 #include "results/output_folder.h"
 #include "results/ply_file.h"
 #include "results/summary.h"
@@ -48,6 +51,7 @@ struct RunResult {
   double seconds = 0.0;
   bool was_interrupted = false;
   InitialisationSummary initialisation;
+  std::vector<FrameNote> notes;  // one per frame of the system
 };
 
 PipelineKind ChoosePipeline(const RunArguments& arguments) {
@@ -68,7 +72,7 @@ const char* Name(TrackingState state) {
   }
 }
 
-// The numbers of islands of a monocular run; empty if the map has only one island.
+// The numbers of islands; empty if the map has only one.
 std::string DescribeIslands(const Map& map) {
   return map.islands_begun() > 1
              ? fmt::format("  {} islands, {} joined", map.islands_begun(), map.islands_joined())
@@ -113,6 +117,19 @@ void FinishMap(bool is_quiet, System& system) {
       });
 }
 
+// Notes what tracking tells about a frame that comes so long after the first one, s.
+void NoteFrame(const FrameReport& report, const FrameSelection& selection, double time,
+               RunResult& result) {
+  if (report.failure) {
+    ++result.initialisation.failures[std::string(ToString(*report.failure))];
+  } else if (report.tracked.state == TrackingState::kTracked && !result.initialisation.seconds) {
+    result.initialisation.seconds = time;
+  }
+  result.notes.push_back({.number = selection.first + (result.given - 1) * selection.stride,
+                          .state = report.tracked.state,
+                          .loss = report.loss});
+}
+
 RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
                    const PinholeCamera& camera, const SequenceMasks& masks, System& system) {
   RunResult result;
@@ -120,11 +137,8 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
   std::optional<InitialisationFailure> failure;  // failure of the last frame
   system.SetFrameCallback([&](const FrameReport& report) {
     failure = report.failure;
-    if (failure) {
-      ++result.initialisation.failures[std::string(ToString(*failure))];
-    } else if (report.tracked.state == TrackingState::kTracked && !result.initialisation.seconds) {
-      result.initialisation.seconds = report.tracked.timestamp - sequence.frames.front().timestamp;
-    }
+    NoteFrame(report, arguments.selection,
+              report.tracked.timestamp - sequence.frames.front().timestamp, result);
   });
   const Clock::time_point start = Clock::now();
   // In the sequential pipeline the thread that tracks and maps has more work than the threads that
@@ -196,6 +210,47 @@ size_t CountLost(const System& system) {
       [](const TrackedFrame& frame) { return frame.state != TrackingState::kTracked; }));
 }
 
+// The error after an alignment of its own; unknown without ground truth.
+std::optional<double> ErrorOf(const std::optional<Trajectory>& groundtruth,
+                              const Trajectory& trajectory, SensorKind sensor) {
+  if (!groundtruth || trajectory.empty()) {
+    return std::nullopt;
+  }
+  AteOptions options;
+  options.alignment = AlignmentOf(sensor);
+  const AteReport ate = EvaluateAte(*groundtruth, trajectory, options);
+  return ate.ok() ? std::optional(ate.errors.rmse) : std::nullopt;
+}
+
+IslandSummary SummarizeIsland(IslandId id, const Map& map, const Trajectory& trajectory) {
+  IslandSummary summary{.number = id.value + size_t{1},
+                        .keyframes = map.keyframes().size(),
+                        .landmarks = map.landmarks().size(),
+                        .frames = trajectory.size()};
+  if (!trajectory.empty()) {
+    summary.first_timestamp = trajectory.front().timestamp;
+    summary.last_timestamp = trajectory.back().timestamp;
+  }
+  return summary;
+}
+
+IslandsSummary SummarizeIslands(const System& system, const Trajectory& trajectory,
+                                const std::optional<Trajectory>& groundtruth, SensorKind sensor) {
+  const std::shared_ptr<const Map> map = system.map();
+  if (map == nullptr || map->keyframes().empty()) {
+    return {};
+  }
+  IslandsSummary summary{.begun = map->islands_begun(), .joined = map->islands_joined()};
+  summary.at_end.push_back(SummarizeIsland(MainIsland(*map), *map, trajectory));
+  summary.at_end.back().is_main = true;
+  summary.at_end.back().ate_rmse_m = ErrorOf(groundtruth, trajectory, sensor);
+  for (const LeftIsland& island : system.left_islands()) {
+    summary.at_end.push_back(SummarizeIsland(island.id, *island.map, island.trajectory));
+    summary.at_end.back().ate_rmse_m = ErrorOf(groundtruth, island.trajectory, sensor);
+  }
+  return summary;
+}
+
 // Each loop is stored in both keyframes, so it is counted twice.
 size_t CountLoops(const Map& map) {
   size_t ends = 0;
@@ -216,6 +271,7 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
   summary.trajectory.tracked = system.frames().size() - summary.trajectory.lost;
   summary.trajectory.coverage =
       static_cast<double>(summary.trajectory.tracked) / static_cast<double>(sequence.frames.size());
+  summary.trajectory.losses = FindLostStretches(system.frames(), result.notes);
 
   summary.timing.stages_ms = SummarizeStages(system.times());
   summary.timing.track_ms = summary.timing.stages_ms["track"];
@@ -236,10 +292,6 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
   }
   if (options.sensor == SensorKind::kMonocular && arguments.load_map.empty()) {
     summary.initialisation = result.initialisation;
-    if (const auto map = system.map()) {
-      summary.initialisation->islands = map->islands_begun();
-      summary.initialisation->joined_islands = map->islands_joined();
-    }
   }
   summary.provenance.program = arguments.program;
   summary.provenance.version = HULLSLAM_VERSION;
@@ -260,14 +312,33 @@ std::string MapPly(const std::vector<Eigen::Vector3d>& landmarks, const Trajecto
   return FormatMapPly(landmarks, centers);
 }
 
+// The islands that have files of their own.
+std::span<const LeftIsland> KeptIslands(const RunArguments& arguments, const System& system) {
+  return arguments.keep_islands ? std::span(system.left_islands()) : std::span<const LeftIsland>();
+}
+
+// Each island that was not joined has files of its own, named by its number.
+void WriteIslands(OutputFolder& output, std::span<const LeftIsland> islands, const Sensor& sensor) {
+  for (const LeftIsland& island : islands) {
+    const std::string name = IslandSuffix(island.id);
+    const Trajectory keyframes = KeyframeTrajectory(*island.map);
+    output.Write({"trajectory" + name + ".txt", FormatTrajectory(island.trajectory)});
+    output.Write({"keyframes" + name + ".txt", FormatTrajectory(keyframes)});
+    output.Write(
+        {"map" + name + ".ply", MapPly(LocateLandmarks(*island.map, sensor).positions, keyframes)});
+  }
+}
+
 // The files of objects are only written if the run has masks.
 void WriteOutputs(OutputFolder& output, std::string map_ply,
                   const std::vector<TrajectoryPart>& poses,
                   const std::vector<TrajectoryPart>& keyframes, RunSummary summary,
-                  const ObjectReport& objects, const ImageSequence& sequence) {
+                  const ObjectReport& objects, const ImageSequence& sequence,
+                  std::span<const LeftIsland> islands, const Sensor& sensor) {
   output.Write({"trajectory.txt", FormatTrajectory(poses)});
   output.Write({"keyframes.txt", FormatTrajectory(keyframes)});
   output.Write({"map.ply", std::move(map_ply)});
+  WriteIslands(output, islands, sensor);
   if (sequence.converted_groundtruth) {
     output.Write({"groundtruth.txt", FormatTrajectory(*sequence.converted_groundtruth)});
   }
@@ -297,14 +368,17 @@ void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
   WarnOfLastFrame(arguments.selection, sequence);
 }
 
-void PrintInput(const RunArguments& arguments, std::span<const std::string> notes,
-                const SequenceMasks& masks) {
+void PrintInput(const RunArguments& arguments, const SystemOptions& options,
+                std::span<const std::string> notes, const SequenceMasks& masks) {
   if (arguments.quiet) {
     return;
   }
   for (const std::string& note : notes) {
     Print("{}\n", note);
   }
+  Print("up to {} features on {} levels in each image of {}x{} px\n",
+        options.features.feature_count, options.features.level_count, options.camera.width,
+        options.camera.height);
   if (masks.format()) {
     Print("{}\n", masks.Describe());
   }
@@ -347,7 +421,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
                       {arguments.program, arguments.overwrite});
   WarnOfInput(arguments, options, sequence, first, masks);
-  PrintInput(arguments, notes, masks);
+  PrintInput(arguments, options, notes, masks);
   System system(options, ChoosePipeline(arguments), std::move(start));
   const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system);
   if (result.was_interrupted && result.given == 0) {
@@ -361,6 +435,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   if (groundtruth && !trajectory.empty()) {
     Evaluate(*groundtruth, trajectory, options.sensor, summary.trajectory);
   }
+  summary.islands = SummarizeIslands(system, trajectory, groundtruth, options.sensor);
   const std::shared_ptr<const Map> map =
       system.map() != nullptr ? system.map() : std::make_shared<const Map>();
   ObjectReport objects = CollectObjects(*map, options.camera, arguments.sequence);
@@ -374,8 +449,10 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   summary.map.landmarks_at_infinity = landmarks.at_infinity;
   WriteOutputs(output, MapPly(landmarks.positions, KeyframeTrajectory(*map)),
                RunParts(arguments, earlier_sessions, trajectory), KeyframeParts(arguments, *map),
-               summary, objects, sequence);
+               summary, objects, sequence, KeptIslands(arguments, system), MakeSensor(options));
   const std::string unsaved = SaveMap(arguments, options, *map);
+  const std::string unsaved_island =
+      SaveIslands(arguments, options, KeptIslands(arguments, system));
   if (!arguments.quiet) {
     PrintReport(arguments, summary, objects);
   }
@@ -383,7 +460,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
       result.was_interrupted
           ? DescribeInterruption(result, sequence)
           : DescribeLoss(arguments, options.run, sequence.frames.size(), summary, system.frames());
-  return FailIfAny({failure, unsaved});
+  return FailIfAny({failure, unsaved, unsaved_island});
 }
 
 }  // namespace hullslam

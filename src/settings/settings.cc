@@ -84,9 +84,42 @@ void ApplyOverrides(std::span<const std::string> overrides, OptionTable& table,
   }
 }
 
-void HandOver(const OptionTable& table, std::vector<std::string>* warnings) {
-  if (warnings != nullptr) {
-    *warnings = table.warnings();
+// Fits the features to the size of the images where `given` does not set them. Returns a warning,
+// or nothing. A pyramid with too many levels gets fewer: settings files are copied from camera to
+// camera with this number, which says nothing about the camera.
+std::string FollowImage(const std::set<std::string>& given, SystemOptions& options) {
+  const int width = options.camera.width;
+  const int height = options.camera.height;
+  FeatureOptions& features = options.features;
+  std::string warning;
+  if (!given.contains("ORBextractor.nLevels")) {
+    features.level_count = features.LevelsFor(width, height);
+  } else if (const int most = features.MostLevels(width, height);
+             most > 0 && features.level_count > most) {
+    warning = fmt::format(
+        "ORBextractor.nLevels is {}, but images of {}x{} px are too small for more than {} levels; "
+        "{} are used",
+        features.level_count, width, height, most, most);
+    features.level_count = most;
+  }
+  if (!given.contains("ORBextractor.nFeatures")) {
+    features.feature_count = features.FeaturesFor(width, height);
+  }
+  return warning;
+}
+
+// What must come after all settings were set: follows the size of the image, validates the options
+// and hands the warnings over.
+void Complete(const std::set<std::string>& given, const OptionTable& table, SystemOptions& options,
+              std::vector<std::string>* warnings) {
+  const std::string warning = FollowImage(given, options);
+  options.Validate();
+  if (warnings == nullptr) {
+    return;
+  }
+  *warnings = table.warnings();
+  if (!warning.empty()) {
+    warnings->push_back(warning);
   }
 }
 
@@ -130,8 +163,7 @@ SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> ov
                        " is not given, expected the intrinsics of the camera in px");
     }
   }
-  options.Validate();
-  HandOver(table, warnings);
+  Complete(given, table, options, warnings);
   return options;
 }
 
@@ -154,8 +186,7 @@ SystemOptions MakeSettings(const CameraCalibration& calibration, const std::stri
   }
   std::set<std::string> changed;
   ApplyOverrides(overrides, table, changed);
-  options.Validate();
-  HandOver(table, warnings);
+  Complete(changed, table, options, warnings);
   return options;
 }
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/messages.h"
 #include "hullslam/system/options.h"
+#include "hullslam/system/system.h"
 #include "hullslam/util/cancellation.h"
 #include "mapping/mapper.h"
 #include "system/pipeline.h"
@@ -23,10 +25,11 @@ void FinishMap(Mapper& mapper, const Cancellation* cancellation = nullptr,
 
 // Finishes the map, then the poses of the frames. `frames` are all frames of the run in order;
 // `remembered` are those whose poses can be computed again. `on_map` and `on_poses` are told the
-// progress of the two parts.
-void FinishRun(Pipeline& pipeline, const Sensor& sensor, const SystemOptions& options,
-               std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames,
-               const Cancellation* cancellation, const ProgressCallback& on_map,
-               const ProgressCallback& on_poses);
+// progress of the two parts. Returns the islands that were not joined to the map.
+std::vector<LeftIsland> FinishRun(Pipeline& pipeline, const Sensor& sensor,
+                                  const SystemOptions& options,
+                                  std::span<const RememberedFrame> remembered,
+                                  std::span<TrackedFrame> frames, const Cancellation* cancellation,
+                                  const ProgressCallback& on_map, const ProgressCallback& on_poses);
 
 }  // namespace hullslam

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hullslam/system/options.h"
 
-#include <cmath>
+#include <fmt/format.h>
+
 #include <string>
 
 #include "hullslam/util/error.h"
@@ -47,12 +48,18 @@ void SystemOptions::Validate() const {
   if (const std::string fault = camera.FindFault(); !fault.empty()) {
     throw InputError("settings: " + fault);
   }
-  const double top_scale = std::pow(features.scale_factor, features.level_count - 1);
-  const double smallest_side = std::min(camera.width, camera.height) / top_scale;
-  if (smallest_side < 64.0) {
-    throw InputError("settings: ORBextractor.nLevels is '" + std::to_string(features.level_count) +
-                     "', its smallest image would be " + std::to_string(smallest_side) +
-                     " px, expected at least 64 px");
+  const int most_levels = features.MostLevels(camera.width, camera.height);
+  if (most_levels == 0) {
+    throw InputError(
+        fmt::format("settings: images of {}x{} px are too small, expected at least {} px",
+                    camera.width, camera.height, FeatureOptions::kSmallestSide));
+  }
+  if (features.level_count > most_levels) {
+    throw InputError(fmt::format(
+        "settings: ORBextractor.nLevels is '{}', expected at most {} for images of {}x{} px, "
+        "because the smallest level must have {} px",
+        features.level_count, most_levels, camera.width, camera.height,
+        FeatureOptions::kSmallestSide));
   }
   objects.Validate();
 }

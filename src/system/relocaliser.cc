@@ -38,7 +38,7 @@ std::optional<RelocalisedPose> Relocaliser::Find(const Frame& frame) const {
   const TrackingContext context{*sensor_, options_.tracking, options_.objects, *object_index_,
                                 options_.seed};
   const std::optional<ConfirmedPose> found =
-      FindConfirmedPose(frame, *map_, context, LastFrame(), kRelocalisationSources);
+      FindConfirmedPose(frame, *map_, context, LastFrame(), kRelocalisationSources).found;
   if (!found) {
     return std::nullopt;
   }

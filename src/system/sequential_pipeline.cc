@@ -76,6 +76,10 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
     return mapper_.object_changes();
   }
 
+  const std::vector<std::shared_ptr<const Map>>& left_islands() const override {
+    return mapper_.left_islands();
+  }
+
  private:
   // Processes a message and runs the stages that follow it, whose corrections are messages too.
   void Process(const MapMessage& message) {

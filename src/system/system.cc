@@ -178,7 +178,11 @@ std::unique_ptr<TaskRunner> System::MakeRunner() {
 
 void System::Finish(const Cancellation* cancellation, const ProgressCallback& on_map,
                     const ProgressCallback& on_poses) {
-  FinishRun(*pipeline_, sensor_, options_, remembered_, frames_, cancellation, on_map, on_poses);
+  std::vector<LeftIsland> left = FinishRun(*pipeline_, sensor_, options_, remembered_, frames_,
+                                           cancellation, on_map, on_poses);
+  if (left_islands_.empty()) {  // in a second call the frames of these islands are lost already
+    left_islands_ = std::move(left);
+  }
   remembered_.clear();
 }
 
@@ -189,6 +193,7 @@ void System::Reset() {
   mask_counts_ = {};
   frames_.clear();
   remembered_.clear();
+  left_islands_.clear();
   times_ = {};
 }
 

@@ -114,6 +114,10 @@ class ThreadedPipeline final : public Pipeline {
     return mapper_.object_changes();  // only Finish writes it
   }
 
+  const std::vector<std::shared_ptr<const Map>>& left_islands() const override {
+    return mapper_.left_islands();  // only Finish writes it
+  }
+
  private:
   bool IsMapping() const {
     const std::lock_guard lock(mutex_);

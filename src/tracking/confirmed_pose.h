@@ -20,11 +20,15 @@ struct ConfirmedPose {
   size_t source = 0;  // index into the sources that were asked
 };
 
+struct PoseSearch {
+  std::optional<ConfirmedPose> found;
+  // The most landmarks and objects (EffectiveInliers) of a pose that was not confirmed.
+  int most_unconfirmed = 0;
+};
+
 // Asks the sources one after the other for a first pose of the frame. The first one whose pose is
-// confirmed by the local map (tracking.min_inliers) is the result; null if there is none.
-std::optional<ConfirmedPose> FindConfirmedPose(const Frame& frame, const Map& map,
-                                               const TrackingContext& context,
-                                               const LastFrame& last,
-                                               std::span<PoseSource* const> sources);
+// confirmed by the local map (tracking.min_inliers) is the result.
+PoseSearch FindConfirmedPose(const Frame& frame, const Map& map, const TrackingContext& context,
+                             const LastFrame& last, std::span<PoseSource* const> sources);
 
 }  // namespace hullslam

@@ -56,7 +56,8 @@ std::optional<TrackedFrame> LocaliseFrame(const Map& map, const TrackingContext&
   nearest.reference = NearestInTime(map, *frame);
   nearest.frame = map.keyframes().At(nearest.reference).frame;
   nearest.cam_from_world = map.keyframes().At(nearest.reference).cam_from_world;
-  std::optional<ConfirmedPose> found = FindConfirmedPose(*frame, map, context, nearest, kSources);
+  std::optional<ConfirmedPose> found =
+      FindConfirmedPose(*frame, map, context, nearest, kSources).found;
   if (!found) {
     return std::nullopt;
   }

@@ -20,21 +20,20 @@ struct IslandRules {
   // frames before have no poses, and the poses of the first frames after it are uncertain. So the
   // poses of these frames are computed at the end of the run.
   bool needs_motion = false;
-  // Whether a camera that is lost begins a new island.
-  bool begins_when_lost = false;
+  // Whether a camera that is lost in a young island begins a new one at once.
+  bool begins_at_once = false;
 
   static IslandRules ForSensor(SensorKind kind) {
     const bool is_monocular = kind == SensorKind::kMonocular;
     // With depth, one frame makes a map. Without depth the first points are triangulated, which
-    // needs motion. A lost camera with depth waits until it is found again. A monocular one is lost
-    // more often, so it goes on in a new island, which place recognition can join to the others.
-    return {.needs_motion = is_monocular, .begins_when_lost = is_monocular};
+    // needs motion. The search for this motion is a wait already. With depth a camera that is lost
+    // must wait first, because otherwise a single blurred image would begin an island.
+    return {.needs_motion = is_monocular, .begins_at_once = is_monocular};
   }
 };
 
-// The frames of a monocular run that get a pose, or a better one, at the end of the run: those
-// before the map and before each new island, which had none, and those that were tracked while
-// their island was young.
+// The frames that get a pose, or a better one, at the end of the run: those that were lost, those
+// before a monocular map, and those that were tracked while their monocular island was young.
 class EarlyFrames {
  public:
   // Frames come in order of time. At most 300 are kept. The oldest ones that have a pose, because

@@ -25,7 +25,7 @@ constexpr size_t kMinFeatures = 100;
 constexpr size_t kMinMatches = 80;
 constexpr size_t kMinPoints = 50;  // least number of points of the map
 constexpr size_t kMostReferences = 12;
-constexpr uint32_t kReferenceInterval = 3;    // frames from one reference to the next
+constexpr double kReferenceInterval = 0.1;    // s from one reference to the next
 constexpr size_t kViewsBetween = 3;           // most frames between the first and the last view
 constexpr double kMinAdjustedParallax = 1.0;  // degrees, in the median
 constexpr double kMinConfirmed = 0.6;  // share of its matches that a frame in between must confirm
@@ -222,7 +222,10 @@ void Normalise(InitialMap& map) {
 }  // namespace
 
 MonocularInitialiser::MonocularInitialiser(const Sensor& sensor, uint64_t seed)
-    : sensor_(sensor), seed_(seed) {}
+    : sensor_(sensor),
+      seed_(seed),
+      interval_(std::max(
+          1U, static_cast<uint32_t>(std::lround(kReferenceInterval * sensor.frames_per_second)))) {}
 
 MonocularInitialiser::Result MonocularInitialiser::Process(FramePointer frame) {
   if (frame->features.size() < kMinFeatures) {
@@ -300,7 +303,7 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
 // gap to its predecessor. So the references reach far back, and older references have larger gaps
 // between them.
 void MonocularInitialiser::KeepAsReference(FramePointer frame) {
-  if (!references_.empty() && frame->id.value < references_.back()->id.value + kReferenceInterval) {
+  if (!references_.empty() && frame->id.value < references_.back()->id.value + interval_) {
     return;
   }
   references_.push_back(std::move(frame));

@@ -40,6 +40,7 @@ class MonocularInitialiser {
 
   const Sensor& sensor_;
   const uint64_t seed_;
+  const uint32_t interval_;                               // frames from one reference to the next
   std::vector<std::shared_ptr<const Frame>> references_;  // in order of time
 };
 

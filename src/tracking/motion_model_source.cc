@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <vector>
+
 #include "map/islands.h"
 #include "matching/by_projection.h"
 #include "tracking/pose_objects.h"
 #include "tracking/pose_refinement.h"
 #include "tracking/pose_source.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
 
-constexpr double kSearchRadius = 15.0;  // px at level 0 (Mur-Artal and Tardos 2017)
+// Radius of the search, px at level 0 of an image of this width (Mur-Artal and Tardos 2017).
+constexpr double kSearchRadius = 15.0;
+constexpr double kWidthOfRadius = 640.0;
 
 struct LevelRange {
   int min = 0;
@@ -28,12 +34,19 @@ LevelRange LevelsAfterMotion(int level, double forward, const Sensor& sensor) {
 struct Expected {
   std::vector<Projection> projections;
   std::vector<LandmarkId> landmarks;  // one per projection
+  std::vector<float> distances;       // px; how far they are expected to move, one per projection
 };
+
+// px at level 0. A prediction is wrong by an angle, which is more pixels in a larger image.
+double SearchRadius(const Sensor& sensor) {
+  return kSearchRadius * std::max(1.0, sensor.camera.width / kWidthOfRadius);
+}
 
 // The expected pixels of the last frame's landmarks for a camera at `cam_from_world`.
 Expected ExpectLandmarks(const Map& map, const Sensor& sensor, const LastFrame& last,
                          const Rigid3& cam_from_world, double forward) {
   Expected expected;
+  const auto radius = static_cast<float>(SearchRadius(sensor));
   for (size_t i = 0; i < last.landmarks.size(); ++i) {
     const Landmark* landmark = map.landmarks().Find(last.landmarks[i]);
     if (landmark == nullptr) {
@@ -52,15 +65,38 @@ Expected ExpectLandmarks(const Map& map, const Sensor& sensor, const LastFrame& 
     Projection& projection = expected.projections.emplace_back();
     projection.pixel = pixel.cast<float>();
     projection.right_u = static_cast<float>(pixel.x() - sensor.camera.bf / point.z());
-    projection.radius =
-        static_cast<float>(kSearchRadius) * sensor.levels.scale[static_cast<size_t>(seen.level)];
+    projection.radius = radius * sensor.levels.scale[static_cast<size_t>(seen.level)];
     projection.min_level = levels.min;
     projection.max_level = levels.max;
     projection.descriptor = landmark->descriptor;
     projection.angle = seen.angle;
     expected.landmarks.push_back(last.landmarks[i]);
+    expected.distances.push_back((projection.pixel - seen.undistorted).norm());
   }
   return expected;
+}
+
+// Searches in windows that double until at least `enough` landmarks are found. They double at least
+// once, and then as long as they are smaller than the motion. A camera may stop or double its
+// velocity from one frame to the next, and then its landmarks are as far from their expected pixels
+// as they were expected to move: far if the motion is fast or there are few frames per second.
+std::vector<Match> SearchLandmarks(const Frame& frame, const Sensor& sensor, size_t enough,
+                                   Expected& expected) {
+  const ProjectionSearch search{.max_distance = 100, .compare_rotation = true};
+  std::vector<Match> matches = MatchByProjection(frame.features, expected.projections, {}, search);
+  if (expected.projections.empty()) {
+    return matches;
+  }
+  double radius = SearchRadius(sensor);
+  const double largest = std::max(2.0 * radius, static_cast<double>(Median(expected.distances)));
+  while (matches.size() < enough && radius < largest) {
+    radius *= 2.0;
+    for (Projection& projection : expected.projections) {
+      projection.radius *= 2.0f;
+    }
+    matches = MatchByProjection(frame.features, expected.projections, {}, search);
+  }
+  return matches;
 }
 
 }  // namespace
@@ -76,14 +112,8 @@ std::optional<PoseEstimate> PoseByMotionModel(const Frame& frame, const Map& map
   estimate.cam_from_world = *motion * last.cam_from_world;
   const double forward = Inverse(*motion).translation.z();
   Expected expected = ExpectLandmarks(map, context.sensor, last, estimate.cam_from_world, forward);
-  const ProjectionSearch search{.max_distance = 100, .compare_rotation = true};
-  std::vector<Match> matches = MatchByProjection(frame.features, expected.projections, {}, search);
-  if (matches.size() < context.min_motion_matches()) {
-    for (Projection& projection : expected.projections) {
-      projection.radius *= 2.0f;
-    }
-    matches = MatchByProjection(frame.features, expected.projections, {}, search);
-  }
+  const std::vector<Match> matches =
+      SearchLandmarks(frame, context.sensor, context.min_motion_matches(), expected);
   estimate.landmarks.resize(frame.features.size());
   for (const Match& match : matches) {
     estimate.landmarks[match.keypoint] = expected.landmarks[match.query];

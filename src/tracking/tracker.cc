@@ -4,13 +4,12 @@
 #include <utility>
 
 #include "map/islands.h"
-#include "tracking/confirmed_pose.h"
 #include "tracking/shutter_correction.h"
 
 namespace hullslam {
 namespace {
 
-constexpr size_t kYoungKeyframes = 10;  // a monocular island with fewer keyframes is young
+constexpr size_t kYoungKeyframes = 10;  // an island with fewer keyframes is young
 constexpr double kPatience = 1.0;       // s without a pose, before a new island may begin
 
 KeyframePolicy MakePolicy(const Sensor& sensor, const TrackingOptions& options) {
@@ -85,6 +84,20 @@ Tracker::Result MakeResult(std::shared_ptr<const Frame> frame, TrackingState sta
   return result;
 }
 
+// Why this frame was not found, although there is a map. `last` is the frame before.
+TrackingFailure WhyLost(const Frame& frame, const TrackingContext& context, const LastFrame& last,
+                        const PoseSearch& search) {
+  if (frame.features.size() < static_cast<size_t>(context.min_relocalisation_inliers())) {
+    return TrackingFailure::kTooFewFeatures;
+  }
+  if (last.motion && !PredictMotion(last, frame.timestamp)) {
+    return TrackingFailure::kImagesMissing;
+  }
+  return search.most_unconfirmed >= context.options.min_inliers / 2
+             ? TrackingFailure::kTooFewLandmarks
+             : TrackingFailure::kNotRecognised;
+}
+
 }  // namespace
 
 Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects,
@@ -101,31 +114,32 @@ Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared
                                  const MapperStatus& mapper) {
   const ScopedTimer timer(times_, "pose");
   const bool has_map = map != nullptr && !map->keyframes().empty();
-  if (!has_map) {
-    return island_rules_.needs_motion ? InitializeMonocular(std::move(frame))
-                                      : Initialize(std::move(frame));
-  }
-  return Track(std::move(frame), *map, mapper);
+  return has_map ? Track(std::move(frame), *map, mapper) : Initialize(std::move(frame));
 }
 
 Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
-  const std::vector<uint32_t> with_depth = KeypointsByDepth(frame->features);
-  if (with_depth.size() < static_cast<size_t>(options_.min_initial_points)) {
-    return MakeResult(std::move(frame), TrackingState::kNotInitialized);
-  }
-  InitialMap initial = MakeInitialMap(frame, sensor_.camera, with_depth);
-  return BeginIsland(std::move(frame), std::move(initial));
-}
-
-Tracker::Result Tracker::InitializeMonocular(std::shared_ptr<const Frame> frame) {
-  MonocularInitialiser::Result initial = initialiser_.Process(frame);
+  MonocularInitialiser::Result initial = FindInitialMap(frame);
   if (initial.map) {
     return BeginIsland(std::move(frame), std::move(*initial.map));
   }
   early_.Keep(frame, false);
   Result result = MakeResult(std::move(frame), TrackingState::kNotInitialized);
-  result.report.failure = initial.failure;
+  if (island_rules_.needs_motion) {
+    result.report.failure = initial.failure;
+  }
   return result;
+}
+
+// The map that begins with this frame, without depth also with earlier ones.
+MonocularInitialiser::Result Tracker::FindInitialMap(const std::shared_ptr<const Frame>& frame) {
+  if (island_rules_.needs_motion) {
+    return initialiser_.Process(frame);
+  }
+  const std::vector<uint32_t> with_depth = KeypointsByDepth(frame->features);
+  if (with_depth.size() < static_cast<size_t>(options_.min_initial_points)) {
+    return {.map = std::nullopt, .failure = InitialisationFailure::kTooFewFeatures};
+  }
+  return {.map = MakeInitialMap(frame, sensor_.camera, with_depth), .failure = {}};
 }
 
 // The frame is the last view of the initial map.
@@ -157,17 +171,16 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   }
   const std::shared_ptr<const Frame> as_read = frame;
   frame = PredictGlobalShutter(as_read, map, sensor_, last_);
-  std::optional<ConfirmedPose> found =
-      FindConfirmedPose(*frame, map, Context(), last_, kPoseSources);
-  if (!found) {
-    return Lose(as_read, map);
+  PoseSearch search = FindConfirmedPose(*frame, map, Context(), last_, kPoseSources);
+  if (!search.found) {
+    return Lose(as_read, map, WhyLost(*frame, Context(), last_, search));
   }
   if (island_rules_.needs_motion && !is_localizing_only_ && IsYoung(map)) {
     early_.Keep(as_read, true);
   }
   lost_since_.reset();
   initialiser_.Forget();
-  LocalTracking& tracking = found->tracking;
+  LocalTracking& tracking = search.found->tracking;
   frame = CorrectShutter(as_read, map, Context(), last_, tracking);
   if (!is_localizing_only_) {
     CountSightings(map, tracking);
@@ -219,28 +232,34 @@ bool Tracker::IsYoung(const Map& map) const {
   return map.IslandSize(island) < kYoungKeyframes;
 }
 
-// A monocular camera that stays lost begins a new island, which may be joined to the others later.
-Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map) {
+// A camera that stays lost begins a new island, which may be joined to the others later.
+Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map,
+                              TrackingFailure reason) {
   last_.motion.reset();
   lost_since_ = lost_since_.value_or(frame->timestamp);
-  if (MayBeginIsland(*frame, map)) {
-    MonocularInitialiser::Result initial = initialiser_.Process(frame);
+  if (!is_localizing_only_) {
     early_.Keep(frame, false);
+  }
+  if (MayBeginIsland(*frame, map)) {
+    MonocularInitialiser::Result initial = FindInitialMap(frame);
     if (initial.map) {
       return BeginIsland(std::move(frame), std::move(*initial.map));
     }
   }
-  return MakeResult(std::move(frame), TrackingState::kLost);
+  Result result = MakeResult(std::move(frame), TrackingState::kLost);
+  result.report.loss = reason;
+  return result;
 }
 
 // In an island that is not young, the camera may soon be found again, and only place recognition,
 // which needs words, can join a new island to it. In a young island there is little to be found.
 bool Tracker::MayBeginIsland(const Frame& frame, const Map& map) const {
-  if (!island_rules_.begins_when_lost || is_localizing_only_) {
+  if (is_localizing_only_) {
     return false;
   }
   const bool has_waited = frame.timestamp - *lost_since_ >= kPatience;
-  return IsYoung(map) || (has_waited && map.vocabulary() != nullptr);
+  return IsYoung(map) ? has_waited || island_rules_.begins_at_once
+                      : has_waited && map.vocabulary() != nullptr;
 }
 
 void Tracker::CountSightings(const Map& map, const LocalTracking& tracking) {

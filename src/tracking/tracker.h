@@ -11,6 +11,7 @@
 #include "hullslam/objects/object_options.h"
 #include "hullslam/tracking/tracking_options.h"
 #include "hullslam/util/stage_timer.h"
+#include "tracking/confirmed_pose.h"
 #include "tracking/early_frames.h"
 #include "tracking/keyframe_policy.h"
 #include "tracking/last_frame.h"
@@ -29,8 +30,8 @@ struct MapperStatus {
   int requests_waiting = 0;
 };
 
-// Finds the pose of each frame in a snapshot of the map and decides on keyframes. A monocular
-// camera that is lost begins a new island (Map::BeginIsland). The tracker does not change the map;
+// Finds the pose of each frame in a snapshot of the map and decides on keyframes. A camera that
+// stays lost begins a new island (Map::BeginIsland). The tracker does not change the map;
 // it sends messages to the mapper. Its members are its memory from one frame to the next.
 class Tracker {
  public:
@@ -52,7 +53,7 @@ class Tracker {
   Result Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
                  const MapperStatus& mapper);
 
-  // To be called at the end of a monocular run, with the final map. See EarlyFrames.
+  // To be called at the end of a run, with the final map. See EarlyFrames.
   std::vector<TrackedFrame> LocaliseEarlyFrames(const Map& map,
                                                 const Cancellation* cancellation = nullptr,
                                                 const ProgressCallback& on_progress = {});
@@ -64,10 +65,10 @@ class Tracker {
     return {sensor_, options_, object_options_, object_index_, seed_};
   }
   Result Initialize(std::shared_ptr<const Frame> frame);
-  Result InitializeMonocular(std::shared_ptr<const Frame> frame);
+  MonocularInitialiser::Result FindInitialMap(const std::shared_ptr<const Frame>& frame);
   Result BeginIsland(std::shared_ptr<const Frame> frame, InitialMap initial);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
-  Result Lose(std::shared_ptr<const Frame> frame, const Map& map);
+  Result Lose(std::shared_ptr<const Frame> frame, const Map& map, TrackingFailure reason);
   bool IsYoung(const Map& map) const;
   bool MayBeginIsland(const Frame& frame, const Map& map) const;
   bool NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "hullslam/util/error.h"
@@ -26,6 +27,60 @@ TEST(FeatureOptions, BindsTheKeysOfOrbSlam2) {
   EXPECT_EQ(options.level_count, 4);
   EXPECT_EQ(options.initial_fast_threshold, 25);
   EXPECT_EQ(options.minimum_fast_threshold, 9);
+}
+
+// The side of the smallest level, px.
+double SmallestSide(int side, int levels) { return side / std::pow(1.2, levels - 1); }
+
+TEST(FeatureOptions, TheUsualImageHasTheDefaults) {
+  const FeatureOptions options;
+  EXPECT_EQ(options.LevelsFor(640, 480), options.level_count);
+  EXPECT_EQ(options.FeaturesFor(640, 480), options.feature_count);
+}
+
+TEST(FeatureOptions, TheSmallestLevelHasRoomForAPatch) {
+  const FeatureOptions options;
+  EXPECT_EQ(options.MostLevels(416, 128), 4);
+  EXPECT_EQ(options.MostLevels(640, 480), 12);
+  EXPECT_EQ(options.MostLevels(64, 64), 1);
+  EXPECT_EQ(options.MostLevels(63, 480), 0);
+  for (const int side : {64, 77, 128, 375, 480}) {
+    const int most = options.MostLevels(1000, side);
+    EXPECT_GE(SmallestSide(side, most), FeatureOptions::kSmallestSide) << side;
+    EXPECT_LT(SmallestSide(side, most + 1), FeatureOptions::kSmallestSide) << side;
+    EXPECT_LE(options.LevelsFor(1000, side), most) << side;
+  }
+  EXPECT_EQ(options.LevelsFor(416, 128), 4);
+  EXPECT_EQ(options.LevelsFor(540, 360), 8) << "there is room for the usual levels";
+}
+
+TEST(FeatureOptions, ALargerImageHasMoreLevelsUntilItsCoarsestIsTheUsualOne) {
+  const FeatureOptions options;
+  const double usual = SmallestSide(480, options.level_count);
+  for (const int height : {481, 720, 1080, 1440}) {
+    const int levels = options.LevelsFor(height * 4 / 3, height);
+    EXPECT_LE(SmallestSide(height, levels), usual + 1e-6) << height;
+    EXPECT_GT(SmallestSide(height, levels), usual / 1.2) << height;
+  }
+  EXPECT_EQ(options.LevelsFor(20000, 20000), 16) << "the largest number that can be set";
+}
+
+TEST(FeatureOptions, ALargerImageHasTheUsualFeaturesOnItsCoarsestLevels) {
+  const FeatureOptions options;
+  const int levels = options.LevelsFor(1920, 1080);
+  double share = 0.0;  // of the coarsest 8 levels; the number falls by 1.2 from level to level
+  double all = 0.0;
+  for (int level = 0; level < levels; ++level) {
+    all += std::pow(1.2, -level);
+    share += level >= levels - 8 ? std::pow(1.2, -level) : 0.0;
+  }
+  EXPECT_NEAR(options.FeaturesFor(1920, 1080) * share / all, 1000.0, 1.0);
+}
+
+TEST(FeatureOptions, ASmallerImageHasMoreFeaturesBecauseItsPixelsAreLargerAngles) {
+  const FeatureOptions options;
+  EXPECT_EQ(options.FeaturesFor(320, 240), 4000);
+  EXPECT_EQ(options.FeaturesFor(240, 320), 4000) << "the same image upright";
 }
 
 TEST(FeatureOptions, RejectsValuesOutOfRange) {

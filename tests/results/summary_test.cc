@@ -32,24 +32,57 @@ TEST(Summary, OfAMonocularRunTellsHowTheMapBegan) {
   const Json without_map = Json::parse(FormatSummary(summary))["initialisation"];
   EXPECT_TRUE(without_map["seconds"].is_null());
   EXPECT_EQ(without_map["failures"]["too little parallax"], 3);
-  EXPECT_EQ(without_map["islands"], 0);
   summary.initialisation->seconds = 1.5;
-  summary.initialisation->islands = 3;
-  summary.initialisation->joined_islands = 1;
   const Json with_map = Json::parse(FormatSummary(summary))["initialisation"];
   EXPECT_EQ(with_map["seconds"], 1.5);
-  EXPECT_EQ(with_map["islands"], 3);
-  EXPECT_EQ(with_map["joined_islands"], 1);
+}
+
+TEST(Summary, ListsTheIslandsOfTheMap) {
+  RunSummary summary;
+  EXPECT_FALSE(Json::parse(FormatSummary(summary)).contains("islands"));
+  summary.islands = IslandsSummary{.begun = 3, .joined = 1};
+  summary.islands->at_end = {{.number = 2, .is_main = true, .ate_rmse_m = 0.25}, {.number = 3}};
+  const Json islands = Json::parse(FormatSummary(summary))["islands"];
+  EXPECT_EQ(Keys(islands), (std::vector<std::string>{"begun", "joined", "at_end"}));
+  EXPECT_EQ(islands["begun"], 3);
+  EXPECT_EQ(islands["joined"], 1);
+  ASSERT_EQ(islands["at_end"].size(), 2u);
+  EXPECT_EQ(Keys(islands["at_end"][0]),
+            (std::vector<std::string>{"number", "main", "keyframes", "landmarks", "frames",
+                                      "first_timestamp", "last_timestamp", "ate_rmse_m"}));
+  EXPECT_EQ(islands["at_end"][0]["main"], true);
+  EXPECT_EQ(islands["at_end"][0]["ate_rmse_m"], 0.25);
+  EXPECT_EQ(islands["at_end"][1]["number"], 3);
+  EXPECT_TRUE(islands["at_end"][1]["first_timestamp"].is_null());
+}
+
+TEST(Summary, SaysWhereAndWhyFramesWereLost) {
+  RunSummary summary;
+  summary.trajectory.losses = {{.first_frame = 4,
+                                .last_frame = 8,
+                                .first_timestamp = 0.5,
+                                .last_timestamp = 0.75,
+                                .frames = 5,
+                                .reason = LossReason::kTooFewFeatures}};
+  const Json losses = Json::parse(FormatSummary(summary))["trajectory"]["losses"];
+  ASSERT_EQ(losses.size(), 1u);
+  EXPECT_EQ(Keys(losses[0]),
+            (std::vector<std::string>{"first_frame", "last_frame", "first_timestamp",
+                                      "last_timestamp", "frames", "reason"}));
+  EXPECT_EQ(losses[0]["last_frame"], 8);
+  EXPECT_EQ(losses[0]["last_timestamp"], 0.75);
+  EXPECT_EQ(losses[0]["reason"], "too few features");
 }
 
 TEST(Summary, HasTheKeysOfTheFormatInOrder) {
   const Json json = Json::parse(FormatSummary({}));
   EXPECT_EQ(Keys(json), (std::vector<std::string>{"trajectory", "objects", "timing", "memory",
                                                   "map", "provenance", "files"}));
-  EXPECT_EQ(Keys(json["trajectory"]),
-            (std::vector<std::string>{"ate_rmse_m", "alignment", "scale", "pairs", "frames",
-                                      "tracked", "lost", "poses", "pairing", "coverage",
-                                      "rpe_rmse_m", "rpe_rmse_deg", "skipped", "unpaired"}));
+  EXPECT_EQ(
+      Keys(json["trajectory"]),
+      (std::vector<std::string>{"ate_rmse_m", "alignment", "scale", "pairs", "frames", "tracked",
+                                "lost", "poses", "pairing", "coverage", "rpe_rmse_m",
+                                "rpe_rmse_deg", "skipped", "unpaired", "losses"}));
   EXPECT_EQ(Keys(json["timing"]),
             (std::vector<std::string>{"track_ms", "stages_ms", "total_s", "frames_per_second"}));
   EXPECT_EQ(Keys(json["timing"]["track_ms"]),

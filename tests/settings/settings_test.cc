@@ -117,6 +117,32 @@ TEST_F(Settings, WholeNumbersMayBeWrittenWithAPoint) {
                   {"ORBextractor.nFeatures is '1000.5'", "an integer"});
 }
 
+TEST_F(Settings, FeaturesFollowTheSizeOfTheImageUnlessTheyAreSet) {
+  const std::string small = std::string(kMinimal) + "Camera.width: 416\nCamera.height: 128\n";
+  EXPECT_EQ(Read(kMinimal).features.level_count, 8);
+  EXPECT_EQ(Read(kMinimal).features.feature_count, 1000);
+  const FeatureOptions followed = Read(small).features;
+  EXPECT_EQ(followed.level_count, 4);
+  EXPECT_EQ(followed.feature_count, followed.FeaturesFor(416, 128));
+  const std::vector<std::string> set = {"ORBextractor.nLevels=3", "ORBextractor.nFeatures=500"};
+  EXPECT_EQ(Read(small, set).features.level_count, 3);
+  EXPECT_EQ(Read(small, set).features.feature_count, 500);
+  const CameraCalibration calibration{.camera = Read(small).camera};
+  EXPECT_EQ(MakeSettings(calibration, "test").features.level_count, 4);
+}
+
+TEST_F(Settings, LevelsThatHaveNoRoomAreLeftOutWithAWarning) {
+  const auto file = folder_.Write(
+      "camera.yaml",
+      std::string(kMinimal) + "Camera.width: 416\nCamera.height: 128\nORBextractor.nLevels: 8\n");
+  std::vector<std::string> warnings;
+  EXPECT_EQ(ReadSettings(file, {}, NegativeFy::kError, &warnings).features.level_count, 4);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("nLevels is 8"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("416x128"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("4 are used"), std::string::npos) << warnings[0];
+}
+
 TEST_F(Settings, OverridesReplaceValuesOfTheFile) {
   EXPECT_EQ(Read(kMinimal, {"ORBextractor.nFeatures=700", "Camera.fx = 400"}).camera.fx, 400.0);
   ExpectError(kMinimal, {"--set", "ORBextractor.nFeatures is '-1'", "expected an integer"},

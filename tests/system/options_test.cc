@@ -135,7 +135,10 @@ TEST(SystemOptions, ACameraWithoutFocalLengthIsRefused) {
 TEST(SystemOptions, LevelsSmallerThanAPatchAreRefused) {
   SystemOptions options = WithCamera();
   options.features.level_count = 20;
-  ExpectInputError([&] { options.Validate(); }, {"ORBextractor.nLevels is '20'", "64 px"});
+  ExpectInputError([&] { options.Validate(); },
+                   {"ORBextractor.nLevels is '20'", "at most 12", "64 px"});
+  options.camera.height = 60;
+  ExpectInputError([&] { options.Validate(); }, {"640x60", "too small", "64 px"});
 }
 
 }  // namespace

@@ -250,26 +250,35 @@ TEST_P(LoopPipelineTest, MayBeDestroyedWhileALoopIsClosed) {
   EXPECT_EQ(FindViolations(*pipeline->map()), std::vector<std::string>());
 }
 
-TEST_P(LoopPipelineTest, IslandsOfALostMonocularCameraAreJoined) {
-  path_.BeMonocular();
-  const auto pipeline = Make();
-  std::vector<TrackedFrame> frames = path_.Track(*pipeline, 0, 22);
+// A camera that goes on at another place after it was lost, and later sees the first place again.
+void ExpectIslandsJoined(const RingPath& path, Pipeline& pipeline) {
+  std::vector<TrackedFrame> frames = path.Track(pipeline, 0, 22);
   for (const auto& more :
-       {path_.TrackBlank(*pipeline, 22, 60), path_.Track(*pipeline, 60, RingPath::kFrames)}) {
+       {path.TrackBlank(pipeline, 22, 60), path.Track(pipeline, 60, RingPath::kFrames)}) {
     frames.insert(frames.end(), more.begin(), more.end());
   }
-  pipeline->Finish();
-  const std::shared_ptr<const Map> map = pipeline->map();
+  pipeline.Finish();
+  const std::shared_ptr<const Map> map = pipeline.map();
   EXPECT_EQ(FindViolations(*map), std::vector<std::string>());
   EXPECT_EQ(map->islands_begun(), 2u);
   EXPECT_EQ(map->islands_joined(), 1u);
   EXPECT_EQ(Islands(*map).size(), 1u);
-  for (const TrackedFrame& early : pipeline->TakeEarlyFrames()) {
+  for (const TrackedFrame& early : pipeline.TakeEarlyFrames()) {
     frames.at(early.frame.value) = early;
   }
   const Trajectory trajectory = ComposeTrajectory(*map, frames);
   EXPECT_EQ(trajectory.size(), RingPath::kFrames - 38u) << "all frames but the blank ones";
   EXPECT_LT(RingPath::AlignedError(trajectory), 0.03);
+}
+
+TEST_P(LoopPipelineTest, IslandsOfALostMonocularCameraAreJoined) {
+  path_.BeMonocular();
+  ExpectIslandsJoined(path_, *Make());
+}
+
+TEST_P(LoopPipelineTest, IslandsOfALostCameraWithDepthAreJoined) {
+  path_.BeExact();
+  ExpectIslandsJoined(path_, *Make());
 }
 
 // The second part never sees the first place again.
@@ -289,6 +298,15 @@ TEST_P(LoopPipelineTest, IfIslandsAreNotJoinedTheLargestStays) {
   ASSERT_FALSE(trajectory.empty());
   EXPECT_GE(trajectory.front().timestamp, 60 / path_.sensor().frames_per_second);
   EXPECT_LT(RingPath::AlignedError(trajectory), 0.03);
+  // The smaller one is a map of its own.
+  ASSERT_EQ(pipeline->left_islands().size(), 1u);
+  const Map& left = *pipeline->left_islands().front();
+  EXPECT_EQ(FindViolations(left), std::vector<std::string>());
+  EXPECT_EQ(Islands(left), std::vector<IslandId>{IslandId(0)});
+  const Trajectory first = ComposeTrajectory(left, frames);
+  ASSERT_GE(first.size(), 5u);
+  EXPECT_LT(first.back().timestamp, 22 / path_.sensor().frames_per_second);
+  EXPECT_LT(RingPath::AlignedError(first), 0.03);
 }
 
 INSTANTIATE_TEST_SUITE_P(Loops, LoopPipelineTest,

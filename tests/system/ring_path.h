@@ -34,9 +34,11 @@ class RingPath {
   const Sensor& sensor() const { return sensor_; }
   SystemOptions& options() { return options_; }
 
+  // From now on the focal length is right.
+  void BeExact() { sensor_ = SharedRing().sensor(); }
   // From now on the camera has no depth, and the focal length is right.
   void BeMonocular() {
-    sensor_ = SharedRing().sensor();
+    BeExact();
     sensor_.kind = SensorKind::kMonocular;
     options_.sensor = SensorKind::kMonocular;
   }

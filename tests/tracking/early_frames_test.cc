@@ -139,16 +139,16 @@ TEST_F(EarlyFramesTest, TrackedOnesAreForgottenBeforeThoseWithoutAPose) {
   EXPECT_EQ(found[20].frame, FrameId(1060)) << "the oldest tracked ones are missing";
 }
 
-TEST(IslandRules, WithDepthOneFrameMakesTheOnlyIsland) {
+TEST(IslandRules, WithDepthOneFrameMakesAnIslandAfterAWait) {
   const IslandRules rules = IslandRules::ForSensor(SensorKind::kRgbd);
   EXPECT_FALSE(rules.needs_motion);
-  EXPECT_FALSE(rules.begins_when_lost);
+  EXPECT_FALSE(rules.begins_at_once);
 }
 
-TEST(IslandRules, AMonocularCameraNeedsMotionAndGoesOnWhenLost) {
+TEST(IslandRules, AMonocularCameraNeedsMotionInsteadOfAWait) {
   const IslandRules rules = IslandRules::ForSensor(SensorKind::kMonocular);
   EXPECT_TRUE(rules.needs_motion);
-  EXPECT_TRUE(rules.begins_when_lost);
+  EXPECT_TRUE(rules.begins_at_once);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "support/synthetic_world.h"
 
@@ -95,6 +96,21 @@ TEST_F(MonocularStart, AllObservationsOfAPointShowThePoint) {
     }
   }
   EXPECT_EQ(wrong, 0U);
+}
+
+// With few images per second, an image shows little of those before the last one. So each one is a
+// reference, although with 30 images per second every third one is enough. The first image is a
+// reference that shows nothing of the others.
+TEST_F(MonocularStart, TheIntervalOfReferencesIsATime) {
+  const SyntheticWorld other({.points = 400, .depth_share = 0.0, .seed = 77});
+  for (const auto& [rate, reference] : {std::pair(5.0, 1U), std::pair(30.0, 3U)}) {
+    sensor_.frames_per_second = rate;
+    MonocularInitialiser initialiser(sensor_, 1);
+    EXPECT_FALSE(initialiser.Process(other.Observe(0).frame).map);
+    const auto map = Walk(initialiser, 1, 30);
+    ASSERT_TRUE(map);
+    EXPECT_EQ(map->views.front().frame->id, FrameId(reference));
+  }
 }
 
 // A camera that stood still for long has many images without parallax behind it.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -650,7 +651,68 @@ TEST_F(TrackerTest, TheMotionModelCountsTheTimeBetweenFrames) {
     return estimate ? estimate->inliers : 0;
   };
   EXPECT_GT(found(3.0 / 30.0), 50);
-  EXPECT_LT(found(1.0 / 30.0), found(3.0 / 30.0) / 2);
+  EXPECT_LT(found(1.0 / 30.0), 0.75 * found(3.0 / 30.0));
+}
+
+// The share of the visible landmarks that the motion model finds if the camera turns by the first
+// angle where the second one is expected (radians).
+class MotionModelTest : public TrackerTest {
+ protected:
+  double FoundShare(int width, double turned, double expected) const {
+    const Rigid3 turn(ExpSo3({0.0, expected, 0.0}), Eigen::Vector3d::Zero());
+    const SyntheticView view = world_.Observe(FrameId(1), Rigid3());
+    LastFrame last;
+    last.frame = view.frame;
+    for (const uint32_t point : view.points) {
+      last.landmarks.push_back(made_.landmarks[point]);
+    }
+    last.reference = KeyframeId(0);
+    last.motion = CameraMotion{turn, 1.0 / 30.0};
+    const Rigid3 pose(ExpSo3({0.0, turned, 0.0}), Eigen::Vector3d::Zero());
+    Frame next = *world_.Observe(FrameId(2), pose).frame;
+    next.timestamp = last.frame->timestamp + 1.0 / 30.0;
+    Sensor sensor = world_.sensor();
+    sensor.camera.width = width;
+    const auto estimate = PoseByMotionModel(
+        next, made_.map, {sensor, options_, ObjectOptions(), ObjectIndex()}, last);
+    return estimate ? estimate->inliers / static_cast<double>(next.features.size()) : 0.0;
+  }
+};
+
+// A slow camera that turns by 5 degrees (44 px) is missed with the windows of a usual image. In one
+// that is three times as wide, 44 px are a third of the angle.
+TEST_F(MotionModelTest, TheWindowGrowsWithTheImage) {
+  EXPECT_LT(FoundShare(640, 0.087, 0.0), 0.6);
+  EXPECT_GT(FoundShare(1920, 0.087, 0.0), 0.8);
+}
+
+// The camera has turned by 16 degrees (140 px) from frame to frame and stops.
+TEST_F(MotionModelTest, TheWindowGrowsWithTheMotion) {
+  EXPECT_GT(FoundShare(640, 0.0, 0.28), 0.1);
+  EXPECT_EQ(FoundShare(640, 0.28, 0.0), 0.0) << "no motion was seen before";
+}
+
+TEST_F(TrackerTest, SaysWhyAFrameIsLost) {
+  const SyntheticWorld other({.points = 300, .seed = 77});
+  const size_t enough = static_cast<size_t>(options_.min_inliers);
+  auto late = std::make_shared<Frame>(*other.Observe(5).frame);
+  late->timestamp += 1.0;
+  const std::vector<std::pair<std::shared_ptr<const Frame>, TrackingFailure>> frames = {
+      {Select(*world_.Observe(5).frame, {}), TrackingFailure::kTooFewFeatures},
+      {FrameWithKnown(5, enough - 1), TrackingFailure::kTooFewLandmarks},
+      {other.Observe(5).frame, TrackingFailure::kNotRecognised},
+      {late, TrackingFailure::kImagesMissing}};
+  for (const auto& [frame, reason] : frames) {
+    Tracker tracker(world_.sensor(), options_);
+    tracker.Process(world_.Observe(0).frame, nullptr, kIdle);
+    const auto map = Publish(made_.map);
+    for (uint32_t i = 1; i < 5; ++i) {
+      EXPECT_FALSE(tracker.Process(world_.Observe(i).frame, map, kIdle).report.loss);
+    }
+    const Tracker::Result lost = tracker.Process(frame, map, kIdle);
+    EXPECT_EQ(lost.report.tracked.state, TrackingState::kLost) << ToString(reason);
+    EXPECT_EQ(lost.report.loss, reason) << ToString(reason);
+  }
 }
 
 // The synthetic world with six balls, which all keyframes and frames detect.
@@ -814,6 +876,7 @@ class RelocalisingTracker : public testing::Test {
   void LoseTrack() {
     auto blank = std::make_shared<Frame>();
     blank->id = FrameId(1004);
+    blank->timestamp = 1004 / world_.sensor().frames_per_second;
     RebuildGrid(world_.sensor(), *blank);
     EXPECT_EQ(Process(blank).state, TrackingState::kLost);
   }
@@ -1067,6 +1130,63 @@ TEST_F(LostMonocularTracker, TheFirstFramesGetPosesAlthoughTheCameraThenStandsSt
 
 TEST_F(LostMonocularTracker, WithoutWordsAGrownMapIsNotGivenUp) {
   EXPECT_EQ(BeginAndLose(12, 60), 0u);
+}
+
+// A camera with depth that knows one world and is then in another one.
+class LostDepthTracker : public TrackerTest {
+ protected:
+  // Is lost from frame `first` on until it begins an island; returns how long that took, s, or
+  // nothing if it did not within 40 frames.
+  std::optional<double> LoseUntilIsland(uint32_t first) {
+    for (uint32_t i = first; i < first + 40; ++i) {
+      const Tracker::Result result = Process(other_.Observe(i).frame);
+      if (result.message) {
+        island_ = std::get<InitialMap>(*result.message);
+        EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked);
+        return (i - first) / world_.sensor().frames_per_second;
+      }
+      EXPECT_EQ(result.report.tracked.state, TrackingState::kLost);
+      EXPECT_FALSE(result.report.failure) << "only a monocular camera waits for motion";
+    }
+    return std::nullopt;
+  }
+
+  const SyntheticWorld other_{{.points = 300, .seed = 77}};
+  InitialMap island_;
+};
+
+TEST_F(LostDepthTracker, BeginsAnIslandAfterASecondAndFollowsIt) {
+  Begin();
+  TrackFrames(1, 3);
+  const std::optional<double> waited = LoseUntilIsland(4);
+  ASSERT_TRUE(waited);
+  EXPECT_NEAR(*waited, 1.0, 0.04);
+  ASSERT_EQ(island_.views.size(), 1u);
+  std::vector<LandmarkId> created;
+  InsertInitialMap(made_.map, island_, world_.sensor(), created);
+  map_ = Publish(made_.map);
+  const uint32_t next = island_.views.front().frame->id.value + 1;
+  const Tracker::Result result = Process(other_.Observe(next).frame);
+  ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked);
+  EXPECT_EQ(IslandOf(*map_, result.report.tracked.pose->reference), IslandId(1));
+}
+
+TEST_F(LostDepthTracker, TheLostFramesGetPosesInTheIslandAtTheEnd) {
+  Begin();
+  TrackFrames(1, 3);
+  ASSERT_TRUE(LoseUntilIsland(4));
+  std::vector<LandmarkId> created;
+  InsertInitialMap(made_.map, island_, world_.sensor(), created);
+  ASSERT_TRUE(KeepOnlyIsland(made_.map, IslandId(1)));
+  const std::vector<TrackedFrame> found = tracker_.LocaliseEarlyFrames(made_.map);
+  ASSERT_GE(found.size(), 25u);
+  EXPECT_GE(found.front().frame, FrameId(4));
+}
+
+TEST_F(LostDepthTracker, WithLocalizationOnlyNoIslandIsBegun) {
+  tracker_.LocaliseOnly();
+  map_ = Publish(made_.map);
+  EXPECT_FALSE(LoseUntilIsland(4));
 }
 
 TEST_F(LostMonocularTracker, WithLocalizationOnlyNoIslandIsBegun) {

@@ -14,6 +14,7 @@
 #include "hullslam/geometry/sim3.h"
 #include "hullslam/map/initialisation_failure.h"
 #include "hullslam/map/relative_pose.h"
+#include "hullslam/map/tracking_failure.h"
 #include "hullslam/util/id.h"
 
 namespace hullslam {
@@ -127,6 +128,8 @@ struct FrameReport {
   std::vector<ObjectId> objects;      // one per detection; invalid where it shows no mapped object
   // The reason why a monocular camera has no map yet; absent once there is a map.
   std::optional<InitialisationFailure> failure = std::nullopt;
+  // The reason why the frame is lost; absent unless its state is kLost.
+  std::optional<TrackingFailure> loss = std::nullopt;
 };
 
 }  // namespace hullslam

@@ -45,6 +45,14 @@ struct ObjectCounts {
   std::map<std::string, size_t> rejections;
 };
 
+// A part of a run that could not be joined to the rest: the camera was lost before it, and saw no
+// earlier place again. Its poses have no known relation to those of the map.
+struct LeftIsland {
+  IslandId id;  // counted from 0, in the order in which the islands were begun
+  std::shared_ptr<const Map> map;
+  Trajectory trajectory;
+};
+
 // SLAM as one object: images in, poses and map out.
 //
 //   System system(options, PipelineKind::kSequential);
@@ -92,11 +100,11 @@ class System {
   }
 
   // Waits until all keyframes are in the map. Then it adjusts the whole map if
-  // mapping.final_bundle_adjustment is set. If a monocular camera was lost, only the main island of
-  // the map stays (Map::BeginIsland), and frames in other islands become lost. Then the poses of
-  // all frames are computed again from the final positions of their landmarks, unless the map was
-  // fixed, and frames before a monocular map and before each island are localised in it. So
-  // frames() may change. Track must not be called after Finish.
+  // mapping.final_bundle_adjustment is set. If the camera was lost, only the main island of the map
+  // stays (Map::BeginIsland), and frames in other islands become lost; left_islands() has these.
+  // Then the poses of all frames are computed again from the final positions of their landmarks,
+  // unless the map was fixed, and lost frames and frames before a monocular map are localised in
+  // it. So frames() may change. Track must not be called after Finish.
   //
   // If `cancellation` (may be null) is requested, the adjustment ends early with its current
   // result, and the frames that are left keep the poses that they have. `on_map` is called in this
@@ -125,6 +133,9 @@ class System {
   // The changes of the objects of the map that the system began with, and the new objects
   // (docs/maps.md). Empty before Finish, and if no keyframe was added.
   const std::vector<ChangedObject>& object_changes() const;
+  // The islands that were not joined to the map, in the order in which they were begun. Empty
+  // before Finish.
+  const std::vector<LeftIsland>& left_islands() const { return left_islands_; }
   // The number of mapped objects that have a size in ObjectOptions::sizes and could be measured. If
   // there are any, they set the unit of length of a monocular map to the metre.
   size_t sized_objects() const;
@@ -148,6 +159,7 @@ class System {
   std::function<void(const FrameReport&)> frame_callback_;
   std::vector<TrackedFrame> frames_;
   std::vector<RememberedFrame> remembered_;  // until Finish
+  std::vector<LeftIsland> left_islands_;
   StageTimes times_;
 };
 

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "hullslam/map/messages.h"
+
+namespace hullslam {
+
+// Why frames have no pose at the end of a run.
+enum class LossReason {
+  kNoMapYet,        // they come before the first map, and are not found in it
+  kTooFewFeatures,  // these four are those of TrackingFailure
+  kImagesMissing,
+  kTooFewLandmarks,
+  kNotRecognised,
+  kNotJoined,  // they are in an island that was not joined to the map
+};
+
+// For messages and files: "too few features" and so on.
+std::string_view ToString(LossReason reason);
+// What the user can try, in one sentence without a full stop.
+std::string_view AdviceFor(LossReason reason);
+
+// What tracking has told about a frame during the run.
+struct FrameNote {
+  size_t number = 0;  // of the frame in its sequence, counted from 0
+  TrackingState state = TrackingState::kNotInitialized;
+  std::optional<TrackingFailure> loss = std::nullopt;
+};
+
+// Frames in a row that have no pose. `reason` is that of the first one: the others are lost because
+// it was lost.
+struct LostStretch {
+  size_t first_frame = 0;  // as FrameNote::number
+  size_t last_frame = 0;
+  double first_timestamp = 0.0;  // s
+  double last_timestamp = 0.0;
+  size_t frames = 0;
+  LossReason reason = LossReason::kNotRecognised;
+};
+
+// The stretches of a run in order of time. `frames` are those at its end, and `notes` has one entry
+// for each of them. Frames of islands that were not joined are in stretches of their own.
+std::vector<LostStretch> FindLostStretches(std::span<const TrackedFrame> frames,
+                                           std::span<const FrameNote> notes);
+
+}  // namespace hullslam

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/map/tracking_failure.h"
+
+#include <gtest/gtest.h>
+
+namespace hullslam {
+namespace {
+
+TEST(TrackingFailure, NamesAreDifferent) {
+  for (const TrackingFailure a : kTrackingFailures) {
+    EXPECT_FALSE(ToString(a).empty());
+    for (const TrackingFailure b : kTrackingFailures) {
+      EXPECT_EQ(ToString(a) == ToString(b), a == b);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hullslam
