@@ -9,6 +9,8 @@
 #include <optional>
 #include <string>
 
+#include "hullslam/system/options.h"
+#include "hullslam/util/error.h"
 #include "run/command_line.h"
 #include "run/interrupt.h"
 #include "run/program.h"
@@ -28,6 +30,17 @@ struct Arguments {
   bool quiet = false;
 };
 
+// The error if the text is no value of the setting; empty if it is one.
+std::string CheckReadoutTime(const std::string& text) {
+  hullslam::SystemOptions options;
+  try {
+    options.Bind().Set("Camera.readout_time", text, "settings");
+  } catch (const hullslam::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
 void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("OUT", arguments.folder,
                  "folder to create, with a TUM sequence and its ground truth")
@@ -44,9 +57,11 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--rearranged", arguments.options.rearranged,
                  "a later visit of desk, room or house: some objects were moved, taken away and "
                  "added, chosen by this seed");
-  app.add_option("--readout-time", arguments.options.readout_time,
-                 "seconds from the first to the last row of an image (rolling shutter)")
-      ->check(CLI::Range(0.0, 0.1))
+  app.add_option(
+         "--readout-time", arguments.options.readout_time,
+         "seconds from the top to the bottom row of an image (rolling shutter); negative if "
+         "the bottom row is exposed first")
+      ->check(&CheckReadoutTime)
       ->capture_default_str();
   app.add_option("--threads", arguments.options.threads,
                  "number of threads, 0 for one per core; does not change the output")
