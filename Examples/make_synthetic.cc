@@ -46,8 +46,9 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "added, chosen by this seed");
   auto* const readout_time =
       app.add_option("--readout-time", arguments.options.readout_time,
-                     "seconds from the first to the last row of an image (rolling shutter)");
-  hullslam::ExpectNumber(*readout_time->capture_default_str(), 0.0, 0.1);
+                     "seconds from the top to the bottom row of an image (rolling shutter); "
+                     "negative if the bottom row is exposed first");
+  hullslam::ExpectNumber(*readout_time->capture_default_str(), -0.1, 0.1);
   app.add_option("--threads", arguments.options.threads,
                  "number of threads, 0 for one per core; does not change the output")
       ->check(CLI::Range(0, 256))

@@ -19,13 +19,25 @@ struct AffineMap {
   Eigen::Vector2d operator*(const Eigen::Vector2d& point) const { return matrix * point + shift; }
 };
 
-// Undoes an image velocity (px/s) that is the same for a whole object. The rows of the undistorted
-// image are used as an approximation of the rows as read.
+// The axis of the image along which the exposure proceeds, and the size of the image along it, px.
+struct ReadoutAxis {
+  Eigen::Index index = 1;
+  int size = 0;
+};
+
+ReadoutAxis AxisOf(const Sensor& sensor) {
+  return sensor.readout_direction == ReadoutDirection::kRows ? ReadoutAxis{1, sensor.camera.height}
+                                                             : ReadoutAxis{0, sensor.camera.width};
+}
+
+// Undoes an image velocity (px/s) that is the same for a whole object. The rows (or columns) of the
+// undistorted image are used as an approximation of those as read.
 AffineMap UndoVelocity(const Sensor& sensor, const Eigen::Vector2d& velocity) {
-  const Eigen::Vector2d per_row = velocity * sensor.readout_time / sensor.camera.height;
+  const ReadoutAxis axis = AxisOf(sensor);
+  const Eigen::Vector2d per_pixel = velocity * sensor.readout_time / axis.size;
   AffineMap map;
-  map.matrix.col(1) -= per_row;
-  map.shift = 0.5 * sensor.camera.height * per_row;
+  map.matrix.col(axis.index) -= per_pixel;
+  map.shift = 0.5 * axis.size * per_pixel;
   return map;
 }
 
@@ -93,11 +105,12 @@ std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor&
                                                std::span<const double> inverse_depths) {
   Check(inverse_depths.size() == frame.features.size(), "there must be one depth per keypoint");
   const PinholeCamera& camera = sensor.camera;
+  const ReadoutAxis axis = AxisOf(sensor);
   auto corrected = std::make_shared<Frame>(frame);
   FrameFeatures& features = corrected->features;
   for (size_t i = 0; i < features.size(); ++i) {
     const Eigen::Vector2d pixel = features.keypoints[i].undistorted.cast<double>();
-    const double time = (camera.Distort(pixel).y() / camera.height - 0.5) * sensor.readout_time;
+    const double time = (camera.Distort(pixel)[axis.index] / axis.size - 0.5) * sensor.readout_time;
     const Eigen::Vector2f moved =
         (time * ImageVelocity(camera, velocity, pixel, inverse_depths[i])).cast<float>();
     features.keypoints[i].undistorted -= moved;

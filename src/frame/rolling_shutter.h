@@ -25,12 +25,13 @@ PointVelocity MeanVelocity(const Rigid3& cam_from_last_cam, double duration);
 Eigen::Vector2d ImageVelocity(const PinholeCamera& camera, const PointVelocity& velocity,
                               const Eigen::Vector2d& pixel, double inverse_depth);
 
-// The frame of a rolling shutter as a global shutter would have taken it when the middle row was
-// exposed. A rolling shutter exposes one row after the other during Sensor::readout_time, and the
-// camera moves meanwhile. Keypoints are moved back by the motion of their points in the image since
-// the exposure of the middle row; detections are moved back by the motion of a point at their
-// centre. The inverse depth of a detection is the median over its keypoints, or over all keypoints
-// if none of its own is known. `inverse_depths`: one per keypoint, 0 where it is unknown.
+// The frame of a rolling shutter as a global shutter would have taken it when the middle row (or
+// column) was exposed. A rolling shutter exposes one row after the other during
+// Sensor::readout_time, and the camera moves meanwhile. Keypoints are moved back by the motion of
+// their points in the image since the exposure of the middle row; detections are moved back by the
+// motion of a point at their centre. The inverse depth of a detection is the median over its
+// keypoints, or over all keypoints if none of its own is known. `inverse_depths`: one per keypoint,
+// 0 where it is unknown.
 std::shared_ptr<const Frame> WithGlobalShutter(const Frame& frame, const Sensor& sensor,
                                                const PointVelocity& velocity,
                                                std::span<const double> inverse_depths);

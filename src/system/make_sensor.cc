@@ -14,6 +14,7 @@ Sensor MakeSensor(const SystemOptions& options) {
   sensor.depth_error = options.depth.error;
   sensor.frames_per_second = options.frames_per_second;
   sensor.readout_time = options.readout_time;
+  sensor.readout_direction = options.readout_direction;
   return sensor;
 }
 

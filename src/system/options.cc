@@ -22,8 +22,12 @@ OptionTable SystemOptions::Bind() {
   camera.Bind(table);
   const OptionScope scope(table, "Camera");
   scope.Add("fps", &frames_per_second, Range::Positive(), "frame rate of the camera, 1/s");
-  scope.Add("readout_time", &readout_time, Range::Between(0.0, 0.1),
-            "rolling shutter: time from the first to the last row of an image, s; 0: all at once");
+  scope.Add(
+      "readout_time", &readout_time, Range::Between(-0.1, 0.1),
+      "rolling shutter: time from the top row of an image to the bottom row (columns: from left "
+      "to right), s; negative: the other way round; 0: all at once");
+  scope.AddEnum("readout_direction", &readout_direction, {"rows", "columns"},
+                "rolling shutter: an image is exposed row after row or column after column");
   scope.Add("RGB", &rgb_order,
             "colour images that the library receives from memory are RGB (else BGR)");
   depth.Bind(table);

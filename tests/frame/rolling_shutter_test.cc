@@ -28,13 +28,16 @@ Sensor RollingSensor() {
   return sensor;
 }
 
-// The pixel at which a rolling shutter sees a point. The row of the pixel determines the time of
-// its exposure.
+// The pixel at which a rolling shutter sees a point. The row or column of the pixel determines the
+// time of its exposure.
 Eigen::Vector2d SeenWhileMoving(const Sensor& sensor, const Eigen::Vector3d& point) {
   Eigen::Vector2d pixel = sensor.camera.Project(point);
   for (int i = 0; i < 20; ++i) {
-    const double row = sensor.camera.Distort(pixel).y() / sensor.camera.height - 0.5;
-    pixel = sensor.camera.Project(MotionUntil(row * sensor.readout_time) * point);
+    const Eigen::Vector2d as_read = sensor.camera.Distort(pixel);
+    const double place = sensor.readout_direction == ReadoutDirection::kRows
+                             ? as_read.y() / sensor.camera.height
+                             : as_read.x() / sensor.camera.width;
+    pixel = sensor.camera.Project(MotionUntil((place - 0.5) * sensor.readout_time) * point);
   }
   return pixel;
 }
@@ -77,11 +80,19 @@ TEST(MeanVelocity, IsThatOfTheMotion) {
   EXPECT_LT((velocity.linear - Velocity().linear).norm(), 1e-2);
 }
 
-class GlobalShutter : public testing::TestWithParam<double> {};  // k1
+struct Shutter {
+  double k1 = 0.0;  // of the lens
+  double readout_time = 0.0;
+  ReadoutDirection direction = ReadoutDirection::kRows;
+};
+
+class GlobalShutter : public testing::TestWithParam<Shutter> {};
 
 TEST_P(GlobalShutter, SeesPointsWhereTheMiddleRowWouldSeeThem) {
   Sensor sensor = RollingSensor();
-  sensor.camera.k1 = GetParam();
+  sensor.camera.k1 = GetParam().k1;
+  sensor.readout_time = GetParam().readout_time;
+  sensor.readout_direction = GetParam().direction;
   std::vector<Eigen::Vector2d> seen, middle;
   std::vector<double> inverse_depths;
   for (const double x : {-0.8, -0.3, 0.8}) {
@@ -102,7 +113,11 @@ TEST_P(GlobalShutter, SeesPointsWhereTheMiddleRowWouldSeeThem) {
   EXPECT_GT(before, 2.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Distortions, GlobalShutter, testing::Values(0.0, 0.2));
+INSTANTIATE_TEST_SUITE_P(Shutters, GlobalShutter,
+                         testing::Values(Shutter{0.0, kReadout}, Shutter{0.2, kReadout},
+                                         Shutter{0.2, -kReadout},
+                                         Shutter{0.2, kReadout, ReadoutDirection::kColumns},
+                                         Shutter{0.2, -kReadout, ReadoutDirection::kColumns}));
 
 TEST(WithGlobalShutter, FindsKeypointsWhereTheyAreNow) {
   const Sensor sensor = RollingSensor();
@@ -186,6 +201,23 @@ TEST(WithGlobalShutter, MovesDetectionsWithTheirKeypoints) {
   EXPECT_NEAR(after.lines[0].line.SignedDistance(after.ellipse->center) +
                   after.ellipse->HalfExtent(after.lines[0].line.normal),
               0.0, 1e-9);
+}
+
+TEST(WithGlobalShutter, MovesDetectionsByTheColumnsOfAShutterThatReadsColumns) {
+  Sensor sensor = RollingSensor();
+  sensor.readout_time = -kReadout;
+  sensor.readout_direction = ReadoutDirection::kColumns;
+  const Detection before = SquareAtTheBottom();
+  Frame frame = FrameOf({{250.0, 420.0}});
+  frame.detections = {before};
+  const std::vector<double> depths = {0.5};
+  const auto corrected = WithGlobalShutter(frame, sensor, {.linear = {1.0, 0.4, 0.0}}, depths);
+  for (size_t i = 0; i < before.hull.size(); ++i) {
+    const Eigen::Vector2d& point = before.hull[i];
+    const Eigen::Vector2d expected =
+        point + kReadout * (point.x() / 640.0 - 0.5) * Eigen::Vector2d(250.0, 100.0);
+    EXPECT_LT((corrected->detections[0].hull[i] - expected).norm(), 1e-9);
+  }
 }
 
 // A detection without keypoints must not count as infinitely far away.

@@ -17,6 +17,9 @@ TEST(MakeSynthetic, BadUsageIsRefusedAndWritesNothing) {
   EXPECT_EQ(RunProgram("make_synthetic", {}).exit_code, 2);
   EXPECT_EQ(RunProgram("make_synthetic", {out, "--frames", "0"}).exit_code, 2);
   EXPECT_EQ(RunProgram("make_synthetic", {out, "--frames", "many"}).exit_code, 2);
+  for (const char* const seconds : {"0.2", "-0.2", "nan", "inf"}) {
+    EXPECT_EQ(RunProgram("make_synthetic", {out, "--readout-time", seconds}).exit_code, 2);
+  }
   EXPECT_EQ(RunProgram("make_synthetic", {out, "--colour"}).exit_code, 2);
   EXPECT_EQ(RunProgram("make_synthetic", {out, "--readout-time", "nan"}).exit_code, 2);
   const ProgramResult result = RunProgram("make_synthetic", {out, "--scene", "kitchen"});

@@ -38,9 +38,11 @@ struct SyntheticWorldOptions {
   int points = 600;
   // px, standard deviation of u and v at level 0, and of the disparity at every level.
   double pixel_noise = 0.0;
-  double depth_share = 1.0;   // share of the points that have a depth in every frame that sees them
-  int flipped_bits = 0;       // flipped bits of each descriptor; every frame flips other bits
-  double readout_time = 0.0;  // s; the frames of the path are those of a rolling shutter
+  double depth_share = 1.0;  // share of the points that have a depth in every frame that sees them
+  int flipped_bits = 0;      // flipped bits of each descriptor; every frame flips other bits
+  // The frames of the path are those of a shutter like this (see Sensor).
+  double readout_time = 0.0;  // s
+  ReadoutDirection readout_direction = ReadoutDirection::kRows;
   uint64_t seed = 1;
 };
 
@@ -59,6 +61,7 @@ class SyntheticWorld {
   explicit SyntheticWorld(const SyntheticWorldOptions& options = {})
       : options_(options), sensor_(SyntheticSensor()) {
     sensor_.readout_time = options.readout_time;
+    sensor_.readout_direction = options.readout_direction;
     std::mt19937_64 random(HashSeed(options.seed, 0, "points"));
     const auto number = [&random](double low, double high) {
       return std::uniform_real_distribution<double>(low, high)(random);
@@ -110,11 +113,12 @@ class SyntheticWorld {
   SyntheticView Observe(uint32_t index) const {
     const double frames = sensor_.readout_time * sensor_.frames_per_second;
     return ObserveRows(FrameId(index),
-                       [&](double row) { return CamFromWorld(index + frames * row); });
+                       [&](double place) { return CamFromWorld(index + frames * place); });
   }
 
  private:
-  // `cam_from_world_at` is the pose at a row of the image: -0.5 is the top, 0.5 the bottom.
+  // `cam_from_world_at` is the pose at a row or column of the image: -0.5 is the top or left one,
+  // 0.5 the bottom or right one.
   template <typename PoseAt>
   SyntheticView ObserveRows(FrameId id, const PoseAt& cam_from_world_at) const {
     std::mt19937_64 random(HashSeed(options_.seed, id.value, "noise"));
@@ -124,10 +128,12 @@ class SyntheticWorld {
     std::vector<uint32_t> points;
     for (uint32_t i = 0; i < points_.size(); ++i) {
       Eigen::Vector3d point_in_cam = cam_from_world_at(0.0) * points_[i];
-      for (int k = 0; sensor_.readout_time > 0.0 && k < 10; ++k) {
-        const double v = sensor_.camera.Project(point_in_cam).y();
-        point_in_cam =
-            cam_from_world_at(std::clamp(v / sensor_.camera.height - 0.5, -0.5, 0.5)) * points_[i];
+      for (int k = 0; sensor_.readout_time != 0.0 && k < 10; ++k) {
+        const Eigen::Vector2d pixel = sensor_.camera.Project(point_in_cam);
+        const double place = sensor_.readout_direction == ReadoutDirection::kRows
+                                 ? pixel.y() / sensor_.camera.height
+                                 : pixel.x() / sensor_.camera.width;
+        point_in_cam = cam_from_world_at(std::clamp(place - 0.5, -0.5, 0.5)) * points_[i];
       }
       if (point_in_cam.z() > 0.1 && sensor_.bounds.Contains(sensor_.camera.Project(point_in_cam))) {
         AddKeypoint(patches_[i], point_in_cam, random, frame->features);

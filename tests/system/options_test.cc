@@ -8,6 +8,7 @@
 
 #include "hullslam/util/error.h"
 #include "support/expect_error.h"
+#include "system/make_sensor.h"
 
 namespace hullslam {
 namespace {
@@ -29,6 +30,19 @@ TEST(SystemOptions, EveryDefaultIsInItsRange) {
   EXPECT_NO_THROW(options.Validate());
 }
 
+TEST(SystemOptions, TheShutterMayReadInEachDirection) {
+  SystemOptions options = WithCamera();
+  OptionTable table = options.Bind();
+  table.Set("Camera.readout_time", "-0.026", "test");
+  table.Set("Camera.readout_direction", "columns", "test");
+  EXPECT_EQ(MakeSensor(options).readout_time, -0.026);
+  EXPECT_EQ(MakeSensor(options).readout_direction, ReadoutDirection::kColumns);
+  for (const char* const time : {"nan", "-nan", "inf", "-0.11", "0.11"}) {
+    EXPECT_THROW(table.Set("Camera.readout_time", time, "test"), InputError) << time;
+  }
+  EXPECT_THROW(table.Set("Camera.readout_direction", "diagonal", "test"), InputError);
+}
+
 std::string ValueOf(SystemOptions& options, const std::string& key) {
   for (const OptionTable::Entry& entry : options.Bind().Entries()) {
     if (entry.key == key) {
@@ -43,7 +57,7 @@ std::string Change(const std::string& key) {
   SystemOptions options;
   OptionTable table = options.Bind();
   const std::string before = ValueOf(options, key);
-  for (const char* const value : {"0.3", "0.7", "7", "9", "true", "false", "hull"}) {
+  for (const char* const value : {"0.3", "0.7", "7", "9", "true", "false", "hull", "columns"}) {
     try {
       table.Set(key, value, "test");
     } catch (const InputError&) {

@@ -26,7 +26,7 @@ struct RenderedFrame {
 class Renderer {
  public:
   // Keeps a reference to `scene`. The camera must have no distortion. `readout_time`: seconds from
-  // the exposure of the first row of an image to that of the last one (rolling shutter).
+  // the exposure of the top row of an image to that of the bottom row (rolling shutter).
   Renderer(const Scene& scene, const PinholeCamera& camera, double readout_time = 0.0);
 
   // `time` is that of the middle row. Objects stand still while the rows are exposed.

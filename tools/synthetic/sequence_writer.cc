@@ -90,7 +90,7 @@ std::string CameraSettings(const PinholeCamera& camera, double readout_time) {
       "ORBextractor.iniThFAST: 20\nORBextractor.minThFAST: 7\n",
       camera.fx, camera.fy, camera.cx, camera.cy, camera.width, camera.height, camera.bf,
       Sensor::Options().units_per_metre);
-  if (readout_time > 0.0) {
+  if (readout_time != 0.0) {
     text += fmt::format("Camera.readout_time: {}\n", readout_time);
   }
   return text;

@@ -18,7 +18,7 @@ struct SequenceOptions {
   std::optional<uint64_t> rearranged = std::nullopt;  // seed of a rearrangement (BuildScene)
   bool force = false;         // allows replacing a folder that an earlier run wrote
   bool noise = true;          // whether the sensor has noise
-  double readout_time = 0.0;  // s, from the first to the last row of an image (rolling shutter)
+  double readout_time = 0.0;  // s, from the top to the bottom row of an image (rolling shutter)
   int threads = 0;            // 0: as many as the CPU supports
 };
 

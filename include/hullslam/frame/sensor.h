@@ -16,6 +16,9 @@ enum class SensorKind {
   kMonocular,
 };
 
+// Whether a rolling shutter exposes an image row after row or column after column.
+enum class ReadoutDirection { kRows, kColumns };
+
 // The properties of the camera that are the same for all frames of a run.
 struct Sensor {
   SensorKind kind = SensorKind::kRgbd;
@@ -25,9 +28,11 @@ struct Sensor {
   double close_depth = 0.0;  // m; smaller depths are precise enough for a landmark from one view
   DepthErrorOptions depth_error;
   double frames_per_second = 30.0;
-  // Time from the exposure of the first row of an image to that of the last one, s. 0 for a global
-  // shutter, which exposes all rows at the same time.
+  // Time from the exposure of the top row of an image to that of the bottom row, or from the left
+  // column to the right one, s. Negative if the bottom row or the right column is exposed first; 0
+  // for a global shutter, which exposes the whole image at the same time.
   double readout_time = 0.0;
+  ReadoutDirection readout_direction = ReadoutDirection::kRows;
 
   bool IsMonocular() const { return kind == SensorKind::kMonocular; }
   // Baseline of the virtual stereo pair, m; 0 for a monocular camera.

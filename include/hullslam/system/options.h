@@ -31,8 +31,9 @@ struct SystemOptions {
   SensorKind sensor = SensorKind::kRgbd;  // not a setting of the table: each program has its own
   PinholeCamera camera;
   double frames_per_second = 30.0;  // frame rate of the camera
-  double readout_time = 0.0;  // s, from the first to the last row of an image; 0: global shutter
-  bool rgb_order = false;     // order of channels of colour images from memory: RGB, else BGR
+  double readout_time = 0.0;        // s, see Sensor::readout_time
+  ReadoutDirection readout_direction = ReadoutDirection::kRows;
+  bool rgb_order = false;  // order of channels of colour images from memory: RGB, else BGR
   DepthOptions depth;
   FeatureOptions features;
   TrackingOptions tracking;
