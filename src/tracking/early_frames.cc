@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "map/islands.h"
@@ -18,17 +19,16 @@ namespace {
 
 constexpr size_t kMostFrames = 300;
 
-// The keyframe of the frame's session that is nearest to it in time. If there is none, one of an
-// earlier session, whose time stamps say nothing about the frame.
+// The keyframe of the frame's session that is nearest to it in time. Invalid if there is none: the
+// time stamps of earlier sessions say nothing about the frame.
 KeyframeId NearestInTime(const Map& map, const Frame& frame) {
   const auto session_of = [&](FrameId id) { return SessionNumber(map.sessions(), id); };
   const size_t session = session_of(frame.id);
   KeyframeId nearest;
-  std::pair smallest(true, std::numeric_limits<double>::infinity());  // is elsewhere, seconds
+  double smallest = std::numeric_limits<double>::infinity();  // s
   for (const auto& [id, keyframe] : map.keyframes()) {
-    const std::pair gap(session_of(keyframe.frame->id) != session,
-                        std::abs(keyframe.frame->timestamp - frame.timestamp));
-    if (gap < smallest) {
+    const double gap = std::abs(keyframe.frame->timestamp - frame.timestamp);
+    if (session_of(keyframe.frame->id) == session && gap < smallest) {
       smallest = gap;
       nearest = id;
     }
@@ -53,11 +53,16 @@ std::optional<TrackedFrame> LocaliseFrame(const Map& map, const TrackingContext&
     return tracked;
   }
   LastFrame nearest;
+  std::span<PoseSource* const> sources = kSources;
   nearest.reference = NearestInTime(map, *frame);
-  nearest.frame = map.keyframes().At(nearest.reference).frame;
-  nearest.cam_from_world = map.keyframes().At(nearest.reference).cam_from_world;
+  if (nearest.reference.IsValid()) {
+    nearest.frame = map.keyframes().At(nearest.reference).frame;
+    nearest.cam_from_world = map.keyframes().At(nearest.reference).cam_from_world;
+  } else {
+    sources = sources.subspan(1);
+  }
   std::optional<ConfirmedPose> found =
-      FindConfirmedPose(*frame, map, context, nearest, kSources).found;
+      FindConfirmedPose(*frame, map, context, nearest, sources).found;
   if (!found) {
     return std::nullopt;
   }

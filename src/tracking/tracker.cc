@@ -164,6 +164,9 @@ Tracker::Result Tracker::BeginIsland(std::shared_ptr<const Frame> frame, Initial
 std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map,
                                                        const Cancellation* cancellation,
                                                        const ProgressCallback& on_progress) {
+  if (last_.frame == nullptr) {
+    return {};  // no frame has a pose: the map is that of an earlier session, which was not found
+  }
   object_index_.Follow(map, sensor_.camera);
   return early_.Localise(map, Context(), cancellation, on_progress);
 }
@@ -296,13 +299,15 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map
 
 // In an island that is not young, the camera may soon be found again, and only place recognition,
 // which needs words, can join a new island to it. In a young island there is little to be found.
+// The map of an earlier session is not given up like this before the camera was found in it.
 bool Tracker::MayBeginIsland(const Frame& frame, const Map& map) const {
   if (is_localizing_only_) {
     return false;
   }
   const bool has_waited = frame.timestamp - *lost_since_ >= kPatience;
-  return IsYoung(map) ? has_waited || island_rules_.begins_at_once
-                      : has_waited && map.vocabulary() != nullptr;
+  const bool was_found = last_.frame != nullptr;
+  return was_found && IsYoung(map) ? has_waited || island_rules_.begins_at_once
+                                   : has_waited && map.vocabulary() != nullptr;
 }
 
 void Tracker::CountSightings(const Map& map, const LocalTracking& tracking) {

@@ -110,6 +110,16 @@ TEST_F(EarlyFramesTest, AreSoughtAtTheKeyframesOfTheirSession) {
   EXPECT_LT((found[0].cam_from_world.translation - truth.translation).norm(), 0.02);
 }
 
+// Only words or objects can find a frame in the map of an earlier session, not its time stamp.
+TEST_F(EarlyFramesTest, AreNotSoughtByTimeInAnEarlierSession) {
+  SyntheticMap made = MakeSyntheticMap(world_, {2, 5});
+  made.map.BeginSession({.name = "second", .first_frame = FrameId(100)});
+  auto early = std::make_shared<Frame>(*world_.Observe(3).frame);
+  early->id = FrameId(101);
+  early_.Keep(early, false);
+  EXPECT_TRUE(early_.Localise(made.map, Context()).empty());
+}
+
 TEST_F(EarlyFramesTest, TheOldestAreForgottenIfThereAreTooMany) {
   const std::shared_ptr<const Frame> seen = world_.Observe(2).frame;
   for (uint32_t i = 0; i < 305; ++i) {
