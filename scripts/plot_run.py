@@ -58,7 +58,10 @@ STAGES = {  # names in summary.json and in the picture
     "local_bundle_adjustment": "local bundle adjustment",
     "loop": "loop closing",
     "loop_detection": "search for loops",
-    "loop_adjustment": "global bundle adjustment",
+    "loop_adjustment": "adjustment of the map after a loop",
+    "global_bundle_adjustment": "adjustment of the whole map",
+    "known_sizes": "scale from known sizes",
+    "object_changes": "objects: changes since earlier runs",
 }
 
 

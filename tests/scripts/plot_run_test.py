@@ -8,6 +8,7 @@ import io
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -143,6 +144,16 @@ class LabelTest(unittest.TestCase):
         count = plot_labels.draw_labels(plot, labels)
         self.assertLess(count, 200)
         self.assertEqual(len(plot.texts), count)
+
+
+class StageTest(unittest.TestCase):
+    def test_every_stage_of_the_library_has_a_plain_name(self):
+        stages = set()
+        for source in (SCRIPT.parents[1] / "src").rglob("*.cc"):
+            text = source.read_text(encoding="utf-8")
+            stages.update(re.findall(r'ScopedTimer \w+\([^"\n]*"(\w+)"\)', text))
+        self.assertGreater(len(stages), 10)
+        self.assertEqual(sorted(stages - set(plot_run.STAGES)), [])
 
 
 class AlignTest(unittest.TestCase):
