@@ -44,10 +44,10 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--rearranged", arguments.options.rearranged,
                  "a later visit of desk, room or house: some objects were moved, taken away and "
                  "added, chosen by this seed");
-  app.add_option("--readout-time", arguments.options.readout_time,
-                 "seconds from the first to the last row of an image (rolling shutter)")
-      ->check(CLI::Range(0.0, 0.1))
-      ->capture_default_str();
+  auto* const readout_time =
+      app.add_option("--readout-time", arguments.options.readout_time,
+                     "seconds from the first to the last row of an image (rolling shutter)");
+  hullslam::ExpectNumber(*readout_time->capture_default_str(), 0.0, 0.1);
   app.add_option("--threads", arguments.options.threads,
                  "number of threads, 0 for one per core; does not change the output")
       ->check(CLI::Range(0, 256))
@@ -100,7 +100,7 @@ int Run(int argc, char** argv) {
   if (!hullslam::ParseCommandLine(app, argc, argv)) {
     return kDone;
   }
-  hullslam::CatchInterrupts();  // so that no half-written sequence is left
+  hullslam::CatchInterrupts();  // then an interrupted program can remove its unfinished sequence
   return Render(arguments);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Uses HullSLAM as a library: tracks a sequence in TUM's format with its masks, says when objects
-// are seen, and prints the mapped objects.
+// Uses HullSLAM as a library: tracks a sequence in TUM's format with its masks, prints at what
+// times objects are seen, and prints the mapped objects.
 //
 //   objects_of_sequence SEQUENCE SETTINGS MASKS
 #include <cstdio>

@@ -70,7 +70,7 @@ class InputError(Exception):
 
 
 def parse_variant(text):
-    """The name and the arguments that NAME:KEY=VALUE,... stands for."""
+    """The name and the arguments of the program for a variant NAME:KEY=VALUE,..."""
     name, colon, settings = text.partition(":")
     if not colon or not re.fullmatch(r"[\w+-][\w.+-]*", name):
         raise InputError(f"--variant is '{text}', expected NAME:KEY=VALUE,... with a name of "
@@ -111,7 +111,7 @@ class Sequence:
 
 
 def parse_common(text):
-    """The arguments that the text of --common stands for."""
+    """The list of arguments in the text of --common."""
     try:
         return shlex.split(text)
     except ValueError as error:
@@ -150,7 +150,7 @@ def read_json(path):
 
 
 def run_once(command, folder, seconds):
-    """Returns (summary, error) of the run in `folder`, which is made unless it is there already.
+    """Returns (summary, error) of the run in `folder`. Makes the run unless it is already there.
 
     The error is empty if the run succeeded.
     """
@@ -187,9 +187,9 @@ def lost_percent(summary):
     return 100.0 * (1.0 - tracked / frames) if frames and tracked is not None else None
 
 
-def value_at(summary, place):
+def value_at(summary, keys):
     """The number under these keys of the summary; None if there is no number."""
-    for key in place:
+    for key in keys:
         summary = summary.get(key) if isinstance(summary, dict) else None
     is_number = isinstance(summary, (int, float)) and not isinstance(summary, bool)
     return float(summary) if is_number else None
@@ -198,8 +198,8 @@ def value_at(summary, place):
 def collect(summaries):
     """Mean, sample standard deviation (0 for a single run) and values of every column."""
     row = {}
-    for heading, place, _ in COLUMNS:
-        found = [value_at(summary, place) if place else lost_percent(summary)
+    for heading, keys, _ in COLUMNS:
+        found = [value_at(summary, keys) if keys else lost_percent(summary)
                  for summary in summaries]
         values = [value for value in found if value is not None]
         row[heading] = {"mean": statistics.fmean(values) if values else None,

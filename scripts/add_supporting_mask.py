@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Copies the masks of a sequence of make_synthetic and adds a large mask of a supporting surface.
 
-In each frame, one more detection of the class `dining table` lies under everything that stands on
-the table: the convex hull of these things' masks, grown by 30 px and clipped to the image. This
-shows whether a supporting surface is taken for an occluder of the things on it.
+Each frame gets one more mask, of the class `dining table`: the convex hull of the masks of all
+things that stand on the table, grown by 30 px and clipped to the image. A run with these masks shows
+whether a supporting surface is taken for an occluder of the things on it.
 
 SEQUENCE_MASKS is the folder `masks` of the sequence (format yolo-seg). groundtruth_objects.json,
 groundtruth.txt and camera.yaml beside it tell which masks show things on the table: those of true
@@ -89,14 +89,14 @@ class Truth:
             lowest.append(item["world_from_object"][2] - height)
         heights, counts = np.unique(np.round(lowest, 2), return_counts=True)
         top = heights[counts.argmax()]
-        # By class: centre, and whether the thing is on the table.
+        # For each class the centres of its things, and whether each of them is on the table.
         self.things = {}
         for item, low in zip(objects, lowest):
             self.things.setdefault(item["class_id"], []).append(
                 (np.array(item["world_from_object"][:3]), top - 0.01 < low < top + MAX_STACK))
 
     def is_on_table(self, stem, number, outline):
-        """Of several things of the mask's class, the one that is nearest to the mask decides."""
+        """Whether the nearest thing of the mask's class is on the table."""
         if stem not in self.frames or number not in self.things:
             return False
         pose = self.poses[self.frames[stem]]

@@ -5,9 +5,10 @@
 1. Every key of a setting or of summary.json that a document names in code exists. Keys are the names
    in the first column of the tables of docs/settings.md (settings, names of ORB-SLAM3) and of
    docs/outputs.md (summary.json), and earlier names of settings, which src pairs with the new ones.
-   `objects.pose.*` stands for the keys that begin so; it needs one. A name is taken for a key if it
-   begins like one of a table whose first column is called key or name.
-2. Every link to a file, an image or a heading of this repository leads somewhere.
+   `objects.pose.*` stands for all keys that begin with `objects.pose.`; there must be one. A name is
+   taken for a key if it has the same first part as a key of a table whose first column is called
+   key or name.
+2. The target of every link to a file, an image or a heading of this repository exists.
 3. Every file of this repository that a document names in code exists, for example `scripts/demo.sh`
    or `map/map.h`, which may be in src or in include/hullslam. `costs/quadric_*.h` needs one such
    file. Names with a placeholder, such as `src/<module>` or `tests/MODULE`, are not checked.
@@ -22,7 +23,7 @@ import sys
 
 MAX_COLUMNS = 140
 MAX_README_LINES = 120
-# Files whose tables define keys, and the suffixes by which a name such as objects.json is a file.
+# Files whose tables define keys, and the suffixes that tell that a name such as objects.json is a file.
 KEY_TABLES = ("docs/settings.md", "docs/outputs.md")
 FILE_SUFFIXES = {"json", "csv", "ply", "txt", "png", "md", "yaml", "h", "cc", "py", "sh"}
 DOCUMENTS = ("README.md", "docs/**/*.md", "config/**/*.md", "Vocabulary/*.md", "Thirdparty/*.md",

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Checks that no function is longer than 60 lines; fails if one is.
 
-A function's lines are those from the first line of its declaration to its closing brace, blank lines
-and comments inside included. A lambda belongs to the function around it; outside of functions it
+The lines of a function are counted from the first line of its declaration to its closing brace,
+including blank lines and comments. A lambda belongs to the function around it; outside of functions it
 counts as a function. All C++ files in src, include, Examples, tools, bench, python and tests/support
 are read. Tests may have longer functions.
 
@@ -37,16 +37,16 @@ TEMPLATE = re.compile(r"\btemplate\s*<")
 ASSIGNMENT = re.compile(r"(?<![=!<>+\-*/%&|^])=(?!=)")
 OPERATOR = re.compile(r"\boperator\s*(\(\)|\[\]|[^\s\w(]+|[\w\s:<>*&]+)")
 INITIALISER_LIST = re.compile(r"\)[^)]*?(?<!:):(?!:)")
-# What may stand between the parameters and the body of a function.
+# The words that may be between the parameters and the body of a function.
 QUALIFIERS = re.compile(r"(\s*(const|noexcept|override|final|mutable|&&?|(->|requires\b).*))*\s*",
                         re.DOTALL)
 NAME = re.compile(r"((?:~?\w+\s*(?:<[^()]*>)?\s*::\s*)*~?\w+)\s*\(")
 
 
 def hide(text):
-    """The text with spaces in place of comments and preprocessor lines and of literals' contents.
+    """Replaces comments, preprocessor lines and the contents of literals by spaces.
 
-    Lines stay where they are. Literals become a pair of quotes, so that something stands there.
+    The numbers of lines do not change. A literal becomes a pair of quotes and spaces.
     """
     def blank(match):
         found = match[0]
@@ -69,7 +69,7 @@ def without_template(head):
 
 
 def without_brackets(head):
-    """The head with nothing between its outermost parentheses."""
+    """The head without the text inside its outermost parentheses."""
     result, depth = [], 0
     for char in head:
         depth -= char == ")"
@@ -80,7 +80,7 @@ def without_brackets(head):
 
 
 def kind_of(head):
-    """What an opening brace after `head` begins: "scope", "function" or "value"."""
+    """The kind of block that an opening brace after `head` begins: "scope", "function" or "value"."""
     head = without_template(head).strip()
     outline = without_brackets(head)
     has_parameters = ")" in outline
@@ -161,7 +161,7 @@ def functions(text):
 
 
 def blank_value(value):
-    """A braced initialiser, without what is in its braces."""
+    """A braced initialiser with spaces instead of the content of its braces."""
     return "{" + re.sub(r"[^\n]", " ", value[1:-1]) + "}"
 
 

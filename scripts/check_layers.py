@@ -6,7 +6,7 @@
 2. Of those modules it includes only the ones that its CMakeLists.txt names in LINKS. A module whose
    CMakeLists.txt is missing or does not call hullslam_module() is not checked for this rule.
 3. A public header (in include/) includes no private header (in src/).
-4. A public header includes nothing of CGAL, SuiteSparse or Embree, so that users of the library do
+4. A public header includes no header of CGAL, SuiteSparse or Embree, so that users of the library do
    not need them.
 """
 
@@ -33,7 +33,7 @@ LEVELS = {
     "results": 14,
     "sequences": 15,
     "masks": 16,
-    # What the programs share. It is no part of libhullslam and has no public headers.
+    # The code that the programs share. It is not part of libhullslam and has no public headers.
     "run": 17,
 }
 PROGRAM_SIDE = {"run"}

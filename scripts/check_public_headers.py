@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks that every public header is there for a user of the library; fails if one is not.
+"""Checks that every public header has a user outside of the library; fails if one has none.
 
 A header is public (in include/hullslam) because someone outside of the library includes it, or
 because a public header does whose own reason is such a user. Users are
@@ -11,8 +11,8 @@ because a public header does whose own reason is such a user. Users are
 * README.md and docs: a document that names a header by its path, such as hullslam/map/map.h, tells
   its readers to include it.
 
-Not users are the library itself (src), src/run, which the programs share, and the other tests: they
-can include headers in src. A header without a user belongs in src/<module>.
+The library itself (src), src/run and the other tests are no users, because they can include headers
+in src. A header without a user belongs in src/<module>.
 """
 
 import argparse

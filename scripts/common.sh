@@ -22,7 +22,7 @@ print_help() {
   awk 'NR > 2 && !/^#/ {exit} NR > 2 {sub(/^# ?/, ""); print}' "$0"
 }
 
-# Announces a step. If the script fails before the next step, the error message names this one.
+# Announces a step. If the script fails before the next step, the error message names this step.
 step() {
   current_step="$1"
   trap report_failed_step EXIT

@@ -3,9 +3,9 @@
 """Draws the pictures of docs/architecture.md into docs/images.
 
 architecture_modules.dot is written from LEVELS of check_layers.py, and
-architecture_data_flow.dot is written by hand. Both become SVG files by the program `dot` of
-Graphviz (Debian package graphviz). With --check nothing is drawn, and `dot` is not needed: the
-script fails if architecture_modules.dot is not what LEVELS says, or if a picture lacks a text of
+architecture_data_flow.dot is written by hand. The program `dot` of
+Graphviz (Debian package graphviz) makes SVG files from both. With --check nothing is drawn, and `dot` is not needed: the
+script fails if architecture_modules.dot does not agree with LEVELS, or if a picture lacks a text of
 its .dot file.
 """
 
@@ -23,7 +23,7 @@ IMAGES = pathlib.Path(__file__).resolve().parent.parent / "docs" / "images"
 MODULES = "architecture_modules"
 DATA_FLOW = "architecture_data_flow"
 
-# What is in a module. A module without an entry is drawn by its name only.
+# The content of each module. A module without an entry is drawn with its name only.
 CONTENTS = {
     "util": "ids, tables, checks, options",
     "files": "safe reading and writing",
@@ -55,8 +55,8 @@ CONTENTS = {
     "synthetic": "renderer of scenes",
 }
 
-# Colours of the boxes: the foundation, the parts of the map, the stages, what a user calls. A
-# colour begins at the level of a module.
+# Colours of the boxes: the foundation, the parts of the map, the stages, and the parts that a user
+# calls. Each colour is used from the level of the named module on.
 COLOURS = (("util", "#e8f0f8"), ("frame", "#e3f2e1"), ("objects", "#fdf0d5"), ("system", "#f3e6f2"))
 
 
@@ -66,7 +66,7 @@ def colour(level, levels):
 
 
 def cell(module, shade):
-    """A table cell with the name of a module and what is in it."""
+    """A table cell with the name and the content of a module."""
     text = f"<B>{html.escape(module)}</B>"
     if module in CONTENTS:
         text += f'  <FONT POINT-SIZE="12">{html.escape(CONTENTS[module])}</FONT>'

@@ -1,17 +1,17 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes a sequence whose camera leaves the scene for N frames and then goes on where it was.
+"""Makes a sequence whose camera leaves the scene for N frames and then goes on from the same pose.
 
 The first half of SEQUENCE is followed by N frames that show something else, then by its second
-half. The frames in between are blank, or the first N frames of --other. Stamps go on without a gap:
-the second half is later by N frame intervals. groundtruth.txt knows only the frames of SEQUENCE.
-This shows whether a map keeps its objects while they are not seen. With --again the whole SEQUENCE
-comes twice, with the N frames in between, which shows whether tracking finds back to its map.
+half. The frames in between are blank, or the first N frames of --other. There is no gap between the
+stamps: those of the second half are later by N frame intervals. groundtruth.txt has only the poses of
+the frames of SEQUENCE. A run on the result shows whether a map keeps its objects while they are not
+seen. With --again the whole SEQUENCE comes twice, with the N frames in between. This shows whether
+tracking finds its map again.
 
 SEQUENCE is a folder in TUM's format with PNG images, such as one of make_synthetic. Its masks
-(format yolo-seg) are taken over too. Frames in between have those of --other, or empty ones. OUT
-gets links to the files of SEQUENCE, so SEQUENCE must stay where it is. OUT must not exist, or be an
-empty folder.
+(format yolo-seg) are used too. Frames in between have the masks of --other, or none. OUT gets links
+to the files of SEQUENCE, so SEQUENCE must not be moved. OUT must not exist, or be an empty folder.
 
 Exit codes: 0 done, 2 bad usage or input.
 """
@@ -68,7 +68,7 @@ def write_png(path, size, bits, channels, value):
 
 
 def link(source, target):
-    """A link; a copy where the file system has no links."""
+    """Makes a link, or a copy if the file system has no links."""
     source = source.resolve(strict=True)
     try:
         target.symlink_to(source)
@@ -134,7 +134,7 @@ def add_other_frames(writer, stamps, other):
 
 
 class Part:
-    """The frames of the sequence from one stamp on to before another one, moved by a time."""
+    """The frames from one stamp up to, but not including, another one. Their stamps are shifted."""
 
     def __init__(self, begin, end, shift):
         self.begin, self.end, self.shift = begin, end, shift
@@ -158,7 +158,7 @@ def split(arguments, stamps, interval):
 
 
 def write_groundtruth(sequence, out, parts, between, interval):
-    """Nothing near the frames in between, which would be paired with them."""
+    """Writes groundtruth.txt without poses near the frames in between, which they would be paired with."""
     lines = []
     for part in parts:
         for stamp, words in part.rows(read_rows(sequence / "groundtruth.txt")):

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes up a vocabulary in DBoW2's text format, for tests and benchmarks of large files.
 
-The tree is full and its descriptors and weights are random, so it is of no use for recognising
-places. The default has the shape of ORB-SLAM2's ORBvoc.txt: a million words, 145 MB. The same
-arguments give the same bytes.
+The tree is full. Its descriptors and weights are random, so it cannot be used to recognise places.
+The default has the shape of ORB-SLAM2's ORBvoc.txt: a million words, 145 MB. The same arguments give
+the same bytes.
 
 Exit codes: 0 done, 2 bad usage or a file that cannot be written.
 """

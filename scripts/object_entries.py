@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Puts the observations of a run's objects, which have a file of their own, into their entries."""
+"""Reads the observations of objects from their own file into the entries of the objects."""
 
 import json
 
@@ -7,7 +7,7 @@ OBSERVATIONS = "objects_observations.json"
 
 
 def attach_observations(path, content):
-    """Replaces the number of observations of each object by the list of them.
+    """Replaces the number of observations of each object by the list of its observations.
 
     `content` is the content of the file objects.json at `path`. The observations are read from
     objects_observations.json next to it. Lists, as in files of version 1, are left as they are.

@@ -8,7 +8,7 @@
 # is measured before and after each run, and the time of tracking is printed as a multiple of it,
 # because times of different computers cannot be compared. The runs are in build/performance.
 #
-# Let nothing else run on the computer meanwhile.
+# No other program should run on the computer at the same time.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 

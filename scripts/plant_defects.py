@@ -6,7 +6,7 @@ that the tests do not notice survives: a test is missing.
 The list is a JSON file of entries {"name", "file", "find", "replace", "test"}. The text `find` must
 occur exactly once in `file`. `test` is the test program with its arguments; if it is absent, it is
 that of the module: objects_tests for src/objects/fusion.cc. It must pass without a defect. A defect
-that makes the tests fail, crash or run too long is caught.
+counts as caught if the tests fail, crash or run too long.
 
 The user's tree is never changed. The copy is in a temporary folder, which is removed at the end, or
 in --work DIR, which is kept: its build makes the next run faster. Only files that git knows are
@@ -91,7 +91,7 @@ class Builder:
         self.copy, self.build, self.jobs, self.seconds = copy, copy / "build/release", jobs, seconds
 
     def configure(self):
-        # Without the unity build, a planted defect costs the compilation of one file.
+        # Without the unity build, only one file is compiled for each planted defect.
         command = ["cmake", "--preset", "release", "-DCMAKE_UNITY_BUILD=OFF"]
         if shutil.which("ccache"):
             command.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
@@ -125,12 +125,12 @@ def apply_defect(text, entry):
 
 
 def try_defect(entry, builder):
-    """Returns what became of the defect."""
+    """Returns the result for a defect: "caught", "SURVIVED", or why it could not be tried."""
     path = builder.copy / entry["file"]
     original = path.read_text(encoding="utf-8") if path.is_file() else ""
     changed = apply_defect(original, entry)
     if changed is None:
-        return f"does not apply ({original.count(entry['find'])} places)"
+        return f"does not apply ({original.count(entry['find'])} matches)"
     command = command_of(entry)
     try:
         path.write_text(changed, encoding="utf-8")
@@ -147,13 +147,13 @@ def check_applies(entries, top):
     """The defects that do not apply to the tree, one line per defect."""
     for entry in entries:
         path = top / entry["file"]
-        places = path.read_text(encoding="utf-8").count(entry["find"]) if path.is_file() else 0
-        if places != 1:
-            yield f"{entry['name']}: does not apply ({places} places in {entry['file']})"
+        matches = path.read_text(encoding="utf-8").count(entry["find"]) if path.is_file() else 0
+        if matches != 1:
+            yield f"{entry['name']}: does not apply ({matches} matches in {entry['file']})"
 
 
 def run(entries, builder):
-    """Tries all defects and prints what became of them. Returns the number that were not caught."""
+    """Tries all defects and prints the results. Returns the number that were not caught."""
     for command in sorted({tuple(command_of(entry)) for entry in entries}):
         built, messages = builder.compile(command[0])
         if not built:

@@ -6,7 +6,7 @@ each sequence has a panel of its own.
 
 OUT is an output folder of scripts/ablation.py. Its ablation.json is read. A point is the mean over
 the runs, its bar the standard deviation. A point is hollow if runs failed, or if they tracked fewer
-frames than the best variant of the sequence: its error is then that of an easier part.
+frames than the best variant of the sequence: its error is then that of a part of the sequence.
 """
 
 import argparse

@@ -5,8 +5,8 @@ import colorsys
 
 import numpy as np
 
-# Any two differ by 31 or more in CIE Lab, and all are dark enough for white paper. The first ones
-# differ most.
+# Any two colours differ by 31 or more in CIE Lab, and all are dark enough for white paper. The first
+# ones differ most.
 PALETTE = ("#e62600", "#0000e6", "#00e600", "#00bfe6", "#e65cb8", "#666600", "#002266", "#660011",
            "#00e699", "#e6bf00", "#e68a5c", "#735ce6", "#006655", "#e600e6", "#53a600", "#e6004d",
            "#5c8ae6", "#660055", "#006611", "#664729", "#294766", "#a64263", "#e67300", "#8a00a6")
@@ -30,7 +30,7 @@ def ink_on(colour):
 
 
 def plain(text):
-    """The text as matplotlib must get it to draw exactly these characters.
+    """The text in the form in which matplotlib draws exactly these characters.
 
     A `$` would start a formula. Characters that cannot be drawn become question marks.
     """
@@ -41,7 +41,7 @@ def plain(text):
 
 
 class Label:
-    """A text that belongs to a point of a plot. The colour is that of its box, if it has one."""
+    """A text that belongs to a point of a plot. If it has a colour, it is drawn in a box of it."""
 
     def __init__(self, text, point, colour=None):
         self.text, self.point, self.colour = plain(text), np.asarray(point, dtype=float), colour
@@ -61,8 +61,8 @@ def overlaps(box, others):
                for other in others)
 
 
-def find_place(point, size, inside, taken):
-    """The centre for a box of this size near the point that is free; None if there is none."""
+def find_centre(point, size, inside, taken):
+    """The centre of a free box of this size near the point; None if there is no free box."""
     for offset in offsets(np.array([0.35 * size[0], 0.75 * size[1]])):
         centre = point + offset
         box = (*(centre - size / 2), *(centre + size / 2))
@@ -95,13 +95,13 @@ def draw_labels(plot, labels):
                          transform=plot.transAxes, color=ink_on(colour) if colour else "black",
                          bbox={"color": colour or "white", "alpha": 0.6, "pad": 1}, zorder=5)
         extent = text.get_window_extent(renderer)
-        place = find_place(point, np.array([extent.width, extent.height]) + 6, inside, taken)
-        if place is None:
+        centre = find_centre(point, np.array([extent.width, extent.height]) + 6, inside, taken)
+        if centre is None:
             text.remove()
             continue
-        text.set_position(to_share.transform(place))
-        if np.linalg.norm(place - point) > extent.height:
-            plot.plot(*to_share.transform([point, place]).T, transform=plot.transAxes,
+        text.set_position(to_share.transform(centre))
+        if np.linalg.norm(centre - point) > extent.height:
+            plot.plot(*to_share.transform([point, centre]).T, transform=plot.transAxes,
                       color=colour or "black", linewidth=0.6, zorder=4)
         count += 1
     return count

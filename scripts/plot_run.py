@@ -10,10 +10,10 @@ object and dashed if not. Hulls are dotted.
 RUN_DIR is a folder that `rgbd_tum --output` or `map_objects --output` wrote. It must contain
 trajectory.txt; map.ply, keyframes.txt, objects.json and summary.json are used if they exist.
 
-The run is aligned to the ground truth of its sequence (SE3, Umeyama 1991, pairs within 0.02 s; Sim3
-if summary.json says that the run was, because the scale of a single camera is unknown) and drawn
-from above and from the side. The ground truth is groundtruth.txt in RUN_DIR if the run wrote one,
-else in the folder that summary.json names, or the file that is given.
+The run is aligned to the ground truth of its sequence (Umeyama 1991, pairs within 0.02 s) and drawn
+from above and from the side. The alignment is SE3, or Sim3 if summary.json says so, because the scale
+of a monocular run is unknown. The ground truth is the given file, else groundtruth.txt in RUN_DIR if
+the run wrote one, else the file in the folder that summary.json names.
 
 Up is where the tops of the images are: with ground truth the nearest axis of its frame, without it
 that direction itself. If the cameras do not tell, the views are named by the axes of the frame. Lengths
@@ -97,8 +97,8 @@ def align(source, target, with_scale=False):
 
 
 class Run:
-    """Everything that is drawn. With ground truth all positions are in its frame, without it in that
-    of the run."""
+    """Everything that is drawn. All positions are in the frame of the ground truth or, without
+    ground truth, in that of the run."""
 
     def __init__(self, run_dir):
         self.stamps, poses = read_trajectory(run_dir / "trajectory.txt")
@@ -112,7 +112,10 @@ class Run:
             self.keyframes = read_trajectory(run_dir / "keyframes.txt")[1][:, :3]
         self.points, self.colours = np.empty((0, 3)), None
         if (run_dir / "map.ply").exists():
-            self.points, self.colours = read_map(run_dir / "map.ply", MAX_POINTS)
+            self.points, self.colours, dropped = read_map(run_dir / "map.ply", MAX_POINTS)
+            if dropped:
+                print(f"note: {dropped} points of {run_dir / 'map.ply'} are not drawn: their "
+                      "positions are no numbers, or too far away", file=sys.stderr)
         self.summary = Summary(run_dir / "summary.json")
         self.gives_poses = self.summary.text("provenance", "pipeline") != "objects"
         self.camera, self.objects = run_objects.read_objects(run_dir / "objects.json")
@@ -328,14 +331,14 @@ def draw_over_time(plot, run):
 
 
 def stage_times(summary):
-    """(name, median, p95) in ms for all of tracking and for each stage; without unknown ones.
+    """(name, median, p95) in ms for tracking as a whole and for each stage whose times are known.
 
     A stage that took no time did not run: map_objects tracks no frames.
     """
-    places = [("tracking", ("timing", "track_ms"))]
-    places += [(name, ("timing", "stages_ms", name)) for name in summary.keys("timing", "stages_ms")]
-    times = [(name, summary.number(*place, "median"), summary.number(*place, "p95"))
-             for name, place in places]
+    keys = [("tracking", ("timing", "track_ms"))]
+    keys += [(name, ("timing", "stages_ms", name)) for name in summary.keys("timing", "stages_ms")]
+    times = [(name, summary.number(*path, "median"), summary.number(*path, "p95"))
+             for name, path in keys]
     return [(name, median, tail) for name, median, tail in times
             if median is not None and tail is not None and tail > 0.0]
 
@@ -385,7 +388,7 @@ def draw(run, path, name):
     if run.errors is not None:
         title += f", ATE RMSE {1e3 * run.ate():.1f} mm ({run.alignment}, {len(run.errors)} pairs)"
     figure.suptitle(title)
-    figure.canvas.draw()  # places the plots, on which the places of the labels depend
+    figure.canvas.draw()  # lays out the plots; the positions of the labels depend on this
     figure.set_layout_engine("none")
     for plot, of_plot in zip(plots[0], labels):
         draw_labels(plot, of_plot)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the programs on fixed inputs and stores hashes of what they write.
 
-A change that must not alter results is checked with it: store the hashes before the change, and
-compare after it. All runs are sequential, so equal programs give equal bytes.
+Use it to check a change that must not alter results: store the hashes before the change, and compare
+them after it. All runs are sequential, so equal programs give equal bytes.
 
     scripts/reference_runs.py store reference.json --sequence rgbd_dataset_freiburg1_xyz --masks MASKS
     scripts/reference_runs.py compare reference.json --sequence rgbd_dataset_freiburg1_xyz --masks MASKS
@@ -68,7 +68,7 @@ def run_program(command, program_folder, log):
 
 
 def hash_file(path, work):
-    """The hash of a file's content. The path of the folder of the runs in it does not count."""
+    """The hash of a file's content. It does not depend on the path of the folder of the runs."""
     content = path.read_bytes().replace(str(work).encode(), b"WORK")
     return hashlib.sha256(content).hexdigest()
 

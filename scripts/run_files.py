@@ -133,7 +133,7 @@ def read_trajectory(path):
 
 
 def read_ply_header(file, path):
-    """The number of vertices and the numpy type of a vertex. `file` is left at the first vertex."""
+    """The number of vertices and the numpy type of a vertex. Reads `file` up to the first vertex."""
     if file.readline(100).strip() != b"ply":
         raise InputError(f"{path}: not a PLY file")
     count, fields, binary, element, is_first = 0, [], False, "", True
@@ -165,9 +165,10 @@ def read_ply_header(file, path):
 
 
 def read_map(path, max_points):
-    """Points (n x 3) and colours (n x 3, 0 to 1; None if the file has none) of a PLY file.
+    """Points (n x 3) and colours (n x 3, 0 to 1; None if the file has none) of a PLY file, and the
+    number of vertices that are left out because their positions are no plausible numbers.
 
-    Of more than `max_points` vertices some are left out, evenly.
+    Of more than `max_points` other vertices some are left out too, evenly.
     """
     try:
         with path.open("rb") as file:
@@ -178,16 +179,18 @@ def read_map(path, max_points):
     if len(data) < count * kind.itemsize:
         raise InputError(f"{path}: cut short; its header announces {count} vertices")
     vertices = np.frombuffer(data, kind)
-    vertices = vertices[::max(1, -(-count // max_points))]
+    # The comparison is also false for NaN.
+    is_plausible = np.all([np.abs(vertices[axis]) <= LARGEST for axis in "xyz"], axis=0)
+    vertices = vertices[is_plausible]
+    dropped = count - len(vertices)
+    vertices = vertices[::max(1, -(-len(vertices) // max_points))]
     points = np.stack([vertices[axis].astype(float) for axis in "xyz"], axis=1)
-    if not (np.abs(points) <= LARGEST).all():  # also false for NaN
-        raise InputError(f"{path}: the position of a vertex is not a plausible number")
     if not {"red", "green", "blue"} <= set(kind.names):
-        return points, None
+        return points, None, dropped
     colours = np.stack([vertices[c] / 255.0 for c in ("red", "green", "blue")], axis=1)
     if not ((colours >= 0) & (colours <= 1)).all():
         raise InputError(f"{path}: the colour of a vertex is not from 0 to 255")
-    return points, colours
+    return points, colours, dropped
 
 
 def find_sequence_at(text, run_dir):

@@ -85,7 +85,7 @@ def read_objects(path):
     """The camera and the objects of objects.json; ({}, []) if the file does not exist."""
     if not path.exists():
         return {}, []
-    content, place = read_json(path), ""
+    content, position = read_json(path), ""
     try:
         camera = read_camera(content["camera"])
         if not isinstance(content["objects"], list):
@@ -93,11 +93,11 @@ def read_objects(path):
         attach_observations(path, content)
         objects = []
         for i, entry in enumerate(content["objects"]):
-            place = f"objects[{i}]: "
+            position = f"objects[{i}]: "
             objects.append(Object(entry))
     except (ValueError, KeyError, TypeError) as error:
         reason = f"no key {error}" if isinstance(error, KeyError) else error
-        raise InputError(f"{path}: not a valid objects.json: {place}{one_line(reason)}") from error
+        raise InputError(f"{path}: not a valid objects.json: {position}{one_line(reason)}") from error
     colours = class_colours(item.label for item in objects)
     for item in objects:
         item.colour = colours[item.label]

@@ -9,7 +9,8 @@ set -euo pipefail
 
 list="$top/Thirdparty/apt-packages.txt"
 
-# On another system than Debian 12 a note is printed. It may still have everything that is needed.
+# On another system than Debian 12 a note is printed, but the script goes on: the system may have
+# all packages.
 check_system() {
   local system="unknown" name="an unknown system"
   if [ -r /etc/os-release ]; then

@@ -13,9 +13,9 @@ namespace {
 
 constexpr size_t kBits = 256;
 constexpr size_t kChunk = 4096;      // descriptors per task
-constexpr int kMostIterations = 30;  // the last changes of a large set are small
+constexpr int kMostIterations = 30;  // a large set changes little in the last iterations
 
-// For each bit, the number of descriptors of a cluster that have it.
+// For each bit, the number of descriptors of a cluster in which it is 1.
 struct BitCounts {
   std::array<uint32_t, kBits> ones{};
   uint32_t members = 0;

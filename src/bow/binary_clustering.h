@@ -18,10 +18,10 @@ struct BinaryCluster {
 
 // Divides descriptors into at most `most_clusters` clusters with small Hamming distances to their
 // centres (k-medians). Every descriptor belongs to the nearest centre; ties go to the first. The
-// first centres are drawn as by k-means++ (Arthur and Vassilvitskii 2007): the Hamming distance of
-// two binary vectors is their squared Euclidean distance. There are fewer clusters if there are
-// fewer different descriptors. Stops early if `cancellation` (may be null) is requested. The result
-// depends on the arguments only, not on how `runner` runs the tasks.
+// initial centres are drawn as in k-means++ (Arthur and Vassilvitskii 2007), which uses squared
+// Euclidean distances; for binary vectors these are the Hamming distances. There are fewer clusters
+// if there are fewer different descriptors. Stops early if `cancellation` (may be null) is
+// requested. The result depends on the arguments only, not on how `runner` runs the tasks.
 std::vector<BinaryCluster> ClusterBinary(std::span<const Descriptor> descriptors, int most_clusters,
                                          uint64_t seed, TaskRunner& runner,
                                          const Cancellation* cancellation);

@@ -34,7 +34,7 @@ void InvertedIndex::Add(KeyframeId keyframe, const BowVector& vector) {
     std::vector<Posting>& list = postings_.Mutable(word);
     const auto posting = FindPosting(list, keyframe);
     Check(posting == list.end() || posting->keyframe != keyframe,
-          "the keyframe has the word already");
+          "the keyframe already has the word");
     list.insert(posting, {keyframe, weight});
   }
   keyframe_end_ = std::max(keyframe_end_, keyframe.value + 1);
@@ -43,9 +43,10 @@ void InvertedIndex::Add(KeyframeId keyframe, const BowVector& vector) {
 void InvertedIndex::Remove(KeyframeId keyframe, const BowVector& vector) {
   for (const auto& [word, weight] : vector) {
     const std::vector<Posting>* const old = postings_.Find(word);
-    Check(old != nullptr, "no keyframe has the word");
+    Check(old != nullptr, "no keyframe contains the word");
     const auto posting = FindPosting(*old, keyframe);
-    Check(posting != old->end() && posting->keyframe == keyframe, "the keyframe lacks the word");
+    Check(posting != old->end() && posting->keyframe == keyframe,
+          "the keyframe does not contain the word");
     if (old->size() == 1) {
       postings_.Erase(word);
     } else {

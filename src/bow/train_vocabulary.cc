@@ -28,8 +28,8 @@ std::vector<Descriptor> AllDescriptors(std::span<const std::vector<Descriptor>> 
   return all;
 }
 
-// Divides the nodes of a level. A few large nodes are divided one after the other, each by several
-// tasks; many small ones are a task each.
+// Divides the nodes of a level. If there are few nodes, they are large: they are divided one after
+// the other, each by several tasks. If there are many, each of them is one task.
 std::vector<std::vector<BinaryCluster>> Divide(const std::vector<OpenNode>& open, int level,
                                                const VocabularyTraining& options,
                                                TaskRunner& runner,
@@ -82,7 +82,8 @@ std::vector<OpenNode> AddLevel(const std::vector<OpenNode>& open,
   return next;
 }
 
-// ln(N / n) for each word, where n of the N images contain it.
+// ln(N / n) for each word, where N is the number of images and n the number of those that contain
+// the word.
 std::vector<float> InverseDocumentFrequencies(const Vocabulary& vocabulary,
                                               std::span<const std::vector<Descriptor>> images,
                                               TaskRunner& runner) {
@@ -101,7 +102,8 @@ std::vector<float> InverseDocumentFrequencies(const Vocabulary& vocabulary,
   std::vector<float> frequencies;
   frequencies.reserve(counts.size());
   for (const uint32_t count : counts) {
-    // Every word is the nearest word of the descriptors from which it was made.
+    // The count is above 0, because every word is the nearest word of the descriptors from which it
+    // was made.
     Check(count > 0, "a word occurs in no image");
     frequencies.push_back(static_cast<float>(
         std::log(static_cast<double>(images.size()) / static_cast<double>(count))));

@@ -71,9 +71,9 @@ class Reader {
   std::string_view name_;
 };
 
-// The fault of the tree; empty if it is valid. If the children of node 0 begin at node 1, and those
-// of each other node begin where those of the node before it end, then every node but the root has
-// one parent.
+// Describes the fault of the tree; empty if the tree is valid. If the children of node 0 begin at
+// node 1, and the children of each other node begin where those of the previous node end, then
+// every node except the root has exactly one parent.
 std::string FindTreeFault(std::span<const uint32_t> first_child, const VocabularyHeader& header) {
   const uint32_t count = header.node_count;
   if (first_child[0] != 1 || first_child[count] != count) {
@@ -95,13 +95,13 @@ std::string FindTreeFault(std::span<const uint32_t> first_child, const Vocabular
              : std::string();
 }
 
-// The fault of the numbers of the words; empty if they are in depth-first order.
+// Describes the fault of the numbers of the words; empty if they are in depth-first order.
 std::string FindWordFault(std::span<const uint32_t> first_child,
                           std::span<const uint32_t> first_word, const VocabularyHeader& header) {
   if (first_word[0] != 0) {
     return "the first word is not word 0";
   }
-  std::vector<uint32_t> end_word(header.node_count);  // of each node: one past its last word
+  std::vector<uint32_t> end_word(header.node_count);  // for each node: one past its last word
   end_word[0] = header.word_count;
   for (uint32_t node = 0; node < header.node_count; ++node) {
     const uint32_t begin = first_child[node];
@@ -131,7 +131,7 @@ std::string FindWeightFault(std::span<const float> weights) {
                                             bad - weights.begin(), *bad, kMostWordWeight);
 }
 
-// The word of each descriptor.
+// Finds the word of each descriptor.
 HULLSLAM_FUNCTION_CLONES
 void FindWords(std::span<const Descriptor> descriptors, const Descriptor* nodes,
                const uint32_t* first_child, const uint32_t* first_word, WordId* words) {

@@ -12,8 +12,8 @@
 namespace hullslam {
 namespace {
 
-// The children of all nodes, in the order in which they were given: those of node i are
-// children[begin[i]] to children[begin[i + 1] - 1].
+// The children of all nodes, in the order of the list: those of node i are children[begin[i]] to
+// children[begin[i + 1] - 1].
 struct ChildLists {
   std::vector<uint32_t> begin;
   std::vector<uint32_t> children;
@@ -37,7 +37,7 @@ ChildLists ListChildren(std::span<const TreeNode> nodes) {
 
 // The tree with its nodes numbered level by level.
 struct LevelOrder {
-  std::vector<uint32_t> given;        // the number that each node had; 0 is the root
+  std::vector<uint32_t> given;        // the number of each node in the list; 0 is the root
   std::vector<uint32_t> first_child;  // as in Vocabulary
 };
 
@@ -80,7 +80,7 @@ std::vector<uint32_t> NumberWords(const std::vector<uint32_t>& first_child) {
   return first_word;
 }
 
-// `bytes` has the size of the file.
+// Writes the parts after the header. `bytes` has the size of the whole file.
 void WriteParts(const LevelOrder& order, std::span<const TreeNode> nodes,
                 const VocabularyLayout& layout, std::byte* bytes) {
   const size_t count = order.given.size();
@@ -106,7 +106,7 @@ Vocabulary BuildVocabulary(int branching, int levels, std::span<const TreeNode> 
     word_count += order.first_child[node] == order.first_child[node + 1] ? 1 : 0;
   }
   const VocabularyLayout layout(order.given.size(), word_count);
-  // Numbers of 8 bytes, so that the memory is aligned.
+  // The memory is allocated as numbers of 8 bytes, so that it is aligned.
   auto memory = std::make_shared<std::vector<uint64_t>>((layout.size + 7) / 8);
   auto* const bytes = reinterpret_cast<std::byte*>(memory->data());
   WriteParts(order, nodes, layout, bytes);
@@ -120,7 +120,7 @@ Vocabulary BuildVocabulary(int branching, int levels, std::span<const TreeNode> 
   try {
     return Vocabulary::View({bytes, layout.size}, std::move(memory), "the vocabulary");
   } catch (const InputError& error) {
-    throw CheckError(error.what());  // the nodes are the caller's, not the user's
+    throw CheckError(error.what());  // the nodes come from the caller, not from a file of the user
   }
 }
 

@@ -43,7 +43,7 @@ struct VocabularyLayout {
   uint64_t first_child = 0;
   uint64_t first_word = 0;
   uint64_t weights = 0;
-  uint64_t size = 0;  // of the file
+  uint64_t size = 0;  // size of the file
 
   VocabularyLayout(uint64_t node_count, uint64_t word_count)
       : first_child(descriptors + 32 * node_count),

@@ -6,7 +6,7 @@
 namespace hullslam {
 namespace {
 
-// As a share of the half axes: a point nearer to the centre than this has no direction.
+// A point nearer to the centre than this share of the half axes has no direction.
 constexpr double kCenter = 1e-3;
 
 // Distance of the point from the surface along the ray to the centre, and its derivative.

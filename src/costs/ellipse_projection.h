@@ -47,7 +47,7 @@ class EllipseProjection {
   const PinholeCamera& camera_;
   const QuadricInCamera& quadric_;
   double depth2_ = 0.0;     // -C*_33 before scaling, m^2
-  Eigen::Vector2d center_;  // of the ellipse, in the plane at depth 1
+  Eigen::Vector2d center_;  // centre of the ellipse, in the plane at depth 1
   EllipseNumbers numbers_;
   Eigen::Matrix3d conic_;  // B - t t^T, m^2
   Eigen::Matrix<double, 5, 9> derivative_ = Eigen::Matrix<double, 5, 9>::Zero();

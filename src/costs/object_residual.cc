@@ -16,9 +16,8 @@ namespace hullslam {
 namespace {
 
 // In the order of the enumerators.
-constexpr std::array<const ResidualKind*, 5> kKinds = {&kTangentResidual, &kAlgebraicPlaneResidual,
-                                                       &kAlgebraicPointResidual,
-                                                       &kDistributionResidual, &kOverlapResidual};
+constexpr std::array kKinds = {&kTangentResidual, &kAlgebraicPlaneResidual,
+                               &kAlgebraicPointResidual, &kDistributionResidual, &kOverlapResidual};
 
 }  // namespace
 

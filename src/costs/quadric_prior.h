@@ -25,7 +25,7 @@ class QuadricPriorCost final : public ceres::SizedCostFunction<9, 7, 3> {
  private:
   Rigid3 start_;
   Eigen::Vector3d log_axes_;
-  Eigen::Vector3d inverse_sigmas_;  // of log axes, centre (1 / m) and rotation
+  Eigen::Vector3d inverse_sigmas_;  // for log axes, centre (1 / m) and rotation (1 / rad)
 };
 
 }  // namespace hullslam

@@ -14,30 +14,31 @@
 
 namespace hullslam {
 
-// From which the cost of one detection is made.
+// The data from which the cost of one detection is made.
 struct ObjectCostInput {
   const PinholeCamera& camera;
   const Detection& detection;
-  std::span<const SilhouetteLine> lines;  // the detection's own or moved ones
+  std::span<const SilhouetteLine> lines;  // of the detection, possibly moved by misfit compensation
   double sigma;                           // in the unit of the residual
 };
 
 // How large an ellipsoid appears in an image.
 struct ProjectedSize {
-  double radius_px;      // of the circle that has the area of the projected ellipse
+  double radius_px;      // radius of the circle with the area of the projected ellipse
   double metres_per_px;  // at the depth of the ellipsoid's centre
 };
 
-// All that differs from residual to residual. Each has one constant of this type beside its cost,
-// and object_residual.cc has the table of them.
+// The properties in which the kinds of residuals differ. Each kind has one constant of this type
+// beside its cost, and the table in object_residual.cc lists all constants.
 struct ResidualKind {
   std::string_view name;                        // in settings files
   std::span<const ObjectPrimitive> primitives;  // from which the residual can be computed
   bool takes_lines = false;                     // whether it is computed from the detection's lines
-  // The size of the residual where the measured outline is `error_px` outside of the true one
-  // everywhere (ResidualOfPixelError).
+  // The size of the residual if the whole measured outline is `error_px` outside of the true one
+  // (ResidualOfPixelError).
   double (*of_pixel_error)(double error_px, const ProjectedSize& size);
-  // Null where the detection lacks what the residual needs. The primitive is one of `primitives`.
+  // Null if the detection lacks the data that the residual needs. The primitive is one of
+  // `primitives`.
   std::unique_ptr<ceres::CostFunction> (*make_cost)(const ObjectCostInput& input);
 };
 

@@ -10,12 +10,12 @@
 
 namespace hullslam::internal {
 
-// Whether the matches of an estimate determine some of its parameters, which are angles (radians)
-// or logarithms of scales, and not one match alone does. For this, the standard deviations of these
-// parameters must still be below 0.1 without the match that constrains them most. `informations`
-// has for each match its part of the Hessian, J^T J with J in 1 / sigmas. The result is false, for
-// example, for points on a line with a single point beside it: if that point is an outlier, all
-// points agree on a wrong rotation.
+// Whether several matches of an estimate together determine some of its parameters, which are
+// angles (radians) or logarithms of scales. The standard deviations of these parameters must be
+// below 0.1 even without the match that constrains them most. `informations` has for each match its
+// part of the Hessian, J^T J with J in 1 / sigmas. The result is false, for example, for points on
+// a line with a single point beside it: if that point is an outlier, all points agree on a wrong
+// rotation.
 template <int kSize>
 bool DetermineParameters(const std::vector<Eigen::Matrix<double, kSize, kSize>>& informations,
                          std::initializer_list<int> parameters) {

@@ -9,8 +9,8 @@
 
 namespace hullslam {
 
-// The squared distance of a pair from the nearest one that agrees with a motion, divided by its
-// variance, to first order (Sampson 1982). With correct pairs and sigmas its mean is 1.
+// The squared distance of a pair from the nearest pair that agrees exactly with the motion, divided
+// by its variance, to first order (Sampson 1982). With correct pairs and sigmas its mean is 1.
 double SampsonError(const PinholeCamera& camera, const Rigid3& b_from_a, const PixelPair& pair);
 
 // A robust cost of a pair. It grows with the error and stays below kMaxPairCost: e / (1 + e /

@@ -34,8 +34,8 @@ struct Triangle {
   Eigen::Vector3d squares;  // m^2
 };
 
-// The best conditioned real root of x^3 + b x^2 + c x + d, by Newton's method from a start beyond
-// the local extremum that lies farther from zero.
+// The best conditioned real root of x^3 + b x^2 + c x + d. If the polynomial has local extrema,
+// Newton's method starts beyond the one whose value is farther from zero.
 double RealRootOfCubic(double b, double c, double d) {
   const auto value = [&](double x) { return ((x + b) * x + c) * x + d; };
   const double radicand = b * b - 3.0 * c;

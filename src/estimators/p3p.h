@@ -9,12 +9,12 @@
 
 namespace hullslam {
 
-// Whether the height of a triangle over its longest side is at least 1 % of this side. Three points
-// without it are nearly on one line, so they do not determine a rotation. False for numbers that
-// are not finite.
+// Whether the height of a triangle over its longest side is at least 1 % of this side. If it is
+// not, the three points are nearly on one line and do not determine a rotation. False for numbers
+// that are not finite.
 bool SpansTriangle(const std::array<Eigen::Vector3d, 3>& points);
 
-// Up to four poses, in no order of meaning.
+// Up to four poses. Their order has no meaning.
 struct P3pPoses {
   std::array<Rigid3, 4> cam_from_world;
   size_t count = 0;

@@ -18,8 +18,7 @@ struct RansacOptions {
   // Two calls with the same seed and input give the same bits. Use HashSeed(run seed, frame,
   // purpose).
   uint64_t seed = 0;
-  // The search ends when, with this probability, a sample without outliers would have shown a
-  // better model.
+  // The search ends when the probability is this large that one of the samples had no outliers.
   double confidence = 0.999;
   int max_iterations = 1000;
   // With fewer inliers the search fails. A model always needs more inliers than a sample has

@@ -35,7 +35,7 @@ SimilarityResidual SimilarityResidualInB(const PinholeCamera& camera, const Simi
 
 SimilarityDepthResidual::SimilarityDepthResidual(const SimilarityMatch& match,
                                                  const TwoWaySimilarity& similarity) {
-  constexpr double kSigma = 0.2;  // of the logarithm of the quotient of two depths
+  constexpr double kSigma = 0.2;  // sigma of the logarithm of the quotient of two depths
   const Eigen::Vector3d in_b = similarity.b_from_a * match.point_in_a;
   residual = std::log(in_b.z() / match.point_in_b.z()) / kSigma;
   jacobian = MotionOf(in_b).row(2) / (kSigma * in_b.z());

@@ -116,7 +116,7 @@ struct Hypothesis {
   std::vector<TwoViews::Point> points;  // with parallax
   std::vector<double> parallaxes;       // radians; of the points and of pairs without parallax
   std::vector<size_t> agreeing;         // points and pairs without parallax that agree
-  double cost = 0.0;  // of a refined motion; a pair that does not agree costs kMaxPairCost
+  double cost = 0.0;  // cost of a refined motion; a pair that does not agree costs kMaxPairCost
 };
 
 double SquaredError(const PinholeCamera& camera, const Eigen::Vector3d& point,

@@ -23,10 +23,11 @@ struct PixelPair {
 
 struct TwoViewOptions {
   uint64_t seed = 0;
-  size_t min_points = 50;     // that must be seen in front of both cameras
-  double min_share = 0.7;     // of such points among the pairs that agree with any motion
-  double min_parallax = 1.2;  // degrees between the two rays to a point, in the median
-  // Largest share of the pairs that agree with the best motion that a rotation alone may explain.
+  size_t min_points = 50;  // least number of points in front of both cameras
+  double min_share = 0.7;  // least share of such points among the pairs that agree with any motion
+  double min_parallax = 1.2;  // degrees; least median angle between the two rays to a point
+  // A rotation alone may explain at most this share of the pairs that agree with the best motion.
+  // Otherwise there is too little parallax.
   double max_turned_share = 0.9;
   // A motion competes if the number of pairs that agree with it is at least this share of the
   // largest such number. The costs of competing motions must exceed the cost of the best one by so
@@ -56,7 +57,7 @@ struct TwoViews {
   TwoViewFailure failure = TwoViewFailure::kNone;
   Rigid3 b_from_a;
   std::vector<Point> points;  // by increasing index of the pair
-  double parallax = 0.0;      // degrees, in the median
+  double parallax = 0.0;      // degrees, median angle between the two rays to a point
 
   bool ok() const { return failure == TwoViewFailure::kNone; }
 };

@@ -44,7 +44,8 @@ std::optional<double> ScaleDrift(const PairedPoints& points) {
   const PointAlignment first = align(points.estimate, points.reference, 0);
   const PointAlignment last =
       align(points.estimate, points.reference, points.reference.size() - count);
-  // A longer unit of the map means that lengths in the map have become shorter.
+  // `scale` converts lengths of the estimate to true lengths. If it is larger at the beginning than
+  // at the end, lengths in the estimate have grown.
   return first.ok() && last.ok() ? std::optional(first.scale / last.scale - 1.0) : std::nullopt;
 }
 

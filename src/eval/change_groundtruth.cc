@@ -11,7 +11,7 @@ namespace {
 struct LocationChange {
   std::optional<Eigen::Vector3d> former = std::nullopt;
   std::optional<Eigen::Vector3d> now = std::nullopt;
-  double reach = 0.0;  // m; largest error of a reported location; for true objects only
+  double reach = 0.0;  // m; how far a reported centre may be away; only of true objects
 };
 
 std::optional<Eigen::Vector3d> CenterOf(const std::optional<LocatedObject>& object,
@@ -25,8 +25,8 @@ bool AreOne(const std::optional<Eigen::Vector3d>& truth,
   return !truth || (reported && (*truth - *reported).norm() <= reach);
 }
 
-// A reported change is right if it agrees with a true change with which no earlier reported change
-// agrees.
+// Counts right reports. A reported change is right if it agrees with a true change that no earlier
+// reported change agrees with.
 ChangeCounts Count(const std::vector<LocationChange>& truths,
                    const std::vector<LocationChange>& reported) {
   ChangeCounts counts{truths.size(), reported.size(), 0};

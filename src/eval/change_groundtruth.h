@@ -10,7 +10,8 @@
 
 namespace hullslam {
 
-// The numbers of changes of one kind: true ones, reported ones, and rightly reported ones.
+// The numbers of changes of one kind: true changes, reported changes, and reported changes that are
+// right.
 struct ChangeCounts {
   size_t in_truth = 0;
   size_t reported = 0;
@@ -27,10 +28,10 @@ struct ChangeComparison {
   ChangeCounts taken;
 };
 
-// Compares the reported changes with a rearranged scene. A reported location is that of a true
-// object of any class if the distance of the two centres is at most half of the Size() of the true
-// object. Each true object is counted once. Moving true objects are left out, and so are those of
-// `scene.objects` whose entry in `sightings` is less than `min_sightings`; `sightings` may be
+// Compares the reported changes with a rearranged scene. A reported location agrees with a true
+// object, of any class, if the distance of the two centres is at most half of the Size() of the
+// true object. Each true object is counted once. Moving true objects are left out, and so are those
+// of `scene.objects` whose entry in `sightings` is less than `min_sightings`; `sightings` may be
 // empty. The scene is in metres; `truth_from_map` has the scale 1 if the map is in metres too.
 ChangeComparison CompareChanges(const TrueScene& scene, std::span<const ChangedObject> changes,
                                 const Sim3& truth_from_map, std::span<const size_t> sightings,

@@ -24,7 +24,7 @@ struct ObjectError {
   double center_share = 0.0;      // center_m divided by the Size() of the true object
   Eigen::Vector3d axis_ratios;    // mapped / true half axes, both sorted by length, longest first
   Eigen::Vector3d extent_ratios;  // mapped / true half extents along the axes of the true object
-  std::optional<double> siou;     // of the mapped object, from its ObjectFit
+  std::optional<double> siou;     // SIoU of the mapped object, from its ObjectFit
 };
 
 struct GroundtruthComparison {
@@ -40,7 +40,7 @@ struct GroundtruthComparison {
 GroundtruthComparison CompareWithTruth(std::span<const TrueObject> truths,
                                        const ObjectReport& report, const Sim3& truth_from_map);
 
-// Counts how often the true objects that should be mapped were mapped.
+// How many of the true objects that should be mapped were mapped, and how often.
 struct TruthCounts {
   size_t visible = 0;  // seen often enough and not moving
   size_t once = 0;     // visible objects that were mapped as one object

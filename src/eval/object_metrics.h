@@ -16,9 +16,10 @@ namespace hullslam {
 //               (Yu et al. 2025, Eq. 8); absent without such lines
 //   tangent_px  mean distance of these lines from the parallel tangents of the ellipse; absent
 //               without such lines
-// An ellipsoid that is not wholly in front of the camera has no projected ellipse. Then the
-// overlaps are 0 and the distances are absent.
-// Returns the means over the views; all values are absent if there are no views.
+//
+// An ellipsoid that is not wholly in front of the camera has no projected ellipse. In such a view
+// the overlaps are 0 and the distances are absent. Returns the means over the views; all values are
+// absent if there are no views.
 ObjectFit MeasureObject(const Ellipsoid& ellipsoid, std::span<const ReportedView> views,
                         const PinholeCamera& camera);
 

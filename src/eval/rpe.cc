@@ -11,7 +11,8 @@
 namespace hullslam {
 namespace {
 
-// Index of the end of the motion that starts at `start`.
+// Index of the pose at the end of the motion that starts at index `start`; absent if no pose is
+// near enough in time.
 std::optional<size_t> FindEnd(const std::vector<double>& stamps, size_t start,
                               const RpeOptions& options) {
   if (options.unit == RpeOptions::Unit::kFrames) {
@@ -33,9 +34,9 @@ Rigid3 Motion(const Trajectory& trajectory, size_t start, size_t end) {
 
 RpeReport EvaluateRpe(const Trajectory& reference, const Trajectory& estimate,
                       const RpeOptions& options) {
-  Check(options.delta > 0.0, "motions need a length");
+  Check(options.delta > 0.0, "the length of motions is not above 0");
   Check(options.unit == RpeOptions::Unit::kSeconds || options.delta >= 1.0,
-        "motions have at least one frame");
+        "the length of motions is less than one frame");
   const std::vector<IndexPair> pairs =
       PairPoses(reference, estimate, options.pairing,
                 options.max_difference.value_or(DefaultMaxDifference(options.pairing)));

@@ -23,7 +23,7 @@ struct TrueObject {
   Rigid3 world_from_object;  // at the start of the sequence if it moves
   Eigen::Vector3d half_extents = Eigen::Vector3d::Ones();  // m, tight, along the axes of the object
   std::optional<TrueObjectStatus> status;                  // only in a rearranged scene
-  std::optional<Rigid3> former_world_from_object;          // of a moved object: its pose before
+  std::optional<Rigid3> former_world_from_object;          // pose before; only of a moved object
 
   // Mean of the three full extents, m. Relative errors are divided by this.
   double Size() const { return 2.0 * half_extents.mean(); }
@@ -33,7 +33,7 @@ struct TrueObject {
 struct TrueScene {
   bool is_rearranged = false;
   std::vector<TrueObject> objects;
-  std::vector<TrueObject> gone;  // with their former poses; empty unless rearranged
+  std::vector<TrueObject> gone;  // with their former poses; empty unless the scene was rearranged
 };
 
 }  // namespace hullslam

@@ -43,8 +43,8 @@ class CornerDetector {
   int initial_threshold_;
   int minimum_threshold_;
   std::vector<uint8_t> score_rows_;  // scores of three image rows, in a ring buffer
-  std::vector<uint8_t> maxima_;      // of one row: the score if it is a maximum, else 0
-  std::vector<uint8_t> strong_;      // per cell: has a corner at the initial threshold
+  std::vector<uint8_t> maxima_;  // scores of the pixels of one row that are maxima, 0 for others
+  std::vector<uint8_t> strong_;  // per cell: has a corner at the initial threshold
   std::vector<uint32_t> cell_of_corner_;
 };
 

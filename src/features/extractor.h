@@ -16,7 +16,8 @@ struct ExtractedFeatures {
   std::vector<Descriptor> descriptors;  // one per keypoint
 };
 
-// Keeps its buffers from image to image. Use one extractor per thread.
+// Extracts ORB features from images. It keeps its buffers from image to image, so use one extractor
+// per thread.
 class FeatureExtractor {
  public:
   explicit FeatureExtractor(const FeatureOptions& options);

@@ -17,7 +17,7 @@ struct ShrinkBlock {
   using Bytes = std::array<uint8_t, 2 * kPixels>;
   using Words = std::array<uint16_t, kPixels>;
 
-  int from = 0;  // number of the first of the 16 pixels
+  int from = 0;  // index of the first of the 16 pixels in their row
   // Each pixel is a weighted sum of two of the 16. The indices are 16-bit numbers, as bytes.
   alignas(16) Bytes first{};
   alignas(16) Bytes second{};
@@ -48,8 +48,8 @@ class ImageShrinker {
   cv::Size to_;
   std::vector<ShrinkBlock> blocks_;  // empty if the image shrinks too much for blocks
   std::vector<Source> rows_;
-  std::vector<uint8_t> row_;             // a row of the image, and room to read beyond its end
-  std::vector<uint16_t> shrunk_rows_;    // row y is the first if y is even, else the second
+  std::vector<uint8_t> row_;           // a row of the image, and room to read beyond its end
+  std::vector<uint16_t> shrunk_rows_;  // two rows; row y is the first if y is even, else the second
   std::array<int, 2> shrunk_y_{-1, -1};  // the numbers of these rows
 };
 

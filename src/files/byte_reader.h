@@ -15,11 +15,11 @@
 
 namespace hullslam {
 
-// Reads what ByteWriter wrote. All functions throw InputError with the name of the bytes if these
-// end too early or if a value is not allowed.
+// Reads what ByteWriter wrote. All functions throw InputError if the bytes end too early or if a
+// value is not allowed.
 class ByteReader {
  public:
-  // `bytes` must outlive the reader. `name` is what messages begin with: the file and the part.
+  // `bytes` must outlive the reader. Error messages begin with `name`: the file and the part of it.
   ByteReader(std::string_view bytes, std::string name) : bytes_(bytes), name_(std::move(name)) {}
 
   template <typename Number>
@@ -34,7 +34,7 @@ class ByteReader {
     bytes_.remove_prefix(bytes.size());
     return std::bit_cast<Number>(bytes);
   }
-  // A number that is finite and whose size is at most `most`.
+  // A finite number from -most to most.
   template <typename Number>
   Number GetFinite(Number most) {
     const auto number = Get<Number>();
@@ -57,8 +57,8 @@ class ByteReader {
     Require(flag <= 1, "has a flag that is neither 0 nor 1");
     return flag == 1;
   }
-  // A number of elements of at least `bytes_each` bytes, which must all be there. So it is safe to
-  // allocate memory for them.
+  // The number of elements that follow. Throws if less than `bytes_each` bytes per element are
+  // left, so that it is safe to allocate memory for them.
   size_t GetCount(size_t bytes_each) {
     const size_t count = Get<uint32_t>();
     Require(count <= bytes_.size() / bytes_each, "has more elements than bytes");
@@ -82,7 +82,7 @@ class ByteReader {
   [[noreturn]] void Fail(const char* fault) const;
 
  private:
-  std::string_view bytes_;  // that are left
+  std::string_view bytes_;  // those that were not read yet
   std::string name_;
 };
 

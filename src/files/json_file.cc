@@ -15,16 +15,16 @@ namespace {
 
 using Json = nlohmann::json;
 
-// The message of nlohmann begins with the name that the library has for the error.
+// nlohmann's message begins with the library's name for the error in brackets, which is cut off.
 [[noreturn]] void FailParsing(const std::filesystem::path& path, std::string_view message) {
   const size_t begin = message.find("] ");
   message.remove_prefix(begin == std::string_view::npos ? 0 : begin + 2);
   throw InputError(path.string() + ": is no valid JSON, " + ShowText(message));
 }
 
-// Writes the beginning of a value. The text of the library's own dump() would be as long as the
-// value, and dump() calls itself for each level of nesting. This function stops when the text is
-// long enough, and each level adds a character.
+// Appends the JSON of a value until the text has `enough` characters. The library's own dump() is
+// not used: it writes the whole value, and it calls itself for each level of nesting. Here each
+// level adds a character, so the nesting is limited too.
 void AppendJson(const Json& value, size_t enough, std::string& text) {
   if (text.size() > enough) {
     return;

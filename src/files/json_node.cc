@@ -10,6 +10,7 @@
 #include "files/json_file.h"
 #include "files/plausible.h"
 #include "hullslam/util/error.h"
+#include "util/printable.h"
 #include "util/shown_text.h"
 
 namespace hullslam {
@@ -34,11 +35,11 @@ JsonNode JsonNode::At(const std::string& key) const {
   }
   const auto found = value_->find(key);
   if (found == value_->end()) {
-    throw InputError(fmt::format("{}: {}{}\"{}\" is missing", file_->string(), place_,
-                                 place_.empty() ? "" : ": ", key));
+    throw InputError(fmt::format("{}: {}{}\"{}\" is missing", file_->string(), path_,
+                                 path_.empty() ? "" : ": ", key));
   }
   const std::string shown = ShowText(key);  // a key may be a name of the user
-  return {*this, *found, place_.empty() ? shown : place_ + '.' + shown};
+  return {*this, *found, path_.empty() ? shown : path_ + '.' + shown};
 }
 
 bool JsonNode::Has(const std::string& key) const {
@@ -63,7 +64,7 @@ std::vector<JsonNode> JsonNode::Elements() const {
   std::vector<JsonNode> elements;
   elements.reserve(value_->size());
   for (const Json& element : *value_) {
-    elements.push_back({*this, element, fmt::format("{}[{}]", place_, elements.size())});
+    elements.push_back({*this, element, fmt::format("{}[{}]", path_, elements.size())});
   }
   return elements;
 }
@@ -72,7 +73,7 @@ std::string JsonNode::Text() const {
   if (!value_->is_string()) {
     Fail("a string");
   }
-  return value_->get<std::string>();
+  return Printable(value_->get<std::string>());
 }
 
 bool JsonNode::Flag() const {
@@ -149,7 +150,7 @@ std::vector<Eigen::Vector2d> JsonNode::Points() const {
 
 void JsonNode::Fail(std::string_view expected) const {
   throw InputError(fmt::format("{}: {} is {}, expected {}", file_->string(),
-                               place_.empty() ? "the top" : place_, ShowJson(*value_), expected));
+                               path_.empty() ? "the top" : path_, ShowJson(*value_), expected));
 }
 
 }  // namespace hullslam

@@ -27,13 +27,14 @@ class JsonNode {
   std::vector<std::pair<std::string, JsonNode>> Members() const;
   std::vector<JsonNode> Elements() const;
 
-  std::string Text() const;
+  std::string Text() const;  // in printable characters
   bool Flag() const;
   double Number() const;                     // finite
   double Number(double most) const;          // from -most to most
   double PositiveNumber(double most) const;  // > 0, up to `most`
   uint32_t Count() const;                    // 0 to 2^32 - 2
-  // An array of exactly `count` finite numbers. `expected` says so in the error in other words.
+  // An array of exactly `count` finite numbers. If `expected` is given, the error message describes
+  // the array with this text instead.
   std::vector<double> Numbers(size_t count, std::string_view expected = {}) const;
   // An array of three numbers > 0, in metres.
   Eigen::Vector3d Lengths() const;
@@ -43,12 +44,12 @@ class JsonNode {
   [[noreturn]] void Fail(std::string_view expected) const;
 
  private:
-  JsonNode(const JsonNode& parent, const nlohmann::json& value, std::string place)
-      : file_(parent.file_), value_(&value), place_(std::move(place)) {}
+  JsonNode(const JsonNode& parent, const nlohmann::json& value, std::string path)
+      : file_(parent.file_), value_(&value), path_(std::move(path)) {}
 
   const std::filesystem::path* file_;
   const nlohmann::json* value_;
-  std::string place_;  // such as objects[2].hull; empty at the top
+  std::string path_;  // such as objects[2].hull; empty at the top
 };
 
 }  // namespace hullslam

@@ -7,9 +7,10 @@ namespace hullslam {
 
 // Bounds on what files may contain. They are far beyond any real value, but small enough that no
 // computation with such numbers overflows.
-constexpr double kMostMetres = 1e8;    // size of a coordinate of a position; the earth has 6.4e6
+constexpr double kMostMetres =
+    1e8;  // size of a coordinate of a position; the radius of the earth is 6.4e6
 constexpr double kMostPixels = 1e6;    // size of a coordinate in an image
-constexpr double kMostSeconds = 1e11;  // a time stamp; those of today in ms are larger
+constexpr double kMostSeconds = 1e11;  // a time stamp; stamps in milliseconds since 1970 are larger
 
 // Whether a quaternion can be normalised. Files round their numbers, and some contain quaternions
 // that are not of unit length, so the bounds are wide.

@@ -14,14 +14,14 @@ constexpr size_t kMostTextFileBytes = 128'000'000;  // limit for lists, trajecto
 constexpr std::chrono::milliseconds kPipePatience{30'000};
 
 // All bytes of a regular file or of a pipe, such as `<(command)` of a shell or a FIFO. Throws
-// InputError with the name of the file and the reason if it is missing, is neither of the two,
-// cannot be read, has more than `most_bytes`, or is a pipe that gives no bytes for the time
+// InputError with the name of the file and the reason if it is missing, is neither a file nor a
+// pipe, cannot be read, has more than `most_bytes`, or is a pipe and no bytes arrive for the time
 // `patience`. The size of a regular file is checked before anything is read.
 std::string ReadFile(const std::filesystem::path& path, size_t most_bytes = kMostTextFileBytes,
                      std::chrono::milliseconds patience = kPipePatience);
 
-// Throws InputError if the file has more bytes. (If the size cannot be read, the error is left to
-// the reader of the file.)
+// Throws InputError if the file has more than `most_bytes`. If the size cannot be read, it does
+// nothing, because reading the file will report the error.
 void CheckFileSize(const std::filesystem::path& path, size_t most_bytes);
 
 }  // namespace hullslam

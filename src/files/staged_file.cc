@@ -18,6 +18,20 @@
 namespace hullslam {
 namespace {
 
+// The file that a path stands for. Links are followed, also to a file that does not exist yet.
+std::filesystem::path FollowLinks(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;  // as in Linux
+  std::error_code error;
+  for (int i = 0; i < kMostLinks; ++i) {
+    const std::filesystem::path target = std::filesystem::read_symlink(path, error);
+    if (error) {
+      return path;  // it is no link
+    }
+    path = path.parent_path() / target;
+  }
+  FailWriting(path, ELOOP);
+}
+
 void CheckTarget(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -29,7 +43,7 @@ void CheckTarget(const std::filesystem::path& path) {
 
 }  // namespace
 
-StagedFile::StagedFile(std::filesystem::path path) : path_(std::move(path)) {
+StagedFile::StagedFile(std::filesystem::path path) : path_(FollowLinks(std::move(path))) {
   CheckTarget(path_);
   try {
     const std::filesystem::path parent = path_.has_parent_path() ? path_.parent_path() : ".";

@@ -10,8 +10,9 @@ namespace hullslam {
 class StagingFolder;
 
 // A file that is written piece by piece and then put in place as a whole. Until then it is in a
-// temporary folder beside its path, and an earlier file at the path is unchanged. What killed
-// processes have left of such a folder is removed by the next one that writes the same path.
+// temporary folder beside its path, and an earlier file at the path is unchanged. If the path is a
+// link, all this refers to the file that the link leads to; the link stays. What killed processes
+// have left of such a folder is removed by the next one that writes the same path.
 class StagedFile {
  public:
   // All functions throw InputError with `path` and the reason of the system if they fail (disk

@@ -34,7 +34,7 @@ bool IsStillAt(int descriptor, const fs::path& path) {
 // The descriptor of the locked file; -1 if it cannot be opened, if another process has locked it,
 // or if it was removed.
 int OpenAndLock(const fs::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
   if (descriptor < 0) {
     return -1;
   }
@@ -74,7 +74,8 @@ int CreateAndLock(const fs::path& file) {
 }  // namespace
 
 StagingFolder::StagingFolder(const fs::path& parent, const std::string& prefix) {
-  // A process that looks for abandoned folders can take a folder in the moment before it is locked.
+  // Between its creation and its locking, a folder looks abandoned, and another process can take
+  // it. Then the next attempt makes another folder.
   constexpr int kAttempts = 100;
   for (int attempt = 0; lock_ < 0 && attempt < kAttempts; ++attempt) {
     std::string name = (parent / (prefix + "XXXXXX")).string();

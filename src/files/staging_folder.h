@@ -19,8 +19,8 @@ class StagingFolder {
   StagingFolder(StagingFolder&& other) noexcept;
   StagingFolder& operator=(StagingFolder&&) = delete;
 
-  // The staging folders in `parent` with this prefix whose owners have died without removing them.
-  // They belong to the caller now. Folders whose owner is alive are left alone.
+  // Takes over the staging folders in `parent` with this prefix whose owners have died without
+  // removing them. Folders whose owner is alive are left alone.
   static std::vector<StagingFolder> Abandoned(const std::filesystem::path& parent,
                                               const std::string& prefix);
 

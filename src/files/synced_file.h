@@ -13,8 +13,8 @@ namespace hullslam {
 bool WriteAll(int descriptor, std::string_view content);
 
 // Writes a new file and waits until the disk has it, because some disks only then report that they
-// are full. Throws InputError like FailWriting(), with the path `shown` in the message. Then the
-// file is removed again.
+// are full. If this fails, removes the file and throws InputError like FailWriting(), with the path
+// `shown` in the message.
 void WriteSyncedFile(const std::filesystem::path& path, std::string_view content,
                      const std::filesystem::path& shown);
 

@@ -68,7 +68,8 @@ double TextRow::Number(size_t column, std::string_view name, double most) const 
 }
 
 Eigen::Quaterniond TextRow::Rotation(size_t w, size_t x, size_t y, size_t z) const {
-  // One after the other: the order of the arguments of a call is not specified.
+  // Read in separate statements, because C++ does not specify in which order the arguments of a
+  // call are evaluated.
   const double qw = Number(w, "qw");
   const double qx = Number(x, "qx");
   const double qy = Number(y, "qy");
@@ -101,6 +102,9 @@ void ForEachRow(const std::filesystem::path& path,
     if (end - begin > kMostLineBytes) {
       row.Fail(fmt::format("a line of {} bytes, expected at most {} MB", end - begin,
                            kMostLineBytes / 1'000'000));
+    }
+    if (text.substr(begin, end - begin).find('\0') != std::string_view::npos) {
+      row.Fail("has a byte that is 0, expected text");
     }
     SplitColumns(text.substr(begin, end - begin), row.columns);
     if (!row.columns.empty() && !row.columns[0].starts_with('#')) {

@@ -15,7 +15,7 @@ namespace hullslam {
 
 constexpr size_t kMostLineBytes = 1'000'000;  // limit for a line of a text file
 
-// Parses `text` as a finite number. Returns false if it is none or if characters are left over.
+// Parses `text` as a finite number. Returns false unless the whole text is one.
 bool ParseFinite(std::string_view text, double& value);
 
 // One line of a text file, split into columns. The views are only valid during the visit.
@@ -28,10 +28,10 @@ struct TextRow {
   [[noreturn]] void Fail(const std::string& what) const;
   // The finite number in a column; throws InputError with its `name` for anything else.
   double Number(size_t column, std::string_view name) const;
-  // The same for a number that may not be larger than `most`, nor smaller than its negative.
+  // The same for a number from -most to most.
   double Number(size_t column, std::string_view name, double most) const;
-  // The unit quaternion in four columns named qw, qx, qy and qz; throws InputError for numbers that
-  // are no rotation.
+  // The unit quaternion in four columns named qw, qx, qy and qz. Throws InputError unless its
+  // length is about 1.
   Eigen::Quaterniond Rotation(size_t w, size_t x, size_t y, size_t z) const;
   // A time stamp, s.
   double Stamp(size_t column, std::string_view name = "timestamp") const;
@@ -39,7 +39,8 @@ struct TextRow {
 
 // Visits the lines with data in order. Columns are separated by blanks, tabs or commas. Empty lines
 // and lines that start with '#' are skipped; CRLF line ends are accepted. Throws InputError for a
-// file that ReadFile() refuses, and for a line of more than kMostLineBytes.
+// file that ReadFile() refuses, and for a line of more than kMostLineBytes or with a byte 0, which
+// would cut messages.
 void ForEachRow(const std::filesystem::path& path,
                 const std::function<void(const TextRow& row)>& visit,
                 size_t most_bytes = kMostTextFileBytes);

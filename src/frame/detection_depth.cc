@@ -16,7 +16,7 @@ constexpr std::array<double, 2> kBeyond{4.0,
                                         8.0};  // px; two distances, because masks are not exact
 constexpr double kFarthestInMask = 32.0;       // px beyond the line
 constexpr double kLargestMargin = 5.0;         // px, for eroding the mask
-constexpr double kMarginShare = 0.1;           // of the mask's smaller side
+constexpr double kMarginShare = 0.1;           // share of the mask's smaller side
 
 // Something that is nearer than the object by more than this is another object. A smaller
 // difference can be noise or the object's own surface. m.

@@ -13,7 +13,7 @@ using Polygon2 = std::vector<Eigen::Vector2d>;
 
 // The shape of a mask, undistorted, px. The polygons are closed and have positive signed area.
 struct Outline {
-  Polygon2 contour;   // of the largest part; neighbouring points are a few pixels apart
+  Polygon2 contour;   // contour of the largest part; its points are a few pixels apart
   Polygon2 boundary;  // the points of the outlines of all parts
   Polygon2 hull;      // convex hull of all parts; fewer than three corners if they have no area
 };

@@ -14,7 +14,7 @@
 
 namespace hullslam {
 
-// Gives frames their detections: from the masks of all classes that are not dynamic.
+// Makes the detections of frames, from the masks of all classes that are not dynamic.
 class FrameDetector {
  public:
   FrameDetector(const PinholeCamera& camera, const DepthOptions& depth,

@@ -8,10 +8,12 @@
 namespace hullslam {
 namespace {
 
-// A lattice with twice the resolution and one empty line around it. Pixel (x, y) of the mask is at
-// (2x + 2, 2y + 2); between the pixels are the middles of their edges and their corners. A middle
-// is inside if one of its two pixels is, a corner if two of its four pixels are. Then the outermost
-// inside points are the middles of the edges of the mask and, on straight edges, the corners.
+// Makes a lattice with twice the resolution and one empty line around it. Each point of the lattice
+// is the centre of a pixel, the middle of an edge between two pixels, or a corner of four pixels.
+// The centre of pixel (x, y) is at (2x + 2, 2y + 2). A middle is inside if at least one of its two
+// pixels is inside; a corner is inside if at least two of its four pixels are. So the outermost
+// inside points are the middles of the edges of the mask and, along straight edges, also the
+// corners.
 cv::Mat MakeLattice(const cv::Mat& mask) {
   cv::Mat padded;
   cv::copyMakeBorder(mask != 0, padded, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(0));

@@ -11,7 +11,7 @@
 
 namespace hullslam {
 
-// The velocity of points of the world in the camera frame: dx/dt = angular x x + linear.
+// The velocity of points of the world in the camera frame: dx/dt = cross(angular, x) + linear.
 struct PointVelocity {
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();  // rad/s
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();   // units of the map per second

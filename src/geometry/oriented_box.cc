@@ -22,7 +22,7 @@ using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
 struct Hull {
   std::vector<Eigen::Vector3d> corners;
-  std::vector<Eigen::Vector3d> normals;  // of its sides, inwards or outwards
+  std::vector<Eigen::Vector3d> normals;  // normals of its sides, inwards or outwards
 };
 
 // CGAL gives the corners and sides in an order that depends on their addresses in memory. They are

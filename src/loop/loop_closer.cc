@@ -23,7 +23,7 @@ namespace {
 
 constexpr uint32_t kKeyframesAfterLoop = 10;  // without a search for another loop
 
-// The query's pose if the loop is right, at the scale of the query.
+// The pose that the loop gives the query, at the scale of the query.
 Rigid3 PoseByLoop(const Map& map, const Loop& loop) {
   const Sim3 pose =
       loop.query_from_candidate * Sim3(map.keyframes().At(loop.candidate).cam_from_world);
@@ -33,6 +33,15 @@ Rigid3 PoseByLoop(const Map& map, const Loop& loop) {
 // Whether the keyframes belong to different islands.
 bool AreApart(const Map& map, KeyframeId a, KeyframeId b) {
   return IslandOf(map, a) != IslandOf(map, b);
+}
+
+// Whether the loop edge is in the map. Those of a culled keyframe belong to its nearest ancestor.
+bool AreJoined(const Map& map, const MapCorrection::LoopEdge& edge) {
+  const KeyframeId a = map.NearestAlive(edge.a);
+  const KeyframeId b = map.NearestAlive(edge.b);
+  const Keyframe* const keyframe = map.keyframes().Find(a);
+  return a == b || (keyframe != nullptr &&
+                    std::binary_search(keyframe->loops.begin(), keyframe->loops.end(), b));
 }
 
 double CameraDistance(const Rigid3& a, const Rigid3& b) {
@@ -46,6 +55,7 @@ LoopCloser::LoopCloser(const Sensor& sensor, const LoopOptions& options,
     : sensor_(sensor), options_(options), object_options_(objects), seed_(seed) {}
 
 std::optional<MapCorrection> LoopCloser::Process(LoopQuery query) {
+  CheckSentLoop(query.map);
   const uint32_t keyframe = query.keyframe.value;
   const bool is_soon = last_loop_.IsValid() && keyframe < last_loop_.value + kKeyframesAfterLoop;
   // Islands are joined as soon as possible.
@@ -60,13 +70,31 @@ std::optional<MapCorrection> LoopCloser::Process(LoopQuery query) {
     std::string refusal;
     if (std::optional<MapCorrection> correction = Close(query, candidate, refusal)) {
       spdlog::debug("loop: keyframe {} is at the place of {}", keyframe, candidate.keyframe.value);
-      last_loop_ = query.keyframe;
+      Remember(query.keyframe, *correction);
       return correction;
     }
     spdlog::debug("loop: keyframe {} is not at the place of {}: {}", keyframe,
                   candidate.keyframe.value, refusal);
   }
   return is_soon ? std::nullopt : JoinReturn(query);
+}
+
+void LoopCloser::Remember(KeyframeId query, const MapCorrection& correction) {
+  sent_ = SentLoop{.edge = *correction.loop,
+                   .snapshot_corrections = correction.snapshot_corrections,
+                   .former_loop = std::exchange(last_loop_, query)};
+}
+
+// If the map was corrected, but the last loop is not in it, the mapper has dropped that loop.
+void LoopCloser::CheckSentLoop(const Map& map) {
+  if (!sent_ || map.correction_count() == sent_->snapshot_corrections) {
+    return;
+  }
+  if (!AreJoined(map, sent_->edge)) {
+    spdlog::debug("loop: that of keyframe {} was dropped and is sought again", last_loop_.value);
+    last_loop_ = sent_->former_loop;
+  }
+  sent_.reset();
 }
 
 std::optional<MapCorrection> LoopCloser::JoinReturn(const LoopQuery& query) {
@@ -78,7 +106,7 @@ std::optional<MapCorrection> LoopCloser::JoinReturn(const LoopQuery& query) {
   MapCorrection correction = JoinVisits(query.map, sensor_, *found, object_options_.fusion);
   spdlog::debug("loop: tracking has led keyframe {} to the place of {}: {} landmarks are merged",
                 query.keyframe.value, found->candidate.value, correction.landmarks.size());
-  last_loop_ = query.keyframe;
+  Remember(query.keyframe, correction);
   return correction;
 }
 
@@ -135,10 +163,11 @@ std::string LoopCloser::FindTooMuchDrift(const Map& map, const Loop& loop) const
   const Travel travel = TravelBetween(map, loop.candidate, loop.query);
   const Rigid3& tracked = map.keyframes().At(loop.query).cam_from_world;
   const Rigid3 by_loop = PoseByLoop(map, loop);
-  return CanBeDrift(travel, tracked, by_loop, options_)
+  const double metre = MetreOf(map, loop.query, sensor_);
+  return CanBeDrift(travel, tracked, by_loop, metre, options_)
              ? std::string()
              : fmt::format("it would move the camera by {:.2f} m after {:.1f} m",
-                           CameraDistance(by_loop, tracked), travel.metres);
+                           CameraDistance(by_loop, tracked) / metre, travel.length / metre);
 }
 
 // Whether a second keyframe near the query, from which the similarity was not computed, shows

@@ -24,7 +24,8 @@ struct LoopQuery {
 
 // Finds loops in snapshots of the map and computes the corrections that close them. A loop whose
 // ends belong to different islands joins the islands. The loop closer does not change the map; it
-// sends corrections to the mapper.
+// sends corrections to the mapper, which drops them if the map was corrected since the snapshot.
+// Such a loop is sought again.
 class LoopCloser {
  public:
   // `sensor` must outlive the loop closer. `seed` is that of the run.
@@ -36,11 +37,19 @@ class LoopCloser {
   std::optional<MapCorrection> Process(LoopQuery query);
 
  private:
+  // The correction of the last loop that was found, until the mapper has processed it.
+  struct SentLoop {
+    MapCorrection::LoopEdge edge;
+    uint32_t snapshot_corrections = 0;
+    KeyframeId former_loop;  // last_loop_ before it
+  };
+  void Remember(KeyframeId query, const MapCorrection& correction);
+  void CheckSentLoop(const Map& map);
   std::optional<MapCorrection> Close(LoopQuery& query, const LoopCandidate& candidate,
                                      std::string& refusal) const;
 
-  // Merges landmarks and objects that were mapped twice, if tracking itself has found back to the
-  // place of the query.
+  // Merges landmarks and objects that were mapped twice, if tracking has recognised the place of
+  // the query by itself.
   std::optional<MapCorrection> JoinReturn(const LoopQuery& query);
   std::string FindTooMuchDrift(const Map& map, const Loop& loop) const;
   bool IsConfirmedByNeighbour(const Map& corrected, const Loop& loop) const;
@@ -51,6 +60,7 @@ class LoopCloser {
   const ObjectOptions object_options_;
   const uint64_t seed_;
   KeyframeId last_loop_;  // the newer end of the loop that was closed last
+  std::optional<SentLoop> sent_;
 };
 
 }  // namespace hullslam

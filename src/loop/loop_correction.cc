@@ -2,25 +2,21 @@
 #include "loop/loop_correction.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 
-#include "loop/scale_information.h"
 #include "map/covisibility.h"
 #include "map/islands.h"
 #include "objects/fusion.h"
 #include "optim/pose_graph.h"
-#include "util/median.h"
 
 namespace hullslam {
 namespace {
 
 constexpr int kStrong = 100;  // shared landmarks of an edge of the essential graph
-// The weight of a loop's edge relative to other edges. It is high, because the many edges along the
-// way between the ends of the loop would otherwise open the loop again.
+// The weight of a loop's edge relative to other edges. It is high, because otherwise the many edges
+// along the path between the ends of the loop would open the loop again.
 constexpr double kLoopWeight = 10.0;
-constexpr double kLeastScaleWeight = 1e-3;  // where no landmark determines the scale
 
 KeyframeId RootOf(const Map& map, KeyframeId keyframe) {
   while (map.keyframes().At(keyframe).parent.IsValid()) {
@@ -29,7 +25,8 @@ KeyframeId RootOf(const Map& map, KeyframeId keyframe) {
   return keyframe;
 }
 
-// The graph of all keyframes of an island with edges as the map measures them.
+// The graph of all keyframes of an island. Its edges are the relative poses of keyframes in the
+// map.
 class EssentialGraph {
  public:
   EssentialGraph(const Map& map, IslandId island) : map_(map), ids_(KeyframesOf(map, island)) {
@@ -52,25 +49,6 @@ class EssentialGraph {
     edge.b = index_.at(b);
     edge.b_from_a = b_from_a;
     edge.inverse_sigma.setConstant(weight);
-  }
-  // For a monocular map. The scale may change along an edge where landmarks determine the relative
-  // scale of its ends less precisely than along other edges. Otherwise a scale error that arose in
-  // a single place, such as a door, would be spread over the whole loop.
-  void WeighScales() {
-    const ScaleInformation information(map_, ids_);
-    std::vector<std::pair<PoseGraph::Edge*, double>> weights;
-    std::vector<double> all;
-    for (PoseGraph::Edge& edge : graph_.edges) {
-      if (edge.inverse_sigma[6] != kLoopWeight) {  // a loop has measured its scale
-        const auto [older, newer] = std::minmax(edge.a, edge.b);
-        weights.emplace_back(&edge, std::sqrt(information.Between(older, newer)));
-        all.push_back(weights.back().second);
-      }
-    }
-    const double usual = all.empty() ? 1.0 : Median(std::move(all));
-    for (const auto& [edge, weight] : weights) {
-      edge->inverse_sigma[6] = std::clamp(weight / usual, kLeastScaleWeight, 1.0);
-    }
   }
   const PoseGraph& graph() const { return graph_; }
   const std::vector<KeyframeId>& ids() const { return ids_; }  // one per node
@@ -108,7 +86,8 @@ class EssentialGraph {
   PoseGraph graph_;
 };
 
-// Collects the merges of landmarks that were found with the landmarks that keyframes show there.
+// Collects merges: a landmark that is found at a keypoint is merged with the landmark that the
+// keypoint shows.
 class LandmarkMerger {
  public:
   LandmarkMerger(const Map& map, const std::vector<LandmarkId>& kept, MapCorrection& correction)
@@ -163,9 +142,6 @@ MapCorrection SpreadLoopError(const Map& map, const Loop& loop, bool fix_scale) 
   for (const KeyframeId id : KeyframesAround(map, loop.query)) {
     graph.Start(id,
                 Sim3(map.keyframes().At(id).cam_from_world * world_from_query) * corrected_query);
-  }
-  if (!fix_scale) {
-    graph.WeighScales();
   }
   graph.AddEdge(loop.candidate, loop.query, loop.query_from_candidate, kLoopWeight);
 

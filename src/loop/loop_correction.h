@@ -18,7 +18,6 @@ std::vector<KeyframeId> KeyframesAround(const Map& map, KeyframeId keyframe);
 // The poses of all keyframes of the loop's island after a pose graph has spread the error of the
 // loop over them, and the loop's edge. The graph has the edges of the spanning tree, of strong
 // covisibility, of earlier loops and of this one (the essential graph, Mur-Artal and Tardos 2014).
-// Without `fix_scale`, scales change most where landmarks determine them least (ScaleInformation).
 // The root of the candidate's spanning tree does not move. The correction has no poses if the graph
 // could not be solved.
 MapCorrection SpreadLoopError(const Map& map, const Loop& loop, bool fix_scale);

@@ -15,7 +15,8 @@ void LoopOptions::Bind(OptionTable& options) {
             "if fewer neighbours of the query look like the candidate's place, twice as many "
             "landmarks are needed");
   scope.Add("drift_base", &drift_base, Range::AtLeast(0.0),
-            "a loop may always move the camera by this, m");
+            "a loop may always move the camera by this, m; without depth, the median depth of the "
+            "scene counts as a metre");
   scope.Add("drift_per_metre", &drift_per_metre, Range::AtLeast(0.0),
             "and by this much more for each metre travelled since the candidate, m");
   scope.Add("turn_base", &turn_base, Range::AtLeast(0.0),

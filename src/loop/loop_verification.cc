@@ -45,7 +45,7 @@ std::vector<uint8_t> ShowsLandmark(const Keyframe& keyframe) {
   return shows;
 }
 
-// The matches from a = candidate to b = query.
+// The matches of the two keyframes: a is the candidate, b is the query.
 std::vector<SimilarityMatch> MakeMatches(const Map& map, const Sensor& sensor,
                                          const Keyframe& query, const Keyframe& candidate,
                                          const KeypointPairs& pairs) {

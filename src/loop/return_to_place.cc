@@ -57,8 +57,7 @@ std::optional<Return> FindReturn(const Map& map, KeyframeId query, size_t min_la
   if (elsewhere.size() < kElsewhere) {
     return std::nullopt;
   }
-  // From a keyframe before `bound`, there are enough keyframes from elsewhere on the way to the
-  // query.
+  // Between a keyframe before `bound` and the query there are enough keyframes from elsewhere.
   const KeyframeId bound = elsewhere[elsewhere.size() - kElsewhere];
   const Covisible* best = nullptr;
   for (const Covisible& other : map.keyframes().At(query).covisible) {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "map/islands.h"
-#include "optim/bundle_adjustment.h"
+#include "optim/island_adjustment.h"
 
 namespace hullslam {
 namespace {
@@ -23,14 +23,11 @@ void Append(const Map& map, const BundleResult& result, MapCorrection& correctio
 std::optional<MapCorrection> AdjustWholeMap(const Map& map, const Sensor& sensor,
                                             const ObjectOptions& objects,
                                             const Cancellation* cancellation) {
-  const WindowObjects in_window = ObjectsToAdjust(objects);
   MapCorrection correction;
   correction.snapshot_corrections = map.correction_count();
   bool is_adjusted = false;
   for (const IslandId island : Islands(map)) {
-    const BundleResult result =
-        AdjustBundle(map, sensor, GlobalWindow(map, island, in_window),
-                     BundleOptions{.objects = objects.bundle}.ForWholeMap(), cancellation);
+    const BundleResult result = AdjustIsland(map, island, sensor, objects, cancellation).result;
     if (result.is_usable) {
       Append(map, result, correction);
       is_adjusted = true;

@@ -31,7 +31,7 @@ class WorldChanges {
       : named_(map.keyframes().NextId().value, kUnknown) {
     for (const MapCorrection::Pose& pose : correction.poses) {
       const double scale = pose.corrected_cam_from_world.scale;
-      Check(std::isfinite(scale) && scale > 0.0, "the scale of a correction is positive");
+      Check(std::isfinite(scale) && scale > 0.0, "the scale of a correction is not positive");
       if (pose.keyframe.value < named_.size()) {
         named_[pose.keyframe.value] = static_cast<int>(changes_.size());
         changes_.push_back(IsIdentity(pose) ? std::nullopt
@@ -126,8 +126,8 @@ void MoveKeyframes(Map& map, const MapCorrection& correction, const WorldChanges
       keyframe.scale *= change->scale;
     }
   }
-  // Other culled keyframes follow those that their poses are relative to. A named one has a change
-  // of its own, which may differ from its parent's.
+  // A culled keyframe that the correction names has a change of its own. All other culled keyframes
+  // follow the keyframe that their pose is relative to.
   for (const CulledPose& before : culled) {
     const Sim3* change = changes.Find(before.keyframe);
     CulledKeyframe& keyframe = map.MutableCulledKeyframe(before.keyframe);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 
 namespace hullslam {
@@ -16,10 +17,14 @@ bool IsFinite(const Rigid3& pose) {
   return pose.rotation.coeffs().allFinite() && pose.translation.allFinite();
 }
 
-const Covisible* FindEdge(const Keyframe& keyframe, KeyframeId other) {
-  const auto it = std::find_if(keyframe.covisible.begin(), keyframe.covisible.end(),
-                               [&](const Covisible& edge) { return edge.keyframe == other; });
-  return it != keyframe.covisible.end() ? &*it : nullptr;
+// The entry of a keyframe in a list that must be in the order of keyframes. Null if there is none;
+// also if the list is out of order, which is reported elsewhere.
+template <typename Entry>
+const Entry* FindEntry(const std::vector<Entry>& entries, KeyframeId id) {
+  const auto it = std::lower_bound(
+      entries.begin(), entries.end(), id,
+      [](const Entry& entry, KeyframeId keyframe) { return entry.keyframe < keyframe; });
+  return it != entries.end() && it->keyframe == id ? &*it : nullptr;
 }
 
 void CheckLandmark(const Map& map, LandmarkId id, const Landmark& landmark,
@@ -56,12 +61,9 @@ void CheckObservations(const Map& map, KeyframeId id, const Keyframe& keyframe,
       continue;
     }
     const Landmark* landmark = map.landmarks().Find(keyframe.landmarks[i]);
-    const bool known = landmark != nullptr &&
-                       std::any_of(landmark->observations.begin(), landmark->observations.end(),
-                                   [&](const Observation& observation) {
-                                     return observation.keyframe == id && observation.keypoint == i;
-                                   });
-    if (!known) {
+    const Observation* const observation =
+        landmark != nullptr ? FindEntry(landmark->observations, id) : nullptr;
+    if (observation == nullptr || observation->keypoint != i) {
       violations.push_back(Name(id) + " observes " + Name(keyframe.landmarks[i]) +
                            ", which has no such observation");
     }
@@ -126,13 +128,9 @@ void CheckDetections(const Map& map, KeyframeId id, const Keyframe& keyframe,
       continue;
     }
     const ObjectLandmark* object = map.objects().Find(keyframe.objects[i]);
-    const bool known =
-        object != nullptr && std::any_of(object->observations.begin(), object->observations.end(),
-                                         [&](const ObjectObservation& observation) {
-                                           return observation.keyframe == id &&
-                                                  observation.detection == i;
-                                         });
-    if (!known) {
+    const ObjectObservation* const observation =
+        object != nullptr ? FindEntry(object->observations, id) : nullptr;
+    if (observation == nullptr || observation->detection != i) {
       violations.push_back(Name(id) + " observes " + Name(keyframe.objects[i]) +
                            ", which has no such observation");
     }
@@ -147,7 +145,7 @@ void CheckLinks(const Map& map, KeyframeId id, const Keyframe& keyframe,
       violations.push_back(Name(id) + " has edges out of order");
     }
     const Keyframe* other = map.keyframes().Find(edge.keyframe);
-    const Covisible* back = other != nullptr ? FindEdge(*other, id) : nullptr;
+    const Covisible* back = other != nullptr ? FindEntry(other->covisible, id) : nullptr;
     if (back == nullptr || back->shared != edge.shared) {
       violations.push_back(Name(id) + " has an edge that " + Name(edge.keyframe) +
                            " does not have");
@@ -174,7 +172,7 @@ void CheckLoops(const Map& map, KeyframeId id, const Keyframe& keyframe,
     const KeyframeId loop = keyframe.loops[i];
     const Keyframe* other = map.keyframes().Find(loop);
     if (loop == id || other == nullptr ||
-        std::find(other->loops.begin(), other->loops.end(), id) == other->loops.end()) {
+        !std::binary_search(other->loops.begin(), other->loops.end(), id)) {
       violations.push_back(Name(id) + " has a loop edge that " + Name(loop) + " does not have");
     }
     if (i > 0 && !(keyframe.loops[i - 1] < loop)) {
@@ -183,15 +181,25 @@ void CheckLoops(const Map& map, KeyframeId id, const Keyframe& keyframe,
   }
 }
 
-void CheckAncestors(const Map& map, KeyframeId id, std::vector<std::string>& violations) {
-  size_t steps = 0;
-  for (const Keyframe* keyframe = map.keyframes().Find(id);
-       keyframe != nullptr && keyframe->parent.IsValid();
-       keyframe = map.keyframes().Find(keyframe->parent)) {
-    if (++steps > map.keyframes().size()) {
-      violations.push_back(Name(id) + " is its own ancestor");
-      return;
-    }
+enum class Ancestors : uint8_t { kUnknown, kSought, kEnd, kRepeat };
+
+// Whether the line of parents ends at a root. `known` has what was found of each keyframe, by its
+// id, so that no part of a long line is followed twice.
+void CheckAncestors(const Map& map, KeyframeId id, std::vector<Ancestors>& known,
+                    std::vector<std::string>& violations) {
+  std::vector<KeyframeId> path;
+  KeyframeId at = id;
+  while (map.keyframes().Contains(at) && known[at.value] == Ancestors::kUnknown) {
+    known[at.value] = Ancestors::kSought;
+    path.push_back(at);
+    at = map.keyframes().At(at).parent;
+  }
+  const bool has_end = !map.keyframes().Contains(at) || known[at.value] == Ancestors::kEnd;
+  for (const KeyframeId passed : path) {
+    known[passed.value] = has_end ? Ancestors::kEnd : Ancestors::kRepeat;
+  }
+  if (known[id.value] == Ancestors::kRepeat) {
+    violations.push_back(Name(id) + " is its own ancestor");
   }
 }
 
@@ -221,6 +229,20 @@ void CheckIsland(const Map& map, KeyframeId id, const Keyframe& keyframe,
   }
 }
 
+// Each island has one spanning tree.
+void CheckRoots(const Map& map, std::vector<std::string>& violations) {
+  std::map<IslandId, KeyframeId> roots;
+  map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    if (keyframe.parent.IsValid()) {
+      return;
+    }
+    const auto [root, is_first] = roots.emplace(keyframe.island, id);
+    if (!is_first) {
+      violations.push_back(Name(id) + " is a second root of the island of " + Name(root->second));
+    }
+  });
+}
+
 // Each keyframe has the entries of its words, and there are no others.
 void CheckIndex(const Map& map, std::vector<std::string>& violations) {
   size_t expected = 0;
@@ -230,8 +252,8 @@ void CheckIndex(const Map& map, std::vector<std::string>& violations) {
     const bool is_indexed =
         std::all_of(vector.begin(), vector.end(), [&](const WeightedWord& weighted) {
           const std::vector<Posting>* const postings = map.index().postings().Find(weighted.word);
-          return postings != nullptr && std::find(postings->begin(), postings->end(),
-                                                  Posting{id, weighted.weight}) != postings->end();
+          const Posting* const posting = postings != nullptr ? FindEntry(*postings, id) : nullptr;
+          return posting != nullptr && *posting == Posting{id, weighted.weight};
         });
     if (!is_indexed) {
       violations.push_back(Name(id) + " has words that the index does not have");
@@ -262,6 +284,7 @@ std::vector<std::string> FindViolations(const Map& map) {
   });
   map.objects().ForEach(
       [&](ObjectId id, const ObjectLandmark& object) { CheckObject(map, id, object, violations); });
+  std::vector<Ancestors> ancestors(map.keyframes().NextId().value, Ancestors::kUnknown);
   map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
     if (!IsFinite(keyframe.cam_from_world)) {
       violations.push_back(Name(id) + " has no finite pose");
@@ -273,9 +296,10 @@ std::vector<std::string> FindViolations(const Map& map) {
     CheckDetections(map, id, keyframe, violations);
     CheckLinks(map, id, keyframe, violations);
     CheckLoops(map, id, keyframe, violations);
-    CheckAncestors(map, id, violations);
+    CheckAncestors(map, id, ancestors, violations);
     CheckIsland(map, id, keyframe, violations);
   });
+  CheckRoots(map, violations);
   CheckIndex(map, violations);
   return violations;
 }

@@ -2,7 +2,9 @@
 #include "map/islands.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <map>
 
 #include "map/spanning_tree.h"
 
@@ -14,15 +16,19 @@ FrameId FrameOf(const Map& map, KeyframeId id) {
   return keyframe != nullptr ? keyframe->frame->id : map.culled().At(id).frame;
 }
 
-// The island of the oldest keyframe that has a pose, if an earlier session made it; else invalid.
-IslandId EarlierIsland(const Map& map) {
-  KeyframeId oldest(0);
-  while (!IslandOf(map, oldest).IsValid()) {
-    ++oldest.value;
+// The island with most keyframes of frames before `end`, culled ones included; ties go to the
+// oldest island. Invalid if there are no such keyframes.
+IslandId LargestIsland(const Map& map, FrameId end) {
+  std::map<IslandId, size_t> sizes;
+  for (uint32_t i = 0; i < map.keyframes().NextId().value; ++i) {
+    const IslandId island = IslandOf(map, KeyframeId(i));
+    if (island.IsValid() && FrameOf(map, KeyframeId(i)) < end) {
+      ++sizes[island];
+    }
   }
-  const bool is_earlier =
-      SessionNumber(map.sessions(), FrameOf(map, oldest)) < map.sessions().size();
-  return is_earlier ? IslandOf(map, oldest) : IslandId();
+  const auto largest = std::max_element(
+      sizes.begin(), sizes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return largest != sizes.end() ? largest->first : IslandId();
 }
 
 void EraseEntities(Map& map, IslandId kept) {
@@ -78,17 +84,9 @@ IslandId MainIsland(const Map& map) {
   if (islands.size() <= 1) {
     return islands.empty() ? IslandId() : islands.front();
   }
-  if (const IslandId earlier = EarlierIsland(map); earlier.IsValid()) {
-    return earlier;
-  }
-  std::vector<size_t> sizes(map.islands_begun(), 0);
-  for (uint32_t i = 0; i < map.keyframes().NextId().value; ++i) {
-    if (const IslandId island = IslandOf(map, KeyframeId(i)); island.IsValid()) {
-      ++sizes[island.value];
-    }
-  }
-  const auto largest = std::max_element(sizes.begin(), sizes.end());
-  return IslandId(static_cast<uint32_t>(largest - sizes.begin()));
+  const IslandId earlier =
+      map.sessions().empty() ? IslandId() : LargestIsland(map, map.sessions().back().first_frame);
+  return earlier.IsValid() ? earlier : LargestIsland(map, map.NextFrame());
 }
 
 void JoinIslands(Map& map, KeyframeId a, KeyframeId b) {

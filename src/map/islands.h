@@ -7,8 +7,9 @@
 
 namespace hullslam {
 
-// The island of a keyframe, which may be culled; of an object, that of its reference keyframe.
-// Invalid if the keyframe has no pose (Map::NearestAlive).
+// The first function gives the island of a keyframe, which may be culled. The second one gives the
+// island of an object, which is that of its reference keyframe. Invalid if the keyframe has no pose
+// (Map::NearestAlive).
 IslandId IslandOf(const Map& map, KeyframeId keyframe);
 IslandId IslandOf(const Map& map, const ObjectLandmark& object);
 
@@ -19,9 +20,9 @@ std::vector<IslandId> Islands(const Map& map);
 std::vector<KeyframeId> KeyframesOf(const Map& map, IslandId island);
 
 // The island that stays when a run ends. It is the island with most keyframes, culled ones
-// included; ties go to the oldest. If the map has keyframes of earlier sessions, it is the island
-// of the oldest keyframe, because the run must not remove the work of earlier sessions. Invalid for
-// an empty map.
+// included; ties go to the oldest. If the map has keyframes of earlier sessions, only these are
+// counted, because the run must not remove the work of earlier sessions. (A map can be saved while
+// it has several islands.) Invalid for an empty map.
 IslandId MainIsland(const Map& map);
 
 // Joins the islands of two keyframes. The younger island gets the number of the older one, and its

@@ -55,28 +55,30 @@ void CheckFrames(const MapTables& tables) {
   }
 }
 
-// The pose of a culled keyframe is that of another one, which may be culled too, and so on. The
-// last one must be alive, or have been removed with its island.
-void CheckCulled(const MapTables& tables) {
-  enum class Mark : uint8_t { kNew, kOnPath, kGood };
-  std::vector<Mark> marks(CountKeyframes(tables), Mark::kNew);
+enum class Pose : uint8_t { kUnknown, kSought, kKnown, kNone };
+
+// Whether each keyframe has a pose, by its id. That of a culled keyframe is relative to another
+// one, which may be culled too, and so on. The last one must be alive, or have been removed with
+// its island: then none of them has a pose.
+std::vector<Pose> FindPoses(const MapTables& tables) {
+  std::vector<Pose> poses(CountKeyframes(tables), Pose::kUnknown);
+  tables.keyframes.ForEach([&](KeyframeId id, const Keyframe&) { poses[id.value] = Pose::kKnown; });
   tables.culled.ForEach([&](KeyframeId id, const CulledKeyframe&) {
     std::vector<KeyframeId> path;
-    while (const CulledKeyframe* culled = tables.culled.Find(id)) {
-      Require(marks[id.value] != Mark::kOnPath, id, "is culled and refers to itself");
-      if (marks[id.value] == Mark::kGood) {
-        break;
-      }
-      marks[id.value] = Mark::kOnPath;
+    while (id.value < poses.size() && poses[id.value] == Pose::kUnknown) {
+      poses[id.value] = Pose::kSought;
       path.push_back(id);
-      id = culled->pose.reference;
+      id = tables.culled.At(id).pose.reference;
     }
-    Require(!id.IsValid() || tables.keyframes.Contains(id) || tables.culled.Contains(id), id,
+    Require(!id.IsValid() || id.value < poses.size(), id,
             "does not exist but a culled keyframe refers to it");
+    const Pose found = id.IsValid() ? poses[id.value] : Pose::kNone;
+    Require(found != Pose::kSought, id, "is culled and refers to itself");
     for (const KeyframeId passed : path) {
-      marks[passed.value] = Mark::kGood;
+      poses[passed.value] = found;
     }
   });
+  return poses;
 }
 
 void CheckReference(const MapTables& tables, KeyframeId reference, const std::string& kind,
@@ -87,26 +89,23 @@ void CheckReference(const MapTables& tables, KeyframeId reference, const std::st
 }
 
 // Checks that the keyframe exists, culled or not, and has a pose because it was not removed with
-// its island. CheckCulled has found no cycle before.
-void CheckPose(const MapTables& tables, KeyframeId reference, const std::string& kind,
-               uint32_t id) {
+// its island.
+void CheckPose(const MapTables& tables, const std::vector<Pose>& poses, KeyframeId reference,
+               const std::string& kind, uint32_t id) {
   CheckReference(tables, reference, kind, id);
-  const bool has_reference = reference.IsValid();
-  while (const CulledKeyframe* culled = tables.culled.Find(reference)) {
-    reference = culled->pose.reference;
-  }
-  if (has_reference && !reference.IsValid()) {
+  if (reference.IsValid() && poses[reference.value] == Pose::kNone) {
     Fail(kind, id, "refers to a keyframe without a pose");
   }
 }
 
 void CheckReferences(const MapTables& tables) {
+  const std::vector<Pose> poses = FindPoses(tables);
   tables.landmarks.ForEach([&](LandmarkId id, const Landmark& landmark) {
-    CheckPose(tables, landmark.reference, "landmark", id.value);
+    CheckPose(tables, poses, landmark.reference, "landmark", id.value);
     CheckReference(tables, landmark.created_by, "landmark", id.value);
   });
   tables.objects.ForEach([&](ObjectId id, const ObjectLandmark& object) {
-    CheckPose(tables, object.reference, "object", id.value);
+    CheckPose(tables, poses, object.reference, "object", id.value);
     for (const MisfitSample& sample : object.misfit_samples) {
       CheckReference(tables, sample.keyframe, "object", id.value);
     }
@@ -135,6 +134,30 @@ void DeriveChildren(MapTables& tables) {
       tables.keyframes.Mutable(parent).children.push_back(id);
     }
   }
+}
+
+// Numbers the islands by their roots, which have no parent, if the keyframes do not tell theirs.
+void DeriveIslands(MapTables& tables) {
+  IslandId island(0);
+  for (const KeyframeId root : IdsOf(tables)) {
+    if (tables.keyframes.At(root).parent.IsValid() || tables.keyframes.At(root).island.IsValid()) {
+      continue;
+    }
+    std::vector<KeyframeId> tree = {root};
+    for (size_t i = 0; i < tree.size(); ++i) {
+      Keyframe& keyframe = tables.keyframes.Mutable(tree[i]);
+      keyframe.island = island;
+      tree.insert(tree.end(), keyframe.children.begin(), keyframe.children.end());
+    }
+    ++island.value;
+  }
+}
+
+// An island begins with a keyframe, so there have been no more islands than keyframes.
+void CheckIslands(const MapTables& tables) {
+  tables.keyframes.ForEach([&](KeyframeId id, const Keyframe& keyframe) {
+    Require(keyframe.island.value < CountKeyframes(tables), id, "is in an island that cannot be");
+  });
 }
 
 // Adds the observation of an entity by a keyframe. Keyframes come in the order of their ids.
@@ -172,9 +195,10 @@ Map RestoreMap(MapTables tables, std::shared_ptr<const Vocabulary> vocabulary) {
   if (vocabulary != nullptr) {
     CheckWords(tables, *vocabulary);
   }
-  CheckCulled(tables);
   CheckReferences(tables);
   DeriveChildren(tables);
+  DeriveIslands(tables);
+  CheckIslands(tables);
   DeriveObservations(tables);
   tables.keyframes.SkipIds(KeyframeId(CountKeyframes(tables)));
   Map map(std::move(tables), std::move(vocabulary));

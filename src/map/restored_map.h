@@ -11,7 +11,8 @@ namespace hullslam {
 
 // Makes a map from tables of unknown origin. They may lack the values that follow from others:
 // Keyframe::children, Landmark::observations, Landmark::observation_weight and
-// ObjectLandmark::observations. The frames must be consistent in themselves: one entry of each list
+// ObjectLandmark::observations. If the islands of all keyframes are invalid, each spanning tree is
+// an island. The frames must be consistent in themselves: one entry of each list
 // per keypoint, one entry of Keyframe::landmarks per keypoint and of Keyframe::objects per
 // detection. Throws InputError if no map can have such tables. The message has the first fault and
 // names the entity. `vocabulary` is that of the words of the frames; null: the map will have no

@@ -7,13 +7,13 @@ namespace hullslam {
 
 void SetParent(Map& map, KeyframeId child, KeyframeId parent);
 
-// Turns the tree of `keyframe` so that it becomes the root: the edges on the way to the former root
-// change their direction.
+// Makes `keyframe` the root of its tree: the edges on the path to the former root change their
+// direction.
 void MakeRoot(Map& map, KeyframeId keyframe);
 
-// Removes `keyframe` from the tree. Each of its children gets a new parent: of the parent of
-// `keyframe` and the siblings that already have a new parent, the one that it shares most landmarks
-// with. A child that shares none with them becomes a child of the parent of `keyframe`.
+// Removes `keyframe` from the tree. Each of its children gets a new parent, chosen from the parent
+// of `keyframe` and the siblings that already have a new parent: the one that shares most landmarks
+// with the child. If none shares a landmark, it is the parent of `keyframe`.
 void DetachFromTree(Map& map, KeyframeId keyframe);
 
 }  // namespace hullslam

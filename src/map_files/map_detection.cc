@@ -2,11 +2,13 @@
 #include <limits>
 
 #include "map_files/map_records.h"
+#include "util/printable.h"
 
 namespace hullslam {
 namespace {
 
-constexpr double kMostDouble = std::numeric_limits<double>::max();  // an empty box has such corners
+constexpr double kMostDouble =
+    std::numeric_limits<double>::max();  // an empty box has corners of this size
 constexpr auto kMostFloat = static_cast<float>(kMostMapNumber);
 
 template <int N>
@@ -84,7 +86,7 @@ void WriteDetection(const Detection& detection, ByteWriter& out) {
 
 Detection ReadDetection(size_t keypoints, ByteReader& in) {
   Detection detection;
-  detection.label = in.GetText();
+  detection.label = Printable(in.GetText());
   detection.score = in.GetFinite(kMostMapNumber);
   detection.contour = ReadPoints<2>(in);
   detection.hull.resize(in.GetCount(2 * sizeof(double)));

@@ -5,12 +5,14 @@
 #include <utility>
 #include <vector>
 
+#include "files/plausible.h"
 #include "map_files/map_records.h"
+#include "util/printable.h"
 
 namespace hullslam {
 namespace {
 
-// A length in metres or in pixels that cannot be negative.
+// Reads a length in metres or pixels. Refuses negative ones.
 double ReadLength(ByteReader& in) {
   const double length = in.GetFinite(kMostMapNumber);
   in.Require(length >= 0.0, "has a negative length");
@@ -18,14 +20,15 @@ double ReadLength(ByteReader& in) {
 }
 
 double ReadScale(ByteReader& in) {
-  const double scale = in.GetFinite(kMostMapNumber);
-  in.Require(scale > 0.0, "has a scale that is not positive");
+  constexpr double kMost = 1e9;
+  const double scale = in.GetFinite(kMost);
+  in.Require(scale >= 1.0 / kMost, "has a scale that is out of range");
   return scale;
 }
 
-// The number of times that something was seen.
+// Reads how many times something was seen.
 int ReadTimes(ByteReader& in) {
-  constexpr int kMost = 1 << 29;  // so that sums of two do not overflow
+  constexpr int kMost = 1 << 29;  // the sum of two such numbers does not overflow
   const auto times = in.Get<int32_t>();
   in.Require(times >= 0 && times <= kMost, "has a count that is out of range");
   return times;
@@ -49,7 +52,8 @@ std::vector<IdType> ReadIds(size_t count, ByteReader& in) {
   return ids;
 }
 
-// Every id is that of a keyframe or of a culled one, so no id is as large as their number.
+// Reads the id of a keyframe. Every id belongs to a keyframe or to a culled keyframe, so it is
+// smaller than the number of both.
 KeyframeId ReadKeyframeId(const MapHeader& header, KeyframeId next, ByteReader& in) {
   const KeyframeId id(in.Get<uint32_t>());
   in.Require(!(id < next) && id.value < uint64_t{header.keyframes} + header.culled,
@@ -65,7 +69,7 @@ void WriteEllipsoid(const Ellipsoid& ellipsoid, ByteWriter& out) {
 Ellipsoid ReadEllipsoid(ByteReader& in) {
   Ellipsoid ellipsoid;
   ellipsoid.world_from_object = ReadPose(in);
-  ellipsoid.half_axes = in.GetMatrix<Eigen::Vector3d>(kMostMapNumber);
+  ellipsoid.half_axes = in.GetMatrix<Eigen::Vector3d>(kMostMetres);
   in.Require(ellipsoid.half_axes.minCoeff() > 0.0, "has half axes that are not positive");
   return ellipsoid;
 }
@@ -81,10 +85,12 @@ void WriteVotes(const std::map<std::string, double>& votes, ByteWriter& out) {
 std::map<std::string, double> ReadVotes(ByteReader& in) {
   std::map<std::string, double> votes;
   const size_t count = in.GetCount(sizeof(uint32_t) + sizeof(double));
+  std::string last;
   for (size_t i = 0; i < count; ++i) {
     std::string label = in.GetText();
-    in.Require(votes.empty() || votes.rbegin()->first < label, "has votes out of order");
-    votes.emplace_hint(votes.end(), std::move(label), in.GetFinite(kMostMapNumber));
+    in.Require(i == 0 || last < label, "has votes out of order");
+    votes[Printable(label)] += in.GetFinite(kMostMapNumber);
+    last = std::move(label);
   }
   return votes;
 }
@@ -120,7 +126,7 @@ Rigid3 ReadPose(ByteReader& in) {
   Rigid3 pose;
   pose.rotation.coeffs() = in.GetMatrix<Eigen::Vector4d>(2.0);
   in.Require(std::abs(pose.rotation.norm() - 1.0) < kTolerance, "has a rotation that is none");
-  pose.translation = in.GetMatrix<Eigen::Vector3d>(kMostMapNumber);
+  pose.translation = in.GetMatrix<Eigen::Vector3d>(kMostMetres);
   return pose;
 }
 
@@ -137,6 +143,7 @@ void WriteKeyframe(KeyframeId id, const Keyframe& keyframe, ByteWriter& out) {
     out.Put(static_cast<int32_t>(edge.shared));
   }
   out.Put(keyframe.parent.value);
+  out.Put(keyframe.island.value);
   out.PutCount(keyframe.loops.size());
   WriteIds(keyframe.loops, out);
 }
@@ -155,6 +162,7 @@ void ReadKeyframe(const MapHeader& header, ByteReader& in, MapTables& tables) {
     edge.shared = ReadTimes(in);
   }
   keyframe.parent = KeyframeId(in.Get<uint32_t>());
+  keyframe.island = header.version == 1 ? IslandId() : IslandId(in.Get<uint32_t>());
   keyframe.loops = ReadIds<KeyframeId>(in.GetCount(sizeof(uint32_t)), in);
   tables.keyframes.Put(id, std::move(keyframe));
 }

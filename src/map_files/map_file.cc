@@ -25,32 +25,31 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::string_view_literals;
 
-// The byte above 127 and the line feed tell a transfer as text, which would have changed them.
+// A transfer in text mode would change the byte above 127 or the line ends. So it is noticed.
 constexpr std::string_view kMagic = "\x89HULLMAP\r\n"sv;
-constexpr uint32_t kVersion = 1;
-constexpr size_t kPrefixBytes = kMagic.size() + sizeof(kVersion);
+constexpr size_t kPrefixBytes = kMagic.size() + sizeof(kMapVersion);
 constexpr size_t kChecksumBytes = sizeof(uint32_t);
 
-// CRC-32 (ISO 3309). It finds every change of up to 32 bits in a row.
+// CRC-32 (ISO 3309). It detects every change within 32 consecutive bits.
 uint32_t AddToChecksum(uint32_t checksum, std::string_view bytes) {
   return static_cast<uint32_t>(
       ::crc32_z(checksum, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-std::string Prefix() {
-  ByteWriter version;
-  version.Put(kVersion);
-  return std::string(kMagic) + version.bytes();
+std::string Prefix(uint32_t version) {
+  ByteWriter bytes;
+  bytes.Put(version);
+  return std::string(kMagic) + bytes.bytes();
 }
 
 // Writes a map file record by record, so that the file is never in memory as a whole.
 class RecordWriter {
  public:
-  explicit RecordWriter(const fs::path& path) : file_(path) { Write(Prefix()); }
+  explicit RecordWriter(const fs::path& path) : file_(path) { Write(Prefix(kMapVersion)); }
 
   ByteWriter& Record() { return record_; }
-  // Ends the current record if it has at least this many bytes. Records of many small entities are
-  // as good as one large one, but need little memory.
+  // Ends the current record if it has at least this many bytes. Small entities share a record, and
+  // the data is divided into many records so that reading needs little memory.
   void End(size_t least_bytes = 1) {
     if (record_.bytes().size() >= least_bytes) {
       ByteWriter length;
@@ -136,7 +135,7 @@ std::ifstream Open(const fs::path& path) {
   return in;
 }
 
-// Reads this many bytes, or those that are left.
+// Reads `count` bytes, or fewer if the file ends before.
 std::string ReadSome(std::istream& in, uint64_t count) {
   std::string bytes(count, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(count));
@@ -144,25 +143,41 @@ std::string ReadSome(std::istream& in, uint64_t count) {
   return bytes;
 }
 
-void CheckPrefix(std::istream& in, const fs::path& path) {
+// The size of the file that was opened. The file of this name may be another one by now.
+uint64_t SizeOf(std::istream& in, const fs::path& path) {
+  const std::streampos position = in.tellg();
+  in.seekg(0, std::ios::end);
+  const std::streamoff size = in.tellg();
+  in.seekg(position);
+  if (!in || size < 0) {
+    throw InputError(path.string() + ": cannot be read");
+  }
+  return static_cast<uint64_t>(size);
+}
+
+// Returns the version of the format.
+uint32_t ReadPrefix(std::istream& in, const fs::path& path) {
   const std::string prefix = ReadSome(in, kPrefixBytes);
   if (prefix.size() < kPrefixBytes || !prefix.starts_with(kMagic)) {
     throw InputError(path.string() + ": is not a map of HullSLAM");
   }
   const auto version =
       ByteReader(std::string_view(prefix).substr(kMagic.size()), path.string()).Get<uint32_t>();
-  if (version != kVersion) {
-    throw InputError(fmt::format("{}: is a map of format version {}, expected {}", path.string(),
-                                 version, kVersion));
+  if (version < kOldestMapVersion || version > kMapVersion) {
+    throw InputError(fmt::format("{}: is a map of format version {}, expected {} to {}",
+                                 path.string(), version, kOldestMapVersion, kMapVersion));
   }
+  return version;
 }
 
-// Compares the checksum of `size` bytes, of which the prefix has been read, with the one that
-// follows them.
-void CheckChecksum(std::istream& in, uint64_t size, const fs::path& path) {
+// Compares the checksum of the first `size` bytes with the checksum that follows them. The prefix
+// has already been read.
+void CheckChecksum(std::istream& in, uint64_t size, uint32_t version, const fs::path& path,
+                   const Cancellation* cancellation) {
   constexpr uint64_t kBlock = 1 << 20;
-  uint32_t checksum = AddToChecksum(0, Prefix());
+  uint32_t checksum = AddToChecksum(0, Prefix(version));
   for (uint64_t left = size - kPrefixBytes; left > 0;) {
+    EndIfCancelled(cancellation, path.string());
     const std::string bytes = ReadSome(in, std::min(left, kBlock));
     if (bytes.empty()) {
       throw InputError(path.string() + ": cannot be read");
@@ -177,18 +192,19 @@ void CheckChecksum(std::istream& in, uint64_t size, const fs::path& path) {
 }
 
 StoredMap Read(const fs::path& path, const MapSettings* expected,
-               std::shared_ptr<const Vocabulary> vocabulary) {
+               std::shared_ptr<const Vocabulary> vocabulary, const Cancellation* cancellation) {
   std::ifstream in = Open(path);
-  CheckPrefix(in, path);
-  const uint64_t bytes = fs::file_size(path);
+  const uint32_t version = ReadPrefix(in, path);
+  const uint64_t bytes = SizeOf(in, path);
   if (bytes < kPrefixBytes + kChecksumBytes) {
     throw InputError(path.string() + ": is cut off");
   }
   const uint64_t size = bytes - kChecksumBytes;
-  CheckChecksum(in, size, path);
+  CheckChecksum(in, size, version, path, cancellation);
   in.clear();
   in.seekg(kPrefixBytes);
-  return ParseMap(in, size - kPrefixBytes, path.string(), expected, std::move(vocabulary));
+  return ParseMap(in, size - kPrefixBytes, version, path.string(), expected, std::move(vocabulary),
+                  cancellation);
 }
 
 }  // namespace
@@ -212,11 +228,11 @@ void WriteMap(const fs::path& path, const Map& map, const MapSettings& settings)
   records.Commit();
 }
 
-StoredMap ReadMap(const fs::path& path) { return Read(path, nullptr, nullptr); }
+StoredMap ReadMap(const fs::path& path) { return Read(path, nullptr, nullptr, nullptr); }
 
-Map ReadMap(const fs::path& path, const SystemOptions& options) {
+Map ReadMap(const fs::path& path, const SystemOptions& options, const Cancellation* cancellation) {
   const MapSettings expected = MapSettingsOf(options);
-  return Read(path, &expected, options.vocabulary).map;
+  return Read(path, &expected, options.vocabulary, cancellation).map;
 }
 
 }  // namespace hullslam

@@ -68,7 +68,7 @@ void WriteDepth(const DepthGrid& grid, ByteWriter& out) {
   }
 }
 
-// The size of the grid follows from that of the image.
+// The size of the grid is not written, because it follows from the size of the image.
 DepthGrid ReadDepth(const PinholeCamera& camera, ByteReader& in) {
   if (!in.GetFlag()) {
     return {};

@@ -6,7 +6,7 @@
 namespace hullslam {
 namespace {
 
-// Sensors in the file.
+// The numbers of the sensors in the file.
 constexpr uint8_t kRgbd = 1;
 constexpr uint8_t kMonocular = 2;
 
@@ -28,7 +28,7 @@ PinholeCamera ReadCamera(ByteReader& in) {
                          &camera.p1, &camera.p2, &camera.k3, &camera.bf}) {
     *number = in.GetFinite(kMostMapNumber);
   }
-  constexpr int kMostSide = 65'536;  // px; an option of the camera has a smaller bound
+  constexpr int kMostSide = 65'536;  // px; the options of the camera have a smaller bound
   camera.width = in.Get<int32_t>();
   camera.height = in.Get<int32_t>();
   in.Require(camera.width > 0 && camera.width <= kMostSide && camera.height > 0 &&
@@ -80,11 +80,14 @@ MapHeader ReadHeader(ByteReader& in) {
         &header.landmark_slots, &header.objects, &header.next_object}) {
     *number = in.Get<uint32_t>();
   }
-  constexpr uint32_t kMostObjects = uint32_t{1} << 24;  // tables have memory for all ids
+  constexpr uint32_t kMostObjects =
+      uint32_t{1}
+      << 24;  // limits the memory, because a table has memory for all ids up to the largest
   in.Require(header.keyframes > 0, "has no keyframes");
-  in.Require(header.landmarks <= header.landmark_slots &&
-                 header.landmark_slots <= LandmarkId::kMaxSlot &&
-                 header.objects <= header.next_object && header.next_object <= kMostObjects,
+  // A run that goes on with the map needs as many slots again.
+  in.Require(header.landmark_slots <= LandmarkId::kMaxSlot / 2, "has too many landmarks to go on");
+  in.Require(header.landmarks <= header.landmark_slots && header.objects <= header.next_object &&
+                 header.next_object <= kMostObjects,
              "has numbers of entities that cannot be");
   return header;
 }

@@ -15,13 +15,13 @@
 namespace hullslam {
 namespace {
 
-// The records of a file, one after the other. Each is read as a whole.
+// Gives the records of a file one after the other. Each record is read as a whole.
 class RecordReader {
  public:
-  RecordReader(std::istream& in, uint64_t size, std::string name)
-      : in_(in), left_(size), name_(std::move(name)) {}
+  RecordReader(std::istream& in, uint64_t size, std::string name, const Cancellation* cancellation)
+      : in_(in), left_(size), name_(std::move(name)), cancellation_(cancellation) {}
 
-  // The current record, or the next one if the current has been read.
+  // The current record, or the next one if the current one was read to its end.
   ByteReader& Record() {
     if (!record_ || record_->left() == 0) {
       Next();
@@ -38,6 +38,7 @@ class RecordReader {
 
  private:
   void Next() {
+    EndIfCancelled(cancellation_, name_);
     const std::string name = fmt::format("{}: record {}", name_, ++number_);
     constexpr size_t kLengthBytes = sizeof(uint32_t);
     Load(kLengthBytes, name);
@@ -60,9 +61,10 @@ class RecordReader {
   }
 
   std::istream& in_;
-  uint64_t left_;  // bytes that have not been loaded
+  uint64_t left_;  // number of bytes that were not read yet
   std::string name_;
-  std::string bytes_;  // of the current record
+  const Cancellation* cancellation_;
+  std::string bytes_;  // bytes of the current record
   std::optional<ByteReader> record_;
   size_t number_ = 0;
 };
@@ -106,14 +108,14 @@ void RequireSettings(const MapSettings& found, const MapSettings& expected,
   throw InputError(name + ": was made with a camera or image pyramid of other settings");
 }
 
-// Each entity takes at least some bytes, so a number of entities that do not fit into the file is
-// found before memory is reserved for their ids.
+// Refuses numbers of entities that cannot fit into the file, since each entity needs some bytes.
+// This is checked before memory is allocated for their ids.
 void CheckCounts(const MapHeader& header, uint64_t bytes, const std::string& name) {
   constexpr uint64_t kLeastBytes = 64;
   const uint64_t entities =
       uint64_t{header.keyframes} + header.culled + header.landmarks + header.objects;
   if (entities > bytes / kLeastBytes) {
-    throw InputError(name + ": is cut off, or says that it has more entities than it has");
+    throw InputError(name + ": is cut off, or has fewer entities than its header says");
   }
 }
 
@@ -157,11 +159,13 @@ MapTables ReadTables(const MapHeader& header, RecordReader& records) {
 
 }  // namespace
 
-StoredMap ParseMap(std::istream& in, uint64_t size, const std::string& name,
-                   const MapSettings* expected, std::shared_ptr<const Vocabulary> vocabulary) {
-  RecordReader records(in, size, name);
+StoredMap ParseMap(std::istream& in, uint64_t size, uint32_t version, const std::string& name,
+                   const MapSettings* expected, std::shared_ptr<const Vocabulary> vocabulary,
+                   const Cancellation* cancellation) {
+  RecordReader records(in, size, name, cancellation);
   ByteReader& first = records.Record();
-  const MapHeader header = ReadHeader(first);
+  MapHeader header = ReadHeader(first);
+  header.version = version;
   first.ExpectEnd();
   if (expected != nullptr) {
     RequireSettings(header.settings, *expected, name);
@@ -173,6 +177,13 @@ StoredMap ParseMap(std::istream& in, uint64_t size, const std::string& name,
     return {RestoreMap(std::move(tables), std::move(vocabulary)), header.settings};
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: is not consistent: {}", name, error.what()));
+  }
+}
+
+void EndIfCancelled(const Cancellation* cancellation, const std::string& name) {
+  if (IsRequested(cancellation)) {
+    throw ReadingCancelled(name +
+                           ": the map was not read to its end, because this was interrupted");
   }
 }
 

@@ -13,13 +13,20 @@
 #include "hullslam/map_files/map_file.h"
 
 // The parts of a map file (docs/maps.md). For each part there is a function that writes it and one
-// that reads and checks it. What connects the parts is checked in map/restored_map.h.
+// that reads and checks it. The relations between the parts are checked in map/restored_map.h.
 namespace hullslam {
 
-constexpr double kMostMapNumber = 1e15;  // no length, time or pixel of a map is larger
+// No length, time or pixel of a map is larger. Poses are at most at kMostMetres
+// (files/plausible.h); a landmark of a camera without depth may be almost at infinity.
+constexpr double kMostMapNumber = 1e15;
+
+// Version 1 has no islands.
+constexpr uint32_t kOldestMapVersion = 1;
+constexpr uint32_t kMapVersion = 2;
 
 // What comes first: the settings, the sessions and how many entities follow.
 struct MapHeader {
+  uint32_t version = kMapVersion;  // of the file; WriteHeader does not write it
   MapSettings settings;
   std::vector<Session> sessions;
   uint32_t correction_count = 0;
@@ -35,21 +42,22 @@ struct MapHeader {
 void WriteHeader(const MapHeader& header, ByteWriter& out);
 MapHeader ReadHeader(ByteReader& in);
 
-// map_frame.cc. `settings` are those of the header.
+// In map_frame.cc. `settings` are those of the header.
 void WriteFrame(const Frame& frame, ByteWriter& out);
 std::shared_ptr<const Frame> ReadFrame(const MapSettings& settings, ByteReader& in);
 
-// map_detection.cc. A frame has `keypoints` keypoints.
+// In map_detection.cc. `keypoints` is the number of keypoints of the frame.
 void WriteDetection(const Detection& detection, ByteWriter& out);
 Detection ReadDetection(size_t keypoints, ByteReader& in);
 
-// map_words.cc: the visual words of a frame, one per keypoint or none. Whether they are words of
-// the vocabulary is checked in map/restored_map.h.
+// In map_words.cc. A frame has one visual word per keypoint, or none at all. Whether they are words
+// of the vocabulary is checked in map/restored_map.h.
 void WriteWords(const Frame& frame, ByteWriter& out);
 void ReadWords(Frame& frame, ByteReader& in);
 
-// map_entities.cc. Ids increase from one to the next of a kind. What follows from other values is
-// not written: children, the observations of landmarks and objects, and the weights of landmarks.
+// In map_entities.cc. The entities of each kind are sorted by id. Values that follow from others
+// are not written: the children of keyframes, the observations of landmarks and objects, and the
+// observation weights of landmarks.
 void WriteKeyframe(KeyframeId id, const Keyframe& keyframe, ByteWriter& out);
 void ReadKeyframe(const MapHeader& header, ByteReader& in, MapTables& tables);
 void WriteCulled(KeyframeId id, const CulledKeyframe& culled, ByteWriter& out);
@@ -59,7 +67,7 @@ void ReadLandmark(const MapHeader& header, ByteReader& in, MapTables& tables);
 void WriteObject(ObjectId id, const ObjectLandmark& object, ByteWriter& out);
 void ReadObject(const MapHeader& header, ByteReader& in, MapTables& tables);
 
-// A rotation is four numbers x y z w, of unit length but for rounding.
+// A rotation is written as four numbers x y z w, whose length is 1 up to rounding.
 void WritePose(const Rigid3& pose, ByteWriter& out);
 Rigid3 ReadPose(ByteReader& in);
 

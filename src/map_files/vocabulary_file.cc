@@ -4,12 +4,16 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <memory>
+#include <span>
+#include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "files/atomic_file.h"
-#include "files/mapped_file.h"
+#include "files/read_file.h"
 #include "hullslam/util/error.h"
 #include "map_files/vocabulary_text.h"
 
@@ -22,7 +26,7 @@ constexpr size_t kMostVocabularyBytes = 1'000'000'000;
 
 // A variable of the environment; empty if it is not set.
 std::string Variable(const char* name) {
-  // Nothing in this library changes the environment, so reading it is safe.
+  // This library changes the environment only when a video is opened, so reading it is safe.
   // NOLINTNEXTLINE(concurrency-mt-unsafe)
   const char* const value = std::getenv(name);
   return value != nullptr ? value : "";
@@ -35,11 +39,12 @@ std::string_view AsText(std::span<const std::byte> bytes) {
 }  // namespace
 
 Vocabulary ReadVocabulary(const fs::path& path, const ProgressCallback& on_progress) {
-  const FileBytes file = MapFile(path, kMostVocabularyBytes);
-  if (Vocabulary::IsBinary(file.bytes)) {
-    return Vocabulary::View(file.bytes, file.owner, path.string());
+  auto content = std::make_shared<const std::string>(ReadFile(path, kMostVocabularyBytes));
+  const std::string_view text = *content;
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
+  if (Vocabulary::IsBinary(bytes)) {
+    return Vocabulary::View(bytes, std::move(content), path.string());
   }
-  const std::string_view text = AsText(file.bytes);
   if (text.empty()) {
     throw InputError(path.string() + ": is empty, expected a vocabulary");
   }
@@ -67,13 +72,13 @@ fs::path FindDefaultVocabulary() {
     }
     return chosen;
   }
-  std::vector<fs::path> places = {HULLSLAM_INSTALLED_VOCABULARY, HULLSLAM_SOURCE_VOCABULARY};
+  std::vector<fs::path> paths = {HULLSLAM_INSTALLED_VOCABULARY, HULLSLAM_SOURCE_VOCABULARY};
   if (const std::string config = Variable("HULLSLAM_CONFIG"); !config.empty()) {
-    places.insert(places.begin(), fs::path(config) / ".." / "Vocabulary" / "hullslam.bow");
+    paths.insert(paths.begin(), fs::path(config) / ".." / "Vocabulary" / "hullslam.bow");
   }
-  for (const fs::path& place : places) {
-    if (fs::is_regular_file(place, error)) {
-      return place;
+  for (const fs::path& path : paths) {
+    if (fs::is_regular_file(path, error)) {
+      return path;
     }
   }
   throw InputError(

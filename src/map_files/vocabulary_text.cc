@@ -21,12 +21,12 @@ namespace {
 constexpr size_t kDescriptorBytes = 32;
 constexpr size_t kNodeColumns = kDescriptorBytes + 3;
 
-// Takes the lines of a text one by one, and the columns of each.
+// Reads a text line by line, and each line column by column.
 class LineReader {
  public:
   LineReader(std::string_view text, const std::filesystem::path& path) : rest_(text), path_(path) {}
 
-  // Goes to the next line. False if only blanks are left.
+  // Goes to the next line. Returns false if only white space is left.
   bool Next() {
     ++line_;
     const size_t end = rest_.find('\n');
@@ -78,7 +78,7 @@ class LineReader {
 
  private:
   std::string_view rest_;     // the lines after this one
-  std::string_view columns_;  // what is left of this one
+  std::string_view columns_;  // the columns of this line that were not taken yet
   const std::filesystem::path& path_;
   int line_ = 0;
 };

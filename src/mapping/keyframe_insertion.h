@@ -16,9 +16,9 @@ std::vector<KeyframeId> InsertInitialMap(Map& map, const InitialMap& initial, co
                                          std::vector<LandmarkId>& created);
 
 // Makes a keyframe of the requested frame, with its edges and its parent. It observes the requested
-// landmarks that still exist. Keypoints with depth that show no landmark become landmarks: all
-// close ones, and all of the nearest hundred. Their ids are appended to `created`. If the keyframe
-// shares no landmark with another one, its reference becomes its parent.
+// landmarks that still exist. Keypoints with depth that show no landmark become landmarks if they
+// are close points or among the hundred nearest keypoints. Their ids are appended to `created`. If
+// the keyframe shares no landmark with another one, its reference becomes its parent.
 KeyframeId InsertKeyframe(Map& map, const KeyframeRequest& request, const Sensor& sensor,
                           std::vector<LandmarkId>& created);
 

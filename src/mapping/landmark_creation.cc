@@ -31,7 +31,7 @@ struct View {
   Eigen::Vector2d normalized;
   Eigen::Vector3d ray_in_world;  // unit
   double depth = 0.0;            // m, 0 if unknown
-  double scale = 1.0;            // of the keypoint's level
+  double scale = 1.0;            // scale of the keypoint's level
   PointMeasurement measurement;
 };
 

@@ -16,6 +16,8 @@
 #include "mapping/landmark_fusion.h"
 #include "mapping/old_keyframes.h"
 #include "objects/known_sizes.h"
+#include "optim/bundle_adjustment.h"
+#include "optim/island_adjustment.h"
 
 namespace hullslam {
 namespace {
@@ -62,11 +64,11 @@ void Mapper::BeginSession() {
   }
 }
 
-void Mapper::Process(const MapMessage& message, const Cancellation* hurry) {
-  std::visit([&](const auto& content) { Apply(content, hurry); }, message);
+bool Mapper::Process(const MapMessage& message, const Cancellation* hurry) {
+  return std::visit([&](const auto& content) { return Apply(content, hurry); }, message);
 }
 
-void Mapper::Apply(const InitialMap& initial, const Cancellation* hurry) {
+bool Mapper::Apply(const InitialMap& initial, const Cancellation* hurry) {
   std::vector<KeyframeId> keyframes;
   {
     const ScopedTimer timer(times_, "map_insert");
@@ -80,9 +82,10 @@ void Mapper::Apply(const InitialMap& initial, const Cancellation* hurry) {
   Improve(keyframes.back(), hurry, Culling::kNone);
   full_.insert(full_.end(), keyframes.begin(), keyframes.end());
   PublishSnapshot();
+  return true;
 }
 
-void Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
+bool Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
   KeyframeId keyframe;
   {
     const ScopedTimer timer(times_, "map_insert");
@@ -100,15 +103,17 @@ void Mapper::Apply(const KeyframeRequest& request, const Cancellation* hurry) {
   }
   FollowKnownSizes(false);
   PublishSnapshot();
+  return true;
 }
 
-void Mapper::Apply(const MapCorrection& correction, const Cancellation*) {
+bool Mapper::Apply(const MapCorrection& correction, const Cancellation*) {
   const ScopedTimer timer(times_, "map_correction");
   const CorrectionOutcome outcome = ApplyCorrection(map_, correction, sensor_.levels);
   if (outcome.is_applied) {
     object_mapper_.RefineMerged(map_, outcome.merged_objects);
     PublishSnapshot();
   }
+  return outcome.is_applied;
 }
 
 // Creates the landmarks and objects that follow from a new keyframe.
@@ -167,39 +172,33 @@ void Mapper::AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry)
     window = LocalWindow(map_, keyframe, static_cast<size_t>(options_.local_keyframes),
                          static_cast<size_t>(options_.fixed_keyframes),
                          ObjectsToAdjust(object_options_));
-    Adjust(window, {.objects = object_options_.bundle}, hurry);
+    Apply(AdjustBundle(map_, sensor_, window, {.objects = object_options_.bundle}, hurry));
   }
   RecheckObjects(window.objects);
 }
 
-void Mapper::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
-  if (session_) {
-    return;  // the run has added no keyframe
-  }
+void Mapper::KeepMainIsland() {
   if (KeepOnlyIsland(map_, MainIsland(map_))) {
     PublishSnapshot();
   }
-  const bool is_cancelled = IsRequested(cancellation);
-  if (options_.final_bundle_adjustment && !is_cancelled && map_.keyframes().size() >= 2) {
-    AdjustMap(cancellation, on_progress);
-  }
-  FollowKnownSizes(true);
-  FinishObjects();
 }
 
 void Mapper::AdjustMap(const Cancellation* cancellation, const ProgressCallback& on_progress) {
-  BundleWindow window;
+  if (!options_.final_bundle_adjustment || IsRequested(cancellation) ||
+      map_.keyframes().size() < 2) {
+    return;
+  }
+  IslandAdjustment adjustment;
   {
     const ScopedTimer timer(times_, "global_bundle_adjustment");
-    window = GlobalWindow(map_, MainIsland(map_), ObjectsToAdjust(object_options_));
-    Adjust(window, BundleOptions{.objects = object_options_.bundle}.ForWholeMap(), cancellation,
-           on_progress);
+    adjustment =
+        AdjustIsland(map_, MainIsland(map_), sensor_, object_options_, cancellation, on_progress);
+    Apply(adjustment.result);
   }
-  RecheckObjects(window.objects);
+  RecheckObjects(adjustment.objects);
   PublishSnapshot();
 }
 
-// Finds the changes of the objects of earlier sessions. Removes objects that are gone from the map.
 void Mapper::FinishObjects() {
   if (!object_options_.enabled || former_.objects().empty()) {
     return;
@@ -267,10 +266,7 @@ void Mapper::FollowKnownSizes(bool is_final) {
   }
 }
 
-void Mapper::Adjust(const BundleWindow& window, const BundleOptions& options,
-                    const Cancellation* cancellation, const ProgressCallback& on_progress) {
-  const BundleResult result =
-      AdjustBundle(map_, sensor_, window, options, cancellation, on_progress);
+void Mapper::Apply(const BundleResult& result) {
   if (result.is_usable) {
     ApplyBundle(map_, result, sensor_.levels);
   }

@@ -15,7 +15,7 @@
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
 #include "objects/object_mapper.h"
-#include "optim/bundle_adjustment.h"
+#include "optim/bundle_result.h"
 
 namespace hullslam {
 
@@ -37,23 +37,32 @@ class Mapper {
 
   // Processes a message. `hurry` (may be null) is requested while another message waits. The mapper
   // then leaves out the steps that are not necessary. An initial map becomes a new island if the
-  // map is not empty.
-  void Process(const MapMessage& message, const Cancellation* hurry);
+  // map is not empty. Returns false for a correction that was dropped, because the map was
+  // corrected since the snapshot.
+  bool Process(const MapMessage& message, const Cancellation* hurry);
 
-  // To be called once, at the end. Removes all islands but the main one (map/islands.h). Then it
-  // adjusts the whole map, if mapping.final_bundle_adjustment is set, and publishes it. A map of
-  // earlier sessions to which no keyframe was added is not changed. If `cancellation` (may be null)
-  // is requested, the adjustment ends early with its current result.
-  void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress = {});
+  // The next five functions are for the end of a run (system/finish_run.h).
+  // False for a map of earlier sessions to which no keyframe was added.
+  bool HasChangedMap() const { return !session_; }
+  // Removes all islands but the main one (map/islands.h).
+  void KeepMainIsland();
+  // Adjusts the main island, if mapping.final_bundle_adjustment is set, and publishes the map. Does
+  // nothing if `cancellation` (may be null) was requested before. If it is requested meanwhile, the
+  // adjustment ends early with its current result. `on_progress` is called after each iteration.
+  void AdjustMap(const Cancellation* cancellation, const ProgressCallback& on_progress);
+  // Makes the metre the unit of length of a monocular map, if objects of known size are mapped.
+  void FollowKnownSizesAtEnd() { FollowKnownSizes(true); }
+  // Finds the changes of the objects of earlier sessions. Removes objects that are gone or were
+  // moved away.
+  void FinishObjects();
 
   // A snapshot of the live map for a stage that needs one of its own, and the keyframe that was
   // added last, unless it has been culled.
   Map Snapshot() { return map_.Snapshot(); }
   std::optional<KeyframeId> NewestKeyframe() const;
 
-  // The changes of objects between the map of earlier sessions and this session. Complete after
-  // Finish, which removes objects that are gone or were moved away. Empty if there was no such map
-  // or no keyframe was added.
+  // The changes of objects between the map of earlier sessions and this session, which
+  // FinishObjects finds. Empty if there was no such map or no keyframe was added.
   const std::vector<ChangedObject>& object_changes() const { return object_changes_; }
 
   const StageTimes& times() const { return times_; }
@@ -62,23 +71,20 @@ class Mapper {
   }
 
  private:
-  void Apply(const InitialMap& initial, const Cancellation* hurry);
-  void Apply(const KeyframeRequest& request, const Cancellation* hurry);
-  void Apply(const MapCorrection& correction, const Cancellation* hurry);
+  bool Apply(const InitialMap& initial, const Cancellation* hurry);
+  bool Apply(const KeyframeRequest& request, const Cancellation* hurry);
+  bool Apply(const MapCorrection& correction, const Cancellation* hurry);
   void BeginSession();
-  void FinishObjects();
   std::vector<ChangedObject> FindChanges() const;
   ObjectId FindLeft(const ChangedObject& changed) const;
   bool SplitReplacedObjects();
-  void AdjustMap(const Cancellation* cancellation, const ProgressCallback& on_progress);
   enum class Culling { kNone, kKeyframes };
   void AddEntities(KeyframeId keyframe, const Cancellation* hurry);
   void Improve(KeyframeId keyframe, const Cancellation* hurry, Culling culling);
   void PublishSnapshot();
   void MapObjects(KeyframeId keyframe);
   void AdjustNeighbourhood(KeyframeId keyframe, const Cancellation* hurry);
-  void Adjust(const BundleWindow& window, const BundleOptions& options,
-              const Cancellation* cancellation, const ProgressCallback& on_progress = {});
+  void Apply(const BundleResult& result);
   void FollowKnownSizes(bool is_final);
   void RecheckObjects(const std::vector<ObjectId>& objects);
 
@@ -93,7 +99,7 @@ class Mapper {
   KeyframeId newest_keyframe_;
   std::vector<LandmarkId> recent_;  // new landmarks that CullRecentLandmarks checks
   std::vector<KeyframeId> full_;    // keyframes that CompactOldKeyframes checks, by increasing id
-  size_t sized_views_ = 0;          // of objects of known size when the scale was last measured
+  size_t sized_views_ = 0;  // views of objects of known size when the scale was last measured
   std::optional<Session> session_;  // until its first keyframe
   std::vector<ChangedObject> object_changes_;
 };

@@ -8,16 +8,16 @@
 
 namespace hullslam {
 
-// How the mapping of points depends on the sensor.
+// The rules of mapping that depend on the sensor.
 
-// When landmarks and keyframes are removed.
+// The rules by which landmarks and keyframes are removed.
 struct CullingRules {
-  static constexpr size_t kMaxOtherObservers = 4;  // of all sensors
+  static constexpr size_t kMaxOtherObservers = 4;  // the same for all sensors
 
   // After its trial a landmark is removed if its observation weight is not larger than this. An
   // observation with depth weighs 2, one without weighs 1.
   int max_weak_weight = 0;
-  // A keyframe adds nothing to a landmark that so many other keyframes see too.
+  // A keyframe is not needed for a landmark that this many other keyframes see too.
   size_t other_observers = 0;
   // Whether keyframes between which the landmark has no measurable parallax count as one.
   bool observers_need_parallax = false;
@@ -25,7 +25,7 @@ struct CullingRules {
   static CullingRules ForSensor(SensorKind kind);
 };
 
-// From which pairs of keyframes landmarks are made, and where they are put.
+// The rules by which landmarks are made from pairs of keyframes.
 struct LandmarkRules {
   size_t neighbours = 0;  // number of best covisible keyframes that are paired with a new one
   // Shortest baseline of a pair, m. Absent: `min_baseline_share` of the median depth of the

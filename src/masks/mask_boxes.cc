@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view kBoxesName = "boxes";
 
 constexpr size_t kColumns = 6;
-constexpr double kRounding = 0.01;  // of shares of the image
+constexpr double kRounding = 0.01;  // how far shares may be beyond 0 to 1, because files round them
 
 bool IsYoloBox(const MaskProbe& probe) {
   return (probe.columns == kColumns || probe.columns == kColumns - 1) && IsNormalized(probe, 1);
@@ -47,8 +47,8 @@ class BoxMasks : public TextMasks {
             .outlines = {BoxOutline(x, y, x + width, y + height, request())}};
   }
 
-  // Shares of the width and height of the image. The first pixel starts at 0 and the last one ends
-  // at 1.
+  // The numbers are shares of the width and height of the image: the outer edge of the first pixel
+  // is at 0, that of the last one at 1.
   InstanceMask ParseYolo(const TextRow& row) const {
     if (row.columns.size() != kColumns && row.columns.size() != kColumns - 1) {
       row.Fail(fmt::format("{} column(s), expected {} or {}: class x y width height [confidence]",
@@ -84,7 +84,7 @@ class BoxMasks : public TextMasks {
     return value;
   }
 
-  const bool is_yolo_;  // decided by the first box, because a single line can be either
+  const bool is_yolo_;  // decided by the first box of the folder, because some lines fit both forms
 };
 
 bool IsBoxes(const MaskProbe& probe) {

@@ -7,11 +7,10 @@ namespace hullslam {
 
 // Format boxes: `<stem>.txt` with one line per box, in one of two forms. The first box of the
 // folder decides which.
-// - `class x y width height score` in pixels; x and y are the upper left corner. EAO-SLAM (Wu et
-// al.
-//   2020) reads these files.
+// - `class x y width height score` in pixels; x and y are the upper left corner. EAO-SLAM reads
+//   these files (Wu et al. 2020).
 // - `class x y width height [confidence]` in shares of the image; x and y are the centre. YOLO
-//   (Ultralytics, save_txt) writes these files for detections.
+//   writes these files for detections (Ultralytics, save_txt).
 extern const MaskFormat kBoxesFormat;
 
 }  // namespace hullslam

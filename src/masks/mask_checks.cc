@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "frame/label_image.h"
+#include "util/printable.h"
 
 namespace hullslam {
 std::string ImageStem(std::string_view name) {
@@ -38,6 +39,7 @@ std::vector<Eigen::Vector2d> BoxOutline(double left, double top, double right, d
 }
 
 void AddInstance(InstanceMask instance, FrameMasks& frame) {
+  instance.label = Printable(instance.label);
   SortByArea(instance.outlines);
   if (instance.outlines.empty()) {
     ++frame.without_area;

@@ -22,20 +22,22 @@ constexpr double kMostBeyondImage = 1.0;  // px; how far an outline may extend b
 // give 12.5.
 std::string ImageStem(std::string_view name);
 
-// Whether a point, in pixels with integer centres, is in the image or at most kMostBeyondImage
-// outside.
+// Whether a point is in the image or at most kMostBeyondImage outside. In its coordinates (px) the
+// centres of pixels are integers.
 bool IsNearImage(const Eigen::Vector2d& point, const MaskRequest& request);
 
-// The part of a rectangle inside the image, as an outline. The arguments are coordinates in which
-// the **edges** of pixels are integers, so that the image extends from 0 to its width; in the
-// outline the centres of pixels are integers. Without a part inside, the area of the outline is 0.
+// The part of a rectangle that is inside the image, as an outline. In the coordinates of the
+// arguments the **edges** of pixels are integers, so the image extends from 0 to its width. In the
+// coordinates of the outline the centres of pixels are integers. If no part is inside, the area of
+// the outline is 0.
 std::vector<Eigen::Vector2d> BoxOutline(double left, double top, double right, double bottom,
                                         const MaskRequest& request);
 
-// Adds an instance with its outlines sorted by area. Outlines smaller than kSmallestOutlineArea are
-// removed; an instance without any outline left is only counted.
+// Adds an instance with its label in printable characters and its outlines sorted by area. Outlines
+// smaller than kSmallestOutlineArea are removed; an instance without any outline left is only
+// counted.
 void AddInstance(InstanceMask instance, FrameMasks& frame);
-// Whether there are more instances than kMostInstances, including those that were left out.
+// Whether the frame has more than kMostInstances instances, including those that are only counted.
 bool HasTooMany(const FrameMasks& frame);
 
 }  // namespace hullslam

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -27,13 +28,13 @@ constexpr std::string_view kCocoName = "coco";
 
 using Json = nlohmann::json;
 
-constexpr const char* kNoClass = "object";  // SAM has no classes
+constexpr const char* kNoClass = "object";  // for masks of SAM, which have no classes
 
-// Outlines of run lengths are computed when the frame is read: this takes a while, and runs need
-// less memory.
+// An instance with its outlines or its runs. The outlines of runs are only computed when the frame
+// is read, because runs need less memory and the computation takes time.
 struct CocoInstance {
   InstanceMask mask;
-  MaskRuns runs;  // empty: the outlines are used
+  MaskRuns runs;  // empty if the file has outlines
 };
 
 struct CocoImage {
@@ -110,7 +111,7 @@ class CocoReader {
     annotations_.push_back(std::move(annotation));
   }
 
-  // A number of one digit in the file takes eight bytes here.
+  // Limits the memory of all masks: a number of one digit in the file becomes eight bytes here.
   void CountBytes(const JsonRecord& record, const CocoInstance& instance) {
     constexpr size_t kMostBytes = 512'000'000;
     bytes_ += instance.runs.size() * sizeof(uint32_t);
@@ -218,32 +219,32 @@ class CocoReader {
   }
 
   void Finish(CocoAnnotation& annotation, std::map<std::string, CocoImage>& images) const {
-    const JsonRecord place{
+    const JsonRecord record{
         request_.path, stems_.empty() ? "" : "annotations", annotation.index, {}};
     const auto stem = stems_.find(annotation.image);
     if (!stems_.empty() && stem == stems_.end()) {
-      place.Fail("image_id " + ShowText(annotation.image) + " is in no entry of 'images'");
+      record.Fail("image_id " + ShowText(annotation.image) + " is in no entry of 'images'");
     }
     CocoImage& image = images[stem == stems_.end() ? annotation.image : stem->second];
-    annotation.instance.mask.label = Label(place, annotation.category);
+    annotation.instance.mask.label = Label(record, annotation.category);
     if (annotation.is_crowd) {
       ++image.crowds;
     } else {
       image.instances.push_back(std::move(annotation.instance));
     }
     if (image.instances.size() + image.crowds > kMostInstances) {
-      place.Fail(fmt::format("too many instances, expected at most {} per frame", kMostInstances));
+      record.Fail(fmt::format("too many instances, expected at most {} per frame", kMostInstances));
     }
   }
 
-  std::string Label(const JsonRecord& place, const std::optional<int64_t>& category) const {
+  std::string Label(const JsonRecord& record, const std::optional<int64_t>& category) const {
     if (!category) {
       return kNoClass;
     }
     if (categories_.empty()) {
       const std::optional<std::string> label = CocoCategory(*category);
       if (!label) {
-        place.Fail(
+        record.Fail(
             fmt::format("category_id is {}, expected one of COCO's (1 to 90 with gaps) or a "
                         "list 'categories' in the file",
                         *category));
@@ -252,7 +253,7 @@ class CocoReader {
     }
     const auto found = categories_.find(*category);
     if (found == categories_.end()) {
-      place.Fail(fmt::format("category_id {} is in no entry of 'categories'", *category));
+      record.Fail(fmt::format("category_id {} is in no entry of 'categories'", *category));
     }
     return found->second;
   }
@@ -268,7 +269,7 @@ class CocoReader {
     return value.get<int64_t>();
   }
 
-  // An integer in decimal, or the stem of a string, which is the name of an image.
+  // The id of an image as text: an integer in decimal, or the stem of a file name.
   static std::string ImageId(const JsonRecord& record, const char* name) {
     const Json& value = Member(record, record.value, name);
     if (!value.is_string() && !value.is_number_integer()) {
@@ -278,10 +279,10 @@ class CocoReader {
   }
 
   const MaskRequest& request_;
-  std::map<std::string, std::string> stems_;  // by the image's id
+  std::map<std::string, std::string> stems_;  // of the images, by their ids
   std::map<int64_t, std::string> categories_;
   std::vector<CocoAnnotation> annotations_;
-  size_t bytes_ = 0;  // of all outlines and runs
+  size_t bytes_ = 0;  // memory of all outlines and runs
 };
 
 class CocoMasks : public MaskSource {
@@ -314,8 +315,8 @@ class CocoMasks : public MaskSource {
  private:
   using Images = std::map<std::string, CocoImage>;  // by stem
 
-  // In results without a list of images, a frame with a name of digits is found by its number:
-  // 000012 is 12 there.
+  // If the file has no list of images, their ids may be numbers. Then a frame whose name has only
+  // digits is found by its number: 000012 has the id 12.
   Images::const_iterator Find(const MaskFrame& frame) const {
     const auto image = images_.find(frame.stem);
     const bool is_number = frame.stem.find_first_not_of("0123456789") == std::string::npos;
@@ -330,9 +331,7 @@ class CocoMasks : public MaskSource {
   Images images_;
 };
 
-bool IsCoco(const MaskProbe& probe) {
-  return probe.json_key == "annotations" || probe.json_key == "image_id";
-}
+constexpr std::array<std::string_view, 2> kCocoKeys = {"annotations", "image_id"};
 
 std::unique_ptr<MaskSource> OpenCoco(const MaskRequest& request) {
   return std::make_unique<CocoMasks>(request);
@@ -340,6 +339,6 @@ std::unique_ptr<MaskSource> OpenCoco(const MaskRequest& request) {
 
 }  // namespace
 
-const MaskFormat kCocoFormat = {.name = kCocoName, .is_meant = IsCoco, .open = OpenCoco};
+const MaskFormat kCocoFormat = {.name = kCocoName, .json_keys = kCocoKeys, .open = OpenCoco};
 
 }  // namespace hullslam

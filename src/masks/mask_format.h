@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string_view>
 
 #include "hullslam/masks/mask_source.h"
@@ -9,12 +10,15 @@
 
 namespace hullslam {
 
-// A format of mask files. Each has its own file, which defines one constant of this type; the table
-// in open_masks.cc names them all.
+// A format of mask files. Each format has its own file, which defines one constant of this type.
+// The table in open_masks.cc lists all formats.
 struct MaskFormat {
-  std::string_view name;                     // the name of --masks-format
-  bool (*is_meant)(const MaskProbe& probe);  // whether the files look like this format
-  std::unique_ptr<MaskSource> (*open)(const MaskRequest& request);
+  std::string_view name;  // the name of --masks-format
+  // How the format is recognised if its name is not given: a folder by its files, a JSON file by
+  // its keys. A format is a folder or a file and sets only one of the two.
+  bool (*is_meant)(const MaskProbe& folder) = nullptr;
+  std::span<const std::string_view> json_keys = {};  // one of them comes first in the file
+  std::unique_ptr<MaskSource> (*open)(const MaskRequest& request) = nullptr;
 };
 
 }  // namespace hullslam

@@ -23,14 +23,14 @@ constexpr size_t kMostValues = 2'000'000;
 constexpr size_t kMostRecords = 1'000'000;
 constexpr int kMostDepth = 16;
 
-// Takes each object out of the document as soon as it is complete.
+// A callback of the parser that visits each record as soon as it is complete, and does not keep it.
 class RecordTaker {
  public:
   RecordTaker(const std::filesystem::path& path,
               const std::function<void(const JsonRecord& record)>& visit)
       : path_(path), visit_(visit) {}
 
-  // Returns false if the value is not to be kept.
+  // Called for each event of the parser. Returns whether the value is kept.
   bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
     Count();
     if (depth == 0 && event == Json::parse_event_t::object_start) {
@@ -74,7 +74,7 @@ void JsonRecord::Fail(const std::string& what) const {
 void ForEachJsonRecord(const std::filesystem::path& path,
                        const std::function<void(const JsonRecord& record)>& visit) {
   RecordTaker taker(path, visit);
-  // The values are counted by the taker: the limit is one for each record.
+  // The RecordTaker counts the values, because the limit is one for each record.
   const JsonLimits limits = {.most_bytes = kMostJsonFileBytes,
                              .most_values = std::numeric_limits<size_t>::max(),
                              .most_depth = kMostDepth};

@@ -22,22 +22,23 @@ struct JsonRecord {
   [[noreturn]] void Fail(const std::string& what) const;
 };
 
-// Visits the objects in a file that is a list of objects, or an object whose members are such
-// lists. They are visited in order and one at a time, so that the memory is bounded by the largest
-// object. Everything else is skipped. Throws InputError for a file that is missing, no valid JSON
-// (with line and column), larger than 512 MB, or has more than a million objects, or more than two
-// million values in one object or outside of all objects.
+// Visits all records of a file: the objects in its list or, if the file is an object, in the lists
+// that are its members. The records are parsed one at a time, in order, so the memory is bounded by
+// the largest one. Everything else is skipped. Throws InputError for a file that is missing, no
+// valid JSON (with line and column), larger than 512 MB, or has more than a million objects, or
+// more than two million values in one object or outside of all objects.
 void ForEachJsonRecord(const std::filesystem::path& path,
                        const std::function<void(const JsonRecord& record)>& visit);
 
-// A member of an object; record.Fail() if it is missing.
+// A member of an object. Calls record.Fail() if it is missing.
 const nlohmann::json& Member(const JsonRecord& record, const nlohmann::json& object,
                              const char* name);
 
-// A list of numbers; for anything else record.Fail() with `name`.
+// Reads a list of numbers. Calls record.Fail() with `name` if the value is anything else.
 std::vector<double> Numbers(const JsonRecord& record, const nlohmann::json& list, const char* name);
 
-// A member that is a confidence from 0 to 1; 1 if the member is missing.
+// The confidence in a member of an object, from 0 to 1. It is 1 if the member is missing. Calls
+// record.Fail() for any other value.
 double ScoreOf(const JsonRecord& record, const nlohmann::json& object, const char* name);
 
 }  // namespace hullslam

@@ -5,10 +5,9 @@
 
 namespace hullslam {
 
-// Format label-png: `<stem>.png` with 16 bits per pixel, which contain the number of the instance,
-// 0 for none; and classes.json with the classes of the instances: {"1": "cup", "2": {"class": "tv",
-// "score": 0.9}} for all frames and, with precedence, {"frames": {"<stem>": {"1": "mouse"}}} for
-// one frame.
+// Format label-png. `<stem>.png` has 16 bits per pixel with the number of the instance, 0 for none.
+// classes.json has the classes of the instances: {"1": "cup", "2": {"class": "tv", "score": 0.9}}
+// for all frames. {"frames": {"<stem>": {"1": "mouse"}}} is for one frame and takes precedence.
 extern const MaskFormat kLabelPngFormat;
 
 }  // namespace hullslam

@@ -48,8 +48,8 @@ Eigen::Vector2d HalfSize(const std::array<double, 5>& ellipse, const EllipseUnit
   return {std::hypot(a * cosine, b * sine), std::hypot(a * sine, b * cosine)};
 }
 
-// Files do not say which units they use. Each ellipse comes with its box, and it only fits the box
-// in the right units.
+// Finds the units of the ellipses, which files do not name. Each ellipse comes with its box, and
+// the ellipse only fits the box in the right units.
 EllipseUnits FindUnits(const OaSlamImages& images) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   constexpr std::array<EllipseUnits, 4> kUnits = {
@@ -225,7 +225,7 @@ class OaSlamMasks : public MaskSource {
   EllipseUnits units_;
 };
 
-bool IsOaSlam(const MaskProbe& probe) { return probe.json_key == "detections"; }
+constexpr std::array<std::string_view, 1> kOaSlamKeys = {"detections"};
 
 std::unique_ptr<MaskSource> OpenOaSlam(const MaskRequest& request) {
   return std::make_unique<OaSlamMasks>(request);
@@ -233,6 +233,7 @@ std::unique_ptr<MaskSource> OpenOaSlam(const MaskRequest& request) {
 
 }  // namespace
 
-const MaskFormat kOaSlamFormat = {.name = kOaSlamName, .is_meant = IsOaSlam, .open = OpenOaSlam};
+const MaskFormat kOaSlamFormat = {
+    .name = kOaSlamName, .json_keys = kOaSlamKeys, .open = OpenOaSlam};
 
 }  // namespace hullslam

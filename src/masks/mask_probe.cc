@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -23,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMostColumns = 64;  // enough to recognise a format
 
-// Returns false for a file without rows.
+// Stores the first row of a text file. Returns false if the file has no rows.
 bool ProbeRow(const fs::path& path, MaskProbe& probe) {
   CheckFileSize(path, kMostFrameFileBytes);
   ForEachRow(path, [&](const TextRow& row) {
@@ -82,11 +81,10 @@ std::string DescribeFolderMisfit(const MaskProbe& probe) {
   return "has neither text files nor PNG files, expected masks";
 }
 
-void ProbeFile(MaskProbe& probe) {
-  constexpr std::array<std::string_view, 3> kKeys = {"annotations", "image_id", "detections"};
+void ProbeFile(std::span<const std::string_view> json_keys, MaskProbe& probe) {
   const std::string text = ReadFile(probe.path, kMostJsonFileBytes);
   size_t first = std::string::npos;
-  for (const std::string_view key : kKeys) {
+  for (const std::string_view key : json_keys) {
     const size_t at = text.find('"' + std::string(key) + '"');
     if (at < first) {
       first = at;
@@ -97,7 +95,7 @@ void ProbeFile(MaskProbe& probe) {
 
 }  // namespace
 
-MaskProbe ProbeMasks(const fs::path& path) {
+MaskProbe ProbeMasks(const fs::path& path, std::span<const std::string_view> json_keys) {
   MaskProbe probe;
   probe.path = path;
   std::error_code error;
@@ -112,18 +110,17 @@ MaskProbe ProbeMasks(const fs::path& path) {
   if (probe.is_folder) {
     ProbeFolder(probe);
   } else {
-    ProbeFile(probe);
+    ProbeFile(json_keys, probe);
   }
   return probe;
 }
 
-std::string DescribeMisfit(const MaskProbe& probe) {
+std::string DescribeMisfit(const MaskProbe& probe, const std::string& json_keys) {
   if (probe.is_folder) {
     return DescribeFolderMisfit(probe);
   }
-  ReadJson(probe.path, {.most_bytes = kMostJsonFileBytes});  // throws where the JSON breaks off
-  return "is JSON, but has none of the keys 'annotations', 'image_id' (coco) and 'detections' "
-         "(oa-slam)";
+  ReadJson(probe.path, {.most_bytes = kMostJsonFileBytes});  // throws if the file is not valid JSON
+  return "is JSON, but has none of the keys " + json_keys;
 }
 
 bool IsNormalized(const MaskProbe& probe, size_t column) {

@@ -2,17 +2,20 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hullslam {
 
-// What was found at a path to masks. From this each format decides whether it fits.
+// Facts about the files at a path. From these each format decides whether the files have this
+// format.
 struct MaskProbe {
   std::filesystem::path path;
   bool is_folder = false;
-  // For a folder: the columns of the first line in a text file other than classes.txt (at most as
-  // many as are read), and the total number of columns.
+  // For a folder: the columns of the first line found in a text file other than classes.txt, and
+  // their number. `row` has only the first columns if there are very many.
   std::vector<std::string> row;
   size_t columns = 0;
   size_t texts = 0;         // text files other than classes.txt
@@ -21,18 +24,20 @@ struct MaskProbe {
   bool has_json = false;    // has JSON files other than classes.json
   bool has_classes_json = false;
   bool has_paper_folder = false;  // has a folder segmentation_txt
-  // For a file: the first of the keys "annotations", "image_id" and "detections" that occurs in it.
-  std::string json_key;
+  std::string json_key;           // for a file: that of the given keys that comes first in it
 };
 
-// Throws InputError if the path does not exist or cannot be read.
-MaskProbe ProbeMasks(const std::filesystem::path& path);
+// Searches a file for the keys. Throws InputError if the path does not exist or cannot be read.
+MaskProbe ProbeMasks(const std::filesystem::path& path,
+                     std::span<const std::string_view> json_keys = {});
 
-// Why no format fits, and what to do about it; a sentence without its first capital letter. Throws
-// InputError if the file is not JSON.
-std::string DescribeMisfit(const MaskProbe& probe);
+// Says why no format fits and what the user can do. The text continues a message, so it begins with
+// a small letter. `json_keys` describes the keys of all formats. Throws InputError if the file is
+// not JSON.
+std::string DescribeMisfit(const MaskProbe& probe, const std::string& json_keys);
 
-// Whether all numbers of the row from `column` on are between 0 and 1, up to rounding.
+// Whether all numbers of the row, from the column with index `column` on, are between 0 and 1 up to
+// rounding.
 bool IsNormalized(const MaskProbe& probe, size_t column);
 
 }  // namespace hullslam

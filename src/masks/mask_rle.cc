@@ -13,9 +13,9 @@ namespace {
 
 constexpr int kMostBits = 40;  // 32 bits of a run and the sign, rounded up to whole characters
 
-// Reads one number: five bits per character, the lowest bits first. Bit 32 means that more
-// characters follow; bit 16 of the last character is the sign. Returns nothing if the text does not
-// start with such a number.
+// Reads one number: five bits per character, the lowest bits first. In a character, the bit with
+// value 32 means that more characters follow. In the last one, the bit with value 16 is the sign.
+// Returns nothing if the text does not start with such a number.
 std::optional<int64_t> TakeNumber(std::string_view& text) {
   int64_t value = 0;
   for (int shift = 0; !text.empty() && shift < kMostBits; shift += 5) {

@@ -9,13 +9,13 @@
 
 namespace hullslam {
 
-// Lengths of runs of pixels, column by column, alternately outside and inside the mask; the first
-// run is outside.
+// The lengths of runs of pixels in a mask that is read column by column. Runs outside and inside
+// the mask alternate; the first run is outside and may be 0.
 using MaskRuns = std::vector<uint32_t>;
 
-// Decodes runs in COCO's compressed form: five bits per character; from the fourth run on the
-// number is the difference to the last run of the same kind. Returns nothing for other characters,
-// for an incomplete number, and for a run below 0 or above 32 bits.
+// Decodes runs in COCO's compressed form: five bits per character. From the fourth run on, the
+// number is the difference to the previous run of the same kind (outside or inside). Returns
+// nothing for other characters, for an incomplete number, and for a run below 0 or above 32 bits.
 std::optional<MaskRuns> DecodeRuns(std::string_view text);
 
 // The sum of all runs. It must be width x height.

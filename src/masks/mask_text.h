@@ -16,8 +16,8 @@ namespace hullslam {
 // if the folder cannot be read.
 std::set<std::string> ListFiles(const std::filesystem::path& folder, std::string_view extension);
 
-// Masks in a folder with one text file per frame and one line per instance. Each format defines its
-// own lines and file names.
+// The base of all formats that are a folder with one text file per frame and one line per instance.
+// Each format defines its own lines and file names.
 class TextMasks : public MaskSource {
  public:
   explicit TextMasks(const MaskRequest& request);
@@ -32,9 +32,10 @@ class TextMasks : public MaskSource {
   virtual std::string FileName(const MaskFrame& frame) const { return frame.stem; }
 
   const MaskRequest& request() const { return request_; }
-  // The class whose number is in the column.
+  // The class whose number is in a column of the row. Throws InputError for a number without a
+  // class.
   const std::string& ClassName(const TextRow& row, size_t column) const;
-  // The confidence in the column.
+  // The confidence in a column of the row. Throws InputError unless it is from 0 to 1.
   static double Score(const TextRow& row, size_t column);
 
  private:

@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::string_view kYoloSegName = "yolo-seg";
 
-// Outlines that run between pixels end half a pixel beyond the centres at the border. Rounding adds
-// to this.
+// How far coordinates may be outside the image. Outlines that pass between pixels are half a pixel
+// outside the centres at the border, and rounding adds to this.
 constexpr double kMostBeyond = 1.0;  // px
 
 class YoloSegMasks : public TextMasks {
@@ -24,7 +24,7 @@ class YoloSegMasks : public TextMasks {
 
  private:
   // Coordinates are pixels with integer centres, divided by width and height. Ultralytics writes
-  // them so: it divides the pixels that cv::findContours() returns.
+  // them in this form: it divides the pixels that cv::findContours() returns.
   InstanceMask Parse(const TextRow& row) const override {
     const size_t points = (row.columns.size() - 1) / 2;
     if (points < 3) {

@@ -22,9 +22,37 @@
 namespace hullslam {
 namespace {
 
-// All formats. A new one needs a row here.
-constexpr std::array<const MaskFormat*, 6> kFormats = {
-    &kYoloSegFormat, &kCocoFormat, &kLabelPngFormat, &kPaperFormat, &kOaSlamFormat, &kBoxesFormat};
+// The table of all formats. A new format needs a row here.
+constexpr std::array kFormats = {&kYoloSegFormat, &kCocoFormat,   &kLabelPngFormat,
+                                 &kPaperFormat,   &kOaSlamFormat, &kBoxesFormat};
+
+std::vector<std::string_view> JsonKeys() {
+  std::vector<std::string_view> keys;
+  for (const MaskFormat* const format : kFormats) {
+    keys.insert(keys.end(), format->json_keys.begin(), format->json_keys.end());
+  }
+  return keys;
+}
+
+// For messages: "'annotations', 'image_id' (coco) and 'detections' (oa-slam)".
+std::string DescribeJsonKeys() {
+  std::vector<std::string> described;
+  for (const MaskFormat* const format : kFormats) {
+    if (!format->json_keys.empty()) {
+      described.push_back(
+          fmt::format("'{}' ({})", fmt::join(format->json_keys, "', '"), format->name));
+    }
+  }
+  return fmt::format("{}", fmt::join(described, " and "));
+}
+
+bool Fits(const MaskFormat& format, const MaskProbe& probe) {
+  if (probe.is_folder) {
+    return format.is_meant != nullptr && format.is_meant(probe);
+  }
+  return std::find(format.json_keys.begin(), format.json_keys.end(), probe.json_key) !=
+         format.json_keys.end();
+}
 
 const MaskFormat& FindFormat(const std::string& name) {
   const auto* const found = std::find_if(kFormats.begin(), kFormats.end(),
@@ -37,17 +65,18 @@ const MaskFormat& FindFormat(const std::string& name) {
 }
 
 const MaskFormat& DetectFormat(const std::filesystem::path& path) {
-  const MaskProbe probe = ProbeMasks(path);
+  const MaskProbe probe = ProbeMasks(path, JsonKeys());
   std::vector<const MaskFormat*> fitting;
   std::vector<std::string_view> names;
   for (const MaskFormat* const format : kFormats) {
-    if (format->is_meant(probe)) {
+    if (Fits(*format, probe)) {
       fitting.push_back(format);
       names.push_back(format->name);
     }
   }
   if (fitting.empty()) {
-    throw InputError(fmt::format("{}: {}", path.string(), DescribeMisfit(probe)));
+    throw InputError(
+        fmt::format("{}: {}", path.string(), DescribeMisfit(probe, DescribeJsonKeys())));
   }
   if (fitting.size() > 1) {
     throw InputError(

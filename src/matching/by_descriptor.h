@@ -12,7 +12,7 @@ namespace hullslam {
 
 struct DescriptorSearch {
   int max_distance = 50;   // Hamming
-  double max_ratio = 0.7;  // of the best distance to the second best
+  double max_ratio = 0.7;  // largest ratio of the best distance to the second best
 };
 
 // Compares every keypoint of `queries` that is listed in `indices` with every keypoint of

@@ -14,7 +14,7 @@ namespace hullslam {
 
 struct WordSearch {
   int max_distance = 50;   // Hamming
-  double max_ratio = 0.7;  // of the best distance to the second best; 1: no such test
+  double max_ratio = 0.7;  // largest ratio of the best distance to the second best; 1: no such test
   bool compare_rotation = true;
   // Decides whether a query (index) may be matched to a keypoint (index). It is asked before
   // descriptors are compared. Empty: all may be matched.

@@ -33,8 +33,8 @@ struct TwoBest {
   }
 };
 
-// Keeps for each keypoint the match of least distance; ties go to the lowest query. `matches` comes
-// back sorted by query.
+// Keeps for each keypoint the match of least distance; ties go to the lowest query. Afterwards
+// `matches` is sorted by query.
 void KeepBestPerKeypoint(std::vector<Match>& matches);
 
 // Keeps the matches whose change of keypoint angle is among the three most frequent changes, in 30

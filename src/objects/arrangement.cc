@@ -14,7 +14,7 @@ namespace hullslam {
 namespace {
 
 constexpr double kLeastOverlap = 0.3;
-constexpr int kVertices = 32;  // of the polygon of an ellipse
+constexpr int kVertices = 32;  // number of vertices of the polygon of an ellipse
 
 // A detection and an object that it may show.
 struct Pair {

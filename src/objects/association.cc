@@ -29,7 +29,7 @@ struct Prediction {
   std::vector<LandmarkId> landmarks;       // in its latest views, sorted
   std::vector<Eigen::Vector3d> cloud;      // depth points of its last view, world
   std::vector<Eigen::Vector3d> centroids;  // one per latest view with depth, world
-  double size = 0.0;                       // of its cloud (SizeOf)
+  double size = 0.0;                       // size of its cloud (SizeOf)
 };
 
 // A detection with all its data that is compared.
@@ -37,8 +37,8 @@ struct Seen {
   const Detection* detection = nullptr;
   std::vector<LandmarkId> landmarks;  // sorted
   std::vector<Eigen::Vector3d> cloud;
-  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // of the cloud
-  double noise = 0.0;                                  // of the centroid, in units of the map
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // centroid of the cloud
+  double noise = 0.0;                                  // noise of the centroid, in units of the map
 };
 
 // Twice the root mean square distance of the points from their mean. It is about half the diagonal

@@ -17,7 +17,7 @@ constexpr double kReach = 3.0;  // in widths; samples farther away have nearly n
 // Least sum of weights: that of one sample at the normal, or of several samples near it.
 constexpr double kMinWeight = 1.0;
 constexpr double kNoSlope = 0.3;           // weight of the prior that the slope is 0
-constexpr double kMinContactDepth = 1e-3;  // of the contact point, in units of the map
+constexpr double kMinContactDepth = 1e-3;  // least depth of the contact point, in units of the map
 
 }  // namespace
 
@@ -142,7 +142,7 @@ MisfitSpread MeasureSpread(const PinholeCamera& camera, const ObjectLandmark& ob
 double RelativeMisfit(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
                       std::span<const ObjectView> views) {
   double squared_misfit = 0.0;
-  double squared_size = 0.0;  // of the mask of each line
+  double squared_size = 0.0;  // sum over the lines of the squared size of their mask
   for (const ObjectView& view : views) {
     for (const SilhouetteLine& line : view.detection->lines) {
       const auto plane = line.is_one_sided

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
+#include <set>
 #include <span>
 
 #include "geometry/assignment.h"
@@ -66,7 +68,7 @@ class Comparison {
       }
     }
     for (const auto& [id, object] : map_.objects()) {
-      if (object.state == ObjectState::kMapped && !WasMapped(id)) {
+      if (object.state == ObjectState::kMapped && !WasMapped(id) && !successors_.contains(id)) {
         changed.push_back(CompareAdded(id, object));
       }
     }
@@ -83,11 +85,38 @@ class Comparison {
     changed.former = {id, sought.ellipsoid};
     CountViews(later_, now, sought, changed);
     changed.change = Judge(changed, ObjectChange::kGone, ObjectChange::kNotSeen);
-    const ObjectLandmark* const object = map_.objects().Find(now);
-    if (object != nullptr && object->has_shape && changed.change != ObjectChange::kGone) {
-      changed.now = {now, object->ellipsoid};
+    if (changed.change != ObjectChange::kGone) {
+      changed.now = Locate(now);
+    }
+    if (changed.change == ObjectChange::kSeenAgain && !changed.now) {
+      changed.now = Locate(FindSuccessor(sought));
+      changed.change = changed.now ? ObjectChange::kSeenAgain : ObjectChange::kGone;
     }
     return changed;
+  }
+
+  std::optional<LocatedObject> Locate(ObjectId id) const {
+    const ObjectLandmark* const object = map_.objects().Find(id);
+    return object != nullptr && object->has_shape
+               ? std::optional(LocatedObject{id, object->ellipsoid})
+               : std::nullopt;
+  }
+
+  // The new object at the location of one that was removed from the map although it was seen again.
+  // Invalid if there is none.
+  ObjectId FindSuccessor(const ObjectLandmark& removed) {
+    for (const auto& [id, object] : map_.objects()) {
+      const Ellipsoid& shape = object.ellipsoid;
+      const double distance =
+          (shape.world_from_object.translation - removed.ellipsoid.world_from_object.translation)
+              .norm();
+      if (object.state == ObjectState::kMapped && !WasMapped(id) &&
+          MayBe(removed, object.Label()) && distance <= removed.ellipsoid.half_axes.maxCoeff() &&
+          successors_.insert(id).second) {
+        return id;
+      }
+    }
+    return {};
   }
 
   ChangedObject CompareAdded(ObjectId id, const ObjectLandmark& object) {
@@ -266,6 +295,7 @@ class Comparison {
   const ObjectOptions& options_;
   std::vector<KeyframeId> earlier_;
   std::vector<KeyframeId> later_;  // those of the session
+  std::set<ObjectId> successors_;  // those that FindSuccessor has found
 };
 
 }  // namespace

@@ -18,11 +18,12 @@ namespace hullslam {
 namespace {
 
 constexpr size_t kMinPlanes = 30;    // for nine unknowns; neighbouring planes are nearly equal
-constexpr double kLossScale = 0.04;  // of the largest half axis
+constexpr double kLossScale = 0.04;  // share of the largest half axis
 constexpr double kBorderPx = 20.0;   // lines that touch the mask nearer to the border are left out
-constexpr double kMaxMisfit = 0.1;   // of the longest side
+constexpr double kMaxMisfit = 0.1;   // share of the longest side
 constexpr int kIterations = 50;
-constexpr double kMaxLogHalf = 100.0;  // of a half side; its exponential is still finite
+constexpr double kMaxLogHalf =
+    100.0;  // largest logarithm of a half side; its exponential is still finite
 
 enum class Body { kBox, kEllipsoid };
 
@@ -97,8 +98,8 @@ std::vector<TouchingPlane> FindPlanes(const Sensor& sensor, const Ellipsoid& ell
 
 struct Fit {
   Eigen::Vector3d half_sides;
-  double cost = 0.0;  // with the loss
-  double rms = 0.0;   // of the distances, without it
+  double cost = 0.0;  // sum of the squared distances, with the loss
+  double rms = 0.0;   // RMS of the distances, without the loss
 };
 
 std::optional<Fit> FitBody(Body body, std::span<const TouchingPlane> planes,

@@ -38,7 +38,7 @@ class ObjectIndex {
   void Add(const Map& map, const PinholeCamera& camera, ObjectId id, const ObjectLandmark& object);
 
   std::vector<Sphere> spheres_;  // by increasing id of the object
-  uint32_t revision_ = 0;        // of the map; 0 if it was no snapshot
+  uint32_t revision_ = 0;        // revision of the map; 0 if it was no snapshot
 };
 
 }  // namespace hullslam

@@ -280,9 +280,10 @@ void ObjectOptions::Bind(OptionTable& options) {
   scope.Add("guided_matching", &guided_matching,
             "search landmarks on mapped objects that are not in the local map, inside the hulls of "
             "their detections");
-  scope.Add("sizes", &sizes, Range::Between(0.001, 20.0),
-            "longest side of objects by class, m; a single camera without depth gets its scale "
-            "from objects of known size");
+  scope.Add(
+      "sizes", &sizes, Range::Between(0.001, 20.0),
+      "longest side of objects by class, m; a monocular run gets its scale from objects of known "
+      "size");
   detection.Bind(scope.Inner("detection"));
   association.Bind(scope.Inner("association"));
   start.Bind(scope.Inner("start"));

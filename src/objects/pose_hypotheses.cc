@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -38,7 +37,8 @@ struct Candidate {
   double radius = 0.0;                                      // m, mean of the half axes
 };
 
-struct Seen {
+// A detection and the objects that it may show.
+struct DetectionCandidates {
   const Detection* detection = nullptr;
   ObjectSighting sighting;
   std::vector<Candidate> candidates;
@@ -55,15 +55,15 @@ double Tolerance(const Candidate& candidate, double distance) {
 }
 
 // The detections that may show mapped objects, those with the fewest candidates first.
-std::vector<Seen> FindCandidates(const Map& map, const PinholeCamera& camera, const Frame& frame,
-                                 IslandId island) {
-  std::vector<Seen> all;
+std::vector<DetectionCandidates> FindCandidates(const Map& map, const PinholeCamera& camera,
+                                                const Frame& frame, IslandId island) {
+  std::vector<DetectionCandidates> all;
   for (const Detection& detection : frame.detections) {
     const std::optional<ObjectSighting> sighting = SightObject(camera, detection);
     if (!sighting) {
       continue;
     }
-    Seen seen{&detection, *sighting, {}};
+    DetectionCandidates seen{&detection, *sighting, {}};
     map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
       if (object.state != ObjectState::kMapped || IslandOf(map, object) != island ||
           !MayHaveClass(object, detection.label)) {
@@ -84,15 +84,16 @@ std::vector<Seen> FindCandidates(const Map& map, const PinholeCamera& camera, co
       all.push_back(std::move(seen));
     }
   }
-  std::stable_sort(all.begin(), all.end(), [](const Seen& a, const Seen& b) {
-    return a.candidates.size() < b.candidates.size();
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const DetectionCandidates& a, const DetectionCandidates& b) {
+                     return a.candidates.size() < b.candidates.size();
+                   });
   return all;
 }
 
 class Proposer {
  public:
-  Proposer(const PinholeCamera& camera, std::vector<Seen> seen)
+  Proposer(const PinholeCamera& camera, std::vector<DetectionCandidates> seen)
       : camera_(camera), seen_(std::move(seen)) {}
 
   std::vector<PoseHypothesis> Run() {
@@ -207,7 +208,8 @@ class Proposer {
       const double overlap =
           BoxOverlap(pose, *seen_[i].detection, a) + BoxOverlap(pose, *seen_[j].detection, b);
       if (overlap > 0.0) {
-        poses_.push_back({pose, overlap});
+        const double distance = 0.5 * (a.center_in_cam.norm() + b.center_in_cam.norm());
+        poses_.push_back({pose, overlap, distance});
       }
     }
   }
@@ -221,20 +223,26 @@ class Proposer {
   void AddPose(const Rigid3& cam_from_world) {
     constexpr double kLeast = 1.0;  // below it the centres are far from their expected positions
     double agreement = 0.0;
-    for (const Seen& seen : seen_) {
+    double distances = 0.0;  // weighted by the agreements
+    for (const DetectionCandidates& seen : seen_) {
       double best = 0.0;
+      double distance = 0.0;
       for (const Candidate& candidate : seen.candidates) {
-        best = std::max(best, Agreement(cam_from_world, seen, candidate));
+        if (const double share = Agreement(cam_from_world, seen, candidate); share > best) {
+          best = share;
+          distance = (cam_from_world * CenterOf(candidate)).norm();
+        }
       }
       agreement += best;
+      distances += best * distance;
     }
     if (agreement >= kLeast) {
-      poses_.push_back({cam_from_world, agreement});
+      poses_.push_back({cam_from_world, agreement, distances / agreement});
     }
   }
 
   // 1 if the object has the position that the detection shows, falling to 0 at twice the tolerance.
-  static double Agreement(const Rigid3& cam_from_world, const Seen& seen,
+  static double Agreement(const Rigid3& cam_from_world, const DetectionCandidates& seen,
                           const Candidate& candidate) {
     const Eigen::Vector3d center = cam_from_world * CenterOf(candidate);
     const double along = center.dot(seen.sighting.ray);
@@ -253,11 +261,10 @@ class Proposer {
     std::stable_sort(
         poses_.begin(), poses_.end(),
         [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.agreement > b.agreement; });
-    const double depth = MeanDistance();
     std::vector<PoseHypothesis> best;
     for (const PoseHypothesis& pose : poses_) {
       const bool is_known = std::any_of(best.begin(), best.end(), [&](const auto& better) {
-        return AreSamePlace(better.cam_from_world, pose.cam_from_world, depth);
+        return AreSamePlace(better.cam_from_world, pose.cam_from_world, better.distance);
       });
       if (!is_known) {
         best.push_back(pose);
@@ -269,20 +276,8 @@ class Proposer {
     return best;
   }
 
-  // Mean distance of the detections; infinite if none has depth, so that only the rotations are
-  // compared.
-  double MeanDistance() const {
-    double sum = 0.0;
-    double count = 0.0;
-    for (const Seen& seen : seen_) {
-      sum += seen.sighting.surface;
-      count += seen.has_depth() ? 1.0 : 0.0;
-    }
-    return count > 0.0 ? sum / count : std::numeric_limits<double>::infinity();
-  }
-
   const PinholeCamera& camera_;
-  const std::vector<Seen> seen_;
+  const std::vector<DetectionCandidates> seen_;
   std::vector<PoseHypothesis> poses_;
   size_t triples_ = 0;
 };

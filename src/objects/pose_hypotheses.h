@@ -14,6 +14,7 @@ namespace hullslam {
 struct PoseHypothesis {
   Rigid3 cam_from_world;
   double agreement = 0.0;  // sum over the detections, each up to 1
+  double distance = 0.0;   // mean distance of these objects from the camera, in units of the map
 };
 
 // Poses of a frame, computed only from its detections and the mapped objects of an island, the best
@@ -30,7 +31,7 @@ std::vector<PoseHypothesis> ProposePoses(const Map& map, const PinholeCamera& ca
                                          const Frame& frame, IslandId island);
 
 // Whether two poses of a frame are so near to each other that they stand for the same place.
-// `depth` is the mean depth of the scene in the frame, m.
+// `depth` is the mean depth of the scene in the frame, in units of the map.
 bool AreSamePlace(const Rigid3& a, const Rigid3& b, double depth);
 
 }  // namespace hullslam

@@ -4,6 +4,7 @@
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
+#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <memory>
@@ -12,12 +13,12 @@
 #include "costs/pose_manifold.h"
 #include "costs/reprojection.h"
 #include "costs/reprojection_rgbd.h"
+#include "estimators/keypoint_precision.h"
 #include "frame/measure_point.h"
 #include "optim/bundle_options.h"
 #include "optim/bundle_points.h"
 #include "optim/bundle_scale.h"
 #include "optim/eliminated_points.h"
-#include "optim/keypoint_precision.h"
 #include "optim/keypoint_weights.h"
 #include "optim/object_bundle.h"
 #include "optim/reduced_points_cost.h"
@@ -51,7 +52,8 @@ class Bundle {
         options_(options),
         pose_indices_(internal::IndexPoses(window)),
         objects_(map, sensor.camera, window, pose_indices_, options.objects) {
-    std::vector<std::vector<double>> weights;  // of the keypoints of each pose; monocular only
+    std::vector<std::vector<double>>
+        weights;  // weights of the keypoints of each pose; monocular only
     for (const auto& [id, index] : pose_indices_.entries()) {
       const Keyframe& keyframe = map.keyframes().At(id);
       poses_.push_back(ToBlock(keyframe.cam_from_world));
@@ -258,6 +260,11 @@ class Bundle {
     } while (summary.IsSolutionUsable() && solver.max_num_iterations > 0 &&
              objects_.LeaveOutUndefinedViews());
     result.residuals = points_.CountInliers() + static_cast<int>(objects_.CountCosts());
+    if (!summary.IsSolutionUsable()) {
+      spdlog::debug("bundle adjustment of {} keyframes, {} landmarks and {} objects failed: {}",
+                    window_.moving.size(), points_.positions().size(), window_.objects.size(),
+                    summary.message);
+    }
     return summary.IsSolutionUsable();
   }
 
@@ -281,7 +288,7 @@ class Bundle {
   const internal::PoseIndices pose_indices_;
   std::vector<PoseBlock> poses_;
   internal::BundlePoints points_;
-  double precision_ = 1.0;  // of the keypoints (MeasureKeypointPrecision)
+  double precision_ = 1.0;  // precision of the keypoints (MeasureKeypointPrecision)
   internal::ObjectBundle objects_;
   PoseManifold manifold_;
 };

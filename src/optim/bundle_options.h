@@ -22,7 +22,7 @@ struct BundleOptions {
   // keyframes Ceres does. Among 140 poses nearly all pairs share landmarks, so the reduced system
   // is nearly full, and a dense solver is faster (docs/performance.md).
   size_t max_eliminated = 140;
-  internal::FollowOptions follow = {};  // of points that our own code eliminates
+  internal::FollowOptions follow = {};  // for points that our own code eliminates
   ObjectBundleOptions objects = {};
 
   // These options for a whole map. When a step would change the cost by a smaller share than the
@@ -44,8 +44,8 @@ struct BundleRules {
   // Whether the standard deviations of the keypoints are made as small as the errors show them to
   // be. Otherwise they are those of the sensor.
   bool precision_is_measured = false;
-  PointLoss robust_loss = PointLoss::kHuber;  // of the first round
-  PointLoss final_loss = PointLoss::kNone;    // of the second round, without outliers
+  PointLoss robust_loss = PointLoss::kHuber;  // loss of the first round
+  PointLoss final_loss = PointLoss::kNone;    // loss of the second round, without outliers
   // Whether the result is scaled to the map if a single keyframe is fixed.
   bool keeps_scale = false;
 

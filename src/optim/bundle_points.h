@@ -26,7 +26,7 @@ class BundlePoints {
   struct View {
     PointMeasurement measurement;
     size_t pose = 0;      // index of the pose
-    double weight = 1.0;  // of its cost
+    double weight = 1.0;  // weight of its cost
     bool is_inlier = true;
   };
 

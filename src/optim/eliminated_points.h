@@ -96,7 +96,7 @@ class EliminatedPoints {
   // The damping of each point's own Levenberg-Marquardt steps. The Schur complement uses it too,
   // because a point whose steps failed does not move as far as the undamped equations predict.
   std::vector<double> damping_;
-  std::vector<Coupling> couplings_;  // of one point; kept to save allocations
+  std::vector<Coupling> couplings_;  // couplings of one point; kept to save allocations
 };
 
 }  // namespace hullslam::internal

@@ -16,8 +16,8 @@ namespace hullslam {
 struct PoseObject {
   Ellipsoid ellipsoid;                   // world frame
   const Detection* detection = nullptr;  // must outlive the call
-  std::vector<SilhouetteLine> lines;     // of the detection, possibly after misfit compensation
-  double misfit_px = 0.0;                // the remaining misfit of these lines
+  std::vector<SilhouetteLine> lines;  // lines of the detection, possibly after misfit compensation
+  double misfit_px = 0.0;             // the remaining misfit of these lines
 };
 
 struct JointPoseOptions {

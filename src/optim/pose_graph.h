@@ -10,7 +10,7 @@
 
 namespace hullslam {
 
-// Keyframes and measured similarities between them, as the essential graph of ORB-SLAM.
+// Keyframes and measured similarities between them, like the essential graph of ORB-SLAM.
 struct PoseGraph {
   struct Node {
     Sim3 cam_from_world;
@@ -32,7 +32,8 @@ struct PoseGraph {
 struct PoseGraphOptions {
   bool fix_scale = false;  // nodes keep their scales to the last bit, as in RGB-D
   int max_iterations = 50;
-  double function_tolerance = 1e-6;  // of the relative decrease of the cost
+  double function_tolerance =
+      1e-6;  // a step with a smaller relative decrease of the cost is the last
 };
 
 struct PoseGraphResult {

@@ -15,8 +15,8 @@ struct PoseOptimizationOptions {
   int rounds = 4;         // the inliers are chosen again after each round
   int robust_rounds = 3;  // the first rounds, which use Huber's loss
   int iterations = 10;    // largest number per round
-  double min_relative_decrease =
-      1e-5;  // of the cost at the start of a round; a smaller one ends it
+  // A round ends after a step that decreases the cost by less than this share.
+  double min_relative_decrease = 1e-5;
 };
 
 struct PoseOptimizationResult {

@@ -102,7 +102,7 @@ class TinyPoseFunction {
 
  private:
   const Problem& problem_;
-  mutable Pose pose_;  // of the last linearisation
+  mutable Pose pose_;  // pose of the last linearisation
   mutable Vector steps_ = Vector::Zero();
   mutable double cost_ = 0.0;
   // The parameters that cost_ belongs to. They start as NaN, which equals no parameters.

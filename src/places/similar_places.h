@@ -7,15 +7,16 @@
 
 namespace hullslam {
 
-// A place: the keyframe and those that share most landmarks with it.
+// The keyframes that show the same place as a keyframe: the keyframe itself and those that share
+// most landmarks with it, by increasing id.
 std::vector<KeyframeId> PlaceOf(const Map& map, KeyframeId keyframe);
 
 // Keeps, among the keyframes that look like an image (InvertedIndex::Query), those that have nearly
 // as many words in common with it as the best one (80 %, Mur-Artal and Tardos 2014).
 void KeepMostCommon(std::vector<SimilarKeyframe>& similar);
 
-// The most similar keyframe of each good place. A place is good if the scores of its keyframes add
-// up to at least 75 % of the sum of the best place (Mur-Artal and Tardos 2014). The order of
+// The most similar keyframe of each good place. A place is good if the sum of the scores of its
+// keyframes is at least 75 % of that of the best place (Mur-Artal and Tardos 2014). The order of
 // `similar` is kept.
 std::vector<KeyframeId> BestOfPlaces(const Map& map, const std::vector<SimilarKeyframe>& similar);
 

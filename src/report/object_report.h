@@ -56,8 +56,8 @@ struct ReportedObject {
 double ParallaxOf(const ReportedObject& object);
 
 // The reliability of the shape, from 0 to 1: the mean SIoU times min(1, parallax / 20 degrees)
-// times min(1, views / 10). 0 if the SIoU is unknown. Masks from one side agree with many shapes,
-// so the SIoU alone is not enough.
+// times min(1, views / 10). 0 if the SIoU is unknown. Masks that were all seen from one side agree
+// with many shapes, so the SIoU alone is not enough.
 double QualityOf(const ReportedObject& object);
 
 // The report of a run about its objects. It does not refer to the map that it was made from.

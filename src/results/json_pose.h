@@ -6,8 +6,8 @@
 
 namespace hullslam {
 
-// The pose in an array [tx, ty, tz, qx, qy, qz, qw], in metres; the rotation is normalised. Throws
-// InputError that names the file and the value if it is none.
+// Reads a pose from an array [tx, ty, tz, qx, qy, qz, qw], in metres, and normalises the rotation.
+// Throws InputError that names the file and the value if the node is no such array.
 Rigid3 PoseOf(const JsonNode& node);
 
 }  // namespace hullslam

@@ -8,6 +8,7 @@
 
 #include "hullslam/util/check.h"
 #include "results/object_file_version.h"
+#include "util/printable.h"
 
 namespace hullslam {
 namespace {
@@ -16,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kPixel = 1e-2;
 constexpr double kMetre = 1e-9;
-constexpr double kAngle = 1e-4;  // degrees; also for shares
+constexpr double kAngle = 1e-4;  // degrees; shares are rounded to the same step
 
 // Rounds `value` to a multiple of `unit` (1 over a power of ten). Never returns -0.
 double Rounded(double value, double unit) {
@@ -25,7 +26,7 @@ double Rounded(double value, double unit) {
   return std::round(value * units) / units + 0.0;
 }
 
-// null if the value is not known.
+// The value in JSON; null if it is not known.
 Json OrNull(const std::optional<double>& value) {
   return value ? Json(Rounded(*value, kMetre)) : Json(nullptr);
 }
@@ -50,7 +51,7 @@ Json PointsJson(const std::vector<Eigen::Vector2d>& points) {
 }
 
 Json LinesJson(const std::vector<SilhouetteLine>& lines) {
-  // Over an image of 1000 px the rounding of the normal moves the line by 0.001 px.
+  // Across an image of 1000 px this rounding of the normal moves the line by at most 0.001 px.
   constexpr double kNormal = 1e-6;
   constexpr double kOffset = 1e-3;
   Json json = Json::array();
@@ -159,7 +160,8 @@ std::string Dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// The head, and then a member with the entries, each on its own line.
+// The members of `head`, and then a list with the given name whose entries are each on a line of
+// their own.
 std::string WithEntries(const Json& head, const char* name,
                         const std::vector<std::string>& entries) {
   std::string text = Dump(head);
@@ -171,9 +173,14 @@ std::string WithEntries(const Json& head, const char* name,
   return text + "\n]}\n";
 }
 
-// A field of a CSV file by RFC 4180: in quotes if it contains a quote, a comma or a line end.
-std::string CsvField(const std::string& text) {
-  if (text.find_first_of("\",\r\n") == std::string::npos) {
+// A field of a CSV file by RFC 4180: in quotes if it contains a quote or a comma. A spreadsheet
+// takes a text that begins with one of = + - @ for a formula, so ' is put before it.
+std::string CsvField(const std::string& label) {
+  std::string text = Printable(label);
+  if (text.find_first_of("=+-@") == 0) {
+    text.insert(0, "'");
+  }
+  if (text.find_first_of("\",") == std::string::npos) {
     return text;
   }
   std::string quoted = "\"";

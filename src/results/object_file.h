@@ -21,9 +21,8 @@ std::string FormatObservations(const ObjectReport& report);
 std::string FormatObjectsCsv(const ObjectReport& report);
 
 // Reads `objects.json`, whose path this is, and `objects_observations.json` from the same folder.
-// Throws InputError with the name of the file and the path of the key for anything that
-// FormatObjects() and FormatObservations() did not write, and if the two files do not belong
-// together.
+// Throws InputError, with the name of the file and the path of the key, if a file does not have the
+// format of FormatObjects() and FormatObservations(), or if the two files are from different runs.
 ObjectReport ReadObjects(const std::filesystem::path& path);
 // The same with the path of the file of observations. Both may be the same file.
 ObjectReport ReadObjects(const std::filesystem::path& path,

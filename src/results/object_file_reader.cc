@@ -13,6 +13,7 @@
 #include "results/json_pose.h"
 #include "results/object_file.h"
 #include "results/object_file_version.h"
+#include "util/printable.h"
 
 namespace hullslam {
 namespace {
@@ -91,7 +92,7 @@ std::map<std::string, double> ReadVotes(const JsonNode& node) {
   constexpr double kMostVotes = 1e9;
   std::map<std::string, double> votes;
   for (const auto& [label, score] : node.Members()) {
-    votes[label] = score.Number(kMostVotes);
+    votes[Printable(label)] += score.Number(kMostVotes);
   }
   return votes;
 }

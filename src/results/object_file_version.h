@@ -5,7 +5,7 @@
 
 namespace hullslam {
 
-// Of objects.json and objects_observations.json.
+// The version of the format of objects.json and objects_observations.json.
 inline constexpr uint32_t kObjectFileVersion = 2;
 
 }  // namespace hullslam

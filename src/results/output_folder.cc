@@ -26,17 +26,26 @@ namespace fs = std::filesystem;
 
 using Names = std::set<std::string>;
 
-constexpr const char* kPrefix = ".hullslam-";  // of staging folders
-constexpr const char* kReady = "ready";  // the content of a staging folder, when it is complete
+constexpr const char* kPrefix = ".hullslam-";  // prefix of the names of staging folders
+constexpr const char* kReady =
+    "ready";  // name of the folder with the files of a complete run, inside a staging folder
 constexpr std::array<const char*, 2> kIndexes = {"summary.json", "pictures.json"};
-// What versions without a list of files wrote. They had no other index than summary.json.
+// The files that earlier versions wrote, whose summary.json had no list of files.
 constexpr std::array<const char*, 6> kNamesWithoutList = {
     "trajectory.txt", "keyframes.txt", "map.ply", "objects.json", "objects.ply", "summary.json"};
-// Pictures of a run that scripts/plot_run.py draws. They are removed with the run.
+// The pictures that scripts/plot_run.py draws of a run. They are removed together with the files of
+// the run.
 constexpr std::array<const char*, 2> kDrawnNames = {"run.png", "overlays.png"};
 
 bool IsPlainName(const std::string& name) {
   return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos;
+}
+
+// What a path is, if it is not a link. Only this program writes to a staging folder, and it makes
+// no links there. They would lead to files of others, which must stay as they are.
+fs::file_type TypeOf(const fs::path& path) {
+  std::error_code error;
+  return fs::symlink_status(path, error).type();
 }
 
 // The content of an index; null if there is none.
@@ -169,13 +178,13 @@ void Move(const fs::path& from, const fs::path& to) {
 }
 
 // Moves the files of a run from the folder `ready` to the output folder and removes those of the
-// former run. May be repeated if it was interrupted: the former index goes before any file is
-// replaced, and the new one comes last.
-void PlaceFiles(const fs::path& ready, const fs::path& folder) {
+// former run. If it is interrupted, it can be called again: the former index is removed before any
+// file is replaced, and the new one is moved last.
+void MoveFiles(const fs::path& ready, const fs::path& folder) {
   const auto* const found = std::ranges::find_if(
-      kIndexes, [&](const char* name) { return fs::is_regular_file(ready / name); });
+      kIndexes, [&](const char* name) { return TypeOf(ready / name) == fs::file_type::regular; });
   if (found == kIndexes.end()) {
-    return;  // the index has been moved, so all files have
+    return;  // the index is moved last, so all files have been moved
   }
   const fs::path index = *found;
   Names names = NamesOfRun(ready / index);
@@ -192,7 +201,7 @@ void PlaceFiles(const fs::path& ready, const fs::path& folder) {
   fs::remove(folder / index, ignored);
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(ready)) {
-    if (entry.path().filename() != index) {
+    if (entry.path().filename() != index && TypeOf(entry.path()) == fs::file_type::regular) {
       files.push_back(entry.path());
     }
   }
@@ -202,13 +211,14 @@ void PlaceFiles(const fs::path& ready, const fs::path& folder) {
   Move(ready / index, folder / index);
 }
 
-// Finishes what killed runs began to put in place, and removes all other files that they left.
+// Moves the remaining files of runs that were killed while they moved them, and removes the files
+// of runs that were killed before.
 void CleanUp(const fs::path& folder) {
   for (StagingFolder& abandoned : StagingFolder::Abandoned(folder, kPrefix)) {
     const fs::path ready = abandoned.path() / kReady;
-    if (fs::is_directory(ready)) {
+    if (TypeOf(ready) == fs::file_type::directory) {
       abandoned.Keep();  // if a file cannot be moved, the results stay where they are
-      PlaceFiles(ready, folder);
+      MoveFiles(ready, folder);
       abandoned.Remove();
     }
   }
@@ -253,7 +263,7 @@ void OutputFolder::Commit() {
     const fs::path ready = staging_->path() / kReady;
     fs::rename(staging_->content(), ready);
     staging_->Keep();
-    PlaceFiles(ready, folder_);
+    MoveFiles(ready, folder_);
     staging_->Remove();
   } catch (const fs::filesystem_error& error) {
     throw InputError(folder_.string() + ": cannot be written: " + error.code().message());

@@ -23,14 +23,14 @@ struct OutputOwner {
   bool may_replace_others = false;
 };
 
-// The folder that a run writes its files to. The files of a run are put in place together at its
-// end, and the files of the former run are removed, so the folder never mixes two runs. A run is
-// known by its index: a JSON file with the names of all its other files in the list "files".
+// The folder that a run writes its files to. At the end of a run all its files are moved into the
+// folder together, and the files of the former run are removed, so the folder never mixes two runs.
+// Every run has an index: a JSON file whose list "files" names all its other files.
 //
 // Until the end the files are in a staging folder inside the output folder. Several runs may have
 // the same output folder at once; the one that ends last leaves its files. If a process is killed
-// while it puts files in place, the next run finishes that. If it is killed before, the next run
-// removes what it left.
+// while it moves its files, the next run moves the others. If it is killed before, the next run
+// removes its files.
 class OutputFolder {
  public:
   // Creates the folder if it does not exist. `index` is the name of the index, "summary.json" or
@@ -40,11 +40,11 @@ class OutputFolder {
   // Throws InputError if the folder is inside an input folder or contains an input; if it contains
   // files that are not from a former run with an index of the same name; if the former run is of
   // another program, which its index names in provenance.program, unless the owner may replace it;
-  // or if files cannot be written there. Then nothing is changed. Files of the names that
-  // KeptNames() gives do no harm.
+  // or if files cannot be written there. In these cases nothing is changed. Files with the names of
+  // KeptNames() are allowed.
   OutputFolder(const std::filesystem::path& folder, std::string index,
                std::span<const std::filesystem::path> inputs, const OutputOwner& owner = {});
-  // Removes the files that were not put in place.
+  // Removes the files if Commit() was not called.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -55,8 +55,8 @@ class OutputFolder {
   void Write(const FileContent& file);
   // The names of the files that were written, for the index.
   const std::vector<std::string>& names() const { return names_; }
-  // Puts all files in place, the index last. To be called once, after the index was written. Throws
-  // InputError if the system refuses this; the message says where the files are.
+  // Moves all files into the output folder, the index last. To be called once, after the index was
+  // written. Throws InputError if a file cannot be moved; the message says where the files are.
   void Commit();
 
   // Files that the user or a script may keep beside the results. No run writes or removes them.

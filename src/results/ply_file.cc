@@ -91,7 +91,8 @@ Colour ColourOf(std::string_view label) {
   const double hue = 6.0 * ((hash >> 16) % 360) / 360.0;
   Colour colour{};
   for (size_t channel = 0; channel < 3; ++channel) {
-    // Each channel is a trapezoid of width 4 around its own hue (0, 2 or 4 of 6).
+    // As a function of the hue, which goes from 0 to 6, each channel is a trapezoid of width 4
+    // around its own hue (0, 2 or 4).
     const double away = std::abs(std::remainder(hue - 2.0 * static_cast<double>(channel), 6.0));
     const double value = std::clamp(2.0 - away, 0.0, 1.0);
     colour[channel] = static_cast<uint8_t>(std::lround(40.0 + 200.0 * value));

@@ -15,8 +15,9 @@ std::string FormatMapPly(std::span<const Eigen::Vector3d> landmarks,
                          std::span<const Eigen::Vector3d> keyframes);
 
 // A binary little-endian PLY with the ellipsoids of the mapped objects as triangles. The vertices
-// are as above; the faces are `uchar 3, int a b c`, with corners in anticlockwise order seen from
-// outside. The colour shows the class; a class has the same colour in every run.
+// have the same properties as above; the faces are `uchar 3, int a b c`, with corners in
+// anticlockwise order seen from outside. The colour shows the class; a class has the same colour in
+// every run.
 std::string FormatObjectsPly(std::span<const ReportedObject> objects);
 
 }  // namespace hullslam

@@ -80,6 +80,7 @@ Json ToJson(const TimingSummary& summary) {
 Json ToJson(const MapSummary& summary) {
   return {{"keyframes", summary.keyframes},
           {"landmarks", summary.landmarks},
+          {"landmarks_at_infinity", summary.landmarks_at_infinity},
           {"loops", summary.loops},
           {"sessions", summary.sessions},
           {"reprojection_px", OrNull(summary.reprojection_px)},

@@ -24,7 +24,7 @@ struct TrajectorySummary {
   size_t frames = 0;                 // frames given to the run
   size_t tracked = 0;                // frames with a pose
   size_t lost = 0;                   // decoded frames without a pose
-  std::string poses = "all frames";  // poses that the errors refer to, or "keyframes"
+  std::string poses = "all frames";  // the poses that the errors refer to; or "keyframes"
   std::string pairing = "tum";       // the rule that pairs poses: tum or evo
   // Share of the sequence's frames (those that the run was asked for) that have a pose.
   std::optional<double> coverage = std::nullopt;
@@ -48,17 +48,17 @@ struct ObjectsSummary {
   size_t frames_without_masks = 0;  // frames without a file of masks, or with an empty one
   std::map<std::string, size_t> rejections =
       {};  // numbers of rejected masks and objects, by reason
-  // Of a run that went on with a map: how many objects were seen again, moved and so on, by the
-  // names of ObjectChange.
+  // The numbers of objects that were seen again, moved and so on, by the names of ObjectChange.
+  // Only for a run that went on with a map of earlier sessions.
   std::optional<std::map<std::string, size_t>> changes = std::nullopt;
 };
 
-// Of a monocular camera: how it got its first map.
+// How a monocular run got its first map.
 struct InitialisationSummary {
   std::optional<double> seconds = std::nullopt;  // from the first image to the map; absent: no map
   std::map<std::string, size_t> failures = {};   // frames that made no map, by reason
-  size_t islands = 0;         // parts of the map that were begun, the first one included
-  size_t joined_islands = 0;  // those that were joined to an older one
+  size_t islands = 0;                            // islands that were begun, including the first one
+  size_t joined_islands = 0;                     // islands that were joined to an older one
 };
 
 struct TimingSummary {
@@ -71,12 +71,13 @@ struct TimingSummary {
 struct MapSummary {
   size_t keyframes = 0;
   size_t landmarks = 0;
+  size_t landmarks_at_infinity = 0;  // those whose distance is not known (located_landmarks.h)
   size_t loops = 0;
   size_t sessions = 0;  // runs that added keyframes
   // Median of the distances between keypoints and projected landmarks. Absent without a map.
   std::optional<double> reprojection_px = std::nullopt;
-  // Objects of known size that the unit of length is from. Absent with depth, or without
-  // objects.sizes.
+  // The number of objects of known size that determine the unit of length. Absent in RGB-D runs,
+  // and without objects.sizes.
   std::optional<size_t> known_sizes = std::nullopt;
 };
 
@@ -95,7 +96,7 @@ struct ProvenanceSummary {
 
 struct RunSummary {
   TrajectorySummary trajectory;
-  std::optional<InitialisationSummary> initialisation = std::nullopt;  // written only without depth
+  std::optional<InitialisationSummary> initialisation = std::nullopt;  // only of monocular runs
   std::optional<ObjectsSummary> objects = std::nullopt;  // absent for a run without masks
   TimingSummary timing;
   double peak_memory_mb = 0.0;
@@ -107,9 +108,9 @@ struct RunSummary {
 // JSON with the keys in the order of the structs, with a final line feed.
 std::string FormatSummary(const RunSummary& summary);
 
-// The alignment that a `summary.json`, whose path this is, names in `trajectory.alignment`: kSim3
-// if the unit of length of the run is not the metre. Throws InputError for anything that
-// FormatSummary() did not write there.
+// Reads `trajectory.alignment` from a `summary.json` with this path. It is kSim3 if the unit of
+// length of the run is not the metre. Throws InputError if the file does not have the format of
+// FormatSummary().
 AlignmentKind ReadAlignment(const std::filesystem::path& path);
 
 // The statistics of each stage.

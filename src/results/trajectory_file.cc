@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iterator>
 
 #include "files/plausible.h"
@@ -29,6 +30,12 @@ StampedPose ParsePose(const TextRow& row) {
   return pose;
 }
 
+// The number as it is to be written with 9 decimals: without the sign of a number that becomes 0.
+double Rounded(double value) {
+  constexpr double kHalf = 5e-10;
+  return std::abs(value) <= kHalf ? 0.0 : value;
+}
+
 void AppendPoses(const Trajectory& trajectory, std::string& text) {
   for (const StampedPose& pose : trajectory) {
     const Eigen::Vector3d& t = pose.world_from_cam.translation;
@@ -39,7 +46,8 @@ void AppendPoses(const Trajectory& trajectory, std::string& text) {
     }
     fmt::format_to(std::back_inserter(text),
                    "{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", pose.timestamp,
-                   t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+                   Rounded(t.x()), Rounded(t.y()), Rounded(t.z()), Rounded(q.x()), Rounded(q.y()),
+                   Rounded(q.z()), Rounded(q.w()));
   }
 }
 

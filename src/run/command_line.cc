@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/command_line.h"
 
-#include <spdlog/sinks/stdout_sinks.h>
+#include <fmt/format.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstddef>
+#include <memory>
+#include <mutex>
 #include <numeric>
 #include <string>
 #include <string_view>
@@ -14,8 +17,23 @@
 #include <vector>
 
 #include "hullslam/util/error.h"
+#include "run/messages.h"
 
 namespace hullslam {
+namespace {
+
+// Prints the messages of the library's log like those of the program.
+class MessageSink final : public spdlog::sinks::base_sink<std::mutex> {
+ private:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t line;
+    formatter_->format(message, line);
+    PrintError("{}", std::string_view(line.data(), line.size()));
+  }
+  void flush_() override {}
+};
+
+}  // namespace
 
 namespace {
 
@@ -89,6 +107,19 @@ void AddVersionAndExitCodes(CLI::App& app, const std::string& done, const std::s
   app.footer("Exit codes: 0 " + done + ", 1 " + failed + ", 2 " + bad_input + ".");
 }
 
+void ExpectNumber(CLI::Option& option, double least, double most) {
+  option.check(CLI::Validator(
+      [least, most](const std::string& text) {
+        double value = 0.0;
+        const bool is_good =
+            CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+        return is_good
+                   ? std::string()
+                   : fmt::format("'{}', expected a number from {:g} to {:g}", text, least, most);
+      },
+      ""));
+}
+
 void AddOverwriteFlag(CLI::App& app, bool& overwrite) {
   app.add_flag("--overwrite", overwrite,
                "also replace a run of another program in the folder of --output");
@@ -98,17 +129,20 @@ void AddDebugFlag(CLI::App& app) {
   app.add_flag_callback(
       "--debug",
       [] {
-        spdlog::set_default_logger(spdlog::stderr_logger_mt("hullslam"));
+        spdlog::set_default_logger(
+            std::make_shared<spdlog::logger>("hullslam", std::make_shared<MessageSink>()));
         spdlog::set_pattern("%l: %v");
         spdlog::set_level(spdlog::level::debug);
       },
-      "log to stderr what happens to each object, and why");
+      "log to stderr what happens to each object and loop, and why, and adjustments that fail");
 }
 
 void AddOverrides(CLI::App& app, const std::string& name, const std::string& meaning,
                   std::vector<std::string>& overrides) {
   app.add_option(name, overrides, meaning)
+      ->type_name("KEY=VALUE")
       ->take_all()
+      ->expected(1)
       ->allow_extra_args(false);  // else it would also take the positional arguments after it
 }
 

@@ -6,23 +6,28 @@
 
 namespace CLI {
 class App;
+class Option;
 }  // namespace CLI
 
 namespace hullslam {
 
-// What all programs have on their command lines. The headers of this folder only name CLI::App,
-// because compiling CLI11 takes seconds.
+// The parts of the command line that all programs share. The headers of this folder only declare
+// CLI::App, because compiling CLI11 takes seconds.
 
 // Parses the command line. Returns true if the program should go on, and false after options such
 // as --help. Throws InputError if the command line cannot be parsed. If an option is not known, the
 // message names the one that is spelled most like it.
 bool ParseCommandLine(CLI::App& app, int argc, char** argv);
 
-// Adds --version, and what the exit codes mean to the end of --help. Subcommands that are added
-// later show the exit codes too.
+// Adds --version, and adds the meaning of the exit codes to the end of --help. Subcommands that are
+// added later show the exit codes too.
 void AddVersionAndExitCodes(CLI::App& app, const std::string& done = "done",
                             const std::string& failed = "the program failed",
                             const std::string& bad_input = "bad usage or input");
+
+// Refuses values of an option that are not a number from `least` to `most`. (CLI::Range accepts
+// "nan".)
+void ExpectNumber(CLI::Option& option, double least, double most);
 
 // Adds --overwrite, without which a run does not replace one of another program.
 void AddOverwriteFlag(CLI::App& app, bool& overwrite);

@@ -22,7 +22,7 @@ struct LoadedFrame {
   std::string error;
 };
 
-// When frames become available: as fast as they can be read, or at their time stamps.
+// The pace at which frames become available: as fast as they can be read, or at their time stamps.
 enum class Pace { kFast, kRealtime };
 
 // Loads the images of a sequence in one thread and builds their frames in another one, ahead of
@@ -31,16 +31,16 @@ enum class Pace { kFast, kRealtime };
 // tracking.
 class FrameSource {
  public:
-  // The references must outlive this object. The time in real time begins here. `priority` is that
-  // of both threads.
+  // The references must outlive this object. With Pace::kRealtime, the clock starts now, at the
+  // first time stamp. Both threads have the given priority.
   FrameSource(Pace pace, PrefetchPriority priority, const ImageSequence& sequence,
               const PinholeCamera& camera, const SequenceMasks& masks, System& system);
   ~FrameSource();
   FrameSource(const FrameSource&) = delete;
   FrameSource& operator=(const FrameSource&) = delete;
 
-  // The next frame; null at the end, and in real time also after an interruption. The frames before
-  // it have been tracked. Throws InputError if the masks of a frame cannot be read.
+  // The next frame; null at the end, and in real time also after an interruption. To be called when
+  // the frames before have been tracked. Throws InputError if the masks of a frame cannot be read.
   std::optional<LoadedFrame> Next();
 
  private:
@@ -65,8 +65,9 @@ class FrameSource {
   System& system_;
   const Clock::time_point start_ = Clock::now();
   Cancellation end_;
-  std::counting_semaphore<> loads_{kImagesAhead};  // how many images may be loaded in real time
-  size_t next_ = 0;                                // image to be loaded; used by its thread only
+  std::counting_semaphore<> loads_{
+      kImagesAhead};  // number of images that may be loaded in real time
+  size_t next_ = 0;   // index of the next image to load; used only by the thread that loads
   Prefetcher<LoadedImage> images_;
   Prefetcher<LoadedFrame> frames_;  // last, because its thread uses the others
 };

@@ -18,6 +18,7 @@
 #include "frame/dynamic_mask.h"
 #include "hullslam/util/error.h"
 #include "run/messages.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
@@ -31,15 +32,10 @@ std::optional<double> MedianOf(const cv::Mat& depth) {
     std::copy_if(row, row + depth.cols, std::back_inserter(known),
                  [](Value value) { return value > Value(0); });
   }
-  if (known.empty()) {
-    return std::nullopt;
-  }
-  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-  std::nth_element(known.begin(), middle, known.end());
-  return *middle;
+  return known.empty() ? std::nullopt : std::optional<double>(Median(std::move(known)));
 }
 
-// Names the classes of a setting that no mask has.
+// Warns about the classes of a setting that no mask has.
 void WarnOfClassesWithoutMasks(const char* key, std::set<std::string> classes,
                                const std::set<std::string>& labels) {
   for (const std::string& label : labels) {

@@ -13,33 +13,34 @@
 
 namespace hullslam {
 
-// As ReadSettings() and MakeSettings(). Their warnings are printed on stderr.
+// Like ReadSettings() and MakeSettings(), but prints their warnings on stderr.
 SystemOptions LoadSettings(const std::filesystem::path& file,
                            std::span<const std::string> overrides,
                            NegativeFy negative_fy = NegativeFy::kError);
 SystemOptions LoadSettings(const CameraCalibration& calibration, const std::string& source,
                            std::span<const std::string> overrides);
 
-// Each prints a warning on stderr about input that can be used but is probably not what the user
-// meant.
+// Each function below prints a warning on stderr if the input can be used but is probably not what
+// the user meant.
 
-// The median depth of an image is not what indoor sensors usually measure (0.3 to 5 m), so
-// DepthMapFactor may be wrong.
+// Warns if the median depth of an image is outside the usual range of indoor sensors (0.3 to 5 m).
+// DepthMapFactor may then be wrong.
 void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& depth,
                             const DepthOptions& options);
-// Some of the depth images are not registered to their colour images: where the depth has a step,
-// the colour changes no more than elsewhere (DepthRegistration). Nothing is printed if there is too
-// little to tell.
+// Warns if the depth images are not registered to their colour images: where the depth has a step,
+// the colour then changes no more than elsewhere (DepthRegistration). Uses seven images. Prints
+// nothing if they have too few steps.
 void WarnOfUnregisteredDepth(const ImageSequence& sequence, const PinholeCamera& camera);
-// The settings that the user gave have other intrinsics than those that belong to the sequence,
-// which are camera.yaml in its folder or found by its name.
+// Warns if the settings that the user gave have other intrinsics than those that belong to the
+// sequence: camera.yaml in its folder, or the file that is found by its name.
 void WarnOfOtherSettings(const std::filesystem::path& given, const PinholeCamera& camera,
                          const std::filesystem::path& sequence);
-// A class in tracking.dynamic_classes or objects.sizes is in no mask. Classes of the default are
-// not reported. Also warns of sizes above 3 m, which may be in another unit.
+// Warns if no mask has a class that tracking.dynamic_classes or objects.sizes names. Classes that
+// are there by default are not reported. Also warns of sizes above 3 m, which may be in another
+// unit.
 void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& objects,
                           const SequenceMasks& masks);
-// --last is beyond the end of the sequence.
+// Warns if --last is beyond the end of the sequence.
 void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& sequence);
 
 }  // namespace hullslam

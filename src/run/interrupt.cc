@@ -7,8 +7,8 @@
 namespace hullslam {
 namespace {
 
-// A signal handler may only use lock-free variables, and it gets no argument of ours, so this is a
-// global variable.
+// This is a global variable, because a signal handler gets no argument from the program. The
+// handler may only use lock-free variables.
 static_assert(std::atomic<bool>::is_always_lock_free);
 Cancellation interruption;
 

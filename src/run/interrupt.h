@@ -5,11 +5,12 @@
 
 namespace hullslam {
 
-// From now on SIGINT, SIGTERM and SIGHUP do not end the program, but request that it stops early
-// and writes what it has. Further signals change nothing, so they cannot destroy the results while
-// they are written. A signal that the caller of the program ignores, as nohup does, stays ignored.
+// From now on SIGINT, SIGTERM and SIGHUP do not end the program. Instead they request that it stops
+// early and writes its results so far. Further signals change nothing, so they cannot destroy the
+// results while they are written. A signal that was ignored when the program started (nohup does
+// this) stays ignored.
 void CatchInterrupts();
-// The request that the signals make.
+// Is requested when one of the signals arrives.
 const Cancellation& Interruption();
 bool IsInterrupted();
 

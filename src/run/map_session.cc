@@ -10,6 +10,7 @@
 #include "files/atomic_file.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
+#include "run/interrupt.h"
 #include "run/messages.h"
 #include "system/compose_trajectory.h"
 
@@ -52,14 +53,14 @@ void CheckSavedMap(const RunArguments& arguments) {
     if (!input.empty() && IsSameOrInside(arguments.save_map, input)) {
       throw InputError(
           fmt::format("--save-map is '{}', which is or is inside {}, which this run "
-                      "reads; choose another place",
+                      "reads; choose another path",
                       arguments.save_map.string(), input.string()));
     }
   }
   if (IsSameOrInside(arguments.save_map, arguments.output)) {
     throw InputError(
         fmt::format("--save-map is '{}', which is in the output folder; the next run "
-                    "replaces what is there, so choose another place",
+                    "replaces the files there, so choose another path",
                     arguments.save_map.string()));
   }
   const fs::path folder = Canonical(arguments.save_map).parent_path();
@@ -76,21 +77,26 @@ SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& option
   start.session_name = SessionName(arguments.sequence);
   start.localization_only = arguments.localization;
   if (!arguments.load_map.empty()) {
-    start.map = ReadMap(arguments.load_map, options);
+    start.map = ReadMap(arguments.load_map, options, &Interruption());
   }
   return start;
 }
 
-void SaveMap(const RunArguments& arguments, const SystemOptions& options, const Map& map) {
+std::string SaveMap(const RunArguments& arguments, const SystemOptions& options, const Map& map) {
   if (arguments.save_map.empty()) {
-    return;
+    return {};
   }
   if (map.keyframes().empty()) {
     PrintError("warning: {}: the map has no keyframe and was not written\n",
                arguments.save_map.string());
-    return;
+    return {};
   }
-  WriteMap(arguments.save_map, map, MapSettingsOf(options));
+  try {
+    WriteMap(arguments.save_map, map, MapSettingsOf(options));
+  } catch (const InputError& error) {
+    return fmt::format("{}; the map is lost, the other results were written", error.what());
+  }
+  return {};
 }
 
 std::vector<TrajectoryPart> RunParts(const RunArguments& arguments, size_t earlier_sessions,

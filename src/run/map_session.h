@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "hullslam/results/trajectory_file.h"
@@ -17,15 +18,18 @@ namespace hullslam {
 void CheckSavedMap(const RunArguments& arguments);
 
 // What the run begins with: the map of --load-map if it is given. Throws InputError for a map that
-// cannot be read or that was made with another camera or image pyramid.
+// cannot be read or that was made with another camera or image pyramid, and ReadingCancelled after
+// a signal.
 SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& options);
 
 // Writes the map to the file of --save-map if it is given. A map without keyframes is not written;
-// a warning says so.
-void SaveMap(const RunArguments& arguments, const SystemOptions& options, const Map& map);
+// a warning says so. Returns why the map could not be written, for example because the disk is
+// full; empty if there was no error.
+std::string SaveMap(const RunArguments& arguments, const SystemOptions& options, const Map& map);
 
-// The poses of the run with the title of its session, which comes after `earlier_sessions`, and
-// those of the keyframes of the map by session. Without --load-map there are no titles.
+// RunParts() gives the trajectory of the run, with the title of its session: the map had
+// `earlier_sessions` sessions before. KeyframeParts() gives the poses of the keyframes, with one
+// part per session. Without --load-map there are no titles.
 std::vector<TrajectoryPart> RunParts(const RunArguments& arguments, size_t earlier_sessions,
                                      const Trajectory& trajectory);
 std::vector<TrajectoryPart> KeyframeParts(const RunArguments& arguments, const Map& map);

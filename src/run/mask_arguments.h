@@ -23,11 +23,12 @@ void AddMaskArguments(CLI::App& app, std::filesystem::path& path, std::string& f
 // positional argument.
 void AddMaskFormat(CLI::App& app, std::string& format, const std::string& names);
 
-// The masks of a sequence. The constructor checks all of them. With an empty path there are none.
+// The masks of a sequence. The constructor checks all of them. If the path is empty, there are no
+// masks.
 class SequenceMasks {
  public:
-  // Throws InputError if OpenMasks() or CheckMasks() refuses the masks, and if there is a format
-  // but no path.
+  // Throws InputError if OpenMasks() or CheckMasks() refuses the masks, or if a format is given
+  // without a path.
   SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> frames);
 
   // The masks of the frame with this index. May be called by another thread.

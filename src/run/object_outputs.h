@@ -18,7 +18,8 @@ namespace hullslam {
 ObjectReport CollectObjects(const Map& map, const PinholeCamera& camera,
                             const std::filesystem::path& sequence);
 
-// "objects of the map: 12 seen again, ...", and a line for each that was moved, is gone or new.
+// The text "objects of the map: 12 seen again, ...", and one line for each object that was moved,
+// is gone or is new.
 std::string DescribeChanges(const std::vector<ChangedObject>& changes);
 
 ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& counts);
@@ -27,7 +28,7 @@ ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& 
 // they can be written together with the other files of a run.
 std::vector<FileContent> ObjectFiles(const ObjectReport& report);
 
-// The number with this many decimals; "-" if there is none.
+// The number with this many decimals; "-" if it is absent.
 std::string FormatFigure(const std::optional<double>& figure, int decimals);
 
 // "7 objects, 3 candidates; means: SIoU 0.810 with hulls, ..." `unit` is the unit of length of the

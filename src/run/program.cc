@@ -2,6 +2,7 @@
 #include "run/program.h"
 
 #include <fcntl.h>
+#include <glog/logging.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -16,12 +17,14 @@ namespace hullslam {
 void PrepareStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF) {
-      // Takes the lowest free descriptor, which is `stream`. Writing to a closed stdout stays an
-      // error, since it is opened for reading only.
+      // open() returns the lowest free descriptor, which is `stream`. It is opened for reading
+      // only, so that writing to a closed stdout is still an error.
       [[maybe_unused]] const int opened =
           ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
     }
   }
+  // Ceres logs with glog what the results of its solvers say too.
+  FLAGS_minloglevel = google::GLOG_FATAL;
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }

@@ -12,14 +12,15 @@ enum ExitCode { kDone = 0, kFailed = 1, kBadInput = 2 };
 
 // A stream that was closed by the caller is opened to /dev/null, because otherwise the next file
 // that the program opens would take its place and receive the messages. A closed pipe or a file
-// that may not grow becomes an error of the write instead of the end of the program.
+// that may not grow becomes an error of the write instead of the end of the program. The log of
+// Ceres does not go to stderr.
 void PrepareStreams();
 
 // Prints one line, "error: MESSAGE", on stderr.
 void PrintFailure(const std::string& message);
 
-// Writes out what is still buffered for stdout. Returns `code`, or kFailed in place of kDone if
-// something that was printed could not be written; then prints the reason on stderr.
+// Writes out what is still buffered for stdout. Returns `code`. If some of the output could not be
+// written, prints the reason on stderr and returns kFailed instead of kDone.
 int FinishStdout(int code);
 
 // Calls `run(argc, argv)` and returns its exit code. Turns an exception into one line on stderr and

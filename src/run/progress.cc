@@ -40,7 +40,7 @@ void Progress::Show(size_t done, const std::function<std::string()>& state) {
       fmt::format("frame {}/{}  {:.1f} frames/s  {:.0f} s left{}", done, frames_, rate,
                   static_cast<double>(frames_ - done) / rate, state ? "  " + state() : "");
   if (is_terminal_) {
-    PrintError("\r[{}] {}\033[K", Bar(done, frames_), facts);
+    PrintText(stderr, fmt::format("\r[{}] {}\033[K", Bar(done, frames_), Printable(facts)));
     is_line_open_ = true;
   } else {
     PrintError("{}\n", facts);
@@ -49,7 +49,7 @@ void Progress::Show(size_t done, const std::function<std::string()>& state) {
 
 void Progress::Clear() {
   if (is_line_open_) {
-    PrintError("\n");
+    PrintText(stderr, "\n");
     is_line_open_ = false;
   }
 }

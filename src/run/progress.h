@@ -14,8 +14,8 @@ class Progress {
  public:
   Progress(size_t frames, bool quiet);
 
-  // `done` is the number of frames that are done. `state` gives text to show beside it; it is only
-  // called if something is shown.
+  // `done` is the number of frames that are done. `state` returns a text to show after it. It is
+  // only called if something is shown.
   void Show(size_t done, const std::function<std::string()>& state = {});
   // Ends the line of the bar, so that other text can be printed on the next line.
   void Clear();

@@ -11,7 +11,8 @@
 namespace hullslam {
 namespace {
 
-// Without this check CLI11 would turn -1 into the largest unsigned number. `least` is 0 or 1.
+// Accepts integers that are at least `least` (0 or 1). Without this check CLI11 would turn -1 into
+// the largest unsigned number.
 CLI::Validator WholeNumber(int least) {
   return CLI::Validator(
       [least](const std::string& text) {
@@ -25,7 +26,7 @@ CLI::Validator WholeNumber(int least) {
       "");
 }
 
-// ORB-SLAM2's own arguments.
+// The positional arguments of ORB-SLAM2.
 std::string LongForm(SensorKind sensor) {
   return sensor == SensorKind::kMonocular ? "VOCABULARY SETTINGS SEQUENCE"
                                           : "VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS";
@@ -82,8 +83,9 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   AddVersionAndExitCodes(
       app, "done",
       "the run failed, was interrupted (the results up to then are written, and summary.json says "
-      "so), lost too many frames (run.max_lost_share, run.max_lost_at_end), or could not print its "
-      "report");
+      "so), lost too many frames (run.max_lost_share, run.max_lost_at_end), or could not save its "
+      "map "
+      "or print its report");
 }
 
 void FinishArguments(const std::vector<std::string>& positional, RunArguments& arguments) {

@@ -15,9 +15,9 @@ class App;
 
 namespace hullslam {
 
-// The command line options that all programs share which run SLAM.
+// The command line options that all SLAM programs share.
 struct RunArguments {
-  // Not an option: each program has its own. A monocular one has no associations of depth images.
+  // Not an option: each program sets its own. Monocular programs have no --associations.
   SensorKind sensor = SensorKind::kRgbd;
   std::string program = {};  // its name; not an option either
   std::filesystem::path sequence;
@@ -40,12 +40,11 @@ struct RunArguments {
   uint64_t seed = 0;
 };
 
-// What the help says about the data set of a program.
+// The parts of the help that depend on the data set of a program.
 struct DatasetHelp {
-  std::string sequence;  // what SEQUENCE is
-  std::string settings;  // what is used without --settings
-  // The lines of the file of --associations, and what is used without it; not for monocular
-  // cameras.
+  std::string sequence;  // describes SEQUENCE
+  std::string settings;  // the default of --settings
+  // The lines of the file of --associations, and its default; empty for monocular programs.
   std::string associations = {};
 };
 
@@ -55,7 +54,7 @@ struct DatasetHelp {
 void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& arguments,
                      std::vector<std::string>& positional);
 // Copies the positional arguments to the fields that they stand for. Throws InputError unless there
-// are 1 or 4 of them, 1 or 3 for a monocular camera.
+// are 1 or 4 of them (1 or 3 for monocular programs).
 void FinishArguments(const std::vector<std::string>& positional, RunArguments& arguments);
 
 }  // namespace hullslam

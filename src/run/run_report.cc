@@ -14,7 +14,8 @@
 namespace hullslam {
 namespace {
 
-// "40 x too little parallax, 3 x too few matches", the most frequent one first; and what helps.
+// A text such as "40 x too little parallax, 3 x too few matches", the most frequent reason first,
+// with advice for the user.
 std::string DescribeFailures(const InitialisationSummary& initialisation) {
   std::vector<std::pair<size_t, std::string>> reasons;
   for (const auto& [reason, count] : initialisation.failures) {
@@ -60,7 +61,11 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
     Print("RPE RMSE {:.4f} m, {:.3f} degrees over 1 s\n", *trajectory.rpe_rmse_m,
           *trajectory.rpe_rmse_deg);
   }
-  Print("{} keyframes, {} landmarks{}\n", summary.map.keyframes, summary.map.landmarks,
+  Print("{} keyframes, {} landmarks{}{}\n", summary.map.keyframes, summary.map.landmarks,
+        summary.map.landmarks_at_infinity > 0
+            ? fmt::format(" ({} of them as good as infinitely far away)",
+                          summary.map.landmarks_at_infinity)
+            : "",
         summary.map.reprojection_px
             ? fmt::format(", reprojection error {:.3f} px (median)", *summary.map.reprojection_px)
             : "");

@@ -13,12 +13,12 @@
 
 namespace hullslam {
 
-// Prints what a run of SLAM has found.
+// Prints the results of a SLAM run.
 void PrintReport(const RunArguments& arguments, const RunSummary& summary,
                  const ObjectReport& objects);
 
-// Why a run of `given` frames has failed although it came to its end; empty if it has not. `frames`
-// are those that were tracked or lost.
+// Says why a run of `given` frames that came to its end counts as failed: too many frames were
+// lost. Empty if it does not count as failed. `frames` are the tracked and the lost frames.
 std::string DescribeLoss(const RunArguments& arguments, const RunOptions& options, size_t given,
                          const RunSummary& summary, std::span<const TrackedFrame> frames);
 

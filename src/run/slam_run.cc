@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "eval/located_landmarks.h"
 #include "eval/reprojection_error.h"
 #include "hullslam/eval/ate.h"
 #include "hullslam/eval/rpe.h"
@@ -33,6 +35,7 @@
 #include "run/run_report.h"
 #include "run/vocabularies.h"
 #include "system/compose_trajectory.h"
+#include "system/make_sensor.h"
 
 namespace hullslam {
 namespace {
@@ -41,7 +44,7 @@ using Clock = std::chrono::steady_clock;
 
 struct RunResult {
   size_t given = 0;    // frames that were loaded or skipped before the run ended
-  size_t skipped = 0;  // those of them with an image that cannot be read
+  size_t skipped = 0;  // frames with an image that cannot be read
   double seconds = 0.0;
   bool was_interrupted = false;
   InitialisationSummary initialisation;
@@ -65,7 +68,7 @@ const char* Name(TrackingState state) {
   }
 }
 
-// Of a monocular camera that was lost; empty if the map is in one piece.
+// The numbers of islands of a monocular run; empty if the map has only one island.
 std::string DescribeIslands(const Map& map) {
   return map.islands_begun() > 1
              ? fmt::format("  {} islands, {} joined", map.islands_begun(), map.islands_joined())
@@ -83,26 +86,38 @@ std::string DescribeState(TrackingState state, std::optional<InitialisationFailu
       map != nullptr ? map->landmarks().size() : 0, map != nullptr ? DescribeIslands(*map) : "");
 }
 
-// The bundle adjustment of the whole map is slow if the map is large. So its progress is shown.
+// The bundle adjustment of a large map and the final poses of many frames take long. So their
+// progress is shown.
 void FinishMap(bool is_quiet, System& system) {
   constexpr std::chrono::seconds kStep(2);
   if (!is_quiet && !IsInterrupted()) {
     PrintError("finishing the map\n");
   }
   Clock::time_point shown = Clock::now();
-  system.Finish(&Interruption(), [&](int done, int most) {
-    if (!is_quiet && Clock::now() - shown > kStep) {
-      shown = Clock::now();
-      PrintError("finishing the map: iteration {} of at most {}\n", done, most);
-    }
-  });
+  const auto is_due = [&] {
+    const bool is_late = !is_quiet && Clock::now() - shown > kStep;
+    shown = is_late ? Clock::now() : shown;
+    return is_late;
+  };
+  system.Finish(
+      &Interruption(),
+      [&](int done, int most) {
+        if (is_due()) {
+          PrintError("finishing the map: iteration {} of at most {}\n", done, most);
+        }
+      },
+      [&](int done, int most) {
+        if (is_due()) {
+          PrintError("finishing the poses: frame {} of {}\n", done, most);
+        }
+      });
 }
 
 RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
                    const PinholeCamera& camera, const SequenceMasks& masks, System& system) {
   RunResult result;
   Progress progress(sequence.frames.size(), arguments.quiet);
-  std::optional<InitialisationFailure> failure;  // of the last frame
+  std::optional<InitialisationFailure> failure;  // failure of the last frame
   system.SetFrameCallback([&](const FrameReport& report) {
     failure = report.failure;
     if (failure) {
@@ -112,7 +127,8 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
     }
   });
   const Clock::time_point start = Clock::now();
-  // In the sequential pipeline the thread that tracks and maps has more to do than the others.
+  // In the sequential pipeline the thread that tracks and maps has more work than the threads that
+  // load and build frames, so these get a lower priority.
   FrameSource frames(arguments.realtime ? Pace::kRealtime : Pace::kFast,
                      arguments.threaded ? PrefetchPriority::kNormal : PrefetchPriority::kBackground,
                      sequence, camera, masks, system);
@@ -149,7 +165,7 @@ Trajectory Scaled(Trajectory trajectory, double scale) {
   return trajectory;
 }
 
-// The scale of a monocular map is not known, so it is aligned too.
+// The scale of a monocular map is not known, so the alignment includes the scale.
 AlignmentKind AlignmentOf(SensorKind sensor) {
   return sensor == SensorKind::kMonocular ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
 }
@@ -180,7 +196,7 @@ size_t CountLost(const System& system) {
       [](const TrackedFrame& frame) { return frame.state != TrackingState::kTracked; }));
 }
 
-// Of a loop both ends know.
+// Each loop is stored in both keyframes, so it is counted twice.
 size_t CountLoops(const Map& map) {
   size_t ends = 0;
   for (const auto& [id, keyframe] : map.keyframes()) {
@@ -236,10 +252,7 @@ RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options
   return summary;
 }
 
-std::string MapPly(const Map& map, const Trajectory& keyframes) {
-  std::vector<Eigen::Vector3d> landmarks;
-  map.landmarks().ForEach(
-      [&](LandmarkId, const Landmark& landmark) { landmarks.push_back(landmark.position); });
+std::string MapPly(const std::vector<Eigen::Vector3d>& landmarks, const Trajectory& keyframes) {
   std::vector<Eigen::Vector3d> centers;
   for (const StampedPose& pose : keyframes) {
     centers.push_back(pose.world_from_cam.translation);
@@ -248,12 +261,13 @@ std::string MapPly(const Map& map, const Trajectory& keyframes) {
 }
 
 // The files of objects are only written if the run has masks.
-void WriteOutputs(OutputFolder& output, const Map& map, const std::vector<TrajectoryPart>& poses,
+void WriteOutputs(OutputFolder& output, std::string map_ply,
+                  const std::vector<TrajectoryPart>& poses,
                   const std::vector<TrajectoryPart>& keyframes, RunSummary summary,
                   const ObjectReport& objects, const ImageSequence& sequence) {
   output.Write({"trajectory.txt", FormatTrajectory(poses)});
   output.Write({"keyframes.txt", FormatTrajectory(keyframes)});
-  output.Write({"map.ply", MapPly(map, KeyframeTrajectory(map))});
+  output.Write({"map.ply", std::move(map_ply)});
   if (sequence.converted_groundtruth) {
     output.Write({"groundtruth.txt", FormatTrajectory(*sequence.converted_groundtruth)});
   }
@@ -302,13 +316,25 @@ std::string DescribeInterruption(const RunResult& result, const ImageSequence& s
       result.given, sequence.frames.size());
 }
 
+// Prints the failures that are not empty. Returns the exit code.
+int FailIfAny(std::initializer_list<std::string> failures) {
+  int code = kDone;
+  for (const std::string& failure : failures) {
+    if (!failure.empty()) {
+      PrintFailure(failure);
+      code = kFailed;
+    }
+  }
+  return code;
+}
+
 }  // namespace
 
 int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence,
             std::span<const std::string> notes) {
   options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
   options.seed = arguments.seed;
-  // Finds images of a wrong type or size early.
+  // The first image is loaded now, so that a wrong type or size is reported early.
   const ImageInput first = sequence.load(sequence.frames.front(), options.camera);
   const std::optional<Trajectory> groundtruth = ReadGroundtruth(sequence);
   const SequenceMasks masks(
@@ -344,9 +370,12 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   if (masks.format()) {
     summary.objects = SummarizeObjects(objects, system.object_counts());
   }
-  WriteOutputs(output, *map, RunParts(arguments, earlier_sessions, trajectory),
-               KeyframeParts(arguments, *map), summary, objects, sequence);
-  SaveMap(arguments, options, *map);
+  const LocatedLandmarks landmarks = LocateLandmarks(*map, MakeSensor(options));
+  summary.map.landmarks_at_infinity = landmarks.at_infinity;
+  WriteOutputs(output, MapPly(landmarks.positions, KeyframeTrajectory(*map)),
+               RunParts(arguments, earlier_sessions, trajectory), KeyframeParts(arguments, *map),
+               summary, objects, sequence);
+  const std::string unsaved = SaveMap(arguments, options, *map);
   if (!arguments.quiet) {
     PrintReport(arguments, summary, objects);
   }
@@ -354,11 +383,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
       result.was_interrupted
           ? DescribeInterruption(result, sequence)
           : DescribeLoss(arguments, options.run, sequence.frames.size(), summary, system.frames());
-  if (!failure.empty()) {
-    PrintFailure(failure);
-    return kFailed;
-  }
-  return kDone;
+  return FailIfAny({failure, unsaved});
 }
 
 }  // namespace hullslam

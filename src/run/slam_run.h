@@ -10,7 +10,7 @@
 
 namespace hullslam {
 
-// Runs SLAM on a sequence, with depth or without it (SystemOptions::sensor). Writes trajectory.txt,
+// Runs RGB-D or monocular SLAM (SystemOptions::sensor) on a sequence. Writes trajectory.txt,
 // keyframes.txt, map.ply and summary.json to the output folder, with masks also the files of the
 // objects, and groundtruth.txt if the ground truth of the sequence had to be converted; prints the
 // results. Returns the program's exit code. Throws InputError for bad input, before the first frame

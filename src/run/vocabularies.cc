@@ -82,7 +82,7 @@ VocabularyForm FormOf(const std::filesystem::path& path, const std::string& form
     return VocabularyForm::kText;
   }
   throw InputError(fmt::format(
-      "{}: the extension '{}' tells no form, expected .bow or .txt, or --form binary|text",
+      "{}: the extension '{}' belongs to no form, expected .bow or .txt, or --form binary|text",
       path.string(), extension));
 }
 

@@ -24,7 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kAddedLines = 1;  // OpenCV wants a first line that the files do not have
+constexpr int kAddedLines =
+    1;  // the line %YAML:1.0, which OpenCV requires and the files do not have
 
 // The values of a sensor.yaml.
 class SensorFile {
@@ -41,7 +42,7 @@ class SensorFile {
   const fs::path& path() const { return file_; }
 
   [[noreturn]] void Fail(const char* key, const std::string& what) const {
-    throw InputError(fmt::format("{}: {} {}", Place(key), key, what));
+    throw InputError(fmt::format("{}: {} {}", Origin(key), key, what));
   }
 
   cv::FileNode Find(const char* key) const {
@@ -86,8 +87,8 @@ class SensorFile {
   }
 
  private:
-  // With the line of a key of the top level.
-  std::string Place(std::string_view key) const {
+  // FILE:LINE of a key of the top level.
+  std::string Origin(std::string_view key) const {
     int line = 1 - kAddedLines;
     for (size_t begin = 0; begin < text_.size(); ++line) {
       const std::string_view rest = std::string_view(text_).substr(begin);

@@ -15,7 +15,7 @@
 namespace hullslam {
 namespace {
 
-// A frame with depth and its pose as the ground truth gives it.
+// A frame with depth, and the pose that the ground truth gives it.
 struct View {
   const FramePaths* frame = nullptr;
   Rigid3 world_from_cam;
@@ -50,7 +50,7 @@ float DepthAt(const cv::Mat& depth, const Eigen::Vector2d& pixel, const DepthOpt
   return SampleDepth(depth, pixel.cast<float>(), options.units_per_metre);
 }
 
-// A point of one view seen from another one: where, and how far along z.
+// The predicted pixel and depth of a point of one view in another view.
 struct Prediction {
   Eigen::Vector2d pixel;
   double depth = 0.0;
@@ -69,8 +69,9 @@ std::optional<Prediction> Predict(const PinholeCamera& camera, const Rigid3& to_
 // Adds the votes of the pixels of one pair of images.
 void CompareDepth(const PinholeCamera& camera, const DepthOptions& options, const cv::Mat& from,
                   const cv::Mat& to, const Rigid3& to_from_from, YAxisVotes& votes) {
-  constexpr int kStep = 8;             // px
-  constexpr double kTolerance = 0.03;  // of the depth; noisy depth images are off by less
+  constexpr int kStep = 8;  // px
+  constexpr double kTolerance =
+      0.03;  // as a share of the depth; larger than the noise of depth images
   const Rigid3 mirrored = MirrorY(to_from_from);
   for (int v = kStep / 2; v < from.rows; v += kStep) {
     for (int u = kStep / 2; u < from.cols; u += kStep) {
@@ -103,7 +104,8 @@ void CompareDepth(const PinholeCamera& camera, const DepthOptions& options, cons
 }  // namespace
 
 Rigid3 MirrorY(const Rigid3& world_from_cam) {
-  // A rotation axis is an axial vector: the mirror turns (x, y, z) into (-x, y, -z).
+  // F R F is a rotation about the mirrored axis by the opposite angle, so the vector part (x, y, z)
+  // of the quaternion becomes (-x, y, -z).
   const Eigen::Quaterniond& q = world_from_cam.rotation;
   const Eigen::Vector3d& t = world_from_cam.translation;
   return {Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()), Eigen::Vector3d(t.x(), -t.y(), t.z())};

@@ -13,28 +13,29 @@ namespace hullslam {
 
 constexpr double kIclFramesPerSecond = 30.0;
 
-// The pose of the right-handed camera (y down) that sees the same pixels in the mirrored world as a
-// camera with y up at the given pose. With F = diag(1, -1, 1) it is F R F, F t. A pixel of the
-// camera with y up is v = cy - fy Y / Z; with the point F X of the mirrored world, whose y is -Y,
-// it is v = cy + fy Y' / Z'.
+// Converts the pose (R, t) of a camera whose y axis points up to that of a right-handed camera (y
+// down) that sees the same pixels in the mirrored world. With F = diag(1, -1, 1) the new pose is (F
+// R F, F t): a point X of the world becomes F X, and X_c in the camera frame becomes F X_c. So the
+// row v = cy - fy Y / Z of the camera with y up is cy + fy Y' / Z' with Y' = -Y and Z' = Z.
 Rigid3 MirrorY(const Rigid3& world_from_cam);
 Trajectory MirrorY(Trajectory trajectory);
 
-// A trajectory in TUM's format whose time stamps are the indices of frames. The result has index /
-// 30 s. Throws InputError as ReadTrajectory(), and for a stamp that is not an index.
+// Reads a trajectory in TUM's format whose time stamps are the indices of frames. The stamps of the
+// result are index / 30 s. Throws InputError like ReadTrajectory(), and for a stamp that is not an
+// index.
 Trajectory ReadIndexedTrajectory(const std::filesystem::path& path);
 
 // How well two ground truths explain the depth images.
 struct YAxisVotes {
-  size_t pixels = 0;     // that were compared
-  size_t both = 0;       // those of them whose depth both predict
-  size_t only_up = 0;    // those whose depth only the poses of cameras with y up predict
-  size_t only_down = 0;  // the same for y down
+  size_t pixels = 0;     // number of compared pixels
+  size_t both = 0;       // pixels whose depth is predicted with y up and with y down
+  size_t only_up = 0;    // pixels whose depth is predicted with y up only
+  size_t only_down = 0;  // pixels whose depth is predicted with y down only
 };
 
-// Predicts depth images from others about half a second earlier, with the poses as they are (y
-// down) and mirrored (y up). Frames without depth or pose, and images that cannot be read, are
-// passed over.
+// Predicts depth images from those about half a second earlier, with the poses as they are (y down)
+// and mirrored (y up), and compares the predictions with the measured depth. Frames without depth
+// or pose, and images that cannot be read, are skipped.
 YAxisVotes MeasureYAxis(const ImageSequence& sequence, const Trajectory& as_given,
                         const PinholeCamera& camera, const DepthOptions& depth);
 

@@ -50,7 +50,8 @@ std::optional<FrameName> ParseName(const fs::path& file) {
   return FrameName{stem.substr(0, last), index};
 }
 
-// The three numbers of "[x, y, z]", with whatever follows the bracket; absent if it is none.
+// The three numbers of "[x, y, z]"; absent if the text does not begin with such a vector. Any text
+// may follow the bracket.
 std::optional<Eigen::Vector3d> ParseVector(std::string_view text) {
   const size_t open = text.find('[');
   const size_t close = text.find(']');

@@ -114,9 +114,9 @@ ChosenAxis ChooseAxis(const fs::path& path, const YAxisVotes& votes) {
   }
   const double up = percent(votes.both + votes.only_up);
   const double down = percent(votes.both + votes.only_down);
-  // With a motion that the mirror does not change, both axes give the same.
-  constexpr double kSame = 0.5;    // % of the pixels on which only one of the axes agrees
-  constexpr double kLeast = 50.0;  // % of the pixels
+  // If the mirror does not change the motion, both axes predict the same depth.
+  constexpr double kSame = 0.5;    // largest % of the pixels that agree with only one of the axes
+  constexpr double kLeast = 50.0;  // least % of the pixels that agree with the right axis
   constexpr size_t kFactor = 2;    // how many times more pixels agree with only the right axis
   if (percent(votes.only_up + votes.only_down) < kSame && up >= kLeast) {
     return {true, "as ICL-NUIM says; the depth images agree with y down as well"};

@@ -62,7 +62,7 @@ ImageState CheckPngChunks(std::string_view bytes) {
   return ImageState::kCutOff;
 }
 
-// Zeros if the first chunk is no header.
+// The size in the header of a PNG; zeros if the first chunk is no header.
 ImageSize PngSize(std::string_view bytes) {
   constexpr size_t kWidth = 16;  // after the signature and the length and type of the header chunk
   if (bytes.size() < kWidth + 8 || bytes.substr(kWidth - 4, 4) != "IHDR") {
@@ -71,7 +71,7 @@ ImageSize PngSize(std::string_view bytes) {
   return {BigEndian(bytes, kWidth, 4), BigEndian(bytes, kWidth + 4, 4)};
 }
 
-// The end marker may be followed by padding.
+// Whether the JPEG has its end marker. Padding may follow the marker.
 ImageState CheckJpegEnd(std::string_view bytes) {
   constexpr size_t kMostPadding = 4096;
   const size_t tail = bytes.size() > kMostPadding ? bytes.size() - kMostPadding : 0;
@@ -79,21 +79,24 @@ ImageState CheckJpegEnd(std::string_view bytes) {
   return has_end ? ImageState::kGood : ImageState::kCutOff;
 }
 
-// Size in the frame header (SOF0 to SOF15 without the tables DHT, JPG and DAC). Zeros if no frame
-// header comes before the first scan, or if something else than segments comes before it: a decoder
-// might skip that, and then find another header than this function.
+// The size in the frame header of a JPEG (SOF0 to SOF15; the codes DHT, JPG and DAC between them
+// are no frame headers). Zeros if there is no frame header before the first scan. Also zeros if
+// anything else than segments comes before the header: a decoder might skip those bytes and find
+// another header than this function.
 ImageSize JpegSize(std::string_view bytes) {
   constexpr unsigned char kStartOfScan = 0xda;
   constexpr unsigned char kEndOfImage = 0xd9;
   for (size_t at = 2; at < bytes.size() && bytes[at] == '\xff';) {
-    at = bytes.find_first_not_of('\xff', at);  // fill bytes before the marker's code are legal
+    at = bytes.find_first_not_of('\xff', at);  // fill bytes may come before the marker's code
     constexpr size_t kHeader = 8;              // code, length, precision, height, width
     if (at == std::string_view::npos || at + kHeader > bytes.size()) {
       return {};
     }
     const auto marker = static_cast<unsigned char>(bytes[at]);
     const bool is_table = marker == 0xc4 || marker == 0xc8 || marker == 0xcc;
-    const bool is_alone = marker == 0x01 || (marker >= 0xd0 && marker <= 0xd7);  // without length
+    const bool is_alone =
+        marker == 0x01 ||
+        (marker >= 0xd0 && marker <= 0xd7);  // the marker has no length and no data
     if (marker >= 0xc0 && marker <= 0xcf && !is_table) {
       return {BigEndian(bytes, at + 6, 2), BigEndian(bytes, at + 4, 2)};
     }
@@ -121,15 +124,14 @@ void CheckBytes(const std::filesystem::path& path, std::string_view bytes) {
   if (state == ImageState::kCutOff) {
     Fail(path, "is cut off, the end of the image is missing");
   }
-  constexpr uint64_t kMostPixels = 64'000'000;
   const ImageSize size = is_png ? PngSize(bytes) : JpegSize(bytes);
   if (size.width == 0 && size.height == 0) {
     Fail(path, "is broken, the header with the size of the image is missing");
   }
-  if (size.width == 0 || size.height == 0 || size.width > kMostPixels ||
-      size.width * size.height > kMostPixels) {
+  if (size.width == 0 || size.height == 0 || size.width > kMostImagePixels ||
+      size.width * size.height > kMostImagePixels) {
     Fail(path, fmt::format("has a size of {}x{} px, expected up to {} million px", size.width,
-                           size.height, kMostPixels / 1'000'000));
+                           size.height, kMostImagePixels / 1'000'000));
   }
   if (state == ImageState::kBroken) {
     Fail(path, "is broken, a checksum of the PNG is wrong");

@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
 
 namespace hullslam {
 
+constexpr uint64_t kMostImagePixels = 64'000'000;
+
 // All functions throw InputError with the file and the reason if the file is missing, empty, cut
-// off, neither PNG nor JPEG, larger than 512 MB or 64 million pixels, or cannot be decoded.
+// off, neither PNG nor JPEG, larger than 512 MB or kMostImagePixels, or cannot be decoded.
 // (Flipped bits inside a JPEG cannot be detected.)
 
 // The luma of a PNG or JPEG image, CV_8UC1. An orientation in the EXIF data is ignored, because the
 // calibration of the camera refers to the pixels as stored. Images with 16 bits per channel are
-// errors too, because they may be depth images, or use only a few of their bits and would become
+// errors too: they may be depth images, and if they use only a few of their bits, they would become
 // black.
 cv::Mat ReadGreyImage(const std::filesystem::path& path);
 
-// A depth image with unchanged values, CV_16UC1. Another bit depth than 16 or several channels are
-// errors too.
+// A depth image with unchanged values, CV_16UC1. It is an error if the image does not have 16 bits
+// or has several channels.
 cv::Mat ReadDepthImage(const std::filesystem::path& path);
 
 // A label image, with the number of an instance in each pixel. Read and checked like a depth image.

@@ -12,23 +12,24 @@
 
 namespace hullslam {
 
-// What the readers of sequences have in common. All throw InputError.
+// Functions that the readers of sequences share. All throw InputError.
 
 constexpr size_t kMostImages = 1'000'000;  // limit for the frames of a sequence
 
-// Refuses a row with fewer than `count` columns. `names` are those of the columns, for the message.
+// Refuses a row with fewer than `count` columns. `names` lists the names of the columns for the
+// message.
 void CheckColumns(const TextRow& row, size_t count, const char* names);
 
-// The file of an image, which the list in `folder` names in a column.
+// The path of an image. A column of the row has its path relative to `folder`.
 std::filesystem::path ImageFile(const TextRow& row, size_t column,
                                 const std::filesystem::path& folder);
 
-// Adds a frame to those of a list. Refuses a stamp that does not come after the previous one, and
-// more than kMostImages frames. The frame gets its index as its number.
+// Appends a frame to `frames` and sets its number to its index. Refuses a stamp that does not come
+// after the previous one, and more than kMostImages frames.
 void AddFrame(const TextRow& row, FramePaths frame, std::vector<FramePaths>& frames);
 
-// Keeps the selected frames of the sequence; `available` becomes the number of all frames. The
-// messages name the options --first, --last and --stride.
+// Keeps only the selected frames and sets `available` to the number of frames before. The messages
+// name the options --first, --last and --stride.
 void SelectFrames(const std::filesystem::path& source, const FrameSelection& selection,
                   ImageSequence& sequence);
 
@@ -40,10 +41,12 @@ std::vector<std::filesystem::path> ListFolder(const std::filesystem::path& folde
 std::string SuggestFolder(const std::filesystem::path& folder,
                           const std::function<bool(const std::filesystem::path&)>& is_sequence);
 
-// Refuses frames whose image, or whose depth image if there should be one, is no file.
+// Refuses a frame if the file of its image or of its depth image is missing. The path of the depth
+// image may be empty.
 void CheckImagesExist(const std::vector<FramePaths>& frames);
 
-// Refuses an image that does not have the size of the camera. `name` is that of the image.
+// Refuses an image that does not have the size of the camera. `name` names the image in the
+// message.
 void CheckImageSize(const std::string& name, const cv::Mat& image, const PinholeCamera& camera);
 
 }  // namespace hullslam

@@ -71,7 +71,7 @@ struct NamedImage {
   double units_per_second = 0.0;  // 0: the number of a frame
 };
 
-NamedImage ParseName(const fs::path& file) {
+NamedImage ParseNamedImage(const fs::path& file) {
   const std::string stem = file.stem().string();
   const std::string_view text = LastNumber(stem);
   constexpr double kLargest = 1e19;
@@ -137,7 +137,7 @@ std::vector<fs::path> ListImages(const fs::path& folder) {
 NamedImages FindNamedImages(const fs::path& folder, double frames_per_second) {
   std::vector<NamedImage> images;
   for (const fs::path& file : ListImages(folder)) {
-    images.push_back(ParseName(file));
+    images.push_back(ParseNamedImage(file));
     if (images.back().units_per_second != images.front().units_per_second) {
       throw InputError(fmt::format("{}: the number in the name is of another kind than that of {}",
                                    file.string(), images.front().file.filename().string()));

@@ -3,29 +3,49 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <opencv2/imgproc.hpp>
 #include <system_error>
 #include <utility>
 
 #include "hullslam/util/error.h"
+#include "sequences/image_file.h"
 #include "sequences/image_list.h"
 
 namespace hullslam {
+namespace {
+
+// In the syntax of OpenCV: the demuxers by FFmpeg's names, and reading of local files only.
+constexpr const char* kFfmpegOptions =
+    "format_whitelist;mov,matroska,avi,mpeg,mpegts,mpegvideo,m4v,h264,hevc,asf,flv,ogg,mjpeg,ivf,"
+    "yuv4mpegpipe,gif|protocol_whitelist;file";
+
+}  // namespace
 
 VideoFile::VideoFile(std::filesystem::path path) : path_(std::move(path)) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path_, error)) {
     throw InputError(path_.string() + ": is not a file, expected a video");
   }
+  // Videos are opened before the threads of a run begin.
+  // NOLINTNEXTLINE(concurrency-mt-unsafe)
+  ::setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS", kFfmpegOptions, /*replace=*/0);
   Rewind();
 }
 
 void VideoFile::Rewind() {
-  // With another backend than FFmpeg, OpenCV would take some names for a pattern of image files.
+  // FFmpeg is chosen explicitly, because other backends of OpenCV take some names for patterns of
+  // image files.
   if (!capture_.open(path_.string(), cv::CAP_FFMPEG)) {
     throw InputError(path_.string() +
                      ": cannot be decoded, expected a video that FFmpeg can read, or a folder of "
                      "images");
+  }
+  const double width = capture_.get(cv::CAP_PROP_FRAME_WIDTH);
+  const double height = capture_.get(cv::CAP_PROP_FRAME_HEIGHT);
+  if (width * height > static_cast<double>(kMostImagePixels)) {
+    throw InputError(fmt::format("{}: has images of {}x{} px, expected up to {} million px",
+                                 path_.string(), width, height, kMostImagePixels / 1'000'000));
   }
   next_ = 0;
 }

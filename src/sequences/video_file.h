@@ -9,17 +9,22 @@
 
 namespace hullslam {
 
-// The frames of a video file, decoded with FFmpeg one after the other.
+// The frames of a video file, decoded with FFmpeg one after the other. Only containers that are
+// common for videos are read, because FFmpeg also knows lists of files, which would let a video
+// open other files. OpenCV only takes such options of FFmpeg from the environment: the constructor
+// sets OPENCV_FFMPEG_CAPTURE_OPTIONS, unless the user has set it.
 class VideoFile {
  public:
-  // Throws InputError if it is no file, or none that can be decoded.
+  // Throws InputError if it is no file, none that can be decoded, or if its images have more than
+  // kMostImagePixels (image_file.h).
   explicit VideoFile(std::filesystem::path path);
 
-  // The time stamps of all frames, s. Decodes the whole video. Throws InputError if there is none.
-  std::vector<double> ReadStamps();
-  // The frame with this number, counted from 0; CV_8UC1. Frames before it are decoded too, from the
-  // beginning if it comes before the last one that was read. Throws InputError if it cannot be
+  // The time stamps of all frames, s. Decodes the whole video. Throws InputError if no frame can be
   // decoded.
+  std::vector<double> ReadStamps();
+  // The frame with this number, counted from 0; CV_8UC1. All frames between the last frame that was
+  // read and this one are decoded too; to go back, decoding starts again at the first frame. Throws
+  // InputError if the frame cannot be decoded.
   cv::Mat ReadGrey(size_t number);
 
  private:

@@ -27,7 +27,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array kIntrinsics = {"Camera.fx", "Camera.fy", "Camera.cx", "Camera.cy"};
 
-// The text of Camera.fy in a file, which is positive if a negative number may be there.
+// The text of Camera.fy for the option table. If negative values are allowed, their sign is
+// removed.
 std::string FocalLengthInY(const WrittenSetting& setting, std::string text,
                            NegativeFy negative_fy) {
   double value = 0.0;
@@ -39,7 +40,7 @@ std::string FocalLengthInY(const WrittenSetting& setting, std::string text,
         "{}: {} is '{}', expected a positive number: a camera whose y axis points up makes a "
         "mirrored world. The pixels are the same with {:g}; the ground truth must be mirrored, as "
         "rgbd_icl does",
-        setting.place, setting.name, text, -value));
+        setting.origin, setting.name, text, -value));
   }
   return text.substr(text.find('-') + 1);
 }
@@ -50,12 +51,12 @@ void ApplyFile(const fs::path& file, NegativeFy negative_fy, OptionTable& table,
     const bool is_renamed = setting.name != setting.key;
     if (!given.insert(setting.key).second) {
       throw InputError(
-          fmt::format("{}: {} was given before under another name", setting.place, setting.name));
+          fmt::format("{}: {} was given before under another name", setting.origin, setting.name));
     }
-    if (table.SkipRetired(setting.key, setting.place)) {
+    if (table.SkipRetired(setting.key, setting.origin)) {
       continue;
     }
-    // An unknown key is reported before anything that is wrong with its value.
+    // The value is only checked if the key is known, so that an unknown key is reported as such.
     std::string text;
     if (table.IsMap(setting.key) && setting.pairs) {
       text = *setting.pairs;
@@ -66,7 +67,7 @@ void ApplyFile(const fs::path& file, NegativeFy negative_fy, OptionTable& table,
       text = FocalLengthInY(setting, std::move(text), negative_fy);
     }
     table.Set(setting.key, text,
-              is_renamed ? fmt::format("{}: {}", setting.place, setting.name) : setting.place);
+              is_renamed ? fmt::format("{}: {}", setting.origin, setting.name) : setting.origin);
   }
 }
 

@@ -18,15 +18,15 @@
 namespace hullslam {
 namespace {
 
-// What is done with a setting of ORB-SLAM3.
+// How a setting of ORB-SLAM3 is translated.
 enum class Kind {
-  kRenamed,   // it is our setting `key`
-  kIgnored,   // it has no meaning here (viewer, IMU)
+  kRenamed,   // becomes our setting `key`
+  kIgnored,   // has no meaning here (viewer, IMU)
   kBaseline,  // Stereo.b, the baseline in m; Camera.bf is this times Camera.fx
   kVersion,   // File.version
   kModel,     // Camera.type
-  kSize,      // the size to which images are resized; it must be `key`, their own size
-  kRefused,   // it cannot be translated, for the reason `why`
+  kSize,      // the size to which images are resized; must equal `key`, their own size
+  kRefused,   // cannot be translated; `why` is the reason
 };
 
 struct Entry {
@@ -53,7 +53,7 @@ constexpr std::array<Entry, 22> kEntries = {{
     {"RGBD.DepthMapFactor", Kind::kRenamed, "DepthMapFactor"},
     {"Stereo.ThDepth", Kind::kRenamed, "ThDepth"},
     {"Stereo.b", Kind::kBaseline},
-    {"Stereo.T_c1_c2", Kind::kRefused, {}, "HullSLAM uses a single camera with depth images"},
+    {"Stereo.T_c1_c2", Kind::kRefused, {}, "HullSLAM does not use stereo cameras"},
     {"System.thFarPoints", Kind::kRefused, {}, "HullSLAM has no limit for far points"},
     {"System.LoadAtlasFromFile", Kind::kRefused, {}, "HullSLAM cannot load maps of ORB-SLAM3"},
     {"System.SaveAtlasToFile", Kind::kRefused, {}, "HullSLAM cannot save maps of ORB-SLAM3"},
@@ -62,10 +62,10 @@ constexpr std::array<Entry, 22> kEntries = {{
 }};
 
 constexpr Entry kSecondCamera = {
-    "Camera2", Kind::kRefused, {}, "HullSLAM uses a single camera with depth images"};
+    "Camera2", Kind::kRefused, {}, "HullSLAM does not use stereo cameras"};
 constexpr Entry kImu = {"IMU", Kind::kIgnored};
 
-// Null for a key that ORB-SLAM3 does not have, or that means the same here.
+// Null for a key that needs no translation: ORB-SLAM3 does not have it, or it means the same here.
 const Entry* FindEntry(std::string_view name) {
   const auto* const entry = std::find_if(kEntries.begin(), kEntries.end(),
                                          [&](const Entry& e) { return e.name == name; });
@@ -82,7 +82,7 @@ void ExpectText(const WrittenSetting& setting, std::initializer_list<std::string
     text = text.substr(1, text.size() - 2);
   }
   if (std::find(choices.begin(), choices.end(), text) == choices.end()) {
-    throw InputError(fmt::format("{}: {} is '{}', expected \"{}\"{}", setting.place, setting.name,
+    throw InputError(fmt::format("{}: {} is '{}', expected \"{}\"{}", setting.origin, setting.name,
                                  text, fmt::join(choices, "\" or \""), reason));
   }
 }
@@ -90,14 +90,14 @@ void ExpectText(const WrittenSetting& setting, std::initializer_list<std::string
 double PositiveNumber(const WrittenSetting& setting) {
   double value = 0.0;
   if (!ParseFinite(SingleValue(setting), value) || value <= 0.0) {
-    throw InputError(fmt::format("{}: {} is '{}', expected a number > 0", setting.place,
+    throw InputError(fmt::format("{}: {} is '{}', expected a number > 0", setting.origin,
                                  setting.name, setting.text));
   }
   return value;
 }
 
-// Translates the settings of a file one by one. What depends on two of them is done when all are
-// known.
+// Translates the settings of a file one by one. Values that depend on two settings are computed at
+// the end, when all settings are known.
 class Translator {
  public:
   void Add(WrittenSetting setting) {
@@ -111,7 +111,7 @@ class Translator {
       case Kind::kIgnored:
         return;
       case Kind::kRefused:
-        throw InputError(fmt::format("{}: {} of ORB-SLAM3 cannot be translated: {}", setting.place,
+        throw InputError(fmt::format("{}: {} of ORB-SLAM3 cannot be translated: {}", setting.origin,
                                      setting.name, entry->why));
       case Kind::kVersion:
         ExpectText(setting, {"1.0"}, "");
@@ -140,7 +140,8 @@ class Translator {
   }
 
  private:
-  // Absent if the setting is not given or not a number, which is reported when it is applied.
+  // The number that a setting gives. Absent if the setting is not given, or if it is not a number;
+  // this error is reported later, when the setting is applied.
   std::optional<double> Number(std::string_view key) const {
     const auto it = std::find_if(settings_.begin(), settings_.end(),
                                  [&](const WrittenSetting& s) { return s.key == key; });
@@ -169,7 +170,7 @@ class Translator {
         throw InputError(
             fmt::format("{}: {} is '{}', expected {}, {}: HullSLAM does not resize "
                         "images",
-                        size.place, size.name, value, size.key,
+                        size.origin, size.name, value, size.key,
                         own ? fmt::format("'{}'", *own) : "which is not given"));
       }
     }
@@ -181,7 +182,7 @@ class Translator {
           setting.key.starts_with("Camera.k") || setting.key.starts_with("Camera.p");
       if (is_rectified_ && is_distortion && Number(setting.key) != 0.0) {
         throw InputError(fmt::format("{}: {} is '{}', expected 0 with Camera.type \"Rectified\"",
-                                     setting.place, setting.name, setting.text));
+                                     setting.origin, setting.name, setting.text));
       }
     }
   }

@@ -11,9 +11,9 @@ namespace hullslam {
 // 2021). The keys are those of its format 1.0, as the settings files of its public examples and its
 // calibration tutorial show them.
 
-// The settings with ORB-SLAM3's keys replaced by ours. What has no meaning here (viewer, IMU, loop
-// closing) is dropped; keys that ORB-SLAM3 does not have stay. Throws InputError that names place,
-// key and reason for what cannot be translated.
+// Replaces ORB-SLAM3's keys by ours. Settings without a meaning here (viewer, IMU) are dropped;
+// keys that ORB-SLAM3 does not have stay. If a setting cannot be translated, throws InputError that
+// names file, line, key and reason.
 std::vector<WrittenSetting> TranslateOrb3Settings(std::vector<WrittenSetting> settings);
 
 }  // namespace hullslam

@@ -21,7 +21,8 @@ size_t Count(std::string_view text, std::string_view characters) {
   }));
 }
 
-// The line without its comment. A '#' after a quote may be a part of a text.
+// The line without its comment. If there is a quote before the '#', the '#' may be part of a text,
+// so nothing is removed.
 std::string_view WithoutComment(std::string_view line) {
   const size_t comment = line.find('#');
   const size_t quote = line.find_first_of("\"'");

@@ -8,8 +8,8 @@ namespace hullslam {
 
 // Throws InputError with file and line if the text of a YAML file may be nested very deep. OpenCV's
 // parser calls itself for each level, and too many levels overflow the stack. Settings need at most
-// three levels. The text is not parsed for this, so the check is rough: it counts the characters
-// that can start a level, and refuses only counts that no settings file has.
+// three levels. The check is rough, because it does not parse the text: it counts the characters
+// that can start a level, and its limits are far above the counts in any settings file.
 void CheckYamlNesting(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace hullslam

@@ -29,7 +29,7 @@ struct WrittenValue {
 };
 using WrittenValues = std::map<std::string, WrittenValue, std::less<>>;
 
-std::string Place(const fs::path& file, int line) {
+std::string Origin(const fs::path& file, int line) {
   return fmt::format("{}:{}", file.string(), line);
 }
 
@@ -55,8 +55,8 @@ WrittenValues ScanLines(const fs::path& file, std::string_view text) {
     const auto [it, is_new] = values.try_emplace(
         key, WrittenValue{number, std::string(Trim(value.substr(0, value.find('#'))))});
     if (!is_new) {
-      throw InputError(fmt::format("{}: key '{}' was given before, in line {}", Place(file, number),
-                                   ShowText(key), it->second.line));
+      throw InputError(fmt::format("{}: key '{}' was given before, in line {}",
+                                   Origin(file, number), ShowText(key), it->second.line));
     }
   }
   return values;
@@ -70,7 +70,7 @@ std::string ReadYamlText(const fs::path& file) {
     text.erase(0, 3);
   }
   if (!text.starts_with("%YAML")) {
-    throw InputError(Place(file, 1) + ": expected a settings file with '%YAML:1.0' as first line");
+    throw InputError(Origin(file, 1) + ": expected a settings file with '%YAML:1.0' as first line");
   }
   if (text.find('\0') != std::string::npos) {
     throw InputError(file.string() + ": is not a text file with settings");
@@ -93,7 +93,7 @@ std::string SingleText(const cv::FileNode& node, const WrittenValue& written) {
   return is_whole && has_exponent_or_point ? fmt::format("{:.0f}", value) : written.text;
 }
 
-// Nothing unless all values of the map are single.
+// The pairs of a map; nothing unless all its values are single.
 std::optional<std::string> MapText(const cv::FileNode& map) {
   std::string text;
   for (const cv::FileNode& node : map) {
@@ -109,8 +109,9 @@ std::optional<std::string> MapText(const cv::FileNode& map) {
 WrittenSetting ToSetting(const cv::FileNode& node, const WrittenValue& written,
                          const fs::path& file) {
   WrittenSetting setting{
-      .key = node.name(), .name = node.name(), .place = Place(file, written.line)};
-  // If the last key of a file has no value, OpenCV takes the mark of the end, "...", for it.
+      .key = node.name(), .name = node.name(), .origin = Origin(file, written.line)};
+  // If the last key of a file has no value, OpenCV returns "...", the mark for the end of the file,
+  // as its value.
   if (written.text.empty() && node.isString() && node.string() == "...") {
     setting.no_value = "empty";
   } else if (node.isMap() || node.isSeq()) {
@@ -154,7 +155,7 @@ std::vector<WrittenSetting> ReadYamlSettings(const fs::path& file) {
 
 const std::string& SingleValue(const WrittenSetting& setting) {
   if (!setting.no_value.empty()) {
-    throw InputError(fmt::format("{}: {} is {}, expected a single value", setting.place,
+    throw InputError(fmt::format("{}: {} is {}, expected a single value", setting.origin,
                                  ShowText(setting.name), setting.no_value));
   }
   return setting.text;

@@ -12,7 +12,7 @@ namespace hullslam {
 cv::FileStorage ParseYaml(const std::filesystem::path& file, const std::string& text,
                           int added_lines = 0);
 
-// Throws the InputError for an exception that OpenCV's parser threw.
+// Throws an InputError with file and line for an exception of OpenCV's parser.
 [[noreturn]] void FailParsing(const std::filesystem::path& file, const cv::Exception& error,
                               int added_lines = 0);
 

@@ -16,7 +16,10 @@ constexpr double kMinFoundAgain = 0.9;
 // The pose of a tracked frame, if it is in this island.
 std::optional<Rigid3> FindPose(const Map& map, IslandId island, const TrackedFrame& frame) {
   const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame.frame);
-  if (keyframe && IslandOf(map, *keyframe) == island) {
+  // A frame of a culled keyframe whose pose was refined is relative to where the keyframe was.
+  const bool is_refined = keyframe && !map.keyframes().Contains(*keyframe) && frame.from_keyframe &&
+                          frame.from_keyframe->reference == keyframe;
+  if (keyframe && !is_refined && IslandOf(map, *keyframe) == island) {
     return map.CamFromWorld(*keyframe);
   }
   if (frame.from_keyframe && IslandOf(map, frame.from_keyframe->reference) == island) {

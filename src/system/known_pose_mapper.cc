@@ -8,6 +8,7 @@
 #include "frame/frame_builder.h"
 #include "frame/frame_detector.h"
 #include "hullslam/util/check.h"
+#include "map/spanning_tree.h"
 #include "objects/object_mapper.h"
 #include "system/count_objects.h"
 #include "system/make_sensor.h"
@@ -50,8 +51,11 @@ void KnownPoseMapper::AddView(double timestamp, const Rigid3& world_from_cam,
   built.masks.frames_with_masks = masks.empty() ? 0 : 1;
   state.detector.AddDetections(masks, depth, {}, runner, built);
   state.masks.Add(built.masks);
-  state.mapper.Process(state.map,
-                       state.map.AddKeyframe(std::move(built.frame), Inverse(world_from_cam)));
+  const KeyframeId added = state.map.AddKeyframe(std::move(built.frame), Inverse(world_from_cam));
+  if (added != KeyframeId(0)) {
+    SetParent(state.map, added, KeyframeId(0));  // the tree of an island has one root
+  }
+  state.mapper.Process(state.map, added);
 }
 
 const Map& KnownPoseMapper::map() const { return state_->map; }

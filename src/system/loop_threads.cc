@@ -22,9 +22,6 @@ LoopThreads::~LoopThreads() { GiveUpAdjustment(); }
 void LoopThreads::Seek(LoopQuery query) { seeker_.Post(std::move(query)); }
 
 void LoopThreads::Adjust(std::shared_ptr<const Map> corrected) {
-  if (!options_.loop.global_adjustment) {
-    return;
-  }
   const auto cancellation = std::make_shared<Cancellation>();
   {
     const std::lock_guard lock(mutex_);

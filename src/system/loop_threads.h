@@ -12,26 +12,24 @@
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/stage_timer.h"
 #include "loop/loop_closer.h"
+#include "system/loop_stages.h"
 #include "util/latest_worker.h"
 
 namespace hullslam {
 
 // Searches loops in one thread, and adjusts the whole map after a loop in another one.
-class LoopThreads {
+class LoopThreads final : public LoopStages {
  public:
   // `sensor` must outlive this object. `send` is called by both threads with corrections for the
   // mapper.
   LoopThreads(const Sensor& sensor, const SystemOptions& options,
               std::function<void(MapCorrection)> send);
-  ~LoopThreads();
+  ~LoopThreads() override;
 
-  bool is_enabled() const { return options_.loop.enabled && options_.vocabulary != nullptr; }
-
-  // Searches a loop at a new keyframe. A query that still waits is dropped.
-  void Seek(LoopQuery query);
-  // Adjusts the whole map. To be called with the map in which a loop was closed. If the next loop
-  // is found before the end, the adjustment is cancelled.
-  void Adjust(std::shared_ptr<const Map> corrected);
+  // A query that still waits is dropped.
+  void Seek(LoopQuery query) override;
+  // If the next loop is found before the end, the adjustment is cancelled.
+  void Adjust(std::shared_ptr<const Map> corrected) override;
 
   // Waits until all queries are done. Also waits for the adjustment, or cancels it with
   // `give_up_adjustment`. Returns whether a correction was sent since the last call.
@@ -58,7 +56,7 @@ class LoopThreads {
   LoopCloser closer_;  // used by the first thread only
 
   mutable std::mutex mutex_;                    // guards the next three members
-  std::shared_ptr<Cancellation> cancellation_;  // of the newest adjustment
+  std::shared_ptr<Cancellation> cancellation_;  // cancels the newest adjustment
   StageTimes times_;
   bool has_sent_ = false;
 

@@ -27,13 +27,14 @@ class Pipeline {
   // mapping has thrown an exception, its live map may be half edited. So mapping stops, all later
   // calls of Track and Finish throw the same exception, and map() stays the last published map.
   virtual FrameReport Track(std::shared_ptr<const Frame> frame) = 0;
-  // Waits until all keyframes are in the map. Then it adjusts the whole map if
-  // mapping.final_bundle_adjustment is set. The adjustment ends early if `cancellation` (may be
-  // null) is requested. `on_progress` is called after each of its iterations.
+  // Waits until all keyframes and the last loops are in the map. Then it finishes the map
+  // (FinishMap, system/finish_run.h).
   virtual void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) = 0;
   void Finish() { Finish(nullptr, {}); }
   // See Tracker::LocaliseEarlyFrames. To be called after Finish; the second call gives nothing.
-  virtual std::vector<TrackedFrame> TakeEarlyFrames() = 0;
+  virtual std::vector<TrackedFrame> TakeEarlyFrames(const Cancellation* cancellation,
+                                                    const ProgressCallback& on_progress) = 0;
+  std::vector<TrackedFrame> TakeEarlyFrames() { return TakeEarlyFrames(nullptr, {}); }
   // The newest snapshot; null before the first keyframe.
   virtual std::shared_ptr<const Map> map() const = 0;
   // The number of threads, besides the thread of Track, that currently work on the map. May be
@@ -44,7 +45,7 @@ class Pipeline {
   virtual StageTimes times() const = 0;
   // The number of rejections of objects, by reason; complete after Finish.
   virtual std::map<ObjectRejection, size_t> object_rejections() const = 0;
-  // See Mapper::object_changes. To be called after Finish, which fills it in.
+  // See Mapper::object_changes. To be called after Finish.
   virtual const std::vector<ChangedObject>& object_changes() const = 0;
 };
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "hullslam/map/map.h"
-#include "tracking/pose_source.h"
 
 namespace hullslam {
 
@@ -12,7 +11,6 @@ struct PipelineStart {
   Session session = {};  // the session of the keyframes of this run
   // There are no keyframe requests, so nothing in the map is changed.
   bool localization_only = false;
-  Relocalise relocalise = nullptr;  // asked while tracking is lost; may be null
 };
 
 }  // namespace hullslam

@@ -64,7 +64,7 @@ class Prefetcher {
 
   Mailbox<Item> items_;
   std::exception_ptr failure_;
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // last member, because the thread uses the others
 };
 
 }  // namespace hullslam

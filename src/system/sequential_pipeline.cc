@@ -8,12 +8,14 @@
 #include "loop/loop_closer.h"
 #include "loop/whole_map_adjustment.h"
 #include "mapping/mapper.h"
+#include "system/finish_run.h"
+#include "system/loop_stages.h"
 #include "tracking/tracker.h"
 
 namespace hullslam {
 namespace {
 
-class SequentialPipeline final : public Pipeline {
+class SequentialPipeline final : public Pipeline, private LoopStages {
  public:
   SequentialPipeline(const Sensor& sensor, const SystemOptions& options)
       : sensor_(sensor),
@@ -25,7 +27,9 @@ class SequentialPipeline final : public Pipeline {
         loop_closer_(sensor, options.loop, options.objects, options.seed) {}
 
   void Begin(PipelineStart start) override {
-    tracker_.Begin(std::move(start.relocalise), start.localization_only);
+    if (start.localization_only) {
+      tracker_.LocaliseOnly();
+    }
     EditMap([&] { mapper_.Begin(std::move(start.map), std::move(start.session)); });
   }
 
@@ -34,10 +38,7 @@ class SequentialPipeline final : public Pipeline {
     RethrowFailure();
     Tracker::Result result = tracker_.Process(std::move(frame), map_, MapperStatus());
     if (result.message) {
-      EditMap([&] {
-        mapper_.Process(*result.message, nullptr);
-        CloseLoop();
-      });
+      EditMap([&] { Process(*result.message); });
     }
     return std::move(result.report);
   }
@@ -45,13 +46,15 @@ class SequentialPipeline final : public Pipeline {
   void Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) override {
     RethrowFailure();
     if (!std::exchange(is_finished_, true)) {
-      EditMap([&] { mapper_.Finish(cancellation, on_progress); });
+      EditMap([&] { FinishMap(mapper_, cancellation, on_progress); });
     }
   }
 
-  std::vector<TrackedFrame> TakeEarlyFrames() override {
+  std::vector<TrackedFrame> TakeEarlyFrames(const Cancellation* cancellation,
+                                            const ProgressCallback& on_progress) override {
     const std::shared_ptr<const Map> newest = map();
-    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest) : std::vector<TrackedFrame>();
+    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest, cancellation, on_progress)
+                             : std::vector<TrackedFrame>();
   }
 
   std::shared_ptr<const Map> map() const override { return map_; }
@@ -74,34 +77,31 @@ class SequentialPipeline final : public Pipeline {
   }
 
  private:
-  // Looks for a loop at the newest keyframe. After it has been closed, the whole map is adjusted.
-  void CloseLoop() {
-    const std::optional<KeyframeId> keyframe = mapper_.NewestKeyframe();
-    if (!options_.loop.enabled || options_.vocabulary == nullptr || !keyframe) {
-      return;
-    }
+  // Processes a message and runs the stages that follow it, whose corrections are messages too.
+  void Process(const MapMessage& message) {
+    const bool is_applied = mapper_.Process(message, nullptr);
+    StartNextStage(message, is_applied, options_, mapper_, map_, *this);
+  }
+
+  void Seek(LoopQuery query) override {
     std::optional<MapCorrection> loop;
     {
       const ScopedTimer timer(loop_times_, "loop_detection");
-      loop = loop_closer_.Process({mapper_.Snapshot(), *keyframe});
+      loop = loop_closer_.Process(std::move(query));
     }
     if (loop) {
-      mapper_.Process(*loop, nullptr);
-      AdjustMap();
+      Process(std::move(*loop));
     }
   }
 
-  void AdjustMap() {
-    if (!options_.loop.global_adjustment) {
-      return;
-    }
+  void Adjust(std::shared_ptr<const Map> corrected) override {
     std::optional<MapCorrection> adjustment;
     {
       const ScopedTimer timer(loop_times_, "loop_adjustment");
-      adjustment = AdjustWholeMap(*map_, sensor_, options_.objects, nullptr);
+      adjustment = AdjustWholeMap(*corrected, sensor_, options_.objects, nullptr);
     }
     if (adjustment) {
-      mapper_.Process(*adjustment, nullptr);
+      Process(std::move(*adjustment));
     }
   }
 

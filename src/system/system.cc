@@ -16,6 +16,7 @@
 #include "objects/known_sizes.h"
 #include "system/compose_trajectory.h"
 #include "system/count_objects.h"
+#include "system/finish_run.h"
 #include "system/idle_core_runner.h"
 #include "system/make_sensor.h"
 #include "system/pipeline.h"
@@ -175,17 +176,10 @@ std::unique_ptr<TaskRunner> System::MakeRunner() {
   });
 }
 
-void System::Finish(const Cancellation* cancellation, const ProgressCallback& on_progress) {
-  pipeline_->Finish(cancellation, on_progress);
-  if (const auto final_map = map()) {
-    LoseFramesElsewhere(*final_map, frames_);
-    const ObjectIndex object_index(*final_map, sensor_.camera);
-    RefinePoses(*final_map,
-                {sensor_, options_.tracking, options_.objects, object_index, options_.seed},
-                remembered_, frames_);
-    remembered_.clear();
-  }
-  ReplaceEarlyFrames(pipeline_->TakeEarlyFrames(), frames_);
+void System::Finish(const Cancellation* cancellation, const ProgressCallback& on_map,
+                    const ProgressCallback& on_poses) {
+  FinishRun(*pipeline_, sensor_, options_, remembered_, frames_, cancellation, on_map, on_poses);
+  remembered_.clear();
 }
 
 void System::Reset() {

@@ -11,6 +11,8 @@
 #include "hullslam/util/cancellation.h"
 #include "hullslam/util/check.h"
 #include "mapping/mapper.h"
+#include "system/finish_run.h"
+#include "system/loop_stages.h"
 #include "system/loop_threads.h"
 #include "tracking/tracker.h"
 #include "util/mailbox.h"
@@ -46,7 +48,9 @@ class ThreadedPipeline final : public Pipeline {
 
   // Meanwhile the mapper's thread waits for its first message.
   void Begin(PipelineStart start) override {
-    tracker_.Begin(std::move(start.relocalise), start.localization_only);
+    if (start.localization_only) {
+      tracker_.LocaliseOnly();
+    }
     mapper_.Begin(std::move(start.map), std::move(start.session));
   }
 
@@ -77,14 +81,16 @@ class ThreadedPipeline final : public Pipeline {
     Stop();
     RethrowFailure();
     if (is_first) {  // the mapper's thread has ended
-      EditMap([&] { mapper_.Finish(cancellation, on_progress); });
+      EditMap([&] { FinishMap(mapper_, cancellation, on_progress); });
       RethrowFailure();
     }
   }
 
-  std::vector<TrackedFrame> TakeEarlyFrames() override {
+  std::vector<TrackedFrame> TakeEarlyFrames(const Cancellation* cancellation,
+                                            const ProgressCallback& on_progress) override {
     const std::shared_ptr<const Map> newest = map();
-    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest) : std::vector<TrackedFrame>();
+    return newest != nullptr ? tracker_.LocaliseEarlyFrames(*newest, cancellation, on_progress)
+                             : std::vector<TrackedFrame>();
   }
 
   std::shared_ptr<const Map> map() const override { return map_.Get(); }
@@ -171,44 +177,34 @@ class ThreadedPipeline final : public Pipeline {
     }
     while (const std::optional<MapMessage> message = messages_.Receive()) {
       SetBusy(true);
-      if (!EditMap([&] { mapper_.Process(*message, &hurry_); })) {
+      const bool is_done = EditMap([&] {
+        const bool is_applied = mapper_.Process(*message, &hurry_);
+        StartNextStage(*message, is_applied, options_, mapper_, map_.Get(), loops_);
+      });
+      if (!is_done) {
         messages_.Close();
         return;
       }
-      TellLoops(*message);
       SetBusy(false);
     }
   }
 
-  // Searches a loop after a new keyframe, and adjusts the whole map after a loop was closed.
-  void TellLoops(const MapMessage& message) {
-    if (!loops_.is_enabled()) {
-      return;
-    }
-    if (const auto* correction = std::get_if<MapCorrection>(&message)) {
-      if (correction->loop) {
-        loops_.Adjust(map_.Get());
-      }
-    } else if (const std::optional<KeyframeId> keyframe = mapper_.NewestKeyframe()) {
-      loops_.Seek({mapper_.Snapshot(), *keyframe});
-    }
-  }
-
   // Calls `edit`, which changes the live map, and copies the results of the mapper that other
-  // threads may read. Returns false if there was an exception.
+  // threads may read. Returns false if there was an exception; also the copies may lack memory.
   template <typename Edit>
   bool EditMap(const Edit& edit) {
     std::exception_ptr failure;
     try {
       edit();
+      StageTimes times = mapper_.times();
+      std::map<ObjectRejection, size_t> rejections = mapper_.object_rejections();
+      const std::lock_guard lock(mutex_);
+      mapper_times_ = std::move(times);
+      object_rejections_ = std::move(rejections);
     } catch (...) {
       failure = std::current_exception();
     }
-    StageTimes times = mapper_.times();
-    std::map<ObjectRejection, size_t> rejections = mapper_.object_rejections();
     const std::lock_guard lock(mutex_);
-    mapper_times_ = std::move(times);
-    object_rejections_ = std::move(rejections);
     failure_ = failure;
     changed_.notify_all();
     return failure == nullptr;

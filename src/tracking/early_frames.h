@@ -8,14 +8,17 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
+#include "hullslam/util/cancellation.h"
 #include "tracking/tracking_context.h"
 
 namespace hullslam {
 
-// How a map, or a new island of it (Map::BeginIsland), begins. It depends on the sensor.
+// The rules, which depend on the sensor, for the beginning of a map or of a new island
+// (Map::BeginIsland).
 struct IslandRules {
-  // Whether it takes several frames, between which the camera moves. The first frames then have no
-  // poses, and those of a young island have uncertain ones, so they are located at the end.
+  // Whether an island can only begin with several frames, between which the camera moves. The
+  // frames before have no poses, and the poses of the first frames after it are uncertain. So the
+  // poses of these frames are computed at the end of the run.
   bool needs_motion = false;
   // Whether a camera that is lost begins a new island.
   bool begins_when_lost = false;
@@ -34,15 +37,24 @@ struct IslandRules {
 // their island was young.
 class EarlyFrames {
  public:
-  // Frames come in order of time. At most 300 are kept; the oldest ones are forgotten first.
-  void Keep(std::shared_ptr<const Frame> frame);
+  // Frames come in order of time. At most 300 are kept. The oldest ones that have a pose, because
+  // they were tracked, are forgotten first: a camera that stands still in a young island would
+  // otherwise push out those without a pose. Then the oldest of the others are forgotten.
+  void Keep(std::shared_ptr<const Frame> frame, bool is_tracked);
 
-  // Finds the frames in the final map and forgets them. Frames that are not found are left out.
-  // `context` has the object index of this map.
-  std::vector<TrackedFrame> Localise(const Map& map, const TrackingContext& context);
+  // Finds the frames in the final map and forgets them. Frames that are not found are left out, and
+  // so are those that are left when `cancellation` (may be null) is requested. `on_progress` is
+  // called after each frame. `context` has the object index of this map.
+  std::vector<TrackedFrame> Localise(const Map& map, const TrackingContext& context,
+                                     const Cancellation* cancellation = nullptr,
+                                     const ProgressCallback& on_progress = {});
 
  private:
-  std::vector<std::shared_ptr<const Frame>> frames_;  // in order of time
+  struct Kept {
+    std::shared_ptr<const Frame> frame;
+    bool is_tracked = false;
+  };
+  std::vector<Kept> frames_;  // in order of time
 };
 
 }  // namespace hullslam

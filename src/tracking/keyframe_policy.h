@@ -10,11 +10,12 @@ namespace hullslam {
 struct KeyframeEvidence {
   double time_since_keyframe = 0.0;  // s
   int inliers = 0;                   // landmarks found in the frame
-  int reference_landmarks = 0;       // of the reference keyframe, with enough observations
+  int reference_landmarks = 0;       // landmarks of the reference keyframe with enough observations
   int close_tracked = 0;             // close keypoints (with precise depth) that show a landmark
-  int close_untracked = 0;           // close keypoints that do not
+  int close_untracked = 0;           // close keypoints that show no landmark
   int unknown_objects = 0;           // detections that show no mapped object
-  int fruitless_requests = 0;        // for objects alone, since an object was last mapped
+  int fruitless_requests =
+      0;  // keyframes requested for objects alone since an object was last mapped
   size_t keyframes = 0;
   bool mapper_is_idle = true;
   int requests_waiting = 0;
@@ -32,9 +33,9 @@ struct KeyframePolicy {
   // s. A time limit counts as reached up to this much earlier. It is half the time between two
   // frames, because time stamps are not exactly regular.
   double time_tolerance = 1.0 / 60.0;
-  double min_reference_ratio = 0.9;    // of inliers to reference landmarks
+  double min_reference_ratio = 0.9;    // least ratio of inliers to reference landmarks
   double young_reference_ratio = 0.4;  // the same while the map has a single keyframe
-  double abrupt_ratio = 0.5;           // below it at once, however recent the last keyframe is
+  double abrupt_ratio = 0.5;           // below this ratio a keyframe is requested at once
   int min_close_tracked = 100;
   int max_close_untracked = 70;
   int max_requests_waiting = 3;

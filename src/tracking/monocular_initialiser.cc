@@ -23,7 +23,7 @@ namespace {
 
 constexpr size_t kMinFeatures = 100;
 constexpr size_t kMinMatches = 80;
-constexpr size_t kMinPoints = 50;  // of the map
+constexpr size_t kMinPoints = 50;  // least number of points of the map
 constexpr size_t kMostReferences = 12;
 constexpr uint32_t kReferenceInterval = 3;    // frames from one reference to the next
 constexpr size_t kViewsBetween = 3;           // most frames between the first and the last view

@@ -21,15 +21,17 @@
 namespace hullslam {
 namespace {
 
-constexpr size_t kMostRefined = 6;     // hypotheses
-constexpr size_t kMostObservers = 30;  // keyframes whose landmarks are searched
-constexpr int kRounds = 2;             // of matching and refinement with objects alone
-constexpr float kWideRadius = 25.0f;   // px at level 0; objects give a pose to a few centimetres
+constexpr size_t kMostRefined = 6;     // number of hypotheses that are refined
+constexpr size_t kMostObservers = 30;  // number of keyframes whose landmarks are searched
+constexpr int kRounds = 2;             // rounds of matching and refinement with objects alone
+constexpr float kWideRadius =
+    25.0f;  // px at level 0; the pose from objects is wrong by centimetres
 constexpr double kWideRatio = 0.8;
-constexpr double kLeastMeanOverlap = 0.5;  // of the objects that confirm a pose
+constexpr double kLeastMeanOverlap = 0.5;  // least mean overlap of the objects that confirm a pose
 // Hypotheses with a smaller share of the best score of objects are dropped.
 constexpr double kWorthyShare = 0.5;
-constexpr int kMostSamples = 200;  // of RANSAC; most of the landmarks near a true pose agree
+constexpr int kMostSamples =
+    200;  // samples of RANSAC; few suffice, because most landmarks agree with a true pose
 // If a second candidate reaches this share of the best score, the frame is ambiguous.
 constexpr double kAmbiguousShare = 0.75;
 
@@ -96,8 +98,8 @@ class Finder {
     return best;
   }
 
-  // The hypotheses, refined by objects alone. Those near a better one and much worse ones are left
-  // out.
+  // Refines the hypotheses by objects alone. Hypotheses that are near a better one, or much worse
+  // than the best one, are left out.
   std::vector<Candidate> RefineHypotheses() const {
     std::vector<Candidate> candidates;
     for (Candidate& candidate : CompareHypotheses()) {
@@ -114,7 +116,7 @@ class Finder {
     return candidates;
   }
 
-  // The pose that the hull lines of the matched objects and the landmarks of the estimate explain.
+  // The pose that fits the hull lines of the matched objects and the landmarks of `estimate` best.
   PoseEstimate Refine(const Candidate& candidate, PoseEstimate estimate) const {
     const PoseObjects objects =
         MakePoseObjects(map_, context_.sensor, frame_, estimate.cam_from_world,
@@ -225,7 +227,8 @@ class Finder {
     return AreSamePlace(a.estimate.cam_from_world, b.estimate.cam_from_world, MeanDistance(a));
   }
 
-  // Searches landmarks of the keyframes that observe the objects, and refines the pose with both.
+  // Searches landmarks of the keyframes that observe the objects, and refines the pose with objects
+  // and landmarks.
   void AddLandmarks(Candidate& candidate) const {
     const std::vector<KeyframeId> observers = ObserversOf(candidate.arrangement);
     candidate.estimate.keyframe_of_place = observers.front();

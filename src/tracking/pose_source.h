@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <optional>
 
 #include "hullslam/frame/frame.h"
@@ -38,11 +37,6 @@ PoseSource PoseByRelocalisation;
 // not used. If there are several islands, the one that agrees best is chosen
 // (object_relocalisation_source.cc).
 PoseSource PoseByObjects;
-
-// A source of the caller, which is asked when all others find nothing. The estimate names landmarks
-// that keyframes of the map observe. Null if it finds too little.
-using Relocalise = std::function<std::optional<PoseEstimate>(const Frame& frame, const Map& map,
-                                                             const TrackingContext& context)>;
 
 // All sources, in the order in which they are asked.
 inline constexpr std::array<PoseSource*, 4> kPoseSources = {

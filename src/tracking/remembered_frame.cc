@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "objects/object_constraint.h"
 #include "tracking/pose_objects.h"
@@ -14,7 +15,7 @@ namespace hullslam {
 namespace {
 
 constexpr size_t kMostLandmarks = 400;
-constexpr double kMinInlierShare = 0.5;  // of the landmarks that were found
+constexpr double kMinInlierShare = 0.5;  // least share of the landmarks that were found
 
 // The detection with only the data that the residuals of the pose are computed from.
 Detection Slim(Detection detection, const ObjectOptions& options) {
@@ -46,6 +47,38 @@ std::vector<Id> Newest(const Map& map, std::vector<Id> ids) {
   return ids;
 }
 
+// The pose in the map that a culled keyframe has. Null if the frame did not become a keyframe, if
+// that is still in the map, or if it was removed with its island.
+std::optional<RelativePose> PoseOfCulled(const Map& map, FrameId frame) {
+  const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(frame);
+  const bool is_culled =
+      keyframe && map.FindCulled(*keyframe) != nullptr && map.NearestAlive(*keyframe).IsValid();
+  return is_culled ? std::optional(RelativePose{*keyframe, Rigid3(), map.ScaleOf(*keyframe)})
+                   : std::nullopt;
+}
+
+void RefineFrame(const Map& map, const TrackingContext& context, const RememberedFrame& seen,
+                 TrackedFrame& tracked) {
+  if (const std::optional<RelativePose> culled = PoseOfCulled(map, tracked.frame)) {
+    tracked.from_keyframe = culled;
+  }
+  if (!tracked.from_keyframe) {
+    return;
+  }
+  PoseEstimate start;
+  start.cam_from_world = map.CamFromWorld(*tracked.from_keyframe);
+  start.landmarks = Newest(map, seen.landmarks);
+  const PoseObjects objects = MakePoseObjects(map, context.sensor, seen.frame, start.cam_from_world,
+                                              Newest(map, seen.objects), context.objects);
+  const PoseEstimate refined =
+      RefinePose(seen.frame, map, context, objects.objects, std::move(start));
+  if (refined.EffectiveInliers() >= context.options.min_inliers &&
+      refined.inliers >= kMinInlierShare * static_cast<double>(seen.landmarks.size())) {
+    tracked.from_keyframe =
+        map.RelativeTo(tracked.from_keyframe->reference, refined.cam_from_world);
+  }
+}
+
 }  // namespace
 
 RememberedFrame Remember(const FrameReport& report, const ObjectOptions& options) {
@@ -74,24 +107,16 @@ RememberedFrame Remember(const FrameReport& report, const ObjectOptions& options
 }
 
 void RefinePoses(const Map& map, const TrackingContext& context,
-                 std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames) {
+                 std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames,
+                 const Cancellation* cancellation, const ProgressCallback& on_progress) {
+  int done = 0;
   for (const RememberedFrame& seen : remembered) {
-    TrackedFrame& tracked = frames[seen.frame.id.value - frames.front().frame.value];
-    if (!tracked.from_keyframe) {
-      continue;
+    if (IsRequested(cancellation)) {
+      return;
     }
-    PoseEstimate start;
-    start.cam_from_world = map.CamFromWorld(*tracked.from_keyframe);
-    start.landmarks = Newest(map, seen.landmarks);
-    const PoseObjects objects =
-        MakePoseObjects(map, context.sensor, seen.frame, start.cam_from_world,
-                        Newest(map, seen.objects), context.objects);
-    const PoseEstimate refined =
-        RefinePose(seen.frame, map, context, objects.objects, std::move(start));
-    if (refined.EffectiveInliers() >= context.options.min_inliers &&
-        refined.inliers >= kMinInlierShare * static_cast<double>(seen.landmarks.size())) {
-      tracked.from_keyframe =
-          map.RelativeTo(tracked.from_keyframe->reference, refined.cam_from_world);
+    RefineFrame(map, context, seen, frames[seen.frame.id.value - frames.front().frame.value]);
+    if (on_progress) {
+      on_progress(++done, static_cast<int>(remembered.size()));
     }
   }
 }

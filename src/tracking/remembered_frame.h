@@ -7,6 +7,7 @@
 #include "hullslam/frame/frame.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/messages.h"
+#include "hullslam/util/cancellation.h"
 #include "tracking/tracking_context.h"
 
 namespace hullslam {
@@ -27,9 +28,14 @@ RememberedFrame Remember(const FrameReport& report, const ObjectOptions& options
 // The pose of a frame was measured in the map at that time and follows one keyframe, its reference.
 // Later the map around the frame changes differently from this keyframe: adjustments and loops move
 // its landmarks, and a monocular camera knows the scale of a new place only some time after it has
-// entered it. A frame keeps its pose if fewer than half of the landmarks that were found in it, or
-// fewer than tracking.min_inliers, agree with the new pose. `frames` are those of the run in order.
+// entered it. A frame that became a keyframe and was culled begins with the pose of the keyframe,
+// and its pose is relative to it afterwards. A frame keeps its pose if fewer than half of the
+// landmarks that were found in it, or fewer than tracking.min_inliers, agree with the new pose.
+// `frames` are those of the run in order. `on_progress` is called after each frame. Once
+// `cancellation` (may be null) is requested, the other frames keep their poses.
 void RefinePoses(const Map& map, const TrackingContext& context,
-                 std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames);
+                 std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames,
+                 const Cancellation* cancellation = nullptr,
+                 const ProgressCallback& on_progress = {});
 
 }  // namespace hullslam

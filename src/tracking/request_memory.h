@@ -20,7 +20,7 @@ class RequestMemory {
 
  private:
   std::set<ObjectId> mapped_;         // all objects that were ever mapped
-  std::optional<uint32_t> revision_;  // of the map at the last call
+  std::optional<uint32_t> revision_;  // revision of the map at the last call
   int requests_ = 0;
 };
 

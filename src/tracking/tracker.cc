@@ -97,11 +97,6 @@ Tracker::Tracker(const Sensor& sensor, const TrackingOptions& options, const Obj
       policy_(MakePolicy(sensor, options)),
       initialiser_(sensor, seed) {}
 
-void Tracker::Begin(Relocalise relocalise, bool localization_only) {
-  relocalise_ = std::move(relocalise);
-  is_localizing_only_ = localization_only;
-}
-
 Tracker::Result Tracker::Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
                                  const MapperStatus& mapper) {
   const ScopedTimer timer(times_, "pose");
@@ -127,7 +122,7 @@ Tracker::Result Tracker::InitializeMonocular(std::shared_ptr<const Frame> frame)
   if (initial.map) {
     return BeginIsland(std::move(frame), std::move(*initial.map));
   }
-  early_.Keep(frame);
+  early_.Keep(frame, false);
   Result result = MakeResult(std::move(frame), TrackingState::kNotInitialized);
   result.report.failure = initial.failure;
   return result;
@@ -145,9 +140,11 @@ Tracker::Result Tracker::BeginIsland(std::shared_ptr<const Frame> frame, Initial
   return result;
 }
 
-std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map) {
+std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map,
+                                                       const Cancellation* cancellation,
+                                                       const ProgressCallback& on_progress) {
   object_index_.Follow(map, sensor_.camera);
-  return early_.Localise(map, Context());
+  return early_.Localise(map, Context(), cancellation, on_progress);
 }
 
 Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& map,
@@ -155,21 +152,22 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   if (last_.frame != nullptr) {
     last_ = FollowMap(map, std::move(last_));
   }
-  if (island_rules_.needs_motion && !is_localizing_only_ && IsYoung(map)) {
-    early_.Keep(frame);
-  }
   if (!frame->detections.empty()) {
     object_index_.Follow(map, sensor_.camera);
   }
   const std::shared_ptr<const Frame> as_read = frame;
   frame = PredictGlobalShutter(as_read, map, sensor_, last_);
-  std::optional<LocalTracking> found = FindPose(*frame, map);
+  std::optional<ConfirmedPose> found =
+      FindConfirmedPose(*frame, map, Context(), last_, kPoseSources);
   if (!found) {
     return Lose(as_read, map);
   }
+  if (island_rules_.needs_motion && !is_localizing_only_ && IsYoung(map)) {
+    early_.Keep(as_read, true);
+  }
   lost_since_.reset();
   initialiser_.Forget();
-  LocalTracking& tracking = *found;
+  LocalTracking& tracking = found->tracking;
   frame = CorrectShutter(as_read, map, Context(), last_, tracking);
   if (!is_localizing_only_) {
     CountSightings(map, tracking);
@@ -200,22 +198,6 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   return result;
 }
 
-// The first pose that the local map confirms. Null if there is none.
-std::optional<LocalTracking> Tracker::FindPose(const Frame& frame, const Map& map) const {
-  if (auto found = FindConfirmedPose(frame, map, Context(), last_, kPoseSources)) {
-    return std::move(found->tracking);
-  }
-  std::optional<PoseEstimate> start =
-      relocalise_ ? relocalise_(frame, map, Context()) : std::nullopt;
-  if (!start) {
-    return std::nullopt;
-  }
-  LocalTracking tracking = TrackLocalMap(frame, map, Context(), last_.reference, std::move(*start));
-  return tracking.estimate.EffectiveInliers() >= options_.min_inliers
-             ? std::optional(std::move(tracking))
-             : std::nullopt;
-}
-
 bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,
                             const MapperStatus& mapper) {
   last_request_time_ = last_request_time_.value_or(frame.timestamp);
@@ -243,9 +225,7 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map
   lost_since_ = lost_since_.value_or(frame->timestamp);
   if (MayBeginIsland(*frame, map)) {
     MonocularInitialiser::Result initial = initialiser_.Process(frame);
-    if (!IsYoung(map)) {
-      early_.Keep(frame);
-    }
+    early_.Keep(frame, false);
     if (initial.map) {
       return BeginIsland(std::move(frame), std::move(*initial.map));
     }

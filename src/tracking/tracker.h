@@ -38,9 +38,9 @@ class Tracker {
   Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects = {},
           uint64_t seed = 0);
 
-  // To be called at most once, before the first frame. `relocalise` may be null. With
-  // `localization_only` no keyframe is requested; the frames then come with a map.
-  void Begin(Relocalise relocalise, bool localization_only);
+  // From now on no keyframe is requested. To be called before the first frame, which then comes
+  // with a map.
+  void LocaliseOnly() { is_localizing_only_ = true; }
 
   struct Result {
     FrameReport report;
@@ -48,12 +48,14 @@ class Tracker {
   };
 
   // Frames come in order of time. `map` is the newest snapshot, null before there is one. If the
-  // first map is there before the first frame, tracking is lost until `relocalise` finds a frame.
+  // first map is there before the first frame, tracking is lost until a frame is relocalised.
   Result Process(std::shared_ptr<const Frame> frame, std::shared_ptr<const Map> map,
                  const MapperStatus& mapper);
 
   // To be called at the end of a monocular run, with the final map. See EarlyFrames.
-  std::vector<TrackedFrame> LocaliseEarlyFrames(const Map& map);
+  std::vector<TrackedFrame> LocaliseEarlyFrames(const Map& map,
+                                                const Cancellation* cancellation = nullptr,
+                                                const ProgressCallback& on_progress = {});
 
   const StageTimes& times() const { return times_; }
 
@@ -65,7 +67,6 @@ class Tracker {
   Result InitializeMonocular(std::shared_ptr<const Frame> frame);
   Result BeginIsland(std::shared_ptr<const Frame> frame, InitialMap initial);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
-  std::optional<LocalTracking> FindPose(const Frame& frame, const Map& map) const;
   Result Lose(std::shared_ptr<const Frame> frame, const Map& map);
   bool IsYoung(const Map& map) const;
   bool MayBeginIsland(const Frame& frame, const Map& map) const;
@@ -86,7 +87,6 @@ class Tracker {
   MonocularInitialiser initialiser_;
   EarlyFrames early_;
 
-  Relocalise relocalise_;  // may be null
   bool is_localizing_only_ = false;
 
   std::optional<double> lost_since_;  // s, time stamp of the first lost frame; absent if not lost
@@ -98,7 +98,7 @@ class Tracker {
   // Map::revision() of the first map in which sightings were counted; absent if there are none.
   std::optional<uint32_t> first_sighting_revision_;
   RequestMemory object_requests_;
-  ObjectIndex object_index_;  // of the map of the last frame
+  ObjectIndex object_index_;  // index of the map of the last frame
 };
 
 }  // namespace hullslam

@@ -27,7 +27,7 @@ class IdSet {
     Group& group = groups_[GroupOf(id)];
     const uint64_t bit = BitOf(id);
     if ((group.bits & bit) != 0) {
-      Check(group.IdAt(id.slot()) == id, "two ids of one slot are not of one map");
+      Check(group.IdAt(id.slot()) == id, "two ids with the same slot are from different maps");
       return false;
     }
     group.bits |= bit;
@@ -73,7 +73,7 @@ class IdSet {
   };
   struct WithGenerations {
     uint64_t bits = 0;
-    std::array<uint8_t, kGroupSize> generations;  // only set where there is a bit
+    std::array<uint8_t, kGroupSize> generations;  // only valid for slots whose bit is set
     void Remember(IdType id) {
       generations[id.slot() % kGroupSize] = static_cast<uint8_t>(id.generation());
     }

@@ -16,7 +16,7 @@ namespace hullslam {
 template <typename Task>
 class LatestWorker {
  public:
-  // After `work` has thrown an exception, no further task is begun.
+  // Calls `work` with each task. After `work` has thrown an exception, no further task is begun.
   explicit LatestWorker(std::function<void(Task)> work)
       : work_(std::move(work)), thread_([this] { Run(); }) {}
 

@@ -11,7 +11,7 @@
 namespace hullslam {
 
 // A bounded first-in first-out queue between two threads. The sender waits while the mailbox is
-// full (back-pressure), the receiver waits while it is empty. Closing it wakes both.
+// full (back-pressure), and the receiver waits while it is empty. Closing the mailbox wakes both.
 template <typename Message>
 class Mailbox {
  public:

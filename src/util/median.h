@@ -7,8 +7,8 @@
 
 namespace hullslam {
 
-// The median of at least one value. For an even number of values it is the larger one of the middle
-// two.
+// The median of at least one value. For an even number of values it is the larger of the two middle
+// ones.
 template <typename T>
 T Median(std::vector<T> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -119,7 +119,7 @@ void OptionTable::AddOption(std::string key, Option option) {
   Check(inserted, "an option is bound twice");
 }
 
-// The arguments are moved from, but clang-tidy does not see this in a template.
+// The arguments are moved, but clang-tidy does not see this in a template.
 template <typename Number>
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
 void OptionTable::AddNumber(std::string key, std::vector<Number*> fields, Range range,
@@ -149,7 +149,7 @@ void OptionTable::Add(std::string key, double* field, Range range, std::string h
 void OptionTable::Add(std::string key, std::vector<double*> fields, Range range, std::string help) {
   const bool are_equal = std::all_of(
       fields.begin(), fields.end(), [&](const double* field) { return *field == *fields.front(); });
-  Check(!fields.empty() && are_equal, "an option is for fields that are not equal");
+  Check(!fields.empty() && are_equal, "an option is bound to fields with different defaults");
   AddNumber<double>(std::move(key), std::move(fields), range, std::move(help));
 }
 
@@ -234,8 +234,8 @@ void OptionTable::AddShared(std::string key, const std::vector<std::string>& mem
   }
   AddOption(std::move(key), {.parse =
                                  [options](const std::string& text) {
-                                   // If a member refuses, earlier ones stay set; the run ends
-                                   // anyway.
+                                   // If a member refuses the value, earlier members stay set. This
+                                   // is harmless, because the run ends anyway.
                                    return std::all_of(
                                        options.begin(), options.end(),
                                        [&](const Option& option) { return option.parse(text); });
@@ -265,13 +265,13 @@ void OptionTable::AddIgnored(std::string key) {
 }
 
 void OptionTable::AddOldName(std::string name, std::string key) {
-  Check(options_.contains(key), "an old name is for a key that is not bound");
-  Check(!options_.contains(name), "an old name is still bound");
+  Check(options_.contains(key), "an old name refers to a key that is not bound");
+  Check(!options_.contains(name), "an old name is also the key of an option");
   old_names_.emplace(std::move(name), std::move(key));
 }
 
 void OptionTable::AddRetired(std::string key, std::string reason) {
-  Check(!options_.contains(key), "a retired key is still bound");
+  Check(!options_.contains(key), "a retired key is also the key of an option");
   retired_.emplace(std::move(key), std::move(reason));
 }
 
@@ -289,7 +289,8 @@ bool OptionTable::IsMap(std::string_view key) const {
   return it != options_.end() && it->second.is_map;
 }
 
-// A misspelt old name gets its current name. Empty if the table is empty.
+// The key that is most similar to a misspelt one. If an old name is most similar, this is its
+// current key. Empty if the table is empty.
 std::string OptionTable::MostSimilarKey(const std::string& key) const {
   constexpr size_t kLongestKey = 100;
   const std::string compared = key.substr(0, kLongestKey);

@@ -9,14 +9,14 @@
 
 namespace hullslam {
 
-// Tasks for several threads. Each thread takes the next task that is not begun.
+// Tasks for several threads. Each thread takes the next task that no thread has begun.
 class SharedTasks {
  public:
   // `task` must outlive this object.
   SharedTasks(size_t count, const std::function<void(size_t)>& task) : count_(count), task_(task) {}
 
-  // Returns when all tasks have begun and those of this thread have ended. After an exception of
-  // any thread no further task is begun.
+  // Returns when all tasks have begun and those of this thread have ended. After a task has thrown
+  // an exception, no further task is begun.
   void Work() {
     for (size_t i = next_++; i < count_; i = next_++) {
       try {
@@ -29,7 +29,8 @@ class SharedTasks {
     }
   }
 
-  // To be called when no thread works any more.
+  // Rethrows the first exception of a task, if there was one. To be called when no thread works any
+  // more.
   void RethrowFailure() const {
     if (failure_) {
       std::rethrow_exception(failure_);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numeric>
 
 namespace hullslam {
@@ -25,7 +26,11 @@ void StageTimes::Merge(const StageTimes& other) {
 ScopedTimer::~ScopedTimer() {
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - start_;
-  times_.Add(stage_, elapsed.count());
+  try {
+    times_.Add(stage_, elapsed.count());
+  } catch (const std::bad_alloc&) {
+    // An exception of a destructor would end the program. The sample is lost instead.
+  }
 }
 
 TimeStatistics Summarize(std::vector<double> samples) {

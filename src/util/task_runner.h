@@ -13,8 +13,8 @@ class TaskRunner {
   virtual ~TaskRunner() = default;
 
   // Calls task(0) to task(count - 1) and returns when all of them have returned. They are begun in
-  // this order, but several may run at the same time. After an exception no further task is begun,
-  // and the exception is thrown.
+  // this order, but several may run at the same time. If a task throws an exception, no further
+  // task is begun, and the exception is rethrown.
   virtual void Run(size_t count, const std::function<void(size_t)>& task) = 0;
 };
 

@@ -9,8 +9,8 @@
 
 namespace hullslam {
 
-// On Linux each thread has a niceness of its own. If the call fails, the thread stays as it is,
-// which changes no result.
+// On Linux each thread has a niceness of its own. If the call fails, the thread keeps its niceness.
+// This only affects speed.
 void RunInBackground(int niceness) {
   const auto thread = static_cast<id_t>(syscall(SYS_gettid));
   setpriority(PRIO_PROCESS, thread, std::max(niceness, getpriority(PRIO_PROCESS, thread)));

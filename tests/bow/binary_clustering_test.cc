@@ -13,7 +13,8 @@
 namespace hullslam {
 namespace {
 
-// `each` descriptors around each of `groups` random centres, in turn, with `flips` flipped bits.
+// Makes `each` descriptors for each of `groups` random centres: the centre with `flips` flipped
+// bits. The groups take turns in the list.
 std::vector<Descriptor> MakeGroups(size_t groups, size_t each, int flips) {
   std::mt19937_64 random(3);
   std::vector<Descriptor> centres;
@@ -69,14 +70,15 @@ TEST(ClusterBinary, EveryDescriptorBelongsToTheFirstNearestCentre) {
   EXPECT_EQ(count, descriptors.size());
 }
 
-// Two descriptors of three have bit 0, one has bit 1, and all have bit 255.
+// Of the first three descriptors, two have bit 0, one has bit 1, and all have bit 255.
 TEST(ClusterBinary, TheCentreIsTheMajorityOfEachBit) {
   constexpr uint64_t kLast = uint64_t{1} << 63;
   const std::vector<Descriptor> descriptors = {
       {1, 0, 0, kLast}, {3, 0, 0, kLast}, {0, 0, 0, kLast}, {0, 0, 0, kLast}};
   const std::vector<Descriptor> three(descriptors.begin(), descriptors.begin() + 3);
   EXPECT_EQ(Cluster(three, 1)[0].centre, (Descriptor{1, 0, 0, kLast}));
-  EXPECT_EQ(Cluster(descriptors, 1)[0].centre, (Descriptor{0, 0, 0, kLast})) << "half of them";
+  EXPECT_EQ(Cluster(descriptors, 1)[0].centre, (Descriptor{0, 0, 0, kLast}))
+      << "bit 0 is set in half of them, which is no majority";
 }
 
 TEST(ClusterBinary, ThereAreNoMoreClustersThanDifferentDescriptors) {

@@ -26,7 +26,7 @@ BowVector RandomVector(const Vocabulary& vocabulary, std::mt19937_64& random) {
   return vocabulary.VectorOf(words);
 }
 
-TEST(InvertedIndex, FindsWhatScoringEveryKeyframeFinds) {
+TEST(InvertedIndex, GivesTheSameAsScoringEveryKeyframe) {
   const Vocabulary vocabulary = MadeVocabulary(6, 3);
   std::mt19937_64 random(1);
   InvertedIndex index;

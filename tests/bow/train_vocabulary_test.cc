@@ -15,7 +15,8 @@
 namespace hullslam {
 namespace {
 
-// Images of points out of `points`, each seen with `flips` flipped bits.
+// Makes images that show points chosen at random from `points` points. Each descriptor is that of
+// its point with `flips` flipped bits.
 std::vector<std::vector<Descriptor>> MakeImages(size_t points, size_t images, size_t keypoints,
                                                 int flips) {
   std::mt19937_64 random(11);

@@ -17,7 +17,7 @@
 namespace hullslam {
 namespace {
 
-// The content of a file in aligned memory.
+// The content of a vocabulary file in aligned memory.
 class Content {
  public:
   explicit Content(const std::string& bytes) : memory_(bytes.size() / 8 + 1), size_(bytes.size()) {
@@ -145,7 +145,7 @@ TEST(Vocabulary, AVectorIsFrequencyTimesInverseDocumentFrequency) {
   std::vector<TreeNode> nodes = FullTree(4, 1, 1);
   nodes[0].weight = 1.0f;
   nodes[1].weight = 2.0f;
-  nodes[2].weight = 0.0f;  // in all training images
+  nodes[2].weight = 0.0f;  // the weight of a word that all training images contain
   nodes[3].weight = 5.0f;
   const Vocabulary vocabulary = BuildVocabulary(4, 1, nodes);
   const std::vector<WordId> words = {WordId(1), WordId(0), WordId(2), WordId(1), WordId(1)};
@@ -182,7 +182,7 @@ TEST(Vocabulary, EveryFlippedBitIsNoticed) {
   }
 }
 
-// The hash fits, so that the other checks must find the fault.
+// The hash is computed again after the change, so that the other checks must find the fault.
 TEST(Vocabulary, AWrongHeaderIsRefused) {
   const auto change = [](auto field, uint32_t value) {
     return [=](Content& content, const VocabularyLayout&) {

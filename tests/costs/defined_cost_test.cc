@@ -14,7 +14,7 @@
 namespace hullslam {
 namespace {
 
-// x - 3, but not defined between 1 and 2.
+// The residual x - 3, which is not defined between 1 and 2.
 class GapCost final : public ceres::SizedCostFunction<1, 1> {
  public:
   bool Evaluate(double const* const* parameters, double* residuals,
@@ -45,7 +45,7 @@ Evaluation Evaluate(const ceres::CostFunction& cost, double x) {
   return evaluation;
 }
 
-TEST(DefinedCost, IsTheOtherCostWhereThatIsDefined) {
+TEST(DefinedCost, EqualsTheWrappedCostWhereThatIsDefined) {
   const DefinedCost cost(std::make_unique<GapCost>());
   const Evaluation evaluation = Evaluate(cost, 0.5);
   EXPECT_TRUE(evaluation.ok);
@@ -75,7 +75,7 @@ struct Pull {
   }
 };
 
-// x - 1.5 of many, under Cauchy's loss. Their minimum is where one cost is not defined.
+// Many costs x - 1.5 under Cauchy's loss. At their minimum one other cost is not defined.
 double Solve(bool is_defined) {
   double x = 0.0;
   ceres::Problem problem;
@@ -94,7 +94,7 @@ double Solve(bool is_defined) {
   return x;
 }
 
-TEST(DefinedCost, OneOfThemDoesNotHoldTheOthers) {
+TEST(DefinedCost, AnUndefinedCostDoesNotHoldTheOthers) {
   EXPECT_LT(Solve(false), 1.0);
   EXPECT_NEAR(Solve(true), 1.5, 1e-6);
 }

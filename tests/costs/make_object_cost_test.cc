@@ -10,13 +10,6 @@
 namespace hullslam {
 namespace {
 
-constexpr std::array kResiduals = {ObjectResidual::kTangent, ObjectResidual::kAlgebraicPlane,
-                                   ObjectResidual::kAlgebraicPoint, ObjectResidual::kDistribution,
-                                   ObjectResidual::kOverlap};
-constexpr std::array kPrimitives = {ObjectPrimitive::kSupport, ObjectPrimitive::kHull,
-                                    ObjectPrimitive::kContour, ObjectPrimitive::kBox,
-                                    ObjectPrimitive::kConic};
-
 class MakeObjectCostTest : public ::testing::Test {
  protected:
   MakeObjectCostTest() {
@@ -40,9 +33,9 @@ class MakeObjectCostTest : public ::testing::Test {
   Detection detection_;
 };
 
-TEST_F(MakeObjectCostTest, MakesWhatIsSupportedAndNothingElse) {
-  for (const ObjectResidual residual : kResiduals) {
-    for (const ObjectPrimitive primitive : kPrimitives) {
+TEST_F(MakeObjectCostTest, MakesTheAcceptedCombinationsOnly) {
+  for (const ObjectResidual residual : AllResiduals()) {
+    for (const ObjectPrimitive primitive : kAllPrimitives) {
       EXPECT_EQ(Make(residual, primitive) != nullptr, AcceptsPrimitive(residual, primitive))
           << NameOf(residual) << " " << NameOf(primitive);
     }
@@ -51,9 +44,9 @@ TEST_F(MakeObjectCostTest, MakesWhatIsSupportedAndNothingElse) {
 
 // The measured outline is the projected ellipse, so all residuals are zero, or nearly zero where a
 // polygon with a slightly smaller area stands for the ellipse.
-TEST_F(MakeObjectCostTest, AllAreSmallAtTheTruth) {
-  for (const ObjectResidual residual : kResiduals) {
-    for (const ObjectPrimitive primitive : kPrimitives) {
+TEST_F(MakeObjectCostTest, AllResidualsAreSmallAtTheTruth) {
+  for (const ObjectResidual residual : AllResiduals()) {
+    for (const ObjectPrimitive primitive : kAllPrimitives) {
       if (const auto cost = Make(residual, primitive)) {
         EXPECT_LT(ObjectResidualsOf(*cost, state_).cwiseAbs().maxCoeff(), 5e-3)
             << NameOf(residual) << " " << NameOf(primitive);
@@ -76,8 +69,8 @@ TEST_F(MakeObjectCostTest, OneRowALineOrAPoint) {
 TEST_F(MakeObjectCostTest, SigmaDividesTheResidual) {
   SeenEllipsoid moved = state_;
   moved.ellipsoid.half_axes *= 1.1;
-  for (const ObjectResidual residual : kResiduals) {
-    for (const ObjectPrimitive primitive : kPrimitives) {
+  for (const ObjectResidual residual : AllResiduals()) {
+    for (const ObjectPrimitive primitive : kAllPrimitives) {
       if (const auto cost = Make(residual, primitive)) {
         const auto scaled = Make(residual, primitive, 4.0);
         const Eigen::VectorXd residuals = ObjectResidualsOf(*cost, moved);
@@ -95,10 +88,10 @@ TEST_F(MakeObjectCostTest, TakesTheLinesThatAreGiven) {
   EXPECT_EQ(cost->num_residuals(), 3);
 }
 
-TEST_F(MakeObjectCostTest, IsNothingOfAnEmptyDetection) {
+TEST_F(MakeObjectCostTest, IsNullForAnEmptyDetection) {
   detection_ = {};
-  for (const ObjectResidual residual : kResiduals) {
-    for (const ObjectPrimitive primitive : kPrimitives) {
+  for (const ObjectResidual residual : AllResiduals()) {
+    for (const ObjectPrimitive primitive : kAllPrimitives) {
       EXPECT_EQ(Make(residual, primitive), nullptr);
     }
   }

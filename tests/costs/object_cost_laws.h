@@ -7,12 +7,15 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "costs/pose_manifold.h"
+#include "costs/residual_kind.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/geometry/line2.h"
@@ -22,6 +25,33 @@ namespace hullslam {
 
 constexpr PinholeCamera kObjectCamera{
     .fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
+
+// All residuals, as the table of object_residual.cc names them.
+inline std::vector<ObjectResidual> AllResiduals() {
+  std::vector<ObjectResidual> residuals;
+  for (size_t i = 0; i < ObjectResidualNames().size(); ++i) {
+    residuals.push_back(static_cast<ObjectResidual>(i));
+  }
+  return residuals;
+}
+
+// The row of a residual in that table is the one that is expected.
+inline void ExpectKind(ObjectResidual residual, const std::string& name, bool takes_lines,
+                       const std::vector<ObjectPrimitive>& primitives) {
+  EXPECT_EQ(NameOf(residual), name);
+  EXPECT_EQ(TakesLines(residual), takes_lines);
+  for (const ObjectPrimitive primitive : kAllPrimitives) {
+    const bool is_expected =
+        std::find(primitives.begin(), primitives.end(), primitive) != primitives.end();
+    EXPECT_EQ(AcceptsPrimitive(residual, primitive), is_expected) << NameOf(primitive);
+  }
+}
+
+// The size of a residual where the outline is 1.5 px outside of a projected ellipse with a radius
+// of 20 px, at whose depth a pixel is 1 cm.
+inline double SizeOfSomeError(ObjectResidual residual) {
+  return KindOf(residual).of_pixel_error(1.5, {.radius_px = 20.0, .metres_per_px = 0.01});
+}
 
 // A camera and an ellipsoid, with their parameter blocks.
 struct SeenEllipsoid {

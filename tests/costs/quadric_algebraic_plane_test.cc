@@ -84,5 +84,11 @@ TEST(AlgebraicPlaneCost, IsNotDefinedUnlessInFront) {
       AlgebraicPlaneCost(kObjectCamera, TangentsOf(SphereAhead(), 8), 1.0));
 }
 
+TEST(AlgebraicPlaneCost, HasItsRowInTheTable) {
+  ExpectKind(ObjectResidual::kAlgebraicPlane, "algebraic_plane", true,
+             {kAllPrimitives.begin(), kAllPrimitives.end()});
+  EXPECT_NEAR(SizeOfSomeError(ObjectResidual::kAlgebraicPlane), 2.0 * 20.0 * 1.5 * 1e-4, 1e-12);
+}
+
 }  // namespace
 }  // namespace hullslam

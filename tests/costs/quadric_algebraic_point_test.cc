@@ -55,5 +55,11 @@ TEST(GateContour, LeavesThePointsNearTheOutline) {
   EXPECT_EQ(gated[2], contour[3]);
 }
 
+TEST(AlgebraicPointCost, HasItsRowInTheTable) {
+  ExpectKind(ObjectResidual::kAlgebraicPoint, "algebraic_point", false,
+             {ObjectPrimitive::kContour});
+  EXPECT_NEAR(SizeOfSomeError(ObjectResidual::kAlgebraicPoint), 3.0 / 20.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -73,5 +73,10 @@ TEST(DistributionCost, IsNotDefinedUnlessInFront) {
   }
 }
 
+TEST(DistributionCost, HasItsRowInTheTable) {
+  ExpectKind(ObjectResidual::kDistribution, "distribution", false, {ObjectPrimitive::kConic});
+  EXPECT_NEAR(SizeOfSomeError(ObjectResidual::kDistribution), 2.25, 1e-12);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -37,8 +37,8 @@ class StateCost final : public ObjectCost {
 };
 
 TEST(QuadricInCamera, ByHand) {
-  // The camera is turned against the object by 90 degrees around z, so the long axis of the object
-  // is along the camera's y axis.
+  // The camera is rotated by 90 degrees about z relative to the object, so the long axis of the
+  // object is along the camera's y axis.
   SeenEllipsoid state;
   state.cam_from_world = {ExpSo3({0.0, 0.0, std::numbers::pi / 2.0}), {1.0, 0.0, 0.0}};
   state.ellipsoid.world_from_object.translation = {0.0, 2.0, 3.0};
@@ -58,7 +58,7 @@ TEST(QuadricInCamera, ChainOfDerivativesIsTrue) {
   }
 }
 
-TEST(QuadricInCamera, NullJacobiansArePassedOver) {
+TEST(QuadricInCamera, NullJacobiansAreSkipped) {
   RandomGeometry random(2);
   const ObjectBlocks blocks(RandomSeenEllipsoid(random));
   const QuadricInCamera quadric(blocks.Pointers().data());
@@ -70,7 +70,7 @@ TEST(QuadricInCamera, NullJacobiansArePassedOver) {
   EXPECT_EQ(by_log_axes, Eigen::Vector3d::Ones());
 }
 
-TEST(QuadricInCamera, IsInFrontWhereAllOfItIs) {
+TEST(QuadricInCamera, IsInFrontIfTheWholeEllipsoidIs) {
   for (const auto& [z, expected] :
        {std::pair(-2.0, false), {0.0, false}, {0.59, false}, {0.6, false}, {0.61, true}}) {
     SeenEllipsoid state = SphereAhead();

@@ -143,5 +143,12 @@ TEST(OverlapCost, IsNotDefinedUnlessInFront) {
   ExpectUndefinedUnlessInFront(OverlapCost(kObjectCamera, Rectangle(0, 0, 100, 100), 1.0));
 }
 
+TEST(OverlapCost, HasItsRowInTheTable) {
+  ExpectKind(ObjectResidual::kOverlap, "overlap", false,
+             {ObjectPrimitive::kHull, ObjectPrimitive::kContour, ObjectPrimitive::kBox,
+              ObjectPrimitive::kConic});
+  EXPECT_NEAR(SizeOfSomeError(ObjectResidual::kOverlap), 1.0 - 400.0 / (21.5 * 21.5), 1e-12);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -95,5 +95,11 @@ TEST(TangentDistance, IsTheResidual) {
   }
 }
 
+TEST(TangentCost, HasItsRowInTheTable) {
+  ExpectKind(ObjectResidual::kTangent, "tangent", true,
+             {kAllPrimitives.begin(), kAllPrimitives.end()});
+  EXPECT_NEAR(SizeOfSomeError(ObjectResidual::kTangent), 1.5, 1e-12);
+}
+
 }  // namespace
 }  // namespace hullslam

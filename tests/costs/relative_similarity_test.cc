@@ -68,8 +68,9 @@ TEST(RelativeSimilarityCost, ByHand) {
   inverse_sigma << 1.0, 1.0, 10.0, 1.0, 2.0, 3.0, 100.0;
   const Sim3 measured(2.0, Eigen::Quaterniond::Identity(), {1.0, 0.0, 0.0});
   const RelativeSimilarityCost cost(measured, inverse_sigma);
-  // b is the world. a is turned by a right angle around z and then moved: a's frame is mapped by
-  // the measurement to (2 x + 1, ...), so the error maps the origin of b to (2 * 0 + 1, 8, 10).
+  // The frame of b is the world. A point x of the world is 3 R x + (0, 4, 5) in the frame of a,
+  // where R turns by a right angle about z. The measurement maps this to 6 R x + (1, 8, 10) in the
+  // frame of b. So the error has the rotation R, the translation (1, 8, 10) and the scale 6.
   const Sim3 a_from_world(3.0, ExpSo3({0.0, 0.0, std::numbers::pi / 2.0}), {0.0, 4.0, 5.0});
   Vector7d expected;
   expected << 0.0, 0.0, 10.0 * std::numbers::pi / 2.0, 1.0, 16.0, 30.0, 100.0 * std::log(6.0);

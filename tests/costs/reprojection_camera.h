@@ -5,7 +5,7 @@
 
 namespace hullslam {
 
-// Its pixels are not square.
+// A camera whose pixels are not square.
 inline constexpr PinholeCamera kReprojectionCamera{
     .fx = 500.0, .fy = 400.0, .cx = 320.0, .cy = 240.0, .bf = 40.0};
 

@@ -26,7 +26,8 @@ TEST(RgbdReprojectionCost, ByHand) {
   EXPECT_LT((residual - Eigen::Vector3d(0.5, -1.0, 6.0)).norm(), 1e-12);
 }
 
-// Bundle adjustment thus judges a point as tracking and mapping do, which use PointResidual itself.
+// So bundle adjustment measures the same error as tracking and mapping, which use PointResidual
+// itself.
 TEST(RgbdReprojectionCost, IsTheResidualOfThePoint) {
   RandomGeometry random(4);
   for (int i = 0; i < 30; ++i) {
@@ -79,7 +80,7 @@ TEST(RgbdReprojectionCost, FirstTwoRowsAreThoseWithoutDepth) {
 }
 
 // When the point moves along the ray, only the third row changes. So this row constrains the depth.
-TEST(RgbdReprojectionCost, ThirdRowFeelsTheDepth) {
+TEST(RgbdReprojectionCost, OnlyTheThirdRowDependsOnTheDepth) {
   const RgbdReprojectionCost cost(kReprojectionCamera, RgbdMeasurement({320.0, 240.0, 20.0}, 1.0));
   EXPECT_LT(ResidualOf<3>(cost, Rigid3(), {0.0, 0.0, 2.0}).norm(), 1e-12);
   const Eigen::Vector3d farther = ResidualOf<3>(cost, Rigid3(), {0.0, 0.0, 4.0});

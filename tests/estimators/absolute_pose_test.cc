@@ -96,7 +96,7 @@ TEST(AbsolutePose, FindsThePoseAmongSeventyPercentOfOutliers) {
   }
 }
 
-TEST(AbsolutePose, RandomMatchesHaveNoPose) {
+TEST(AbsolutePose, RandomMatchesGiveNoPose) {
   for (const bool has_depth : {false, true}) {
     size_t most = 0;
     for (uint32_t seed = 0; seed < 200; ++seed) {
@@ -177,7 +177,7 @@ TEST(AbsolutePose, ErrorsAreMeasuredInSigmas) {
   EXPECT_EQ(std::count(result.inliers.begin(), result.inliers.end(), 5u), 1);
 }
 
-TEST(AbsolutePose, PassesOverMatchesThatAreNotFinite) {
+TEST(AbsolutePose, SkipsMatchesThatAreNotFinite) {
   Matches made(7);
   auto matches = made.Make(24, 0.0, 0.0, true);
   matches[0].point.x() = kNan;
@@ -200,7 +200,7 @@ TEST(AbsolutePose, PassesOverMatchesThatAreNotFinite) {
 TEST(AbsolutePose, PointsBehindTheCameraAreOutliers) {
   Matches made(8);
   auto matches = made.Make(30, 0.0, 0.0, false);
-  // Mirrored at the camera, these have the same pixels.
+  // Points that are mirrored at the camera's centre have the same pixels.
   for (size_t i = 0; i < 10; ++i) {
     matches[i].point = Inverse(made.pose()) * Eigen::Vector3d(-(made.pose() * matches[i].point));
   }
@@ -240,7 +240,7 @@ TEST(AbsolutePose, DegeneratePointsAreAFailure) {
   line[7].measurement.measured += Eigen::Vector3d(20.0, 10.0, 0.0);
   EXPECT_EQ(EstimateAbsolutePose(kCamera, line, {}).failure,
             "the matches do not determine the rotation: nearly all points are on one line");
-  // Several right ones determine it.
+  // Several right matches beside the line determine the rotation.
   std::copy(points.begin(), points.begin() + 4, line.begin() + 7);
   const AbsolutePose result = EstimateAbsolutePose(kCamera, line, {});
   ASSERT_TRUE(result.ok()) << result.failure;

@@ -34,7 +34,7 @@ TEST(DetermineParameters, TheOtherParametersMayBeUncertain) {
 TEST(DetermineParameters, SingularSumsDetermineNothing) {
   EXPECT_FALSE(DetermineParameters(std::vector<Eigen::Matrix2d>(), {0}));
   EXPECT_FALSE(DetermineParameters(std::vector<Eigen::Matrix2d>(5, Eigen::Matrix2d::Zero()), {0}));
-  // The angle cannot be told from the length.
+  // The matches only measure a sum of the angle and the length.
   EXPECT_FALSE(DetermineParameters(std::vector<Eigen::Matrix2d>(5, Eigen::Matrix2d::Ones()), {0}));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(

@@ -12,7 +12,7 @@
 namespace hullslam {
 namespace {
 
-// With pixels that are not square.
+// A camera whose pixels are not square.
 PinholeCamera UnequalCamera() {
   PinholeCamera camera;
   camera.fx = 500.0;
@@ -87,7 +87,7 @@ TEST(SampsonError, DoesNotDependOnTheUnitOfLength) {
               SampsonError(UnequalCamera(), TrueMotion(), pair), 1e-9);
 }
 
-// There is no epipolar line there.
+// At the epipole there is no epipolar line.
 TEST(SampsonError, IsZeroAtTheEpipoles) {
   const Rigid3 forward(Eigen::Quaterniond::Identity(), -Eigen::Vector3d::UnitZ());
   const PixelPair center = {.a = {320.0, 240.0}, .b = {320.0, 240.0}};

@@ -11,7 +11,8 @@
 namespace hullslam {
 namespace {
 
-// The number that most of the given numbers are near to; an error of 1 is a distance of 1.
+// A problem whose model is the number that most of the given numbers are near to. An error of 1 is
+// a distance of 1.
 class CenterProblem {
  public:
   using Model = double;

@@ -54,7 +54,7 @@ TEST_P(SimilarityEstimate, FindsItAmongSeventyPercentOfOutliers) {
   }
 }
 
-TEST_P(SimilarityEstimate, RandomMatchesHaveNone) {
+TEST_P(SimilarityEstimate, RandomMatchesGiveNoSimilarity) {
   size_t most = 0;
   SimilarityOptions options = Options(GetParam());
   options.ransac.max_iterations = 500;
@@ -68,8 +68,7 @@ TEST_P(SimilarityEstimate, RandomMatchesHaveNone) {
   EXPECT_LE(most, 7u);  // far from the ten that are needed
 }
 
-// Only the keyframes are given, so nothing can depend on the world. But it must not matter which of
-// them is a.
+// The result must not depend on which of the two keyframes is a.
 TEST_P(SimilarityEstimate, TheOtherDirectionGivesTheInverse) {
   for (uint32_t seed = 0; seed < 20; ++seed) {
     MadeSimilarity made(seed, {.fix_scale = GetParam(), .outliers = 0.4, .noise = 0.3});
@@ -108,7 +107,7 @@ TEST_P(SimilarityEstimate, SameSeedGivesTheSameBits) {
   EXPECT_EQ(first.iterations, second.iterations);
 }
 
-TEST_P(SimilarityEstimate, PassesOverMatchesThatAreNotFinite) {
+TEST_P(SimilarityEstimate, SkipsMatchesThatAreNotFinite) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   MadeSimilarity made(7, {.fix_scale = GetParam()});
   auto matches = made.Make(24);
@@ -139,7 +138,8 @@ TEST_P(SimilarityEstimate, DegenerateMatchesAreAFailure) {
     line.push_back(made.MakeMatch({-1.0 + 0.05 * i, 0.1, 3.0 + 0.02 * i}));
   }
   EXPECT_EQ(failure(line), "no sample of the matches determines a model");
-  // A wrong match beside the line, which is turned around the line: all agree.
+  // A wrong match beside the line: its point in b is rotated about the line, so one rotation agrees
+  // with all matches.
   line[7] = points[0];
   const Eigen::Vector3d axis = (line[39].point_in_b - line[0].point_in_b).normalized();
   line[7].point_in_b =
@@ -155,8 +155,8 @@ TEST_P(SimilarityEstimate, DegenerateMatchesAreAFailure) {
   EXPECT_NE(failure(behind).find("there are only 0 usable matches"), std::string::npos);
 }
 
-// Where two keyframes are at the same place, all scales have the same reprojection errors. The
-// depths of the landmarks still say which one is right.
+// If two keyframes are at the same place, all scales have the same reprojection errors. Only the
+// depths of the landmarks determine the scale.
 TEST(Similarity, DepthsGiveTheScaleOfTwoKeyframesAtOnePlace) {
   MadeSimilarity made(9, {.noise = 0.5});
   std::vector<SimilarityMatch> matches;

@@ -27,8 +27,8 @@ struct World {
   int pairs = 300;
 };
 
-// What a camera at the origin and one at `b_from_a` see of points at depths that `depth` gives for
-// a pixel of a.
+// The pairs of pixels that a camera at the origin and one at `b_from_a` see. `depth` gives the
+// depth of the point at a pixel of a.
 std::vector<PixelPair> See(const Rigid3& b_from_a, uint64_t seed, const World& world,
                            const std::function<double(const Eigen::Vector3d&, double)>& depth) {
   const PinholeCamera camera = Camera();
@@ -109,7 +109,7 @@ TEST(TwoViews, PointsAreInTheFirstCameraAndInOrder) {
 }
 
 // A tilted plane is explained by a homography. The motion is found, or it is called ambiguous.
-TEST(TwoViews, OnAPlaneTheyAreRightOrAmbiguous) {
+TEST(TwoViews, OnAPlaneTheMotionIsRightOrAmbiguous) {
   int found_count = 0;
   const Rigid3 motion = Motion({0.0, 0.12, 0.03}, {-0.35, 0.1, 0.1});
   for (uint64_t seed = 0; seed < 20; ++seed) {
@@ -127,7 +127,7 @@ TEST(TwoViews, OnAPlaneTheyAreRightOrAmbiguous) {
 }
 
 // A wall seen head on is the worst plane: two motions explain it about equally well.
-TEST(TwoViews, BeforeAWallTheyAreRightOrThereIsNone) {
+TEST(TwoViews, InFrontOfAWallTheMotionIsRightOrThereIsNone) {
   const std::vector<Rigid3> motions = {
       Motion({0, 0, 0}, {0.25, 0, 0}), Motion({0, 0, 0}, {0, 0, 0.4}),
       Motion({0, 0.08, 0}, {-0.3, 0.05, 0.1}), Motion({0.1, 0, 0.05}, {0.05, 0.3, -0.1})};
@@ -147,9 +147,10 @@ TEST(TwoViews, BeforeAWallTheyAreRightOrThereIsNone) {
   EXPECT_EQ(wrong, 0) << "of " << found_count << " found";
 }
 
-// Keypoints are more precise than their sigma says. Then before a wall that is nearly plane even
-// wrong motions agree with all pairs, and only the size of the errors tells which one is right.
-TEST(TwoViews, BeforeAnUnevenWallTheyAreRightOrThereIsNone) {
+// The keypoints are more precise than their sigma. In front of a wall that is nearly plane, even
+// wrong motions then agree with all pairs, and only the size of the errors shows which motion is
+// right.
+TEST(TwoViews, InFrontOfAnUnevenWallTheMotionIsRightOrThereIsNone) {
   const std::vector<Rigid3> motions = {
       Motion({0, 0, 0}, {0.06, 0, 0}), Motion({0.01, 0.02, 0.01}, {-0.05, 0.02, -0.02}),
       Motion({-0.02, 0, 0.02}, {0.02, 0.05, -0.03}), Motion({0, 0.03, 0}, {-0.07, 0.0, 0.03})};
@@ -173,9 +174,9 @@ TEST(TwoViews, BeforeAnUnevenWallTheyAreRightOrThereIsNone) {
   EXPECT_GT(found_count, 5);
 }
 
-// The homography of a plane with normal n and a motion along t stands for another plane and motion
-// too, in which n and t have changed their roles (Longuet-Higgins 1986). If the camera approaches
-// the plane, both explain every pair with points in front of both cameras.
+// The homography of a plane with normal n and a motion along t is also that of another plane and
+// motion, with n and t exchanged (Longuet-Higgins 1986). If the camera approaches the plane, both
+// explain every pair with points in front of both cameras.
 TEST(TwoViews, APlaneThatIsApproachedIsAmbiguous) {
   const std::vector<Rigid3> motions = {Motion({0, 0, 0}, {-0.3, 0.0, -0.4}),
                                        Motion({0.02, 0.05, 0.01}, {0.2, 0.1, -0.4})};
@@ -200,8 +201,8 @@ TEST(TwoViews, ARotationHasNoParallax) {
   }
 }
 
-// In a band across the middle of the image, a turn moves the pixels almost as a step to the side
-// does, so a step and points with a lot of parallax explain the pairs too.
+// In a band across the middle of the image, a turn moves the pixels almost like a step to the side.
+// So a step to the side and points with much parallax explain the pairs too.
 TEST(TwoViews, ATurnIsNoStepToTheSide) {
   for (uint64_t seed = 0; seed < 60; ++seed) {
     const double turn = 0.05 + 0.01 * static_cast<double>(seed % 20);

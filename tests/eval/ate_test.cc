@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 #include <string>
 
 #include "hullslam/results/trajectory_file.h"
@@ -98,6 +99,11 @@ struct Golden {
   double scale;
   double rmse_se3;
   double rmse_sim3;
+
+  // For the name of the test, which would have addresses in it.
+  friend void PrintTo(const Golden& golden, std::ostream* out) {
+    *out << golden.estimate << (golden.pairing == PairingRule::kTum ? " tum" : " evo");
+  }
 };
 
 class GoldenAte : public ::testing::TestWithParam<Golden> {};

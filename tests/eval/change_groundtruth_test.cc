@@ -45,7 +45,8 @@ void ExpectCounts(const ChangeCounts& counts, size_t in_truth, size_t reported, 
   EXPECT_EQ(counts.right, right);
 }
 
-// Moved from 1 to 2 and from 3 to 4, new at 5, gone from 6, and one that stayed.
+// A scene in which objects were moved from 1 to 2 and from 3 to 4, one is new at 5, one is gone
+// from 6, and one stayed.
 TrueScene MakeScene() {
   TrueScene scene;
   scene.is_rearranged = true;
@@ -84,7 +85,8 @@ TEST(ChangeGroundtruth, PlacesAreComparedInMetresInAMapOfAnyUnit) {
   ExpectCounts(comparison.gone, 1, 1, 0);
 }
 
-// If the wrong one of two things counts as moved, the places are still right.
+// If the report pairs the old and new places of two moved objects wrongly, the places are still
+// right.
 TEST(ChangeGroundtruth, PairsMatterForMovedObjectsButNotForPlaces) {
   const std::vector<ChangedObject> changes = {Changed(ObjectChange::kMoved, 1.0, 4.0),
                                               Changed(ObjectChange::kMoved, 3.0, 2.0)};
@@ -94,7 +96,7 @@ TEST(ChangeGroundtruth, PairsMatterForMovedObjectsButNotForPlaces) {
   ExpectCounts(comparison.taken, 3, 2, 2);
 }
 
-TEST(ChangeGroundtruth, FarOffAndRepeatedReportsAreWrong) {
+TEST(ChangeGroundtruth, DistantAndRepeatedReportsAreWrong) {
   const std::vector<ChangedObject> changes = {
       Changed(ObjectChange::kNew, {}, 5.11), Changed(ObjectChange::kNew, {}, 5.0),
       Changed(ObjectChange::kNew, {}, 5.0), Changed(ObjectChange::kGone, 7.0, {})};
@@ -103,7 +105,7 @@ TEST(ChangeGroundtruth, FarOffAndRepeatedReportsAreWrong) {
   ExpectCounts(comparison.gone, 1, 1, 0);
 }
 
-TEST(ChangeGroundtruth, WhatWasNotSeenCannotBeReported) {
+TEST(ChangeGroundtruth, ObjectsWithTooFewSightingsAreLeftOut) {
   const std::vector<size_t> sightings = {9, 10, 9, 10};
   const ChangeComparison comparison = CompareChanges(MakeScene(), {}, Sim3(), sightings, 10);
   ExpectCounts(comparison.moved, 1, 0, 0);

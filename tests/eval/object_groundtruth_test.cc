@@ -27,7 +27,7 @@ ReportedObject MakeObject(uint32_t id, const Ellipsoid& ellipsoid) {
   return object;
 }
 
-// The ellipsoid of a perfectly mapped true object, moved by `shift` in the world.
+// The ellipsoid of a true object that was mapped without error, moved by `shift` in the world.
 Ellipsoid MappedAs(const TrueObject& truth, const Eigen::Vector3d& shift = {0, 0, 0}) {
   Ellipsoid ellipsoid = {truth.world_from_object, truth.half_extents};
   ellipsoid.world_from_object.translation += shift;

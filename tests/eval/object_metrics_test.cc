@@ -129,7 +129,7 @@ TEST(ObjectMetrics, OnlyThePartInsideTheImageIsCompared) {
 }
 
 TEST(ObjectMetrics, AContourMayBeConcaveAndOfEitherOrientation) {
-  const Ellipsoid all_over = Sphere(2.0, 1.9);  // its image covers the whole image
+  const Ellipsoid all_over = Sphere(2.0, 1.9);  // its projected ellipse covers the whole image
   ReportedView view;
   view.hull = {{100, 100}, {300, 100}, {300, 300}, {100, 300}};
   // The lower left quarter of the square is cut out.

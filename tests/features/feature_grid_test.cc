@@ -128,7 +128,7 @@ TEST(FeatureGrid, RejectsMoreKeypointsThanAnIndexOf16BitsCanCount) {
   EXPECT_THROW(MakeGrid(keypoints), CheckError);
 }
 
-TEST(FeatureGrid, OfAPartOfTheKeypointsIsTheSameAsIfMadeOfThem) {
+TEST(FeatureGrid, OfAPartOfTheKeypointsEqualsANewGrid) {
   const std::vector<Keypoint> keypoints = MakeKeypoints(1000);
   std::vector<uint32_t> kept;
   std::vector<Keypoint> part;

@@ -59,7 +59,7 @@ TEST(QuadtreeSelection, SelectsTheWantedNumberInRasterOrder) {
   }
 }
 
-TEST(QuadtreeSelection, SelectsAllIfThereAreNotMore) {
+TEST(QuadtreeSelection, SelectsAllIfThereAreAtMostThatMany) {
   const std::vector<Corner> corners = MakeCorners(50, 0.0);
   EXPECT_EQ(Select(corners, 50).size(), 50u);
   EXPECT_EQ(Select(corners, 51).size(), 50u);

@@ -51,7 +51,7 @@ TEST(ImageShrinker, ReadsAPartOfALargerImage) {
   EXPECT_EQ(DifferingPixels(part, {84, 64}, shrinker), 0);
 }
 
-TEST(ImageShrinker, RejectsWhatItCannotDo) {
+TEST(ImageShrinker, RejectsOtherImagesAndLargerSizes) {
   ImageShrinker shrinker;
   cv::Mat shrunk;
   const cv::Mat image(20, 30, CV_8UC1, cv::Scalar(0));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <iterator>
 #include <string>
 #include <thread>
@@ -65,6 +66,24 @@ TEST(AtomicFile, UnusableFoldersAreReported) {
   ExpectInputError([&] { WriteFileAtomically(folder.path() / "none" / "out.txt", "y"); },
                    {"none/out.txt", "No such file or directory"});
   EXPECT_EQ(ReadFile(file), "x");
+}
+
+TEST(AtomicFile, ALinkStaysAndItsTargetIsWritten) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  folder.Write("below/target", "old");
+  fs::create_symlink("below/target", folder.path() / "link");
+  fs::create_symlink(folder.path() / "link", folder.path() / "link to link");
+  WriteFileAtomically(folder.path() / "link to link", "new");
+  EXPECT_EQ(ReadFile(folder.path() / "below" / "target"), "new");
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "link to link"));
+  fs::create_symlink("below/not yet", folder.path() / "dangling");
+  WriteFileAtomically(folder.path() / "dangling", "made");
+  EXPECT_EQ(ReadFile(folder.path() / "below" / "not yet"), "made");
+  fs::create_symlink("circle", folder.path() / "circle");
+  ExpectInputError([&] { WriteFileAtomically(folder.path() / "circle", "y"); },
+                   {"circle", "symbolic links"});
 }
 
 TEST(AtomicFile, OnlyRegularFilesAreReplaced) {

@@ -18,9 +18,9 @@ TEST(JsonFile, IsParsed) {
 
 TEST(JsonFile, InvalidFilesAreReportedWithLineAndColumn) {
   const TemporaryFolder folder;
-  const auto expect = [&](const char* content, const char* place) {
+  const auto expect = [&](const char* content, const char* position) {
     const auto path = folder.Write("bad.json", content);
-    ExpectInputError([&] { ReadJson(path); }, {"bad.json: is no valid JSON", place});
+    ExpectInputError([&] { ReadJson(path); }, {"bad.json: is no valid JSON", position});
   };
   expect("", "line 1, column 1");
   expect("{\n", "line 2");
@@ -40,7 +40,8 @@ TEST(JsonFile, UnreadableAndTooLargeFilesAreReported) {
   ExpectInputError([&] { ReadJson(path, {.most_values = 4}); }, {"file.json: ", "4 values"});
 }
 
-// The library's dump() calls itself for each level, so such a value must not even exist.
+// The library's dump() calls itself for each level and could overflow the stack, so deep values
+// must be refused before they are built.
 TEST(JsonFile, DeepNestingIsRefused) {
   const TemporaryFolder folder;
   for (const char* const opening : {"[", "{\"a\":"}) {

@@ -25,6 +25,12 @@ class JsonNodeTest : public ::testing::Test {
   std::filesystem::path file_ = "f.json";
 };
 
+TEST_F(JsonNodeTest, TextsAreMadePrintable) {
+  const Json json = Json::parse(R"(["a\u001b[2J\u0000\nb", "\u00e9"])");
+  EXPECT_EQ(JsonNode(file_, json).Elements()[0].Text(), "a?[2J??b");
+  EXPECT_EQ(JsonNode(file_, json).Elements()[1].Text(), "\xc3\xa9");
+}
+
 TEST_F(JsonNodeTest, ReturnsTheValues) {
   const Json json = Json::parse(R"({"b": [1, 2.5, -3], "a": {"t": "x", "f": true, "n": 7},
       "p": [[1, 2], [3, 4]], "null": null})");

@@ -85,7 +85,7 @@ TEST(ReadFile, PipesHaveTheSameLimit) {
   ::close(ends[0]);
 }
 
-TEST(ReadFile, AFifoIsReadButNotWaitedForForEver) {
+TEST(ReadFile, AFifoIsReadAndWaitingForItEnds) {
   const TemporaryFolder folder;
   const std::string path = folder.path() / "fifo";
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
@@ -99,7 +99,7 @@ TEST(ReadFile, AFifoIsReadButNotWaitedForForEver) {
   writer.join();
 }
 
-TEST(ReadFile, WhatIsNeitherFileNorPipeIsRefused) {
+TEST(ReadFile, DevicesAndSocketsAreRefused) {
   ExpectInputError([] { ReadFile("/dev/zero"); }, {"/dev/zero: is neither a file nor a pipe"});
   const TemporaryFolder folder;
   sockaddr_un address{};

@@ -23,7 +23,7 @@ size_t CountEntries(const fs::path& folder) {
   return static_cast<size_t>(std::distance(fs::directory_iterator(folder), {}));
 }
 
-// Leaves a staging folder with one file, as a process does that is killed.
+// Leaves a staging folder with one file behind, like a process that was killed.
 fs::path LeaveAbandoned(const fs::path& parent) {
   const pid_t process = ::fork();
   if (process == 0) {
@@ -68,7 +68,8 @@ TEST(StagingFolder, OnlyFoldersOfDeadOwnersAreAbandoned) {
     ASSERT_EQ(abandoned.size(), 1U);
     EXPECT_EQ(abandoned[0].path(), dead);
     EXPECT_TRUE(fs::exists(abandoned[0].content() / "file"));
-    EXPECT_TRUE(StagingFolder::Abandoned(folder.path(), ".part-").empty()) << "it has an owner now";
+    EXPECT_TRUE(StagingFolder::Abandoned(folder.path(), ".part-").empty())
+        << "this test owns it now";
   }
   EXPECT_FALSE(fs::exists(dead));
   EXPECT_TRUE(fs::exists(alive.content()));
@@ -92,7 +93,7 @@ TEST(StagingFolder, AMissingParentIsReported) {
   EXPECT_TRUE(StagingFolder::Abandoned(folder.path() / "none", ".part-").empty());
 }
 
-TEST(FolderLock, OthersWait) {
+TEST(FolderLock, ASecondLockWaitsForTheFirst) {
   const TemporaryFolder folder;
   std::atomic<bool> is_locked{false};
   std::optional<FolderLock> lock(folder.path());
@@ -100,7 +101,7 @@ TEST(FolderLock, OthersWait) {
     const FolderLock second(folder.path());
     is_locked = true;
   });
-  ::usleep(50'000);  // gives the other the time to fail
+  ::usleep(50'000);  // time in which the other thread would get a lock that does not work
   EXPECT_FALSE(is_locked);
   lock.reset();
   other.join();

@@ -58,6 +58,14 @@ TEST(TextRows, LimitsAreReported) {
   ExpectInputError([&] { ForEachRow(huge, visit); }, {"huge.txt: 1000000000 bytes"});
 }
 
+// What comes after such a byte would be missing in messages.
+TEST(TextRows, ABinaryFileIsRefused) {
+  const TemporaryFolder folder;
+  const auto path = folder.Write("rgb.txt", std::string("1 a.png\n2 b\0c.png\n", 19));
+  ExpectInputError([&] { ForEachRow(path, [](const TextRow&) {}); },
+                   {"rgb.txt:2: ", "byte that is 0"});
+}
+
 TEST(TextRows, NumbersAndStampsHaveBounds) {
   const TemporaryFolder folder;
   const auto path = folder.Write("row.txt", "-5 1e12\n");

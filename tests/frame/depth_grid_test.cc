@@ -42,7 +42,7 @@ TEST(DepthGrid, IsEmptyWithoutDepth) {
   EXPECT_EQ(DepthGrid().rows(), 0);
 }
 
-TEST(DepthGrid, IsMadeAgainFromItsSamples) {
+TEST(DepthGrid, IsRestoredFromItsSamples) {
   const DepthGrid grid(cv::Mat(100, 130, CV_32FC1, cv::Scalar(1.5)), 5000.0);
   const DepthGrid copy(grid.columns(), grid.samples());
   EXPECT_EQ(copy.columns(), DepthGrid::CountAlong(130));

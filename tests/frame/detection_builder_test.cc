@@ -267,8 +267,8 @@ TEST(DetectionBuilder, ANearerMaskThatTouchesASideHidesIt) {
   EXPECT_EQ(SidesOneSided(result.detections[1]), (std::vector<bool>{false, false, false, false}));
 }
 
-// A table under a cup: seen at a slant, its surface comes nearer below the cup, but it meets the
-// cup there.
+// A table under a cup. Below the cup in the image, the surface of the table is nearer to the
+// camera. It meets the cup at the common border, so it does not hide it.
 TEST(DetectionBuilder, TheSurfaceThatAnObjectStandsOnDoesNotHideIt) {
   const InstanceMask cup = RectangleMask(280.0, 200.0, 79.0, 99.0, "cup");
   const InstanceMask table = RectangleMask(100.0, 180.0, 439.0, 280.0, "dining table", 0.5);
@@ -305,7 +305,7 @@ TEST(DetectionBuilder, DepthOfTheBackgroundIsLeftOut) {
   EXPECT_EQ(count_far(), 0U);
 }
 
-TEST(DetectionBuilder, PartsAreOneHullButForSmallOnes) {
+TEST(DetectionBuilder, AllPartsExceptSmallOnesFormOneHull) {
   InstanceMask mask = RectangleMask(100.0, 100.0, 60.0, 80.0);
   mask.outlines.push_back(Rectangle(200.0, 110.0, 40.0, 60.0));
   mask.outlines.push_back(Rectangle(400.0, 400.0, 10.0, 10.0));  // 2 % of the first part's area
@@ -416,7 +416,7 @@ TEST(DetectionBuilder, BoxesOfOneClassThatOverlapAreTwoObjects) {
   EXPECT_EQ(Build(boxes, PlainCamera()).rejections[1], std::nullopt);
 }
 
-// Two masks are not the same object only because one contains the other.
+// If one mask contains another one, they can still show two objects.
 TEST(DetectionBuilder, ACupBeforeAMonitorIsADetectionOfItsOwn) {
   const InstanceMask cup = RectangleMask(260.0, 200.0, 30.0, 40.0, "cup", 0.6);
   // In the first case the cup is cut out of the monitor's mask, but is inside its hull. In the
@@ -438,7 +438,7 @@ TEST(DetectionBuilder, ACupBeforeAMonitorIsADetectionOfItsOwn) {
   }
 }
 
-TEST(DetectionBuilder, ABoxGivesItsFourSidesWhateverIsAskedFor) {
+TEST(DetectionBuilder, ABoxGivesItsFourSidesForAnyPrimitive) {
   for (const ObjectPrimitive primitive :
        {ObjectPrimitive::kSupport, ObjectPrimitive::kHull, ObjectPrimitive::kConic}) {
     for (const bool is_reversed : {false, true}) {

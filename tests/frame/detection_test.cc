@@ -6,7 +6,7 @@
 namespace hullslam {
 namespace {
 
-TEST(Detection, IsAWholeMaskOfFullScoreWithoutOutlineAtFirst) {
+TEST(Detection, IsUncutWithScoreOneAndWithoutOutlineAtFirst) {
   const Detection detection;
   EXPECT_EQ(detection.score, 1.0);
   EXPECT_FALSE(detection.is_cut);

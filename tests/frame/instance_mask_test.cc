@@ -12,15 +12,15 @@
 namespace hullslam {
 namespace {
 
-TEST(InstanceMask, IsACertainContourUnlessSaidOtherwise) {
+TEST(InstanceMask, IsAContourWithScoreOneByDefault) {
   const InstanceMask mask;
   EXPECT_EQ(mask.shape, MaskShape::kContour);
   EXPECT_EQ(mask.score, 1.0);
   EXPECT_TRUE(mask.outlines.empty());
 }
 
-constexpr int kWidth = 640;
-constexpr int kHeight = 480;
+constexpr int kMaskWidth = 640;
+constexpr int kMaskHeight = 480;
 
 InstanceMask GoodMask() {
   return {.label = "cup", .score = 0.5, .outlines = {{{-1.0, 0.0}, {640.0, 0.0}, {320.0, 480.0}}}};
@@ -28,13 +28,13 @@ InstanceMask GoodMask() {
 
 void ExpectRefusal(const InstanceMask& mask, const std::vector<std::string>& parts) {
   const std::vector<InstanceMask> masks = {GoodMask(), mask};
-  ExpectInputError([&] { ValidateMasks(masks, kWidth, kHeight); }, parts);
+  ExpectInputError([&] { ValidateMasks(masks, kMaskWidth, kMaskHeight); }, parts);
 }
 
 TEST(InstanceMask, GoodMasksAreAccepted) {
   const std::vector<InstanceMask> masks = {
       GoodMask(), {.label = "box", .score = 0.0, .shape = MaskShape::kBox, .outlines = {}}};
-  EXPECT_NO_THROW(ValidateMasks(masks, kWidth, kHeight));
+  EXPECT_NO_THROW(ValidateMasks(masks, kMaskWidth, kMaskHeight));
 }
 
 TEST(InstanceMask, AMaskThatCannotBeUsedIsRefusedWithItsNumber) {

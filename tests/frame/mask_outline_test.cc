@@ -83,9 +83,9 @@ TEST(MaskOutline, HolesAreFilledAndPartsAreSeparate) {
   EXPECT_TRUE(FindMaskOutlines(cv::Mat::zeros(5, 5, CV_8UC1)).empty());
 }
 
-// Hulls and quadrics rely on this: the outline has no bias. An outline through the centres of the
-// outermost pixels would be 0.5 px too small in every direction; an outline along their edges would
-// be too large on slopes.
+// Hulls and quadrics need outlines without bias. An outline through the centres of the outermost
+// pixels would be 0.5 px too small in every direction; an outline along the edges of pixels would
+// be too large in slanted directions.
 TEST(MaskOutline, EllipsesKeepTheirSizeInEveryDirection) {
   constexpr double kA = 70.3;
   constexpr double kB = 40.7;

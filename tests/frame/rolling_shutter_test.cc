@@ -17,7 +17,7 @@ constexpr double kReadout = 0.03;
 
 PointVelocity Velocity() { return {{0.2, -0.3, 0.5}, {-0.4, 0.6, 0.3}}; }
 
-// Where the camera is `time` seconds after the middle row, at a constant velocity.
+// The pose of the camera `time` seconds after the middle row, at a constant velocity.
 Rigid3 MotionUntil(double time) {
   return {ExpSo3(time * Velocity().angular), time * Velocity().linear};
 }
@@ -28,7 +28,8 @@ Sensor RollingSensor() {
   return sensor;
 }
 
-// The pixel at which a rolling shutter sees a point: the row decides when.
+// The pixel at which a rolling shutter sees a point. The row of the pixel determines the time of
+// its exposure.
 Eigen::Vector2d SeenWhileMoving(const Sensor& sensor, const Eigen::Vector3d& point) {
   Eigen::Vector2d pixel = sensor.camera.Project(point);
   for (int i = 0; i < 20; ++i) {
@@ -187,7 +188,7 @@ TEST(WithGlobalShutter, MovesDetectionsWithTheirKeypoints) {
               0.0, 1e-9);
 }
 
-// A thing without texture is not taken to be infinitely far away.
+// A detection without keypoints must not count as infinitely far away.
 TEST(WithGlobalShutter, ADetectionWithoutKeypointsIsAsFarAwayAsTheRest) {
   Frame frame = FrameOf({{250.0, 20.0}, {260.0, 30.0}, {240.0, 25.0}, {10.0, 10.0}});
   frame.detections = {SquareAtTheBottom()};

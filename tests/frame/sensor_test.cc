@@ -8,8 +8,8 @@
 namespace hullslam {
 namespace {
 
-// The virtual right coordinate of camera/depth.h is the u coordinate in a camera that is moved
-// along x by the baseline.
+// The virtual right coordinate of camera/depth.h is the u coordinate of the point in a second
+// camera, which is moved along x by the baseline.
 TEST(Sensor, BaselineIsThatOfTheVirtualRightCamera) {
   Sensor sensor;
   sensor.camera.fx = 500.0;

@@ -24,6 +24,7 @@
 #include "map/covisibility.h"
 #include "map/invariants.h"
 #include "map_files/map_parser.h"
+#include "map_files/map_records.h"
 #include "map_files/vocabulary_text.h"
 #include "masks/mask_classes.h"
 #include "results/object_file.h"
@@ -191,7 +192,7 @@ void UseMap(Map& map) {
   map.BeginSession({"next", map.NextFrame()});
   auto frame = std::make_shared<Frame>();
   frame->id = map.NextFrame();
-  const KeyframeId added = map.AddKeyframe(frame, {});
+  const KeyframeId added = map.AddKeyframe(frame, {}, map.BeginIsland());
   Expect(map.KeyframeOfFrame(frame->id) == added, "a frame that is not found");
   std::vector<KeyframeId> keyframes;
   map.keyframes().ForEach([&](KeyframeId id, const Keyframe&) { keyframes.push_back(id); });
@@ -212,8 +213,9 @@ void UseMap(Map& map) {
   Expect(FindViolations(map).empty(), "an inconsistent map after edits");
 }
 
-// Map files below the checksum: the bytes are those of a map file, of which the prefix and the
-// checksum are not looked at. A map that is accepted must be usable, and give the same bytes again.
+// Map files below the checksum: the bytes are those of a map file. Of its first bytes only the
+// version is looked at, and its checksum is not. A map that is accepted must be usable, and give
+// the same bytes again.
 void FuzzMap(std::string_view bytes) {
   constexpr size_t kPrefix = 14;
   constexpr size_t kChecksum = 4;
@@ -221,9 +223,10 @@ void FuzzMap(std::string_view bytes) {
     return;
   }
   Try([&] {
+    const uint32_t version = bytes[kPrefix - 4] == 1 ? kOldestMapVersion : kMapVersion;
     const std::string content(bytes.substr(kPrefix, bytes.size() - kPrefix - kChecksum));
     std::istringstream in(content);
-    StoredMap stored = ParseMap(in, content.size(), "map", nullptr);
+    StoredMap stored = ParseMap(in, content.size(), version, "map", nullptr);
     Expect(FindViolations(stored.map).empty(), "an inconsistent map");
     static const InputFolder folder("unused");
     WriteMap(folder.path() / "first", stored.map, stored.settings);
@@ -235,25 +238,25 @@ void FuzzMap(std::string_view bytes) {
   });
 }
 
-constexpr std::array<FuzzedReader, 19> kReaders = {{{"trajectory", FuzzTrajectory},
-                                                    {"settings", FuzzSettings},
-                                                    {"grey_image", FuzzGreyImage},
-                                                    {"depth_image", FuzzDepthImage},
-                                                    {"objects", FuzzObjects},
-                                                    {"true_objects", FuzzTrueObjects},
-                                                    {"summary", FuzzSummary},
-                                                    {"mask_probe", FuzzMaskProbe},
-                                                    {"classes", FuzzClasses},
-                                                    {"yolo_seg", FuzzYoloSeg},
-                                                    {"paper", FuzzPaper},
-                                                    {"boxes", FuzzBoxes},
-                                                    {"coco", FuzzCoco},
-                                                    {"oa_slam", FuzzOaSlam},
-                                                    {"label_png", FuzzLabelPng},
-                                                    {"classes_json", FuzzClassesJson},
-                                                    {"vocabulary_binary", FuzzVocabularyBinary},
-                                                    {"vocabulary_text", FuzzVocabularyText},
-                                                    {"map", FuzzMap}}};
+constexpr auto kReaders = std::to_array<FuzzedReader>({{"trajectory", FuzzTrajectory},
+                                                       {"settings", FuzzSettings},
+                                                       {"grey_image", FuzzGreyImage},
+                                                       {"depth_image", FuzzDepthImage},
+                                                       {"objects", FuzzObjects},
+                                                       {"true_objects", FuzzTrueObjects},
+                                                       {"summary", FuzzSummary},
+                                                       {"mask_probe", FuzzMaskProbe},
+                                                       {"classes", FuzzClasses},
+                                                       {"yolo_seg", FuzzYoloSeg},
+                                                       {"paper", FuzzPaper},
+                                                       {"boxes", FuzzBoxes},
+                                                       {"coco", FuzzCoco},
+                                                       {"oa_slam", FuzzOaSlam},
+                                                       {"label_png", FuzzLabelPng},
+                                                       {"classes_json", FuzzClassesJson},
+                                                       {"vocabulary_binary", FuzzVocabularyBinary},
+                                                       {"vocabulary_text", FuzzVocabularyText},
+                                                       {"map", FuzzMap}});
 
 }  // namespace
 

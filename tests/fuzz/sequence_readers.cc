@@ -78,15 +78,15 @@ void FuzzEurocStates(std::string_view bytes) {
   });
 }
 
-constexpr std::array<FuzzedReader, 8> kSequenceReaders = {
-    {{"sequence", FuzzSequence},
-     {"associations", FuzzAssociations},
-     {"icl_associations", FuzzIclAssociations},
-     {"povray_camera", FuzzPovrayCamera},
-     {"ray_depth", FuzzRayDepth},
-     {"euroc_sensor", FuzzEurocSensor},
-     {"euroc_images", FuzzEurocImages},
-     {"euroc_states", FuzzEurocStates}}};
+constexpr auto kSequenceReaders =
+    std::to_array<FuzzedReader>({{"sequence", FuzzSequence},
+                                 {"associations", FuzzAssociations},
+                                 {"icl_associations", FuzzIclAssociations},
+                                 {"povray_camera", FuzzPovrayCamera},
+                                 {"ray_depth", FuzzRayDepth},
+                                 {"euroc_sensor", FuzzEurocSensor},
+                                 {"euroc_images", FuzzEurocImages},
+                                 {"euroc_states", FuzzEurocStates}});
 
 }  // namespace
 

@@ -50,7 +50,7 @@ double Volume(const std::vector<Eigen::Vector3d>& points, const Eigen::Matrix3d&
 }
 
 // Points on the visible sides of a box with noise, as a depth image gives them.
-TEST(OrientedBox, IsHardlyLargerThanTheBoxThatThePointsAreOf) {
+TEST(OrientedBox, IsHardlyLargerThanTheTrueBox) {
   RandomGeometry random(2);
   for (int trial = 0; trial < 20; ++trial) {
     const Eigen::Matrix3d rotation = random.Pose(2.0, 0.0).rotation.toRotationMatrix();
@@ -81,7 +81,7 @@ TEST(OrientedBox, OfPointsOnALineIsUnknown) {
   EXPECT_FALSE(OrientedBoxAxes(points));
 }
 
-// Neither on the order of the points nor on where CGAL finds memory.
+// The result depends neither on the order of the points nor on the addresses of memory in CGAL.
 TEST(OrientedBox, DependsOnThePointsAlone) {
   RandomGeometry random(3);
   std::mt19937 generator(3);

@@ -10,7 +10,7 @@
 namespace hullslam {
 namespace {
 
-TEST(PackedPoints, GivesThePointsBackToA65535thOfTheirExtent) {
+TEST(PackedPoints, RoundsCoordinatesToA65535thOfTheirExtent) {
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < 200; ++i) {
     points.emplace_back(639.0 * std::abs(std::sin(i)), -3.0 + 0.1 * std::cos(3.0 * i),
@@ -29,7 +29,7 @@ TEST(PackedPoints, GivesThePointsBackToA65535thOfTheirExtent) {
   }
 }
 
-TEST(PackedPoints, WhereAllCoordinatesAreEqualTheyAreKeptInSinglePrecision) {
+TEST(PackedPoints, EqualCoordinatesAreKeptInSinglePrecision) {
   const std::vector<Eigen::Vector2d> points = {{std::numbers::pi, 1.0}, {std::numbers::pi, 3.0}};
   const std::vector<Eigen::Vector2d> unpacked = PackedPoints<2>(points).Unpack();
   EXPECT_EQ(unpacked[0].x(), static_cast<double>(static_cast<float>(std::numbers::pi)));

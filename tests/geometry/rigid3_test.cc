@@ -12,7 +12,6 @@
 namespace hullslam {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 class Random {
@@ -28,7 +27,7 @@ class Random {
 
 TEST(Rigid3, MovesPointsAsComputedByHand) {
   // A quarter turn around z takes x to y.
-  const Rigid3 b_from_a(ExpSo3({0.0, 0.0, kPi / 2.0}), {10.0, 20.0, 30.0});
+  const Rigid3 b_from_a(ExpSo3({0.0, 0.0, std::numbers::pi / 2.0}), {10.0, 20.0, 30.0});
   const Eigen::Vector3d moved = b_from_a * Eigen::Vector3d(1.0, 2.0, 3.0);
   EXPECT_LT((moved - Eigen::Vector3d(8.0, 21.0, 33.0)).norm(), 1e-12);
 }
@@ -90,7 +89,7 @@ TEST(So3, ExpTurnsAroundItsAxis) {
 
 TEST(So3, LogInvertsExp) {
   Random random;
-  for (const double angle : {0.0, 1e-11, 1e-7, 1e-4, 0.5, 2.0, 3.14, kPi - 1e-9}) {
+  for (const double angle : {0.0, 1e-11, 1e-7, 1e-4, 0.5, 2.0, 3.14, std::numbers::pi - 1e-9}) {
     const Eigen::Vector3d omega = angle * random.Vector().normalized();
     EXPECT_LT((LogSo3(ExpSo3(omega)) - omega).norm(), 1e-14 + 1e-9 * angle) << angle;
   }
@@ -98,8 +97,9 @@ TEST(So3, LogInvertsExp) {
 
 // Both signs of a quaternion describe the same rotation.
 TEST(So3, LogIsTheShortestRotation) {
-  const Eigen::Vector3d omega(0.0, 0.0, 1.5 * kPi);
-  EXPECT_LT((LogSo3(ExpSo3(omega)) - Eigen::Vector3d(0.0, 0.0, -0.5 * kPi)).norm(), 1e-12);
+  const Eigen::Vector3d omega(0.0, 0.0, 1.5 * std::numbers::pi);
+  EXPECT_LT((LogSo3(ExpSo3(omega)) - Eigen::Vector3d(0.0, 0.0, -0.5 * std::numbers::pi)).norm(),
+            1e-12);
   Eigen::Quaterniond rotation = ExpSo3({0.1, 0.2, -0.3});
   const Eigen::Vector3d log = LogSo3(rotation);
   rotation.coeffs() = -rotation.coeffs();
@@ -121,7 +121,7 @@ TEST(Retract, ActsOnTheLeft) {
   const Rigid3 pose = random.Pose();
   const Eigen::Vector3d point = random.Vector();
   Vector6d delta;
-  delta << 0.0, 0.0, kPi / 2.0, 1.0, 2.0, 3.0;
+  delta << 0.0, 0.0, std::numbers::pi / 2.0, 1.0, 2.0, 3.0;
   const Eigen::Vector3d before = pose * point;
   const Eigen::Vector3d expected(-before.y() + 1.0, before.x() + 2.0, before.z() + 3.0);
   EXPECT_LT((Retract(pose, delta) * point - expected).norm(), 1e-12);
@@ -173,9 +173,9 @@ TEST(Rigid3, PartOfAMotionAsComputedByHand) {
                      {Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.5, -1.0, 1.5)}),
             1e-15);
   // Half a turn around (0, 1, 0) by quarters: the origin moves on a circle around that point.
-  const Rigid3 quarter(ExpSo3({0.0, 0.0, kPi / 2.0}), {1.0, 1.0, 0.0});
+  const Rigid3 quarter(ExpSo3({0.0, 0.0, std::numbers::pi / 2.0}), {1.0, 1.0, 0.0});
   EXPECT_LT(Distance(PartOfMotion(quarter, 2.0),
-                     {ExpSo3({0.0, 0.0, kPi}), Eigen::Vector3d(0.0, 2.0, 0.0)}),
+                     {ExpSo3({0.0, 0.0, std::numbers::pi}), Eigen::Vector3d(0.0, 2.0, 0.0)}),
             1e-12);
   const Rigid3 small(ExpSo3({0.0, 0.0, 2e-5}), {1.0, 0.0, 0.0});
   EXPECT_LT(Distance(PartOfMotion(small, 3.0), small * small * small), 1e-13);

@@ -92,6 +92,7 @@ TEST_F(Evaluate, BadUsageIsRefusedWithOneLine) {
   ExpectRefusal({"trajectory", truth_}, "ESTIMATE");
   ExpectRefusal({"trajectory", truth_, half_, "--align", "affine"}, "affine");
   ExpectRefusal({"trajectory", truth_, half_, "--max-diff", "0"}, "--max-diff");
+  ExpectRefusal({"trajectory", truth_, half_, "--max-diff", "nan"}, "--max-diff");
   ExpectRefusal({"trajectory", truth_, half_, "--no-such"}, "--no-such");
 }
 
@@ -128,7 +129,7 @@ class EvaluateObjects : public Evaluate {
     folder_.Write("run/objects_observations.json", FormatObservations(report_));
   }
 
-  // The run as a monocular one whose map has a unit of length of `unit` metres.
+  // Writes the same run as if it were monocular, with a map whose unit of length is `unit` metres.
   void WriteMonocularRun(double unit) {
     Ellipsoid& ellipsoid = report_.objects[0].ellipsoid;
     ellipsoid.world_from_object.translation /= unit;
@@ -144,7 +145,8 @@ class EvaluateObjects : public Evaluate {
     folder_.Write("run/summary.json", FormatSummary(summary));
   }
 
-  // The world frame of the run differs from the true one by a rotation and a translation.
+  // Writes the sequence. Its world frame and that of the run differ by a rotation and a
+  // translation.
   void WriteSequence() {
     const Rigid3 truth_from_map(ExpSo3({0.0, 0.0, 0.3}), {1.0, 2.0, 3.0});
     Trajectory truth;
@@ -197,7 +199,7 @@ TEST_F(EvaluateObjects, MeasuresTheFinishedRunAgain) {
   EXPECT_NEAR(json["siou_mean"].get<double>(), 1.0 / (1.01 * 1.01), 1e-3);
   EXPECT_NEAR(json["siou_mask_mean"].get<double>(), 1.0 / (1.01 * 1.01), 1e-3);
   EXPECT_NEAR(json["tangent_mean_px"].get<double>(), 0.01 * 500.0 * 0.1 / 2.0, 0.01);
-  // (1.01 r)^2 - r^2.
+  // The expected value is (1.01 r)^2 - r^2 with the radius r = 0.1 m of the sphere.
   EXPECT_NEAR(json["mtd_mean_m2"].get<double>(), 2.01e-4, 2e-6);
   EXPECT_EQ(json["each"][0]["id"], 3);
   EXPECT_TRUE(json["groundtruth"].is_null());
@@ -254,7 +256,7 @@ TEST_F(EvaluateObjects, NamesTheAlignmentAndTheUnit) {
 
 TEST_F(EvaluateObjects, TheAlignmentCanBeGiven) {
   WriteMonocularRun(2.5);
-  // summary.json is not needed then, and would be refused.
+  // If --align is given, summary.json is not read. This one would be refused.
   folder_.Write("run/summary.json", "{}");
   std::vector<std::string> arguments = {"objects", run_,      "--groundtruth", truth_file_,
                                         "--json",  "--align", "sim3"};

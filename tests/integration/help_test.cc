@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "support/run_program.h"
 
@@ -26,12 +29,32 @@ TEST_P(Help, TheVersionIsPrinted) {
   EXPECT_NE(result.output.find('.'), std::string::npos) << result.output;
 }
 
-INSTANTIATE_TEST_SUITE_P(Programs, Help,
-                         ::testing::Values("rgbd_tum", "rgbd_icl", "mono_tum", "mono_icl",
-                                           "mono_euroc", "mono_video", "map_objects", "evaluate",
-                                           "check_masks", "make_synthetic", "relocalise",
-                                           "train_vocabulary", "convert_vocabulary"),
+// All programs; the others of the folder are examples of the library, which take no options.
+std::vector<std::string> ProgramNames() {
+  std::vector<std::string> names;
+  for (const auto& file : std::filesystem::directory_iterator(SourceFolder() / "Examples")) {
+    const std::string name = file.path().stem();
+    const bool is_example = name == "minimal" || name == "objects_of_sequence";
+    if (file.path().extension() == ".cc" && !is_example) {
+      names.push_back(name);
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Programs, Help, ::testing::ValuesIn(ProgramNames()),
                          [](const auto& info) { return info.param; });
+
+// Each --set takes one setting, so the help must not promise more.
+TEST(HelpOfSettings, ShowsOneKeyAndValue) {
+  for (const char* const program : {"rgbd_tum", "mono_video", "check_masks", "map_objects"}) {
+    const std::string help = RunProgram(program, {"--help"}).output;
+    const size_t at = help.find("--set KEY=VALUE");
+    ASSERT_NE(at, std::string::npos) << help;
+    EXPECT_NE(help.substr(at, 19), "--set KEY=VALUE ...");
+  }
+}
 
 TEST(HelpOfSubcommands, NamesTheExitCodes) {
   for (const char* const command : {"trajectory", "objects"}) {

@@ -18,6 +18,7 @@ TEST(MakeSynthetic, BadUsageIsRefusedAndWritesNothing) {
   EXPECT_EQ(RunProgram("make_synthetic", {out, "--frames", "0"}).exit_code, 2);
   EXPECT_EQ(RunProgram("make_synthetic", {out, "--frames", "many"}).exit_code, 2);
   EXPECT_EQ(RunProgram("make_synthetic", {out, "--colour"}).exit_code, 2);
+  EXPECT_EQ(RunProgram("make_synthetic", {out, "--readout-time", "nan"}).exit_code, 2);
   const ProgramResult result = RunProgram("make_synthetic", {out, "--scene", "kitchen"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.errors.find("lowtexture"), std::string::npos) << result.errors;

@@ -61,7 +61,7 @@ TEST(MapObjects, EllipsoidsHaveTheTruePositionAndSize) {
   EXPECT_NEAR(truth["shapes"]["ellipsoid"]["axis_ratio_mean"].get<double>(), 1.0, 0.01);
 }
 
-// A sequence of four frames with masks. Each test refuses other poses, masks or settings.
+// A sequence of four frames with masks. Each test gives other bad input, which must be refused.
 class MapObjectsRefuses : public ::testing::Test {
  protected:
   MapObjectsRefuses() {
@@ -111,6 +111,8 @@ TEST_F(MapObjectsRefuses, BadSettings) {
   Expect(poses_, {"--masks", masks_, "--set", "objects.epsilon=3"},
          {"--set", "unknown key 'objects.epsilon'"});
   Expect(poses_, {"--masks", masks_, "--min-distance", "-1"}, {"--min-distance"});
+  Expect(poses_, {"--masks", masks_, "--min-distance", "nan"}, {"--min-distance", "'nan'"});
+  Expect(poses_, {"--masks", masks_, "--min-angle", "nan"}, {"--min-angle", "'nan'"});
 }
 
 }  // namespace

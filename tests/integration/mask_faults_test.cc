@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Objects do no harm: whatever is wrong with the masks, the camera is tracked about as well as
-// without masks.
+// Bad masks do no harm: whatever is wrong with them, the camera is tracked about as well as without
+// masks.
 #include "support/mask_faults.h"
 
 #include <fmt/format.h>
@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 
 using Json = nlohmann::json;
 
-// The error may grow by a tenth plus a slack. The slack is for errors of about 1 mm, as on the
-// rendered desk: there another seed changes the error by more than a tenth.
+// The error may grow by a tenth plus a slack. The slack matters if the error is only about 1 mm, as
+// on the rendered desk, where another seed alone changes it by more than a tenth.
 constexpr double kMoreError = 1.10;
 constexpr double kSlack = 0.0003;  // m
 

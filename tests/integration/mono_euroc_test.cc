@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr int kFrames = 16;
 
-// The camera in the body: 90 degrees about z, and a shift.
+// The pose of the camera in the body: a rotation by 90 degrees about z, and a shift.
 const Rigid3 kBodyFromCam{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ())),
                           {0.1, 0.2, 0.3}};
 constexpr const char* kSensor =
@@ -68,7 +68,7 @@ class MonoEuroc : public MonoProgram {
     folder_.Write("sequence/mav0/state_groundtruth_estimate0/data.csv", states);
   }
 
-  // A sequence of images without anything to be seen.
+  // Writes a sequence of black images.
   void WriteBlack(int frames) const {
     const fs::path black = folder_.path() / "black.png";
     cv::imwrite(black.string(), cv::Mat(480, 640, CV_8UC1, cv::Scalar(0)));
@@ -120,7 +120,7 @@ TEST_F(MonoEuroc, BrokenFoldersAreRefused) {
   ExpectRefusal({path_}, {"data.csv:1: 3 column(s), expected 2"});
 }
 
-TEST_F(MonoEuroc, TheSettingsAreThoseThatAreGiven) {
+TEST_F(MonoEuroc, GivenSettingsReplaceThoseOfTheSequence) {
   WriteBlack(2);
   const std::string small = folder_.Write(
       "small.yaml",

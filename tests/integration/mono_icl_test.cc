@@ -21,8 +21,8 @@ class MonoIcl : public MonoProgram {
   MonoIcl() : MonoProgram("mono_icl") {}
 };
 
-// A mirrored path fits after no rotation and no scale, so the large error says that the small one
-// means something.
+// A mirrored path fits with no rotation and no scale. The large error of the wrong axis shows that
+// the test can notice this.
 TEST_F(MonoIcl, ThePackageWithPngImagesIsTracked) {
   MadeRoom().WriteIclTum(path_, kFrames, true);
   const ProgramResult result = ExpectMap({path_}, kFrames);
@@ -56,7 +56,7 @@ TEST_F(MonoIcl, ThePovrayPackageIsTrackedWithoutDepth) {
   ExpectRefusal({path_}, {"scene_00_0000.png", "320x240", "640x480"});
 }
 
-TEST_F(MonoIcl, AsksWhatTheFolderDoesNotTell) {
+TEST_F(MonoIcl, AsksForThePackageIfTheFolderDoesNotTell) {
   fs::create_directory(path_);
   ExpectRefusal({path_}, {path_, "--package tum or --package povray"});
   ExpectRefusal({path_ + "/none"}, {path_ + "/none: no such folder"});

@@ -34,8 +34,9 @@ cv::Mat HalfOf(const cv::Mat& image, Side side) {
   return half;
 }
 
-// A camera sees the left half of a desk, then nothing, then the right half on the way back, and
-// last the whole desk. So no image shows what was seen before the gap until both parts are mapped.
+// The camera first sees the left half of a desk, then nothing, then the right half on the way back,
+// and at the end the whole desk. So when the right half is mapped as an island of its own, no image
+// has shown the left half again.
 class InterruptedDesk {
  public:
   InterruptedDesk() {
@@ -102,7 +103,7 @@ class MonoIslands : public MonoProgram {
   }
 };
 
-TEST_F(MonoIslands, AMapThatIsLostIsJoinedWhenItsPlaceIsSeenAgain) {
+TEST_F(MonoIslands, AnIslandIsJoinedWhenItsPlaceIsSeenAgain) {
   const InterruptedDesk desk;
   ExpectOneMap({desk.path()}, desk.size());
 }

@@ -23,7 +23,7 @@ class MonoTum : public MonoProgram {
   MonoTum() : MonoProgram("mono_tum") {}
 };
 
-TEST_F(MonoTum, MakesAMapAndGivesTheFramesBeforeItPoses) {
+TEST_F(MonoTum, MakesAMapAndGivesPosesToTheFramesBeforeIt) {
   const RenderedDesk desk(kFrames);
   const ProgramResult result = ExpectMap({desk.path()}, kFrames);
   ExpectParts(result.output, {"16 frames: 16 tracked, 0 lost, 0 skipped; first map after 0.",
@@ -120,7 +120,7 @@ TEST_F(MonoTum, ImagesOfAnotherSizeAreRefused) {
                 {"rgb/00.png", "640x480", "320x480", "Camera.width"});
 }
 
-// A list of depth images in rgb.txt would otherwise give a map of nonsense.
+// If rgb.txt lists depth images, they must be refused, because they would give a meaningless map.
 TEST_F(MonoTum, DepthImagesAreNoImages) {
   const PlaneSequence sequence(2);
   fs::copy_file(sequence.path() / "depth.txt", sequence.path() / "rgb.txt",

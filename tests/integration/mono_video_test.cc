@@ -35,7 +35,7 @@ class MonoVideo : public MonoProgram {
     return Path("desk.avi");
   }
 
-  // A folder of images without anything to be seen.
+  // Writes a folder of black images.
   std::string WriteBlack(int frames) const {
     fs::create_directory(Path("black"));
     for (int i = 0; i < frames; ++i) {
@@ -102,7 +102,7 @@ TEST_F(MonoVideo, BlackImagesMakeNoMap) {
   ExpectNoMap({WriteBlack(12), "--fov", "60"}, 12, "too few features");
 }
 
-TEST_F(MonoVideo, TheCameraMustBeKnownInOneWay) {
+TEST_F(MonoVideo, TheCameraMustBeGivenInExactlyOneWay) {
   const std::string images = WriteBlack(1);
   const std::string settings = folder_.Write(
       "camera.yaml",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A desk is visited twice; in between its objects were moved, taken away and added.
+// A desk is visited twice. Between the visits some objects were moved, taken away or added.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -73,7 +73,7 @@ TEST_F(RgbdChanges, ASecondSessionListsWhatWasMovedTakenAndAdded) {
   EXPECT_GE(truth["gone"]["right"], 2);
   EXPECT_GE(truth["moved"]["right"], 1);
 
-  // What has left is not in the map any more, so it is told once only.
+  // An object that is gone is removed from the map, so a third session would not report it again.
   const StoredMap stored = ReadMap(map_);
   for (const auto& [id, object] : stored.map.objects()) {
     EXPECT_NE(object.Label(), "orange") << id.value;

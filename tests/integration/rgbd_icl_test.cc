@@ -65,7 +65,7 @@ TEST_F(RgbdIcl, AGroundTruthWithEitherAxisFitsTheTrajectory) {
   }
 }
 
-// A mirrored trajectory does not fit, so the small errors of the others say something.
+// A mirrored trajectory does not fit. This shows that the other tests can notice a wrong axis.
 TEST_F(RgbdIcl, TheWrongAxisGivesALargeError) {
   room_.WriteIclTum(path_, 2 * kFrames, true);
   RunWell({path_, "--quiet"});
@@ -108,7 +108,7 @@ TEST_F(RgbdIcl, AWrongUnitOfLengthIsNoticed) {
       << result.errors;
 }
 
-// The fourth argument is the association file, and ICL.yaml of other programs has fy = -480.
+// The fourth argument is the association file. The settings have fy = -480, as in other programs.
 TEST_F(RgbdIcl, TakesTheFourArgumentsOfOrbSlam2) {
   room_.WriteIclTum(path_, kFrames, true);
   const std::string settings = folder_.Write(
@@ -121,7 +121,7 @@ TEST_F(RgbdIcl, TakesTheFourArgumentsOfOrbSlam2) {
   EXPECT_EQ(tum.exit_code, 2);
 }
 
-TEST_F(RgbdIcl, AsksWhatTheFolderDoesNotTell) {
+TEST_F(RgbdIcl, AsksForThePackageIfTheFolderDoesNotTell) {
   fs::create_directory(path_);
   ExpectRefusal({path_}, {path_, "--package tum or --package povray"});
   ExpectRefusal({path_ + "/none"}, {path_ + "/none: no such folder"});
@@ -129,6 +129,7 @@ TEST_F(RgbdIcl, AsksWhatTheFolderDoesNotTell) {
   ExpectRefusal({path_, "--package", "0"}, {"--package", "0"});
   ExpectRefusal({path_, "--groundtruth-y", "left"}, {"--groundtruth-y", "left"});
   ExpectRefusal({path_, "--povray-units", "0"}, {"--povray-units"});
+  ExpectRefusal({path_, "--povray-units", "nan"}, {"--povray-units", "'nan'"});
   ExpectRefusal({path_, "--package", "tum"}, {"associations.txt", "No such file"});
 }
 

@@ -10,6 +10,7 @@
 
 #include "files/read_file.h"
 #include "hullslam/map_files/map_file.h"
+#include "support/file_size_limit.h"
 #include "support/plane_sequence.h"
 #include "support/run_program.h"
 #include "support/running_program.h"
@@ -92,7 +93,8 @@ TEST_F(RgbdMap, ASecondSessionGoesOnWithTheMap) {
   EXPECT_GE(Summary()["map"]["keyframes"].get<size_t>(), keyframes);
 }
 
-// Without a vocabulary and masks nothing is recognised, so a run on a loaded map stays lost.
+// Without a vocabulary and without masks no frame is recognised, so a run on a loaded map stays
+// lost.
 TEST_F(RgbdMap, ARunOnALoadedMapFailsIfNoFrameIsFound) {
   const Arguments no_words = {"--vocabulary", "none"};
   Save(no_words);
@@ -116,6 +118,21 @@ TEST_F(RgbdMap, ARunOnALoadedMapFailsIfNoFrameIsFound) {
     EXPECT_TRUE(ReadFile(output_ / "keyframes.txt").starts_with(head + "# session 1: " + name));
     EXPECT_EQ(ReadFile(map_), bytes) << "nothing was added to the map";
   }
+}
+
+TEST_F(RgbdMap, AMapThatCannotBeSavedHidesNoOtherResults) {
+  Save();
+  const FileSizeLimit limit(fs::file_size(map_) - 1);  // all other files are smaller
+  fs::remove(map_);
+  const ProgramResult result =
+      RunProgram("rgbd_tum", {path_, "--output", output_, "--save-map", map_});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.output.find("12 frames: 12 tracked"), std::string::npos) << result.output;
+  EXPECT_NE(result.errors.find(map_.string() + ": cannot be written: File too large"),
+            std::string::npos)
+      << result.errors;
+  EXPECT_FALSE(fs::exists(map_));
+  EXPECT_EQ(Summary()["trajectory"]["tracked"], 12);
 }
 
 TEST_F(RgbdMap, AnInterruptedRunSavesItsMap) {

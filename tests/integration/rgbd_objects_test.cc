@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// rgbd_tum with masks: the files that it writes, and which of them equal those of a run without
-// objects.
+// Runs of rgbd_tum with masks: the files that they write, and which of these equal the files of a
+// run without objects.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -77,7 +77,7 @@ TEST_F(RgbdObjects, AreWrittenWithTheSameBytesInEveryRun) {
                    "objects.ply", "map.ply"});
 }
 
-TEST_F(RgbdObjects, SwitchedOffLeaveNoTrace) {
+TEST_F(RgbdObjects, SwitchedOffChangeNoOutput) {
   Render("desk", 40);
   const fs::path without = Run("without", {});
   EXPECT_FALSE(fs::exists(without / "objects.json"));

@@ -233,13 +233,13 @@ TEST_F(RgbdTum, TheVocabularyIsTheDefaultOrAFileOrNone) {
     RunWell({path_, "--last", "5", "--vocabulary", vocabulary});
     EXPECT_EQ(Summary()["trajectory"]["tracked"], 6);
     EXPECT_NEAR(Summary()["trajectory"]["ate_rmse_m"].get<double>(), error, 0.002)
-        << "words choose the matches of the second frame, but all are good";
+        << "the words change the matches of the second frame, but not how good they are";
   }
 }
 
-// The texture of the wall is the same again 2.72 m farther on. That is no place seen again, and the
-// drift budget knows it, unless it is set so large that the camera may have gone round a column.
-TEST_F(RgbdTum, ClosesALoopWhereDriftMayExplainIt) {
+// The texture of the wall repeats after 2.72 m, so another part of the wall looks like the start.
+// The drift budget refuses this loop unless it is set so large that the drift could explain it.
+TEST_F(RgbdTum, ClosesALoopOnlyIfDriftMayExplainIt) {
   const PlaneSequence wall(40, 0.1, 40, 1360);
   const auto loops = [&](const Arguments& more) {
     RunWell(Arguments{wall.path(), "--quiet"} + more);
@@ -497,11 +497,11 @@ TEST_F(RgbdTumRefuses, BadSettings) {
   const auto refuse = [&](const std::string& line, const std::vector<std::string>& parts) {
     ExpectRefusalOf("camera.yaml", good + line + '\n', parts);
   };
-  const std::string place = path_ + "/camera.yaml:13: ";  // the line after the good ones
-  refuse("Camera.fz: 500.0", {place, "unknown key 'Camera.fz'", "Camera.f"});
-  refuse("Camera.k1: wide", {place, "Camera.k1 is 'wide'", "a number"});
-  refuse("ORBextractor.nLevels: 2.5", {place, "ORBextractor.nLevels is '2.5'", "an integer"});
-  refuse("Camera.fx: 510.0", {place, "Camera.fx"});
+  const std::string origin = path_ + "/camera.yaml:13: ";  // the line after the good ones
+  refuse("Camera.fz: 500.0", {origin, "unknown key 'Camera.fz'", "Camera.f"});
+  refuse("Camera.k1: wide", {origin, "Camera.k1 is 'wide'", "a number"});
+  refuse("ORBextractor.nLevels: 2.5", {origin, "ORBextractor.nLevels is '2.5'", "an integer"});
+  refuse("Camera.fx: 510.0", {origin, "Camera.fx"});
   const auto replace = [&](const std::string& from, const std::string& to) {
     std::string text = good;
     return text.replace(text.find(from), from.size(), to);

@@ -21,7 +21,7 @@ const RenderedDesk& Desk() {
   return desk;
 }
 
-// The ATE of a run on it, mm.
+// The ATE of a run of the program with these arguments, mm.
 double RunAte(const std::string& program, std::vector<std::string> arguments) {
   const TemporaryFolder folder;
   const std::string output = folder.path() / "out";

@@ -169,7 +169,8 @@ TEST_F(RunEnd, TwoRunsAtOnceLeaveTheFilesOfOne) {
             0);
   const bool has_objects = fs::exists(output_ / "objects.json");
   EXPECT_EQ(Summary()["objects"].is_null(), !has_objects);
-  EXPECT_EQ(ReadFolder(output_).size(), Summary()["files"].size() + 1) << "and summary.json";
+  EXPECT_EQ(ReadFolder(output_).size(), Summary()["files"].size() + 1)
+      << "the list does not name summary.json";
 }
 
 // ---- messages that cannot be written
@@ -198,7 +199,7 @@ TEST_F(RunEnd, AReportThatCannotBePrintedIsAFailure) {
   }
 }
 
-TEST(Programs, HelpTellsTheExitCodes) {
+TEST(Programs, HelpNamesTheExitCodes) {
   for (const char* const program :
        {"rgbd_tum", "map_objects", "check_masks", "make_synthetic", "evaluate"}) {
     const ProgramResult help = RunProgram(program, {"--help"});
@@ -277,8 +278,8 @@ TEST_F(RunEnd, AnInterruptedRendererWritesNothing) {
 
 // ---- lost frames
 
-// Writes an association file, black.txt: the frames from 6 to 21 are black, 27 in all. Those after
-// it repeat the frames before it, so tracking recovers.
+// Writes an association file, black.txt, with 27 frames, of which those from 6 to 21 are black. The
+// frames after the black ones repeat those before, so tracking recovers.
 void Blacken(const PlaneSequence& sequence) {
   cv::imwrite(sequence.path() / "rgb/black.png", cv::Mat(480, 640, CV_8UC1, cv::Scalar(0)));
   std::string pairs;
@@ -304,6 +305,32 @@ TEST_F(RunEnd, TooManyLostFramesAreAFailure) {
   Arguments strict = until_lost;
   strict.insert(strict.end(), {"--set", "run.max_lost_at_end=0.4"});
   ExpectError(Run(strict), 1, {"did not recover", "6 of 22", "run.max_lost_at_end 0.4"});
+}
+
+// ---- messages
+
+// Names of files and classes may come from strangers. They must not control the terminal, and no
+// name can begin a line of its own.
+TEST_F(RunEnd, MessagesHaveNoControlCharacters) {
+  const auto expect_clean = [](const std::string& text) {
+    EXPECT_EQ(text.find_first_of("\x1b\x07\r"), std::string::npos) << text;
+    EXPECT_EQ(text.find("\nforged"), std::string::npos) << text;
+  };
+  const std::string name = "no\x1b[2J\nforged";
+  const ProgramResult missing = RunProgram("rgbd_tum", {name});
+  ExpectError(missing, 2, {"error: ", "no?[2J?forged"});
+  expect_clean(missing.errors);
+  std::string classes;
+  for (int i = 0; i < 41; ++i) {
+    classes += "other\n";
+  }
+  folder_.Write("masks/classes.txt", classes + "cup\x1b]0;x\x07\rforged\n");
+  const ProgramResult masks = RunProgram("check_masks", {path_, masks_, "--quiet"});
+  EXPECT_NE(masks.output.find("cup?]0;x??forged"), std::string::npos) << masks.output;
+  expect_clean(masks.output);
+  const ProgramResult run = Run({"--masks", masks_, "--debug"});
+  EXPECT_EQ(run.exit_code, 0) << run.errors;
+  expect_clean(run.output + run.errors);
 }
 
 // ---- input that is probably not what the user meant

@@ -82,7 +82,7 @@ class CandidatesByWords : public testing::Test {
 };
 
 TEST_F(CandidatesByWords, SupportersAreNeighboursThatLookLikeTheSamePlace) {
-  // Keyframe 2 looks like the neighbour of the candidate, 3 like nothing old.
+  // Keyframe 2 looks like the neighbour of the candidate. Keyframe 3 looks like no old keyframe.
   Add({{1, 2, 3, 4}, {5, 6, 7, 8}, {5, 6, 7, 30}, {30, 20, 21, 22}, {1, 2, 3, 30}});
   const std::vector<LoopCandidate> candidates = FindLoopCandidates(map_, KeyframeId(4));
   ASSERT_EQ(candidates.size(), 1u);
@@ -91,7 +91,8 @@ TEST_F(CandidatesByWords, SupportersAreNeighboursThatLookLikeTheSamePlace) {
 }
 
 TEST_F(CandidatesByWords, ACandidateIsAsSimilarAsTheQuerysOwnNeighbours) {
-  // Two words of four are common with 0, but three with both of the neighbours.
+  // The query has two of its four words in common with keyframe 0, but three with each of its
+  // neighbours.
   Add({{1, 2, 40, 41}, {42, 43, 44, 45}, {1, 2, 3, 30}, {1, 2, 4, 30}, {1, 2, 3, 4}});
   EXPECT_TRUE(Find(map_, KeyframeId(4)).empty());
 }

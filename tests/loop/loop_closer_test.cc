@@ -57,7 +57,8 @@ TEST_F(LoopCloserTest, RemovesTheDriftAndJoinsBothEnds) {
   EXPECT_EQ(map.keyframes().At(made.last()).loops.size(), 1u);
 }
 
-// The graph spreads the error evenly over the way; the landmarks know where it came from.
+// The pose graph spreads the error evenly over the path. The adjustment also uses the landmarks,
+// which determine where the error arose.
 TEST_F(LoopCloserTest, AfterTheAdjustmentOfTheWholeMapNoKeyframeHasDrifted) {
   RingMap made = MakeRingMap(SharedRing());
   const std::optional<MapCorrection> correction = Close(made);
@@ -98,12 +99,12 @@ TEST_F(LoopCloserTest, WithoutAVocabularyOrSwitchedOffThereAreNoLoops) {
 }
 
 // Two rooms that look the same, 5 m apart.
-TEST_F(LoopCloserTest, RefusesWhatDriftCannotExplain) {
+TEST_F(LoopCloserTest, RefusesALoopThatDriftCannotExplain) {
   RingMap made =
       MakeRingMap(SharedRing(), {.drift = Rigid3(Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0})});
   EXPECT_FALSE(Close(made));
   options_.drift_base = 6.0;
-  EXPECT_TRUE(Close(made)) << "nothing but the budget speaks against it";
+  EXPECT_TRUE(Close(made)) << "without the budget the loop is closed";
   RingMap turned =
       MakeRingMap(SharedRing(), {.drift = Rigid3(ExpSo3({0.0, 0.8, 0.0}), {0.0, 0.0, 0.0})});
   EXPECT_FALSE(Close(turned));
@@ -121,8 +122,8 @@ TEST_F(LoopCloserTest, OtherObjectsAtTheSamePlaceSpeakAgainstALoop) {
   EXPECT_FALSE(Closes(things));
 }
 
-// The number of landmarks that the query finds at the place, without objects and with supporters,
-// is taken as the bound.
+// The bound is set to the number of landmarks that the query finds at the place. This is just
+// enough with supporters and without objects.
 TEST_F(LoopCloserTest, ObjectsAndSupportersDecideHowManyLandmarksAreNeeded) {
   const RingMap made = MakeRingMap(SharedRing());
   const LoopVerdict verdict =
@@ -157,8 +158,28 @@ TEST_F(LoopCloserTest, LeavesTheMapAloneForAWhileAfterALoop) {
   EXPECT_TRUE(closer.Process(query(38)));
 }
 
+// The mapper drops a correction if the map was corrected since the snapshot.
+TEST_F(LoopCloserTest, SeeksALoopAgainThatIsNotInTheCorrectedMap) {
+  RingMap made = MakeRingMap(SharedRing(), {.keyframes = 40});
+  const auto query = [](Map& map, uint32_t keyframe) {
+    return LoopQuery{map.Snapshot(), KeyframeId(keyframe)};
+  };
+  LoopCloser closer = Make();
+  const std::optional<MapCorrection> loop = closer.Process(query(made.map, 28));
+  ASSERT_TRUE(loop);
+  EXPECT_FALSE(closer.Process(query(made.map, 29))) << "the mapper has not processed it yet";
+  Map closed = Corrected(made, *loop);
+  Map dropped = made.map.Snapshot();
+  dropped.CountCorrection();
+  LoopCloser other = closer;
+  EXPECT_FALSE(other.Process(query(closed, 30))) << "it is in the map";
+  EXPECT_FALSE(other.Process(query(closed, 37)));
+  EXPECT_TRUE(closer.Process(query(dropped, 30)));
+  EXPECT_FALSE(closer.Process(query(dropped, 31)));
+}
+
 // Tracking has found 100 landmarks of the earlier visit, so the place is not a candidate any more.
-// All others are still there twice.
+// All other landmarks of the place are still in the map twice.
 TEST_F(LoopCloserTest, MergesAPlaceToWhichTrackingHasLedBack) {
   RingMap made =
       MakeRingMap(SharedRing(), {.keyframes = 58, .keyframes_per_turn = 48, .drift = Rigid3()});
@@ -197,14 +218,14 @@ TEST_F(LoopCloserTest, TheSameMapGivesTheSameBits) {
   EXPECT_EQ(dump(), dump());
 }
 
-// The ring of a camera without depth.
+// The ring world of a monocular camera.
 const RingWorld& MonocularRing() {
   static const RingWorld world({.points = 300, .pixel_noise = 0.2, .depth_share = 0.0});
   return world;
 }
 
-// A ring without drift that was lost on the way. Its second part has another world and another unit
-// of length.
+// A ring map without drift in which tracking was lost on the way. Its second part has another world
+// frame and another unit of length.
 class IslandJoin : public LoopCloserTest {
  protected:
   IslandJoin() {
@@ -216,7 +237,7 @@ class IslandJoin : public LoopCloserTest {
   }
 
   Sensor sensor_ = SharedRing().sensor();
-  // So far that no drift budget allows it.
+  // The motion is so large that no drift budget allows it.
   const Sim3 island_from_world_{2.5, ExpSo3({0.3, -0.4, 0.2}), {30.0, -10.0, 5.0}};
   RingMap made_ = MakeRingMap(MonocularRing(), {.drift = Rigid3()}, ThreeThings());
 };
@@ -238,16 +259,31 @@ TEST_F(IslandJoin, GivesTheYoungerIslandThePoseAndTheScaleOfTheOlderOne) {
   EXPECT_EQ(map.keyframes().At(made_.last()).loops.size(), 1u);
 }
 
+// Two rooms that look the same, 5 m apart, in maps of other units of length.
+TEST_F(IslandJoin, TheDriftBudgetDoesNotDependOnTheUnitOfLength) {
+  for (const double unit : {0.01, 1.0, 100.0}) {
+    for (const double drift : {0.0, 5.0}) {
+      RingMap made = MakeRingMap(
+          MonocularRing(), {.drift = Rigid3(Eigen::Quaterniond::Identity(), {drift, 0.0, 0.0})});
+      ApplyCorrection(made.map, ScalingOf(made.map, unit), sensor_.levels);
+      LoopCloser closer(sensor_, options_, objects_, 1);
+      EXPECT_EQ(closer.Process({made.map.Snapshot(), made.last()}).has_value(), drift == 0.0)
+          << "unit " << unit << ", drift " << drift;
+    }
+  }
+}
+
 // At the last keyframe no loop within an island would be sought so soon after another one.
 TEST_F(IslandJoin, IsSoughtAlsoSoonAfterALoop) {
   RingMap one = MakeRingMap(SharedRing());
+  one.map.CountCorrection();  // as in the other map, so that the loop is not taken for dropped
   LoopCloser closer(sensor_, options_, objects_, 1);
   ASSERT_TRUE(closer.Process({one.map.Snapshot(), KeyframeId(28)}));
   EXPECT_FALSE(closer.Process({one.map.Snapshot(), made_.last()}));
   EXPECT_TRUE(closer.Process({made_.map.Snapshot(), made_.last()}));
 }
 
-// Without it, a thing that looks the same in two places would be enough.
+// Without this condition, a thing that looks the same at two places would be enough.
 TEST_F(IslandJoin, NeedsASecondKeyframeThatShowsThePlace) {
   const std::vector<Covisible> neighbours = made_.map.keyframes().At(made_.last()).covisible;
   ASSERT_TRUE(Join());

@@ -99,8 +99,8 @@ TEST(SpreadLoopError, AMapWithoutDriftStaysAsItIs) {
   }
 }
 
-// A loop in the middle of the way says that keyframe 16 is somewhere else. What is known to be at
-// the place of an old keyframe by an earlier loop does not follow it.
+// A loop in the middle of the path moves keyframe 16. Keyframes that an earlier loop connects to an
+// old keyframe do not follow it.
 TEST(SpreadLoopError, EarlierLoopsHoldTheMap) {
   const auto moved = [](bool has_loop) {
     RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()});
@@ -116,46 +116,22 @@ TEST(SpreadLoopError, EarlierLoopsHoldTheMap) {
   EXPECT_LT(moved(true), 0.05);
 }
 
-// A ring without drift whose unit of length changes at keyframe `first`. No landmark tells that:
-// those that are seen before and after it are seen by a single keyframe on each side.
-RingMap MakeRingOfTwoScales(uint32_t first, double scale) {
+// The keyframes between the ends of the loop have scales between those of its ends.
+TEST(SpreadLoopError, AnErrorOfScaleIsSpreadOverTheWay) {
+  constexpr double kScale = 0.8;
   RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()});
-  const KeyframeId newer(first);
-  const KeyframeId older(first - 1);
-  std::vector<std::pair<LandmarkId, KeyframeId>> removed;
-  made.map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
-    const bool is_on_both_sides = landmark.observations.front().keyframe < newer &&
-                                  landmark.observations.back().keyframe >= newer;
-    for (const Observation& seen : landmark.observations) {
-      if (is_on_both_sides && seen.keyframe != older && seen.keyframe != newer) {
-        removed.emplace_back(id, seen.keyframe);
-      }
-    }
-  });
-  for (const auto& [landmark, keyframe] : removed) {
-    made.map.RemoveObservation(landmark, keyframe);
-  }
-  for (uint32_t i = 0; i < made.views.size(); ++i) {
-    UpdateCovisibility(made.map, KeyframeId(i));
-  }
-  const Eigen::Vector3d center = Inverse(made.true_cam_from_world[first]).translation;
-  MapCorrection change =
-      MakeCorrection(made.map, Sim3(scale, Eigen::Quaterniond::Identity(), (1.0 - scale) * center));
-  change.poses.erase(change.poses.begin(), change.poses.begin() + first);
-  EXPECT_TRUE(ApplyCorrection(made.map, change, SharedRing().sensor().levels).is_applied);
-  return made;
-}
-
-TEST(SpreadLoopError, AScaleThatBrokeInOnePlaceIsMendedThere) {
-  constexpr double kScale = 0.5;
-  RingMap made = MakeRingOfTwoScales(14, kScale);
   Loop loop = TrueLoop(made, 29, 5);
   loop.query_from_candidate =
       Sim3(kScale, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero()) *
       loop.query_from_candidate;
-  const Map corrected = Corrected(made, SpreadLoopError(made.map, loop, false));
-  for (uint32_t i = 0; i < 30; ++i) {
-    EXPECT_LT(PoseError(made, corrected, KeyframeId(i)), 0.03) << i;
+  const MapCorrection correction = SpreadLoopError(made.map, loop, false);
+  ASSERT_EQ(correction.poses.size(), 30u);
+  EXPECT_NEAR(correction.poses[5].corrected_cam_from_world.scale, 1.0, 0.02);
+  EXPECT_NEAR(correction.poses[29].corrected_cam_from_world.scale, kScale, 0.02);
+  for (uint32_t i = 6; i < 29; ++i) {
+    EXPECT_LT(correction.poses[i].corrected_cam_from_world.scale,
+              correction.poses[i - 1].corrected_cam_from_world.scale)
+        << i;
   }
 }
 
@@ -189,7 +165,7 @@ TEST_F(LoopMerges, JoinLandmarksOfOnePoint) {
   }
 }
 
-// Not only what the query sees itself: its neighbours also see old landmarks.
+// Landmarks that only the neighbours of the query see are merged too.
 TEST_F(LoopMerges, JoinTheNeighbourhoodToo) {
   const std::vector<LandmarkId>& of_query = made_.map.keyframes().At(KeyframeId(29)).landmarks;
   EXPECT_TRUE(std::any_of(
@@ -217,8 +193,8 @@ TEST_F(LoopMerges, AreAppliedToAConsistentMapWithOneLandmarkPerPoint) {
   })) << "both ends see the same landmarks now";
 }
 
-// Of the two ends, either may belong to the younger island; that one moves.
-TEST(MoveIsland, PutsTheYoungerIslandToWhereItIsAndLeavesTheOtherOne) {
+// Either end of the loop may belong to the younger island. The younger island moves.
+TEST(MoveIsland, MovesTheYoungerIslandToItsTruePoseAndLeavesTheOther) {
   const Sim3 island_from_world(2.5, ExpSo3({0.3, -0.4, 0.2}), {3.0, -1.0, 0.5});
   for (const bool query_is_younger : {true, false}) {
     RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()});

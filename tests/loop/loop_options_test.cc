@@ -36,7 +36,7 @@ TEST(LoopOptions, AreSetByName) {
                    {"loop.turn_base", "'-0.1'", "expected"});
 }
 
-// Each option is a number of its own.
+// Each key has a field of its own.
 TEST(LoopOptions, NoTwoKeysSetTheSame) {
   LoopOptions options;
   OptionTable table;

@@ -32,7 +32,7 @@ class LoopVerification : public testing::Test {
 };
 
 TEST_F(LoopVerification, FindsTheTrueMotionBetweenTheEnds) {
-  // Also if the camera looks in a direction that differs by 15 degrees.
+  // The motion is also found if the viewing directions differ by 15 degrees.
   for (const uint32_t candidate : {4u, 5u, 6u}) {
     const LoopVerdict verdict = Verify(made_, 29, candidate);
     ASSERT_TRUE(verdict.loop) << candidate << ": " << verdict.refusal;
@@ -44,7 +44,7 @@ TEST_F(LoopVerification, FindsTheTrueMotionBetweenTheEnds) {
   }
 }
 
-// What is measured between two images does not depend on where tracking believed them to be.
+// The measured motion between two images does not depend on the poses that tracking gave them.
 TEST_F(LoopVerification, DoesNotDependOnTheDrift) {
   const LoopVerdict a = Verify(made_);
   const LoopVerdict b =

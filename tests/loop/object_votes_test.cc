@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-// The votes in a map without drift, which is as a correction leaves it.
+// The votes in a map without drift, which is like a map after the correction.
 ObjectVotes Votes(const std::vector<RingThing>& things) {
   const RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()}, things);
   return CountObjectVotes(made.map, SharedRing().sensor(), KeyframeId(29), KeyframeId(5), {});
@@ -58,7 +58,7 @@ TEST(ObjectVotes, OneCommonClassIsEnough) {
   EXPECT_EQ(votes.disagree, 0);
 }
 
-// What the other end could not have seen says nothing.
+// Objects that the other end could not have seen do not vote.
 TEST(ObjectVotes, ThingsOutsideTheOtherImageDoNotVote) {
   std::vector<RingThing> things = ThreeThings();
   things.push_back({ThingAt("lamp", 2.0 / 24.0, 0.0)});  // keyframe 5 looks past it by 45 degrees
@@ -85,7 +85,7 @@ TEST(ObjectVotes, AThingThatIsNotMappedYetIsNotMissing) {
   EXPECT_EQ(votes().agree, 2);
   EXPECT_EQ(votes().disagree, 0);
   made.map.MutableObject(ObjectId(0)).votes = {{"vase", 1.0}};
-  EXPECT_EQ(votes().disagree, 1) << "something else is there";
+  EXPECT_EQ(votes().disagree, 1) << "the other end shows another thing there";
 }
 
 // If the loop were wrong by more than their size, the things would be beside each other.
@@ -100,7 +100,7 @@ TEST(ObjectVotes, ThingsBesideEachOtherDisagree) {
   EXPECT_TRUE(votes.IsAgainst());
 }
 
-TEST(ObjectVotes, SeveralMustSpeakAndTheMajorityDecides) {
+TEST(ObjectVotes, SeveralVotesAreNeededAndTheMajorityDecides) {
   const auto is_for = [](int agree, int disagree) { return ObjectVotes{agree, disagree}.IsFor(); };
   const auto is_against = [](int agree, int disagree) {
     return ObjectVotes{agree, disagree}.IsAgainst();

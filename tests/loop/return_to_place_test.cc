@@ -78,7 +78,7 @@ TEST_F(ReturnToPlace, NeedsKeyframesFromElsewhere) {
 }
 
 // A camera that is found in a loaded map has not drifted on its way there.
-TEST_F(ReturnToPlace, IsMadeInOneSession) {
+TEST_F(ReturnToPlace, NeedsBothVisitsInOneSession) {
   const auto finds_at_new_keyframe = [&](bool begins_session) {
     Map map = made_.map.Snapshot();
     const FrameId frame(1000);
@@ -104,7 +104,7 @@ TEST_F(ReturnToPlace, IsMadeInOneSession) {
   EXPECT_FALSE(finds_at_new_keyframe(true));
 }
 
-TEST_F(ReturnToPlace, MergesWhatIsThereTwiceAndMovesNothing) {
+TEST_F(ReturnToPlace, MergesDuplicatesAndMovesNothing) {
   FindAgain(kMinLandmarks);
   const std::optional<Return> found = Find();
   ASSERT_TRUE(found);

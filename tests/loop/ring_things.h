@@ -27,7 +27,8 @@ inline MadeObject ThingAt(const std::string& label, double turns, double aside) 
   return thing;
 }
 
-// Three things where the shared map ends, which is also its place after 5 of 24 keyframes.
+// Three things at the place where the shared map ends. The camera was there before, after 5 of 24
+// keyframes.
 inline std::vector<RingThing> ThreeThings() {
   return {{ThingAt("cup", 5.0 / 24.0, -0.7)},
           {ThingAt("book", 5.0 / 24.0, 0.0)},

@@ -39,7 +39,7 @@ class WholeMapAdjustment : public testing::Test {
       SharedRing(), {.keyframes = 10, .drift = Rigid3(), .has_vocabulary = false}, ThreeThings());
 };
 
-TEST_F(WholeMapAdjustment, PutsKeyframesToWhereTheyWere) {
+TEST_F(WholeMapAdjustment, MovesKeyframesBackToTheirTruePoses) {
   const std::optional<MapCorrection> correction = Adjust();
   ASSERT_TRUE(correction);
   EXPECT_FALSE(correction->loop);
@@ -63,7 +63,7 @@ TEST_F(WholeMapAdjustment, MovesEveryKeyframeButTheRoot) {
   }
 }
 
-TEST_F(WholeMapAdjustment, IsOfTheSnapshotThatItWasGiven) {
+TEST_F(WholeMapAdjustment, RefersToTheSnapshotThatItWasGiven) {
   made_.map.CountCorrection();
   const std::optional<MapCorrection> correction = Adjust();
   ASSERT_TRUE(correction);

@@ -10,6 +10,7 @@
 #include "map/invariants.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
+#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {
@@ -53,6 +54,7 @@ TEST(Compaction, KeepsKeypointsWithLandmarksAndDetectionsWithObjects) {
   Map map;
   const KeyframeId a = AddDistinctKeyframe(map, 0);
   const KeyframeId b = AddDistinctKeyframe(map, 1);
+  SetParent(map, b, a);
   const LandmarkId landmark = map.AddLandmark({0.0, 0.0, 2.0}, a);
   map.AddObservation(landmark, a, 17);
   map.AddObservation(landmark, b, 5);
@@ -69,7 +71,8 @@ TEST(Compaction, KeepsKeypointsWithLandmarksAndDetectionsWithObjects) {
   EXPECT_EQ(compact.frame->detections[0].keypoints, std::vector<uint32_t>{0});
   EXPECT_EQ(compact.objects, std::vector<ObjectId>{object});
   EXPECT_EQ(map.landmarks().At(landmark).observations[0].keypoint, 0u);
-  EXPECT_EQ(map.landmarks().At(landmark).observations[1].keypoint, 5u) << "of the other keyframe";
+  EXPECT_EQ(map.landmarks().At(landmark).observations[1].keypoint, 5u)
+      << "the observation by the other keyframe";
   EXPECT_EQ(map.objects().At(object).observations[0].detection, 0u);
   EXPECT_EQ(map.keyframes().At(b).frame->features.size(), 40u);
   EXPECT_TRUE(FindViolations(map).empty());
@@ -78,7 +81,7 @@ TEST(Compaction, KeepsKeypointsWithLandmarksAndDetectionsWithObjects) {
   EXPECT_TRUE(FindViolations(before).empty());
 }
 
-// What observations mean is the same afterwards, in any map.
+// Each observation has the same descriptor, class and score afterwards, in any map.
 TEST(Compaction, KeepsEveryObservationOfARandomMap) {
   for (uint32_t seed = 0; seed < 20; ++seed) {
     Map map;

@@ -99,8 +99,8 @@ void ExpectMoved(const Ellipsoid& after, const Ellipsoid& before, const Sim3& ne
   }
 }
 
-// All numbers of a map that a correction may change, in a fixed order, but for those of misfit
-// samples, which have single precision.
+// All numbers of a map that a correction may change, in a fixed order. The numbers of misfit
+// samples are left out, because they have single precision.
 std::vector<double> Numbers(const Map& map) {
   std::vector<double> numbers;
   const auto add = [&](const auto& matrix) {
@@ -309,7 +309,7 @@ TEST_P(LateCorrection, ByIdentityChangesNoBit) {
 }
 
 // Only the neighbourhood of one keyframe moves.
-TEST_P(LateCorrection, DoesNotChangeWhatFollowsAnIdentity) {
+TEST_P(LateCorrection, DoesNotChangeEntitiesThatFollowAnIdentity) {
   MapCorrection correction = MakeIdentity(snapshot_);
   const KeyframeId moved = correction.poses.back().keyframe;
   const Sim3 change = RandomSim3(random_);
@@ -573,7 +573,7 @@ TEST_F(CorrectionByHand, ACulledKeyframeWithIdentityStays) {
   EXPECT_DOUBLE_EQ(map_.CamFromWorld(frame).translation.x(), -7.0);
 }
 
-TEST_F(CorrectionByHand, MovesWhatItDoesNotNameWithItsAncestor) {
+TEST_F(CorrectionByHand, MovesKeyframesThatItDoesNotNameWithTheirAncestor) {
   Name(a_, 1.0, 5.0);
   const KeyframeId alone = AddKeyframe(map_, 1, 0, Shift(-20.0));
   const LandmarkId still = map_.AddLandmark({1.0, 2.0, 3.0}, alone);
@@ -631,8 +631,8 @@ TEST_F(CorrectionByHand, MovesLandmarksToGivenPositions) {
   }
   correction_.positions.push_back({LandmarkId(99), Eigen::Vector3d::Zero()});
   Name(a_, 1.0, 5.0);
-  // An erased landmark is passed over. So is a replaced one: its position is not that of its
-  // replacement.
+  // An erased landmark is skipped. A replaced one is skipped too, because its position is not that
+  // of its replacement.
   map_.EraseLandmark(landmarks[1]);
   map_.ReplaceLandmark(landmarks[2], landmarks[3]);
   EXPECT_TRUE(Apply().is_applied);
@@ -726,8 +726,8 @@ TEST_F(CorrectionByHand, FollowsTheIdsOfMerges) {
   map_.EraseLandmark(others[3]);
   correction_.landmarks = {{others[0], ids[0]},   // ids[0] is ids[1] now
                            {ids[2], others[1]},   // ids[2] is ids[3] now
-                           {ids[1], ids[0]},      // the same landmark: passed over
-                           {ids[4], others[3]},   // erased: passed over
+                           {ids[1], ids[0]},      // the same landmark: skipped
+                           {ids[4], others[3]},   // erased: skipped
                            {others[3], ids[4]}};  // likewise
   EXPECT_TRUE(Apply().is_applied);
   EXPECT_EQ(map_.Resolve(others[0]), ids[1]);
@@ -800,7 +800,7 @@ TEST_F(CorrectionByHand, FollowsTheIdsOfMergedObjects) {
   EXPECT_EQ(map_.objects().size(), 2u);
 }
 
-TEST_F(CorrectionByHand, PassesOverKeyframesThatTheMapNeverHad) {
+TEST_F(CorrectionByHand, SkipsKeyframesThatTheMapNeverHad) {
   Name(a_, 1.0, 5.0);
   for (const KeyframeId id : {KeyframeId(99), KeyframeId()}) {
     correction_.poses.push_back({id, Rigid3(), Sim3(Shift(1.0))});
@@ -950,7 +950,8 @@ TEST_F(UniformCorrection, KeepsTheProjectedEllipsesOfObjects) {
   });
 }
 
-// The younger island has another unit of length and another world; the correction is right.
+// The younger island has another unit of length and another world frame. The correction has the
+// true poses.
 TEST(JoinCorrection, MovesTheYoungerIslandAndMakesOneOfBoth) {
   RandomGeometry random(3);
   Map map;

@@ -117,6 +117,18 @@ TEST_F(Invariants, FindACycleInTheTree) {
   ExpectViolation("keyframe 0 is its own ancestor");
 }
 
+TEST_F(Invariants, FindASecondRootOfAnIsland) {
+  SetParent(map_, c_, KeyframeId());
+  ExpectViolation("keyframe 2 is a second root of the island of keyframe 0");
+  Map map;
+  const KeyframeId first = AddKeyframe(map, 1);
+  map.BeginIsland();
+  map.AddKeyframe(MakeFrame(9, 1), {}, map.BeginIsland());
+  EXPECT_EQ(FindViolations(map), std::vector<std::string>()) << "each island has a root";
+  map.MoveToIsland(first, IslandId(1));
+  EXPECT_EQ(FindViolations(map), std::vector<std::string>());
+}
+
 TEST_F(Invariants, FindValuesThatAreNotFinite) {
   map_.SetPosition(shared_[7], {0.0, kNan, 0.0});
   ExpectViolation("landmark 7 has no finite position");

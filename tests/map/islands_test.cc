@@ -85,6 +85,13 @@ TEST_F(IslandsTest, TheMainOneIsThatOfEarlierSessions) {
   EXPECT_EQ(MainIsland(map), IslandId(0));
 }
 
+// A map may have been saved before its islands were joined.
+TEST_F(IslandsTest, TheMainOneOfEarlierSessionsIsTheLargestOne) {
+  map_.BeginSession({.name = "second", .first_frame = map_.NextFrame()});
+  AddKeyframes(first_, 2);
+  EXPECT_EQ(MainIsland(map_), second_) << "earlier sessions made more keyframes of it";
+}
+
 TEST_F(IslandsTest, BecomeOneWithOneTree) {
   for (const bool swap : {false, true}) {
     Map before = map_.Snapshot();
@@ -103,14 +110,14 @@ TEST_F(IslandsTest, BecomeOneWithOneTree) {
                 before.CamFromWorld(KeyframeId(i)).translation);
     }
     JoinIslands(map_, KeyframeId(0), KeyframeId(6));
-    EXPECT_EQ(map_.islands_joined(), 1u) << "they are one already";
+    EXPECT_EQ(map_.islands_joined(), 1u) << "the islands were joined before";
     EXPECT_EQ(ParentOf(5), a);
     map_ = before.Snapshot();
     EXPECT_EQ(Islands(map_).size(), 2u) << "a snapshot has islands of its own";
   }
 }
 
-TEST_F(IslandsTest, OfRemovedOnesNothingIsLeftButTheNumbersOfTheFrames) {
+TEST_F(IslandsTest, RemovedIslandsLeaveOnlyTheNumbersOfTheirFrames) {
   map_.CullKeyframe(KeyframeId(4));
   EXPECT_TRUE(KeepOnlyIsland(map_, first_));
   ExpectConsistent();

@@ -83,7 +83,8 @@ TEST(ViewLandmark, IsNullOutsideTheImage) {
 }
 
 TEST(ViewLandmark, IsNullFromMuchNearerOrFarther) {
-  // Seen from 1.116 m to 4 m, and one level of 1.2 more at both ends: from 0.930 m to 4.8 m.
+  // The landmark was seen from 1.116 m to 4 m. A factor of 1.2, one level, is added at both ends,
+  // so it is expected from 0.930 m to 4.8 m.
   Landmark landmark = MakeLandmark();
   landmark.position = {0.0, 0.0, 0.0};
   EXPECT_TRUE(IsSeen(landmark, CameraAt(0.0, 0.0, -0.931)));

@@ -115,7 +115,8 @@ inline std::string Dump(const Map& map) {
   map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
     out << "\nkeyframe " << id.value << " frame " << keyframe.frame->id.value << " pose";
     Dump(keyframe.cam_from_world, out);
-    out << " scale " << keyframe.scale << " parent " << keyframe.parent.value << " children";
+    out << " island " << keyframe.island.value << " scale " << keyframe.scale << " parent "
+        << keyframe.parent.value << " children";
     for (const KeyframeId child : keyframe.children) {
       out << ' ' << child.value;
     }

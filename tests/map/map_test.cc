@@ -58,7 +58,7 @@ TEST(Map, AKeyframeObservesALandmarkAtOneKeypointOnly) {
   EXPECT_EQ(Dump(map), before);
 }
 
-TEST(Map, RefusesWhatDoesNotExist) {
+TEST(Map, RefusesIdsThatDoNotExist) {
   Map map;
   const KeyframeId keyframe = AddKeyframe(map, 5);
   const LandmarkId landmark = map.AddLandmark({}, keyframe);
@@ -111,7 +111,8 @@ TEST(Map, ReplacingMovesObservationsAndSightings) {
   EXPECT_EQ(map.Resolve(old), kept);
   const Landmark& landmark = map.landmarks().At(kept);
   ASSERT_EQ(landmark.observations.size(), 3u);
-  EXPECT_EQ(landmark.observations[1].keypoint, 1u);  // b observed both: that of `kept` stays
+  EXPECT_EQ(landmark.observations[1].keypoint,
+            1u);  // b observed both: its observation of `kept` stays
   EXPECT_EQ(landmark.observation_weight, 3);
   EXPECT_EQ(map.keyframes().At(a).landmarks[0], kept);
   EXPECT_FALSE(map.keyframes().At(b).landmarks[0].IsValid());

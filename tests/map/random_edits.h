@@ -7,6 +7,7 @@
 #include "hullslam/map/map.h"
 #include "map/covisibility.h"
 #include "map/made_map.h"
+#include "map/spanning_tree.h"
 #include "support/random_geometry.h"
 
 namespace hullslam {
@@ -53,6 +54,9 @@ class RandomEdits {
       map.AddObservation(AnyLandmark(map), id, random_.Index(kKeypoints));
     }
     UpdateCovisibility(map, id);
+    if (id != KeyframeId(0) && !map.keyframes().At(id).parent.IsValid()) {
+      SetParent(map, id, KeyframeId(0));
+    }
     AddLandmark(map);
   }
 

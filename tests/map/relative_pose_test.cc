@@ -13,7 +13,7 @@
 namespace hullslam {
 namespace {
 
-Rigid3 Shift(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }
+Rigid3 AlongX(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }
 
 TEST(RelativePose, HasNoReferenceAtFirst) {
   const RelativePose pose;
@@ -46,9 +46,9 @@ TEST(RelativePose, FollowsItsReference) {
 
 TEST(RelativePose, FollowsTheScaleOfItsReference) {
   Map map;
-  const KeyframeId reference = AddKeyframe(map, 1, 0, Shift(1.0));
+  const KeyframeId reference = AddKeyframe(map, 1, 0, AlongX(1.0));
   map.MutableKeyframe(reference).scale = 2.0;
-  const RelativePose pose = map.RelativeTo(reference, Shift(4.0));
+  const RelativePose pose = map.RelativeTo(reference, AlongX(4.0));
   EXPECT_EQ(pose.cam_from_reference.translation.x(), 3.0);
   map.MutableKeyframe(reference).scale = 6.0;
   EXPECT_EQ(map.CamFromWorld(pose).translation.x(), 1.0 + 3.0 * (6.0 / 2.0));
@@ -56,19 +56,19 @@ TEST(RelativePose, FollowsTheScaleOfItsReference) {
 
 TEST(RelativePose, FollowsTheScaleThroughACulledReference) {
   Map map;
-  const KeyframeId parent = AddKeyframe(map, 1, 0, Shift(1.0));
-  const KeyframeId reference = AddKeyframe(map, 1, 0, Shift(3.0));
+  const KeyframeId parent = AddKeyframe(map, 1, 0, AlongX(1.0));
+  const KeyframeId reference = AddKeyframe(map, 1, 0, AlongX(3.0));
   SetParent(map, reference, parent);
   map.MutableKeyframe(parent).scale = 2.0;
   map.MutableKeyframe(reference).scale = 4.0;
-  const RelativePose pose = map.RelativeTo(reference, Shift(8.0));
+  const RelativePose pose = map.RelativeTo(reference, AlongX(8.0));
   map.CullKeyframe(reference);
   EXPECT_EQ(map.CamFromWorld(pose).translation.x(), 8.0);
   map.MutableKeyframe(parent).scale = 6.0;  // three times as much
   EXPECT_EQ(map.CamFromWorld(reference).translation.x(), 1.0 + 3.0 * 2.0);
   EXPECT_EQ(map.CamFromWorld(pose).translation.x(), 1.0 + 3.0 * 2.0 + 3.0 * 5.0);
   // A pose that is made now remembers the scale that the culled keyframe has now.
-  const RelativePose later = map.RelativeTo(reference, Shift(40.0));
+  const RelativePose later = map.RelativeTo(reference, AlongX(40.0));
   EXPECT_EQ(later.reference_scale, 12.0);
   EXPECT_EQ(map.CamFromWorld(later).translation.x(), 40.0);
 }

@@ -8,7 +8,7 @@
 namespace hullslam {
 namespace {
 
-TEST(Replacements, FindsWhatReplacedAnId) {
+TEST(Replacements, FindsTheIdThatReplacedAnother) {
   Replacements<ObjectId> replacements;
   EXPECT_EQ(replacements.Find(ObjectId(1)), nullptr);
   replacements.Add(ObjectId(5), ObjectId(2), 0);

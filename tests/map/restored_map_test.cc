@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <functional>
 #include <sstream>
 #include <string>
@@ -13,12 +14,13 @@
 #include "map/islands.h"
 #include "map/made_map.h"
 #include "map/random_edits.h"
+#include "map/spanning_tree.h"
 #include "support/expect_error.h"
 
 namespace hullslam {
 namespace {
 
-// The tables of a map without what can be derived.
+// The tables of a map without the values that can be derived.
 MapTables TablesOf(const Map& map) {
   MapTables tables;
   map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
@@ -40,7 +42,7 @@ MapTables TablesOf(const Map& map) {
   return tables;
 }
 
-TEST(RestoreMap, DerivesWhatIsMissing) {
+TEST(RestoreMap, DerivesTheMissingValues) {
   for (uint32_t seed = 0; seed < 5; ++seed) {
     Map map;
     RandomEdits edits(seed);
@@ -50,7 +52,7 @@ TEST(RestoreMap, DerivesWhatIsMissing) {
     map.ForgetReplaced(UINT32_MAX);
     ASSERT_FALSE(map.culled().empty());
     const Map restored = RestoreMap(TablesOf(map));
-    // Free slots are not in these tables, so Dump would differ in the absent ids that it resolves.
+    // These tables have no free slots, so Dump would give other results for ids that are absent.
     EXPECT_EQ(FindViolations(restored), std::vector<std::string>());
     map.keyframes().ForEach([&](KeyframeId id, const Keyframe& keyframe) {
       EXPECT_EQ(restored.keyframes().At(id).children, keyframe.children);
@@ -100,7 +102,7 @@ void ExpectRefusal(const std::function<void(MapTables&)>& change,
   ExpectInputError([&] { RestoreMap(std::move(tables)); }, parts);
 }
 
-TEST(RestoreMap, AcceptsWhatAMapConsistsOf) {
+TEST(RestoreMap, AcceptsTheTablesOfAMap) {
   EXPECT_EQ(Dump(RestoreMap(TablesOf(MadeMap()))), Dump(MadeMap()));
 }
 
@@ -139,7 +141,7 @@ TEST(RestoreMap, RefusesCulledKeyframesWithoutAPose) {
       {"itself"});
 }
 
-TEST(RestoreMap, RefusesReferencesToWhatDoesNotExist) {
+TEST(RestoreMap, RefusesReferencesToMissingEntities) {
   const auto first = [](MapTables& t) -> LandmarkId { return (*t.landmarks.begin()).first; };
   ExpectRefusal([&](MapTables& t) { t.landmarks.Mutable(first(t)).reference = KeyframeId(8); },
                 {"landmark", "keyframe that does not exist"});
@@ -163,7 +165,7 @@ TEST(RestoreMap, RefusesReferencesToWhatDoesNotExist) {
                 {"keyframe 1", "object that does not exist"});
 }
 
-TEST(RestoreMap, RefusesWhatViolatesTheInvariants) {
+TEST(RestoreMap, RefusesTablesThatViolateTheInvariants) {
   ExpectRefusal([](MapTables& t) { t.keyframes.Mutable(KeyframeId(1)).covisible[0].shared = 3; },
                 {"keyframe", "edge"});
   ExpectRefusal(
@@ -171,20 +173,81 @@ TEST(RestoreMap, RefusesWhatViolatesTheInvariants) {
         std::vector<Covisible>& edges = t.keyframes.Mutable(KeyframeId(1)).covisible;
         std::swap(edges[0], edges[1]);
       },
-      {"keyframe 1", "out of order"});
+      {"keyframe", "edge"});
   ExpectRefusal([](MapTables& t) { t.keyframes.Mutable(KeyframeId(0)).parent = KeyframeId(4); },
                 {"ancestor"});
   ExpectRefusal([](MapTables& t) { t.objects.Mutable(ObjectId(0)).votes["cup"] += 1.0; },
                 {"object 0", "votes"});
 }
 
+// Two islands of which the second one was begun first but one.
+Map MadeIslands() {
+  Map map;
+  map.BeginIsland();
+  map.BeginIsland();
+  for (const IslandId island : {IslandId(0), map.BeginIsland()}) {
+    std::vector<KeyframeId> ids;
+    for (int i = 0; i < 3; ++i) {
+      ids.push_back(map.AddKeyframe(MakeFrame(map.keyframes().NextId().value, 40), {}, island));
+    }
+    Share(map, ids, 20);
+    for (const KeyframeId id : ids) {
+      UpdateCovisibility(map, id);
+    }
+  }
+  return map;
+}
+
+TEST(RestoreMap, KeepsIslands) {
+  const Map map = MadeIslands();
+  Map restored = RestoreMap(TablesOf(map));
+  EXPECT_EQ(Dump(restored), Dump(map));
+  EXPECT_EQ(Islands(restored), (std::vector<IslandId>{IslandId(0), IslandId(2)}));
+  EXPECT_EQ(restored.BeginIsland(), IslandId(3));
+}
+
+TEST(RestoreMap, TakesEachTreeForAnIslandIfThereAreNone) {
+  Map map = MadeIslands();
+  MakeRoot(map, KeyframeId(5));
+  MapTables tables = TablesOf(map);
+  for (uint32_t i = 0; i < 6; ++i) {
+    tables.keyframes.Mutable(KeyframeId(i)).island = IslandId();
+  }
+  const Map restored = RestoreMap(std::move(tables));
+  for (uint32_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(restored.keyframes().At(KeyframeId(i)).island, IslandId(i / 3)) << i;
+  }
+}
+
+TEST(RestoreMap, RefusesIslandsThatCannotBe) {
+  ExpectRefusal([](MapTables& t) { t.keyframes.Mutable(KeyframeId(3)).island = IslandId(1); },
+                {"keyframe", "another island"});
+  const auto all_in = [](IslandId island) {
+    return [island](MapTables& t) {
+      for (const uint32_t i : {0U, 1U, 3U, 4U}) {
+        t.keyframes.Mutable(KeyframeId(i)).island = island;
+      }
+    };
+  };
+  ExpectRefusal(all_in(IslandId(5)), {"keyframe 0", "island that cannot be"});
+  ExpectRefusal(
+      [&](MapTables& t) {
+        all_in(IslandId())(t);
+        t.keyframes.Mutable(KeyframeId(0)).parent = KeyframeId(4);  // a tree without a root
+      },
+      {"keyframe 0", "island that cannot be"});
+  ExpectRefusal([](MapTables& t) { t.keyframes.Mutable(KeyframeId(3)).parent = KeyframeId(); },
+                {"keyframe 3", "second root"});
+}
+
 TEST(RestoreMap, KeyframesThatWereRemovedWithTheirIslandHaveNoPose) {
   Map map;
-  for (int i = 0; i < 2; ++i) {
+  for (uint32_t i = 0; i < 2; ++i) {
     const IslandId island = map.BeginIsland();
     for (int k = 0; k < 2; ++k) {
       map.AddKeyframe(MakeFrame(map.keyframes().NextId().value, 20), Rigid3(), island);
     }
+    SetParent(map, KeyframeId(2 * i + 1), KeyframeId(2 * i));
   }
   ASSERT_TRUE(KeepOnlyIsland(map, IslandId(1)));
   const Map restored = RestoreMap(TablesOf(map));
@@ -199,6 +262,29 @@ TEST(RestoreMap, KeyframesThatWereRemovedWithTheirIslandHaveNoPose) {
   tables.landmarks.Mutable(landmark).reference = KeyframeId(1);
   ExpectInputError([&] { RestoreMap(std::move(tables)); },
                    {"landmark", "a keyframe without a pose"});
+}
+
+// Each of these keyframes refers to the one before it, and the landmarks to the last one. If the
+// chain were followed from each of them, this would take minutes.
+TEST(RestoreMap, TheTimeForALongChainIsProportionalToItsLength) {
+  constexpr uint32_t kHalf = 50'000;
+  MapTables tables;
+  for (uint32_t i = 0; i < kHalf; ++i) {
+    Keyframe keyframe;
+    keyframe.frame = MakeFrame(i, 0);
+    keyframe.objects.resize(keyframe.frame->detections.size());
+    keyframe.parent = i > 0 ? KeyframeId(i - 1) : KeyframeId();
+    tables.keyframes.Put(KeyframeId(i), std::move(keyframe));
+  }
+  for (uint32_t i = kHalf; i < 2 * kHalf; ++i) {
+    tables.culled.Put(KeyframeId(i), Culled(i, i - 1));
+    Landmark landmark;
+    landmark.reference = KeyframeId(2 * kHalf - 1);
+    tables.landmarks.Put(LandmarkId(i - kHalf, 0), landmark);
+  }
+  const std::clock_t start = std::clock();
+  EXPECT_EQ(RestoreMap(std::move(tables)).landmarks().size(), kHalf);
+  EXPECT_LT((std::clock() - start) / CLOCKS_PER_SEC, 5);
 }
 
 }  // namespace

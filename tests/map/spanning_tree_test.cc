@@ -65,8 +65,8 @@ TEST_F(SpanningTree, ChildrenThatShareNothingGoToTheParent) {
   EXPECT_TRUE(At(1).children.empty());
 }
 
-// 2 shares most with the parent, 3 with 2 (which has its new parent by then), 4 with 3, 5 with
-// none.
+// Child 2 shares most landmarks with the parent, 3 with 2 (which has its new parent by then), and 4
+// with 3. Child 5 shares none.
 TEST_F(SpanningTree, ChildrenGoToTheKeyframesThatTheyShareMostWith) {
   ShareAndLink(2, 0, 40);
   ShareAndLink(3, 2, 60);
@@ -80,7 +80,7 @@ TEST_F(SpanningTree, ChildrenGoToTheKeyframesThatTheyShareMostWith) {
 }
 
 // Siblings that share landmarks only with each other must not form a cycle.
-TEST_F(SpanningTree, SiblingsAdoptNoneBeforeTheyHaveANewParent) {
+TEST_F(SpanningTree, ASiblingBecomesAParentOnlyWhenItHasANewParent) {
   ShareAndLink(3, 2, 60);
   ShareAndLink(5, 4, 50);
   DetachFromTree(map_, KeyframeId(1));

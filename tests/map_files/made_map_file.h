@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hullslam/map_files/map_file.h"
 #include "map/covisibility.h"
@@ -81,6 +82,23 @@ inline Map SmallMap() {
   cup.visible = 5;
   cup.found = 4;
   map.CountCorrection();
+  return map;
+}
+
+// Two islands of two keyframes each, which see the same landmarks within the island.
+inline Map MapOfTwoIslands() {
+  Map map;
+  map.BeginSession({"rooms", FrameId(0)});
+  for (int i = 0; i < 2; ++i) {
+    const IslandId island = map.BeginIsland();
+    std::vector<KeyframeId> ids;
+    for (int k = 0; k < 2; ++k) {
+      const uint32_t number = map.keyframes().NextId().value;
+      ids.push_back(map.AddKeyframe(FullFrame(number, 0.5 * number), {}, island));
+    }
+    Share(map, ids, 3);
+    UpdateCovisibility(map, ids.back());
+  }
   return map;
 }
 

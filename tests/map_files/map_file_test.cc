@@ -11,6 +11,7 @@
 #include <csignal>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -19,12 +20,16 @@
 
 #include "files/read_file.h"
 #include "map/invariants.h"
+#include "map/islands.h"
 #include "map/random_edits.h"
+#include "map/spanning_tree.h"
 #include "map_files/made_map_file.h"
 #include "map_files/map_parser.h"
+#include "map_files/map_records.h"
 #include "support/expect_error.h"
 #include "support/file_size_limit.h"
 #include "support/made_vocabulary.h"
+#include "support/paths.h"
 #include "support/random_geometry.h"
 #include "support/temporary_folder.h"
 
@@ -55,6 +60,11 @@ class MapFileTest : public testing::Test {
   TemporaryFolder folder_;
   std::filesystem::path path_ = folder_.path() / "a.map";
 };
+
+// Where the file of SmallMap() has the number of keyframes, and then those of culled keyframes,
+// landmarks, and slots of landmarks. Before it are prefix, length, sensor, camera, pyramid,
+// vocabulary, sessions, corrections.
+constexpr size_t kCounts = 14 + 4 + 1 + 88 + 12 + 8 + 4 + (4 + 4 + 4) + (4 + 10 + 4) + 4;
 
 // Options whose maps have the settings MadeSettings().
 SystemOptions MadeOptions() {
@@ -103,8 +113,9 @@ TEST_F(MapFileTest, WritingReadingAndWritingGivesTheSameBytes) {
   }
 }
 
-// The same ids are given to new entities, and free slots are used in the same order.
-TEST_F(MapFileTest, WorkGoesOnAsBefore) {
+// In a map that was read again, new entities get the same ids, and free slots are used in the same
+// order.
+TEST_F(MapFileTest, NewEntitiesGetTheSameIdsAsWithoutTheFile) {
   for (uint32_t seed = 0; seed < 4; ++seed) {
     RandomEdits edits(seed);
     Map map = EditedMap(edits, 500);
@@ -184,6 +195,22 @@ TEST_F(MapFileTest, KeepsWhatDumpDoesNotShow) {
   EXPECT_EQ(cup.compensated_px, 0.75);
 }
 
+TEST_F(MapFileTest, KeepsIslandsApart) {
+  const Map map = MapOfTwoIslands();
+  const Map read = ReadBack(map);
+  EXPECT_EQ(Dump(read), Dump(map));
+  EXPECT_EQ(Islands(read), (std::vector<IslandId>{IslandId(0), IslandId(1)}));
+}
+
+// The file was written by an earlier version of the program.
+TEST_F(MapFileTest, ReadsTheFormerVersionOfTheFormat) {
+  const std::filesystem::path former = SourceFolder() / "tests/fuzz/corpus/map/small.map";
+  ASSERT_EQ(ReadFile(former)[10], 1);
+  EXPECT_EQ(Dump(ReadMap(former).map), Dump(SmallMap()));
+  const Map islands = ReadMap(SourceFolder() / "tests/fuzz/corpus/map/two_islands.map").map;
+  EXPECT_EQ(Islands(islands).size(), 2u) << "a start of the search for faults";
+}
+
 TEST_F(MapFileTest, KeepsItsSettings) {
   MapSettings settings = MadeSettings();
   settings.camera.k1 = 0.01;
@@ -198,6 +225,28 @@ TEST_F(MapFileTest, KeepsItsSettings) {
   options.features.scale_factor = 1.5;
   settings.vocabulary = 0;
   EXPECT_EQ(MapSettingsOf(options), settings);
+  options.readout_time = 0.02;
+  EXPECT_EQ(MapSettingsOf(options), settings) << "frames with and without it fit together";
+}
+
+// A map file may come from a stranger, or from a program that did not check its labels.
+TEST_F(MapFileTest, LabelsAreMadePrintable) {
+  Map map;
+  const auto frame = FullFrame(0, 1.0);
+  frame->detections = {FullDetection(), FullDetection()};
+  frame->detections[0].label = "cup\x1b[2J";
+  frame->detections[1].label = "cup\x02[2J";
+  const KeyframeId a = map.AddKeyframe(frame, {});
+  const auto next = FullFrame(1, 2.0);
+  next->detections = {frame->detections[1]};
+  const KeyframeId b = map.AddKeyframe(next, {});
+  SetParent(map, b, a);
+  const ObjectId object = map.AddObject();
+  map.AddObservation(object, a, 0);
+  map.AddObservation(object, b, 0);
+  const Map read = ReadBack(map);
+  EXPECT_EQ(read.keyframes().At(a).frame->detections[1].label, "cup?[2J");
+  EXPECT_EQ(read.objects().At(object).votes, (std::map<std::string, double>{{"cup?[2J", 1.625}}));
 }
 
 // ---- refusals
@@ -251,12 +300,14 @@ TEST_F(MapFileTest, ATruncatedFileIsRefused) {
   ExpectRefusal(good + '\0', {"damaged or cut off"});
 }
 
-TEST_F(MapFileTest, WhatIsNoMapOfThisVersionIsRefused) {
+TEST_F(MapFileTest, OtherFilesAndVersionsAreRefused) {
   ExpectRefusal("", {"is not a map"});
   ExpectRefusal("1.0 0 0 0 0 0 0 1\n", {"is not a map"});
   std::string bytes = Written(SmallMap());
-  bytes[10] = 2;
-  ExpectRefusal(WithChecksum(bytes), {"format version 2", "expected 1"});
+  bytes[10] = 3;
+  ExpectRefusal(WithChecksum(bytes), {"format version 3", "expected 1 to 2"});
+  bytes[10] = 0;
+  ExpectRefusal(WithChecksum(bytes), {"format version 0", "expected 1 to 2"});
   ExpectInputError([&] { ReadMap(folder_.path()); }, {folder_.path().string(), "regular file"});
   ExpectInputError([&] { ReadMap("/dev/null"); }, {"/dev/null", "regular file"});
   ExpectInputError([&] { ReadMap(folder_.path() / "none.map"); },
@@ -267,18 +318,16 @@ TEST_F(MapFileTest, AMapWithoutKeyframesIsRefused) {
   ExpectInputError([&] { WriteMap(path_, Map(), MadeSettings()); },
                    {path_.string(), "has no keyframe"});
   EXPECT_FALSE(std::filesystem::exists(path_));
-  // The bytes before the number of keyframes: prefix, length, sensor, camera, pyramid, vocabulary,
-  // sessions, corrections.
-  constexpr size_t kBefore = 14 + 4 + 1 + 88 + 12 + 8 + 4 + (4 + 4 + 4) + (4 + 10 + 4) + 4;
   std::string bytes = Written(SmallMap());
-  ASSERT_EQ(bytes[kBefore], 2);
-  bytes[kBefore] = 0;
+  ASSERT_EQ(bytes[kCounts], 2);
+  bytes[kCounts] = 0;
   ExpectRefusal(WithChecksum(bytes), {"has no keyframes"});
-  bytes.replace(kBefore, 4, "\xff\xff\xff\xff");
-  ExpectRefusal(WithChecksum(bytes), {"more entities than it has"});
+  bytes.replace(kCounts, 4, "\xff\xff\xff\xff");
+  ExpectRefusal(WithChecksum(bytes), {"fewer entities than its header says"});
 }
 
-// A wrong byte that the checksum does not tell must not crash either. Most change only a number.
+// Wrong bytes must not crash the reader even if the checksum is right. Most of them only change a
+// number.
 TEST_F(MapFileTest, AnyBytesBelowTheChecksumAreReadOrRefused) {
   const std::string file = Written(SmallMap());
   const std::string good = file.substr(14, file.size() - 14 - 4);
@@ -289,7 +338,7 @@ TEST_F(MapFileTest, AnyBytesBelowTheChecksumAreReadOrRefused) {
     bad[i / 4] = static_cast<char>(random.Index(256));
     std::istringstream in(bad);
     try {
-      const Map map = ParseMap(in, bad.size(), "map", nullptr).map;
+      const Map map = ParseMap(in, bad.size(), kMapVersion, "map", nullptr).map;
       EXPECT_EQ(FindViolations(map), std::vector<std::string>());
     } catch (const InputError&) {
       ++refused;
@@ -302,6 +351,42 @@ TEST_F(MapFileTest, AnInconsistentMapIsRefused) {
   Map map = SmallMap();
   map.MutableCulledKeyframe(KeyframeId(1)).pose.reference = KeyframeId(1);
   ExpectRefusal(Written(map), {"is not consistent", "keyframe 1"});
+}
+
+TEST_F(MapFileTest, PosesAndScalesThatCannotBeAreRefused) {
+  const auto refuse = [&](const auto& change) {
+    Map map = SmallMap();
+    change(map);
+    ExpectRefusal(Written(map), {"out of range"});
+  };
+  const Rigid3 far{Eigen::Quaterniond::Identity(), {0.0, -1e12, 0.0}};
+  refuse([&](Map& map) { map.SetPose(KeyframeId(2), far); });
+  refuse([&](Map& map) { map.MutableCulledKeyframe(KeyframeId(1)).pose.cam_from_reference = far; });
+  refuse([&](Map& map) { map.MutableObject(ObjectId(1)).ellipsoid.world_from_object = far; });
+  refuse([](Map& map) { map.MutableObject(ObjectId(1)).ellipsoid.half_axes.y() = 1e12; });
+  refuse([](Map& map) { map.MutableKeyframe(KeyframeId(0)).scale = 1e-100; });
+  refuse([](Map& map) { map.MutableKeyframe(KeyframeId(0)).scale = 1e12; });
+}
+
+// A run that goes on with a map needs free slots for its landmarks.
+TEST_F(MapFileTest, AMapWithoutRoomForLandmarksIsRefused) {
+  std::string bytes = Written(SmallMap());
+  ASSERT_EQ(bytes[kCounts + 12], 3) << "landmark slots";
+  bytes.replace(kCounts + 12, 4, std::string("\xff\xff\xff\x00", 4));
+  ExpectRefusal(WithChecksum(bytes), {"too many landmarks"});
+}
+
+TEST_F(MapFileTest, ReadingCanBeCancelled) {
+  const std::string bytes = Written(SmallMap());
+  Cancellation cancellation;
+  EXPECT_NO_THROW(ReadMap(path_, MadeOptions(), &cancellation));
+  cancellation.Request();
+  EXPECT_THROW(ReadMap(path_, MadeOptions(), &cancellation), ReadingCancelled);
+  constexpr size_t kPrefix = 14;
+  std::istringstream records(bytes.substr(kPrefix, bytes.size() - kPrefix - 4));
+  EXPECT_THROW(
+      ParseMap(records, records.str().size(), kMapVersion, "map", nullptr, nullptr, &cancellation),
+      ReadingCancelled);
 }
 
 // ---- writing
@@ -323,7 +408,7 @@ TEST_F(MapFileTest, AKilledWriterLeavesTheOldOrTheNewFile) {
   const std::array<std::string, 2> whole = {Written(large), Written(small)};
   RandomGeometry random(7);
   std::array<int, 2> found{};
-  // On a busy computer it takes more kills until one comes between two files.
+  // On a busy computer it takes more attempts until both files have been found.
   const auto has_both = [&] { return found[0] > 0 && found[1] > 0; };
   for (int kill = 0; kill < 50 || (kill < 1000 && !has_both()); ++kill) {
     const pid_t process = ::fork();
@@ -342,7 +427,7 @@ TEST_F(MapFileTest, AKilledWriterLeavesTheOldOrTheNewFile) {
     ASSERT_TRUE(bytes == whole[0] || bytes == whole[1]) << kill;
     ++found[bytes == whole[0] ? 0 : 1];
   }
-  EXPECT_TRUE(has_both()) << "no kill came between";
+  EXPECT_TRUE(has_both()) << "every killed process left the same one of the two maps";
   Written(small);  // removes what the killed processes have left
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
 }

@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "support/expect_error.h"
@@ -37,6 +38,18 @@ TEST(VocabularyFile, AVocabularyOutlivesItsFile) {
   EXPECT_NE(ReadVocabulary(path).hash(), first.hash());
 }
 
+// Another program may write into the file of a vocabulary that a run uses.
+TEST(VocabularyFile, AVocabularyDoesNotChangeWithItsFile) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "vocabulary";
+  WriteVocabulary(path, MadeVocabulary(), VocabularyForm::kBinary);
+  const Vocabulary vocabulary = ReadVocabulary(path);
+  std::fstream(path, std::ios::in | std::ios::out) << std::string(1000, 'x');
+  EXPECT_EQ(BytesOf(vocabulary), BytesOf(MadeVocabulary()));
+  std::filesystem::resize_file(path, 0);
+  EXPECT_EQ(BytesOf(vocabulary), BytesOf(MadeVocabulary()));
+}
+
 TEST(VocabularyFile, OtherFilesAreRefused) {
   const TemporaryFolder folder;
   const auto refuse = [&](const std::string& content, const std::string& why) {
@@ -51,7 +64,7 @@ TEST(VocabularyFile, OtherFilesAreRefused) {
   ExpectInputError([&] { ReadVocabulary(folder.path()); }, {"is a folder"});
 }
 
-TEST(VocabularyFile, WhatCannotBeWrittenIsAnError) {
+TEST(VocabularyFile, AMissingFolderIsAnError) {
   const TemporaryFolder folder;
   ExpectInputError(
       [&] {

@@ -13,7 +13,7 @@
 namespace hullslam {
 namespace {
 
-// A line of a node; the first byte of its descriptor is `byte`, all others are 0.
+// The line of a node. The first byte of its descriptor is `byte`; all others are 0.
 std::string Node(int parent, bool is_leaf, int byte, const std::string& weight = "0") {
   std::string line = std::to_string(parent) + (is_leaf ? " 1 " : " 0 ") + std::to_string(byte);
   for (int i = 1; i < 32; ++i) {
@@ -24,8 +24,8 @@ std::string Node(int parent, bool is_leaf, int byte, const std::string& weight =
 
 Vocabulary Parse(const std::string& text) { return ParseVocabularyText(text, "voc.txt", {}); }
 
-void ExpectRefused(const std::string& text, const std::string& place, const std::string& why) {
-  ExpectInputError([&] { Parse(text); }, {place, why});
+void ExpectRefused(const std::string& text, const std::string& position, const std::string& why) {
+  ExpectInputError([&] { Parse(text); }, {position, why});
 }
 
 TEST(VocabularyText, IsReadLineByLine) {
@@ -87,7 +87,7 @@ TEST(VocabularyText, BrokenLinesAreNamed) {
   ExpectRefused(good + "x 1 0\n", "voc.txt:3: ", "parent 'x'");
   ExpectRefused(good + "0x 1 0\n", "voc.txt:3: ", "parent '0x'");
   ExpectRefused(good + "0 2 0\n", "voc.txt:3: ", "is_leaf '2'");
-  // 64 bytes, or 31
+  // The descriptor of a good node has 32 bytes; here a node has too many or too few columns.
   ExpectRefused(good + Node(0, true, 1, "0 0"), "voc.txt:3: ", "more than 35 columns");
   ExpectRefused(good + "0 1" + Node(0, true, 1).substr(5), "voc.txt:3: ", "weight is missing");
 }

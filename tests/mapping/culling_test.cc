@@ -10,6 +10,7 @@
 
 #include "map/invariants.h"
 #include "map/made_map.h"
+#include "map/spanning_tree.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
@@ -21,6 +22,9 @@ class RecentLandmarksTest : public testing::Test {
   RecentLandmarksTest() {
     for (uint32_t i = 0; i < 5; ++i) {
       map_.AddKeyframe(world_.Observe(i).frame, SyntheticWorld::CamFromWorld(i));
+      if (i > 0) {
+        SetParent(map_, KeyframeId(i), KeyframeId(0));
+      }
     }
   }
 
@@ -67,14 +71,15 @@ TEST_F(RecentLandmarksTest, AreErasedIfTheirWeightIsSmallAfterTwoKeyframes) {
   ExpectKept(Add(1, 2, 1, 1), 3, true, "two observations with depth are enough");
 }
 
-TEST_F(RecentLandmarksTest, OfAnotherIslandStayAndAreOnTrialNoMore) {
+TEST_F(RecentLandmarksTest, OfAnotherIslandStayAndAreNotCheckedAgain) {
   const LandmarkId id = Add(1, 1, 100, 1);
+  DetachFromTree(map_, KeyframeId(4));
   map_.MoveToIsland(KeyframeId(4), map_.BeginIsland());
   ExpectKept(id, 4, false, "the camera cannot see it any more");
   ExpectCulled(id, 3, "the camera could see it");
 }
 
-// Without depth every observation has the weight 1, and three are needed.
+// In monocular maps every observation has the weight 1, and three observations are needed.
 TEST_F(RecentLandmarksTest, OfAMonocularCameraNeedThreeObservations) {
   const LandmarkId three = Add(0, 2, 1, 1);  // weight 4
   sensor_.kind = SensorKind::kMonocular;
@@ -157,9 +162,9 @@ TEST(CullKeyframes, RemovesNoneOfThreeKeyframes) {
   EXPECT_EQ(Cull(made.map, KeyframeId(2), world.sensor()), 0);
 }
 
-// What carries the scale of a single camera from one pair of keyframes to the next is a landmark
-// that is seen from a third place. Keyframes at the places of others do not replace it.
-TEST(CullKeyframes, MonocularOthersAtTheSameViewpointCountOnce) {
+// In a monocular map, landmarks that are seen from a third viewpoint carry the scale from one pair
+// of keyframes to the next. Keyframes at the viewpoints of others cannot replace such a keyframe.
+TEST(CullKeyframes, MonocularKeyframesAtTheSameViewpointCountOnce) {
   const SyntheticWorld world({.points = 1200, .depth_share = 0.0});
   Sensor sensor = world.sensor();
   sensor.kind = SensorKind::kMonocular;
@@ -172,8 +177,8 @@ TEST(CullKeyframes, MonocularOthersAtTheSameViewpointCountOnce) {
   EXPECT_EQ(Cull(together.map, KeyframeId(7), sensor), 5) << "with depth all count";
 }
 
-// Removes all observations of keyframe `id`'s landmarks by keyframes from `first` on, but those of
-// landmarks that `keep` selects by their depth.
+// Removes the observations of the landmarks of keyframe `id` by the keyframes from `first` on.
+// Landmarks that `keep` selects by their depth keep their observations.
 void SeeAlone(SyntheticMap& made, KeyframeId id, uint32_t first,
               const std::function<bool(double)>& keep) {
   const Keyframe keyframe = made.map.keyframes().At(id);
@@ -300,7 +305,8 @@ TEST(CullKeyframes, ObserversAtACoarserLevelDoNotCount) {
   SyntheticMap made;
   std::vector<LandmarkId> landmarks(world.points().size());
   for (uint32_t i = 0; i < 5; ++i) {
-    // All others are at the same place but see every patch two levels coarser than keyframe 1.
+    // All other keyframes are at the same place, but they see every patch at a level two higher
+    // than keyframe 1 does.
     const SyntheticView view = world.Observe(FrameId(i), Rigid3());
     auto frame = std::make_shared<Frame>(*view.frame);
     for (Keypoint& keypoint : frame->features.keypoints) {
@@ -322,7 +328,7 @@ TEST(CullKeyframes, ObserversAtACoarserLevelDoNotCount) {
       << "keyframe 1 sees its landmarks at a finer level";
 }
 
-TEST(FindRecentLandmarks, FindsThoseThatMayStillBeCulled) {
+TEST(FindRecentLandmarks, FindsLandmarksThatMayStillBeCulled) {
   Map map;
   for (int i = 0; i < 6; ++i) {
     AddKeyframe(map, 10);

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "map/invariants.h"
+#include "map/spanning_tree.h"
 #include "support/synthetic_world.h"
 #include "util/median.h"
 
@@ -50,6 +51,7 @@ TwoKeyframes MakePair(const SyntheticWorld& world, const Rigid3& a_from_world,
     }
   }
   UpdateCovisibility(pair.map, b);
+  SetParent(pair.map, b, a);
   return pair;
 }
 
@@ -143,7 +145,7 @@ TEST(LandmarkCreation, DepthReplacesParallax) {
   }
 }
 
-// From 1.5 m nearer, a patch is found up to seven levels of the pyramid higher.
+// If the camera is 1.5 m nearer, a patch is found up to seven levels of the pyramid higher.
 TEST(LandmarkCreation, LevelsThatChangeWithTheDistancesAreConsistent) {
   const SyntheticWorld world({.depth_share = 0.0});
   const Eigen::Vector3d center(0.4, 0.0, 1.5);
@@ -246,15 +248,15 @@ TEST(LandmarkCreation, AMonocularPairNeedsParallaxInStandardDeviations) {
   EXPECT_LT(created.size(), CountFreeShared(world, pair, [](const auto&) { return true; }));
 }
 
-// If the pair itself told whether its parallax is large enough, those would be taken whose noise
-// makes it larger, and they would seem to be too near.
+// If the parallax of each pair decided, the pairs would be chosen whose noise makes the parallax
+// larger, and their points would be too near.
 TEST(LandmarkCreation, NoiseDoesNotChooseMonocularPairs) {
   const SyntheticWorld world({.points = 3000, .pixel_noise = 0.7, .depth_share = 0.0});
   const Eigen::Vector3d center(0.045, 0.0, 0.0);
   TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead(center));
   const std::vector<LandmarkId> created =
       CreateLandmarks(pair.map, KeyframeId(1), Monocular(world));
-  std::vector<double> ratios;  // of inverse depth to the true one, of far points
+  std::vector<double> ratios;  // estimated over true inverse depth of far points
   for (const LandmarkId id : created) {
     const Landmark& landmark = pair.map.landmarks().At(id);
     const double depth = world.points()[PointOf(world, landmark)].z();

@@ -147,7 +147,7 @@ TEST_F(LandmarkFusionTest, DoesNotMergePointsFarFromTheKeypoint) {
 
 // Near each keypoint of the third keyframe there is another one with a more similar descriptor, but
 // too far away to be the landmark.
-TEST(LandmarkFusion, TakesTheMostSimilarKeypointAmongThoseWhereTheLandmarkMayBe) {
+TEST(LandmarkFusion, TakesTheMostSimilarKeypointThatAgreesWithTheProjection) {
   const SyntheticWorld world;
   const KeyframeId newest(2);
   SyntheticMap made = MakeSyntheticMap(world, {0, 5, 10}, [&](Frame& frame, const Rigid3&) {

@@ -15,6 +15,7 @@
 #include "map/invariants.h"
 #include "objects/made_objects.h"
 #include "support/synthetic_world.h"
+#include "system/finish_run.h"
 
 namespace hullslam {
 namespace {
@@ -115,7 +116,8 @@ class MapperTest : public testing::Test {
 TEST_F(MapperTest, PublishesBeforeAndAfterItsWork) {
   ProcessFrame(0);
   ASSERT_EQ(published_.size(), 2u);
-  EXPECT_EQ(published_[0]->keyframes().size(), 1u) << "tracking does not have to wait for the rest";
+  EXPECT_EQ(published_[0]->keyframes().size(), 1u)
+      << "tracking gets the keyframe before the other steps are done";
   ProcessFrame(5);
   EXPECT_EQ(published_.size(), 4u);
 }
@@ -197,7 +199,7 @@ TEST_F(MapperTest, SameRequestsGiveTheSameBits) {
   EXPECT_EQ(first, run());
 }
 
-TEST_F(MapperTest, RedundantKeyframesAreCulledIfThatIsWanted) {
+TEST_F(MapperTest, RedundantKeyframesAreCulledIfTheOptionIsSet) {
   const auto count = [&](bool cull) {
     MappingOptions options;
     options.cull_keyframes = cull;
@@ -213,7 +215,7 @@ TEST_F(MapperTest, RedundantKeyframesAreCulledIfThatIsWanted) {
 }
 
 // Each keyframe is at another place, 100 m from the last one, so none is covisible with another.
-TEST_F(MapperTest, DistantKeyframesAreCompactedIfThatIsWanted) {
+TEST_F(MapperTest, DistantKeyframesAreCompactedIfTheOptionIsSet) {
   for (const bool compact : {false, true}) {
     MappingOptions options;
     options.compact_keyframes = compact;
@@ -237,7 +239,7 @@ TEST_F(MapperTest, DistantKeyframesAreCompactedIfThatIsWanted) {
   }
 }
 
-TEST_F(MapperTest, ARequestMayReferToWhatNoLongerExists) {
+TEST_F(MapperTest, ARequestMayReferToEntitiesThatNoLongerExist) {
   for (uint32_t index = 0; index < 8; ++index) {
     ProcessFrame(index);
   }
@@ -284,7 +286,7 @@ TEST_F(MapperTest, RemembersReplacedIdsOnlyWhileRequestsMayHaveThem) {
     return map().replaced_count();
   };
   const size_t all = run(false);
-  ASSERT_GT(all, 0u) << "nothing was replaced, so the test shows nothing";
+  ASSERT_GT(all, 0u) << "no landmark was replaced, so nothing was tested";
   EXPECT_LT(run(true), all);
 }
 
@@ -317,7 +319,7 @@ TEST_F(MapperTest, ACorrectionIsAppliedAndPublished) {
   EXPECT_EQ(published_.size(), published) << "the same correction again is refused";
 }
 
-TEST_F(MapperTest, InAHurryItLeavesOutWhatIsNotNecessary) {
+TEST_F(MapperTest, InAHurryItLeavesOutStepsThatAreNotNecessary) {
   Cancellation hurry;
   hurry.Request();
   for (uint32_t index = 0; index <= 30; index += 5) {
@@ -330,7 +332,7 @@ TEST_F(MapperTest, InAHurryItLeavesOutWhatIsNotNecessary) {
   EXPECT_EQ(mapper_->times().samples().at("map_insert").size(), 8u);
 }
 
-TEST_F(MapperTest, FinishAdjustsTheWholeMapIfThatIsWanted) {
+TEST_F(MapperTest, FinishAdjustsTheWholeMapIfTheOptionIsSet) {
   const auto map_path = [&](bool wanted) {
     MappingOptions options;
     options.local_keyframes = 2;
@@ -341,7 +343,7 @@ TEST_F(MapperTest, FinishAdjustsTheWholeMapIfThatIsWanted) {
       ProcessFrame(index);
     }
     const size_t published = published_.size();
-    mapper_->Finish(nullptr);
+    FinishMap(*mapper_);
     EXPECT_EQ(published_.size(), published + (wanted ? 1 : 0));
     EXPECT_EQ(mapper_->times().samples().contains("global_bundle_adjustment"), wanted);
     Learn();
@@ -355,14 +357,14 @@ TEST_F(MapperTest, FinishDoesNothingWithFewerThanTwoKeyframesOrCancelled) {
   MappingOptions options;
   options.final_bundle_adjustment = true;
   Restart(options);
-  mapper_->Finish(nullptr);
+  FinishMap(*mapper_);
   EXPECT_TRUE(published_.empty());
   ProcessFrame(0);
-  mapper_->Finish(nullptr);
+  FinishMap(*mapper_);
   ProcessFrame(5);
   Cancellation cancellation;
   cancellation.Request();
-  mapper_->Finish(&cancellation);
+  FinishMap(*mapper_, &cancellation);
   EXPECT_EQ(published_.size(), 4u);
   EXPECT_FALSE(mapper_->times().samples().contains("global_bundle_adjustment"));
 }
@@ -377,14 +379,14 @@ TEST_F(MapperTest, ASessionBeginsWithItsFirstKeyframe) {
     ASSERT_EQ(published_.size(), 1u) << "the map is there before the first message";
   };
   begin();
-  mapper_->Finish(nullptr);
+  FinishMap(*mapper_);
   EXPECT_EQ(published_.size(), 1u) << "a map without new keyframes is not adjusted";
   EXPECT_TRUE(map().sessions().empty());
   begin();
   Process(Request(20, KeyframeId(2)));
   EXPECT_EQ(map().sessions(), (std::vector<Session>{{"second", FrameId(15)}}));
   EXPECT_EQ(map().keyframes().NextId(), KeyframeId(4));
-  mapper_->Finish(nullptr);
+  FinishMap(*mapper_);
   EXPECT_TRUE(mapper_->times().samples().contains("global_bundle_adjustment"));
 }
 
@@ -499,7 +501,7 @@ TEST_F(MapperKnownSizesTest, ASizeMakesTheUnitTheMetreDuringTheRun) {
   Run({{"cup", 0.8}});
   EXPECT_NEAR(Unit(), 1.0, 0.02);
   EXPECT_EQ(FindViolations(*map_), std::vector<std::string>());
-  mapper_->Finish(nullptr);
+  FinishMap(*mapper_);
   EXPECT_NEAR(Unit(), 1.0, 0.01);
 }
 

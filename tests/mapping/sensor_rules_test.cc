@@ -45,14 +45,14 @@ TEST(CullingRules, NoSensorNeedsMoreObserversThanTheLargestNumber) {
   }
 }
 
-TEST(LandmarkRules, WithDepthTheShortestBaselineIsThatOfTheVirtualStereoPair) {
+TEST(LandmarkRules, ForRgbdTheShortestBaselineIsThatOfTheVirtualStereoPair) {
   const LandmarkRules rules = LandmarkRules::ForSensor(MakeSensor(SensorKind::kRgbd));
   ASSERT_TRUE(rules.min_baseline);
   EXPECT_DOUBLE_EQ(*rules.min_baseline, 0.08);
   EXPECT_FALSE(rules.nearby_landmarks_decide);
 }
 
-TEST(LandmarkRules, WithoutMetresTheShortestBaselineIsAShareOfTheDepth) {
+TEST(LandmarkRules, ForMonocularTheShortestBaselineIsAShareOfTheDepth) {
   const LandmarkRules rules = LandmarkRules::ForSensor(MakeSensor(SensorKind::kMonocular));
   EXPECT_FALSE(rules.min_baseline);
   EXPECT_GT(rules.min_baseline_share, 0.0);

@@ -29,6 +29,12 @@ TEST(MaskChecks, OutlinesAreSortedAndThoseWithoutAreaAreRemoved) {
   EXPECT_EQ(frame.without_area, 1U);
 }
 
+TEST(MaskChecks, LabelsAreMadePrintable) {
+  FrameMasks frame;
+  AddInstance({.label = "cup\x1b[2J\n\xff", .outlines = {{{0, 0}, {2, 0}, {2, 2}, {0, 2}}}}, frame);
+  EXPECT_EQ(frame.masks.at(0).label, "cup?[2J??");
+}
+
 TEST(MaskChecks, PointsMayBeOnePixelBeyondTheBorder) {
   const MaskRequest request{.path = {}, .format = {}, .width = 640, .height = 480};
   EXPECT_TRUE(IsNearImage({-0.5, 479.5}, request));

@@ -24,8 +24,8 @@ class CocoTest : public MaskFixture {
     all.insert(all.end(), parts.begin(), parts.end());
     ExpectRefusal(all, "masks.json");
   }
-  // Expects that results are refused if the only annotation, of the first frame, also has these
-  // members.
+  // Expects that a file is refused whose only annotation, of the first frame, has these members in
+  // addition.
   void ExpectRefusedMember(const std::string& members,
                            const std::vector<std::string>& parts) const {
     ExpectRefusedJson("[{\"image_id\": \"1.5\", " + members + "}]", parts);
@@ -44,7 +44,7 @@ const char* const kInstances = R"({
     {"id": 32, "file_name": "2.5.jpg"}, {"id": 33, "file_name": "3.5.jpg"}],
   "categories": [{"id": 5, "name": "robot"}, {"id": 9, "name": "ball"}]})";
 
-// Columns 2 and 3 are inside the mask.
+// Run lengths of a mask that consists of the columns 2 and 3.
 const char* const kCounts = R"({"size": [480, 640], "counts": [960, 480, 0, 480, 305280]})";
 
 TEST_F(CocoTest, ImagesAndCategoriesMayComeInAnyOrder) {
@@ -101,7 +101,8 @@ TEST_F(CocoTest, CompressedAndPlainRunsGiveTheSameMask) {
         .masks.at(0)
         .outlines;
   };
-  // 100 = 3 x 32 + 4, 200 = 6 x 32 + 8, 306900 = 9 x 32768 + 11 x 1024 + 22 x 32 + 20.
+  // In groups of five bits: 100 = 3 x 32 + 4, 200 = 6 x 32 + 8, 306900 = 9 x 32768 + 11 x 1024 + 22
+  // x 32 + 20.
   EXPECT_EQ(read("[100, 200, 306900]"), read("\"T3X6df[9\""));
 }
 
@@ -203,7 +204,7 @@ TEST_F(CocoTest, HugeFilesAreRefused) {
   ExpectRefusedJson(many + "]}]", {"[0]: ", "100001 points", "at most 100000"});
 }
 
-// Runs of one pixel are one character each in the file and four bytes in memory.
+// A run of one pixel is one character in the file, but four bytes in memory.
 TEST_F(CocoTest, MasksThatTakeTooMuchMemoryAreRefused) {
   const std::string runs = "\"111" + std::string(307'197, '0') + "\"";
   std::string many = "[";

@@ -53,8 +53,8 @@ TEST_F(OaSlamTest, BoxesAreGivenByTheirCorners) {
   EXPECT_TRUE(Open("detections.json")->Read(frames_[1]).is_missing);
 }
 
-// Axes may be half or full axes, and angles radians or degrees. The box shows which.
-TEST_F(OaSlamTest, EllipsesAreUnderstoodInAllUnits) {
+// Axes may be half or full axes, and angles may be in radians or degrees. The box tells which.
+TEST_F(OaSlamTest, EllipsesAreReadInAllUnits) {
   const double turn = 30.0 * kDegree;
   const double half_width = std::hypot(40.0 * std::cos(turn), 20.0 * std::sin(turn));
   const double half_height = std::hypot(40.0 * std::sin(turn), 20.0 * std::cos(turn));

@@ -13,8 +13,8 @@ namespace hullslam {
 namespace {
 
 // COCO's compressed form, implemented from its description. Numbers are in groups of five bits, the
-// lowest first, plus 48. Bit 32 means that more groups follow. Bit 16 of the last group is the
-// sign.
+// lowest first, plus 48. The bit with value 32 means that more groups follow. In the last group,
+// the bit with value 16 is the sign.
 std::string Compress(const MaskRuns& runs) {
   std::string text;
   for (size_t i = 0; i < runs.size(); ++i) {

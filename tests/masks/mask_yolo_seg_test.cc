@@ -37,7 +37,7 @@ TEST_F(YoloSegTest, CoordinatesArePixelCentresInFractionsOfTheSize) {
   EXPECT_EQ(cup.outlines, (std::vector<std::vector<Eigen::Vector2d>>{
                               {{160.0, 120.0}, {320.0, 120.0}, {160.0, 360.0}}}));
   EXPECT_EQ(frame.masks[1].label, "tv");
-  EXPECT_EQ(frame.masks[1].score, 1.0);  // the file has none
+  EXPECT_EQ(frame.masks[1].score, 1.0);  // the score of a line without a confidence
 }
 
 TEST_F(YoloSegTest, FramesWithoutFileAreMissingButEmptyFilesAreNot) {

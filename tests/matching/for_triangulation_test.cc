@@ -116,8 +116,7 @@ TEST(MatchForTriangulation, FindsAllAndOnlyTrueMatchesInTwoViews) {
   const SyntheticWorld world({.depth_share = 0.0, .flipped_bits = 10});
   const SyntheticView a = world.Observe(0);
   const SyntheticView b = world.Observe(20);
-  Eigen::Matrix3d k;
-  k << 500.0, 0.0, 320.0, 0.0, 500.0, 240.0, 0.0, 0.0, 1.0;
+  const Eigen::Matrix3d k = world.sensor().camera.Matrix();
   const Rigid3 b_from_a =
       SyntheticWorld::CamFromWorld(20) * Inverse(SyntheticWorld::CamFromWorld(0));
   const auto matches =

@@ -56,7 +56,7 @@ TEST_F(ArrangementTest, AnObjectThatIsNotDetectedCountsAgainstIt) {
   EXPECT_EQ(found.Score(), found.overlap - 0.5);
 }
 
-TEST_F(ArrangementTest, AHiddenObjectDoesNot) {
+TEST_F(ArrangementTest, AHiddenObjectDoesNotCountAgainstIt) {
   Frame frame = SeeRoom(sensor_, {room_[0]}, pose_);
   frame.depth = DepthGrid(cv::Mat(480, 640, CV_16UC1, cv::Scalar(500)), 1000.0);
   const Arrangement found = Compare(frame, pose_);

@@ -51,7 +51,7 @@ TEST_F(Association, FindsEveryObjectInAnyOrder) {
   EXPECT_EQ(found, (std::vector<ObjectId>{ObjectId(2), ObjectId(0), ObjectId(1)}));
 }
 
-TEST_F(Association, FindsCandidatesBySeeingThemOnce) {
+TEST_F(Association, FindsCandidatesThatWereSeenOnce) {
   const auto table = MakeTable();
   Build(table, 1, false);
   const auto found = Associate(table, 0.1);
@@ -59,14 +59,14 @@ TEST_F(Association, FindsCandidatesBySeeingThemOnce) {
   EXPECT_EQ(Associate(table, 0.1, {}, AssociationScope::kMapped), std::vector<ObjectId>(3));
 }
 
-TEST_F(Association, ANewThingIsOfNoObject) {
+TEST_F(Association, ANewThingShowsNoObject) {
   const auto table = MakeTable();
   Build({table[0], table[1]}, 3, true);
   EXPECT_FALSE(Associate({table[2]}, 0.1)[0].IsValid());
   EXPECT_TRUE(Associate({}, 0.1).empty());
 }
 
-TEST_F(Association, AnotherClassIsNoWall) {
+TEST_F(Association, AnotherClassDoesNotExcludeAMatch) {
   const auto table = MakeTable();
   Build(table, 3, true);
   MadeObject laptop = table[1];
@@ -85,7 +85,7 @@ TEST_F(Association, OfTwoCandidatesTheClassDecides) {
 }
 
 TEST_F(Association, ThingsOneBehindTheOtherAreTwo) {
-  // The same outline from here, but 60 cm behind.
+  // A thing with the same outline from this pose, but 60 cm farther away.
   const MadeObject cup = MakeObject("cup", Eigen::Vector3d::Zero(), {0.08, 0.08, 0.08});
   Build({cup}, 3, true);
   const Eigen::Vector3d camera = Inverse(CameraOnCircle(0.1, 1.5, 0.6)).translation;
@@ -96,7 +96,7 @@ TEST_F(Association, ThingsOneBehindTheOtherAreTwo) {
   EXPECT_FALSE(Associate({behind}, 0.1)[0].IsValid());
 }
 
-TEST_F(Association, WithoutDepthTheOutlineTells) {
+TEST_F(Association, WithoutDepthTheOutlineDecides) {
   const auto table = MakeTable();
   Build(table, 3, true);
   const Rigid3 cam_from_world = CameraOnCircle(0.2, 1.5, 0.6);
@@ -117,8 +117,8 @@ TEST_F(Association, NothingIsSimilarEnoughForAHighThreshold) {
   EXPECT_FALSE(Associate(table, 0.2, {.min_similarity = 1.0})[0].IsValid());
 }
 
-// A thing that is seen beside the place of an object, without depth, so that only the outlines can
-// tell whether they are one.
+// A thing that is seen without depth beside an object. Only the outlines can tell whether they are
+// the same.
 class Beside : public Association {
  protected:
   std::vector<ObjectId> AssociateBeside(const AssociationOptions& options) {
@@ -134,12 +134,12 @@ class Beside : public Association {
     return IntersectionOverUnion(Detect(cup_, sensor_, pose).hull,
                                  Detect(beside_, sensor_, pose).hull);
   }
-  static constexpr double kNever = 1.1;  // an IoU that nothing has
+  static constexpr double kNever = 1.1;  // larger than any IoU
   MadeObject cup_ = MakeObject("cup", Eigen::Vector3d::Zero(), {0.08, 0.08, 0.08});
   MadeObject beside_ = MakeObject("cup", {0.0, 0.04, 0.0}, {0.08, 0.08, 0.08});
 };
 
-TEST_F(Beside, TheProjectedEllipseMustOverlapAsTheOptionsSay) {
+TEST_F(Beside, TheProjectedEllipseMustHaveTheLeastOverlap) {
   Build({cup_}, 1, true);
   AssociationOptions options{.min_carried_iou = kNever, .min_similarity = 0.01};
   options.min_projection_iou = Overlap() - 0.02;
@@ -148,7 +148,7 @@ TEST_F(Beside, TheProjectedEllipseMustOverlapAsTheOptionsSay) {
   EXPECT_FALSE(AssociateBeside(options)[0].IsValid());
 }
 
-TEST_F(Beside, TheLastHullMustOverlapAsTheOptionsSay) {
+TEST_F(Beside, TheLastHullMustHaveTheLeastOverlap) {
   Build({cup_}, 1, false);
   AssociationOptions options{.min_projection_iou = kNever, .min_similarity = 0.01};
   options.min_carried_iou = Overlap() - 0.02;
@@ -199,8 +199,8 @@ TEST_F(Association, AFewCommonLandmarksAreNotEnough) {
   EXPECT_FALSE(associate().IsValid());
 }
 
-// A camera without depth that moves sideways past a cup, 0.06 m wide and 1 m away. The first view
-// does not tell how far the cup is.
+// A monocular camera that moves sideways past a cup, which is 0.06 m wide and 1 m away. The first
+// view does not tell how far away the cup is.
 class UnknownDepth : public Association {
  protected:
   static Rigid3 Sideways(double x) { return {Eigen::Quaterniond::Identity(), {-x, 0.0, 0.0}}; }

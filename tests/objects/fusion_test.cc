@@ -48,7 +48,7 @@ class Duplicates : public ::testing::Test {
   MadeObject far_ = MakeObject("cup", {0.2, 0.0, 0.0}, {0.05, 0.05, 0.08});
 };
 
-TEST_F(Duplicates, OfOnePlaceNeverSeenTogetherAreOneAndTheFullerOneStays) {
+TEST_F(Duplicates, AtOnePlaceAndNeverSeenTogetherAreFusedAndTheOneWithMoreViewsStays) {
   Look({cup_, near_}, 7);
   const ObjectId a = Add(cup_, {0, 1, 2}, 0);
   const ObjectId b = Add(near_, {3, 4, 5, 6}, 1);
@@ -84,7 +84,7 @@ TEST_F(Duplicates, AreSoughtForChangedObjectsOnly) {
   EXPECT_TRUE(FindDuplicates(map_, std::vector<ObjectId>()).empty());
 }
 
-TEST_F(Duplicates, NeedTheOverlapThatTheOptionsSay) {
+TEST_F(Duplicates, NeedTheLeastOverlap) {
   Look({cup_, near_}, 6);
   Add(cup_, {0, 1, 2}, 0);
   Add(near_, {3, 4, 5}, 1);
@@ -102,7 +102,7 @@ TEST_F(Duplicates, SeenTogetherInFewKeyframesMayBeOne) {
   EXPECT_TRUE(FindDuplicates(map_, {.max_shared_keyframes = 0.19}).empty());
 }
 
-TEST_F(Duplicates, SeenTogetherNeedTheOverlapThatTheOptionsSay) {
+TEST_F(Duplicates, SeenTogetherNeedALargerOverlap) {
   Look({cup_, near_}, 9);
   Add(cup_, {0, 1, 2, 3, 4}, 0);
   Add(near_, {4, 5, 6, 7, 8}, 1);

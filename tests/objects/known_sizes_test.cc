@@ -40,7 +40,7 @@ TEST_F(KnownSizes, GiveTheUnitOfTheMap) {
 
 TEST_F(KnownSizes, TheMedianOfSeveralCounts) {
   Map("keyboard", 0.25);
-  Map("keyboard", 0.40);  // a part of another one was taken for it
+  Map("keyboard", 0.40);  // wrong: a part of another thing was mapped
   Map("mouse", 0.05);
   const KnownScale scale = MeasureScale(map_, sensor_, {{"keyboard", 0.5}, {"mouse", 0.1}});
   EXPECT_EQ(scale.objects, 3u);
@@ -59,7 +59,7 @@ TEST_F(KnownSizes, AnObjectCountsAsOftenAsItWasObserved) {
   EXPECT_NEAR(scale.metres_per_unit, 2.0, 1e-3);
 }
 
-TEST_F(KnownSizes, OthersAndCandidatesSayNothing) {
+TEST_F(KnownSizes, OtherClassesAndCandidatesDoNotCount) {
   Map("cup", 0.25);
   Map("keyboard", 0.25).state = ObjectState::kCandidate;
   for (const auto& sizes : {std::map<std::string, double>(), {{"keyboard", 0.5}}}) {

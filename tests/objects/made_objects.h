@@ -13,6 +13,7 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/geometry/dual_quadric.h"
 #include "hullslam/map/map.h"
+#include "map/spanning_tree.h"
 
 namespace hullslam {
 
@@ -64,7 +65,7 @@ inline std::vector<Eigen::Vector3d> VisibleSurface(const Ellipsoid& ellipsoid,
   return points;
 }
 
-// The object as an exact mask shows it: 16 tangents, all of them two-sided.
+// The detection of the object with an exact mask: 16 tangents, all of them two-sided.
 inline Detection Detect(const MadeObject& object, const Sensor& sensor,
                         const Rigid3& cam_from_world) {
   const Ellipse ellipse =
@@ -85,6 +86,16 @@ inline Detection Detect(const MadeObject& object, const Sensor& sensor,
   return detection;
 }
 
+// Adds a keyframe to the spanning tree of the map.
+inline KeyframeId AddToTree(Map& map, std::shared_ptr<const Frame> frame,
+                            const Rigid3& cam_from_world) {
+  const KeyframeId added = map.AddKeyframe(std::move(frame), cam_from_world);
+  if (added != KeyframeId(0)) {
+    SetParent(map, added, KeyframeId(0));
+  }
+  return added;
+}
+
 // A keyframe without keypoints that sees these objects.
 inline KeyframeId AddObserver(Map& map, const Sensor& sensor, const Rigid3& cam_from_world,
                               const std::vector<MadeObject>& objects) {
@@ -93,7 +104,7 @@ inline KeyframeId AddObserver(Map& map, const Sensor& sensor, const Rigid3& cam_
   for (const MadeObject& object : objects) {
     frame->detections.push_back(Detect(object, sensor, cam_from_world));
   }
-  return map.AddKeyframe(std::move(frame), cam_from_world);
+  return AddToTree(map, std::move(frame), cam_from_world);
 }
 
 // A textured object, which keyframes without depth see together with landmarks on its surface.
@@ -121,7 +132,7 @@ class TexturedObject {
     frame->features.descriptors.resize(points_.size());
     frame->features.depth.resize(points_.size(), 0.0f);
     frame->features.right_u.resize(points_.size(), -1.0f);
-    const KeyframeId keyframe = map.AddKeyframe(std::move(frame), cam_from_world);
+    const KeyframeId keyframe = AddToTree(map, std::move(frame), cam_from_world);
     for (uint32_t i = 0; i < points_.size(); ++i) {
       if (landmarks_.size() == i) {
         landmarks_.push_back(map.AddLandmark(points_[i], keyframe));
@@ -148,7 +159,7 @@ inline MadeObject MakeObject(const std::string& label, const Eigen::Vector3d& ce
   return object;
 }
 
-// Three things on a table, apart from one another.
+// Three things on a table that do not touch.
 inline std::vector<MadeObject> MakeTable() {
   return {MakeObject("cup", {0.3, 0.1, 0.0}, {0.06, 0.05, 0.08}, 0.3),
           MakeObject("book", {-0.2, 0.2, 0.0}, {0.15, 0.10, 0.04}, 1.0),

@@ -22,7 +22,7 @@ inline std::vector<MadeObject> MakeRoom() {
           MakeObject("mouse", {0.1, 0.3, -0.1}, {0.06, 0.035, 0.02}, 0.7)};
 }
 
-// The same things elsewhere.
+// The same things, moved by a motion.
 inline std::vector<MadeObject> Moved(const Rigid3& motion, std::vector<MadeObject> objects) {
   for (MadeObject& object : objects) {
     object.ellipsoid = motion * object.ellipsoid;
@@ -30,8 +30,8 @@ inline std::vector<MadeObject> Moved(const Rigid3& motion, std::vector<MadeObjec
   return objects;
 }
 
-// Adds mapped objects that a keyframe on a circle has seen. `motion` has moved objects and
-// keyframe from where they are seen well.
+// Adds mapped objects that a keyframe on a circle has seen. `motion` moves the objects and the
+// keyframe together.
 inline void AddRoom(Map& map, const Sensor& sensor, const std::vector<MadeObject>& objects,
                     const Rigid3& motion = {}) {
   const Rigid3 camera = CameraOnCircle(0.2, 2.0, 0.8) * Inverse(motion);
@@ -66,6 +66,14 @@ inline Frame SeeRoom(const Sensor& sensor, const std::vector<MadeObject>& object
     }
     detection.points = points;
     frame.detections.push_back(std::move(detection));
+  }
+  return frame;
+}
+
+// The same frame from a camera without depth.
+inline Frame WithoutDepth(Frame frame) {
+  for (Detection& detection : frame.detections) {
+    detection.points.clear();
   }
   return frame;
 }

@@ -65,7 +65,7 @@ TEST(PredictExcess, IsLinearNearby) {
   }
 }
 
-TEST(PredictExcess, LeavesAKeyframeOutAndIsSilentWhereNothingIsNear) {
+TEST(PredictExcess, LeavesAKeyframeOutAndGivesNothingWithoutSamplesNearby) {
   const std::vector<MisfitSample> samples(3, {Eigen::Vector3f::UnitX(), 0.01f, KeyframeId(5)});
   EXPECT_NEAR(PredictExcess(samples, Eigen::Vector3d::UnitX(), KeyframeId()).value(), 0.01, 1e-9);
   EXPECT_FALSE(PredictExcess(samples, Eigen::Vector3d::UnitX(), KeyframeId(5)));
@@ -90,7 +90,7 @@ TEST(PredictExcess, DoesNotExtrapolateTheSlopeOfSamplesOnOneSide) {
   }
 }
 
-// How far an object reaches beyond a one-sided line is not known.
+// It is not known how far an object reaches beyond a one-sided line.
 TEST(MeasureMisfit, LeavesOutOneSidedLines) {
   const Sensor sensor = MakeObjectSensor();
   const MadeObject object = MakeObject("cup", Eigen::Vector3d::Zero(), {0.05, 0.1, 0.2});
@@ -109,8 +109,8 @@ TEST(MeasureMisfit, LeavesOutOneSidedLines) {
   EXPECT_NEAR(MeasureSpread(sensor.camera, landmark, views, {}).plain_px, 0.0, 1e-6);
 }
 
-// The law that the compensation rests on: what views of a box about an ellipsoid teach holds for a
-// new view between them, for every camera and distance.
+// Compensation relies on this law: the excess of a box over an ellipsoid that some views measured
+// is also that of a new view between them, for every camera and distance.
 class BoxForAnEllipsoid : public ::testing::Test {
  protected:
   BoxForAnEllipsoid() {
@@ -164,7 +164,7 @@ class BoxForAnEllipsoid : public ::testing::Test {
   ObjectId id_;
 };
 
-TEST_F(BoxForAnEllipsoid, WhatSomeViewsTeachHoldsForOthers) {
+TEST_F(BoxForAnEllipsoid, TheExcessOfSomeViewsIsThatOfOthers) {
   const ObjectLandmark& object = map_.objects().At(id_);
   double plain = 0.0;
   double compensated = 0.0;

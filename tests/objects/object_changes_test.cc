@@ -15,7 +15,8 @@
 namespace hullslam {
 namespace {
 
-// A table that a camera goes around twice, in a session each. In between things may be changed.
+// A camera goes around a table twice, in one session each. Things may be changed between the
+// sessions.
 class ObjectChanges : public testing::Test {
  protected:
   // One session over a third of the circle from `begin` (radians) on.
@@ -69,7 +70,7 @@ MadeObject Moved(MadeObject object, const Eigen::Vector3d& by) {
   return object;
 }
 
-TEST_F(ObjectChanges, WhatIsStillThereIsSeenAgain) {
+TEST_F(ObjectChanges, AnObjectThatIsStillThereIsSeenAgain) {
   Visit(MakeTable());
   EndFirstSession();
   Visit(MakeTable());
@@ -84,6 +85,40 @@ TEST_F(ObjectChanges, WhatIsStillThereIsSeenAgain) {
   }
 }
 
+// An object may be removed from the map although some keyframes show it.
+TEST_F(ObjectChanges, WhatIsNoLongerInTheMapIsNotSeenAgain) {
+  Visit(MakeTable());
+  EndFirstSession();
+  Visit(MakeTable());
+  const std::vector<ChangedObject> before = Changes();
+  const auto cup = std::find_if(before.begin(), before.end(),
+                                [](const auto& changed) { return changed.label == "cup"; });
+  ASSERT_NE(cup, before.end());
+  map_.EraseObject(cup->now->object);
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kGone);
+  for (const ChangedObject& changed : Changes()) {
+    EXPECT_EQ(changed.now.has_value(), changed.change == ObjectChange::kSeenAgain);
+  }
+}
+
+TEST_F(ObjectChanges, ANewObjectInPlaceOfARemovedOneIsTheSame) {
+  Visit(MakeTable());
+  EndFirstSession();
+  ObjectId cup;
+  for (const auto& [id, object] : former_.objects()) {
+    cup = object.Label() == "cup" ? id : cup;
+  }
+  map_.EraseObject(cup);
+  Visit(MakeTable());
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kSeenAgain);
+  const std::vector<ChangedObject> changes = Changes();
+  EXPECT_EQ(changes.size(), 3U);
+  for (const ChangedObject& changed : changes) {
+    ASSERT_TRUE(changed.now && changed.former);
+    EXPECT_EQ(changed.now->object == changed.former->object, changed.label != "cup");
+  }
+}
+
 TEST_F(ObjectChanges, WhatIsMissingIsGone) {
   Visit(MakeTable());
   EndFirstSession();
@@ -95,7 +130,7 @@ TEST_F(ObjectChanges, WhatIsMissingIsGone) {
   EXPECT_EQ(ChangeOf("bottle"), ObjectChange::kSeenAgain);
 }
 
-TEST_F(ObjectChanges, WhatWasNotThereIsNew) {
+TEST_F(ObjectChanges, AnObjectThatWasNotThereIsNew) {
   std::vector<MadeObject> table = MakeTable();
   table.pop_back();
   Visit(table);
@@ -105,7 +140,7 @@ TEST_F(ObjectChanges, WhatWasNotThereIsNew) {
   EXPECT_EQ(ChangeOf("cup"), ObjectChange::kSeenAgain);
 }
 
-TEST_F(ObjectChanges, WhatIsElsewhereWasMoved) {
+TEST_F(ObjectChanges, AnObjectAtAnotherPlaceWasMoved) {
   Visit(MakeTable());
   EndFirstSession();
   std::vector<MadeObject> table = MakeTable();
@@ -128,7 +163,7 @@ TEST_F(ObjectChanges, WhatIsElsewhereWasMoved) {
   EXPECT_NE(cup->now->object, cup->former->object);
 }
 
-TEST_F(ObjectChanges, OfSeveralThatMayHaveBeenMovedTheNearestWas) {
+TEST_F(ObjectChanges, IfSeveralMayHaveBeenMovedItIsTheNearest) {
   std::vector<MadeObject> table = {MakeObject("cup", {0.3, 0.2, 0.0}, {0.05, 0.05, 0.06}),
                                    MakeObject("cup", {-0.3, -0.2, 0.0}, {0.05, 0.05, 0.06}),
                                    MakeTable()[2]};
@@ -167,7 +202,7 @@ TEST_F(ObjectChanges, AnObjectOfAnotherSizeOrTooFarAwayWasNotMoved) {
   EXPECT_EQ(Changes().size(), 3U);
 }
 
-TEST_F(ObjectChanges, WhatTheSessionDidNotLookAtIsNotSeen) {
+TEST_F(ObjectChanges, AnObjectThatTheSessionDidNotLookAtIsNotSeen) {
   std::vector<MadeObject> table = MakeTable();
   Visit(table);
   EndFirstSession();
@@ -190,8 +225,8 @@ TEST_F(ObjectChanges, ASessionWithoutMasksChangesNothing) {
   EXPECT_TRUE(Changes().empty());
 }
 
-// The first session was too far away to expect a detection of the bottle, but may have seen what is
-// behind its place.
+// The first session was too far away to expect a detection of the bottle, but its depth images may
+// show the surfaces behind the place of the bottle.
 class FarAway : public ObjectChanges {
  protected:
   ObjectChange ChangeOfBottle(int wall) {
@@ -206,7 +241,7 @@ class FarAway : public ObjectChanges {
   }
 };
 
-TEST_F(FarAway, WhereDepthShowedNothingIsNew) {
+TEST_F(FarAway, AnObjectIsNewIfDepthShowedAnEmptyPlace) {
   EXPECT_EQ(ChangeOfBottle(6000), ObjectChange::kNew);
 }
 
@@ -214,8 +249,8 @@ TEST_F(FarAway, WithoutDepthItIsFirstSeen) {
   EXPECT_EQ(ChangeOfBottle(0), ObjectChange::kFirstSeen);
 }
 
-// A bear hides a part of the table from all keyframes of the first session. Nobody knows what was
-// there. But if a cup is gone and one is found there, it was moved.
+// A bear hides a part of the table from all keyframes of the first session, so it is not known
+// whether this part was empty. But if a cup is gone and a cup is found there, the cup was moved.
 class BehindABear : public ObjectChanges {
  protected:
   static MadeObject Cup(double x, double y) {
@@ -227,7 +262,7 @@ class BehindABear : public ObjectChanges {
       mapper_.Process(map_, AddObserver(map_, sensor_, cam_from_world, objects));
     }
   }
-  // After a session with a cup and a bear, and one with these cups.
+  // The changes after a session with a cup and a bear, and a second session with these cups.
   void ExpectMovedTo(const MadeObject& place, const std::vector<MadeObject>& cups) {
     VisitFromOneSide({Cup(0.4, -0.1), MakeObject("teddy bear", {0, -0.2, 0.1}, {0.2, 0.2, 0.2})});
     EndFirstSession();
@@ -253,7 +288,7 @@ TEST_F(BehindABear, APlaceThatWasSeenEmptyExplainsMore) {
   ExpectMovedTo(seen_empty_, {hidden_, seen_empty_});
 }
 
-// Something else may stand where an object stood.
+// Another object may stand at the place of an earlier one.
 TEST_F(ObjectChanges, AnotherClassAtThePlaceIsNotTheObject) {
   Visit(MakeTable());
   EndFirstSession();
@@ -263,7 +298,7 @@ TEST_F(ObjectChanges, AnotherClassAtThePlaceIsNotTheObject) {
   EXPECT_EQ(ChangeOf("cup"), ObjectChange::kGone);
 }
 
-TEST_F(ObjectChanges, WhatTookThePlaceOfAnObjectBecomesAnObjectOfItsOwn) {
+TEST_F(ObjectChanges, AThingAtThePlaceOfAnotherBecomesAnObjectOfItsOwn) {
   Visit(MakeTable());
   EndFirstSession();
   std::vector<MadeObject> table = MakeTable();
@@ -280,7 +315,7 @@ TEST_F(ObjectChanges, WhatTookThePlaceOfAnObjectBecomesAnObjectOfItsOwn) {
   EXPECT_FALSE(mapper_.SplitOff(map_, cup, former_.objects().At(cup), session_));
 }
 
-// What is larger than the object that stood there hides its place from all sides.
+// A larger object at the place of a smaller one hides this place from all sides.
 TEST_F(ObjectChanges, AnObjectInsideAnotherOneIsGone) {
   Visit(MakeTable());
   EndFirstSession();

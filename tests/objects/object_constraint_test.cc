@@ -56,7 +56,7 @@ TEST_F(ObjectConstraintTest, ByHandWithoutLoss) {
 }
 
 // The sigma of landmarks is a share of their distance, here half of 0.1 m.
-TEST_F(ObjectConstraintTest, LandmarksStandForDepthPoints) {
+TEST_F(ObjectConstraintTest, LandmarksReplaceDepthPoints) {
   const std::vector<Eigen::Vector3d> points = detection_.points.Unpack();
   detection_.points.clear();
   EXPECT_EQ(Make().depth, nullptr);
@@ -75,7 +75,7 @@ TEST_F(ObjectConstraintTest, TheMisfitAddsToTheSigma) {
   EXPECT_NEAR(WorstSquare(), 256.0 / (2.0 * 2.0 + 1.5 * 1.5), 1e-9);
 }
 
-TEST_F(ObjectConstraintTest, LinesCountAsSoManyAtMost) {
+TEST_F(ObjectConstraintTest, LinesCountAsALimitedNumber) {
   options_.max_effective_lines = 3.0;
   EXPECT_NEAR(WorstSquare(), 64.0, 1e-9);
   options_.max_effective_lines = 1.5;
@@ -90,12 +90,12 @@ TEST_F(ObjectConstraintTest, EachLossByHand) {
   options_.loss = RobustLoss::kCauchy;
   EXPECT_NEAR(WorstSquare(), 16.0 * std::log(5.0), 1e-9);
   options_.loss = RobustLoss::kTukey;
-  EXPECT_NEAR(WorstSquare(), 16.0 / 3.0, 1e-9);  // as much as at its scale
+  EXPECT_NEAR(WorstSquare(), 16.0 / 3.0, 1e-9);  // the loss does not grow beyond its scale
   options_.loss_scale = 8.01;
   EXPECT_GT(WorstSquare(), 16.0 / 3.0);
 }
 
-TEST_F(ObjectConstraintTest, TheLossScaleIsAtLeastSoManyPixels) {
+TEST_F(ObjectConstraintTest, TheLossScaleHasALeastNumberOfPixels) {
   options_.loss = RobustLoss::kHuber;
   options_.loss_scale = 4.0;
   options_.min_loss_px = 7.9;  // less than 4 sigmas of 2 px
@@ -115,13 +115,13 @@ TEST_F(ObjectConstraintTest, DepthHasALossAndANumberOfPointsOfItsOwn) {
   EXPECT_NEAR(depth.squaredNorm(), 2.0 * std::log(5.0), 1e-7);
   options_.depth.max_points = 5;
   EXPECT_EQ(Make().depth->num_residuals(), 5);
-  options_.depth.choice = PointChoice::kEveryKth;  // of six every second
+  options_.depth.choice = PointChoice::kEveryKth;  // takes every second of six points
   EXPECT_EQ(Make().depth->num_residuals(), 3);
   options_.depth.max_points = 0;
   EXPECT_EQ(Make().depth, nullptr);
 }
 
-TEST_F(ObjectConstraintTest, IsNothingWithoutWhatItIsMadeOf) {
+TEST_F(ObjectConstraintTest, IsNullIfTheDetectionLacksItsData) {
   options_.residual = ObjectResidual::kAlgebraicPoint;  // not of support lines
   EXPECT_EQ(Make().silhouette, nullptr);
   options_.residual = ObjectResidual::kTangent;

@@ -44,7 +44,7 @@ Points Ball(const Eigen::Vector3d& sides) {
   return points;
 }
 
-// Cameras above a table see a body.
+// A body that cameras above a table see.
 class Measured : public ::testing::Test {
  protected:
   void See(const Points& body, int count = 20, double noise_px = 0.0) {
@@ -124,7 +124,7 @@ TEST_F(Measured, LinesThatAreOneSidedOrNearTheBorderAreLeftOut) {
   ExpectSides({0.04, 0.20, 0.46}, 1e-3);
 }
 
-TEST_F(Measured, TooFewLinesOrLinesOfNoBodyGiveNothing) {
+TEST_F(Measured, TooFewLinesOrRandomLinesGiveNothing) {
   See(Box({0.46, 0.20, 0.04}), 1);
   EXPECT_FALSE(Measure());
   See(Box({0.46, 0.20, 0.04}), 2);

@@ -40,7 +40,7 @@ class ObjectIndexTest : public ::testing::Test {
   MadeObject cup_ = MakeObject("cup", Eigen::Vector3d::Zero(), {0.05, 0.05, 0.08});
 };
 
-TEST_F(ObjectIndexTest, FindsWhatIsInTheImageOnly) {
+TEST_F(ObjectIndexTest, FindsOnlyObjectsInTheImage) {
   const Rigid3 here = CameraOnCircle(0.0, 1.5, 0.5);
   const Rigid3 turned_away(Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0), Eigen::Vector3d::Zero());
   for (const bool has_shape : {true, false}) {
@@ -52,7 +52,7 @@ TEST_F(ObjectIndexTest, FindsWhatIsInTheImageOnly) {
   }
 }
 
-TEST_F(ObjectIndexTest, AnObjectOfUnknownPlaceMayBeVisibleAnywhere) {
+TEST_F(ObjectIndexTest, AnObjectWithoutKnownLocationMayBeVisibleAnywhere) {
   MadeObject flat = cup_;
   const Rigid3 here = CameraOnCircle(0.0, 1.5, 0.5);
   auto frame = std::make_shared<Frame>();
@@ -66,8 +66,8 @@ TEST_F(ObjectIndexTest, AnObjectOfUnknownPlaceMayBeVisibleAnywhere) {
   EXPECT_EQ(Visible(turned_away * here), std::vector<ObjectId>{id});
 }
 
-// For many objects and cameras: nothing is left out whose ellipse is in the image.
-TEST_F(ObjectIndexTest, LeavesOutNothingThatIsInTheImage) {
+// For many objects and cameras, every object whose ellipse is in the image is found.
+TEST_F(ObjectIndexTest, FindsEveryObjectInTheImage) {
   RandomGeometry random(4);
   for (int i = 0; i < 60; ++i) {
     const MadeObject made = MakeObject("cup", random.Vector(1.5), {0.05, 0.1, 0.3});

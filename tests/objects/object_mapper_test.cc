@@ -112,7 +112,7 @@ TEST_F(Mapping, AMappedObjectThatIsNeverFoundAgainIsCulled) {
   EXPECT_EQ(Mapped().size(), 1u);
 }
 
-TEST_F(Mapping, AnObjectThatTurnsBadIsACandidateAgain) {
+TEST_F(Mapping, AnObjectThatIsNoLongerValidIsACandidateAgain) {
   const auto table = MakeTable();
   for (int i = 0; i < 5; ++i) {
     See(table, 0.1 * i);
@@ -167,7 +167,7 @@ TEST_F(Mapping, TwoRunsGiveTheSameBits) {
   });
 }
 
-// Both sides of the number of keyframes after which a candidate is removed.
+// Tests the number of keyframes after which a candidate is removed, and one less.
 TEST_F(Mapping, ACandidateIsRemovedWhenItHasNotBeenSeenForLong) {
   ObjectOptions options;
   options.culling.candidate_keyframes = 4;
@@ -200,7 +200,8 @@ TEST_F(Mapping, AnObjectIsJudgedOnlyAfterEnoughKeyframesThatShouldShowIt) {
   EXPECT_TRUE(Mapped().empty());
 }
 
-// When the views have grown by an eighth: from 10 views on, with every second one.
+// The shape is computed again when the number of views has grown by an eighth; from 10 views on,
+// that is with every second view.
 TEST_F(Mapping, TheShapeIsComputedAgainAsTheViewsGrow) {
   const auto table = MakeTable();
   for (int i = 0; i < 12; ++i) {

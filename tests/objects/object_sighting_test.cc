@@ -45,7 +45,7 @@ class ObjectSightingTest : public ::testing::Test {
   Sensor sensor_ = MakeObjectSensor();
 };
 
-// Whatever the rotation, and although the sighting does not know it.
+// The distance is right for every rotation of the object, which the sighting does not know.
 TEST_F(ObjectSightingTest, TellsWhereTheCenterIsAndHowLargeTheObject) {
   for (const double turn : {0.0, 0.4, 0.9, 1.5, 2.2}) {
     const MadeObject book = Book(turn);
@@ -55,7 +55,8 @@ TEST_F(ObjectSightingTest, TellsWhereTheCenterIsAndHowLargeTheObject) {
     const auto sighting = SightObject(sensor_.camera, detection);
     ASSERT_TRUE(sighting);
     const double distance = DistanceOfCenter(*sighting, kBook);
-    // The rays are not quite parallel, which makes 6 mm at 2.2 m.
+    // The formula assumes parallel rays. They are not quite parallel, which gives an error of 6 mm
+    // at 2.2 m.
     EXPECT_NEAR(distance, pose.translation.norm(), 0.01) << turn;
     EXPECT_LT((distance * sighting->ray - pose.translation).norm(), 0.01) << turn;
     EXPECT_TRUE(MayHaveSize(*sighting, distance, kBook));

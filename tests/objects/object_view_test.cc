@@ -102,26 +102,26 @@ TEST_F(LandmarkViews, HaveTheLandmarksInTheCamera) {
       EXPECT_LT((view.landmarks[i] - view.cam_from_world * textured_.points()[i]).norm(), 1e-9);
     }
     EXPECT_EQ(SurfacePoints(view).size(), 7u);
-    // Between the nearest point of the surface and the centre.
+    // The depth is between that of the nearest point of the surface and that of the centre.
     const double depth = LandmarkDepth(view).value();
     EXPECT_GT(depth, 1.5 - 0.08);
     EXPECT_LT(depth, 1.5);
   }
 }
 
-TEST_F(LandmarkViews, LeaveOutWhatHasLittleParallax) {
+TEST_F(LandmarkViews, LeaveOutLandmarksWithLittleParallax) {
   for (const ObjectView& view : Views(1.0)) {
     EXPECT_TRUE(view.landmarks.empty());
     EXPECT_FALSE(LandmarkDepth(view));
   }
 }
 
-TEST_F(LandmarkViews, HaveNoLandmarksBeforeTheyAreSought) {
+TEST_F(LandmarkViews, HaveNoLandmarksBeforeAddSurfaceLandmarks) {
   Views(3.0);
   EXPECT_TRUE(CollectViews(map_, map_.objects().At(ObjectId(0))).front().landmarks.empty());
 }
 
-TEST_F(LandmarkViews, DepthPointsAreBetter) {
+TEST_F(LandmarkViews, DepthPointsTakePrecedence) {
   ObjectView view = Views(3.0).front();
   Detection detection = *view.detection;
   detection.points = std::vector<Eigen::Vector3d>(1, {0.0, 0.0, 1.0});

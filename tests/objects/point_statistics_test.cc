@@ -58,7 +58,7 @@ std::vector<Eigen::Vector3d> Cloud(RandomGeometry& random, const Eigen::Vector3d
   return points;
 }
 
-TEST(Clouds, MayBeOneWhereTheyAreAndMayNotWhereTheyAreApart) {
+TEST(Clouds, MayBeOneIfTheyOverlapButNotIfTheyAreApart) {
   RandomGeometry random(3);
   const auto here = Cloud(random, {1.0, 2.0, 3.0}, 60);
   const auto there = Cloud(random, {1.0, 2.2, 3.0}, 40);
@@ -75,7 +75,7 @@ TEST(Means, AreTestedWithTheNoiseOfTheSensor) {
   const auto samples = Cloud(random, {0.0, 0.0, 1.0}, 8);
   EXPECT_TRUE(MayBeTheMean({0.0, 0.0, 1.05}, samples, 0.001, 0.02));
   EXPECT_FALSE(MayBeTheMean({0.0, 1.0, 1.0}, samples, 0.001, 0.02));
-  // Samples that agree by chance to a micrometre do not make the test that sharp.
+  // If samples agree to a micrometre by chance, the test must not become that strict.
   const std::vector<Eigen::Vector3d> equal(5, Eigen::Vector3d(0.0, 0.0, 1.0));
   EXPECT_TRUE(MayBeTheMean({0.01, 0.0, 1.0}, equal, 0.001, 0.02));
   EXPECT_FALSE(MayBeTheMean({0.0, 0.0, 1.0}, std::span(equal).first(2), 0.001, 0.02));

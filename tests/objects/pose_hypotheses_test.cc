@@ -46,7 +46,7 @@ TEST_F(PoseHypotheses, TheBestOneIsTrueWithNoiseOfCentimetres) {
   }
 }
 
-TEST_F(PoseHypotheses, DoNotDependOnWhereTheWorldIs) {
+TEST_F(PoseHypotheses, DoNotDependOnTheWorldFrame) {
   const Rigid3 motion(ExpSo3({0.4, -0.8, 1.9}), {3.0, -2.0, 7.0});
   const std::vector<MadeObject> moved = Moved(motion, room_);
   Map map;
@@ -66,16 +66,12 @@ TEST_F(PoseHypotheses, DoNotDependOnWhereTheWorldIs) {
 TEST_F(PoseHypotheses, WithoutDepthTheRaysAreEnough) {
   Map map;
   AddRoom(map, sensor_, room_);
-  Frame frame = SeeRoom(sensor_, room_, truth_);
-  for (Detection& detection : frame.detections) {
-    detection.points.clear();
-  }
-  const auto found = Propose(map, frame);
+  const auto found = Propose(map, WithoutDepth(SeeRoom(sensor_, room_, truth_)));
   ASSERT_FALSE(found.empty());
   EXPECT_LT(PositionError(found[0].cam_from_world, truth_), 0.1);
 }
 
-TEST_F(PoseHypotheses, OfTwoDetectionsTheAngleIsSearched) {
+TEST_F(PoseHypotheses, WithTwoDetectionsTheAngleIsSearched) {
   const std::vector<MadeObject> two = {room_[2], room_[3]};  // long things
   Map map;
   AddRoom(map, sensor_, two);
@@ -109,14 +105,40 @@ TEST_F(PoseHypotheses, AreDifferentPlaces) {
   AddRoom(map, sensor_, room_);
   const Rigid3 aside(Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0});
   AddRoom(map, sensor_, Moved(aside, room_), aside);
-  const auto found = Propose(map, SeeRoom(sensor_, room_, truth_));
-  ASSERT_GE(found.size(), 2U);
-  EXPECT_NEAR(found[0].agreement, found[1].agreement, 1e-6);
-  EXPECT_NEAR(PositionError(found[0].cam_from_world, found[1].cam_from_world), 5.0, 0.01);
-  EXPECT_FALSE(AreSamePlace(found[0].cam_from_world, found[1].cam_from_world, 2.0));
+  const Frame frame = SeeRoom(sensor_, room_, truth_);
+  for (const Frame& seen : {frame, WithoutDepth(frame)}) {
+    const auto found = Propose(map, seen);
+    ASSERT_GE(found.size(), 2U);
+    EXPECT_NEAR(found[0].agreement, found[1].agreement, 1e-3);
+    EXPECT_NEAR(PositionError(found[0].cam_from_world, found[1].cam_from_world), 5.0, 0.05);
+    EXPECT_NEAR(found[0].distance, 2.0, 0.2);
+    EXPECT_FALSE(AreSamePlace(found[0].cam_from_world, found[1].cam_from_world, 2.0));
+  }
 }
 
-TEST(SamePlace, DependsOnTheDepthOfWhatIsSeen) {
+// Without depth the unit of length is not known, so nothing may depend on it.
+TEST_F(PoseHypotheses, WithoutDepthTheUnitOfLengthDoesNotMatter) {
+  constexpr double kUnit = 0.01;
+  Map map;
+  AddRoom(map, sensor_, room_);
+  std::vector<MadeObject> small = room_;
+  for (MadeObject& object : small) {
+    object.ellipsoid.half_axes *= kUnit;
+    object.ellipsoid.world_from_object.translation *= kUnit;
+  }
+  Map small_map;
+  AddRoom(small_map, sensor_, small, Rigid3());
+  const Frame frame = WithoutDepth(SeeRoom(sensor_, room_, truth_));
+  const auto found = Propose(map, frame);
+  const auto other = Propose(small_map, frame);
+  ASSERT_FALSE(found.empty());
+  ASSERT_EQ(found.size(), other.size());
+  for (size_t i = 0; i < found.size(); ++i) {
+    EXPECT_NEAR(found[i].distance * kUnit, other[i].distance, 1e-6);
+  }
+}
+
+TEST(SamePlace, DependsOnTheDepthOfTheScene) {
   const Rigid3 moved(Eigen::Quaterniond::Identity(), {0.2, 0.0, 0.0});
   EXPECT_TRUE(AreSamePlace(Rigid3(), moved, 2.0));
   EXPECT_FALSE(AreSamePlace(Rigid3(), moved, 1.0));

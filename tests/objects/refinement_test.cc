@@ -75,7 +75,7 @@ TEST_F(RefinementTest, TheTruthStays) {
   EXPECT_NEAR(refined.cost, 0.0, 1e-6);
 }
 
-TEST_F(RefinementTest, OverASmallAngleDepthAndPriorHoldWhatOutlinesLeaveFree) {
+TEST_F(RefinementTest, WithASmallAngleDepthAndPriorConstrainTheFreeParameters) {
   Look(0.02, 4);
   const Refinement refined = RefineEllipsoid(Start(), Start(), sensor_, Views(), 5.0, {});
   ASSERT_TRUE(refined.is_usable);
@@ -83,7 +83,7 @@ TEST_F(RefinementTest, OverASmallAngleDepthAndPriorHoldWhatOutlinesLeaveFree) {
   EXPECT_GT(MeanOverlap(refined.ellipsoid, sensor_, Views()), 0.95);
 }
 
-TEST_F(RefinementTest, OneBadMaskAmongManyDoesLittle) {
+TEST_F(RefinementTest, OneBadMaskAmongManyHasLittleInfluence) {
   Look(0.3, 12);
   const std::vector<ObjectView> views = ViewsWithABadMask();
   const Refinement refined = RefineEllipsoid(Start(), made_.ellipsoid, sensor_, views, 5.0, {});
@@ -107,7 +107,7 @@ TEST_F(RefinementTest, TheLossIsThatOfALineWithTheLargestMisfit) {
   EXPECT_GT(AxisError(refine(16.0, 5.0), ellipsoid), 1e-4);
 }
 
-TEST_F(RefinementTest, BehindAllCamerasNothingIsMoved) {
+TEST_F(RefinementTest, AnEllipsoidBehindAllCamerasDoesNotMove) {
   Look(0.05, 3);
   Ellipsoid behind = made_.ellipsoid;
   behind.world_from_object.translation = {5.0, 0.0, 0.5};

@@ -82,7 +82,7 @@ TEST_F(Validity, NearTheSurfaceIsTheLargerOfBothShares) {
   EXPECT_DOUBLE_EQ(NearSurface(made_.ellipsoid, 0.1, {}), 0.2 * 0.1);
 }
 
-// A map without metres: ten times larger everything is as valid as it was.
+// In a map of unknown scale, the validity does not change if everything is ten times larger.
 TEST_F(Validity, DoesNotDependOnTheScaleOfTheMap) {
   std::vector<Detection> detections;
   std::vector<ObjectView> views = CollectViews(map_, map_.objects().At(id_));
@@ -113,7 +113,8 @@ TEST_F(Validity, AnOutlineElsewhere) {
   EXPECT_EQ(Reason(ellipsoid), ObjectRejection::kLowOverlap);
 }
 
-// A box holds more than the outline that touches its four sides: they are compared as boxes.
+// A box has a larger area than the outline that touches its four sides, so the box of the outline
+// is compared with it.
 TEST_F(Validity, ABoxIsComparedWithTheBoxOfTheOutline) {
   std::vector<Detection> detections;
   std::vector<ObjectView> views = CollectViews(map_, map_.objects().At(id_));
@@ -129,7 +130,7 @@ TEST_F(Validity, ABoxIsComparedWithTheBoxOfTheOutline) {
   EXPECT_NEAR(MeanOverlap(made_.ellipsoid, sensor_, views), 1.0, 1e-9);
 }
 
-// Farther along the view and larger: the outlines are right all the same.
+// The ellipsoid is farther away and larger, so the outlines still agree with it.
 TEST_F(Validity, ADriftAlongTheViewThatOutlinesDoNotShow) {
   Map map;
   const auto views = ViewsFromOneSide(map, 0.5);
@@ -144,7 +145,7 @@ TEST_F(Validity, ADriftAlongTheViewThatOutlinesDoNotShow) {
   EXPECT_NE(objection->detail.find("expected at least 0.40"), std::string::npos);
 }
 
-TEST_F(Validity, AnAxisAlongTheViewThatNothingHolds) {
+TEST_F(Validity, AnAxisAlongTheViewThatNothingConstrains) {
   const Ellipsoid stretched = Scaled(5.0, 1.0, 1.0);
   const auto reason = Reason(stretched);
   EXPECT_TRUE(reason == ObjectRejection::kStretched || reason == ObjectRejection::kLowOverlap);
@@ -177,7 +178,7 @@ TEST_F(Validity, ElongationIsAlongTheViewOverAcross) {
   }
   ball.world_from_object.rotation =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), direction);
-  ball.half_axes = {0.3, 0.05, 0.2};  // across: sqrt(0.05 * 0.2)
+  ball.half_axes = {0.3, 0.05, 0.2};  // the extent across the view is sqrt(0.05 * 0.2)
   EXPECT_NEAR(Elongation(ball, views), 3.0, 1e-9);
   ball.half_axes = {0.01, 0.1, 0.1};
   EXPECT_NEAR(Elongation(ball, views), 0.25 * 10.0, 1e-9);

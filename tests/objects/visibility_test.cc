@@ -28,7 +28,7 @@ class Visibility : public ::testing::Test {
   KeyframeId Add(const Rigid3& cam_from_world, std::shared_ptr<Frame> frame) {
     return map_.AddKeyframe(std::move(frame), cam_from_world);
   }
-  // A keyframe that sees nothing but a depth image.
+  // A keyframe that has only a depth image.
   KeyframeId Look(const Rigid3& cam_from_world, const cv::Mat& depth = {}) {
     auto frame = std::make_shared<Frame>();
     frame->depth = DepthGrid(depth, 1000.0);
@@ -92,7 +92,7 @@ TEST_F(Visibility, IsNotExpectedBehindANearerSurface) {
   EXPECT_TRUE(Shows(Look(Rigid3(), corner)));
 }
 
-TEST_F(Visibility, WithoutDepthLandmarksTellWhatIsNearer) {
+TEST_F(Visibility, WithoutDepthLandmarksShowNearerSurfaces) {
   const auto look = [&](double z) {
     auto frame = std::make_shared<Frame>();
     const std::vector<Eigen::Vector2f> pixels = {{320, 240}, {330, 240}, {320, 250}, {20, 20}};
@@ -151,7 +151,7 @@ TEST_F(SeeingThrough, NeedsDepthBehindTheObject) {
   EXPECT_FALSE(IsSeen(Back(-3.0), Wall(1500)));  // it is behind the camera
 }
 
-TEST_F(SeeingThrough, NeedsMostOfWhatIsBehindIt) {
+TEST_F(SeeingThrough, NeedsMostOfTheSurfacesBehindIt) {
   cv::Mat most = Wall(1500);
   most(cv::Rect(0, 0, 296, 480)) = 1000;
   EXPECT_TRUE(IsSeen(Rigid3(), most));

@@ -85,7 +85,8 @@ class BundleAdjustment : public ::testing::Test {
     }
     return planted;
   }
-  // Of a landmark at this position in the keyframes of the map, with the loss of the first round.
+  // The cost of a landmark at this position in the keyframes of the map, with the loss of the first
+  // round.
   double SquaredError(LandmarkId id, const Eigen::Vector3d& position) const {
     double sum = 0.0;
     for (const Observation& seen : made_.map.landmarks().At(id).observations) {
@@ -163,8 +164,9 @@ TEST_F(BundleAdjustment, FindsExactlyTheWrongObservations) {
   EXPECT_LT(WorstPointError(result), 1e-4);
 }
 
-// Without moving poses Ceres eliminates the points, as in windows with very many of them. Without
-// the robust loss of the first round, a wrong observation would make others of its point wrong too.
+// If no pose moves, Ceres eliminates the points, as it does in windows with very many poses.
+// Without the robust loss of the first round, a wrong observation would move its point so far that
+// right observations became outliers too.
 TEST_F(BundleAdjustment, FindsExactlyTheWrongObservationsOfFixedPosesToo) {
   const auto planted = PlantOutliers(KeyframeId(3), 10);
   BundleWindow window = Window();
@@ -178,7 +180,7 @@ TEST_F(BundleAdjustment, FindsExactlyTheWrongObservationsOfFixedPosesToo) {
   EXPECT_LT(WorstPointError(result), 1e-4);
 }
 
-// The bound is 2.4 (without depth) or 2.8 standard deviations of the error that remains.
+// The bound is 2.4 standard deviations of the remaining error without depth, and 2.8 with depth.
 TEST_F(BundleAdjustment, AnObservationIsAnOutlierFromAFewStandardDeviationsOn) {
   constexpr uint32_t kShifted = 20;  // keypoint
   for (const float deviations : {1.5f, 6.0f}) {
@@ -203,8 +205,9 @@ TEST_F(BundleAdjustment, AnObservationIsAnOutlierFromAFewStandardDeviationsOn) {
   }
 }
 
-// Two standard deviations of the sensor, but seven of the errors that the keypoints have here.
-TEST_F(BundleAdjustment, MonocularErrorsAreMeasuredByThoseOfTheOtherKeypoints) {
+// The error is two standard deviations of the sensor, but seven of the real errors of the
+// keypoints.
+TEST_F(BundleAdjustment, MonocularErrorsAreComparedWithThoseOfTheOtherKeypoints) {
   constexpr uint32_t kShifted = 20;  // keypoint
   const SyntheticWorld world({.points = 300, .pixel_noise = 0.3, .depth_share = 0.0});
   made_ = MakeSyntheticMap(world, {0, 10, 20, 30, 40, 50}, [&](Frame& frame, const Rigid3&) {
@@ -225,8 +228,8 @@ TEST_F(BundleAdjustment, MonocularErrorsAreMeasuredByThoseOfTheOtherKeypoints) {
   EXPECT_LT(result.outliers.size(), static_cast<size_t>(result.residuals) / 50);
 }
 
-// A fifth of the standard deviations of the sensor is the least that is believed. Otherwise the
-// rounding of exact keypoints would make outliers.
+// The measured standard deviation is at least a fifth of that of the sensor. Otherwise exact
+// keypoints would become outliers because they are rounded.
 TEST_F(BundleAdjustment, MonocularExactKeypointsAreNoOutliers) {
   Sensor sensor = world_.sensor();
   sensor.kind = SensorKind::kMonocular;
@@ -239,7 +242,7 @@ TEST_F(BundleAdjustment, MonocularExactKeypointsAreNoOutliers) {
 
 // Where an edge passes behind another, there is a corner that slides along both. It is found at
 // several levels of the pyramid, so that it makes several landmarks.
-TEST_F(BundleAdjustment, MonocularACornerCountsOnceHoweverOftenItIsFound) {
+TEST_F(BundleAdjustment, MonocularACornerThatIsFoundSeveralTimesCountsOnce) {
   const SyntheticWorld world({.points = 60, .pixel_noise = 0.1, .depth_share = 0.0});
   Sensor sensor = world.sensor();
   sensor.kind = SensorKind::kMonocular;
@@ -273,14 +276,15 @@ TEST_F(BundleAdjustment, MonocularACornerCountsOnceHoweverOftenItIsFound) {
     return WorstPoseError(result);
   };
   for (const size_t max_eliminated : {0U, 100U}) {  // both ways to solve it
-    // If each counted, the poses would follow them by decimetres.
+    // If each landmark counted, the poses would be wrong by decimetres.
     EXPECT_LT(error_with_copies(8, max_eliminated), 1.2 * error_with_copies(0, max_eliminated));
   }
 }
 
-// A step of Newton from where a point is goes nowhere, because Cauchy's loss is least there.
+// The result is a minimum of Cauchy's loss, so a Newton step of a point from its position has no
+// length.
 TEST_F(BundleAdjustment, MonocularCauchysLossIsMinimised) {
-  // So much noise that the precision of the keypoints is taken for that of the sensor.
+  // There is so much noise that the measured precision of the keypoints is that of the sensor.
   const SyntheticWorld world({.points = 300, .pixel_noise = 1.2, .depth_share = 0.0});
   Sensor sensor = world.sensor();
   sensor.kind = SensorKind::kMonocular;
@@ -290,7 +294,7 @@ TEST_F(BundleAdjustment, MonocularCauchysLossIsMinimised) {
     options.max_eliminated = max_eliminated;
     const BundleResult result = AdjustBundle(made_.map, sensor, Window(), options, nullptr);
     ASSERT_TRUE(result.is_usable);
-    const Map start = made_.map.Snapshot();  // with all observations, which share their places
+    const Map start = made_.map.Snapshot();  // with all observations, also those at the same pixels
     ApplyBundle(made_.map, result, sensor.levels);
     const auto cost = [&](LandmarkId id, const Eigen::Vector3d& position) {
       double sum = 0.0;
@@ -338,8 +342,9 @@ TEST_F(BundleAdjustment, APointBehindACameraIsAnOutlierThere) {
   }
 }
 
-// A camera has to go past a point that it alone sees. There the cost of the point is not defined,
-// which must not hold the camera. This is how large windows are solved.
+// On the way to its true pose a camera passes a point that only this camera sees. There the cost of
+// the point is not defined, and this must not stop the camera. Ceres eliminates the points, as in
+// large windows.
 TEST_F(BundleAdjustment, APointThatACameraGoesPastDoesNotHoldIt) {
   const KeyframeId id(5);
   const Rigid3 truth = made_.map.CamFromWorld(id);
@@ -351,7 +356,7 @@ TEST_F(BundleAdjustment, APointThatACameraGoesPastDoesNotHoldIt) {
   const Keyframe& keyframe = made_.map.keyframes().At(id);
   Sensor sensor = world_.sensor();
   sensor.kind = SensorKind::kMonocular;
-  uint32_t keypoint = 0;  // of a landmark without depth that all keyframes see
+  uint32_t keypoint = 0;  // keypoint of a landmark without depth that all keyframes see
   while (MeasurePoint(sensor, keyframe.frame->features, keypoint, sensor.depth_error).has_depth() ||
          !keyframe.landmarks[keypoint].IsValid() ||
          made_.map.landmarks().At(keyframe.landmarks[keypoint]).observations.size() <
@@ -447,7 +452,7 @@ TEST_F(BundleAdjustment, CeresAloneComesToTheSameResult) {
   EXPECT_NE(own.positions, ceres.positions) << "the last bits show that the solvers differ";
 }
 
-// Errors that were not minimised do not tell which observations are outliers.
+// Outliers can only be told after the errors were minimised.
 TEST_F(BundleAdjustment, CancelledAtOnceItReturnsTheStartWithoutOutliers) {
   Perturb(0.01, 0.03);
   Cancellation cancellation;
@@ -461,7 +466,7 @@ TEST_F(BundleAdjustment, CancelledAtOnceItReturnsTheStartWithoutOutliers) {
   for (const auto& [id, pose] : result.poses) {
     EXPECT_LT(Distance(pose, made_.map.keyframes().At(id).cam_from_world), 1e-14);
   }
-  // Points may have moved to where the poses of the start see them.
+  // The points may have moved to fit the initial poses.
   for (const auto& [id, position] : result.positions) {
     EXPECT_LE(SquaredError(id, position),
               SquaredError(id, made_.map.landmarks().At(id).position) * (1.0 + 1e-9));
@@ -482,7 +487,7 @@ TEST_F(BundleAdjustment, TellsAfterEachIterationHowManyAreDone) {
   for (size_t i = 0; i < done.size(); ++i) {
     EXPECT_EQ(done[i], static_cast<int>(i) + 1);
   }
-  EXPECT_EQ(done.back(), result.iterations - 2);  // which counts the two starts too
+  EXPECT_EQ(done.back(), result.iterations - 2);  // the iterations also count the two starts
   EXPECT_LE(done.back(), most);
 }
 

@@ -25,7 +25,7 @@ TEST(BundleOptions, ForMonocularTheyAreNoLessPrecise) {
   EXPECT_EQ(precise.follow.worthwhile, 1e-9);
 }
 
-TEST(BundleRules, WithDepthTheErrorsAreThoseOfTheSensor) {
+TEST(BundleRules, ForRgbdTheErrorsOfTheSensorAreUsed) {
   const BundleRules rules = BundleRules::ForSensor(SensorKind::kRgbd);
   EXPECT_FALSE(rules.precision_is_measured);
   EXPECT_FALSE(rules.keypoints_share_weights);
@@ -34,13 +34,13 @@ TEST(BundleRules, WithDepthTheErrorsAreThoseOfTheSensor) {
   EXPECT_EQ(rules.final_loss, PointLoss::kNone);
 }
 
-TEST(BundleRules, WithoutDepthTheScaleIsProtected) {
+TEST(BundleRules, ForMonocularTheScaleIsProtected) {
   const BundleRules rules = BundleRules::ForSensor(SensorKind::kMonocular);
   EXPECT_TRUE(rules.is_solved_precisely);
   EXPECT_TRUE(rules.precision_is_measured);
   EXPECT_TRUE(rules.keypoints_share_weights);
   EXPECT_TRUE(rules.keeps_scale);
-  // Points that slide along edges are in both rounds.
+  // Points that slide along edges take part in both rounds.
   EXPECT_EQ(rules.robust_loss, PointLoss::kCauchy);
   EXPECT_EQ(rules.final_loss, PointLoss::kCauchy);
 }

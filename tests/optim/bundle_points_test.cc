@@ -24,7 +24,7 @@ TEST(BundlePoints, KeepsTheViewsOfEachPoint) {
   ASSERT_EQ(points.ViewsOf(2).size(), 1u);
   EXPECT_EQ(points.ViewsOf(2)[0].pose, 6u);
   EXPECT_EQ(points.ViewsOf(2)[0].weight, 0.5);
-  EXPECT_EQ(points.ViewsOf(0)[0].weight, 1.0) << "if nothing else is said";
+  EXPECT_EQ(points.ViewsOf(0)[0].weight, 1.0) << "the default weight";
 }
 
 TEST(BundlePoints, ViewsAreInliersUntilTheyAreLeftOut) {

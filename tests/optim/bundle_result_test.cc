@@ -67,7 +67,7 @@ TEST_F(ApplyBundleTest, WritesPosesPositionsAndRemovesOutliers) {
   }
 }
 
-TEST_F(ApplyBundleTest, PassesOverWhatNoLongerExists) {
+TEST_F(ApplyBundleTest, SkipsEntitiesThatNoLongerExist) {
   made_.map.CullKeyframe(KeyframeId(4));
   const auto [first, keyframe] = result_.outliers[0];
   made_.map.EraseLandmark(first);

@@ -53,7 +53,7 @@ TEST_F(BundleScale, IsThatOfTheMapAgain) {
   }
 }
 
-TEST_F(BundleScale, CamerasInOnePlaceHaveNone) {
+TEST_F(BundleScale, CamerasAtOnePositionHaveNone) {
   Shrink(1.0);
   for (auto& [id, pose] : result_.poses) {
     pose = made_.map.CamFromWorld(KeyframeId(0));

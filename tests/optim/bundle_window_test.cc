@@ -84,7 +84,7 @@ TEST(LocalWindow, AKeyframeIsAlwaysFixed) {
 }
 
 // Each of 60 keyframes shares landmarks with the last one. Without their observations, the
-// landmarks would leave the place where these keyframes saw them.
+// landmarks would move away from where these keyframes saw them.
 TEST(LocalWindow, WithoutALimitAllObserversAreFixed) {
   Map map;
   for (uint32_t i = 0; i < 60; ++i) {
@@ -114,7 +114,7 @@ TEST(GlobalWindow, MovesAllButTheRoot) {
   EXPECT_TRUE(window.objects.empty());
 }
 
-TEST(ObjectsToAdjust, AreTheMappedOnesIfTheOptionsSaySo) {
+TEST(ObjectsToAdjust, AreTheMappedObjectsIfTheOptionIsSet) {
   ObjectOptions options;
   options.enabled = true;
   EXPECT_EQ(ObjectsToAdjust(options), WindowObjects::kMapped);

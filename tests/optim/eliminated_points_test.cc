@@ -49,7 +49,7 @@ class CeresPoints {
     problem_.Evaluate({}, &cost, nullptr, nullptr, nullptr);
     return cost;
   }
-  // J^T J and J^T r, with 6 columns a pose, then 3 a point.
+  // J^T J and J^T r. The 6 parameters of each pose come first, then the 3 of each point.
   void Normal(Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient) {
     ceres::Problem::EvaluateOptions options;
     options.parameter_blocks = blocks_;
@@ -95,7 +95,7 @@ class CeresPoints {
   ceres::Problem problem_;
 };
 
-// Follow() until the points do not move any more.
+// Calls Follow() until the points do not move any more.
 double Settle(EliminatedPoints& eliminated, const std::vector<Rigid3>& poses) {
   double cost = 0.0;
   for (int i = 0; i < 300; ++i) {
@@ -159,7 +159,7 @@ TEST_P(EliminatedPointsTest, TheSystemIsTheSchurComplementOfThatOfCeres) {
             1e-5 * expected_gradient.cwiseAbs().maxCoeff());
 }
 
-// The derivative of the cost at the best places of the points.
+// The derivative of the cost at the best positions of the points.
 TEST_P(EliminatedPointsTest, TheGradientIsTheDerivativeOfTheCost) {
   MadePoints made(4);
   EliminatedPoints eliminated(made.camera, made.points, 3, loss());
@@ -185,7 +185,7 @@ TEST_P(EliminatedPointsTest, TheGradientIsTheDerivativeOfTheCost) {
   }
 }
 
-TEST(EliminatedPoints, MoreStepsComeNearerToTheBestPlaces) {
+TEST(EliminatedPoints, MoreStepsComeNearerToTheBestPositions) {
   MadePoints made(5);
   for (Eigen::Vector3d& position : made.points.positions()) {
     position *= 1.5;  // away from the first camera
@@ -232,11 +232,12 @@ TEST(EliminatedPoints, APointBehindACameraHasAnInfiniteCost) {
   turned[1].rotation = Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0);
   EliminatedPoints eliminated(made.camera, made.points, 3, PointLoss::kHuber);
   EXPECT_EQ(eliminated.Follow(turned), std::numeric_limits<double>::infinity());
-  EXPECT_LT(eliminated.Follow(made.poses), 1e9);  // and the next poses start where it was before
+  EXPECT_LT(eliminated.Follow(made.poses),
+            1e9);  // the point starts again from its accepted position
 }
 
-// If its views agree exactly, no step can lower the cost of a point. It must not be mistaken for
-// one whose steps fail: that one would be held where it is, and would hold the poses that see it.
+// If the views of a point agree exactly, no step can lower its cost. This must not be mistaken for
+// a failed step: after a failed step a point is damped, and it holds the poses that see it.
 TEST(EliminatedPoints, APointWhoseViewsAgreeExactlyFollowsThePoses) {
   MadePoints made(3);
   BundlePoints exact;
@@ -253,7 +254,7 @@ TEST(EliminatedPoints, APointWhoseViewsAgreeExactlyFollowsThePoses) {
   Eigen::MatrixXd hessian;
   Eigen::VectorXd gradient;
   eliminated.Linearize(hessian, gradient);
-  // All cameras move by the same vector, and the points with them: this costs nothing.
+  // All cameras move by the same vector. If the points follow, the cost is zero.
   Eigen::VectorXd together(18);
   for (size_t i = 0; i < made.poses.size(); ++i) {
     together.segment<6>(6 * static_cast<Eigen::Index>(i)) << Eigen::Vector3d::Zero(),

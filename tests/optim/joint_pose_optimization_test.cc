@@ -24,7 +24,7 @@ void Shift(Detection& detection, double dx, double dy) {
   }
 }
 
-// A camera with points and objects in front of it, and what it sees from its true pose.
+// A camera with points and objects in front of it, and its measurements of them from its true pose.
 class JointPose : public ::testing::Test {
  protected:
   void MakeScene(uint32_t seed) {
@@ -189,9 +189,9 @@ TEST_F(JointPose, WrongDetectionsDoNotHarmAHundredPoints) {
   EXPECT_EQ(dropped, 4 * 20);
 }
 
-// The points lie within 30 cm, so rotation and translation of the camera look alike. The prior
-// alone does not explain the improvement: objects with a sigma of 1e5 px add the prior and little
-// else.
+// The points lie within 30 cm of each other, so a rotation and a translation of the camera have
+// similar effects. The improvement must not come from the prior alone: for comparison, objects with
+// a sigma of 1e5 px add hardly anything but the prior.
 TEST_F(JointPose, ObjectsHelpWhenTheFewPointsAreCloseTogether) {
   double with = 0.0;
   double without = 0.0;
@@ -322,7 +322,7 @@ TEST_F(JointPose, ADetectionCountsAsALimitedNumberOfLines) {
   AddObjects(2, 3.0);
   const Rigid3 start = Start();
   const Rigid3 few = Optimize(start, 3.0).points.cam_from_world;
-  // Every line twice adds no information.
+  // If every line is given twice, there is no more information.
   for (Detection& detection : detections_) {
     const std::vector<SilhouetteLine> lines = detection.lines;
     detection.lines.insert(detection.lines.end(), lines.begin(), lines.end());

@@ -49,10 +49,10 @@ TEST_F(KeypointWeightsTest, AllAtOnePositionWeighAsMuchAsTheMostPrecise) {
     together += weights[i] * static_cast<double>(sensor_.levels.inverse_sigma2[level]);
     EXPECT_EQ(weights[i], weights[0]);
   }
-  EXPECT_NEAR(together, 1.0, 1e-6) << "that of the finest level";
+  EXPECT_NEAR(together, 1.0, 1e-6) << "the weight of the finest level";
 }
 
-TEST_F(KeypointWeightsTest, IsAllOfAKeypointThatIsAlone) {
+TEST_F(KeypointWeightsTest, IsOneForAKeypointWithoutNeighbours) {
   const Keyframe keyframe = Make({{100.0f, 80.0f, 3}, {103.5f, 80.0f, 0}, {100.0f, 76.5f, 0}});
   EXPECT_EQ(Shares(keyframe)[0], 1.0);
 }

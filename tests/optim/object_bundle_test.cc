@@ -12,6 +12,7 @@
 #include "map/made_map.h"
 #include "objects/made_objects.h"
 #include "optim/bundle_adjustment.h"
+#include "support/captured_log.h"
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"
 #include "support/synthetic_world.h"
@@ -78,7 +79,7 @@ class ObjectBundle : public ::testing::Test {
       object.start = object.ellipsoid;
     }
   }
-  // Of an object that is not wholly in front of the camera only the far end is seen.
+  // If an object is not wholly in front of the camera, only its far end is seen.
   MadeObject SeenPart(const MadeObject& object, const Rigid3& cam_from_world) const {
     MadeObject part = object;
     while (!ProjectEllipsoid(world_->sensor().camera.Matrix(), cam_from_world, part.ellipsoid)) {
@@ -160,7 +161,7 @@ class ObjectBundle : public ::testing::Test {
   ObjectPrimitive primitive_ = ObjectPrimitive::kSupport;
   std::optional<SyntheticWorld> world_;
   std::vector<MadeObject> objects_;
-  std::optional<MadeObject> couch_;  // in place of the book
+  std::optional<MadeObject> couch_;  // replaces the book
   SyntheticMap made_;
   std::vector<ObjectId> ids_;
 };
@@ -208,7 +209,8 @@ TEST_F(ObjectBundle, OfTheWholeMapImprovesPosesAndShapes) {
   EXPECT_LT(MeanShapeError(result), 0.25 * before);
 }
 
-// Outlines that say little compared with the prior, and objects two sizes beside their places.
+// The outlines are weak compared with the prior, and the objects start two sizes away from their
+// true positions.
 TEST_F(ObjectBundle, OfTheWholeMapDoesNotHoldObjectsBack) {
   for (const ObjectId id : ids_) {
     ObjectLandmark& object = made_.map.MutableObject(id);
@@ -221,8 +223,8 @@ TEST_F(ObjectBundle, OfTheWholeMapDoesNotHoldObjectsBack) {
   EXPECT_GT(MeanShapeError(Adjust(Window())), 5.0 * of_whole_map);
 }
 
-// Two iterations per round are enough for points. Objects must not slow them down, although the
-// scale is wrong by a fifth and the objects do not fit it.
+// The scale is wrong by a fifth. Points alone need two iterations per round to correct it, and
+// objects must not slow this down.
 TEST_F(ObjectBundle, OfTheWholeMapFollowsAChangeOfItsScale) {
   BundleOptions options = kPrecise.ForWholeMap();
   options.robust_iterations = options.final_iterations = 2;
@@ -386,8 +388,8 @@ TEST_F(ObjectBundle, TheStartOfAnObjectHasNoInfluence) {
   EXPECT_EQ(MeanShapeError(result), MeanShapeError(expected));
 }
 
-// A couch reaches from before the first camera to beside the last ones, where it has no projected
-// ellipse. Its end must not be a wall to all poses.
+// A couch is in front of the first camera and reaches beside the last ones, in which it has no
+// projected ellipse. This must not stop all poses.
 TEST_F(ObjectBundle, AnObjectThatReachesACameraDoesNotHoldThePoses) {
   const MadeObject couch = MakeObject("couch", {1.2, 0.3, 1.6}, {0.3, 0.2, 1.4});
   couch_ = couch;
@@ -424,11 +426,14 @@ TEST_F(ObjectBundle, AnObjectThatIsNotFiniteDoesNotStopThePoints) {
   const BundleResult expected = Adjust(PointsOnly());
   made_.map.MutableObject(ids_[0]).ellipsoid.half_axes.x() =
       std::numeric_limits<double>::quiet_NaN();
+  const CapturedLog log;
   const BundleResult result = Adjust(Window());
   ASSERT_TRUE(result.is_usable);
   EXPECT_EQ(result.failed_objects, ids_);
   EXPECT_TRUE(result.ellipsoids.empty());
   EXPECT_EQ(result.positions, expected.positions);
+  EXPECT_NE(log.text().find("bundle adjustment of"), std::string::npos) << log.text();
+  EXPECT_NE(log.text().find("failed"), std::string::npos) << log.text();
 }
 
 TEST_F(ObjectBundle, CancelledAtOnceItKeepsTheShapes) {
@@ -443,7 +448,7 @@ TEST_F(ObjectBundle, CancelledAtOnceItKeepsTheShapes) {
   }
 }
 
-TEST_F(ObjectBundle, ApplyingWritesShapesAndPassesOverWhatNoLongerExists) {
+TEST_F(ObjectBundle, ApplyingWritesShapesAndSkipsObjectsThatNoLongerExist) {
   PerturbObjects(0.2);
   const BundleResult result = Adjust(Window());
   const std::string before = Dump(made_.map);

@@ -20,7 +20,7 @@ namespace {
 using Camera = ObjectSumCost::Camera;
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Never defined.
+// A cost that is never defined.
 class UndefinedCost final : public ceres::SizedCostFunction<1, 7, 7, 3> {
  public:
   bool Evaluate(double const* const*, double*, double**) const override { return false; }
@@ -187,7 +187,7 @@ TEST_F(ObjectSumCostTest, AnUndefinedCostCanBeLeftOut) {
   EXPECT_EQ(left.jacobian, expected.jacobian);
 }
 
-// It may be defined again elsewhere.
+// At other parameters the cost may be defined again.
 TEST_F(ObjectSumCostTest, ACostIsUndefinedOnlyWhereItWasEvaluatedLast) {
   ObjectSumCost sum(Camera::kMoving);
   sum.Add(ConstraintOf(0).silhouette);

@@ -27,9 +27,9 @@ std::vector<Sim3> Circle(size_t count) {
   return poses;
 }
 
-// What drifts from one keyframe to the next: 0.2 degrees around the vertical axis, 5 mm downwards,
-// 0.2 % of scale, and some noise. (One loop edge does not show a drift along the way: the circle
-// would only be larger.)
+// The drift from one keyframe to the next: 0.2 degrees about the vertical axis, 5 mm downwards, 0.2
+// % of scale, and some noise. There is no drift along the path, because one loop edge could not
+// correct it: the circle would only become larger.
 Sim3 DriftStep(RandomGeometry& random, bool has_scale) {
   const Eigen::Vector3d omega = Eigen::Vector3d(0.0, 4e-3, 0.0) + random.Vector(1e-3);
   const Eigen::Vector3d step = Eigen::Vector3d(0.0, 5e-3, 0.0) + random.Vector(3e-3);
@@ -116,7 +116,8 @@ TEST(PoseGraph, ALoopEdgeRemovesTheDriftOfTheScale) {
   EXPECT_GT(RmsError(rigid.cam_from_world, truth), RmsError(result.cam_from_world, truth));
 }
 
-// One edge pulls a free node to where it says, and two edges that disagree by their weights.
+// A node with one edge moves to the pose that the edge gives. A node with two edges that disagree
+// moves to their weighted mean.
 TEST(PoseGraph, ByHand) {
   PoseGraph graph;
   graph.nodes = {{Sim3(), true}, {Sim3(), false}};
@@ -153,7 +154,7 @@ TEST(PoseGraph, NothingMovesIfAllEdgesAgree) {
   }
 }
 
-TEST(PoseGraph, FixedAndFreeStandingNodesStay) {
+TEST(PoseGraph, FixedNodesAndNodesWithoutEdgesStay) {
   const std::vector<Sim3> truth = Circle(40);
   PoseGraph graph = DriftedLoop(truth, true);
   graph.nodes[20].is_fixed = true;

@@ -86,7 +86,7 @@ TEST_F(PoseOptimization, FlagsThirtyPercentOfOutliers) {
   }
 }
 
-// All outliers are on one side, so squares would move the pose until no observation fits.
+// All outliers are on one side, so squared errors would move the pose until no observation fits.
 TEST_F(PoseOptimization, TheFirstRoundsAreRobust) {
   auto observations = Observe(100, true);
   for (size_t i = 0; i < 30; ++i) {
@@ -176,7 +176,7 @@ TEST_F(PoseOptimization, ReturnsTheStartForFewerThanThreePoints) {
   }
 }
 
-// Also when only the last round finds that there are too few inliers.
+// This also holds if only the last round finds too few inliers.
 TEST_F(PoseOptimization, ReturnsTheStartForFewerThanThreeInliers) {
   auto observations = Observe(8, true);
   for (PoseObservation& observation : observations) {

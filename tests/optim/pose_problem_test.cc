@@ -11,8 +11,8 @@
 namespace hullslam::internal {
 namespace {
 
-// The squared distance, in units of 1 cm, of the moved point (0, 0, 2) and of two others from where
-// they should be: a problem whose minimum is the pose `goal`.
+// A problem whose minimum is the pose `goal`. Its cost is the sum over three points, such as (0, 0,
+// 2), of the squared distance (in cm) between the moved point and the point moved by `goal`.
 class PointsToPositions {
  public:
   explicit PointsToPositions(const Rigid3& goal) : goal_(goal) {}

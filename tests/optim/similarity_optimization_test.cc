@@ -103,7 +103,7 @@ TEST_P(SimilarityOptimization, ReturnsTheStartForFewerThanThreeMatches) {
     EXPECT_EQ(Distance(result.b_from_a, start), 0.0);
     EXPECT_LT(result.inlier_count, 3);
   }
-  // Nor if only wrong matches are left.
+  // The start is also returned if only wrong matches are left.
   MadeSimilarity wrong(8, {.fix_scale = GetParam(), .outliers = 1.0});
   const auto result = OptimizeSimilarity(wrong.camera(), start, wrong.Make(6), options_);
   ASSERT_LT(result.inlier_count, 3);
@@ -121,7 +121,7 @@ TEST_P(SimilarityOptimization, SameInputGivesTheSameBits) {
   EXPECT_EQ(first.scale, second.scale);
 }
 
-// All scales have the same reprojection errors then.
+// If both cameras are at one position, all scales have the same reprojection errors.
 TEST(SimilarityOptimizationOfOnePlace, TheDepthsGiveTheScale) {
   MadeSimilarity made(10, {.noise = 0.3});
   std::vector<SimilarityMatch> matches;

@@ -53,7 +53,7 @@ TEST(SquareRootForm, AParameterWithoutInfluenceDoesNotMove) {
   EXPECT_TRUE(form.Compute(Form::Matrix::Zero(), Form::Vector::Zero()));
 }
 
-TEST(SquareRootForm, WhatIsNoHessianIsRefused) {
+TEST(SquareRootForm, AMatrixThatIsNoHessianIsRefused) {
   Form form;
   EXPECT_FALSE(form.Compute(-SomeHessian(), Form::Vector::Zero()));
   EXPECT_FALSE(form.Compute(Form::Matrix::Constant(std::numeric_limits<double>::quiet_NaN()),

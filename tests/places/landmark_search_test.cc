@@ -14,7 +14,8 @@
 namespace hullslam {
 namespace {
 
-// The frame and the landmarks of the keyframes 2 to 6 of a ring without drift.
+// A map of the ring world without drift. `view_` is a new frame between the keyframes 4 and 5, and
+// `asked_` are the landmarks of the keyframes 2 to 6.
 class LandmarkSearch : public testing::Test {
  protected:
   static constexpr double kTurns = 4.3 / 24.0;
@@ -28,7 +29,7 @@ class LandmarkSearch : public testing::Test {
   std::vector<FoundLandmark> Find(const Rigid3& cam_from_world) const {
     return FindLandmarks(made_.map, world_.sensor(), *view_.frame, cam_from_world, asked_);
   }
-  // The point that a landmark shows.
+  // The index of the point of the world that is this landmark.
   uint32_t PointOf(LandmarkId id) const {
     const Observation& observation = made_.map.landmarks().At(id).observations.front();
     return made_.views[observation.keyframe.value].points[observation.keypoint];
@@ -67,7 +68,7 @@ TEST_F(LandmarkSearch, FindsNearlyAllFromTheRightPoseAndNoneWrongly) {
   EXPECT_EQ(CountRight(found), found.size());
 }
 
-TEST_F(LandmarkSearch, WhatIsFoundAgreesWithTheKeypoint) {
+TEST_F(LandmarkSearch, FoundLandmarksAgreeWithTheirKeypoints) {
   RandomGeometry random(1);
   size_t count = 0;
   for (int run = 0; run < 20; ++run) {
@@ -83,7 +84,7 @@ TEST_F(LandmarkSearch, WhatIsFoundAgreesWithTheKeypoint) {
   EXPECT_GT(count, 100u);
 }
 
-TEST_F(LandmarkSearch, FindsNothingFromAWrongPlace) {
+TEST_F(LandmarkSearch, FindsNothingFromAWrongPose) {
   EXPECT_TRUE(Find(RingWorld::CamFromWorld(kTurns + 0.5)).empty());
   EXPECT_LT(Find(RingWorld::CamFromWorld(kTurns + 0.05)).size(), 5u);
 }
@@ -117,7 +118,7 @@ TEST_F(LandmarkWords, MatchesLandmarksOfTheKeyframeWithoutAPose) {
   EXPECT_GT(CountRight(found), found.size() * 19 / 20);
 }
 
-TEST_F(LandmarkWords, LeavesOutKeypointsThatAreNotAsked) {
+TEST_F(LandmarkWords, LeavesOutKeypointsThatAreNotAskedFor) {
   const size_t keypoints = view_.frame->features.size();
   std::vector<uint8_t> is_asked(keypoints, 1);
   const std::vector<FoundLandmark> all = Match();

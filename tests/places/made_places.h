@@ -11,13 +11,12 @@
 
 namespace hullslam {
 
-// A map of keyframes that are nothing but words.
+// An empty map with the shared vocabulary.
 inline Map MakeWordMap() { return Map(SharedVocabulary()); }
 
-// A keyframe that shows each of the words once, and has room for `landmarks` landmarks.
+// Adds a keyframe with `landmarks` keypoints, whose words are `words` in turn.
 inline KeyframeId AddWords(Map& map, const std::vector<uint32_t>& words, size_t landmarks = 100) {
   const auto frame = MakeFrame(map.keyframes().NextId().value, landmarks);
-  // One word per keypoint, so the words are repeated.
   for (size_t i = 0; i < landmarks; ++i) {
     frame->words.emplace_back(words[i % words.size()]);
   }

@@ -21,7 +21,7 @@ Ids IdsOf(const std::vector<SimilarKeyframe>& similar) {
   return ids;
 }
 
-// Keyframes 0 to count - 1 that share nothing.
+// A map with the keyframes 0 to count - 1, which share neither words nor landmarks.
 Map MakeStrangers(uint32_t count) {
   Map map = MakeWordMap();
   for (uint32_t i = 0; i < count; ++i) {
@@ -30,7 +30,7 @@ Map MakeStrangers(uint32_t count) {
   return map;
 }
 
-TEST(PlaceOf, IsTheKeyframeAndThoseThatShareMostWithItById) {
+TEST(PlaceOf, IsTheKeyframeAndTheTenThatShareMostLandmarksWithIt) {
   Map map = MakeStrangers(14);
   EXPECT_EQ(PlaceOf(map, KeyframeId(5)), Ids{KeyframeId(5)});
   const auto hub = AddWords(map, {0}, 400);

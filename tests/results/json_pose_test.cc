@@ -22,7 +22,7 @@ TEST(JsonPose, NormalisesTheRotation) {
   EXPECT_NEAR(pose.rotation.z(), std::sqrt(0.5), 1e-15);
 }
 
-TEST(JsonPose, RefusesWhatIsNoPose) {
+TEST(JsonPose, RefusesOtherValues) {
   ExpectInputError([] { Parse("[1e155, 0, 0, 0, 0, 0, 1]"); },
                    {"f.json", "a position from -1e+08 to 1e+08 m"});
   ExpectInputError([] { Parse("[0, 0, 0, 0, 0, 0, 1e200]"); }, {"a quaternion of length 1"});

@@ -128,6 +128,34 @@ TEST(ObjectFile, TheTableHasOneLinePerObject) {
             "3.5,0,0\n");
 }
 
+// Classes come from files of others. The table is opened with a spreadsheet.
+TEST(ObjectFile, TheTableIsValidTextWithoutFormulas) {
+  const auto class_in_table = [](const std::string& label) {
+    ObjectReport report = MakeReport();
+    report.objects.resize(1);
+    report.objects[0].label = label;
+    const std::string table = FormatObjectsCsv(report);
+    const size_t begin = table.find("\n7,") + 3;
+    return table.substr(begin, table.find(",mapped") - begin);
+  };
+  EXPECT_EQ(class_in_table("=HYPERLINK(A1)"), "'=HYPERLINK(A1)");
+  EXPECT_EQ(class_in_table("=A(\"x\")"), "\"'=A(\"\"x\"\")\"");
+  EXPECT_EQ(class_in_table("+1"), "'+1");
+  EXPECT_EQ(class_in_table("-1"), "'-1");
+  EXPECT_EQ(class_in_table("@SUM"), "'@SUM");
+  EXPECT_EQ(class_in_table("a=b-c"), "a=b-c");
+  EXPECT_EQ(class_in_table("a\xff\nb"), "a??b");
+}
+
+TEST(ObjectFile, LabelsAreReadInPrintableCharacters) {
+  ObjectReport report = MakeReport();
+  report.objects[0].label = "cup\x1b[2J";
+  report.objects[0].votes = {{"cup\x1b[2J", 2.0}};
+  const ObjectReport read = WriteAndRead(report);
+  EXPECT_EQ(read.objects[0].label, "cup?[2J");
+  EXPECT_EQ(read.objects[0].votes.begin()->first, "cup?[2J");
+}
+
 TEST(ObjectFile, ReadingAndWritingGivesTheSameBytes) {
   const ObjectReport read = WriteAndRead(MakeReport());
   EXPECT_EQ(FormatObjects(read), FormatObjects(MakeReport()));
@@ -148,15 +176,15 @@ TEST(ObjectFile, ReadingAndWritingGivesTheSameBytes) {
   EXPECT_NEAR(view.lines[0].line.normal.x(), 0.6, 1e-9);
 }
 
-// A report of a run that went on with a map.
+// The report of a run that went on with a map of earlier sessions.
 ObjectReport MakeChangedReport() {
   ObjectReport report = MakeReport();
-  const LocatedObject place = {ObjectId(7), report.objects[0].ellipsoid};
+  const LocatedObject located = {ObjectId(7), report.objects[0].ellipsoid};
   ChangedObject moved{.change = ObjectChange::kMoved, .label = "cup", .expected = 12, .found = 1};
-  moved.now = place;
+  moved.now = located;
   moved.former = LocatedObject{ObjectId(3), report.objects[0].ellipsoid};
   ChangedObject gone{.change = ObjectChange::kGone, .label = "book", .expected = 4, .found = 0};
-  gone.former = place;
+  gone.former = located;
   report.changes = {moved, gone};
   return report;
 }
@@ -199,7 +227,7 @@ TEST(ObjectFile, NonFiniteValuesAreNeverWritten) {
   EXPECT_THROW(FormatObservations(report), CheckError);
 }
 
-// Expects that the files are refused when the value at `pointer` of one of them is replaced.
+// Expects that the files are refused if the value at `pointer` in one of them is replaced.
 void ExpectRefusal(const std::string& pointer, const Json& value,
                    const std::vector<std::string>& parts) {
   Json objects = Json::parse(FormatObjects(MakeChangedReport()));

@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 
 using Files = std::map<std::string, std::string>;
 
-// The content of all files of a folder, by name. Folders in it have the content "folder".
+// The content of all files of a folder, by name. A folder inside it appears with the content
+// "folder".
 Files ReadFolder(const fs::path& folder) {
   Files files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -47,7 +48,7 @@ class OutputFolderTest : public testing::Test {
     output.Write({"summary.json", Index(output.names())});
   }
 
-  // Makes a whole run.
+  // Does what a run does: writes the files and the index, and commits them.
   void Run(const Files& files) const {
     OutputFolder output(out_, "summary.json", {});
     Write(output, files);
@@ -261,12 +262,13 @@ TEST_F(OutputFolderTest, WhatAKilledRunLeavesIsRemovedByTheNextRun) {
     Write(output, {{"a.txt", "2"}});
     ::raise(SIGKILL);
   });
-  EXPECT_EQ(ReadFolder(out_).size(), 3U) << "with the staging folder";
+  EXPECT_EQ(ReadFolder(out_).size(), 3U)
+      << "the staging folder of the killed run is the third entry";
   { const OutputFolder next(out_, "summary.json", {}); }
   EXPECT_EQ(ReadFolder(out_), (Files{{"a.txt", "1"}, {"summary.json", Index({"a.txt"})}}));
 }
 
-// The states in which a run can be killed while its files are put in place.
+// Makes each state in which a run can be killed while it moves its files to the output folder.
 TEST_F(OutputFolderTest, TheNextRunFinishesWhatAKilledRunBegan) {
   const Files expected = {
       {"a.txt", "2"}, {"b.txt", "2"}, {"summary.json", Index({"a.txt", "b.txt"})}};
@@ -293,6 +295,29 @@ TEST_F(OutputFolderTest, TheNextRunFinishesWhatAKilledRunBegan) {
     });
     { const OutputFolder next(out_, "summary.json", {}); }
     EXPECT_EQ(ReadFolder(out_), expected) << moved.size() << " files had been moved";
+  }
+}
+
+// A folder from a stranger may have links to files of others in what looks like a staging folder.
+TEST_F(OutputFolderTest, LinksInAStagingFolderAreNotFollowed) {
+  const Files foreign = {{"a.txt", "1"}, {"summary.json", Index({"a.txt"})}};
+  const fs::path elsewhere = folder_.path() / "elsewhere";
+  for (const auto& [name, content] : foreign) {
+    folder_.Write("elsewhere/" + name, content);
+  }
+  for (const bool is_folder_linked : {true, false}) {
+    folder_.Write("a/out/.hullslam-000000/lock", "");
+    const fs::path ready = out_ / ".hullslam-000000" / "ready";
+    if (is_folder_linked) {
+      fs::create_directory_symlink(elsewhere, ready);
+    } else {
+      fs::create_directory(ready);
+      fs::create_symlink(elsewhere / "a.txt", ready / "a.txt");
+      fs::create_symlink(elsewhere / "summary.json", ready / "summary.json");
+    }
+    { const OutputFolder next(out_, "summary.json", {}); }
+    EXPECT_EQ(ReadFolder(elsewhere), foreign);
+    EXPECT_TRUE(fs::is_empty(out_));
   }
 }
 

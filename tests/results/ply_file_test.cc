@@ -34,9 +34,9 @@ TEST(MapPly, AnEmptyMapGivesAFileWithoutPoints) {
   EXPECT_TRUE(ply.ends_with("end_header\n"));
 }
 
-float FloatAt(const std::string& bytes, size_t place) {
+float FloatAt(const std::string& bytes, size_t offset) {
   float value = 0.0F;
-  std::memcpy(&value, bytes.data() + place, sizeof(value));
+  std::memcpy(&value, bytes.data() + offset, sizeof(value));
   return value;
 }
 
@@ -51,17 +51,18 @@ struct Mesh {
     size_t face_count = 0;
     std::sscanf(ply.data() + ply.find("element vertex"), "element vertex %zu", &vertex_count);
     std::sscanf(ply.data() + ply.find("element face"), "element face %zu", &face_count);
-    size_t place = ply.find("end_header\n") + 11;
-    for (size_t i = 0; i < vertex_count; ++i, place += 15) {
-      vertices.emplace_back(FloatAt(ply, place), FloatAt(ply, place + 4), FloatAt(ply, place + 8));
-      colours.push_back(ply.substr(place + 12, 3));
+    size_t offset = ply.find("end_header\n") + 11;
+    for (size_t i = 0; i < vertex_count; ++i, offset += 15) {
+      vertices.emplace_back(FloatAt(ply, offset), FloatAt(ply, offset + 4),
+                            FloatAt(ply, offset + 8));
+      colours.push_back(ply.substr(offset + 12, 3));
     }
-    for (size_t i = 0; i < face_count; ++i, place += 13) {
-      EXPECT_EQ(ply.at(place), 3);
+    for (size_t i = 0; i < face_count; ++i, offset += 13) {
+      EXPECT_EQ(ply.at(offset), 3);
       faces.emplace_back();
-      std::memcpy(faces.back().data(), ply.data() + place + 1, 12);
+      std::memcpy(faces.back().data(), ply.data() + offset + 1, 12);
     }
-    EXPECT_EQ(place, ply.size());
+    EXPECT_EQ(offset, ply.size());
   }
 };
 
@@ -91,7 +92,8 @@ TEST(ObjectsPly, ContainsTheEllipsoidAsAClosedSurfaceFacingOutwards) {
     ++edges[{b, c}];
     ++edges[{c, a}];
   }
-  for (const auto& [edge, count] : edges) {  // each edge occurs once per direction
+  for (const auto& [edge, count] :
+       edges) {  // two triangles meet at each edge and run along it in opposite directions
     EXPECT_EQ(count, 1);
     EXPECT_TRUE(edges.contains({edge.second, edge.first}));
   }

@@ -23,7 +23,7 @@ TEST(TrajectoryFile, ReadsPosesAndNormalisesTheirRotations) {
   ASSERT_EQ(trajectory.size(), 1U);
   EXPECT_EQ(trajectory[0].timestamp, 1.5);
   EXPECT_EQ(trajectory[0].world_from_cam.translation, Eigen::Vector3d(1, 2, -0.3));
-  // The quaternion of half a right angle: a quarter turn about z.
+  // The file has a rotation by 90 degrees about z.
   const Eigen::Vector3d turned = trajectory[0].world_from_cam.rotation * Eigen::Vector3d::UnitX();
   EXPECT_LT((turned - Eigen::Vector3d::UnitY()).norm(), 1e-15);
 }
@@ -38,11 +38,11 @@ TEST(TrajectoryFile, TheLastOfEqualStampsIsUsed) {
 
 TEST(TrajectoryFile, WritesFixedDecimals) {
   const Trajectory trajectory = {
-      {1305031102.1753, Rigid3(Eigen::Quaterniond(-1, 0, 0, 0), {1.0 / 3.0, -2.0, 1e-12})}};
+      {1305031102.1753, Rigid3(Eigen::Quaterniond(-1, 0, 0, 0), {1.0 / 3.0, -2.0, -4.9e-10})}};
   EXPECT_EQ(FormatTrajectory(trajectory),
             "# timestamp tx ty tz qx qy qz qw\n"
             "1305031102.175300 0.333333333 -2.000000000 0.000000000 "
-            "-0.000000000 -0.000000000 -0.000000000 1.000000000\n");
+            "0.000000000 0.000000000 0.000000000 1.000000000\n");
 }
 
 TEST(TrajectoryFile, ReadingInvertsWriting) {

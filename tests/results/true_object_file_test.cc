@@ -102,11 +102,12 @@ TEST(TrueObjectFile, ReadsRearrangedScenes) {
 
 TEST(TrueObjectFile, BrokenRearrangementsAreReportedWithTheirPath) {
   const TemporaryFolder folder;
-  const auto expect = [&](const auto& damage, const std::string& place, const std::string& part) {
+  const auto expect = [&](const auto& damage, const std::string& path_in_file,
+                          const std::string& part) {
     Json json = RearrangedFile();
     damage(json);
     const auto path = folder.Write("truth.json", json.dump());
-    ExpectInputError([&] { ReadTrueScene(path); }, {"truth.json: " + place, part});
+    ExpectInputError([&] { ReadTrueScene(path); }, {"truth.json: " + path_in_file, part});
   };
   expect([](Json& json) { json["objects"][1].erase("status"); }, "objects[1]", "\"status\"");
   expect([](Json& json) { json["objects"][1]["status"] = "lost"; }, "objects[1].status",

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tests of scripts/ablation.py with a small program in place of rgbd_tum."""
+"""Tests of scripts/ablation.py with a small program instead of rgbd_tum."""
 
 import json
 import pathlib

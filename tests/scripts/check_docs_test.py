@@ -86,7 +86,7 @@ class KeysTest(CheckDocsTest):
         self.assert_good("```\n%YAML:1.0\nCamera.fx: 500\n```\n")
         self.assert_fault("```\n%YAML:1.0\nCamera.fz: 500\n```\n", "README.md:3:", "Camera.fz")
 
-    def test_what_only_looks_like_a_key(self):
+    def test_names_that_only_look_like_keys(self):
         for code in ("objects.json", "map.ply", "Stereo.b", "std.map", "system.map()->objects()",
                      "map.keyframes().At(id)", "report.objects", "--set KEY=VALUE",
                      "--set key=value", "objects.<use>.sigma", "data/map.keyframe"):

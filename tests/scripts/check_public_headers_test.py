@@ -40,7 +40,7 @@ class CheckPublicHeadersTest(unittest.TestCase):
             with self.subTest(user):
                 self.assertEqual(faults_of({HEADER: "", user: text}), [])
 
-    def test_those_who_are_no_users(self):
+    def test_the_library_and_its_tests_are_no_users(self):
         for other, text in (("src/map/map.cc", INCLUDE), ("src/system/system.cc", INCLUDE),
                             ("src/run/slam_run.cc", INCLUDE), ("tests/map/map_test.cc", INCLUDE),
                             ("tests/support/world.h", INCLUDE), ("Examples/a.cc", "// " + INCLUDE),
@@ -56,7 +56,7 @@ class CheckPublicHeadersTest(unittest.TestCase):
         self.assertEqual(faults_of({**files, "Examples/a.cc": INCLUDE}), [])
         self.assertEqual(len(faults_of(files)), 3)
 
-    def test_a_header_that_only_a_needless_header_includes_is_needless(self):
+    def test_a_header_that_only_an_unused_header_includes_is_unused(self):
         faults = faults_of({HEADER: "", "Examples/a.cc": INCLUDE,
                             "include/hullslam/eval/a.h": '#include "hullslam/eval/b.h"\n',
                             "include/hullslam/eval/b.h": '#include "hullslam/eval/a.h"\n'})

@@ -23,7 +23,7 @@ class DrawArchitecture(unittest.TestCase):
     def faults(self, levels=pictures.LEVELS):
         return "\n".join(pictures.faults(self.folder, levels))
 
-    def test_the_stored_pictures_show_the_levels_of_today(self):
+    def test_the_stored_pictures_show_the_current_levels(self):
         self.assertEqual(self.faults(), "")
 
     def test_a_new_module_is_noticed(self):

@@ -77,8 +77,8 @@ class LeaveAndReturnTest(unittest.TestCase):
         self.assertEqual(len(before) + len(after), len(truth))
         self.assertEqual([stamp for stamp, _ in before],
                          [9.98, 10.0, 10.02, 10.05, 10.08, 10.1, 10.12])
-        self.assertTrue(all(stamp == place for stamp, place in before))
-        self.assertTrue(all(abs(stamp - place - 0.3) < 1e-9 for stamp, place in after))
+        self.assertTrue(all(stamp == x for stamp, x in before))
+        self.assertTrue(all(abs(stamp - x - 0.3) < 1e-9 for stamp, x in after))
         self.assertEqual(min(after)[0], 10.48)
 
     def test_frames_of_another_sequence(self):
@@ -108,16 +108,16 @@ class LeaveAndReturnTest(unittest.TestCase):
                              ["10.0", "10.1", "10.2", "10.3", "blan", "blan"]
                              + ["10.0", "10.1", "10.2", "10.3"])
         truth = [(float(row[0]), float(row[1])) for row in self.rows("groundtruth.txt")]
-        self.assertEqual({round(stamp - place, 6) for stamp, place in truth}, {0.0, 0.6})
+        self.assertEqual({round(stamp - x, 6) for stamp, x in truth}, {0.0, 0.6})
 
     def test_blank_images_are_png(self):
         path = self.dir / "blank.png"
         leave_and_return.write_png(path, (5, 3), 16, 1, 300)
         self.assertEqual(leave_and_return.png_size(path), (5, 3))
         data = path.read_bytes()
-        place = data.index(b"IDAT")
-        length, = struct.unpack(">I", data[place - 4:place])
-        self.assertEqual(zlib.decompress(data[place + 4:place + 4 + length]),
+        offset = data.index(b"IDAT")
+        length, = struct.unpack(">I", data[offset - 4:offset])
+        self.assertEqual(zlib.decompress(data[offset + 4:offset + 4 + length]),
                          (b"\0" + b"\x01\x2c" * 5) * 3)
 
     def test_bad_input(self):

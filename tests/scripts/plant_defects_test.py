@@ -84,9 +84,9 @@ class PlantDefectsTest(unittest.TestCase):
                    entry("broken", "margin = 1", "syntax")]
         result = self.plant(entries)
         self.assertEqual(result.returncode, 1, result.stderr)
-        self.assertIn("absent: does not apply (0 places)", result.stdout)
-        self.assertIn("twice: does not apply (2 places)", result.stdout)
-        self.assertIn("no file: does not apply (0 places)", result.stdout)
+        self.assertIn("absent: does not apply (0 matches)", result.stdout)
+        self.assertIn("twice: does not apply (2 matches)", result.stdout)
+        self.assertIn("no file: does not apply (0 matches)", result.stdout)
         self.assertIn("broken: does not compile: a.cc:1: error: bad syntax", result.stdout)
         result = self.plant(entries, "--check")
         self.assertEqual(result.returncode, 1)
@@ -139,7 +139,7 @@ class PlantDefectsTest(unittest.TestCase):
                 self.assertTrue(result.stderr.startswith("error: "), result.stderr)
 
     def test_the_list_of_the_project(self):
-        """Whether all defects apply is not tested: who changes a condition need not know the list."""
+        """Does not test that all defects apply: a change of the code need not update the list."""
         entries = plant_defects.read_defects(SCRIPT.parent / "defects.json", [])
         self.assertGreaterEqual(len(entries), 40)
         for item in entries:

@@ -222,7 +222,7 @@ class PlotRunTest(unittest.TestCase):
         self.assertIn("0.0100 m (SE3, all frames, 40 pairs)", result.stdout)
         self.assertIn("9.5 ms median", result.stdout)
 
-    def test_the_scale_of_a_single_camera_is_aligned(self):
+    def test_the_scale_of_a_monocular_run_is_aligned(self):
         stamps = 1000 + np.arange(40) / 30
         positions = np.stack([np.cos(stamps), np.sin(stamps), 0.1 * np.cos(3 * stamps)], axis=1)
         self.write("trajectory.txt", trajectory_text(stamps, 0.2 * positions))
@@ -451,9 +451,20 @@ class PlotRunTest(unittest.TestCase):
 
     def test_reads_points_and_colours(self):
         self.write("map.ply", ply_bytes([[1, 2, 3], [4, 5, 6]]))
-        points, colours = run_files.read_map(self.dir / "map.ply", 100)
+        points, colours, dropped = run_files.read_map(self.dir / "map.ply", 100)
         np.testing.assert_array_equal(points, [[1, 2, 3], [4, 5, 6]])
         np.testing.assert_allclose(colours[1], np.array([10, 20, 30]) / 255)
+        self.assertEqual(dropped, 0)
+
+    def test_points_that_cannot_be_drawn_are_left_out(self):
+        points = [[1, 2, 3], [np.nan, 0, 0], [0, np.inf, 0], [0, 0, -5.9e6], [4, 5, 6]]
+        self.write("map.ply", ply_bytes(points))
+        drawn, colours, dropped = run_files.read_map(self.dir / "map.ply", 2)
+        np.testing.assert_array_equal(drawn, [[1, 2, 3], [4, 5, 6]])
+        self.assertEqual((len(colours), dropped), (2, 3))
+        result = self.plot()
+        self.assert_drawn(result, self.dir / "run.png")
+        self.assertIn("note: 3 points of", result.stderr)
 
     def write_objects(self, stamps=(1000.0, 1000.5), images=True):
         self.write("objects.json", json.dumps(objects_file(stamps)))
@@ -576,13 +587,13 @@ class PlotRunTest(unittest.TestCase):
                    (["objects", 0, "observations", 0, "hull", 1, 1], 1e300),
                    (["objects", 0, "observations", 0, "cam_from_world"], [0, 0, 0, 1]),
                    (["objects", 0, "observations", 0, "cam_from_world", 0], True)]
-        for place, value in changes:
-            with self.subTest(place=place, value=str(value)[:20]):
+        for keys, value in changes:
+            with self.subTest(keys=keys, value=str(value)[:20]):
                 content = copy.deepcopy(good)
                 parent = content
-                for key in place[:-1]:
+                for key in keys[:-1]:
                     parent = parent[key]
-                parent[place[-1]] = value
+                parent[keys[-1]] = value
                 self.write("objects.json", json.dumps(content))
                 self.assert_refused(self.plot(), "objects.json")
         self.write("objects.json", "[" * 100000)
@@ -595,14 +606,13 @@ class PlotRunTest(unittest.TestCase):
                   good.replace(b"vertex 2", b"vertex " + b"9" * 9000),
                   good.replace(b"float y", b"float x"), good.replace(b"float y", b"float w"),
                   good.replace(b"element vertex", b"element face 1\nelement vertex"),
-                  ply_bytes([[np.nan, 0, 0]]), ply_bytes([[np.inf, 0, 0]]), ply_bytes([[1e30, 0, 0]]),
                   good.replace(b"uchar red", b"float red")]
         for i, data in enumerate(broken):
             with self.subTest(i):
                 self.write("map.ply", data)
                 self.assert_refused(self.plot(), "map.ply")
 
-    def test_folders_and_other_bytes_in_the_place_of_files(self):
+    def test_folders_and_other_bytes_instead_of_files(self):
         for name in ("map.ply", "keyframes.txt", "summary.json", "objects.json"):
             with self.subTest(name):
                 (self.dir / name).mkdir()

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tests of scripts/reference_runs.py, with small shell scripts in place of the programs."""
+"""Tests of scripts/reference_runs.py, with small shell scripts instead of the programs."""
 
 import json
 import pathlib

@@ -12,7 +12,8 @@
 namespace hullslam {
 namespace {
 
-// The pixel that a camera sees whose y axis points up, in the world that it belongs to (fy < 0).
+// The pixel of a point in a camera whose y axis points up (fy < 0). Pose and point are those of its
+// left-handed world.
 Eigen::Vector2d PixelWithYUp(const PinholeCamera& camera, const Rigid3& world_from_cam,
                              const Eigen::Vector3d& point) {
   const Eigen::Vector3d seen = Inverse(world_from_cam) * point;
@@ -85,7 +86,7 @@ TEST_F(MeasureYAxisTest, DepthTellsTheAxis) {
   EXPECT_EQ(down.only_up, up.only_down);
 }
 
-TEST_F(MeasureYAxisTest, FramesWithoutPoseOrReadableDepthArePassedOver) {
+TEST_F(MeasureYAxisTest, FramesWithoutPoseOrReadableDepthAreSkipped) {
   EXPECT_EQ(Measure({up_.begin(), up_.begin() + 1}).pixels, 0U);
   for (int i = 1; i < 15; ++i) {
     folder_.Write("depth/" + std::to_string(i) + ".png", "broken");

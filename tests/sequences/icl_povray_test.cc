@@ -14,7 +14,7 @@
 namespace hullslam {
 namespace {
 
-constexpr double kUnits = 100.0;  // of the made files per metre
+constexpr double kUnits = 100.0;  // units of length of the files per metre
 
 class IclPovrayTest : public ::testing::Test {
  protected:
@@ -41,7 +41,7 @@ TEST_F(IclPovrayTest, ListsFramesByIndex) {
   EXPECT_EQ(frames[3].number, 3U);
 }
 
-TEST_F(IclPovrayTest, FoldersThatAreNoPackageAreRefused) {
+TEST_F(IclPovrayTest, FoldersWithNoneOrTwoScenesAreRefused) {
   folder_.Write("scene_01_0001.png", "");
   ExpectInputError([&] { ListPovrayFrames(folder_.path()); }, {"two scenes", "scene_01_0001.png"});
   const TemporaryFolder empty;
@@ -50,7 +50,7 @@ TEST_F(IclPovrayTest, FoldersThatAreNoPackageAreRefused) {
   ExpectInputError([&] { ListPovrayFrames(empty.path()); }, {"has no images scene_NN_NNNN.png"});
 }
 
-// The files have 8 decimals.
+// The tolerance is that of the files, which have 8 decimals.
 TEST_F(IclPovrayTest, CamerasAreThoseOfTheRightHandedRoom) {
   const auto read = ReadPovrayTrajectory(ListPovrayFrames(folder_.path()), kUnits);
   ASSERT_TRUE(read && read->size() == 2);

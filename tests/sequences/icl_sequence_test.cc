@@ -54,7 +54,8 @@ TEST_F(IclSequenceTest, BothAxesGiveTheTruePoses) {
   }
 }
 
-// The depth of a pixel, moved by the converted poses, is what another frame measured.
+// A point that one frame measured, moved to another frame by the converted poses, has the depth
+// that the other frame measured.
 TEST_F(IclSequenceTest, ConvertedPosesExplainThePixels) {
   room_.WriteIclTum(folder_.path(), kFrames, true);
   const IclSequence sequence = Open();
@@ -70,7 +71,7 @@ TEST_F(IclSequenceTest, ConvertedPosesExplainThePixels) {
   EXPECT_NEAR(SampleDepth(to.depth, seen, 5000.0), moved.z(), 0.02);
 }
 
-TEST_F(IclSequenceTest, WhatTheUserSaysIsNotMeasured) {
+TEST_F(IclSequenceTest, AnAxisThatTheUserGivesIsNotMeasured) {
   room_.WriteIclTum(folder_.path(), kFrames, true);
   const IclSequence down = Open({.groundtruth_y = CameraYAxis::kDown});
   EXPECT_TRUE(down.images.converted_groundtruth->front().world_from_cam.ToMatrix().isApprox(
@@ -78,7 +79,7 @@ TEST_F(IclSequenceTest, WhatTheUserSaysIsNotMeasured) {
   ExpectTruePoses(Open({.groundtruth_y = CameraYAxis::kUp}), 1);
 }
 
-TEST_F(IclSequenceTest, AnUnclearAxisIsAsked) {
+TEST_F(IclSequenceTest, AnUnclearAxisIsAskedFor) {
   room_.WriteIclTum(folder_.path(), kFrames, true);
   std::string wrong;
   for (int i = 0; i < kFrames; ++i) {
@@ -121,7 +122,7 @@ TEST_F(IclSequenceTest, PovrayImagesMayHaveAFileWithPoses) {
   ExpectTruePoses(sequence, 1);
 }
 
-TEST_F(IclSequenceTest, AFolderOfBothOrNoPackageIsAsked) {
+TEST_F(IclSequenceTest, ThePackageOfAFolderWithBothOrNoneIsAskedFor) {
   ExpectError({"neither associations.txt nor", "--package tum or --package povray"});
   folder_.Write("associations.txt", "0 depth/0.png 0 rgb/0.png\n");
   folder_.Write("scene_00_0000.png", "");
@@ -150,7 +151,7 @@ TEST_F(IclSequenceTest, BrokenAssociationsAreReported) {
   ExpectError({"associations.txt", "has no images"});
 }
 
-TEST_F(IclSequenceTest, SeveralGroundTruthsAreAsked) {
+TEST_F(IclSequenceTest, OneOfSeveralGroundTruthsIsAskedFor) {
   room_.WriteIclTum(folder_.path(), kFrames, true);
   folder_.Write("groundtruth.txt", "");
   ExpectError({"groundtruth.txt and made.gt.freiburg", "--groundtruth FILE"});
@@ -158,7 +159,7 @@ TEST_F(IclSequenceTest, SeveralGroundTruthsAreAsked) {
   ExpectError({"none.txt"}, {.groundtruth = folder_.path() / "none.txt"});
 }
 
-TEST_F(IclSequenceTest, SelectsFramesAndLeavesDepthAway) {
+TEST_F(IclSequenceTest, SelectsFramesAndLeavesOutDepth) {
   room_.WriteIclTum(folder_.path(), kFrames, true);
   const IclSequence some = Open({.selection = {.first = 2, .last = 14, .stride = 6}});
   ASSERT_EQ(some.images.frames.size(), 3U);

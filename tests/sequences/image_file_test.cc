@@ -113,7 +113,7 @@ TEST(ImageFile, AHugeSizeIsRefusedBeforeMemoryIsAllocated) {
                    {"huge.jpg", "65535x65535 px"});
 }
 
-// Such a file is not read: its size is checked first.
+// The size of the file is checked before its content is read.
 TEST(ImageFile, AHugeFileIsRefusedBeforeItIsRead) {
   const TemporaryFolder folder;
   const auto path = folder.Write("sparse.png", "\x89PNG");
@@ -131,7 +131,7 @@ TEST(ImageFile, FillBytesBeforeTheMarkersOfAJpegAreAccepted) {
   EXPECT_EQ(ReadGreyImage(folder.Write("fill.jpg", jpeg)).size(), cv::Size(64, 48));
 }
 
-// A decoder that skips the bytes before the second frame header would find another size there.
+// A decoder that skips unknown bytes would find a second frame header in them, with another size.
 TEST(ImageFile, OtherBytesBetweenTheSegmentsOfAJpegAreRefused) {
   const TemporaryFolder folder;
   std::string jpeg = Encode(".jpg", Ramp(CV_8UC1));

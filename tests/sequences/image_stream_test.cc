@@ -80,7 +80,7 @@ TEST_F(ImageStreamTest, AFolderIsReadInNaturalOrder) {
   EXPECT_TRUE(image.depth.empty());
 }
 
-TEST_F(ImageStreamTest, TheFrameRateOfAFolderCanBeSaid) {
+TEST_F(ImageStreamTest, TheFrameRateOfAFolderCanBeGiven) {
   for (const char* const name : {"a.png", "b.png", "c.png", "d.png"}) {
     WriteImage(name, 50);
   }
@@ -139,7 +139,7 @@ TEST_F(ImageStreamTest, AVideoHasItsOwnTimeStamps) {
   }
 }
 
-// Also back to the beginning, and over frames that are not selected.
+// The order may go back to the beginning, and it may skip frames.
 TEST_F(ImageStreamTest, FramesOfAVideoAreDecodedInAnyOrder) {
   const ImageStream stream = OpenImageStream(WriteVideo("a.avi", 10));
   for (const size_t frame : {0U, 1U, 2U, 7U, 9U, 0U, 4U, 4U}) {
@@ -158,13 +158,25 @@ TEST_F(ImageStreamTest, BrokenVideosAreRefusedByName) {
   ExpectError(folder_.Write("a.mp4", "no video at all"), {"a.mp4: cannot be decoded"});
   const std::string good = ReadFile(WriteVideo("good.avi", 10));
   ExpectError(folder_.Write("cut.avi", good.substr(0, 600)), {"cut.avi: "});
-  // What can be decoded of a video that is cut off is used.
+  // If a video is cut off, the frames that can be decoded are used.
   const ImageStream part =
       OpenImageStream(folder_.Write("part.avi", good.substr(0, good.size() * 3 / 4)));
   EXPECT_GE(part.images.frames.size(), 1U);
   EXPECT_LT(part.images.frames.size(), 10U);
   EXPECT_GE(GreyOf(part, 0), 0);
   ExpectError("/dev/null", {"/dev/null: is not a file"});
+}
+
+TEST_F(ImageStreamTest, AVideoDoesNotOpenOtherFiles) {
+  WriteVideo("private.avi", 10);
+  ExpectError(folder_.Write("list.mp4", "ffconcat version 1.0\nfile private.avi\n"),
+              {"list.mp4: cannot be decoded"});
+}
+
+// The size is in the header, so that no memory is needed to refuse it.
+TEST_F(ImageStreamTest, AVideoOfHugeImagesIsRefused) {
+  ExpectError(folder_.Write("huge.y4m", "YUV4MPEG2 W16000 H16000 F25:1 Cmono\nFRAME\n0123456789"),
+              {"huge.y4m: has images of 16000x16000 px", "64 million px"});
 }
 
 TEST(CameraOfFieldOfView, TheBordersAreSeenAtHalfTheAngle) {
@@ -175,7 +187,7 @@ TEST(CameraOfFieldOfView, TheBordersAreSeenAtHalfTheAngle) {
   EXPECT_EQ(camera.cy, 239.5);
   EXPECT_FALSE(camera.IsDistorted());
   EXPECT_EQ(camera.FindFault(), "");
-  // The outer side of the last pixel.
+  // The outer edge of the last pixel is at x = 639.5.
   EXPECT_NEAR(camera.Project({1.0, 0.0, 1.0}).x(), 639.5, 1e-9);
   for (const double degrees : {0.0, 9.9, 180.0, -60.0, std::nan("")}) {
     ExpectInputError([&] { CameraOfFieldOfView(degrees, 640, 480); },

@@ -55,7 +55,8 @@ Viewer.imageViewScale: 1.0
 
 class SettingsOrbSlam3 : public ::testing::Test {
  protected:
-  // The file with one line after line 2 replaced, or added at the end if `begin` starts none.
+  // The file in which the line that starts with `begin` is replaced. If no line does, `line` is
+  // added at the end.
   static std::string With(const std::string& begin, const std::string& line) {
     std::string text = kOrbSlam3;
     const size_t at = text.find('\n' + begin);
@@ -121,13 +122,13 @@ TEST_F(SettingsOrbSlam3, RectifiedImagesHaveNoDistortion) {
                    .camera.IsDistorted());
 }
 
-TEST_F(SettingsOrbSlam3, WhatCannotBeTranslatedIsNamed) {
+TEST_F(SettingsOrbSlam3, SettingsThatCannotBeTranslatedAreNamed) {
   ExpectError("Camera.type", "Camera.type: \"KannalaBrandt8\"",
               {"camera.yaml:3: Camera.type is 'KannalaBrandt8'", "\"PinHole\" or \"Rectified\"",
                "no other camera model"});
   ExpectError("File.version", "File.version: \"2.0\"",
               {"camera.yaml:2: File.version is '2.0'", "\"1.0\""});
-  ExpectError("", "Camera2.fx: 500.0", {"Camera2.fx of ORB-SLAM3 cannot be translated", "single"});
+  ExpectError("", "Camera2.fx: 500.0", {"Camera2.fx of ORB-SLAM3 cannot be translated", "stereo"});
   ExpectError("", "System.thFarPoints: 20.0", {"System.thFarPoints", "far points"});
   ExpectError("", "System.LoadAtlasFromFile: \"a\"", {"System.LoadAtlasFromFile", "maps"});
   ExpectError("Camera.newWidth", "Camera.newWidth: 640",

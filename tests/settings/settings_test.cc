@@ -126,7 +126,7 @@ TEST_F(Settings, OverridesReplaceValuesOfTheFile) {
   ExpectError(kMinimal, {"--set", "'Camera.fx'", "key=value"}, {"Camera.fx"});
 }
 
-TEST_F(Settings, ANegativeFyIsDecidedByTheProgram) {
+TEST_F(Settings, EachProgramDecidesWhetherFyMayBeNegative) {
   const std::string text =
       "%YAML:1.0\nCamera.fx: 481.2\nCamera.fy: -480.0\nCamera.cx: 319.5\nCamera.cy: 239.5\n";
   ExpectError(text, {"camera.yaml:3: Camera.fy is '-480", "mirrored world", "rgbd_icl"});
@@ -147,8 +147,7 @@ TEST_F(Settings, TheConfigurationOfIclNuimIsRightHanded) {
   EXPECT_EQ(options.depth.units_per_metre, 5000.0);
 }
 
-// A user gets the same run from config/EuRoC.yaml as from the calibration that every sequence of
-// EuRoC brings along.
+// config/EuRoC.yaml must give the same run as the calibration file in every sequence of EuRoC.
 TEST_F(Settings, TheConfigurationOfEurocIsThatOfItsSensorFile) {
   const auto sensor = folder_.Write(
       "sensor.yaml",
@@ -164,7 +163,7 @@ TEST_F(Settings, TheConfigurationOfEurocIsThatOfItsSensorFile) {
             FormatSettings(MakeSettings(ReadEurocCamera(sensor).calibration, sensor.string())));
 }
 
-// No file is left behind when a key is renamed.
+// When a key is renamed, the files of config/ must be changed too.
 TEST_F(Settings, EveryFileOfTheConfigurationIsRead) {
   size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(SourceFolder() / "config")) {
@@ -409,7 +408,7 @@ TEST_F(Settings, RetiredKeysOfAFileAreIgnoredWithAWarning) {
               {"objects.misfit.views=10"});
 }
 
-// The rows of the table of docs/settings.md.
+// The rows that the table of docs/settings.md must have.
 std::string SettingsTable() {
   std::string table = "| key | default | allowed | meaning |\n|---|---|---|---|\n";
   SystemOptions options;
@@ -441,7 +440,7 @@ TEST_F(Settings, TheTableOfTheDocsIsThatOfTheOptions) {
     return;
   }
   EXPECT_TRUE(docs == expected)
-      << "the table of docs/settings.md is not that of the options; to write it, run\n"
+      << "the table of docs/settings.md differs from the options; to write it, run\n"
          "HULLSLAM_UPDATE_DOCS=1 ctest --preset release -R TheTableOfTheDocs";
 }
 

@@ -40,8 +40,8 @@ TEST(YamlNesting, ManyLevelsAreRefused) {
   ExpectRefused(lists, 502);
 }
 
-// Brackets that are closed inside a text must not hide others.
-TEST(YamlNesting, TextsHideNoLevels) {
+// Closing brackets and '#' inside quoted texts must not hide opening brackets.
+TEST(YamlNesting, QuotedTextsHideNoLevels) {
   std::string lists = "a: ";
   for (int i = 0; i < 600; ++i) {
     lists += "[\"]\", ";

@@ -21,13 +21,13 @@ class YamlSettings : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(YamlSettings, AreInTheOrderOfTheFileWithTheirPlaces) {
+TEST_F(YamlSettings, AreInTheOrderOfTheFileWithTheirLines) {
   const auto settings = Read("# a comment\nb: 1.5  # px\n\na: some text\n");
   ASSERT_EQ(settings.size(), 2u);
   EXPECT_EQ(settings[0].key, "b");
   EXPECT_EQ(settings[0].name, "b");
   EXPECT_EQ(settings[0].text, "1.5");
-  EXPECT_EQ(settings[0].place, (folder_.path() / "a.yaml").string() + ":3");
+  EXPECT_EQ(settings[0].origin, (folder_.path() / "a.yaml").string() + ":3");
   EXPECT_EQ(settings[1].key, "a");
   EXPECT_EQ(settings[1].text, "some text");
 }

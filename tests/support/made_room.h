@@ -18,8 +18,9 @@
 
 namespace hullslam {
 
-// A camera that moves in all directions through a room with textured walls, and the data sets that
-// others would make of it. The true poses are those of a right-handed camera, y down.
+// A camera that moves in all directions through a room with textured walls. Its images can be
+// written in the formats of published data sets. The true poses are those of a right-handed camera
+// with y down.
 class MadeRoom {
  public:
   // The camera of ICL-NUIM with images of 640 x 480 px divided by `reduction`.
@@ -64,8 +65,7 @@ class MadeRoom {
     return images;
   }
 
-  // The pose of the same camera for somebody whose y axis points up, in the camera and in the
-  // world.
+  // The pose of the same camera if the y axes of the camera and of the world point up.
   static Rigid3 PoseWithYUp(int frame) {
     const Eigen::DiagonalMatrix<double, 3> mirror(1.0, -1.0, 1.0);
     const Rigid3 pose = Pose(frame);
@@ -73,8 +73,8 @@ class MadeRoom {
     return {Eigen::Quaterniond(rotation), mirror * pose.translation};
   }
 
-  // ICL-NUIM's package with PNG images: frames 0, 1, ...; a ground truth `made.gt.freiburg` from
-  // index 1 on, of cameras whose y points up or down.
+  // Writes ICL-NUIM's package with PNG images, with the frames 0, 1, ... The ground truth
+  // `made.gt.freiburg` begins at index 1; it is that of cameras whose y axis points up or down.
   void WriteIclTum(const std::filesystem::path& folder, int frames, bool is_y_up) const {
     std::filesystem::create_directories(folder / "rgb");
     std::filesystem::create_directories(folder / "depth");
@@ -91,7 +91,7 @@ class MadeRoom {
     }
   }
 
-  // ICL-NUIM's original package, with lengths in centimetres.
+  // Writes ICL-NUIM's original package, with lengths in centimetres.
   void WriteIclPovray(const std::filesystem::path& folder, int frames) const {
     for (int i = 0; i < frames; ++i) {
       const Images images = Render(i);
@@ -122,7 +122,7 @@ class MadeRoom {
     return fmt::format("{:<12} = [{:.8f}, {:.8f}, {:.8f}]';\n", key, v.x(), v.y(), v.z());
   }
 
-  // How many times `direction` leads from `origin`, inside the room, to a wall.
+  // The number d for which `origin` + d * `direction` is on a wall. `origin` is inside the room.
   static double DepthAlong(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
     const Eigen::Vector3d half(1.6, 1.3, 2.2);
     double nearest = std::numeric_limits<double>::max();

@@ -17,7 +17,7 @@ namespace hullslam {
 struct MadeSimilarityOptions {
   bool fix_scale = false;
   bool has_depth = false;
-  double outliers = 0.0;  // share of the matches, the first ones: random pixels and points
+  double outliers = 0.0;  // share of the matches that are random; they are the first ones
   double noise = 0.0;     // px
 };
 
@@ -42,7 +42,7 @@ class MadeSimilarity {
     }
     return matches;
   }
-  // The match of a point of a's camera frame.
+  // The match of a point that is given in the camera frame of keyframe a.
   SimilarityMatch MakeMatch(const Eigen::Vector3d& in_a) {
     SimilarityMatch match;
     match.point_in_a = in_a;
@@ -79,7 +79,7 @@ class MadeSimilarity {
   Sim3 b_from_a_;
 };
 
-// Of rotation, translation and the logarithm of the scale.
+// The sum of the differences of rotation, translation and the logarithm of the scale.
 inline double Distance(const Sim3& a, const Sim3& b) {
   return (a.rotation.toRotationMatrix() - b.rotation.toRotationMatrix()).norm() +
          (a.translation - b.translation).norm() + std::abs(std::log(a.scale / b.scale));

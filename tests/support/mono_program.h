@@ -44,15 +44,16 @@ class MonoProgram : public ::testing::Test {
     return result;
   }
 
-  // Expects exit code 1, results without a pose, and an error that says how often `reason` was why
-  // there is no map.
+  // Expects exit code 1, results without a pose, and an error that says how many frames made no map
+  // because of `reason`.
   void ExpectNoMap(const Arguments& arguments, int frames, const std::string& reason) const {
     const ProgramResult result = Run(arguments);
     EXPECT_EQ(result.exit_code, 1) << result.errors;
     ExpectParts(result.errors,
                 {"error: no map could be made from " + std::to_string(frames) + " frames: ",
                  " x " + reason});
-    // A run without poses has no error; its time stamps are not to blame.
+    // A run without poses has no trajectory error, and no message may say that its time stamps are
+    // wrong.
     EXPECT_EQ(result.errors.find("trajectory error"), std::string::npos) << result.errors;
     const Json summary = Summary();
     EXPECT_TRUE(summary["initialisation"]["seconds"].is_null());

@@ -22,8 +22,8 @@ namespace hullslam {
 // groundtruth.txt, camera.yaml and associations.txt.
 class PlaneSequence {
  public:
-  // `shift` in px per frame; 500 px are 1 m. The texture is the same again after `period` px, a
-  // multiple of 8; 0: never.
+  // `shift` in px per frame; 500 px are 1 m. The texture repeats after `period` px, a multiple of
+  // 8; 0: it does not repeat.
   explicit PlaneSequence(int frames = 12, double seconds_a_frame = 0.1, int shift = 5,
                          int period = 0)
       : seconds_a_frame_(seconds_a_frame), shift_(shift), period_(period) {

@@ -14,8 +14,8 @@
 
 namespace hullslam {
 
-// The first frames of the scene `desk` of make_synthetic, which takes 0.1 s per frame to render,
-// from a camera with this readout time (s) of its shutter.
+// The first frames of the scene `desk` of make_synthetic. Rendering takes 0.1 s per frame.
+// `readout_time` (s) is that of the camera's shutter.
 class RenderedDesk {
  public:
   explicit RenderedDesk(int frames, double readout_time = 0.0) : path_(folder_.path() / "desk") {

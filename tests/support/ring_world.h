@@ -20,15 +20,15 @@
 
 namespace hullslam {
 
-// Points all around: six synthetic worlds side by side. The camera walks on a circle and looks
-// outward, so that after one turn it sees again what it saw at the beginning, and nothing of it in
-// between. Frames have words of a vocabulary that was trained on this world.
+// Points all around the camera: six synthetic worlds in a ring. The camera moves on a circle and
+// looks outward. After one turn it sees the points of the beginning again, and it sees none of them
+// in between. Frames have words of a vocabulary that was trained on this world.
 class RingWorld {
  public:
   static constexpr uint32_t kSectors = 6;
   static constexpr double kRadius = 0.8;  // m, of the circle
 
-  // `points` of the options is that of each sector.
+  // Each sector has `points` points of the options.
   explicit RingWorld(const SyntheticWorldOptions& options = {.points = 300, .pixel_noise = 0.2}) {
     for (uint32_t i = 0; i < kSectors; ++i) {
       SyntheticWorldOptions of_sector = options;
@@ -48,7 +48,7 @@ class RingWorld {
     return WorldFromSector(i / count) * sectors_[i / count].points()[i % count];
   }
 
-  // The pose after so many turns. At 0 turns the camera is the world frame.
+  // The pose after `turns` turns. At 0 turns the camera frame is the world frame.
   static Rigid3 CamFromWorld(double turns) {
     const Eigen::Quaterniond rotation = ExpSo3({0.0, -2.0 * std::numbers::pi * turns, 0.0});
     // The centre of the circle is behind the camera.
@@ -76,7 +76,8 @@ class RingWorld {
   }
 
  private:
-  // Every sector is in front of the camera at its part of the turn.
+  // The pose of a sector in the world. Each sector is in front of the camera during one sixth of
+  // the turn.
   static Rigid3 WorldFromSector(uint32_t sector) {
     return Inverse(CamFromWorld(static_cast<double>(sector) / kSectors));
   }
@@ -111,12 +112,13 @@ inline const RingWorld& SharedRing() {
   return world;
 }
 
-// A map of somewhat more than one turn in the ring world, whose second half has drifted.
+// Options for a map of somewhat more than one turn in the ring world. The second half of the map
+// has drifted.
 struct RingMapOptions {
   uint32_t keyframes = 30;
   uint32_t keyframes_per_turn = 24;
-  // drifted_world_from_world at the end. Between keyframes a third and two thirds of a turn it
-  // grows evenly from nothing.
+  // The drift at the end, drifted_world_from_world. It is zero up to a third of a turn, grows
+  // evenly up to two thirds of a turn, and then stays.
   Rigid3 drift = Rigid3(ExpSo3({0.01, 0.04, -0.02}), {0.2, -0.1, 0.25});
   bool has_vocabulary = true;
 };
@@ -190,7 +192,7 @@ inline RingMap MakeRingMap(const RingWorld& world, const RingMapOptions& options
   return made;
 }
 
-// How far the keyframe is from where it truly is: metres and radians, added.
+// The error of the pose of a keyframe: the sum of metres and radians.
 inline double PoseError(const RingMap& made, const Map& map, KeyframeId id) {
   const Rigid3 difference = map.CamFromWorld(id) * Inverse(made.true_cam_from_world[id.value]);
   return difference.translation.norm() +

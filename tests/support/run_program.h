@@ -17,8 +17,8 @@ namespace hullslam {
 
 struct ProgramResult {
   int exit_code = -1;  // -1 if a signal ended the program
-  std::string output;  // of stdout
-  std::string errors;  // of stderr
+  std::string output;  // text on stdout
+  std::string errors;  // text on stderr
 };
 
 inline std::filesystem::path ProgramPath(const std::string& name) { return ProgramFolder() / name; }

@@ -20,7 +20,7 @@ namespace hullslam {
 // while it runs.
 class RunningProgram {
  public:
-  // The program ignores `ignored` from its start, as after nohup; 0: no signal.
+  // The program starts with the signal `ignored` ignored, as with nohup; 0: no signal is ignored.
   RunningProgram(const std::string& name, std::vector<std::string> arguments, int ignored = 0) {
     std::array<int, 2> pipe{};
     if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {

@@ -39,7 +39,7 @@ struct SyntheticWorldOptions {
   // px, standard deviation of u and v at level 0, and of the disparity at every level.
   double pixel_noise = 0.0;
   double depth_share = 1.0;   // share of the points that have a depth in every frame that sees them
-  int flipped_bits = 0;       // of each descriptor; every frame flips other bits
+  int flipped_bits = 0;       // flipped bits of each descriptor; every frame flips other bits
   double readout_time = 0.0;  // s; the frames of the path are those of a rolling shutter
   uint64_t seed = 1;
 };
@@ -64,7 +64,8 @@ class SyntheticWorld {
       return std::uniform_real_distribution<double>(low, high)(random);
     };
     for (int i = 0; i < options.points; ++i) {
-      // One after the other: the order of the arguments of a call is not specified.
+      // Drawn in separate statements, because C++ does not specify in which order the arguments of
+      // a call are evaluated.
       const double z = number(2.0, 6.0);
       const double y = number(-1.8, 1.8);
       const double x = number(-2.5, 2.5);
@@ -82,9 +83,9 @@ class SyntheticWorld {
   const Descriptor& descriptor(uint32_t point) const { return patches_[point].descriptor; }
   bool has_depth(uint32_t point) const { return patches_[point].has_depth; }
 
-  // Pose of frame `index` on a smooth path, with about 2 cm from frame to frame. The camera looks
-  // at the middle of the points. The world frame is the camera frame of index 0. The path is closed
-  // after 200 frames.
+  // The pose of frame `index` on a smooth path. Neighbouring frames are about 2 cm apart. The
+  // camera looks at the middle of the points. The world frame is the camera frame of index 0. The
+  // path is closed after 200 frames.
   static Rigid3 CamFromWorld(double index) {
     const double phase = 2.0 * std::numbers::pi * index / 200.0;
     const Eigen::Vector3d center(0.6 * std::sin(phase), 0.25 * std::sin(2.0 * phase),
@@ -179,15 +180,15 @@ class SyntheticWorld {
   std::vector<Patch> patches_;
 };
 
-// A map of the synthetic world with every landmark at its true position, and the relation of
-// keyframes to views and of points to landmarks.
+// A map of the synthetic world with every landmark at its true position. The other members tell the
+// view of each keyframe and the landmark of each point.
 struct SyntheticMap {
   Map map;
   std::vector<SyntheticView> views;   // one per keyframe
   std::vector<LandmarkId> landmarks;  // one per point; invalid if the point is no landmark
 };
 
-// Adds to a frame what the camera sees in addition to the points, such as objects.
+// Adds things to a frame that the camera sees besides the points, such as objects.
 using FrameDecoration = std::function<void(Frame& frame, const Rigid3& cam_from_world)>;
 
 // Makes a map whose keyframes are the frames `indices` of the path, in this order. Its landmarks

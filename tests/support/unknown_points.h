@@ -9,7 +9,7 @@
 
 namespace hullslam {
 
-// Builds the frame's grid again from its keypoints.
+// Builds the grid of the frame again after its keypoints were changed.
 inline void RebuildGrid(const Sensor& sensor, Frame& frame) {
   const PinholeCamera::Bounds& bounds = sensor.bounds;
   frame.features.grid = FeatureGrid(frame.features.keypoints,

@@ -7,6 +7,7 @@
 
 #include "map/islands.h"
 #include "map/made_map.h"
+#include "map/spanning_tree.h"
 
 namespace hullslam {
 namespace {
@@ -33,6 +34,22 @@ TEST(ComposeTrajectory, FramesFollowTheirKeyframes) {
   EXPECT_EQ(trajectory[0].world_from_cam.translation.x(), 3.0);
   EXPECT_EQ(trajectory[1].timestamp, 5.0);
   EXPECT_EQ(trajectory[1].world_from_cam.translation.x(), 3.5);
+}
+
+// A culled keyframe is not adjusted any more, so a refined pose of its frame is better.
+TEST(ComposeTrajectory, ARefinedPoseReplacesThatOfACulledKeyframe) {
+  Map map;
+  const KeyframeId root = map.AddKeyframe(MakeFrame(4, 1), Shift(-1.0));
+  const KeyframeId keyframe = map.AddKeyframe(MakeFrame(7, 1), Shift(-2.0));
+  SetParent(map, keyframe, root);
+  map.CullKeyframe(keyframe);
+  std::vector<TrackedFrame> frames(1);
+  frames[0].frame = FrameId(7);
+  frames[0].state = TrackingState::kTracked;
+  frames[0].from_keyframe = RelativePose{root, Shift(-9.0), 1.0};  // when it was tracked
+  EXPECT_EQ(ComposeTrajectory(map, frames)[0].world_from_cam.translation.x(), 2.0);
+  frames[0].from_keyframe = RelativePose{keyframe, Shift(-0.25), 1.0};  // refined
+  EXPECT_EQ(ComposeTrajectory(map, frames)[0].world_from_cam.translation.x(), 2.25);
 }
 
 // Between islands no relative pose is known.
@@ -65,7 +82,7 @@ TEST(ComposeTrajectory, HasTheFramesOfTheMainIslandOnly) {
     EXPECT_EQ(frames[i].state, i < 2 ? TrackingState::kLost : TrackingState::kTracked);
     EXPECT_EQ(frames[i].from_keyframe.has_value(), i >= 2);
   }
-  // A frame of a removed keyframe that was located in the main island at the end.
+  // A frame whose keyframe was removed, but which was found in the main island at the end.
   frames[0].state = TrackingState::kTracked;
   frames[0].from_keyframe = RelativePose{second, Shift(-0.25), 1.0};
   EXPECT_EQ(ComposeTrajectory(map, frames).front().world_from_cam.translation.x(), 2.25);
@@ -82,7 +99,7 @@ TEST(ReplaceEarlyFrames, KeepsATrackedFrameWithClearlyMoreLandmarks) {
     early[i].from_keyframe = RelativePose{KeyframeId(0), Shift(1.0), 1.0};
   }
   frames[2].state = TrackingState::kLost;
-  early.pop_back();  // was not found
+  early.pop_back();  // this frame was not found
   ReplaceEarlyFrames(early, frames);
   EXPECT_FALSE(frames[0].from_keyframe);
   EXPECT_TRUE(frames[1].from_keyframe);

@@ -44,9 +44,10 @@ class KnownPoseMapperTest : public ::testing::Test {
     return depth;
   }
 
-  void AddCircle(KnownPoseMapper& mapper, bool with_depth) const {
+  // `step` is the angle between two views, rad.
+  void AddCircle(KnownPoseMapper& mapper, double step, bool with_depth) const {
     for (int i = 0; i < 12; ++i) {
-      const Rigid3 cam_from_world = CameraOnCircle(0.2 * i, 1.2, 0.7);
+      const Rigid3 cam_from_world = CameraOnCircle(step * i, 1.2, 0.7);
       mapper.AddView(0.5 * i, Inverse(cam_from_world), MasksFrom(cam_from_world),
                      with_depth ? DepthFrom(cam_from_world) : cv::Mat());
     }
@@ -74,9 +75,10 @@ class KnownPoseMapperTest : public ::testing::Test {
   SystemOptions options_;
 };
 
-TEST_F(KnownPoseMapperTest, TakesPosesAndMasksWithoutDepth) {
+TEST_F(KnownPoseMapperTest, MapsFromMasksAlone) {
   KnownPoseMapper mapper(options_);
-  AddCircle(mapper, false);
+  AddCircle(mapper, 0.05, false);
+  ExpectTable(mapper.map(), 0.02);
   EXPECT_EQ(mapper.map().keyframes().size(), 12U);
   EXPECT_EQ(mapper.counts().detections, 36U);
   EXPECT_EQ(mapper.counts().frames_with_masks, 12U);
@@ -84,7 +86,7 @@ TEST_F(KnownPoseMapperTest, TakesPosesAndMasksWithoutDepth) {
 
 TEST_F(KnownPoseMapperTest, DepthIsUsedWhereItIsGiven) {
   KnownPoseMapper mapper(options_);
-  AddCircle(mapper, true);
+  AddCircle(mapper, 0.2, true);
   ExpectTable(mapper.map(), 0.02);
   for (const auto& [id, keyframe] : mapper.map().keyframes()) {
     EXPECT_FALSE(keyframe.frame->detections.at(0).points.empty());
@@ -94,7 +96,7 @@ TEST_F(KnownPoseMapperTest, DepthIsUsedWhereItIsGiven) {
 TEST_F(KnownPoseMapperTest, DynamicClassesAreLeftOut) {
   options_.tracking.dynamic_classes = "cup";
   KnownPoseMapper mapper(options_);
-  AddCircle(mapper, false);
+  AddCircle(mapper, 0.05, false);
   for (const auto& [id, object] : mapper.map().objects()) {
     EXPECT_NE(object.Label(), "cup");
   }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -10,12 +11,15 @@
 #include <utility>
 #include <vector>
 
+#include "map/made_correction.h"
+#include "mapping/mapper.h"
 #include "support/ring_world.h"
 
 namespace hullslam {
 namespace {
 
-// Collects what is sent. It can be told to stay in the first call until it is let go.
+// Collects the corrections that are sent. A test can keep it in its first call until it releases
+// it.
 class Receiver {
  public:
   ~Receiver() { LetGo(); }
@@ -70,6 +74,23 @@ class LoopThreadsTest : public testing::Test {
         [this](MapCorrection correction) { receiver_.Receive(std::move(correction)); });
   }
   LoopQuery Query(KeyframeId keyframe) { return {made_.map.Snapshot(), keyframe}; }
+  // A keyframe at the pose of the last one.
+  KeyframeRequest RequestAtLast(FrameId id) const {
+    const SyntheticView view =
+        SharedRing().Observe(id, made_.true_cam_from_world[made_.last().value]);
+    KeyframeRequest request;
+    request.frame = view.frame;
+    request.pose = made_.map.RelativeTo(made_.last(), made_.map.CamFromWorld(made_.last()));
+    const std::vector<uint32_t>& known = made_.views.back().points;
+    const std::vector<LandmarkId>& landmarks = made_.map.keyframes().At(made_.last()).landmarks;
+    for (const uint32_t point : view.points) {
+      const auto found = std::find(known.begin(), known.end(), point);
+      request.landmarks.push_back(found != known.end()
+                                      ? landmarks[static_cast<size_t>(found - known.begin())]
+                                      : LandmarkId());
+    }
+    return request;
+  }
   std::shared_ptr<const Map> Published() {
     return std::make_shared<const Map>(made_.map.Snapshot());
   }
@@ -78,15 +99,6 @@ class LoopThreadsTest : public testing::Test {
   RingMap made_ = MakeRingMap(SharedRing());
   Receiver receiver_;
 };
-
-TEST_F(LoopThreadsTest, NeedAVocabularyAndTheOption) {
-  EXPECT_TRUE(Make()->is_enabled());
-  options_.loop.enabled = false;
-  EXPECT_FALSE(Make()->is_enabled());
-  options_.loop.enabled = true;
-  options_.vocabulary = nullptr;
-  EXPECT_FALSE(Make()->is_enabled());
-}
 
 TEST_F(LoopThreadsTest, SettleWaitsForTheLoopThatIsSought) {
   const auto threads = Make();
@@ -116,14 +128,6 @@ TEST_F(LoopThreadsTest, SettleWaitsForTheAdjustment) {
   EXPECT_EQ(threads->times().samples().at("loop_adjustment").size(), 1u);
 }
 
-TEST_F(LoopThreadsTest, WithoutTheOptionTheMapIsNotAdjusted) {
-  options_.loop.global_adjustment = false;
-  const auto threads = Make();
-  threads->Adjust(Published());
-  EXPECT_FALSE(threads->Settle(false));
-  EXPECT_TRUE(receiver_.sent().empty());
-}
-
 // The next loop corrects the map, so that an adjustment of the former map would be refused.
 TEST_F(LoopThreadsTest, TheNextLoopGivesUpTheAdjustment) {
   receiver_.Block();
@@ -140,6 +144,35 @@ TEST_F(LoopThreadsTest, TheNextLoopGivesUpTheAdjustment) {
   ASSERT_EQ(sent.size(), 2u);
   EXPECT_FALSE(sent[0].loop);
   EXPECT_TRUE(sent[1].loop);
+}
+
+TEST_F(LoopThreadsTest, ALoopThatTheMapperHasDroppedIsSoughtAgain) {
+  MappingOptions mapping;
+  mapping.cull_keyframes = false;
+  std::shared_ptr<const Map> published;
+  Mapper mapper(
+      SharedRing().sensor(), mapping, ObjectOptions(),
+      [&](std::shared_ptr<const Map> map) { published = std::move(map); }, options_.vocabulary);
+  mapper.Begin(made_.map.Snapshot(), {.name = "next", .first_frame = FrameId(200)});
+  const auto threads = Make();
+  const auto process = [&](const MapMessage& message) {
+    const bool is_applied = mapper.Process(message, nullptr);
+    StartNextStage(message, is_applied, options_, mapper, published, *threads);
+    return is_applied;
+  };
+  EXPECT_TRUE(process(RequestAtLast(FrameId(200))));
+  EXPECT_TRUE(threads->Settle(false));
+  EXPECT_TRUE(mapper.Process(MakeIdentity(mapper.Snapshot()), nullptr));
+  ASSERT_EQ(receiver_.sent().size(), 1u);
+  EXPECT_FALSE(process(receiver_.sent()[0]));
+  EXPECT_TRUE(threads->Settle(false)) << "the loop is found again";
+  ASSERT_EQ(receiver_.sent().size(), 2u);
+  EXPECT_TRUE(receiver_.sent()[1].loop);
+  EXPECT_TRUE(process(receiver_.sent()[1]));
+  EXPECT_TRUE(threads->Settle(false)) << "the map is adjusted";
+  EXPECT_TRUE(process(receiver_.sent()[2]));
+  EXPECT_FALSE(process(receiver_.sent()[2])) << "a dropped adjustment";
+  EXPECT_FALSE(threads->Settle(false)) << "needs no new search";
 }
 
 TEST_F(LoopThreadsTest, MayBeDestroyedWhileTheyWork) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <ostream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -22,6 +23,9 @@ namespace {
 struct Kind {
   std::string name;
   std::unique_ptr<Pipeline> (*make)(const Sensor&, const SystemOptions&);
+
+  // For the name of the test, which would have addresses in it.
+  friend void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
 };
 
 std::unique_ptr<Pipeline> MakePatient(const Sensor& sensor, const SystemOptions& options) {
@@ -32,7 +36,7 @@ std::unique_ptr<Pipeline> MakeRealtime(const Sensor& sensor, const SystemOptions
   return MakeThreadedPipeline(sensor, options, Pace::kNeverWait);
 }
 
-// What every pipeline guarantees.
+// The guarantees of every pipeline.
 class PipelineTest : public testing::TestWithParam<Kind> {
  protected:
   std::unique_ptr<Pipeline> Make() const { return GetParam().make(world_.sensor(), options_); }
@@ -89,7 +93,7 @@ TEST_P(PipelineTest, FinishingTwiceIsLikeFinishingOnce) {
   EXPECT_EQ(pipeline->map(), map);
 }
 
-TEST_P(PipelineTest, FinishAdjustsTheWholeMapOnceIfThatIsWanted) {
+TEST_P(PipelineTest, FinishAdjustsTheWholeMapOnceIfTheOptionIsSet) {
   options_.mapping.final_bundle_adjustment = true;
   options_.mapping.local_keyframes = 2;
   options_.mapping.fixed_keyframes = 1;
@@ -220,7 +224,7 @@ class LoopPipelineTest : public testing::TestWithParam<Kind> {
   RingPath path_;
 };
 
-TEST_P(LoopPipelineTest, AWayThatComesBackIsClosed) {
+TEST_P(LoopPipelineTest, APathThatReturnsIsClosed) {
   path_.options().loop.enabled = false;
   const auto open = Make();
   const std::vector<TrackedFrame> drifted = path_.Track(*open);
@@ -269,7 +273,7 @@ TEST_P(LoopPipelineTest, IslandsOfALostMonocularCameraAreJoined) {
 }
 
 // The second part never sees the first place again.
-TEST_P(LoopPipelineTest, OfIslandsThatAreNotJoinedTheLargestStays) {
+TEST_P(LoopPipelineTest, IfIslandsAreNotJoinedTheLargestStays) {
   path_.BeMonocular();
   const auto pipeline = Make();
   std::vector<TrackedFrame> frames = path_.Track(*pipeline, 0, 22);

@@ -90,7 +90,7 @@ TEST(Prefetcher, MayBeDestroyedWhileTheProducerWaits) {
     Prefetcher<int> prefetcher([&]() -> std::optional<int> { return produced++; }, 2);
     EXPECT_EQ(prefetcher.Next(), 0);
   }
-  EXPECT_LE(produced, 4) << "one taken, two waiting, one in hand";
+  EXPECT_LE(produced, 4) << "one item was taken, two wait, and one is being made";
 }
 
 TEST(Prefetcher, MayBeDestroyedWithAFailureThatWasNotRethrown) {

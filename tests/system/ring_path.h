@@ -17,8 +17,8 @@
 
 namespace hullslam {
 
-// A walk of one and a quarter turns through the ring world. The focal length that the pipeline
-// believes in is 1 % too long, so that it measures every turn too short: this is the drift.
+// A walk of one and a quarter turns through the ring world. The pipeline uses a focal length that
+// is 1 % too long, so it measures every rotation too small. This causes the drift.
 class RingPath {
  public:
   static constexpr uint32_t kFramesPerTurn = 144;
@@ -82,8 +82,8 @@ class RingPath {
   // The number of frames after which a pipeline without threads has closed the loop.
   uint32_t FirstLoop() const { return TrackToLoop(*MakeSequentialPipeline(sensor_, options_)); }
 
-  // By which angle, in radians, frames of the second turn differ from those of the first turn that
-  // were taken at the same poses: their mean.
+  // The mean angle, in radians, between the poses of frames of the second turn and those of frames
+  // of the first turn that were taken at the same true poses.
   static double ClosureError(const Map& map, const std::vector<TrackedFrame>& frames) {
     const Trajectory trajectory = ComposeTrajectory(map, frames);
     EXPECT_EQ(trajectory.size(), frames.size()) << "all are tracked";
@@ -97,8 +97,8 @@ class RingPath {
     return sum / count;
   }
 
-  // Root mean square distance of the cameras from where they truly are, after the best similarity,
-  // m.
+  // Root mean square distance of the cameras from their true positions after alignment by a
+  // similarity, m.
   static double AlignedError(const Trajectory& trajectory) {
     std::vector<Eigen::Vector3d> estimated;
     std::vector<Eigen::Vector3d> truth;

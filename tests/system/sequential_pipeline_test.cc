@@ -101,7 +101,8 @@ TEST(SequentialPipeline, FramesFollowTheKeyframesThatFinishAdjusts) {
   EXPECT_GT(followed, after.map->keyframes().size());
 }
 
-// With a single seed of the noise the error may also grow by a few percent.
+// Several seeds of the noise are used, because with a single one the error may also grow by a few
+// percent.
 TEST(SequentialPipeline, FinishMakesThePathBetterOnAverage) {
   SystemOptions options;
   options.mapping.local_keyframes = 2;
@@ -132,7 +133,7 @@ TEST(SequentialPipeline, TwoRunsWithALoopGiveTheSameMapToTheBit) {
   EXPECT_EQ(run(), run());
 }
 
-// A loop is in the map, and the whole map adjusted, when Track returns.
+// When Track returns, the loop is in the map and the whole map has been adjusted.
 TEST(SequentialPipeline, TwoRunsWithAJoinOfIslandsGiveTheSameMapToTheBit) {
   RingPath path;
   path.BeMonocular();

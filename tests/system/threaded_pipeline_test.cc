@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
+#include <new>
 #include <string>
 #include <thread>
 
@@ -15,6 +17,42 @@
 
 namespace hullslam {
 namespace {
+
+// While it exists, only the thread that made it gets memory.
+class MemoryShortage {
+ public:
+  MemoryShortage() {
+    is_spared_thread = true;
+    is_short = true;
+  }
+  ~MemoryShortage() { is_short = false; }
+  MemoryShortage(const MemoryShortage&) = delete;
+  MemoryShortage& operator=(const MemoryShortage&) = delete;
+
+  static void* Allocate(size_t size) {
+    void* const memory = is_short && !is_spared_thread ? nullptr : std::malloc(size);
+    if (memory == nullptr) {
+      throw std::bad_alloc();
+    }
+    return memory;
+  }
+
+ private:
+  static inline std::atomic<bool> is_short{false};
+  static inline thread_local bool is_spared_thread = false;
+};
+
+TEST(ThreadedPipeline, AShortageOfMemoryInMappingIsThrownByTrack) {
+  const SyntheticWorld world = NoisyWorld();
+  const SystemOptions options;
+  const auto pipeline = MakeThreadedPipeline(world.sensor(), options, Pace::kWaitForMapper);
+  TrackPath(*pipeline, world, 0, 4);
+  {
+    const MemoryShortage shortage;
+    EXPECT_THROW(TrackPath(*pipeline, world, 4, 60), std::bad_alloc);
+  }
+  EXPECT_THROW(pipeline->Finish(), std::bad_alloc);
+}
 
 TEST(ThreadedPipeline, TheFirstKeyframeIsInTheMapWhenTrackReturns) {
   const SyntheticWorld world = NoisyWorld();
@@ -119,8 +157,8 @@ TEST(ThreadedPipeline, AFailureOfMappingIsThrownByTheNextTrack) {
   EXPECT_THROW(track_on(), CheckError);
 }
 
-// The way ends soon after the keyframe that closes the loop, while the whole map is adjusted or the
-// loop is even still sought.
+// The run ends soon after the keyframe that closes the loop. At that time the loop is still
+// searched, or the whole map is being adjusted.
 TEST(ThreadedPipeline, FinishWaitsForTheLastLoop) {
   RingPath path;
   path.options().mapping.final_bundle_adjustment = false;
@@ -170,3 +208,12 @@ TEST(ThreadedPipeline, OtherThreadsMayReadTheMapDuringTracking) {
 
 }  // namespace
 }  // namespace hullslam
+
+// If GCC inlines only some of these, it warns that they do not belong together.
+[[gnu::noinline]] void* operator new(size_t size) {
+  return hullslam::MemoryShortage::Allocate(size);
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, size_t /*size*/) noexcept {
+  std::free(memory);
+}

@@ -30,7 +30,7 @@ class EarlyFramesTest : public testing::Test {
 
 TEST_F(EarlyFramesTest, GetPosesInTheFinalMap) {
   for (uint32_t i = 0; i < 8; ++i) {
-    early_.Keep(world_.Observe(i).frame);
+    early_.Keep(world_.Observe(i).frame, false);
   }
   const SyntheticMap made = MakeSyntheticMap(world_, {2, 5, 12});
   const std::vector<TrackedFrame> found = early_.Localise(made.map, Context());
@@ -51,17 +51,63 @@ TEST_F(EarlyFramesTest, GetPosesInTheFinalMap) {
 }
 
 TEST_F(EarlyFramesTest, AreForgottenOnceTheyAreLocalised) {
-  early_.Keep(world_.Observe(1).frame);
+  early_.Keep(world_.Observe(1).frame, false);
   const SyntheticMap made = MakeSyntheticMap(world_, {2, 5, 12});
   EXPECT_EQ(early_.Localise(made.map, Context()).size(), 1u);
   EXPECT_TRUE(early_.Localise(made.map, Context()).empty());
 }
 
+TEST_F(EarlyFramesTest, AreLeftOutOnceItIsCancelled) {
+  for (uint32_t i = 0; i < 8; ++i) {
+    early_.Keep(world_.Observe(i).frame, false);
+  }
+  const SyntheticMap made = MakeSyntheticMap(world_, {2, 5, 12});
+  Cancellation cancellation;
+  int last = 0;
+  const std::vector<TrackedFrame> found =
+      early_.Localise(made.map, Context(), &cancellation, [&](int done, int most) {
+        last = done;
+        EXPECT_EQ(most, 8);
+        if (done == 3) {
+          cancellation.Request();
+        }
+      });
+  EXPECT_EQ(last, 3);
+  EXPECT_EQ(found.size(), 3u);
+  EXPECT_TRUE(early_.Localise(made.map, Context()).empty()) << "all are forgotten";
+}
+
 TEST_F(EarlyFramesTest, AreLeftOutWhereTheMapDoesNotShowThem) {
-  early_.Keep(world_.Observe(1).frame);
+  early_.Keep(world_.Observe(1).frame, false);
   const SyntheticWorld other({.points = 300, .depth_share = 0.0, .seed = 77});
   const SyntheticMap made = MakeSyntheticMap(other, {2, 12});
   EXPECT_TRUE(early_.Localise(made.map, Context()).empty());
+}
+
+// The time stamps of another session may be the same although it was elsewhere.
+TEST_F(EarlyFramesTest, AreSoughtAtTheKeyframesOfTheirSession) {
+  SyntheticMap made = MakeSyntheticMap(world_, {2, 5});
+  made.map.BeginSession({.name = "second", .first_frame = FrameId(100)});
+  const SyntheticWorld other({.points = 300, .depth_share = 0.0, .seed = 77});
+  const SyntheticView view = other.Observe(60);
+  auto keyframe = std::make_shared<Frame>(*view.frame);
+  keyframe->id = FrameId(110);
+  keyframe->timestamp = 100.0;
+  const KeyframeId added = made.map.AddKeyframe(keyframe, SyntheticWorld::CamFromWorld(60));
+  for (uint32_t i = 0; i < view.points.size(); ++i) {
+    const LandmarkId landmark = made.map.AddLandmark(other.points()[view.points[i]], added);
+    made.map.AddObservation(landmark, added, i);
+    UpdateDescriptor(made.map, landmark);
+    UpdateViewingGeometry(made.map, landmark, sensor_.levels);
+  }
+  auto early = std::make_shared<Frame>(*other.Observe(61).frame);
+  early->id = FrameId(101);
+  early->timestamp = made.map.keyframes().At(KeyframeId(0)).frame->timestamp;
+  early_.Keep(early, false);
+  const std::vector<TrackedFrame> found = early_.Localise(made.map, Context());
+  ASSERT_EQ(found.size(), 1u);
+  const Rigid3 truth = SyntheticWorld::CamFromWorld(61);
+  EXPECT_LT((found[0].cam_from_world.translation - truth.translation).norm(), 0.02);
 }
 
 TEST_F(EarlyFramesTest, TheOldestAreForgottenIfThereAreTooMany) {
@@ -69,12 +115,28 @@ TEST_F(EarlyFramesTest, TheOldestAreForgottenIfThereAreTooMany) {
   for (uint32_t i = 0; i < 305; ++i) {
     auto frame = std::make_shared<Frame>(*seen);
     frame->id = FrameId(i + 1000);
-    early_.Keep(std::move(frame));
+    early_.Keep(std::move(frame), false);
   }
   const SyntheticMap made = MakeSyntheticMap(world_, {5, 12});
   const std::vector<TrackedFrame> found = early_.Localise(made.map, Context());
   ASSERT_EQ(found.size(), 300u);
   EXPECT_EQ(found.front().frame, FrameId(1005));
+}
+
+// The camera stands still after a few frames, while its island is young.
+TEST_F(EarlyFramesTest, TrackedOnesAreForgottenBeforeThoseWithoutAPose) {
+  const std::shared_ptr<const Frame> seen = world_.Observe(2).frame;
+  for (uint32_t i = 0; i < 340; ++i) {
+    auto frame = std::make_shared<Frame>(*seen);
+    frame->id = FrameId(i + 1000);
+    early_.Keep(std::move(frame), i >= 20);
+  }
+  const SyntheticMap made = MakeSyntheticMap(world_, {5, 12});
+  const std::vector<TrackedFrame> found = early_.Localise(made.map, Context());
+  ASSERT_EQ(found.size(), 300u);
+  EXPECT_EQ(found.front().frame, FrameId(1000));
+  EXPECT_EQ(found[19].frame, FrameId(1019));
+  EXPECT_EQ(found[20].frame, FrameId(1060)) << "the oldest tracked ones are missing";
 }
 
 TEST(IslandRules, WithDepthOneFrameMakesTheOnlyIsland) {

@@ -9,7 +9,7 @@
 namespace hullslam {
 namespace {
 
-// The time of so many frames at 30 frames/s, s.
+// The duration of this many frames at 30 frames/s, s.
 double Frames(int count) { return count / 30.0; }
 
 // Healthy tracking in a grown map: no reason for a keyframe.

@@ -51,7 +51,7 @@ TEST_F(LastFrameTest, PoseAndMotionFollowTheUnitOfLength) {
 }
 
 // Only the change since the frame was tracked counts: the reference had been shrunk before.
-TEST_F(LastFrameTest, TheMotionTakesTheQuotientOfTheScales) {
+TEST_F(LastFrameTest, TheMotionIsScaledByTheQuotientOfTheScales) {
   map_.MutableKeyframe(keyframe_).scale = 0.5;
   last_.pose = map_.RelativeTo(keyframe_, Shift(3.0));
   map_.MutableKeyframe(keyframe_).scale = 0.25;
@@ -81,7 +81,7 @@ TEST_F(LastFrameTest, AFrameThatBecameACompactKeyframeHasOneLandmarkPerKeypoint)
   EXPECT_EQ(FollowMap(map_, followed).landmarks, followed.landmarks);
 }
 
-TEST_F(LastFrameTest, OfTwoLandmarksThatBecameOneTheFirstKeypointKeepsIt) {
+TEST_F(LastFrameTest, IfTwoLandmarksBecameOneTheFirstKeypointKeepsIt) {
   map_.ReplaceLandmark(landmarks_[1], landmarks_[0]);
   const LastFrame followed = FollowMap(map_, last_);
   EXPECT_EQ(followed.landmarks, (std::vector<LandmarkId>{landmarks_[0], LandmarkId()}));
@@ -92,7 +92,7 @@ TEST_F(LastFrameTest, AFrameThatTheMapDoesNotKnowIsRefused) {
   EXPECT_THROW(FollowMap(map_, last_), CheckError);
 }
 
-TEST_F(LastFrameTest, TheMotionSinceIsThatToTheNextFrame) {
+TEST_F(LastFrameTest, MotionSinceIsTheMotionToTheNextFrame) {
   last_.cam_from_world = Shift(3.0);
   Frame next;
   next.id = FrameId(2);

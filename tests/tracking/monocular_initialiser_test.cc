@@ -15,7 +15,8 @@ class MonocularStart : public testing::Test {
  protected:
   MonocularStart() { sensor_.kind = SensorKind::kMonocular; }
 
-  // Feeds frames `begin`, `begin` + 1, ... of the path until there is a map; at most `most`.
+  // Gives the frames `begin`, `begin` + 1, ... of the path to the initialiser until there is a map;
+  // at most `most` frames.
   std::optional<InitialMap> Walk(MonocularInitialiser& initialiser, uint32_t begin, uint32_t most) {
     for (uint32_t i = begin; i < begin + most; ++i) {
       if (auto result = Give(initialiser, i, SyntheticWorld::CamFromWorld(i)); result.map) {
@@ -35,7 +36,7 @@ class MonocularStart : public testing::Test {
     }
     return result;
   }
-  // The poses are right but for the scale; errors count as a share of the whole way.
+  // Expects poses that are right up to the scale. Errors are shares of the length of the path.
   void ExpectRight(const InitialMap& map) {
     const Rigid3 world_from_first = Inverse(truth_.at(map.views.front().frame->id.value));
     const auto truth_of = [&](const InitialMap::View& view) {
@@ -61,7 +62,7 @@ class MonocularStart : public testing::Test {
   const SyntheticWorld world_{{.points = 400, .depth_share = 0.0}};
   Sensor sensor_ = world_.sensor();
   std::map<uint32_t, Rigid3> truth_;                  // by frame
-  std::map<uint32_t, std::vector<uint32_t>> points_;  // that the keypoints of a frame show
+  std::map<uint32_t, std::vector<uint32_t>> points_;  // points that the keypoints of a frame show
   std::map<InitialisationFailure, int> failures_;
 };
 
@@ -108,8 +109,8 @@ TEST_F(MonocularStart, ALongWaitDoesNoHarm) {
   EXPECT_GE(failures_[InitialisationFailure::kTooLittleParallax], 89);
 }
 
-// The first image shows something else, and the image before has too little parallax. So one in
-// between must have been kept.
+// The first image shows another scene, and the last image before has too little parallax. So an
+// image in between must have been kept.
 TEST_F(MonocularStart, ImagesBetweenTheFirstAndTheLastAreKept) {
   const SyntheticWorld other({.points = 400, .depth_share = 0.0, .seed = 10});
   MonocularInitialiser initialiser(sensor_, 1);
@@ -136,7 +137,8 @@ TEST_F(MonocularStart, ARotationGivesNoMap) {
   EXPECT_GT(failures_[InitialisationFailure::kTooLittleParallax], 300);
 }
 
-// Two images would be enough for a map. The one between them has the same features in other places.
+// Two images would be enough for a map. The image between them has the same features at other
+// pixels.
 TEST_F(MonocularStart, AFrameInBetweenThatDoesNotFitPreventsTheMap) {
   const auto give_three = [&](bool is_strange) {
     MonocularInitialiser initialiser(sensor_, 1);

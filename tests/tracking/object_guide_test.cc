@@ -31,7 +31,7 @@ class ObjectGuideTest : public testing::Test {
     object.misfit_px = 1.0;
   }
 
-  double DistanceFromBall(uint32_t point) const {  // m, of its surface; negative inside
+  double DistanceFromBall(uint32_t point) const {  // m, from its surface; negative inside
     return ball_.ellipsoid.RadialDistance(world_.points()[point]);
   }
   void AddDetection(Frame& frame, const Rigid3& cam_from_world) const {
@@ -80,7 +80,8 @@ class ObjectGuideTest : public testing::Test {
     }
   }
 
-  // Landmarks found in `last`, a frame 19, when the two frames before it do not show the ball.
+  // The number of landmarks found in `last`, which is frame 19. The two frames before it do not
+  // show the ball.
   int Track(std::shared_ptr<const Frame> last, bool guided, int local_keyframes = 80) {
     ObjectOptions objects;
     objects.guided_matching = guided;
@@ -171,7 +172,8 @@ TEST_F(ObjectGuideTest, ChangesNothingForLandmarksOfTheLocalMap) {
 }
 
 TEST_F(ObjectGuideTest, FindsLandmarksThatTheLocalMapLacks) {
-  // Frames are tracked by keyframe 0; only the last two found the landmarks on the ball.
+  // Only the last two keyframes observe the landmarks on the ball, and the local map has only one
+  // keyframe, which is another one.
   for (const LandmarkId id : LandmarksOn(made_.map, object(), known_)) {
     for (uint32_t k = 0; k < 3; ++k) {
       Forget(id, KeyframeId(k));

@@ -28,14 +28,15 @@ class MotionModel : public testing::Test {
     last.motion = CameraMotion{motion, 1.0 / world_.sensor().frames_per_second};
     return last;
   }
-  // The pose of the frame that is seen from `truth`, if the camera is expected to make `motion`.
+  // The pose that is found for a frame with the true pose `truth`, if the motion model predicts
+  // `motion`.
   std::optional<PoseEstimate> Estimate(const Rigid3& motion, const Rigid3& truth,
                                        int max_level = 7) const {
     SyntheticView view = world_.Observe(FrameId(100), truth);
     auto frame = std::make_shared<Frame>(*view.frame);
     for (size_t i = 0; i < frame->features.size(); ++i) {
       if (frame->features.keypoints[i].level > max_level) {
-        frame->features.descriptors[i] = {};  // not to be recognised
+        frame->features.descriptors[i] = {};  // then the keypoint is not recognised
       }
     }
     LastFrame last = LastFrameAtKeyframe(motion);
@@ -80,8 +81,8 @@ TEST_F(MotionModel, SearchesAWiderWindowIfTooLittleIsFound) {
   EXPECT_FALSE(Estimate(Rigid3(), far, 1));
 }
 
-// The reference keyframe is the one of keyframe 3 of a ring map; nothing but its pose is known of
-// the last frame.
+// The reference keyframe of the last frame is keyframe 3 of a ring map. Of the last frame only the
+// pose is known.
 class ByReferenceKeyframe : public testing::TestWithParam<bool> {
  protected:
   std::optional<PoseEstimate> Find(const Frame& frame) const {
@@ -168,7 +169,7 @@ TEST_F(Relocalisation, ItsLandmarksAreThoseThatTheFrameShows) {
     if (const LandmarkId id = estimate->landmarks[i]; id.IsValid()) {
       const Observation& seen = made_.map.landmarks().At(id).observations.front();
       EXPECT_EQ(made_.views[seen.keyframe.value].points[seen.keypoint], view.points[i]);
-      EXPECT_TRUE(found.Insert(id)) << "one landmark at two keypoints";
+      EXPECT_TRUE(found.Insert(id)) << "the landmark was found at two keypoints";
       ++count;
     }
   }
@@ -217,7 +218,7 @@ TEST_F(Relocalisation, AsksForMoreInliersThanTracking) {
   options_.min_inliers = estimate->inliers * 3 / 5 - 1;
   EXPECT_TRUE(Find(frame)) << "5 / 3 of it are needed";
   options_.min_inliers = estimate->inliers * 3 / 5 + 2;
-  EXPECT_FALSE(Find(frame)) << "tracking would be content with this";
+  EXPECT_FALSE(Find(frame)) << "enough for tracking, but not for relocalisation";
 }
 
 TEST_F(Relocalisation, TheSameFrameGivesTheSameBits) {
@@ -284,7 +285,17 @@ TEST_F(ByObjects, AreAmbiguousInTwoEqualRooms) {
   const Rigid3 aside(Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0});
   std::vector<MadeObject> other = Moved(aside, room_);
   AddRoom(map, sensor_, other, aside);
-  EXPECT_FALSE(Find(map, SeeRoom(sensor_, room_, truth_)));
+  const Frame frame = SeeRoom(sensor_, room_, truth_);
+  EXPECT_FALSE(Find(map, frame));
+  EXPECT_FALSE(Find(map, WithoutDepth(frame)));
+}
+
+TEST_F(ByObjects, FindThePoseWithoutDepth) {
+  Map map;
+  AddRoom(map, sensor_, room_);
+  const auto found = Find(map, WithoutDepth(SeeRoom(sensor_, room_, truth_)));
+  ASSERT_TRUE(found);
+  EXPECT_LT(Error(*found, truth_), 0.01);
 }
 
 TEST_F(ByObjects, RefuseAnUnknownArrangement) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "map/spanning_tree.h"
 #include "objects/made_objects.h"
 #include "support/pose_distance.h"
 #include "support/random_geometry.h"
@@ -34,7 +35,7 @@ class RefinePosesTest : public ::testing::Test {
     report_.tracked.state = TrackingState::kTracked;
     Track(truth_);
   }
-  // As if this pose had been found.
+  // The remembered frame, as if tracking had found this pose.
   void Track(const Rigid3& cam_from_world) {
     report_.tracked.from_keyframe = made_.map.RelativeTo(KeyframeId(0), cam_from_world);
   }
@@ -81,7 +82,7 @@ class RefinePosesTest : public ::testing::Test {
     frame->detections.push_back(frame->detections.back());
     report_.frame = frame;
   }
-  // So that only the first landmarks were found.
+  // Leaves only the first landmarks, as if no others had been found.
   void ForgetLandmarksAfter(size_t count) {
     size_t found = 0;
     for (LandmarkId& id : report_.landmarks) {
@@ -134,7 +135,7 @@ TEST_F(RefinePosesTest, RemembersAtMost400Landmarks) {
   EXPECT_LT(Distance(Refined(), truth_), 1e-4);
 }
 
-// The trap: a relative pose follows its reference keyframe, and not the map around the frame.
+// A relative pose alone would follow the reference keyframe, and not the map around the frame.
 TEST_F(RefinePosesTest, AFrameFollowsItsLandmarks) {
   const Eigen::Vector3d shift(0.04, 0.02, -0.03);
   MoveLandmarks(shift);
@@ -149,8 +150,8 @@ TEST_F(RefinePosesTest, MonocularToo) {
   EXPECT_LT(Distance(Refined(), truth_), 1e-4);
 }
 
-// Depth counts: the landmarks have become 5 % nearer, which no pixel tells.
-TEST_F(RefinePosesTest, DepthHoldsThePose) {
+// The landmarks have become 5 % nearer. Pixels do not show this, but depth does.
+TEST_F(RefinePosesTest, DepthConstrainsThePose) {
   const auto error_of = [&](double depth_share) {
     Make({.points = 150, .depth_share = depth_share});
     for (const LandmarkId id : Seen()) {
@@ -235,6 +236,48 @@ TEST_F(RefinePosesTest, ObjectsTakePart) {
   made_.map.MutableObject(other).state = ObjectState::kCandidate;
   made_.map.EraseObject(report_.objects[1]);
   EXPECT_LT(Distance(Refined(), wrong_), 1e-12);
+}
+
+// Since it was culled, nothing has adjusted its pose.
+TEST_F(RefinePosesTest, TheFrameOfACulledKeyframeIsRefinedToo) {
+  auto frame = std::make_shared<Frame>(*report_.frame);
+  frame->id = FrameId(15);  // later than the keyframes of the map
+  report_.frame = frame;
+  report_.tracked.frame = frame->id;
+  const KeyframeId culled = made_.map.AddKeyframe(frame, wrong_);
+  SetParent(made_.map, culled, KeyframeId(0));
+  made_.map.CullKeyframe(culled);
+  ASSERT_EQ(made_.map.KeyframeOfFrame(report_.tracked.frame), culled);
+  std::vector<TrackedFrame> frames = {report_.tracked};
+  const std::vector<RememberedFrame> remembered = {Remember(report_, objects_)};
+  Refine(remembered, frames);
+  ASSERT_EQ(frames[0].from_keyframe->reference, culled);
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].from_keyframe), truth_), 1e-4);
+
+  // Without enough landmarks it keeps the pose of the keyframe and not that of tracking.
+  ForgetLandmarksAfter(29);
+  frames = {report_.tracked};
+  Refine({Remember(report_, objects_)}, frames);
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].from_keyframe), wrong_), 1e-12);
+}
+
+TEST_F(RefinePosesTest, OnceItIsCancelledTheOtherFramesKeepTheirPoses) {
+  Track(wrong_);
+  std::vector<TrackedFrame> frames(2, report_.tracked);
+  frames[1].frame = FrameId(6);
+  std::vector<RememberedFrame> remembered(2, Remember(report_, objects_));
+  remembered[1].frame.id = FrameId(6);
+  Cancellation cancellation;
+  std::vector<int> progress;
+  const ObjectIndex index(made_.map, world_->sensor().camera);
+  RefinePoses(made_.map, {world_->sensor(), options_, objects_, index}, remembered, frames,
+              &cancellation, [&](int done, int most) {
+                progress.insert(progress.end(), {done, most});
+                cancellation.Request();
+              });
+  EXPECT_EQ(progress, (std::vector<int>{1, 2}));
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].from_keyframe), truth_), 1e-4);
+  EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[1].from_keyframe), wrong_), 1e-12);
 }
 
 TEST_F(RefinePosesTest, AFrameWithoutAPoseStaysWithoutOne) {

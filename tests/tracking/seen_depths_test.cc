@@ -28,7 +28,7 @@ TEST(SeenDepths, OfAnEmptyCellAreThoseOfTheImage) {
   EXPECT_DOUBLE_EQ(seen.InverseDepthAt({300.0, 200.0}), 0.75);
 }
 
-TEST(SeenDepths, LeaveOutWhatIsNotInFrontOfTheCamera) {
+TEST(SeenDepths, LeaveOutPointsThatAreNotInFrontOfTheCamera) {
   SeenDepths seen(kBounds);
   seen.Add({12.0, 10.0}, 0.0);
   seen.Add({12.0, 10.0}, -1.0);

@@ -31,7 +31,8 @@ class ShutterCorrection : public testing::TestWithParam<double> {  // share of p
   }
   ShutterCorrection() : ShutterCorrection(GetParam()) {}
 
-  // Root mean square of the distances of keypoints from where the middle row sees their points.
+  // Root mean square of the distances between the keypoints and the pixels at which the middle row
+  // sees their points.
   double ErrorOf(const Frame& frame, const SyntheticView& view) const {
     double sum = 0.0;
     for (size_t i = 0; i < view.points.size(); ++i) {
@@ -48,7 +49,8 @@ class ShutterCorrection : public testing::TestWithParam<double> {  // share of p
   LastFrame last_;
 };
 
-// The points are 2 to 6 m away at random, so what is beside a point tells its depth only roughly.
+// The points are at random distances of 2 to 6 m, so the depths of neighbouring points tell the
+// depth of a point only roughly.
 TEST_P(ShutterCorrection, MovesKeypointsToWhereTheMiddleRowSeesThem) {
   const SyntheticView view = world_.Observe(kFrame);
   const auto corrected = PredictGlobalShutter(view.frame, made_.map, world_.sensor(), last_);
@@ -68,8 +70,9 @@ TEST_P(ShutterCorrection, NeedsAKnownVelocity) {
   EXPECT_EQ(PredictGlobalShutter(later.frame, made_.map, world_.sensor(), last_), later.frame);
 }
 
-// The estimate is as far from the truth as tracking leaves it; its motion is nearly that of now.
-TEST_P(ShutterCorrection, AnEstimateTellsMoreThanAPrediction) {
+// The estimate has the error that tracking leaves, so the motion that follows from it is nearly the
+// true one.
+TEST_P(ShutterCorrection, AnEstimateIsBetterThanAPrediction) {
   const SyntheticView view = world_.Observe(kFrame);
   PoseEstimate estimate;
   estimate.cam_from_world = SyntheticWorld::CamFromWorld(kFrame + 0.02);

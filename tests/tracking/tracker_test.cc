@@ -105,8 +105,9 @@ class TrackerTest : public testing::Test {
   std::shared_ptr<const Map> map_;
 };
 
-// Every keyframe has as many landmarks that only it observes as common ones. The frame shows the
-// common ones, so it needs no keyframe if the others do not count.
+// Half of the landmarks of every keyframe are common ones, the other half only this keyframe
+// observes. The frame shows the common ones. So no keyframe is needed if landmarks with a single
+// observation do not count.
 TEST_F(TrackerTest, LandmarksOfASingleObservationAreNotExpected) {
   std::vector<uint32_t> common;  // points
   for (uint32_t point = 0; point < made_.landmarks.size(); ++point) {
@@ -145,13 +146,13 @@ TEST_F(TrackerTest, LandmarksOfASingleObservationAreNotExpected) {
 }
 
 // A camera stands still before something that is detected but can never be mapped.
-TEST_F(TrackerTest, AnObjectThatIsNeverMappedAsksForKeyframesMoreAndMoreSeldom) {
+TEST_F(TrackerTest, AnObjectThatIsNeverMappedCausesFewerAndFewerRequests) {
   Begin();
   const SyntheticView view = world_.Observe(10);
   std::vector<uint32_t> requests;
   for (uint32_t i = 1; i <= 600; ++i) {
     auto frame = Select(*view.frame, AllKeypoints(*view.frame));
-    frame->id = FrameId(100 + i);  // not that of a keyframe
+    frame->id = FrameId(100 + i);  // no keyframe has this id
     frame->timestamp = i / 30.0;
     frame->detections.emplace_back().hull = {{10.0, 10.0}, {60.0, 10.0}, {60.0, 60.0}};
     const Tracker::Result result = Process(frame);
@@ -465,8 +466,8 @@ TEST_F(TrackerTest, TheMotionModelIsNotUsedAfterALostOrMissingFrame) {
     return frame;
   };
   struct Case {
-    std::vector<uint32_t> frames;  // tracked
-    bool has_lost_frame = false;   // after them
+    std::vector<uint32_t> frames;  // frames that are tracked
+    bool has_lost_frame = false;   // whether a lost frame follows them
     TrackingState expected = TrackingState::kLost;
   };
   for (const Case& given : {Case{{0, 1, 2, 3, 4}, false, TrackingState::kTracked},
@@ -554,7 +555,7 @@ TEST_F(TrackerTest, ARequestHasThePoseTheLandmarksAndTheSightings) {
   }
 }
 
-// The mapper forgets what was replaced before the oldest snapshot that requests still refer to.
+// The mapper forgets replacements that are older than the oldest snapshot that requests refer to.
 TEST_F(TrackerTest, ARequestNamesTheOldestSnapshotOfItsIds) {
   Begin();
   const uint32_t oldest = map_->revision();
@@ -696,7 +697,8 @@ class ObjectTrackerTest : public TrackerTest {
                                           MakeObject("ball", {1.0, 0.6, 4.0}, {0.25, 0.25, 0.25})};
 };
 
-// Such a keyframe would have no edge to the others, and its new landmarks would be a second map.
+// Such a keyframe would have no edge to the others, and its new landmarks would be second copies of
+// landmarks of the map.
 TEST_F(ObjectTrackerTest, AFrameThatOnlyObjectsLocateIsNoKeyframe) {
   Begin();
   for (uint32_t i = 1; i <= 2; ++i) {
@@ -723,46 +725,7 @@ TEST_F(ObjectTrackerTest, FindsLandmarksAgainAfterAFrameWithoutThem) {
 
 // ---- a map of an earlier session
 
-// Finds a frame by keyframe 0 when it is asked for the third time and later; counts how often it
-// was asked.
-Relocalise ByKeyframe0(int& asked) {
-  return [&asked](const Frame& frame, const Map& map,
-                  const TrackingContext& context) -> std::optional<PoseEstimate> {
-    if (++asked < 3) {
-      return std::nullopt;
-    }
-    LastFrame last;
-    last.reference = KeyframeId(0);
-    last.frame = map.keyframes().At(last.reference).frame;
-    last.cam_from_world = map.keyframes().At(last.reference).cam_from_world;
-    return PoseByReferenceKeyframe(frame, map, context, last);
-  };
-}
-
-TEST_F(TrackerTest, WithAMapButNoPoseItIsLostUntilAFrameIsFound) {
-  map_ = Publish(made_.map);
-  int asked = 0;
-  Tracker tracker(world_.sensor(), {});
-  tracker.Begin(ByKeyframe0(asked), false);
-  uint32_t first_request = 0;
-  for (uint32_t i = 10; i < 25; ++i) {
-    const Tracker::Result result = tracker.Process(DemandingFrame(i), map_, kIdle);
-    const bool is_found = i >= 12;
-    EXPECT_EQ(result.report.tracked.state,
-              is_found ? TrackingState::kTracked : TrackingState::kLost);
-    EXPECT_EQ(result.message.has_value() && !is_found, false);
-    if (is_found) {
-      ExpectNear(result.report.tracked.cam_from_world, SyntheticWorld::CamFromWorld(i), 1e-3);
-    }
-    if (first_request == 0 && RequestOf(result) != nullptr) {
-      first_request = i;
-    }
-  }
-  EXPECT_EQ(asked, 3) << "the last frame leads to the next";
-  EXPECT_EQ(first_request, 18u) << "0.2 s after the first pose";
-}
-
-TEST_F(TrackerTest, WithoutASourceItStaysLost) {
+TEST_F(TrackerTest, WithAMapAndWithoutWordsItStaysLost) {
   map_ = Publish(made_.map);
   for (uint32_t i = 0; i < 3; ++i) {
     const Tracker::Result result = Process(DemandingFrame(i));
@@ -771,12 +734,62 @@ TEST_F(TrackerTest, WithoutASourceItStaysLost) {
   }
 }
 
-TEST_F(TrackerTest, LocalizationRequestsNoKeyframes) {
-  map_ = Publish(made_.map);
-  int asked = 2;
-  tracker_.Begin(ByKeyframe0(asked), true);
+// The map of an earlier session shows two thirds of the ring world. The tracker has seen nothing.
+class TrackerWithMap : public testing::Test {
+ protected:
+  TrackerWithMap() : map_(Publish(made_.map)) {}
+
+  // A frame with unknown close points, and with few keypoints that show landmarks, so that it
+  // needs a keyframe. It is the frame after `turns` turns.
+  std::shared_ptr<Frame> DemandingFrame(uint32_t id, double turns) const {
+    constexpr uint32_t kKnown = 150;
+    const SyntheticView view = world_.Observe(FrameId(id), RingWorld::CamFromWorld(turns));
+    std::vector<uint32_t> keypoints = AllKeypoints(*view.frame);
+    keypoints.resize(std::min<size_t>(keypoints.size(), kKnown));
+    auto frame = Select(*view.frame, keypoints);
+    AddUnknownPoints(world_.sensor(), 80, 0, *frame);
+    frame->words = world_.vocabulary()->WordsOf(frame->features.descriptors);
+    return frame;
+  }
+  Tracker::Result Process(std::shared_ptr<const Frame> frame) {
+    return tracker_.Process(std::move(frame), map_, kIdle);
+  }
+
+  const RingWorld& world_ = SharedRing();
+  RingMap made_ = MakeRingMap(world_, {.keyframes = 16, .drift = Rigid3()});
+  const std::shared_ptr<const Map> map_;
+  Tracker tracker_{world_.sensor(), TrackingOptions()};
+};
+
+TEST_F(TrackerWithMap, IsLostUntilItSeesAPlaceOfTheMap) {
+  constexpr double kUnknownPlace = 0.82;  // turns
+  uint32_t first_request = 0;
+  for (uint32_t i = 10; i < 25; ++i) {
+    const bool is_known = i >= 12;
+    const double turns = is_known ? 0.25 + 0.002 * i : kUnknownPlace;
+    const std::shared_ptr<Frame> frame = DemandingFrame(i, turns);
+    if (i > 12) {
+      frame->words.clear();  // the last frame leads to this one
+    }
+    const Tracker::Result result = Process(frame);
+    EXPECT_EQ(result.report.tracked.state,
+              is_known ? TrackingState::kTracked : TrackingState::kLost)
+        << i;
+    EXPECT_FALSE(result.message && !is_known);
+    if (is_known) {
+      ExpectNear(result.report.tracked.cam_from_world, RingWorld::CamFromWorld(turns), 0.005);
+    }
+    if (first_request == 0 && RequestOf(result) != nullptr) {
+      first_request = i;
+    }
+  }
+  EXPECT_EQ(first_request, 18u) << "0.2 s after the first pose";
+}
+
+TEST_F(TrackerWithMap, LocalizationRequestsNoKeyframes) {
+  tracker_.LocaliseOnly();
   for (uint32_t i = 0; i < 60; ++i) {
-    const Tracker::Result result = Process(DemandingFrame(i));
+    const Tracker::Result result = Process(DemandingFrame(i, 0.25 + 0.002 * i));
     EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked) << i;
     EXPECT_FALSE(result.message);
   }
@@ -881,7 +894,7 @@ ShutterErrors TrackWithRollingShutter(double known) {
     const Tracker::Result result = tracker.Process(view.frame, map, kIdle);
     EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked) << i;
     if (i < 10) {
-      continue;  // the first velocities are those of a frame that was not corrected
+      continue;  // the first velocities were measured with frames that were not corrected
     }
     const Rigid3 truth = SyntheticWorld::CamFromWorld(i);
     errors.pose = std::max(
@@ -964,7 +977,7 @@ TEST_F(MonocularTracker, FramesThatTheMapDoesNotShowAreLeftOut) {
 // A monocular camera that has a young map of one world and is then in another one.
 class LostMonocularTracker : public MonocularTracker {
  protected:
-  // Frame `number` of a world, taken at its place `index`.
+  // A frame of a world with the id `number`, seen from the pose `index` of its path.
   static std::shared_ptr<const Frame> FrameOf(const SyntheticWorld& world, uint32_t number,
                                               uint32_t index) {
     auto frame = std::make_shared<Frame>(*world.Observe(index).frame);
@@ -972,8 +985,8 @@ class LostMonocularTracker : public MonocularTracker {
     frame->timestamp = number / world.sensor().frames_per_second;
     return frame;
   }
-  // Begins with a map of this many keyframes, and is lost from frame 100 on for so many frames.
-  // Returns the frame that begins an island; 0 if there is none.
+  // Begins with a map of the given number of keyframes. Then tracking is lost from frame 100 on,
+  // for the given number of frames. Returns the frame that begins an island; 0 if there is none.
   uint32_t BeginAndLose(uint32_t keyframes, uint32_t frames) {
     const uint32_t last = WaitForMap();
     std::vector<uint32_t> indices;
@@ -1012,7 +1025,7 @@ TEST_F(LostMonocularTracker, BeginsAnIslandAndFollowsIt) {
   const uint32_t begin = BeginAndLose(3, 40);
   ASSERT_GT(begin, 100u);
   EXPECT_EQ(island_.views.back().frame->id, FrameId(begin));
-  EXPECT_GE(island_.views.front().frame->id, FrameId(100)) << "only frames since it was lost";
+  EXPECT_GE(island_.views.front().frame->id, FrameId(100)) << "only frames after tracking was lost";
   std::vector<LandmarkId> created;
   const std::vector<KeyframeId> ids = InsertInitialMap(made_.map, island_, sensor_, created);
   map_ = Publish(made_.map);
@@ -1036,12 +1049,28 @@ TEST_F(LostMonocularTracker, TheFramesBeforeTheIslandGetPosesAtTheEnd) {
   }
 }
 
+// The island stays young because nothing new is seen.
+TEST_F(LostMonocularTracker, TheFirstFramesGetPosesAlthoughTheCameraThenStandsStill) {
+  const uint32_t last = WaitForMap();
+  made_ = MakeSyntheticMap(world_, {last, last + 2, last + 4});
+  map_ = Publish(made_.map);
+  for (uint32_t i = 0; i < 310; ++i) {
+    ASSERT_EQ(Process(FrameOf(world_, 100 + i, last + 1)).report.tracked.state,
+              TrackingState::kTracked);
+  }
+  const std::vector<TrackedFrame> early = tracker_.LocaliseEarlyFrames(made_.map);
+  ASSERT_EQ(early.size(), 300u);
+  for (uint32_t i = 0; i < last; ++i) {
+    EXPECT_EQ(early[i].frame, FrameId(i));
+  }
+}
+
 TEST_F(LostMonocularTracker, WithoutWordsAGrownMapIsNotGivenUp) {
   EXPECT_EQ(BeginAndLose(12, 60), 0u);
 }
 
 TEST_F(LostMonocularTracker, WithLocalizationOnlyNoIslandIsBegun) {
-  tracker_.Begin({}, true);
+  tracker_.LocaliseOnly();
   EXPECT_EQ(BeginAndLose(3, 40), 0u);
 }
 

@@ -19,7 +19,7 @@ TEST(Cancellation, StaysRequestedUntilReset) {
   EXPECT_FALSE(cancellation.IsRequested());
 }
 
-TEST(Cancellation, IsNotRequestedWithoutOne) {
+TEST(Cancellation, ANullPointerIsNeverRequested) {
   Cancellation cancellation;
   EXPECT_FALSE(IsRequested(nullptr));
   EXPECT_FALSE(IsRequested(&cancellation));

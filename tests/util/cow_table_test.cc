@@ -164,7 +164,7 @@ TEST(CowTable, FreesAChunkWithoutValues) {
 
 // A snapshot copies pointers to blocks of 64 chunks. Two writes to one block clone it once, and the
 // other chunks of the block stay shared.
-TEST(CowTable, SharesWhatIsNotWrittenAcrossBlocks) {
+TEST(CowTable, ASnapshotSharesAllChunksThatAreNotWritten) {
   constexpr uint32_t kBlock = 64 * kChunk;
   Table table = MakeTable(3 * kBlock + 1);
   const auto before = Content(table);

@@ -9,7 +9,7 @@
 namespace hullslam {
 namespace {
 
-TEST(IdMap, FindsWhatWasAdded) {
+TEST(IdMap, FindsAddedValues) {
   IdMap<KeyframeId, int> map;
   EXPECT_EQ(map.Find(KeyframeId(3)), nullptr);
   ++map[KeyframeId(3)];

@@ -16,7 +16,7 @@ TEST(IdSet, SaysWhetherAnIdIsNew) {
   EXPECT_TRUE(set.Insert(KeyframeId(3)));
   EXPECT_FALSE(set.Insert(KeyframeId(3)));
   EXPECT_TRUE(set.Contains(KeyframeId(3)));
-  EXPECT_FALSE(set.Contains(KeyframeId(4))) << "of the same group";
+  EXPECT_FALSE(set.Contains(KeyframeId(4))) << "it only shares the group of 64 slots with members";
   EXPECT_FALSE(set.Contains(KeyframeId()));
   EXPECT_EQ(set.size(), 1u);
 }

@@ -13,7 +13,7 @@
 namespace hullslam {
 namespace {
 
-// Work that remembers its tasks and stays in the first one until it is let go.
+// A worker that records its tasks and stays in the first one until the test releases it.
 class LatestWorkerTest : public testing::Test {
  protected:
   ~LatestWorkerTest() override { LetGo(); }
@@ -54,7 +54,7 @@ TEST_F(LatestWorkerTest, AnIdleWorkerTakesEveryTask) {
   }
 }
 
-TEST_F(LatestWorkerTest, OfTheTasksThatComeDuringAnotherOnlyTheNewestIsDone) {
+TEST_F(LatestWorkerTest, OnlyTheNewestOfSeveralWaitingTasksIsDone) {
   Occupy(1);
   for (const int task : {2, 3, 4}) {
     worker_.Post(task);
@@ -81,7 +81,7 @@ TEST_F(LatestWorkerTest, WaitingForAWorkerWithoutTasksReturnsImmediately) {
   EXPECT_TRUE(done_.empty());
 }
 
-TEST(LatestWorker, ItsDestructorDropsWhatWaits) {
+TEST(LatestWorker, ItsDestructorDropsWaitingTasks) {
   std::vector<int> done;
   std::promise<void> has_begun;
   std::promise<void> go;
@@ -124,7 +124,7 @@ TEST(LatestWorker, AnExceptionEndsTheWorkAndReachesTheCallerEveryTime) {
   EXPECT_THROW(worker.RethrowFailure(), std::runtime_error);
   EXPECT_THROW(worker.RethrowFailure(), std::runtime_error);
   worker.Post(2);
-  EXPECT_FALSE(worker.IsBusy()) << "nobody would ever do the task";
+  EXPECT_FALSE(worker.IsBusy()) << "a task that was posted after the exception is never begun";
   worker.WaitUntilIdle();
   EXPECT_EQ(done, std::vector<int>{1});
 }

@@ -6,7 +6,7 @@
 namespace hullslam {
 namespace {
 
-TEST(Median, IsTheMiddleValueInWhateverOrder) {
+TEST(Median, IsTheMiddleValueInAnyOrder) {
   EXPECT_EQ(Median(std::vector{5.0}), 5.0);
   EXPECT_EQ(Median(std::vector{9.0, 1.0, 5.0}), 5.0);
   EXPECT_EQ(Median(std::vector{3, 3, 1, 3, 7}), 3);

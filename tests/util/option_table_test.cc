@@ -86,7 +86,7 @@ TEST_F(MapOption, BrokenPairsAreRefusedAndChangeNothing) {
   EXPECT_EQ(sizes_, (std::map<std::string, double>{{"cup", 0.1}}));
 }
 
-// Of a shared key and its members the one that is set last wins.
+// If a shared key and one of its members are both set, the later one wins.
 TEST(OptionTable, ASharedKeySetsItsMembers) {
   double first = 1.0;
   double second = 1.0;
@@ -194,7 +194,7 @@ TEST(OptionTable, AKeyCannotBeBoundTwice) {
   EXPECT_THROW(table.Add("flag", &fields.flag, "again"), CheckError);
 }
 
-TEST(OptionTable, OneKeySetsSeveralFieldsThatAreEqual) {
+TEST(OptionTable, OneKeyMaySetSeveralFieldsWithEqualDefaults) {
   double first = 1.0;
   double second = 1.0;
   double other = 2.0;
@@ -241,13 +241,13 @@ TEST_F(RenamedOption, WarnsOnceOfItsOldName) {
             std::vector<std::string>{"x.yaml:3: length is now called start.length"});
 }
 
-TEST_F(RenamedOption, ErrorsSpeakOfTheGivenName) {
+TEST_F(RenamedOption, ErrorsUseTheNameThatWasGiven) {
   ExpectInputError([&] { table_.Set("length", "0", "--set"); }, {"--set: length is '0'", "> 0"});
   EXPECT_TRUE(table_.warnings().empty());
   ExpectInputError([&] { table_.Set("lenght", "1", "--set"); }, {"did you mean 'start.length'?"});
 }
 
-TEST_F(RenamedOption, OldNamesAreOfBoundKeysAndAreNotBound) {
+TEST_F(RenamedOption, OldNamesReferToBoundKeysAndAreNoKeys) {
   EXPECT_THROW(table_.AddOldName("breadth", "start.breadth"), CheckError);
   EXPECT_THROW(table_.AddOldName("start.length", "start.length"), CheckError);
   EXPECT_THROW(table_.AddRetired("start.length", "it is gone"), CheckError);

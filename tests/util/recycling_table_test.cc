@@ -16,17 +16,17 @@
 namespace hullslam {
 namespace {
 
-using Table = RecyclingTable<LandmarkId, std::string, 4>;
+using TextTable = RecyclingTable<LandmarkId, std::string, 4>;
 
-Table MakeTable(uint32_t count) {
-  Table table;
+TextTable MakeTextTable(uint32_t count) {
+  TextTable table;
   for (uint32_t i = 0; i < count; ++i) {
     table.Insert(std::to_string(i));
   }
   return table;
 }
 
-std::map<LandmarkId, std::string> Content(const Table& table) {
+std::map<LandmarkId, std::string> Content(const TextTable& table) {
   std::map<LandmarkId, std::string> content;
   for (const auto& [id, value] : table) {
     content.emplace(id, value);
@@ -35,7 +35,7 @@ std::map<LandmarkId, std::string> Content(const Table& table) {
 }
 
 TEST(RecyclingTable, FirstUsesEverySlotOnce) {
-  const Table table = MakeTable(10);
+  const TextTable table = MakeTextTable(10);
   EXPECT_EQ(table.size(), 10u);
   EXPECT_EQ(table.slots(), 10u);
   for (uint32_t i = 0; i < 10; ++i) {
@@ -44,7 +44,7 @@ TEST(RecyclingTable, FirstUsesEverySlotOnce) {
 }
 
 TEST(RecyclingTable, UsesTheSlotThatWasFreedLastAgain) {
-  Table table = MakeTable(10);
+  TextTable table = MakeTextTable(10);
   table.Erase(LandmarkId(3));
   table.Erase(LandmarkId(7));
   EXPECT_EQ(table.size(), 8u);
@@ -56,7 +56,7 @@ TEST(RecyclingTable, UsesTheSlotThatWasFreedLastAgain) {
 }
 
 TEST(RecyclingTable, FindsStaleIdsAbsent) {
-  Table table = MakeTable(3);
+  TextTable table = MakeTextTable(3);
   table.Erase(LandmarkId(1));
   for (int round = 0; round < 2; ++round) {
     for (const LandmarkId id : {LandmarkId(1), LandmarkId(1, 2), LandmarkId(3), LandmarkId(0, 1),
@@ -68,7 +68,7 @@ TEST(RecyclingTable, FindsStaleIdsAbsent) {
       EXPECT_THROW(table.Erase(id), CheckError);
     }
     if (round == 0) {
-      EXPECT_FALSE(table.Contains(LandmarkId(1, 1))) << "it was not given to a value yet";
+      EXPECT_FALSE(table.Contains(LandmarkId(1, 1))) << "no value has this id yet";
       table.Insert("again");
     }
   }
@@ -84,7 +84,7 @@ TEST(RecyclingTable, NeverGivesAnIdTwice) {
     EXPECT_TRUE(id.IsValid());
     table.Erase(id);
   }
-  EXPECT_LE(table.slots(), 1u) << "slots without generations are no longer kept";
+  EXPECT_LE(table.slots(), 1u) << "a slot without unused generations is not kept";
   for (const LandmarkId id : given) {
     EXPECT_FALSE(table.Contains(id));
   }
@@ -92,7 +92,7 @@ TEST(RecyclingTable, NeverGivesAnIdTwice) {
 }
 
 TEST(RecyclingTable, VisitsInOrderOfIds) {
-  Table table = MakeTable(23);
+  TextTable table = MakeTextTable(23);
   for (const uint32_t erased : {0u, 5u, 8u, 9u, 10u, 11u, 22u}) {
     table.Erase(LandmarkId(erased));
   }
@@ -107,12 +107,12 @@ TEST(RecyclingTable, VisitsInOrderOfIds) {
   EXPECT_EQ(visited.size(), table.size());
   EXPECT_EQ(visited.front(), LandmarkId(1));
   EXPECT_EQ(visited.back(), LandmarkId(22, 1));
-  const Table empty;
+  const TextTable empty;
   EXPECT_TRUE(empty.begin() == empty.end());
 }
 
 TEST(RecyclingTable, VisitsNothingWhenAllIsErased) {
-  Table table = MakeTable(9);
+  TextTable table = MakeTextTable(9);
   for (uint32_t i = 0; i < 9; ++i) {
     table.Erase(LandmarkId(i));
   }
@@ -141,10 +141,10 @@ TEST(RecyclingTable, StaysAsLargeAsTheMostValuesAtATime) {
 }
 
 TEST(RecyclingTable, SnapshotAndTableDoNotSeeEachOthersWrites) {
-  Table table = MakeTable(300);
+  TextTable table = MakeTextTable(300);
   table.Erase(LandmarkId(4));
   const auto before = Content(table);
-  Table snapshot = table.Snapshot();
+  TextTable snapshot = table.Snapshot();
   table.Mutable(LandmarkId(2)) = "changed";
   table.Erase(LandmarkId(5));
   EXPECT_EQ(table.Insert("new"), LandmarkId(5, 1));
@@ -160,9 +160,9 @@ TEST(RecyclingTable, SnapshotAndTableDoNotSeeEachOthersWrites) {
 
 TEST(RecyclingTable, OldSnapshotsKeepTheirContent) {
   std::mt19937 random(2);
-  Table table;
+  TextTable table;
   std::map<LandmarkId, std::string> model;
-  std::vector<std::pair<Table, std::map<LandmarkId, std::string>>> history;
+  std::vector<std::pair<TextTable, std::map<LandmarkId, std::string>>> history;
   for (int step = 0; step < 3000; ++step) {
     const std::string value = std::to_string(step);
     const auto any = std::next(model.begin(), model.empty() ? 0 : random() % model.size());
@@ -189,10 +189,10 @@ TEST(RecyclingTable, OldSnapshotsKeepTheirContent) {
 // The writer continues while a reader reads a snapshot and releases it; ThreadSanitizer checks
 // this.
 TEST(RecyclingTable, SnapshotsAreReadWhileTheTableIsWritten) {
-  Table table = MakeTable(100);
+  TextTable table = MakeTextTable(100);
   for (int round = 0; round < 20; ++round) {
     const auto expected = Content(table);
-    auto snapshot = std::make_unique<Table>(table.Snapshot());
+    auto snapshot = std::make_unique<TextTable>(table.Snapshot());
     std::thread reader([&] {
       EXPECT_EQ(Content(*snapshot), expected);
       snapshot.reset();
@@ -205,8 +205,8 @@ TEST(RecyclingTable, SnapshotsAreReadWhileTheTableIsWritten) {
   }
 }
 
-TEST(RecyclingTable, IsMadeAgainFromItsValuesAndFreeIds) {
-  Table table = MakeTable(10);
+TEST(RecyclingTable, IsRestoredFromItsValuesAndFreeIds) {
+  TextTable table = MakeTextTable(10);
   for (const uint32_t slot : {7u, 2u, 5u}) {
     table.Erase(LandmarkId(slot));
   }
@@ -220,7 +220,7 @@ TEST(RecyclingTable, IsMadeAgainFromItsValuesAndFreeIds) {
   ASSERT_EQ(table.used_slots(), 10u);
   ASSERT_EQ(table.FreeIds(), (std::vector{LandmarkId(2, 1), LandmarkId(7, 1)}));
 
-  Table copy;
+  TextTable copy;
   for (const auto& [id, value] : table) {
     copy.Put(id, value);
   }

@@ -16,7 +16,7 @@ TEST(Thin, KeepsFewElements) {
   EXPECT_EQ(Thin(std::vector{4, 2}, 9), (std::vector{4, 2}));
 }
 
-TEST(Thin, NoneOfNothing) {
+TEST(Thin, AnEmptyListStaysEmpty) {
   EXPECT_TRUE(Thin(std::vector{4, 2}, 0).empty());
   EXPECT_TRUE(Thin(std::vector<int>(), 3).empty());
 }

@@ -37,8 +37,8 @@ HandMotion::HandMotion(uint64_t seed) {
 }
 
 Rigid3 HandMotion::Apply(const Rigid3& world_from_cam, double time) const {
-  // Frequencies in hertz. The amplitude falls with the frequency, so that the accelerations are
-  // those of a hand.
+  // Frequencies in hertz. Higher frequencies have smaller amplitudes, so that the accelerations are
+  // about those of a hand.
   constexpr std::array<double, 3> kFrequency = {0.23, 0.61, 1.3};
   constexpr std::array<double, 3> kStrength = {1.0, 0.35, 0.08};
   Eigen::Matrix<double, 6, 1> wave = Eigen::Matrix<double, 6, 1>::Zero();

@@ -13,8 +13,8 @@ namespace hullslam::synthetic {
 // z up).
 Rigid3 LookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target);
 
-// The shaking of a hand, added to a steady path: sums of slow sines with phases from the seed,
-// about 1.5 cm and 0.8 degrees.
+// The shaking of a hand, which is added to a steady path: sums of slow sines with phases from the
+// seed. The camera moves by about 1.5 cm and turns by about 0.8 degrees.
 class HandMotion {
  public:
   explicit HandMotion(uint64_t seed);
@@ -49,22 +49,23 @@ struct LoopPath {
 // A place that the camera passes, and where it looks there.
 struct Waypoint {
   Eigen::Vector3d eye = Eigen::Vector3d::Zero();
-  double yaw = 0.0;      // degrees from +x towards +y; turns by the difference, however large it is
+  double yaw = 0.0;      // degrees from +x towards +y; a path may go beyond 360
   double pitch = 0.0;    // degrees, negative to look down
-  double seconds = 0.0;  // the least time from the waypoint before; for the first: without meaning
+  double seconds = 0.0;  // least time from the previous waypoint; not used for the first one
 };
 
 // A smooth walk through waypoints. Between neighbours each coordinate is a cubic polynomial whose
 // slopes at the waypoints come from the parabola through three neighbours (cubic Hermite spline).
 class WaypointPath {
  public:
-  // `walking` in metres per second and `turning` in degrees per second are the speeds that the mean
-  // between two waypoints does not exceed. Throws CheckError for fewer than two waypoints.
+  // Between two waypoints the mean speed is at most `walking` (metres per second) and the mean turn
+  // at most `turning` (degrees per second). Throws CheckError for fewer than two waypoints.
   WaypointPath(const std::vector<Waypoint>& waypoints, double walking, double turning);
 
   // Seconds until the last waypoint.
   double duration() const { return times_.back(); }
-  // Before the first and after the last waypoint the camera rests there.
+  // The camera rests at the first waypoint before time 0, and at the last waypoint after
+  // duration().
   Rigid3 WorldFromCam(double time) const;
 
  private:

@@ -62,7 +62,7 @@ ObjectBuilder MakeComputer(std::string_view class_name, const Vector3f& tint,
                     builder.Fit(palette.keys, {0.15, 0.06, 0.001}), body);
 }
 
-// The classes whose models have several parts with textures that repeat.
+// The models of the classes that have several parts with repeating textures.
 ObjectBuilder MakeCompound(const Placement& placement, const Palette& palette,
                            SceneBuilder& builder) {
   const std::string_view name = placement.class_name;

@@ -24,7 +24,7 @@ struct Placement {
   std::string_view class_name;
   Eigen::Vector3d base = Eigen::Vector3d::Zero();  // centre of the underside, metres
   double yaw = 0.0;                                // degrees
-  Eigen::Vector3f tint = Eigen::Vector3f::Ones();  // of its main surface
+  Eigen::Vector3f tint = Eigen::Vector3f::Ones();  // colour factor of its main surface
   double height = 0.0;                             // metres; 0 for the usual height of the class
 };
 

@@ -22,7 +22,8 @@ struct Interval {
 struct Side {
   Rigid3 world_from_side;  // x to the right as seen from inside, y out of the chamber, z up
   double half_length = 0.0;
-  std::vector<Doorway> doorways;  // in it, with `centre.x()` along the side
+  std::vector<Doorway>
+      doorways;  // the doorways in this side; `centre.x()` is the position along it
 };
 
 Side MakeSide(const Chamber& chamber, int index, std::span<const Doorway> doorways) {
@@ -45,8 +46,8 @@ Side MakeSide(const Chamber& chamber, int index, std::span<const Doorway> doorwa
   return side;
 }
 
-// The parts of the side without doorways. `margin` is kept free at each doorway, and added to the
-// ends of the side.
+// The intervals of the side between its doorways. They keep a distance of `margin` from each
+// doorway. The first and the last one reach `end` beyond the ends of the side.
 std::vector<Interval> SolidIntervals(const Side& side, double margin, double end) {
   std::vector<Interval> solid;
   double left = -side.half_length - end;

@@ -8,8 +8,9 @@
 
 namespace hullslam::synthetic {
 
-// A rectangular room of a house. The rectangle is the free floor; the walls stand around it and are
-// kChamberWall thick, so neighbours with a distance of twice this stand back to back. Metres.
+// A rectangular room of a house. The rectangle is the free floor. The walls stand around it and are
+// kChamberWall thick, so the walls of two chambers touch if their rectangles are 2 kChamberWall
+// apart. Metres.
 struct Chamber {
   Eigen::Vector2d min = Eigen::Vector2d::Zero();
   Eigen::Vector2d max = Eigen::Vector2d::Zero();

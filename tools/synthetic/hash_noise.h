@@ -37,9 +37,9 @@ class RandomStream {
   uint64_t counter_ = 0;
 };
 
-// Quantiles of the standard normal distribution at the midpoints of 4096 equal steps of
-// probability. They turn 12 random bits into a normal number, limited to 3.7 sigma, without
-// computing a logarithm per pixel.
+// A table of quantiles of the standard normal distribution, at the midpoints of 4096 equal steps of
+// probability. It converts 12 random bits to a normally distributed number (at most 3.7 sigma)
+// faster than a formula with a logarithm.
 class NormalTable {
  public:
   static constexpr int kBits = 12;

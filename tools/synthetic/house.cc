@@ -21,10 +21,10 @@ const std::array<Doorway, 4> kDoorways = {{{.centre = {-2.0, 0.85}},
                                            {.centre = {2.0, 0.85}},
                                            {.centre = {2.0, -0.85}},
                                            {.centre = {-2.0, -0.85}}}};
-// Between kitchen and bedroom.
+// The door between kitchen and bedroom.
 const Doorway kSideDoor = {.centre = {0.0, -2.6}};
 
-// A waypoint of the tour: place in metres, angles in degrees, and the least time in seconds.
+// A waypoint of the tour: position in metres, angles in degrees, and the least time in seconds.
 struct Step {
   double x = 0.0;
   double y = 0.0;
@@ -50,7 +50,7 @@ constexpr std::array<Step, 45> kTour = {{
     {0.6, 0.03, -5.0},
     {1.4, 0.0, 15.0},
     {1.85, 0.2, 60.0},
-    // The living room: a look to the left, then clockwise to the door.
+    // The living room: first to the left, then clockwise to the door.
     {2.0, 0.8, 88.0, -14.0, 1.4},
     {2.0, 1.6, 110.0},
     {1.95, 2.1, 150.0, -18.0},
@@ -75,7 +75,7 @@ constexpr std::array<Step, 45> kTour = {{
     {-1.6, -2.3, -187.0, -18.0},
     {-1.9, -2.1, -230.0, -14.0, 1.3},
     {-2.0, -1.6, -266.0, -10.0, 1.4},
-    // A look along the corridor, as in the beginning, and back to the desk.
+    // Along the corridor in the same direction as at the beginning, and back to the desk.
     {-2.0, -0.7, -275.0, -10.0, 1.7},
     {-1.95, -0.15, -320.0},
     {-1.75, 0.0, -353.0},

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Steps right, down, left, up.
+// The steps to the right, down, left and up.
 constexpr std::array<std::array<int, 2>, 4> kSteps = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
 std::map<int, cv::Rect> BoundingBoxes(const cv::Mat& instance) {

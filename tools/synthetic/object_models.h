@@ -22,8 +22,8 @@ class ObjectBuilder {
 
   ObjectBuilder& Add(const Shape& shape, const Material& material,
                      const Rigid3& frame_from_part = {});
-  // Places the object: the centre of its underside is at `base`, and it is rotated by `yaw`
-  // radians.
+  // The finished object. The centre of its underside is at `base`, and it is rotated by `yaw`
+  // radians about the vertical axis.
   SceneObject Build(const Eigen::Vector3d& base, double yaw) const;
 
  private:
@@ -46,7 +46,7 @@ ObjectBuilder MakeMonitor(const Material& screen, const Material& frame);
 ObjectBuilder MakeLaptop(const Material& screen, const Material& keys, const Material& body);
 ObjectBuilder MakePottedPlant(double height, const Material& pot, const Material& leaves);
 ObjectBuilder MakeCouch(const Material& cushion, const Material& frame);
-// An object of one primitive.
+// An object that consists of one primitive.
 ObjectBuilder MakeSolid(const std::string& class_name, const Shape& shape,
                         const Material& material);
 

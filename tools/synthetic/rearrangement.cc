@@ -24,10 +24,11 @@ using Eigen::Vector3d;
 constexpr double kTouch = 0.005;         // metres; a smaller gap counts as contact
 constexpr double kGap = 0.02;            // metres between an object and its new neighbours
 constexpr double kLargestCarried = 0.5;  // metres, half extent
-constexpr double kCameraRoom = 0.5;      // metres between the camera and an object
+constexpr double kCameraRoom =
+    0.5;  // least distance of the camera from an object in its new place, metres
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 constexpr double kFarthestMove = 3.0;  // metres
-constexpr int kLeastViews = 5;         // in which an object is seen in its new place
+constexpr int kLeastViews = 5;         // least number of views that show an object in its new place
 
 // A box that stands upright, in the world.
 struct UprightBox {
@@ -57,7 +58,8 @@ UprightBox BoxOf(const SceneObject& object) {
   return MakeBox(object.world_from_object, object.half_extents);
 }
 
-// Whether the footprints come nearer than `gap`: no side of either one separates them.
+// Whether the footprints come nearer than `gap`. They do if no side of either footprint separates
+// them by `gap`.
 bool FootprintsMeet(const UprightBox& a, const UprightBox& b, double gap) {
   const Vector2d offset = (b.centre - a.centre).head<2>();
   const std::array<Vector2d, 4> axes = {a.Axis(0), a.Axis(1), b.Axis(0), b.Axis(1)};
@@ -70,7 +72,7 @@ bool BoxesMeet(const UprightBox& a, const UprightBox& b, double gap) {
   return a.bottom() < b.top() - 1e-6 && b.bottom() < a.top() - 1e-6 && FootprintsMeet(a, b, gap);
 }
 
-// Whether `upper` stands on or in `lower`, as a book on a book or a bear on a couch.
+// Whether `upper` stands on or in `lower`, like a book on another book or a bear on a couch.
 bool Carries(const UprightBox& lower, const UprightBox& upper) {
   return upper.bottom() > lower.bottom() + kTouch && upper.bottom() < lower.top() + kTouch &&
          FootprintsMeet(lower, upper, 0.0);
@@ -112,8 +114,9 @@ double DistanceTo(const UprightBox& box, const Vector3d& point) {
   return (InFrameOf(box, point).cwiseAbs() - box.half).cwiseMax(0.0).norm();
 }
 
-// Whether the line from `eye` to `point` passes through the box: the intervals in which it is
-// between the opposite sides have a part in common.
+// Whether the line from `eye` to `point` passes through the box. For each pair of opposite sides
+// the line is between them in one interval; it passes through the box if the three intervals
+// overlap.
 bool Hides(const UprightBox& box, const Vector3d& eye, const Vector3d& point) {
   const Vector3d start = InFrameOf(box, eye);
   const Vector3d step = InFrameOf(box, point) - start;
@@ -137,7 +140,8 @@ bool Hides(const UprightBox& box, const Vector3d& eye, const Vector3d& point) {
 // Finds new places for objects.
 class PlaceFinder {
  public:
-  // Keeps references to all but `former`: the objects before anything was moved.
+  // Keeps references to all arguments except `former`, which are the objects before anything was
+  // moved.
   PlaceFinder(const Scene& scene, std::span<const Rigid3> views, std::vector<SceneObject> former,
               RandomStream& random)
       : scene_(scene), views_(views), former_(std::move(former)), random_(random) {
@@ -155,7 +159,7 @@ class PlaceFinder {
     constexpr int kTrials = 3000;
     const UprightBox box = BoxOf(object);
     const Support* support = FindSupport(scene_, box);
-    Check(support != nullptr, "only objects that stand on something can be placed");
+    Check(support != nullptr, "only objects that stand on something can be moved");
     for (int trial = 0; trial < kTrials; ++trial) {
       const UprightBox place = RandomPlace(box, support->height > 0.0);
       if ((place.centre - box.centre).norm() <= farthest && IsFree(object, place) &&
@@ -186,7 +190,7 @@ class PlaceFinder {
     return box;
   }
 
-  // Whether nothing is in the way, and the place cannot be confused with a former one.
+  // Whether the place is free, and is not near a former place of an object of the same class.
   bool IsFree(const SceneObject& object, const UprightBox& place) const {
     const double least = LeastMove(object);
     const auto confuses = [&](const SceneObject& other) {
@@ -201,8 +205,8 @@ class PlaceFinder {
            });
   }
 
-  // Whether the whole footprint is on one support. A random place on a support that is smaller than
-  // the object is not.
+  // Whether the whole footprint is on one support. This is never so if the support is smaller than
+  // the object.
   bool FitsOnSupport(const UprightBox& place) const {
     const Vector2d reach(place.Reach(Vector2d::UnitX()), place.Reach(Vector2d::UnitY()));
     const Vector2d centre = place.centre.head<2>();
@@ -212,8 +216,8 @@ class PlaceFinder {
     });
   }
 
-  // In how many views the centre of the box is in the middle part of the image, near enough for the
-  // depth sensor, and not hidden.
+  // The number of views in which the centre of the box is in the middle part of the image, near
+  // enough for the depth sensor, and not hidden.
   int CountViews(const UprightBox& place) const {
     int count = 0;
     for (const Rigid3& world_from_cam : views_) {
@@ -261,7 +265,7 @@ SceneObject TakeOut(int id, Scene& scene) {
   return object;
 }
 
-// Puts the object back into the list, which is sorted by ids.
+// Inserts the object into the list, which is sorted by id.
 void PutIn(SceneObject object, Scene& scene) {
   const auto next = std::find_if(scene.objects.begin(), scene.objects.end(),
                                  [&](const SceneObject& other) { return other.id > object.id; });
@@ -308,7 +312,7 @@ void Rearrange(std::span<const Rigid3> views, uint64_t seed, Scene& scene) {
     }
     PutIn(std::move(object), scene);
   }
-  // From the end, so that copies of objects that were moved too come last.
+  // Begins at the end of the list, so that copies of moved objects come last.
   size_t added = 0;
   for (size_t i = carriable.size(); i > count && added < count; --i) {
     SceneObject object = MakeVariant(former[static_cast<size_t>(carriable[i - 1])]);

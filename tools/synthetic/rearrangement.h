@@ -9,7 +9,7 @@
 
 namespace hullslam::synthetic {
 
-// How far an object is moved at least, in metres: its longest side, or 0.15 m if that is more.
+// The least distance by which an object is moved, in metres: its longest side, but at least 0.15 m.
 double LeastMove(const SceneObject& object);
 
 // Whether the boxes of two objects that stand upright come nearer than `gap` metres to each other.
@@ -18,13 +18,14 @@ bool Collide(const SceneObject& a, const SceneObject& b, double gap);
 
 // Changes the scene as its inhabitants do between two visits: a fifth of the objects that can be
 // carried, but at least two, are moved, as many are taken away, and as many are added. Tables,
-// shelves, beds, couches, what hangs on a wall and what carries something stay.
+// shelves, beds and couches stay, and so do objects that hang on a wall or carry other objects.
 //
-// Moved objects stay on the floor or on tables, whichever they were on, within 3 m. Added objects
-// are copies of objects of the scene in other colours. Each gets a free place where the camera,
-// whose poses on its way are `views`, sees it and does not bump into it, and which is at least
-// LeastMove from all former places of objects of its class. Objects keep their ids; added ones get
-// new ids. If there is no such place for an object, another object is chosen.
+// An object that stood on the floor is moved to the floor, one that stood on a table is moved to a
+// table, both by at most 3 m. Added objects are copies of objects of the scene in other colours.
+// The new place of an object is free, is seen by the camera, is not in the way of the camera, and
+// is at least LeastMove away from all former places of objects of its class. `views` are the poses
+// of the camera along its path. Objects keep their ids; added ones get new ids. If an object has no
+// such place, another object is chosen.
 void Rearrange(std::span<const Rigid3> views, uint64_t seed, Scene& scene);
 
 }  // namespace hullslam::synthetic

@@ -30,7 +30,7 @@ struct Occluder {
   float reach = 0.0F;  // metres
 };
 
-// The occluders whose reach includes some point of the box around the part.
+// The occluders that are within their reach of some point of the box around the part.
 std::vector<Occluder> OccludersNear(const Part& part, const PartPlacement& placement,
                                     const std::vector<Occluder>& all) {
   std::vector<Occluder> near;
@@ -45,8 +45,8 @@ std::vector<Occluder> OccludersNear(const Part& part, const PartPlacement& place
   return near;
 }
 
-// Fraction of the ambient light that the occluders let through. It gives soft shadows where objects
-// stand.
+// The fraction of the ambient light that the occluders let through. It gives soft shadows under and
+// beside objects.
 float AmbientLeft(const std::vector<Occluder>& occluders, const Vector3f& point,
                   const Vector3f& normal) {
   float left = 1.0F;
@@ -61,7 +61,7 @@ float AmbientLeft(const std::vector<Occluder>& occluders, const Vector3f& point,
       continue;
     }
     const float unit = std::max(1.0F, (occluder.unit_from_world * offset).squaredNorm());
-    // The last factor fades the shadow out, so that it has no edge at its reach.
+    // The last factor fades the shadow out, so that it has no visible edge at the distance `reach`.
     const float fade = 1.0F - squared / (occluder.reach * occluder.reach);
     left *= 1.0F - 0.75F * facing / std::sqrt(squared) / unit * fade;
   }
@@ -78,7 +78,8 @@ float Lambert(const Scene& scene, const Vector3f& point, const Vector3f& normal,
     }
     const float squared = offset.squaredNorm();
     const float facing = towards / std::sqrt(squared);
-    // Lamps have a size: the light falls off as if the lamps were a metre farther away.
+    // The 1 in the denominator stands for the size of the lamps: near a lamp the light does not
+    // grow without limit.
     light += facing * source.strength / (1.0F + squared) * (0.4F + 0.6F * ambient);
   }
   return light;
@@ -90,8 +91,8 @@ int DominantAxis(const Vector3f& v) {
   return static_cast<int>(axis);
 }
 
-// Texture coordinates, in repeats, on the plane across `axis`. Seen from outside, u goes to the
-// right and v down.
+// Texture coordinates on the plane perpendicular to `axis`, in units of a repeat. Seen from
+// outside, u goes to the right and v down.
 Vector2f PlaneCoordinates(int axis, float side, const Vector3f& repeats) {
   switch (axis) {
     case 0:
@@ -192,8 +193,8 @@ Vector3f Renderer::TextureColour(const Material& material, const Vector3f& point
                                  int max_samples) const {
   const int axis = DominantAxis(normal);
   const float side = normal[axis] < 0.0F ? -1.0F : 1.0F;
-  // A pixel covers `across` metres across the view, and more along the view on a slanted surface.
-  // Up to `max_samples` samples along the view preserve the detail across it.
+  // A pixel covers `across` metres perpendicular to the slant, and more along the slant of the
+  // surface. Up to `max_samples` samples along the slant keep the detail in the other direction.
   const float across = distance / static_cast<float>(camera_.fx);
   const float cosine = std::max(0.05F, std::abs(normal.dot(direction)));
   const int samples = std::min(max_samples, static_cast<int>(1.0F / cosine));
@@ -203,8 +204,8 @@ Vector3f Renderer::TextureColour(const Material& material, const Vector3f& point
   const float tile = axis == 0 ? material.tile.y() : material.tile.x();
   const Texture& texture = scene_.textures[static_cast<size_t>(material.texture)];
   const float level = texture.LevelOfDetail(width / tile);
-  // The offset refers to the face as seen from outside, in whichever direction the coordinate
-  // increases.
+  // The offset is always measured on the face as seen from outside, even if the coordinate
+  // increases in the other direction.
   const Vector2f offset((axis == 0 ? material.offset.y() : material.offset.x()) / tile,
                         axis == 2 ? material.offset.y() / material.tile.y()
                                   : material.offset.z() / material.tile.z());
@@ -288,7 +289,8 @@ void Renderer::RenderCentres(const View& view, RenderedFrame& frame, cv::Mat& fa
 
 void Renderer::SmoothEdges(const View& view, const cv::Mat& facet, RenderedFrame& frame) const {
   // Four rays in a rotated grid, so that vertical and horizontal edges get four shades too. Two
-  // pixels, which are nearly always in the same row, share a packet, whose rays begin at one place.
+  // pixels share a packet, and all rays of a packet begin at the same point. The two are nearly
+  // always in the same row.
   constexpr std::array<std::array<float, 2>, 4> kOffsets = {
       {{-0.125F, -0.375F}, {0.375F, -0.125F}, {0.125F, 0.375F}, {-0.375F, 0.125F}}};
   const std::vector<cv::Point> edges = FacetEdges(facet);

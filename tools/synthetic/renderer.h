@@ -21,8 +21,8 @@ struct RenderedFrame {
   cv::Mat cosine;    // CV_32FC1, of the angle between surface normal and ray
 };
 
-// Renders frames of a scene. Rendering is const and may run in several threads at once; a frame is
-// bit-identical whatever else runs.
+// Renders frames of a scene. Several threads may render at the same time. Each frame has the same
+// bits in every run.
 class Renderer {
  public:
   // Keeps a reference to `scene`. The camera must have no distortion. `readout_time`: seconds from
@@ -35,7 +35,7 @@ class Renderer {
  private:
   struct Eye;       // pose of the camera while some rows are exposed
   struct View;      // poses during one frame
-  struct Fragment;  // what one ray hits
+  struct Fragment;  // the point that a ray hits
   Fragment Shade(const View& view, const Eye& eye, int part, float distance,
                  const Eigen::Vector3f& direction, int max_samples) const;
   View MakeView(double time) const;

@@ -45,7 +45,7 @@ struct SceneObject {
   // Pose of a moving object at a time in seconds; empty for a static object.
   std::function<Rigid3(double)> motion;
   ObjectStatus status = ObjectStatus::kUnchanged;
-  Rigid3 former_world_from_object;  // of a moved object: where it was before the rearrangement
+  Rigid3 former_world_from_object;  // only of a moved object: pose before the rearrangement
 
   bool IsDynamic() const { return static_cast<bool>(motion); }
   Rigid3 WorldFromObject(double time) const { return motion ? motion(time) : world_from_object; }
@@ -70,7 +70,7 @@ struct Scene {
   std::vector<Part> background;
   std::vector<Support> supports;
   std::vector<SceneObject> objects;
-  std::vector<SceneObject> gone;  // what a rearrangement took away, with its former pose
+  std::vector<SceneObject> gone;  // objects that a rearrangement took away, with their former poses
   std::vector<PointLight> lights;
   float ambient = 0.5F;
   std::function<Rigid3(double)> world_from_cam;  // as a function of the time in seconds

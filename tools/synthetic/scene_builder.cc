@@ -177,7 +177,8 @@ void SceneBuilder::AddShelf(const Rigid3& world_from_shelf, const Palette& palet
     while (board < 5 && x < half_width - 0.10) {
       const double half_thick = random_.Uniform(0.012, 0.032);
       const double half_high = random_.Uniform(0.10, 0.15);
-      // One after the other: the order of the arguments of a call is not specified.
+      // Drawn in separate statements, because C++ does not specify in which order the arguments of
+      // a call are evaluated.
       const double blue = random_.Uniform(0.3, 1.2);
       const double green = random_.Uniform(0.3, 1.2);
       const double red = random_.Uniform(0.3, 1.2);

@@ -15,7 +15,7 @@ namespace hullslam::synthetic {
 // The textures of a scene, as indices in Scene::textures.
 struct Palette {
   int wall = 0;
-  int feature_wall = 0;  // for the one wall that differs
+  int feature_wall = 0;  // for the one wall that differs from the others
   int floor = 0;
   int ceiling = 0;
   int table = 0;
@@ -48,14 +48,14 @@ class SceneBuilder {
   // Rich: textures with detail everywhere. Bare: textures with almost no detail.
   Palette AddRichPalette();
   Palette AddBarePalette();
-  // The palette with painted walls, a carpet and posters of its own, for one room of several. Paint
-  // and carpet have little detail. `room` counts the rooms, and `wall_bgr` is the colour of the
-  // paint.
+  // Changes a palette for one room of several: the room gets painted walls, a carpet and posters of
+  // its own. Paint and carpet have little detail. `room` is the number of the room, and `wall_bgr`
+  // is the colour of the paint.
   Palette AddRoomPalette(Palette palette, uint32_t room, const cv::Scalar& wall_bgr);
 
   // A material that shows the texture exactly once on each side of a box with these half extents.
   Material Fit(int texture, const Eigen::Vector3d& half) const;
-  // A material that repeats the texture every `metres`, from a random position, with a tint.
+  // A material that repeats the texture every `metres`, with a random offset and a tint.
   Material Repeat(int texture, double metres,
                   const Eigen::Vector3f& tint_bgr = Eigen::Vector3f::Ones());
 
@@ -68,7 +68,8 @@ class SceneBuilder {
   void AddPosters(const Palette& palette);
   // Adds an open shelf full of books with its back against the wall.
   void AddShelf(Wall wall, double along, const Palette& palette);
-  // The same anywhere. The shelf's x goes along the wall, and its back is 0.16 m towards +y.
+  // The same with any pose. The x axis of the shelf is along the wall, and its back is at y = 0.16
+  // m.
   void AddShelf(const Rigid3& world_from_shelf, const Palette& palette);
   // Adds a table with its top at z = `height`.
   void AddTable(const Eigen::Vector2d& centre, const Eigen::Vector2d& half, double height,

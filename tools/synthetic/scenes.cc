@@ -150,10 +150,10 @@ OrbitPath DeskPath() { return {.target = {0.0, 0.0, kTableHeight + 0.12}}; }
 // faster.
 LoopPath RoomPath(int frames) { return {.duration = std::max(frames - 1, 299) / kFramesPerSecond}; }
 
-// A walk that takes longer than planned.
+// A walk at a lower speed than planned.
 struct SlowWalk {
   WaypointPath path;
-  double pace = 1.0;  // of the planned speed
+  double pace = 1.0;  // share of the planned speed
   Rigid3 WorldFromCam(double time) const { return path.WorldFromCam(pace * time); }
 };
 
@@ -253,7 +253,8 @@ Scene BuildHouse(int frames, uint64_t seed, uint64_t visit) {
   return builder.Finish();
 }
 
-// The room of the desk, seen by a camera that turns on the spot. No image has parallax to another.
+// The room of the desk, seen by a camera that only rotates. So there is no parallax between its
+// images.
 Scene BuildRotation(uint64_t seed) {
   Scene scene = BuildDesk(seed, seed);
   RandomStream random(HashSeed(seed, 0, "rotation"));
@@ -325,7 +326,7 @@ std::vector<Rigid3> SampleViews(const Path& path, double duration) {
   return views;
 }
 
-// Where the camera passes, five views per second, without the shaking of the hand.
+// Poses of the camera along its path, five per second, without the shaking of the hand.
 std::vector<Rigid3> SteadyViews(SceneKind kind) {
   const double duration = (DefaultFrames(kind) - 1) / kFramesPerSecond;
   switch (kind) {

@@ -20,15 +20,15 @@ inline constexpr double kFramesPerSecond = 30.0;
 // The number of frames of the sequence that the scene was designed for.
 int DefaultFrames(SceneKind kind);
 
-// The seed of everything that differs between two visits of the same place: the motion of the hand
-// and the noise of the sensor. It is `seed` itself for the visit before any rearrangement.
+// The seed of everything that differs between two visits of the same scene: the motion of the hand
+// and the noise of the sensor. For the visit before any rearrangement it is `seed` itself.
 uint64_t VisitSeed(uint64_t seed, const std::optional<uint64_t>& rearranged);
 
 // The whole scene with the path of its camera. Layout and path are the same for every seed except
-// for small changes; the textures differ. `frames` determines how fast `room`, `house` and `twins`
-// are walked through. With a seed in `rearranged`, some of the objects were moved, taken away or
-// added since the first visit, see Rearrange; throws InputError unless the scene is desk, room or
-// house.
+// for small changes; the textures differ. In `room`, `house` and `twins` the number `frames`
+// determines the speed of the camera. With a seed in `rearranged`, some of the objects were moved,
+// taken away or added since the first visit, see Rearrange; throws InputError unless the scene is
+// desk, room or house.
 Scene BuildScene(SceneKind kind, int frames, uint64_t seed,
                  const std::optional<uint64_t>& rearranged = std::nullopt);
 

@@ -23,7 +23,8 @@ std::vector<uint8_t> ShadowOfRow(const float* depth, int width) {
   float reached = std::numeric_limits<float>::infinity();
   for (int x = width - 1; x >= 0; --x) {
     const float column = static_cast<float>(x) - kProjectorBaseline / depth[x];
-    // A tolerance of half a pixel: neighbours on a slanted surface do not shadow each other.
+    // The tolerance of half a pixel prevents that neighbours on a slanted surface shadow each
+    // other.
     shadow[static_cast<size_t>(x)] = column > reached + 0.5F ? 1 : 0;
     reached = std::min(reached, column);
   }

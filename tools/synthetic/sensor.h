@@ -26,8 +26,8 @@ class Sensor {
 
   Sensor(const Options& options, uint64_t seed) : options_(options), seed_(seed) {}
 
-  // The colour image, CV_8UC3, BGR, with vignetting, slow changes of exposure, and noise, of which
-  // a part grows with the signal.
+  // The colour image, CV_8UC3, BGR, with vignetting, slow changes of exposure, and noise. A part of
+  // the noise grows with the brightness.
   cv::Mat Colour(const RenderedFrame& frame, uint32_t number) const;
   // The depth image, CV_16UC1, 0 where unknown. The disparity gets noise of half a step, which
   // neighbours partly share as in block matching, and is then rounded, so that the error of the

@@ -113,7 +113,7 @@ nlohmann::ordered_json ObjectJson(const SceneObject& object) {
            {object.half_extents.x(), object.half_extents.y(), object.half_extents.z()}}};
 }
 
-// What the rearrangement did with the object.
+// Adds the status that the rearrangement gave the object.
 void AddStatus(const SceneObject& object, nlohmann::ordered_json& entry) {
   switch (object.status) {
     case ObjectStatus::kUnchanged:
@@ -203,8 +203,8 @@ void CheckReplaceable(const fs::path& folder, bool force) {
   }
 }
 
-// The folder beside `folder` in which the sequence waits until it is complete. What killed
-// processes have left there is removed.
+// Makes the folder beside `folder` in which the sequence is written. Folders that killed processes
+// have left are removed.
 StagingFolder StageSequence(const fs::path& folder) {
   const std::string prefix = fmt::format(".{}.partial-", folder.filename().string());
   fs::create_directories(folder.parent_path());
@@ -218,7 +218,7 @@ StagingFolder StageSequence(const fs::path& folder) {
 
 // Moves a complete sequence to its final path. An earlier sequence moves to the staging folder,
 // whose destructor removes it.
-void PutInPlace(const StagingFolder& staging, const fs::path& folder) {
+void MoveToFolder(const StagingFolder& staging, const fs::path& folder) {
   const fs::path former = staging.path() / "former";
   const bool replaces = fs::exists(folder);
   if (replaces) {
@@ -333,7 +333,7 @@ bool WriteSequence(const fs::path& folder, const SequenceOptions& options,
     if (!RenderSequence(staging.content(), options, progress)) {
       return false;
     }
-    PutInPlace(staging, target);
+    MoveToFolder(staging, target);
   } catch (const fs::filesystem_error& error) {
     throw InputError(folder.string() + ": cannot be written: " + error.code().message());
   }

@@ -30,8 +30,8 @@ double FrameStamp(int frame);
 
 // Renders a scene and writes a folder in TUM's format with ground truth (docs/synthetic.md). The
 // result does not depend on `threads`: the same options give the same bytes. Everything is written
-// under a temporary name next to `folder` and moved there at the end, so after a failure nothing is
-// left and earlier content is unchanged.
+// to a temporary folder next to `folder`, which is moved to its final path at the end. So a failed
+// run leaves nothing, and an earlier sequence is unchanged.
 //
 // `progress` is called after each frame with the number of finished frames, by one thread at a
 // time; it returns false to stop. Returns whether the sequence was completed. Throws InputError if

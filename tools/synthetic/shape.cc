@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kMaxError = 4e-5;  // metres
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
 // (|x|^(2/east) + |y|^(2/east))^(east/north) + |z|^(2/north), which is 1 on the surface and
 // homogeneous of degree 2/north.
@@ -56,8 +56,9 @@ Vector3d TorusNormal(const Shape& shape, const Vector3d& point) {
   return point - ring * flat.normalized();
 }
 
-// Adds the vertices of a grid of `rows` x `columns` quads, which are split into triangles.
-// Neighbouring faces of a cube have bit-identical common vertices, so no ray passes between them.
+// Adds the vertices of a grid of `rows` x `columns` quads, which are split into triangles. The
+// common vertices of neighbouring faces of a cube have the same bits, so no ray passes between the
+// faces.
 void AddGrid(int rows, int columns, const std::function<Vector3d(double, double)>& point,
              TriangleMesh& mesh) {
   const auto first = static_cast<uint32_t>(mesh.vertices.size());
@@ -114,7 +115,7 @@ int SphereSteps(double half) {
 TriangleMesh CylinderMesh(const Shape& shape) {
   TriangleMesh mesh;
   const auto circle = [&](double fraction, double radius, double z) {
-    const double angle = kTwoPi * (fraction < 1.0 ? fraction : 0.0);
+    const double angle = kFullTurn * (fraction < 1.0 ? fraction : 0.0);
     return Vector3d(radius * shape.half.x() * std::cos(angle),
                     radius * shape.half.y() * std::sin(angle), z);
   };
@@ -135,8 +136,8 @@ TriangleMesh TorusMesh(const Shape& shape) {
   AddGrid(
       128, 48,
       [&](double r, double c) {
-        const double around = kTwoPi * (r < 1.0 ? r : 0.0);
-        const double across = kTwoPi * (c < 1.0 ? c : 0.0);
+        const double around = kFullTurn * (r < 1.0 ? r : 0.0);
+        const double across = kFullTurn * (c < 1.0 ? c : 0.0);
         const double radius = ring + shape.tube * std::cos(across);
         return Vector3d(radius * std::cos(around), shape.tube * std::sin(across),
                         radius * std::sin(around));

@@ -12,14 +12,15 @@
 namespace hullslam::synthetic {
 namespace {
 
-// Without SSE 4.1 std::floor is a function call, and this is the innermost loop.
+// Used instead of std::floor, which is a function call without SSE 4.1, because it runs in the
+// innermost loop.
 int Floor(float x) {
   const int truncated = static_cast<int>(x);
   return truncated - (x < static_cast<float>(truncated) ? 1 : 0);
 }
 
 // Interpolates between four texels. Returns 256 times the colour, in 16-bit lanes. The weights are
-// integers with sum 256, so no lane overflows into the next one, and one multiplication serves all
+// integers with sum 256, so no lane overflows into the next one, and one multiplication weights all
 // three colours. `texels` is a square of `size` x `size`.
 uint64_t Bilinear(const uint64_t* texels, int size, float u, float v) {
   const int x = Floor((u * static_cast<float>(size) - 0.5F) * 256.0F + 0.5F);

@@ -8,8 +8,8 @@
 
 namespace hullslam::synthetic {
 
-// A repeating colour image with its mip levels (Williams 1983). Samples are band-limited to what
-// the pixels can represent, so that corners do not flicker from frame to frame.
+// A repeating colour image with its mip levels (Williams 1983). Samples are band-limited: detail
+// that is smaller than a pixel is averaged, so that corners do not flicker from frame to frame.
 class Texture {
  public:
   // Throws CheckError unless `image` is CV_8UC3 (BGR), square, and a power of two wide.

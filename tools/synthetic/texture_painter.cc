@@ -12,8 +12,9 @@
 namespace hullslam::synthetic {
 namespace {
 
-// In the functions below each number is drawn in a statement of its own: in which order a compiler
-// evaluates the arguments of a call is not specified, and the images shall not depend on it.
+// In the functions below each random number is drawn in a statement of its own, because C++ does
+// not specify in which order the arguments of a call are evaluated. So the images do not depend on
+// the compiler.
 cv::Point RandomPixel(RandomStream& random, int size) {
   const int y = random.Index(size);
   const int x = random.Index(size);
@@ -44,8 +45,8 @@ void AddNoise(uint64_t seed, int period, int octaves, double contrast, cv::Mat& 
   }
 }
 
-// Calls `draw(offset)` for the original position and for its copies beyond the borders. What is cut
-// off at one side then continues at the opposite side.
+// Calls `draw(offset)` for the original position and for its copies beyond the borders, so that a
+// figure that is cut off at one side continues at the opposite side.
 template <typename Draw>
 void Tiled(int size, const Draw& draw) {
   for (const int dy : {-size, 0, size}) {

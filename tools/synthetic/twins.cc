@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr double kEyeHeight = 1.4;               // metres
+constexpr double kEyeAboveFloor = 1.4;           // metres
 constexpr double kFirst = -0.5 * kTwinDistance;  // x of the middle of the first room
 constexpr double kSecond = 0.5 * kTwinDistance;
 
@@ -25,8 +25,8 @@ void AddTwinRoom(const Palette& palette, SceneBuilder& builder) {
   builder.AddShelf(Shift(0.2, 4.09, 0.0), palette);
 }
 
-// Moves what was added to the background since `parts` and `supports` by x = kFirst, and adds a
-// copy of it at x = kSecond.
+// Moves all parts and supports of the background from the indices `parts` and `supports` on by
+// kFirst along x, and adds a copy of them that is moved by kSecond.
 void Duplicate(size_t parts, size_t supports, Scene& scene) {
   for (size_t i = parts, end = scene.background.size(); i < end; ++i) {
     Part twin = scene.background[i];
@@ -120,7 +120,7 @@ WaypointPath TwinsPath() {
   std::vector<Waypoint> waypoints;
   const auto add = [&](double x, double y, double yaw, double pitch = -14.0, double seconds = 0.0) {
     waypoints.push_back(
-        {.eye = {x, y, kEyeHeight}, .yaw = yaw, .pitch = pitch, .seconds = seconds});
+        {.eye = {x, y, kEyeAboveFloor}, .yaw = yaw, .pitch = pitch, .seconds = seconds});
   };
   const auto look_around = [&](double x) {
     add(x + 0.55, 2.5, 182.0);

@@ -6,7 +6,7 @@
 
 namespace hullslam::synthetic {
 
-// The second of the twin rooms is the first one, moved by this distance along +x. Metres.
+// The second of the twin rooms is a copy of the first one at this distance along +x. Metres.
 inline constexpr double kTwinDistance = 4.4;
 
 // Adds two rooms with the same walls, textures, posters and furniture on one side of a corridor.

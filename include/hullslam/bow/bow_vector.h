@@ -21,9 +21,10 @@ struct WeightedWord {
 // an image without words.
 using BowVector = std::vector<WeightedWord>;
 
-// The similarity of two images: 1 - |v - w|_1 / 2 (Galvez-Lopez and Tardos 2012), which is 0 if
-// they have no word in common and 1 if the vectors are equal. Because the weights add up to 1, it
-// equals the sum of min(v_i, w_i) over the common words. 0 if a vector is empty.
+// The similarity of two images: 1 - |v - w|_1 / 2 (Galvez-Lopez and Tardos 2012), where |.|_1 is
+// the sum of absolute differences over all words. It is 0 if the images have no word in common and
+// 1 if the vectors are equal. Because the weights add up to 1, it equals the sum of min(v_i, w_i)
+// over the common words. It is 0 if a vector is empty.
 double Score(const BowVector& v, const BowVector& w);
 
 }  // namespace hullslam

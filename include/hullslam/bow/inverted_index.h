@@ -13,7 +13,7 @@ namespace hullslam {
 // A keyframe that contains a word.
 struct Posting {
   KeyframeId keyframe;
-  float weight = 0.0f;  // of the word in the vector of the keyframe
+  float weight = 0.0f;  // weight of the word in the keyframe's vector
 
   friend bool operator==(const Posting&, const Posting&) = default;
 };
@@ -22,22 +22,23 @@ struct Posting {
 struct SimilarKeyframe {
   KeyframeId keyframe;
   uint32_t common_words = 0;  // at least 1
-  double score = 0.0;         // of the two vectors, 0 to 1; see Score()
+  double score = 0.0;         // similarity to the image, 0 to 1; see Score()
 };
 
-// For each word the keyframes that contain it. Like the map, it is a value whose snapshots share
-// memory until one of them is changed.
+// Stores for each word the keyframes that contain it. Like the map, it is a value whose snapshots
+// share memory until one of them is changed.
 class InvertedIndex {
  public:
-  // One value per chunk: the words of an image are scattered over the whole table, so each change
-  // of a word would copy a larger chunk.
+  // Each chunk has one value. The words of an image are scattered over the whole table, so with
+  // larger chunks each changed word would copy many others.
   using Table = CowTable<WordId, std::vector<Posting>, 1>;
 
   InvertedIndex Snapshot();
 
-  // Throws CheckError if the keyframe has one of the words already.
+  // Throws CheckError if the keyframe already has one of the words.
   void Add(KeyframeId keyframe, const BowVector& vector);
-  // `vector` is the one that was added. Throws CheckError if the keyframe lacks one of its words.
+  // Removes the keyframe. `vector` must be the one that was added. Throws CheckError if the
+  // keyframe lacks one of its words.
   void Remove(KeyframeId keyframe, const BowVector& vector);
 
   // All keyframes that have a word in common with `vector`: the highest score first, equal scores
@@ -49,7 +50,7 @@ class InvertedIndex {
 
  private:
   Table postings_;
-  uint32_t keyframe_end_ = 0;  // above the numbers of all keyframes that were added
+  uint32_t keyframe_end_ = 0;  // larger than the ids of all keyframes that were added
 };
 
 }  // namespace hullslam

@@ -19,15 +19,16 @@ using VocabularyNodeId = Id<struct VocabularyNodeTag>;
 
 // A tree of binary words (Galvez-Lopez and Tardos 2012). A descriptor goes down from the root,
 // always to the child with the least Hamming distance (ties go to the first child), and its word is
-// the leaf where it arrives. The weight of a word is its inverse document frequency ln(N / n): n of
-// the N training images contain it.
+// the leaf where it arrives. The weight of a word is its inverse document frequency ln(N / n),
+// where N is the number of training images and n the number of those that contain the word.
 //
 // Nodes are numbered level by level, so that siblings are neighbours in memory. Words are numbered
 // in depth-first order, so that the words below a node are a range, and the node of a word at any
-// level follows from the word alone. This is the direct index: a frame only keeps its words.
+// level follows from the word alone. This replaces a stored direct index: a frame only keeps its
+// words.
 //
-// The memory is that of the binary file (docs/vocabulary.md), usually a mapped one. Copies share
-// it. All functions are const and may be called by several threads.
+// The memory has the content of the binary file (docs/vocabulary.md). Copies share it. All
+// functions are const and may be called by several threads.
 class Vocabulary {
  public:
   static constexpr int kMostBranching = 100;
@@ -39,15 +40,15 @@ class Vocabulary {
   static Vocabulary View(std::span<const std::byte> bytes, std::shared_ptr<const void> owner,
                          std::string_view name);
 
-  // Whether the bytes begin like a binary vocabulary.
+  // Whether the bytes begin with the mark of a binary vocabulary.
   static bool IsBinary(std::span<const std::byte> bytes);
 
-  int branching() const { return branching_; }  // most children of a node
-  int levels() const { return levels_; }        // most steps from the root to a leaf
+  int branching() const { return branching_; }  // largest number of children of a node
+  int levels() const { return levels_; }        // largest number of steps from the root to a leaf
   size_t node_count() const { return descriptors_.size(); }
   size_t word_count() const { return weights_.size(); }
-  // Changes if anything in the vocabulary changes. Words of two vocabularies can be compared if and
-  // only if their hashes are equal.
+  // The hash of the whole content. Words of two vocabularies can be compared if and only if their
+  // hashes are equal.
   uint64_t hash() const { return hash_; }
   // The content of the binary file.
   std::span<const std::byte> bytes() const { return bytes_; }
@@ -59,8 +60,9 @@ class Vocabulary {
   // Throws CheckError if a word is not one of this vocabulary.
   BowVector VectorOf(std::span<const WordId> words) const;
 
-  // The node that the descriptors of `word` pass after `level` steps from the root; the leaf itself
-  // if that is fewer steps away. Throws CheckError if the word is not one of this vocabulary.
+  // The node that the descriptors of `word` reach after `level` steps from the root; the leaf
+  // itself if it is reached in fewer steps. Throws CheckError if the word is not one of this
+  // vocabulary.
   VocabularyNodeId NodeOf(WordId word, int level) const;
   // The same for many words. Throws like NodeOf().
   std::vector<VocabularyNodeId> NodesOf(std::span<const WordId> words, int level) const;
@@ -69,8 +71,8 @@ class Vocabulary {
   std::span<const float> weights() const { return weights_; }
   // One per node; zero for the root.
   std::span<const Descriptor> descriptors() const { return descriptors_; }
-  // The children of node i are the nodes first_child[i] to first_child[i + 1] - 1. It is a leaf if
-  // there are none. One entry per node and one more.
+  // The children of node i are the nodes first_child[i] to first_child[i + 1] - 1; a leaf has none.
+  // The list has one entry more than there are nodes.
   std::span<const uint32_t> first_child() const { return first_child_; }
   // The first word below each node; of a leaf: its word.
   std::span<const uint32_t> first_word() const { return first_word_; }

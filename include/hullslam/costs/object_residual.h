@@ -18,9 +18,10 @@ std::string_view NameOf(ObjectResidual residual);
 // All names, in the order of the enumerators.
 std::vector<std::string> ObjectResidualNames();
 
-// Whether the residual can be computed from the primitive. tangent and algebraic_plane need lines,
-// which every primitive has (a conic has its tangents). algebraic_point needs the contour and
-// distribution the conic. overlap needs a region, which every primitive but the support lines has.
+// Whether the residual can be computed from the primitive. Each residual names its primitives
+// beside its cost. Every primitive has lines (a conic has its tangents). A contour, a conic or a
+// region belongs to some primitives only, so a residual that needs one of these does not accept all
+// primitives.
 bool AcceptsPrimitive(ObjectResidual residual, ObjectPrimitive primitive);
 
 // Whether the residual is computed from the lines of a detection.

@@ -30,9 +30,9 @@ struct AteReport {
   size_t reference_poses = 0;
   double coverage = 0.0;     // share of the estimated poses that are paired, 0 to 1
   double paired_span = 0.0;  // s, from the first to the last pair
-  // Only with kSim3: by how much the scale of the last tenth of the pairs exceeds that of the first
-  // tenth, 0.01 for 1 %. Each tenth is aligned by itself. Absent if a tenth has fewer than three
-  // pairs or does not determine the scale.
+  // Only with kSim3: the growth of lengths in the estimate from the first tenth of the pairs to the
+  // last tenth, 0.01 for 1 %. Each tenth is aligned by itself. Absent if a tenth has fewer than
+  // three pairs or does not determine the scale.
   std::optional<double> scale_drift = std::nullopt;
 
   bool ok() const { return failure.empty(); }

@@ -8,9 +8,9 @@ namespace hullslam {
 
 // The options for making detections and their lines from instance masks.
 struct DetectionOptions {
-  ObjectPrimitive primitive = ObjectPrimitive::kSupport;  // the lines are made from it
+  ObjectPrimitive primitive = ObjectPrimitive::kSupport;  // the lines are made from this
   double epsilon_px = 3.0;       // tolerance for simplifying hull or contour (Douglas-Peucker)
-  int uniform_directions = 8;    // of support lines, in addition to the edges of the hull
+  int uniform_directions = 8;    // number of support lines, in addition to the edges of the hull
   double min_line_px = 5.0;      // length; shorter edges give no line
   double min_line_angle = 0.09;  // radians, least angle between two support lines
   int conic_lines = 16;          // number of tangents of an ellipse
@@ -23,9 +23,9 @@ struct DetectionOptions {
   double max_area_share = 0.5;  // largest area of the hull, as a share of the image
   int min_keypoints = 0;        // inside the mask
   double duplicate_iou = 0.6;   // masks with at least this IoU show the same object
-  // The same for two masks of one class if the depth of at least one of them is not known. A
-  // network often segments one thing twice, for example a book, and the book with the paper under
-  // it.
+  // Two masks of one class show the same object already at this IoU if the depth of at least one of
+  // them is not known. A network often segments one thing twice, for example a book, and the book
+  // with the paper under it.
   double duplicate_class_iou = 0.25;
   // Two masks also show the same object if the smaller one is a fragment of the larger one. A
   // fragment lies almost completely inside the larger mask, is not much smaller, and has nearly the
@@ -42,7 +42,7 @@ struct DetectionOptions {
   // Something hides an object if it is nearer by more than both steps. The first step is the noise
   // of a depth camera. Both steps are used only with depth images.
   double occlusion_step = 0.03;        // m
-  double occlusion_step_share = 0.04;  // of the object's depth
+  double occlusion_step_share = 0.04;  // share of the object's depth
 
   void Bind(const OptionScope& scope);
 };

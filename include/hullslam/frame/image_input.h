@@ -15,7 +15,7 @@ struct ImageInput {
   // CV_16UC1 in units of 1 / DepthMapFactor metres, or CV_32FC1 in metres. The depth is unknown
   // where the value is 0 or not finite. Empty for a monocular camera.
   cv::Mat depth;
-  std::vector<InstanceMask> masks = {};  // of the objects in the image; may be empty
+  std::vector<InstanceMask> masks = {};  // masks of the objects in the image; may be empty
 };
 
 }  // namespace hullslam

@@ -20,7 +20,7 @@ enum class SensorKind {
 struct Sensor {
   SensorKind kind = SensorKind::kRgbd;
   PinholeCamera camera;
-  PinholeCamera::Bounds bounds;  // of the undistorted image, px
+  PinholeCamera::Bounds bounds;  // bounds of the undistorted image, px
   ScaleLevels levels;
   double close_depth = 0.0;  // m; smaller depths are precise enough for a landmark from one view
   DepthErrorOptions depth_error;

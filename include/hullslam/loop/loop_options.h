@@ -19,7 +19,7 @@ struct LoopOptions {
 
   // The drift budget (as in OKVIS2, Leutenegger 2022): the largest translation and rotation of the
   // query by a correction, relative to the length of the camera's way and the sum of its rotations
-  // since the candidate.
+  // since the candidate. Without depth, the median depth of the scene counts as a metre.
   double drift_base = 0.2;         // m
   double drift_per_metre = 0.05;   // m
   double drift_per_radian = 0.02;  // m

@@ -20,7 +20,8 @@ struct Keyframe {
   std::shared_ptr<const Frame> frame;
   Rigid3 cam_from_world;
   // The product of the scales of all corrections since the keyframe was made: a length of 1 at that
-  // time has this length in the current map. 1 in RGB-D, where corrections keep the scale.
+  // time has this length in the current map. It is 1 in RGB-D runs, in which corrections keep the
+  // scale.
   double scale = 1.0;
   std::vector<LandmarkId> landmarks;  // one per keypoint; invalid where it observes no landmark
   std::vector<ObjectId> objects;      // one per detection; invalid where it shows no object

@@ -18,7 +18,7 @@ struct Observation {
 // A point of the world that keyframes observe.
 struct Landmark {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();           // m, world frame
-  Eigen::Vector3d viewing_direction = Eigen::Vector3d::Zero();  // unit, mean of those from cameras
+  Eigen::Vector3d viewing_direction = Eigen::Vector3d::Zero();  // unit; mean from the cameras
   double min_distance = 0.0;              // m; at this distance it is seen at the last level
   double max_distance = 0.0;              // m; at this distance it is seen at level 0
   Descriptor descriptor{};                // the most typical of the observed ones

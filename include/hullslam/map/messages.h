@@ -18,8 +18,8 @@
 
 namespace hullslam {
 
-// The keyframes and points that a map, or a new island of it, begins with. RGB-D begins with one
-// keyframe, a monocular camera with two or more.
+// The keyframes and points that a map, or a new island of it, begins with. An RGB-D run begins with
+// one keyframe, a monocular run with two or more.
 struct InitialMap {
   struct View {
     std::shared_ptr<const Frame> frame;
@@ -65,8 +65,8 @@ struct MapCorrection {
   struct Pose {
     KeyframeId keyframe;
     Rigid3 snapshot_cam_from_world;
-    // Maps the corrected world to the camera in the snapshot's unit of length, so its scale is the
-    // old unit of length over the new one.
+    // Maps the corrected world to the camera frame, whose unit of length is that of the snapshot.
+    // So its scale is a length in the snapshot over the same length in the corrected map.
     Sim3 corrected_cam_from_world;
   };
   struct Position {

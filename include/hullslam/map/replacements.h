@@ -8,10 +8,10 @@
 
 namespace hullslam {
 
-// Remembers which ids were replaced by which, for messages with ids of older snapshots of a map.
-// Each replacement has the revision of the map at the time: the number of the last snapshot in
-// which the replaced id was still in use. There are few replacements, because those that are older
-// than all messages are forgotten.
+// Remembers by which id another id was replaced. It is needed for messages that have ids of older
+// snapshots of a map. Each replacement has the revision of the map at the time: the number of the
+// last snapshot in which the replaced id was still in use. There are few replacements, because
+// those that are older than all messages are forgotten.
 template <typename IdType>
 class Replacements {
  public:

@@ -11,7 +11,7 @@ struct MappingOptions {
   // landmarks.
   int fixed_keyframes = 0;
   bool cull_keyframes = true;
-  bool final_bundle_adjustment = true;  // of the whole map, at the end of the run
+  bool final_bundle_adjustment = true;  // adjusts the whole map at the end of the run
   bool compact_keyframes = true;        // those far from the newest one (mapping/old_keyframes.h)
 
   void Bind(OptionTable& options);

@@ -12,9 +12,9 @@
 
 namespace hullslam {
 
-// A frame by the names that mask files use for it.
+// The names that mask files use for a frame.
 struct MaskFrame {
-  std::string stem;   // of the file of the colour image: "1305031102.175304"
+  std::string stem;   // stem of the file of the colour image: "1305031102.175304"
   size_t number = 0;  // index of the colour image in the sequence, from 0
 };
 
@@ -38,7 +38,7 @@ class MaskSource {
   MaskSource& operator=(const MaskSource&) = delete;
 
   virtual std::string format() const = 0;                   // the name of the format: "yolo-seg"
-  virtual bool Contains(const MaskFrame& frame) const = 0;  // false: the frame is missing
+  virtual bool Contains(const MaskFrame& frame) const = 0;  // whether the frame has a file or entry
   // The name of one entry (a file or an image), for messages; empty if there is none.
   virtual std::string Example() const = 0;
   // Throws InputError that names the file, and the line or entry, of malformed data.
@@ -53,7 +53,7 @@ struct MaskRequest {
 };
 
 struct MaskCounts {
-  size_t without_masks = 0;  // frames; the missing ones, and those whose file or entry has no mask
+  size_t without_masks = 0;  // frames that are missing, or whose file or entry has no mask
   size_t missing = 0;        // frames without a file or entry
 };
 

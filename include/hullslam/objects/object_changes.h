@@ -17,7 +17,7 @@ namespace hullslam {
 enum class ObjectChange {
   kSeenAgain,
   kMoved,      // it is gone, and there is a new object of its class and size elsewhere
-  kGone,       // it should have been visible, but was not found
+  kGone,       // it should have been visible, but was not found, or is no longer in the map
   kNew,        // earlier sessions should have seen it, but did not
   kNotSeen,    // too few keyframes of the session should show its location
   kFirstSeen,  // mapped for the first time, and not known to be new

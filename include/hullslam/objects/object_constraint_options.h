@@ -22,7 +22,7 @@ enum class PointChoice { kEven, kEveryKth };
 // The constraint on an object from the depth points of one detection.
 struct ObjectDepthOptions {
   double sigma = 0.10;  // m, of the distance of a point from the surface
-  // The same for a landmark, which is used where there is no depth, as a share of its distance.
+  // The sigma for a landmark, as a share of its distance. Landmarks are used if there is no depth.
   double landmark_sigma = 0.05;
   int max_points = 0;  // per detection; 0: depth is not used
   PointChoice choice = PointChoice::kEven;

@@ -16,18 +16,19 @@ namespace hullslam {
 
 // The conditions for a detection to show an object of the map; see AssociateDetections.
 struct AssociationOptions {
-  double min_projection_iou = 0.25;  // of hull and projected ellipse
-  double min_carried_iou = 0.5;      // of hull and last hull, moved to the new pose
-  double min_depth_iou = 0.1;        // the larger of both, if the depth points agree
+  double min_projection_iou = 0.25;  // IoU of hull and projected ellipse
+  double min_carried_iou = 0.5;      // IoU of the hull and the last hull moved to the new pose
+  double min_depth_iou = 0.1;        // the larger of the two IoUs, if the depth points agree
   int min_shared_landmarks = 3;
-  double min_shared_ratio = 0.5;  // common landmarks over those of the one that has fewer
-  int recent_views = 5;           // number of latest keyframes that represent an object
-  int cloud_points = 40;          // largest number of points of a cloud that are compared, about
-  int min_cloud = 20;             // number of points that the rank-sum test needs
-  double max_rank_sum = 1.282;    // standard score
-  double alpha = 0.001;           // significance level of the t-test of centroids
-  double centroid_noise = 0.02;   // sigma of a centroid, as a share of its distance
-  double max_offset = 1.0;        // between centroids, in sizes of the object
+  double min_shared_ratio =
+      0.5;                      // common landmarks over the smaller number of landmarks of the two
+  int recent_views = 5;         // number of latest keyframes that represent an object
+  int cloud_points = 40;        // approximate largest number of points of a cloud that are compared
+  int min_cloud = 20;           // number of points that the rank-sum test needs
+  double max_rank_sum = 1.282;  // standard score
+  double alpha = 0.001;         // significance level of the t-test of centroids
+  double centroid_noise = 0.02;  // sigma of a centroid, as a share of its distance
+  double max_offset = 1.0;       // between centroids, in sizes of the object
   // Weights in the similarity of a match: the larger IoU, shared landmarks, agreeing clouds,
   // agreeing centroids, votes for the class.
   double iou_weight = 0.6;
@@ -35,7 +36,7 @@ struct AssociationOptions {
   double cloud_weight = 0.1;
   double centroid_weight = 0.1;
   double class_weight = 0.2;
-  double min_similarity = 0.2;  // of a detection and an object that are matched
+  double min_similarity = 0.2;  // least similarity of a matched detection and object
 
   void Bind(const OptionScope& scope);
 };
@@ -48,15 +49,15 @@ struct StartOptions {
   int max_points = 2000;                     // approximate largest number of depth points
   double trimmed = 0.03;        // share of the points that is left out at each end of each axis
   double inflation = 1.2;       // factor on the oriented bounding box of the points
-  double min_half_axis = 0.01;  // of the distance, for flat things
+  double min_half_axis = 0.01;  // share of the distance to the object, for flat things
 
   void Bind(const OptionScope& scope);
 };
 
 // The conditions that a mapped object must satisfy; see FindObjection.
 struct ValidityOptions {
-  double min_half_axis = 0.005;     // of the distance
-  double max_half_axis = 3.0;       // of the distance
+  double min_half_axis = 0.005;     // share of the distance to the object
+  double max_half_axis = 3.0;       // share of the distance to the object
   double min_overlap = 0.6;         // mean IoU of projected ellipse and hull
   double min_points_near = 0.4;     // share of depth points inside the quadric or near its surface
   double near_surface = 0.03;       // near: outside by at most this share of the distance
@@ -75,9 +76,9 @@ struct ValidityOptions {
 
 // The conditions for fusing two objects; see FindDuplicates.
 struct FusionOptions {
-  double min_overlap = 0.25;          // IoU of the volumes, of objects never seen together
-  double min_overlap_together = 0.5;  // of objects seen together in few keyframes
-  double max_shared_keyframes = 0.2;  // of the object with fewer keyframes
+  double min_overlap = 0.25;          // IoU of the volumes if no keyframe sees both objects
+  double min_overlap_together = 0.5;  // least overlap if few keyframes see both objects
+  double max_shared_keyframes = 0.2;  // share of the keyframes of the object that has fewer
   double alpha = 0.05;                // significance level of the t-test of centroids
   double centroid_noise = 0.02;       // sigma of a centroid, as a share of its distance
 
@@ -101,7 +102,7 @@ struct CullingOptions {
 
 // The conditions for an object of a loaded map to count as gone or new; see FindObjectChanges.
 struct ChangeOptions {
-  int min_keyframes = 3;         // should show an object before it can count as gone or new
+  int min_keyframes = 3;         // least number of keyframes that should show the object
   double max_found_ratio = 0.2;  // it is found in a smaller share of these keyframes
   double min_overlap = 0.25;     // IoU of its projected ellipse and a hull that may show it
   double min_inside = 0.6;       // share of the object that must be in the image
@@ -111,7 +112,7 @@ struct ChangeOptions {
   // An object that is farther away than this (m; in the unit of the map if its scale is unknown)
   // cannot be the one that is gone.
   double max_move = 4.0;
-  double max_size_ratio = 2.5;  // of the half axes of an object before and after it was moved
+  double max_size_ratio = 2.5;  // ratio of half axes before and after a move
 
   void Bind(const OptionScope& scope);
 };
@@ -159,7 +160,7 @@ struct ObjectPoseOptions {
   // that objects alone do not determine, such as the rotation around a single object and the
   // common distance of all objects.
   double prior_rotation = 0.1;     // radians
-  double prior_translation = 0.1;  // of the mean distance of the objects
+  double prior_translation = 0.1;  // share of the mean distance of the objects
   int min_objects = 2;             // number of objects that determine a pose without points
 
   void Bind(const OptionScope& scope);

@@ -29,7 +29,8 @@ struct EurocSequence {
 // folder with `mav0`, or `mav0` itself, in which `cam0/data.csv` lists the images of `cam0/data` by
 // nanoseconds, and `cam0/sensor.yaml` has the calibration. The ground truth of the body,
 // `state_groundtruth_estimate0/data.csv`, becomes that of the camera. Throws InputError with file
-// and line for malformed lines and stamps that do not increase, and names the first missing file.
+// and line for malformed lines and stamps that do not increase, and for a missing file with its
+// name.
 EurocSequence OpenEurocSequence(const std::filesystem::path& folder,
                                 const FrameSelection& selection = {});
 

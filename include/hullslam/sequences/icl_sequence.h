@@ -12,13 +12,14 @@ namespace hullslam {
 
 // The packages in which ICL-NUIM (Handa et al., ICRA 2014) is published; see docs/datasets.md.
 enum class IclPackage {
-  kDetect,  // by the files of the folder
+  kDetect,  // kTum or kPovray, depending on the files in the folder
   kTum,     // the PNG images compatible with TUM: rgb/N.png, depth/N.png, associations.txt
   kPovray,  // the original one: scene_00_NNNN.png, .depth and .txt
 };
 
-// Where the y axis of the cameras points that the poses of a ground truth belong to. Up means fy <
-// 0: such poses and their world are left-handed, and are mirrored before they are used.
+// The direction of the y axis of the cameras to which the poses of a ground truth belong. Up means
+// fy < 0: the poses and their world are left-handed, and are mirrored before they are used.
+// kMeasure: the depth images decide.
 enum class CameraYAxis { kMeasure, kUp, kDown };
 
 struct IclSequenceOptions {
@@ -35,18 +36,19 @@ struct IclSequenceOptions {
 };
 
 struct IclSequence {
-  // Time stamps are index / 30 s, in the frames and in the ground truth, whose poses are those of
-  // right-handed cameras with y down.
+  // The time stamps of the frames and of the ground truth are index / 30 s. The poses of the ground
+  // truth are those of right-handed cameras with y down.
   ImageSequence images;
   IclPackage package = IclPackage::kTum;
-  // Which ground truth is used and how it was converted, for the user; empty if there is none.
+  // A text for the user: which ground truth is used and how it was converted. Empty if there is
+  // none.
   std::string groundtruth_note;
 };
 
-// Opens a sequence of ICL-NUIM. `camera` (with fy > 0) and `depth` are those of the images; they
-// are used to measure where y points. Throws InputError that asks for --package if the files of the
-// folder do not tell which package it is, and for --groundtruth-y if the depth images do not tell
-// where y points; names file and line of malformed lines, and the first missing image.
+// Opens a sequence of ICL-NUIM. `camera` (with fy > 0) and `depth` describe the images; they are
+// used to find out where the y axis points. Throws InputError that asks for --package if the files
+// of the folder do not tell which package it is, and for --groundtruth-y if the depth images do not
+// tell where y points; names file and line of malformed lines, and the first missing image.
 IclSequence OpenIclSequence(const std::filesystem::path& folder, const PinholeCamera& camera,
                             const DepthOptions& depth, const IclSequenceOptions& options = {});
 

@@ -17,7 +17,7 @@ namespace hullslam {
 
 // The files of one frame.
 struct FramePaths {
-  double timestamp = 0.0;  // of the image, s
+  double timestamp = 0.0;  // time stamp of the image, s
   std::filesystem::path image;
   std::filesystem::path depth = {};  // empty: no depth
   size_t number = 0;                 // index among all images of the sequence, from 0
@@ -42,20 +42,20 @@ struct ImageSequence {
   std::vector<FramePaths> frames;  // the selected frames, in order of time
   size_t available = 0;  // frames of the whole sequence, of which `frames` is the selection
   size_t unpaired = 0;   // colour images of the whole sequence that have no depth image
-  // The file with the true trajectory, if there is one whose stamps and poses can be compared with
-  // the trajectory of a run as they are.
+  // The file with the true trajectory. Absent if there is none, or if its stamps or poses must be
+  // converted before they can be compared with those of a run.
   std::optional<std::filesystem::path> groundtruth;
-  // The true trajectory, if its file must not be compared with that of a run as it is, because its
-  // stamps, its axes or its format are others.
+  // The converted true trajectory, if the stamps, axes or format of its file differ from those of a
+  // run.
   std::optional<Trajectory> converted_groundtruth;
-  // How the time stamps were found, for the user; empty if a list of the data set has them.
+  // Tells the user where the time stamps are from; empty if a list of the data set has them.
   std::string stamps_note = {};
-  // How a frame is decoded: in order, by one thread at a time.
+  // Decodes a frame. To be called for the frames in order, by one thread at a time.
   FrameLoader load = LoadFrame;
 };
 
-// The true trajectory, from whichever of the two fields has it; absent without ground truth. Throws
-// InputError for a file that ReadTrajectory() rejects.
+// The true trajectory, from the field that is set; absent without ground truth. Throws InputError
+// for a file that ReadTrajectory() rejects.
 std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence);
 
 }  // namespace hullslam

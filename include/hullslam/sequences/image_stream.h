@@ -11,16 +11,17 @@
 namespace hullslam {
 
 struct ImageStreamOptions {
-  // The time stamps are index / frames_per_second. Absent: those of the video; 30 for a folder.
+  // If it is given, the time stamps are index / frames_per_second. Otherwise a video has its own
+  // time stamps, and a folder has 30 images per second.
   std::optional<double> frames_per_second = {};
   double stamp_offset = 0.0;  // s, added to all time stamps
   FrameSelection selection = {};
 };
 
-// Images of a single camera without depth and without ground truth: a video file, or a folder.
+// Images without depth and without ground truth, from a video file or a folder.
 struct ImageStream {
   ImageSequence images;
-  int width = 0;  // of the first image, px
+  int width = 0;  // width of the first image, px
   int height = 0;
   double frames_per_second = 0.0;  // the mean over all frames
 };

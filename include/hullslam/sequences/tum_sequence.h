@@ -25,14 +25,14 @@ struct TumSequenceOptions {
 // one.
 void CheckTumFolder(const std::filesystem::path& folder);
 
-// Opens a sequence in TUM's format: `rgb.txt` and `depth.txt` with one line `timestamp file` per
-// image, which are paired one to one, closest first, within 0.02 s; or an association file with
-// lines `timestamp rgb timestamp depth`. In place of a list, the folders `rgb` and `depth` are
-// enough if the names of the images have their time stamps or numbers of frames; frames with the
-// same number belong together. The ground truth is groundtruth.txt if it exists.
-// Everything that needs no decoding is checked. InputError names file and line of malformed lines
-// and of stamps that do not increase, the first missing image, and the smallest gap if no image can
-// be paired.
+// Opens a sequence in TUM's format. `rgb.txt` and `depth.txt` have one line `timestamp file` per
+// image; the images are paired one to one, closest first, within 0.02 s. If an association file is
+// given, its lines `timestamp rgb timestamp depth` are used instead. In place of a list, the
+// folders `rgb` and `depth` are enough if the names of the images have their time stamps or numbers
+// of frames; frames with the same number belong together. The ground truth is groundtruth.txt if it
+// exists. Everything is checked that needs no decoding of images. Throws InputError with file and
+// line for malformed lines and for stamps that do not increase, with the name of the first missing
+// image, and with the smallest gap if no image can be paired.
 ImageSequence OpenTumSequence(const std::filesystem::path& folder,
                               const TumSequenceOptions& options = {});
 

@@ -11,9 +11,9 @@
 
 namespace hullslam {
 
-// What a negative Camera.fy in a settings file means. Some files of other programs have one: their
-// y axis points up, so their world is left-handed. The pixels are those of the camera with y down
-// and the positive value.
+// How a negative Camera.fy in a settings file is treated. Some files of other programs have one:
+// their y axis points up, so their world is left-handed. A camera with y down and the positive
+// value has the same pixels.
 enum class NegativeFy {
   kError,
   kPositive,  // the positive value is used; for programs that mirror the ground truth (rgbd_icl)
@@ -23,8 +23,8 @@ enum class NegativeFy {
 // line `%YAML:1.0`) or of ORB-SLAM3 (format 1.0, docs/settings.md), then applies `overrides` of the
 // form `key=value`, then validates the result. Missing keys keep their defaults; Camera.fx, fy, cx
 // and cy have no default. Throws InputError that names file, line, key, value and what was
-// expected. `warnings`, unless it is null, receives what the user should know about keys that have
-// a new name, and about keys of the file that are no settings any more and are ignored.
+// expected. If `warnings` is not null, a warning is added for each key that has a new name, and for
+// each key of the file that is ignored because it is no setting any more.
 SystemOptions ReadSettings(const std::filesystem::path& file,
                            std::span<const std::string> overrides = {},
                            NegativeFy negative_fy = NegativeFy::kError,
@@ -37,8 +37,8 @@ struct CameraCalibration {
 };
 
 // The settings for a camera without a settings file: the defaults, then `overrides` as in
-// ReadSettings(), with the same warnings. Throws InputError for what ReadSettings() would refuse;
-// `source` is the name of what the calibration is from.
+// ReadSettings(), with the same warnings. Throws InputError if ReadSettings() would refuse such a
+// file. `source` names the origin of the calibration in messages.
 SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
                            std::span<const std::string> overrides = {},
                            std::vector<std::string>* warnings = nullptr);

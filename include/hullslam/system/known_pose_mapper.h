@@ -20,7 +20,9 @@ namespace hullslam {
 //   for each view: mapper.AddView(timestamp, world_from_cam, masks, depth);
 //   for (const auto& [id, object] : mapper.map().objects()) ...
 //
-// A view should differ from the one before: of a camera that hardly moves, use only some frames.
+// A view should differ from the one before. If the camera hardly moves, add only some of its
+// frames. Without depth, an object is only recognised in the next view if the translation of the
+// camera moves its outline by less than the size of the outline.
 class KnownPoseMapper {
  public:
   // Uses the camera, depth, objects and tracking.dynamic_classes of the options. Throws InputError
@@ -41,7 +43,7 @@ class KnownPoseMapper {
   // The views as keyframes, and the objects: those whose state is ObjectState::kMapped have a
   // quadric that fits their views, the others are candidates.
   const Map& map() const;
-  // What became of the masks and why objects were not mapped.
+  // The numbers of masks that gave detections, and of rejected masks and objects by reason.
   ObjectCounts counts() const;
 
  private:

@@ -30,7 +30,7 @@ struct RunOptions {
 struct SystemOptions {
   SensorKind sensor = SensorKind::kRgbd;  // not a setting of the table: each program has its own
   PinholeCamera camera;
-  double frames_per_second = 30.0;  // of the camera
+  double frames_per_second = 30.0;  // frame rate of the camera
   double readout_time = 0.0;  // s, from the first to the last row of an image; 0: global shutter
   bool rgb_order = false;     // order of channels of colour images from memory: RGB, else BGR
   DepthOptions depth;
@@ -43,9 +43,9 @@ struct SystemOptions {
   // The vocabulary for the words of frames and the index of the map. Null: frames have no words. It
   // is not a setting of the table; see ReadVocabulary() and FindDefaultVocabulary().
   std::shared_ptr<const Vocabulary> vocabulary;
-  uint64_t seed = 0;  // of all random choices
+  uint64_t seed = 0;  // seed of all random choices
 
-  // Names every option once; the struct must outlive the table. `Viewer.*` keys of ORB-SLAM2 are
+  // Binds every option once. The struct must outlive the table. `Viewer.*` keys of ORB-SLAM2 are
   // accepted and ignored.
   OptionTable Bind();
   // Throws InputError if the options are in their ranges but cannot be used: a camera without focal

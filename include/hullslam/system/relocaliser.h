@@ -26,9 +26,9 @@ struct RelocalisedPose {
   int used_objects = 0;  // objects that constrain the pose
 };
 
-// Finds the poses of single frames in a map without the frames before them, as a tracker that has
-// lost track does. Frames come from System::Build() of a system with the same camera and image
-// pyramid as that of the map.
+// Finds the poses of single frames in a map without knowing the frames before them, like a tracker
+// that is lost. Frames come from System::Build() of a system with the same camera and image pyramid
+// as that of the map.
 class Relocaliser {
  public:
   // `map` is not null. The options are those of the frames and of tracking. Throws InputError if

@@ -35,7 +35,7 @@ enum class PipelineKind {
   kRealtime,    // like kThreaded, but never waits; for live cameras
 };
 
-// The numbers of masks of a run that became detections, and that did not, by reason.
+// The number of masks of a run that became detections, and the numbers of rejected ones by reason.
 struct ObjectCounts {
   size_t detections = 0;
   size_t frames_with_masks = 0;
@@ -92,14 +92,18 @@ class System {
   }
 
   // Waits until all keyframes are in the map. Then it adjusts the whole map if
-  // mapping.final_bundle_adjustment is set. The adjustment ends early with its current result if
-  // `cancellation` (may be null) is requested. `on_progress` is called after each of its
-  // iterations, in this thread. If a monocular camera was lost, only the main island of the map
-  // stays (Map::BeginIsland), and frames in other islands become lost. Then the poses of all frames
-  // are computed again from the final positions of their landmarks, unless the map was fixed, and
-  // frames before a monocular map and before each island are localised in it. So frames() may
-  // change. Track must not be called after Finish.
-  void Finish(const Cancellation* cancellation = nullptr, const ProgressCallback& on_progress = {});
+  // mapping.final_bundle_adjustment is set. If a monocular camera was lost, only the main island of
+  // the map stays (Map::BeginIsland), and frames in other islands become lost. Then the poses of
+  // all frames are computed again from the final positions of their landmarks, unless the map was
+  // fixed, and frames before a monocular map and before each island are localised in it. So
+  // frames() may change. Track must not be called after Finish.
+  //
+  // If `cancellation` (may be null) is requested, the adjustment ends early with its current
+  // result, and the frames that are left keep the poses that they have. `on_map` is called in this
+  // thread after each iteration of the adjustment. `on_poses` is called after each frame whose pose
+  // is computed again and then, counting from 1 again, after each frame that is localised.
+  void Finish(const Cancellation* cancellation = nullptr, const ProgressCallback& on_map = {},
+              const ProgressCallback& on_poses = {});
 
   // Sets the system back to its state after construction: with the map that it was given, without
   // frames, times and counts, and ready for Track, also after Finish. Ids begin again, and time
@@ -140,7 +144,7 @@ class System {
   std::unique_ptr<Pipeline> pipeline_;
   std::atomic<bool> is_tracking_ = false;
   std::unique_ptr<TaskRunner> runner_;  // for building frames
-  DetectionCounts mask_counts_;         // of the frames that were tracked
+  DetectionCounts mask_counts_;         // counts of the tracked frames
   std::function<void(const FrameReport&)> frame_callback_;
   std::vector<TrackedFrame> frames_;
   std::vector<RememberedFrame> remembered_;  // until Finish

@@ -23,12 +23,13 @@ inline constexpr bool kIsRecycled<struct LandmarkTag> = true;
 // Most ids are assigned in increasing order and are never used again. An id of a recycled kind
 // consists of a slot, which is used again, and of a generation, which counts these uses. So the id
 // of an erased entity never equals that of a later one. Ids of a recycled kind are ordered by their
-// slots, which does not depend on age.
+// slots, so their order does not tell which is older.
 template <typename Tag>
 struct Id {
   static constexpr bool kHasGeneration = kIsRecycled<Tag>;
   static constexpr uint32_t kInvalid = std::numeric_limits<uint32_t>::max();
-  static constexpr int kSlotBits = 24;  // of recycled kinds: the lower bits of `value`
+  static constexpr int kSlotBits =
+      24;  // lower bits of `value` that are the slot, in recycled kinds
   static constexpr uint32_t kMaxSlot = (uint32_t{1} << kSlotBits) - 1;
   static constexpr uint32_t kMaxGeneration = kInvalid >> kSlotBits;
 

@@ -35,7 +35,7 @@ struct Range {
 class OptionTable {
  public:
   void Add(std::string key, double* field, Range range, std::string help);
-  // One number for several fields, whose defaults are equal.
+  // A key that sets several fields. Their defaults must be equal.
   void Add(std::string key, std::vector<double*> fields, Range range, std::string help);
   void Add(std::string key, int* field, Range range, std::string help);
   void Add(std::string key, uint64_t* field, Range range, std::string help);
@@ -51,8 +51,9 @@ class OptionTable {
   }
   // Numbers by name: `name:number` pairs that are separated by commas.
   void Add(std::string key, std::map<std::string, double>* field, Range range, std::string help);
-  // A key that sets several other keys at once. They must be bound before, with the same type and
-  // value. The last key that is set wins, whether it is this one or one of the others.
+  // A key that sets several other keys at once. These must already be bound, with the same type and
+  // the same default. If the shared key and one of the others are both set, the one that is set
+  // last wins.
   void AddShared(std::string key, const std::vector<std::string>& members, std::string help);
   // Any text.
   void AddText(std::string key, std::string* field, std::string help);
@@ -85,8 +86,8 @@ class OptionTable {
     std::string help;
     bool is_shared = false;  // sets other keys (AddShared) and has no value of its own
   };
-  // All options but the ignored, sorted by key. The value of a shared one is that of its first
-  // member.
+  // All options except the ignored ones, sorted by key. The value of a shared key is that of its
+  // first member.
   std::vector<Entry> Entries() const;
   // Earlier names and the keys that they stand for.
   const std::map<std::string, std::string, std::less<>>& old_names() const { return old_names_; }
@@ -125,7 +126,7 @@ class OptionScope {
   // The scope of a struct in this one.
   OptionScope Inner(const std::string& name) const { return {table_, Key(name)}; }
 
-  // These bind as the functions of OptionTable do.
+  // Each function below does the same as the function of this name in OptionTable.
   template <typename Field>
   void Add(const std::string& name, Field* field, Range range, std::string help) const {
     table_.Add(Key(name), field, range, std::move(help));
@@ -147,7 +148,7 @@ class OptionScope {
   }
   // The members are names in this scope too.
   void AddShared(const std::string& name, std::vector<std::string> members, std::string help) const;
-  // A retired key, whose field has this value.
+  // Retires the key of a field whose value is now fixed at `value`.
   void AddFixed(const std::string& name, double value) const;
 
  private:

@@ -15,9 +15,9 @@
 namespace hullslam {
 
 // A table like CowTable whose ids are used again: the slot of an erased value is given to a later
-// value with the next generation. So the table is as large as the largest number of values that it
-// ever had at one time. The id of an erased value never finds another value, neither in this table
-// nor in its snapshots, because a slot whose generations are used up is not used again.
+// value with the next generation. So the table has as many slots as it ever had values at one time.
+// The id of an erased value never finds another value, neither in this table nor in its snapshots,
+// because a slot whose generations are used up is not used again.
 //
 // The slot that was freed last is used first, so the same calls give the same ids. Iteration is in
 // the order of ids, which is that of their slots.
@@ -26,7 +26,7 @@ class RecyclingTable {
   static constexpr uint32_t kNone = UINT32_MAX;
 
   struct Cell {
-    IdType id;                   // of the value, or of the next value that gets this slot
+    IdType id;                   // id of the value, or of the next value that gets this slot
     std::optional<Value> value;  // absent if the slot is free
     uint32_t next_free = kNone;  // the slot that was freed before this one
   };
@@ -96,7 +96,7 @@ class RecyclingTable {
   bool empty() const { return size_ == 0; }
   // Number of slots that hold a value or wait for one.
   size_t slots() const { return cells_.size(); }
-  // Number of slots that were ever used: slots() and those whose generations are used up.
+  // Number of slots that were ever used: slots() plus those whose generations are used up.
   uint32_t used_slots() const { return cells_.NextId().value; }
   // The ids that the next values get in free slots, in this order.
   std::vector<IdType> FreeIds() const {

@@ -10,15 +10,15 @@
 
 namespace hullslam {
 
-// What a run of SLAM needs from a data set.
+// The data that a SLAM run needs from a data set.
 struct DatasetInput {
   SystemOptions options;  // the sensor is set by the caller
   ImageSequence sequence;
   std::vector<std::string> notes = {};  // lines that the run prints when its input was checked
 };
 
-// A data set on the command line: its help, its own options, and its reader. A new one is a class
-// that implements this, and a program in Examples that names it (docs/changing.md).
+// A data set on the command line: its help, its own options, and its reader. A new data set is a
+// class that implements this interface, and a program in Examples that uses it (docs/changing.md).
 class Dataset {
  public:
   Dataset() = default;
@@ -29,7 +29,7 @@ class Dataset {
   virtual DatasetHelp Help(SensorKind sensor) const = 0;
   // Adds options that only this data set has.
   virtual void AddOptions(CLI::App& /*app*/) {}
-  // Opens the sequence and reads the settings, and may print what it found. Throws InputError for
+  // Opens the sequence and reads the settings. May print facts about them. Throws InputError for
   // bad input.
   virtual DatasetInput Open(const RunArguments& arguments) = 0;
 };

@@ -7,7 +7,7 @@
 
 namespace hullslam {
 
-// The left camera of sequences of EuRoC.
+// Sequences of EuRoC, of which the left camera is used.
 std::unique_ptr<Dataset> MakeEurocDataset();
 
 }  // namespace hullslam

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hullslam/sequences/icl_sequence.h"
+#include "run/command_line.h"
 #include "run/input_warnings.h"
 #include "run/messages.h"
 #include "run/settings_choice.h"
@@ -14,7 +15,7 @@
 namespace hullslam {
 namespace {
 
-// Adds an option that is one of the names and sets the field to its value.
+// Adds an option whose value is one of the names. The field is set to the enumerator of this name.
 template <typename Enum>
 void AddNamed(CLI::App& app, const std::string& option, const std::map<std::string, Enum>& values,
               Enum& field, const std::string& help) {
@@ -46,15 +47,15 @@ class IclDataset final : public Dataset {
     AddNamed<CameraYAxis>(
         app, "--groundtruth-y", {{"up", CameraYAxis::kUp}, {"down", CameraYAxis::kDown}},
         icl_.groundtruth_y,
-        "where the y axis of the ground truth's cameras points; up (fy < 0) means that it is "
-        "mirrored (default: what the depth images agree with; docs/datasets.md)");
-    app.add_option("--povray-units", icl_.povray_units,
-                   "lengths in the .depth and .txt files per metre (100: centimetres)")
-        ->check(CLI::Range(1e-6, 1e6).description(""))
-        ->capture_default_str();
+        "direction of the y axis of the ground truth's cameras; with up (fy < 0) the ground truth "
+        "is mirrored (default: the direction that agrees with the depth images)");
+    auto* const units =
+        app.add_option("--povray-units", icl_.povray_units,
+                       "lengths in the .depth and .txt files per metre (100: centimetres)");
+    ExpectNumber(*units->capture_default_str(), 1e-6, 1e6);
   }
 
-  // A negative Camera.fy stands for its positive value.
+  // A negative Camera.fy in the settings is replaced by its positive value.
   DatasetInput Open(const RunArguments& arguments) override {
     const SettingsChoice settings = ChooseIclSettings(arguments.settings, arguments.sequence);
     SystemOptions options = LoadSettings(settings.file, arguments.overrides, NegativeFy::kPositive);

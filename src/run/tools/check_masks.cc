@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -128,7 +129,7 @@ void CountDetections(const FrameMasks& frame, const DetectionResult& result,
   }
 }
 
-// The image, or a grey area of its size if the file is missing.
+// The image. If its file is missing, a grey area of the size of the camera's images.
 cv::Mat Background(const fs::path& image, const PinholeCamera& camera) {
   std::error_code error;
   return fs::exists(image, error) ? ReadGreyImage(image)
@@ -142,8 +143,8 @@ void DrawFrame(const std::string& name, const cv::Mat& grey, const PinholeCamera
   output.Write({name, std::string(bytes.begin(), bytes.end())});
 }
 
-// MaskStatistics and draws one frame. If its masks or images cannot be read, this is recorded as a
-// fault. Without `output` nothing is drawn.
+// Counts the masks of one frame and, if `output` is given, draws them. If its masks or images
+// cannot be read, this is recorded as a fault.
 void CheckFrame(const CheckMasksArguments& arguments, const SystemOptions& options,
                 const MaskSource& source, const FramePaths& paths, const MaskFrame& names,
                 OutputFolder* output, MaskStatistics& counts) {
@@ -175,9 +176,13 @@ void CheckFrame(const CheckMasksArguments& arguments, const SystemOptions& optio
 }
 
 void PrintClasses(const MaskStatistics& counts) {
-  Print("\n{:<20}{:>10}{:>10}{:>12}\n", "class", "instances", "kept", "mean score");
+  size_t width = std::string("class").size();
   for (const auto& [label, of_class] : counts.classes) {
-    Print("{:<20}{:>10}{:>10}{:>12.2f}\n", label, of_class.instances, of_class.kept,
+    width = std::max(width, label.size());
+  }
+  Print("\n{:<{}}{:>12}{:>10}{:>12}\n", "class", width, "instances", "kept", "mean score");
+  for (const auto& [label, of_class] : counts.classes) {
+    Print("{:<{}}{:>12}{:>10}{:>12.2f}\n", label, width, of_class.instances, of_class.kept,
           of_class.score_sum / static_cast<double>(of_class.instances));
   }
 }
@@ -185,7 +190,7 @@ void PrintClasses(const MaskStatistics& counts) {
 void PrintCounts(const CheckMasksArguments& arguments, const MaskSource& source,
                  const MaskStatistics& counts) {
   const auto print = [](const std::string& name, size_t count) {
-    Print("{:<20}{:>10}\n", name, count);
+    Print("{:<24}{:>10}\n", name, count);
   };
   Print("{} ({})\n", arguments.masks.string(), source.format());
   print("frames", counts.frames);

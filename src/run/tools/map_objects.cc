@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "files/plausible.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/settings/settings.h"
@@ -38,7 +39,8 @@ namespace hullslam {
 namespace {
 
 constexpr const char* kProgram = "map_objects";
-constexpr double kMaxGapOfPoses = 0.1;  // s, between the two poses that a pose is interpolated from
+constexpr double kMaxGapOfPoses =
+    0.1;  // s, between the two poses from which a pose is interpolated
 
 struct MapObjectsArguments {
   std::filesystem::path sequence;
@@ -47,9 +49,10 @@ struct MapObjectsArguments {
   std::string masks_format;
   std::filesystem::path settings;
   std::vector<std::string> overrides;
-  std::filesystem::path output = "out_objects";  // not that of rgbd_tum, whose poses may be in it
-  double min_distance = 0.05;                    // m
-  double min_angle = 5.0;                        // degrees
+  std::filesystem::path output =
+      "out_objects";  // not the default of rgbd_tum, whose folder may contain the poses to be used
+  double min_distance = 0.05;  // m
+  double min_angle = 5.0;      // degrees
   bool overwrite = false;
   bool without_depth = false;
   bool quiet = false;
@@ -72,15 +75,15 @@ void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
                  "folder for the result files; replaces the former run of this program in it")
       ->capture_default_str();
   AddOverwriteFlag(app, arguments.overwrite);
-  app.add_option("--min-distance", arguments.min_distance,
-                 "a frame is used if the camera has moved this far since the last used frame, m; a "
-                 "quarter of it is enough if a mask has moved by half of its size")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  app.add_option("--min-angle", arguments.min_angle,
-                 "a frame is also used if the camera has turned this far since then, degrees")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  auto* const min_distance = app.add_option(
+      "--min-distance", arguments.min_distance,
+      "a frame is used if the camera has moved this far since the last used frame, m; a "
+      "quarter of it is enough if a mask has moved by half of its size");
+  ExpectNumber(*min_distance->capture_default_str(), 0.0, kMostMetres);
+  auto* const min_angle =
+      app.add_option("--min-angle", arguments.min_angle,
+                     "a frame is also used if the camera has turned this far since then, degrees");
+  ExpectNumber(*min_angle->capture_default_str(), 0.0, 360.0);
   app.add_flag("--without-depth", arguments.without_depth, "do not use the depth images");
   AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
@@ -100,7 +103,8 @@ struct ChosenViews {
   size_t without_pose = 0;  // frames
 };
 
-// Whether the camera has moved by this share of the distance or the angle of the arguments.
+// Whether the camera has moved by `share` times the least distance, or has turned by `share` times
+// the least angle.
 bool HasMoved(const MapObjectsArguments& arguments, const Rigid3& last, const Rigid3& pose,
               double share) {
   const double angle = AngularDistance(last.rotation, pose.rotation) * 180.0 / std::numbers::pi;
@@ -138,10 +142,10 @@ bool HasMaskMoved(const std::vector<LabelledBox>& last, const std::vector<Labell
   });
 }
 
-// Chooses the frames to use: each one at which the camera has moved enough since the one before.
-// Where a mask has moved by more than half of its size, a quarter of that motion is enough: small
-// things that are seen for a short time need enough views, and a view must resemble the one before
-// to be recognised. Throws InputError if no frame has a pose.
+// Chooses the frames to use: those at which the camera has moved enough since the last chosen
+// frame. If a mask has moved by more than half of its size, a quarter of that motion is enough.
+// This gives small objects that are seen for a short time enough views, and it keeps neighbouring
+// views of an object similar enough for association. Throws InputError if no frame has a pose.
 ChosenViews ChooseViews(const MapObjectsArguments& arguments, const std::vector<FramePaths>& frames,
                         const Trajectory& poses, const SequenceMasks& masks) {
   constexpr double kSmallMotion = 0.25;
@@ -209,7 +213,7 @@ MappingInputs OpenMappingInputs(const MapObjectsArguments& arguments) {
   return inputs;
 }
 
-// Returns false if a signal ended it early.
+// Adds all views to the mapper. Returns false if a signal ended it early.
 bool MapAll(const MapObjectsArguments& arguments, const SystemOptions& options,
             const std::vector<FramePaths>& frames, const std::vector<ChosenView>& views,
             const SequenceMasks& masks, KnownPoseMapper& run) {
@@ -258,7 +262,7 @@ void WriteOutputs(OutputFolder& output, const KnownPoseMapper& run, const Object
   for (const FileContent& file : ObjectFiles(report)) {
     output.Write(file);
   }
-  // The poses of the views, because evaluate and plot_run expect these files in every run's folder.
+  // Written because `evaluate` and plot_run.py expect a trajectory in the folder of every run.
   const std::string poses = FormatTrajectory(KeyframeTrajectory(run.map()));
   output.Write({"trajectory.txt", poses});
   output.Write({"keyframes.txt", poses});

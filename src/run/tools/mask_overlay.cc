@@ -13,9 +13,10 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr int kScale = 2;
-constexpr int kShift = 4;               // fractional bits of drawn coordinates
-constexpr double kLongestPiece = 24.0;  // px, drawn of a line on either side of its touching point
-constexpr double kTick = 4.0;           // px, the mark that shows the outer side of a line
+constexpr int kShift = 4;  // fractional bits of drawn coordinates
+constexpr double kLongestPiece =
+    24.0;  // px, length of a line that is drawn on either side of the point where it touches
+constexpr double kTick = 4.0;  // px, the mark that shows the outer side of a line
 
 const cv::Scalar kWhite(255, 255, 255);
 const cv::Scalar kRed(60, 60, 255);
@@ -23,7 +24,7 @@ const cv::Scalar kYellow(0, 230, 255);
 const cv::Scalar kGreen(60, 220, 60);
 const cv::Scalar kOrange(0, 130, 255);
 
-// Position in the picture of a point of the raw image, with kShift fractional bits.
+// The position in the picture of a point of the raw image, as integers with kShift fractional bits.
 cv::Point ToPicture(const Vector2d& raw) {
   const Vector2d scaled = ((raw.array() + 0.5) * kScale - 0.5) * (1 << kShift);
   return {cvRound(scaled.x()), cvRound(scaled.y())};
@@ -40,11 +41,11 @@ void DrawText(cv::Mat& picture, const Vector2d& raw, const std::string& text,
               const cv::Scalar& colour) {
   constexpr double kSize = 0.45;
   const cv::Size size = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, kSize, 1, nullptr);
-  const auto place = [](double wanted, int low, int high) {
+  const auto limit = [](double wanted, int low, int high) {
     return std::clamp(cvRound(kScale * wanted), low, std::max(low, high));
   };
-  const cv::Point at(place(raw.x(), 0, picture.cols - size.width),
-                     place(raw.y(), size.height, picture.rows - 4));
+  const cv::Point at(limit(raw.x(), 0, picture.cols - size.width),
+                     limit(raw.y(), size.height, picture.rows - 4));
   for (const auto& [paint, thickness] : {std::pair(cv::Scalar(0, 0, 0), 3), {colour, 1}}) {
     cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, kSize, paint, thickness, cv::LINE_AA);
   }

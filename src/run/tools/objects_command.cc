@@ -14,6 +14,7 @@
 #include "hullslam/util/error.h"
 #include "results/object_file.h"
 #include "results/summary.h"
+#include "run/messages.h"
 #include "run/object_outputs.h"
 #include "run/tools/objects_truth.h"
 
@@ -57,43 +58,41 @@ void PrintJson(const ObjectReport& report, const std::optional<TruthEvaluation>&
                      {"candidates", report.candidates},
                      {"each", each},
                      {"groundtruth", truth ? ToJson(*truth) : Json(nullptr)}};
-  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+  Print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
 void PrintObject(const ReportedObject& object) {
   const ObjectFit& fit = object.fit;
   const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
-  fmt::print(
-      "{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7.1f}  {:.3f} {:.3f} {:.3f}\n",
-      object.id.value, object.label, ToString(object.state), fit.observations, fit.lines,
-      FormatFigure(fit.siou, 3), FormatFigure(fit.siou_mask, 3), FormatFigure(fit.mtd_m2, 6),
-      FormatFigure(fit.tangent_px, 2), object.misfit_px, axes.x(), axes.y(), axes.z());
+  Print("{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7.1f}  {:.3f} {:.3f} {:.3f}\n",
+        object.id.value, object.label, ToString(object.state), fit.observations, fit.lines,
+        FormatFigure(fit.siou, 3), FormatFigure(fit.siou_mask, 3), FormatFigure(fit.mtd_m2, 6),
+        FormatFigure(fit.tangent_px, 2), object.misfit_px, axes.x(), axes.y(), axes.z());
 }
 
-// The unit of length is the metre, or u, that of the map, if the alignment has a scale.
+// Prints the objects. Lengths are in metres or, if the alignment has a scale, in "u", the unit of
+// length of the map.
 void PrintText(const ObjectReport& report, AlignmentKind alignment) {
   const std::string unit = alignment == AlignmentKind::kSim3 ? "u" : "m";
-  fmt::print("{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7}  {}\n", "id", "class",
-             "state", "views", "lines", "SIoU", "mask", "MTD " + unit + "2", "tang. px", "misfit",
-             "half axes " + unit);
+  Print("{:>4} {:<14} {:<9} {:>5} {:>6}  {:>6} {:>6} {:>9} {:>8} {:>7}  {}\n", "id", "class",
+        "state", "views", "lines", "SIoU", "mask", "MTD " + unit + "2", "tang. px", "misfit",
+        "half axes " + unit);
   for (const ReportedObject& object : report.objects) {
     PrintObject(object);
   }
   const MapFit fit = SummarizeFits(report);
-  fmt::print("\n{} mapped, {} candidates; {} observations and {} lines of mapped objects\n",
-             fit.objects, report.candidates, fit.mean.observations, fit.mean.lines);
-  fmt::print(
-      "mean SIoU {} with hulls, {} with masks; mean MTD {} {}2; mean tangent distance {} px\n",
-      FormatFigure(fit.mean.siou, 4), FormatFigure(fit.mean.siou_mask, 4),
-      FormatFigure(fit.mean.mtd_m2, 6), unit, FormatFigure(fit.mean.tangent_px, 2));
+  Print("\n{} mapped, {} candidates; {} observations and {} lines of mapped objects\n", fit.objects,
+        report.candidates, fit.mean.observations, fit.mean.lines);
+  Print("mean SIoU {} with hulls, {} with masks; mean MTD {} {}2; mean tangent distance {} px\n",
+        FormatFigure(fit.mean.siou, 4), FormatFigure(fit.mean.siou_mask, 4),
+        FormatFigure(fit.mean.mtd_m2, 6), unit, FormatFigure(fit.mean.tangent_px, 2));
   if (alignment == AlignmentKind::kSim3) {
-    fmt::print(
-        "u is the unit of length of the map, which a monocular run does not know in metres\n");
+    Print("u is the unit of length of the map, which a monocular run does not know in metres\n");
   }
 }
 
-// The unit of length of a run is not the metre if its trajectory is to be aligned with a scale.
-// Without summary.json it is the metre.
+// The alignment that summary.json names, kSe3 without this file. If it is kSim3, the unit of length
+// of the run is not the metre.
 AlignmentKind FindAlignment(const std::filesystem::path& run) {
   std::error_code error;
   const std::filesystem::path summary = run / "summary.json";

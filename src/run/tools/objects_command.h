@@ -16,9 +16,9 @@ namespace hullslam {
 struct ObjectsArguments {
   std::filesystem::path run;
   std::filesystem::path groundtruth;  // groundtruth_objects.json; empty: none
-  // How the run is aligned with the ground truth; absent: as summary.json of the run says.
+  // The alignment of the run with the ground truth; absent: that of summary.json.
   std::optional<AlignmentKind> alignment;
-  size_t min_masks = 30;  // a true object with fewer masks does not count as visible
+  size_t min_masks = 30;  // least number of masks with which a true object counts as visible
   bool json = false;
 };
 

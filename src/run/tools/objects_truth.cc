@@ -12,6 +12,7 @@
 #include "hullslam/sequences/tum_sequence.h"
 #include "hullslam/util/error.h"
 #include "results/true_object_file.h"
+#include "run/messages.h"
 #include "run/object_outputs.h"
 
 namespace hullslam {
@@ -33,8 +34,8 @@ std::vector<SeenBox> BoxesOf(const std::vector<InstanceMask>& masks, const Pinho
   return boxes;
 }
 
-// For each true object, the number of masks during the run that show it. Empty if the folder has no
-// sequence with masks.
+// For each true object, the number of masks that show it in the frames of the run. Empty if the
+// folder has no sequence with masks.
 std::vector<size_t> ReadSightings(const std::filesystem::path& folder,
                                   const std::vector<TrueObject>& truths,
                                   const PinholeCamera& camera, const Trajectory& groundtruth,
@@ -113,21 +114,21 @@ void PrintTrueObject(const TruthEvaluation& evaluation, size_t index) {
   const std::string name =
       fmt::format("{:>4} {:<14} {:<12} {:>5}", truth.id, truth.label, truth.shape, masks);
   if (evaluation.comparison.times_mapped[index] == 0) {
-    fmt::print("{}  {}\n", name, truth.is_dynamic ? "not mapped (it moves)" : "not mapped");
+    Print("{}  {}\n", name, truth.is_dynamic ? "not mapped (it moves)" : "not mapped");
     return;
   }
   for (const ObjectError& error : evaluation.comparison.errors) {
     if (error.truth == index) {
-      fmt::print("{}  {:>4}  {:>6.1f} {:>6.1f}  {}  {}\n", name, error.object.value,
-                 1e3 * error.center_m, 100.0 * error.center_share,
-                 DescribeRatios(error.axis_ratios), DescribeRatios(error.extent_ratios));
+      Print("{}  {:>4}  {:>6.1f} {:>6.1f}  {}  {}\n", name, error.object.value,
+            1e3 * error.center_m, 100.0 * error.center_share, DescribeRatios(error.axis_ratios),
+            DescribeRatios(error.extent_ratios));
     }
   }
 }
 
-// The distance at which errors of orientation count (m): the mean distance of the mapped objects
-// from the keyframes that observe them. 1 if no object is mapped. `scale` is the length of one unit
-// of the map in metres.
+// The factor that converts errors of orientation (radians) to errors of position (m): the mean
+// distance of the mapped objects from the keyframes that observe them. 1 if no object is mapped.
+// `scale` is the length of one unit of the map in metres.
 double MeanDistance(const ObjectReport& report, double scale) {
   double sum = 0.0;
   size_t count = 0;
@@ -142,8 +143,9 @@ double MeanDistance(const ObjectReport& report, double scale) {
   return sum > 0.0 ? scale * sum / static_cast<double>(count) : 1.0;
 }
 
-// Maps the world of the run, whose unit of length is `scale` metres, to the true one. Positions
-// alone would not determine the rotation of a run whose camera hardly moved.
+// The transform from the world of the run, whose unit of length is `scale` metres, to the true
+// world. The orientations are used too, because the positions do not determine the rotation of the
+// world if the camera hardly moved.
 Sim3 AlignWorlds(const Trajectory& groundtruth, const Trajectory& run, double scale, double lever) {
   std::vector<Rigid3> truths;
   std::vector<Rigid3> estimates;
@@ -189,17 +191,17 @@ TruthEvaluation EvaluateTruth(const ObjectsArguments& arguments, const ObjectRep
 }
 
 void PrintTruth(const TruthEvaluation& evaluation) {
-  fmt::print(
+  Print(
       "\ntrue objects, after {} alignment of the poses with scale {:.6f} (ATE RMSE of the run "
       "{:.4f} m)\n",
       ToString(evaluation.alignment), evaluation.scale, evaluation.ate_rmse_m);
-  fmt::print("{:>4} {:<14} {:<12} {:>5}  {:>4}  {:>6} {:>6}  {:<17}  {}\n", "id", "class", "shape",
-             "masks", "id", "mm", "% size", "axes, mapped/true", "extents, mapped/true");
+  Print("{:>4} {:<14} {:<12} {:>5}  {:>4}  {:>6} {:>6}  {:<17}  {}\n", "id", "class", "shape",
+        "masks", "id", "mm", "% size", "axes, mapped/true", "extents, mapped/true");
   for (size_t i = 0; i < evaluation.truths.size(); ++i) {
     PrintTrueObject(evaluation, i);
   }
   const TruthCounts& counts = evaluation.counts;
-  fmt::print(
+  Print(
       "{} visible ({}): {} mapped once, {} more than once, {} never; {} mapped objects match no "
       "true "
       "object\n",
@@ -208,7 +210,7 @@ void PrintTruth(const TruthEvaluation& evaluation) {
                                    : fmt::format("in {} masks or more", evaluation.min_masks),
       counts.once, counts.more, counts.never, evaluation.comparison.without_truth.size());
   for (const auto& [shape, errors] : SummarizeByShape(evaluation.truths, evaluation.comparison)) {
-    fmt::print(
+    Print(
         "{:<12} {} mapped: mean centre error {:.1f} % of the size (largest {:.1f} %), mean ratio "
         "of "
         "mapped to true axes {:.3f} (largest error {:.1f} %), mean SIoU {}\n",
@@ -218,10 +220,10 @@ void PrintTruth(const TruthEvaluation& evaluation) {
   }
   if (evaluation.changes) {
     const ChangeComparison& changes = *evaluation.changes;
-    fmt::print("{}{}{}{}{}", DescribeChange("moved", changes.moved),
-               DescribeChange("gone", changes.gone), DescribeChange("new", changes.added),
-               DescribeChange("places left", changes.left),
-               DescribeChange("places taken", changes.taken));
+    Print("{}{}{}{}{}", DescribeChange("moved", changes.moved),
+          DescribeChange("gone", changes.gone), DescribeChange("new", changes.added),
+          DescribeChange("places left", changes.left),
+          DescribeChange("places taken", changes.taken));
   }
 }
 

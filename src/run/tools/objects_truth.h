@@ -18,10 +18,11 @@ struct TruthEvaluation {
   std::vector<size_t> sightings;  // masks of each true object; empty if the sequence has no masks
   GroundtruthComparison comparison;
   TruthCounts counts;
-  std::optional<ChangeComparison> changes;  // of a run that went on with a map of the scene before
+  std::optional<ChangeComparison>
+      changes;  // only of a run that went on with a map from before the rearrangement
   AlignmentKind alignment = AlignmentKind::kSe3;  // kSe3 or kSim3
   double scale = 1.0;                             // metres per unit of the map
-  double ate_rmse_m = 0.0;                        // of the run, aligned by positions
+  double ate_rmse_m = 0.0;                        // ATE of the run, aligned by positions
   size_t min_masks = 0;
 };
 

@@ -32,13 +32,14 @@
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/vocabularies.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
 
-constexpr double kMaxPoseGap = 0.1;  // s, between the two poses that a pose is interpolated from
+constexpr double kMaxPoseGap = 0.1;  // s, between the two poses from which a pose is interpolated
 constexpr double kNear = 0.05;       // m
-constexpr double kFar = 0.1;         // m; a pose that is farther from the truth is false
+constexpr double kFar = 0.1;         // m; a pose with a larger error counts as false
 
 struct RelocaliseArguments {
   std::filesystem::path sequence;
@@ -132,7 +133,7 @@ SystemOptions LoadOptions(const RelocaliseArguments& arguments, bool for_queries
     overrides.insert(overrides.end(), arguments.query_overrides.begin(),
                      arguments.query_overrides.end());
   }
-  // The overrides of queries contain those of the map, so all warnings are printed once.
+  // Warnings are printed only for the queries: their overrides contain those of the map.
   SystemOptions options =
       for_queries ? LoadSettings(settings, overrides) : ReadSettings(settings, overrides);
   options.seed = arguments.seed;
@@ -208,7 +209,7 @@ ImageInput LoadFrame(const RelocaliseInputs& inputs, const PinholeCamera& camera
   return image;
 }
 
-// The map of the first frames, and how it lies in the world of the ground truth.
+// The map of the first frames, and the transform between its world and that of the ground truth.
 struct MadeMap {
   std::shared_ptr<const Map> map;
   Rigid3 truth_from_map;
@@ -278,12 +279,6 @@ void PrintQuery(size_t frame, const QueryResult& result) {
   } else {
     Print("frame {}: not found, {:.1f} ms\n", frame, result.milliseconds);
   }
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // A line about some of the `all` queries. The shares are those of all queries.

@@ -92,7 +92,7 @@ std::vector<fs::path> ImagesOf(const fs::path& folder) {
   return images;
 }
 
-// The images in the order of the arguments; those of a folder sorted by name.
+// The images in the order of the arguments. The images of a folder are sorted by name.
 std::vector<fs::path> ListImages(const std::vector<fs::path>& arguments) {
   std::vector<fs::path> images;
   for (const fs::path& argument : arguments) {
@@ -117,7 +117,7 @@ std::vector<Descriptor> DescriptorsOf(const fs::path& path, FeatureExtractor& ex
   return extractor.Extract(image).descriptors;
 }
 
-// The descriptors of each image; of fewer images after an interrupt.
+// The descriptors of each image. After an interrupt the last images are missing.
 std::vector<std::vector<Descriptor>> ExtractAll(const std::vector<fs::path>& paths,
                                                 const TrainVocabularyArguments& arguments,
                                                 TaskRunner& runner) {

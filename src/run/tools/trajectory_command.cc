@@ -8,9 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "files/plausible.h"
 #include "hullslam/eval/rpe.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/util/error.h"
+#include "run/command_line.h"
+#include "run/messages.h"
 
 namespace hullslam {
 namespace {
@@ -69,12 +72,12 @@ void PrintJson(const TrajectoryArguments& arguments, const Evaluation& evaluatio
       {"rpe", ToJson(evaluation.rpe)},
       {"scale_drift", ate.scale_drift ? nlohmann::ordered_json(*ate.scale_drift)
                                       : nlohmann::ordered_json(nullptr)}};
-  fmt::print("{}\n", json.dump(2));
+  Print("{}\n", json.dump(2));
 }
 
 void PrintErrors(const char* name, const ErrorStatistics& errors, const char* unit) {
-  fmt::print("{:<12} rmse {:.6f}  mean {:.6f}  median {:.6f}  max {:.6f}  {}\n", name, errors.rmse,
-             errors.mean, errors.median, errors.max, unit);
+  Print("{:<12} rmse {:.6f}  mean {:.6f}  median {:.6f}  max {:.6f}  {}\n", name, errors.rmse,
+        errors.mean, errors.median, errors.max, unit);
 }
 
 void PrintText(const TrajectoryArguments& arguments, const Evaluation& evaluation) {
@@ -84,18 +87,18 @@ void PrintText(const TrajectoryArguments& arguments, const Evaluation& evaluatio
     PrintErrors("RPE 1 s", evaluation.rpe.translation, "m");
     PrintErrors("RPE 1 s", evaluation.rpe.rotation, "deg");
   } else {
-    fmt::print("{:<12} none: {}\n", "RPE 1 s", evaluation.rpe.failure);
+    Print("{:<12} none: {}\n", "RPE 1 s", evaluation.rpe.failure);
   }
-  fmt::print("{:<12} {} of the estimate, {} of the ground truth\n", "poses", ate.estimate_poses,
-             ate.reference_poses);
-  fmt::print("{:<12} {} ({}'s rule within {} s), coverage {:.1f} % of the estimate, {:.1f} s\n",
-             "pairs", ate.pairs, ToString(arguments.ate.pairing), evaluation.max_difference,
-             100.0 * ate.coverage, ate.paired_span);
-  fmt::print("{:<12} {}, scale {:.6f}\n", "alignment", ToString(arguments.ate.alignment),
-             ate.reference_from_estimate.scale);
+  Print("{:<12} {} of the estimate, {} of the ground truth\n", "poses", ate.estimate_poses,
+        ate.reference_poses);
+  Print("{:<12} {} ({}'s rule within {} s), coverage {:.1f} % of the estimate, {:.1f} s\n", "pairs",
+        ate.pairs, ToString(arguments.ate.pairing), evaluation.max_difference, 100.0 * ate.coverage,
+        ate.paired_span);
+  Print("{:<12} {}, scale {:.6f}\n", "alignment", ToString(arguments.ate.alignment),
+        ate.reference_from_estimate.scale);
   if (ate.scale_drift) {
-    fmt::print("{:<12} {:.2f} % from the first to the last tenth of the pairs\n", "scale drift",
-               100.0 * *ate.scale_drift);
+    Print("{:<12} {:.2f} % from the first to the last tenth of the pairs\n", "scale drift",
+          100.0 * *ate.scale_drift);
   }
 }
 
@@ -118,10 +121,10 @@ CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments) {
       ->add_option("--tool", arguments.ate.pairing,
                    "tool whose rule pairs the poses: tum (default) or evo")
       ->transform(CLI::CheckedTransformer(tools).description(""));
-  command
-      ->add_option("--max-diff", arguments.ate.max_difference,
-                   "largest time between two paired poses, s (default: 0.02 for tum, 0.01 for evo)")
-      ->check(CLI::PositiveNumber);
+  auto* const max_difference = command->add_option(
+      "--max-diff", arguments.ate.max_difference,
+      "largest time between two paired poses, s (default: 0.02 for tum, 0.01 for evo)");
+  ExpectNumber(*max_difference, 1e-9, kMostSeconds);
   command->add_flag("--json", arguments.json, "print the report as JSON");
   return command;
 }

@@ -67,7 +67,8 @@ TEST(HandMotion, IsSmallSmoothAndSeeded) {
   EXPECT_GT(difference, 0.1);
 }
 
-// Walks 1 m in 2 s, turns by 90 degrees in 3 s, and then rests for a second more than it needs.
+// A path that walks 1 m in 2 s, turns by 90 degrees in 3 s, and takes 2.5 s for the last half
+// metre, which is more time than it needs.
 WaypointPath TestWalk() {
   return {{{.eye = {0.0, 0.0, 1.4}, .yaw = 0.0, .pitch = 0.0},
            {.eye = {1.0, 0.0, 1.4}, .yaw = 0.0, .pitch = -10.0},
@@ -96,7 +97,7 @@ TEST(WaypointPath, PassesItsWaypointsInTimeAndRestsAtTheEnds) {
   expect(100.0, {1.0, 1.0, 1.3}, 90.0, 0.0);
 }
 
-TEST(WaypointPath, HasNoJumpsInPlaceOrVelocity) {
+TEST(WaypointPath, HasNoJumpsInPositionOrVelocity) {
   const WaypointPath walk = TestWalk();
   constexpr double kStep = 1e-4;
   const auto velocity = [&](double time) -> Vector3d {

@@ -32,7 +32,7 @@ TEST(Catalogue, EveryModelStandsOnItsBase) {
   EXPECT_THROW(MakeModel({.class_name = "person"}, palette, builder), CheckError);
 }
 
-TEST(Catalogue, BearsAndPlantsHaveTheHeightThatIsAskedFor) {
+TEST(Catalogue, BearsAndPlantsHaveTheGivenHeight) {
   SceneBuilder builder(1);
   const Palette palette = builder.AddBarePalette();
   for (const char* name : {"teddy bear", "potted plant"}) {

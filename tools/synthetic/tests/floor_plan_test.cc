@@ -40,7 +40,7 @@ TEST(FloorPlan, ADoorwayIsTheOnlyWayFromRoomToRoom) {
   EXPECT_NEAR(Distance(caster, eye, Vector3d::UnitY()), 1.5, 1e-5);
   EXPECT_NEAR(Distance(caster, eye, Vector3d::UnitZ()), kChamberHeight - 1.4, 1e-5);
   EXPECT_NEAR(Distance(caster, eye, -Vector3d::UnitZ()), 1.4, 1e-5);
-  // Beside the doorway, and above it.
+  // Rays that pass beside the doorway or above it hit the wall.
   EXPECT_NEAR(Distance(caster, {-2.1, 1.05, 1.4}, Vector3d::UnitX()), 2.0, 1e-5);
   EXPECT_NEAR(Distance(caster, {-2.1, -0.05, 1.4}, Vector3d::UnitX()), 2.0, 1e-5);
   EXPECT_NEAR(Distance(caster, {-2.1, 0.5, 2.15}, Vector3d::UnitX()), 2.0, 1e-5);

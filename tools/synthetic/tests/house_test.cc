@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 constexpr double kFrame = 1.0 / 30.0;  // seconds
 
-// Distance plus angle, with 1 rad like 1 m.
+// The distance of two poses (m) plus the angle between them (rad).
 double Difference(const Rigid3& a, const Rigid3& b) {
   return (a.translation - b.translation).norm() + AngularDistance(a.rotation, b.rotation);
 }

@@ -57,7 +57,7 @@ void ExpectSamePose(const Rigid3& a, const Rigid3& b) {
   EXPECT_EQ(a.rotation.coeffs(), b.rotation.coeffs());
 }
 
-// What must hold for every rearranged scene.
+// Checks the rules that hold for every rearranged scene.
 void ExpectLaws(const Scene& before, const Scene& after, size_t least) {
   std::map<ObjectStatus, size_t> counts;
   std::set<int> ids;
@@ -98,14 +98,14 @@ void ExpectLaws(const Scene& before, const Scene& after, size_t least) {
   EXPECT_EQ(before.textures.size(), after.textures.size());
 }
 
-TEST(Rearrangement, KeepsItsLawsInDeskAndRoom) {
+TEST(Rearrangement, KeepsItsRulesInDeskAndRoom) {
   for (const SceneKind kind : {SceneKind::kDesk, SceneKind::kRoom}) {
     SCOPED_TRACE(SceneName(kind));
     ExpectLaws(BuildScene(kind, 100, 1), BuildScene(kind, 100, 1, 1), 2);
   }
 }
 
-TEST(Rearrangement, KeepsItsLawsInTheHouseAndStaysOutOfTheWay) {
+TEST(Rearrangement, KeepsItsRulesInTheHouseAndStaysOutOfTheWay) {
   const int frames = DefaultFrames(SceneKind::kHouse);
   const Scene before = BuildScene(SceneKind::kHouse, frames, 0);
   const Scene after = BuildScene(SceneKind::kHouse, frames, 0, 1);
@@ -121,19 +121,19 @@ TEST(Rearrangement, KeepsItsLawsInTheHouseAndStaysOutOfTheWay) {
 }
 
 // The bases of all objects, to compare arrangements.
-std::vector<double> Places(const Scene& scene) {
-  std::vector<double> places;
+std::vector<double> Bases(const Scene& scene) {
+  std::vector<double> bases;
   for (const SceneObject& object : scene.objects) {
     const Vector3d& at = object.world_from_object.translation;
-    places.insert(places.end(), {static_cast<double>(object.id), at.x(), at.y(), at.z()});
+    bases.insert(bases.end(), {static_cast<double>(object.id), at.x(), at.y(), at.z()});
   }
-  return places;
+  return bases;
 }
 
 TEST(Rearrangement, DependsOnItsSeedAndNotOnTheNumberOfFrames) {
-  const std::vector<double> places = Places(BuildScene(SceneKind::kDesk, 300, 1, 1));
-  EXPECT_EQ(Places(BuildScene(SceneKind::kDesk, 10, 1, 1)), places);
-  EXPECT_NE(Places(BuildScene(SceneKind::kDesk, 300, 1, 2)), places);
+  const std::vector<double> bases = Bases(BuildScene(SceneKind::kDesk, 300, 1, 1));
+  EXPECT_EQ(Bases(BuildScene(SceneKind::kDesk, 10, 1, 1)), bases);
+  EXPECT_NE(Bases(BuildScene(SceneKind::kDesk, 300, 1, 2)), bases);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ using Eigen::Vector4d;
 
 const Vector3d kEye(-1.0, -1.4, 1.3);
 
-// Ellipsoids that float in a bare room, seen from one place.
+// Ellipsoids that float in a bare room, with a camera that does not move.
 Scene EllipsoidScene() {
   SceneBuilder builder(1);
   const Palette palette = builder.AddBarePalette();
@@ -43,12 +43,6 @@ Scene EllipsoidScene() {
   return builder.Finish();
 }
 
-Matrix3d Calibration(const PinholeCamera& camera) {
-  Matrix3d k;
-  k << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0;
-  return k;
-}
-
 // C* = P Q* P^T of an ellipsoid with the true pose and half extents.
 Matrix3d DualConic(const SceneObject& object, const Rigid3& cam_from_world,
                    const PinholeCamera& camera) {
@@ -57,7 +51,7 @@ Matrix3d DualConic(const SceneObject& object, const Rigid3& cam_from_world,
   Vector4d shape;
   shape << object.half_extents.cwiseAbs2(), -1.0;
   const Matrix4d quadric = pose * shape.asDiagonal() * pose.transpose();
-  const Eigen::Matrix<double, 3, 4> projection = Calibration(camera) * cam_from_world.ToMatrix();
+  const Eigen::Matrix<double, 3, 4> projection = camera.Matrix() * cam_from_world.ToMatrix();
   return projection * quadric * projection.transpose();
 }
 
@@ -107,8 +101,8 @@ TEST(Renderer, DepthIsTheDepthOfTheEllipsoidOrTheWall) {
       }
       const SceneObject& hit = scene.objects[static_cast<size_t>(object)];
       const Vector3d local = Inverse(hit.world_from_object) * point;
-      // At grazing angles 4e-5 m across the surface are more along the ray, but the point is still
-      // on the surface.
+      // The triangles are up to 4e-5 m inside the surface. At grazing angles this is a larger error
+      // along the ray, but the point is still near the surface.
       EXPECT_NEAR(Implicit(hit.parts[0].shape, local), 0.0, 2e-3);
       ++on_objects;
     }
@@ -117,8 +111,8 @@ TEST(Renderer, DepthIsTheDepthOfTheEllipsoidOrTheWall) {
 }
 
 TEST(Renderer, AKnownPointIsSeenWhereTheTruePosePredictsIt) {
-  // The centre of each ellipsoid is projected into its own mask. The depth there is smaller by
-  // about the extent along the ray.
+  // The centre of each ellipsoid is projected into its own mask. The depth at this pixel is the
+  // depth of the centre minus the extent along the ray.
   const Scene scene = EllipsoidScene();
   const PinholeCamera camera = SyntheticCamera();
   const Renderer renderer(scene, camera);
@@ -144,8 +138,8 @@ TEST(Renderer, AKnownPointIsSeenWhereTheTruePosePredictsIt) {
   }
 }
 
-// The camera is a different one for each row: the surface that a row shows is where the pose at the
-// time of this row sees it.
+// Each row has its own camera pose. A row must be equal to the same row of an image that a global
+// shutter takes at the time of this row.
 TEST(Renderer, ARollingShutterExposesRowAfterRow) {
   constexpr double kReadout = 0.5;
   constexpr double kTime = 1.0;

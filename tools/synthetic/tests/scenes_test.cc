@@ -32,7 +32,7 @@ TEST(SceneKind, NamesAreParsedAndPrinted) {
   EXPECT_THROW(ParseSceneKind(""), InputError);
 }
 
-// The largest motion, in px of a 640x480 image, of anything visible at `time` until the next frame.
+// The largest motion of a visible point from `time` to the next frame, in px of a 640x480 image.
 double LargestMotion(const Scene& scene, const RenderedFrame& frame, double time) {
   const PinholeCamera small = SmallCamera();
   const Rigid3 world_from_cam = scene.world_from_cam(time);
@@ -103,7 +103,7 @@ TEST(Scenes, InRotationTheCameraOnlyTurns) {
 }
 
 // Everything that the camera sees is within 5 cm of one plane.
-TEST(Scenes, OfWallTheCameraSeesNothingElse) {
+TEST(Scenes, InWallTheCameraSeesOnlyTheWall) {
   const Scene scene = BuildScene(SceneKind::kWall, 300, 1);
   const Renderer renderer(scene, SmallCamera());
   for (double time = 0.0; time < 10.0; time += 1.3) {
@@ -127,7 +127,7 @@ TEST(VisitSeed, IsTheSeedOfTheSceneUnlessItIsRearranged) {
   EXPECT_NE(VisitSeed(7, 0), VisitSeed(8, 0));
 }
 
-TEST(Scenes, OnlySomeCanBeRearranged) {
+TEST(Scenes, OnlyDeskRoomAndHouseCanBeRearranged) {
   for (const SceneKind kind : {SceneKind::kLowTexture, SceneKind::kDynamic, SceneKind::kTwins}) {
     EXPECT_THROW(BuildScene(kind, 10, 1, 1), InputError) << SceneName(kind);
   }

@@ -146,7 +146,7 @@ TEST_F(SequenceWriterTest, MasksAreValidPolygonsOfListedClasses) {
   EXPECT_GE(instances, 10);
 }
 
-TEST_F(SequenceWriterTest, ARearrangedSceneTellsWhatHappenedToItsObjects) {
+TEST_F(SequenceWriterTest, TheFileOfARearrangedSceneNamesTheChangesOfObjects) {
   const fs::path before = Write("before", {.frames = 1, .seed = 3});
   const fs::path after = Write("after", {.frames = 1, .seed = 3, .rearranged = 1});
   const TrueScene original = ReadTrueScene(before / "groundtruth_objects.json");
@@ -170,8 +170,8 @@ TEST_F(SequenceWriterTest, ARearrangedSceneTellsWhatHappenedToItsObjects) {
     if (object.status == TrueObjectStatus::kNew) {
       continue;
     }
-    const Rigid3 place = object.former_world_from_object.value_or(object.world_from_object);
-    EXPECT_EQ(place.translation, former.at(object.id).world_from_object.translation);
+    const Rigid3 pose = object.former_world_from_object.value_or(object.world_from_object);
+    EXPECT_EQ(pose.translation, former.at(object.id).world_from_object.translation);
     EXPECT_EQ(object.label, former.at(object.id).label);
   }
   EXPECT_EQ(counts[TrueObjectStatus::kMoved], 3);
@@ -228,18 +228,19 @@ TEST_F(SequenceWriterTest, ForeignFilesAreNeverReplaced) {
   EXPECT_THROW(WriteSequence(out, {.frames = 1, .force = true}, GoOn), InputError);
   EXPECT_EQ(Read(out / "thesis.txt"), "precious");
   fs::remove(out / "thesis.txt");
-  std::ofstream(out / "groundtruth_objects.json") << "{broken";  // no mark of the generator
+  std::ofstream(out / "groundtruth_objects.json")
+      << "{broken";  // the file does not say that make_synthetic wrote it
   EXPECT_THROW(WriteSequence(out, {.frames = 1, .force = true}, GoOn), InputError);
   EXPECT_TRUE(fs::exists(out / "rgb.txt"));
 }
 
-TEST_F(SequenceWriterTest, AFileInPlaceOfTheFolderIsAnError) {
+TEST_F(SequenceWriterTest, AFileWithTheNameOfTheFolderIsAnError) {
   std::ofstream(root_ / "file") << "x";
   EXPECT_THROW(WriteSequence(root_ / "file", {.frames = 1, .force = true}, GoOn), InputError);
   EXPECT_THROW(WriteSequence(root_ / "file" / "below", {.frames = 1}, GoOn), InputError);
 }
 
-TEST_F(SequenceWriterTest, WhatAKilledProcessLeavesIsRemoved) {
+TEST_F(SequenceWriterTest, FilesOfAKilledProcessAreRemoved) {
   Write("out", {.frames = 1});
   const pid_t process = ::fork();
   if (process == 0) {

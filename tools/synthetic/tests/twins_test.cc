@@ -15,14 +15,14 @@
 namespace hullslam::synthetic {
 namespace {
 
-constexpr double kFrame = 1.0 / 30.0;  // seconds
+constexpr double kFrameTime = 1.0 / 30.0;  // seconds
 
-// The time in the second room at which the camera stands as at `time` in the first one.
+// The time at which the camera has the same pose in the second room as at `time` in the first one.
 double TwinTime(const WaypointPath& path, double time) {
   const Rigid3 twin = Shift(kTwinDistance, 0.0, 0.0) * path.WorldFromCam(time);
   double best = 0.0;
   double least = 10.0;
-  for (double other = 0.5 * path.duration(); other < path.duration(); other += kFrame) {
+  for (double other = 0.5 * path.duration(); other < path.duration(); other += kFrameTime) {
     const Rigid3 motion = Inverse(twin) * path.WorldFromCam(other);
     const double difference = motion.translation.norm() + LogSo3(motion.rotation).norm();
     if (difference < least) {
@@ -74,7 +74,7 @@ TEST(Twins, RoomsLookAlikeWithoutTheirObjectsAndDifferInThem) {
   const Renderer renderer(scene, small);
   const cv::Mat a = renderer.Render(0.0).colour;
   const cv::Mat b = renderer.Render(1.0).colour;
-  // The lamps of the other rooms are at other distances.
+  // The images differ a little, because the lamps of the other rooms are at other distances.
   EXPECT_LT(cv::norm(a, b, cv::NORM_L1) / (3.0 * static_cast<double>(a.total())), 16.0);
 }
 

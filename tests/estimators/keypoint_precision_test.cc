@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "optim/keypoint_precision.h"
+#include "estimators/keypoint_precision.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ TEST(MeasureKeypointPrecision, IsTheInverseOfTheStandardDeviationThatTheErrorsSh
   EXPECT_NEAR(MeasureKeypointPrecision(ErrorsWithMedian(kMedianOfChi2 / 9.0), 0, 1.0), 3.0, 1e-3);
 }
 
-TEST(MeasureKeypointPrecision, ErrorsInUnitsOfAPrecisionGiveTheSame) {
+TEST(MeasureKeypointPrecision, TheUnitOfTheErrorsDoesNotMatter) {
   // The same errors in units of half the standard deviation are twice as large.
   EXPECT_NEAR(MeasureKeypointPrecision(ErrorsWithMedian(kMedianOfChi2), 0, 2.0), 2.0, 1e-3);
 }

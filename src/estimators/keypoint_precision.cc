@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "optim/keypoint_precision.h"
+#include "estimators/keypoint_precision.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +10,10 @@
 namespace hullslam::internal {
 namespace {
 
-constexpr double kMedianChi2 = 1.386;  // of two degrees of freedom: 2 ln 2
-constexpr double kMaxFactor = 2.0;     // of OutlierBound
+constexpr double kMedianChi2 = 1.386;  // median for two degrees of freedom: 2 ln 2
+constexpr double kMaxFactor = 2.0;     // largest factor on OutlierBound
 constexpr double kMaxPrecision = 5.0;
-constexpr size_t kMinErrors = 100;  // for a median
+constexpr size_t kMinErrors = 100;  // least number of errors for a reliable median
 
 }  // namespace
 

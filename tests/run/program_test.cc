@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/program.h"
+
+#include <ceres/ceres.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace hullslam {
+namespace {
+
+// What Ceres reports of a cost that is no number, on several lines that name its source files.
+struct NoNumber {
+  template <typename Scalar>
+  bool operator()(const Scalar* x, Scalar* residual) const {
+    residual[0] = x[0] * std::numeric_limits<double>::quiet_NaN();
+    return true;
+  }
+};
+
+TEST(PrepareStreams, KeepsTheLogOfCeresOffStderr) {
+  PrepareStreams();
+  double x = 1.0;
+  ceres::Problem problem;
+  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<NoNumber, 1, 1>(new NoNumber()), nullptr,
+                           &x);
+  ceres::Solver::Options options;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ::testing::internal::CaptureStderr();
+  ceres::Solve(options, &problem, &summary);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(summary.termination_type, ceres::FAILURE);
+}
+
+TEST(PrintFailure, IsOneLineOfPrintableCharacters) {
+  ::testing::internal::CaptureStderr();
+  PrintFailure("no\x1b[2J\nforged: a line");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "error: no?[2J?forged: a line\n");
+}
+
+}  // namespace
+}  // namespace hullslam
