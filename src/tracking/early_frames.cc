@@ -61,7 +61,7 @@ std::optional<TrackedFrame> LocaliseFrame(const Map& map, const TrackingContext&
   if (!found) {
     return std::nullopt;
   }
-  CorrectShutter(frame, map, context, before, found->tracking);
+  CorrectShutter(frame, frame, map, context, before, found->tracking);
   const PoseEstimate& estimate = found->tracking.estimate;
   before.frame = frame;
   before.cam_from_world = estimate.cam_from_world;

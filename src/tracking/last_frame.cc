@@ -25,9 +25,14 @@ void ResolveAll(const Map& map, std::vector<LandmarkId>& landmarks) {
 }  // namespace
 
 LastFrame FollowMap(const Map& map, LastFrame last) {
-  if (last.pose && last.motion) {
-    last.motion->cam_from_last_cam.translation *=
-        map.ScaleOf(last.pose->reference) / last.pose->reference_scale;
+  if (last.pose) {
+    const double change = map.ScaleOf(last.pose->reference) / last.pose->reference_scale;
+    if (last.motion) {
+      last.motion->cam_from_last_cam.translation *= change;
+    }
+    if (last.velocity) {
+      last.velocity->velocity.linear *= change;
+    }
   }
   const std::optional<KeyframeId> keyframe = map.KeyframeOfFrame(last.frame->id);
   if (keyframe && map.keyframes().Contains(*keyframe)) {

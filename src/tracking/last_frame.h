@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "frame/rolling_shutter.h"
 #include "hullslam/frame/frame.h"
 #include "hullslam/map/map.h"
 #include "hullslam/map/relative_pose.h"
@@ -17,6 +18,12 @@ struct CameraMotion {
   double duration = 0.0;  // s
 };
 
+// The velocity of the camera at a time (s).
+struct TimedVelocity {
+  PointVelocity velocity;
+  double timestamp = 0.0;
+};
+
 // The frame that was tracked last, as tracking remembers it.
 struct LastFrame {
   std::shared_ptr<const Frame> frame;
@@ -27,6 +34,8 @@ struct LastFrame {
   KeyframeId reference;
   Rigid3 cam_from_world;               // in the map that FollowMap was given
   std::optional<CameraMotion> motion;  // to this frame; absent after lost frames
+  // The velocity that last corrected a frame of a rolling shutter (CorrectShutter).
+  std::optional<TimedVelocity> velocity;
 };
 
 // Brings the last frame up to date with the current map: its pose, the scale of its motion, its

@@ -193,6 +193,27 @@ void AdjustMap(const Sensor& sensor, InitialMap& initial) {
   initial.points = std::move(kept);
 }
 
+int CountObservations(const InitialMap& map) {
+  int count = 0;
+  for (const InitialMap::Point& point : map.points) {
+    count += static_cast<int>(point.observations.size());
+  }
+  return count;
+}
+
+// Corrects the views of an adjusted map and adjusts it again. If the correction makes it worse, the
+// map stays as it is.
+void CorrectShutterOf(const Sensor& sensor, InitialMap& map) {
+  InitialMap corrected = map;
+  if (!CorrectViews(sensor, corrected)) {
+    return;
+  }
+  AdjustMap(sensor, corrected);
+  if (IsCorrectionKept(CountObservations(corrected), CountObservations(map))) {
+    map = std::move(corrected);
+  }
+}
+
 // The median angle between the rays from the first and the last view to the points, degrees.
 double MedianParallax(const InitialMap& map) {
   const Eigen::Vector3d last = Inverse(map.views.back().cam_from_world).translation;
@@ -282,10 +303,7 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
     }
   }
   AdjustMap(sensor_, map);
-  if (sensor_.readout_time > 0.0) {  // the velocities of the views are not known before
-    CorrectViews(sensor_, map);
-    AdjustMap(sensor_, map);
-  }
+  CorrectShutterOf(sensor_, map);  // the velocities of the views are not known before
   std::erase_if(map.points, [](const auto& point) { return !(point.position.z() > 0.0); });
   if (map.points.size() < kMinPoints) {
     return fail(InitialisationFailure::kTooFewPoints);

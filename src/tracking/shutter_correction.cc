@@ -2,15 +2,96 @@
 #include "tracking/shutter_correction.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "frame/rolling_shutter.h"
 #include "tracking/seen_depths.h"
+#include "util/median.h"
 
 namespace hullslam {
 namespace {
+
+// A velocity that is more than twice too large does more harm than none: the frame as read is then
+// nearer to the truth than the corrected one. So the time between two images must be at least half
+// of the usual interval.
+constexpr double kShortestStep = 0.5;  // of the usual interval
+// The camera cannot read an image before it has read the last one. This much of the usual interval
+// is allowed for small errors of stamps.
+constexpr double kStampError = 0.1;
+// Over a long time the mean velocity differs from the current one: a hand that shakes three times a
+// second goes the other way after a sixth of a second, which is five intervals of a camera with 30
+// frames per second.
+constexpr double kLongestStep = 4.0;  // usual intervals
+// Largest median motion of points between two images, as a share of the smaller side of the image.
+// With more, less than half of an image shows what the image before shows, so frames would not have
+// been tracked one after the other.
+constexpr double kMostMotion = 0.5;
+// Largest median change of the motion from one image to the next, px: the motion model searches
+// landmarks at most this far from where they are expected at the velocity until now. A larger
+// change is that of missing or repeated images.
+constexpr double kMostChange = 30.0;
+// A correction is kept if it keeps this share of the measurements that agree. The bound of outliers
+// is the 95 % quantile, so 5 % of the measurements may change sides by chance. A wrong velocity
+// costs more than twice as many.
+constexpr double kMinKept = 0.9;
+
+// Whether images may be `duration` (s) apart, if they are so many frames apart.
+bool IsPlausible(const Sensor& sensor, double duration, uint32_t frames) {
+  const double interval = 1.0 / sensor.frames_per_second;
+  const double shortest =
+      std::max(kShortestStep * interval, std::abs(sensor.readout_time) - kStampError * interval);
+  return duration >= frames * shortest && duration <= frames * kLongestStep * interval;
+}
+
+// The median speed of the keypoints in the image, px/s.
+double ImageSpeed(const FrameFeatures& features, const PinholeCamera& camera,
+                  const PointVelocity& velocity, std::span<const double> inverse_depths) {
+  std::vector<double> speeds;
+  for (size_t i = 0; i < features.size(); ++i) {
+    const Eigen::Vector2d pixel = features.keypoints[i].undistorted.cast<double>();
+    speeds.push_back(ImageVelocity(camera, velocity, pixel, inverse_depths[i]).norm());
+  }
+  return speeds.empty() ? 0.0 : Median(std::move(speeds));
+}
+
+// Whether the image moves no faster with this velocity than images of a camera do.
+bool IsPlausible(const Sensor& sensor, const FrameFeatures& features, const PointVelocity& velocity,
+                 std::span<const double> inverse_depths) {
+  const double most = kMostMotion * std::min(sensor.camera.width, sensor.camera.height);
+  return ImageSpeed(features, sensor.camera, velocity, inverse_depths) <=
+         most * sensor.frames_per_second;
+}
+
+// Whether the velocity that corrected the last frames is still that of the camera.
+bool IsKnown(const Sensor& sensor, const LastFrame& last, double timestamp) {
+  return last.velocity &&
+         timestamp - last.velocity->timestamp <= kLongestStep / sensor.frames_per_second;
+}
+
+// Whether a camera with the one velocity may have the other one in the next frame.
+bool IsContinuous(const Sensor& sensor, const FrameFeatures& features, const PointVelocity& before,
+                  const PointVelocity& velocity, std::span<const double> inverse_depths) {
+  const PointVelocity change{velocity.angular - before.angular, velocity.linear - before.linear};
+  return ImageSpeed(features, sensor.camera, change, inverse_depths) <=
+         kMostChange * sensor.frames_per_second;
+}
+
+// The frame with a global shutter, if the camera moved like this while it took so many frames. Null
+// if no camera moves like this.
+std::shared_ptr<const Frame> Correct(const Frame& frame, const Sensor& sensor,
+                                     const CameraMotion& motion, uint32_t frames,
+                                     std::span<const double> inverse_depths) {
+  if (!IsPlausible(sensor, motion.duration, frames)) {
+    return nullptr;
+  }
+  const PointVelocity velocity = MeanVelocity(motion.cam_from_last_cam, motion.duration);
+  return IsPlausible(sensor, frame.features, velocity, inverse_depths)
+             ? WithGlobalShutter(frame, sensor, velocity, inverse_depths)
+             : nullptr;
+}
 
 // The depths in an image that shows these landmarks, one per keypoint.
 SeenDepths DepthsOf(const FrameFeatures& features, std::span<const LandmarkId> landmarks,
@@ -25,18 +106,30 @@ SeenDepths DepthsOf(const FrameFeatures& features, std::span<const LandmarkId> l
   return seen;
 }
 
+// Whether a corrected frame keeps the inliers that it had as it was tracked or, because these were
+// chosen for the frame as tracked, those that the frame as read keeps.
+bool KeepsInliers(const LocalTracking& corrected, const LocalTracking& tracked,
+                  const Frame& as_read, const Map& map, const TrackingContext& context) {
+  const int inliers = corrected.estimate.EffectiveInliers();
+  if (IsCorrectionKept(inliers, tracked.estimate.EffectiveInliers())) {
+    return true;
+  }
+  LocalTracking uncorrected = tracked;
+  RefineTracking(as_read, map, context, uncorrected);
+  return IsCorrectionKept(inliers, uncorrected.estimate.EffectiveInliers());
+}
+
 }  // namespace
 
 std::shared_ptr<const Frame> PredictGlobalShutter(std::shared_ptr<const Frame> frame,
                                                   const Map& map, const Sensor& sensor,
                                                   const LastFrame& last) {
-  if (sensor.readout_time == 0.0 || !PredictMotion(last, frame->timestamp)) {
+  if (sensor.readout_time == 0.0 || !IsKnown(sensor, last, frame->timestamp)) {
     return frame;
   }
   const SeenDepths seen =
       DepthsOf(last.frame->features, last.landmarks, last.cam_from_world, map, sensor);
-  return WithGlobalShutter(*frame, sensor,
-                           MeanVelocity(last.motion->cam_from_last_cam, last.motion->duration),
+  return WithGlobalShutter(*frame, sensor, last.velocity->velocity,
                            seen.InverseDepths(frame->features));
 }
 
@@ -57,24 +150,43 @@ std::shared_ptr<const Frame> MeasureGlobalShutter(std::shared_ptr<const Frame> f
       inverse_depths[i] = depth > 0.0 ? 1.0 / depth : inverse_depths[i];
     }
   }
-  return WithGlobalShutter(
-      *frame, sensor, MeanVelocity(motion->cam_from_last_cam, motion->duration), inverse_depths);
+  if (IsKnown(sensor, last, frame->timestamp) &&
+      !IsContinuous(sensor, frame->features, last.velocity->velocity,
+                    MeanVelocity(motion->cam_from_last_cam, motion->duration), inverse_depths)) {
+    return frame;
+  }
+  std::shared_ptr<const Frame> corrected = Correct(*frame, sensor, *motion, 1, inverse_depths);
+  return corrected ? corrected : frame;
 }
 
-std::shared_ptr<const Frame> CorrectShutter(const std::shared_ptr<const Frame>& as_read,
-                                            const Map& map, const TrackingContext& context,
-                                            const LastFrame& last, LocalTracking& tracking) {
+bool IsCorrectionKept(int agreeing, int before) { return agreeing >= kMinKept * before; }
+
+CorrectedFrame CorrectShutter(const std::shared_ptr<const Frame>& as_read,
+                              const std::shared_ptr<const Frame>& tracked, const Map& map,
+                              const TrackingContext& context, const LastFrame& last,
+                              LocalTracking& tracking) {
   std::shared_ptr<const Frame> corrected =
       MeasureGlobalShutter(as_read, map, context.sensor, last, tracking.estimate);
-  if (corrected != as_read) {
-    RefineTracking(*corrected, map, context, tracking);
+  if (corrected == as_read) {
+    return {tracked, last.velocity};
   }
-  return corrected;
+  LocalTracking refined = tracking;
+  RefineTracking(*corrected, map, context, refined);
+  if (refined.estimate.EffectiveInliers() < context.options.min_inliers ||
+      !KeepsInliers(refined, tracking, *as_read, map, context)) {
+    return {tracked, last.velocity};
+  }
+  tracking = std::move(refined);
+  const std::optional<CameraMotion> motion =
+      MotionSince(last, *as_read, tracking.estimate.cam_from_world);
+  return {
+      std::move(corrected),
+      TimedVelocity{MeanVelocity(motion->cam_from_last_cam, motion->duration), as_read->timestamp}};
 }
 
-void CorrectViews(const Sensor& sensor, InitialMap& map) {
+bool CorrectViews(const Sensor& sensor, InitialMap& map) {
   if (sensor.readout_time == 0.0) {
-    return;
+    return false;
   }
   std::vector<SeenDepths> seen(map.views.size(), SeenDepths(sensor.bounds));
   for (const InitialMap::Point& point : map.points) {
@@ -89,12 +201,17 @@ void CorrectViews(const Sensor& sensor, InitialMap& map) {
   for (size_t i = 0; i < as_read.size(); ++i) {
     const InitialMap::View& before = as_read[i == 0 ? 0 : i - 1];
     const InitialMap::View& after = as_read[std::min(i + 1, as_read.size() - 1)];
+    const CameraMotion motion{after.cam_from_world * Inverse(before.cam_from_world),
+                              after.frame->timestamp - before.frame->timestamp};
     map.views[i].frame =
-        WithGlobalShutter(*as_read[i].frame, sensor,
-                          MeanVelocity(after.cam_from_world * Inverse(before.cam_from_world),
-                                       after.frame->timestamp - before.frame->timestamp),
-                          seen[i].InverseDepths(as_read[i].frame->features));
+        Correct(*as_read[i].frame, sensor, motion, after.frame->id.value - before.frame->id.value,
+                seen[i].InverseDepths(as_read[i].frame->features));
+    if (map.views[i].frame == nullptr) {
+      map.views = as_read;
+      return false;
+    }
   }
+  return true;
 }
 
 }  // namespace hullslam

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "hullslam/frame/frame.h"
 #include "hullslam/frame/sensor.h"
@@ -16,10 +17,12 @@ namespace hullslam {
 
 // These functions return the frame as a global shutter would have taken it (WithGlobalShutter), or
 // the frame itself if the shutter is global (Sensor::readout_time is 0) or the velocity of the
-// camera is not known. `last` is up to date with the map (FollowMap).
+// camera is not known. Time stamps may be wrong and images may be missing, so a velocity only
+// counts if a camera could move like this (its bounds are in the .cc file). `last` is up to date
+// with the map (FollowMap).
 
-// For a frame that is not tracked yet. Assumes that the camera keeps the velocity of the last
-// frame, and that the depths are those of the last frame at the same pixels.
+// For a frame that is not tracked yet. Assumes that the camera keeps the velocity that corrected
+// the last frames, and that the depths are those of the last frame at the same pixels.
 std::shared_ptr<const Frame> PredictGlobalShutter(std::shared_ptr<const Frame> frame,
                                                   const Map& map, const Sensor& sensor,
                                                   const LastFrame& last);
@@ -31,14 +34,31 @@ std::shared_ptr<const Frame> MeasureGlobalShutter(std::shared_ptr<const Frame> f
                                                   const LastFrame& last,
                                                   const PoseEstimate& estimate);
 
-// Like MeasureGlobalShutter. If the corrected frame differs from the frame as read, the pose is
-// optimised again with it.
-std::shared_ptr<const Frame> CorrectShutter(const std::shared_ptr<const Frame>& as_read,
-                                            const Map& map, const TrackingContext& context,
-                                            const LastFrame& last, LocalTracking& tracking);
+// Whether a correction is kept, after which so many measurements agree with the pose. A correction
+// by a wrong velocity contradicts the map, so that fewer measurements agree than before.
+bool IsCorrectionKept(int agreeing, int before);
+
+// A tracked frame after the correction of its shutter.
+struct CorrectedFrame {
+  std::shared_ptr<const Frame> frame;
+  std::optional<TimedVelocity> velocity;  // for LastFrame::velocity
+};
+
+// Corrects a tracked frame by MeasureGlobalShutter, and optimises its pose again. `tracked` is the
+// frame for which `tracking` was found: the one as read or the predicted one. The corrected frame
+// and its velocity are only kept if its pose keeps at least tracking.min_inliers and as many
+// inliers as without the correction (IsCorrectionKept). Otherwise the frame stays as it was
+// tracked. It does not go back from the predicted frame to the one as read, because a keyframe that
+// is not corrected contradicts its neighbours.
+CorrectedFrame CorrectShutter(const std::shared_ptr<const Frame>& as_read,
+                              const std::shared_ptr<const Frame>& tracked, const Map& map,
+                              const TrackingContext& context, const LastFrame& last,
+                              LocalTracking& tracking);
 
 // For the two or more views of an initial map. The velocity of a view is that of the motion from
-// the view before it to the view after it.
-void CorrectViews(const Sensor& sensor, InitialMap& map);
+// the view before it to the view after it. If one of the velocities is not known, no view is
+// corrected, because corrected views and others do not fit together. Returns whether the views are
+// corrected.
+bool CorrectViews(const Sensor& sensor, InitialMap& map);
 
 }  // namespace hullslam

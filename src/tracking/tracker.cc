@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tracking/tracker.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "map/islands.h"
-#include "tracking/shutter_correction.h"
 
 namespace hullslam {
 namespace {
@@ -70,6 +70,13 @@ KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor
           .keyframes = map.IslandSize(IslandOf(map, tracking.reference)),
           .mapper_is_idle = mapper.is_idle,
           .requests_waiting = mapper.requests_waiting};
+}
+
+// Whether the source begins at the last frame. The others may find another place or island, whose
+// poses do not fit exactly to those of the last frame.
+bool BeginsAtLastFrame(PoseSource* source) {
+  return std::find(kRelocalisationSources.begin(), kRelocalisationSources.end(), source) ==
+         kRelocalisationSources.end();
 }
 
 // The result for a frame without a pose or for a frame of the initial map.
@@ -169,19 +176,19 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
   if (!frame->detections.empty()) {
     object_index_.Follow(map, sensor_.camera);
   }
-  const std::shared_ptr<const Frame> as_read = frame;
-  frame = PredictGlobalShutter(as_read, map, sensor_, last_);
-  PoseSearch search = FindConfirmedPose(*frame, map, Context(), last_, kPoseSources);
-  if (!search.found) {
-    return Lose(as_read, map, WhyLost(*frame, Context(), last_, search));
+  PoseSearch search;
+  std::optional<Found> found = FindCorrectedPose(frame, map, search);
+  if (!found) {
+    const TrackingFailure reason = WhyLost(*frame, Context(), last_, search);
+    return Lose(std::move(frame), map, reason);
   }
   if (island_rules_.needs_motion && !is_localizing_only_ && IsYoung(map)) {
-    early_.Keep(as_read, true);
+    early_.Keep(frame, true);
   }
   lost_since_.reset();
   initialiser_.Forget();
-  LocalTracking& tracking = search.found->tracking;
-  frame = CorrectShutter(as_read, map, Context(), last_, tracking);
+  frame = found->corrected.frame;
+  const LocalTracking& tracking = found->tracking;
   if (!is_localizing_only_) {
     CountSightings(map, tracking);
   }
@@ -201,14 +208,49 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
                    .frame = frame,
                    .landmarks = estimate.landmarks,
                    .objects = tracking.objects};
-  const std::optional<CameraMotion> motion = MotionSince(last_, *frame, estimate.cam_from_world);
   last_ = {.frame = std::move(frame),
            .landmarks = estimate.landmarks,
            .pose = pose,
            .reference = tracking.reference,
            .cam_from_world = estimate.cam_from_world,
-           .motion = motion};
+           .motion = found->motion,
+           .velocity = found->corrected.velocity};
   return result;
+}
+
+// Finds the pose with the frame that the last velocity predicts. If this fails, the velocity may be
+// wrong, so the frame as read is tried too. `search` is the last search.
+std::optional<Tracker::Found> Tracker::FindCorrectedPose(
+    const std::shared_ptr<const Frame>& as_read, const Map& map, PoseSearch& search) const {
+  const std::shared_ptr<const Frame> predicted = PredictGlobalShutter(as_read, map, sensor_, last_);
+  if (predicted != as_read) {
+    if (std::optional<Found> found = FindCorrectedPose(as_read, predicted, map, search)) {
+      return found;
+    }
+  }
+  return FindCorrectedPose(as_read, as_read, map, search);
+}
+
+// `tried` is the frame as read or the predicted one.
+std::optional<Tracker::Found> Tracker::FindCorrectedPose(
+    const std::shared_ptr<const Frame>& as_read, const std::shared_ptr<const Frame>& tried,
+    const Map& map, PoseSearch& search) const {
+  search = FindConfirmedPose(*tried, map, Context(), last_, kPoseSources);
+  if (!search.found) {
+    return std::nullopt;
+  }
+  // A frame that is found anew has nothing to do with the last velocity.
+  const bool continues = BeginsAtLastFrame(kPoseSources[search.found->source]);
+  if (!continues && tried != as_read) {
+    return std::nullopt;
+  }
+  const LastFrame no_last_frame;
+  const LastFrame& last = continues ? last_ : no_last_frame;
+  Found found;
+  found.tracking = std::move(search.found->tracking);
+  found.corrected = CorrectShutter(as_read, tried, map, Context(), last, found.tracking);
+  found.motion = MotionSince(last, *as_read, found.tracking.estimate.cam_from_world);
+  return found;
 }
 
 bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,
@@ -236,6 +278,7 @@ bool Tracker::IsYoung(const Map& map) const {
 Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map,
                               TrackingFailure reason) {
   last_.motion.reset();
+  last_.velocity.reset();
   lost_since_ = lost_since_.value_or(frame->timestamp);
   if (!is_localizing_only_) {
     early_.Keep(frame, false);

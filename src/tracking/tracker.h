@@ -15,10 +15,10 @@
 #include "tracking/early_frames.h"
 #include "tracking/keyframe_policy.h"
 #include "tracking/last_frame.h"
-#include "tracking/local_map_tracking.h"
 #include "tracking/monocular_initialiser.h"
 #include "tracking/pose_source.h"
 #include "tracking/request_memory.h"
+#include "tracking/shutter_correction.h"
 #include "tracking/sighting_counter.h"
 #include "tracking/tracking_context.h"
 
@@ -68,6 +68,17 @@ class Tracker {
   MonocularInitialiser::Result FindInitialMap(const std::shared_ptr<const Frame>& frame);
   Result BeginIsland(std::shared_ptr<const Frame> frame, InitialMap initial);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
+  // A tracked frame.
+  struct Found {
+    CorrectedFrame corrected;
+    LocalTracking tracking;
+    std::optional<CameraMotion> motion;  // from the last frame, if the pose follows from it
+  };
+  std::optional<Found> FindCorrectedPose(const std::shared_ptr<const Frame>& as_read,
+                                         const Map& map, PoseSearch& search) const;
+  std::optional<Found> FindCorrectedPose(const std::shared_ptr<const Frame>& as_read,
+                                         const std::shared_ptr<const Frame>& tried, const Map& map,
+                                         PoseSearch& search) const;
   Result Lose(std::shared_ptr<const Frame> frame, const Map& map, TrackingFailure reason);
   bool IsYoung(const Map& map) const;
   bool MayBeginIsland(const Frame& frame, const Map& map) const;

@@ -148,7 +148,7 @@ TEST_F(RgbdMap, AnInterruptedRunSavesItsMap) {
 TEST_F(RgbdMap, BadUsageIsRefused) {
   ExpectRefusal({"--localization"}, {"--localization", "--load-map"});
   ExpectRefusal({"--save-map", folder_.path() / "none" / "a.map"},
-                {"none/a.map", "No such file or directory"});
+                {"none/a.map", "there is no folder"});
   ExpectRefusal({"--save-map", folder_.path()}, {folder_.path().string(), "not a regular file"});
   ExpectRefusal({"--save-map", output_ / "a.map"}, {"--save-map", "output folder"});
   ExpectRefusal({"--save-map", path_ + "/rgb/a.map"}, {"--save-map", "reads"});

@@ -347,7 +347,7 @@ TEST_F(RunEnd, DoubtfulInputIsReported) {
   ExpectError(Run({"--set", classes, "--quiet"}), 0, {"'persn'", "no masks"});
   const fs::path poses = sequence_.path() / "groundtruth.txt";
   ExpectError(Run({"--poses", poses, "--masks", masks_, "--quiet", "--set", classes, "--set",
-                   "DepthMapFactor=250000"},
+                   "DepthMapFactor=250000", "--overwrite"},
                   "map_objects"),
               0, {"'persn'", "0.02 m"});
 }

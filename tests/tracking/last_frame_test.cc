@@ -25,6 +25,7 @@ class LastFrameTest : public testing::Test {
     last_.pose = map_.RelativeTo(keyframe_, Shift(3.0));
     last_.reference = keyframe_;
     last_.motion = CameraMotion{Shift(0.4), 0.1};
+    last_.velocity = TimedVelocity{{.linear = {4.0, 0.0, 0.0}}, 0.0};
   }
 
   Map map_;
@@ -48,6 +49,7 @@ TEST_F(LastFrameTest, PoseAndMotionFollowTheUnitOfLength) {
   const LastFrame followed = FollowMap(map_, last_);
   EXPECT_DOUBLE_EQ(followed.cam_from_world.translation.x(), 0.75);
   EXPECT_DOUBLE_EQ(followed.motion->cam_from_last_cam.translation.x(), 0.1);
+  EXPECT_DOUBLE_EQ(followed.velocity->velocity.linear.x(), 1.0);
 }
 
 // Only the change since the frame was tracked counts: the reference had been shrunk before.

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "support/synthetic_world.h"
 
@@ -176,6 +179,57 @@ TEST_F(MonocularStart, AFrameInBetweenThatDoesNotFitPreventsTheMap) {
   const MonocularInitialiser::Result bad = give_three(true);
   EXPECT_FALSE(bad.map);
   EXPECT_EQ(bad.failure, InitialisationFailure::kNotConfirmed);
+}
+
+std::shared_ptr<const Frame> WithStamp(const SyntheticView& view, double timestamp) {
+  auto frame = std::make_shared<Frame>(*view.frame);
+  frame->timestamp = timestamp;
+  return frame;
+}
+
+// Gives images to an initialiser until there is a map. Its views must be all as read, or none.
+void ExpectViewsAsRead(const Sensor& sensor,
+                       const std::function<std::shared_ptr<const Frame>(uint32_t)>& image,
+                       bool as_read) {
+  MonocularInitialiser initialiser(sensor, 1);
+  std::vector<std::shared_ptr<const Frame>> given;
+  for (uint32_t i = 0; i < 40; ++i) {
+    given.push_back(image(i));
+    if (const auto result = initialiser.Process(given.back()); result.map) {
+      EXPECT_GE(result.map->views.size(), 3U);
+      for (const InitialMap::View& view : result.map->views) {
+        EXPECT_EQ(view.frame == given[view.frame->id.value], as_read);
+      }
+      return;
+    }
+  }
+  ADD_FAILURE() << "there is no map";
+}
+
+TEST_F(MonocularStart, VelocitiesFromWrongStampsAreNotUsed) {
+  const SyntheticWorld world({.points = 400, .depth_share = 0.0, .readout_time = 0.026});
+  Sensor sensor = world.sensor();
+  sensor.kind = SensorKind::kMonocular;
+  for (const double frames_per_second : {30.0, 300.0, 5.0}) {
+    const auto image = [&](uint32_t i) {
+      return WithStamp(world.Observe(i), i / frames_per_second);
+    };
+    ExpectViewsAsRead(sensor, image, frames_per_second != 30.0);
+  }
+}
+
+// The camera has a global shutter. It turns to and fro before it moves, so that wrong corrections
+// of its images do not fit together.
+TEST_F(MonocularStart, ACorrectionThatFitsWorseIsNotKept) {
+  sensor_.readout_time = 0.1;
+  sensor_.frames_per_second = 10.0;
+  const auto image = [&](uint32_t i) {
+    const Eigen::Vector3d turn(0.0, i / 3 == 1 ? 0.3 : 0.0, 0.0);
+    const Rigid3 cam_from_world = Rigid3(ExpSo3(turn), Eigen::Vector3d::Zero()) *
+                                  SyntheticWorld::CamFromWorld(i < 9 ? 0 : 40);
+    return WithStamp(world_.Observe(FrameId(i), cam_from_world), i / 10.0);
+  };
+  ExpectViewsAsRead(sensor_, image, true);
 }
 
 TEST_F(MonocularStart, TellsThatTheImageHasTooFewFeatures) {

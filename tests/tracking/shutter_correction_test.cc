@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "support/synthetic_world.h"
@@ -28,6 +29,9 @@ class ShutterCorrection : public testing::TestWithParam<double> {  // share of p
     last_.cam_from_world = SyntheticWorld::CamFromWorld(kFrame - 1);
     last_.motion = CameraMotion{
         last_.cam_from_world * Inverse(SyntheticWorld::CamFromWorld(kFrame - 2)), 1.0 / 30.0};
+    last_.velocity =
+        TimedVelocity{MeanVelocity(last_.motion->cam_from_last_cam, last_.motion->duration),
+                      last_.frame->timestamp};
   }
   ShutterCorrection() : ShutterCorrection(GetParam()) {}
 
@@ -44,9 +48,41 @@ class ShutterCorrection : public testing::TestWithParam<double> {  // share of p
     return std::sqrt(sum / static_cast<double>(view.points.size()));
   }
 
+  std::vector<LandmarkId> Landmarks(const SyntheticView& view) const {
+    std::vector<LandmarkId> landmarks;
+    for (const uint32_t point : view.points) {
+      landmarks.push_back(made_.landmarks[point]);
+    }
+    return landmarks;
+  }
+  PoseEstimate EstimateOf(const Rigid3& cam_from_world, const SyntheticView& view) const {
+    PoseEstimate estimate;
+    estimate.cam_from_world = cam_from_world;
+    estimate.landmarks = Landmarks(view);
+    return estimate;
+  }
+  // The corrected frame of a view that has another time stamp; AsRead() if it is not corrected.
+  std::shared_ptr<const Frame> Measured(const SyntheticView& view, double timestamp) {
+    as_read_ = WithStamp(*view.frame, timestamp);
+    return MeasureGlobalShutter(as_read_, made_.map, sensor_, last_,
+                                EstimateOf(SyntheticWorld::CamFromWorld(kFrame), view));
+  }
+  std::shared_ptr<const Frame> Predicted(const SyntheticView& view, double timestamp) {
+    as_read_ = WithStamp(*view.frame, timestamp);
+    return PredictGlobalShutter(as_read_, made_.map, sensor_, last_);
+  }
+  const std::shared_ptr<const Frame>& AsRead() const { return as_read_; }
+  static std::shared_ptr<const Frame> WithStamp(const Frame& frame, double timestamp) {
+    auto stamped = std::make_shared<Frame>(frame);
+    stamped->timestamp = timestamp;
+    return stamped;
+  }
+
   SyntheticWorld world_;
+  Sensor sensor_ = world_.sensor();
   SyntheticMap made_;
   LastFrame last_;
+  std::shared_ptr<const Frame> as_read_;
 };
 
 // The points are at random distances of 2 to 6 m, so the depths of neighbouring points tell the
@@ -63,11 +99,67 @@ TEST_P(ShutterCorrection, MovesKeypointsToWhereTheMiddleRowSeesThem) {
 TEST_P(ShutterCorrection, NeedsAKnownVelocity) {
   const SyntheticView view = world_.Observe(kFrame);
   LastFrame still = last_;
-  still.motion.reset();
+  still.velocity.reset();
   EXPECT_EQ(PredictGlobalShutter(view.frame, made_.map, world_.sensor(), still), view.frame);
   // The last motion is too long ago.
   const SyntheticView later = world_.Observe(kFrame + 100);
   EXPECT_EQ(PredictGlobalShutter(later.frame, made_.map, world_.sensor(), last_), later.frame);
+}
+
+// The camera moves by 0.02 m from image to image, but the stamps of two images are so close
+// together that it would have moved at 20 m/s.
+TEST_P(ShutterCorrection, ImagesThatAreTooCloseInTimeGiveNoVelocity) {
+  const SyntheticView view = world_.Observe(kFrame);
+  EXPECT_NE(Measured(view, last_.frame->timestamp + 0.031), AsRead());
+  EXPECT_EQ(Measured(view, last_.frame->timestamp + 0.001), AsRead());
+  EXPECT_EQ(Measured(view, last_.frame->timestamp + 0.025), AsRead()) << "the readout takes longer";
+}
+
+// With a short readout time, less than half of the usual interval is too short: then the velocity
+// would be more than twice too large, and the frame as read would be nearer to the truth.
+TEST_P(ShutterCorrection, LessThanHalfOfTheUsualIntervalGivesNoVelocity) {
+  sensor_.readout_time = -0.005;
+  const SyntheticView view = world_.Observe(kFrame);
+  EXPECT_NE(Measured(view, last_.frame->timestamp + 0.52 / 30.0), AsRead());
+  EXPECT_EQ(Measured(view, last_.frame->timestamp + 0.48 / 30.0), AsRead());
+}
+
+// The mean velocity over a long time differs from the current one.
+TEST_P(ShutterCorrection, AGapGivesNoVelocity) {
+  const SyntheticView view = world_.Observe(kFrame);
+  EXPECT_NE(Measured(view, last_.frame->timestamp + 3.9 / 30.0), AsRead());
+  EXPECT_EQ(Measured(view, last_.frame->timestamp + 4.1 / 30.0), AsRead());
+  EXPECT_NE(Predicted(view, last_.frame->timestamp + 3.9 / 30.0), AsRead());
+  EXPECT_EQ(Predicted(view, last_.frame->timestamp + 4.1 / 30.0), AsRead());
+}
+
+// Between two images the view may not move by more than half of the image, which is 0.5 radians.
+TEST_P(ShutterCorrection, ImagesThatShareLittleGiveNoVelocity) {
+  const SyntheticView view = world_.Observe(kFrame);
+  const auto turned = [&](double angle) {
+    const Rigid3 turn(ExpSo3(Eigen::Vector3d(0.0, angle, 0.0)), Eigen::Vector3d::Zero());
+    return MeasureGlobalShutter(view.frame, made_.map, sensor_, last_,
+                                EstimateOf(turn * last_.cam_from_world, view));
+  };
+  last_.velocity.reset();
+  EXPECT_NE(turned(0.35), view.frame);
+  EXPECT_EQ(turned(0.6), view.frame);
+}
+
+// The velocity may change by 30 px from one image to the next, which is 0.06 radians.
+TEST_P(ShutterCorrection, AVelocityThatChangesAtOnceIsNotBelieved) {
+  const SyntheticView view = world_.Observe(kFrame);
+  const auto turned = [&](double angle) {
+    const Rigid3 turn(ExpSo3(Eigen::Vector3d(0.0, angle, 0.0)), Eigen::Vector3d::Zero());
+    return MeasureGlobalShutter(
+        view.frame, made_.map, sensor_, last_,
+        EstimateOf(turn * last_.motion->cam_from_last_cam * last_.cam_from_world, view));
+  };
+  EXPECT_NE(turned(0.04), view.frame);
+  EXPECT_EQ(turned(0.09), view.frame);
+  EXPECT_EQ(turned(-0.09), view.frame);
+  last_.velocity->timestamp -= 0.2;
+  EXPECT_NE(turned(0.09), view.frame) << "the velocity was another one long ago";
 }
 
 // The estimate has the error that tracking leaves, so the motion that follows from it is nearly the
@@ -106,6 +198,82 @@ TEST_P(ShutterCorrection, OfAnEstimateNeedsTheFrameBefore) {
             later.frame);
 }
 
+// A frame that tracking has found, with its landmarks.
+class ShutterOfATrackedFrame : public ShutterCorrection {
+ protected:
+  ShutterOfATrackedFrame() : ShutterCorrection(1.0) {
+    tracking_.estimate = EstimateOf(SyntheticWorld::CamFromWorld(kFrame), view_);
+    for (const LandmarkId landmark : tracking_.estimate.landmarks) {
+      tracking_.estimate.inliers += landmark.IsValid() ? 1 : 0;
+    }
+  }
+  CorrectedFrame Correct() {
+    return CorrectShutter(view_.frame, predicted_, made_.map,
+                          {sensor_, options_, objects_, index_, 0}, last_, tracking_);
+  }
+  // The frame, its velocity and its pose are as before the correction.
+  void ExpectNotCorrected() {
+    const PoseEstimate before = tracking_.estimate;
+    const CorrectedFrame result = Correct();
+    EXPECT_EQ(result.frame, predicted_);
+    ASSERT_TRUE(result.velocity);
+    EXPECT_EQ(result.velocity->timestamp, last_.frame->timestamp);
+    EXPECT_EQ(tracking_.estimate.inliers, before.inliers);
+    EXPECT_EQ(tracking_.estimate.landmarks, before.landmarks);
+    EXPECT_EQ(tracking_.estimate.cam_from_world.ToMatrix(), before.cam_from_world.ToMatrix());
+  }
+
+  const SyntheticView view_ = world_.Observe(kFrame);
+  const std::shared_ptr<const Frame> predicted_ = std::make_shared<Frame>(*view_.frame);
+  TrackingOptions options_;
+  ObjectOptions objects_;
+  ObjectIndex index_;
+  LocalTracking tracking_;
+};
+
+TEST_F(ShutterOfATrackedFrame, IsCorrectedByTheVelocityUntilNow) {
+  tracking_.estimate.cam_from_world = SyntheticWorld::CamFromWorld(kFrame + 0.1);
+  const int before = tracking_.estimate.inliers;
+  const CorrectedFrame result = Correct();
+  EXPECT_LT(ErrorOf(*result.frame, view_), 0.3 * ErrorOf(*view_.frame, view_));
+  EXPECT_EQ(tracking_.estimate.inliers, before);
+  const Rigid3 truth = SyntheticWorld::CamFromWorld(kFrame);
+  EXPECT_LT((tracking_.estimate.cam_from_world.translation - truth.translation).norm(), 1e-3);
+  ASSERT_TRUE(result.velocity);
+  EXPECT_EQ(result.velocity->timestamp, view_.frame->timestamp);
+  EXPECT_LT((result.velocity->velocity.linear - last_.velocity->velocity.linear).norm(), 0.05);
+}
+
+// The last frame was taken somewhere else, so that the velocity is wrong.
+TEST_F(ShutterOfATrackedFrame, StaysAsTrackedIfFewerLandmarksAgree) {
+  last_.cam_from_world = SyntheticWorld::CamFromWorld(kFrame - 40);
+  last_.velocity = TimedVelocity{
+      MeanVelocity(tracking_.estimate.cam_from_world * Inverse(last_.cam_from_world), 1.0 / 30.0),
+      last_.frame->timestamp};
+  ExpectNotCorrected();
+}
+
+TEST_F(ShutterOfATrackedFrame, StaysAsTrackedIfTheStampIsWrong) {
+  auto early = std::make_shared<Frame>(*last_.frame);
+  early->timestamp = view_.frame->timestamp - 1e-6;
+  last_.frame = early;
+  last_.velocity->timestamp = early->timestamp;
+  ExpectNotCorrected();
+}
+
+// Two landmarks agree with the frame as tracked only. Nearly all are kept, but fewer than tracking
+// needs.
+TEST_F(ShutterOfATrackedFrame, NeedsTheLeastNumberOfInliers) {
+  std::vector<LandmarkId>& landmarks = tracking_.estimate.landmarks;
+  std::swap(landmarks.front(), landmarks.back());
+  const LocalTracking before = tracking_;
+  options_.min_inliers = tracking_.estimate.inliers;
+  ExpectNotCorrected();
+  options_.min_inliers = 30;
+  EXPECT_NE(Correct().frame, predicted_);
+  EXPECT_EQ(tracking_.estimate.inliers, before.estimate.inliers - 2);
+}
+
 // Views of an initial map, four frames apart, and their points.
 InitialMap MakeViews(const SyntheticWorld& world, std::vector<SyntheticView>& seen) {
   InitialMap map;
@@ -133,6 +301,22 @@ TEST_P(ShutterCorrection, CorrectsTheViewsOfAnInitialMap) {
   for (size_t i = 0; i < map.views.size(); ++i) {
     EXPECT_NE(map.views[i].frame, seen[i].frame);
     EXPECT_EQ(map.views[i].frame->id, seen[i].frame->id);
+  }
+}
+
+// Two views are four frames apart, but their stamps are not, so none of the velocities is right.
+TEST_P(ShutterCorrection, LeavesTheViewsOfAnInitialMapIfTheirStampsAreWrong) {
+  for (const double interval : {0.04, 0.1, 17.0 / 30.0}) {
+    std::vector<SyntheticView> seen;
+    InitialMap map = MakeViews(world_, seen);
+    for (size_t i = 0; i < map.views.size(); ++i) {
+      map.views[i].frame = WithStamp(*map.views[i].frame, static_cast<double>(i) * interval);
+    }
+    const std::vector<InitialMap::View> as_read = map.views;
+    CorrectViews(world_.sensor(), map);
+    for (size_t i = 0; i < map.views.size(); ++i) {
+      EXPECT_EQ(map.views[i].frame, as_read[i].frame) << interval;
+    }
   }
 }
 
