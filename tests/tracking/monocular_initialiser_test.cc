@@ -210,7 +210,7 @@ TEST_F(MonocularStart, VelocitiesFromWrongStampsAreNotUsed) {
   const SyntheticWorld world({.points = 400, .depth_share = 0.0, .readout_time = 0.026});
   Sensor sensor = world.sensor();
   sensor.kind = SensorKind::kMonocular;
-  for (const double frames_per_second : {30.0, 300.0, 5.0}) {
+  for (const double frames_per_second : {30.0, 300.0, 2.0}) {
     const auto image = [&](uint32_t i) {
       return WithStamp(world.Observe(i), i / frames_per_second);
     };
