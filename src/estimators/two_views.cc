@@ -135,8 +135,7 @@ Hypothesis Explain(const PinholeCamera& camera, std::span<const PixelPair> pairs
     const double parallax = std::atan2(turned.cross(ray_b).norm(), turned.dot(ray_b));
     if (parallax < kNoParallax) {
       // At infinity: it agrees if the rotation alone explains it.
-      if (turned.z() > 0.0 &&
-          SquaredError(camera, turned, pair.b, std::hypot(pair.sigma_a, pair.sigma_b)) < kChi2) {
+      if (SquaredError(camera, turned, pair.b, std::hypot(pair.sigma_a, pair.sigma_b)) < kChi2) {
         hypothesis.agreeing.push_back(i);
       }
       hypothesis.parallaxes.push_back(parallax);

@@ -246,8 +246,8 @@ class Proposer {
                           const Candidate& candidate) {
     const Eigen::Vector3d center = cam_from_world * CenterOf(candidate);
     const double along = center.dot(seen.sighting.ray);
-    if (along <= 0.0 ||
-        (!seen.has_depth() && !MayHaveSize(seen.sighting, along, candidate.ellipsoid->half_axes))) {
+    // Behind the camera it has no size either.
+    if (!seen.has_depth() && !MayHaveSize(seen.sighting, along, candidate.ellipsoid->half_axes)) {
       return 0.0;
     }
     const double distance = seen.has_depth() ? (center - candidate.center_in_cam).norm()

@@ -194,9 +194,7 @@ void EliminatedPoints::Linearize(Eigen::MatrixXd& hessian, Eigen::VectorXd& grad
         AddView(view, points_.positions()[i], point, hessian, gradient);
       }
     }
-    if (!couplings_.empty()) {
-      Eliminate(point, damping_[i], hessian, gradient);
-    }
+    Eliminate(point, damping_[i], hessian, gradient);
   }
 }
 

@@ -27,12 +27,12 @@ SystemOptions LoadSettings(const CameraCalibration& calibration, const std::stri
 // DepthMapFactor may then be wrong.
 void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& depth,
                             const DepthOptions& options);
-// Warns if some of the depth images are not registered to their colour images: where the depth has
-// a step, the colour changes no more than elsewhere (DepthRegistration). Nothing is printed if
-// there is too little to tell.
+// Warns if the depth images are not registered to their colour images: where the depth has a step,
+// the colour then changes no more than elsewhere (DepthRegistration). Uses seven images. Prints
+// nothing if they have too few steps.
 void WarnOfUnregisteredDepth(const ImageSequence& sequence, const PinholeCamera& camera);
 // Warns if the settings that the user gave have other intrinsics than those that belong to the
-// sequence, which are camera.yaml in its folder or found by its name.
+// sequence: camera.yaml in its folder, or the file that is found by its name.
 void WarnOfOtherSettings(const std::filesystem::path& given, const PinholeCamera& camera,
                          const std::filesystem::path& sequence);
 // Warns if no mask has a class that tracking.dynamic_classes or objects.sizes names. Classes that

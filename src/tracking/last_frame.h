@@ -18,10 +18,11 @@ struct CameraMotion {
   double duration = 0.0;  // s
 };
 
-// The velocity of the camera at a time (s).
+// The velocity of the camera, and when it was measured.
 struct TimedVelocity {
   PointVelocity velocity;
-  double timestamp = 0.0;
+  double duration = 0.0;   // s, of the motion from which it follows
+  double timestamp = 0.0;  // s, of the end of this motion
 };
 
 // The frame that was tracked last, as tracking remembers it.

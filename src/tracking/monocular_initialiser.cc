@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include "map/spanning_tree.h"
 #include "matching/by_descriptor.h"
 #include "optim/bundle_adjustment.h"
+#include "tracking/initial_map.h"
 #include "tracking/shutter_correction.h"
 #include "util/median.h"
 #include "util/random_seed.h"
@@ -23,11 +23,9 @@ namespace {
 
 constexpr size_t kMinFeatures = 100;
 constexpr size_t kMinMatches = 80;
-constexpr size_t kMinPoints = 50;  // least number of points of the map
 constexpr size_t kMostReferences = 12;
-constexpr double kReferenceInterval = 0.1;    // s from one reference to the next
-constexpr size_t kViewsBetween = 3;           // most frames between the first and the last view
-constexpr double kMinAdjustedParallax = 1.0;  // degrees, in the median
+constexpr double kReferenceInterval = 0.1;  // s from one reference to the next
+constexpr size_t kViewsBetween = 3;         // most frames between the first and the last view
 constexpr double kMinConfirmed = 0.6;  // share of its matches that a frame in between must confirm
 // If the keypoints have moved by less than this share of the image's width, the images have too
 // little parallax, and no motion is estimated.
@@ -111,7 +109,7 @@ bool AddViewBetween(const Sensor& sensor, uint64_t seed, const FramePointer& fra
   }
   const std::vector<Match> matches =
       MatchByDescriptor(first.features, keypoints, frame->features, {});
-  if (matches.size() < kMinPoints / 2) {
+  if (matches.size() < kMinInitialPoints / 2) {
     return true;
   }
   std::vector<PoseObservation> observations;
@@ -214,32 +212,6 @@ void CorrectShutterOf(const Sensor& sensor, InitialMap& map) {
   }
 }
 
-// The median angle between the rays from the first and the last view to the points, degrees.
-double MedianParallax(const InitialMap& map) {
-  const Eigen::Vector3d last = Inverse(map.views.back().cam_from_world).translation;
-  std::vector<double> angles;
-  for (const InitialMap::Point& point : map.points) {
-    const Eigen::Vector3d ray = point.position - last;
-    angles.push_back(std::atan2(point.position.cross(ray).norm(), point.position.dot(ray)));
-  }
-  return Median(std::move(angles)) * 180.0 / std::numbers::pi;
-}
-
-// Makes the median depth of the points in the first view 1.
-void Normalise(InitialMap& map) {
-  std::vector<double> depths;
-  for (const InitialMap::Point& point : map.points) {
-    depths.push_back(point.position.z());
-  }
-  const double scale = 1.0 / Median(std::move(depths));
-  for (InitialMap::View& view : map.views) {
-    view.cam_from_world.translation *= scale;
-  }
-  for (InitialMap::Point& point : map.points) {
-    point.position *= scale;
-  }
-}
-
 }  // namespace
 
 MonocularInitialiser::MonocularInitialiser(const Sensor& sensor, uint64_t seed)
@@ -289,7 +261,7 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
   }
   const TwoViews motion = EstimateTwoViews(
       sensor_.camera, MakePairs(*first, *frame, matches, sensor_.levels),
-      {.seed = HashSeed(seed_, frame->id.value, "two views"), .min_points = kMinPoints});
+      {.seed = HashSeed(seed_, frame->id.value, "two views"), .min_points = kMinInitialPoints});
   if (!motion.ok()) {
     return fail(ToInitialisationFailure(motion.failure));
   }
@@ -304,16 +276,9 @@ MonocularInitialiser::Result MonocularInitialiser::TryReference(size_t reference
   }
   AdjustMap(sensor_, map);
   CorrectShutterOf(sensor_, map);  // the velocities of the views are not known before
-  std::erase_if(map.points, [](const auto& point) { return !(point.position.z() > 0.0); });
-  if (map.points.size() < kMinPoints) {
-    return fail(InitialisationFailure::kTooFewPoints);
+  if (const auto failure = FinishInitialMap(map)) {
+    return fail(*failure);
   }
-  // Two views with wrong matches may seem to have parallax. The adjustment with the views between
-  // them reveals that they have none.
-  if (MedianParallax(map) < kMinAdjustedParallax) {
-    return fail(InitialisationFailure::kTooLittleParallax);
-  }
-  Normalise(map);
   return {.map = std::move(map), .failure = {}};
 }
 

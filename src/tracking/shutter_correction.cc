@@ -21,10 +21,12 @@ constexpr double kShortestStep = 0.5;  // of the usual interval
 // The camera cannot read an image before it has read the last one. This much of the usual interval
 // is allowed for small errors of stamps.
 constexpr double kStampError = 0.1;
-// Over a long time the mean velocity differs from the current one: a hand that shakes three times a
-// second goes the other way after a sixth of a second, which is five intervals of a camera with 30
-// frames per second.
-constexpr double kLongestStep = 4.0;  // usual intervals
+// Over a long time T the mean velocity differs from the one at its end. For a sinusoidal motion it
+// is nearer to it than none is up to a phase of w T = 2.4. Hands move to and fro about once a
+// second (w = 2 pi / s), however often the camera takes images.
+constexpr double kLongestStep = 0.4;  // s
+// A velocity is kept for this multiple of the time in which it was measured (as in PredictMotion).
+constexpr double kMostAge = 4.0;
 // Largest median motion of points between two images, as a share of the smaller side of the image.
 // With more, less than half of an image shows what the image before shows, so frames would not have
 // been tracked one after the other.
@@ -43,7 +45,7 @@ bool IsPlausible(const Sensor& sensor, double duration, uint32_t frames) {
   const double interval = 1.0 / sensor.frames_per_second;
   const double shortest =
       std::max(kShortestStep * interval, std::abs(sensor.readout_time) - kStampError * interval);
-  return duration >= frames * shortest && duration <= frames * kLongestStep * interval;
+  return duration >= frames * shortest && duration <= frames * kLongestStep;
 }
 
 // The median speed of the keypoints in the image, px/s.
@@ -67,8 +69,8 @@ bool IsPlausible(const Sensor& sensor, const FrameFeatures& features, const Poin
 
 // Whether the velocity that corrected the last frames is still that of the camera.
 bool IsKnown(const Sensor& sensor, const LastFrame& last, double timestamp) {
-  return last.velocity &&
-         timestamp - last.velocity->timestamp <= kLongestStep / sensor.frames_per_second;
+  return last.velocity && timestamp - last.velocity->timestamp <=
+                              std::min(kMostAge * last.velocity->duration, kLongestStep);
 }
 
 // Whether a camera with the one velocity may have the other one in the next frame.
@@ -179,9 +181,9 @@ CorrectedFrame CorrectShutter(const std::shared_ptr<const Frame>& as_read,
   tracking = std::move(refined);
   const std::optional<CameraMotion> motion =
       MotionSince(last, *as_read, tracking.estimate.cam_from_world);
-  return {
-      std::move(corrected),
-      TimedVelocity{MeanVelocity(motion->cam_from_last_cam, motion->duration), as_read->timestamp}};
+  return {std::move(corrected),
+          TimedVelocity{MeanVelocity(motion->cam_from_last_cam, motion->duration), motion->duration,
+                        as_read->timestamp}};
 }
 
 bool CorrectViews(const Sensor& sensor, InitialMap& map) {

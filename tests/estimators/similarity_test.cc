@@ -185,5 +185,34 @@ TEST(Similarity, AnotherScaleIsNoRigidMotion) {
   EXPECT_FALSE(EstimateSimilarity(made.camera(), made.Make(60), Options(true)).ok());
 }
 
+// All keyframes are at the same place, so only the depths of the landmarks constrain the scale.
+TEST(Similarity, FewDepthsDoNotDetermineTheScale) {
+  MadeSimilarity made(9, {});
+  std::vector<SimilarityMatch> matches;
+  for (int i = 0; i < 10; ++i) {
+    SimilarityMatch match = made.MakeMatch(made.RandomPoint());
+    match.point_in_b = 1.5 * match.point_in_a;
+    match.measured_in_b = match.measured_in_a;
+    matches.push_back(match);
+  }
+  SimilarityOptions options = Options(false);
+  options.ransac.min_inliers = 4;
+  EXPECT_TRUE(EstimateSimilarity(made.camera(), matches, options).ok());
+  matches.resize(4);
+  EXPECT_NE(EstimateSimilarity(made.camera(), matches, options).failure.find("rotation and scale"),
+            std::string::npos);
+}
+
+// A landmark behind its own camera is of no use, whichever camera it is.
+TEST_P(SimilarityEstimate, PassesOverALandmarkBehindItsCamera) {
+  MadeSimilarity made(7, {.fix_scale = GetParam()});
+  auto matches = made.Make(12);
+  matches[1].point_in_a.z() *= -1.0;
+  matches[4].point_in_b.z() *= -1.0;
+  matches[6].point_in_b.z() = 1e-9;
+  EXPECT_EQ(EstimateSimilarity(made.camera(), matches, Options(GetParam())).failure,
+            "there are only 9 usable matches, expected at least 10");
+}
+
 }  // namespace
 }  // namespace hullslam

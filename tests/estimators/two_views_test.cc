@@ -268,5 +268,35 @@ TEST(TwoViews, NamesOfFailuresAreDifferent) {
   EXPECT_NE(ToString(TwoViewFailure::kAmbiguous), ToString(TwoViewFailure::kTooFewPoints));
 }
 
+// With a long focal length, rays that are nearly parallel differ by several pixels. Then such a
+// pair agrees with the motion only if the rotation explains it.
+TEST(TwoViews, APairWithoutParallaxMustFitTheRotation) {
+  PinholeCamera camera = Camera();
+  camera.fx = camera.fy = 2000.0;
+  const Rigid3 motion = Motion({0.0, 0.0, 0.0}, {-0.25, 0.0, 0.0});
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  const auto found_with = [&](double error) {
+    std::vector<PixelPair> pairs;
+    for (int i = 0; i < 200; ++i) {
+      const Eigen::Vector2d pixel(640.0 * share(random), 480.0 * share(random));
+      const bool is_far = i % 2 == 0;
+      const Eigen::Vector3d point =
+          camera.Unproject(pixel, is_far ? 1e6 : 1.0 + 3.0 * share(random));
+      const double angle = 2.0 * std::numbers::pi * share(random);
+      const Eigen::Vector2d wrong = error * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+      pairs.push_back({pixel, camera.Project(motion * point) +
+                                  (is_far ? wrong : Eigen::Vector2d::Zero().eval())});
+    }
+    return EstimateTwoViews(camera, pairs, {.min_share = 0.7, .min_parallax = 0.0});
+  };
+  // The far pairs agree, so the points are too small a share of the pairs that do. The bound is
+  // that of the noise of both pixels, 2.45 px * sqrt(2).
+  EXPECT_EQ(found_with(3.0).failure, TwoViewFailure::kTooFewPoints);
+  const TwoViews found = found_with(4.0);
+  EXPECT_TRUE(found.ok()) << ToString(found.failure);
+  EXPECT_LT(DirectionError(found, motion), 5.0);
+}
+
 }  // namespace
 }  // namespace hullslam

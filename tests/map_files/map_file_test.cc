@@ -322,8 +322,44 @@ TEST_F(MapFileTest, AMapWithoutKeyframesIsRefused) {
   ASSERT_EQ(bytes[kCounts], 2);
   bytes[kCounts] = 0;
   ExpectRefusal(WithChecksum(bytes), {"has no keyframes"});
-  bytes.replace(kCounts, 4, "\xff\xff\xff\xff");
-  ExpectRefusal(WithChecksum(bytes), {"fewer entities than its header says"});
+}
+
+// The numbers of keyframes, culled keyframes, landmarks, landmark slots, objects and object ids. An
+// entity takes at least 64 bytes.
+TEST_F(MapFileTest, MoreEntitiesThanTheFileHasRoomForAreRefused) {
+  const std::string good = Written(SmallMap());
+  const auto with_counts = [&](const std::vector<size_t>& numbers, uint32_t value) {
+    std::string bytes = good;
+    for (const size_t number : numbers) {
+      for (size_t i = 0; i < 4; ++i) {
+        bytes[kCounts + 4 * number + i] = static_cast<char>(value >> (8 * i) & 0xff);
+      }
+    }
+    return WithChecksum(bytes);
+  };
+  const auto too_many = static_cast<uint32_t>(good.size() / 64);
+  for (const std::vector<size_t>& numbers :
+       {std::vector<size_t>{0}, std::vector<size_t>{1}, std::vector<size_t>{2, 3},
+        std::vector<size_t>{4, 5}}) {
+    ExpectRefusal(with_counts(numbers, too_many), {"fewer entities than its header says"});
+  }
+  ExpectRefusal(with_counts({1}, 0xffffffff), {"fewer entities than its header says"});
+}
+
+// Entities hardly take more bytes than that.
+TEST_F(MapFileTest, AMapOfManySmallEntitiesIsRead) {
+  Map map;
+  auto frame = MakeFrame(0, 1);
+  frame->detections.clear();
+  const KeyframeId first = map.AddKeyframe(frame, {});
+  for (uint32_t i = 1; i < 2000; ++i) {
+    auto other = MakeFrame(i, 0);
+    other->detections.clear();
+    const KeyframeId id = map.AddKeyframe(other, {});
+    SetParent(map, id, first);
+    map.CullKeyframe(id);
+  }
+  EXPECT_EQ(Dump(ReadBack(map)), Dump(map));
 }
 
 // Wrong bytes must not crash the reader even if the checksum is right. Most of them only change a

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "map/spanning_tree.h"
 #include "objects/made_objects.h"
 #include "objects/object_mapper.h"
 
@@ -360,6 +361,385 @@ TEST(ObjectChangeNames, AreDifferent) {
       EXPECT_EQ(ToString(a) == ToString(b), a == b);
     }
   }
+}
+
+// A correction that doubles all lengths since the first session also doubles the object.
+TEST_F(ObjectChanges, SizesFollowCorrectionsOfTheScale) {
+  Visit(MakeTable());
+  EndFirstSession();
+  for (uint32_t i = 0; i < 10; ++i) {
+    const KeyframeId id(i);
+    Rigid3 pose = map_.keyframes().At(id).cam_from_world;
+    pose.translation *= 2.0;
+    map_.SetPose(id, pose);
+    map_.MutableKeyframe(id).scale = 2.0;
+  }
+  AddObserver(map_, sensor_, CameraOnCircle(0.0, 1.5, 0.8), MakeTable());
+  const Ellipsoid before = former_.objects().At(ObjectId(0)).ellipsoid;
+  const Ellipsoid after = Changes().at(0).former->ellipsoid;
+  EXPECT_LT(
+      (after.world_from_object.translation - 2.0 * before.world_from_object.translation).norm(),
+      1e-9);
+  EXPECT_LT((after.half_axes - 2.0 * before.half_axes).norm(), 1e-9);
+}
+
+// The shortest half axis of flat things is not known precisely.
+TEST_F(ObjectChanges, TheTwoLongestHalfAxesTellWhetherAMovedObjectIsAnother) {
+  Visit(MakeTable());
+  EndFirstSession();
+  std::vector<MadeObject> table = MakeTable();
+  table[0] = Moved(table[0], {-0.25, -0.35, 0.0});
+  Visit(table);
+  const auto is_moved = [&](const Eigen::Vector3d& before, const Eigen::Vector3d& after) {
+    former_.MutableObject(ObjectId(0)).ellipsoid.half_axes = before;
+    map_.MutableObject(ObjectId(3)).ellipsoid.half_axes = after;
+    return Changes().at(0).change == ObjectChange::kMoved;
+  };
+  ASSERT_EQ(former_.objects().At(ObjectId(0)).Label(), "cup");
+  ASSERT_EQ(map_.objects().At(ObjectId(3)).Label(), "cup");
+  EXPECT_TRUE(is_moved({0.02, 0.06, 0.08}, {0.08, 0.06, 0.07}));  // the shortest is 3 times as long
+  EXPECT_TRUE(is_moved({0.07, 0.08, 0.06}, {0.08, 0.02, 0.06}));
+  EXPECT_FALSE(is_moved({0.02, 0.02, 0.08}, {0.02, 0.08, 0.06}));  // the middle one
+  EXPECT_FALSE(is_moved({0.02, 0.06, 0.08}, {0.02, 0.08, 0.02}));
+  EXPECT_FALSE(is_moved({0.02, 0.03, 0.09}, {0.02, 0.03, 0.03}));  // the longest one
+  EXPECT_FALSE(is_moved({0.02, 0.03, 0.03}, {0.02, 0.03, 0.09}));
+}
+
+TEST_F(ObjectChanges, AClassWithAFifthOfTheVotesMayBeTheObject) {
+  Visit(MakeTable());
+  EndFirstSession();
+  std::vector<MadeObject> table = MakeTable();
+  table[0].label = "orange";
+  Visit(table);
+  former_.MutableObject(ObjectId(0)).votes = {{"cup", 0.81}, {"orange", 0.19}};
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kGone);
+  former_.MutableObject(ObjectId(0)).votes = {{"cup", 0.79}, {"orange", 0.21}};
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kSeenAgain);
+}
+
+// One of ten keyframes shows the object, the others show that it is missing.
+TEST_F(ObjectChanges, EnoughKeyframesMustShowThatItIsMissing) {
+  Visit(MakeTable());
+  EndFirstSession();
+  for (int i = 0; i < 10; ++i) {
+    std::vector<MadeObject> table = MakeTable();
+    if (i > 0) {
+      table.erase(table.begin());
+    }
+    mapper_.Process(map_, AddObserver(map_, sensor_, CameraOnCircle(0.2 * i, 1.5, 0.8), table));
+  }
+  options_.changes.min_keyframes = 10;
+  options_.changes.max_found_ratio = 0.11;
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kGone);
+  options_.changes.max_found_ratio = 0.1;  // not fewer than that
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kSeenAgain);
+  options_.changes.max_found_ratio = 0.11;
+  options_.changes.min_keyframes = 11;  // too few for a judgement, but it was seen
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kSeenAgain);
+}
+
+TEST_F(ObjectChanges, TooFewKeyframesThatShowItMissingTellNothing) {
+  Visit(MakeTable());
+  EndFirstSession();
+  std::vector<MadeObject> table = MakeTable();
+  table.erase(table.begin());
+  Visit(table);
+  options_.changes.min_keyframes = 11;
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kNotSeen);
+}
+
+TEST_F(ObjectChanges, WhatWasSeenBeforeButNotMappedIsFirstSeen) {
+  Visit(MakeTable());
+  EndFirstSession();
+  former_.MutableObject(ObjectId(2)).state = ObjectState::kCandidate;
+  Visit(MakeTable());
+  const std::vector<ChangedObject> changes = Changes();
+  ASSERT_EQ(changes.size(), 3U);
+  EXPECT_EQ(changes[2].label, "bottle");
+  EXPECT_EQ(changes[2].change, ObjectChange::kFirstSeen);
+  EXPECT_EQ(changes[2].found, 10);
+}
+
+TEST_F(ObjectChanges, OnlyAnObjectOfTheMapThatIsNotGoneHasALocationNow) {
+  Visit(MakeTable());
+  EndFirstSession();
+  AddObserver(map_, sensor_, CameraOnCircle(0.0, 1.5, 0.8),
+              {MakeObject("chair", {0.0, 0.0, 0.1}, {0.1, 0.1, 0.1})});
+  ASSERT_EQ(Changes().at(0).change, ObjectChange::kNotSeen);
+  EXPECT_TRUE(Changes().at(0).now);
+  map_.MutableObject(ObjectId(0)).has_shape = false;
+  EXPECT_FALSE(Changes().at(0).now);
+  EXPECT_EQ(Changes().at(0).change, ObjectChange::kNotSeen);
+  std::vector<MadeObject> table = MakeTable();
+  table.pop_back();
+  Visit(table);
+  EXPECT_EQ(Changes().at(2).change, ObjectChange::kGone);
+  EXPECT_FALSE(Changes().at(2).now);
+}
+
+// A cup that was removed from the map, and a new object in its place, which the second session has
+// made.
+class RemovedCup : public ObjectChanges {
+ protected:
+  RemovedCup() {
+    Visit({MakeTable()[0], MakeObject("cup", {-0.3, -0.2, 0.0}, {0.05, 0.05, 0.06})});
+    EndFirstSession();
+    map_.EraseObject(ObjectId(0));
+    Visit({MakeTable()[0], MakeObject("cup", {-0.3, -0.2, 0.0}, {0.05, 0.05, 0.06})});
+  }
+  const ObjectId other_ = ObjectId(1);  // the other cup of the first session
+  const ObjectId new_ = ObjectId(2);
+};
+
+TEST_F(RemovedCup, TheNewObjectIsTheCup) {
+  const std::vector<ChangedObject> changes = Changes();
+  ASSERT_EQ(changes.size(), 2U);
+  EXPECT_EQ(changes[0].change, ObjectChange::kSeenAgain);
+  EXPECT_EQ(changes[0].now->object, new_);
+}
+
+// The longest half axis of the cup is 8 cm, the shortest one is 5 cm.
+TEST_F(RemovedCup, TheNewObjectMustBeNear) {
+  map_.MutableObject(new_).ellipsoid.world_from_object.translation.x() += 0.07;
+  EXPECT_EQ(Changes().at(0).change, ObjectChange::kSeenAgain);
+  map_.MutableObject(new_).ellipsoid.world_from_object.translation.x() += 0.03;
+  EXPECT_NE(Changes().at(0).change, ObjectChange::kSeenAgain);
+}
+
+TEST_F(RemovedCup, TheNewObjectMustBeMapped) {
+  map_.MutableObject(new_).state = ObjectState::kCandidate;
+  EXPECT_EQ(Changes().at(0).change, ObjectChange::kGone);
+}
+
+TEST_F(RemovedCup, TheNewObjectMustBeOfItsClass) {
+  map_.MutableObject(new_).votes = {{"orange", 1.0}};
+  EXPECT_EQ(Changes().at(0).change, ObjectChange::kGone);
+}
+
+TEST_F(RemovedCup, AnObjectOfTheFirstSessionIsNotTheCup) {
+  map_.MutableObject(other_).ellipsoid = map_.objects().At(new_).ellipsoid;
+  map_.MutableObject(new_).state = ObjectState::kCandidate;
+  EXPECT_EQ(Changes().at(0).change, ObjectChange::kGone);
+}
+
+TEST_F(RemovedCup, TheNewObjectIsOneCupOnly) {
+  former_.MutableObject(other_).ellipsoid = former_.objects().At(ObjectId(0)).ellipsoid;
+  map_.EraseObject(other_);
+  const std::vector<ChangedObject> changes = Changes();
+  EXPECT_EQ(changes.at(0).change, ObjectChange::kSeenAgain);
+  EXPECT_EQ(changes.at(1).change, ObjectChange::kGone);
+}
+
+TEST_F(ObjectChanges, AnObjectThatWasReplacedIsTheOtherOne) {
+  const std::vector<MadeObject> table = {MakeObject("cup", {0.3, 0.2, 0.0}, {0.05, 0.05, 0.06}),
+                                         MakeObject("cup", {-0.3, -0.2, 0.0}, {0.05, 0.05, 0.06})};
+  Visit(table);
+  EndFirstSession();
+  Visit(table);
+  map_.ReplaceObject(ObjectId(0), ObjectId(1));
+  const std::vector<ChangedObject> changes = Changes();
+  ASSERT_EQ(changes.size(), 2U);
+  ASSERT_TRUE(changes[0].now);
+  EXPECT_EQ(changes[0].former->object, ObjectId(0));
+  EXPECT_EQ(changes[0].now->object, ObjectId(1));
+}
+
+TEST_F(ObjectChanges, AKeyframeOfTheObjectMayHaveBeenCulled) {
+  Visit(MakeTable());
+  SetParent(map_, KeyframeId(4), KeyframeId(3));
+  EndFirstSession();
+  std::vector<MadeObject> table = MakeTable();
+  table.erase(table.begin());
+  Visit(table);
+  map_.CullKeyframe(KeyframeId(4));
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kGone);
+}
+
+// The keyframes of a second session whose detections belong to no object yet.
+class UnknownDetections : public ObjectChanges {
+ protected:
+  UnknownDetections() {
+    Visit(MakeTable());
+    EndFirstSession();
+  }
+  // `shown` gives what a camera sees in place of the cup.
+  template <typename Shown>
+  ChangedObject CupAfter(const Shown& shown, bool has_depth = true) {
+    for (int i = 0; i < 10; ++i) {
+      const Rigid3 camera = CameraOnCircle(0.2 * i, 1.5, 0.8);
+      const KeyframeId id = AddObserver(map_, sensor_, camera, {shown(camera)});
+      if (!has_depth) {
+        auto frame = std::make_shared<Frame>(*map_.keyframes().At(id).frame);
+        frame->detections[0].points.clear();
+        map_.ReplaceFrame(id, frame);
+      }
+    }
+    return Changes().at(0);
+  }
+  // A cup that looks the same, at this share of the distance.
+  static MadeObject Nearer(const Rigid3& camera, double share) {
+    MadeObject cup = MakeTable()[0];
+    const Eigen::Vector3d center = Inverse(camera).translation;
+    Eigen::Vector3d& position = cup.ellipsoid.world_from_object.translation;
+    position = center + share * (position - center);
+    cup.ellipsoid.half_axes *= share;
+    return cup;
+  }
+};
+
+// The centroid of the visible surface is about 4 cm in front of the centre, the longest half axis
+// is 8 cm.
+TEST_F(UnknownDetections, TheObjectIsAtItsOwnDistance) {
+  EXPECT_EQ(CupAfter([](const Rigid3& camera) { return Nearer(camera, 0.985); }).found, 10);
+}
+TEST_F(UnknownDetections, SomethingNearerThatLooksTheSameIsAnotherOne) {
+  EXPECT_EQ(CupAfter([](const Rigid3& camera) { return Nearer(camera, 0.96); }).found, 0);
+}
+TEST_F(UnknownDetections, WithoutDepthWhatLooksTheSameIsTheObject) {
+  EXPECT_EQ(CupAfter([](const Rigid3& camera) { return Nearer(camera, 0.5); }, false).found, 10);
+}
+
+// About half of the cup's width beside it.
+TEST_F(UnknownDetections, TheOutlinesMustOverlap) {
+  const auto beside = [](const Rigid3&) { return Moved(MakeTable()[0], {0.0, 0.0, 0.06}); };
+  EXPECT_EQ(CupAfter(beside, false).found, 10);
+  options_.changes.min_overlap = 0.6;
+  EXPECT_EQ(Changes().at(0).found, 0);
+}
+
+// Neither has an object: the cup because it was erased, the detection because it belongs to none.
+TEST_F(UnknownDetections, AnErasedObjectIsNotEveryUnknownDetection) {
+  map_.EraseObject(ObjectId(0));
+  const ChangedObject cup = CupAfter([](const Rigid3&) {
+    return Moved(MakeTable()[0], {-0.25, -0.35, 0.0});
+  });
+  EXPECT_EQ(cup.found, 0);
+  EXPECT_EQ(cup.change, ObjectChange::kGone);
+}
+
+// Another cup of the first session now stands where the cup was.
+TEST_F(ObjectChanges, AnotherKnownObjectAtThePlaceIsNotTheObject) {
+  const std::vector<MadeObject> cups = {MakeObject("cup", {0.3, 0.2, 0.0}, {0.05, 0.05, 0.06}),
+                                        MakeObject("cup", {-0.3, -0.2, 0.0}, {0.05, 0.05, 0.06})};
+  Visit(cups);
+  EndFirstSession();
+  for (int i = 0; i < 10; ++i) {
+    const KeyframeId id =
+        AddObserver(map_, sensor_, CameraOnCircle(0.2 * i, 1.5, 0.8), {cups.front()});
+    map_.AddObservation(ObjectId(1), id, 0);
+  }
+  const std::vector<ChangedObject> changes = Changes();
+  EXPECT_EQ(changes.at(0).change, ObjectChange::kGone);
+  EXPECT_EQ(changes.at(1).change, ObjectChange::kSeenAgain);
+}
+
+// A wall of depth 1 m hides everything, so only a thing in place of the object can tell that the
+// object is gone.
+class BehindAWall : public ObjectChanges {
+ protected:
+  void VisitBeforeWall(const std::vector<MadeObject>& table) {
+    for (int i = 0; i < 10; ++i) {
+      mapper_.Process(map_,
+                      AddBeforeWall(map_, sensor_, CameraOnCircle(0.2 * i, 1.5, 0.8), table, 1000));
+    }
+  }
+  // With a box around the place of the bottle. Returns the box.
+  ObjectId ReplaceBottle() {
+    Visit(MakeTable());
+    EndFirstSession();
+    std::vector<MadeObject> table = MakeTable();
+    table[2] = MakeObject("box", table[2].ellipsoid.world_from_object.translation, {0.2, 0.2, 0.2});
+    VisitBeforeWall(table);
+    ObjectId found;
+    for (const auto& [id, object] : map_.objects()) {
+      found = object.Label() == "box" ? id : found;
+    }
+    return found;
+  }
+};
+
+TEST_F(BehindAWall, WhatNobodySeesIsNotSeen) {
+  Visit(MakeTable());
+  EndFirstSession();
+  std::vector<MadeObject> table = MakeTable();
+  table.pop_back();
+  VisitBeforeWall(table);
+  EXPECT_EQ(ChangeOf("bottle"), ObjectChange::kNotSeen);
+}
+
+TEST_F(BehindAWall, AnotherClassInPlaceOfTheObjectTellsThatItIsGone) {
+  Visit(MakeTable());
+  EndFirstSession();
+  std::vector<MadeObject> table = MakeTable();
+  table[0].label = "orange";
+  VisitBeforeWall(table);
+  ASSERT_GT(map_.objects().At(ObjectId(0)).votes.count("orange"), 0U);
+  EXPECT_EQ(ChangeOf("cup"), ObjectChange::kGone);
+}
+
+TEST_F(BehindAWall, OnlyAMappedObjectTakesAPlace) {
+  const ObjectId box = ReplaceBottle();
+  ASSERT_TRUE(box.IsValid());
+  EXPECT_EQ(ChangeOf("bottle"), ObjectChange::kGone);
+  map_.MutableObject(box).state = ObjectState::kCandidate;
+  EXPECT_EQ(ChangeOf("bottle"), ObjectChange::kNotSeen);
+}
+
+TEST_F(BehindAWall, AnObjectThatWasThereBeforeTakesNoPlace) {
+  const ObjectId box = ReplaceBottle();
+  ASSERT_TRUE(box.IsValid());
+  while (former_.objects().NextId() <= box) {
+    former_.AddObject();
+  }
+  former_.MutableObject(box) = map_.objects().At(box);
+  former_.MutableObject(box).reference = KeyframeId(0);
+  EXPECT_EQ(ChangeOf("bottle"), ObjectChange::kNotSeen);
+}
+
+TEST_F(ObjectChanges, OfTwoPlacesTheOneWithTheLikeSizeIsMoreLikely) {
+  const MadeObject cup = MakeTable()[0];
+  Visit({cup, MakeTable()[1]});
+  EndFirstSession();
+  MadeObject large = Moved(cup, {-0.25, -0.35, 0.0});
+  large.ellipsoid.half_axes *= 1.6;
+  const MadeObject like = Moved(cup, {-0.5, -0.3, 0.0});  // 13 cm farther away
+  Visit({MakeTable()[1], large, like});
+  const ChangedObject moved = Changes().at(0);
+  ASSERT_EQ(moved.change, ObjectChange::kMoved);
+  EXPECT_LT((moved.now->ellipsoid.world_from_object.translation -
+             like.ellipsoid.world_from_object.translation)
+                .norm(),
+            0.05);
+}
+
+// All ten keyframes of the first session looked at the hidden place.
+TEST_F(BehindABear, EnoughKeyframesMustHaveLookedAtTheHiddenPlace) {
+  options_.changes.max_found_ratio = 0.01;
+  ExpectMovedTo(hidden_, {hidden_});
+  options_.changes.min_keyframes = 10;
+  EXPECT_EQ(Changes().at(0).change, ObjectChange::kMoved);
+  for (uint32_t i = 0; i < 2; ++i) {  // two of them show nothing that may count
+    auto frame = std::make_shared<Frame>(*map_.keyframes().At(KeyframeId(i)).frame);
+    frame->detections.clear();
+    map_.MutableKeyframe(KeyframeId(i)).objects.clear();
+    map_.ReplaceFrame(KeyframeId(i), frame);
+  }
+  EXPECT_EQ(Changes().at(0).change, ObjectChange::kGone);
+}
+
+// One keyframe of the first session showed the hidden cup, so it was there already.
+TEST_F(BehindABear, AnObjectThatWasSeenBeforeWasNotMovedThere) {
+  const MadeObject bear = MakeObject("teddy bear", {0, -0.2, 0.1}, {0.2, 0.2, 0.2});
+  VisitFromOneSide({Cup(0.4, -0.1), bear});
+  mapper_.Process(map_, AddObserver(map_, sensor_, CameraOnCircle(0.9, 1.5, 0.3),
+                                    {Cup(0.4, -0.1), bear, hidden_}));
+  EndFirstSession();
+  VisitFromOneSide({hidden_});
+  const std::vector<ChangedObject> changes = Changes();
+  ASSERT_EQ(changes.size(), 3U);
+  EXPECT_EQ(changes[0].change, ObjectChange::kGone);
+  EXPECT_EQ(changes[2].change, ObjectChange::kFirstSeen);
+  EXPECT_EQ(changes[2].found, 1);
 }
 
 }  // namespace

@@ -130,33 +130,47 @@ TEST_P(EliminatedPointsTest, TheCostIsThatOfCeresAtTheMovedPoints) {
   EXPECT_NEAR(CeresPoints(made, loss()).Cost(), cost, 1e-9 * cost);
 }
 
-// The Schur complement of the points in the normal equations of all parameters.
-TEST_P(EliminatedPointsTest, TheSystemIsTheSchurComplementOfThatOfCeres) {
+// The system is the Schur complement of the points in the normal equations of all parameters. With
+// a single moving pose, a point is coupled with this pose only.
+void ExpectSchurComplement(Eigen::Index moving, PointLoss loss, bool is_settled) {
   MadePoints made(5);
-  constexpr Eigen::Index kMoving = 3;
-  EliminatedPoints eliminated(made.camera, made.points, kMoving, loss());
+  EliminatedPoints eliminated(made.camera, made.points, static_cast<size_t>(moving), loss);
   Settle(eliminated, made.poses);
+  if (!is_settled) {  // the points have gradients of their own
+    for (Rigid3& pose : made.poses) {
+      pose.translation.x() += 0.001;
+    }
+    eliminated.Follow(made.poses);
+  }
   Eigen::MatrixXd hessian;
   Eigen::VectorXd gradient;
   eliminated.Linearize(hessian, gradient);
 
   Eigen::MatrixXd all;
   Eigen::VectorXd all_gradient;
-  CeresPoints(made, loss()).Normal(all, all_gradient);
+  CeresPoints(made, loss).Normal(all, all_gradient);
   const Eigen::Index first = 6 * 5;
   const Eigen::Index points = all.rows() - first;
-  const Eigen::MatrixXd coupling = all.block(0, first, 6 * kMoving, points);
+  const Eigen::MatrixXd coupling = all.block(0, first, 6 * moving, points);
   const Eigen::MatrixXd inverse = all.bottomRightCorner(points, points).inverse();
   const Eigen::MatrixXd expected =
-      all.topLeftCorner(6 * kMoving, 6 * kMoving) - coupling * inverse * coupling.transpose();
+      all.topLeftCorner(6 * moving, 6 * moving) - coupling * inverse * coupling.transpose();
   const Eigen::VectorXd expected_gradient =
-      all_gradient.head(6 * kMoving) - coupling * inverse * all_gradient.tail(points);
-  ASSERT_EQ(hessian.rows(), 6 * kMoving);
+      all_gradient.head(6 * moving) - coupling * inverse * all_gradient.tail(points);
+  ASSERT_EQ(hessian.rows(), 6 * moving);
   // The damping of the points changes it a little.
   const Eigen::MatrixXd difference = (hessian - expected).triangularView<Eigen::Lower>();
   EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-5 * expected.cwiseAbs().maxCoeff());
   EXPECT_LT((gradient - expected_gradient).cwiseAbs().maxCoeff(),
             1e-5 * expected_gradient.cwiseAbs().maxCoeff());
+}
+
+TEST_P(EliminatedPointsTest, TheSystemIsTheSchurComplementOfThatOfCeres) {
+  for (const Eigen::Index moving : {1, 3}) {
+    for (const bool is_settled : {true, false}) {
+      ExpectSchurComplement(moving, loss(), is_settled);
+    }
+  }
 }
 
 // The derivative of the cost at the best positions of the points.
@@ -278,6 +292,131 @@ TEST(EliminatedPoints, APointInASingleViewWithoutDepthStaysFinite) {
   eliminated.Linearize(hessian, gradient);
   EXPECT_TRUE(hessian.allFinite());
   EXPECT_TRUE(gradient.allFinite());
+}
+
+// On the optical axis the distance is exactly free.
+TEST(EliminatedPoints, APointOnTheOpticalAxisOfASingleViewStaysFinite) {
+  MadePoints made(1, 1);
+  made.poses = {Rigid3()};
+  made.points = {};
+  made.points.AddPoint({0.0, 0.0, 3.0});
+  made.points.AddView({.measured = {321.0, 240.0, 0.0}, .inverse_sigma = {1.0, 1.0, 0.0}}, 0);
+  EliminatedPoints eliminated(made.camera, made.points, 1, PointLoss::kNone);
+  EXPECT_LT(eliminated.Follow(made.poses), 1e-9);
+  EXPECT_LT((made.points.positions()[0] - Eigen::Vector3d(0.0, 0.0, 3.0)).norm(), 0.1);
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+  eliminated.Linearize(hessian, gradient);
+  EXPECT_TRUE(hessian.allFinite());
+  EXPECT_TRUE(gradient.allFinite());
+}
+
+// Two cameras side by side see a point between them, which starts too far away by the factor
+// `ratio`. The disparity is linear in the inverse of the distance, so an undamped step leads to a
+// point behind the cameras. A step succeeds if its damping is above about `ratio`. The true
+// distance is 0.02 m.
+class FarPoint {
+ public:
+  explicit FarPoint(double ratio, double sigma = 1.0) {
+    const Eigen::Vector3d truth(0.5, 0.0, 0.02);
+    points.AddPoint({0.5, 0.0, 0.02 * ratio});
+    for (size_t i = 0; i < poses.size(); ++i) {
+      const Eigen::Vector3d image = ProjectRgbd(camera, poses[i] * truth);
+      points.AddView({.measured = image, .inverse_sigma = {1.0 / sigma, 1.0 / sigma, 0.0}}, i);
+    }
+  }
+  double Cost() {
+    double cost = 0.0;
+    for (const BundlePoints::View& view : points.ViewsOf(0)) {
+      cost +=
+          0.5 * PointResidual(camera, view.measurement, poses[view.pose] * points.positions()[0])
+                    .squaredNorm();
+    }
+    return cost;
+  }
+
+  const PinholeCamera camera = MadePoints(1, 1).camera;
+  const std::vector<Rigid3> poses = {
+      Rigid3(), Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(-1.0, 0.0, 0.0))};
+  BundlePoints points;
+};
+
+// The damping of three trials is 1e-8, 0.01 and 1. It is kept for the next poses and grows on.
+TEST(EliminatedPoints, AStepIsTriedThreeTimesWithMoreDamping) {
+  for (const double ratio : {50.0, 5000.0}) {
+    FarPoint made(ratio);
+    EliminatedPoints eliminated(made.camera, made.points, 2, PointLoss::kNone, {.steps = 1});
+    const double cost = made.Cost();
+    EXPECT_NEAR(eliminated.Follow(made.poses), cost, 1e-9 * cost) << ratio;
+    EXPECT_LT(eliminated.Follow(made.poses), (1.0 - 1e-5) * cost) << ratio;
+  }
+}
+
+// A point that is held by its damping holds the cameras that see it. Without damping, a single
+// camera could move sideways and the point with it, because its distance is free.
+TEST(EliminatedPoints, TheSystemIsDampedLikeTheSteps) {
+  FarPoint made(50.0);
+  EliminatedPoints eliminated(made.camera, made.points, 2, PointLoss::kNone, {.steps = 1});
+  eliminated.Follow(made.poses);  // the damping is 100 now
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+  eliminated.Linearize(hessian, gradient);
+  const double of_camera = made.camera.fx * made.camera.fx;  // at a distance of 1 m
+  EXPECT_NEAR(hessian(3, 3), of_camera * (1.0 - 1.0 / 101.0), 1e-6 * of_camera);
+}
+
+// After a success the damping falls to a tenth, not at once.
+TEST(EliminatedPoints, TheDampingIsRemembered) {
+  FarPoint made(5000.0);
+  EliminatedPoints eliminated(made.camera, made.points, 2, PointLoss::kNone, {.steps = 1});
+  int count = 0;
+  for (; count < 300 && eliminated.Follow(made.poses) > 1e-9; ++count) {
+    eliminated.Accept();
+  }
+  EXPECT_LT(count, 45);
+}
+
+TEST(EliminatedPoints, EveryFollowBeginsAtTheAcceptedPositions) {
+  MadePoints made(5);
+  MadePoints same(5);
+  std::vector<Rigid3> others = made.poses;
+  for (Rigid3& pose : others) {
+    pose.translation += Eigen::Vector3d(0.3, 0.0, 0.3);
+  }
+  EliminatedPoints twice(made.camera, made.points, 5, PointLoss::kNone, {.steps = 1});
+  EliminatedPoints once(same.camera, same.points, 5, PointLoss::kNone, {.steps = 1});
+  twice.Follow(others);
+  const double expected = once.Follow(same.poses);
+  EXPECT_NEAR(twice.Follow(made.poses), expected, 0.05 * expected);
+}
+
+// A cost far below 1 is worth it too.
+TEST(EliminatedPoints, AStepThatFailsIsDampedAlsoIfTheCostIsSmall) {
+  FarPoint made(50.0, 1e6);
+  EliminatedPoints eliminated(made.camera, made.points, 2, PointLoss::kNone, {.steps = 1});
+  ASSERT_LT(made.Cost(), 5e-4);
+  eliminated.Follow(made.poses);
+  EXPECT_LT(eliminated.Follow(made.poses), 0.99 * made.Cost());
+}
+
+TEST(EliminatedPoints, TheDampingFallsAgain) {
+  FarPoint made(50.0);
+  EliminatedPoints eliminated(made.camera, made.points, 2, PointLoss::kNone, {.steps = 1});
+  EXPECT_LT(Settle(eliminated, made.poses), 1e-12);
+  EXPECT_NEAR(made.points.positions()[0].z(), 0.02, 1e-9);
+}
+
+TEST(EliminatedPoints, AnotherStepMustBeWorthwhile) {
+  const auto cost_with = [&](const FollowOptions& options) {
+    MadePoints made(5);
+    for (Eigen::Vector3d& position : made.points.positions()) {
+      position *= 1.5;
+    }
+    return EliminatedPoints(made.camera, made.points, 5, PointLoss::kNone, options)
+        .Follow(made.poses);
+  };
+  EXPECT_EQ(cost_with({.steps = 10, .worthwhile = 1e12}), cost_with({.steps = 1}));
+  EXPECT_LT(cost_with({.steps = 10, .worthwhile = 0.0}), 0.9 * cost_with({.steps = 1}));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ class LastFrameTest : public testing::Test {
     last_.pose = map_.RelativeTo(keyframe_, Shift(3.0));
     last_.reference = keyframe_;
     last_.motion = CameraMotion{Shift(0.4), 0.1};
-    last_.velocity = TimedVelocity{{.linear = {4.0, 0.0, 0.0}}, 0.0};
+    last_.velocity = TimedVelocity{{.linear = {4.0, 0.0, 0.0}}, 0.1, 0.0};
   }
 
   Map map_;

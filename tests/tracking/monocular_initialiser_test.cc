@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -61,6 +62,22 @@ class MonocularStart : public testing::Test {
     }
     std::sort(depths.begin(), depths.end());
     return depths[depths.size() / 2];
+  }
+
+  // The median distance (px) of the keypoints that show the same points.
+  static double MedianShift(const SyntheticView& one, const SyntheticView& other) {
+    std::vector<double> shifts;
+    for (size_t i = 0, k = 0; i < one.points.size() && k < other.points.size();) {
+      if (one.points[i] != other.points[k]) {
+        ++(one.points[i] < other.points[k] ? i : k);
+        continue;
+      }
+      const auto& here = one.frame->features.keypoints[i++].undistorted;
+      const auto& there = other.frame->features.keypoints[k++].undistorted;
+      shifts.push_back(static_cast<double>((here - there).norm()));
+    }
+    std::sort(shifts.begin(), shifts.end());
+    return shifts[shifts.size() / 2];
   }
 
   const SyntheticWorld world_{{.points = 400, .depth_share = 0.0}};
@@ -210,7 +227,7 @@ TEST_F(MonocularStart, VelocitiesFromWrongStampsAreNotUsed) {
   const SyntheticWorld world({.points = 400, .depth_share = 0.0, .readout_time = 0.026});
   Sensor sensor = world.sensor();
   sensor.kind = SensorKind::kMonocular;
-  for (const double frames_per_second : {30.0, 300.0, 5.0}) {
+  for (const double frames_per_second : {30.0, 300.0, 2.0}) {
     const auto image = [&](uint32_t i) {
       return WithStamp(world.Observe(i), i / frames_per_second);
     };
@@ -259,6 +276,159 @@ TEST_F(MonocularStart, TheSameFramesGiveTheSameBits) {
     EXPECT_EQ(a->points[i].position, b->points[i].position);
   }
   EXPECT_EQ(a->views.back().cam_from_world.ToMatrix(), b->views.back().cam_from_world.ToMatrix());
+}
+
+// The frame with only its first `count` features.
+std::shared_ptr<Frame> Shortened(const Frame& frame, size_t count) {
+  auto shortened = std::make_shared<Frame>(frame);
+  shortened->features.keypoints.resize(count);
+  shortened->features.descriptors.resize(count);
+  shortened->features.depth.resize(count);
+  shortened->features.right_u.resize(count);
+  return shortened;
+}
+
+TEST_F(MonocularStart, NeedsAHundredFeatures) {
+  MonocularInitialiser initialiser(sensor_, 1);
+  const Frame& frame = *world_.Observe(0).frame;
+  EXPECT_EQ(initialiser.Process(Shortened(frame, 99)).failure,
+            InitialisationFailure::kTooFewFeatures);
+  EXPECT_EQ(initialiser.Process(Shortened(frame, 100)).failure,
+            InitialisationFailure::kTooFewMatches);
+}
+
+// Only the first features of the second image are those of the first image.
+TEST_F(MonocularStart, NeedsEightyMatches) {
+  const SyntheticWorld other({.points = 400, .depth_share = 0.0, .seed = 10});
+  const auto failure_of = [&](size_t matches) {
+    MonocularInitialiser initialiser(sensor_, 1);
+    initialiser.Process(Shortened(*world_.Observe(0).frame, 150));
+    const auto second = Shortened(*world_.Observe(0).frame, 150);
+    second->id = FrameId(10);
+    for (uint32_t i = static_cast<uint32_t>(matches); i < 150; ++i) {
+      second->features.descriptors[i] = other.descriptor(i);
+    }
+    return initialiser.Process(second).failure;
+  };
+  EXPECT_EQ(failure_of(79), InitialisationFailure::kTooFewMatches);
+  EXPECT_EQ(failure_of(80), InitialisationFailure::kTooLittleParallax);
+}
+
+// The camera goes around what it sees, so the rays have parallax although the keypoints hardly
+// move.
+TEST_F(MonocularStart, KeypointsMustMoveByAShareOfTheImagesWidth) {
+  const double least = 0.015 * sensor_.camera.width;
+  const auto give = [&](double step) {
+    MonocularInitialiser initialiser(sensor_, 1);
+    const SyntheticView first =
+        world_.Observe(FrameId(0), SyntheticWorld::LookAt({0, 0, 0}, {0, 0, 3.2}));
+    const SyntheticView last =
+        world_.Observe(FrameId(10), SyntheticWorld::LookAt({step, 0, 0}, {0, 0, 3.2}));
+    initialiser.Process(first.frame);
+    return std::pair(initialiser.Process(last.frame), MedianShift(first, last));
+  };
+  double most_refused = 0.0;
+  double least_taken = 1e9;
+  for (double step = 0.02; step < 0.4; step += 0.005) {
+    const auto [result, shift] = give(step);
+    if (result.map) {
+      least_taken = std::min(least_taken, shift);
+    } else {
+      EXPECT_EQ(result.failure, InitialisationFailure::kTooLittleParallax);
+      most_refused = std::max(most_refused, shift);
+    }
+  }
+  EXPECT_NEAR(most_refused, least, 0.4);
+  EXPECT_NEAR(least_taken, least, 0.4);
+}
+
+TEST_F(MonocularStart, EveryThirdFrameIsAReferenceAndThreeViewsAreBetween) {
+  MonocularInitialiser initialiser(sensor_, 1);
+  std::optional<InitialMap> map;
+  uint32_t last = 0;
+  for (; last < 90 && !map; ++last) {
+    map = Give(initialiser, last, SyntheticWorld::CamFromWorld(0.25 * last)).map;
+  }
+  ASSERT_TRUE(map);
+  ASSERT_EQ(map->views.size(), 5U);
+  for (size_t i = 0; i + 1 < map->views.size(); ++i) {
+    EXPECT_EQ(map->views[i].frame->id.value % 3, 0U);
+  }
+  EXPECT_EQ(map->views.back().frame->id.value, last - 1);
+  // The last of the views between is the newest reference.
+  EXPECT_LE(last - 1 - map->views[3].frame->id.value, 3U);
+}
+
+// Like AFrameInBetweenThatDoesNotFitPreventsTheMap, with this share of wrong features.
+TEST_F(MonocularStart, AFrameInBetweenMustConfirmSixtyPercent) {
+  const SyntheticView first = world_.Observe(0);
+  const SyntheticView view = world_.Observe(FrameId(10), SyntheticWorld::CamFromWorld(1));
+  const SyntheticView last = world_.Observe(20);
+  std::vector<size_t> common;  // keypoints whose points all three frames show
+  for (size_t i = 0; i < view.points.size(); ++i) {
+    if (std::ranges::count(first.points, view.points[i]) > 0 &&
+        std::ranges::count(last.points, view.points[i]) > 0) {
+      common.push_back(i);
+    }
+  }
+  const auto is_confirmed = [&](double wrong) {
+    auto between = std::make_shared<Frame>(*view.frame);
+    std::vector<Keypoint>& keypoints = between->features.keypoints;
+    const size_t pairs = static_cast<size_t>(wrong * static_cast<double>(common.size())) / 2;
+    for (size_t i = 0; i < pairs; ++i) {
+      std::swap(keypoints[common[2 * i]].undistorted, keypoints[common[2 * i + 1]].undistorted);
+    }
+    MonocularInitialiser initialiser(sensor_, 1);
+    initialiser.Process(first.frame);
+    initialiser.Process(between);
+    // Without the confirmation, the last two frames may make a map.
+    const MonocularInitialiser::Result result = initialiser.Process(last.frame);
+    return result.map && result.map->views.size() == 3;
+  };
+  EXPECT_TRUE(is_confirmed(0.36));
+  EXPECT_FALSE(is_confirmed(0.44));
+}
+
+// An image between the others that shows something else, for example a passing car, tells nothing.
+TEST_F(MonocularStart, AFrameInBetweenThatShowsSomethingElseDoesNotCount) {
+  const SyntheticWorld other({.points = 400, .depth_share = 0.0, .seed = 10});
+  MonocularInitialiser initialiser(sensor_, 1);
+  EXPECT_FALSE(Give(initialiser, 0, SyntheticWorld::CamFromWorld(0)).map);
+  EXPECT_FALSE(initialiser.Process(other.Observe(10).frame).map);
+  const auto result = Give(initialiser, 20, SyntheticWorld::CamFromWorld(20));
+  ASSERT_TRUE(result.map);
+  EXPECT_EQ(result.map->views.size(), 2U);
+  ExpectRight(*result.map);
+}
+
+// The failure is that of the reference with which an image came nearest to a map.
+TEST_F(MonocularStart, TellsTheFailureOfTheBestReference) {
+  const SyntheticWorld other({.points = 400, .depth_share = 0.0, .seed = 10});
+  MonocularInitialiser initialiser(sensor_, 1);
+  initialiser.Process(world_.Observe(0).frame);
+  initialiser.Process(other.Observe(10).frame);
+  EXPECT_EQ(Give(initialiser, 20, SyntheticWorld::CamFromWorld(0)).failure,
+            InitialisationFailure::kTooLittleParallax);
+}
+
+TEST_F(MonocularStart, HasNoReferencesAfterAMap) {
+  MonocularInitialiser initialiser(sensor_, 1);
+  ASSERT_TRUE(Walk(initialiser, 0, 30));
+  EXPECT_EQ(Give(initialiser, 60, SyntheticWorld::CamFromWorld(60)).failure,
+            InitialisationFailure::kTooFewMatches);
+}
+
+// So slow that the last 12 references, 36 frames, have too little parallax.
+TEST_F(MonocularStart, ReferencesReachFarBack) {
+  MonocularInitialiser initialiser(sensor_, 1);
+  std::optional<InitialMap> map;
+  uint32_t last = 0;
+  for (; last < 300 && !map; ++last) {
+    map = Give(initialiser, last, SyntheticWorld::CamFromWorld(0.08 * last)).map;
+  }
+  ASSERT_TRUE(map);
+  EXPECT_GT(last, 60U);
+  ExpectRight(*map);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ class ShutterCorrection : public testing::TestWithParam<double> {  // share of p
         last_.cam_from_world * Inverse(SyntheticWorld::CamFromWorld(kFrame - 2)), 1.0 / 30.0};
     last_.velocity =
         TimedVelocity{MeanVelocity(last_.motion->cam_from_last_cam, last_.motion->duration),
-                      last_.frame->timestamp};
+                      last_.motion->duration, last_.frame->timestamp};
   }
   ShutterCorrection() : ShutterCorrection(GetParam()) {}
 
@@ -127,10 +127,13 @@ TEST_P(ShutterCorrection, LessThanHalfOfTheUsualIntervalGivesNoVelocity) {
 // The mean velocity over a long time differs from the current one.
 TEST_P(ShutterCorrection, AGapGivesNoVelocity) {
   const SyntheticView view = world_.Observe(kFrame);
-  EXPECT_NE(Measured(view, last_.frame->timestamp + 3.9 / 30.0), AsRead());
-  EXPECT_EQ(Measured(view, last_.frame->timestamp + 4.1 / 30.0), AsRead());
+  EXPECT_NE(Measured(view, last_.frame->timestamp + 0.39), AsRead());
+  EXPECT_EQ(Measured(view, last_.frame->timestamp + 0.41), AsRead());
   EXPECT_NE(Predicted(view, last_.frame->timestamp + 3.9 / 30.0), AsRead());
   EXPECT_EQ(Predicted(view, last_.frame->timestamp + 4.1 / 30.0), AsRead());
+  last_.velocity->duration = 0.2;
+  EXPECT_NE(Predicted(view, last_.frame->timestamp + 0.39), AsRead());
+  EXPECT_EQ(Predicted(view, last_.frame->timestamp + 0.41), AsRead());
 }
 
 // Between two images the view may not move by more than half of the image, which is 0.5 radians.
@@ -249,7 +252,7 @@ TEST_F(ShutterOfATrackedFrame, StaysAsTrackedIfFewerLandmarksAgree) {
   last_.cam_from_world = SyntheticWorld::CamFromWorld(kFrame - 40);
   last_.velocity = TimedVelocity{
       MeanVelocity(tracking_.estimate.cam_from_world * Inverse(last_.cam_from_world), 1.0 / 30.0),
-      last_.frame->timestamp};
+      1.0 / 30.0, last_.frame->timestamp};
   ExpectNotCorrected();
 }
 
@@ -306,7 +309,7 @@ TEST_P(ShutterCorrection, CorrectsTheViewsOfAnInitialMap) {
 
 // Two views are four frames apart, but their stamps are not, so none of the velocities is right.
 TEST_P(ShutterCorrection, LeavesTheViewsOfAnInitialMapIfTheirStampsAreWrong) {
-  for (const double interval : {0.04, 0.1, 17.0 / 30.0}) {
+  for (const double interval : {0.04, 0.1, 1.7}) {
     std::vector<SyntheticView> seen;
     InitialMap map = MakeViews(world_, seen);
     for (size_t i = 0; i < map.views.size(); ++i) {

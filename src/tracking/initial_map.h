@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "hullslam/map/initialisation_failure.h"
+#include "hullslam/map/messages.h"
+
+namespace hullslam {
+
+inline constexpr size_t kMinInitialPoints = 50;
+
+// The last step of an initial map, after its adjustment. Removes the points that are not in front
+// of the first view, and makes the median depth of the others in it 1. Returns why the map cannot
+// be used, if it cannot: too few points are left, or the rays from the first and the last view to
+// them are nearly parallel. The first view must be at the origin.
+std::optional<InitialisationFailure> FinishInitialMap(InitialMap& map);
+
+}  // namespace hullslam
