@@ -43,6 +43,7 @@ import subprocess
 import sys
 import threading
 
+from run_errors import InputError
 from run_statistics import compare, lost_percent, read_json, value_at, write
 
 RECORD = "ablation_run.json"  # beside the outputs of a run: the command that made them
@@ -60,10 +61,6 @@ COLUMNS = [  # heading, keys in summary.json, format
 
 
 ALL = "mean"  # in place of a sequence: all of them together
-
-
-class InputError(Exception):
-    """An error that the user can correct."""
 
 
 def parse_variant(text):
