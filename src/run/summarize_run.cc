@@ -2,6 +2,7 @@
 #include "run/summarize_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -27,6 +28,23 @@ AlignmentKind AlignmentOf(SensorKind sensor) {
   return sensor == SensorKind::kMonocular ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
 }
 
+// Depth in a wrong unit gives a map of the wrong size, which nothing but the ground truth reveals.
+void WarnOfScale(const Trajectory& groundtruth, const Trajectory& trajectory, double rmse) {
+  constexpr double kMostDifference = 0.1;  // the depth of real cameras is wrong by up to 4 %
+  constexpr double kMuchBetter = 0.5;
+  AteOptions options;
+  options.alignment = AlignmentKind::kSim3;
+  const AteReport scaled = EvaluateAte(groundtruth, trajectory, options);
+  const double scale = scaled.reference_from_estimate.scale;
+  if (scaled.ok() && std::abs(scale - 1.0) > kMostDifference &&
+      scaled.errors.rmse < kMuchBetter * rmse) {
+    PrintError(
+        "warning: the trajectory is {:.2g} times as large as the ground truth; is DepthMapFactor "
+        "right?\n",
+        1.0 / scale);
+  }
+}
+
 void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory, SensorKind sensor,
               TrajectorySummary& summary) {
   AteOptions options;
@@ -39,6 +57,9 @@ void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory, Senso
   summary.ate_rmse_m = ate.errors.rmse;
   summary.scale = ate.reference_from_estimate.scale;
   summary.pairs = ate.pairs;
+  if (options.alignment == AlignmentKind::kSe3) {
+    WarnOfScale(groundtruth, trajectory, ate.errors.rmse);
+  }
   const RpeReport rpe =
       EvaluateRpe(groundtruth, Scaled(trajectory, ate.reference_from_estimate.scale));
   if (rpe.ok()) {
