@@ -61,18 +61,40 @@ class Tools:
             self.hashes[path] = digest([hash_file(file) for file in (path, *libraries(path))])
         return self.hashes[path]
 
+    def preset_file(self, name):
+        """The file of a preset: one of those of HullSLAM, or a path."""
+        path = self.config / "presets" / f"{name}.yaml"
+        if not path.is_file() and name.endswith(".yaml"):
+            path = type(path)(name)
+        if not path.is_file():
+            known = sorted(file.stem for file in (self.config / "presets").glob("*.yaml"))
+            raise InputError(f"unknown preset '{name}', expected one of: "
+                             f"{', '.join(known) or 'none'} (in {self.config / 'presets'})")
+        return path
+
     def preset_hash(self, arguments):
-        """The hash of the files of the presets among the arguments."""
-        found = []
-        for option, name in zip(arguments, arguments[1:]):
-            if option == "--preset":
-                path = self.config / "presets" / f"{name}.yaml"
-                if not path.is_file():
-                    known = sorted(file.stem for file in path.parent.glob("*.yaml"))
-                    raise InputError(f"unknown preset '{name}', expected one of: "
-                                     f"{', '.join(known) or 'none'} (in {path.parent})")
-                found.append(self.hash(path))
-        return found
+        """The hashes of the files of the presets among the arguments, and of those that they are
+        based on."""
+        names = [name for option, name in zip(arguments, arguments[1:]) if option == "--preset"]
+        files = []
+        for name in names:  # grows while it is read
+            path = self.preset_file(name)
+            if path not in files:
+                files.append(path)
+                names += re.findall(r"^preset\.base:\s*(\S+)", path.read_text(encoding="utf-8"),
+                                    re.MULTILINE)
+        return [self.hash(path) for path in files]
+
+    def script_hash(self, script):
+        """The hashes of a script and of the other scripts that it imports."""
+        files = [script]
+        for path in files:  # grows while it is read
+            for name in re.findall(r"^(?:from|import) (\w+)", path.read_text(encoding="utf-8"),
+                                   re.MULTILINE):
+                other = self.scripts / f"{name}.py"
+                if other.is_file() and other not in files:
+                    files.append(other)
+        return [self.hash(path) for path in files]
 
     def vocabulary_hash(self):
         path = self.config.parent / "Vocabulary" / "hullslam.bow"
@@ -182,7 +204,7 @@ class Planner:
         script = self.tools.scripts / "degrade_sequence.py"
         options = [*(item.format(level=level) for item in degradation.options), "--seed", str(seed)]
         source = self.folders[rendering]["fingerprint"] if rendering else sequence.fingerprint
-        made_of = digest(RESULT_VERSION, self.tools.hash(script), options, source,
+        made_of = digest(RESULT_VERSION, self.tools.script_hash(script), options, source,
                          sequence.masks_fingerprint)
         # The folder is removed after its runs, so its name tells what it was made from.
         name = (f"degraded/{sequence.name}+{degradation.name}-{level}/seed-{seed}-"
@@ -202,8 +224,6 @@ def sequences_of(table, request):
     """The sequences that a table shows."""
     found = [sequence for sequence in request.sequences
              if table.only is None or sequence.paper is None or sequence.paper in table.only]
-    if table.degradations:
-        found = [sequence for sequence in found if sequence.dataset == "tum"]
     return found[:table.sequences]
 
 
