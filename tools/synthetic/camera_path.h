@@ -3,9 +3,11 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "hullslam/geometry/rigid3.h"
+#include "util/random_seed.h"
 
 namespace hullslam::synthetic {
 
@@ -24,6 +26,14 @@ class HandMotion {
  private:
   Eigen::Matrix<double, 6, 3> phases_;
 };
+
+// The pose of the camera as a function of the time in seconds, on a path with the shaking of a
+// hand. Visits of a scene differ in `visit`.
+template <typename Path>
+std::function<Rigid3(double)> ByHand(const Path& path, uint64_t visit) {
+  const HandMotion hand(HashSeed(visit, 0, "hand"));
+  return [path, hand](double time) { return hand.Apply(path.WorldFromCam(time), time); };
+}
 
 // A path around a table. The camera looks at the middle of the table from a changing distance and
 // height.
