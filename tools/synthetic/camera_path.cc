@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "hullslam/util/check.h"
 #include "synthetic/hash_noise.h"
@@ -63,6 +64,16 @@ Rigid3 OrbitPath::WorldFromCam(double time) const {
   return LookAt(eye, target + sway);
 }
 
+Rigid3 SweepPath::WorldFromCam(double time) const {
+  const double phase = kTwoPi * frequency * time;
+  const double angle = middle_angle + swing * std::sin(phase);
+  const double distance = radius * (1.0 + 0.15 * std::sin(0.6 * phase + 1.0));
+  const Vector3d eye(distance * std::cos(angle), distance * std::sin(angle),
+                     height + 0.12 * std::sin(1.4 * phase));
+  const Vector3d sway(0.15 * std::sin(0.8 * phase), 0.05 * std::cos(0.5 * phase), 0.0);
+  return LookAt(eye, target + sway);
+}
+
 Rigid3 LoopPath::WorldFromCam(double time) const {
   constexpr double kOverlap = 0.35;  // radians beyond a full turn
   const double angle = start_angle + (kTwoPi + kOverlap) * time / duration;
@@ -115,6 +126,11 @@ Rigid3 WaypointPath::WorldFromCam(double time) const {
   const Vector3d forward(std::cos(at[4]) * std::cos(at[3]), std::cos(at[4]) * std::sin(at[3]),
                          std::sin(at[4]));
   return LookAt(eye, eye + forward);
+}
+
+PacedPath::PacedPath(WaypointPath path, double seconds)
+    : path_(std::move(path)), pace_(path_.duration() / seconds) {
+  Check(seconds > 0.0, "a walk needs some time");
 }
 
 }  // namespace hullslam::synthetic

@@ -46,6 +46,18 @@ struct OrbitPath {
   Rigid3 WorldFromCam(double time) const;
 };
 
+// A path to and fro on an arc around a table, as of somebody who looks at it from both sides. The
+// camera looks at the middle of the table.
+struct SweepPath {
+  double radius = 1.35;        // metres from the axis, on average
+  double height = 1.3;         // metres, on average
+  double middle_angle = -1.6;  // radians from +x
+  double swing = 0.6;          // radians to either side
+  double frequency = 0.13;     // sweeps there and back per second
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();
+  Rigid3 WorldFromCam(double time) const;
+};
+
 // A path around a room, slightly more than a full turn, so that the start is seen again. The camera
 // looks outwards.
 struct LoopPath {
@@ -84,6 +96,18 @@ class WaypointPath {
 
   std::vector<double> times_;
   std::vector<Values> values_;
+};
+
+// The same walk in another time.
+class PacedPath {
+ public:
+  // `seconds`: until the last waypoint. Throws CheckError unless it is positive.
+  PacedPath(WaypointPath path, double seconds);
+  Rigid3 WorldFromCam(double time) const { return path_.WorldFromCam(pace_ * time); }
+
+ private:
+  WaypointPath path_;
+  double pace_;  // planned seconds per second
 };
 
 }  // namespace hullslam::synthetic

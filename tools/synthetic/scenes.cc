@@ -141,18 +141,11 @@ OrbitPath DeskPath() { return {.target = {0.0, 0.0, kTableHeight + 0.12}}; }
 // faster.
 LoopPath RoomPath(int frames) { return {.duration = std::max(frames - 1, 299) / kFramesPerSecond}; }
 
-// A walk at a lower speed than planned.
-struct SlowWalk {
-  WaypointPath path;
-  double pace = 1.0;  // share of the planned speed
-  Rigid3 WorldFromCam(double time) const { return path.WorldFromCam(pace * time); }
-};
-
 // The whole walk in the given number of frames. A walk of fewer frames than the usual number is cut
 // off instead of run faster.
-SlowWalk FitWalk(const WaypointPath& path, int frames, SceneKind kind) {
+PacedPath FitWalk(const WaypointPath& path, int frames, SceneKind kind) {
   const double seconds = (std::max(frames, DefaultFrames(kind)) - 1) / kFramesPerSecond;
-  return {path, path.duration() / seconds};
+  return {path, seconds};
 }
 
 Scene BuildDesk(uint64_t seed, uint64_t visit) {
