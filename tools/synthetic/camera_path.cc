@@ -10,6 +10,7 @@
 
 #include "hullslam/util/check.h"
 #include "synthetic/hash_noise.h"
+#include "util/random_seed.h"
 
 namespace hullslam::synthetic {
 namespace {
@@ -53,6 +54,11 @@ Rigid3 HandMotion::Apply(const Rigid3& world_from_cam, double time) const {
   }
   const Rigid3 motion(ExpSo3(0.014 * wave.tail<3>()), 0.015 * wave.head<3>());
   return world_from_cam * motion;
+}
+
+std::function<Rigid3(double)> ByHand(std::function<Rigid3(double)> path, uint64_t visit) {
+  const HandMotion hand(HashSeed(visit, 0, "hand"));
+  return [path = std::move(path), hand](double time) { return hand.Apply(path(time), time); };
 }
 
 Rigid3 OrbitPath::WorldFromCam(double time) const {

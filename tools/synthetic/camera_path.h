@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "hullslam/geometry/rigid3.h"
-#include "util/random_seed.h"
 
 namespace hullslam::synthetic {
 
@@ -29,10 +28,11 @@ class HandMotion {
 
 // The pose of the camera as a function of the time in seconds, on a path with the shaking of a
 // hand. Visits of a scene differ in `visit`.
+std::function<Rigid3(double)> ByHand(std::function<Rigid3(double)> path, uint64_t visit);
 template <typename Path>
+requires requires(const Path& path) { path.WorldFromCam(0.0); }
 std::function<Rigid3(double)> ByHand(const Path& path, uint64_t visit) {
-  const HandMotion hand(HashSeed(visit, 0, "hand"));
-  return [path, hand](double time) { return hand.Apply(path.WorldFromCam(time), time); };
+  return ByHand([path](double time) { return path.WorldFromCam(time); }, visit);
 }
 
 // A path around a table. The camera looks at the middle of the table from a changing distance and

@@ -13,7 +13,7 @@ constexpr double kOfficeTop = 0.74;  // metres
 
 }  // namespace
 
-void FurnishOfficeTable(SceneBuilder& builder) {
+Palette FurnishOfficeTable(SceneBuilder& builder) {
   const Palette palette = builder.AddRichPalette();
   builder.AddRoom({.half_x = 3.5, .half_y = 3.2, .height = 2.7}, palette);
   builder.AddPosters(palette);
@@ -44,6 +44,7 @@ void FurnishOfficeTable(SceneBuilder& builder) {
   builder.scene().ambient = 0.55F;
   builder.scene().lights = {{.position = {-1.4F, -1.2F, 2.6F}, .strength = 2.0F},
                             {.position = {1.8F, 1.4F, 2.5F}, .strength = 1.6F}};
+  return palette;
 }
 
 }  // namespace hullslam::synthetic

@@ -5,7 +5,8 @@
 
 namespace hullslam::synthetic {
 
-// Adds a room of 7 m x 6.4 m with an office table in its middle, whose top is 0.74 m high.
-void FurnishOfficeTable(SceneBuilder& builder);
+// Adds a room of 7 m x 6.4 m with an office table in its middle, whose top is 0.74 m high. Returns
+// the textures.
+Palette FurnishOfficeTable(SceneBuilder& builder);
 
 }  // namespace hullslam::synthetic

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "util/random_seed.h"
@@ -93,6 +94,20 @@ float Interpolate(const cv::Mat& depth, float x, float y) {
          b * ((1.0F - a) * lower[0] + a * lower[1]);
 }
 
+// The image that is left if each pixel keeps one colour, in blocks of 2 x 2 pixels with blue at the
+// upper left, red at the lower right and green elsewhere, and the others are interpolated.
+cv::Mat ThroughBayerFilter(const cv::Mat& image) {
+  cv::Mat filtered(image.size(), CV_8UC1);
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) {
+      filtered.at<uint8_t>(y, x) = image.at<cv::Vec3b>(y, x)[y % 2 + x % 2];
+    }
+  }
+  cv::Mat colours;
+  cv::cvtColor(filtered, colours, cv::COLOR_BayerRG2BGR);  // OpenCV names the second row and column
+  return colours;
+}
+
 uint16_t ToUnits(double metres, double units_per_metre) {
   const double units = std::round(metres * units_per_metre);
   return units > 65535.0 ? uint16_t{0} : static_cast<uint16_t>(units);
@@ -102,6 +117,10 @@ uint16_t ToUnits(double metres, double units_per_metre) {
 
 cv::Mat Sensor::Colour(const RenderedFrame& frame, uint32_t number) const {
   const cv::Size size = frame.colour.size();
+  cv::Mat exact = frame.colour;
+  if (options_.lens_blur > 0.0) {
+    cv::GaussianBlur(frame.colour, exact, {}, options_.lens_blur);
+  }
   cv::Mat image(size, CV_8UC3);
   const uint64_t seed = HashSeed(seed_, number, "colour");
   const float gain =
@@ -115,9 +134,8 @@ cv::Mat Sensor::Colour(const RenderedFrame& frame, uint32_t number) const {
       const float light =
           gain * (options_.noise ? 1.0F - 0.16F * (dx * dx + dy * dy) / reach : 1.0F);
       const uint64_t word = CounterHash(seed, static_cast<uint64_t>(y * size.width + x));
-      const cv::Vec3f& exact = frame.colour.at<cv::Vec3f>(y, x);
       for (int c = 0; c < 3; ++c) {
-        float value = light * exact[c];
+        float value = light * exact.at<cv::Vec3f>(y, x)[c];
         if (options_.noise) {
           value += std::sqrt(0.9F + 0.009F * std::max(0.0F, value)) *
                    normal_(word >> (NormalTable::kBits * c));
@@ -126,7 +144,7 @@ cv::Mat Sensor::Colour(const RenderedFrame& frame, uint32_t number) const {
       }
     }
   }
-  return image;
+  return options_.bayer ? ThroughBayerFilter(image) : image;
 }
 
 // Barron and Malik (CVPR 2013) describe the depth Z (in cm) of a pixel of the Kinect by

@@ -19,6 +19,11 @@ class Sensor {
  public:
   struct Options {
     DepthModel model = DepthModel::kKinect;
+    // Standard deviation of the blur of the lens (px); 0 for none.
+    double lens_blur = 0.0;
+    // Whether each pixel has one colour filter (Bayer's pattern), so that the other two colours are
+    // interpolated: the noise of neighbours is then alike, and edges are softer.
+    bool bayer = false;
     bool noise = true;  // false: exact colours and depths, only rounded to integers
     double units_per_metre = 5000.0;
     double min_depth = 0.5;  // metres; depths outside these limits are unknown

@@ -15,6 +15,7 @@
 
 #include "hullslam/util/check.h"
 #include "synthetic/mask_outline.h"
+#include "synthetic/motion_blur.h"
 #include "synthetic/renderer.h"
 #include "synthetic/scenes.h"
 #include "synthetic/sequence_files.h"
@@ -48,7 +49,11 @@ std::string MaskText(const Scene& scene, const cv::Mat& instance) {
 
 void WriteFrame(const SequencePlan& plan, const Renderer& renderer, const Sensor& sensor, int frame,
                 const fs::path& folder) {
-  const RenderedFrame rendered = renderer.Render(frame / kFramesPerSecond);
+  const double time = frame / kFramesPerSecond;
+  RenderedFrame rendered = renderer.Render(time);
+  rendered.colour = BlurByMotion(
+      rendered, plan.scene, plan.camera,
+      {.time = time, .readout_time = plan.readout_time, .duration = plan.exposure_time});
   const std::string stem = plan.layout.Stem(frame);
   const auto number = static_cast<uint32_t>(frame);
   WriteNewFile(folder / "rgb" / (stem + ".png"), Png(sensor.Colour(rendered, number)));

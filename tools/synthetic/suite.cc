@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <utility>
 
 #include "hullslam/util/error.h"
@@ -31,34 +32,45 @@ double WholePath(int frames) { return (std::max(frames, kSuiteFrames) - 1) / kFr
 // By how much the paths, which are made for 300 frames, are slower with more frames.
 double Pace(int frames) { return WholePath(kSuiteFrames) / WholePath(frames); }
 
-Scene Desk1(int frames, uint64_t visit) {
-  Scene scene = BuildScene(SceneKind::kDesk, frames, kScene);
-  const SweepPath path{.radius = 1.35,
-                       .height = 1.3,
-                       .middle_angle = -1.6,
-                       .swing = 0.62,
-                       .frequency = 0.13 * Pace(frames),
-                       .target = {0.0, 0.0, 0.82}};
-  scene.world_from_cam = ByHand(path, visit);
-  return scene;
+using SteadyPath = std::function<Rigid3(double)>;
+
+template <typename Path>
+SteadyPath Steady(const Path& path) {
+  return [path](double time) { return path.WorldFromCam(time); };
 }
 
-Scene Desk2(int frames, uint64_t visit) {
-  SceneBuilder builder(HashSeed(kScene, 0, "desk2"));
-  FurnishOfficeTable(builder);
-  const OrbitPath path{.radius = 1.6,
-                       .height = 1.4,
-                       .start_angle = -2.4,
-                       .angular_speed = 0.12 * Pace(frames),
-                       .target = {0.0, 0.0, 0.82}};
-  builder.scene().world_from_cam = ByHand(path, visit);
+// A scene whose textures have seeds of their own.
+template <typename Function>
+Scene Furnish(std::string_view name, const Function& furnish) {
+  SceneBuilder builder(HashSeed(kScene, 0, name));
+  furnish(builder);
   return builder.Finish();
 }
 
-Scene Person(int frames, uint64_t visit) {
+Scene Desk1(int frames) { return BuildScene(SceneKind::kDesk, frames, kScene); }
+
+SteadyPath Desk1Path(int frames) {
+  return Steady(SweepPath{.radius = 1.35,
+                          .height = 1.3,
+                          .middle_angle = -1.6,
+                          .swing = 0.62,
+                          .frequency = 0.13 * Pace(frames),
+                          .target = {0.0, 0.0, 0.82}});
+}
+
+Scene Desk2(int /*frames*/) { return Furnish("desk2", FurnishOfficeTable); }
+
+SteadyPath Desk2Path(int frames) {
+  return Steady(OrbitPath{.radius = 1.6,
+                          .height = 1.4,
+                          .start_angle = -2.4,
+                          .angular_speed = 0.12 * Pace(frames),
+                          .target = {0.0, 0.0, 0.82}});
+}
+
+Scene Person(int frames) {
   SceneBuilder builder(HashSeed(kScene, 0, "person"));
-  FurnishOfficeTable(builder);
-  const Palette palette = builder.AddRichPalette();
+  const Palette palette = FurnishOfficeTable(builder);
   SceneObject person = MakePerson(builder.Repeat(palette.fabric, 0.5, {0.8F, 0.9F, 1.3F}),
                                   builder.Repeat(palette.fabric, 0.6, {0.9F, 0.6F, 0.5F}),
                                   builder.Repeat(palette.speckle, 0.3, {0.7F, 0.85F, 1.1F}))
@@ -69,53 +81,46 @@ Scene Person(int frames, uint64_t visit) {
   };
   person.world_from_object = person.motion(0.0);
   builder.AddObject(std::move(person));
-  const OrbitPath path{.radius = 2.0,
-                       .height = 1.45,
-                       .start_angle = -2.2,
-                       .angular_speed = 0.06 * Pace(frames),
-                       .target = {0.0, 0.0, 0.9}};
-  builder.scene().world_from_cam = ByHand(path, visit);
   return builder.Finish();
 }
 
-Scene Dishes(int frames, uint64_t visit) {
-  SceneBuilder builder(HashSeed(kScene, 0, "dishes"));
-  FurnishDishes(builder);
-  const OrbitPath path{.radius = 1.15,
-                       .height = 1.35,
-                       .start_angle = -2.2,
-                       .angular_speed = 0.13 * Pace(frames),
-                       .target = {0.0, 0.0, 0.76}};
-  builder.scene().world_from_cam = ByHand(path, visit);
-  return builder.Finish();
+SteadyPath PersonPath(int frames) {
+  return Steady(OrbitPath{.radius = 2.0,
+                          .height = 1.45,
+                          .start_angle = -2.2,
+                          .angular_speed = 0.06 * Pace(frames),
+                          .target = {0.0, 0.0, 0.9}});
 }
 
-Scene Office(int frames, uint64_t visit) {
-  SceneBuilder builder(HashSeed(kScene, 0, "office"));
-  FurnishOfficeLoop(builder);
-  builder.scene().world_from_cam = ByHand(OfficeLoopPath(WholePath(frames)), visit);
-  return builder.Finish();
+Scene Dishes(int /*frames*/) { return Furnish("dishes", FurnishDishes); }
+
+SteadyPath DishesPath(int frames) {
+  return Steady(OrbitPath{.radius = 1.15,
+                          .height = 1.35,
+                          .start_angle = -2.2,
+                          .angular_speed = 0.13 * Pace(frames),
+                          .target = {0.0, 0.0, 0.76}});
 }
 
-Scene Teddy(int frames, uint64_t visit) {
-  SceneBuilder builder(HashSeed(kScene, 0, "teddy"));
-  FurnishTeddyRoom(builder);
-  const OrbitPath path{.radius = 1.6,
-                       .height = 1.3,
-                       .start_angle = -2.5,
-                       .angular_speed = 0.16 * Pace(frames),
-                       .target = {0.0, 0.0, 0.7}};
-  builder.scene().world_from_cam = ByHand(path, visit);
-  return builder.Finish();
+Scene Office(int /*frames*/) { return Furnish("office", FurnishOfficeLoop); }
+
+SteadyPath OfficePath(int frames) { return Steady(OfficeLoopPath(WholePath(frames))); }
+
+Scene Teddy(int /*frames*/) { return Furnish("teddy", FurnishTeddyRoom); }
+
+SteadyPath TeddyPath(int frames) {
+  return Steady(OrbitPath{.radius = 1.6,
+                          .height = 1.3,
+                          .start_angle = -2.5,
+                          .angular_speed = 0.16 * Pace(frames),
+                          .target = {0.0, 0.0, 0.7}});
 }
+
+Scene Icl(int /*frames*/) { return Furnish("icl office", FurnishIclOffice); }
 
 template <int kNumber>
-Scene Icl(int frames, uint64_t visit) {
-  SceneBuilder builder(HashSeed(kScene, 0, "icl office"));
-  FurnishIclOffice(builder);
-  const PacedPath path(IclOfficePath(kNumber), WholePath(frames));
-  builder.scene().world_from_cam = ByHand(path, visit);
-  return builder.Finish();
+SteadyPath IclPath(int frames) {
+  return Steady(PacedPath(IclOfficePath(kNumber), WholePath(frames)));
 }
 
 constexpr std::array<SuiteSequence, 10> kSuite = {{
@@ -123,55 +128,70 @@ constexpr std::array<SuiteSequence, 10> kSuite = {{
      .plays = "fr1-desk",
      .special = "a desk; the camera sweeps to and fro at about 0.45 m/s and has a rolling shutter",
      .readout_time = 0.026,
-     .build = Desk1},
+     .furnish = Desk1,
+     .path = Desk1Path},
     {.name = "desk2",
      .plays = "fr2-desk",
      .special = "an office table in a large room; the camera moves slowly in an arc",
-     .build = Desk2},
+     .furnish = Desk2,
+     .path = Desk2Path},
     {.name = "person",
      .plays = "fr2-person",
      .special = "the table of desk2; a person walks around it, and stops twice",
-     .build = Person},
+     .furnish = Person,
+     .path = PersonPath},
     {.name = "dishes",
      .plays = "fr2-dishes",
      .special = "a laid table; dishes are hollow and, like the room, have little texture",
-     .build = Dishes},
+     .furnish = Dishes,
+     .path = DishesPath},
     {.name = "office",
      .plays = "fr3-office",
      .special = "once around two desks and 20 degrees more: a loop",
-     .build = Office},
+     .furnish = Office,
+     .path = OfficePath},
     {.name = "teddy",
      .plays = "fr3-teddy",
      .special = "a large teddy bear among other concave objects in a room of little texture",
-     .build = Teddy},
+     .furnish = Teddy,
+     .path = TeddyPath},
     {.name = "icl0",
      .plays = "office-traj0",
      .special = "an office, seen from its middle; ICL-NUIM's files",
      .form = DatasetForm::kIcl,
-     .build = Icl<0>},
+     .furnish = Icl,
+     .path = IclPath<0>},
     {.name = "icl1",
      .plays = "office-traj1",
      .special = "the office of icl0; the camera turns to plain walls; ICL-NUIM's files",
      .form = DatasetForm::kIcl,
-     .build = Icl<1>},
+     .furnish = Icl,
+     .path = IclPath<1>},
     {.name = "icl2",
      .plays = "office-traj2",
      .special = "the office of icl0; the camera is near the desks; ICL-NUIM's files",
      .form = DatasetForm::kIcl,
-     .build = Icl<2>},
+     .furnish = Icl,
+     .path = IclPath<2>},
     {.name = "icl3",
      .plays = "office-traj3",
      .special = "the office of icl0; the camera turns to other plain walls; ICL-NUIM's files",
      .form = DatasetForm::kIcl,
-     .build = Icl<3>},
+     .furnish = Icl,
+     .path = IclPath<3>},
 }};
 
 // The camera of ICL-NUIM, config/ICL.yaml.
 PinholeCamera IclCamera() { return {.fx = 481.2, .fy = 480.0, .cx = 319.5, .cy = 239.5}; }
 
+// The colour camera of a Kinect indoors. With these values and Bayer's pattern, edges are as soft
+// and the noise is as strong as in the images of freiburg1_xyz.
+constexpr double kKinectExposure = 0.02;  // s
+constexpr double kKinectLensBlur = 0.5;   // px
+
 Sensor::Options SensorOf(DatasetForm form) {
   if (form == DatasetForm::kTum) {
-    return {};
+    return {.lens_blur = kKinectLensBlur, .bayer = true};
   }
   return {.model = DepthModel::kIclNuim, .min_depth = 0.1, .max_depth = 13.0};
 }
@@ -207,12 +227,15 @@ std::vector<const SuiteSequence*> SelectSuite(std::span<const std::string> names
 
 SequencePlan PlanOf(const SuiteSequence& sequence, int frames, uint64_t seed) {
   const uint64_t visit = HashSeed(seed, 0, sequence.name);
+  Scene scene = sequence.furnish(frames);
+  scene.world_from_cam = ByHand(sequence.path(frames), visit);
   return {.name = std::string(sequence.name),
           .seed = seed,
-          .scene = sequence.build(frames, visit),
+          .scene = std::move(scene),
           .frames = frames,
           .camera = sequence.form == DatasetForm::kTum ? SyntheticCamera() : IclCamera(),
           .readout_time = sequence.readout_time,
+          .exposure_time = sequence.form == DatasetForm::kTum ? kKinectExposure : 0.0,
           .sensor = SensorOf(sequence.form),
           .sensor_seed = visit,
           .layout = {sequence.form}};

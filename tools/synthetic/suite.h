@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,9 +19,12 @@ struct SuiteSequence {
   std::string_view special;  // what is special about it, a sentence for the user
   DatasetForm form = DatasetForm::kTum;
   double readout_time = 0.0;  // s, of the rolling shutter
-  // The scene with its camera's path for so many frames. It is always the same scene; `visit` is
-  // the seed of the motion of the hand.
-  Scene (*build)(int frames, uint64_t visit) = nullptr;
+  // The scene, always the same, without the path of the camera. Whatever moves in it does so in the
+  // given number of frames.
+  Scene (*furnish)(int frames) = nullptr;
+  // The path of the camera (world from camera at a time in seconds), without the motion of the
+  // hand.
+  std::function<Rigid3(double)> (*path)(int frames) = nullptr;
 };
 
 inline constexpr int kSuiteFrames = 300;
