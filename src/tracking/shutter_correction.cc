@@ -68,7 +68,7 @@ bool IsPlausible(const Sensor& sensor, const FrameFeatures& features, const Poin
 }
 
 // Whether the velocity that corrected the last frames is still that of the camera.
-bool IsKnown(const Sensor& sensor, const LastFrame& last, double timestamp) {
+bool IsKnown(const LastFrame& last, double timestamp) {
   return last.velocity && timestamp - last.velocity->timestamp <=
                               std::min(kMostAge * last.velocity->duration, kLongestStep);
 }
@@ -126,7 +126,7 @@ bool KeepsInliers(const LocalTracking& corrected, const LocalTracking& tracked,
 std::shared_ptr<const Frame> PredictGlobalShutter(std::shared_ptr<const Frame> frame,
                                                   const Map& map, const Sensor& sensor,
                                                   const LastFrame& last) {
-  if (sensor.readout_time == 0.0 || !IsKnown(sensor, last, frame->timestamp)) {
+  if (sensor.readout_time == 0.0 || !IsKnown(last, frame->timestamp)) {
     return frame;
   }
   const SeenDepths seen =
@@ -152,7 +152,7 @@ std::shared_ptr<const Frame> MeasureGlobalShutter(std::shared_ptr<const Frame> f
       inverse_depths[i] = depth > 0.0 ? 1.0 / depth : inverse_depths[i];
     }
   }
-  if (IsKnown(sensor, last, frame->timestamp) &&
+  if (IsKnown(last, frame->timestamp) &&
       !IsContinuous(sensor, frame->features, last.velocity->velocity,
                     MeanVelocity(motion->cam_from_last_cam, motion->duration), inverse_depths)) {
     return frame;
