@@ -222,13 +222,17 @@ void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
   WarnOfLastFrame(arguments.selection, sequence);
 }
 
-void PrintInput(const RunArguments& arguments, const SystemOptions& options,
+void PrintInput(const RunArguments& arguments, const LoadedSettings& settings,
                 std::span<const std::string> notes, const SequenceMasks& masks) {
+  const SystemOptions& options = settings.options;
   if (arguments.quiet) {
     return;
   }
   for (const std::string& note : notes) {
     Print("{}\n", note);
+  }
+  if (settings.preset) {
+    Print("{}\n", DescribePreset(settings));
   }
   Print("up to {} features on {} levels in each image of {}x{} px\n",
         options.features.feature_count, options.features.level_count, options.camera.width,
@@ -258,8 +262,10 @@ int FailIfAny(std::initializer_list<std::string> failures) {
 
 }  // namespace
 
-int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence,
+int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageSequence& sequence,
             std::span<const std::string> notes) {
+  CheckPresetHasMasks(settings, arguments.masks);
+  SystemOptions& options = settings.options;
   options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
   options.seed = arguments.seed;
   // The first image is loaded now, so that a wrong type or size is reported early.
@@ -275,7 +281,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
                       {arguments.program, arguments.overwrite});
   WarnOfInput(arguments, options, sequence, first, masks);
-  PrintInput(arguments, options, notes, masks);
+  PrintInput(arguments, settings, notes, masks);
   System system(options, ChoosePipeline(arguments), std::move(start));
   const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system);
   if (result.was_interrupted && result.given == 0) {
@@ -283,7 +289,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
     return kFailed;
   }
 
-  RunSummary summary = SummarizeRun(arguments, options, sequence, result, system, groundtruth);
+  RunSummary summary = SummarizeRun(arguments, settings, sequence, result, system, groundtruth);
   summary.provenance.masks_format = masks.format();
   const Trajectory trajectory = system.trajectory();
   const std::shared_ptr<const Map> map =

@@ -124,12 +124,13 @@ size_t CountLoops(const Map& map) {
   return ends / 2;
 }
 
-void SummarizeProvenance(const RunArguments& arguments, const SystemOptions& options,
+void SummarizeProvenance(const RunArguments& arguments, const LoadedSettings& settings,
                          const RunResult& result, ProvenanceSummary& provenance) {
   provenance.program = arguments.program;
   provenance.version = HULLSLAM_VERSION;
   provenance.git = HULLSLAM_GIT;
-  provenance.settings_hash = HashSettings(options);
+  provenance.settings_hash = HashSettings(settings.options);
+  AddPreset(settings, provenance);
   provenance.seed = arguments.seed;
   provenance.pipeline = arguments.threaded ? "threaded" : "sequential";
   provenance.sequence = arguments.sequence.string();
@@ -138,9 +139,10 @@ void SummarizeProvenance(const RunArguments& arguments, const SystemOptions& opt
 
 }  // namespace
 
-RunSummary SummarizeRun(const RunArguments& arguments, const SystemOptions& options,
+RunSummary SummarizeRun(const RunArguments& arguments, const LoadedSettings& settings,
                         const ImageSequence& sequence, const RunResult& result,
                         const System& system, const std::optional<Trajectory>& groundtruth) {
+  const SystemOptions& options = settings.options;
   RunSummary summary;
   summary.trajectory.alignment = ToString(AlignmentOf(options.sensor));
   summary.trajectory.frames = result.given;
@@ -172,7 +174,7 @@ RunSummary SummarizeRun(const RunArguments& arguments, const SystemOptions& opti
   if (options.sensor == SensorKind::kMonocular && arguments.load_map.empty()) {
     summary.initialisation = result.initialisation;
   }
-  SummarizeProvenance(arguments, options, result, summary.provenance);
+  SummarizeProvenance(arguments, settings, result, summary.provenance);
   const Trajectory trajectory = system.trajectory();
   if (groundtruth && !trajectory.empty()) {
     Evaluate(*groundtruth, trajectory, options.sensor, summary.trajectory);

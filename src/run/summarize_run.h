@@ -10,6 +10,7 @@
 #include "hullslam/system/system.h"
 #include "report/lost_frames.h"
 #include "results/summary.h"
+#include "run/load_settings.h"
 #include "run/run_arguments.h"
 
 namespace hullslam {
@@ -26,7 +27,7 @@ struct RunResult {
 
 // What summary.json says of a finished run, but for its masks and objects. Errors are only known
 // with ground truth, which may be absent.
-RunSummary SummarizeRun(const RunArguments& arguments, const SystemOptions& options,
+RunSummary SummarizeRun(const RunArguments& arguments, const LoadedSettings& settings,
                         const ImageSequence& sequence, const RunResult& result,
                         const System& system, const std::optional<Trajectory>& groundtruth);
 
