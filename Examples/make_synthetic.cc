@@ -1,108 +1,192 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Renders a synthetic RGB-D sequence with exact ground truth of the camera and the objects.
+// Renders synthetic RGB-D sequences with exact ground truth of the camera and the objects.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "hullslam/util/error.h"
 #include "run/command_line.h"
 #include "run/interrupt.h"
 #include "run/program.h"
 #include "synthetic/sequence_writer.h"
+#include "synthetic/suite_writer.h"
 
 namespace {
 
 using hullslam::kDone;
 using hullslam::kFailed;
 using hullslam::synthetic::SequenceOptions;
+using hullslam::synthetic::SuiteOptions;
 
 struct Arguments {
-  std::string folder;
+  std::string folder;  // of one sequence
+  std::string suite;   // folder of a suite; empty for one sequence
+  std::vector<std::string> only;
   std::string scene = "desk";
   std::optional<int> frames;
   SequenceOptions options;
   bool quiet = false;
 };
 
-void AddOptions(CLI::App& app, Arguments& arguments) {
+std::string NamesOfSuite() {
+  std::string names;
+  for (const auto& sequence : hullslam::synthetic::SuiteSequences()) {
+    names += (names.empty() ? "" : ", ") + std::string(sequence.name);
+  }
+  return names;
+}
+
+// The options of a single sequence. They cannot be combined with --suite.
+void AddSequenceOptions(CLI::App& app, CLI::Option& suite, Arguments& arguments) {
   app.add_option("OUT", arguments.folder,
                  "folder to create, with a TUM sequence and its ground truth")
-      ->required();
+      ->excludes(&suite);
   app.add_option("--scene", arguments.scene, "scene")
       ->check(CLI::IsMember(
           {"desk", "room", "lowtexture", "dynamic", "house", "twins", "rotation", "wall"}))
-      ->capture_default_str();
-  app.add_option("--frames", arguments.frames,
-                 "number of frames (default: 300; 600 for room, 1800 for house, 930 for twins)")
-      ->check(CLI::Range(1, 100000));
-  app.add_option("--seed", arguments.options.seed, "seed of textures, hand motion and noise")
+      ->excludes(&suite)
       ->capture_default_str();
   app.add_option("--rearranged", arguments.options.rearranged,
                  "a later visit of desk, room or house: some objects were moved, taken away and "
-                 "added, chosen by this seed");
+                 "added, chosen by this seed")
+      ->excludes(&suite);
   auto* const readout_time =
       app.add_option("--readout-time", arguments.options.readout_time,
                      "seconds from the top to the bottom row of an image (rolling shutter); "
-                     "negative if the bottom row is exposed first");
+                     "negative if the bottom row is exposed first")
+          ->excludes(&suite);
   hullslam::ExpectNumber(*readout_time->capture_default_str(), -0.1, 0.1);
+}
+
+void AddOptions(CLI::App& app, Arguments& arguments) {
+  auto* const suite =
+      app.add_option("--suite", arguments.suite,
+                     "folder to create, with the ten sequences of the suite and suite.json, "
+                     "instead of one sequence in OUT");
+  app.add_option("--only", arguments.only,
+                 "only these sequences of the suite, separated by commas: " + NamesOfSuite())
+      ->delimiter(',')
+      ->type_name("NAME,...")
+      ->expected(1)
+      ->needs(suite);
+  AddSequenceOptions(app, *suite, arguments);
+  app.add_option("--frames", arguments.frames,
+                 "number of frames (default: 300; 600 for room, 1800 for house, 930 for twins), "
+                 "in a suite of each sequence, at least 2")
+      ->check(CLI::Range(1, 100000));
+  app.add_option("--seed", arguments.options.seed,
+                 "seed of textures, hand motion and noise; in a suite of the latter two")
+      ->capture_default_str();
   app.add_option("--threads", arguments.options.threads,
                  "number of threads, 0 for one per core; does not change the output")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
-  app.add_flag("--force", arguments.options.force, "replace an earlier synthetic sequence in OUT");
+  app.add_flag("--force", arguments.options.force,
+               "replace an earlier synthetic sequence, or suite, in the folder");
   app.add_flag("--quiet", arguments.quiet, "print nothing but errors");
   hullslam::AddVersionAndExitCodes(app, "done", "interrupted or failed (then nothing is written)",
-                                   "bad usage or an OUT that may not be written");
+                                   "bad usage or a folder that may not be written");
 }
 
-int Render(Arguments& arguments) {
+// Shows how many of `frames` frames are finished.
+class Progress {
+ public:
+  Progress(int frames, bool quiet) : frames_(frames), quiet_(quiet) {}
+
+  double Seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  // `what` comes before the numbers. Returns false if the user has interrupted the program.
+  bool Show(std::string_view what, int done) {
+    if (!quiet_ && (terminal_ || done % 50 == 0 || done == frames_)) {
+      std::fprintf(stderr, "%s%.*s%d/%d frames, %.1f frames/s%s", terminal_ ? "\r" : "",
+                   static_cast<int>(what.size()), what.data(), done, frames_, done / Seconds(),
+                   terminal_ ? "\033[K" : "\n");
+    }
+    return !hullslam::IsInterrupted();
+  }
+  // Ends the line, and says if nothing was written. Returns the exit code.
+  int End(bool finished) const {
+    if (!quiet_ && terminal_) {
+      std::fputc('\n', stderr);
+    }
+    if (!finished) {
+      std::fprintf(stderr, "error: the program was interrupted; nothing was written\n");
+    }
+    return finished ? kDone : kFailed;
+  }
+
+ private:
+  int frames_;
+  bool quiet_;
+  bool terminal_ = isatty(STDERR_FILENO) == 1;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+int RenderOne(Arguments& arguments) {
   SequenceOptions& options = arguments.options;
   options.scene = hullslam::synthetic::ParseSceneKind(arguments.scene);
   options.frames = arguments.frames.value_or(hullslam::synthetic::DefaultFrames(options.scene));
-  const bool terminal = isatty(STDERR_FILENO) == 1;
-  const auto start = std::chrono::steady_clock::now();
-  const auto seconds = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
-  const auto progress = [&](int done) {
-    if (!arguments.quiet && (terminal || done % 50 == 0 || done == options.frames)) {
-      std::fprintf(stderr, "%s%d/%d frames, %.1f frames/s%s", terminal ? "\r" : "", done,
-                   options.frames, done / seconds(), terminal ? "" : "\n");
-    }
-    return !hullslam::IsInterrupted();
-  };
-  const bool finished = hullslam::synthetic::WriteSequence(arguments.folder, options, progress);
-  if (!arguments.quiet && terminal) {
-    std::fputc('\n', stderr);
-  }
-  if (!finished) {
-    std::fprintf(stderr, "error: the program was interrupted; nothing was written\n");
-    return kFailed;
-  }
-  if (!arguments.quiet) {
+  Progress progress(options.frames, arguments.quiet);
+  const int code = progress.End(hullslam::synthetic::WriteSequence(
+      arguments.folder, options, [&](int done) { return progress.Show("", done); }));
+  if (code == kDone && !arguments.quiet) {
     std::printf("%s: %d frames of scene %s, seed %llu, in %.1f s\n", arguments.folder.c_str(),
                 options.frames, arguments.scene.c_str(),
-                static_cast<unsigned long long>(options.seed), seconds());
+                static_cast<unsigned long long>(options.seed), progress.Seconds());
   }
-  return kDone;
+  return code;
+}
+
+int RenderSuite(const Arguments& arguments) {
+  const SuiteOptions options{.frames = arguments.frames.value_or(hullslam::synthetic::kSuiteFrames),
+                             .seed = arguments.options.seed,
+                             .only = arguments.only,
+                             .force = arguments.options.force,
+                             .threads = arguments.options.threads};
+  if (options.frames < 2) {
+    throw hullslam::InputError("--frames: 1 given, expected at least 2 for a suite");
+  }
+  const auto sequences = static_cast<int>(hullslam::synthetic::SelectSuite(options.only).size());
+  Progress progress(sequences * options.frames, arguments.quiet);
+  const int code = progress.End(hullslam::synthetic::WriteSuite(
+      arguments.suite, options, [&](std::string_view name, int done) {
+        return progress.Show(std::string(name) + ": ", done);
+      }));
+  if (code == kDone && !arguments.quiet) {
+    std::printf("%s: %d sequences of %d frames, seed %llu, in %.1f s\n", arguments.suite.c_str(),
+                sequences, options.frames, static_cast<unsigned long long>(options.seed),
+                progress.Seconds());
+  }
+  return code;
 }
 
 int Run(int argc, char** argv) {
   Arguments arguments;
   CLI::App app(
-      "Renders a synthetic RGB-D sequence with exact ground truth of the camera and the "
-      "objects.",
+      "Renders a synthetic RGB-D sequence with exact ground truth of the camera and the objects, "
+      "or a suite of ten sequences.",
       "make_synthetic");
   AddOptions(app, arguments);
   if (!hullslam::ParseCommandLine(app, argc, argv)) {
     return kDone;
   }
   hullslam::CatchInterrupts();  // then an interrupted program can remove its unfinished sequence
-  return Render(arguments);
+  if (!arguments.suite.empty()) {
+    return RenderSuite(arguments);
+  }
+  if (arguments.folder.empty()) {
+    throw hullslam::InputError("expected OUT, the folder to create, or --suite OUT");
+  }
+  return RenderOne(arguments);
 }
 
 }  // namespace

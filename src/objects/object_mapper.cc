@@ -351,7 +351,7 @@ void ObjectMapper::CullSeldomSeen(Map& map, KeyframeId keyframe) {
       culled.emplace_back(id, "no keyframe observes the object any more");
     } else if (object.state == ObjectState::kCandidate &&
                object.observations.back().keyframe.value + candidate_keyframes < keyframe.value) {
-      culled.emplace_back(id, fmt::format("a candidate that was not seen for {} keyframes",
+      culled.emplace_back(id, fmt::format("not mapped yet, and not seen for {} keyframes",
                                           culling.candidate_keyframes));
     } else if (object.visible >= culling.min_visible &&
                object.found < culling.min_found_ratio * object.visible) {

@@ -74,13 +74,6 @@ KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor
           .requests_waiting = mapper.requests_waiting};
 }
 
-// Whether the source begins at the last frame. The others may find another place or island, whose
-// poses do not fit exactly to those of the last frame.
-bool BeginsAtLastFrame(PoseSource* source) {
-  return std::find(kRelocalisationSources.begin(), kRelocalisationSources.end(), source) ==
-         kRelocalisationSources.end();
-}
-
 // The result for a frame without a pose or for a frame of the initial map.
 Tracker::Result MakeResult(std::shared_ptr<const Frame> frame, TrackingState state) {
   Tracker::Result result;

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tests of scripts/degrade_sequence.py with a sequence of eight frames."""
 
-import argparse
 import pathlib
 import subprocess
 import sys
@@ -13,8 +12,10 @@ import numpy as np
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "degrade_sequence.py"
 sys.path.insert(0, str(SCRIPT.parent))
-import degrade_sequence  # noqa: E402
+import disturbances  # noqa: E402
 import leave_and_return  # noqa: E402
+import tum_and_icl  # noqa: E402
+import yolo_masks  # noqa: E402
 
 try:
     import cv2
@@ -128,8 +129,8 @@ class DegradeSequenceTest(unittest.TestCase):
 
     def test_masks(self):
         self.run_script("--mask-shift", 6.4)
-        for before, after in zip(degrade_sequence.read_masks(self.sequence / "masks/0.txt"),
-                                 degrade_sequence.read_masks(self.out / "masks/0.txt")):
+        for before, after in zip(yolo_masks.read_masks(self.sequence / "masks/0.txt"),
+                                 yolo_masks.read_masks(self.out / "masks/0.txt")):
             moves = (after[1] - before[1]) * [64, 32]
             np.testing.assert_allclose(np.linalg.norm(moves, axis=1), 6.4, atol=1e-5)
             np.testing.assert_allclose(moves, moves[:1].repeat(3, axis=0), atol=1e-5)
@@ -167,36 +168,182 @@ class DegradeSequenceTest(unittest.TestCase):
         self.assertEqual(turned[12, 4, 0], 255, "now at the top left")
         self.assertEqual(cv2.imread(str(self.out / "depth/d0.png"),
                                     cv2.IMREAD_UNCHANGED).shape, (64, 32))
-        np.testing.assert_allclose(degrade_sequence.read_masks(self.out / "masks/0.txt")[1][1],
+        np.testing.assert_allclose(yolo_masks.read_masks(self.out / "masks/0.txt")[1][1],
                                    [[0.3, 0.7], [0.3, 0.6], [0.4, 0.6]])
 
     def test_changes_of_images(self):
         image = np.full((32, 32, 3), 100, np.uint8)
-        self.assertEqual(degrade_sequence.brightness(image, 1.5, None, 29).max(), 100)
-        self.assertEqual(degrade_sequence.brightness(image, 1.5, None, 30).min(), 150)
-        self.assertEqual(degrade_sequence.brightness(image, 3.0, None, 59).min(), 255)
+        self.assertEqual(disturbances.brightness(image, 1.5, None, 29).max(), 100)
+        self.assertEqual(disturbances.brightness(image, 1.5, None, 30).min(), 150)
+        self.assertEqual(disturbances.brightness(image, 3.0, None, 59).min(), 255)
         if cv2:
             image[:, 16:] = 200
-            blurred = degrade_sequence.blur(image, 2.0, None, 0)[16, :, 0].astype(int)
+            blurred = disturbances.blur(image, 2.0, None, 0)[16, :, 0].astype(int)
             self.assertTrue(100 < blurred[15] < 150 < blurred[16] < 200, blurred)
 
     def test_depth_is_paired_by_the_smallest_difference(self):
-        self.assertEqual(degrade_sequence.pair_depth([1.0, 1.01], [1.011, 1.03, 0.985]),
+        self.assertEqual(tum_and_icl.pair_depth([1.0, 1.01], [1.011, 1.03, 0.985]),
                          {0: 2, 1: 0})
 
-    def test_bad_input(self):
-        for arguments in (["--missing", "4/4"], ["--missing", "x"], ["--late", "nan"],
-                          ["--late", -1], ["--mask-drop", 2], ["--turn", 45], ["--seed", -1],
-                          ["--masks", self.dir / "none"], ["--early", 250], ["--stall", "0/3"]):
+    def files(self):
+        return {str(path.relative_to(self.out)): path.read_bytes()
+                for path in sorted(self.out.rglob("*")) if path.is_file()}
+
+    @unittest.skipUnless(cv2, "needs OpenCV for Python")
+    def test_each_random_disturbance_repeats_with_its_seed(self):
+        for option, amount in (("--late", 50), ("--noise", 5), ("--depth-holes", 0.5),
+                               ("--mask-shift", 3), ("--mask-rough", 1), ("--mask-drop", 0.5),
+                               ("--mask-confuse", 0.5), ("--mask-swap", 0.5)):
+            found = []
+            for name, seed in (("first", 3), ("again", 3), ("other", 4)):
+                self.out = self.dir / f"{option[2:]}-{name}"
+                self.run_script(option, amount, "--seed", seed)
+                found.append(self.files())
+            with self.subTest(option):
+                self.assertEqual(found[0], found[1])
+                self.assertNotEqual(found[0], found[2])
+
+    @unittest.skipUnless(cv2, "needs OpenCV for Python")
+    def test_blur_and_brightness_are_the_same_for_all_seeds(self):
+        found = []
+        for seed in (1, 2):
+            self.out = self.dir / str(seed)
+            self.run_script("--blur", 2, "--brightness", 1.5, "--seed", seed)
+            found.append(self.files())
+        self.assertEqual(found[0], found[1])
+
+    def test_every_nth_image_is_dropped(self):
+        self.run_script("--missing", "1/3")
+        self.assert_stamps([10.0, 10.1, 10.3, 10.4, 10.6, 10.7])
+        self.assertEqual(sorted(path.stem for path in (self.out / "masks").iterdir()),
+                         ["0", "1", "3", "4", "6", "7"])
+
+    def test_rough_outlines_keep_their_place(self):
+        angles = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
+        circle = 100.0 + 50.0 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        radii = []
+        for seed in range(20):
+            rough = disturbances.rough_outline(circle, 2.0, np.random.default_rng(seed))
+            radii.append(np.linalg.norm(rough - 100.0, axis=1))
+            moves = np.linalg.norm(np.diff(rough, axis=0), axis=1)
+            self.assertLess(moves.max(), 3.0, "neighbouring points stay together")
+        self.assertAlmostEqual(np.mean(radii), 50.0, delta=0.3)
+        # Between the points with independent errors, the deviation is smaller.
+        self.assertAlmostEqual(np.std(radii), 2.0, delta=0.5)
+        np.testing.assert_array_equal(
+            disturbances.rough_outline(circle, 0.0, np.random.default_rng(0)), circle)
+
+    def test_masks_may_be_left_out(self):
+        (self.sequence / "masks/0.txt").write_text("broken")
+        self.run_script("--no-masks")
+        self.assertFalse((self.out / "masks").exists())
+
+    def make_icl(self):
+        (self.sequence / "rgb.txt").unlink()
+        for i in range(8):
+            (self.sequence / f"depth/d{i}.png").rename(self.sequence / f"depth/{i}.png")
+        (self.sequence / "associations.txt").write_text("".join(
+            f"{i} depth/{i}.png {i} rgb/{i}.png\n" for i in range(8)))
+        (self.sequence / "groundtruth.txt").rename(self.sequence / "made.gt.freiburg")
+
+    @unittest.skipUnless(cv2, "needs OpenCV for Python")
+    def test_a_sequence_of_icl_nuim(self):
+        self.make_icl()
+        self.run_script("--missing", "1/4", "--noise", 4, "--mask-drop", 1)
+        self.assertEqual((self.out / "associations.txt").read_text().splitlines(), [
+            f"{i} depth/{i}.png {i} rgb/{i}.png" for i in (0, 1, 2, 4, 5, 6)])
+        self.assertFalse((self.out / "rgb.txt").exists())
+        self.assertTrue((self.out / "made.gt.freiburg").is_symlink())
+        self.assertEqual((self.out / "masks/4.txt").read_text(), "")
+        self.assertEqual(len(list((self.out / "rgb").iterdir())), 6)
+
+    def test_images_of_icl_nuim_have_no_stamps(self):
+        self.make_icl()
+        for arguments in (["--late", 5], ["--stall", "2/4"], ["--even", "--missing", "1/4"]):
+            self.out = self.dir / arguments[0][2:]
+            self.assertIn("numbers", self.refuse(*arguments))
+        list_file = self.sequence / "associations.txt"
+        for text in ("0 depth/0.png 1 rgb/1.png\n", "0 depth/0.png\n", "0.5 a 0.5 b\n"):
+            list_file.write_text(text)
+            self.assertIn("associations.txt", self.refuse())
+
+    def refuse(self, *arguments):
+        """The message of a call that must fail and write nothing."""
+        before = set(self.dir.iterdir())
+        errors = self.run_script(*arguments, code=2).stderr
+        self.assertEqual(set(self.dir.iterdir()), before)
+        return errors
+
+    def test_bad_amounts(self):
+        for arguments in (["--missing", "4/4"], ["--missing", "x"], ["--missing", "1/2/3"],
+                          ["--stall", "0/3"], ["--stall", "a/b"], ["--late", "nan"],
+                          ["--late", -1], ["--early", 250], ["--pairs", "x"], ["--blur", 0],
+                          ["--blur", "inf"], ["--brightness", -1], ["--brightness", 11],
+                          ["--noise", -1], ["--noise", 256], ["--depth-holes", 1.1],
+                          ["--depth-holes", "nan"], ["--turn", 45], ["--mask-shift", -1],
+                          ["--mask-rough", "x"], ["--mask-drop", 2], ["--mask-confuse", -0.1],
+                          ["--mask-swap", "nan"], ["--seed", -1], ["--seed", "x"],
+                          ["--masks", self.dir / "none"], ["--no-masks", "--masks", "x"]):
             with self.subTest(arguments):
-                self.run_script(*arguments, code=2)
-                self.assertFalse(self.out.exists())
-        (self.sequence / "masks/0.txt").write_text("41 0.1 x\n")
-        self.assertIn("masks/0.txt:1", self.run_script("--mask-drop", 1, code=2).stderr)
-        self.assertIn("is not empty", self.run_script(code=2).stderr)
-        self.out = self.dir / "out2"
-        (self.sequence / "rgb.txt").write_text("2 a\n1 b\n")
-        self.assertIn("do not increase", self.run_script(code=2).stderr)
+                errors = self.refuse(*arguments)
+                self.assertIn("time stamps" if arguments == ["--early", 250] else arguments[0],
+                              errors)
+
+    def test_masks_in_other_formats_are_refused(self):
+        first = self.sequence / "masks/0.txt"
+        for line, part in (("41 0.1 x", "masks/0.txt:1"), ("cup 0.1 0.1 0.2 0.1 0.2 0.2", "class"),
+                           ("41 0.5 0.5 0.1 0.1 0.9", "boxes"), ("41 10 20 30 20 30 40", "shares"),
+                           ("41 0.1 0.1 0.2 0.1 0.2 nan", "shares"),
+                           ("\n0 3 41 0.9 100.5 20 30 20 30 40", "masks/0.txt:2")):
+            first.write_text(line + "\n")
+            with self.subTest(line):
+                self.assertIn(part, self.refuse("--mask-drop", 1))
+                self.assertIn("yolo-seg", self.refuse() if "x" not in line else "yolo-seg")
+        first.write_bytes(b"\xff\xfe\0")
+        self.assertIn("no text file", self.refuse())
+        other = self.sequence / "labels"
+        other.mkdir()
+        (other / "0.png").write_bytes(b"")
+        self.assertIn("labels: has no file 0.txt but 0.png", self.refuse("--masks", other))
+        self.assertIn("yolo-seg", self.refuse("--masks", other))
+        self.assertIn("is no folder", self.refuse("--masks", first))
+
+    def test_masks_that_are_not_there(self):
+        (self.sequence / "masks").rename(self.sequence / "others")
+        self.assertIn("--mask-drop needs masks", self.refuse("--mask-drop", 0.5))
+        self.run_script("--mask-drop", 0.5, "--masks", self.sequence / "others")
+
+    @unittest.skipUnless(cv2, "needs OpenCV for Python")
+    def test_broken_images(self):
+        leave_and_return.write_png(self.sequence / "depth/d3.png", (64, 32), 8, 1, 50)
+        self.assertIn("d3.png: expected a depth image with one channel of 16 bits",
+                      self.refuse("--depth-holes", 0.5))
+        (self.sequence / "rgb/2.png").write_bytes(b"no image")
+        self.assertIn("rgb/2.png: is no image", self.refuse("--blur", 1))
+        (self.sequence / "rgb/2.png").unlink()
+        self.assertIn("rgb/2.png: no such file", self.refuse())
+
+    def test_broken_lists_and_folders(self):
+        rgb = self.sequence / "rgb.txt"
+        for text, part in (("2 rgb/0.png\n1 rgb/1.png\n", "do not increase"), ("", "no lines"),
+                           ("x rgb/0.png\n", "rgb.txt:1"), ("nan rgb/0.png\n", "rgb.txt:1"),
+                           ("1\n", "rgb.txt:1"), ("1 rgb/0.png\n", "fewer than two images")):
+            rgb.write_text(text)
+            with self.subTest(text):
+                self.assertIn(part, self.refuse())
+        rgb.unlink()
+        self.assertIn("is no sequence, expected rgb.txt", self.refuse())
+        self.sequence = self.dir / "none"
+        self.assertIn("none: is no folder", self.refuse())
+
+    def test_an_output_that_may_not_be_written(self):
+        self.out.mkdir()
+        self.run_script()  # an empty folder is filled
+        self.assertIn("is not empty", self.refuse())
+        self.out = self.dir / "in/rgb.txt"
+        self.assertIn("is no folder", self.refuse())
+        self.out = self.dir / "in/rgb.txt/out"
+        self.refuse()
 
 
 if __name__ == "__main__":

@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "hullslam/util/check.h"
 #include "synthetic/hash_noise.h"
+#include "util/random_seed.h"
 
 namespace hullslam::synthetic {
 namespace {
@@ -54,12 +56,27 @@ Rigid3 HandMotion::Apply(const Rigid3& world_from_cam, double time) const {
   return world_from_cam * motion;
 }
 
+std::function<Rigid3(double)> ByHand(std::function<Rigid3(double)> path, uint64_t visit) {
+  const HandMotion hand(HashSeed(visit, 0, "hand"));
+  return [path = std::move(path), hand](double time) { return hand.Apply(path(time), time); };
+}
+
 Rigid3 OrbitPath::WorldFromCam(double time) const {
   const double angle = start_angle + angular_speed * time;
   const double distance = radius * (1.0 + 0.08 * std::sin(0.8 * time));
   const Vector3d eye(distance * std::cos(angle), distance * std::sin(angle),
                      height + 0.07 * std::sin(0.6 * time + 1.0));
   const Vector3d sway(0.10 * std::sin(0.5 * time), 0.06 * std::cos(0.4 * time), 0.0);
+  return LookAt(eye, target + sway);
+}
+
+Rigid3 SweepPath::WorldFromCam(double time) const {
+  const double phase = kTwoPi * frequency * time;
+  const double angle = middle_angle + swing * std::sin(phase);
+  const double distance = radius * (1.0 + 0.15 * std::sin(0.6 * phase + 1.0));
+  const Vector3d eye(distance * std::cos(angle), distance * std::sin(angle),
+                     height + 0.12 * std::sin(1.4 * phase));
+  const Vector3d sway(0.15 * std::sin(0.8 * phase), 0.05 * std::cos(0.5 * phase), 0.0);
   return LookAt(eye, target + sway);
 }
 
@@ -115,6 +132,11 @@ Rigid3 WaypointPath::WorldFromCam(double time) const {
   const Vector3d forward(std::cos(at[4]) * std::cos(at[3]), std::cos(at[4]) * std::sin(at[3]),
                          std::sin(at[4]));
   return LookAt(eye, eye + forward);
+}
+
+PacedPath::PacedPath(WaypointPath path, double seconds)
+    : path_(std::move(path)), pace_(path_.duration() / seconds) {
+  Check(seconds > 0.0, "a walk needs some time");
 }
 
 }  // namespace hullslam::synthetic

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "hullslam/geometry/rigid3.h"
@@ -25,6 +26,15 @@ class HandMotion {
   Eigen::Matrix<double, 6, 3> phases_;
 };
 
+// The pose of the camera as a function of the time in seconds, on a path with the shaking of a
+// hand. Visits of a scene differ in `visit`.
+std::function<Rigid3(double)> ByHand(std::function<Rigid3(double)> path, uint64_t visit);
+template <typename Path>
+requires requires(const Path& path) { path.WorldFromCam(0.0); }
+std::function<Rigid3(double)> ByHand(const Path& path, uint64_t visit) {
+  return ByHand([path](double time) { return path.WorldFromCam(time); }, visit);
+}
+
 // A path around a table. The camera looks at the middle of the table from a changing distance and
 // height.
 struct OrbitPath {
@@ -32,6 +42,18 @@ struct OrbitPath {
   double height = 1.32;          // metres
   double start_angle = -2.3;     // radians from +x
   double angular_speed = 0.165;  // radians per second
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();
+  Rigid3 WorldFromCam(double time) const;
+};
+
+// A path to and fro on an arc around a table, as of somebody who looks at it from both sides. The
+// camera looks at the middle of the table.
+struct SweepPath {
+  double radius = 1.35;        // metres from the axis, on average
+  double height = 1.3;         // metres, on average
+  double middle_angle = -1.6;  // radians from +x
+  double swing = 0.6;          // radians to either side
+  double frequency = 0.13;     // sweeps there and back per second
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
   Rigid3 WorldFromCam(double time) const;
 };
@@ -74,6 +96,18 @@ class WaypointPath {
 
   std::vector<double> times_;
   std::vector<Values> values_;
+};
+
+// The same walk in another time.
+class PacedPath {
+ public:
+  // `seconds`: until the last waypoint. Throws CheckError unless it is positive.
+  PacedPath(WaypointPath path, double seconds);
+  Rigid3 WorldFromCam(double time) const { return path_.WorldFromCam(pace_ * time); }
+
+ private:
+  WaypointPath path_;
+  double pace_;  // planned seconds per second
 };
 
 }  // namespace hullslam::synthetic

@@ -33,6 +33,7 @@ std::string ShapeName(ShapeKind kind) {
       return "superquadric";
     case ShapeKind::kCylinder:
     case ShapeKind::kTorus:
+    case ShapeKind::kRevolved:
       return "compound";
   }
   throw CheckError("unknown kind of shape");
@@ -41,13 +42,14 @@ std::string ShapeName(ShapeKind kind) {
 }  // namespace
 
 int CocoClassId(std::string_view class_name) {
-  static constexpr std::array<std::pair<std::string_view, int>, 24> kClasses = {{
+  static constexpr std::array<std::pair<std::string_view, int>, 28> kClasses = {{
       {"person", 0},    {"backpack", 24},   {"suitcase", 28},  {"sports ball", 32},
       {"bottle", 39},   {"cup", 41},        {"bowl", 45},      {"apple", 47},
       {"orange", 49},   {"chair", 56},      {"couch", 57},     {"bed", 59},
       {"tv", 62},       {"laptop", 63},     {"mouse", 64},     {"potted plant", 58},
       {"keyboard", 66}, {"cell phone", 67}, {"microwave", 68}, {"refrigerator", 72},
       {"book", 73},     {"clock", 74},      {"vase", 75},      {"teddy bear", 77},
+      {"bench", 13},    {"wine glass", 40}, {"banana", 46},    {"donut", 54},
   }};
   for (const auto& [name, id] : kClasses) {
     if (name == class_name) {

@@ -135,33 +135,17 @@ void FurnishDesk(SceneBuilder& builder, const Palette& palette, const RoomSize& 
   AddDeskLights(builder);
 }
 
-// Adds the shaking of a hand, which differs from visit to visit, to the path of the camera.
-template <typename Path>
-void SetPath(const Path& path, uint64_t visit, Scene& scene) {
-  const HandMotion hand(HashSeed(visit, 0, "hand"));
-  scene.world_from_cam = [path, hand](double time) {
-    return hand.Apply(path.WorldFromCam(time), time);
-  };
-}
-
 OrbitPath DeskPath() { return {.target = {0.0, 0.0, kTableHeight + 0.12}}; }
 
 // A loop of fewer than 300 frames is cut off instead of run faster, because a hand cannot turn
 // faster.
 LoopPath RoomPath(int frames) { return {.duration = std::max(frames - 1, 299) / kFramesPerSecond}; }
 
-// A walk at a lower speed than planned.
-struct SlowWalk {
-  WaypointPath path;
-  double pace = 1.0;  // share of the planned speed
-  Rigid3 WorldFromCam(double time) const { return path.WorldFromCam(pace * time); }
-};
-
 // The whole walk in the given number of frames. A walk of fewer frames than the usual number is cut
 // off instead of run faster.
-SlowWalk FitWalk(const WaypointPath& path, int frames, SceneKind kind) {
+PacedPath FitWalk(const WaypointPath& path, int frames, SceneKind kind) {
   const double seconds = (std::max(frames, DefaultFrames(kind)) - 1) / kFramesPerSecond;
-  return {path, path.duration() / seconds};
+  return {path, seconds};
 }
 
 Scene BuildDesk(uint64_t seed, uint64_t visit) {
@@ -171,7 +155,7 @@ Scene BuildDesk(uint64_t seed, uint64_t visit) {
   FurnishDesk(builder, palette, room);
   builder.AddPosters(palette);
   builder.AddShelf(Wall::kBack, -1.1, palette);
-  SetPath(DeskPath(), visit, builder.scene());
+  builder.scene().world_from_cam = ByHand(DeskPath(), visit);
   return builder.Finish();
 }
 
@@ -203,7 +187,7 @@ Scene BuildLowTexture(uint64_t seed) {
   const RoomSize room{.half_x = 2.9, .half_y = 2.6, .height = 2.6};
   FurnishDesk(builder, palette, room);
   EvenOutBrightness(builder.scene(), builder.random());
-  SetPath(DeskPath(), seed, builder.scene());
+  builder.scene().world_from_cam = ByHand(DeskPath(), seed);
   return builder.Finish();
 }
 
@@ -235,21 +219,21 @@ Scene BuildDynamic(uint64_t seed) {
   walker.motion = [orbit, half](double time) { return WalkerPose(orbit, half.z(), time); };
   walker.world_from_object = walker.motion(0.0);
   builder.AddObject(std::move(walker));
-  SetPath(orbit, seed, builder.scene());
+  builder.scene().world_from_cam = ByHand(orbit, seed);
   return builder.Finish();
 }
 
 Scene BuildRoom(int frames, uint64_t seed, uint64_t visit) {
   SceneBuilder builder(HashSeed(seed, 0, "room"));
   FurnishRoom(builder);
-  SetPath(RoomPath(frames), visit, builder.scene());
+  builder.scene().world_from_cam = ByHand(RoomPath(frames), visit);
   return builder.Finish();
 }
 
 Scene BuildHouse(int frames, uint64_t seed, uint64_t visit) {
   SceneBuilder builder(HashSeed(seed, 0, "house"));
   FurnishHouse(builder);
-  SetPath(FitWalk(HousePath(), frames, SceneKind::kHouse), visit, builder.scene());
+  builder.scene().world_from_cam = ByHand(FitWalk(HousePath(), frames, SceneKind::kHouse), visit);
   return builder.Finish();
 }
 
@@ -284,14 +268,14 @@ Scene BuildWall(uint64_t seed) {
       return LookAt(eye, eye + Vector3d::UnitY());
     }
   };
-  SetPath(Path{phase}, seed, builder.scene());
+  builder.scene().world_from_cam = ByHand(Path{phase}, seed);
   return builder.Finish();
 }
 
 Scene BuildTwins(int frames, uint64_t seed) {
   SceneBuilder builder(HashSeed(seed, 0, "twins"));
   FurnishTwins(builder);
-  SetPath(FitWalk(TwinsPath(), frames, SceneKind::kTwins), seed, builder.scene());
+  builder.scene().world_from_cam = ByHand(FitWalk(TwinsPath(), frames, SceneKind::kTwins), seed);
   return builder.Finish();
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "util/random_seed.h"
@@ -79,6 +80,34 @@ bool LostAtGrazingAngle(float cosine, uint64_t word) {
   return cosine < kAlways + (kNever - kAlways) * chance;
 }
 
+// The value at a point between pixels, bilinearly; outside the image that of the nearest pixel.
+float Interpolate(const cv::Mat& depth, float x, float y) {
+  const float u = std::clamp(x, 0.0F, static_cast<float>(depth.cols - 1));
+  const float v = std::clamp(y, 0.0F, static_cast<float>(depth.rows - 1));
+  const int left = std::min(static_cast<int>(u), depth.cols - 2);
+  const int top = std::min(static_cast<int>(v), depth.rows - 2);
+  const float a = u - static_cast<float>(left);
+  const float b = v - static_cast<float>(top);
+  const auto* const upper = depth.ptr<float>(top) + left;
+  const auto* const lower = depth.ptr<float>(top + 1) + left;
+  return (1.0F - b) * ((1.0F - a) * upper[0] + a * upper[1]) +
+         b * ((1.0F - a) * lower[0] + a * lower[1]);
+}
+
+// The image that is left if each pixel keeps one colour, in blocks of 2 x 2 pixels with blue at the
+// upper left, red at the lower right and green elsewhere, and the others are interpolated.
+cv::Mat ThroughBayerFilter(const cv::Mat& image) {
+  cv::Mat filtered(image.size(), CV_8UC1);
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) {
+      filtered.at<uint8_t>(y, x) = image.at<cv::Vec3b>(y, x)[y % 2 + x % 2];
+    }
+  }
+  cv::Mat colours;
+  cv::cvtColor(filtered, colours, cv::COLOR_BayerRG2BGR);  // OpenCV names the second row and column
+  return colours;
+}
+
 uint16_t ToUnits(double metres, double units_per_metre) {
   const double units = std::round(metres * units_per_metre);
   return units > 65535.0 ? uint16_t{0} : static_cast<uint16_t>(units);
@@ -88,6 +117,10 @@ uint16_t ToUnits(double metres, double units_per_metre) {
 
 cv::Mat Sensor::Colour(const RenderedFrame& frame, uint32_t number) const {
   const cv::Size size = frame.colour.size();
+  cv::Mat exact = frame.colour;
+  if (options_.lens_blur > 0.0) {
+    cv::GaussianBlur(frame.colour, exact, {}, options_.lens_blur);
+  }
   cv::Mat image(size, CV_8UC3);
   const uint64_t seed = HashSeed(seed_, number, "colour");
   const float gain =
@@ -101,9 +134,8 @@ cv::Mat Sensor::Colour(const RenderedFrame& frame, uint32_t number) const {
       const float light =
           gain * (options_.noise ? 1.0F - 0.16F * (dx * dx + dy * dy) / reach : 1.0F);
       const uint64_t word = CounterHash(seed, static_cast<uint64_t>(y * size.width + x));
-      const cv::Vec3f& exact = frame.colour.at<cv::Vec3f>(y, x);
       for (int c = 0; c < 3; ++c) {
-        float value = light * exact[c];
+        float value = light * exact.at<cv::Vec3f>(y, x)[c];
         if (options_.noise) {
           value += std::sqrt(0.9F + 0.009F * std::max(0.0F, value)) *
                    normal_(word >> (NormalTable::kBits * c));
@@ -112,10 +144,38 @@ cv::Mat Sensor::Colour(const RenderedFrame& frame, uint32_t number) const {
       }
     }
   }
+  return options_.bayer ? ThroughBayerFilter(image) : image;
+}
+
+// Barron and Malik (CVPR 2013) describe the depth Z (in cm) of a pixel of the Kinect by
+//   35130 / floor(35130 / Z(x + n, y + m) + d + 0.5),
+// where n and m have the standard deviation of 1/2 px and d that of 1/6; the depth between pixels
+// is interpolated. Handa et al. (ICRA 2014) disturb the depth of ICL-NUIM in this way.
+cv::Mat Sensor::IclNuimDepth(const RenderedFrame& frame, uint32_t number) const {
+  constexpr double kDisparityOfMetre = 351.30;
+  constexpr float kShift = 0.5F;
+  constexpr double kDisparityNoise = 1.0 / 6.0;
+  cv::Mat image(frame.depth.size(), CV_16UC1, cv::Scalar(0));
+  const uint64_t seed = HashSeed(seed_, number, "depth");
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) {
+      const uint64_t word = CounterHash(seed, static_cast<uint64_t>(y * image.cols + x));
+      const float u = static_cast<float>(x) + kShift * normal_(word);
+      const float v = static_cast<float>(y) + kShift * normal_(word >> NormalTable::kBits);
+      const double noise = kDisparityNoise * normal_(word >> (2 * NormalTable::kBits));
+      const double disparity = kDisparityOfMetre / Interpolate(frame.depth, u, v);
+      const double z = kDisparityOfMetre / std::max(1.0, std::floor(disparity + noise + 0.5));
+      const bool known = z >= options_.min_depth && z <= options_.max_depth;
+      image.at<uint16_t>(y, x) = known ? ToUnits(z, options_.units_per_metre) : uint16_t{0};
+    }
+  }
   return image;
 }
 
 cv::Mat Sensor::Depth(const RenderedFrame& frame, uint32_t number) const {
+  if (options_.noise && options_.model == DepthModel::kIclNuim) {
+    return IclNuimDepth(frame, number);
+  }
   const cv::Size size = frame.depth.size();
   cv::Mat image(size, CV_16UC1, cv::Scalar(0));
   const uint64_t seed = HashSeed(seed_, number, "depth");

@@ -25,9 +25,6 @@ struct SequenceOptions {
 // A camera with 640x480 px, the intrinsics of TUM freiburg3, and no distortion.
 PinholeCamera SyntheticCamera();
 
-// Time stamp of a frame in seconds, as it is written: 1000 s plus frame / 30 s.
-double FrameStamp(int frame);
-
 // Renders a scene and writes a folder in TUM's format with ground truth (docs/synthetic.md). The
 // result does not depend on `threads`: the same options give the same bytes. Everything is written
 // to a temporary folder next to `folder`, which is moved to its final path at the end. So a failed

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "synthetic/shape.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "hullslam/util/check.h"
 
 namespace hullslam::synthetic {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kMaxError = 4e-5;  // metres
@@ -54,6 +59,25 @@ Vector3d TorusNormal(const Shape& shape, const Vector3d& point) {
   const double ring = shape.half.x() - shape.tube;
   const Vector3d flat(point.x(), 0.0, point.z());
   return point - ring * flat.normalized();
+}
+
+// The normal of the nearest piece of the profile.
+Vector3d RevolvedNormal(const Shape& shape, const Vector3d& point) {
+  const Vector2d flat(point.head<2>().norm(), point.z());
+  double nearest = std::numeric_limits<double>::infinity();
+  Vector2d normal = Vector2d::UnitX();
+  for (size_t i = 1; i < shape.profile.size(); ++i) {
+    const Vector2d along = shape.profile[i] - shape.profile[i - 1];
+    const Vector2d offset = flat - shape.profile[i - 1];
+    const double share = std::clamp(offset.dot(along) / along.squaredNorm(), 0.0, 1.0);
+    const double distance = (offset - share * along).norm();
+    if (distance < nearest) {
+      nearest = distance;
+      normal = Vector2d(along.y(), -along.x());
+    }
+  }
+  const Vector2d outwards = point.head<2>().normalized();  // zero on the axis
+  return {normal.x() * outwards.x(), normal.x() * outwards.y(), normal.y()};
 }
 
 // Adds the vertices of a grid of `rows` x `columns` quads, which are split into triangles. The
@@ -146,6 +170,24 @@ TriangleMesh TorusMesh(const Shape& shape) {
   return mesh;
 }
 
+TriangleMesh RevolvedMesh(const Shape& shape) {
+  TriangleMesh mesh;
+  constexpr int kSegments = 144;
+  for (size_t i = 1; i < shape.profile.size(); ++i) {
+    const Vector2d& from = shape.profile[i - 1];
+    const Vector2d& to = shape.profile[i];
+    AddGrid(
+        1, kSegments,
+        [&](double r, double c) {
+          const Vector2d& at = r < 0.5 ? from : to;
+          const double angle = kFullTurn * (c < 1.0 ? c : 0.0);
+          return Vector3d(at.x() * std::cos(angle), at.x() * std::sin(angle), at.y());
+        },
+        mesh);
+  }
+  return mesh;
+}
+
 }  // namespace
 
 Shape Shape::Box(const Vector3d& half) { return {.kind = ShapeKind::kBox, .half = half}; }
@@ -166,6 +208,23 @@ Shape Shape::Torus(double ring, double tube) {
   return {.kind = ShapeKind::kTorus, .half = {ring + tube, tube, ring + tube}, .tube = tube};
 }
 
+Shape Shape::Revolved(std::vector<Vector2d> profile) {
+  Check(profile.size() >= 3 && profile.front().x() == 0.0 && profile.back().x() == 0.0,
+        "the profile of a solid of revolution begins and ends at the axis");
+  Eigen::AlignedBox2d box;
+  for (const Vector2d& point : profile) {
+    Check(point.x() >= 0.0, "the profile of a solid of revolution is on one side of the axis");
+    box.extend(point);
+  }
+  for (Vector2d& point : profile) {
+    point.y() -= box.center().y();
+  }
+  const double radius = box.max().x();
+  return {.kind = ShapeKind::kRevolved,
+          .half = {radius, radius, 0.5 * box.sizes().y()},
+          .profile = std::move(profile)};
+}
+
 Vector3d Shape::Normal(const Vector3d& point) const {
   const Vector3d q = point.cwiseQuotient(half);
   switch (kind) {
@@ -179,6 +238,8 @@ Vector3d Shape::Normal(const Vector3d& point) const {
       return CylinderNormal(q).normalized();
     case ShapeKind::kTorus:
       return TorusNormal(*this, point).normalized();
+    case ShapeKind::kRevolved:
+      return RevolvedNormal(*this, point).normalized();
   }
   throw CheckError("unknown kind of shape");
 }
@@ -202,6 +263,8 @@ TriangleMesh Tessellate(const Shape& shape) {
       return CylinderMesh(shape);
     case ShapeKind::kTorus:
       return TorusMesh(shape);
+    case ShapeKind::kRevolved:
+      return RevolvedMesh(shape);
   }
   throw CheckError("unknown kind of shape");
 }

@@ -9,6 +9,7 @@
 #include "hullslam/util/error.h"
 #include "synthetic/renderer.h"
 #include "synthetic/sequence_writer.h"
+#include "synthetic/tests/image_motion.h"
 
 namespace hullslam::synthetic {
 namespace {
@@ -20,38 +21,12 @@ constexpr SceneKind kAll[] = {SceneKind::kDesk,     SceneKind::kRoom,  SceneKind
                               SceneKind::kDynamic,  SceneKind::kHouse, SceneKind::kTwins,
                               SceneKind::kRotation, SceneKind::kWall};
 
-PinholeCamera SmallCamera() {
-  return {.fx = 133.85, .fy = 134.8, .cx = 80.0, .cy = 61.9, .width = 160, .height = 120};
-}
-
 TEST(SceneKind, NamesAreParsedAndPrinted) {
   for (const SceneKind kind : kAll) {
     EXPECT_EQ(ParseSceneKind(SceneName(kind)), kind);
   }
   EXPECT_THROW(ParseSceneKind("kitchen"), InputError);
   EXPECT_THROW(ParseSceneKind(""), InputError);
-}
-
-// The largest motion of a visible point from `time` to the next frame, in px of a 640x480 image.
-double LargestMotion(const Scene& scene, const RenderedFrame& frame, double time) {
-  const PinholeCamera small = SmallCamera();
-  const Rigid3 world_from_cam = scene.world_from_cam(time);
-  const double next = time + 1.0 / 30.0;
-  const Rigid3 next_from_world = Inverse(scene.world_from_cam(next));
-  double largest = 0.0;
-  for (int y = 0; y < small.height; y += 4) {
-    for (int x = 0; x < small.width; x += 4) {
-      const Vector2d pixel(x, y);
-      Vector3d point = world_from_cam * small.Unproject(pixel, frame.depth.at<float>(y, x));
-      const int object = frame.instance.at<int16_t>(y, x);
-      if (object >= 0) {
-        const SceneObject& moving = scene.objects[static_cast<size_t>(object)];
-        point = moving.WorldFromObject(next) * (Inverse(moving.WorldFromObject(time)) * point);
-      }
-      largest = std::max(largest, 4.0 * (small.Project(next_from_world * point) - pixel).norm());
-    }
-  }
-  return largest;
 }
 
 void ExpectClosedFurnishedAndSlowEnoughToTrack(SceneKind kind, int step) {

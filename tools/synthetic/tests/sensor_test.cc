@@ -52,6 +52,91 @@ TEST(Sensor, DepthOutOfRangeOrGrazingIsUnknown) {
   EXPECT_EQ(cv::countNonZero(sensor.Depth(FlatFrame(2.0F, 0.5F), 0)), 320 * 240);
 }
 
+// The usual formula for the Kinect (Nguyen et al. 2012): 0.0012 + 0.0019 (z - 0.4)^2 metres.
+TEST(Sensor, DepthErrorIsAboutThatOfAKinect) {
+  for (const float z : {1.0F, 1.5F, 2.0F, 3.0F, 4.0F}) {
+    const double sigma = 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
+    EXPECT_GT(DepthError(z), 0.6 * sigma) << z;
+    EXPECT_LT(DepthError(z), 1.5 * sigma) << z;
+  }
+}
+
+TEST(Sensor, DepthOfIclNuimIsRoundedDisparityWithSmallNoise) {
+  const Sensor sensor({.model = DepthModel::kIclNuim, .min_depth = 0.1, .max_depth = 13.0}, 1);
+  for (const float z : {0.6F, 2.0F, 4.0F}) {
+    const cv::Mat depth = sensor.Depth(FlatFrame(z, 0.05F), 0);
+    EXPECT_EQ(cv::countNonZero(depth), 320 * 240) << "known also at a grazing angle";
+    cv::Mat metres;
+    depth.convertTo(metres, CV_64F, 1.0 / 5000.0);
+    cv::Scalar mean;
+    cv::Scalar deviation;
+    cv::meanStdDev(metres, mean, deviation);
+    const double step = z * z / 351.3;
+    EXPECT_NEAR(mean[0], z, 0.55 * step);
+    EXPECT_LT(deviation[0], 0.6 * step);
+  }
+  EXPECT_EQ(cv::countNonZero(sensor.Depth(FlatFrame(13.5F, 1.0F), 0)), 0);
+}
+
+// Beside an edge, some pixels take the depth of the other side or one in between.
+TEST(Sensor, DepthEdgesOfIclNuimAreBlurred) {
+  RenderedFrame frame = FlatFrame(1.0F, 1.0F);
+  frame.depth.colRange(160, 320) = 3.0F;
+  const Sensor sensor({.model = DepthModel::kIclNuim, .min_depth = 0.1, .max_depth = 13.0}, 1);
+  const cv::Mat depth = sensor.Depth(frame, 0);
+  int between = 0;
+  for (int y = 0; y < depth.rows; ++y) {
+    for (const int x : {158, 159, 160, 161}) {
+      const double z = depth.at<uint16_t>(y, x) / 5000.0;
+      between += z > 1.1 && z < 2.8 ? 1 : 0;
+    }
+    EXPECT_NEAR(depth.at<uint16_t>(y, 150) / 5000.0, 1.0, 0.01);
+    EXPECT_NEAR(depth.at<uint16_t>(y, 170) / 5000.0, 3.0, 0.08);
+  }
+  EXPECT_GT(between, depth.rows / 4);
+  EXPECT_EQ(cv::norm(depth, sensor.Depth(frame, 0), cv::NORM_INF), 0.0);
+  EXPECT_GT(cv::norm(depth, sensor.Depth(frame, 1), cv::NORM_INF), 0.0);
+}
+
+TEST(Sensor, BayerFilterKeepsAPlainColour) {
+  const cv::Mat colour =
+      Sensor({.bayer = true, .noise = false}, 1).Colour(FlatFrame(1.0F, 1.0F), 0);
+  EXPECT_EQ(colour.at<cv::Vec3b>(7, 9), cv::Vec3b(60, 120, 200));
+  EXPECT_EQ(colour.at<cv::Vec3b>(100, 100), cv::Vec3b(60, 120, 200));
+}
+
+// Mean product of the noise of neighbours, divided by its variance, in the green channel.
+double NoiseCorrelation(const Sensor::Options& options) {
+  const cv::Mat colour = Sensor(options, 1).Colour(FlatFrame(1.0F, 1.0F), 0);
+  double product = 0.0;
+  double variance = 0.0;
+  for (int y = 100; y < 140; ++y) {
+    for (int x = 140; x < 180; ++x) {
+      const double here = colour.at<cv::Vec3b>(y, x)[1] - 120.0;
+      product += here * (colour.at<cv::Vec3b>(y, x + 1)[1] - 120.0);
+      variance += here * here;
+    }
+  }
+  return product / variance;
+}
+
+TEST(Sensor, BayerFilterMakesTheNoiseOfNeighboursAlike) {
+  EXPECT_LT(NoiseCorrelation({}), 0.1);
+  EXPECT_GT(NoiseCorrelation({.bayer = true}), 0.3);
+}
+
+TEST(Sensor, LensBlurSoftensEdgesAndKeepsTheirPlace) {
+  RenderedFrame frame = FlatFrame(1.0F, 1.0F);
+  frame.colour.colRange(160, 320) = cv::Scalar(160.4, 20.0, 0.0);
+  const cv::Mat sharp = Sensor({.noise = false}, 1).Colour(frame, 0);
+  const cv::Mat soft = Sensor({.lens_blur = 0.5, .noise = false}, 1).Colour(frame, 0);
+  const auto blue = [](const cv::Mat& image, int x) { return image.at<cv::Vec3b>(50, x)[0]; };
+  EXPECT_EQ(blue(sharp, 159), 60);
+  EXPECT_GT(blue(soft, 159), 65);
+  EXPECT_LT(blue(soft, 160), 155);
+  EXPECT_EQ(blue(soft, 159) + blue(soft, 160), 220);
+}
+
 TEST(Sensor, DepthErrorGrowsWithTheSquareOfDepth) {
   // Half a step of noise plus rounding: 0.5 to 0.75 steps of 2.87e-3 z^2.
   for (const float z : {1.0F, 2.0F, 4.0F}) {

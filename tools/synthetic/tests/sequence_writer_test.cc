@@ -20,6 +20,7 @@
 #include "results/true_object_file.h"
 #include "support/temporary_folder.h"
 #include "synthetic/object_models.h"
+#include "synthetic/sequence_layout.h"
 
 namespace hullslam::synthetic {
 namespace {
@@ -56,12 +57,6 @@ class SequenceWriterTest : public testing::Test {
   const TemporaryFolder folder_;
   const fs::path& root_ = folder_.path();
 };
-
-TEST(FrameStamp, IsThirtyFramesASecondInMicroseconds) {
-  EXPECT_EQ(FrameStamp(0), 1000.0);
-  EXPECT_NEAR(FrameStamp(1), 1000.033333, 1e-9);
-  EXPECT_NEAR(FrameStamp(30), 1001.0, 1e-9);
-}
 
 TEST_F(SequenceWriterTest, TheSameSeedGivesTheSameBytesWithAnyNumberOfThreads) {
   const SequenceOptions options{.frames = 4, .seed = 7, .threads = 1};
@@ -110,7 +105,7 @@ TEST_F(SequenceWriterTest, GroundTruthIsThePathOfTheCamera) {
     Eigen::Quaterniond& q = pose.rotation;
     file >> stamp >> t.x() >> t.y() >> t.z() >> q.x() >> q.y() >> q.z() >> q.w();
     ASSERT_TRUE(file);
-    EXPECT_NEAR(stamp, FrameStamp(i), 1e-9);
+    EXPECT_NEAR(stamp, SequenceLayout().Stamp(i), 1e-9);
     const Rigid3 error = Inverse(scene.world_from_cam(i / 30.0)) * pose;
     EXPECT_LT(error.translation.norm(), 1e-8);
     EXPECT_LT(LogSo3(error.rotation).norm(), 1e-8);

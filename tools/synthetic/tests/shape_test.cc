@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "hullslam/util/check.h"
 #include "synthetic/tests/implicit_shape.h"
 
 namespace hullslam::synthetic {
@@ -15,9 +16,18 @@ namespace {
 using Eigen::Vector3d;
 
 std::vector<Shape> AllShapes() {
-  return {Shape::Box({0.3, 0.2, 0.1}), Shape::Ellipsoid({0.3, 0.2, 0.1}),
-          Shape::Superquadric({0.1, 0.2, 0.15}, 0.4, 0.7), Shape::Cylinder(0.05, 0.12),
-          Shape::Torus(0.1, 0.02)};
+  return {Shape::Box({0.3, 0.2, 0.1}),
+          Shape::Ellipsoid({0.3, 0.2, 0.1}),
+          Shape::Superquadric({0.1, 0.2, 0.15}, 0.4, 0.7),
+          Shape::Cylinder(0.05, 0.12),
+          Shape::Torus(0.1, 0.02),
+          Shape::Revolved({{0.0, 0.3},
+                           {0.05, 0.3},
+                           {0.1, 0.4},
+                           {0.07, 0.5},
+                           {0.05, 0.5},
+                           {0.06, 0.4},
+                           {0.0, 0.35}})};
 }
 
 TEST(Shape, VerticesAreOnTheSurfaceAndItsExtentsAreTight) {
@@ -57,7 +67,8 @@ TEST(Shape, MatchesHandComputedValues) {
 
 TEST(Shape, NormalIsTheGradient) {
   for (const Shape& shape : AllShapes()) {
-    if (shape.kind == ShapeKind::kBox || shape.kind == ShapeKind::kCylinder) {
+    if (shape.kind == ShapeKind::kBox || shape.kind == ShapeKind::kCylinder ||
+        shape.kind == ShapeKind::kRevolved) {
       continue;  // not smooth
     }
     const TriangleMesh mesh = Tessellate(shape);
@@ -77,6 +88,29 @@ TEST(Shape, NormalsOfFlatSidesPointOutwards) {
   EXPECT_EQ(Shape::Box({1.0, 2.0, 0.5}).Normal({0.2, -2.0, 0.1}), Vector3d(0.0, -1.0, 0.0));
   EXPECT_EQ(Shape::Cylinder(0.5, 2.0).Normal({0.1, 0.1, -2.0}), Vector3d(0.0, 0.0, -1.0));
   EXPECT_TRUE(Shape::Cylinder(0.5, 2.0).Normal({0.3, 0.4, 1.0}).isApprox(Vector3d(0.6, 0.8, 0.0)));
+}
+
+TEST(Shape, NormalsOfASolidOfRevolutionPointOutOfTheMaterial) {
+  // An open cup with an outer radius of 0.5, an inner one of 0.4, and a floor of 0.2.
+  const Shape cup =
+      Shape::Revolved({{0.0, 0.0}, {0.5, 0.0}, {0.5, 2.0}, {0.4, 2.0}, {0.4, 0.2}, {0.0, 0.2}});
+  EXPECT_EQ(cup.half, Vector3d(0.5, 0.5, 1.0));
+  EXPECT_TRUE(cup.Normal({0.3, 0.4, 0.1}).isApprox(Vector3d(0.6, 0.8, 0.0)));
+  EXPECT_TRUE(cup.Normal({0.24, 0.32, 0.1}).isApprox(Vector3d(-0.6, -0.8, 0.0)));
+  EXPECT_TRUE(cup.Normal({0.2, 0.0, -1.0}).isApprox(Vector3d(0.0, 0.0, -1.0)));
+  EXPECT_TRUE(cup.Normal({0.0, 0.0, -0.8}).isApprox(Vector3d(0.0, 0.0, 1.0)));
+  EXPECT_TRUE(cup.Normal({0.0, 0.45, 1.0}).isApprox(Vector3d(0.0, 0.0, 1.0)));
+  for (const Vector3d& vertex : Tessellate(cup).vertices) {
+    EXPECT_NEAR(Implicit(cup, vertex), 0.0, 1e-9);
+  }
+}
+
+TEST(Shape, AProfileMustBeginAndEndAtTheAxis) {
+  EXPECT_THROW(Shape::Revolved({}), CheckError);
+  EXPECT_THROW(Shape::Revolved({{0.0, 0.0}, {0.0, 1.0}}), CheckError);
+  EXPECT_THROW(Shape::Revolved({{0.1, 0.0}, {0.5, 0.0}, {0.0, 1.0}}), CheckError);
+  EXPECT_THROW(Shape::Revolved({{0.0, 0.0}, {0.5, 0.0}, {0.1, 1.0}}), CheckError);
+  EXPECT_THROW(Shape::Revolved({{0.0, 0.0}, {-0.5, 0.0}, {0.0, 1.0}}), CheckError);
 }
 
 TEST(Tessellate, StaysNearTheEllipsoidBetweenVertices) {

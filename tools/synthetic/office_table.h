@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "synthetic/scene_builder.h"
+
+namespace hullslam::synthetic {
+
+// Adds a room of 7 m x 6.4 m with an office table in its middle, whose top is 0.74 m high. Returns
+// the textures.
+Palette FurnishOfficeTable(SceneBuilder& builder);
+
+}  // namespace hullslam::synthetic

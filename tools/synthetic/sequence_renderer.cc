@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "synthetic/sequence_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <iterator>
+#include <mutex>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "hullslam/util/check.h"
+#include "synthetic/mask_outline.h"
+#include "synthetic/motion_blur.h"
+#include "synthetic/renderer.h"
+#include "synthetic/scenes.h"
+#include "synthetic/sequence_files.h"
+
+namespace hullslam::synthetic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMinMaskArea = 100;  // px
+
+std::string Png(const cv::Mat& image) {
+  std::vector<uint8_t> bytes;
+  Check(cv::imencode(".png", image, bytes), "an image could not be encoded");
+  return {bytes.begin(), bytes.end()};
+}
+
+std::string MaskText(const Scene& scene, const cv::Mat& instance) {
+  std::string text;
+  for (const InstanceOutline& outline : FindOutlines(instance, kMinMaskArea)) {
+    text += std::to_string(scene.objects[static_cast<size_t>(outline.object)].class_id);
+    for (const Eigen::Vector2d& vertex : outline.vertices) {
+      fmt::format_to(std::back_inserter(text), " {:.6f} {:.6f}",
+                     std::clamp(vertex.x() / instance.cols, 0.0, 1.0),
+                     std::clamp(vertex.y() / instance.rows, 0.0, 1.0));
+    }
+    text += " 1\n";
+  }
+  return text;
+}
+
+void WriteFrame(const SequencePlan& plan, const Renderer& renderer, const Sensor& sensor, int frame,
+                const fs::path& folder) {
+  const double time = frame / kFramesPerSecond;
+  RenderedFrame rendered = renderer.Render(time);
+  rendered.colour = BlurByMotion(
+      rendered, plan.scene, plan.camera,
+      {.time = time, .readout_time = plan.readout_time, .duration = plan.exposure_time});
+  const std::string stem = plan.layout.Stem(frame);
+  const auto number = static_cast<uint32_t>(frame);
+  WriteNewFile(folder / "rgb" / (stem + ".png"), Png(sensor.Colour(rendered, number)));
+  WriteNewFile(folder / "depth" / (stem + ".png"), Png(sensor.Depth(rendered, number)));
+  WriteNewFile(folder / plan.layout.TumFolder() / "masks" / (stem + ".txt"),
+               MaskText(plan.scene, rendered.instance));
+}
+
+// Calls `write` for all frames from `threads` threads, one call per frame. Returns false if
+// `progress` asked to stop. If frames fail, throws the exception of the first one.
+bool ForEachFrame(int frames, int threads, const std::function<void(int)>& write,
+                  const std::function<bool(int)>& progress) {
+  std::atomic<int> next = 0;
+  std::mutex mutex;
+  int done = 0;
+  bool stopped = false;
+  std::exception_ptr failure;
+  const auto stop = [&] {
+    stopped = true;
+    next = frames;
+  };
+  const auto work = [&] {
+    for (int frame = next++; frame < frames; frame = next++) {
+      try {
+        write(frame);
+        const std::lock_guard lock(mutex);
+        if (!progress(++done)) {
+          stop();
+        }
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        failure = failure ? failure : std::current_exception();
+        stop();
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> pool;
+    pool.reserve(static_cast<size_t>(threads));
+    for (int i = 0; i < threads; ++i) {
+      pool.emplace_back(work);
+    }
+  }
+  if (failure) {
+    std::rethrow_exception(failure);
+  }
+  return !stopped;
+}
+
+}  // namespace
+
+bool RenderSequence(const fs::path& folder, const SequencePlan& plan, int threads,
+                    const std::function<bool(int)>& progress) {
+  fs::create_directory(folder / "rgb");
+  fs::create_directory(folder / "depth");
+  fs::create_directories(folder / plan.layout.TumFolder() / "masks");
+  const Renderer renderer(plan.scene, plan.camera, plan.readout_time);
+  const Sensor sensor(plan.sensor, plan.sensor_seed);
+  const int workers =
+      threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const auto write = [&](int frame) { WriteFrame(plan, renderer, sensor, frame, folder); };
+  if (!ForEachFrame(plan.frames, workers, write, progress)) {
+    return false;
+  }
+  WriteSequenceFiles(folder, plan);
+  return true;
+}
+
+}  // namespace hullslam::synthetic
