@@ -88,7 +88,10 @@ TEST(BoxBoundsCost, KeepsTheLawsWhereItIsCut) {
       is_cut[side] = true;
       const BoxBoundsCost cost(kObjectCamera, box, is_cut, 3.0);
       EXPECT_NEAR(ObjectResidualsOf(cost, state)[side], 0.0, 1e-6);
-      ExpectObjectCostLaws(cost, state, random);
+      // Where an extreme point leaves the part that is left, the second derivative jumps, so near
+      // it the numeric derivative is less precise.
+      ExpectTrueObjectGradient(cost, state, 1e-3);
+      ExpectObjectRigidInvariance(cost, state, random.Pose(2.0, 5.0));
     }
   }
 }

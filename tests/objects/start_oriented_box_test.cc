@@ -45,8 +45,10 @@ TEST(StartByOrientedBox, WithoutDepthTakesLandmarks) {
       .camera = seen.camera(), .views = views, .center = {0.1, 0.0, 0.1}, .options = options};
   ASSERT_EQ(StartByOrientedBox(input).size(), 1u);
   EXPECT_NEAR(StartByOrientedBox(input)[0].half_axes.maxCoeff(), 0.2, 0.03);
+  // Two landmarks that all views show are two, not eight.
+  const std::vector<Eigen::Vector3d> two = {{0.1, 0.0, 0.1}, {0.2, 0.05, 0.15}};
   for (ObjectView& view : views) {
-    view.landmarks.resize(1);
+    view.landmarks = {view.cam_from_world * two[0], view.cam_from_world * two[1]};
   }
   EXPECT_TRUE(StartByOrientedBox(input).empty());
 }

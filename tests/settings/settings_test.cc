@@ -138,10 +138,8 @@ TEST_F(Settings, AFileReplacesThePresetAndOverridesReplaceBoth) {
                                    {"loop.min_matches", "25", "made.yaml:3"},
                                    {"loop.min_landmarks", "50", "made.yaml:4"},
                                    {"ORBextractor.nFeatures", "900", "made.yaml:5"}}};
-  const auto file = folder_.Write("camera.yaml", std::string(kMinimal) +
-                                                     "objects.pose.sigma: 4
-loop.min_matches: 26
-");
+  const auto file = folder_.Write(
+      "camera.yaml", std::string(kMinimal) + "objects.pose.sigma: 4\nloop.min_matches: 26\n");
   const std::vector<std::string> overrides = {"loop.min_matches=27"};
   SettingsReport report;
   const SystemOptions options =
