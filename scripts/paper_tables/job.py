@@ -8,10 +8,12 @@ import glob
 import json
 import os
 import pathlib
+import resource
 import shlex
 import shutil
 import signal
 import subprocess
+import time
 
 from paper_tables.figures import of_objects, of_true_objects, of_trajectory
 from paper_tables.plan import RESULT_VERSION, folder_output, result_file
@@ -132,14 +134,14 @@ def keep_groundtruth(run, folder):
 
 
 def make_run(plan, name):
-    """Makes a run and writes its result, unless the result is there already."""
+    """Makes a run and writes its result, unless the result is there already. Returns whether it did."""
     run = plan["runs"][name]
     folder = pathlib.Path("runs") / name
     result = pathlib.Path(result_file(name, run))
     with locked(folder / ".lock"):
         known = read_json(result)
         if known is not None and known.get("fingerprint") == run["fingerprint"]:
-            return
+            return False
         for old in [*folder.glob("result-*"), folder / ERROR]:
             old.unlink(missing_ok=True)
         shutil.rmtree(folder / "out", ignore_errors=True)
@@ -154,6 +156,7 @@ def make_run(plan, name):
         keep_groundtruth(run, folder)
         write_result(result, run, summary, failure_of(code, message, plan["timeout"]),
                      evaluate(plan, run, folder, summary))
+    return True
 
 
 def write_result(path, run, summary, failure, figures):
@@ -165,13 +168,13 @@ def write_result(path, run, summary, failure, figures):
 
 
 def make_folder(plan, name):
-    """Renders or degrades a sequence, unless it is there already."""
+    """Renders or degrades a sequence, unless it is there already. Returns whether it did."""
     folder = plan["folders"][name]
     target, output = pathlib.Path(name), pathlib.Path(folder_output(name, folder))
     part = target.with_name(target.name + ".part")
     with locked(target.with_name(f".{target.name}.lock")):
         if output.exists() and target.exists():
-            return
+            return False
         for old in target.parent.glob(glob.escape(target.name) + ".made-*"):
             old.unlink()
         for old in (target, part):
@@ -186,6 +189,7 @@ def make_folder(plan, name):
         part.rename(target)
         if output != target:
             output.touch()
+    return True
 
 
 def error_file(kind, name):
@@ -193,14 +197,28 @@ def error_file(kind, name):
     return pathlib.Path("runs") / name / ERROR if kind == "run" else pathlib.Path(f"{name}.{ERROR}")
 
 
+def write_time(kind, name, begin):
+    """Writes how long the job took. It is no part of the result, which must always be the same."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    cpu = sum(usage.ru_utime + usage.ru_stime for usage in used)
+    write(time_file(kind, name), json.dumps(
+        {"cpu_s": round(cpu, 2), "wall_s": round(time.monotonic() - begin, 2)}) + "\n")
+
+
+def time_file(kind, name):
+    return error_file(kind, name).with_name("time.json" if kind == "run" else
+                                            f"{pathlib.Path(name).name}.time.json")
+
+
 def main(words):
     """Makes the job KIND NAME of a PLAN. Exit codes: 0 done, 1 stopped, 2 bad input."""
     plan_file, kind, name = words
     plan = json.loads(pathlib.Path(plan_file).read_text(encoding="utf-8"))
-    error = error_file(kind, name)
+    error, begin = error_file(kind, name), time.monotonic()
     try:
         error.unlink(missing_ok=True)
-        (make_run if kind == "run" else make_folder)(plan, name)
+        if (make_run if kind == "run" else make_folder)(plan, name):
+            write_time(kind, name, begin)
         return 0
     except (InputError, Stopped, OSError) as problem:
         is_full = isinstance(problem, OSError) and problem.errno == errno.ENOSPC

@@ -99,8 +99,10 @@ def overview_cell(report, block, sequence, cell, best):
     text = " / ".join(number(entry["median"] if entry else None, figure) for entry in entries)
     if not any(entries):
         text = "failed" if cell["failures"] else DASH
-    elif cell["failures"]:
-        text += f" !{len(cell['failures'])}"
+    else:
+        text += f" !{len(cell['failures'])}" if cell["failures"] else ""
+        lost = cell["figures"].get("lost")
+        text += f", {lost['median']:.1f} %" if lost and lost["median"] >= 0.05 else ""
     paper = report.paper_figure(block, cell, sequence, key)
     if paper is not None:
         text += f" [{number(paper, figure)}]"
@@ -136,6 +138,7 @@ def overview(report, block):
         notes.append("In square brackets: the paper's figure, on the sequence of the paper.")
     if any(cell["failures"] for cells in block["sequences"].values() for cell in cells):
         notes.append("!n: n runs failed.")
+    notes.append("n %: so many frames have no pose (median of all runs), if any.")
     return Grid(report.title(block), head, rows, notes)
 
 
