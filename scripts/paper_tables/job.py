@@ -134,7 +134,10 @@ def keep_groundtruth(run, folder):
 
 
 def make_run(plan, name):
-    """Makes a run and writes its result, unless the result is there already. Returns whether it did."""
+    """Makes a run and writes its result, unless the result is there already.
+
+    Returns whether it did.
+    """
     run = plan["runs"][name]
     folder = pathlib.Path("runs") / name
     result = pathlib.Path(result_file(name, run))

@@ -6,8 +6,8 @@ from paper_tables.text import DASH, claims_grid, grids, preface, ranking_grid
 SPECIAL = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_",
            "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}",
            DASH: "--", "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}"}
-HEAD = r"""% Made by scripts/reproduce_tables.py. A single table can be copied into a paper; it needs the
-% packages booktabs and longtable.
+HEAD = r"""% Made by scripts/reproduce_tables.py. A single table can be copied into a paper;
+% it needs the packages booktabs and longtable.
 \documentclass[10pt]{article}
 \usepackage[utf8]{inputenc}
 \usepackage[a3paper,landscape,margin=15mm]{geometry}

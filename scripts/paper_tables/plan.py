@@ -245,7 +245,8 @@ def cell_runs(table, request, planner, sequence, mode):
         for row in table.rows:
             variant = request.definitions.variants[row.variant]
             if degradation and degradation.only_with_objects and not variant.objects:
-                found = {seed: (None, "the masks of objects do not matter") for seed in request.seeds}
+                found = {seed: (None, "the masks of objects do not matter")
+                         for seed in request.seeds}
             else:
                 found = {seed: planner.add(sequence, mode, variant, seed, degradation, level)
                          for seed in request.seeds}

@@ -18,8 +18,9 @@ from run_files import read_trajectory  # noqa: E402
 
 COLUMNS = 3  # of panels
 MAX_POINTS = 150  # of a curve
-STYLE = {"svg.fonttype": "none", "font.sans-serif": ["DejaVu Sans"], "font.size": 8, "axes.titlesize": 9, "axes.grid": True,
-         "grid.alpha": 0.3, "axes.spines.top": False, "axes.spines.right": False}
+STYLE = {"svg.fonttype": "none", "font.sans-serif": ["DejaVu Sans"], "font.size": 8,
+         "axes.titlesize": 9, "axes.grid": True, "grid.alpha": 0.3, "axes.spines.top": False,
+         "axes.spines.right": False}
 
 
 def colours(count):

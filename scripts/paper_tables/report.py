@@ -119,7 +119,8 @@ class Report:
 
 
 def read_report(path):
-    """The runs of an older tables.json: {name: {sequence, mode, variant, seed, failure, figures}}."""
+    """The content of an older tables.json. Its `runs` have sequence, mode, variant, seed, failure and
+    figures."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:

@@ -147,7 +147,7 @@ def find_masks(folder, wanted, name):
 
 
 def settings_file(folder, dataset, config):
-    """The settings that a run takes without --settings (docs/settings.md); None if there are none."""
+    """The settings that a run takes without --settings (docs/settings.md); None without any."""
     if (folder / "camera.yaml").is_file():
         return folder / "camera.yaml"
     if dataset == "icl":

@@ -37,8 +37,8 @@ def table_lock(out):
         except BlockingIOError as error:
             file.seek(0)
             owner = file.read(20).strip() or "unknown"
-            raise InputError(f"{out}: another table run is at work in this folder (process {owner}); "
-                             "wait for its end or give another --out") from error
+            raise InputError(f"{out}: another table run is at work in this folder (process "
+                             f"{owner}); wait for its end or give another --out") from error
         file.truncate(0)
         file.write(f"{os.getpid()}\n")
         file.flush()
