@@ -91,10 +91,10 @@ TEST(Summary, HasTheKeysOfTheFormatInOrder) {
   EXPECT_EQ(Keys(json["map"]),
             (std::vector<std::string>{"keyframes", "landmarks", "landmarks_at_infinity", "loops",
                                       "sessions", "reprojection_px", "known_sizes"}));
-  EXPECT_EQ(
-      Keys(json["provenance"]),
-      (std::vector<std::string>{"program", "version", "git", "settings_hash", "preset", "seed",
-                                "pipeline", "masks_format", "sequence", "interrupted"}));
+  EXPECT_EQ(Keys(json["provenance"]),
+            (std::vector<std::string>{"program", "version", "git", "settings_hash", "preset",
+                                      "preset_overrides", "seed", "pipeline", "masks_format",
+                                      "sequence", "interrupted"}));
 }
 
 TEST(Summary, HasTheKeysOfObjectsInOrder) {
@@ -118,6 +118,19 @@ TEST(Summary, UnknownValuesAreNull) {
   EXPECT_TRUE(json["objects"].is_null());
   EXPECT_TRUE(json["provenance"]["git"].is_null());
   EXPECT_TRUE(json["timing"]["stages_ms"].is_object());
+}
+
+TEST(Summary, WhatReplacesAPresetIsListed) {
+  RunSummary summary;
+  EXPECT_EQ(Json::parse(FormatSummary(summary))["provenance"]["preset_overrides"], Json::array());
+  summary.provenance.preset = "voom";
+  summary.provenance.preset_overrides = {
+      {.key = "a.b", .preset_value = "1", .value = "2", .source = "--set"}};
+  const Json provenance = Json::parse(FormatSummary(summary))["provenance"];
+  EXPECT_EQ(provenance["preset"], "voom");
+  const Json expected = {
+      {"key", "a.b"}, {"preset_value", "1"}, {"value", "2"}, {"source", "--set"}};
+  EXPECT_EQ(provenance["preset_overrides"], Json::array({expected}));
 }
 
 TEST(Summary, ValuesAreWritten) {
