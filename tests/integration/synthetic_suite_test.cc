@@ -65,6 +65,7 @@ TEST_F(SyntheticSuite, BadUsageIsRefusedAndWritesNothing) {
             std::string::npos);
   EXPECT_NE(Refusal({"--suite", out_, "--only", "kitchen"}).find("desk1, desk2, person, dishes"),
             std::string::npos);
+  EXPECT_NE(Refusal({"--suite", out_, "--only", ""}).find("no sequence ''"), std::string::npos);
   for (const char* const frames : {"-1", "0", "1", "x", "1000000"}) {
     EXPECT_NE(Refusal({"--suite", out_, "--frames", frames}).find("--frames"), std::string::npos);
   }
