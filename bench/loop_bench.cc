@@ -3,7 +3,7 @@
 //
 //   loop_bench SEQUENCE MAP
 //
-// MAP is of a run of SEQUENCE without loops: rgbd_tum --set loop.enabled=false --save-map MAP.
+// MAP is of a run of SEQUENCE without loops: rgbd_tum --set loop.closing=false --save-map MAP.
 // At each keyframe, from the last one to the first, a loop to the older ones is sought as in a run;
 // then the keyframe is culled. There is something to find at a keyframe if an older one, to which
 // covisibility does not connect it, was in truth at most 1 m and 30 degrees away. A loop is right

@@ -34,17 +34,17 @@ cannot show a difference.
 import argparse
 import concurrent.futures
 import hashlib
-import itertools
 import json
-import math
 import pathlib
-import random
 import re
 import shlex
 import statistics
 import subprocess
 import sys
 import threading
+
+from run_errors import InputError
+from run_statistics import compare, lost_percent, read_json, value_at, write
 
 RECORD = "ablation_run.json"  # beside the outputs of a run: the command that made them
 COLUMNS = [  # heading, keys in summary.json, format
@@ -61,12 +61,6 @@ COLUMNS = [  # heading, keys in summary.json, format
 
 
 ALL = "mean"  # in place of a sequence: all of them together
-EXACT_PAIRS = 14  # up to so many pairs, all 2^n sign flips are tried
-DRAWS = 20000  # of random sign flips for more pairs
-
-
-class InputError(Exception):
-    """An error that the user can correct."""
 
 
 def parse_variant(text):
@@ -140,15 +134,6 @@ def fingerprint(command):
     return hashlib.sha256(content + json.dumps(command).encode()).hexdigest()
 
 
-def read_json(path):
-    """The JSON object in a file; None if the file cannot be read or contains something else."""
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return None
-    return content if isinstance(content, dict) else None
-
-
 def run_once(command, folder, seconds):
     """Returns (summary, error) of the run in `folder`. Makes the run unless it is already there.
 
@@ -181,20 +166,6 @@ def run_once(command, folder, seconds):
     return summary, ""
 
 
-def lost_percent(summary):
-    """The share of the frames without a pose; None if it is not known."""
-    frames, tracked = (value_at(summary, ("trajectory", key)) for key in ("frames", "tracked"))
-    return 100.0 * (1.0 - tracked / frames) if frames and tracked is not None else None
-
-
-def value_at(summary, keys):
-    """The number under these keys of the summary; None if there is no number."""
-    for key in keys:
-        summary = summary.get(key) if isinstance(summary, dict) else None
-    is_number = isinstance(summary, (int, float)) and not isinstance(summary, bool)
-    return float(summary) if is_number else None
-
-
 def collect(summaries):
     """Mean, sample standard deviation (0 for a single run) and values of every column."""
     row = {}
@@ -218,32 +189,6 @@ def mean_of(results):
         row[heading] = {"mean": statistics.fmean(means) if is_known else None, "sd": 0.0,
                         "values": []}
     return row
-
-
-def flip_probability(differences):
-    """The two-sided p of Fisher's sign-flip test that the mean of paired differences is 0."""
-    observed = abs(sum(differences)) * (1 - 1e-12)  # rounding must not exclude the observed signs
-    if len(differences) <= EXACT_PAIRS:
-        flips = list(itertools.product((1, -1), repeat=len(differences)))
-        drawn = 0
-    else:
-        draw = random.Random(1)
-        flips = [[draw.choice((1, -1)) for _ in differences] for _ in range(DRAWS)]
-        drawn = 1  # the observed signs are one of the draws
-    extreme = sum(abs(sum(sign * value for sign, value in zip(signs, differences))) >= observed
-                  for signs in flips)
-    return (extreme + drawn) / (len(flips) + drawn)
-
-
-def compare(base, other):
-    """(change, p, pairs) of the ATE of `other` against `base`, both {(sequence, seed): ATE};
-    (None, None, 0) without a pair. The change is a ratio minus 1."""
-    pairs = [(base[key], other[key]) for key in sorted(base.keys() & other.keys())
-             if base[key] > 0 and other[key] > 0]
-    if not pairs:
-        return None, None, 0
-    logs = [math.log(after / before) for before, after in pairs]
-    return math.exp(statistics.fmean(logs)) - 1.0, flip_probability(logs), len(logs)
 
 
 def cell(entry, form, with_deviation):
@@ -293,13 +238,6 @@ def table(results):
         lines.append(f"| {result['sequence']} | {result['variant']} | {runs} | "
                      + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
-
-
-def write(path, text):
-    """Writes a file by renaming a temporary one, so that it is never incomplete."""
-    temporary = path.with_name(path.name + ".tmp")
-    temporary.write_text(text, encoding="utf-8")
-    temporary.replace(path)
 
 
 def run_seed(arguments, sequence, name, settings, seed):

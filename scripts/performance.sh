@@ -50,7 +50,7 @@ for bench in "${benches[@]}"; do
   step "$bench"
   case "$bench" in
     extraction_bench) "$bin/$bench" "${images[@]}" ;;
-    place_bench) echo "measures recall, not time; see Vocabulary/README.md" ;;
+    loop_bench | place_bench) echo "measures recognition, not time; its source says how to run it" ;;
     *) "$bin/$bench" ;;
   esac
 done

@@ -38,9 +38,9 @@ import numpy as np  # noqa: E402
 import run_images  # noqa: E402
 import run_objects  # noqa: E402
 from plot_labels import draw_labels, plain  # noqa: E402
+from run_alignment import MAX_DIFFERENCE, align, pair  # noqa: E402
 from run_files import InputError, Summary, find_sequence_at, read_map, read_trajectory  # noqa: E402
 
-MAX_DIFFERENCE = 0.02  # s, between the stamps of an estimated pose and a true one
 MAX_POINTS = 30000  # points of the map that are drawn at most
 ESTIMATE, TRUTH, MAP, MARK = "#0072b2", "#000000", "#b0b0b0", "#d55e00"
 LONG_GAP = 3.5  # median steps between poses; longer ones mean that frames in between have no pose
@@ -63,40 +63,6 @@ STAGES = {  # names in summary.json and in the picture
     "known_sizes": "scale from known sizes",
     "object_changes": "objects: changes since earlier runs",
 }
-
-
-def pair(stamps, truth_stamps):
-    """Pairs of indices (k x 2) of stamps that differ by less than MAX_DIFFERENCE.
-
-    Each stamp is in one pair at most; the pair with the smallest difference is taken first.
-    """
-    candidates = []
-    begin = np.searchsorted(truth_stamps, stamps - MAX_DIFFERENCE)
-    end = np.searchsorted(truth_stamps, stamps + MAX_DIFFERENCE, side="right")
-    for i, stamp in enumerate(stamps):
-        for j in range(begin[i], end[i]):
-            candidates.append((abs(stamp - truth_stamps[j]), i, j))
-    used_i, used_j, pairs = set(), set(), []
-    for difference, i, j in sorted(candidates):
-        if difference < MAX_DIFFERENCE and i not in used_i and j not in used_j:
-            used_i.add(i)
-            used_j.add(j)
-            pairs.append((i, j))
-    return np.array(sorted(pairs), dtype=int).reshape(-1, 2)
-
-
-def align(source, target, with_scale=False):
-    """Returns s, R (3 x 3) and t (3) that minimise |s R source + t - target| (Umeyama 1991).
-
-    `source` and `target` are n x 3, one point per row. s is 1 unless `with_scale`.
-    """
-    source_mean, target_mean = source.mean(axis=0), target.mean(axis=0)
-    u, singular, vt = np.linalg.svd((target - target_mean).T @ (source - source_mean))
-    flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(u) * np.linalg.det(vt))])
-    rotation = u @ flip @ vt
-    spread = np.sum((source - source_mean) ** 2)
-    scale = float(singular @ np.diag(flip) / spread) if with_scale and spread > 0 else 1.0
-    return scale, rotation, target_mean - scale * rotation @ source_mean
 
 
 class Run:

@@ -6,21 +6,13 @@ import math
 
 import numpy as np
 
+from run_errors import InputError, one_line
+
 LARGEST = 1e6  # the largest length (m) and pixel coordinate that a file may contain
 MAX_VERTICES = 100_000_000
 MAX_PLY_HEADER = 1000  # lines
 PLY_TYPES = {"float": "<f4", "float32": "<f4", "double": "<f8", "uchar": "u1", "uint8": "u1",
              "int": "<i4", "uint": "<u4", "short": "<i2", "ushort": "<u2", "char": "i1"}
-
-
-class InputError(Exception):
-    """An error that the user can correct. The message names the file."""
-
-
-def one_line(text, length=200):
-    """The text on one line of printable characters, cut to the given length."""
-    line = "".join(c if c.isprintable() else " " for c in str(text))
-    return line if len(line) <= length else line[:length - 3] + "..."
 
 
 def read_json(path):

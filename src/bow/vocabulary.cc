@@ -38,6 +38,9 @@ class Reader {
     if (header.version != kVocabularyVersion) {
       Fail(fmt::format("has version {}, expected {}", header.version, kVocabularyVersion));
     }
+    if (header.unused != 0 || header.padding != decltype(header.padding){}) {
+      Fail("is damaged: the unused bytes of its header are not 0");
+    }
     CheckRange("branching", header.branching, 2, Vocabulary::kMostBranching);
     CheckRange("levels", header.levels, 1, Vocabulary::kMostLevels);
     CheckRange("nodes", header.node_count, 2, std::numeric_limits<int>::max());
@@ -175,7 +178,9 @@ Vocabulary Vocabulary::View(std::span<const std::byte> bytes, std::shared_ptr<co
   vocabulary.branching_ = static_cast<int>(header.branching);
   vocabulary.levels_ = static_cast<int>(header.levels);
   vocabulary.hash_ = header.hash;
-  std::string fault = FindTreeFault(vocabulary.first_child_, header);
+  std::string fault = vocabulary.descriptors_[0] == Descriptor{}
+                          ? FindTreeFault(vocabulary.first_child_, header)
+                          : "the root has a descriptor, expected zeros";
   if (fault.empty()) {
     fault = FindWordFault(vocabulary.first_child_, vocabulary.first_word_, header);
   }

@@ -22,6 +22,12 @@ void DepthErrorOptions::Bind(OptionTable& options) {
             "error of a keypoint of pyramid level 0 in bundle adjustment, px");
   scope.Add("disparity_sigma", &disparity_sigma, Range::Between(0.01, 100.0),
             "error of a depth, as an error of the disparity Camera.bf / depth, px");
+  scope.AddEnum("model", &model, {"disparity", "right_column"},
+                "error of a keypoint with depth: pixel and disparity have independent errors, or "
+                "both columns of a stereo camera have the error of the keypoint");
+  scope.AddEnum("adjustment_rule", &adjustment_rule, {"hullslam", "orb_slam2"},
+                "weights and loss of keypoints without depth in bundle adjustment: measured "
+                "precision and Cauchy's loss, or fixed sigmas and Huber's loss");
 }
 
 void DepthOptions::Bind(OptionTable& options) {

@@ -45,6 +45,9 @@ struct PointMeasurement {
   Eigen::Vector3d measured = Eigen::Vector3d::Zero();  // u, v, disparity; px, undistorted
   // Inverse standard deviations of the three numbers, 1 / px; 0 for an unknown disparity.
   Eigen::Vector3d inverse_sigma = Eigen::Vector3d(1.0, 1.0, 0.0);
+  // The first residual is that of u - coupling * disparity. 0 unless the errors of u and disparity
+  // are correlated (camera/right_column.h).
+  double coupling = 0.0;
 
   // `scale` is that of the keypoint's pyramid level. No disparity where the depth is unknown.
   static PointMeasurement Create(const Eigen::Vector2d& pixel, double scale,
@@ -60,19 +63,24 @@ struct PointMeasurement {
   size_t degrees_of_freedom() const { return has_depth() ? 3 : 2; }
 };
 
-// (du, dv, d disparity) in standard deviations, projected minus measured, of a point (m, camera
-// frame) at least kMinDepth in front of the camera. The third is 0 where the depth is unknown.
+// (du - coupling * d disparity, dv, d disparity) in standard deviations, projected minus measured,
+// of a point (m, camera frame) at least kMinDepth in front of the camera. The third is 0 where the
+// depth is unknown.
 inline Eigen::Vector3d PointResidual(const PinholeCamera& camera,
                                      const PointMeasurement& measurement,
                                      const Eigen::Vector3d& point) {
-  return measurement.inverse_sigma.cwiseProduct(ProjectRgbd(camera, point) - measurement.measured);
+  Eigen::Vector3d error = ProjectRgbd(camera, point) - measurement.measured;
+  error.x() -= measurement.coupling * error.z();
+  return measurement.inverse_sigma.cwiseProduct(error);
 }
 
 // Derivative of PointResidual by the point.
 inline Eigen::Matrix3d PointResidualJacobian(const PinholeCamera& camera,
                                              const PointMeasurement& measurement,
                                              const Eigen::Vector3d& point) {
-  return measurement.inverse_sigma.asDiagonal() * ProjectRgbdJacobian(camera, point);
+  Eigen::Matrix3d jacobian = ProjectRgbdJacobian(camera, point);
+  jacobian(0, 2) -= measurement.coupling * jacobian(2, 2);
+  return measurement.inverse_sigma.asDiagonal() * jacobian;
 }
 
 // PointResidual and its derivative without the four zeros of the derivative, for inner loops, in
@@ -85,11 +93,13 @@ struct PointLinearization {
     const Eigen::Vector3d& weight = measurement.inverse_sigma;
     u_by_x = weight.x() * camera.fx * inverse_z;
     v_by_y = weight.y() * camera.fy * inverse_z;
-    u_by_z = -u_by_x * point.x() * inverse_z;
     v_by_z = -v_by_y * point.y() * inverse_z;
     const double disparity = camera.bf * inverse_z;
+    const double coupling = weight.x() * measurement.coupling;
+    u_by_z = -u_by_x * point.x() * inverse_z + coupling * disparity * inverse_z;
     d_by_z = -weight.z() * disparity * inverse_z;
-    residual = {u_by_x * point.x() + weight.x() * (camera.cx - measurement.measured.x()),
+    residual = {u_by_x * point.x() + weight.x() * (camera.cx - measurement.measured.x()) -
+                    coupling * (disparity - measurement.measured.z()),
                 v_by_y * point.y() + weight.y() * (camera.cy - measurement.measured.y()),
                 weight.z() * (disparity - measurement.measured.z())};
   }

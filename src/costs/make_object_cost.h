@@ -4,6 +4,7 @@
 #include <ceres/cost_function.h>
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "hullslam/camera/pinhole.h"
@@ -18,10 +19,10 @@ namespace hullslam {
 // ellipse or box. `sigma` is in the unit of the residual: see ResidualOfPixelError. Null where the
 // residual cannot be computed from the detection's primitive (AcceptsPrimitive) or where the
 // detection lacks the data of the residual: a line, three points of a contour, or an ellipse.
-std::unique_ptr<ceres::CostFunction> MakeObjectCost(ObjectResidual residual,
-                                                    const PinholeCamera& camera,
-                                                    const Detection& detection,
-                                                    std::span<const SilhouetteLine> lines,
-                                                    double sigma);
+// `projected` is the projected ellipse at the start, for residuals that need it (NeedsProjection).
+std::unique_ptr<ceres::CostFunction> MakeObjectCost(
+    ObjectResidual residual, const PinholeCamera& camera, const Detection& detection,
+    std::span<const SilhouetteLine> lines, double sigma,
+    std::optional<Ellipse> projected = std::nullopt);
 
 }  // namespace hullslam

@@ -7,7 +7,10 @@
 
 #include "costs/quadric_algebraic_plane.h"
 #include "costs/quadric_algebraic_point.h"
+#include "costs/quadric_bhattacharyya.h"
+#include "costs/quadric_box_bounds.h"
 #include "costs/quadric_distribution.h"
+#include "costs/quadric_filtered_point.h"
 #include "costs/quadric_overlap.h"
 #include "costs/quadric_tangent.h"
 #include "costs/residual_kind.h"
@@ -16,8 +19,9 @@ namespace hullslam {
 namespace {
 
 // In the order of the enumerators.
-constexpr std::array kKinds = {&kTangentResidual, &kAlgebraicPlaneResidual,
-                               &kAlgebraicPointResidual, &kDistributionResidual, &kOverlapResidual};
+constexpr std::array kKinds = {
+    &kTangentResidual, &kAlgebraicPlaneResidual, &kAlgebraicPointResidual, &kDistributionResidual,
+    &kOverlapResidual, &kBhattacharyyaResidual,  &kBoxBoundsResidual,      &kFilteredPointResidual};
 
 }  // namespace
 
@@ -41,5 +45,7 @@ bool AcceptsPrimitive(ObjectResidual residual, ObjectPrimitive primitive) {
 }
 
 bool TakesLines(ObjectResidual residual) { return KindOf(residual).takes_lines; }
+
+bool NeedsProjection(ObjectResidual residual) { return KindOf(residual).needs_projection; }
 
 }  // namespace hullslam

@@ -20,6 +20,9 @@ namespace hullslam {
 //   algebraic_point  2 error_px / r
 //   distribution     error_px^2 (Wasserstein, for an ellipse that is shifted by error_px)
 //   overlap          1 - (r / (r + error_px))^2
+//   bhattacharyya    error_px^2 / (8 r^2) (for an ellipse that is shifted by error_px)
+//   box_bounds       error_px
+//   filtered_point   2 error_px / r
 // Nothing if the ellipsoid is not in front of the camera or its projected ellipse has no area.
 std::optional<double> ResidualOfPixelError(ObjectResidual residual, const PinholeCamera& camera,
                                            const Rigid3& cam_from_world, const Ellipsoid& ellipsoid,

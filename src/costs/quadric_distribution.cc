@@ -42,6 +42,11 @@ double Bhattacharyya(const Ellipse& a, const Ellipse& b, ByEllipse& by_a) {
 
 }  // namespace
 
+double SquaredWasserstein(const Ellipse& a, const Ellipse& b) {
+  ByEllipse unused;
+  return Wasserstein(a, b, unused);
+}
+
 DistributionCost::DistributionCost(const PinholeCamera& camera, const Ellipse& measured,
                                    double sigma, DistributionDistance distance)
     : ObjectCost(1),
@@ -75,7 +80,8 @@ bool DistributionCost::Evaluate(double const* const* parameters, double* residua
 
 namespace {
 
-constexpr std::array kDistributionPrimitives = {ObjectPrimitive::kConic};
+constexpr std::array kDistributionPrimitives = {ObjectPrimitive::kConic,
+                                                ObjectPrimitive::kBoxEllipse};
 
 std::unique_ptr<ceres::CostFunction> MakeDistributionCost(const ObjectCostInput& input) {
   if (!input.detection.ellipse) {

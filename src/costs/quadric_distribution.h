@@ -32,6 +32,9 @@ class DistributionCost final : public ObjectCost {
   DistributionDistance distance_;
 };
 
+// The squared Wasserstein distance, px^2.
+double SquaredWasserstein(const Ellipse& a, const Ellipse& b);
+
 extern const ResidualKind kDistributionResidual;
 
 }  // namespace hullslam

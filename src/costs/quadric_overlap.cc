@@ -187,7 +187,8 @@ namespace {
 
 constexpr int kConicVertices = 64;
 constexpr std::array kOverlapPrimitives = {ObjectPrimitive::kHull, ObjectPrimitive::kContour,
-                                           ObjectPrimitive::kBox, ObjectPrimitive::kConic};
+                                           ObjectPrimitive::kBox, ObjectPrimitive::kConic,
+                                           ObjectPrimitive::kBoxEllipse};
 
 std::unique_ptr<ceres::CostFunction> OverlapWithRegion(const ObjectCostInput& input,
                                                        std::span<const Eigen::Vector2d> region) {
@@ -206,7 +207,8 @@ std::unique_ptr<ceres::CostFunction> MakeOverlapCost(const ObjectCostInput& inpu
   if (primitive == ObjectPrimitive::kContour) {
     return OverlapWithRegion(input, detection.contour.Unpack());
   }
-  if (primitive == ObjectPrimitive::kConic && detection.ellipse.has_value()) {
+  if ((primitive == ObjectPrimitive::kConic || primitive == ObjectPrimitive::kBoxEllipse) &&
+      detection.ellipse.has_value()) {
     return OverlapWithRegion(input, detection.ellipse->Polygon(kConicVertices));
   }
   if (primitive == ObjectPrimitive::kBox && !detection.box.isEmpty()) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -20,6 +21,8 @@ struct ObjectCostInput {
   const Detection& detection;
   std::span<const SilhouetteLine> lines;  // of the detection, possibly moved by misfit compensation
   double sigma;                           // in the unit of the residual
+  // The projected ellipse at the start of the optimisation. Only for kinds that need it.
+  std::optional<Ellipse> projected = std::nullopt;
 };
 
 // How large an ellipsoid appears in an image.
@@ -40,11 +43,12 @@ struct ResidualKind {
   // Null if the detection lacks the data that the residual needs. The primitive is one of
   // `primitives`.
   std::unique_ptr<ceres::CostFunction> (*make_cost)(const ObjectCostInput& input);
+  bool needs_projection = false;  // whether it is made from ObjectCostInput::projected
 };
 
-inline constexpr std::array kAllPrimitives = {ObjectPrimitive::kSupport, ObjectPrimitive::kHull,
-                                              ObjectPrimitive::kContour, ObjectPrimitive::kBox,
-                                              ObjectPrimitive::kConic};
+inline constexpr std::array kAllPrimitives = {
+    ObjectPrimitive::kSupport, ObjectPrimitive::kHull,  ObjectPrimitive::kContour,
+    ObjectPrimitive::kBox,     ObjectPrimitive::kConic, ObjectPrimitive::kBoxEllipse};
 
 const ResidualKind& KindOf(ObjectResidual residual);
 

@@ -43,11 +43,20 @@ bool IsAtBorder(const Eigen::Vector2d& undistorted, const PinholeCamera& camera,
          raw.y() >= camera.height - 1 - border;
 }
 
+// The ellipse that touches the four sides of the box in their middle.
+Ellipse EllipseInBox(const Eigen::AlignedBox2d& box) {
+  const Eigen::Vector2d half = 0.5 * box.sizes();
+  return {.center = box.center(), .shape = half.cwiseProduct(half).asDiagonal()};
+}
+
 std::optional<DetectionRejection> CheckOutline(const Outline& outline, const FrameView& frame) {
   if (outline.hull.size() < 3) {
     return DetectionRejection::kDegenerate;
   }
   if (BoundingBox(outline.hull).sizes().minCoeff() < frame.options.min_side_px) {
+    return DetectionRejection::kTooSmall;
+  }
+  if (SignedArea(outline.hull) < frame.options.min_area_px2) {
     return DetectionRejection::kTooSmall;
   }
   const double image = static_cast<double>(frame.depth.camera.width) * frame.depth.camera.height;
@@ -84,6 +93,8 @@ Detection DetectionOf(const InstanceMask& mask, const Outline& outline, const Fr
   });
   if (mask.shape == MaskShape::kEllipse || frame.options.primitive == ObjectPrimitive::kConic) {
     detection.ellipse = FitEllipse(outline.contour);
+  } else if (frame.options.primitive == ObjectPrimitive::kBoxEllipse) {
+    detection.ellipse = EllipseInBox(detection.box);
   }
   return detection;
 }

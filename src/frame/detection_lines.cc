@@ -168,6 +168,7 @@ std::vector<LineOnOutline> LinesOfOutline(const Outline& outline,
       return SupportLines(outline, directions);
     }
     case ObjectPrimitive::kConic:
+    case ObjectPrimitive::kBoxEllipse:
       return ellipse ? TangentLines(outline, *ellipse, options.conic_lines)
                      : std::vector<LineOnOutline>();
   }

@@ -22,7 +22,8 @@ struct LineOnOutline {
 };
 
 // The lines of a primitive. Edges shorter than `min_line_px` give no line. Support lines are in the
-// order of their angle. `ellipse` is only used for `conic`, which gives no lines without it.
+// order of their angle. `ellipse` is only used for `conic` and `box_ellipse`, which give no lines
+// without it.
 std::vector<LineOnOutline> LinesOfOutline(const Outline& outline,
                                           const std::optional<Ellipse>& ellipse,
                                           ObjectPrimitive primitive,

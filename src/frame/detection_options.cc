@@ -19,6 +19,8 @@ void DetectionOptions::Bind(const OptionScope& scope) {
   scope.Add("min_score", &min_score, Range::Share(), "masks with a lower score are rejected");
   scope.Add("min_side_px", &min_side_px, Range::Between(0.0, 10000.0),
             "masks with a smaller width or height are rejected, px");
+  scope.Add("min_area_px2", &min_area_px2, Range::Between(0.0, 1e8),
+            "masks whose hull has a smaller area are rejected, px^2");
   scope.Add("max_area_share", &max_area_share, Range::Share(),
             "masks whose hull covers a larger share of the image are rejected");
   scope.Add("min_keypoints", &min_keypoints, Range::Between(0, 10000),

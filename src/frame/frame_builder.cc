@@ -72,12 +72,13 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
                            const FeatureOptions& features,
                            const std::optional<DetectionOptions>& detection,
                            std::set<std::string> dynamic_classes,
-                           std::shared_ptr<const Vocabulary> vocabulary)
+                           std::shared_ptr<const Vocabulary> vocabulary, bool remove_dynamic)
     : sensor_(sensor),
       depth_(depth),
       extractor_(features),
       dynamic_classes_(std::move(dynamic_classes)),
-      vocabulary_(std::move(vocabulary)) {
+      vocabulary_(std::move(vocabulary)),
+      remove_dynamic_(remove_dynamic) {
   if (detection) {
     detector_.emplace(sensor.camera, depth, *detection, dynamic_classes_);
   }
@@ -118,9 +119,11 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
 std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, TaskRunner& runner,
                                                    FrameFeatures& features) {
   ExtractedFeatures extracted = extractor_.Extract(image.grey, runner);
-  if (const cv::Mat mask = DynamicMask(image.masks, dynamic_classes_, image.grey.size());
-      !mask.empty()) {
-    RemoveMasked(mask, extracted.keypoints, extracted.descriptors);
+  if (remove_dynamic_) {
+    const cv::Mat mask = DynamicMask(image.masks, dynamic_classes_, image.grey.size());
+    if (!mask.empty()) {
+      RemoveMasked(mask, extracted.keypoints, extracted.descriptors);
+    }
   }
   features.descriptors = std::move(extracted.descriptors);
   AddKeypoints(extracted.keypoints, sensor_.camera, image.depth, depth_.units_per_metre, runner,

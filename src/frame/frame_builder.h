@@ -25,8 +25,8 @@ void CheckDepthImage(const cv::Mat& depth, const PinholeCamera& camera);
 
 // Turns images into frames: extracts and undistorts keypoints, looks up their depths and virtual
 // right coordinates, builds the grid, and makes the detections of objects. Things of the dynamic
-// classes give no detections, and the keypoints on them are removed. With a vocabulary it looks up
-// the word of each keypoint.
+// classes give no detections, and the keypoints on them are removed unless this is switched off.
+// With a vocabulary it looks up the word of each keypoint.
 class FrameBuilder {
  public:
   // `sensor` must outlive the builder. If `detection` is empty, frames have no detections.
@@ -34,7 +34,7 @@ class FrameBuilder {
   FrameBuilder(const Sensor& sensor, const DepthOptions& depth, const FeatureOptions& features,
                const std::optional<DetectionOptions>& detection = DetectionOptions(),
                std::set<std::string> dynamic_classes = {},
-               std::shared_ptr<const Vocabulary> vocabulary = nullptr);
+               std::shared_ptr<const Vocabulary> vocabulary = nullptr, bool remove_dynamic = true);
 
   // Throws InputError if an image does not have the size of the camera or a type that ImageInput
   // allows. The masks must pass ValidateMasks().
@@ -51,6 +51,7 @@ class FrameBuilder {
   std::optional<FrameDetector> detector_;
   std::set<std::string> dynamic_classes_;
   std::shared_ptr<const Vocabulary> vocabulary_;
+  bool remove_dynamic_;
 };
 
 }  // namespace hullslam

@@ -8,7 +8,8 @@ namespace hullslam {
 namespace {
 
 // In the order of the enumerators.
-constexpr std::array<std::string_view, 5> kNames = {"support", "hull", "contour", "bbox", "conic"};
+constexpr std::array<std::string_view, 6> kNames = {"support", "hull",  "contour",
+                                                    "bbox",    "conic", "box_ellipse"};
 
 }  // namespace
 

@@ -57,7 +57,11 @@ Hull HullOf(std::span<const Eigen::Vector3d> points) {
     hull.corners.push_back(to_eigen(corner));
   }
   for (const auto& [a, b, c] : sides) {
-    hull.normals.push_back(to_eigen(CGAL::cross_product(b - a, c - a)).normalized());
+    // If the points are nearly on a line, a side may have no area within double precision.
+    const Eigen::Vector3d across = to_eigen(CGAL::cross_product(b - a, c - a));
+    if (across.squaredNorm() > 0.0) {
+      hull.normals.push_back(across.normalized());
+    }
   }
   return hull;
 }

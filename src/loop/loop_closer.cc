@@ -136,8 +136,10 @@ std::optional<MapCorrection> LoopCloser::Close(LoopQuery& query, const LoopCandi
   }
   Map corrected = query.map.Snapshot();
   ApplyCorrection(corrected, correction, sensor_.levels);
-  const ObjectVotes votes =
-      CountObjectVotes(corrected, sensor_, query.keyframe, candidate.keyframe, object_options_);
+  const ObjectVotes votes = options_.object_votes
+                                ? CountObjectVotes(corrected, sensor_, query.keyframe,
+                                                   candidate.keyframe, object_options_)
+                                : ObjectVotes();
   if (votes.IsAgainst()) {
     refusal = fmt::format("{} objects agree, {} do not", votes.agree, votes.disagree);
     return std::nullopt;

@@ -21,6 +21,8 @@ void LoopOptions::Bind(OptionTable& options) {
             "and by this much more for each metre travelled since the candidate, m");
   scope.Add("turn_base", &turn_base, Range::AtLeast(0.0),
             "a loop may always turn the camera by this, radians");
+  scope.Add("object_votes", &object_votes,
+            "mapped objects at both ends speak for or against a loop");
   scope.Add("global_adjustment", &global_adjustment,
             "adjust the whole map after a loop was closed");
   scope.AddFixed("drift_per_radian", drift_per_radian);

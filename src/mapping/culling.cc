@@ -22,11 +22,6 @@ constexpr double kRedundantShare = 0.9;
 // Two keyframes see a landmark from the same viewpoint if its parallax between them is smaller than
 // this many standard deviations.
 constexpr double kSameViewpointSigmas = 2.0;
-// With fewer landmarks, the share of redundant landmarks is not reliable.
-constexpr int kMinLandmarks = 20;
-// With fewer close landmarks, the far ones are judged too: the pose of the keyframe depends on them
-// (the bound of Mur-Artal and Tardos 2017 for a frame that lacks close points).
-constexpr int kMinCloseLandmarks = 100;
 constexpr double kMaxSimilarCos = 0.985;  // about 10 degrees
 constexpr size_t kCenterPoints = 20;      // depth points that are averaged for an object's centre
 
@@ -95,8 +90,11 @@ bool IsRedundant(const Map& map, KeyframeId id, const Sensor& sensor, const Cull
       close.Count(is_redundant);
     }
   }
-  const bool has_many_close = close.landmarks >= kMinCloseLandmarks;
-  return all.landmarks >= kMinLandmarks && close.MostAreRedundant() &&
+  if (rules.only_close_landmarks) {
+    return close.landmarks > 0 && close.MostAreRedundant();
+  }
+  const bool has_many_close = close.landmarks >= rules.min_close_landmarks;
+  return all.landmarks >= rules.min_landmarks && close.MostAreRedundant() &&
          (has_many_close || all.MostAreRedundant());
 }
 
@@ -168,15 +166,17 @@ std::vector<LandmarkId> FindRecentLandmarks(const Map& map) {
   return recent;
 }
 
-int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views) {
-  const CullingRules rules = CullingRules::ForSensor(sensor.kind);
+int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views,
+                  MappingRule rule) {
+  const CullingRules rules = CullingRules::ForSensor(sensor.kind, rule);
   int culled = 0;
   const std::vector<Covisible> candidates = map.keyframes().At(current).covisible;
   for (const Covisible& candidate : candidates) {
     const Keyframe* keyframe = map.keyframes().Find(candidate.keyframe);
     const bool is_root = keyframe == nullptr || !keyframe->parent.IsValid();
     if (!is_root && IsRedundant(map, candidate.keyframe, sensor, rules) &&
-        !IsNeededByAnObject(map, candidate.keyframe, min_object_views)) {
+        !(rules.keeps_object_views &&
+          IsNeededByAnObject(map, candidate.keyframe, min_object_views))) {
       map.CullKeyframe(candidate.keyframe);
       ++culled;
     }

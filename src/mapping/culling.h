@@ -5,6 +5,7 @@
 
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
+#include "hullslam/mapping/mapping_options.h"
 
 namespace hullslam {
 
@@ -27,8 +28,9 @@ std::vector<LandmarkId> FindRecentLandmarks(const Map& map);
 // as one. If the keyframe has fewer than 100 close landmarks, the same must hold for all of its
 // landmarks. With fewer than 20 landmarks it is not redundant. A keyframe also stays if an object
 // (mapped or candidate) needs its view: because fewer than `min_object_views` views would be left,
-// or because no other keyframe sees the object from a similar direction. Returns how many were
-// removed.
-int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views);
+// or because no other keyframe sees the object from a similar direction. With the rule of ORB-SLAM2
+// (CullingRules) fewer conditions hold. Returns how many were removed.
+int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views,
+                  MappingRule rule = MappingRule::kHullslam);
 
 }  // namespace hullslam

@@ -221,8 +221,9 @@ std::optional<Eigen::Vector3d> LocateMonocular(const View& a, const View& b,
 
 }  // namespace
 
-std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId id, const Sensor& sensor) {
-  const LandmarkRules rules = LandmarkRules::ForSensor(sensor);
+std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId id, const Sensor& sensor,
+                                        MappingRule rule) {
+  const LandmarkRules rules = LandmarkRules::ForSensor(sensor, rule);
   const std::vector<KeyframeId> neighbours =
       BestCovisible(map.keyframes().At(id), rules.neighbours);
   std::optional<NearbyDepth> nearby;

@@ -5,6 +5,7 @@
 
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
+#include "hullslam/mapping/mapping_options.h"
 
 namespace hullslam {
 
@@ -12,6 +13,7 @@ namespace hullslam {
 // show no landmark yet. They are triangulated if the parallax is larger than that of the virtual
 // stereo pair (Mur-Artal and Tardos 2017), and located by depth otherwise. Returns the new
 // landmarks.
-std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId keyframe, const Sensor& sensor);
+std::vector<LandmarkId> CreateLandmarks(Map& map, KeyframeId keyframe, const Sensor& sensor,
+                                        MappingRule rule = MappingRule::kHullslam);
 
 }  // namespace hullslam

@@ -122,7 +122,8 @@ void Mapper::AddEntities(KeyframeId keyframe, const Cancellation* hurry) {
   {
     const ScopedTimer timer(times_, "map_landmarks");
     CullRecentLandmarks(map_, keyframe, sensor_, recent_);
-    const std::vector<LandmarkId> created = CreateLandmarks(map_, keyframe, sensor_);
+    const std::vector<LandmarkId> created =
+        CreateLandmarks(map_, keyframe, sensor_, options_.landmark_rule);
     recent_.insert(recent_.end(), created.begin(), created.end());
     if (!IsRequested(hurry)) {
       FuseLandmarks(map_, keyframe, sensor_);
@@ -138,7 +139,8 @@ void Mapper::Improve(KeyframeId keyframe, const Cancellation* hurry, Culling cul
   AdjustNeighbourhood(keyframe, hurry);
   if (culling == Culling::kKeyframes) {
     const ScopedTimer timer(times_, "cull_keyframes");
-    CullKeyframes(map_, keyframe, sensor_, static_cast<size_t>(object_options_.start.min_views));
+    CullKeyframes(map_, keyframe, sensor_, static_cast<size_t>(object_options_.start.min_views),
+                  options_.culling_rule);
   }
 }
 

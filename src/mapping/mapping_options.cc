@@ -11,6 +11,12 @@ void MappingOptions::Bind(OptionTable& options) {
             "largest number of fixed keyframes in local bundle adjustment; 0: all that observe "
             "its landmarks");
   scope.Add("cull_keyframes", &cull_keyframes, "remove redundant keyframes");
+  scope.AddEnum("culling_rule", &culling_rule, {"hullslam", "orb_slam2"},
+                "which keyframes are redundant: also the views of objects, far landmarks and "
+                "viewpoints count, or the rule of ORB-SLAM2");
+  scope.AddEnum("landmark_rule", &landmark_rule, {"hullslam", "orb_slam2"},
+                "which pairs of keypoints without depth become landmarks: those whose expected "
+                "parallax is large enough, or those whose own is, as in ORB-SLAM2");
   scope.Add("compact_keyframes", &compact_keyframes,
             "remove keypoints that show no landmark from keyframes far from the newest one");
   scope.Add("final_bundle_adjustment", &final_bundle_adjustment,

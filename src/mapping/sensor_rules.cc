@@ -3,7 +3,17 @@
 
 namespace hullslam {
 
-CullingRules CullingRules::ForSensor(SensorKind kind) {
+CullingRules CullingRules::ForSensor(SensorKind kind, MappingRule rule) {
+  if (rule == MappingRule::kOrbSlam2) {
+    // Mur-Artal and Tardos 2015, section VI.E; with depth only close landmarks count (the function
+    // KeyFrameCulling of the released LocalMapping.cc).
+    return {.max_weak_weight = kind == SensorKind::kMonocular ? 2 : 3,
+            .other_observers = 3,
+            .observers_need_parallax = false,
+            .min_landmarks = 1,
+            .only_close_landmarks = kind != SensorKind::kMonocular,
+            .keeps_object_views = false};
+  }
   if (kind == SensorKind::kMonocular) {
     // Only landmarks that are seen from three viewpoints carry the scale from one pair of keyframes
     // to the next. So the two keyframes that a landmark is made of are not enough, and a keyframe
@@ -14,7 +24,15 @@ CullingRules CullingRules::ForSensor(SensorKind kind) {
   return {.max_weak_weight = 3, .other_observers = 3, .observers_need_parallax = false};
 }
 
-LandmarkRules LandmarkRules::ForSensor(const Sensor& sensor) {
+LandmarkRules LandmarkRules::ForSensor(const Sensor& sensor, MappingRule rule) {
+  if (sensor.IsMonocular() && rule == MappingRule::kOrbSlam2) {
+    // Mur-Artal and Tardos 2015, section VI.C; the baseline is that of the function
+    // CreateNewMapPoints of the released LocalMapping.cc.
+    return {.neighbours = 20,
+            .min_baseline = std::nullopt,
+            .min_baseline_share = 0.01,
+            .nearby_landmarks_decide = false};
+  }
   if (sensor.IsMonocular()) {
     // All landmarks are made from pairs, so more pairs are tried. There are no metres, so the
     // shortest baseline depends on how far away the landmarks are. Without depth to fall back on, a

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "hullslam/frame/sensor.h"
+#include "hullslam/mapping/mapping_options.h"
 
 namespace hullslam {
 
@@ -21,8 +22,17 @@ struct CullingRules {
   size_t other_observers = 0;
   // Whether keyframes between which the landmark has no measurable parallax count as one.
   bool observers_need_parallax = false;
+  // A keyframe with fewer landmarks is not redundant.
+  int min_landmarks = 20;
+  // With fewer close landmarks, the far ones are judged too: the pose of the keyframe depends on
+  // them (the bound of Mur-Artal and Tardos 2017 for a frame that lacks close points).
+  int min_close_landmarks = 100;
+  // Whether only close landmarks count. Then a keyframe without any is not redundant.
+  bool only_close_landmarks = false;
+  // Whether a keyframe stays if an object needs its view.
+  bool keeps_object_views = true;
 
-  static CullingRules ForSensor(SensorKind kind);
+  static CullingRules ForSensor(SensorKind kind, MappingRule rule = MappingRule::kHullslam);
 };
 
 // The rules by which landmarks are made from pairs of keyframes.
@@ -36,7 +46,7 @@ struct LandmarkRules {
   // Otherwise the parallax of the pair itself decides, and its depth is used if it is too small.
   bool nearby_landmarks_decide = false;
 
-  static LandmarkRules ForSensor(const Sensor& sensor);
+  static LandmarkRules ForSensor(const Sensor& sensor, MappingRule rule = MappingRule::kHullslam);
 };
 
 }  // namespace hullslam

@@ -8,6 +8,7 @@
 #include "geometry/assignment.h"
 #include "geometry/convex_hull.h"
 #include "geometry/polygon_overlap.h"
+#include "objects/association_measure.h"
 #include "objects/initialisation.h"
 #include "objects/object_view.h"
 #include "objects/point_statistics.h"
@@ -24,6 +25,7 @@ constexpr int kDepthSteps = 4;  // between the positions of a carried hull of un
 struct Prediction {
   ObjectId id;
   const ObjectLandmark* object = nullptr;
+  std::optional<Ellipse> projected;        // absent without a shape
   Polygon ellipse;                         // projected, clipped to the image; empty without a shape
   std::vector<Polygon> carried;            // the last hull, moved to the frame's pose
   std::vector<LandmarkId> landmarks;       // in its latest views, sorted
@@ -66,6 +68,7 @@ class Associator {
         landmarks_(landmarks),
         scope_(scope),
         options_(options),
+        function_(FunctionOf(options.measure)),
         image_(Eigen::Vector2d(sensor.bounds.min_x, sensor.bounds.min_y),
                Eigen::Vector2d(sensor.bounds.max_x, sensor.bounds.max_y)) {}
 
@@ -85,7 +88,7 @@ class Associator {
       }
     }
     std::vector<ObjectId> objects(frame_.detections.size());
-    const std::vector<int> columns = AssignMinimumCost(cost, 1.0 - options_.min_similarity);
+    const std::vector<int> columns = AssignMinimumCost(cost, 1.0 - LeastSimilarity());
     for (size_t i = 0; i < columns.size(); ++i) {
       if (columns[i] >= 0) {
         objects[i] = predictions[static_cast<size_t>(columns[i])].id;
@@ -160,9 +163,10 @@ class Associator {
   // Completes a prediction from the latest views of the object.
   void Predict(std::span<const ObjectView> views, Prediction& prediction) const {
     if (prediction.object->has_shape) {
-      if (const auto ellipse = ProjectEllipsoid(sensor_.camera.Matrix(), cam_from_world_,
-                                                prediction.object->ellipsoid)) {
-        prediction.ellipse = ClipToBox(ellipse->Polygon(32), image_);
+      prediction.projected =
+          ProjectEllipsoid(sensor_.camera.Matrix(), cam_from_world_, prediction.object->ellipsoid);
+      if (prediction.projected) {
+        prediction.ellipse = ClipToBox(prediction.projected->Polygon(32), image_);
       }
     }
     prediction.carried = Carry(views);
@@ -274,17 +278,22 @@ class Associator {
     return offset > options_.max_offset * size + seen.noise;
   }
 
-  // Number of common landmarks over the number of landmarks of the one that has fewer; 0 for few
-  // common landmarks.
-  double SharedLandmarks(const Seen& seen, const Prediction& prediction) const {
+  static size_t CountShared(const Seen& seen, const Prediction& prediction) {
     std::vector<LandmarkId> shared;
     std::set_intersection(seen.landmarks.begin(), seen.landmarks.end(),
                           prediction.landmarks.begin(), prediction.landmarks.end(),
                           std::back_inserter(shared));
-    if (shared.size() < static_cast<size_t>(options_.min_shared_landmarks)) {
+    return shared.size();
+  }
+
+  // Number of common landmarks over the number of landmarks of the one that has fewer; 0 for few
+  // common landmarks.
+  double SharedLandmarks(const Seen& seen, const Prediction& prediction) const {
+    const size_t shared = CountShared(seen, prediction);
+    if (shared < static_cast<size_t>(options_.min_shared_landmarks)) {
       return 0.0;
     }
-    return static_cast<double>(shared.size()) /
+    return static_cast<double>(shared) /
            static_cast<double>(std::min(seen.landmarks.size(), prediction.landmarks.size()));
   }
 
@@ -311,8 +320,23 @@ class Associator {
     return overlap;
   }
 
-  // 0 if they do not match, otherwise up to the sum of the weights (1.2 by default).
+  // The least similarity of a match. The other measures have conditions of their own.
+  double LeastSimilarity() const {
+    constexpr double kMoreThanNone = 1e-6;
+    return function_ == nullptr ? options_.min_similarity : kMoreThanNone;
+  }
+
   double Similarity(const Seen& seen, const Prediction& prediction) const {
+    return function_ == nullptr ? CombinedSimilarity(seen, prediction)
+                                : function_({.detection = *seen.detection,
+                                             .object = *prediction.object,
+                                             .projected = prediction.projected,
+                                             .carried = prediction.carried,
+                                             .shared_landmarks = CountShared(seen, prediction)});
+  }
+
+  // 0 if they do not match, otherwise up to the sum of the weights (1.2 by default).
+  double CombinedSimilarity(const Seen& seen, const Prediction& prediction) const {
     if (AreApart(seen, prediction)) {
       return 0.0;
     }
@@ -347,6 +371,7 @@ class Associator {
   std::span<const LandmarkId> landmarks_;
   AssociationScope scope_;
   const AssociationOptions& options_;
+  SimilarityFunction* const function_;  // null for the measure kCombined
   Eigen::AlignedBox2d image_;
 };
 

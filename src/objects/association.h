@@ -15,7 +15,8 @@ namespace hullslam {
 enum class AssociationScope { kAll, kMapped };
 
 // Returns the object that each detection of a frame shows. The id is invalid if the detection shows
-// no known object (Wu et al. 2023). The similarity of a detection and an object combines the IoU
+// no known object. The default measure (Wu et al. 2023; others are in association_measure.h): the
+// similarity of a detection and an object combines the IoU
 // with the projected ellipse and with the last hull, shared landmarks, rank-sum and t-tests of
 // depth points, and the class. Another class makes a pair less similar but does not exclude it. A
 // pair is excluded if the clouds of depth points are too far apart. The assignment with the largest

@@ -40,22 +40,6 @@ Interval InnerInterval(std::span<const Eigen::Vector3d> points, const Eigen::Vec
           values[static_cast<size_t>((1.0 - trimmed) * last)]};
 }
 
-// The ellipsoid with these axes (columns, right-handed) and the inflated box of the inner points.
-Ellipsoid FitAlong(std::span<const Eigen::Vector3d> points, const Eigen::Matrix3d& axes,
-                   double distance, const StartOptions& options) {
-  Ellipsoid ellipsoid;
-  ellipsoid.world_from_object.rotation = Eigen::Quaterniond(axes).normalized();
-  Eigen::Vector3d center;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Interval interval = InnerInterval(points, axes.col(axis), options.trimmed);
-    center[axis] = 0.5 * (interval.low + interval.high);
-    ellipsoid.half_axes[axis] = std::max(options.min_half_axis * distance,
-                                         options.inflation * 0.5 * (interval.high - interval.low));
-  }
-  ellipsoid.world_from_object.translation = axes * center;
-  return ellipsoid;
-}
-
 Eigen::Matrix3d PrincipalAxes(std::span<const Eigen::Vector3d> points) {
   const Eigen::Vector3d mean = MeanOf(points);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -105,6 +89,21 @@ std::optional<Ellipsoid> SphereAt(const Eigen::Vector3d& center, const PinholeCa
 }
 
 }  // namespace
+
+Ellipsoid FitAlong(std::span<const Eigen::Vector3d> points, const Eigen::Matrix3d& axes,
+                   double distance, const StartOptions& options) {
+  Ellipsoid ellipsoid;
+  ellipsoid.world_from_object.rotation = Eigen::Quaterniond(axes).normalized();
+  Eigen::Vector3d center;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Interval interval = InnerInterval(points, axes.col(axis), options.trimmed);
+    center[axis] = 0.5 * (interval.low + interval.high);
+    ellipsoid.half_axes[axis] = std::max(options.min_half_axis * distance,
+                                         options.inflation * 0.5 * (interval.high - interval.low));
+  }
+  ellipsoid.world_from_object.translation = axes * center;
+  return ellipsoid;
+}
 
 std::vector<Ellipsoid> StartsFromPoints(std::span<const Eigen::Vector3d> points, double distance,
                                         const StartOptions& options) {

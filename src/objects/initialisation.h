@@ -13,6 +13,11 @@
 
 namespace hullslam {
 
+// The ellipsoid with these axes (columns, right-handed) and the inflated box of the points, without
+// the share that is trimmed at each end of each axis. `distance` as below. Needs a point.
+Ellipsoid FitAlong(std::span<const Eigen::Vector3d> points, const Eigen::Matrix3d& axes,
+                   double distance, const StartOptions& options);
+
 // Starts for refinement, computed from depth points in the world frame. `distance` is the distance
 // of the points from the cameras. A share of the points is left out at each end of each axis. The
 // half axes are those of an oriented bounding box of the other points, times the inflation. One

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -45,12 +46,19 @@ std::unique_ptr<RobustRowsCost> MakeSilhouette(const PinholeCamera& camera, cons
                                                const Ellipsoid& ellipsoid, double misfit_px,
                                                const ObjectConstraintOptions& options) {
   const double sigma_px = std::hypot(options.sigma_px, options.misfit_factor * misfit_px);
-  const auto sigma =
+  auto sigma =
       ResidualOfPixelError(options.residual, camera, view.cam_from_world, ellipsoid, sigma_px);
   if (!sigma) {
     return nullptr;
   }
-  auto cost = MakeObjectCost(options.residual, camera, *view.detection, lines, *sigma);
+  if (options.sigma_unit == SigmaUnit::kResidual) {
+    sigma = options.sigma_px;
+  }
+  std::optional<Ellipse> projected;
+  if (NeedsProjection(options.residual)) {
+    projected = ProjectEllipsoid(camera.Matrix(), view.cam_from_world, ellipsoid);
+  }
+  auto cost = MakeObjectCost(options.residual, camera, *view.detection, lines, *sigma, projected);
   if (cost == nullptr) {
     return nullptr;
   }

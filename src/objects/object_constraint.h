@@ -26,8 +26,8 @@ struct ObjectConstraint {
 //   min(1, max_effective_lines / n) sum over the rows r of rho(r / sigma)
 // where sigma = ResidualOfPixelError(hypot(sigma_px, misfit_factor * misfit_px)) at the view's pose
 // and `ellipsoid`, and rho is the loss with the scale max(loss_scale, min_loss_px / that hypot), in
-// sigmas. Depth points add the same kind of sum with DepthAnchorCost. `lines` are the lines of the
-// view's detection, possibly compensated.
+// sigmas. With SigmaUnit::kResidual, sigma = sigma_px instead. Depth points add the same kind of
+// sum with DepthAnchorCost. `lines` are the lines of the view's detection, possibly compensated.
 ObjectConstraint MakeObjectConstraint(const PinholeCamera& camera, const ObjectView& view,
                                       std::span<const SilhouetteLine> lines,
                                       const Ellipsoid& ellipsoid, double misfit_px,

@@ -5,4 +5,6 @@ namespace hullslam {
 
 std::vector<std::string> RobustLossNames() { return {"none", "huber", "cauchy", "tukey"}; }
 
+std::vector<std::string> SigmaUnitNames() { return {"pixels", "residual"}; }
+
 }  // namespace hullslam

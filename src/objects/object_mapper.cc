@@ -19,6 +19,7 @@
 #include "objects/object_view.h"
 #include "objects/point_statistics.h"
 #include "objects/refinement.h"
+#include "objects/start_method.h"
 #include "objects/visibility.h"
 
 namespace hullslam {
@@ -46,23 +47,6 @@ StartSpheres FindStartSpheres(const PinholeCamera& camera, std::span<const Objec
                               const StartOptions& options) {
   return {.by_landmarks = StartFromLandmarks(camera, views, options),
           .by_rays = StartFromRays(camera, views, options)};
-}
-
-// The starts of an object with depth are boxes of its points, those of others are the spheres.
-std::vector<Ellipsoid> CollectStarts(bool has_depth, const StartSpheres& spheres,
-                                     std::span<const ObjectView> views,
-                                     const Eigen::Vector3d& center, const StartOptions& options) {
-  if (has_depth) {
-    return StartsFromPoints(CollectPoints(views, static_cast<size_t>(options.max_points)),
-                            MeanDistance(views, center), options);
-  }
-  std::vector<Ellipsoid> starts;
-  for (const auto* sphere : {&spheres.by_landmarks, &spheres.by_rays}) {
-    if (*sphere) {
-      starts.push_back(**sphere);
-    }
-  }
-  return starts;
 }
 
 struct RefinedStart {
@@ -148,16 +132,24 @@ void ObjectMapper::CountVisible(Map& map, const ObjectIndex& index, KeyframeId k
   }
 }
 
+// The views that an object needs to be mapped or to stay mapped. Keyframes are culled, so a mapped
+// object need not keep as many views as its start takes, if this is more than the usual number.
+size_t ObjectMapper::NeededViews(const ObjectLandmark& object) const {
+  constexpr int kToStay = 3;
+  const int needed = options_.start.min_views;
+  return static_cast<size_t>(object.state == ObjectState::kMapped ? std::min(needed, kToStay)
+                                                                  : needed);
+}
+
 Objection ObjectMapper::FewViews(const ObjectLandmark& object) const {
-  return {ObjectRejection::kFewViews,
-          fmt::format("{} keyframes, expected at least {}", object.observations.size(),
-                      options_.start.min_views)};
+  return {ObjectRejection::kFewViews, fmt::format("{} keyframes, expected at least {}",
+                                                  object.observations.size(), NeededViews(object))};
 }
 
 void ObjectMapper::Update(Map& map, ObjectId id) {
   changed_.push_back(id);
   const ObjectLandmark& object = map.objects().At(id);
-  if (object.observations.size() < static_cast<size_t>(options_.start.min_views)) {
+  if (object.observations.size() < NeededViews(object)) {
     Reject(map, id, FewViews(object));
     return;
   }
@@ -199,9 +191,13 @@ void ObjectMapper::Start(Map& map, ObjectId id, std::span<const ObjectView> view
     return;
   }
   const std::vector<Ellipsoid> starts =
-      CollectStarts(has_depth, spheres, views, center, options_.start);
+      MethodOf(options_.start.method)({.camera = sensor_.camera,
+                                       .views = views,
+                                       .center = center,
+                                       .has_depth = has_depth,
+                                       .options = options_.start});
   if (starts.empty()) {
-    Reject(map, id, {ObjectRejection::kNoStart, "too few depth points for a start"});
+    Reject(map, id, {ObjectRejection::kNoStart, "too few points or views for a start"});
     return;
   }
   const RefinedStart best = RefineBest(starts, sensor_, views, options_.refinement);
@@ -263,7 +259,7 @@ void ObjectMapper::Recheck(Map& map, std::span<const ObjectId> objects) {
     if (object == nullptr || object->state != ObjectState::kMapped) {
       continue;
     }
-    if (object->observations.size() < static_cast<size_t>(options_.start.min_views)) {
+    if (object->observations.size() < NeededViews(*object)) {
       Reject(map, id, FewViews(*object));  // keyframes that observed it were culled
       continue;
     }
@@ -355,7 +351,7 @@ void ObjectMapper::CullSeldomSeen(Map& map, KeyframeId keyframe) {
       culled.emplace_back(id, "no keyframe observes the object any more");
     } else if (object.state == ObjectState::kCandidate &&
                object.observations.back().keyframe.value + candidate_keyframes < keyframe.value) {
-      culled.emplace_back(id, fmt::format("a candidate that was not seen for {} keyframes",
+      culled.emplace_back(id, fmt::format("not mapped yet, and not seen for {} keyframes",
                                           culling.candidate_keyframes));
     } else if (object.visible >= culling.min_visible &&
                object.found < culling.min_found_ratio * object.visible) {

@@ -51,6 +51,7 @@ class ObjectMapper {
   void Start(Map& map, ObjectId id, std::span<const ObjectView> views);
   void Refine(Map& map, ObjectId id, std::span<const ObjectView> views);
   void Accept(Map& map, ObjectId id, std::span<const ObjectView> views) const;
+  size_t NeededViews(const ObjectLandmark& object) const;
   Objection FewViews(const ObjectLandmark& object) const;
   void FuseDuplicates(Map& map, KeyframeId keyframe);
   std::vector<ObjectId> TakeChanged(const Map& map, KeyframeId keyframe);

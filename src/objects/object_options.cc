@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "hullslam/util/error.h"
+#include "objects/association_measure.h"
+#include "objects/start_method.h"
 
 namespace hullslam {
 namespace {
@@ -50,8 +52,11 @@ void BindOutline(const OptionScope& use, Range lines, ObjectConstraintOptions& c
 
 // The keys that joint pose estimation and bundle adjustment have.
 void BindSigma(const OptionScope& use, ObjectConstraintOptions& constraint) {
-  use.Add("sigma", &constraint.sigma_px, Range::Between(0.1, 100.0),
+  use.Add("sigma", &constraint.sigma_px, Range::Between(0.001, 1000.0),
           "standard deviation of a line, in addition to the misfit of the object, px");
+  use.AddEnum("sigma_unit", &constraint.sigma_unit, SigmaUnitNames(),
+              "unit of sigma: pixels, which are converted for the size and distance of each "
+              "object, or that of the residual, which has no misfit");
   use.Add("misfit_factor", &constraint.misfit_factor, Range::Between(0.0, 100.0),
           "factor of the misfit of the object in the standard deviation of a line");
   use.Add("loss_scale", &constraint.loss_scale, Range::Between(0.1, 1000.0),
@@ -76,6 +81,9 @@ void CheckResidual(const std::string& use, ObjectResidual residual, ObjectPrimit
 
 void AssociationOptions::Bind(const OptionScope& scope) {
   const Range share = Range::Share();
+  scope.AddEnum("measure", &measure, AssociationMeasureNames(),
+                "how detections and objects are compared (docs/objects.md); the other keys of "
+                "objects.association are those of the measure combined");
   scope.Add("min_projection_iou", &min_projection_iou, share,
             "a detection matches an object if the IoU of its hull and the projected ellipse is at "
             "least this");
@@ -109,7 +117,9 @@ void AssociationOptions::Bind(const OptionScope& scope) {
 }
 
 void StartOptions::Bind(const OptionScope& scope) {
-  scope.Add("min_views", &min_views, Range::Between(2, 1000),
+  scope.AddEnum("method", &method, ObjectStartNames(),
+                "how the first quadric of an object is made (docs/objects.md)");
+  scope.Add("min_views", &min_views, Range::Between(1, 1000),
             "number of keyframes that must observe an object before it is mapped");
   scope.Add("min_parallax", &min_parallax, Range::Between(0.0, 180.0),
             "least angle between views that an object with depth needs to be mapped, degrees");

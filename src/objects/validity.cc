@@ -135,9 +135,11 @@ std::optional<Objection> FindObjection(const Ellipsoid& ellipsoid, const Sensor&
   }
   const double misfit = RelativeMisfit(sensor.camera, ellipsoid, views);
   if (!(misfit <= options.max_misfit)) {
-    return Objection{ObjectRejection::kLargeMisfit,
-                     fmt::format("misfit {:.2f} of the size of the masks, expected at most {:.2f}",
-                                 misfit, options.max_misfit)};
+    return Objection{
+        ObjectRejection::kLargeMisfit,
+        fmt::format(
+            "its outline is off by {:.2f} of the size of the masks, expected at most {:.2f}",
+            misfit, options.max_misfit)};
   }
   if (const auto objection = CheckElongation(ellipsoid, views, options)) {
     return objection;

@@ -57,7 +57,7 @@ class Bundle {
     for (const auto& [id, index] : pose_indices_.entries()) {
       const Keyframe& keyframe = map.keyframes().At(id);
       poses_.push_back(ToBlock(keyframe.cam_from_world));
-      if (BundleRules::ForSensor(sensor.kind).keypoints_share_weights) {
+      if (BundleRules::ForSensor(sensor).keypoints_share_weights) {
         weights.push_back(internal::KeypointWeights(keyframe, sensor.levels));
       }
     }
@@ -298,7 +298,7 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
   BundleResult result;
   Bundle bundle(map, sensor, window, options);
   bundle.ExcludeUndefined();
-  const BundleRules rules = BundleRules::ForSensor(sensor.kind);
+  const BundleRules rules = BundleRules::ForSensor(sensor);
   if (rules.precision_is_measured) {
     bundle.MeasurePrecision();
   }
@@ -326,7 +326,7 @@ BundleResult Adjust(const Map& map, const Sensor& sensor, const BundleWindow& wi
 BundleResult AdjustBundle(const Map& map, const Sensor& sensor, const BundleWindow& window,
                           const BundleOptions& given, const Cancellation* cancellation,
                           const ProgressCallback& on_progress) {
-  const BundleRules rules = BundleRules::ForSensor(sensor.kind);
+  const BundleRules rules = BundleRules::ForSensor(sensor);
   const BundleOptions options = rules.is_solved_precisely ? given.ForMonocular() : given;
   const int most = options.robust_iterations + options.final_iterations;
   Supervision supervision(cancellation, on_progress, most);

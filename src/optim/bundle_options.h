@@ -49,9 +49,12 @@ struct BundleRules {
   // Whether the result is scaled to the map if a single keyframe is fixed.
   bool keeps_scale = false;
 
-  static BundleRules ForSensor(SensorKind kind) {
-    if (kind != SensorKind::kMonocular) {
+  static BundleRules ForSensor(const Sensor& sensor) {
+    if (!sensor.IsMonocular()) {
       return {};
+    }
+    if (sensor.depth_error.adjustment_rule == AdjustmentRule::kOrbSlam2) {
+      return {.keeps_scale = true};
     }
     // Without depth nothing but the points holds the scale, so a few wrong ones can change it.
     // Corners that slide along edges are such points. Poses follow them, so that their errors are

@@ -117,12 +117,29 @@ Json ToJson(const MapSummary& summary) {
           {"known_sizes", OrNull(summary.known_sizes)}};
 }
 
+Json ToJson(const PresetOverrideSummary& replaced) {
+  return {{"key", replaced.key},
+          {"preset_value", replaced.preset_value},
+          {"value", replaced.value},
+          {"source", replaced.source}};
+}
+
 Json ToJson(const ProvenanceSummary& summary) {
-  return {{"program", OrNull(summary.program)},   {"version", OrNull(summary.version)},
-          {"git", OrNull(summary.git)},           {"settings_hash", OrNull(summary.settings_hash)},
-          {"preset", OrNull(summary.preset)},     {"seed", summary.seed},
-          {"pipeline", summary.pipeline},         {"masks_format", OrNull(summary.masks_format)},
-          {"sequence", OrNull(summary.sequence)}, {"interrupted", summary.interrupted}};
+  Json overrides = Json::array();
+  for (const PresetOverrideSummary& replaced : summary.preset_overrides) {
+    overrides.push_back(ToJson(replaced));
+  }
+  return {{"program", OrNull(summary.program)},
+          {"version", OrNull(summary.version)},
+          {"git", OrNull(summary.git)},
+          {"settings_hash", OrNull(summary.settings_hash)},
+          {"preset", OrNull(summary.preset)},
+          {"preset_overrides", overrides},
+          {"seed", summary.seed},
+          {"pipeline", summary.pipeline},
+          {"masks_format", OrNull(summary.masks_format)},
+          {"sequence", OrNull(summary.sequence)},
+          {"interrupted", summary.interrupted}};
 }
 
 }  // namespace

@@ -99,12 +99,21 @@ struct MapSummary {
   std::optional<size_t> known_sizes = std::nullopt;
 };
 
+// A setting of a preset that another source has replaced.
+struct PresetOverrideSummary {
+  std::string key;
+  std::string preset_value;
+  std::string value;
+  std::string source;  // FILE:LINE, the name of a calibration, or --set
+};
+
 struct ProvenanceSummary {
   std::optional<std::string> program = std::nullopt;  // "rgbd_tum"
   std::optional<std::string> version = std::nullopt;
   std::optional<std::string> git = std::nullopt;
   std::optional<std::string> settings_hash = std::nullopt;
   std::optional<std::string> preset = std::nullopt;
+  std::vector<PresetOverrideSummary> preset_overrides = {};
   uint64_t seed = 0;
   std::string pipeline = "sequential";  // or "threaded"
   std::optional<std::string> masks_format = std::nullopt;

@@ -10,14 +10,13 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
-#include <numeric>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "hullslam/util/error.h"
 #include "run/messages.h"
+#include "util/edit_distance.h"
 
 namespace hullslam {
 namespace {
@@ -32,25 +31,6 @@ class MessageSink final : public spdlog::sinks::base_sink<std::mutex> {
   }
   void flush_() override {}
 };
-
-}  // namespace
-
-namespace {
-
-// The number of characters to insert, remove or replace to make `a` from `b` (Levenshtein 1966).
-size_t EditDistance(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 0; i < a.size(); ++i) {
-    size_t diagonal = std::exchange(row[0], i + 1);
-    for (size_t j = 0; j < b.size(); ++j) {
-      const size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
 
 // The long option that is spelled most like `name`, which is without dashes and a value; empty if
 // none is like it.

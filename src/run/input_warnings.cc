@@ -49,29 +49,7 @@ void WarnOfClassesWithoutMasks(const char* key, std::set<std::string> classes,
   }
 }
 
-void PrintWarnings(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) {
-    PrintError("warning: {}\n", warning);
-  }
-}
-
 }  // namespace
-
-SystemOptions LoadSettings(const std::filesystem::path& file,
-                           std::span<const std::string> overrides, NegativeFy negative_fy) {
-  std::vector<std::string> warnings;
-  SystemOptions options = ReadSettings(file, overrides, negative_fy, &warnings);
-  PrintWarnings(warnings);
-  return options;
-}
-
-SystemOptions LoadSettings(const CameraCalibration& calibration, const std::string& source,
-                           std::span<const std::string> overrides) {
-  std::vector<std::string> warnings;
-  SystemOptions options = MakeSettings(calibration, source, overrides, &warnings);
-  PrintWarnings(warnings);
-  return options;
-}
 
 void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& depth,
                             const DepthOptions& options) {

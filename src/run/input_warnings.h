@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
-#include <span>
 #include <string>
 
 #include "hullslam/sequences/image_sequence.h"
@@ -12,13 +11,6 @@
 #include "run/mask_arguments.h"
 
 namespace hullslam {
-
-// Like ReadSettings() and MakeSettings(), but prints their warnings on stderr.
-SystemOptions LoadSettings(const std::filesystem::path& file,
-                           std::span<const std::string> overrides,
-                           NegativeFy negative_fy = NegativeFy::kError);
-SystemOptions LoadSettings(const CameraCalibration& calibration, const std::string& source,
-                           std::span<const std::string> overrides);
 
 // Each function below prints a warning on stderr if the input can be used but is probably not what
 // the user meant.

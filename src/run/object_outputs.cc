@@ -104,7 +104,7 @@ std::string DescribeChanges(const std::vector<ChangedObject>& changes) {
 
 std::string DescribeObjects(const ObjectsSummary& summary, const char* unit) {
   return fmt::format(
-      "{} objects, {} candidates; means: SIoU {} with hulls, {} with masks, tangent distance {} "
+      "{} objects, {} not mapped; means: SIoU {} with hulls, {} with masks, tangent distance {} "
       "px, MTD {} {}^2 (of {} observations)",
       summary.count, summary.candidates, FormatFigure(summary.siou_mean, 3),
       FormatFigure(summary.siou_mask_mean, 3), FormatFigure(summary.tangent_mean_px, 1),

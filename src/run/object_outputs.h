@@ -31,7 +31,7 @@ std::vector<FileContent> ObjectFiles(const ObjectReport& report);
 // The number with this many decimals; "-" if it is absent.
 std::string FormatFigure(const std::optional<double>& figure, int decimals);
 
-// "7 objects, 3 candidates; means: SIoU 0.810 with hulls, ..." `unit` is the unit of length of the
+// "7 objects, 3 not mapped; means: SIoU 0.810 with hulls, ..." `unit` is the unit of length of the
 // map: "m", or "u" if it is unknown.
 std::string DescribeObjects(const ObjectsSummary& summary, const char* unit);
 

@@ -5,6 +5,7 @@
 
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
+#include "run/load_settings.h"
 #include "run/mask_arguments.h"
 #include "run/vocabularies.h"
 
@@ -40,6 +41,7 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
                  "SEQUENCE: " + help.sequence + "\nor " + LongForm(arguments.sensor) +
                      ", in the order of ORB-SLAM2");
   app.add_option("--settings", arguments.settings, "settings file (" + help.settings + ")");
+  AddPresetArgument(app, arguments.preset);
   AddVocabularyArgument(app, arguments.vocabulary);
   if (arguments.sensor == SensorKind::kRgbd) {
     app.add_option("--associations", arguments.associations,

@@ -25,6 +25,7 @@ struct RunArguments {
   std::filesystem::path vocabulary;    // empty: the default one; "none": none
   std::filesystem::path associations;  // empty: those of the sequence, or images paired by time
   FrameSelection selection;
+  std::string preset;                  // a name or a file; empty: none
   std::filesystem::path masks;         // empty: none
   std::string masks_format;            // empty: detected
   std::vector<std::string> overrides;  // key=value

@@ -40,11 +40,11 @@ void PrintIslands(const IslandsSummary& islands, bool are_kept) {
     return;
   }
   const size_t left = islands.begun - islands.joined - 1;
-  Print("the map was begun {} times; {} of its islands were joined, {} {}\n", islands.begun,
+  Print("the map was begun {} times; {} of its parts were joined, {} {}\n", islands.begun,
         islands.joined, left, are_kept ? "written on their own" : "removed");
   for (const IslandSummary& island : islands.at_end) {
     if (!island.is_main && island.first_timestamp && island.last_timestamp) {
-      Print("  island {}: {} frames from {:.3f} to {:.3f} s, {} keyframes{}\n", island.number,
+      Print("  part {}: {} frames from {:.3f} to {:.3f} s, {} keyframes{}\n", island.number,
             island.frames, *island.first_timestamp, *island.last_timestamp, island.keyframes,
             island.ate_rmse_m ? fmt::format(", ATE RMSE {:.4f} m", *island.ate_rmse_m) : "");
     }

@@ -25,8 +25,8 @@ int Run(const SlamProgram& program, Dataset& dataset, int argc, char** argv) {
   }
   FinishArguments(positional, arguments);
   DatasetInput input = dataset.Open(arguments);
-  input.options.sensor = program.sensor;
-  return RunSlam(arguments, std::move(input.options), input.sequence, input.notes);
+  input.settings.options.sensor = program.sensor;
+  return RunSlam(arguments, std::move(input.settings), input.sequence, input.notes);
 }
 
 }  // namespace

@@ -14,15 +14,9 @@
 #include <vector>
 
 #include "eval/located_landmarks.h"
-#include "eval/reprojection_error.h"
-#include "hullslam/eval/ate.h"
-#include "hullslam/eval/rpe.h"
 #include "hullslam/results/trajectory_file.h"
-#include "hullslam/settings/settings.h"
 #include "hullslam/system/system.h"
 #include "hullslam/util/error.h"
-#include "map/islands.h"
-#include "report/lost_frames.h"
 #include "results/output_folder.h"
 #include "results/ply_file.h"
 #include "results/summary.h"
@@ -36,6 +30,7 @@
 #include "run/program.h"
 #include "run/progress.h"
 #include "run/run_report.h"
+#include "run/summarize_run.h"
 #include "run/vocabularies.h"
 #include "system/compose_trajectory.h"
 #include "system/make_sensor.h"
@@ -44,15 +39,6 @@ namespace hullslam {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-struct RunResult {
-  size_t given = 0;    // frames that were loaded or skipped before the run ended
-  size_t skipped = 0;  // frames with an image that cannot be read
-  double seconds = 0.0;
-  bool was_interrupted = false;
-  InitialisationSummary initialisation;
-  std::vector<FrameNote> notes;  // one per frame of the system
-};
 
 PipelineKind ChoosePipeline(const RunArguments& arguments) {
   if (!arguments.threaded) {
@@ -74,9 +60,9 @@ const char* Name(TrackingState state) {
 
 // The numbers of islands; empty if the map has only one.
 std::string DescribeIslands(const Map& map) {
-  return map.islands_begun() > 1
-             ? fmt::format("  {} islands, {} joined", map.islands_begun(), map.islands_joined())
-             : "";
+  return map.islands_begun() > 1 ? fmt::format("  {} parts of the map, {} joined",
+                                               map.islands_begun(), map.islands_joined())
+                                 : "";
 }
 
 std::string DescribeState(TrackingState state, std::optional<InitialisationFailure> failure,
@@ -172,138 +158,6 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
   return result;
 }
 
-Trajectory Scaled(Trajectory trajectory, double scale) {
-  for (StampedPose& pose : trajectory) {
-    pose.world_from_cam.translation *= scale;
-  }
-  return trajectory;
-}
-
-// The scale of a monocular map is not known, so the alignment includes the scale.
-AlignmentKind AlignmentOf(SensorKind sensor) {
-  return sensor == SensorKind::kMonocular ? AlignmentKind::kSim3 : AlignmentKind::kSe3;
-}
-
-void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory, SensorKind sensor,
-              TrajectorySummary& summary) {
-  AteOptions options;
-  options.alignment = AlignmentOf(sensor);
-  const AteReport ate = EvaluateAte(groundtruth, trajectory, options);
-  if (!ate.ok()) {
-    PrintError("warning: the trajectory error cannot be computed: {}\n", ate.failure);
-    return;
-  }
-  summary.ate_rmse_m = ate.errors.rmse;
-  summary.scale = ate.reference_from_estimate.scale;
-  summary.pairs = ate.pairs;
-  const RpeReport rpe =
-      EvaluateRpe(groundtruth, Scaled(trajectory, ate.reference_from_estimate.scale));
-  if (rpe.ok()) {
-    summary.rpe_rmse_m = rpe.translation.rmse;
-    summary.rpe_rmse_deg = rpe.rotation.rmse;
-  }
-}
-
-size_t CountLost(const System& system) {
-  return static_cast<size_t>(std::count_if(
-      system.frames().begin(), system.frames().end(),
-      [](const TrackedFrame& frame) { return frame.state != TrackingState::kTracked; }));
-}
-
-// The error after an alignment of its own; unknown without ground truth.
-std::optional<double> ErrorOf(const std::optional<Trajectory>& groundtruth,
-                              const Trajectory& trajectory, SensorKind sensor) {
-  if (!groundtruth || trajectory.empty()) {
-    return std::nullopt;
-  }
-  AteOptions options;
-  options.alignment = AlignmentOf(sensor);
-  const AteReport ate = EvaluateAte(*groundtruth, trajectory, options);
-  return ate.ok() ? std::optional(ate.errors.rmse) : std::nullopt;
-}
-
-IslandSummary SummarizeIsland(IslandId id, const Map& map, const Trajectory& trajectory) {
-  IslandSummary summary{.number = id.value + size_t{1},
-                        .keyframes = map.keyframes().size(),
-                        .landmarks = map.landmarks().size(),
-                        .frames = trajectory.size()};
-  if (!trajectory.empty()) {
-    summary.first_timestamp = trajectory.front().timestamp;
-    summary.last_timestamp = trajectory.back().timestamp;
-  }
-  return summary;
-}
-
-IslandsSummary SummarizeIslands(const System& system, const Trajectory& trajectory,
-                                const std::optional<Trajectory>& groundtruth, SensorKind sensor) {
-  const std::shared_ptr<const Map> map = system.map();
-  if (map == nullptr || map->keyframes().empty()) {
-    return {};
-  }
-  IslandsSummary summary{.begun = map->islands_begun(), .joined = map->islands_joined()};
-  summary.at_end.push_back(SummarizeIsland(MainIsland(*map), *map, trajectory));
-  summary.at_end.back().is_main = true;
-  summary.at_end.back().ate_rmse_m = ErrorOf(groundtruth, trajectory, sensor);
-  for (const LeftIsland& island : system.left_islands()) {
-    summary.at_end.push_back(SummarizeIsland(island.id, *island.map, island.trajectory));
-    summary.at_end.back().ate_rmse_m = ErrorOf(groundtruth, island.trajectory, sensor);
-  }
-  return summary;
-}
-
-// Each loop is stored in both keyframes, so it is counted twice.
-size_t CountLoops(const Map& map) {
-  size_t ends = 0;
-  for (const auto& [id, keyframe] : map.keyframes()) {
-    ends += keyframe.loops.size();
-  }
-  return ends / 2;
-}
-
-RunSummary Summarize(const RunArguments& arguments, const SystemOptions& options,
-                     const ImageSequence& sequence, const RunResult& result, const System& system) {
-  RunSummary summary;
-  summary.trajectory.alignment = ToString(AlignmentOf(options.sensor));
-  summary.trajectory.frames = result.given;
-  summary.trajectory.skipped = result.skipped;
-  summary.trajectory.unpaired = sequence.unpaired;
-  summary.trajectory.lost = CountLost(system);
-  summary.trajectory.tracked = system.frames().size() - summary.trajectory.lost;
-  summary.trajectory.coverage =
-      static_cast<double>(summary.trajectory.tracked) / static_cast<double>(sequence.frames.size());
-  summary.trajectory.losses = FindLostStretches(system.frames(), result.notes);
-
-  summary.timing.stages_ms = SummarizeStages(system.times());
-  summary.timing.track_ms = summary.timing.stages_ms["track"];
-  summary.timing.stages_ms.erase("track");
-  summary.timing.total_s = result.seconds;
-  summary.timing.frames_per_second =
-      static_cast<double>(result.given) / std::max(result.seconds, 1e-9);
-  summary.peak_memory_mb = PeakMemoryMb();
-  if (const auto map = system.map()) {
-    summary.map.keyframes = map->keyframes().size();
-    summary.map.landmarks = map->landmarks().size();
-    summary.map.sessions = map->sessions().size();
-    summary.map.loops = CountLoops(*map);
-    summary.map.reprojection_px = MedianReprojectionError(*map, options.camera);
-    if (options.sensor == SensorKind::kMonocular && !options.objects.sizes.empty()) {
-      summary.map.known_sizes = system.sized_objects();
-    }
-  }
-  if (options.sensor == SensorKind::kMonocular && arguments.load_map.empty()) {
-    summary.initialisation = result.initialisation;
-  }
-  summary.provenance.program = arguments.program;
-  summary.provenance.version = HULLSLAM_VERSION;
-  summary.provenance.git = HULLSLAM_GIT;
-  summary.provenance.settings_hash = HashSettings(options);
-  summary.provenance.seed = arguments.seed;
-  summary.provenance.pipeline = arguments.threaded ? "threaded" : "sequential";
-  summary.provenance.sequence = arguments.sequence.string();
-  summary.provenance.interrupted = result.was_interrupted;
-  return summary;
-}
-
 std::string MapPly(const std::vector<Eigen::Vector3d>& landmarks, const Trajectory& keyframes) {
   std::vector<Eigen::Vector3d> centers;
   for (const StampedPose& pose : keyframes) {
@@ -368,13 +222,17 @@ void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
   WarnOfLastFrame(arguments.selection, sequence);
 }
 
-void PrintInput(const RunArguments& arguments, const SystemOptions& options,
+void PrintInput(const RunArguments& arguments, const LoadedSettings& settings,
                 std::span<const std::string> notes, const SequenceMasks& masks) {
+  const SystemOptions& options = settings.options;
   if (arguments.quiet) {
     return;
   }
   for (const std::string& note : notes) {
     Print("{}\n", note);
+  }
+  if (settings.preset) {
+    Print("{}\n", DescribePreset(settings));
   }
   Print("up to {} features on {} levels in each image of {}x{} px\n",
         options.features.feature_count, options.features.level_count, options.camera.width,
@@ -404,8 +262,10 @@ int FailIfAny(std::initializer_list<std::string> failures) {
 
 }  // namespace
 
-int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence,
+int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageSequence& sequence,
             std::span<const std::string> notes) {
+  CheckPresetHasMasks(settings, arguments.masks);
+  SystemOptions& options = settings.options;
   options.vocabulary = ChooseVocabulary(arguments.vocabulary, arguments.quiet);
   options.seed = arguments.seed;
   // The first image is loaded now, so that a wrong type or size is reported early.
@@ -421,7 +281,7 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
                       {arguments.program, arguments.overwrite});
   WarnOfInput(arguments, options, sequence, first, masks);
-  PrintInput(arguments, options, notes, masks);
+  PrintInput(arguments, settings, notes, masks);
   System system(options, ChoosePipeline(arguments), std::move(start));
   const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system);
   if (result.was_interrupted && result.given == 0) {
@@ -429,13 +289,9 @@ int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSeq
     return kFailed;
   }
 
-  RunSummary summary = Summarize(arguments, options, sequence, result, system);
+  RunSummary summary = SummarizeRun(arguments, settings, sequence, result, system, groundtruth);
   summary.provenance.masks_format = masks.format();
   const Trajectory trajectory = system.trajectory();
-  if (groundtruth && !trajectory.empty()) {
-    Evaluate(*groundtruth, trajectory, options.sensor, summary.trajectory);
-  }
-  summary.islands = SummarizeIslands(system, trajectory, groundtruth, options.sensor);
   const std::shared_ptr<const Map> map =
       system.map() != nullptr ? system.map() : std::make_shared<const Map>();
   ObjectReport objects = CollectObjects(*map, options.camera, arguments.sequence);

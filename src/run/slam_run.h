@@ -5,7 +5,7 @@
 #include <string>
 
 #include "hullslam/sequences/image_sequence.h"
-#include "hullslam/system/options.h"
+#include "run/load_settings.h"
 #include "run/run_arguments.h"
 
 namespace hullslam {
@@ -15,7 +15,7 @@ namespace hullslam {
 // objects, and groundtruth.txt if the ground truth of the sequence had to be converted; prints the
 // results. Returns the program's exit code. Throws InputError for bad input, before the first frame
 // if possible. `notes` are lines about the input, which are printed before the first frame.
-int RunSlam(const RunArguments& arguments, SystemOptions options, const ImageSequence& sequence,
+int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageSequence& sequence,
             std::span<const std::string> notes);
 
 }  // namespace hullslam

@@ -8,6 +8,8 @@
 #include <cctype>
 #include <cstdint>
 #include <cstdlib>
+#include <map>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -15,6 +17,7 @@
 
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
+#include "settings/preset_comparison.h"
 #include "settings/settings_orb_slam3.h"
 #include "settings/yaml_settings.h"
 #include "util/shown_text.h"
@@ -25,6 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kSet = "--set";  // the origin of overrides
 constexpr std::array kIntrinsics = {"Camera.fx", "Camera.fy", "Camera.cx", "Camera.cy"};
 
 // The text of Camera.fy for the option table. If negative values are allowed, their sign is
@@ -45,54 +49,103 @@ std::string FocalLengthInY(const WrittenSetting& setting, std::string text,
   return text.substr(text.find('-') + 1);
 }
 
-void ApplyFile(const fs::path& file, NegativeFy negative_fy, OptionTable& table,
-               std::set<std::string>& given) {
+// The options of a run while they are being set.
+class SettingsInProgress {
+ public:
+  explicit SettingsInProgress(const SettingsSources& sources)
+      : sources_(sources), table_(options_.Bind()) {
+    if (sources.preset != nullptr) {
+      comparison_.emplace(*sources.preset, table_);
+      for (const PresetSetting& setting : sources.preset->settings) {
+        given_.insert(setting.key);
+      }
+    }
+  }
+
+  void Set(const std::string& key, const std::string& value, const std::string& origin) {
+    table_.Set(key, value, origin);
+    given_.insert(key);
+    for (const std::string& changed : table_.KeysSetBy(key)) {
+      origins_[changed] = origin;
+    }
+  }
+  void ApplyFile(const fs::path& file);
+  void ApplyCalibration(const CameraCalibration& calibration, const std::string& source);
+  void ApplyOverrides();
+  bool IsGiven(const std::string& key) const { return given_.contains(key); }
+  // What must come after all settings were set: follows the size of the image and validates the
+  // options.
+  SystemOptions Finish(SettingsReport& report);
+
+ private:
+  std::string FollowImage();
+  std::string FollowShutter();
+  void ReportOverrides(SettingsReport& report) const;
+
+  const SettingsSources& sources_;
+  SystemOptions options_;
+  OptionTable table_;
+  std::optional<PresetComparison> comparison_;
+  std::set<std::string> given_;                 // keys that were set, also by the preset
+  std::map<std::string, std::string> origins_;  // of the keys that were set since the preset
+};
+
+void SettingsInProgress::ApplyFile(const fs::path& file) {
+  std::set<std::string> in_file;
   for (const WrittenSetting& setting : TranslateOrb3Settings(ReadYamlSettings(file))) {
     const bool is_renamed = setting.name != setting.key;
-    if (!given.insert(setting.key).second) {
+    if (!in_file.insert(setting.key).second) {
       throw InputError(
           fmt::format("{}: {} was given before under another name", setting.origin, setting.name));
     }
-    if (table.SkipRetired(setting.key, setting.origin)) {
+    if (table_.SkipRetired(setting.key, setting.origin)) {
       continue;
     }
-    // The value is only checked if the key is known, so that an unknown key is reported as such.
-    std::string text;
-    if (table.IsMap(setting.key) && setting.pairs) {
-      text = *setting.pairs;
-    } else if (table.Contains(setting.key)) {
-      text = SingleValue(setting);
-    }
+    std::string text = TextOf(setting, table_);
     if (setting.key == "Camera.fy") {
-      text = FocalLengthInY(setting, std::move(text), negative_fy);
+      text = FocalLengthInY(setting, std::move(text), sources_.negative_fy);
     }
-    table.Set(setting.key, text,
-              is_renamed ? fmt::format("{}: {}", setting.origin, setting.name) : setting.origin);
+    Set(setting.key, text,
+        is_renamed ? fmt::format("{}: {}", setting.origin, setting.name) : setting.origin);
   }
 }
 
-void ApplyOverrides(std::span<const std::string> overrides, OptionTable& table,
-                    std::set<std::string>& given) {
-  for (const std::string_view assignment : overrides) {
+// Each value is set as if a file had it, so that its range is checked.
+void SettingsInProgress::ApplyCalibration(const CameraCalibration& calibration,
+                                          const std::string& source) {
+  SystemOptions given;
+  given.camera = calibration.camera;
+  given.frames_per_second = calibration.frames_per_second;
+  for (const OptionTable::Entry& entry : given.Bind().Entries()) {
+    if (entry.key.starts_with("Camera.")) {
+      Set(entry.key, entry.value, source);
+    }
+  }
+  if (const std::string fault = calibration.camera.FindFault(); !fault.empty()) {
+    throw InputError(source + ": " + fault);
+  }
+}
+
+void SettingsInProgress::ApplyOverrides() {
+  for (const std::string_view assignment : sources_.overrides) {
     const size_t equals = assignment.find('=');
     if (equals == std::string::npos) {
       throw InputError(fmt::format("--set: '{}', expected key=value", ShowText(assignment)));
     }
-    const std::string key(Trim(assignment.substr(0, equals)));
-    table.Set(key, std::string(Trim(assignment.substr(equals + 1))), "--set");
-    given.insert(key);
+    Set(std::string(Trim(assignment.substr(0, equals))),
+        std::string(Trim(assignment.substr(equals + 1))), kSet);
   }
 }
 
 // Fits the features to the size of the images where `given` does not set them. Returns a warning,
 // or nothing. A pyramid with too many levels gets fewer: settings files are copied from camera to
 // camera with this number, which says nothing about the camera.
-std::string FollowImage(const std::set<std::string>& given, SystemOptions& options) {
-  const int width = options.camera.width;
-  const int height = options.camera.height;
-  FeatureOptions& features = options.features;
+std::string SettingsInProgress::FollowImage() {
+  const int width = options_.camera.width;
+  const int height = options_.camera.height;
+  FeatureOptions& features = options_.features;
   std::string warning;
-  if (!given.contains("ORBextractor.nLevels")) {
+  if (!IsGiven("ORBextractor.nLevels")) {
     features.level_count = features.LevelsFor(width, height);
   } else if (const int most = features.MostLevels(width, height);
              most > 0 && features.level_count > most) {
@@ -102,25 +155,49 @@ std::string FollowImage(const std::set<std::string>& given, SystemOptions& optio
         features.level_count, width, height, most, most);
     features.level_count = most;
   }
-  if (!given.contains("ORBextractor.nFeatures")) {
+  if (!IsGiven("ORBextractor.nFeatures")) {
     features.feature_count = features.FeaturesFor(width, height);
   }
   return warning;
 }
 
-// What must come after all settings were set: follows the size of the image, validates the options
-// and hands the warnings over.
-void Complete(const std::set<std::string>& given, const OptionTable& table, SystemOptions& options,
-              std::vector<std::string>* warnings) {
-  const std::string warning = FollowImage(given, options);
-  options.Validate();
-  if (warnings == nullptr) {
+// Without correction of the shutter, all images count as exposed at once. Returns a warning if a
+// user asks for something else at the same time, or nothing.
+std::string SettingsInProgress::FollowShutter() {
+  if (options_.tracking.correct_shutter || options_.readout_time == 0.0) {
+    return {};
+  }
+  options_.readout_time = 0.0;
+  const auto origin = origins_.find("Camera.readout_time");
+  return origin != origins_.end() && origin->second == kSet
+             ? "--set: Camera.readout_time has no effect, because tracking.correct_shutter is false"
+             : std::string();
+}
+
+void SettingsInProgress::ReportOverrides(SettingsReport& report) const {
+  if (!comparison_) {
     return;
   }
-  *warnings = table.warnings();
-  if (!warning.empty()) {
-    warnings->push_back(warning);
+  report.preset_overrides = comparison_->FindOverrides(table_, origins_);
+  for (const PresetOverride& replaced : report.preset_overrides) {
+    if (replaced.origin != kSet) {
+      report.warnings.push_back(Describe(replaced, *sources_.preset));
+    }
   }
+}
+
+SystemOptions SettingsInProgress::Finish(SettingsReport& report) {
+  const std::string of_image = FollowImage();
+  const std::string of_shutter = FollowShutter();
+  options_.Validate();
+  report.warnings = table_.warnings();
+  ReportOverrides(report);
+  for (const std::string& warning : {of_image, of_shutter}) {
+    if (!warning.empty()) {
+      report.warnings.push_back(warning);
+    }
+  }
+  return options_;
 }
 
 // The number of the TUM camera in a name, such as "rgbd_dataset_freiburg1_xyz" or "fr1_desk"; 0 if
@@ -150,43 +227,47 @@ std::string FolderName(const fs::path& folder) {
 
 }  // namespace
 
-SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> overrides,
-                           NegativeFy negative_fy, std::vector<std::string>* warnings) {
-  SystemOptions options;
-  OptionTable table = options.Bind();
-  std::set<std::string> given;
-  ApplyFile(file, negative_fy, table, given);
-  ApplyOverrides(overrides, table, given);
+SystemOptions ReadSettings(const fs::path& file, const SettingsSources& sources,
+                           SettingsReport& report) {
+  SettingsInProgress settings(sources);
+  settings.ApplyFile(file);
+  settings.ApplyOverrides();
   for (const char* const key : kIntrinsics) {
-    if (!given.contains(key)) {
+    if (!settings.IsGiven(key)) {
       throw InputError(file.string() + ": " + key +
                        " is not given, expected the intrinsics of the camera in px");
     }
   }
-  Complete(given, table, options, warnings);
+  return settings.Finish(report);
+}
+
+SystemOptions ReadSettings(const fs::path& file, std::span<const std::string> overrides,
+                           NegativeFy negative_fy, std::vector<std::string>* warnings) {
+  SettingsReport report;
+  SystemOptions options =
+      ReadSettings(file, {.overrides = overrides, .negative_fy = negative_fy}, report);
+  if (warnings != nullptr) {
+    *warnings = std::move(report.warnings);
+  }
   return options;
+}
+
+SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
+                           const SettingsSources& sources, SettingsReport& report) {
+  SettingsInProgress settings(sources);
+  settings.ApplyCalibration(calibration, source);
+  settings.ApplyOverrides();
+  return settings.Finish(report);
 }
 
 SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
                            std::span<const std::string> overrides,
                            std::vector<std::string>* warnings) {
-  SystemOptions options;
-  OptionTable table = options.Bind();
-  SystemOptions given;
-  given.camera = calibration.camera;
-  given.frames_per_second = calibration.frames_per_second;
-  // Each value is set as if a file had it, so that its range is checked.
-  for (const OptionTable::Entry& entry : given.Bind().Entries()) {
-    if (entry.key.starts_with("Camera.")) {
-      table.Set(entry.key, entry.value, source);
-    }
+  SettingsReport report;
+  SystemOptions options = MakeSettings(calibration, source, {.overrides = overrides}, report);
+  if (warnings != nullptr) {
+    *warnings = std::move(report.warnings);
   }
-  if (const std::string fault = calibration.camera.FindFault(); !fault.empty()) {
-    throw InputError(source + ": " + fault);
-  }
-  std::set<std::string> changed;
-  ApplyOverrides(overrides, table, changed);
-  Complete(changed, table, options, warnings);
   return options;
 }
 

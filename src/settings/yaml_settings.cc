@@ -62,6 +62,29 @@ WrittenValues ScanLines(const fs::path& file, std::string_view text) {
   return values;
 }
 
+// The text without comments. OpenCV's parser takes a comment after a text for a part of it. As in
+// YAML, a comment begins after a blank or at the begin of a line. If there is a quote before it, it
+// may be part of a text, so it stays. Lines keep their numbers.
+std::string WithoutComments(std::string_view text) {
+  std::string kept;
+  kept.reserve(text.size());
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    size_t comment = line.find('#');
+    while (comment != std::string_view::npos && comment > 0 && line[comment - 1] != ' ' &&
+           line[comment - 1] != '\t') {
+      comment = line.find('#', comment + 1);
+    }
+    const size_t quote = line.find_first_of("\"'");
+    const std::string_view shown = comment < quote ? line.substr(0, comment) : line;
+    kept += shown.substr(0, shown.find_last_not_of(" \t") + 1);
+    kept += end < text.size() ? "\n" : "";
+    begin = end + 1;
+  }
+  return kept;
+}
+
 // A byte order mark, which editors on Windows add, is accepted.
 std::string ReadYamlText(const fs::path& file) {
   constexpr size_t kLargest = 1'000'000;
@@ -75,7 +98,7 @@ std::string ReadYamlText(const fs::path& file) {
   if (text.find('\0') != std::string::npos) {
     throw InputError(file.string() + ": is not a text file with settings");
   }
-  return text;
+  return WithoutComments(text);
 }
 
 // The text of a single value; see WrittenSetting.
@@ -159,6 +182,13 @@ const std::string& SingleValue(const WrittenSetting& setting) {
                                  ShowText(setting.name), setting.no_value));
   }
   return setting.text;
+}
+
+std::string TextOf(const WrittenSetting& setting, const OptionTable& table) {
+  if (table.IsMap(setting.key) && setting.pairs) {
+    return *setting.pairs;
+  }
+  return table.Contains(setting.key) ? SingleValue(setting) : std::string();
 }
 
 }  // namespace hullslam

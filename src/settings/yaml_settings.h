@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "hullslam/util/option_table.h"
+
 namespace hullslam {
 
 // A setting as it is written in a settings file.
@@ -29,5 +31,10 @@ std::vector<WrittenSetting> ReadYamlSettings(const std::filesystem::path& file);
 
 // The text of the setting. Throws InputError if it is not a single value.
 const std::string& SingleValue(const WrittenSetting& setting);
+
+// The text that OptionTable::Set() takes for the setting. Empty for an unknown key, so that it is
+// reported as such. Throws InputError if the option is no map and the setting is not a single
+// value.
+std::string TextOf(const WrittenSetting& setting, const OptionTable& table);
 
 }  // namespace hullslam

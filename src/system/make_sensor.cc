@@ -13,7 +13,7 @@ Sensor MakeSensor(const SystemOptions& options) {
   sensor.close_depth = options.depth.close_baselines * sensor.baseline();
   sensor.depth_error = options.depth.error;
   sensor.frames_per_second = options.frames_per_second;
-  sensor.readout_time = options.readout_time;
+  sensor.readout_time = options.tracking.correct_shutter ? options.readout_time : 0.0;
   sensor.readout_direction = options.readout_direction;
   return sensor;
 }

@@ -61,7 +61,8 @@ std::unique_ptr<FrameBuilder> MakeFrameBuilder(const Sensor& sensor, const Syste
   return std::make_unique<FrameBuilder>(
       sensor, options.depth, options.features,
       objects.enabled ? std::optional(objects.detection) : std::nullopt,
-      SplitNames(options.tracking.dynamic_classes), options.vocabulary);
+      SplitNames(options.tracking.dynamic_classes), options.vocabulary,
+      options.tracking.remove_dynamic);
 }
 
 // Words of two vocabularies can be compared if their contents are equal. It does not matter whether
@@ -149,7 +150,7 @@ TrackedFrame System::Track(BuiltFrame built) {
                             .count());
   }
   frames_.push_back(report.tracked);
-  if (!start_.localization_only) {
+  if (!start_.localization_only && options_.tracking.refine_at_end) {
     remembered_.push_back(Remember(report, options_.objects));
   }
   if (frame_callback_) {

@@ -9,20 +9,31 @@ namespace hullslam {
 PoseSearch FindConfirmedPose(const Frame& frame, const Map& map, const TrackingContext& context,
                              const LastFrame& last, std::span<PoseSource* const> sources) {
   PoseSearch search;
+  int most = 0;
   for (size_t i = 0; i < sources.size(); ++i) {
+    if (search.found && !BeginsAtLastFrame(sources[i])) {
+      break;
+    }
     std::optional<PoseEstimate> start = sources[i](frame, map, context, last);
     if (!start) {
       continue;
     }
+    const bool is_certain = start->EffectiveInliers() >= context.min_relocalisation_inliers();
     const KeyframeId near =
         start->keyframe_of_place.IsValid() ? start->keyframe_of_place : last.reference;
     LocalTracking tracking = TrackLocalMap(frame, map, context, near, std::move(*start));
     const int inliers = tracking.estimate.EffectiveInliers();
-    if (inliers >= context.options.min_inliers) {
-      search.found = ConfirmedPose{std::move(tracking), i};
-      return search;
+    if (inliers < context.options.min_inliers) {
+      search.most_unconfirmed = std::max(search.most_unconfirmed, inliers);
+      continue;
     }
-    search.most_unconfirmed = std::max(search.most_unconfirmed, inliers);
+    if (inliers > most) {
+      most = inliers;
+      search.found = ConfirmedPose{std::move(tracking), i};
+    }
+    if (is_certain) {
+      break;
+    }
   }
   return search;
 }

@@ -26,8 +26,11 @@ struct PoseSearch {
   int most_unconfirmed = 0;
 };
 
-// Asks the sources one after the other for a first pose of the frame. The first one whose pose is
-// confirmed by the local map (tracking.min_inliers) is the result.
+// Asks the sources one after the other for a first pose of the frame. A pose is confirmed if the
+// local map finds tracking.min_inliers landmarks with it. The first confirmed pose is the result if
+// its source found as many landmarks as relocalisation needs. With fewer, its matches may agree by
+// chance, so the other sources that begin at the last frame are asked too, and the pose with most
+// landmarks of the local map is the result.
 PoseSearch FindConfirmedPose(const Frame& frame, const Map& map, const TrackingContext& context,
                              const LastFrame& last, std::span<PoseSource* const> sources);
 

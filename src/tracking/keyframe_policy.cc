@@ -4,9 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tracking/orb_slam2_keyframe_rule.h"
+
 namespace hullslam {
 
 bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
+  if (rule == KeyframeRule::kOrbSlam2) {
+    return NeedsKeyframeByOrbSlam2(evidence, *this);
+  }
   if (evidence.requests_waiting >= max_requests_waiting || evidence.inliers < min_landmarks) {
     return false;
   }

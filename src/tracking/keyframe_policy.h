@@ -3,6 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+
+#include "hullslam/tracking/tracking_options.h"
 
 namespace hullslam {
 
@@ -17,11 +20,15 @@ struct KeyframeEvidence {
   int fruitless_requests =
       0;  // keyframes requested for objects alone since an object was last mapped
   size_t keyframes = 0;
+  // s; absent if the camera was not relocalised.
+  std::optional<double> time_since_relocalisation = std::nullopt;
   bool mapper_is_idle = true;
   int requests_waiting = 0;
 };
 
 struct KeyframePolicy {
+  KeyframeRule rule = KeyframeRule::kHullslam;
+  bool has_depth = true;
   int min_landmarks = 15;         // a frame with fewer would be a keyframe without connections
   double min_time_between = 0.2;  // s, unless tracking has weakened abruptly
   double max_time_between = 1.0;  // s; after this time, also if the mapper is busy
@@ -40,6 +47,9 @@ struct KeyframePolicy {
   int max_close_untracked = 70;
   int max_requests_waiting = 3;
 
+  // Whether a keyframe is needed by the rule of the policy. That of ORB-SLAM2 is explained in
+  // orb_slam2_keyframe_rule.h, the other one here.
+  //
   // A keyframe is needed under two conditions (Mur-Artal and Tardos 2017, section III.E). The frame
   // finds too few landmarks of the reference keyframe, or close points would be lost; and the
   // mapper is idle, or the need is urgent. Two things differ from the paper. Keyframes are spread

@@ -38,15 +38,16 @@ struct Expected {
 };
 
 // px at level 0. A prediction is wrong by an angle, which is more pixels in a larger image.
-double SearchRadius(const Sensor& sensor) {
-  return kSearchRadius * std::max(1.0, sensor.camera.width / kWidthOfRadius);
+double SearchRadius(const Sensor& sensor, bool is_wide) {
+  return is_wide ? kSearchRadius * std::max(1.0, sensor.camera.width / kWidthOfRadius)
+                 : kSearchRadius;
 }
 
 // The expected pixels of the last frame's landmarks for a camera at `cam_from_world`.
 Expected ExpectLandmarks(const Map& map, const Sensor& sensor, const LastFrame& last,
-                         const Rigid3& cam_from_world, double forward) {
+                         const Rigid3& cam_from_world, double forward, bool is_wide) {
   Expected expected;
-  const auto radius = static_cast<float>(SearchRadius(sensor));
+  const auto radius = static_cast<float>(SearchRadius(sensor, is_wide));
   for (size_t i = 0; i < last.landmarks.size(); ++i) {
     const Landmark* landmark = map.landmarks().Find(last.landmarks[i]);
     if (landmark == nullptr) {
@@ -80,15 +81,17 @@ Expected ExpectLandmarks(const Map& map, const Sensor& sensor, const LastFrame& 
 // once, and then as long as they are smaller than the motion. A camera may stop or double its
 // velocity from one frame to the next, and then its landmarks are as far from their expected pixels
 // as they were expected to move: far if the motion is fast or there are few frames per second.
+// Unless the search is wide, they double once.
 std::vector<Match> SearchLandmarks(const Frame& frame, const Sensor& sensor, size_t enough,
-                                   Expected& expected) {
+                                   bool is_wide, Expected& expected) {
   const ProjectionSearch search{.max_distance = 100, .compare_rotation = true};
   std::vector<Match> matches = MatchByProjection(frame.features, expected.projections, {}, search);
   if (expected.projections.empty()) {
     return matches;
   }
-  double radius = SearchRadius(sensor);
-  const double largest = std::max(2.0 * radius, static_cast<double>(Median(expected.distances)));
+  double radius = SearchRadius(sensor, is_wide);
+  const double motion = is_wide ? static_cast<double>(Median(expected.distances)) : 0.0;
+  const double largest = std::max(2.0 * radius, motion);
   while (matches.size() < enough && radius < largest) {
     radius *= 2.0;
     for (Projection& projection : expected.projections) {
@@ -111,9 +114,11 @@ std::optional<PoseEstimate> PoseByMotionModel(const Frame& frame, const Map& map
   PoseEstimate estimate;
   estimate.cam_from_world = *motion * last.cam_from_world;
   const double forward = Inverse(*motion).translation.z();
-  Expected expected = ExpectLandmarks(map, context.sensor, last, estimate.cam_from_world, forward);
+  const bool is_wide = context.options.wide_search;
+  Expected expected =
+      ExpectLandmarks(map, context.sensor, last, estimate.cam_from_world, forward, is_wide);
   const std::vector<Match> matches =
-      SearchLandmarks(frame, context.sensor, context.min_motion_matches(), expected);
+      SearchLandmarks(frame, context.sensor, context.min_motion_matches(), is_wide, expected);
   estimate.landmarks.resize(frame.features.size());
   for (const Match& match : matches) {
     estimate.landmarks[match.keypoint] = expected.landmarks[match.query];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -45,5 +46,12 @@ inline constexpr std::array<PoseSource*, 4> kPoseSources = {
 // The sources that need no last frame, in the same order.
 inline constexpr std::array<PoseSource*, 2> kRelocalisationSources = {&PoseByRelocalisation,
                                                                       &PoseByObjects};
+
+// Whether the source begins at the last frame. The others may find another place or island, whose
+// poses do not fit exactly to those of the last frame.
+constexpr bool BeginsAtLastFrame(PoseSource* source) {
+  return std::find(kRelocalisationSources.begin(), kRelocalisationSources.end(), source) ==
+         kRelocalisationSources.end();
+}
 
 }  // namespace hullslam

@@ -14,6 +14,8 @@ constexpr double kPatience = 1.0;       // s without a pose, before a new island
 
 KeyframePolicy MakePolicy(const Sensor& sensor, const TrackingOptions& options) {
   KeyframePolicy policy;
+  policy.rule = options.keyframe_rule;
+  policy.has_depth = !sensor.IsMonocular();
   policy.min_reference_ratio = options.keyframe_ratio;
   policy.min_landmarks = options.min_inliers / 2;
   policy.min_time_between = options.keyframe_interval;
@@ -72,13 +74,6 @@ KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor
           .requests_waiting = mapper.requests_waiting};
 }
 
-// Whether the source begins at the last frame. The others may find another place or island, whose
-// poses do not fit exactly to those of the last frame.
-bool BeginsAtLastFrame(PoseSource* source) {
-  return std::find(kRelocalisationSources.begin(), kRelocalisationSources.end(), source) ==
-         kRelocalisationSources.end();
-}
-
 // The result for a frame without a pose or for a frame of the initial map.
 Tracker::Result MakeResult(std::shared_ptr<const Frame> frame, TrackingState state) {
   Tracker::Result result;
@@ -129,7 +124,7 @@ Tracker::Result Tracker::Initialize(std::shared_ptr<const Frame> frame) {
   if (initial.map) {
     return BeginIsland(std::move(frame), std::move(*initial.map));
   }
-  early_.Keep(frame, false);
+  KeepEarly(frame, false);
   Result result = MakeResult(std::move(frame), TrackingState::kNotInitialized);
   if (island_rules_.needs_motion) {
     result.report.failure = initial.failure;
@@ -149,6 +144,12 @@ MonocularInitialiser::Result Tracker::FindInitialMap(const std::shared_ptr<const
   return {.map = MakeInitialMap(frame, sensor_.camera, with_depth), .failure = {}};
 }
 
+void Tracker::KeepEarly(const std::shared_ptr<const Frame>& frame, bool is_tracked) {
+  if (options_.locate_at_end) {
+    early_.Keep(frame, is_tracked);
+  }
+}
+
 // The frame is the last view of the initial map.
 Tracker::Result Tracker::BeginIsland(std::shared_ptr<const Frame> frame, InitialMap initial) {
   lost_since_.reset();
@@ -164,8 +165,9 @@ Tracker::Result Tracker::BeginIsland(std::shared_ptr<const Frame> frame, Initial
 std::vector<TrackedFrame> Tracker::LocaliseEarlyFrames(const Map& map,
                                                        const Cancellation* cancellation,
                                                        const ProgressCallback& on_progress) {
-  if (last_.frame == nullptr) {
-    return {};  // no frame has a pose: the map is that of an earlier session, which was not found
+  // If no frame has a pose, the map is that of an earlier session, which was not found.
+  if (last_.frame == nullptr || !options_.locate_at_end) {
+    return {};
   }
   object_index_.Follow(map, sensor_.camera);
   return early_.Localise(map, Context(), cancellation, on_progress);
@@ -186,9 +188,12 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
     return Lose(std::move(frame), map, reason);
   }
   if (island_rules_.needs_motion && !is_localizing_only_ && IsYoung(map)) {
-    early_.Keep(frame, true);
+    KeepEarly(frame, true);
   }
   lost_since_.reset();
+  if (found->is_relocalised) {
+    relocalised_at_ = frame->timestamp;
+  }
   initialiser_.Forget();
   frame = found->corrected.frame;
   const LocalTracking& tracking = found->tracking;
@@ -252,6 +257,7 @@ std::optional<Tracker::Found> Tracker::FindCorrectedPose(
   Found found;
   found.tracking = std::move(search.found->tracking);
   found.corrected = CorrectShutter(as_read, tried, map, Context(), last, found.tracking);
+  found.is_relocalised = !continues;
   found.motion = MotionSince(last, *as_read, found.tracking.estimate.cam_from_world);
   return found;
 }
@@ -262,6 +268,9 @@ bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTrack
   KeyframeEvidence evidence =
       GatherEvidence(frame, map, sensor_, tracking, *last_request_time_, mapper);
   evidence.fruitless_requests = object_requests_.CountFruitless(map);
+  if (relocalised_at_) {
+    evidence.time_since_relocalisation = frame.timestamp - *relocalised_at_;
+  }
   if (!policy_.NeedsKeyframe(evidence)) {
     return false;
   }
@@ -277,6 +286,12 @@ bool Tracker::IsYoung(const Map& map) const {
   return map.IslandSize(island) < kYoungKeyframes;
 }
 
+// Whether the island is so small that ORB-SLAM2 would begin its map again.
+bool Tracker::IsTiny(const Map& map) const {
+  constexpr size_t kMostKeyframes = 5;
+  return last_.frame != nullptr && map.IslandSize(IslandOf(map, last_.reference)) <= kMostKeyframes;
+}
+
 // A camera that stays lost begins a new island, which may be joined to the others later.
 Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map,
                               TrackingFailure reason) {
@@ -284,7 +299,7 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map
   last_.velocity.reset();
   lost_since_ = lost_since_.value_or(frame->timestamp);
   if (!is_localizing_only_) {
-    early_.Keep(frame, false);
+    KeepEarly(frame, false);
   }
   if (MayBeginIsland(*frame, map)) {
     MonocularInitialiser::Result initial = FindInitialMap(frame);
@@ -301,7 +316,7 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map
 // which needs words, can join a new island to it. In a young island there is little to be found.
 // The map of an earlier session is not given up like this before the camera was found in it.
 bool Tracker::MayBeginIsland(const Frame& frame, const Map& map) const {
-  if (is_localizing_only_) {
+  if (is_localizing_only_ || (!options_.begin_islands && !IsTiny(map))) {
     return false;
   }
   const bool has_waited = frame.timestamp - *lost_since_ >= kPatience;

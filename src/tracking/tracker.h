@@ -66,6 +66,7 @@ class Tracker {
   }
   Result Initialize(std::shared_ptr<const Frame> frame);
   MonocularInitialiser::Result FindInitialMap(const std::shared_ptr<const Frame>& frame);
+  void KeepEarly(const std::shared_ptr<const Frame>& frame, bool is_tracked);
   Result BeginIsland(std::shared_ptr<const Frame> frame, InitialMap initial);
   Result Track(std::shared_ptr<const Frame> frame, const Map& map, const MapperStatus& mapper);
   // A tracked frame.
@@ -73,6 +74,7 @@ class Tracker {
     CorrectedFrame corrected;
     LocalTracking tracking;
     std::optional<CameraMotion> motion;  // from the last frame, if the pose follows from it
+    bool is_relocalised = false;
   };
   std::optional<Found> FindCorrectedPose(const std::shared_ptr<const Frame>& as_read,
                                          const Map& map, PoseSearch& search) const;
@@ -81,6 +83,7 @@ class Tracker {
                                          PoseSearch& search) const;
   Result Lose(std::shared_ptr<const Frame> frame, const Map& map, TrackingFailure reason);
   bool IsYoung(const Map& map) const;
+  bool IsTiny(const Map& map) const;
   bool MayBeginIsland(const Frame& frame, const Map& map) const;
   bool NeedsKeyframe(const Frame& frame, const Map& map, const LocalTracking& tracking,
                      const MapperStatus& mapper);
@@ -102,7 +105,8 @@ class Tracker {
   bool is_localizing_only_ = false;
 
   std::optional<double> lost_since_;  // s, time stamp of the first lost frame; absent if not lost
-  LastFrame last_;                    // has no frame before the first frame with a pose
+  std::optional<double> relocalised_at_;  // s, time stamp of the last relocalised frame
+  LastFrame last_;                        // has no frame before the first frame with a pose
   // Time stamp of the frame of the last message, s. If there is no message yet, that of the first
   // frame with a pose.
   std::optional<double> last_request_time_;

@@ -11,14 +11,35 @@ void TrackingOptions::Bind(OptionTable& options) {
             "number of landmarks that must be found in a frame; with fewer it is lost");
   scope.Add("local_keyframes", &local_keyframes, Range::AtLeast(1),
             "largest number of keyframes whose landmarks form the local map");
+  scope.AddEnum("keyframe_rule", &keyframe_rule, {"hullslam", "orb_slam2"},
+                "when a frame becomes a keyframe: evenly in time, or by the rule of ORB-SLAM2");
   scope.Add(
       "keyframe_ratio", &keyframe_ratio, Range::Between(0.1, 1.0),
-      "a keyframe is due if a frame finds a smaller share of the reference keyframe's landmarks");
+      "a keyframe is due if a frame finds a smaller share of the reference keyframe's landmarks "
+      "(rule hullslam only)");
   scope.AddText(
       "dynamic_classes", &dynamic_classes,
-      "classes of dynamic objects, separated by commas; keypoints on their masks are removed");
+      "classes of dynamic objects, separated by commas; they are not mapped, and keypoints on "
+      "their masks are removed");
+  scope.Add("remove_dynamic", &remove_dynamic,
+            "remove the keypoints on the masks of dynamic classes");
   scope.Add("keyframe_interval", &keyframe_interval, Range::Between(0.0, 60.0),
-            "least time between keyframes, unless tracking weakens abruptly, s");
+            "least time between keyframes, unless tracking weakens abruptly, s; in the rule "
+            "orb_slam2 the time in which the mapper is busy with a keyframe");
+  scope.Add("wide_search", &wide_search,
+            "search windows grow with the width of the image and, if needed, up to the expected "
+            "motion; if not, they double once");
+  scope.Add("begin_islands", &begin_islands,
+            "a camera that stays lost begins a new part of the map; if not, only while the map has "
+            "at most five keyframes");
+  scope.Add("refine_at_end", &refine_at_end,
+            "compute the poses of frames again at the end of the run, from the landmarks and "
+            "objects that were found in them");
+  scope.Add("locate_at_end", &locate_at_end,
+            "look for early and lost frames in the map at the end of the run");
+  scope.Add("correct_shutter", &correct_shutter,
+            "correct the rolling shutter that Camera.readout_time describes; if not, the readout "
+            "time counts as 0");
   scope.Add("relocalise_by_words", &relocalise_by_words,
             "find a lost frame by keyframes that look like it (needs a vocabulary)");
   scope.Add("relocalise_by_objects", &relocalise_by_objects,

@@ -5,13 +5,13 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <type_traits>
 #include <utility>
 
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
+#include "util/edit_distance.h"
 #include "util/shown_text.h"
 #include "util/trim.h"
 
@@ -72,22 +72,6 @@ std::string PrintMap(const std::map<std::string, double>& numbers) {
     text += (text.empty() ? "" : ",") + name + ":" + PrintNumber(number);
   }
   return text;
-}
-
-// Levenshtein distance, to suggest the right key for a misspelt one.
-size_t EditDistance(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 0; i < a.size(); ++i) {
-    size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (size_t j = 0; j < b.size(); ++j) {
-      const size_t substitution = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substitution});
-    }
-  }
-  return row.back();
 }
 
 std::string Join(const std::vector<std::string>& words) {
@@ -243,7 +227,7 @@ void OptionTable::AddShared(std::string key, const std::vector<std::string>& mem
                              .print = options.front().print,
                              .expected = options.front().expected,
                              .help = std::move(help),
-                             .shared = true});
+                             .members = members});
 }
 
 void OptionTable::AddText(std::string key, std::string* field, std::string help) {
@@ -282,6 +266,13 @@ std::string_view OptionTable::CurrentName(std::string_view key) const {
 
 bool OptionTable::Contains(std::string_view key) const {
   return options_.contains(CurrentName(key));
+}
+
+std::vector<std::string> OptionTable::KeysSetBy(std::string_view key) const {
+  const std::string current(CurrentName(key));
+  const auto it = options_.find(current);
+  return it == options_.end() || it->second.members.empty() ? std::vector<std::string>{current}
+                                                            : it->second.members;
 }
 
 bool OptionTable::IsMap(std::string_view key) const {
@@ -350,7 +341,8 @@ std::vector<OptionTable::Entry> OptionTable::Entries() const {
   std::vector<Entry> entries;
   for (const auto& [key, option] : options_) {
     if (!option.ignored) {
-      entries.push_back({key, option.print(), option.expected, option.help, option.shared});
+      entries.push_back(
+          {key, option.print(), option.expected, option.help, !option.members.empty()});
     }
   }
   return entries;

@@ -199,6 +199,14 @@ TEST(Vocabulary, AWrongHeaderIsRefused) {
   ExpectRefused(change(&VocabularyHeader::node_count, 8), "cut off or damaged");
   ExpectRefused(change(&VocabularyHeader::node_count, 0x7fffffff), "cut off or damaged");
   ExpectRefused(change(&VocabularyHeader::word_count, 0), "words 0, expected 1 to 6");
+  ExpectRefused(change(&VocabularyHeader::unused, 1), "unused bytes of its header are not 0");
+}
+
+// No word depends on it, and the text form does not have it, but the hash would differ.
+TEST(Vocabulary, ARootWithADescriptorIsRefused) {
+  ExpectRefused([](Content& content,
+                   const VocabularyLayout& layout) { content.Set(layout.descriptors + 16, 1); },
+                "the root has a descriptor");
 }
 
 TEST(Vocabulary, AWrongTreeIsRefused) {

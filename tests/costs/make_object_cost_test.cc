@@ -13,13 +13,11 @@ namespace {
 class MakeObjectCostTest : public ::testing::Test {
  protected:
   MakeObjectCostTest() {
-    for (const Eigen::Vector2d& point : contour_) {
-      detection_.box.extend(point);
-    }
     detection_.lines = TangentsOf(state_, 10);
     detection_.contour = contour_;
     detection_.hull = contour_;
     detection_.ellipse = FitEllipse(contour_);
+    detection_.box = detection_.ellipse->Bounds();
   }
   std::unique_ptr<ceres::CostFunction> Make(ObjectResidual residual, ObjectPrimitive primitive,
                                             double sigma = 1.0) {

@@ -41,6 +41,7 @@ double MeanResidual(ObjectResidual residual, const Ellipse& measured) {
   detection.hull = measured.Polygon(720);
   detection.contour = detection.hull;
   detection.ellipse = measured;
+  detection.box = measured.Bounds();
   for (const Eigen::Vector2d& normal : {Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(0.6, 0.8)}) {
     const double offset = -normal.dot(measured.center) - measured.HalfExtent(normal);
     detection.lines.push_back({{normal, offset}, false});

@@ -73,8 +73,20 @@ TEST(DistributionCost, IsNotDefinedUnlessInFront) {
   }
 }
 
+TEST(DistributionCost, TheWassersteinDistanceIsAlsoAFunction) {
+  Ellipse a;
+  a.shape = Eigen::Vector2d(9.0, 4.0).asDiagonal();
+  Ellipse b;
+  b.center = {3.0, -4.0};
+  b.shape = Eigen::Vector2d(25.0, 16.0).asDiagonal();
+  EXPECT_NEAR(SquaredWasserstein(a, b), 25.0 + 4.0 + 4.0, 1e-9);
+  EXPECT_NEAR(SquaredWasserstein(b, a), SquaredWasserstein(a, b), 1e-9);
+  EXPECT_NEAR(SquaredWasserstein(a, a), 0.0, 1e-9);
+}
+
 TEST(DistributionCost, HasItsRowInTheTable) {
-  ExpectKind(ObjectResidual::kDistribution, "distribution", false, {ObjectPrimitive::kConic});
+  ExpectKind(ObjectResidual::kDistribution, "distribution", false,
+             {ObjectPrimitive::kConic, ObjectPrimitive::kBoxEllipse});
   EXPECT_NEAR(SizeOfSomeError(ObjectResidual::kDistribution), 2.25, 1e-12);
 }
 

@@ -146,7 +146,7 @@ TEST(OverlapCost, IsNotDefinedUnlessInFront) {
 TEST(OverlapCost, HasItsRowInTheTable) {
   ExpectKind(ObjectResidual::kOverlap, "overlap", false,
              {ObjectPrimitive::kHull, ObjectPrimitive::kContour, ObjectPrimitive::kBox,
-              ObjectPrimitive::kConic});
+              ObjectPrimitive::kConic, ObjectPrimitive::kBoxEllipse});
   EXPECT_NEAR(SizeOfSomeError(ObjectResidual::kOverlap), 1.0 - 400.0 / (21.5 * 21.5), 1e-12);
 }
 

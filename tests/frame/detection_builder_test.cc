@@ -331,6 +331,11 @@ TEST(DetectionBuilder, TellsWhyAMaskIsRejected) {
   textured.min_keypoints = 2;
   EXPECT_EQ(RejectionOf(good, textured), Reason::kFewKeypoints);
   EXPECT_EQ(RejectionOf(RectangleMask(100.0, 100.0, 80.0, 6.0)), Reason::kTooSmall);
+  DetectionOptions large;
+  large.min_area_px2 = 4801.0;  // the good one has 60 x 80
+  EXPECT_EQ(RejectionOf(good, large), Reason::kTooSmall);
+  large.min_area_px2 = 4799.0;
+  EXPECT_EQ(RejectionOf(good, large), std::nullopt);
   EXPECT_EQ(RejectionOf(RectangleMask(20.0, 20.0, 500.0, 400.0)), Reason::kTooLarge);
   EXPECT_EQ(RejectionOf(RectangleMask(0.0, 0.0, 639.0, 200.0)), std::nullopt);
   // With this border all its sides are cut.
@@ -508,6 +513,21 @@ TEST(DetectionBuilder, ConicGivesTheFittedEllipseAndItsTangents) {
     EXPECT_NEAR(Excess(line.line, *detection.ellipse), 0.0, 1e-9);
   }
   EXPECT_FALSE(BuildOne(mask, DistortedCamera()).ellipse);
+}
+
+TEST(DetectionBuilder, BoxEllipseTouchesTheMiddleOfTheSidesOfTheBox) {
+  const Detection detection =
+      BuildOne(MaskOf(SeenEllipsoid(), DistortedCamera()), DistortedCamera(),
+               WithPrimitive(ObjectPrimitive::kBoxEllipse));
+  ASSERT_TRUE(detection.ellipse);
+  const Eigen::AlignedBox2d bounds = detection.ellipse->Bounds();
+  EXPECT_LT((bounds.min() - detection.box.min()).norm(), 1e-9);
+  EXPECT_LT((bounds.max() - detection.box.max()).norm(), 1e-9);
+  EXPECT_EQ(detection.ellipse->shape(0, 1), 0.0);
+  EXPECT_EQ(detection.lines.size(), 16U);
+  for (const SilhouetteLine& line : detection.lines) {
+    EXPECT_NEAR(Excess(line.line, *detection.ellipse), 0.0, 1e-9);
+  }
 }
 
 TEST(DetectionBuilder, BoxOfAContourHasFourTangents) {

@@ -224,6 +224,18 @@ TEST_F(FrameBuilderTest, DynamicThingsHideTheirKeypointsAndAreNoDetections) {
   EXPECT_EQ(frame->detections[0].label, "cup");
 }
 
+TEST_F(FrameBuilderTest, DynamicThingsMayKeepTheirKeypoints) {
+  ImageInput image = MakeImage();
+  const auto all = Build(image);
+  image.masks = {Square("person", 200, 60, 80), Square("cup", 20, 160, 50)};
+  const auto frame = FrameBuilder(sensor_, DepthOptions(), FewFeatures(), DetectionOptions(),
+                                  {"person"}, nullptr, false)
+                         .Build(image, runner_)
+                         .frame;
+  EXPECT_EQ(frame->features.descriptors, all->features.descriptors);
+  ASSERT_EQ(frame->detections.size(), 1u) << "they are no objects either";
+}
+
 TEST_F(FrameBuilderTest, WithoutObjectsThereAreNoDetectionsButDynamicThingsStillHide) {
   ImageInput image = MakeImage();
   image.masks = {Square("person", 200, 60, 80), Square("cup", 20, 160, 50)};

@@ -208,9 +208,9 @@ TEST(WithGlobalShutter, MovesDetectionsByTheColumnsOfAShutterThatReadsColumns) {
   sensor.readout_time = -kReadout;
   sensor.readout_direction = ReadoutDirection::kColumns;
   const Detection before = SquareAtTheBottom();
-  Frame frame = FrameOf({{250.0, 420.0}});
+  Frame frame = FrameOf({{250.0, 420.0}, {260.0, 430.0}, {240.0, 425.0}});
   frame.detections = {before};
-  const std::vector<double> depths = {0.5};
+  const std::vector<double> depths = {0.5, 0.5, 0.5};
   const auto corrected = WithGlobalShutter(frame, sensor, {.linear = {1.0, 0.4, 0.0}}, depths);
   for (size_t i = 0; i < before.hull.size(); ++i) {
     const Eigen::Vector2d& point = before.hull[i];

@@ -20,6 +20,7 @@
 #include "hullslam/map_files/vocabulary_file.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/results/trajectory_file.h"
+#include "hullslam/settings/preset.h"
 #include "hullslam/settings/settings.h"
 #include "map/covisibility.h"
 #include "map/invariants.h"
@@ -51,6 +52,16 @@ void FuzzSettings(std::string_view bytes) {
   TryFile(bytes, [](const fs::path& path) {
     const SystemOptions options = ReadSettings(path);
     Expect(options.camera.FindFault().empty(), "a camera with a fault");
+    Expect(!FormatSettings(options).empty(), "no settings");
+  });
+}
+
+void FuzzPreset(std::string_view bytes) {
+  static const InputFolder folder("preset.yaml");
+  folder.Write(bytes);
+  Try([&] {
+    SystemOptions options;
+    ApplyPreset(ReadPreset(folder.path() / "preset.yaml"), options);
     Expect(!FormatSettings(options).empty(), "no settings");
   });
 }
@@ -240,6 +251,7 @@ void FuzzMap(std::string_view bytes) {
 
 constexpr auto kReaders = std::to_array<FuzzedReader>({{"trajectory", FuzzTrajectory},
                                                        {"settings", FuzzSettings},
+                                                       {"preset", FuzzPreset},
                                                        {"grey_image", FuzzGreyImage},
                                                        {"depth_image", FuzzDepthImage},
                                                        {"objects", FuzzObjects},

@@ -100,6 +100,23 @@ TEST(OrientedBox, DependsOnThePointsAlone) {
   }
 }
 
+// Up to rounding errors the points are on a line.
+TEST(OrientedBox, OfPointsThatAreNearlyOnALineIsUnknownOrFinite) {
+  RandomGeometry random(8);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Eigen::Vector3d ends[] = {random.Vector(0.3), random.Vector(0.3)};
+    std::vector<Eigen::Vector3d> points;
+    for (int view = 0; view < 4; ++view) {
+      const Rigid3 pose = random.Pose(1.0, 2.0);
+      for (const Eigen::Vector3d& end : ends) {
+        points.push_back(Inverse(pose) * (pose * end));
+      }
+    }
+    const std::optional<Eigen::Matrix3d> axes = OrientedBoxAxes(points);
+    EXPECT_TRUE(!axes || axes->allFinite());
+  }
+}
+
 TEST(OrientedBox, NeedsFourPoints) {
   EXPECT_FALSE(OrientedBoxAxes(std::vector<Eigen::Vector3d>(3, Eigen::Vector3d::Zero())));
 }

@@ -300,7 +300,7 @@ TEST_F(EvaluateObjects, PrintsTables) {
       RunProgram("evaluate", {"objects", run_, "--groundtruth", truth_file_, "--min-masks", "41"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   for (const char* const part :
-       {"1 mapped, 2 candidates; 1 observations and 1 lines", "mean SIoU 0.98",
+       {"1 mapped, 2 not mapped; 1 observations and 1 lines", "mean SIoU 0.98",
         "0 visible (in 41 masks or more)", "ellipsoid    1 mapped: mean centre error 0.0 %"}) {
     EXPECT_NE(result.output.find(part), std::string::npos) << part << " in\n" << result.output;
   }

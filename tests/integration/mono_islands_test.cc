@@ -20,7 +20,7 @@ TEST_F(MonoIslands, AnIslandIsJoinedWhenItsPlaceIsSeenAgain) {
   const InterruptedDesk desk(options);
   const ProgramResult result = Run({desk.path()});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
-  ExpectParts(result.output, {"the map was begun 2 times; 1 of its islands were joined"});
+  ExpectParts(result.output, {"the map was begun 2 times; 1 of its parts were joined"});
   const Json summary = Summary();
   EXPECT_EQ(summary["islands"]["begun"], 2);
   EXPECT_EQ(summary["islands"]["joined"], 1);

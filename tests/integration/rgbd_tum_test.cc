@@ -473,6 +473,21 @@ TEST_F(RgbdTum, WarnsOfDepthInAnotherUnit) {
   }
 }
 
+// A factor that is wrong by 1.5 leaves depths plausible, but not the size of the trajectory.
+TEST_F(RgbdTum, WarnsIfTheTrajectoryHasAnotherSizeThanTheGroundTruth) {
+  for (const auto& [factor, warning] :
+       {std::pair("3333.3", "warning: the trajectory is 1.5 times as large as the ground truth"),
+        std::pair("5000", "")}) {
+    const ProgramResult result = RunProgram(
+        "rgbd_tum",
+        {path_, "--quiet", "--output", output_, "--set", std::string("DepthMapFactor=") + factor});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    ExpectParts(result.errors, {warning});
+    EXPECT_EQ(result.errors.find("as large as") != std::string::npos, *warning != 0)
+        << result.errors;
+  }
+}
+
 TEST_F(RgbdTumRefuses, ToReplaceARunOfAnotherProgram) {
   const fs::path other = folder_.path() / "other";
   fs::create_directory(other);

@@ -229,6 +229,32 @@ TEST(CullKeyframes, FewCloseLandmarksThatAreSeenAloneKeepAKeyframe) {
   EXPECT_TRUE(made.map.keyframes().Contains(KeyframeId(1)));
 }
 
+// ORB-SLAM2 judges a keyframe with depth by its close landmarks alone, and objects need no views.
+TEST(CullKeyframes, ByTheRuleOfOrbSlam2OnlyCloseLandmarksCount) {
+  const SyntheticWorld world({.points = 1200});
+  Sensor sensor = world.sensor();
+  sensor.close_depth = 2.2;
+  SyntheticMap made = NearbyKeyframes(world, 5);
+  SeeAlone(made, KeyframeId(1), 2, [&](double depth) { return depth <= sensor.close_depth; });
+  const ObjectId object = made.map.AddObject();
+  ASSERT_TRUE(made.map.AddObservation(object, KeyframeId(1), 0));
+  CullKeyframes(made.map, KeyframeId(4), sensor, kMinObjectViews, MappingRule::kOrbSlam2);
+  EXPECT_FALSE(made.map.keyframes().Contains(KeyframeId(1)));
+
+  SyntheticMap far = NearbyKeyframes(world, 5);
+  sensor.close_depth = 0.5;
+  EXPECT_EQ(CullKeyframes(far.map, KeyframeId(4), sensor, 3, MappingRule::kOrbSlam2), 0)
+      << "none is close";
+}
+
+TEST(CullKeyframes, ByTheRuleOfOrbSlam2MonocularViewpointsAreNotCompared) {
+  const SyntheticWorld world({.points = 1200, .depth_share = 0.0});
+  Sensor sensor = world.sensor();
+  sensor.kind = SensorKind::kMonocular;
+  SyntheticMap together = NearbyKeyframes(world, 8, 0.001);
+  EXPECT_EQ(CullKeyframes(together.map, KeyframeId(7), sensor, 3, MappingRule::kOrbSlam2), 5);
+}
+
 TEST(CullKeyframes, AFewLandmarksAreNoReasonForCulling) {
   const SyntheticWorld many({.points = 70});
   const SyntheticWorld few({.points = 20});

@@ -268,6 +268,21 @@ TEST(LandmarkCreation, NoiseDoesNotChooseMonocularPairs) {
   EXPECT_NEAR(Median(ratios), 1.0, 0.07);
 }
 
+// By the rule of ORB-SLAM2 the parallax of each pair decides, so noise makes far points too near.
+TEST(LandmarkCreation, ByTheRuleOfOrbSlam2TheOwnParallaxDecides) {
+  const SyntheticWorld world({.points = 3000, .pixel_noise = 0.7, .depth_share = 0.0});
+  TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead({0.1, 0.0, 0.0}));
+  const std::vector<LandmarkId> created =
+      CreateLandmarks(pair.map, KeyframeId(1), Monocular(world), MappingRule::kOrbSlam2);
+  ASSERT_GT(created.size(), 20U);
+  const double max_cos = 0.9998;
+  for (const LandmarkId id : created) {
+    const Eigen::Vector3d& position = pair.map.landmarks().At(id).position;
+    const Eigen::Vector3d other = position - Eigen::Vector3d(0.1, 0.0, 0.0);
+    EXPECT_LT(position.normalized().dot(other.normalized()), max_cos + 1e-4);
+  }
+}
+
 TEST(LandmarkCreation, AMonocularCameraThatStandsStillMakesNone) {
   const SyntheticWorld world({.depth_share = 0.0});
   TwoKeyframes pair = MakePair(world, Rigid3(), LookingAhead({0.005, 0.0, 0.0}));

@@ -45,6 +45,25 @@ TEST(CullingRules, NoSensorNeedsMoreObserversThanTheLargestNumber) {
   }
 }
 
+TEST(CullingRules, OfOrbSlam2NeedThreeOthersWithAndWithoutDepth) {
+  for (const SensorKind kind : {SensorKind::kRgbd, SensorKind::kMonocular}) {
+    const CullingRules rules = CullingRules::ForSensor(kind, MappingRule::kOrbSlam2);
+    EXPECT_EQ(rules.other_observers, 3u);
+    EXPECT_FALSE(rules.observers_need_parallax);
+    EXPECT_FALSE(rules.keeps_object_views);
+    EXPECT_EQ(rules.max_weak_weight, CullingRules::ForSensor(kind).max_weak_weight);
+    EXPECT_EQ(rules.only_close_landmarks, kind == SensorKind::kRgbd);
+  }
+}
+
+TEST(LandmarkRules, OfOrbSlam2LetTheOwnParallaxDecide) {
+  const LandmarkRules rules =
+      LandmarkRules::ForSensor(MakeSensor(SensorKind::kMonocular), MappingRule::kOrbSlam2);
+  EXPECT_FALSE(rules.nearby_landmarks_decide);
+  EXPECT_DOUBLE_EQ(rules.min_baseline_share, 0.01);
+  EXPECT_EQ(rules.neighbours, 20u);
+}
+
 TEST(LandmarkRules, ForRgbdTheShortestBaselineIsThatOfTheVirtualStereoPair) {
   const LandmarkRules rules = LandmarkRules::ForSensor(MakeSensor(SensorKind::kRgbd));
   ASSERT_TRUE(rules.min_baseline);

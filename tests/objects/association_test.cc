@@ -74,6 +74,26 @@ TEST_F(Association, AnotherClassDoesNotExcludeAMatch) {
   EXPECT_EQ(Associate({laptop}, 0.1)[0], ObjectId(1));
 }
 
+TEST_F(Association, ForTheMeasureOfOaSlamAnotherClassExcludesAMatch) {
+  const auto table = MakeTable();
+  Build(table, 3, true);
+  MadeObject laptop = table[1];
+  laptop.label = "laptop";
+  const AssociationOptions options{.measure = AssociationMeasure::kClassOverlap};
+  EXPECT_FALSE(Associate({laptop}, 0.1, options)[0].IsValid());
+}
+
+TEST_F(Association, EveryMeasureFindsEveryObject) {
+  const auto table = MakeTable();
+  Build(table, 3, true);
+  for (const AssociationMeasure measure :
+       {AssociationMeasure::kCombined, AssociationMeasure::kClassOverlap,
+        AssociationMeasure::kWasserstein}) {
+    const auto found = Associate({table[2], table[0], table[1]}, 0.2, {.measure = measure});
+    EXPECT_EQ(found, (std::vector<ObjectId>{ObjectId(2), ObjectId(0), ObjectId(1)}));
+  }
+}
+
 TEST_F(Association, OfTwoCandidatesTheClassDecides) {
   auto twin = MakeTable();
   twin.resize(1);

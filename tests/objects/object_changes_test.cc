@@ -517,13 +517,15 @@ TEST_F(RemovedCup, TheNewObjectMustBeOfItsClass) {
 }
 
 TEST_F(RemovedCup, AnObjectOfTheFirstSessionIsNotTheCup) {
-  map_.MutableObject(other_).ellipsoid = map_.objects().At(new_).ellipsoid;
+  const Ellipsoid of_new = map_.objects().At(new_).ellipsoid;
+  map_.MutableObject(other_).ellipsoid = of_new;
   map_.MutableObject(new_).state = ObjectState::kCandidate;
   EXPECT_EQ(Changes().at(0).change, ObjectChange::kGone);
 }
 
 TEST_F(RemovedCup, TheNewObjectIsOneCupOnly) {
-  former_.MutableObject(other_).ellipsoid = former_.objects().At(ObjectId(0)).ellipsoid;
+  const Ellipsoid of_cup = former_.objects().At(ObjectId(0)).ellipsoid;
+  former_.MutableObject(other_).ellipsoid = of_cup;
   map_.EraseObject(other_);
   const std::vector<ChangedObject> changes = Changes();
   EXPECT_EQ(changes.at(0).change, ObjectChange::kSeenAgain);

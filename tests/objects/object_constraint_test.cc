@@ -55,6 +55,18 @@ TEST_F(ObjectConstraintTest, ByHandWithoutLoss) {
   EXPECT_NEAR(depth[0], 3.0 / std::sqrt(6.0), 1e-7);
 }
 
+TEST_F(ObjectConstraintTest, TheSigmaMayBeInTheUnitOfTheResidual) {
+  options_.sigma_unit = SigmaUnit::kResidual;
+  options_.misfit_factor = 1.0;
+  misfit_px_ = 3.0;  // does not count
+  const Eigen::VectorXd silhouette = ObjectResidualsOf(*Make().silhouette, SphereAhead());
+  EXPECT_NEAR(silhouette[2], -8.0, 1e-9) << "for tangent, the unit is the pixel anyway";
+  options_.residual = ObjectResidual::kAlgebraicPlane;
+  const double with_sigma_2 = ObjectResidualsOf(*Make().silhouette, SphereAhead())[2];
+  options_.sigma_px = 4.0;
+  EXPECT_NEAR(2.0 * ObjectResidualsOf(*Make().silhouette, SphereAhead())[2], with_sigma_2, 1e-12);
+}
+
 // The sigma of landmarks is a share of their distance, here half of 0.1 m.
 TEST_F(ObjectConstraintTest, LandmarksReplaceDepthPoints) {
   const std::vector<Eigen::Vector3d> points = detection_.points.Unpack();

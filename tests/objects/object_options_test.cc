@@ -120,7 +120,7 @@ TEST(ObjectOptions, RefuseWhatIsOutOfRange) {
   options.Bind(table);
   EXPECT_THROW(table.Set("objects.residual", "tangents", "test"), InputError);
   EXPECT_THROW(table.Set("objects.sigma", "0", "test"), InputError);
-  EXPECT_THROW(table.Set("objects.start.min_views", "1", "test"), InputError);
+  EXPECT_THROW(table.Set("objects.start.min_views", "0", "test"), InputError);
   EXPECT_THROW(table.Set("objects.association.iou_weight", "2", "test"), InputError);
   EXPECT_THROW(table.Set("objects.culling.min_found_ratio", "1.5", "test"), InputError);
   EXPECT_THROW(table.Set("objects.fusion.min_overlap", "-1", "test"), InputError);

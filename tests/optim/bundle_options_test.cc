@@ -26,7 +26,7 @@ TEST(BundleOptions, ForMonocularTheyAreNoLessPrecise) {
 }
 
 TEST(BundleRules, ForRgbdTheErrorsOfTheSensorAreUsed) {
-  const BundleRules rules = BundleRules::ForSensor(SensorKind::kRgbd);
+  const BundleRules rules = BundleRules::ForSensor(Sensor());
   EXPECT_FALSE(rules.precision_is_measured);
   EXPECT_FALSE(rules.keypoints_share_weights);
   EXPECT_FALSE(rules.keeps_scale);
@@ -35,7 +35,9 @@ TEST(BundleRules, ForRgbdTheErrorsOfTheSensorAreUsed) {
 }
 
 TEST(BundleRules, ForMonocularTheScaleIsProtected) {
-  const BundleRules rules = BundleRules::ForSensor(SensorKind::kMonocular);
+  Sensor sensor;
+  sensor.kind = SensorKind::kMonocular;
+  const BundleRules rules = BundleRules::ForSensor(sensor);
   EXPECT_TRUE(rules.is_solved_precisely);
   EXPECT_TRUE(rules.precision_is_measured);
   EXPECT_TRUE(rules.keypoints_share_weights);
@@ -43,6 +45,19 @@ TEST(BundleRules, ForMonocularTheScaleIsProtected) {
   // Points that slide along edges take part in both rounds.
   EXPECT_EQ(rules.robust_loss, PointLoss::kCauchy);
   EXPECT_EQ(rules.final_loss, PointLoss::kCauchy);
+}
+
+TEST(BundleRules, OfOrbSlam2AreThoseOfRgbdButForTheScale) {
+  Sensor sensor;
+  sensor.kind = SensorKind::kMonocular;
+  sensor.depth_error.adjustment_rule = AdjustmentRule::kOrbSlam2;
+  const BundleRules rules = BundleRules::ForSensor(sensor);
+  EXPECT_FALSE(rules.is_solved_precisely);
+  EXPECT_FALSE(rules.precision_is_measured);
+  EXPECT_FALSE(rules.keypoints_share_weights);
+  EXPECT_TRUE(rules.keeps_scale) << "nothing else fixes it";
+  EXPECT_EQ(rules.robust_loss, PointLoss::kHuber);
+  EXPECT_EQ(rules.final_loss, PointLoss::kNone);
 }
 
 }  // namespace

@@ -94,23 +94,6 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual(row["lost %"]["mean"], 12.5)
         self.assertIsNone(ablation.collect([{"trajectory": {"tracked": 5}}])["lost %"]["mean"])
 
-    def test_p_of_the_sign_flip_test(self):
-        self.assertEqual(ablation.flip_probability([0.3]), 1.0)
-        self.assertEqual(ablation.flip_probability([-0.1, -0.2]), 0.5)
-        self.assertEqual(ablation.flip_probability([1.0, 2.0, 3.0, 4.0, 5.0]), 2 / 32)
-        self.assertEqual(ablation.flip_probability([1.0, 1.0, -1.0]), 1.0)
-        # +-1 +-2 +-4 has 8 sums; 7 and -7, 5 and -5 are at least as large as 5.
-        self.assertEqual(ablation.flip_probability([-1.0, 2.0, 4.0]), 0.5)
-        many = [0.1] * 20
-        self.assertLess(ablation.flip_probability(many), 1e-3)
-        self.assertGreater(ablation.flip_probability([0.1, -0.1] * 10), 0.9)
-
-    def test_only_runs_of_the_same_sequence_and_seed_are_paired(self):
-        change, p, pairs = ablation.compare({"a 0": 1.0, "a 1": 2.0}, {"a 1": 4.0, "a 2": 1.0})
-        self.assertAlmostEqual(change, 1.0)
-        self.assertEqual((p, pairs), (1.0, 1))
-        self.assertEqual(ablation.compare({"a 0": 1.0}, {}), (None, None, 0))
-
 
 class AblationTest(unittest.TestCase):
     def setUp(self):

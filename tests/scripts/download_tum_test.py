@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tests of scripts/download_tum.sh with a local file server that can resume downloads."""
 
-import functools
 import hashlib
-import http.server
 import io
 import os
 import pathlib
@@ -12,34 +10,14 @@ import random
 import subprocess
 import tarfile
 import tempfile
-import threading
 import unittest
 
+import file_server
+
 DOWNLOAD = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "download_tum.sh"
-FOLDER = "rgbd_dataset_freiburg1_xyz"
+FOLDER = "rgbd_dataset_freiburg1_floor"
 STAMPS = "# color images\n1.0 rgb/1.0.png\n2.0 rgb/2.0.png\n"
 LISTS = {name: STAMPS for name in ("rgb.txt", "depth.txt", "groundtruth.txt")}
-
-
-class Handler(http.server.SimpleHTTPRequestHandler):
-    """Serves files, or the rest of a file from byte N if `Range: bytes=N-` requests that."""
-
-    def log_message(self, format, *args):  # noqa: A002
-        pass
-
-    def do_GET(self):
-        self.server.requests.append((self.path, self.headers.get("Range")))
-        path = pathlib.Path(self.translate_path(self.path))
-        if not self.server.resumes or "Range" not in self.headers or not path.is_file():
-            super().do_GET()
-            return
-        data = path.read_bytes()
-        start = int(self.headers["Range"].removeprefix("bytes=").rstrip("-"))
-        self.send_response(206 if start < len(data) else 416)
-        self.send_header("Content-Range", f"bytes {start}-{len(data) - 1}/{len(data)}")
-        self.send_header("Content-Length", str(max(0, len(data) - start)))
-        self.end_headers()
-        self.wfile.write(data[start:])
 
 
 def archive(files, links=()):
@@ -72,18 +50,12 @@ class DownloadTumTest(unittest.TestCase):
         self.served = self.root / "served" / "freiburg1"
         self.served.mkdir(parents=True)
         self.to = self.root / "to"
-        handler = functools.partial(Handler, directory=self.root / "served")
-        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
-        self.server.requests = []
-        self.server.resumes = True
-        self.addCleanup(self.server.server_close)
-        self.addCleanup(self.server.shutdown)
-        threading.Thread(target=self.server.serve_forever, args=(0.01,), daemon=True).start()
+        self.server = file_server.start(self, self.root / "served")
 
     def serve(self, data):
         (self.served / f"{FOLDER}.tgz").write_bytes(data)
 
-    def download(self, name="freiburg1_xyz", *options, to=None, **settings):
+    def download(self, name="freiburg1_floor", *options, to=None, **settings):
         base = f"http://127.0.0.1:{self.server.server_port}/"
         return subprocess.run([DOWNLOAD, "--to", to or self.to, "--base", base, *options, name],
                               capture_output=True, text=True, check=False, timeout=60, **settings)
@@ -114,7 +86,7 @@ class DownloadTumTest(unittest.TestCase):
 
     def test_every_accepted_form_of_a_name(self):
         self.serve(archive(sequence()))
-        for name in ("fr1/xyz", "fr1_xyz", FOLDER):
+        for name in ("fr1/floor", "fr1_floor", FOLDER):
             with self.subTest(name):
                 self.assertEqual(self.download(name).returncode, 0)
         self.assertEqual(len(self.server.requests), 1, "downloaded only once")
@@ -174,12 +146,12 @@ class DownloadTumTest(unittest.TestCase):
 
     def test_an_archive_that_would_be_too_large(self):
         self.serve(archive(sequence(**{"big.txt": "x" * 3_000_000})))
-        self.assert_refused_and_kept(self.download("fr1_xyz", "--max-size", "0.002"),
+        self.assert_refused_and_kept(self.download("fr1_floor", "--max-size", "0.002"),
                                      "it would take more than 0.002 GB")
-        self.assertEqual(self.download("fr1_xyz", "--max-size", "0.004").returncode, 0)
+        self.assertEqual(self.download("fr1_floor", "--max-size", "0.004").returncode, 0)
         for size in ("-1", "x", "1e3", ""):
             with self.subTest(size):
-                self.assertEqual(self.download("fr1_xyz", "--max-size", size).returncode, 2)
+                self.assertEqual(self.download("fr1_floor", "--max-size", size).returncode, 2)
 
     def test_names_with_blanks(self):
         self.serve(archive(sequence(**{"a b  c.txt": "x", "elsewhere x.txt": "x"})))
@@ -199,15 +171,28 @@ class DownloadTumTest(unittest.TestCase):
         sums = self.root / "sums"
         self.serve(data)
         sums.write_text(f"{'0' * 64}  {FOLDER}.tgz\n")
-        self.assert_refused_and_kept(self.download("fr1_xyz", "--checksums", sums),
+        self.assert_refused_and_kept(self.download("fr1_floor", "--checksums", sums),
                                      f"SHA-256 is {hashlib.sha256(data).hexdigest()}, but {sums}")
         sums.write_text(f"# a comment\n{hashlib.sha256(data).hexdigest()}  {FOLDER}.tgz\n")
-        self.assert_whole(self.download("fr1_xyz", "--checksums", sums))
+        self.assert_whole(self.download("fr1_floor", "--checksums", sums))
+
+    def test_archives_with_a_known_sum_are_compared_without_an_option(self):
+        data = archive({})
+        (self.served / "rgbd_dataset_freiburg1_xyz.tgz").write_bytes(data)
+        result = self.download("fr1_xyz")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(f"SHA-256 is {hashlib.sha256(data).hexdigest()}, but", result.stderr)
+
+    def test_no_network(self):
+        for base in ("http://no-such-host.invalid", "http://127.0.0.1:1"):
+            result = subprocess.run([DOWNLOAD, "--to", self.to, "--base", base, "fr1_floor"],
+                                    capture_output=True, text=True, check=False, timeout=60)
+            self.assert_refused(result, "is there a network connection?")
 
     def test_unknown_checksums_are_recorded(self):
         data = archive(sequence())
         self.serve(data)
-        result = self.download("fr1_xyz", "--checksums", "sums", cwd=self.root)
+        result = self.download("fr1_floor", "--checksums", "sums", cwd=self.root)
         self.assert_whole(result)
         line = f"{hashlib.sha256(data).hexdigest()}  {FOLDER}.tgz\n"
         self.assertEqual((self.root / "sums").read_text(), line)
@@ -217,10 +202,10 @@ class DownloadTumTest(unittest.TestCase):
         self.serve(archive(sequence()))
         (self.root / "other" / "to").mkdir(parents=True)
         environment = {**os.environ, "CDPATH": str(self.root / "other")}
-        self.assert_whole(self.download("fr1_xyz", to="to", cwd=self.root, env=environment))
+        self.assert_whole(self.download("fr1_floor", to="to", cwd=self.root, env=environment))
 
     def test_bad_names(self):
-        for name in ("kitti_00", "freiburg9_xyz", "../freiburg1_xyz", "freiburg1_xyz;true", "--x"):
+        for name in ("kitti_00", "freiburg9_floor", "../freiburg1_floor", "freiburg1_floor;true", "--x"):
             with self.subTest(name):
                 result = self.download(name)
                 self.assertEqual(result.returncode, 2)

@@ -20,6 +20,7 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "plot_run.py"
 sys.path.insert(0, str(SCRIPT.parent))
 import plot_labels  # noqa: E402
 import plot_run  # noqa: E402
+import run_alignment  # noqa: E402
 import run_files  # noqa: E402
 import run_images  # noqa: E402
 import run_objects  # noqa: E402
@@ -159,7 +160,7 @@ class StageTest(unittest.TestCase):
 class AlignTest(unittest.TestCase):
     def test_recovers_a_motion(self):
         points = np.random.default_rng(1).normal(size=(20, 3))
-        scale, rotation, translation = plot_run.align(points, points @ TURN.T + [1, 2, 3])
+        scale, rotation, translation = run_alignment.align(points, points @ TURN.T + [1, 2, 3])
         self.assertEqual(scale, 1.0)
         np.testing.assert_allclose(rotation, TURN, atol=1e-12)
         np.testing.assert_allclose(translation, [1, 2, 3], atol=1e-12)
@@ -167,25 +168,25 @@ class AlignTest(unittest.TestCase):
     def test_recovers_a_scale_if_asked_for(self):
         points = np.random.default_rng(1).normal(size=(20, 3))
         moved = 2.5 * points @ TURN.T + [1, 2, 3]
-        scale, rotation, translation = plot_run.align(points, moved, True)
+        scale, rotation, translation = run_alignment.align(points, moved, True)
         self.assertAlmostEqual(scale, 2.5)
         np.testing.assert_allclose(rotation, TURN, atol=1e-12)
         np.testing.assert_allclose(translation, [1, 2, 3], atol=1e-12)
-        self.assertEqual(plot_run.align(points, moved)[0], 1.0)
+        self.assertEqual(run_alignment.align(points, moved)[0], 1.0)
 
     def test_never_mirrors(self):
         points = np.random.default_rng(1).normal(size=(20, 3))
-        _, rotation, _ = plot_run.align(points, points * [1, 1, -1])
+        _, rotation, _ = run_alignment.align(points, points * [1, 1, -1])
         self.assertAlmostEqual(np.linalg.det(rotation), 1.0)
 
 
 class PairTest(unittest.TestCase):
     def test_one_to_one_and_smallest_first(self):
-        pairs = plot_run.pair(np.array([1.0, 1.012, 5.0]), np.array([0.5, 1.010, 5.03]))
+        pairs = run_alignment.pair(np.array([1.0, 1.012, 5.0]), np.array([0.5, 1.010, 5.03]))
         self.assertEqual(pairs.tolist(), [[1, 1]])
 
     def test_none(self):
-        self.assertEqual(len(plot_run.pair(np.array([1.0]), np.array([2.0]))), 0)
+        self.assertEqual(len(run_alignment.pair(np.array([1.0]), np.array([2.0]))), 0)
 
 
 class PlotRunTest(unittest.TestCase):

@@ -131,6 +131,62 @@ TEST_F(Settings, FeaturesFollowTheSizeOfTheImageUnlessTheyAreSet) {
   EXPECT_EQ(MakeSettings(calibration, "test").features.level_count, 4);
 }
 
+TEST_F(Settings, AFileReplacesThePresetAndOverridesReplaceBoth) {
+  const Preset preset{.name = "made",
+                      .file = "made.yaml",
+                      .settings = {{"objects.sigma", "3", "made.yaml:2"},
+                                   {"loop.min_matches", "25", "made.yaml:3"},
+                                   {"loop.min_landmarks", "50", "made.yaml:4"},
+                                   {"ORBextractor.nFeatures", "900", "made.yaml:5"}}};
+  const auto file = folder_.Write(
+      "camera.yaml", std::string(kMinimal) + "objects.pose.sigma: 4\nloop.min_matches: 26\n");
+  const std::vector<std::string> overrides = {"loop.min_matches=27"};
+  SettingsReport report;
+  const SystemOptions options =
+      ReadSettings(file, {.preset = &preset, .overrides = overrides}, report);
+  EXPECT_EQ(options.objects.pose.constraint.sigma_px, 4.0);
+  EXPECT_EQ(options.objects.bundle.constraint.sigma_px, 3.0);
+  EXPECT_EQ(options.loop.min_matches, 27);
+  EXPECT_EQ(options.loop.min_landmarks, 50);
+  EXPECT_EQ(options.features.feature_count, 900);
+  ASSERT_EQ(report.preset_overrides.size(), 2u);
+  EXPECT_EQ(report.preset_overrides[0].key, "loop.min_matches");
+  EXPECT_EQ(report.preset_overrides[0].origin, "--set");
+  EXPECT_EQ(report.preset_overrides[1].key, "objects.pose.sigma");
+  EXPECT_TRUE(report.preset_overrides[1].origin.ends_with("camera.yaml:6"));
+  ASSERT_EQ(report.warnings.size(), 1u);  // what --set replaces needs no warning
+  EXPECT_NE(report.warnings[0].find("objects.pose.sigma is 4"), std::string::npos);
+  EXPECT_NE(report.warnings[0].find("preset made has 3"), std::string::npos);
+}
+
+TEST_F(Settings, ACalibrationReplacesThePresetToo) {
+  const Preset preset{
+      .name = "made",
+      .file = "made.yaml",
+      .settings = {{"Camera.fps", "10", "made.yaml:2"}, {"loop.min_matches", "25", "made.yaml:3"}}};
+  SettingsReport report;
+  const CameraCalibration calibration{.camera = Read(kMinimal).camera, .frames_per_second = 20.0};
+  const SystemOptions options =
+      MakeSettings(calibration, "sensor.yaml", {.preset = &preset}, report);
+  EXPECT_EQ(options.frames_per_second, 20.0);
+  EXPECT_EQ(options.loop.min_matches, 25);
+  ASSERT_EQ(report.preset_overrides.size(), 1u);
+  EXPECT_EQ(report.preset_overrides[0].origin, "sensor.yaml");
+}
+
+TEST_F(Settings, WithoutCorrectionOfTheShutterTheReadoutTimeIsZero) {
+  const std::string rolling = std::string(kMinimal) + "Camera.readout_time: 0.026\n";
+  EXPECT_EQ(Read(rolling).readout_time, 0.026);
+  EXPECT_EQ(Read(rolling, {"tracking.correct_shutter=false"}).readout_time, 0.0);
+  const auto file = folder_.Write("camera.yaml", rolling);
+  const std::vector<std::string> overrides = {"tracking.correct_shutter=false",
+                                              "Camera.readout_time=0.02"};
+  std::vector<std::string> warnings;
+  EXPECT_EQ(ReadSettings(file, overrides, NegativeFy::kError, &warnings).readout_time, 0.0);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("Camera.readout_time has no effect"), std::string::npos);
+}
+
 TEST_F(Settings, LevelsThatHaveNoRoomAreLeftOutWithAWarning) {
   const auto file = folder_.Write(
       "camera.yaml",

@@ -32,6 +32,16 @@ TEST_F(YamlSettings, AreInTheOrderOfTheFileWithTheirLines) {
   EXPECT_EQ(settings[1].text, "some text");
 }
 
+TEST_F(YamlSettings, ACommentMayFollowAText) {
+  const auto settings =
+      Read("a: some text  # [1]: as 'here', \"there\"\nb: c#d\ne: \"f # g\"\n#h: 1\n");
+  ASSERT_EQ(settings.size(), 3u);
+  EXPECT_EQ(settings[0].text, "some text");
+  EXPECT_EQ(settings[1].text, "c#d");
+  EXPECT_EQ(settings[2].text, "f # g");
+  EXPECT_EQ(settings[2].origin, (folder_.path() / "a.yaml").string() + ":4");
+}
+
 TEST_F(YamlSettings, NumbersKeepTheirDigitsAndQuotes) {
   const auto settings = Read("a: 12345678901\nb: 1000.\nc: 1e3\nd: \"7\"\ne: 0.1\n");
   ASSERT_EQ(settings.size(), 5u);

@@ -199,6 +199,23 @@ TEST_P(SystemTest, FinishComputesThePosesOfFramesAgain) {
   EXPECT_GT(changed, 0);
 }
 
+TEST_P(SystemTest, FinishLeavesThePosesOfFramesAsTheyAreIfAsked) {
+  SystemOptions options = Wall::Options();
+  options.tracking.refine_at_end = false;
+  System system(options, GetParam());
+  for (int i = 0; i < 15; ++i) {
+    TrackFrame(system, i);
+  }
+  const std::vector<TrackedFrame> before = system.frames();
+  system.Finish();
+  for (size_t i = 0; i < before.size(); ++i) {
+    if (before[i].from_keyframe) {
+      EXPECT_EQ(system.frames()[i].from_keyframe->cam_from_reference.translation,
+                before[i].from_keyframe->cam_from_reference.translation);
+    }
+  }
+}
+
 TEST_P(SystemTest, MayBeDestroyedWithoutFinish) {
   System system(Wall::Options(), GetParam());
   for (int i = 0; i < 3; ++i) {

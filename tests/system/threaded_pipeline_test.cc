@@ -213,6 +213,9 @@ TEST(ThreadedPipeline, OtherThreadsMayReadTheMapDuringTracking) {
 [[gnu::noinline]] void* operator new(size_t size) {
   return hullslam::MemoryShortage::Allocate(size);
 }
+[[gnu::noinline]] void* operator new(size_t size, const std::nothrow_t& /*tag*/) noexcept {
+  return std::malloc(size);
+}
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
 [[gnu::noinline]] void operator delete(void* memory, size_t /*size*/) noexcept {
   std::free(memory);

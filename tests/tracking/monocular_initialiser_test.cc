@@ -290,7 +290,8 @@ std::shared_ptr<Frame> Shortened(const Frame& frame, size_t count) {
 
 TEST_F(MonocularStart, NeedsAHundredFeatures) {
   MonocularInitialiser initialiser(sensor_, 1);
-  const Frame& frame = *world_.Observe(0).frame;
+  const std::shared_ptr<const Frame> observed = world_.Observe(0).frame;
+  const Frame& frame = *observed;
   EXPECT_EQ(initialiser.Process(Shortened(frame, 99)).failure,
             InitialisationFailure::kTooFewFeatures);
   EXPECT_EQ(initialiser.Process(Shortened(frame, 100)).failure,

@@ -660,7 +660,7 @@ TEST_F(TrackerTest, TheMotionModelCountsTheTimeBetweenFrames) {
 // angle where the second one is expected (radians).
 class MotionModelTest : public TrackerTest {
  protected:
-  double FoundShare(int width, double turned, double expected) const {
+  double FoundShare(int width, double turned, double expected, bool is_wide = true) const {
     const Rigid3 turn(ExpSo3({0.0, expected, 0.0}), Eigen::Vector3d::Zero());
     const SyntheticView view = world_.Observe(FrameId(1), Rigid3());
     LastFrame last;
@@ -675,8 +675,10 @@ class MotionModelTest : public TrackerTest {
     next.timestamp = last.frame->timestamp + 1.0 / 30.0;
     Sensor sensor = world_.sensor();
     sensor.camera.width = width;
-    const auto estimate = PoseByMotionModel(
-        next, made_.map, {sensor, options_, ObjectOptions(), ObjectIndex()}, last);
+    TrackingOptions options = options_;
+    options.wide_search = is_wide;
+    const auto estimate =
+        PoseByMotionModel(next, made_.map, {sensor, options, ObjectOptions(), ObjectIndex()}, last);
     return estimate ? estimate->inliers / static_cast<double>(next.features.size()) : 0.0;
   }
 };
@@ -692,6 +694,11 @@ TEST_F(MotionModelTest, TheWindowGrowsWithTheImage) {
 TEST_F(MotionModelTest, TheWindowGrowsWithTheMotion) {
   EXPECT_GT(FoundShare(640, 0.0, 0.28), 0.1);
   EXPECT_EQ(FoundShare(640, 0.28, 0.0), 0.0) << "no motion was seen before";
+}
+
+TEST_F(MotionModelTest, UnlessItIsWideTheWindowDoublesOnce) {
+  EXPECT_EQ(FoundShare(1920, 0.087, 0.0, false), FoundShare(640, 0.087, 0.0, false));
+  EXPECT_EQ(FoundShare(640, 0.0, 0.28, false), 0.0);
 }
 
 TEST_F(TrackerTest, SaysWhyAFrameIsLost) {
@@ -1106,6 +1113,8 @@ class MonocularTracker : public testing::Test {
     return 0;
   }
 
+  explicit MonocularTracker(const TrackingOptions& options = {}) : options_(options) {}
+
   const SyntheticWorld world_{{.points = 300, .depth_share = 0.0}};
   const Sensor sensor_ = WithoutDepth(world_.sensor());
   TrackingOptions options_;
@@ -1132,6 +1141,18 @@ TEST_F(MonocularTracker, WaitsForAMapAndGivesTheFirstFramesPosesAtTheEnd) {
     }
   }
   EXPECT_TRUE(tracker_.LocaliseEarlyFrames(made.map).empty());
+}
+
+TEST_F(MonocularTracker, TheFirstFramesStayWithoutPosesIfTheyAreNotWanted) {
+  options_.locate_at_end = false;
+  Tracker tracker(sensor_, options_);
+  uint32_t last = 0;
+  while (last < 40 && !tracker.Process(world_.Observe(last).frame, nullptr, kIdle).message) {
+    ++last;
+  }
+  ASSERT_LT(last, 40u);
+  const SyntheticMap made = MakeSyntheticMap(world_, {2, last / 2, last});
+  EXPECT_TRUE(tracker.LocaliseEarlyFrames(made.map).empty());
 }
 
 TEST_F(MonocularTracker, FramesThatTheMapDoesNotShowAreLeftOut) {
@@ -1181,6 +1202,7 @@ class LostMonocularTracker : public MonocularTracker {
   Tracker::Result Process(std::shared_ptr<const Frame> frame) {
     return tracker_.Process(std::move(frame), map_, kIdle);
   }
+  explicit LostMonocularTracker(const TrackingOptions& options = {}) : MonocularTracker(options) {}
 
   const SyntheticWorld other_{{.points = 300, .depth_share = 0.0, .seed = 77}};
   SyntheticMap made_;
@@ -1235,6 +1257,16 @@ TEST_F(LostMonocularTracker, TheFirstFramesGetPosesAlthoughTheCameraThenStandsSt
 TEST_F(LostMonocularTracker, WithoutWordsAGrownMapIsNotGivenUp) {
   EXPECT_EQ(BeginAndLose(12, 60), 0u);
 }
+
+// As in ORB-SLAM2, which begins its map again if it is lost with at most five keyframes.
+class OnlyTinyMapsAreGivenUp : public LostMonocularTracker {
+ protected:
+  OnlyTinyMapsAreGivenUp() : LostMonocularTracker({.begin_islands = false}) {}
+};
+
+TEST_F(OnlyTinyMapsAreGivenUp, WithFiveKeyframes) { EXPECT_GT(BeginAndLose(5, 40), 100u); }
+
+TEST_F(OnlyTinyMapsAreGivenUp, NotWithSix) { EXPECT_EQ(BeginAndLose(6, 60), 0u); }
 
 // A camera with depth that knows one world and is then in another one.
 class LostDepthTracker : public TrackerTest {

@@ -8,8 +8,18 @@
 
 namespace hullslam {
 
+// The model of the error of a keypoint with depth.
+enum class DepthErrorModel {
+  kDisparity,    // pixel and disparity have independent errors
+  kRightColumn,  // the columns of a virtual stereo pair have (src/camera/right_column.h)
+};
+
+// The rules for the weights of points in bundle adjustment (src/optim/bundle_options.h).
+enum class AdjustmentRule { kHullslam, kOrbSlam2 };
+
 // The error of a point seen with or without depth (src/camera/point_measurement.h).
 struct DepthErrorOptions {
+  DepthErrorModel model = DepthErrorModel::kDisparity;
   // Standard deviation of the coordinates of a keypoint of level 0 of the image pyramid, px. At
   // other levels it is multiplied by the scale of the level.
   double pixel_sigma = 0.7;
@@ -21,11 +31,15 @@ struct DepthErrorOptions {
   // precise than the default, but the pixel that the depth is taken from need not show the
   // landmark.
   double disparity_sigma = 1.0;
+  // kHullslam: without depth, the precision of keypoints is measured, keypoints that are near one
+  // another share a weight, and the loss is Cauchy's. kOrbSlam2: with and without depth, fixed
+  // sigmas, then Huber's loss, and no loss once the outliers are left out.
+  AdjustmentRule adjustment_rule = AdjustmentRule::kHullslam;
 
   // The error in bundle adjustment.
   DepthErrorOptions ForAdjustment() const;
 
-  // Binds the keys `depth.pixel_sigma`, `depth.adjustment_pixel_sigma`, `depth.disparity_sigma`.
+  // Binds the keys `depth.model`, `depth.pixel_sigma` and so on.
   void Bind(OptionTable& options);
 };
 

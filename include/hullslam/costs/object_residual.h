@@ -11,7 +11,16 @@ namespace hullslam {
 
 // The residuals that can constrain a quadric (docs/objects.md). Each has its own file in costs/,
 // and a row in the table of costs/object_residual.cc.
-enum class ObjectResidual { kTangent, kAlgebraicPlane, kAlgebraicPoint, kDistribution, kOverlap };
+enum class ObjectResidual {
+  kTangent,
+  kAlgebraicPlane,
+  kAlgebraicPoint,
+  kDistribution,
+  kOverlap,
+  kBhattacharyya,
+  kBoxBounds,
+  kFilteredPoint
+};
 
 // The name in settings files: tangent, algebraic_plane, ...
 std::string_view NameOf(ObjectResidual residual);
@@ -26,5 +35,8 @@ bool AcceptsPrimitive(ObjectResidual residual, ObjectPrimitive primitive);
 
 // Whether the residual is computed from the lines of a detection.
 bool TakesLines(ObjectResidual residual);
+
+// Whether its cost depends on the projected ellipse at the start of the optimisation.
+bool NeedsProjection(ObjectResidual residual);
 
 }  // namespace hullslam

@@ -25,8 +25,8 @@ struct Detection {
   // The primitive that the residuals are computed from; equal to DetectionOptions::primitive.
   ObjectPrimitive primitive = ObjectPrimitive::kSupport;
   std::vector<SilhouetteLine> lines;  // the lines that constrain the quadric
-  std::optional<Ellipse>
-      ellipse;          // least-squares fit of the contour; only for ellipse masks and `conic`
+  std::optional<Ellipse> ellipse;     // least-squares fit of the contour for ellipse masks and
+                                   // `conic`; the ellipse in the box for `box_ellipse`; else absent
   bool is_cut = false;  // the border of the image cuts the mask
   bool is_box = false;  // the mask is only a bounding box
   // Points of the depth image inside the eroded mask, m, camera frame; a few hundred at most.

@@ -20,6 +20,7 @@ struct DetectionOptions {
   // A mask that does not satisfy these conditions is rejected.
   double min_score = 0.0;
   double min_side_px = 10.0;    // least width and height of the bounding box of the hull
+  double min_area_px2 = 0.0;    // least area of the hull, px^2
   double max_area_share = 0.5;  // largest area of the hull, as a share of the image
   int min_keypoints = 0;        // inside the mask
   double duplicate_iou = 0.6;   // masks with at least this IoU show the same object

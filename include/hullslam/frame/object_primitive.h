@@ -8,9 +8,9 @@
 namespace hullslam {
 
 // The geometric shape, taken from an instance mask, from which an object's residuals are computed.
-enum class ObjectPrimitive { kSupport, kHull, kContour, kBox, kConic };
+enum class ObjectPrimitive { kSupport, kHull, kContour, kBox, kConic, kBoxEllipse };
 
-// The name in settings files: support, hull, contour, bbox or conic.
+// The name in settings files: support, hull, contour, bbox, conic or box_ellipse.
 std::string_view NameOf(ObjectPrimitive primitive);
 // All names, in the order of the enumerators.
 std::vector<std::string> ObjectPrimitiveNames();

@@ -26,6 +26,7 @@ struct LoopOptions {
   double turn_base = 0.1;          // radians
   double turn_per_metre = 0.02;    // radians
   double turn_per_radian = 0.03;   // radians
+  bool object_votes = true;        // whether mapped objects speak for or against a loop
   bool global_adjustment = true;   // adjust the whole map after a loop was closed
 
   void Bind(OptionTable& options);

@@ -15,6 +15,14 @@ enum class RobustLoss { kNone, kHuber, kCauchy, kTukey };
 // The names in settings, in the order of the enumerators: none, huber, cauchy, tukey.
 std::vector<std::string> RobustLossNames();
 
+// The unit of a sigma: pixels, which are converted to the unit of the residual for the object's
+// size and distance, or the unit of the residual itself, as in systems with one weight for all
+// objects.
+enum class SigmaUnit { kPixels, kResidual };
+
+// The names in settings, in the order of the enumerators: pixels, residual.
+std::vector<std::string> SigmaUnitNames();
+
 // The choice of depth points when a detection has more than the largest number: exactly that
 // number, evenly spread, or every k-th point.
 enum class PointChoice { kEven, kEveryKth };
@@ -35,8 +43,10 @@ struct ObjectDepthOptions {
 // object.
 struct ObjectConstraintOptions {
   ObjectResidual residual = ObjectResidual::kTangent;
-  // The sigma of a line is hypot(sigma_px, misfit_factor * misfit of the object), px.
+  // The sigma of a line is hypot(sigma_px, misfit_factor * misfit of the object), px. With the unit
+  // kResidual it is sigma_px, in the unit of the residual.
   double sigma_px = 0.5;
+  SigmaUnit sigma_unit = SigmaUnit::kPixels;
   double misfit_factor = 1.0;
   // The lines of one detection count as at most this many independent lines, because their errors
   // are strongly correlated.

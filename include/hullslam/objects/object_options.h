@@ -14,8 +14,16 @@ namespace hullslam {
 // sense in a map of unknown scale. Each struct binds those of its fields that are settings, in the
 // scope of its own path; the others are fixed.
 
+// How a detection and an object are compared (src/objects/association_measure.h).
+enum class AssociationMeasure { kCombined, kClassOverlap, kWasserstein };
+
+// How the first quadric of an object is made (src/objects/start_method.h).
+enum class ObjectStart { kFitted, kOrientedBox, kBoxPlanes, kRaySphere, kSingleView };
+
 // The conditions for a detection to show an object of the map; see AssociateDetections.
 struct AssociationOptions {
+  // All other options are those of kCombined.
+  AssociationMeasure measure = AssociationMeasure::kCombined;
   double min_projection_iou = 0.25;  // IoU of hull and projected ellipse
   double min_carried_iou = 0.5;      // IoU of the hull and the last hull moved to the new pose
   double min_depth_iou = 0.1;        // the larger of the two IoUs, if the depth points agree
@@ -43,6 +51,7 @@ struct AssociationOptions {
 
 // The conditions for computing the shape of a candidate, and its start.
 struct StartOptions {
+  ObjectStart method = ObjectStart::kFitted;
   int min_views = 3;                         // keyframes
   double min_parallax = 3.0;                 // degrees between viewing rays, with depth
   double min_parallax_without_depth = 15.0;  // degrees

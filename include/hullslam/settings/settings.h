@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
+#include "hullslam/settings/preset.h"
 #include "hullslam/system/options.h"
 
 namespace hullslam {
@@ -30,6 +31,31 @@ SystemOptions ReadSettings(const std::filesystem::path& file,
                            NegativeFy negative_fy = NegativeFy::kError,
                            std::vector<std::string>* warnings = nullptr);
 
+// What is set beside the settings file of a camera, in the order preset, file, overrides.
+struct SettingsSources {
+  const Preset* preset = nullptr;               // null: none
+  std::span<const std::string> overrides = {};  // key=value
+  NegativeFy negative_fy = NegativeFy::kError;
+};
+
+// A setting of a preset that another source has replaced.
+struct PresetOverride {
+  std::string key;
+  std::string preset_value;
+  std::string value;
+  std::string origin;  // FILE:LINE of the settings file, the name of a calibration, or --set
+};
+
+// What a user should be told about the settings.
+struct SettingsReport {
+  std::vector<std::string> warnings;             // also one per override by a file or a calibration
+  std::vector<PresetOverride> preset_overrides;  // sorted by key
+};
+
+// The same with a preset, whose settings the file and the overrides replace.
+SystemOptions ReadSettings(const std::filesystem::path& file, const SettingsSources& sources,
+                           SettingsReport& report);
+
 // A camera as its calibration or its data set describes it.
 struct CameraCalibration {
   PinholeCamera camera;
@@ -42,6 +68,9 @@ struct CameraCalibration {
 SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
                            std::span<const std::string> overrides = {},
                            std::vector<std::string>* warnings = nullptr);
+// The same with a preset, whose settings the calibration and the overrides replace.
+SystemOptions MakeSettings(const CameraCalibration& calibration, const std::string& source,
+                           const SettingsSources& sources, SettingsReport& report);
 
 // The default settings file of a sequence: `camera.yaml` in its folder, else the file in
 // `config_folder` for the camera that the name of the folder contains (freiburg1 or fr1: TUM1.yaml,

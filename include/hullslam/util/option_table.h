@@ -67,6 +67,9 @@ class OptionTable {
 
   // Whether Set() accepts the key.
   bool Contains(std::string_view key) const;
+  // The keys whose values Set() changes: the current name of the key or, if it is a shared key, its
+  // members.
+  std::vector<std::string> KeysSetBy(std::string_view key) const;
   // Whether the option is one of numbers by name.
   bool IsMap(std::string_view key) const;
   // Sets an option from text. Throws InputError that starts with `origin` (a file name or "--set")
@@ -99,7 +102,7 @@ class OptionTable {
     std::string expected;
     std::string help;
     bool ignored = false;
-    bool shared = false;
+    std::vector<std::string> members = {};  // the keys that a shared key sets
     bool is_map = false;
   };
   void AddOption(std::string key, Option option);

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "hullslam/sequences/image_sequence.h"
-#include "hullslam/system/options.h"
+#include "run/load_settings.h"
 #include "run/run_arguments.h"
 
 namespace hullslam {
 
 // The data that a SLAM run needs from a data set.
 struct DatasetInput {
-  SystemOptions options;  // the sensor is set by the caller
+  LoadedSettings settings;  // the sensor is set by the caller
   ImageSequence sequence;
   std::vector<std::string> notes = {};  // lines that the run prints when its input was checked
 };

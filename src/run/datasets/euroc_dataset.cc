@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "hullslam/sequences/euroc_sequence.h"
-#include "run/input_warnings.h"
+#include "run/load_settings.h"
 #include "run/settings_choice.h"
 
 namespace hullslam {
@@ -20,12 +20,12 @@ class EurocDataset final : public Dataset {
   DatasetInput Open(const RunArguments& arguments) override {
     EurocSequence sequence = OpenEurocSequence(arguments.sequence, arguments.selection);
     if (!arguments.settings.empty()) {
-      return {.options = LoadSettings(arguments.settings, arguments.overrides),
+      return {.settings = LoadSettings(arguments.settings, arguments.preset, arguments.overrides),
               .sequence = std::move(sequence.images),
               .notes = {Describe(GivenSettings(arguments.settings))}};
     }
-    return {.options = LoadSettings(sequence.camera.calibration, arguments.sequence.string(),
-                                    arguments.overrides),
+    return {.settings = LoadSettings(sequence.camera.calibration, arguments.sequence.string(),
+                                     arguments.preset, arguments.overrides),
             .sequence = std::move(sequence.images),
             .notes = {Describe({"cam0/sensor.yaml", "the camera of the sequence"})}};
   }

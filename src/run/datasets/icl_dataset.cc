@@ -8,7 +8,7 @@
 
 #include "hullslam/sequences/icl_sequence.h"
 #include "run/command_line.h"
-#include "run/input_warnings.h"
+#include "run/load_settings.h"
 #include "run/messages.h"
 #include "run/settings_choice.h"
 
@@ -58,17 +58,19 @@ class IclDataset final : public Dataset {
   // A negative Camera.fy in the settings is replaced by its positive value.
   DatasetInput Open(const RunArguments& arguments) override {
     const SettingsChoice settings = ChooseIclSettings(arguments.settings, arguments.sequence);
-    SystemOptions options = LoadSettings(settings.file, arguments.overrides, NegativeFy::kPositive);
+    LoadedSettings loaded =
+        LoadSettings(settings.file, arguments.preset, arguments.overrides, NegativeFy::kPositive);
     icl_.associations = arguments.associations;
     icl_.use_depth = arguments.sensor == SensorKind::kRgbd;
     icl_.selection = arguments.selection;
-    IclSequence sequence = OpenIclSequence(arguments.sequence, options.camera, options.depth, icl_);
+    IclSequence sequence =
+        OpenIclSequence(arguments.sequence, loaded.options.camera, loaded.options.depth, icl_);
     if (!arguments.quiet) {
       Print("ICL-NUIM, package {}\n", sequence.package == IclPackage::kTum ? "tum" : "povray");
       Print("ground truth: {}\n",
             sequence.groundtruth_note.empty() ? "none" : sequence.groundtruth_note);
     }
-    return {.options = std::move(options),
+    return {.settings = std::move(loaded),
             .sequence = std::move(sequence.images),
             .notes = {Describe(settings)}};
   }

@@ -33,7 +33,8 @@ class TumDataset final : public Dataset {
       CheckTumFolder(arguments.sequence);  // before a settings file is sought by its name
     }
     const SettingsChoice settings = ChooseTumSettings(arguments.settings, arguments.sequence);
-    SystemOptions options = LoadSettings(settings.file, arguments.overrides);
+    LoadedSettings loaded = LoadSettings(settings.file, arguments.preset, arguments.overrides);
+    const SystemOptions& options = loaded.options;
     ImageSequence sequence =
         OpenTumSequence(arguments.sequence, {.associations = arguments.associations,
                                              .use_depth = arguments.sensor == SensorKind::kRgbd,
@@ -47,7 +48,7 @@ class TumDataset final : public Dataset {
       notes.push_back(sequence.stamps_note);
     }
     return {
-        .options = std::move(options), .sequence = std::move(sequence), .notes = std::move(notes)};
+        .settings = std::move(loaded), .sequence = std::move(sequence), .notes = std::move(notes)};
   }
 };
 

@@ -14,7 +14,7 @@
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/settings/settings.h"
 #include "hullslam/util/error.h"
-#include "run/input_warnings.h"
+#include "run/load_settings.h"
 #include "run/messages.h"
 #include "run/settings_choice.h"
 
@@ -50,13 +50,13 @@ class VideoDataset final : public Dataset {
     CheckCamera(arguments);
     stream_options_.selection = arguments.selection;
     ImageStream stream = OpenImageStream(arguments.sequence, stream_options_);
-    SystemOptions options =
+    LoadedSettings loaded =
         fov_ ? LoadSettings({CameraOfFieldOfView(*fov_, stream.width, stream.height),
                              stream.frames_per_second},
-                            "--fov", arguments.overrides)
-             : LoadSettings(arguments.settings, arguments.overrides);
+                            "--fov", arguments.preset, arguments.overrides)
+             : LoadSettings(arguments.settings, arguments.preset, arguments.overrides);
     if (!arguments.quiet) {
-      PrintInput(stream, options);
+      PrintInput(stream, loaded.options);
     }
     if (!groundtruth_.empty()) {
       CheckGroundtruth(stream.images);
@@ -66,7 +66,7 @@ class VideoDataset final : public Dataset {
     if (!fov_) {
       notes.push_back(Describe(GivenSettings(arguments.settings)));
     }
-    return {.options = std::move(options),
+    return {.settings = std::move(loaded),
             .sequence = std::move(stream.images),
             .notes = std::move(notes)};
   }

@@ -25,6 +25,7 @@
 #include "run/command_line.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
+#include "run/load_settings.h"
 #include "run/mask_arguments.h"
 #include "run/messages.h"
 #include "run/program.h"
@@ -45,6 +46,7 @@ struct CheckMasksArguments {
   std::string format;
   fs::path settings;
   TumSequenceOptions tum;
+  std::string preset;
   std::vector<std::string> overrides;
   fs::path output;  // empty: no pictures
   size_t every = 50;
@@ -93,6 +95,7 @@ void AddOptions(CLI::App& app, CheckMasksArguments& arguments) {
       "--associations", arguments.tum.associations,
       "file with one pair of images per line: stamp rgb stamp depth (default: images are "
       "paired by their stamps, at most 0.02 s apart)");
+  AddPresetArgument(app, arguments.preset);
   AddOverrides(app, arguments.overrides);
   app.add_option(
       "--output", arguments.output,
@@ -256,7 +259,7 @@ int RunCheckMasks(int argc, char** argv) {
   const fs::path settings = arguments.settings.empty()
                                 ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
                                 : arguments.settings;
-  SystemOptions options = LoadSettings(settings, arguments.overrides);
+  SystemOptions options = LoadSettings(settings, arguments.preset, arguments.overrides).options;
   options.objects.detection.min_keypoints = 0;  // no keypoints are extracted here
   arguments.tum.need_images = false;
   arguments.tum.frames_per_second = options.frames_per_second;

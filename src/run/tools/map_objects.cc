@@ -26,6 +26,7 @@
 #include "run/command_line.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
+#include "run/load_settings.h"
 #include "run/mask_arguments.h"
 #include "run/messages.h"
 #include "run/object_outputs.h"
@@ -48,6 +49,7 @@ struct MapObjectsArguments {
   std::filesystem::path masks;
   std::string masks_format;
   std::filesystem::path settings;
+  std::string preset;
   std::vector<std::string> overrides;
   std::filesystem::path output =
       "out_objects";  // not the default of rgbd_tum, whose folder may contain the poses to be used
@@ -70,6 +72,7 @@ void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
   app.add_option("--settings", arguments.settings,
                  "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
                  "that fits the folder's name, such as TUM1.yaml for freiburg1)");
+  AddPresetArgument(app, arguments.preset);
   AddOverrides(app, arguments.overrides);
   app.add_option("--output", arguments.output,
                  "folder for the result files; replaces the former run of this program in it")
@@ -197,7 +200,7 @@ void PrintTable(const KnownPoseMapper& run, const ObjectReport& report) {
 
 struct MappingInputs {
   SettingsChoice settings;
-  SystemOptions options;
+  LoadedSettings loaded;
   ImageSequence sequence;
   Trajectory poses;
 };
@@ -205,12 +208,20 @@ struct MappingInputs {
 MappingInputs OpenMappingInputs(const MapObjectsArguments& arguments) {
   MappingInputs inputs;
   inputs.settings = ChooseTumSettings(arguments.settings, arguments.sequence);
-  inputs.options = LoadSettings(inputs.settings.file, arguments.overrides);
+  inputs.loaded = LoadSettings(inputs.settings.file, arguments.preset, arguments.overrides);
   inputs.sequence = OpenTumSequence(
       arguments.sequence,
-      {.need_images = false, .frames_per_second = inputs.options.frames_per_second});
+      {.need_images = false, .frames_per_second = inputs.loaded.options.frames_per_second});
   inputs.poses = ReadTrajectory(arguments.poses);
   return inputs;
+}
+
+void PrintInputs(const MappingInputs& inputs, const SequenceMasks& masks) {
+  Print("{}\n", Describe(inputs.settings));
+  if (inputs.loaded.preset) {
+    Print("{}\n", DescribePreset(inputs.loaded));
+  }
+  Print("{}\n", masks.Describe());
 }
 
 // Adds all views to the mapper. Returns false if a signal ended it early.
@@ -250,7 +261,8 @@ RunSummary Summarize(const MapObjectsArguments& arguments, const MappingInputs& 
   summary.map.keyframes = run.map().keyframes().size();
   summary.provenance.program = kProgram;
   summary.provenance.version = HULLSLAM_VERSION;
-  summary.provenance.settings_hash = HashSettings(inputs.options);
+  summary.provenance.settings_hash = HashSettings(inputs.loaded.options);
+  AddPreset(inputs.loaded, summary.provenance);
   summary.provenance.pipeline = "objects";
   summary.provenance.masks_format = masks.format();
   summary.provenance.sequence = arguments.sequence.string();
@@ -286,7 +298,8 @@ int RunMapObjects(int argc, char** argv) {
     return kDone;
   }
   const MappingInputs inputs = OpenMappingInputs(arguments);
-  const PinholeCamera& camera = inputs.options.camera;
+  const SystemOptions& options = inputs.loaded.options;
+  const PinholeCamera& camera = options.camera;
   const SequenceMasks masks({arguments.masks, arguments.masks_format, camera.width, camera.height},
                             MaskFrames(inputs.sequence));
   const auto& frames = inputs.sequence.frames;
@@ -294,13 +307,13 @@ int RunMapObjects(int argc, char** argv) {
   CatchInterrupts();
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
                       {kProgram, arguments.overwrite});
-  WarnOfUnknownClasses(inputs.options.tracking, inputs.options.objects, masks);
+  WarnOfUnknownClasses(options.tracking, options.objects, masks);
   if (!arguments.quiet) {
-    Print("{}\n{}\n", Describe(inputs.settings), masks.Describe());
+    PrintInputs(inputs, masks);
   }
   const auto start = std::chrono::steady_clock::now();
-  KnownPoseMapper run(inputs.options);
-  const bool is_complete = MapAll(arguments, inputs.options, frames, views, masks, run);
+  KnownPoseMapper run(options);
+  const bool is_complete = MapAll(arguments, options, frames, views, masks, run);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
 
   const ObjectReport report = CollectObjects(run.map(), camera, arguments.sequence);

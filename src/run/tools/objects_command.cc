@@ -81,7 +81,7 @@ void PrintText(const ObjectReport& report, AlignmentKind alignment) {
     PrintObject(object);
   }
   const MapFit fit = SummarizeFits(report);
-  Print("\n{} mapped, {} candidates; {} observations and {} lines of mapped objects\n", fit.objects,
+  Print("\n{} mapped, {} not mapped; {} observations and {} lines of mapped objects\n", fit.objects,
         report.candidates, fit.mean.observations, fit.mean.lines);
   Print("mean SIoU {} with hulls, {} with masks; mean MTD {} {}2; mean tangent distance {} px\n",
         FormatFigure(fit.mean.siou, 4), FormatFigure(fit.mean.siou_mask, 4),

@@ -27,6 +27,7 @@
 #include "run/command_line.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
+#include "run/load_settings.h"
 #include "run/mask_arguments.h"
 #include "run/messages.h"
 #include "run/program.h"
@@ -47,6 +48,7 @@ struct RelocaliseArguments {
   std::string masks_format;
   std::filesystem::path vocabulary;
   std::filesystem::path settings;
+  std::string preset;
   std::vector<std::string> overrides;
   std::vector<std::string> query_overrides;
   std::string map_frames = ":";
@@ -66,6 +68,7 @@ void AddArguments(CLI::App& app, RelocaliseArguments& arguments) {
   app.add_option("--settings", arguments.settings,
                  "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
                  "that fits the folder's name, such as TUM1.yaml for freiburg1)");
+  AddPresetArgument(app, arguments.preset);
   AddOverrides(app, arguments.overrides);
   AddOverrides(app, "--query-set",
                "key=value: overrides one setting for the queries only; can be given several times",
@@ -124,6 +127,15 @@ FrameRange ParseRange(const std::string& option, const std::string& text, size_t
   return range;
 }
 
+// Like LoadSettings(), but prints no warnings.
+SystemOptions ReadQuietly(const std::filesystem::path& file, const std::string& preset,
+                          const std::vector<std::string>& overrides) {
+  const std::optional<Preset> read =
+      preset.empty() ? std::nullopt : std::optional(ReadPreset(preset));
+  SettingsReport unused;
+  return ReadSettings(file, {.preset = read ? &*read : nullptr, .overrides = overrides}, unused);
+}
+
 SystemOptions LoadOptions(const RelocaliseArguments& arguments, bool for_queries) {
   const std::filesystem::path settings =
       arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
@@ -134,8 +146,8 @@ SystemOptions LoadOptions(const RelocaliseArguments& arguments, bool for_queries
                      arguments.query_overrides.end());
   }
   // Warnings are printed only for the queries: their overrides contain those of the map.
-  SystemOptions options =
-      for_queries ? LoadSettings(settings, overrides) : ReadSettings(settings, overrides);
+  SystemOptions options = for_queries ? LoadSettings(settings, arguments.preset, overrides).options
+                                      : ReadQuietly(settings, arguments.preset, overrides);
   options.seed = arguments.seed;
   return options;
 }

@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: scripts/download_icl.sh [--to DIR] [--base URL] [--checksums FILE] [--max-size GB] SEQUENCE...
+#
+# Downloads sequences of ICL-NUIM, in the package of PNG images that is like TUM RGB-D, and unpacks
+# each into DIR/<archive's name>, from where rgbd_icl and mono_icl read it. SEQUENCE is for example
+# office_traj0, living_room_traj2, or living_room_traj2n for the one with noise. traj0_frei_png, the
+# archive's own name, is office_traj0. An interrupted download continues where it stopped. A
+# sequence that exists already is not downloaded again.
+#
+#   --to DIR          folder for the sequences (default: the working directory)
+#   --base URL        address of the archives; the true trajectories are in its folder VaFRIC
+#                     (default: https://www.doc.ic.ac.uk/~ahanda)
+#   --checksums FILE  SHA-256 sums of archives, in the form of sha256sum. An archive that is listed
+#                     is compared, the sum of any other is added to FILE. Without this option,
+#                     archives are compared with scripts/icl_sha256.txt, and nothing is added.
+#   --max-size GB     largest size of an unpacked sequence (default: 20)
+#
+# Exit codes: 0 done, 1 a download failed or an archive was refused, 2 bad usage.
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+. "$(dirname "${BASH_SOURCE[0]}")/download_common.sh"
+
+# Prints the name of an archive without its ending. Those of the office have no prefix.
+plain_name() {
+  local name=${1%_frei_png}
+  name=${name#office_}
+  [[ "$name" =~ ^(living_room_)?traj[0-3]n?$ ]] ||
+    usage_error "\"$1\" is not a sequence of ICL-NUIM; expected office_traj0 to office_traj3 or \
+living_room_traj0 to living_room_traj3, with n at the end for those with noise"
+  printf '%s_frei_png' "$name"
+}
+
+# Prints the name of the true trajectory of an archive.
+groundtruth_name() {
+  local name=${1%_frei_png}
+  printf '%s.gt.freiburg' "${name/living_room_traj/livingRoom}"
+}
+
+# The archives have no folder of their own: rgb, depth and associations.txt are at the top.
+unpack() {
+  local file=$1 folder=$2 work=$3 needed
+  unpack_into "$file" "" "$work"
+  for needed in rgb depth associations.txt; do
+    if [ ! -e "$work/$needed" ]; then
+      rm -rf "$work"
+      refuse "$PWD/$file" "it is not a sequence of ICL-NUIM, as it has no $needed"
+    fi
+  done
+  if ! compgen -G "$work/*.gt.freiburg" >/dev/null; then
+    download "$base/VaFRIC/$(groundtruth_name "$folder")" "$work/$(groundtruth_name "$folder")"
+  fi
+  mv "$work" "$folder"
+  rm -f "$file"
+}
+
+fetch() {
+  local folder=$1
+  if [ -d "$folder" ]; then
+    printf '%s exists already.\n' "$PWD/$folder"
+    return
+  fi
+  [ -s "$folder.tar.gz" ] || download "$base/$folder.tar.gz" "$folder.tar.gz"
+  unpack "$folder.tar.gz" "$folder" "$folder.unpacking"
+  printf '%s: %d pairs of images\n' "$PWD/$folder" "$(grep -c . "$folder/associations.txt")"
+}
+
+base=https://www.doc.ic.ac.uk/~ahanda
+# shellcheck disable=SC2034  # download_all uses it
+checksums=$top/scripts/icl_sha256.txt
+download_all "$@"

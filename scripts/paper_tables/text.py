@@ -1,0 +1,287 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the Markdown, LaTeX and HTML files have in common: grids of short texts."""
+
+import dataclasses
+
+from paper_tables.cells import columns_of, median_run
+from paper_tables.figures import FIGURES
+
+DASH = "–"
+
+
+@dataclasses.dataclass
+class Text:
+    """A text of a grid."""
+    text: str
+    run: str = None  # the run that it comes from
+    is_best: bool = False
+    values: tuple = ()  # (text, run) of each single run
+
+
+@dataclasses.dataclass
+class Grid:
+    """A table of texts. A row that has only one text is a heading within the table."""
+    title: str
+    head: list
+    rows: list
+    notes: list = dataclasses.field(default_factory=list)
+
+
+def number(value, figure):
+    return DASH if value is None else f"{value * figure.factor:.{figure.digits}f}"
+
+
+def range_text(entry, figure):
+    """The median, and the smallest and largest value of several runs."""
+    if entry is None:
+        return DASH
+    text = number(entry["median"], figure)
+    if len(entry["values"]) > 1:
+        text += f" ({number(entry['min'], figure)}..{number(entry['max'], figure)})"
+    return text
+
+
+def percent(change):
+    return f"{100 * change:+.1f} %"
+
+
+def difference_text(change, figure):
+    """A difference with its p and the number of pairs."""
+    if change is None:
+        return DASH
+    text = percent(change["change"]) if change["is_relative"] else \
+        f"{change['change'] * FIGURES[figure].factor:+.{FIGURES[figure].digits}f}"
+    return f"{text} (p {change['p']:.2g}, {change['pairs']} pairs)"
+
+
+def runs_text(cell):
+    """How many runs a cell has, and how many of them have failed."""
+    text = str(cell["done"])
+    if cell["failures"]:
+        text += f", {len(cell['failures'])} failed"
+    if cell["missing"]:
+        text += f", {len(cell['missing'])} not run"
+    return text
+
+
+def entry_text(cell, column, figure):
+    """A cell with the values of its runs."""
+    entry = cell["figures"].get(column.key)
+    if entry is None:
+        return Text(DASH)
+    values = tuple((number(value, figure), cell["runs"][seed])
+                   for seed, value in sorted(entry["values"].items()))
+    return Text(range_text(entry, figure), cell["runs"][median_run(entry)], values=values)
+
+
+# ---- overviews: a row for each system, a column for each sequence
+
+
+def best_rows(block, sequence, column, figure):
+    """The rows with the best median of a sequence, to the digits that are shown."""
+    medians = {cell["row"]: number(cell["figures"][column.key]["median"], figure)
+               for cell in block["sequences"][sequence] if cell["figures"].get(column.key)}
+    if len(medians) < 2 or figure.lower_is_better is None:
+        return set()
+    pick = min if figure.lower_is_better else max
+    best = pick(medians.values(), key=float)
+    found = {row for row, text in medians.items() if text == best}
+    return found if len(found) < len(medians) else set()
+
+
+def overview_cell(report, block, sequence, cell, best):
+    """The medians of the first figure, and the paper's figure in brackets."""
+    table = report.table(block)
+    key = table.figures[0]
+    figure = FIGURES[key]
+    columns = figure.columns[block["mode"]]
+    entries = [cell["figures"].get(column.key) for column in columns]
+    text = " / ".join(number(entry["median"] if entry else None, figure) for entry in entries)
+    if not any(entries):
+        text = "failed" if cell["failures"] else DASH
+    elif cell["failures"]:
+        text += f" !{len(cell['failures'])}"
+    paper = report.paper_figure(block, cell, sequence, key)
+    if paper is not None:
+        text += f" [{number(paper, figure)}]"
+    first = entry_text(cell, columns[0], figure)
+    return Text(text, first.run, cell["row"] in best, first.values)
+
+
+def sequence_heading(report, name):
+    paper = report.plays.get(name)
+    return name if paper in (None, name) else f"{name} ({paper})"
+
+
+def overview(report, block):
+    """The grid with one row per system and one column per sequence."""
+    table = report.table(block)
+    figure = FIGURES[table.figures[0]]
+    columns = figure.columns[block["mode"]]
+    missing = report.missing_sequences(block)
+    head = ["", *(sequence_heading(report, name) for name in block["sequences"]), *missing,
+            "against " + next(row.label for row in table.rows if row.variant == table.baseline)]
+    rows = []
+    best = {name: best_rows(block, name, columns[0], figure) for name in block["sequences"]}
+    for index, row in enumerate(table.rows):
+        texts = [overview_cell(report, block, name, cells[index], best[name])
+                 for name, cells in block["sequences"].items()]
+        overall = block["overall"][row.variant]
+        rows.append([Text(row.label), *texts, *(Text(DASH) for _ in missing),
+                     Text(difference_text(overall["difference"], table.figures[0]))])
+    shown = " / ".join(column.heading for column in columns)
+    notes = [f"{shown}: medians of the runs that did not fail."]
+    if any(report.paper_figure(block, cell, name, table.figures[0]) is not None
+           for name, cells in block["sequences"].items() for cell in cells):
+        notes.append("In square brackets: the paper's figure, on the sequence of the paper.")
+    if any(cell["failures"] for cells in block["sequences"].values() for cell in cells):
+        notes.append("!n: n runs failed.")
+    return Grid(report.title(block), head, rows, notes)
+
+
+# ---- details: all figures of all sequences
+
+
+def detail(report, block):
+    """The grid with all figures, sequence by sequence."""
+    table = report.table(block)
+    columns = columns_of(table, block["mode"])
+    has_paper = {key for key in table.figures for name, cells in block["sequences"].items()
+                 for cell in cells if report.paper_figure(block, cell, name, key) is not None}
+    head = ["", *(column.heading for _, _, column in columns),
+            *(f"paper: {FIGURES[key].title}" for key in table.figures if key in has_paper), "runs"]
+    rows = []
+    for name, cells in block["sequences"].items():
+        rows.append([Text(sequence_heading(report, name))])
+        best = {column.key: best_rows(block, name, column, figure) for _, figure, column in columns}
+        for cell in cells:
+            texts = [entry_text(cell, column, figure) for _, figure, column in columns]
+            for text, (_, _, column) in zip(texts, columns):
+                text.is_best = cell["row"] in best[column.key]
+            papers = [report.paper_figure(block, cell, name, key) for key in table.figures
+                      if key in has_paper]
+            rows.append([Text(report.label(block, cell)), *texts,
+                         *(Text(number(value, FIGURES[key])) for value, key in zip(
+                             papers, [key for key in table.figures if key in has_paper])),
+                         Text(runs_text(cell))])
+    rows += [[Text(name), *(Text(DASH) for _ in head[1:])]
+             for name in report.missing_sequences(block)]
+    return Grid(report.title(block) + ", all figures", head, rows,
+                [*shared_runs(report, block), *reasons(report, block), *failures(report, block)])
+
+
+def reasons(report, block):
+    """Why cells are empty."""
+    found = {}
+    for name, cells in block["sequences"].items():
+        for cell in cells:
+            if not cell["runs"]:
+                found.setdefault(cell["reason"], {})[f"{name}, {report.label(block, cell)}"] = True
+    return [f"{DASH} {reason}: {'; '.join(names)}." for reason, names in found.items()]
+
+
+def shared_runs(report, block):
+    """The rows that show the runs of another variant, as the cameras have no rolling shutter."""
+    variants, found = report.definitions.variants, []
+    for row in report.table(block).rows:
+        other = variants[row.variant].same_as
+        names = [name for name in block["sequences"]
+                 if other and not report.sequences[name].has_rolling_shutter]
+        if names:
+            found.append(f"{row.label}: the runs of {variants[other].label}, as there is no rolling "
+                         f"shutter, on {', '.join(names)}.")
+    return found
+
+
+def failures(report, block):
+    """Each failed run with its reason."""
+    return [f"failed: {cell['runs'][seed]}: {reason}"
+            for cells in block["sequences"].values() for cell in cells
+            for seed, reason in sorted(cell["failures"].items())]
+
+
+def degradation_grid(report, block):
+    """The grid of a table of degradations: a row for each level, columns for each system."""
+    table = report.table(block)
+    columns = columns_of(table, block["mode"])
+    head = ["", "level", *(f"{row.label}: {column.heading}" for row in table.rows
+                           for _, _, column in columns)]
+    rows = []
+    for name, cells in block["sequences"].items():
+        rows.append([Text(sequence_heading(report, name))])
+        for start in range(0, len(cells), len(table.rows)):
+            group = cells[start:start + len(table.rows)]
+            label, level = "none", ""
+            if group[0]["degradation"]:
+                label = report.definitions.degradations[group[0]["degradation"]].label
+                level = group[0]["level"]
+            texts = [entry_text(cell, column, figure) for cell in group
+                     for _, figure, column in columns]
+            for cell, first in zip(group, range(0, len(texts), len(columns))):
+                if cell["failures"]:
+                    texts[first].text += f" !{len(cell['failures'])}"
+            rows.append([Text(label), Text(level), *texts])
+    return Grid(report.title(block), head, rows,
+                ["!n: n runs failed.", *reasons(report, block), *failures(report, block)])
+
+
+def grids(report, block):
+    """All grids of a block of the report."""
+    if report.table(block).degradations:
+        return [degradation_grid(report, block)]
+    return [overview(report, block), detail(report, block)]
+
+
+# ---- claims and ranks
+
+
+def claims_grid(report):
+    def label(name):
+        return report.definitions.variants[name].label
+    rows = []
+    for claim in report.claims:
+        told = "; ".join(f"against {label(name)} {difference_text(change, claim['figure'])}"
+                         for name, change in claim["than"].items())
+        rows.append([Text(claim["text"]), Text("RGB-D" if claim["mode"] == "rgbd" else "monocular"),
+                     Text(claim["answer"]), Text(f"{label(claim['better'])}: {told}")])
+    return Grid("Claims of the paper", ["claim", "mode", "answer", "from the pairs of runs"], rows,
+                ["yes: better than each of the others, each with p of at most 0.05; no: worse than "
+                 "one of them with such a p; unclear: neither."])
+
+
+def ranking_grid(report, block):
+    """The order of the systems beside that of the paper; None if there are no common figures."""
+    found = report.ranking(block)
+    if len(found) < 2:
+        return None
+    labels = {row.variant: row.label for row in report.table(block).rows}
+    rows = [[Text(labels[name]), Text(f"{ours:.1f}"), Text(f"{theirs:.1f}")]
+            for name, ours, theirs in found]
+    return Grid(f"{report.title(block)}: order", ["", "mean rank", "mean rank in the paper"], rows,
+                ["Ranks within each sequence, by the medians; over the sequences for which both "
+                 "have figures."])
+
+
+def preface(report):
+    """How to read the tables, one sentence each."""
+    seeds = list(report.seeds)
+    count = f"{len(seeds)} run" + ("s" if len(seeds) > 1 else "")
+    found = [
+        f"Each cell is the median of {count} (seeds {seeds[0]} to {seeds[-1]}), with the smallest "
+        "and the largest value in brackets.",
+        "Recorded sequences begin at another frame for each seed; synthetic ones are rendered anew.",
+        "Failed runs are counted and listed with their reasons; their other figures are not used, "
+        "but the share of frames without a pose counts all runs.",
+        "ATE is the RMSE after alignment with SE3 (rigid) or Sim3 (with scale); the paper aligns "
+        "with scale also in RGB-D.",
+        "p is that of the sign-flip test over pairs of runs with the same sequence and seed; with n "
+        "pairs it is at least 2 / 2^n.",
+        f"The paper is {report.paper['source']}."]
+    if report.frames:
+        found.append(f"Only {report.frames} images of each sequence were used.")
+    if report.is_quick:
+        found.append("This was a quick run, to see whether everything works: its figures mean "
+                     "little.")
+    if report.builds():
+        found.append(f"Commit of the programs: {', '.join(report.builds())}.")
+    return found

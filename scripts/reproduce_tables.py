@@ -1,0 +1,328 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+r"""Makes the tables of the paper from many runs: I pose error, II mapping quality, III constraints,
+IV simplification, V integration, and VI robustness, a table of our own.
+
+    scripts/reproduce_tables.py --suite synthetic --out tables
+    scripts/reproduce_tables.py --data data --out tables --tables I,III --seeds 5
+
+The first renders its sequences and needs nothing else. The second takes all sequences of TUM RGB-D
+and ICL-NUIM in the folder data. Of each sequence every row of a table is run with several seeds,
+monocular and with depth: recorded sequences begin at another frame for each seed, synthetic ones
+are rendered anew. docs/reproduce.md explains the tables, the masks and how to use a cluster.
+
+OUT/tables has the tables as index.html, tables.md, tables.tex, tables.csv and tables.json, and
+OUT/runs has each run. If it is interrupted in any way, start it again: finished runs are kept, and
+the tables will be the same. A run is repeated if a program, its settings, preset, sequence or masks
+have changed. Only names and sizes of images are compared.
+
+Exit codes: 0 done (failed runs are a part of the tables), 1 stopped before its end, 2 bad usage or
+input.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+
+from python_packages import require
+
+require("numpy", "matplotlib", "yaml")
+from paper_tables.compare import compare_reports, comparison_grid, comparison_json  # noqa: E402
+from paper_tables.definitions import MODES, read_definitions  # noqa: E402
+from paper_tables.job import Stopped  # noqa: E402
+from paper_tables.latex import latex  # noqa: E402
+from paper_tables.markdown import grid_lines, markdown  # noqa: E402
+from paper_tables.page import page  # noqa: E402
+from paper_tables.plan import DIGITS, Request, Tools, make_plan, result_file  # noqa: E402
+from paper_tables.report import Report, read_report  # noqa: E402
+from paper_tables.sequences import (find_sequences, in_order, read_list,  # noqa: E402
+                                    read_sequence)
+from paper_tables.suite import read_suite, suite_file  # noqa: E402
+from paper_tables.workflow import (make_all, read_results, snakemake_command,  # noqa: E402
+                                   table_lock)
+from run_errors import InputError  # noqa: E402
+from run_files import read_json  # noqa: E402
+from run_statistics import write  # noqa: E402
+
+SCRIPTS = pathlib.Path(__file__).resolve().parent
+OWN = SCRIPTS / "paper_tables"
+PLAN = "plan.json"
+QUICK_SEQUENCES, QUICK_FRAMES = 2, 40
+
+
+def default_programs():
+    """The folder of the programs of the installation, in which this script is in
+    share/hullslam/scripts, or of the build."""
+    top = SCRIPTS.parent
+    installed = top.parent.parent / "libexec" / "hullslam"
+    return installed if (installed / "rgbd_tum").is_file() else top / "build" / "release" / "bin"
+
+
+def find_config():
+    """The folder of the settings files and presets."""
+    return pathlib.Path(os.environ.get("HULLSLAM_CONFIG") or SCRIPTS.parent / "config").resolve()
+
+
+# ---- what to run
+
+
+def chosen(text, known, what):
+    """The names in a text like I,III, in the order of `known`."""
+    if text is None:
+        return tuple(known)
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    for name in names or [""]:
+        if name not in known:
+            raise InputError(f"{what}: '{name}' is unknown, expected some of: {', '.join(known)}")
+    return tuple(name for name in known if name in names)
+
+
+def recorded_sequences(arguments, definitions, config):
+    texts = list(arguments.sequence)
+    for path in arguments.sequences:
+        texts += read_list(path)
+    for data in arguments.data:
+        found, others = find_sequences(data)
+        texts += map(str, found)
+        for path in others:
+            print(f"note: {path} is no sequence and is left out", file=sys.stderr)
+    folders = dict.fromkeys(texts)
+    return [read_sequence(text, arguments.masks, definitions.paper_sequences, config)
+            for text in folders]
+
+
+def select(sequences, only):
+    """The sequences that --only names, by their own name or that of the paper."""
+    if only is None:
+        return sequences
+    names = {name.strip() for name in only.split(",")}
+    known = [name for sequence in sequences for name in (sequence.name, sequence.paper) if name]
+    for name in sorted(names):
+        if name not in known:
+            raise InputError(f"--only: '{name}' is unknown, expected some of: "
+                             f"{', '.join(dict.fromkeys(known))}")
+    return [sequence for sequence in sequences if {sequence.name, sequence.paper} & names]
+
+
+def quick_choice(sequences):
+    """Two sequences, of both data sets if there are both."""
+    first = sequences[:1]
+    others = sorted(sequences[1:], key=lambda sequence: sequence.dataset == first[0].dataset)
+    return first + others[:QUICK_SEQUENCES - 1]
+
+
+def suite_cache(arguments, tools):
+    """Where the list of the sequences of the suite is kept."""
+    program = tools.path("make_synthetic")
+    return arguments.out / f"suite-{tools.hash(program)[:DIGITS]}.json"
+
+
+def make_request(arguments, tools, suite):
+    definitions = read_definitions(arguments.definitions)
+    frames = arguments.frames or (QUICK_FRAMES if arguments.quick else None)
+    sequences = recorded_sequences(arguments, definitions, tools.config)
+    if suite:
+        sequences += read_suite(suite, definitions.paper_sequences, frames)
+    sequences = select(in_order(sequences, definitions.paper_sequences), arguments.only)
+    if arguments.quick:
+        sequences = quick_choice(sequences)
+    seeds = arguments.seeds or (1 if arguments.quick else 3)
+    return Request(definitions, sequences, chosen(arguments.tables, definitions.tables, "--tables"),
+                   chosen(arguments.modes, MODES, "--modes"),
+                   range(arguments.first_seed, arguments.first_seed + seeds), frames,
+                   arguments.quick, arguments.timeout)
+
+
+# ---- what is done
+
+
+def print_plan(request, plan, cells, out):
+    """What would be run."""
+    for sequence in request.sequences:
+        part = f", plays {sequence.paper}" if sequence.paper and sequence.rendered else ""
+        print(f"sequence {sequence.name}: {sequence.dataset}, {sequence.frames} images{part}, "
+              f"masks {sequence.masks or 'none'}")
+    used = {}
+    for (table, mode, _), found in cells.items():
+        used.setdefault((table, mode), set()).update(
+            name for cell in found for name in cell["runs"].values())
+    for (table, mode), names in used.items():
+        print(f"table {table}, {mode}: {len(names)} runs")
+    done = {name for name, run in plan["runs"].items()
+            if read_if_there(out / result_file(name, run))}
+    frames = sum(run["frames"] for name, run in plan["runs"].items() if name not in done)
+    print(f"{len(plan['runs'])} different runs, {len(done)} of them done; {frames} images to "
+          "process")
+    for name in plan["runs"]:
+        print(f"  {'done' if name in done else 'to do'}  {name}")
+
+
+def read_if_there(path):
+    return path.is_file()
+
+
+def describe_dry_run(plan_file, out, arguments):
+    """Asks Snakemake what it would do."""
+    command = snakemake_command(plan_file, arguments.jobs, arguments.profile, True)
+    result = subprocess.run(command, cwd=out, capture_output=True, text=True, check=False)
+    print(result.stdout.strip())
+    if result.returncode != 0:
+        raise Stopped(f"the dry run of Snakemake has failed: {result.stderr.strip()[-500:]}")
+
+
+def forget_failures(plan, out):
+    """Removes the results of failed runs, so that they are run again."""
+    for name, run in plan["runs"].items():
+        path = out / result_file(name, run)
+        if path.is_file() and read_json(path).get("failure"):
+            path.unlink()
+
+
+def write_tables(report, out, old):
+    """Writes all files of the tables, and replaces the former ones together."""
+    new, target, former = out / ".tables.new", out / "tables", out / ".tables.old"
+    for path in (new, former):
+        shutil.rmtree(path, ignore_errors=True)
+    new.mkdir()
+    grids = None
+    if old is not None:
+        found = compare_reports(old, json.loads(report.json_text()))
+        labels = {name: variant.label for name, variant in report.definitions.variants.items()}
+        grids = [comparison_grid(found, labels)]
+        write(new / "compare.json", comparison_json(found))
+        write(new / "compare.md", "\n".join(grid_lines(grids[0], 1)).rstrip() + "\n")
+    for name, text in (("tables.md", markdown(report)), ("tables.tex", latex(report)),
+                       ("tables.csv", report.csv_text()), ("tables.json", report.json_text()),
+                       ("index.html", page(report, out, grids))):
+        write(new / name, text)
+    if target.exists():
+        target.rename(former)
+    new.rename(target)
+    shutil.rmtree(former, ignore_errors=True)
+
+
+def reproduce(arguments):
+    config = find_config()
+    tools = Tools(arguments.programs.resolve(), SCRIPTS, config)
+    old = read_report(arguments.compare) if arguments.compare else None
+    paper = read_json(OWN / "paper_tables.json")
+    suite = arguments.suite and suite_file(tools.path("make_synthetic"),
+                                           suite_cache(arguments, tools))
+    request = make_request(arguments, tools, suite)
+    plan, cells = make_plan(request, tools)
+    if not plan["runs"]:
+        raise InputError("there is nothing to run: no sequence fits to these tables and modes")
+    if arguments.list:
+        print_plan(request, plan, cells, arguments.out)
+        return
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    if suite:
+        write(suite_cache(arguments, tools), json.dumps(suite, indent=1) + "\n")
+    with table_lock(arguments.out):
+        write(arguments.out / PLAN, json.dumps(plan, indent=1) + "\n")
+        if arguments.retry_failed:
+            forget_failures(plan, arguments.out)
+        if arguments.dry_run:
+            describe_dry_run(PLAN, arguments.out, arguments)
+            return
+        if not arguments.so_far:
+            jobs = arguments.jobs or (None if arguments.profile else os.cpu_count())
+            make_all(plan, PLAN, arguments.out, jobs, arguments.profile, arguments.quiet)
+        results = read_results(plan, arguments.out)
+        report = Report(request, plan, cells, results, paper)
+        write_tables(report, arguments.out, old)
+    failed = sum(1 for result in results.values() if result and result["failure"])
+    if not arguments.quiet:
+        print(f"{arguments.out / 'tables' / 'index.html'}: {len(results)} runs, {failed} failed")
+
+
+# ---- arguments
+
+
+def parse_arguments(words):
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    data = parser.add_argument_group("sequences")
+    data.add_argument("--suite", choices=("synthetic",), help="the sequences of make_synthetic")
+    data.add_argument("--data", type=pathlib.Path, action="append", default=[], metavar="FOLDER",
+                      help="all sequences in the folders of FOLDER")
+    data.add_argument("--sequence", action="append", default=[], metavar="[tum=|icl=]FOLDER",
+                      help="a sequence of TUM RGB-D or ICL-NUIM; can be repeated")
+    data.add_argument("--sequences", type=pathlib.Path, action="append", default=[], metavar="FILE",
+                      help="text file with one sequence per line")
+    data.add_argument("--only", metavar="NAME,...", help="of all these sequences only some")
+    data.add_argument("--masks", metavar="PATH",
+                      help="masks of recorded sequences: a name within the folder of the sequence, or "
+                           "a path in which {name} is the name of the sequence (default: masks)")
+    runs = parser.add_argument_group("runs")
+    runs.add_argument("--out", type=pathlib.Path, required=True, help="folder for runs and tables")
+    runs.add_argument("--tables", metavar="I,II,...", help="only some of the tables")
+    runs.add_argument("--modes", metavar="rgbd,mono", help="only one of the modes")
+    runs.add_argument("--seeds", type=int, metavar="N", help="runs per cell (default 3)")
+    runs.add_argument("--first-seed", type=int, default=0, metavar="N", help="(default 0)")
+    runs.add_argument("--frames", type=int, metavar="N", help="only the first N images")
+    runs.add_argument("--quick", action="store_true",
+                      help=f"see whether everything works: {QUICK_SEQUENCES} sequences, one seed, "
+                           f"{QUICK_FRAMES} images, one level of each degradation")
+    runs.add_argument("--timeout", type=float, default=3600.0, metavar="S",
+                      help="longest time of a run (default 3600 s)")
+    runs.add_argument("--definitions", type=pathlib.Path, default=OWN / "tables.yaml",
+                      metavar="FILE", help="what is run and what the tables show (default: "
+                      "paper_tables/tables.yaml beside this script)")
+    runs.add_argument("--programs", type=pathlib.Path, default=default_programs(), metavar="FOLDER",
+                      help="(default: those of this installation or of build/release/bin)")
+    work = parser.add_argument_group("work")
+    work.add_argument("--jobs", type=int, metavar="N", help="runs at once (default: one per core)")
+    work.add_argument("--profile", metavar="NAME", help="profile of Snakemake for a cluster: slurm, "
+                      "or a folder with config.yaml")
+    work.add_argument("--list", action="store_true", help="print what would be run, and end")
+    work.add_argument("--dry-run", action="store_true", help="print Snakemake's jobs, and end")
+    work.add_argument("--so-far", action="store_true",
+                      help="run nothing; tables of the runs that are done")
+    work.add_argument("--retry-failed", action="store_true", help="repeat runs that have failed")
+    work.add_argument("--compare", type=pathlib.Path, metavar="OLD.json",
+                      help="compare with an older tables.json")
+    work.add_argument("--quiet", action="store_true", help="print only errors")
+    arguments = parser.parse_args(words)
+    for name, low in (("seeds", 1), ("first_seed", 0), ("frames", 2), ("jobs", 1)):
+        value = getattr(arguments, name)
+        if value is not None and value < low:
+            parser.error(f"--{name.replace('_', '-')} is {value}, expected {low} or more")
+    if not 0.0 < arguments.timeout < 1e9:
+        parser.error("--timeout must be a number of seconds")
+    if not (arguments.suite or arguments.data or arguments.sequence or arguments.sequences):
+        parser.error("no sequences; give --suite synthetic, --data, --sequence or --sequences")
+    return arguments
+
+
+def stop(number, _):
+    """Ends the jobs, as Ctrl-C does."""
+    raise Stopped(f"ended by {signal.Signals(number).name}; start again to go on")
+
+
+def main(words=None):
+    arguments = parse_arguments(words)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) != signal.SIG_IGN:  # nohup ignores SIGHUP
+            signal.signal(number, stop)
+    try:
+        reproduce(arguments)
+        return 0
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("error: interrupted; start again to go on", file=sys.stderr)
+        return 1
+    except (Stopped, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

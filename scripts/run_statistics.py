@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the scripts share that make many runs and compare them: figures of summary.json, the
+sign-flip test, and files that are never incomplete."""
+
+import hashlib
+import itertools
+import json
+import math
+import random
+import statistics
+
+EXACT_PAIRS = 14  # up to so many pairs, all 2^n sign flips are tried
+DRAWS = 20000  # of random sign flips for more pairs
+
+
+def hash_file(path):
+    """The SHA-256 of the bytes of a file."""
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while block := file.read(1 << 20):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+def read_json(path):
+    """The JSON object in a file; None if the file cannot be read or contains something else."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None
+    return content if isinstance(content, dict) else None
+
+
+def write(path, text):
+    """Writes a file by renaming a temporary one, so that it is never incomplete."""
+    temporary = path.with_name(path.name + ".tmp")
+    temporary.write_text(text, encoding="utf-8")
+    temporary.replace(path)
+
+
+def value_at(summary, keys):
+    """The number under these keys of the summary; None if there is no number."""
+    for key in keys:
+        summary = summary.get(key) if isinstance(summary, dict) else None
+    is_number = isinstance(summary, (int, float)) and not isinstance(summary, bool)
+    return float(summary) if is_number else None
+
+
+def lost_percent(summary):
+    """The share of the frames without a pose; None if it is not known."""
+    frames, tracked = (value_at(summary, ("trajectory", key)) for key in ("frames", "tracked"))
+    return 100.0 * (1.0 - tracked / frames) if frames and tracked is not None else None
+
+
+def flip_probability(differences):
+    """The two-sided p of Fisher's sign-flip test that the mean of paired differences is 0."""
+    observed = abs(sum(differences)) * (1 - 1e-12)  # rounding must not exclude the observed signs
+    if len(differences) <= EXACT_PAIRS:
+        flips = list(itertools.product((1, -1), repeat=len(differences)))
+        drawn = 0
+    else:
+        draw = random.Random(1)
+        flips = [[draw.choice((1, -1)) for _ in differences] for _ in range(DRAWS)]
+        drawn = 1  # the observed signs are one of the draws
+    extreme = sum(abs(sum(sign * value for sign, value in zip(signs, differences))) >= observed
+                  for signs in flips)
+    return (extreme + drawn) / (len(flips) + drawn)
+
+
+def compare(base, other):
+    """(change, p, pairs) of the positive figures `other` against `base`, both {key of a run:
+    figure}; (None, None, 0) without a pair. The change is the ratio of the geometric means minus
+    1."""
+    pairs = [(base[key], other[key]) for key in sorted(base.keys() & other.keys())
+             if base[key] > 0 and other[key] > 0]
+    if not pairs:
+        return None, None, 0
+    logs = [math.log(after / before) for before, after in pairs]
+    return math.exp(statistics.fmean(logs)) - 1.0, flip_probability(logs), len(logs)

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/load_settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <utility>
+
+#include "hullslam/util/error.h"
+#include "run/messages.h"
+
+namespace hullslam {
+namespace {
+
+// The names of the presets for --help. Help must also work without the folder of presets.
+std::string ListPresets() {
+  try {
+    return fmt::format("{}", fmt::join(PresetNames(), ", "));
+  } catch (const InputError&) {
+    return "a name of config/presets";
+  }
+}
+
+std::optional<Preset> ReadPresetIfGiven(const std::string& preset) {
+  return preset.empty() ? std::nullopt : std::optional(ReadPreset(preset));
+}
+
+SettingsSources SourcesOf(const LoadedSettings& settings, std::span<const std::string> overrides,
+                          NegativeFy negative_fy) {
+  return {.preset = settings.preset ? &*settings.preset : nullptr,
+          .overrides = overrides,
+          .negative_fy = negative_fy};
+}
+
+void TakeReport(SettingsReport report, LoadedSettings& settings) {
+  for (const std::string& warning : report.warnings) {
+    PrintError("warning: {}\n", warning);
+  }
+  settings.preset_overrides = std::move(report.preset_overrides);
+}
+
+}  // namespace
+
+void AddPresetArgument(CLI::App& app, std::string& preset) {
+  app.add_option("--preset", preset,
+                 "work as a published system does: " + ListPresets() +
+                     "; or a FILE that ends in .yaml. The settings file and --set replace its "
+                     "settings")
+      ->type_name("NAME|FILE");
+}
+
+LoadedSettings LoadSettings(const std::filesystem::path& file, const std::string& preset,
+                            std::span<const std::string> overrides, NegativeFy negative_fy) {
+  LoadedSettings settings{.options = {}, .preset = ReadPresetIfGiven(preset)};
+  SettingsReport report;
+  settings.options = ReadSettings(file, SourcesOf(settings, overrides, negative_fy), report);
+  TakeReport(std::move(report), settings);
+  return settings;
+}
+
+LoadedSettings LoadSettings(const CameraCalibration& calibration, const std::string& source,
+                            const std::string& preset, std::span<const std::string> overrides) {
+  LoadedSettings settings{.options = {}, .preset = ReadPresetIfGiven(preset)};
+  SettingsReport report;
+  settings.options =
+      MakeSettings(calibration, source, SourcesOf(settings, overrides, NegativeFy::kError), report);
+  TakeReport(std::move(report), settings);
+  return settings;
+}
+
+void CheckPresetHasMasks(const LoadedSettings& settings, const std::filesystem::path& masks) {
+  if (settings.preset && settings.preset->needs_masks && masks.empty() &&
+      settings.options.objects.enabled) {
+    throw InputError(fmt::format(
+        "--preset: the preset {} needs masks of objects, expected --masks PATH (or --set "
+        "objects.enabled=false, which leaves its points only)",
+        settings.preset->name));
+  }
+}
+
+std::string DescribePreset(const LoadedSettings& settings) {
+  if (!settings.preset) {
+    return {};
+  }
+  std::string text =
+      fmt::format("preset: {} ({})", settings.preset->name, settings.preset->file.string());
+  for (const PresetOverride& replaced : settings.preset_overrides) {
+    if (replaced.origin == "--set") {
+      text += fmt::format("\n  --set {}={} replaces {}", replaced.key, replaced.value,
+                          replaced.preset_value);
+    }
+  }
+  return text;
+}
+
+void AddPreset(const LoadedSettings& settings, ProvenanceSummary& provenance) {
+  if (!settings.preset) {
+    return;
+  }
+  provenance.preset = settings.preset->name;
+  for (const PresetOverride& replaced : settings.preset_overrides) {
+    provenance.preset_overrides.push_back({.key = replaced.key,
+                                           .preset_value = replaced.preset_value,
+                                           .value = replaced.value,
+                                           .source = replaced.origin});
+  }
+}
+
+}  // namespace hullslam

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hullslam/settings/preset.h"
+#include "hullslam/settings/settings.h"
+#include "hullslam/system/options.h"
+#include "results/summary.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace hullslam {
+
+// The settings of a run, and the preset that they are based on.
+struct LoadedSettings {
+  SystemOptions options;
+  std::optional<Preset> preset = std::nullopt;
+  std::vector<PresetOverride> preset_overrides = {};
+};
+
+// Adds --preset.
+void AddPresetArgument(CLI::App& app, std::string& preset);
+
+// Like ReadSettings() and MakeSettings(), but they read the preset (a name or a file; empty: none)
+// and print the warnings on stderr.
+LoadedSettings LoadSettings(const std::filesystem::path& file, const std::string& preset,
+                            std::span<const std::string> overrides,
+                            NegativeFy negative_fy = NegativeFy::kError);
+LoadedSettings LoadSettings(const CameraCalibration& calibration, const std::string& source,
+                            const std::string& preset, std::span<const std::string> overrides);
+
+// Throws InputError if the preset needs masks and there are none, unless objects are switched off.
+void CheckPresetHasMasks(const LoadedSettings& settings, const std::filesystem::path& masks);
+
+// "preset: NAME (FILE)" and what --set has replaced in it, which a user sees before a run. Empty
+// without a preset. (What a settings file replaces is a warning of LoadSettings().)
+std::string DescribePreset(const LoadedSettings& settings);
+
+// Writes the preset and what replaces its settings into the summary of a run.
+void AddPreset(const LoadedSettings& settings, ProvenanceSummary& provenance);
+
+}  // namespace hullslam

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "hullslam/geometry/trajectory.h"
+#include "hullslam/sequences/image_sequence.h"
+#include "hullslam/system/system.h"
+#include "report/lost_frames.h"
+#include "results/summary.h"
+#include "run/load_settings.h"
+#include "run/run_arguments.h"
+
+namespace hullslam {
+
+// What happened during a run, as far as the system does not know it.
+struct RunResult {
+  size_t given = 0;    // frames that were loaded or skipped before the run ended
+  size_t skipped = 0;  // frames with an image that cannot be read
+  double seconds = 0.0;
+  bool was_interrupted = false;
+  InitialisationSummary initialisation;
+  std::vector<FrameNote> notes;  // one per frame of the system
+};
+
+// What summary.json says of a finished run, but for its masks and objects. Errors are only known
+// with ground truth, which may be absent.
+RunSummary SummarizeRun(const RunArguments& arguments, const LoadedSettings& settings,
+                        const ImageSequence& sequence, const RunResult& result,
+                        const System& system, const std::optional<Trajectory>& groundtruth);
+
+}  // namespace hullslam

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs of the programs with presets of published systems.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "files/read_file.h"
+#include "hullslam/settings/preset.h"
+#include "support/rendered_desk.h"
+#include "support/run_program.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Json = nlohmann::json;
+
+constexpr int kFrames = 150;
+
+class PresetRuns : public ::testing::TestWithParam<std::string> {
+ protected:
+  static void SetUpTestSuite() { desk_ = new RenderedDesk(kFrames); }
+  static void TearDownTestSuite() {
+    delete desk_;
+    desk_ = nullptr;
+  }
+  static std::string Masks() { return desk_->path() / "masks"; }
+
+  ProgramResult Run(const std::string& program, std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), desk_->path());
+    arguments.insert(arguments.end(), {"--output", folder_.path() / "out"});
+    return RunProgram(program, arguments);
+  }
+  Json Summary() const { return Json::parse(ReadFile(folder_.path() / "out" / "summary.json")); }
+
+  static RenderedDesk* desk_;
+  TemporaryFolder folder_;
+};
+
+RenderedDesk* PresetRuns::desk_ = nullptr;
+
+TEST_P(PresetRuns, WithDepthMapObjectsIfTheSystemDoes) {
+  const ProgramResult result = Run("rgbd_tum", {"--preset", GetParam(), "--masks", Masks()});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("preset: " + GetParam() + " ("), std::string::npos) << result.output;
+  const Json summary = Summary();
+  EXPECT_EQ(summary["provenance"]["preset"], GetParam());
+  EXPECT_TRUE(summary["provenance"]["preset_overrides"].empty());
+  EXPECT_GE(summary["trajectory"]["tracked"], kFrames - 5);
+  EXPECT_LT(summary["trajectory"]["ate_rmse_m"], 0.01);
+  EXPECT_EQ(summary["objects"]["count"] > 0, GetParam() != "orb_slam2") << summary["objects"];
+}
+
+TEST_P(PresetRuns, WithKnownPosesMapObjectsIfTheSystemDoes) {
+  const ProgramResult result =
+      Run("map_objects", {"--preset", GetParam(), "--masks", Masks(), "--poses",
+                          desk_->path() / "groundtruth.txt", "--min-distance", "0.02"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(Summary()["provenance"]["preset"], GetParam());
+  EXPECT_EQ(Summary()["objects"]["count"] > 0, GetParam() != "orb_slam2") << Summary()["objects"];
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PresetRuns,
+                         ::testing::Values("hullslam", "oa_slam", "oa_slam_ba", "orb_slam2",
+                                           "paper", "qiso_slam", "quadricslam", "song2022", "voom"),
+                         [](const auto& info) { return info.param; });
+
+class PresetArguments : public PresetRuns {};
+
+TEST_F(PresetArguments, WithoutDepthASystemRunsToo) {
+  const ProgramResult result = Run("mono_tum", {"--preset", "orb_slam2", "--quiet"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(Summary()["provenance"]["preset"], "orb_slam2");
+  EXPECT_TRUE(Summary()["objects"].is_null());
+}
+
+TEST_F(PresetArguments, AnUnknownPresetListsTheKnownOnes) {
+  const ProgramResult result = Run("rgbd_tum", {"--preset", "orb-slam2"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.errors.find("expected one of: hullslam, oa_slam"), std::string::npos)
+      << result.errors;
+  EXPECT_NE(result.errors.find("did you mean 'orb_slam2'?"), std::string::npos) << result.errors;
+  EXPECT_FALSE(fs::exists(folder_.path() / "out"));
+}
+
+TEST_F(PresetArguments, ASystemWithObjectsNeedsMasks) {
+  const ProgramResult result = Run("rgbd_tum", {"--preset", "voom"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.errors.find("the preset voom needs masks"), std::string::npos) << result.errors;
+  EXPECT_FALSE(fs::exists(folder_.path() / "out"));
+  const ProgramResult points =
+      Run("rgbd_tum", {"--preset", "voom", "--set", "objects.enabled=false", "--last", "20"});
+  EXPECT_EQ(points.exit_code, 0) << points.errors;
+}
+
+TEST_F(PresetArguments, WhatReplacesAPresetIsSaidAndListed) {
+  const std::string settings = folder_.path() / "mine.yaml";
+  fs::copy_file(desk_->settings(), settings);
+  std::ofstream(settings, std::ios::app) << "\nmapping.local_keyframes: 15\n";
+  const ProgramResult result =
+      Run("rgbd_tum", {"--preset", "orb_slam2", "--settings", settings, "--set",
+                       "tracking.min_inliers=25", "--last", "20"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.errors.find("mapping.local_keyframes is 15, but the preset orb_slam2 has"),
+            std::string::npos)
+      << result.errors;
+  EXPECT_NE(result.output.find("--set tracking.min_inliers=25 replaces 30"), std::string::npos)
+      << result.output;
+  const Json overrides = Summary()["provenance"]["preset_overrides"];
+  ASSERT_EQ(overrides.size(), 2u);
+  EXPECT_EQ(overrides[0]["key"], "mapping.local_keyframes");
+  EXPECT_EQ(overrides[0]["preset_value"], "1000000");
+  EXPECT_EQ(overrides[0]["value"], "15");
+  EXPECT_EQ(overrides[1]["source"], "--set");
+}
+
+}  // namespace
+}  // namespace hullslam

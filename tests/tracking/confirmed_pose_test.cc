@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tracking/confirmed_pose.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "support/ring_world.h"
+#include "support/synthetic_world.h"
+
+namespace hullslam {
+namespace {
+
+// What the sources below return, and how often they were asked.
+struct Script {
+  std::optional<PoseEstimate> first, second;
+  int asked_second = 0;
+};
+
+Script& TheScript() {
+  static Script script;
+  return script;
+}
+
+std::optional<PoseEstimate> First(const Frame&, const Map&, const TrackingContext&,
+                                  const LastFrame&) {
+  return TheScript().first;
+}
+
+std::optional<PoseEstimate> Second(const Frame&, const Map&, const TrackingContext&,
+                                   const LastFrame&) {
+  ++TheScript().asked_second;
+  return TheScript().second;
+}
+
+// The camera is at keyframe 0 of a map.
+class ConfirmedPoseTest : public testing::Test {
+ protected:
+  ConfirmedPoseTest() { TheScript() = {}; }
+
+  // A start whose pose is turned from the true one by so many pixels, and the landmarks that it
+  // claims to have found.
+  PoseEstimate Start(double pixels, int inliers) const {
+    PoseEstimate start;
+    start.cam_from_world =
+        Rigid3(ExpSo3({0.0, pixels / world_.sensor().camera.fx, 0.0}), Eigen::Vector3d::Zero()) *
+        keyframe_.cam_from_world;
+    start.landmarks.resize(frame_->features.size());
+    start.inliers = inliers;
+    return start;
+  }
+
+  PoseSearch Search(std::span<PoseSource* const> sources) const {
+    LastFrame last;
+    last.reference = KeyframeId(0);
+    return FindConfirmedPose(*frame_, made_.map, {world_.sensor(), options_, objects_, index_},
+                             last, sources);
+  }
+  PoseSearch Search() const { return Search(std::array<PoseSource*, 2>{&First, &Second}); }
+
+  const SyntheticWorld world_;
+  SyntheticMap made_ = MakeSyntheticMap(world_, {0, 5});
+  const Keyframe& keyframe_ = made_.map.keyframes().At(KeyframeId(0));
+  std::shared_ptr<const Frame> frame_ =
+      world_.Observe(FrameId(100), keyframe_.cam_from_world).frame;
+  TrackingOptions options_;
+  ObjectOptions objects_;
+  const ObjectIndex index_{};
+};
+
+TEST_F(ConfirmedPoseTest, AStartWithManyLandmarksIsEnough) {
+  TheScript().first = Start(0.0, 50);
+  const PoseSearch search = Search();
+  ASSERT_TRUE(search.found);
+  EXPECT_EQ(search.found->source, 0u);
+  EXPECT_EQ(TheScript().asked_second, 0);
+}
+
+// Wrong matches may agree by chance, and near their pose the local map has a few more of them.
+TEST_F(ConfirmedPoseTest, OfTwoUncertainStartsTheOneWithMoreLandmarksCounts) {
+  TheScript().first = Start(20.0, 49);
+  TheScript().second = Start(0.0, 12);
+  const PoseSearch both = Search();
+  ASSERT_TRUE(both.found);
+  EXPECT_EQ(TheScript().asked_second, 1);
+  EXPECT_EQ(both.found->source, 1u);
+
+  const PoseSearch first = Search(std::array<PoseSource*, 1>{&First});
+  ASSERT_TRUE(first.found) << "the local map confirms the wrong start too";
+  EXPECT_LT(first.found->tracking.estimate.inliers, both.found->tracking.estimate.inliers);
+
+  std::swap(TheScript().first, TheScript().second);
+  EXPECT_EQ(Search().found->source, 0u);
+}
+
+TEST_F(ConfirmedPoseTest, ACertainStartAfterAnUncertainOneMustBeBetter) {
+  TheScript().first = Start(0.0, 12);
+  TheScript().second = Start(20.0, 50);
+  EXPECT_EQ(Search().found->source, 0u);
+}
+
+// If the camera has drifted, the pose of the old place does not fit to the last frame. A loop must
+// correct the drift; a jump of the camera to the old place would hide it.
+TEST(ConfirmedPose, AFrameThatIsTrackedIsNotRelocalised) {
+  const RingWorld& world = SharedRing();
+  const RingMap made = MakeRingMap(world, {.keyframes = 16, .drift = Rigid3()});
+  const Keyframe& keyframe = made.map.keyframes().At(KeyframeId(3));
+  const auto frame = world.Observe(FrameId(1000), keyframe.cam_from_world).frame;
+  PoseEstimate start;
+  start.cam_from_world =
+      Rigid3(ExpSo3({0.0, 0.04, 0.0}), Eigen::Vector3d::Zero()) * keyframe.cam_from_world;
+  start.landmarks.resize(frame->features.size());
+  start.inliers = 12;
+  TheScript() = {};
+  TheScript().first = start;
+  LastFrame last;
+  last.reference = KeyframeId(3);
+  const TrackingOptions options;
+  const ObjectOptions objects;
+  const ObjectIndex index;
+  const auto search = [&](std::span<PoseSource* const> sources) {
+    return FindConfirmedPose(*frame, made.map, {world.sensor(), options, objects, index}, last,
+                             sources);
+  };
+  const PoseSearch tracked = search(std::array<PoseSource*, 2>{&First, &PoseByRelocalisation});
+  const PoseSearch relocalised = search(std::array<PoseSource*, 1>{&PoseByRelocalisation});
+  ASSERT_TRUE(tracked.found);
+  ASSERT_TRUE(relocalised.found);
+  EXPECT_EQ(tracked.found->source, 0u);
+  EXPECT_LT(tracked.found->tracking.estimate.inliers, relocalised.found->tracking.estimate.inliers);
+}
+
+TEST_F(ConfirmedPoseTest, TellsHowManyLandmarksAnUnconfirmedPoseHad) {
+  TheScript().first = Start(60.0, 100);
+  const PoseSearch search = Search();
+  EXPECT_FALSE(search.found);
+  EXPECT_LT(search.most_unconfirmed, options_.min_inliers);
+}
+
+}  // namespace
+}  // namespace hullslam

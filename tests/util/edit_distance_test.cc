@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "util/edit_distance.h"
+
+#include <gtest/gtest.h>
+
+namespace hullslam {
+namespace {
+
+TEST(EditDistance, CountsInsertedRemovedAndReplacedCharacters) {
+  EXPECT_EQ(EditDistance("voom", "voom"), 0u);
+  EXPECT_EQ(EditDistance("vom", "voom"), 1u);
+  EXPECT_EQ(EditDistance("voom", "vom"), 1u);
+  EXPECT_EQ(EditDistance("orbslam2", "orb_slam2"), 1u);
+  EXPECT_EQ(EditDistance("kitten", "sitting"), 3u);
+}
+
+TEST(EditDistance, TheEmptyTextNeedsAllCharacters) {
+  EXPECT_EQ(EditDistance("", ""), 0u);
+  EXPECT_EQ(EditDistance("", "abc"), 3u);
+  EXPECT_EQ(EditDistance("abc", ""), 3u);
+}
+
+TEST(EditDistance, IsSymmetric) {
+  EXPECT_EQ(EditDistance("quadric", "quartic"), EditDistance("quartic", "quadric"));
+}
+
+}  // namespace
+}  // namespace hullslam
