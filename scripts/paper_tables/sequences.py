@@ -224,7 +224,8 @@ def read_sequence(text, masks, paper_sequences, config):
 
 
 def find_sequences(data):
-    """The folders of --data DIR that have a sequence, by name, and those that have none."""
+    """The folders of --data DIR that have a sequence, by name, and what has none: other folders and
+    unfinished downloads."""
     if not data.is_dir():
         raise InputError(f"--data is '{data}': is no folder")
     folders = sorted(path for path in data.iterdir() if path.is_dir())
@@ -232,7 +233,7 @@ def find_sequences(data):
     if not found:
         raise InputError(f"--data is '{data}': none of its {len(folders)} folders is a sequence, "
                          "expected rgb.txt (TUM RGB-D) or associations.txt (ICL-NUIM) in them")
-    return found, [path for path in folders if path not in found]
+    return found, [path for path in folders if path not in found] + sorted(data.glob("*.part"))
 
 
 def read_list(path):

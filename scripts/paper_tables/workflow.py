@@ -197,6 +197,8 @@ def raise_error(plan, out):
         raise Stopped(f"{errors[0][1]}: {errors[0][2]}; start again to go on")
     with contextlib.suppress(OSError):
         lines = (out / LOG).read_text(encoding="utf-8", errors="replace").strip().splitlines()
+        if any(line.startswith("Will exit after finishing") for line in lines):
+            raise Stopped("Snakemake was ended by a signal; start again to go on")
         told = [line for line in lines if "Error" in line or "error" in line] or lines[-1:]
         raise Stopped(f"Snakemake has stopped: {one_line(told[-1], 300) if told else 'no message'} "
                       f"(see {out / LOG})")

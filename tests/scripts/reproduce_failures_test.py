@@ -108,6 +108,23 @@ class BadInputTest(TablesTest):
         self.assert_refused(self.run_script(), "8 of the 40 images of the sequence are cut short")
         self.assertFalse(self.out.exists())
 
+    def test_what_is_no_sequence_in_a_folder_of_sequences_is_named(self):
+        data = self.dir / "data"
+        data.mkdir()
+        self.desk.rename(data / "desk")
+        (data / "notes").mkdir()
+        (data / "rgbd_dataset_freiburg1_xyz.tgz.part").touch()
+        result = self.succeed("--data", data, "--list", sequence=False)
+        self.assertIn("sequence desk: tum, 20 images", result.stdout)
+        for name in ("notes", "rgbd_dataset_freiburg1_xyz.tgz.part"):
+            self.assertIn(f"note: {data / name} is no sequence and is left out", result.stderr)
+
+    def test_without_snakemake(self):
+        command = self.command("--seeds", 1)
+        result = subprocess.run(command, capture_output=True, text=True, check=False,
+                                env={"PATH": str(self.dir)})
+        self.assert_refused(result, "snakemake is not installed; run scripts/setup.sh")
+
     def test_unknown_names(self):
         for arguments, parts in (
                 (("--tables", "I,IX"), ("'IX' is unknown", "I, II, VI")),
