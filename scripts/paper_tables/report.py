@@ -47,12 +47,17 @@ class Report:
         return paper_value(self.paper, table.paper, block["mode"], row.paper,
                            self.plays.get(sequence), figure)
 
-    def missing_sequences(self, block):
-        """The sequences of the paper that the user does not have."""
+    def columns(self, block):
+        """The sequences of a table in the order of the paper, then the others. Those of the paper
+        that the user does not have are None: [(name, name in the paper)]."""
         table = self.table(block)
         wanted = table.only or tuple(self.definitions.paper_sequences)
-        return [] if table.degradations else [name for name in wanted
-                                              if name not in self.plays.values()]
+        found = [(name, self.plays[name]) for name in block["sequences"]]
+        if not table.degradations:
+            had = {paper for _, paper in found}
+            found += [(None, paper) for paper in wanted if paper not in had]
+        order = list(self.definitions.paper_sequences)
+        return sorted(found, key=lambda pair: order.index(pair[1]) if pair[1] else len(order))
 
     def ranking(self, block):
         return ranking(self.table(block), block["mode"], block, self.paper, self.plays)

@@ -120,16 +120,16 @@ def overview(report, block):
     table = report.table(block)
     figure = FIGURES[table.figures[0]]
     columns = figure.columns[block["mode"]]
-    missing = report.missing_sequences(block)
-    head = ["", *(sequence_heading(report, name) for name in block["sequences"]), *missing,
+    names = report.columns(block)
+    head = ["", *(sequence_heading(report, name) if name else paper for name, paper in names),
             "against " + next(row.label for row in table.rows if row.variant == table.baseline)]
     rows = []
     best = {name: best_rows(block, name, columns[0], figure) for name in block["sequences"]}
     for index, row in enumerate(table.rows):
-        texts = [overview_cell(report, block, name, cells[index], best[name])
-                 for name, cells in block["sequences"].items()]
+        texts = [overview_cell(report, block, name, block["sequences"][name][index], best[name])
+                 if name else Text(DASH) for name, _ in names]
         overall = block["overall"][row.variant]
-        rows.append([Text(row.label), *texts, *(Text(DASH) for _ in missing),
+        rows.append([Text(row.label), *texts,
                      Text(difference_text(overall["difference"], table.figures[0]))])
     shown = " / ".join(column.heading for column in columns)
     notes = [f"{shown}: medians of the runs that did not fail."]
@@ -154,10 +154,13 @@ def detail(report, block):
     head = ["", *(column.heading for _, _, column in columns),
             *(f"paper: {FIGURES[key].title}" for key in table.figures if key in has_paper), "runs"]
     rows = []
-    for name, cells in block["sequences"].items():
+    for name, paper in report.columns(block):
+        if name is None:
+            rows.append([Text(paper), *(Text(DASH) for _ in head[1:])])
+            continue
         rows.append([Text(sequence_heading(report, name))])
         best = {column.key: best_rows(block, name, column, figure) for _, figure, column in columns}
-        for cell in cells:
+        for cell in block["sequences"][name]:
             texts = [entry_text(cell, column, figure) for _, figure, column in columns]
             for text, (_, _, column) in zip(texts, columns):
                 text.is_best = cell["row"] in best[column.key]
@@ -167,8 +170,6 @@ def detail(report, block):
                          *(Text(number(value, FIGURES[key])) for value, key in zip(
                              papers, [key for key in table.figures if key in has_paper])),
                          Text(runs_text(cell))])
-    rows += [[Text(name), *(Text(DASH) for _ in head[1:])]
-             for name in report.missing_sequences(block)]
     return Grid(report.title(block) + ", all figures", head, rows,
                 [*shared_runs(report, block), *reasons(report, block), *failures(report, block)])
 
@@ -275,6 +276,7 @@ def preface(report):
         "Recorded sequences begin at another frame for each seed; synthetic ones are rendered anew.",
         "Failed runs are counted and listed with their reasons; their other figures are not used, "
         "but the share of frames without a pose counts all runs.",
+        "A row that loses more frames has the error of an easier part of the sequence.",
         "ATE is the RMSE after alignment with SE3 (rigid) or Sim3 (with scale); the paper aligns "
         "with scale also in RGB-D.",
         "p is that of the sign-flip test over pairs of runs with the same sequence and seed; with n "
