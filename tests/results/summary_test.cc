@@ -91,10 +91,10 @@ TEST(Summary, HasTheKeysOfTheFormatInOrder) {
   EXPECT_EQ(Keys(json["map"]),
             (std::vector<std::string>{"keyframes", "landmarks", "landmarks_at_infinity", "loops",
                                       "sessions", "reprojection_px", "known_sizes"}));
-  EXPECT_EQ(
-      Keys(json["provenance"]),
-      (std::vector<std::string>{"program", "version", "git", "settings_hash", "preset", "seed",
-                                "pipeline", "masks_format", "sequence", "interrupted"}));
+  EXPECT_EQ(Keys(json["provenance"]),
+            (std::vector<std::string>{"program", "version", "git", "settings_hash", "preset",
+                                      "preset_overrides", "seed", "pipeline", "masks_format",
+                                      "sequence", "interrupted"}));
 }
 
 TEST(Summary, HasTheKeysOfObjectsInOrder) {
