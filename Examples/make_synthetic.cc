@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,9 +28,9 @@ using hullslam::synthetic::SequenceOptions;
 using hullslam::synthetic::SuiteOptions;
 
 struct Arguments {
-  std::string folder;  // of one sequence
-  std::string suite;   // folder of a suite; empty for one sequence
-  std::vector<std::string> only;
+  std::string folder;               // of one sequence
+  std::string suite;                // folder of a suite; empty for one sequence
+  std::optional<std::string> only;  // names of sequences of the suite, separated by commas
   std::string scene = "desk";
   std::optional<int> frames;
   SequenceOptions options;
@@ -42,6 +43,15 @@ std::string NamesOfSuite() {
     names += (names.empty() ? "" : ", ") + std::string(sequence.name);
   }
   return names;
+}
+
+std::vector<std::string> SplitAtCommas(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    parts.push_back(part);
+  }
+  return parts.empty() ? std::vector<std::string>{""} : parts;
 }
 
 // The options of a single sequence. They cannot be combined with --suite.
@@ -73,9 +83,7 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                      "instead of one sequence in OUT");
   app.add_option("--only", arguments.only,
                  "only these sequences of the suite, separated by commas: " + NamesOfSuite())
-      ->delimiter(',')
       ->type_name("NAME,...")
-      ->expected(1)
       ->needs(suite);
   AddSequenceOptions(app, *suite, arguments);
   app.add_option("--frames", arguments.frames,
@@ -147,11 +155,12 @@ int RenderOne(Arguments& arguments) {
 }
 
 int RenderSuite(const Arguments& arguments) {
-  const SuiteOptions options{.frames = arguments.frames.value_or(hullslam::synthetic::kSuiteFrames),
-                             .seed = arguments.options.seed,
-                             .only = arguments.only,
-                             .force = arguments.options.force,
-                             .threads = arguments.options.threads};
+  const SuiteOptions options{
+      .frames = arguments.frames.value_or(hullslam::synthetic::kSuiteFrames),
+      .seed = arguments.options.seed,
+      .only = arguments.only ? SplitAtCommas(*arguments.only) : std::vector<std::string>(),
+      .force = arguments.options.force,
+      .threads = arguments.options.threads};
   if (options.frames < 2) {
     throw hullslam::InputError("--frames: 1 given, expected at least 2 for a suite");
   }

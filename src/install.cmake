@@ -26,8 +26,15 @@ file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/plot_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/object_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/python_packages.py
                                    ${PROJECT_SOURCE_DIR}/scripts/ablation.py)
+# The script for the tables of the paper, what it starts, and what makes masks.
+foreach(script reproduce_tables table_job degrade_sequence disturbances leave_and_return tum_and_icl
+               yolo_masks make_masks)
+  list(APPEND scripts ${PROJECT_SOURCE_DIR}/scripts/${script}.py)
+endforeach()
 install(PROGRAMS ${scripts} DESTINATION ${CMAKE_INSTALL_DATADIR}/hullslam/scripts)
-foreach(script plot_run ablation plot_ablation object_table)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/paper_tables
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/hullslam/scripts PATTERN __pycache__ EXCLUDE)
+foreach(script plot_run ablation plot_ablation object_table reproduce_tables make_masks)
   hullslam_install_link(hullslam-${script} ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/${script}.py)
 endforeach()
 install(EXPORT hullslamTargets NAMESPACE hullslam:: DESTINATION ${package_dir})

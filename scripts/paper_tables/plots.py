@@ -18,7 +18,7 @@ from run_files import read_trajectory  # noqa: E402
 
 COLUMNS = 3  # of panels
 MAX_POINTS = 150  # of a curve
-STYLE = {"svg.fonttype": "none", "font.size": 8, "axes.titlesize": 9, "axes.grid": True,
+STYLE = {"svg.fonttype": "none", "font.sans-serif": ["DejaVu Sans"], "font.size": 8, "axes.titlesize": 9, "axes.grid": True,
          "grid.alpha": 0.3, "axes.spines.top": False, "axes.spines.right": False}
 
 
@@ -32,7 +32,8 @@ def svg(figure, salt):
     """The text of a figure as an SVG element. The same figure gives the same text."""
     file = io.StringIO()
     with plt.rc_context({"svg.hashsalt": salt}):
-        figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
+        figure.savefig(file, format="svg", metadata=dict.fromkeys(
+            ("Date", "Creator", "Format", "Type")))
     plt.close(figure)
     text = file.getvalue()
     return text[text.index("<svg"):].rstrip() + "\n"

@@ -50,7 +50,8 @@ std::vector<Placement> Surroundings() {
 }  // namespace
 
 void FurnishOfficeLoop(SceneBuilder& builder) {
-  const Palette palette = builder.AddRichPalette();
+  Palette palette = builder.AddRoomPalette(builder.AddRichPalette(), 0, {186, 182, 172});
+  palette.feature_wall = palette.wall;
   builder.AddRoom({.half_x = 3.8, .half_y = 3.6, .height = 2.7}, palette);
   builder.AddPosters(palette);
   builder.AddShelf(Wall::kRight, -0.5, palette);

@@ -6,7 +6,8 @@
 
 namespace hullslam::synthetic {
 
-// Adds an office of 7.6 m x 7.2 m with two desks back to back in its middle.
+// Adds an office of 7.6 m x 7.2 m with painted walls and a carpet. In its middle are two desks back
+// to back.
 void FurnishOfficeLoop(SceneBuilder& builder);
 
 // Once around the desks and 20 degrees more, so that the start is seen again. The camera looks at

@@ -14,7 +14,8 @@ constexpr double kOfficeTop = 0.74;  // metres
 }  // namespace
 
 Palette FurnishOfficeTable(SceneBuilder& builder) {
-  const Palette palette = builder.AddRichPalette();
+  Palette palette = builder.AddRoomPalette(builder.AddRichPalette(), 0, {178, 188, 190});
+  palette.feature_wall = palette.wall;
   builder.AddRoom({.half_x = 3.5, .half_y = 3.2, .height = 2.7}, palette);
   builder.AddPosters(palette);
   builder.AddShelf(Wall::kBack, 1.2, palette);

@@ -5,8 +5,8 @@
 
 namespace hullslam::synthetic {
 
-// Adds a room of 7 m x 6.4 m with an office table in its middle, whose top is 0.74 m high. Returns
-// the textures.
+// Adds a room of 7 m x 6.4 m with painted walls and a carpet. In its middle is an office table,
+// whose top is 0.74 m high. Returns the textures.
 Palette FurnishOfficeTable(SceneBuilder& builder);
 
 }  // namespace hullslam::synthetic

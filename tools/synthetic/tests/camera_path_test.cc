@@ -116,5 +116,40 @@ TEST(WaypointPath, NeedsTwoDifferentWaypoints) {
   EXPECT_THROW(WaypointPath({here, here}, 0.5, 30.0), CheckError);
 }
 
+TEST(SweepPath, GoesToAndFroAndLooksAtTheTable) {
+  const SweepPath path{.target = {0.0, 0.0, 0.8}};
+  const double period = 1.0 / path.frequency;
+  const auto angle = [&](double time) {
+    const Vector3d eye = path.WorldFromCam(time).translation;
+    return std::atan2(eye.y(), eye.x());
+  };
+  EXPECT_NEAR(angle(0.25 * period), path.middle_angle + path.swing, 1e-9);
+  EXPECT_NEAR(angle(0.75 * period), path.middle_angle - path.swing, 1e-9);
+  for (double time = 0.0; time < period; time += 0.1) {
+    const Vector3d seen = Inverse(path.WorldFromCam(time)) * path.target;
+    EXPECT_GT(seen.z(), 0.9);
+    EXPECT_LT(seen.head<2>().norm(), 0.2);
+  }
+}
+
+TEST(PacedPath, IsTheSameWalkInAnotherTime) {
+  const WaypointPath path({{{0.0, 0.0, 1.0}, 0.0, 0.0}, {{1.0, 0.0, 1.0}, 30.0, 0.0}}, 0.5, 20.0);
+  const PacedPath slow(path, 3.0 * path.duration());
+  for (const double time : {0.0, 0.4, 1.1}) {
+    EXPECT_EQ(slow.WorldFromCam(3.0 * time).translation, path.WorldFromCam(time).translation);
+  }
+  EXPECT_THROW(PacedPath(path, 0.0), CheckError);
+}
+
+TEST(ByHand, AddsTheSameMotionToEachPath) {
+  const OrbitPath orbit;
+  const auto shaken = ByHand(orbit, 4);
+  const auto again = ByHand([&](double time) { return orbit.WorldFromCam(time); }, 4);
+  const auto other = ByHand(orbit, 5);
+  EXPECT_EQ(shaken(1.5).translation, again(1.5).translation);
+  EXPECT_NE(shaken(1.5).translation, other(1.5).translation);
+  EXPECT_LT((shaken(1.5).translation - orbit.WorldFromCam(1.5).translation).norm(), 0.06);
+}
+
 }  // namespace
 }  // namespace hullslam::synthetic

@@ -14,7 +14,6 @@
 
 #include "hullslam/util/error.h"
 #include "synthetic/renderer.h"
-#include "synthetic/tests/concavity.h"
 #include "synthetic/tests/image_motion.h"
 
 namespace hullslam::synthetic {
@@ -158,24 +157,6 @@ TEST(Suite, TwoOfTheFourSequencesOfIclNuimHaveLittleTexture) {
   EXPECT_LT(FeaturesAt(5.0, "icl3"), 400);
 }
 
-TEST(Suite, InTeddyAllObjectsAreConcave) {
-  for (const SceneObject& object : Named("teddy").furnish(2).objects) {
-    EXPECT_GT(Concavity(object), 0.1) << object.class_name << ' ' << object.id;
-  }
-}
-
-TEST(Suite, InDishesMostObjectsOnTheTableAreConcave) {
-  int concave = 0;
-  int all = 0;
-  for (const SceneObject& object : Named("dishes").furnish(2).objects) {
-    const bool on_table = object.world_from_object.translation.z() - object.half_extents.z() > 0.5;
-    all += on_table ? 1 : 0;
-    concave += on_table && Concavity(object) > 0.1 ? 1 : 0;
-  }
-  EXPECT_GE(all, 12);
-  EXPECT_GE(concave, 10);
-}
-
 TEST(Suite, InPersonThePersonMovesAndIsUsuallySeen) {
   const Scene scene = PlanOf(Named("person"), kSuiteFrames, 0).scene;
   const SceneObject& person = scene.objects.back();
@@ -188,20 +169,6 @@ TEST(Suite, InPersonThePersonMovesAndIsUsuallySeen) {
     seen += cv::countNonZero(mask) > 0.02 * static_cast<double>(mask.total()) ? 1 : 0;
   }
   EXPECT_GE(seen, 15) << "of 20";
-}
-
-TEST(Suite, InOfficeTheStartIsSeenAgain) {
-  const auto path = Named("office").path(kSuiteFrames);
-  const Rigid3 start = path(0.0);
-  double nearest = 10.0;
-  double farthest = 0.0;
-  for (int i = 100; i < kSuiteFrames; ++i) {
-    const Rigid3 motion = Inverse(start) * path(i / 30.0);
-    nearest = std::min(nearest, motion.translation.norm() + LogSo3(motion.rotation).norm());
-    farthest = std::max(farthest, motion.translation.norm());
-  }
-  EXPECT_LT(nearest, 0.35);
-  EXPECT_GT(farthest, 3.0);
 }
 
 }  // namespace
