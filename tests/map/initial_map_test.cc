@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tracking/initial_map.h"
+#include "map/initial_map.h"
 
 #include <gtest/gtest.h>
 
