@@ -209,6 +209,12 @@ MappingInputs OpenMappingInputs(const MapObjectsArguments& arguments) {
   MappingInputs inputs;
   inputs.settings = ChooseTumSettings(arguments.settings, arguments.sequence);
   inputs.loaded = LoadSettings(inputs.settings.file, arguments.preset, arguments.overrides);
+  if (!inputs.loaded.options.objects.enabled) {
+    throw InputError(fmt::format(
+        "objects.enabled is false{}, expected true, because map_objects does nothing else than map "
+        "objects",
+        arguments.preset.empty() ? "" : " (--preset " + arguments.preset + ")"));
+  }
   inputs.sequence = OpenTumSequence(
       arguments.sequence,
       {.need_images = false, .frames_per_second = inputs.loaded.options.frames_per_second});
