@@ -42,8 +42,8 @@ TEST_F(SyntheticSuite, SequencesOfBothFormsAreReadByTheirPrograms) {
     const auto path = [&](const char* key) {
       return (fs::path(out_) / sequence[key].get<std::string>()).string();
     };
-    const std::string run = (root_.path() / "run").string();
     const std::string dataset = sequence["dataset"];
+    const std::string run = (root_.path() / ("rgbd-" + dataset)).string();
     const ProgramResult rgbd = RunProgram(
         "rgbd_" + dataset, {path("folder"), "--masks", path("masks"), "--output", run, "--quiet"});
     EXPECT_EQ(rgbd.exit_code, 0) << rgbd.errors;
@@ -55,7 +55,7 @@ TEST_F(SyntheticSuite, SequencesOfBothFormsAreReadByTheirPrograms) {
     const ProgramResult check = RunProgram("check_masks", {path("tum_folder"), path("masks")});
     EXPECT_EQ(check.exit_code, 0) << check.errors;
     const ProgramResult mono =
-        RunProgram("mono_" + dataset, {path("folder"), "--output", run, "--quiet"});
+        RunProgram("mono_" + dataset, {path("folder"), "--output", run + "-mono", "--quiet"});
     EXPECT_NE(mono.exit_code, 2) << mono.errors << "six frames may be too few to start";
   }
 }
