@@ -178,7 +178,7 @@ std::string WithEntries(const Json& head, const char* name,
 std::string CsvField(const std::string& label) {
   std::string text = Printable(label);
   if (text.find_first_of("=+-@") == 0) {
-    text.insert(0, "'");
+    text.insert(text.begin(), '\'');
   }
   if (text.find_first_of("\",") == std::string::npos) {
     return text;
