@@ -13,21 +13,6 @@
 namespace hullslam {
 namespace {
 
-// Accepts integers that are at least `least` (0 or 1). Without this check CLI11 would turn -1 into
-// the largest unsigned number.
-CLI::Validator WholeNumber(int least) {
-  return CLI::Validator(
-      [least](const std::string& text) {
-        const bool is_whole =
-            !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-        const bool is_zero = text.find_first_not_of('0') == std::string::npos;
-        return is_whole && (least == 0 || !is_zero)
-                   ? std::string()
-                   : "'" + text + "', expected an integer >= " + std::to_string(least);
-      },
-      "");
-}
-
 // The positional arguments of ORB-SLAM2.
 std::string LongForm(SensorKind sensor) {
   return sensor == SensorKind::kMonocular ? "VOCABULARY SETTINGS SEQUENCE"
