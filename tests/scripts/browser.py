@@ -16,7 +16,7 @@ except ImportError:
     webdriver = None
 
 DRIVER = pathlib.Path("/usr/bin/chromedriver")
-PATIENCE = 60  # s; other tests run at the same time
+PATIENCE = 120  # s; other tests run at the same time
 
 
 def missing():

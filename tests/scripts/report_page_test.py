@@ -45,7 +45,7 @@ class ReportPage(unittest.TestCase):
             (cls.run_folder / "objects.json").read_text(encoding="utf-8"))["objects"]}
 
     def open(self, path, scheme="dark"):
-        self.page.size(1000, 700)
+        self.page.size(1100, 900)
         self.page.prefer(scheme)
         self.page.open(path)
         return self.page
