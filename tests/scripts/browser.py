@@ -50,7 +50,10 @@ class Browser:
             "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600})
 
     def open(self, path):
-        self.driver.get(pathlib.Path(path).resolve().as_uri())
+        self.open_url(pathlib.Path(path).resolve().as_uri())
+
+    def open_url(self, url):
+        self.driver.get(url)
         self.wait("return window.hullslam !== undefined && document.readyState === 'complete'")
         self.draw()
 
