@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A headless Chromium that draws without a graphics card, for tests of the page."""
 
+import base64
 import io
 import pathlib
+import re
 import time
 
 import numpy as np
@@ -35,6 +37,7 @@ class Browser:
             options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         self.driver = webdriver.Chrome(options=options, service=Service(str(DRIVER)))
+        self.driver.set_script_timeout(PATIENCE)
         self.size(width, height)
 
     def prefer(self, scheme):
@@ -84,10 +87,21 @@ class Browser:
         return self.run("return document.querySelector(arguments[0]).innerText", selector)
 
     def canvas(self):
-        """The drawn view as an array of rows, columns, and red, green, blue from 0 to 1."""
+        """The drawn view as an array of rows, columns, and red, green, blue from 0 to 1.
+
+        It is drawn once more, because WebGL keeps the pixels only until a script ends. A screenshot
+        would need the whole page to be drawn within 10 s, which a busy machine cannot do.
+        """
         self.draw()
-        element = self.driver.find_element("css selector", "#canvas canvas")
-        return matplotlib.image.imread(io.BytesIO(element.screenshot_as_png))[:, :, :3]
+        url, background = self.run("""
+          const { renderer, scene, camera } = window.hullslam.view;
+          renderer.render(scene, camera);
+          return [renderer.domElement.toDataURL(),
+                  getComputedStyle(document.getElementById('canvas')).backgroundColor];""")
+        image = matplotlib.image.imread(io.BytesIO(base64.b64decode(url.split(",")[1])))
+        colour = np.array([float(part) for part in re.findall(r"[\d.]+", background)[:3]]) / 255
+        alpha = image[:, :, 3:]
+        return image[:, :, :3] * alpha + colour * (1 - alpha)
 
     def errors(self):
         """The messages of the console since the last call, but for those about speed."""
