@@ -78,7 +78,9 @@ class Page {
       this.card.update();
       this.showSections();
       this.player.update();
-      this.moment.refresh(this.time);
+      if (!this.isNow(this.player.index)) {
+        this.moment.refresh(this.time);
+      }
     }
   }
 
@@ -139,7 +141,7 @@ class Page {
     }
     this.curve.update();
     this.player.update();
-    if (changed.has('images')) {
+    if (changed.has('images') && !this.isNow(this.player.index)) {
       this.moment.refresh(this.time);
     }
     if (['objects', 'relations', 'summary', 'run'].some((part) => changed.has(part))

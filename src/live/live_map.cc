@@ -2,15 +2,16 @@
 #include "live/live_map.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <tuple>
 #include <utility>
 
 #include "eval/located_landmarks.h"
 #include "eval/object_metrics.h"
 #include "map/islands.h"
+#include "util/thin.h"
 
 namespace hullslam {
 namespace {
@@ -61,10 +62,31 @@ void WritePose(const Rigid3& pose, float* row) {
 // Only the poses of the views are needed after the object was measured.
 void DropOutlines(ReportedObject& object) {
   for (ReportedView& view : object.views) {
+    view.label = {};
     view.hull = {};
     view.contour = {};
     view.lines = {};
   }
+}
+
+// Movements that cannot be seen are not sent: a small part of the median distance between landmarks
+// and the cameras that see them. (The size of the whole map is no measure: a long corridor is
+// looked at piece by piece.)
+float ToleranceOf(const Map& map, const std::vector<const Landmark*>& landmarks) {
+  constexpr double kPart = 1e-3;
+  constexpr size_t kSamples = 500;
+  std::vector<double> distances;
+  for (const Landmark* landmark : Thin(landmarks, kSamples)) {
+    const Keyframe& keyframe = map.keyframes().At(landmark->observations.front().keyframe);
+    distances.push_back((keyframe.cam_from_world * landmark->position).norm());
+  }
+  if (distances.empty()) {
+    return 0.0f;
+  }
+  std::nth_element(distances.begin(),
+                   distances.begin() + static_cast<ptrdiff_t>(distances.size() / 2),
+                   distances.end());
+  return static_cast<float>(kPart * distances[distances.size() / 2]);
 }
 
 bool IsSame(const ReportedObject& old, const ObjectLandmark& object) {
@@ -86,28 +108,6 @@ LiveMapChange LiveMap::Follow(const Map& map, bool is_limited) {
   return change;
 }
 
-// Movements that cannot be seen are not sent: a small part of the size of the scene.
-float LiveMap::Tolerance() const {
-  constexpr double kPart = 5e-4;
-  const std::vector<float>& values = landmarks_.values();
-  if (values.empty()) {
-    return 0.0f;
-  }
-  std::array<std::vector<float>, 3> axes;
-  const size_t step = landmarks_.size() / 2000 + 1;
-  for (size_t row = 0; row < landmarks_.size(); row += step) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      axes[axis].push_back(values[row * kLandmarkWidth + axis]);
-    }
-  }
-  double size = 0.0;
-  for (std::vector<float>& axis : axes) {
-    std::sort(axis.begin(), axis.end());
-    size = std::max<double>(size, axis[axis.size() * 9 / 10] - axis[axis.size() / 10]);
-  }
-  return static_cast<float>(kPart * size);
-}
-
 RowChange LiveMap::FollowLandmarks(const Map& map, IslandId island, bool is_limited) {
   landmark_total_ = map.landmarks().size();
   const uint32_t mask = ThinningOf(landmark_total_, limits_.landmarks) - 1;
@@ -124,6 +124,7 @@ RowChange LiveMap::FollowLandmarks(const Map& map, IslandId island, bool is_limi
       wanted.push_back(&landmark);
     }
   });
+  tolerance_ = ToleranceOf(map, wanted);
   return landmarks_.Update(
       ids,
       [&](size_t i, float* row) {
@@ -132,7 +133,7 @@ RowChange LiveMap::FollowLandmarks(const Map& map, IslandId island, bool is_limi
         }
         row[3] = static_cast<float>(TimeOf(map, *wanted[i]) - start_);
       },
-      Tolerance(), is_limited ? limits_.changed_landmarks : wanted.size());
+      tolerance_, is_limited ? limits_.changed_landmarks : wanted.size());
 }
 
 RowChange LiveMap::FollowKeyframes(const Map& map, IslandId island, bool is_limited) {
@@ -151,28 +152,52 @@ RowChange LiveMap::FollowKeyframes(const Map& map, IslandId island, bool is_limi
         row[0] = static_cast<float>(wanted[i]->frame->timestamp - start_);
         WritePose(Inverse(wanted[i]->cam_from_world), row + 1);
       },
-      std::min(Tolerance(), kMostTolerance), is_limited ? limits_.changed_keyframes : ids.size());
+      std::min(tolerance_, kMostTolerance), is_limited ? limits_.changed_keyframes : ids.size());
+}
+
+// The objects that are shown. If there are too many, only those stay that were seen last. Some more
+// are removed than needed, so that this happens rarely.
+std::map<ObjectId, const ObjectLandmark*> LiveMap::ChooseObjects(const Map& map, IslandId island) {
+  std::map<ObjectId, const ObjectLandmark*> chosen;
+  std::vector<KeyframeId> last_views;
+  map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
+    if (!object.has_shape || object.observations.empty() || IslandOf(map, object) != island) {
+      return;
+    }
+    if (object.observations.back().keyframe < oldest_view_) {
+      are_objects_left_out_ = true;
+      return;
+    }
+    chosen[id] = &object;
+    last_views.push_back(object.observations.back().keyframe);
+  });
+  if (chosen.size() > limits_.objects + limits_.objects / 4) {
+    const auto last = last_views.begin() + static_cast<ptrdiff_t>(limits_.objects);
+    std::nth_element(last_views.begin(), last, last_views.end(), std::greater<>());
+    oldest_view_ = *last;
+    std::erase_if(chosen, [&](const auto& entry) {
+      return entry.second->observations.back().keyframe < oldest_view_;
+    });
+    are_objects_left_out_ = true;
+  }
+  return chosen;
 }
 
 void LiveMap::FollowObjects(const Map& map, IslandId island, bool is_limited,
                             LiveMapChange& change) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
-  const size_t removed = std::erase_if(objects_, [&](const auto& entry) {
-    const ObjectLandmark* object = map.objects().Find(entry.first);
-    return object == nullptr || object->observations.empty() || IslandOf(map, *object) != island;
-  });
-  change.were_objects_removed = removed > 0;
+  const std::map<ObjectId, const ObjectLandmark*> chosen = ChooseObjects(map, island);
+  change.were_objects_removed = std::erase_if(objects_, [&](const auto& entry) {
+                                  return chosen.count(entry.first) == 0;
+                                }) > 0;
   std::vector<std::pair<ObjectId, const ObjectLandmark*>> changed;
-  map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
-    if (!object.has_shape || object.observations.empty() || IslandOf(map, object) != island) {
-      return;
-    }
+  for (const auto& [id, object] : chosen) {
     const auto old = objects_.find(id);
-    if (old == objects_.end() || !IsSame(old->second, object)) {
-      changed.emplace_back(id, &object);
+    if (old == objects_.end() || !IsSame(old->second, *object)) {
+      changed.emplace_back(id, object);
     }
-  });
+  }
   // Those that had no time in the last call come first.
   const auto first = std::find_if(changed.begin(), changed.end(),
                                   [&](const auto& entry) { return entry.first >= next_object_; });

@@ -18,8 +18,9 @@ namespace hullslam {
 
 // How much of a map a browser gets, so that large maps stay usable.
 struct LiveMapLimits {
-  size_t landmarks = 60000;         // more are thinned
-  size_t covisibility = 20000;      // edges; those with fewest shared landmarks are left out first
+  size_t landmarks = 60000;     // more are thinned
+  size_t objects = 1000;        // those that were seen last; a quarter more may wait for removal
+  size_t covisibility = 20000;  // edges; those with fewest shared landmarks are left out first
   size_t changed_landmarks = 6000;  // in one change; the others follow in the next ones
   size_t changed_keyframes = 1500;
   double object_seconds = 0.02;  // time for measuring changed objects in one change
@@ -53,13 +54,15 @@ class LiveMap {
   const std::map<ObjectId, ReportedObject>& objects() const { return objects_; }
   const ViewEdges& edges() const { return edges_; }
   size_t landmark_total() const { return landmark_total_; }
+  // Whether landmarks or objects are left out because there are too many.
+  bool IsThinned() const { return landmark_total_ > limits_.landmarks || are_objects_left_out_; }
 
  private:
   RowChange FollowLandmarks(const Map& map, IslandId island, bool is_limited);
   RowChange FollowKeyframes(const Map& map, IslandId island, bool is_limited);
+  std::map<ObjectId, const ObjectLandmark*> ChooseObjects(const Map& map, IslandId island);
   void FollowObjects(const Map& map, IslandId island, bool is_limited, LiveMapChange& change);
   bool FollowEdges(const Map& map, IslandId island);
-  float Tolerance() const;
 
   const Sensor sensor_;
   const double start_;
@@ -67,9 +70,12 @@ class LiveMap {
   RowTable landmarks_{kLandmarkWidth, 3};
   RowTable keyframes_{kKeyframeWidth, kKeyframeWidth};
   std::map<ObjectId, ReportedObject> objects_;
+  KeyframeId oldest_view_{0};  // objects that were only seen before are left out
+  bool are_objects_left_out_ = false;
   ObjectId next_object_{0};  // at which the next measuring begins
   ViewEdges edges_;
   size_t landmark_total_ = 0;
+  float tolerance_ = 0.0f;  // movements up to this are not sent, m or units of the map
 };
 
 }  // namespace hullslam

@@ -296,10 +296,10 @@ std::string LiveMessages::Whole(const LiveControls& controls) const {
   for (const auto& [id, object] : map_.objects()) {
     model.objects.push_back({object, {}, {}});
   }
-  if (map_.landmarks().size() < map_.landmark_total()) {
+  if (map_.IsThinned()) {
     model.notes.push_back(
-        "Landmarks whose distance is not known yet are not shown, and large maps "
-        "are thinned.");
+        "The map is large: an even choice of its landmarks and the objects "
+        "that were seen last are shown.");
   }
   Parts parts;
   parts.set = ViewParts(model, run_.start);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "support/synthetic_world.h"
 
@@ -49,6 +50,24 @@ TEST_F(LiveMapTest, SendsWhatMovesAndWhatIsGone) {
   EXPECT_FALSE(live.landmarks().Contains(second.value));
 }
 
+// Landmarks at the other end of a long map do not make the rest of it coarse.
+TEST_F(LiveMapTest, WhatCanBeSeenDoesNotDependOnTheSizeOfTheMap) {
+  const Rigid3 far_away(Eigen::Quaterniond::Identity(), {5000.0, 0.0, 0.0});
+  const SyntheticView& view = made_.views[0];
+  const KeyframeId keyframe = made_.map.AddKeyframe(view.frame, far_away);
+  for (uint32_t keypoint = 0; keypoint < view.points.size(); ++keypoint) {
+    const LandmarkId landmark =
+        made_.map.AddLandmark(Inverse(far_away) * world_.points()[view.points[keypoint]], keyframe);
+    made_.map.AddObservation(landmark, keyframe, keypoint);
+  }
+  LiveMap live(world_.sensor(), 0.0, {});
+  live.Follow(made_.map, false);
+  const LandmarkId first = (*made_.map.landmarks().begin()).first;
+  made_.map.SetPosition(first,
+                        made_.map.landmarks().At(first).position + Eigen::Vector3d(0.05, 0.0, 0.0));
+  EXPECT_EQ(live.Follow(made_.map, true).landmarks.ids, std::vector<uint32_t>{first.value});
+}
+
 TEST_F(LiveMapTest, LargeMapsAreThinnedEvenlyAndStayBelowTheLimit) {
   const size_t most = made_.map.landmarks().size() / 3;
   LiveMap live(world_.sensor(), 0.0, {.landmarks = most, .covisibility = 1});
@@ -57,6 +76,34 @@ TEST_F(LiveMapTest, LargeMapsAreThinnedEvenlyAndStayBelowTheLimit) {
   EXPECT_GE(live.landmarks().size(), most / 3);
   EXPECT_LE(live.edges().covisibility.size(), 1u);
   EXPECT_EQ(live.landmark_total(), made_.map.landmarks().size());
+}
+
+TEST_F(LiveMapTest, OfManyObjectsThoseThatWereSeenLastAreShown) {
+  constexpr uint32_t kViews = 3;
+  Map map;
+  for (uint32_t number = 0; number < kViews; ++number) {
+    auto frame = std::make_shared<Frame>(*made_.views[number].frame);
+    frame->detections.assign(4, Detection());
+    const KeyframeId keyframe = map.AddKeyframe(frame, Rigid3());
+    for (uint32_t detection = 0; detection < 4; ++detection) {
+      const ObjectId id = map.AddObject();
+      map.MutableObject(id).has_shape = true;
+      map.AddObservation(id, keyframe, detection);
+      map.MutableObject(id).reference = keyframe;
+    }
+  }
+  LiveMap few(world_.sensor(), 0.0, {.objects = 5});
+  few.Follow(map, false);
+  EXPECT_TRUE(few.IsThinned());
+  EXPECT_EQ(few.objects().size(), 8u);  // all of the keyframe of the fifth one
+  EXPECT_EQ(few.objects().begin()->first, ObjectId(4));
+  LiveMap all(world_.sensor(), 0.0, {.objects = 10});
+  EXPECT_EQ(all.Follow(map, false).objects.size(), 12u);
+  EXPECT_FALSE(all.IsThinned());
+  map.EraseObject(ObjectId(3));
+  const LiveMapChange change = all.Follow(map, true);
+  EXPECT_TRUE(change.were_objects_removed);
+  EXPECT_TRUE(change.objects.empty());
 }
 
 TEST_F(LiveMapTest, AChangeIsLimited) {
