@@ -7,6 +7,7 @@
 #include "run/command_line.h"
 #include "run/load_settings.h"
 #include "run/mask_arguments.h"
+#include "run/report_output.h"
 #include "run/vocabularies.h"
 
 namespace hullslam {
@@ -69,6 +70,7 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
       ->check(WholeNumber(1));
   app.add_flag("--strict", arguments.strict,
                "stop at an image that cannot be read instead of skipping the frame");
+  AddReportFlag(app, arguments.report);
   AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
   AddVersionAndExitCodes(
