@@ -41,6 +41,9 @@ Eigen::Matrix3d ReadCovariance(const JsonNode& node) {
   for (int i = 0; i < 3; ++i) {
     const std::vector<double> row = rows[static_cast<size_t>(i)].Numbers(3);
     matrix.row(i) << row[0], row[1], row[2];
+    if (matrix.row(i).cwiseAbs().maxCoeff() > kMostMetres) {
+      rows[static_cast<size_t>(i)].Fail("plausible variances");
+    }
   }
   return matrix;
 }
@@ -95,7 +98,7 @@ Relation ReadRelation(const JsonNode& node, const Scene& scene) {
   }
   relation.kind = *kind;
   for (const auto& [name, value] : node.At("evidence").Members()) {
-    relation.evidence.emplace_back(Printable(name), value.Number());
+    relation.evidence.emplace_back(Printable(name), value.Number(kMostMetres));
   }
   return relation;
 }

@@ -160,7 +160,14 @@ class Answerer {
         scene_.relations.begin(), scene_.relations.end(), [&, kind = kind](const Relation& known) {
           return known.subject == subject && known.kind == kind && known.object == object;
         });
-    return found == scene_.relations.end() ? Match() : Match{1.0, TextOf(found->evidence)};
+    if (found != scene_.relations.end()) {
+      return {1.0, TextOf(found->evidence)};
+    }
+    // Whoever asks for "the book next to the cup" also means one that is a little too far away.
+    constexpr double kAlmostBeside = 0.5;
+    Match match = relation == AskedRelation::kBeside ? Near(a, b) : Match();
+    match.score *= kAlmostBeside;
+    return match;
   }
 
   const Scene& scene_;

@@ -26,7 +26,8 @@ inline constexpr double kLeastScore = 0.1;
 // The objects that fit a question. The score is the share of the class in the object's votes times
 // that of each condition: the best object on its other side, times the strength of the relation. A
 // relation that the scene has has the strength 1. "near" has the strength 1 / (1 + (d / s)^2), with
-// the distance d of the surfaces and the mean extent s of both objects. Throws InputError for an
+// the distance d of the surfaces and the mean extent s of both objects. Without the relation
+// "beside", "next to" has half of this strength. Throws InputError for an
 // object that the scene does not have, and for a question about what stands on what if the upward
 // direction is not known.
 std::vector<Answer> AnswerQuestion(const Scene& scene, const AskedThing& question);

@@ -98,22 +98,38 @@ double HeightTolerance(const ObjectBody& a, const ObjectBody& b) {
 }
 
 double FloorHeight(std::span<const ObjectBody> bodies) {
-  std::vector<double> heights;
-  std::vector<double> sizes;
+  std::vector<const ObjectBody*> evidence;
+  std::vector<const ObjectBody*> all;
   for (const ObjectBody& body : bodies) {
-    heights.push_back(body.bottom);
-    sizes.push_back(body.size);
+    all.push_back(&body);
+    if (body.is_bottom_seen) {
+      evidence.push_back(&body);
+    }
   }
-  if (heights.empty()) {
+  evidence = evidence.empty() ? std::move(all) : std::move(evidence);
+  if (evidence.empty()) {
     return 0.0;
   }
-  std::sort(heights.begin(), heights.end());
-  const double step = 2.0 * kTolerance * Median(std::move(sizes));
-  std::vector<double> lowest = {heights.front()};
-  for (size_t i = 1; i < heights.size() && heights[i] - heights[i - 1] <= step; ++i) {
-    lowest.push_back(heights[i]);
+  constexpr int kMostSteps = 10;
+  const double usual_size = UsualSize(evidence);
+  double floor =
+      (*std::min_element(evidence.begin(), evidence.end(), [](const auto* a, const auto* b) {
+        return a->bottom < b->bottom;
+      }))->bottom;
+  for (int step = 0; step < kMostSteps; ++step) {
+    std::vector<double> low;
+    for (const ObjectBody* body : evidence) {
+      if (body->bottom <= floor + FloorTolerance(*body, usual_size)) {
+        low.push_back(body->bottom);
+      }
+    }
+    const double next = Median(std::move(low));
+    if (next == floor) {
+      break;
+    }
+    floor = next;
   }
-  return Median(std::move(lowest));
+  return floor;
 }
 
 std::vector<ObjectBody> ExtendToFloor(std::span<const ObjectBody> bodies) {

@@ -16,8 +16,9 @@ namespace hullslam {
 // standard deviations of the difference.
 double HeightTolerance(const ObjectBody& a, const ObjectBody& b);
 
-// The height of the floor: the median of the lowest group of lower sides, in which each is
-// at the height of the next one for objects of the usual size. 0 without objects.
+// The height of the floor: the median of the lower sides that are at this height or lower. It
+// begins with the lowest one and is repeated until it does not change. Only objects whose lower
+// side was seen count, if there are any. 0 without objects.
 double FloorHeight(std::span<const ObjectBody> bodies);
 
 // The bodies, with those whose lower side was never seen extended down to the floor. Things do not
