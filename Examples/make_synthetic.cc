@@ -67,6 +67,7 @@ void AddSequenceOptions(CLI::App& app, CLI::Option& suite, Arguments& arguments)
   app.add_option("--rearranged", arguments.options.rearranged,
                  "a later visit of desk, room or house: some objects were moved, taken away and "
                  "added, chosen by this seed")
+      ->check(hullslam::WholeNumber(0))
       ->excludes(&suite);
   auto* const readout_time =
       app.add_option("--readout-time", arguments.options.readout_time,
@@ -92,6 +93,7 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 100000));
   app.add_option("--seed", arguments.options.seed,
                  "seed of textures, hand motion and noise; in a suite of the latter two")
+      ->check(hullslam::WholeNumber(0))
       ->capture_default_str();
   app.add_option("--threads", arguments.options.threads,
                  "number of threads, 0 for one per core; does not change the output")

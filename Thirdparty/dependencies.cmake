@@ -10,6 +10,9 @@ find_package(fmt 9 REQUIRED)
 find_package(spdlog 1.10 REQUIRED)
 find_package(ZLIB 1.2 REQUIRED)  # checksum of map files
 find_package(Boost 1.74 REQUIRED)  # headers only: CRC, Student's t-distribution
+# three.js, for the page of the report: libjs-three (111)
+find_path(HULLSLAM_THREE_DIR examples/js/controls/OrbitControls.js PATHS /usr/share/javascript/three
+          NO_DEFAULT_PATH REQUIRED)
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # only the header of libxxhash-dev 0.8 is used
 if(HULLSLAM_BUILD_EXAMPLES OR HULLSLAM_BUILD_TESTS)
   find_package(CLI11 2.1 REQUIRED)

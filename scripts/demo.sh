@@ -4,7 +4,8 @@
 #
 # Demonstrates HullSLAM from a fresh clone: installs packages, builds, renders the synthetic
 # sequence build/demo/desk (unless it exists), and runs RGB-D SLAM on it with object masks. Then it
-# prints accuracy, times and the mapped objects, and draws build/demo/run/run.png and overlays.png.
+# prints accuracy, times and the mapped objects, draws build/demo/run/run.png and overlays.png, and
+# prints where the report is, which a browser opens.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$top"
@@ -42,7 +43,7 @@ else
 fi
 
 step "run"
-"$bin/rgbd_tum" "$sequence" --masks "$sequence/masks" --output "$run"
+"$bin/rgbd_tum" "$sequence" --masks "$sequence/masks" --output "$run" --report
 
 step "compare objects with ground truth"
 "$bin/evaluate" objects "$run" --groundtruth "$sequence/groundtruth_objects.json"
@@ -50,3 +51,6 @@ step "compare objects with ground truth"
 step "draw"
 scripts/plot_run.py "$run" --groundtruth "$sequence/groundtruth.txt" --overlay 6 \
   --sequence "$sequence"
+
+step "done"
+printf 'Open the report in a browser: %s\n' "file://$top/$run/report.html"

@@ -51,6 +51,7 @@ CONTENTS = {
     "results": "trajectories, objects, PLY",
     "sequences": "TUM, ICL, EuRoC, video",
     "masks": "six formats",
+    "view": "data of the report's page",
     "map_files": "maps, vocabularies",
     "run": "what all programs share",
     "synthetic": "renderer of scenes",

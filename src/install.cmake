@@ -28,7 +28,7 @@ file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/plot_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/ablation.py)
 # The script for the tables of the paper, what it starts, and what makes masks.
 foreach(script reproduce_tables table_job degrade_sequence disturbances leave_and_return tum_and_icl
-               yolo_masks make_masks)
+               yolo_masks make_masks report)
   list(APPEND scripts ${PROJECT_SOURCE_DIR}/scripts/${script}.py)
 endforeach()
 install(PROGRAMS ${scripts} DESTINATION ${CMAKE_INSTALL_DATADIR}/hullslam/scripts)

@@ -47,9 +47,10 @@ bool IsDistanceKnown(const Map& map, const Landmark& landmark, const Sensor& sen
 
 LocatedLandmarks LocateLandmarks(const Map& map, const Sensor& sensor) {
   LocatedLandmarks located;
-  map.landmarks().ForEach([&](LandmarkId, const Landmark& landmark) {
+  map.landmarks().ForEach([&](LandmarkId id, const Landmark& landmark) {
     if (IsDistanceKnown(map, landmark, sensor)) {
       located.positions.push_back(landmark.position);
+      located.ids.push_back(id);
     } else {
       ++located.at_infinity;
     }

@@ -13,6 +13,7 @@ namespace hullslam {
 // The landmarks of a map whose distance is known.
 struct LocatedLandmarks {
   std::vector<Eigen::Vector3d> positions;  // m, world frame, by increasing id
+  std::vector<LandmarkId> ids;             // one per position
   size_t at_infinity = 0;                  // number of the other landmarks
 };
 

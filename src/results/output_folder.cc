@@ -35,7 +35,7 @@ constexpr std::array<const char*, 6> kNamesWithoutList = {
     "trajectory.txt", "keyframes.txt", "map.ply", "objects.json", "objects.ply", "summary.json"};
 // The pictures that scripts/plot_run.py draws of a run. They are removed together with the files of
 // the run.
-constexpr std::array<const char*, 2> kDrawnNames = {"run.png", "overlays.png"};
+constexpr std::array<const char*, 3> kDrawnNames = {"run.png", "overlays.png", "report.html"};
 
 bool IsPlainName(const std::string& name) {
   return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos;

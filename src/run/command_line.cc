@@ -100,6 +100,19 @@ void ExpectNumber(CLI::Option& option, double least, double most) {
       ""));
 }
 
+CLI::Validator WholeNumber(int least) {
+  return CLI::Validator(
+      [least](const std::string& text) {
+        const bool is_whole =
+            !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+        const bool is_zero = text.find_first_not_of('0') == std::string::npos;
+        return is_whole && (least == 0 || !is_zero)
+                   ? std::string()
+                   : "'" + text + "', expected an integer >= " + std::to_string(least);
+      },
+      "");
+}
+
 void AddOverwriteFlag(CLI::App& app, bool& overwrite) {
   app.add_flag("--overwrite", overwrite,
                "also replace a run of another program in the folder of --output");

@@ -7,6 +7,7 @@
 namespace CLI {
 class App;
 class Option;
+class Validator;
 }  // namespace CLI
 
 namespace hullslam {
@@ -28,6 +29,10 @@ void AddVersionAndExitCodes(CLI::App& app, const std::string& done = "done",
 // Refuses values of an option that are not a number from `least` to `most`. (CLI::Range accepts
 // "nan".)
 void ExpectNumber(CLI::Option& option, double least, double most);
+
+// Accepts integers that are at least `least` (0 or 1). Without this check CLI11 would turn -1 into
+// the largest unsigned number.
+CLI::Validator WholeNumber(int least);
 
 // Adds --overwrite, without which a run does not replace one of another program.
 void AddOverwriteFlag(CLI::App& app, bool& overwrite);

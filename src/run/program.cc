@@ -31,6 +31,17 @@ void PrepareStreams() {
 
 void PrintFailure(const std::string& message) { PrintError("error: {}\n", message); }
 
+int FailIfAny(std::initializer_list<std::string> failures) {
+  int code = kDone;
+  for (const std::string& failure : failures) {
+    if (!failure.empty()) {
+      PrintFailure(failure);
+      code = kFailed;
+    }
+  }
+  return code;
+}
+
 int FinishStdout(int code) {
   errno = 0;
   const bool is_flushed = std::fflush(stdout) == 0;

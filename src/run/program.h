@@ -2,6 +2,7 @@
 #pragma once
 
 #include <exception>
+#include <initializer_list>
 #include <string>
 
 #include "hullslam/util/error.h"
@@ -18,6 +19,9 @@ void PrepareStreams();
 
 // Prints one line, "error: MESSAGE", on stderr.
 void PrintFailure(const std::string& message);
+
+// Prints the failures that are not empty. Returns kFailed if there is one, else kDone.
+int FailIfAny(std::initializer_list<std::string> failures);
 
 // Writes out what is still buffered for stdout. Returns `code`. If some of the output could not be
 // written, prints the reason on stderr and returns kFailed instead of kDone.

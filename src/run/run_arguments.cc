@@ -7,25 +7,11 @@
 #include "run/command_line.h"
 #include "run/load_settings.h"
 #include "run/mask_arguments.h"
+#include "run/report_output.h"
 #include "run/vocabularies.h"
 
 namespace hullslam {
 namespace {
-
-// Accepts integers that are at least `least` (0 or 1). Without this check CLI11 would turn -1 into
-// the largest unsigned number.
-CLI::Validator WholeNumber(int least) {
-  return CLI::Validator(
-      [least](const std::string& text) {
-        const bool is_whole =
-            !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-        const bool is_zero = text.find_first_not_of('0') == std::string::npos;
-        return is_whole && (least == 0 || !is_zero)
-                   ? std::string()
-                   : "'" + text + "', expected an integer >= " + std::to_string(least);
-      },
-      "");
-}
 
 // The positional arguments of ORB-SLAM2.
 std::string LongForm(SensorKind sensor) {
@@ -84,6 +70,7 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
       ->check(WholeNumber(1));
   app.add_flag("--strict", arguments.strict,
                "stop at an image that cannot be read instead of skipping the frame");
+  AddReportFlag(app, arguments.report);
   AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
   AddVersionAndExitCodes(

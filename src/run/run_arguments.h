@@ -38,6 +38,7 @@ struct RunArguments {
   bool threaded = false;
   bool realtime = false;
   bool strict = false;
+  bool report = false;
   bool quiet = false;
   uint64_t seed = 0;
 };

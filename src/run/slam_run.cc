@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,6 +28,7 @@
 #include "run/object_outputs.h"
 #include "run/program.h"
 #include "run/progress.h"
+#include "run/report_output.h"
 #include "run/run_report.h"
 #include "run/summarize_run.h"
 #include "run/vocabularies.h"
@@ -248,18 +248,6 @@ std::string DescribeInterruption(const RunResult& result, const ImageSequence& s
       result.given, sequence.frames.size());
 }
 
-// Prints the failures that are not empty. Returns the exit code.
-int FailIfAny(std::initializer_list<std::string> failures) {
-  int code = kDone;
-  for (const std::string& failure : failures) {
-    if (!failure.empty()) {
-      PrintFailure(failure);
-      code = kFailed;
-    }
-  }
-  return code;
-}
-
 }  // namespace
 
 int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageSequence& sequence,
@@ -314,11 +302,13 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   if (!arguments.quiet) {
     PrintReport(arguments, summary, objects);
   }
+  const std::string unreported =
+      arguments.report ? WriteReport(output.path(), *map, options, sequence, arguments.quiet) : "";
   const std::string failure =
       result.was_interrupted
           ? DescribeInterruption(result, sequence)
           : DescribeLoss(arguments, options.run, sequence.frames.size(), summary, system.frames());
-  return FailIfAny({failure, unsaved, unsaved_island});
+  return FailIfAny({failure, unsaved, unsaved_island, unreported});
 }
 
 }  // namespace hullslam

@@ -166,10 +166,8 @@ cv::Mat Read16Bit(const std::filesystem::path& path, const char* kind) {
   return image;
 }
 
-}  // namespace
-
-cv::Mat ReadGreyImage(const std::filesystem::path& path) {
-  cv::Mat image = Decode(path, kGreyFlags | cv::IMREAD_ANYDEPTH);
+cv::Mat Read8Bit(const std::filesystem::path& path, int flags) {
+  cv::Mat image = Decode(path, flags | cv::IMREAD_ANYDEPTH);
   if (image.depth() != CV_8U) {
     Fail(path,
          fmt::format("has {} bits per channel, expected an image with 8 bits, grey or in colour; "
@@ -177,6 +175,14 @@ cv::Mat ReadGreyImage(const std::filesystem::path& path) {
                      8 * image.elemSize1()));
   }
   return image;
+}
+
+}  // namespace
+
+cv::Mat ReadGreyImage(const std::filesystem::path& path) { return Read8Bit(path, kGreyFlags); }
+
+cv::Mat ReadColourImage(const std::filesystem::path& path) {
+  return Read8Bit(path, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
 }
 
 cv::Mat ReadDepthImage(const std::filesystem::path& path) { return Read16Bit(path, "depth"); }

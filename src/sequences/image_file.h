@@ -19,6 +19,10 @@ constexpr uint64_t kMostImagePixels = 64'000'000;
 // black.
 cv::Mat ReadGreyImage(const std::filesystem::path& path);
 
+// A PNG or JPEG image in colour, CV_8UC3 with blue first; a grey image has three equal channels.
+// Images with 16 bits per channel are errors, as above.
+cv::Mat ReadColourImage(const std::filesystem::path& path);
+
 // A depth image with unchanged values, CV_16UC1. It is an error if the image does not have 16 bits
 // or has several channels.
 cv::Mat ReadDepthImage(const std::filesystem::path& path);

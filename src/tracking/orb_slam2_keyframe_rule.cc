@@ -21,12 +21,12 @@ double ReferenceRatio(const KeyframeEvidence& evidence, const KeyframePolicy& po
 }  // namespace
 
 bool NeedsKeyframeByOrbSlam2(const KeyframeEvidence& evidence, const KeyframePolicy& policy) {
+  const double keyframes = static_cast<double>(evidence.keyframes);
   const double frames_in_time = kLongestTime / (2.0 * policy.time_tolerance);
   const bool was_lost =
       evidence.time_since_relocalisation &&
-      *evidence.time_since_relocalisation +
-          policy.time_tolerance<kLongestTime&& static_cast<double>(evidence.keyframes)>
-              frames_in_time;
+      kLongestTime > *evidence.time_since_relocalisation + policy.time_tolerance &&
+      keyframes > frames_in_time;
   if (was_lost || evidence.inliers <= policy.min_landmarks) {
     return false;
   }

@@ -52,6 +52,8 @@ TEST(LocateLandmarks, FindsThePointsOfARoom) {
   const LocatedLandmarks located = LocateLandmarks(made.map, world.sensor());
   EXPECT_EQ(located.at_infinity, 0u);
   EXPECT_EQ(located.positions.size(), made.map.landmarks().size());
+  EXPECT_EQ(located.ids.size(), located.positions.size());
+  EXPECT_EQ(located.ids[0], (*made.map.landmarks().begin()).first);
   EXPECT_EQ(located.positions[0], (*made.map.landmarks().begin()).second.position);
 }
 

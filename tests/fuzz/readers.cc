@@ -29,6 +29,7 @@
 #include "map_files/vocabulary_text.h"
 #include "masks/mask_classes.h"
 #include "results/object_file.h"
+#include "results/ply_points.h"
 #include "results/scene_file.h"
 #include "results/summary.h"
 #include "results/true_object_file.h"
@@ -86,6 +87,16 @@ void FuzzObjects(std::string_view bytes) {
     const ObjectReport report = ReadObjects(path, path);
     const std::string text = FormatObjects(report) + FormatObservations(report);
     Expect(text.find("null,null,null") == std::string::npos, "a number that is not finite");
+  });
+}
+
+void FuzzPlyPoints(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const PlyPoints points = ReadPlyPoints(path);
+    Expect(points.positions.size() == points.colours.size(), "one colour per position");
+    for (const Eigen::Vector3f& position : points.positions) {
+      Expect(position.allFinite(), "a position that is not finite");
+    }
   });
 }
 
@@ -263,6 +274,7 @@ constexpr auto kReaders = std::to_array<FuzzedReader>({{"trajectory", FuzzTrajec
                                                        {"grey_image", FuzzGreyImage},
                                                        {"depth_image", FuzzDepthImage},
                                                        {"objects", FuzzObjects},
+                                                       {"ply_points", FuzzPlyPoints},
                                                        {"true_objects", FuzzTrueObjects},
                                                        {"summary", FuzzSummary},
                                                        {"scene", FuzzScene},

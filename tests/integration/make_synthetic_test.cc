@@ -21,6 +21,8 @@ TEST(MakeSynthetic, BadUsageIsRefusedAndWritesNothing) {
     EXPECT_EQ(RunProgram("make_synthetic", {out, "--readout-time", seconds}).exit_code, 2);
   }
   EXPECT_EQ(RunProgram("make_synthetic", {out, "--colour"}).exit_code, 2);
+  EXPECT_EQ(RunProgram("make_synthetic", {out, "--seed", "-1"}).exit_code, 2);
+  EXPECT_EQ(RunProgram("make_synthetic", {out, "--rearranged", "-1"}).exit_code, 2);
   EXPECT_EQ(RunProgram("make_synthetic", {out, "--readout-time", "nan"}).exit_code, 2);
   const ProgramResult result = RunProgram("make_synthetic", {out, "--scene", "kitchen"});
   EXPECT_EQ(result.exit_code, 2);

@@ -92,6 +92,7 @@ TEST_F(TrainVocabularyProgram, BadInputIsRefused) {
   ExpectRefused({Path("a"), "--output", Path("v.dat")}, "expected .bow or .txt");
   ExpectRefused({Path("a"), "--output", out, "--branching", "1"}, "--branching");
   ExpectRefused({Path("a"), "--output", out, "--levels", "11"}, "--levels");
+  ExpectRefused({Path("a"), "--output", out, "--seed", "-1"}, "--seed");
   cv::imwrite(Path("tiny.png"), cv::Mat(20, 20, CV_8UC1, cv::Scalar(9)));
   ExpectRefused({Path("tiny.png"), "--output", out}, "20x20 px, expected at least 64x64");
   cv::imwrite(Path("plain.png"), cv::Mat(200, 200, CV_8UC1, cv::Scalar(9)));

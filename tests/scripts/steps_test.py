@@ -49,12 +49,14 @@ class StepsTest(unittest.TestCase):
         built = set(calls[2].split("--target ")[1].split())
         self.assertEqual(built, {"rgbd_tum", "evaluate", "make_synthetic"})
         self.assertEqual(calls[-3], "rgbd_tum build/demo/desk --masks build/demo/desk/masks "
-                                    "--output build/demo/run")
+                                    "--output build/demo/run --report")
         self.assertEqual(calls[-2], "evaluate objects build/demo/run --groundtruth "
                                     "build/demo/desk/groundtruth_objects.json")
         self.assertEqual(calls[-1], "plot_run.py build/demo/run --groundtruth "
                                     "build/demo/desk/groundtruth.txt --overlay 6 "
                                     "--sequence build/demo/desk")
+        self.assertRegex(result.stdout.splitlines()[-1],
+                         "^Open the report in a browser: file:///.*/build/demo/run/report.html$")
 
     def test_cdpath_does_not_matter(self):
         """With CDPATH, `cd scripts/..` prints a path, and may even go elsewhere."""

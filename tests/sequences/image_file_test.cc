@@ -48,6 +48,18 @@ TEST(ImageFile, ColourBecomesLuma) {
   }
 }
 
+TEST(ImageFile, ColourIsKept) {
+  const TemporaryFolder folder;
+  const cv::Mat colour(48, 64, CV_8UC3, cv::Scalar(10, 200, 90));
+  const cv::Mat read = ReadColourImage(folder.Write("c.png", Encode(".png", colour)));
+  ASSERT_EQ(read.type(), CV_8UC3);
+  EXPECT_EQ(cv::norm(read, colour, cv::NORM_INF), 0.0);
+  const cv::Mat grey = ReadColourImage(folder.Write("g.png", Encode(".png", Ramp(CV_8UC1))));
+  EXPECT_EQ(grey.at<cv::Vec3b>(10, 5), cv::Vec3b(50, 50, 50));
+  ExpectInputError([&] { ReadColourImage(folder.Write("16.png", Encode(".png", Ramp(CV_16UC3)))); },
+                   {"16.png", "16 bits per channel"});
+}
+
 TEST(ImageFile, OnlySixteenBitDepthIsAccepted) {
   const TemporaryFolder folder;
   const auto eight = folder.Write("8.png", Encode(".png", Ramp(CV_8UC1)));

@@ -32,6 +32,7 @@
 #include "run/object_outputs.h"
 #include "run/program.h"
 #include "run/progress.h"
+#include "run/report_output.h"
 #include "run/settings_choice.h"
 #include "sequences/image_file.h"
 #include "system/compose_trajectory.h"
@@ -57,6 +58,7 @@ struct MapObjectsArguments {
   double min_angle = 5.0;      // degrees
   bool overwrite = false;
   bool without_depth = false;
+  bool report = false;
   bool quiet = false;
 };
 
@@ -88,6 +90,7 @@ void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
                      "a frame is also used if the camera has turned this far since then, degrees");
   ExpectNumber(*min_angle->capture_default_str(), 0.0, 360.0);
   app.add_flag("--without-depth", arguments.without_depth, "do not use the depth images");
+  AddReportFlag(app, arguments.report);
   AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
   AddVersionAndExitCodes(app, "done",
@@ -291,6 +294,12 @@ void WriteOutputs(OutputFolder& output, const KnownPoseMapper& run, const Object
   output.Commit();
 }
 
+std::string DescribeInterruption(const RunSummary& summary, size_t views) {
+  return fmt::format(
+      "the run was interrupted after {} of {} views; the results so far were written",
+      summary.map.keyframes, views);
+}
+
 std::vector<std::filesystem::path> InputsOf(const MapObjectsArguments& arguments) {
   return {arguments.sequence, arguments.poses, arguments.masks, arguments.settings};
 }
@@ -340,14 +349,10 @@ int RunMapObjects(int argc, char** argv) {
           summary.map.keyframes, summary.trajectory.frames, without_pose, seconds.count(),
           DescribeObjects(*summary.objects, "m"), arguments.output.string());
   }
-  if (!is_complete) {
-    PrintFailure(
-        fmt::format("the run was interrupted after {} of {} views; the results so far were "
-                    "written",
-                    summary.map.keyframes, views.size()));
-    return kFailed;
-  }
-  return kDone;
+  const std::string unreported = arguments.report ? WriteReport(output.path(), run.map(), options,
+                                                                inputs.sequence, arguments.quiet)
+                                                  : "";
+  return FailIfAny({is_complete ? "" : DescribeInterruption(summary, views.size()), unreported});
 }
 
 }  // namespace hullslam

@@ -84,7 +84,9 @@ void AddArguments(CLI::App& app, RelocaliseArguments& arguments) {
                  "number of frames to choose, at random and each at most once")
       ->check(CLI::Range(size_t{1}, size_t{1'000'000}).description(""))
       ->capture_default_str();
-  app.add_option("--seed", arguments.seed, "seed of all random choices")->capture_default_str();
+  app.add_option("--seed", arguments.seed, "seed of all random choices")
+      ->check(WholeNumber(0))
+      ->capture_default_str();
   app.add_flag("--list", arguments.list, "also print one line per query");
   AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "do not show the progress");

@@ -57,6 +57,7 @@ void AddOptions(CLI::App& app, TrainVocabularyArguments& arguments) {
       ->check(CLI::Range(1, 100'000).description(""))
       ->capture_default_str();
   app.add_option("--seed", arguments.training.seed, "seed of the first cluster centres")
+      ->check(WholeNumber(0))
       ->capture_default_str();
   app.add_option("--threads", arguments.threads,
                  "number of threads, 0 for one per core; does not change the vocabulary")

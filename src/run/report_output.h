@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "hullslam/map/map.h"
+#include "hullslam/sequences/image_sequence.h"
+#include "hullslam/system/options.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace hullslam {
+
+// Adds --report.
+void AddReportFlag(CLI::App& app, bool& report);
+
+// Writes report.html into the folder of a run whose results were written there. The map and the
+// sequence add what the files do not have. Prints where the report is and what was left out,
+// without the former if `is_quiet`. Returns why the report could not be written; empty if there was
+// no error. The results stay as they are in any case.
+std::string WriteReport(const std::filesystem::path& folder, const Map& map,
+                        const SystemOptions& options, const ImageSequence& sequence, bool is_quiet);
+
+// The same for a finished run, of which only the files are left. Throws InputError if they are not
+// those of a run, or if the report cannot be written.
+void WriteReportOfRun(const std::filesystem::path& folder, const std::filesystem::path& file);
+// The same for a file of --save-map.
+void WriteReportOfMap(const std::filesystem::path& map, const std::filesystem::path& file);
+
+}  // namespace hullslam

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/tools/view.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "hullslam/util/error.h"
+#include "run/command_line.h"
+#include "run/messages.h"
+#include "run/program.h"
+#include "run/report_output.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ViewArguments {
+  fs::path input;
+  bool report = false;
+  fs::path output;  // empty: beside the input
+  bool quiet = false;
+};
+
+// A map is no part of a folder of results, so its report has the name of the map.
+fs::path OutputOf(const ViewArguments& arguments) {
+  if (!arguments.output.empty()) {
+    return arguments.output;
+  }
+  fs::path beside = arguments.input;
+  return fs::is_directory(arguments.input) ? arguments.input / "report.html"
+                                           : beside.replace_extension(".html");
+}
+
+}  // namespace
+
+int RunView(int argc, char** argv) {
+  CLI::App app("Shows a finished run or a saved map in one HTML file for a browser.", "view");
+  ViewArguments arguments;
+  app.add_option("RUN_DIR|MAP", arguments.input, "output folder of a run, or a file of --save-map")
+      ->required();
+  app.add_flag("--report", arguments.report, "write a file that shows everything without a server")
+      ->required();
+  app.add_option("--output", arguments.output,
+                 "the file (default: report.html in RUN_DIR, or MAP with the ending .html)");
+  app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
+  AddVersionAndExitCodes(app, "done", "the program failed");
+  if (!ParseCommandLine(app, argc, argv)) {
+    return kDone;
+  }
+  if (!fs::exists(arguments.input)) {
+    throw InputError(arguments.input.string() +
+                     ": does not exist, expected the output folder of a run or a map file");
+  }
+  const fs::path output = OutputOf(arguments);
+  if (fs::is_directory(arguments.input)) {
+    WriteReportOfRun(arguments.input, output);
+  } else {
+    WriteReportOfMap(arguments.input, output);
+  }
+  if (!arguments.quiet) {
+    Print("the report is in {}\n", output.string());
+  }
+  return kDone;
+}
+
+}  // namespace hullslam

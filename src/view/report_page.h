@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "view/view_model.h"
+
+namespace hullslam {
+
+// The page with this message of FormatViewMessage() inside; without data if it is empty.
+std::string FormatPage(std::string_view message);
+
+// report.html: one file that shows the model and needs nothing else.
+std::string FormatReport(const ViewModel& model);
+
+}  // namespace hullslam

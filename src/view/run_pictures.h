@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <opencv2/core/mat.hpp>
+#include <span>
+#include <vector>
+
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/sequences/image_sequence.h"
+#include "view/view_model.h"
+#include "view/view_of_map.h"
+
+namespace hullslam {
+
+// What is done with the image of a moment. The image is in colour with blue first, CV_8UC3, in raw
+// pixels, and has the size of the camera.
+struct ImageTask {
+  double timestamp = 0.0;  // s
+  std::function<void(const cv::Mat& image)> use;
+};
+
+// Loads the images of the tasks, each once, in order of time. Returns the number of tasks whose
+// image is not in the sequence or cannot be read.
+size_t RunImageTasks(const ImageSequence& sequence, const PinholeCamera& camera,
+                     std::vector<ImageTask> tasks);
+
+// The tasks that give the landmarks of `model` their colours. A landmark without an image stays
+// grey. `model` must outlive the tasks.
+std::vector<ImageTask> ColourTasks(std::span<const KeyframePixels> keyframes, ViewModel& model);
+
+// The tasks that add pictures of at most `most` keyframes, evenly chosen, with the outlines of the
+// objects' masks and the projected ellipsoids, and up to three cut-outs of each object: of the best
+// views from different directions. `model.camera` must be set.
+std::vector<ImageTask> PictureTasks(size_t most, ViewModel& model);
+
+}  // namespace hullslam

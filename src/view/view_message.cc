@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/view_message.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "util/printable.h"
+#include "view/base64.h"
+#include "view/packed_array.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::json;
+
+// The first time stamp of the run, from which the page counts.
+double StartOf(const ViewModel& model) {
+  for (const Trajectory* poses : {&model.trajectory, &model.keyframes.poses}) {
+    if (!poses->empty()) {
+      return poses->front().timestamp;
+    }
+  }
+  return 0.0;
+}
+
+Json PackTimes(std::span<const double> timestamps, double start) {
+  std::vector<float> times;
+  times.reserve(timestamps.size());
+  for (const double timestamp : timestamps) {
+    times.push_back(static_cast<float>(timestamp - start));
+  }
+  return PackArray(times);
+}
+
+std::vector<double> StampsOf(const Trajectory& poses) {
+  std::vector<double> timestamps;
+  timestamps.reserve(poses.size());
+  for (const StampedPose& pose : poses) {
+    timestamps.push_back(pose.timestamp);
+  }
+  return timestamps;
+}
+
+void Append(const Eigen::VectorXd& values, std::vector<float>& list) {
+  for (const double value : values) {
+    list.push_back(static_cast<float>(value));
+  }
+}
+
+Json PackPoses(const Trajectory& poses) {
+  std::vector<float> values;
+  values.reserve(7 * poses.size());
+  for (const StampedPose& pose : poses) {
+    Append(pose.world_from_cam.translation, values);
+    Append(pose.world_from_cam.rotation.coeffs(), values);
+  }
+  return PackArray(values);
+}
+
+Json PackPositions(const Trajectory& poses) {
+  std::vector<float> values;
+  values.reserve(3 * poses.size());
+  for (const StampedPose& pose : poses) {
+    Append(pose.world_from_cam.translation, values);
+  }
+  return PackArray(values);
+}
+
+Json LandmarksJson(const ViewLandmarks& landmarks, double start) {
+  std::vector<float> positions;
+  positions.reserve(3 * landmarks.positions.size());
+  for (const Eigen::Vector3f& position : landmarks.positions) {
+    positions.insert(positions.end(), position.begin(), position.end());
+  }
+  Json json = {{"position", PackArray(positions)}, {"total", landmarks.total}};
+  if (!landmarks.colours.empty()) {
+    std::vector<uint8_t> colours;
+    for (const std::array<uint8_t, 3>& colour : landmarks.colours) {
+      colours.insert(colours.end(), colour.begin(), colour.end());
+    }
+    json["colour"] = PackArray(colours);
+  }
+  if (!landmarks.created.empty()) {
+    json["age"] = PackTimes(landmarks.created, start);
+  }
+  return json;
+}
+
+Json ShapesJson(const std::vector<ViewShape>& shapes) {
+  Json list = Json::array();
+  for (const ViewShape& shape : shapes) {
+    Json points = Json::array();
+    for (const Eigen::Vector2d& point : shape.points) {
+      for (const double coordinate : point) {
+        points.push_back(std::round(10.0 * coordinate) / 10.0);
+      }
+    }
+    list.push_back({{"object", shape.object.IsValid() ? Json(shape.object.value) : Json()},
+                    {"class", Printable(shape.label)},
+                    {"points", std::move(points)}});
+  }
+  return list;
+}
+
+Json PicturesJson(const std::vector<ViewPicture>& pictures, double start) {
+  Json list = Json::array();
+  for (const ViewPicture& picture : pictures) {
+    list.push_back({{"time", picture.timestamp - start},
+                    {"width", picture.width},
+                    {"height", picture.height},
+                    {"image", "data:image/jpeg;base64," + EncodeBase64(picture.jpeg)},
+                    {"outlines", ShapesJson(picture.outlines)},
+                    {"ellipses", ShapesJson(picture.ellipses)}});
+  }
+  return list;
+}
+
+Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+Json ObjectJson(const ViewObject& shown, double start) {
+  const ReportedObject& object = shown.object;
+  const Eigen::Vector3d& centre = object.ellipsoid.world_from_object.translation;
+  const Eigen::Vector4d rotation = object.ellipsoid.world_from_object.rotation.coeffs();
+  const Eigen::Vector3d& axes = object.ellipsoid.half_axes;
+  Json votes = Json::object();
+  for (const auto& [label, score] : object.votes) {
+    votes[Printable(label)] = score;
+  }
+  return {{"id", object.id.value},
+          {"class", Printable(object.label)},
+          {"state", object.state == ObjectState::kMapped ? "mapped" : "candidate"},
+          {"reason", shown.reason},
+          {"votes", std::move(votes)},
+          {"centre", std::vector<double>(centre.begin(), centre.end())},
+          {"rotation", std::vector<double>(rotation.begin(), rotation.end())},
+          {"half_axes", std::vector<double>(axes.begin(), axes.end())},
+          {"siou", OrNull(object.fit.siou)},
+          {"siou_mask", OrNull(object.fit.siou_mask)},
+          {"tangent_px", OrNull(object.fit.tangent_px)},
+          {"misfit_px", object.misfit_px},
+          {"parallax_deg", ParallaxOf(object)},
+          {"quality", QualityOf(object)},
+          {"observations", object.views.size()},
+          {"cutouts", PicturesJson(shown.cutouts, start)}};
+}
+
+Json PackEdges(const std::vector<ViewEdges::Edge>& edges) {
+  std::vector<uint32_t> ids;
+  for (const ViewEdges::Edge& edge : edges) {
+    ids.insert(ids.end(), edge.begin(), edge.end());
+  }
+  return PackArray(ids);
+}
+
+Json SettingsJson(const ViewSettings& settings) {
+  Json changed = Json::array();
+  for (const ViewSetting& setting : settings.changed) {
+    changed.push_back({{"key", Printable(setting.key)},
+                       {"value", Printable(setting.value)},
+                       {"default", Printable(setting.standard)}});
+  }
+  return {{"changed", std::move(changed)}, {"from", settings.explanation}};
+}
+
+// The stretches without a pose, from summary.json. Entries that are not as expected are left out.
+Json LossesJson(const Json& summary, double start) {
+  Json list = Json::array();
+  const Json losses =
+      summary.is_object() && summary.contains("trajectory") && summary["trajectory"].is_object()
+          ? summary["trajectory"].value("losses", Json::array())
+          : Json::array();
+  for (const Json& loss : losses.is_array() ? losses : Json::array()) {
+    const auto has = [&](const char* key) {
+      return loss.is_object() && loss.contains(key) && loss[key].is_number();
+    };
+    if (has("first_timestamp") && has("last_timestamp") && has("frames") &&
+        loss.contains("reason") && loss["reason"].is_string()) {
+      list.push_back({{"from", loss["first_timestamp"].get<double>() - start},
+                      {"to", loss["last_timestamp"].get<double>() - start},
+                      {"frames", loss["frames"]},
+                      {"reason", loss["reason"]}});
+    }
+  }
+  return list;
+}
+
+Json RunJson(const ViewModel& model, double start) {
+  Json notes = Json::array();
+  for (const std::string& note : model.notes) {
+    notes.push_back(Printable(note));
+  }
+  return {{"title", Printable(model.title)},
+          {"program", Printable(model.program)},
+          {"sequence", Printable(model.sequence)},
+          {"version", Printable(model.version)},
+          {"unit", model.is_metric ? "m" : "u"},
+          {"start", start},
+          {"live", false},
+          {"notes", std::move(notes)}};
+}
+
+Json CameraJson(const PinholeCamera& camera) {
+  return {{"fx", camera.fx}, {"fy", camera.fy},       {"cx", camera.cx},
+          {"cy", camera.cy}, {"width", camera.width}, {"height", camera.height}};
+}
+
+void SetGeometry(const ViewModel& model, double start, Json& parts) {
+  const auto set_if = [&](const char* name, bool is_there, const auto& make) {
+    if (is_there) {
+      parts[name] = make();
+    }
+  };
+  set_if("up", model.up.has_value(),
+         [&] { return Json(std::vector<double>(model.up->begin(), model.up->end())); });
+  set_if("camera", model.camera.has_value(), [&] { return CameraJson(*model.camera); });
+  set_if("landmarks", !model.landmarks.positions.empty(),
+         [&] { return LandmarksJson(model.landmarks, start); });
+  set_if("keyframes", !model.keyframes.poses.empty(), [&] {
+    return Json{{"id", PackArray(model.keyframes.ids)},
+                {"time", PackTimes(StampsOf(model.keyframes.poses), start)},
+                {"pose", PackPoses(model.keyframes.poses)}};
+  });
+  set_if("trajectory", !model.trajectory.empty(), [&] {
+    return Json{{"time", PackTimes(StampsOf(model.trajectory), start)},
+                {"pose", PackPoses(model.trajectory)}};
+  });
+  set_if("groundtruth", !model.groundtruth.empty(), [&] {
+    return Json{{"time", PackTimes(StampsOf(model.groundtruth), start)},
+                {"position", PackPositions(model.groundtruth)}};
+  });
+  set_if("edges", true, [&] {
+    return Json{{"covisibility", PackEdges(model.edges.covisibility)},
+                {"loop", PackEdges(model.edges.loops)}};
+  });
+}
+
+}  // namespace
+
+std::string FormatViewMessage(const ViewModel& model) {
+  const double start = StartOf(model);
+  Json parts = {{"run", RunJson(model, start)}};
+  SetGeometry(model, start, parts);
+  if (!model.errors.timestamps.empty()) {
+    const std::vector<float> metres(model.errors.metres.begin(), model.errors.metres.end());
+    parts["errors"] = {{"time", PackTimes(model.errors.timestamps, start)},
+                       {"value", PackArray(metres)}};
+  }
+  Json objects = Json::array();
+  for (const ViewObject& object : model.objects) {
+    objects.push_back(ObjectJson(object, start));
+  }
+  parts["objects"] = std::move(objects);
+  parts["images"] = PicturesJson(model.pictures, start);
+  parts["losses"] = LossesJson(model.summary, start);
+  parts["summary"] = model.summary;
+  parts["relations"] = model.relations;
+  if (model.settings) {
+    parts["settings"] = SettingsJson(*model.settings);
+  }
+  const std::string text = Json{{"view", kViewVersion}, {"set", std::move(parts)}}.dump(
+      -1, ' ', false, Json::error_handler_t::replace);
+  std::string escaped;
+  escaped.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<') {
+      escaped += "\\u003c";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/view_of_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "files/json_file.h"
+#include "files/json_node.h"
+#include "hullslam/results/trajectory_file.h"
+#include "hullslam/util/error.h"
+#include "results/object_file.h"
+#include "results/ply_points.h"
+#include "results/summary.h"
+#include "view/aligned_truth.h"
+#include "view/run_pictures.h"
+#include "view/run_sequence.h"
+#include "view/view_of_map.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr size_t kMostPictures = 80;
+
+// Adds a part of the model. If its file is broken, the part is left out, and a note says why.
+void AddPart(const char* part, ViewModel& model, const std::function<void()>& add) {
+  try {
+    add();
+  } catch (const InputError& error) {
+    model.notes.push_back(fmt::format("{} left out: {}", part, error.what()));
+  }
+}
+
+// A text of summary.json; empty if it is absent or no text.
+std::string TextAt(const Json& summary, const char* group, const char* key) {
+  if (!summary.contains(group) || !summary[group].is_object()) {
+    return {};
+  }
+  const Json& node = summary[group];
+  return node.contains(key) && node[key].is_string() ? node[key].get<std::string>() : std::string();
+}
+
+void ReadHead(const fs::path& folder, ViewModel& model) {
+  const fs::path file = folder / "summary.json";
+  model.summary = ReadJson(file);
+  if (!model.summary.is_object() || !model.summary.contains("trajectory") ||
+      !model.summary.contains("provenance")) {
+    throw InputError(file.string() +
+                     ": expected the summary of a run, with trajectory and provenance");
+  }
+  model.program = TextAt(model.summary, "provenance", "program");
+  model.sequence = TextAt(model.summary, "provenance", "sequence");
+  model.version = TextAt(model.summary, "provenance", "version");
+  const fs::path sequence = fs::path(model.sequence).lexically_normal();
+  model.title = sequence.has_filename() ? sequence.filename() : sequence.parent_path().filename();
+  if (model.title.empty()) {
+    model.title = fs::absolute(folder).lexically_normal().filename();
+  }
+}
+
+void ReadPoses(const fs::path& folder, ViewModel& model) {
+  AddPart("trajectory", model,
+          [&] { model.trajectory = ReadTrajectory(folder / "trajectory.txt"); });
+  AddPart("keyframes", model, [&] {
+    model.keyframes.poses = ReadTrajectory(folder / "keyframes.txt");
+    for (uint32_t id = 0; id < model.keyframes.poses.size(); ++id) {
+      model.keyframes.ids.push_back(id);
+    }
+  });
+}
+
+// Without the map, all landmarks have the colour of the file, which says nothing.
+void ReadLandmarks(const fs::path& folder, ViewModel& model) {
+  if (!fs::exists(folder / "map.ply")) {
+    return;
+  }
+  AddPart("landmarks", model, [&] {
+    PlyPoints points = ReadPlyPoints(folder / "map.ply");
+    // The centres of the keyframes come last, and have a colour of their own.
+    const size_t centres = std::min(points.positions.size(), model.keyframes.poses.size());
+    points.positions.resize(points.positions.size() - centres);
+    model.landmarks.total = points.positions.size();
+    model.landmarks.positions = std::move(points.positions);
+    if (points.left_out > 0) {
+      model.notes.push_back(fmt::format(
+          "{} points of map.ply left out: not finite or more than 1e6 m away", points.left_out));
+    }
+  });
+}
+
+void ReadObjectFiles(const fs::path& folder, ViewModel& model) {
+  if (!fs::exists(folder / "objects.json")) {
+    return;
+  }
+  AddPart("objects", model, [&] {
+    ObjectReport report = ReadObjects(folder / "objects.json");
+    model.camera = report.camera;
+    for (ReportedObject& object : report.objects) {
+      model.objects.push_back({std::move(object), {}, {}});
+    }
+  });
+}
+
+void ReadScene(const fs::path& folder, ViewModel& model) {
+  if (!fs::exists(folder / "scene.json")) {
+    return;
+  }
+  AddPart("relations", model, [&] {
+    const fs::path file = folder / "scene.json";
+    const Json scene = ReadJson(file);
+    const JsonNode top(file, scene);
+    if (top.Has("up")) {
+      const std::vector<double> up = top.At("up").Numbers(3);
+      const Eigen::Vector3d direction(up[0], up[1], up[2]);
+      if (direction.norm() > 0.5) {
+        model.up = direction.normalized();
+      }
+    }
+    Json relations = Json::array();
+    for (const JsonNode& relation : top.At("relations").Elements()) {
+      relations.push_back({{"subject", relation.At("subject").Count()},
+                           {"relation", relation.At("relation").Text()},
+                           {"object", relation.At("object").Count()}});
+    }
+    model.relations = std::move(relations);
+  });
+}
+
+std::optional<Trajectory> FindGroundtruth(const fs::path& folder, const ImageSequence* sequence) {
+  if (fs::exists(folder / "groundtruth.txt")) {
+    return ReadTrajectory(folder / "groundtruth.txt");
+  }
+  return sequence != nullptr ? ReadGroundtruth(*sequence) : std::nullopt;
+}
+
+// The part of the ground truth during the run, with a margin of half a second.
+Trajectory DuringRun(const Trajectory& groundtruth, const Trajectory& run) {
+  constexpr double kMargin = 0.5;
+  Trajectory part;
+  std::copy_if(groundtruth.begin(), groundtruth.end(), std::back_inserter(part),
+               [&](const StampedPose& pose) {
+                 return pose.timestamp >= run.front().timestamp - kMargin &&
+                        pose.timestamp <= run.back().timestamp + kMargin;
+               });
+  return part;
+}
+
+void CompareWithTruth(const fs::path& folder, const ImageSequence* sequence, ViewModel& model) {
+  if (model.trajectory.empty()) {
+    return;
+  }
+  const AlignmentKind alignment = ReadAlignment(folder / "summary.json");
+  model.is_metric = alignment != AlignmentKind::kSim3;
+  const auto groundtruth = FindGroundtruth(folder, sequence);
+  if (!groundtruth) {
+    return;
+  }
+  const std::string failure =
+      AddGroundtruth(DuringRun(*groundtruth, model.trajectory), alignment, model);
+  if (!failure.empty()) {
+    model.notes.push_back("ground truth left out: " + failure);
+  }
+}
+
+void AddPictures(const ImageSequence& sequence, const RunMemory& memory, ViewModel& model) {
+  std::vector<ImageTask> tasks = PictureTasks(kMostPictures, model);
+  if (memory.map != nullptr) {
+    const std::vector<KeyframePixels> pixels = FindLandmarkPixels(*memory.map, *memory.sensor);
+    for (ImageTask& task : ColourTasks(pixels, model)) {
+      tasks.push_back(std::move(task));
+    }
+  }
+  const size_t count = tasks.size();
+  const size_t failed = RunImageTasks(sequence, *model.camera, std::move(tasks));
+  if (failed == count) {
+    model.landmarks.colours.clear();
+  }
+  if (failed > 0) {
+    model.notes.push_back(fmt::format(
+        "{} of {} views of keyframes left out: their images cannot be read", failed, count));
+  }
+  for (ViewObject& object : model.objects) {
+    std::erase_if(object.cutouts, [](const ViewPicture& cutout) { return cutout.jpeg.empty(); });
+  }
+}
+
+// The sequence of the run, if it is still there.
+std::optional<ImageSequence> ReopenSequence(const fs::path& folder, ViewModel& model) {
+  std::optional<ImageSequence> sequence;
+  const std::optional<fs::path> path = FindSequence(model.sequence, folder);
+  if (!path) {
+    model.notes.push_back(fmt::format(
+        "images and ground truth left out: the sequence \"{}\" is not found", model.sequence));
+    return sequence;
+  }
+  AddPart("images", model, [&] {
+    sequence = OpenRunSequence(model.program, *path, model.camera.value_or(PinholeCamera{}));
+  });
+  return sequence;
+}
+
+void AddPresetOverrides(ViewModel& model) {
+  ViewSettings settings;
+  settings.explanation =
+      "The settings are complete only in a report that was written by the run itself (--report).";
+  const Json& provenance = model.summary["provenance"];
+  const Json overrides =
+      provenance.is_object() ? provenance.value("preset_overrides", Json::array()) : Json::array();
+  for (const Json& entry : overrides.is_array() ? overrides : Json::array()) {
+    const auto text = [&](const char* key) {
+      return entry.is_object() && entry.contains(key) && entry[key].is_string()
+                 ? entry[key].get<std::string>()
+                 : std::string();
+    };
+    settings.changed.push_back({text("key"), text("value"), text("preset_value")});
+  }
+  model.settings = std::move(settings);
+}
+
+}  // namespace
+
+ViewModel ViewOfRun(const fs::path& folder, const RunMemory& memory) {
+  ViewModel model;
+  ReadHead(folder, model);
+  ReadPoses(folder, model);
+  ReadObjectFiles(folder, model);
+  if (memory.map != nullptr) {
+    model.camera = memory.sensor->camera;
+    AddMap(*memory.map, *memory.sensor, *memory.options, model);
+  } else {
+    ReadLandmarks(folder, model);
+  }
+  std::optional<ImageSequence> reopened;
+  const ImageSequence* sequence = memory.sequence;
+  if (sequence == nullptr) {
+    reopened = ReopenSequence(folder, model);
+    sequence = reopened ? &*reopened : nullptr;
+  }
+  model.up = FindUp(model.trajectory, nullptr);
+  AddPart("ground truth", model, [&] { CompareWithTruth(folder, sequence, model); });
+  ReadScene(folder, model);
+  if (sequence != nullptr && model.camera) {
+    AddPictures(*sequence, memory, model);
+  }
+  if (memory.settings != nullptr) {
+    model.settings = *memory.settings;
+  } else {
+    AddPresetOverrides(model);
+  }
+  return model;
+}
+
+}  // namespace hullslam

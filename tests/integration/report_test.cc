@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reports of runs: --report, and the program view. tests/scripts/report_page_test.py opens them in
+// a browser.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "files/read_file.h"
+#include "support/rendered_desk.h"
+#include "support/run_program.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+// One rendered sequence for all tests of this file, and a run of it with a report.
+class ReportTest : public ::testing::Test {
+ protected:
+  static const RenderedDesk& Desk() {
+    static const RenderedDesk desk(30);
+    return desk;
+  }
+  ProgramResult Run(const std::vector<std::string>& more, const std::string& setup = "") const {
+    std::vector<std::string> arguments = {Desk().path(), "--masks", Desk().path() / "masks",
+                                          "--output", output_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunProgram("rgbd_tum", arguments, setup);
+  }
+  // The parts of the data in a report.
+  static Json PartsOf(const fs::path& report) {
+    const std::string page = ReadFile(report);
+    const std::string begin = "id=\"hullslam-data\">";
+    const size_t at = page.find(begin) + begin.size();
+    return Json::parse(page.substr(at, page.find("</script>", at) - at))["set"];
+  }
+
+  TemporaryFolder folder_;
+  fs::path output_ = folder_.path() / "out";
+};
+
+TEST_F(ReportTest, HasWhatTheFilesOfTheRunDoNotHave) {
+  const fs::path map = folder_.path() / "desk.map";
+  const ProgramResult run =
+      Run({"--report", "--save-map", map, "--set", "objects.start.min_views=4"});
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_NE(run.output.find("the report is in " + (output_ / "report.html").string()),
+            std::string::npos)
+      << run.output;
+  const Json parts = PartsOf(output_ / "report.html");
+  EXPECT_EQ(parts["run"]["notes"], Json::array());
+  EXPECT_TRUE(parts["landmarks"].contains("colour"));
+  EXPECT_TRUE(parts["landmarks"].contains("age"));
+  EXPECT_FALSE(parts["images"].empty());
+  EXPECT_EQ(parts["settings"]["changed"][0]["key"], "objects.start.min_views");
+  EXPECT_EQ(parts["settings"]["changed"][0]["value"], "4");
+  const Json objects = Json::parse(ReadFile(output_ / "objects.json"))["objects"];
+  ASSERT_EQ(parts["objects"].size(), objects.size());
+  EXPECT_EQ(parts["objects"][0]["id"], objects[0]["id"]);
+
+  // A report of the files afterwards has the same objects, and is replaced by the next run.
+  const ProgramResult again = RunProgram("view", {output_, "--report", "--quiet"});
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+  const Json later = PartsOf(output_ / "report.html");
+  EXPECT_EQ(later["objects"].size(), objects.size());
+  EXPECT_FALSE(later["landmarks"].contains("age"));
+  EXPECT_FALSE(later["images"].empty());
+
+  const ProgramResult of_map = RunProgram("view", {map, "--report"});
+  EXPECT_EQ(of_map.exit_code, 0) << of_map.errors;
+  EXPECT_EQ(PartsOf(folder_.path() / "desk.html")["landmarks"]["total"],
+            parts["landmarks"]["total"]);
+
+  EXPECT_EQ(Run({"--quiet"}).exit_code, 0);
+  EXPECT_FALSE(fs::exists(output_ / "report.html"));
+}
+
+// The page alone is larger than the largest file that may be written here, 800 blocks of 1 kB (or
+// of 512 bytes); the results are smaller.
+TEST_F(ReportTest, ResultsAreCompleteIfItCannotBeWritten) {
+  const ProgramResult run = Run({"--report", "--last", "5", "--quiet"}, "ulimit -f 800;");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.errors.find("error: the report could not be written: "), std::string::npos)
+      << run.errors;
+  EXPECT_TRUE(fs::exists(output_ / "summary.json"));
+  EXPECT_TRUE(fs::exists(output_ / "objects.json"));
+  EXPECT_FALSE(fs::exists(output_ / "report.html"));
+}
+
+TEST_F(ReportTest, OtherFoldersAndFilesAreRefused) {
+  const auto expect_refusal = [](const fs::path& input, const std::string& part) {
+    const ProgramResult result = RunProgram("view", {input, "--report"});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(result.errors.find(part), std::string::npos) << result.errors;
+  };
+  expect_refusal(folder_.path() / "missing", "does not exist");
+  expect_refusal(folder_.path(), "summary.json");
+  expect_refusal(folder_.Write("a.map", "no map"), "a.map");
+  EXPECT_FALSE(fs::exists(folder_.path() / "report.html"));
+  EXPECT_FALSE(fs::exists(folder_.path() / "a.html"));
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/run_sequence.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "support/expect_error.h"
+#include "support/made_view.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+TEST(RunSequence, IsFoundInTheFoldersAboveTheRun) {
+  const TemporaryFolder folder;
+  folder.Write("project/data/desk/rgb.txt", "");
+  folder.Write("project/results/run/summary.json", "{}");
+  const auto run = folder.path() / "project/results/run";
+  EXPECT_EQ(FindSequence("data/desk", run), folder.path() / "project/data/desk");
+  EXPECT_FALSE(FindSequence("data/room", run));
+  EXPECT_FALSE(FindSequence("", run));
+}
+
+TEST(RunSequence, IsOpenedAsTheProgramReadIt) {
+  const TemporaryFolder folder;
+  folder.Write("tum/rgb.txt", "1.5 a.png\n2.5 b.png\n");
+  const cv::Mat image(48, 64, CV_8UC3, cv::Scalar(1, 2, 3));
+  for (const char* const name : {"a.png", "b.png"}) {
+    cv::imwrite(folder.path() / "tum" / name, image);
+  }
+  const ImageSequence tum = OpenRunSequence("rgbd_tum", folder.path() / "tum", MadeCamera());
+  ASSERT_EQ(tum.frames.size(), 2u);
+  EXPECT_EQ(tum.frames[1].timestamp, 2.5);
+  const ImageSequence video = OpenRunSequence("mono_video", folder.path() / "tum", MadeCamera());
+  ASSERT_EQ(video.frames.size(), 2u);
+  EXPECT_EQ(video.frames[0].timestamp, 0.0);
+  ExpectInputError([&] { OpenRunSequence("mono_euroc", folder.path() / "tum", MadeCamera()); },
+                   {"tum"});
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Images of the run with the outlines of its masks (solid) and the projected ellipsoids (dashed).
+import { html, seconds, svg } from './text.js';
+
+function pathOf(points) {
+  let path = '';
+  for (let i = 0; i + 1 < points.length; i += 2) {
+    path += `${i === 0 ? 'M' : 'L'}${points[i]} ${points[i + 1]}`;
+  }
+  return path === '' ? '' : `${path}Z`;
+}
+
+export function picture(image, colours) {
+  const overlay = svg('svg', { viewBox: `0 0 ${image.width} ${image.height}`,
+    preserveAspectRatio: 'none' });
+  for (const [name, shapes] of [['ellipse', image.ellipses], ['outline', image.outlines]]) {
+    for (const shape of shapes || []) {
+      overlay.append(svg('path', { class: name, d: pathOf(shape.points),
+        stroke: colours.of(shape.class) }));
+    }
+  }
+  return [html('img', { src: image.image, alt: 'image of the camera', width: image.width,
+    height: image.height }), overlay];
+}
+
+// The image nearest to a moment, or null.
+export function imageAt(images, time) {
+  return images.reduce((best, image) => (best === null
+    || Math.abs(image.time - time) < Math.abs(best.time - time) ? image : best), null);
+}
+
+export class Moment {
+  constructor(place, store, colours) {
+    Object.assign(this, { place, store, colours, shown: null });
+  }
+
+  show(time) {
+    const image = imageAt(this.store.get('images', []), time);
+    this.place.hidden = image === null;
+    if (image === null || image === this.shown) {
+      return;
+    }
+    this.shown = image;
+    this.place.replaceChildren(html('figure', {}, ...picture(image, this.colours)),
+      html('figcaption', {}, html('span', {}, `Image of ${seconds(image.time)}`),
+        html('span', {}, '— mask   - - ellipsoid')));
+  }
+
+  refresh(time) {
+    this.shown = null;
+    this.show(time);
+  }
+}
+
+export function strip(store, colours, onTime) {
+  const images = store.get('images', []);
+  const step = Math.max(1, Math.ceil(images.length / 12));
+  return html('div', { class: 'strip' }, images.filter((_, i) => i % step === 0).map((image) =>
+    html('figure', { onclick: () => onTime(image.time) }, ...picture(image, colours),
+      html('figcaption', {}, seconds(image.time)))));
+}
