@@ -187,7 +187,7 @@ void WriteIslands(OutputFolder& output, std::span<const LeftIsland> islands, con
 void WriteOutputs(OutputFolder& output, std::string map_ply,
                   const std::vector<TrajectoryPart>& poses,
                   const std::vector<TrajectoryPart>& keyframes, RunSummary summary,
-                  const ObjectReport& objects, const ImageSequence& sequence,
+                  const ObjectReport& objects, const Scene& scene, const ImageSequence& sequence,
                   std::span<const LeftIsland> islands, const Sensor& sensor) {
   output.Write({"trajectory.txt", FormatTrajectory(poses)});
   output.Write({"keyframes.txt", FormatTrajectory(keyframes)});
@@ -197,7 +197,7 @@ void WriteOutputs(OutputFolder& output, std::string map_ply,
     output.Write({"groundtruth.txt", FormatTrajectory(*sequence.converted_groundtruth)});
   }
   if (summary.objects) {
-    for (const FileContent& file : ObjectFiles(objects)) {
+    for (const FileContent& file : ObjectFiles(objects, scene)) {
       output.Write(file);
     }
   }
@@ -289,11 +289,13 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   if (masks.format()) {
     summary.objects = SummarizeObjects(objects, system.object_counts());
   }
+  const Scene scene = masks.format() ? CollectScene(*map, objects, groundtruth) : Scene();
   const LocatedLandmarks landmarks = LocateLandmarks(*map, MakeSensor(options));
   summary.map.landmarks_at_infinity = landmarks.at_infinity;
   WriteOutputs(output, MapPly(landmarks.positions, KeyframeTrajectory(*map)),
                RunParts(arguments, earlier_sessions, trajectory), KeyframeParts(arguments, *map),
-               summary, objects, sequence, KeptIslands(arguments, system), MakeSensor(options));
+               summary, objects, scene, sequence, KeptIslands(arguments, system),
+               MakeSensor(options));
   const std::string unsaved = SaveMap(arguments, options, *map);
   const std::string unsaved_island =
       SaveIslands(arguments, options, KeptIslands(arguments, system));
