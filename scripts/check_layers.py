@@ -28,7 +28,7 @@ LEVELS = {
     "tracking": 9, "mapping": 9, "loop": 9,
     "system": 10,
     "report": 11,
-    "eval": 12,
+    "eval": 12, "scene": 12,
     "settings": 13, "map_files": 13,
     "results": 14,
     "sequences": 15,

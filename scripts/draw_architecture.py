@@ -45,6 +45,7 @@ CONTENTS = {
     "system": "class System, pipelines",
     "report": "what a run reports",
     "eval": "ATE, RPE, SIoU",
+    "scene": "relations, questions",
     "io": "settings, sequences, files",
     "settings": "YAML, ORB-SLAM3's keys",
     "results": "trajectories, objects, PLY",

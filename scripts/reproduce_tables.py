@@ -21,6 +21,7 @@ input.
 """
 
 import argparse
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -37,7 +38,7 @@ from paper_tables.definitions import MODES, read_definitions  # noqa: E402
 from paper_tables.job import Stopped  # noqa: E402
 from paper_tables.latex import latex  # noqa: E402
 from paper_tables.markdown import grid_lines, markdown  # noqa: E402
-from paper_tables.page import page  # noqa: E402
+from paper_tables.page import page, shown_runs  # noqa: E402
 from paper_tables.plan import DIGITS, Request, Tools, make_plan, result_file  # noqa: E402
 from paper_tables.report import Report, read_report  # noqa: E402
 from paper_tables.sequences import (find_sequences, in_order, read_list,  # noqa: E402
@@ -206,10 +207,26 @@ def write_tables(report, out, old):
     shutil.rmtree(former, ignore_errors=True)
 
 
+def make_reports(report, out, program, jobs):
+    """Writes report.html of each run whose curves are shown, unless it is there."""
+    folders = [out / "runs" / run / "out" for run in dict.fromkeys(shown_runs(report))]
+    commands = [[str(program), str(folder), "--report"] for folder in folders
+                if not (folder / "report.html").is_file()]
+    with concurrent.futures.ThreadPoolExecutor(jobs or os.cpu_count()) as pool:
+        for command, result in zip(commands, pool.map(call, commands)):
+            if result.returncode != 0:
+                raise Stopped(f"{' '.join(command)}: {result.stderr.strip()[-500:]}")
+
+
+def call(command):
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
 def reproduce(arguments):
     config = find_config()
     tools = Tools(arguments.programs.resolve(), SCRIPTS, config)
     old = read_report(arguments.compare) if arguments.compare else None
+    viewer = tools.path("view") if arguments.reports else None
     paper = read_json(OWN / "paper_tables.json")
     suite = arguments.suite and suite_file(tools.path("make_synthetic"),
                                            suite_cache(arguments, tools))
@@ -235,6 +252,8 @@ def reproduce(arguments):
             make_all(plan, PLAN, arguments.out, jobs, arguments.profile, arguments.quiet)
         results = read_results(plan, arguments.out)
         report = Report(request, plan, cells, results, paper)
+        if viewer:
+            make_reports(report, arguments.out, viewer, arguments.jobs)
         write_tables(report, arguments.out, old)
     failed = sum(1 for result in results.values() if result and result["failure"])
     if not arguments.quiet:
@@ -285,6 +304,9 @@ def parse_arguments(words):
     work.add_argument("--so-far", action="store_true",
                       help="run nothing; tables of the runs that are done")
     work.add_argument("--retry-failed", action="store_true", help="repeat runs that have failed")
+    work.add_argument("--reports", action="store_true",
+                      help="also write report.html of each run whose curves index.html shows, and "
+                           "link to it; some 5 MB each")
     work.add_argument("--compare", type=pathlib.Path, metavar="OLD.json",
                       help="compare with an older tables.json")
     work.add_argument("--quiet", action="store_true", help="print only errors")

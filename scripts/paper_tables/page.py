@@ -76,18 +76,37 @@ def note_html(note):
     return escape(note)
 
 
-def pictures(report, block, out):
-    """The pictures of a table."""
-    table = report.table(block)
-    if table.degradations:
-        return [plots.level_plot(report, block)]
-    found = [plots.box_plot(report, block)]
-    # Curves of single runs are shown once, for the first table with an ATE.
+def has_curves(report, block):
+    """Whether the table shows curves of single runs. The first one with an ATE does."""
     first = next((other["table"] for other in report.blocks
                   if "ate" in report.table(other).figures
                   and not report.table(other).degradations), None)
-    if block["table"] == first:
-        found += [plots.curves(report, block, name, out) for name in block["sequences"]]
+    return block["table"] == first
+
+
+def shown_runs(report):
+    """The names of the runs whose curves are shown."""
+    return [run for block in report.blocks if has_curves(report, block)
+            for name in block["sequences"] for _, run in plots.median_runs(report, block, name)]
+
+
+def report_links(report, block, name, out):
+    """The reports of the runs whose curves are shown; None if there are none."""
+    links = [f'<a href="{escape(plots.link_of(run))}out/report.html">{escape(label)}</a>'
+             for label, run in plots.median_runs(report, block, name)
+             if (out / "runs" / run / "out" / "report.html").is_file()]
+    return f"<p>Reports of {escape(name)}: {', '.join(links)}</p>" if links else None
+
+
+def pictures(report, block, out):
+    """The pictures of a table."""
+    if report.table(block).degradations:
+        return [plots.level_plot(report, block)]
+    found = [plots.box_plot(report, block)]
+    if has_curves(report, block):
+        for name in block["sequences"]:
+            found += [plots.curves(report, block, name, out),
+                      report_links(report, block, name, out)]
     return found
 
 

@@ -3,10 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hullslam/util/check.h"
+#include "results/json_text.h"
 #include "results/object_file_version.h"
 #include "util/printable.h"
 
@@ -18,13 +17,6 @@ using Json = nlohmann::ordered_json;
 constexpr double kPixel = 1e-2;
 constexpr double kMetre = 1e-9;
 constexpr double kAngle = 1e-4;  // degrees; shares are rounded to the same step
-
-// Rounds `value` to a multiple of `unit` (1 over a power of ten). Never returns -0.
-double Rounded(double value, double unit) {
-  Check(std::isfinite(value), "a number of an object is not finite");
-  const double units = std::round(1.0 / unit);
-  return std::round(value * units) / units + 0.0;
-}
 
 // The value in JSON; null if it is not known.
 Json OrNull(const std::optional<double>& value) {
@@ -155,24 +147,6 @@ Json ToJson(const std::optional<std::vector<ChangedObject>>& changes) {
   return list;
 }
 
-// Labels come from the files of users and may contain any bytes.
-std::string Dump(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-// The members of `head`, and then a list with the given name whose entries are each on a line of
-// their own.
-std::string WithEntries(const Json& head, const char* name,
-                        const std::vector<std::string>& entries) {
-  std::string text = Dump(head);
-  text.pop_back();
-  text += fmt::format(",\"{}\":[", name);
-  for (const std::string& entry : entries) {
-    text += (&entry == &entries.front() ? "\n " : ",\n ") + entry;
-  }
-  return text + "\n]}\n";
-}
-
 // A field of a CSV file by RFC 4180: in quotes if it contains a quote or a comma. A spreadsheet
 // takes a text that begins with one of = + - @ for a formula, so ' is put before it.
 std::string CsvField(const std::string& label) {
@@ -204,7 +178,7 @@ std::string FormatObjects(const ObjectReport& report) {
                      {"changes", ToJson(report.changes)}};
   std::vector<std::string> objects;
   for (const ReportedObject& object : report.objects) {
-    objects.push_back(Dump(ToJson(object)));
+    objects.push_back(DumpLine(ToJson(object)));
   }
   return WithEntries(head, "objects", objects);
 }
@@ -213,7 +187,7 @@ std::string FormatObservations(const ObjectReport& report) {
   std::vector<std::string> views;
   for (const ReportedObject& object : report.objects) {
     for (const ReportedView& view : object.views) {
-      views.push_back(Dump(ToJson(object.id, view)));
+      views.push_back(DumpLine(ToJson(object.id, view)));
     }
   }
   return WithEntries({{"version", kObjectFileVersion}}, "observations", views);

@@ -9,6 +9,10 @@
 #include "eval/object_metrics.h"
 #include "results/object_file.h"
 #include "results/ply_file.h"
+#include "results/scene_file.h"
+#include "scene/make_scene.h"
+#include "scene/up_direction.h"
+#include "system/compose_trajectory.h"
 
 namespace hullslam {
 namespace {
@@ -78,11 +82,20 @@ ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& 
   return summary;
 }
 
-std::vector<FileContent> ObjectFiles(const ObjectReport& report) {
+Scene CollectScene(const Map& map, const ObjectReport& report,
+                   const std::optional<Trajectory>& groundtruth) {
+  std::vector<Eigen::Vector3d> landmarks;
+  map.landmarks().ForEach(
+      [&](LandmarkId, const Landmark& landmark) { landmarks.push_back(landmark.position); });
+  return MakeScene(map, report, FindUp(groundtruth, KeyframeTrajectory(map), landmarks));
+}
+
+std::vector<FileContent> ObjectFiles(const ObjectReport& report, const Scene& scene) {
   return {{"objects.json", FormatObjects(report)},
           {"objects_observations.json", FormatObservations(report)},
           {"objects.csv", FormatObjectsCsv(report)},
-          {"objects.ply", FormatObjectsPly(report.objects)}};
+          {"objects.ply", FormatObjectsPly(report.objects)},
+          {"scene.json", FormatScene(scene)}};
 }
 
 std::string FormatFigure(const std::optional<double>& figure, int decimals) {

@@ -7,10 +7,12 @@
 #include <vector>
 
 #include "hullslam/camera/pinhole.h"
+#include "hullslam/geometry/trajectory.h"
 #include "hullslam/system/system.h"
 #include "report/object_report.h"
 #include "results/output_folder.h"
 #include "results/summary.h"
+#include "scene/scene.h"
 
 namespace hullslam {
 
@@ -24,9 +26,15 @@ std::string DescribeChanges(const std::vector<ChangedObject>& changes);
 
 ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& counts);
 
-// The contents of objects.json, objects_observations.json, objects.csv and objects.ply, so that
-// they can be written together with the other files of a run.
-std::vector<FileContent> ObjectFiles(const ObjectReport& report);
+// The scene of the map that `report` is about. `groundtruth` is that of the sequence, if it has
+// one: it tells which direction is upwards. Without it the horizontal planes of the landmarks tell
+// this.
+Scene CollectScene(const Map& map, const ObjectReport& report,
+                   const std::optional<Trajectory>& groundtruth);
+
+// The contents of objects.json, objects_observations.json, objects.csv, objects.ply and scene.json,
+// so that they can be written together with the other files of a run.
+std::vector<FileContent> ObjectFiles(const ObjectReport& report, const Scene& scene);
 
 // The number with this many decimals; "-" if it is absent.
 std::string FormatFigure(const std::optional<double>& figure, int decimals);

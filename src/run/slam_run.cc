@@ -203,7 +203,7 @@ void WriteIslands(OutputFolder& output, std::span<const LeftIsland> islands, con
 void WriteOutputs(OutputFolder& output, std::string map_ply,
                   const std::vector<TrajectoryPart>& poses,
                   const std::vector<TrajectoryPart>& keyframes, RunSummary summary,
-                  const ObjectReport& objects, const ImageSequence& sequence,
+                  const ObjectReport& objects, const Scene& scene, const ImageSequence& sequence,
                   std::span<const LeftIsland> islands, const Sensor& sensor) {
   output.Write({"trajectory.txt", FormatTrajectory(poses)});
   output.Write({"keyframes.txt", FormatTrajectory(keyframes)});
@@ -213,7 +213,7 @@ void WriteOutputs(OutputFolder& output, std::string map_ply,
     output.Write({"groundtruth.txt", FormatTrajectory(*sequence.converted_groundtruth)});
   }
   if (summary.objects) {
-    for (const FileContent& file : ObjectFiles(objects)) {
+    for (const FileContent& file : ObjectFiles(objects, scene)) {
       output.Write(file);
     }
   }
@@ -264,6 +264,15 @@ std::string DescribeInterruption(const RunResult& result, const ImageSequence& s
       result.given, sequence.frames.size());
 }
 
+// Why the run failed; empty if it did not.
+std::string DescribeFailure(const RunArguments& arguments, const RunOptions& options,
+                            const ImageSequence& sequence, const RunResult& result,
+                            const RunSummary& summary, const System& system) {
+  return result.was_interrupted
+             ? DescribeInterruption(result, sequence)
+             : DescribeLoss(arguments, options, sequence.frames.size(), summary, system.frames());
+}
+
 }  // namespace
 
 int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageSequence& sequence,
@@ -306,11 +315,13 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   if (masks.format()) {
     summary.objects = SummarizeObjects(objects, system.object_counts());
   }
+  const Scene scene = masks.format() ? CollectScene(*map, objects, groundtruth) : Scene();
   const LocatedLandmarks landmarks = LocateLandmarks(*map, MakeSensor(options));
   summary.map.landmarks_at_infinity = landmarks.at_infinity;
   WriteOutputs(output, MapPly(landmarks.positions, KeyframeTrajectory(*map)),
                RunParts(arguments, earlier_sessions, trajectory), KeyframeParts(arguments, *map),
-               summary, objects, sequence, KeptIslands(arguments, system), MakeSensor(options));
+               summary, objects, scene, sequence, KeptIslands(arguments, system),
+               MakeSensor(options));
   const std::string unsaved = SaveMap(arguments, options, *map);
   const std::string unsaved_island =
       SaveIslands(arguments, options, KeptIslands(arguments, system));
@@ -320,11 +331,8 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   live.End(map, nlohmann::json::parse(FormatSummary(summary)));
   const std::string unreported =
       arguments.report ? WriteReport(output.path(), *map, options, sequence, arguments.quiet) : "";
-  const std::string failure =
-      result.was_interrupted
-          ? DescribeInterruption(result, sequence)
-          : DescribeLoss(arguments, options.run, sequence.frames.size(), summary, system.frames());
-  return FailIfAny({failure, unsaved, unsaved_island, unreported});
+  return FailIfAny({DescribeFailure(arguments, options.run, sequence, result, summary, system),
+                    unsaved, unsaved_island, unreported});
 }
 
 }  // namespace hullslam

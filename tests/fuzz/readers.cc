@@ -30,6 +30,7 @@
 #include "masks/mask_classes.h"
 #include "results/object_file.h"
 #include "results/ply_points.h"
+#include "results/scene_file.h"
 #include "results/summary.h"
 #include "results/true_object_file.h"
 #include "sequences/image_file.h"
@@ -104,6 +105,13 @@ void FuzzSummary(std::string_view bytes) {
     RunSummary summary;
     summary.trajectory.alignment = ToString(ReadAlignment(path));
     Expect(!FormatSummary(summary).empty(), "no summary");
+  });
+}
+
+void FuzzScene(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const std::string text = FormatScene(ReadScene(path));
+    Expect(text.find("null,null,null") == std::string::npos, "a number that is not finite");
   });
 }
 
@@ -269,6 +277,7 @@ constexpr auto kReaders = std::to_array<FuzzedReader>({{"trajectory", FuzzTrajec
                                                        {"ply_points", FuzzPlyPoints},
                                                        {"true_objects", FuzzTrueObjects},
                                                        {"summary", FuzzSummary},
+                                                       {"scene", FuzzScene},
                                                        {"mask_probe", FuzzMaskProbe},
                                                        {"classes", FuzzClasses},
                                                        {"yolo_seg", FuzzYoloSeg},

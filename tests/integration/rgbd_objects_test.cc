@@ -74,7 +74,7 @@ TEST_F(RgbdObjects, AreWrittenWithTheSameBytesInEveryRun) {
   const fs::path second = Run("second", {"--masks", masks_});
   ExpectSameBytes(first, second,
                   {"trajectory.txt", "objects.json", "objects_observations.json", "objects.csv",
-                   "objects.ply", "map.ply"});
+                   "objects.ply", "scene.json", "map.ply"});
 }
 
 TEST_F(RgbdObjects, SwitchedOffChangeNoOutput) {

@@ -98,6 +98,16 @@ class RunsTest(TablesTest):
         self.succeed("--seeds", 1)
         self.assertIn("11 of them done; 0 images", self.succeed("--seeds", 1, "--list").stdout)
 
+    def test_reports_of_the_runs_whose_curves_are_shown(self):
+        arguments = ("--seeds", 3, "--tables", "I", "--modes", "rgbd")
+        self.succeed(*arguments)
+        self.assertNotIn("report.html", (self.out / "tables" / "index.html").read_text())
+        for _ in range(2):
+            self.succeed(*arguments, "--reports")
+            self.assertIn('<a href="../runs/desk/rgbd/bad/seed-1/out/report.html">bad</a>',
+                          (self.out / "tables" / "index.html").read_text())
+        self.assertEqual(len(list(self.out.rglob("report.html"))), 3, "one for each row")
+
     def test_sequences_without_depth_or_masks(self):
         mono = fake_slam.write_tum(self.dir / "mono", with_depth=False)
         shutil.rmtree(mono / "masks")

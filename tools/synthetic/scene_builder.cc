@@ -24,8 +24,10 @@ int SceneBuilder::AddTexture(const cv::Mat& image) {
   return static_cast<int>(scene_.textures.size()) - 1;
 }
 
-Palette SceneBuilder::AddRichPalette() {
-  const auto seed = [this](uint32_t index) { return HashSeed(seed_, index, "texture"); };
+Palette SceneBuilder::AddRichPalette(uint32_t variant) {
+  const auto seed = [&](uint32_t index) {
+    return HashSeed(seed_, 1000 * variant + index, "texture");
+  };
   Palette palette;
   palette.wall = AddTexture(PaintPlaster(seed(0), 1024, {176, 190, 196}));
   palette.feature_wall = AddTexture(PaintBrick(seed(1), 1024));
@@ -59,6 +61,10 @@ Palette SceneBuilder::AddRoomPalette(Palette palette, uint32_t room, const cv::S
   }
   palette.posters.erase(palette.posters.begin(), palette.posters.end() - 6);
   return palette;
+}
+
+int SceneBuilder::AddLargeCarpet(const cv::Scalar& bgr) {
+  return AddTexture(PaintPlain(HashSeed(seed_, 0, "carpet"), 2048, bgr, 12.0));
 }
 
 Palette SceneBuilder::AddBarePalette() {
@@ -121,7 +127,7 @@ void SceneBuilder::AddRoom(const RoomSize& size, const Palette& palette) {
   scene_.supports.push_back(
       {.min = {-size.half_x, -size.half_y}, .max = {size.half_x, size.half_y}});
   const Shape slab = Shape::Box({size.half_x + 2.0 * t, size.half_y + 2.0 * t, t});
-  AddBackground(slab, Repeat(palette.floor, 2.0), Shift(0.0, 0.0, -t));
+  AddBackground(slab, Repeat(palette.floor, size.floor_tile), Shift(0.0, 0.0, -t));
   AddBackground(slab, Repeat(palette.ceiling, 2.5), Shift(0.0, 0.0, size.height + t));
   for (const Wall wall : {Wall::kBack, Wall::kRight, Wall::kFront, Wall::kLeft}) {
     const Shape side = Shape::Box({WallHalfLength(wall) + 2.0 * t, t, h + 2.0 * t});

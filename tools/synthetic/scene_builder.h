@@ -30,11 +30,13 @@ struct Palette {
   std::vector<int> screens;
 };
 
-// Half the side lengths of the floor, and the height of the room, metres.
+// Half the side lengths of the floor, the height of the room, and the length after which the
+// floor's texture repeats, metres.
 struct RoomSize {
   double half_x = 3.0;
   double half_y = 3.0;
   double height = 2.7;
+  double floor_tile = 2.0;
 };
 
 // The walls, clockwise as seen from above: kBack is at +y.
@@ -46,12 +48,15 @@ class SceneBuilder {
   explicit SceneBuilder(uint64_t seed) : seed_(seed), random_(seed) {}
 
   // Rich: textures with detail everywhere. Bare: textures with almost no detail.
-  Palette AddRichPalette();
+  // Palettes with another `variant` have other textures of the same kinds.
+  Palette AddRichPalette(uint32_t variant = 0);
   Palette AddBarePalette();
   // Changes a palette for one room of several: the room gets painted walls, a carpet and posters of
   // its own. Paint and carpet have little detail. `room` is the number of the room, and `wall_bgr`
   // is the colour of the paint.
   Palette AddRoomPalette(Palette palette, uint32_t room, const cv::Scalar& wall_bgr);
+  // A carpet of little detail, for a `floor_tile` of 8 m.
+  int AddLargeCarpet(const cv::Scalar& bgr);
 
   // A material that shows the texture exactly once on each side of a box with these half extents.
   Material Fit(int texture, const Eigen::Vector3d& half) const;

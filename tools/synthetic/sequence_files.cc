@@ -8,6 +8,7 @@
 
 #include "hullslam/util/error.h"
 #include "synthetic/scenes.h"
+#include "synthetic/true_relations.h"
 
 namespace hullslam::synthetic {
 namespace {
@@ -117,6 +118,26 @@ void AddStatus(const SceneObject& object, nlohmann::ordered_json& entry) {
   }
 }
 
+// What stands on what, and the supports that no object is (floors and tables).
+void AddRelations(const Scene& scene, nlohmann::ordered_json& file) {
+  file["supports"] = nlohmann::ordered_json::array();
+  for (const Support& support : scene.supports) {
+    file["supports"].push_back({{"min", {support.min.x(), support.min.y()}},
+                                {"max", {support.max.x(), support.max.y()}},
+                                {"height", support.height}});
+  }
+  file["relations"] = nlohmann::ordered_json::array();
+  for (const TrueRelation& relation : FindTrueRelations(scene)) {
+    nlohmann::ordered_json entry = {{"subject", relation.subject}, {"relation", relation.relation}};
+    if (relation.object) {
+      entry["object"] = *relation.object;
+    } else {
+      entry["support"] = *relation.support;
+    }
+    file["relations"].push_back(std::move(entry));
+  }
+}
+
 std::string ObjectsJson(const SequencePlan& plan) {
   nlohmann::ordered_json file = {{"generator", "make_synthetic"},
                                  {"scene", plan.name},
@@ -144,6 +165,7 @@ std::string ObjectsJson(const SequencePlan& plan) {
       file["gone"].push_back(ObjectJson(object));
     }
   }
+  AddRelations(plan.scene, file);
   return file.dump(1) + "\n";
 }
 

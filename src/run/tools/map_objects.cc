@@ -206,6 +206,7 @@ struct MappingInputs {
   LoadedSettings loaded;
   ImageSequence sequence;
   Trajectory poses;
+  std::optional<Trajectory> groundtruth;  // tells only which direction is upwards
 };
 
 MappingInputs OpenMappingInputs(const MapObjectsArguments& arguments) {
@@ -222,6 +223,7 @@ MappingInputs OpenMappingInputs(const MapObjectsArguments& arguments) {
       arguments.sequence,
       {.need_images = false, .frames_per_second = inputs.loaded.options.frames_per_second});
   inputs.poses = ReadTrajectory(arguments.poses);
+  inputs.groundtruth = ReadGroundtruth(inputs.sequence);
   return inputs;
 }
 
@@ -279,8 +281,8 @@ RunSummary Summarize(const MapObjectsArguments& arguments, const MappingInputs& 
 }
 
 void WriteOutputs(OutputFolder& output, const KnownPoseMapper& run, const ObjectReport& report,
-                  RunSummary summary) {
-  for (const FileContent& file : ObjectFiles(report)) {
+                  const Scene& scene, RunSummary summary) {
+  for (const FileContent& file : ObjectFiles(report, scene)) {
     output.Write(file);
   }
   // Written because `evaluate` and plot_run.py expect a trajectory in the folder of every run.
@@ -339,7 +341,8 @@ int RunMapObjects(int argc, char** argv) {
   summary.objects = SummarizeObjects(report, counts);
   summary.timing.total_s = seconds.count();
   summary.provenance.interrupted = !is_complete;
-  WriteOutputs(output, run, report, summary);
+  const Scene scene = CollectScene(run.map(), report, inputs.groundtruth);
+  WriteOutputs(output, run, report, scene, summary);
   if (!arguments.quiet) {
     PrintTable(run, report);
     Print("{} views of {} frames ({} without a pose) in {:.1f} s\n{}\nresults are in {}\n",

@@ -1,0 +1,230 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Compares scene.json of runs with the true relations of their synthetic sequences.
+
+For each pair RUN_DIR SEQUENCE it prints precision and recall of the relations on, in and beside
+between the mapped objects, and at the end those of all pairs together. With --questions N it also
+asks query_objects N questions per scene whose answer is known, and prints how often the right
+object comes first. docs/scene.md explains how the figures are counted.
+
+Exit codes: 0 done, 2 bad usage or input.
+"""
+
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+
+RELATIONS = ("on", "in", "beside")
+NEAREST = 0.5  # of the true size: the largest distance between the centres of matched objects
+
+
+class BadInput(Exception):
+    """A message for the user."""
+
+
+def read_json(path):
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path}: {error}") from error
+
+
+def member(path, value, key):
+    if not isinstance(value, dict) or key not in value:
+        raise BadInput(f"{path}: has no {key}")
+    return value[key]
+
+
+def size_of(truth):
+    return 2.0 * sum(truth["half_extents"]) / 3.0
+
+
+def distance(a, b):
+    return sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5
+
+
+def match(scene, truths):
+    """The id of the true object of each mapped object. As in `evaluate objects`, it is the one
+    whose centre is nearest in relation to its size. Of several mapped objects of one true object,
+    the nearest counts."""
+    best = {}
+    for mapped in scene["objects"]:
+        shares = [(distance(mapped["centre"], truth["world_from_object"][:3]) / size_of(truth),
+                   truth["id"]) for truth in truths]
+        share, truth = min(shares, default=(1.0, -1))
+        if share <= NEAREST and (truth not in best or share < best[truth][0]):
+            best[truth] = (share, mapped["id"])
+    return {mapped: truth for truth, (_, mapped) in best.items()}
+
+
+def supports_of_surfaces(scene, matched, true_support):
+    """The true support of each surface: the one of most of its objects."""
+    supports = []
+    for surface in scene["surfaces"]:
+        votes = [true_support[matched[i]] for i in surface["objects"]
+                 if i in matched and matched[i] in true_support]
+        supports.append(max(sorted(set(votes)), key=votes.count, default=None))
+    return supports
+
+
+def compare(scene, truth, matched):
+    """The found and the true relations between matched objects, as sets of (relation, subject,
+    object). A support is the text "support 2"."""
+    heights = [support["height"] for support in truth["supports"]]
+    # The floors of all rooms are one floor, which is the first support.
+    first = [heights.index(height) if height == 0.0 else i for i, height in enumerate(heights)]
+    true_support = {entry["subject"]: first[entry["support"]] for entry in truth["relations"]
+                    if "support" in entry}
+    known = set(matched.values())
+    true = set()
+    for entry in truth["relations"]:
+        other = entry["object"] if "object" in entry else f"support {first[entry['support']]}"
+        if entry["subject"] in known and ("support" in entry or other in known):
+            true.add((entry["relation"], entry["subject"], other))
+    found = set()
+    for entry in scene["relations"]:
+        subject, other = matched.get(entry["subject"]), matched.get(entry["object"])
+        if entry["relation"] in RELATIONS and subject is not None and other is not None:
+            found.add((entry["relation"], subject, other))
+    for surface, support in zip(scene["surfaces"],
+                                supports_of_surfaces(scene, matched, true_support)):
+        for mapped in surface["objects"]:
+            if mapped in matched:
+                found.add(("on", matched[mapped], f"support {support}"))
+    return found, true
+
+
+def figure(part, whole):
+    return f"{part / whole:.3f}" if whole else "-"
+
+
+def print_counts(name, counts, mapped, objects):
+    cells = []
+    for relation in RELATIONS:
+        right, found, true = counts[relation]
+        cells.append(f"{figure(right, found)} {figure(right, true)} ({found} found, {true} true)")
+    print(f"| {name} | {mapped} of {objects} | " + " | ".join(cells) + " |")
+
+
+def names_of(truth):
+    return {entry["id"]: entry["class"] for entry in truth["objects"]}
+
+
+def list_errors(found, true, names):
+    def name(thing):
+        return f"{names[thing]} {thing}" if thing in names else str(thing)
+
+    for kind, wrong in (("wrong", found - true), ("missing", true - found)):
+        for relation, subject, other in sorted(wrong, key=str):
+            print(f"  {kind}: {name(subject)} {relation} {name(other)}")
+
+
+def make_questions(scene, truth, matched, count):
+    """Questions with one right answer among the mapped objects: (text, mapped id). Each names the
+    class of an object and, if there are several of this class, a true relation that only this one
+    has."""
+    names = names_of(truth)
+    mapped_of = {value: key for key, value in matched.items()}
+    labels = {entry["id"]: entry["class"] for entry in scene["objects"]}
+    usual = [i for i in sorted(mapped_of) if labels[mapped_of[i]] == names[i]]
+    relations = {(e["relation"], e["subject"], e["object"]) for e in truth["relations"]
+                 if "object" in e and e["subject"] in usual and e["object"] in usual}
+    words = {"on": "on the", "in": "in the", "beside": "next to the"}
+    related = {}
+    for relation, subject, other in sorted(relations):
+        key = (names[subject], relation, names[other])
+        related.setdefault(key, set()).add(subject)
+    questions = [(f"the {subject} {words[relation]} {other}", mapped_of[min(ids)])
+                 for (subject, relation, other), ids in sorted(related.items()) if len(ids) == 1]
+    single = [(f"the {names[i]}", mapped_of[i]) for i in usual
+              if sum(names[k] == names[i] for k in usual) == 1]
+    mixed = []
+    while questions or single:
+        mixed += questions[:2] + single[:1]
+        questions, single = questions[2:], single[1:]
+    return mixed[:count]
+
+
+def ask(program, run, text):
+    done = subprocess.run([program, str(run), text, "--json"], capture_output=True, text=True,
+                          check=False)
+    if done.returncode == 1:
+        return None
+    if done.returncode != 0:
+        raise BadInput(f"{program} {run} '{text}': {done.stderr.strip()}")
+    return json.loads(done.stdout)["answers"][0]["object"]
+
+
+def ask_all(program, run, questions, is_listed):
+    right = 0
+    for text, expected in questions:
+        answer = ask(program, run, text)
+        right += answer == expected
+        if is_listed and answer != expected:
+            print(f"  {text}: {answer}, expected {expected}")
+    print(f"  questions: the right object comes first in {right} of {len(questions)}")
+    return right
+
+
+def measure(run, sequence, arguments, totals):
+    scene_path, truth_path = run / "scene.json", sequence / "groundtruth_objects.json"
+    scene, truth = read_json(scene_path), read_json(truth_path)
+    for key in ("objects", "relations", "surfaces"):
+        member(scene_path, scene, key)
+    member(truth_path, truth, "relations")
+    member(truth_path, truth, "supports")
+    matched = match(scene, member(truth_path, truth, "objects"))
+    found, true = compare(scene, truth, matched)
+    counts = {}
+    for relation in RELATIONS:
+        of_kind = [{entry for entry in entries if entry[0] == relation}
+                   for entries in (found & true, found, true)]
+        counts[relation] = [len(entries) for entries in of_kind]
+        totals["relations"][relation] = [a + b for a, b in zip(totals["relations"][relation],
+                                                               counts[relation])]
+    totals["mapped"] += len(matched)
+    totals["objects"] += len(truth["objects"])
+    print_counts(run.name, counts, len(matched), len(truth["objects"]))
+    if arguments.list:
+        list_errors(found, true, names_of(truth))
+    if arguments.questions:
+        questions = make_questions(scene, truth, matched, arguments.questions)
+        totals["asked"] += len(questions)
+        totals["right"] += ask_all(arguments.program, run, questions, arguments.list)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("pairs", nargs="+", metavar="RUN_DIR SEQUENCE", type=pathlib.Path,
+                        help="the output folder of a run, and its synthetic sequence. The run must "
+                        "have the world of the ground truth, as those of map_objects")
+    parser.add_argument("--questions", type=int, default=0, metavar="N",
+                        help="ask N questions per scene")
+    parser.add_argument("--program", default="build/release/bin/query_objects",
+                        help="path of query_objects (default: %(default)s)")
+    parser.add_argument("--list", action="store_true", help="also list all errors")
+    arguments = parser.parse_args()
+    if len(arguments.pairs) % 2:
+        parser.error("expected pairs RUN_DIR SEQUENCE")
+    totals = {"relations": {relation: [0, 0, 0] for relation in RELATIONS},
+              "mapped": 0, "objects": 0, "asked": 0, "right": 0}
+    print("| run | mapped | " + " | ".join(f"{r}: precision recall" for r in RELATIONS) + " |")
+    print("|---|---|---|---|---|")
+    try:
+        for run, sequence in zip(arguments.pairs[::2], arguments.pairs[1::2]):
+            measure(run, sequence, arguments, totals)
+    except BadInput as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    print_counts("all", totals["relations"], totals["mapped"], totals["objects"])
+    if arguments.questions:
+        print(f"all questions: {totals['right']} of {totals['asked']} "
+              f"({figure(totals['right'], totals['asked'])})")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace hullslam {
+
+// Rounds `value` to a multiple of `unit` (1 over a power of ten). Never returns -0. Throws
+// CheckError for a value that is not finite.
+double Rounded(double value, double unit);
+
+// The JSON on one line. Labels come from the files of users and may contain any bytes; what is not
+// UTF-8 is replaced.
+std::string DumpLine(const nlohmann::ordered_json& json);
+
+// The members of `head`, and then a list with the given name whose entries are each on a line of
+// their own.
+std::string WithEntries(const nlohmann::ordered_json& head, const char* name,
+                        const std::vector<std::string>& entries);
+
+}  // namespace hullslam

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "results/scene_file.h"
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "results/json_text.h"
+
+namespace hullslam {
+namespace {
+
+constexpr double kSceneUnit = 1e-9;      // metres and shares
+constexpr double kVarianceUnit = 1e-12;  // m^2
+
+using SceneJson = nlohmann::ordered_json;
+
+SceneJson VectorJson(const Eigen::VectorXd& values) {
+  SceneJson json = SceneJson::array();
+  for (const double value : values) {
+    json.push_back(Rounded(value, kSceneUnit));
+  }
+  return json;
+}
+
+SceneJson MatrixJson(const Eigen::Matrix3d& matrix) {
+  SceneJson rows = SceneJson::array();
+  for (const auto& row : matrix.rowwise()) {
+    rows.push_back({Rounded(row[0], kVarianceUnit), Rounded(row[1], kVarianceUnit),
+                    Rounded(row[2], kVarianceUnit)});
+  }
+  return rows;
+}
+
+SceneJson BoxJson(const std::optional<UprightBox>& box) {
+  if (!box) {
+    return nullptr;
+  }
+  return {{"centre", VectorJson(box->world_from_box.translation)},
+          {"half_extents", VectorJson(box->half_extents)},
+          {"rotation", VectorJson(box->world_from_box.rotation.coeffs())}};
+}
+
+SceneJson SceneObjectJson(const SceneObject& object) {
+  SceneJson shares = SceneJson::object();
+  for (const auto& [label, share] : object.shares) {
+    shares[label] = Rounded(share, kSceneUnit);
+  }
+  const auto& covariance = object.covariance;
+  return {{"id", object.id.value},
+          {"class", object.label},
+          {"class_distribution", shares},
+          {"centre", VectorJson(object.ellipsoid.world_from_object.translation)},
+          {"axes", VectorJson(object.ellipsoid.half_axes)},
+          {"rotation", VectorJson(object.ellipsoid.world_from_object.rotation.coeffs())},
+          {"box", BoxJson(object.box)},
+          {"centre_covariance", covariance ? MatrixJson(covariance->center) : SceneJson(nullptr)},
+          {"axes_covariance", covariance ? MatrixJson(covariance->half_axes) : SceneJson(nullptr)},
+          {"times_seen", object.views},
+          {"first_seen", Rounded(object.first_seen, kSceneUnit)},
+          {"last_seen", Rounded(object.last_seen, kSceneUnit)},
+          {"quality", Rounded(object.quality, kSceneUnit)}};
+}
+
+SceneJson RelationJson(const Relation& relation) {
+  SceneJson evidence = SceneJson::object();
+  for (const auto& [name, value] : relation.evidence) {
+    evidence[name] = Rounded(value, kSceneUnit);
+  }
+  return {{"subject", relation.subject.value},
+          {"relation", std::string(ToString(relation.kind))},
+          {"object", relation.object.value},
+          {"evidence", evidence}};
+}
+
+SceneJson SurfaceJson(const Surface& surface) {
+  SceneJson ids = SceneJson::array();
+  for (const ObjectId id : surface.objects) {
+    ids.push_back(id.value);
+  }
+  return {{"height", Rounded(surface.height, kSceneUnit)},
+          {"lowest", surface.is_lowest},
+          {"objects", ids}};
+}
+
+// A member whose entries are each on a line of their own.
+template <typename Entries, typename ToEntry>
+std::string List(const char* name, const Entries& entries, const ToEntry& to_entry) {
+  std::string text = std::string(",\n\"") + name + "\":[";
+  for (const auto& entry : entries) {
+    text += (&entry == &entries.front() ? "\n " : ",\n ") + DumpLine(to_entry(entry));
+  }
+  return text + "]";
+}
+
+}  // namespace
+
+std::string FormatScene(const Scene& scene) {
+  const SceneJson head = {{"version", kSceneFileVersion},
+                          {"up", scene.up ? VectorJson(*scene.up) : SceneJson(nullptr)},
+                          {"up_from", scene.up_from}};
+  std::string text = DumpLine(head);
+  text.pop_back();
+  text += List("objects", scene.objects, SceneObjectJson);
+  text += List("relations", scene.relations, RelationJson);
+  text += List("surfaces", scene.surfaces, SurfaceJson);
+  return text + ",\n\"places\":[]}\n";
+}
+
+}  // namespace hullslam

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/tools/query_objects.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "files/plausible.h"
+#include "files/read_file.h"
+#include "hullslam/map_files/map_file.h"
+#include "hullslam/util/error.h"
+#include "results/scene_file.h"
+#include "run/command_line.h"
+#include "run/messages.h"
+#include "run/object_outputs.h"
+#include "run/program.h"
+#include "scene/answer.h"
+#include "scene/question.h"
+#include "util/printable.h"
+#include "util/trim.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct QueryArguments {
+  fs::path source;
+  std::string question;
+  std::optional<uint32_t> like;
+  std::string label;
+  std::optional<double> within;
+  std::optional<uint32_t> of;
+  fs::path classes;
+  size_t most = 10;
+  bool json = false;
+};
+
+void AddArguments(CLI::App& app, QueryArguments& arguments) {
+  app.add_option("RUN_DIR|MAP", arguments.source,
+                 "output folder of a run with masks, or a map of --save-map")
+      ->required();
+  app.add_option("QUESTION", arguments.question,
+                 "such as \"cup on the book near the laptop\"; docs/queries.md has the grammar");
+  app.add_option("--like", arguments.like, "objects like the one with this number");
+  app.add_option("--class", arguments.label, "objects of this class");
+  auto* const within = app.add_option("--within", arguments.within,
+                                      "at most this far, in the unit of the map (metres with "
+                                      "depth), from the object of --of");
+  ExpectNumber(*within, 0.0, kMostMetres);
+  app.add_option("--of", arguments.of, "the number of an object")->needs(within);
+  within->needs("--of");
+  app.add_option("--classes", arguments.classes,
+                 "file with one class per line: classes that the detector knows, although the map "
+                 "may have no such object");
+  app.add_option("--most", arguments.most, "print at most this many answers")
+      ->check(CLI::Range(size_t{1}, size_t{1'000'000}).description(""))
+      ->capture_default_str();
+  app.add_flag("--json", arguments.json, "print JSON");
+  AddVersionAndExitCodes(app, "an object fits", "no object fits, or the program failed");
+}
+
+// Throws InputError unless exactly one kind of question is asked.
+void CheckArguments(const QueryArguments& arguments) {
+  const bool asks_class = !arguments.label.empty() || arguments.within;
+  const int kinds =
+      (arguments.question.empty() ? 0 : 1) + (arguments.like ? 1 : 0) + (asks_class ? 1 : 0);
+  if (kinds != 1) {
+    throw InputError(
+        "expected one of: a QUESTION in quotes, --like NUMBER, or --class NAME and/or --within "
+        "DISTANCE --of NUMBER");
+  }
+}
+
+Scene SceneOfMap(const fs::path& path) {
+  const StoredMap stored = ReadMap(path);
+  return CollectScene(stored.map, CollectObjects(stored.map, stored.settings.camera, path),
+                      std::nullopt);
+}
+
+Scene LoadScene(const fs::path& source) {
+  std::error_code error;
+  if (!fs::is_directory(source, error)) {
+    return SceneOfMap(source);
+  }
+  const fs::path file = source / "scene.json";
+  if (!fs::exists(file, error)) {
+    const bool has_objects = fs::exists(source / "objects.json", error);
+    throw InputError(source.string() + ": has no scene.json, expected the output folder of a run " +
+                     (has_objects ? "of this version; repeat the run" : "with --masks"));
+  }
+  return ReadScene(file);
+}
+
+// The classes of the objects, and those of the file of --classes.
+std::set<std::string> KnownClasses(const Scene& scene, const fs::path& file) {
+  std::set<std::string> labels;
+  for (const SceneObject& object : scene.objects) {
+    for (const auto& [label, share] : object.shares) {
+      labels.insert(label);
+    }
+  }
+  if (!file.empty()) {
+    const std::string text = ReadFile(file);
+    for (size_t begin = 0; begin < text.size();) {
+      const size_t end = std::min(text.find('\n', begin), text.size());
+      const std::string line(Trim(std::string_view(text).substr(begin, end - begin)));
+      if (!line.empty()) {
+        labels.insert(Printable(line));
+      }
+      begin = end + 1;
+    }
+  }
+  return labels;
+}
+
+std::vector<Answer> FindAnswers(const Scene& scene, const QueryArguments& arguments) {
+  const std::set<std::string> labels = KnownClasses(scene, arguments.classes);
+  if (!arguments.question.empty()) {
+    return AnswerQuestion(scene, ParseQuestion(arguments.question, labels));
+  }
+  if (arguments.like) {
+    return FindLike(scene, ObjectId(*arguments.like));
+  }
+  AskedThing thing;
+  if (!arguments.label.empty()) {
+    thing = ParseQuestion(arguments.label, labels);
+    if (thing.kind != ThingKind::kClass || !thing.conditions.empty()) {
+      throw InputError("--class: '" + arguments.label + "', expected a class");
+    }
+  }
+  return arguments.within
+             ? FindWithin(scene, thing.labels, *arguments.within, ObjectId(*arguments.of))
+             : AnswerQuestion(scene, thing);
+}
+
+void PrintAnswersAsJson(const Scene& scene, const std::vector<Answer>& answers) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Answer& answer : answers) {
+    const SceneObject& object = *scene.Find(answer.object);
+    const Eigen::Vector3d& center = object.ellipsoid.world_from_object.translation;
+    list.push_back({{"object", answer.object.value},
+                    {"class", object.label},
+                    {"score", answer.score},
+                    {"reason", answer.reason},
+                    {"centre", {center.x(), center.y(), center.z()}}});
+  }
+  const nlohmann::ordered_json json = {{"answers", list}};
+  Print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void PrintAnswers(const Scene& scene, const std::vector<Answer>& answers) {
+  Print("{:>4} {:<16} {:>5} {:>23}  {}\n", "id", "class", "score", "centre", "why");
+  for (const Answer& answer : answers) {
+    const SceneObject& object = *scene.Find(answer.object);
+    const Eigen::Vector3d& center = object.ellipsoid.world_from_object.translation;
+    Print("{:>4} {:<16} {:>5.2f} {:>7.2f} {:>7.2f} {:>7.2f}  {}\n", answer.object.value,
+          object.label, answer.score, center.x(), center.y(), center.z(), answer.reason);
+  }
+}
+
+}  // namespace
+
+int RunQueryObjects(int argc, char** argv) {
+  CLI::App app("Answers questions about the objects of a run or of a saved map.", "query_objects");
+  QueryArguments arguments;
+  AddArguments(app, arguments);
+  if (!ParseCommandLine(app, argc, argv)) {
+    return kDone;
+  }
+  CheckArguments(arguments);
+  const Scene scene = LoadScene(arguments.source);
+  std::vector<Answer> answers = FindAnswers(scene, arguments);
+  answers.resize(std::min(answers.size(), arguments.most));
+  if (arguments.json) {
+    PrintAnswersAsJson(scene, answers);
+  } else if (!answers.empty()) {
+    PrintAnswers(scene, answers);
+  }
+  if (answers.empty()) {
+    PrintError("no object fits\n");
+    return kFailed;
+  }
+  return kDone;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/make_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "objects/object_view.h"
+#include "scene/joint_views.h"
+#include "scene/object_body.h"
+#include "scene/relations.h"
+#include "scene/shape_covariance.h"
+
+namespace hullslam {
+namespace {
+
+SceneObject Describe(const ReportedObject& reported) {
+  SceneObject object;
+  object.id = reported.id;
+  object.label = reported.label;
+  object.shares = reported.votes;
+  double sum = 0.0;
+  for (const auto& [label, votes] : reported.votes) {
+    sum += votes;
+  }
+  for (auto& [label, share] : object.shares) {
+    share = sum > 0.0 ? share / sum : 1.0 / static_cast<double>(object.shares.size());
+  }
+  object.ellipsoid = reported.ellipsoid;
+  object.views = reported.views.size();
+  object.first_seen = reported.views.front().timestamp;
+  object.last_seen = reported.views.front().timestamp;
+  for (const ReportedView& view : reported.views) {  // sessions may have earlier time stamps
+    object.first_seen = std::min(object.first_seen, view.timestamp);
+    object.last_seen = std::max(object.last_seen, view.timestamp);
+  }
+  object.quality = QualityOf(reported);
+  return object;
+}
+
+}  // namespace
+
+Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& up) {
+  Scene scene;
+  scene.up = up.up;
+  scene.up_from = up.from;
+  const Eigen::Quaterniond upright_from_world =
+      UprightFromWorld(up.up.value_or(Eigen::Vector3d::UnitZ()));
+  std::vector<ObjectBody> bodies;
+  for (const ReportedObject& reported : report.objects) {
+    if (reported.state != ObjectState::kMapped) {
+      continue;
+    }
+    SceneObject& object = scene.objects.emplace_back(Describe(reported));
+    const ObjectLandmark& landmark = map.objects().At(reported.id);
+    const std::vector<ObjectView> views = CollectViews(map, landmark);
+    object.covariance = CovarianceOf(report.camera, object.ellipsoid, landmark.start, views);
+    bodies.push_back(
+        MeasureBody(object.id, object.ellipsoid, report.camera, views, upright_from_world));
+    if (up.up && object.covariance) {
+      bodies.back().height_sigma = std::sqrt(up.up->dot(object.covariance->center * *up.up));
+    }
+    if (up.up) {
+      object.box = BoxOf(bodies.back(), upright_from_world);
+    }
+  }
+  const ViewStatistics views = CollectViewStatistics(map, report.camera);
+  scene.relations = FindViewRelations(views);
+  if (up.up) {
+    SceneRelations found = FindStandingRelations(bodies, views);
+    std::move(found.relations.begin(), found.relations.end(), std::back_inserter(scene.relations));
+    scene.surfaces = std::move(found.surfaces);
+  }
+  std::stable_sort(scene.relations.begin(), scene.relations.end(),
+                   [](const Relation& a, const Relation& b) { return a.subject < b.subject; });
+  return scene;
+}
+
+}  // namespace hullslam

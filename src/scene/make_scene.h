@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "hullslam/map/map.h"
+#include "report/object_report.h"
+#include "scene/scene.h"
+#include "scene/up_direction.h"
+
+namespace hullslam {
+
+// The scene of a map. `report` has the objects of the same map with their fits; only mapped objects
+// take part. If the upward direction is not known, there are no boxes, no surfaces, and only the
+// relations that follow from the views.
+Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& up);
+
+}  // namespace hullslam

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hullslam/util/id.h"
+#include "scene/scene.h"
+
+namespace hullslam {
+
+// What a question can ask for: the relations of a scene, their inverses, and the distance.
+enum class AskedRelation {
+  kOn,
+  kUnder,  // the inverse of "on"
+  kIn,
+  kBeside,
+  kInFrontOf,
+  kBehind,  // the inverse of "in front of"
+  kPartOf,
+  kHiddenBy,
+  kNear,
+};
+
+struct AskedThing;
+
+struct AskedCondition {
+  AskedRelation relation = AskedRelation::kNear;
+  std::string text;               // the words of the question
+  std::vector<AskedThing> other;  // exactly one
+};
+
+enum class ThingKind { kClass, kAny, kObject, kFloor, kSurface };
+
+// One thing of a question: what it is, and what must hold for it.
+struct AskedThing {
+  ThingKind kind = ThingKind::kAny;
+  std::set<std::string> labels;  // only kClass: one of these
+  ObjectId id;                   // only kObject
+  std::string text;              // the words of the question
+  std::vector<AskedCondition> conditions;
+};
+
+// Reads a question in the grammar of docs/queries.md, such as "the cup on the table near the
+// laptop". `labels` are the classes that exist. Throws InputError that names the word that was not
+// understood and lists the words that are known.
+AskedThing ParseQuestion(std::string_view text, const std::set<std::string>& labels);
+
+}  // namespace hullslam

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "results/scene_file.h"
+#include "scene/made_scene.h"
+#include "support/rendered_desk.h"
+#include "support/run_program.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::json;
+
+class QueryObjects : public ::testing::Test {
+ protected:
+  QueryObjects() { folder_.Write("run/scene.json", FormatScene(MakeQueryScene())); }
+
+  ProgramResult Ask(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), folder_.path() / "run");
+    return RunProgram("query_objects", arguments);
+  }
+  void ExpectRefused(const std::vector<std::string>& arguments,
+                     const std::vector<std::string>& parts) const {
+    const ProgramResult result = RunProgram("query_objects", arguments);
+    EXPECT_EQ(result.exit_code, 2) << result.errors;
+    EXPECT_TRUE(result.output.empty());
+    EXPECT_EQ(result.errors.find('\n'), result.errors.size() - 1) << result.errors;
+    for (const std::string& part : parts) {
+      EXPECT_NE(result.errors.find(part), std::string::npos) << result.errors;
+    }
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(QueryObjects, AnswersWithTheBestObjectFirst) {
+  const ProgramResult result = Ask({"cup on the book", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const Json answers = Json::parse(result.output)["answers"];
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0]["object"], 0);
+  EXPECT_EQ(answers[0]["class"], "cup");
+  const ProgramResult text = Ask({"cups", "--most", "1"});
+  EXPECT_NE(text.output.find("cup"), std::string::npos);
+  EXPECT_EQ(std::count(text.output.begin(), text.output.end(), '\n'), 2);
+}
+
+TEST_F(QueryObjects, AnswersWithinADistanceAndLikeAnObject) {
+  const ProgramResult within = Ask({"--class", "cup", "--within", "0.2", "--of", "3", "--json"});
+  ASSERT_EQ(within.exit_code, 0) << within.errors;
+  EXPECT_EQ(Json::parse(within.output)["answers"].size(), 2U);
+  const ProgramResult like = Ask({"--like", "0", "--json"});
+  EXPECT_EQ(Json::parse(like.output)["answers"][0]["object"], 2);
+}
+
+TEST_F(QueryObjects, ExitCodeIs1IfNothingFits) {
+  EXPECT_EQ(Ask({"laptop on the book"}).exit_code, 1);
+  const std::string classes = folder_.Write("classes.txt", "zebra\nfire hydrant\n");
+  EXPECT_EQ(Ask({"zebra", "--classes", classes}).exit_code, 1);
+  EXPECT_EQ(Ask({"fire hydrants on the floor", "--classes", classes}).exit_code, 1);
+}
+
+TEST_F(QueryObjects, RefusesBadQuestionsAndInput) {
+  const std::string run = folder_.path() / "run";
+  ExpectRefused({run, "zebra"}, {"'zebra'", "laptop"});
+  ExpectRefused({run}, {"QUESTION"});
+  ExpectRefused({run, "cup", "--like", "0"}, {"expected one of"});
+  ExpectRefused({run, "--within", "1"}, {"--of"});
+  ExpectRefused({run, "--within", "nan", "--of", "3"}, {"--within", "nan"});
+  ExpectRefused({run, "--like", "77"}, {"object 77"});
+  ExpectRefused({folder_.path() / "none", "cup"}, {"none", "No such file"});
+  folder_.Write("empty/notes.txt", "");
+  ExpectRefused({folder_.path() / "empty", "cup"}, {"scene.json", "--masks"});
+  folder_.Write("broken/scene.json", "{\"version\":1,");
+  ExpectRefused({folder_.path() / "broken", "cup"}, {"scene.json"});
+  ExpectRefused({folder_.Write("wrong.map", "no map"), "cup"}, {"wrong.map"});
+}
+
+TEST(QueryObjectsOfARun, KnowsWhatStandsOnTheTable) {
+  const RenderedDesk desk(60);
+  const TemporaryFolder folder;
+  const std::string run = folder.path() / "run";
+  const std::string map = folder.path() / "desk.map";
+  const ProgramResult made =
+      RunProgram("rgbd_tum", {desk.path(), "--masks", desk.path() / "masks", "--output", run,
+                              "--save-map", map, "--quiet"});
+  ASSERT_EQ(made.exit_code, 0) << made.errors;
+  const ProgramResult of_run =
+      RunProgram("query_objects", {run, "keyboard on a surface", "--json"});
+  ASSERT_EQ(of_run.exit_code, 0) << of_run.errors;
+  EXPECT_EQ(Json::parse(of_run.output)["answers"][0]["class"], "keyboard");
+  // The map has no ground truth, so the planes of its landmarks tell what is upwards.
+  const ProgramResult of_map =
+      RunProgram("query_objects", {map, "keyboard on a surface", "--json"});
+  ASSERT_EQ(of_map.exit_code, 0) << of_map.errors;
+  EXPECT_EQ(Json::parse(of_map.output)["answers"][0]["object"],
+            Json::parse(of_run.output)["answers"][0]["object"]);
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/joint_views.h"
+
+#include <gtest/gtest.h>
+
+#include "scene/made_scene.h"
+
+namespace hullslam {
+namespace {
+
+// A keyframe at the origin that looks along z and sees the objects whose entry in `seen` is true.
+void AddFrontView(Map& map, const Sensor& sensor, const std::vector<MadeObject>& objects,
+                  const std::vector<ObjectId>& ids, const std::vector<bool>& seen) {
+  auto frame = std::make_shared<Frame>();
+  frame->id = FrameId(static_cast<uint32_t>(map.keyframes().size()));
+  std::vector<ObjectId> shown;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    if (seen[i]) {
+      frame->detections.push_back(Detect(objects[i], sensor, Rigid3()));
+      shown.push_back(ids[i]);
+    }
+  }
+  const KeyframeId keyframe = map.AddKeyframe(frame, Rigid3());
+  for (uint32_t k = 0; k < shown.size(); ++k) {
+    map.AddObservation(shown[k], keyframe, k);
+  }
+}
+
+TEST(ViewStatistics, TellWhatIsBeforeAndWhatIsHidden) {
+  const Sensor sensor = MakeObjectSensor();
+  const auto facing = [](double depth) {
+    return Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.0, 0.0, depth));
+  };
+  const std::vector<MadeObject> objects = {{"cup", {facing(1.0), {0.1, 0.1, 0.1}}},
+                                           {"tv", {facing(2.0), {0.3, 0.3, 0.1}}}};
+  Map map;
+  std::vector<ObjectId> ids;
+  for (const MadeObject& object : objects) {
+    ids.push_back(map.AddObject());
+    map.MutableObject(ids.back()).state = ObjectState::kMapped;
+    map.MutableObject(ids.back()).ellipsoid = object.ellipsoid;
+  }
+  AddFrontView(map, sensor, objects, ids, {true, true});
+  AddFrontView(map, sensor, objects, ids, {true, false});
+  const ViewStatistics statistics = CollectViewStatistics(map, sensor.camera);
+  const JointViews& joint = statistics.Joint(ids[0], ids[1]);
+  EXPECT_EQ(joint.views, 1U);
+  EXPECT_EQ(joint.in_front, 1U);
+  EXPECT_EQ(joint.mask_inside, 1U);
+  EXPECT_EQ(statistics.Joint(ids[1], ids[0]).in_front, 0U);
+  EXPECT_EQ(statistics.Joint(ids[1], ids[0]).mask_inside, 0U);
+  const HiddenViews& hidden = statistics.hidden.at({ids[1], ids[0]});
+  EXPECT_EQ(hidden.views, 2U);
+  EXPECT_EQ(hidden.hidden, 2U);
+  EXPECT_NEAR(hidden.most, 0.44, 0.03);  // (0.1 / 0.3 * 2)^2
+  EXPECT_EQ(statistics.hidden.at({ids[0], ids[1]}).hidden, 0U);
+  EXPECT_EQ(statistics.Joint(ids[0], ObjectId(77)).views, 0U);
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/make_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "scene/made_scene.h"
+
+namespace hullslam {
+namespace {
+
+class MakeSceneTest : public ::testing::Test {
+ protected:
+  MakeSceneTest() : map_(MakeMapOf(Objects(), sensor_)) {}
+  static std::vector<MadeObject> Objects() {
+    return {Standing("book", {0.0, 0.0, 0.0}, {0.12, 0.15, 0.03}),
+            Standing("cup", {0.0, 0.02, 0.06}, {0.05, 0.05, 0.06}),
+            Standing("bottle", {0.3, 0.0, 0.0}, {0.04, 0.04, 0.12})};
+  }
+  Scene Make(const UpDirection& up) const {
+    return MakeScene(map_, ReportObjects(map_, sensor_.camera), up);
+  }
+
+  Sensor sensor_ = MakeObjectSensor();
+  Map map_;
+};
+
+TEST_F(MakeSceneTest, DescribesTheObjects) {
+  const Scene scene = Make({Eigen::Vector3d::UnitZ(), "ground truth"});
+  ASSERT_EQ(scene.objects.size(), 3U);
+  const SceneObject& cup = scene.objects[1];
+  EXPECT_EQ(cup.label, "cup");
+  EXPECT_EQ(cup.shares.at("cup"), 1.0);
+  EXPECT_EQ(cup.views, 12U);
+  EXPECT_EQ(cup.first_seen, 10.0);
+  EXPECT_EQ(cup.last_seen, 21.0);
+  ASSERT_TRUE(cup.box && cup.covariance);
+  EXPECT_NEAR(cup.box->half_extents.z(), 0.06, 0.005);
+}
+
+TEST_F(MakeSceneTest, FindsWhatIsOnWhat) {
+  const Scene scene = Make({Eigen::Vector3d::UnitZ(), "ground truth"});
+  EXPECT_TRUE(std::any_of(scene.relations.begin(), scene.relations.end(), [](const auto& found) {
+    return found.subject == ObjectId(1) && found.kind == RelationKind::kOn &&
+           found.object == ObjectId(0);
+  }));
+  ASSERT_EQ(scene.surfaces.size(), 1U);
+  EXPECT_EQ(scene.surfaces[0].objects, (std::vector<ObjectId>{ObjectId(0), ObjectId(2)}));
+}
+
+TEST_F(MakeSceneTest, WithoutUpwardDirectionHasNoRelationsThatNeedIt) {
+  const Scene scene = Make({std::nullopt, "unknown: no ground truth, and too few landmarks"});
+  EXPECT_FALSE(scene.objects[0].box);
+  EXPECT_TRUE(scene.surfaces.empty());
+  for (const Relation& relation : scene.relations) {
+    EXPECT_TRUE(relation.kind == RelationKind::kInFrontOf ||
+                relation.kind == RelationKind::kHiddenBy);
+  }
+}
+
+}  // namespace
+}  // namespace hullslam

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/object_body.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "geometry/convex_hull.h"
+#include "scene/made_scene.h"
+
+namespace hullslam {
+namespace {
+
+const Eigen::Quaterniond kUpright = Eigen::Quaterniond::Identity();
+
+ObjectBody BodyOf(const MadeObject& object) {
+  return BodyOfEllipsoid(ObjectId(1), object.ellipsoid, kUpright);
+}
+
+TEST(ObjectBody, OfAnEllipsoidHasItsExtents) {
+  const ObjectBody body = BodyOf(Standing("cup", {1.0, 2.0, 0.5}, {0.2, 0.1, 0.3}));
+  EXPECT_NEAR(body.bottom, 0.5, 1e-9);
+  EXPECT_NEAR(body.top, 1.1, 1e-9);
+  EXPECT_NEAR(body.size, (0.4 + 0.2 + 0.6) / 3.0, 1e-9);
+  EXPECT_NEAR(body.width, 0.3, 1e-9);
+  const UprightBox box = BoxOf(body, kUpright);
+  EXPECT_LT((box.world_from_box.translation - Eigen::Vector3d(1.0, 2.0, 0.8)).norm(), 1e-9);
+}
+
+TEST(ObjectBody, BoxIsUprightInATurnedWorld) {
+  const Eigen::Vector3d up = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
+  const Eigen::Quaterniond upright = UprightFromWorld(up);
+  const MadeObject made = Standing("cup", {1.0, 2.0, 0.5}, {0.2, 0.1, 0.3});
+  const Ellipsoid in_world = Rigid3(upright.conjugate(), Eigen::Vector3d::Zero()) * made.ellipsoid;
+  const UprightBox box = BoxOf(BodyOfEllipsoid(ObjectId(1), in_world, upright), upright);
+  EXPECT_LT((box.world_from_box.rotation * Eigen::Vector3d::UnitZ() - up).norm(), 1e-9);
+  EXPECT_NEAR(box.half_extents.z(), 0.3, 1e-9);
+  EXPECT_LT((box.world_from_box.translation - in_world.world_from_object.translation).norm(), 1e-9);
+}
+
+// The mask of a box whose ellipsoid only touches its faces.
+TEST(ObjectBody, OfABoxHasTheExtentsOfTheBoxAndNotOfTheEllipsoid) {
+  const Sensor sensor = MakeObjectSensor();
+  const Eigen::Vector3d half(0.2, 0.1, 0.15);
+  const MadeObject fitted = {"box", {Rigid3(), 1.25 * half}};
+  std::vector<Detection> detections;
+  std::vector<ObjectView> views;
+  detections.reserve(24);
+  for (uint32_t i = 0; i < 24; ++i) {
+    const Rigid3 camera = CameraOnCircle(0.26 * i, 2.5, i % 2 == 0 ? 1.2 : 0.1);
+    std::vector<Eigen::Vector2d> corners;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d signs(corner % 2 * 2 - 1, corner / 2 % 2 * 2 - 1, corner / 4 * 2 - 1);
+      corners.push_back(sensor.camera.Project(camera * half.cwiseProduct(signs).eval()));
+    }
+    Detection& detection = detections.emplace_back(Detect(fitted, sensor, camera));
+    for (SilhouetteLine& line : detection.lines) {
+      double reach = -1e9;
+      for (const Eigen::Vector2d& corner : corners) {
+        reach = std::max(reach, line.line.normal.dot(corner));
+      }
+      line.line.offset = -reach;
+    }
+    views.push_back({KeyframeId(i), camera, &detection});
+  }
+  const ObjectBody body =
+      MeasureBody(ObjectId(1), fitted.ellipsoid, sensor.camera, views, kUpright);
+  const UprightBox box = BoxOf(body, kUpright);
+  EXPECT_NEAR(box.half_extents.head<2>().maxCoeff(), half.x(), 0.015);
+  EXPECT_NEAR(box.half_extents.head<2>().minCoeff(), half.y(), 0.015);
+  EXPECT_TRUE(body.is_bottom_seen);
+}
+
+TEST(ObjectBody, BottomIsNotSeenIfItIsAlwaysCutOff) {
+  const Sensor sensor = MakeObjectSensor();
+  const MadeObject made = Standing("couch", {0.0, 0.0, 0.0}, {0.2, 0.1, 0.3});
+  const Rigid3 camera = CameraOnCircle(0.3, 2.5, 0.6);
+  Detection detection = Detect(made, sensor, camera);
+  for (SilhouetteLine& line : detection.lines) {
+    line.is_one_sided = line.line.normal.y() > 0.0;  // the lower side
+  }
+  const std::vector<ObjectView> views = {{KeyframeId(0), camera, &detection}};
+  EXPECT_FALSE(
+      MeasureBody(ObjectId(1), made.ellipsoid, sensor.camera, views, kUpright).is_bottom_seen);
+}
+
+TEST(ObjectBody, GapAndOverlapOfFootprints) {
+  const ObjectBody a = BodyOf(Standing("cup", {0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}));
+  const ObjectBody far = BodyOf(Standing("cup", {1.0, 0.0, 3.0}, {0.2, 0.3, 0.1}));
+  EXPECT_NEAR(FootprintGap(a, far), 0.7, 1e-3);
+  EXPECT_NEAR(FootprintGap(far, a), 0.7, 1e-3);
+  EXPECT_EQ(FootprintOverlap(a, far), 0.0);
+  const ObjectBody over = BodyOf(Standing("book", {0.05, 0.0, 0.0}, {0.5, 0.5, 0.1}));
+  EXPECT_LT(FootprintGap(a, over), -0.5);
+  EXPECT_NEAR(FootprintOverlap(a, over), 1.0, 1e-6);
+  EXPECT_NEAR(FootprintOverlap(over, a), 1.0, 1e-6) << "a share of the smaller one";
+}
+
+TEST(EllipsoidGap, IsTheDistanceOfSpheres) {
+  const MadeObject a = Standing("ball", {0.0, 0.0, 0.0}, {0.1, 0.1, 0.1});
+  const MadeObject b = Standing("ball", {0.3, 0.4, 0.0}, {0.2, 0.2, 0.2});
+  const double distance = std::sqrt(0.3 * 0.3 + 0.4 * 0.4 + 0.1 * 0.1);
+  EXPECT_NEAR(EllipsoidGap(a.ellipsoid, b.ellipsoid), distance - 0.3, 1e-9);
+}
+
+TEST(VolumeShare, IsTheShareThatIsInside) {
+  const Ellipsoid small = Standing("ball", {0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}).ellipsoid;
+  const Ellipsoid large = Standing("bowl", {0.0, 0.0, -0.2}, {0.5, 0.5, 0.5}).ellipsoid;
+  EXPECT_EQ(VolumeShare(small, large), 1.0);
+  EXPECT_NEAR(VolumeShare(large, small), 0.008, 0.01);
+  const Ellipsoid away = Standing("ball", {2.0, 0.0, 0.0}, {0.1, 0.1, 0.1}).ellipsoid;
+  EXPECT_EQ(VolumeShare(small, away), 0.0);
+}
+
+}  // namespace
+}  // namespace hullslam

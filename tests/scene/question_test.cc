@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/question.h"
+
+#include <gtest/gtest.h>
+
+#include "support/expect_error.h"
+
+namespace hullslam {
+namespace {
+
+const std::set<std::string> kLabels = {"cup", "book", "laptop", "dining table"};
+
+TEST(ParseQuestion, AllRelationsAreAboutTheFirstThing) {
+  const AskedThing cup = ParseQuestion("The cup on the table near a laptop", kLabels);
+  EXPECT_EQ(cup.kind, ThingKind::kClass);
+  EXPECT_EQ(cup.labels, std::set<std::string>{"cup"});
+  ASSERT_EQ(cup.conditions.size(), 2U);
+  EXPECT_EQ(cup.conditions[0].relation, AskedRelation::kOn);
+  EXPECT_EQ(cup.conditions[0].other[0].labels, std::set<std::string>{"dining table"});
+  EXPECT_EQ(cup.conditions[1].relation, AskedRelation::kNear);
+  EXPECT_EQ(cup.conditions[1].other[0].text, "laptop");
+}
+
+TEST(ParseQuestion, ThatIsDescribesTheLastThing) {
+  const AskedThing cup =
+      ParseQuestion("cup next to the book that is on the laptop and near object 12", kLabels);
+  ASSERT_EQ(cup.conditions.size(), 2U);
+  const AskedThing& book = cup.conditions[0].other[0];
+  ASSERT_EQ(book.conditions.size(), 1U);
+  EXPECT_EQ(book.conditions[0].other[0].labels, std::set<std::string>{"laptop"});
+  EXPECT_EQ(cup.conditions[1].other[0].kind, ThingKind::kObject);
+  EXPECT_EQ(cup.conditions[1].other[0].id, ObjectId(12));
+}
+
+TEST(ParseQuestion, KnowsSynonymsAndThingsWithoutClass) {
+  const AskedThing thing = ParseQuestion("something on top of the floor in front of it", {"it"});
+  EXPECT_EQ(thing.kind, ThingKind::kAny);
+  EXPECT_EQ(thing.conditions[0].relation, AskedRelation::kOn);
+  EXPECT_EQ(thing.conditions[0].other[0].kind, ThingKind::kFloor);
+  EXPECT_EQ(thing.conditions[1].relation, AskedRelation::kInFrontOf);
+  EXPECT_EQ(ParseQuestion("book under the cup", kLabels).conditions[0].relation,
+            AskedRelation::kUnder);
+}
+
+TEST(ParseQuestion, UnknownWordsNameTheKnownOnes) {
+  ExpectInputError([] { ParseQuestion("zebra", kLabels); },
+                   {"unknown word 'zebra'", "book, cup, dining table, laptop", "next to"});
+  ExpectInputError([] { ParseQuestion("cup on labtop", kLabels); }, {"did you mean 'laptop'?"});
+  ExpectInputError([] { ParseQuestion("cup above book", kLabels); }, {"'above'", "a relation"});
+  ExpectInputError([] { ParseQuestion("cup on the", kLabels); }, {"ends too early", "'the'"});
+  ExpectInputError([] { ParseQuestion(" ? ", kLabels); }, {"no word"});
+  ExpectInputError([] { ParseQuestion("object x", kLabels); }, {"'object x'", "number"});
+  ExpectInputError([] { ParseQuestion("cup that on book", kLabels); }, {"'on'", "'is'"});
+}
+
+TEST(ParseQuestion, UnknownWordsAndLabelsAreMadePrintable) {
+  ExpectInputError([] { ParseQuestion("x\xff\x1b", {"a\nb<b>"}); }, {"<b>"});
+}
+
+}  // namespace
+}  // namespace hullslam

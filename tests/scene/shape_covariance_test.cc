@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/shape_covariance.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <random>
+
+#include "scene/made_scene.h"
+
+namespace hullslam {
+namespace {
+
+// Views of an object from a part of a circle, whose lines have noise of `noise_px`.
+class NoisyViews {
+ public:
+  NoisyViews(const MadeObject& object, double arc, double noise_px) {
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> noise(0.0, noise_px);
+    detections_.reserve(kCount);
+    for (uint32_t i = 0; i < kCount; ++i) {
+      const Rigid3 camera = CameraOnCircle(arc * i / kCount, 2.0, 0.8);
+      Detection& detection = detections_.emplace_back(Detect(object, sensor_, camera));
+      for (SilhouetteLine& line : detection.lines) {
+        line.line.offset += noise(random);
+      }
+      views_.push_back({KeyframeId(i), camera, &detection});
+    }
+  }
+  std::optional<ShapeCovariance> Covariance(const MadeObject& object) const {
+    return CovarianceOf(sensor_.camera, object.ellipsoid, object.ellipsoid, views_);
+  }
+
+ private:
+  static constexpr uint32_t kCount = 30;
+  Sensor sensor_ = MakeObjectSensor();
+  std::vector<Detection> detections_;
+  std::vector<ObjectView> views_;
+};
+
+const MadeObject kCup = Standing("cup", {0.1, 0.0, 0.0}, {0.1, 0.12, 0.15});
+
+double LargestSigma(const ShapeCovariance& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance.center);
+  EXPECT_GT(solver.eigenvalues()[0], 0.0);
+  return std::sqrt(solver.eigenvalues()[2]);
+}
+
+TEST(ShapeCovariance, GrowsWithTheNoiseOfTheLines) {
+  const auto precise = NoisyViews(kCup, 6.0, 0.2).Covariance(kCup);
+  const auto noisy = NoisyViews(kCup, 6.0, 2.0).Covariance(kCup);
+  ASSERT_TRUE(precise && noisy);
+  EXPECT_LT(LargestSigma(*precise), 0.005);
+  EXPECT_GT(LargestSigma(*noisy), 3.0 * LargestSigma(*precise));
+}
+
+TEST(ShapeCovariance, IsLargeAlongTheViewsIfTheyAreFromOneSide) {
+  const auto around = NoisyViews(kCup, 6.0, 1.0).Covariance(kCup);
+  const auto one_side = NoisyViews(kCup, 0.2, 1.0).Covariance(kCup);
+  ASSERT_TRUE(around && one_side);
+  EXPECT_GT(LargestSigma(*one_side), 2.0 * LargestSigma(*around));
+}
+
+TEST(ShapeCovariance, IsSymmetric) {
+  const auto covariance = NoisyViews(kCup, 6.0, 1.0).Covariance(kCup);
+  ASSERT_TRUE(covariance);
+  EXPECT_LT((covariance->center - covariance->center.transpose()).norm(),
+            1e-9 * covariance->center.norm());
+  EXPECT_GT(covariance->half_axes.diagonal().minCoeff(), 0.0);
+}
+
+TEST(ShapeCovariance, IsNotKnownWithoutLines) {
+  EXPECT_FALSE(CovarianceOf(MakeObjectSensor().camera, kCup.ellipsoid, kCup.ellipsoid, {}));
+}
+
+}  // namespace
+}  // namespace hullslam

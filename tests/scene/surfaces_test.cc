@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/surfaces.h"
+
+#include <gtest/gtest.h>
+
+#include "scene/made_scene.h"
+
+namespace hullslam {
+namespace {
+
+class SurfacesTest : public ::testing::Test {
+ protected:
+  void Add(const Eigen::Vector3d& base, double radius) {
+    const auto id = ObjectId(static_cast<uint32_t>(bodies_.size()));
+    bodies_.push_back(
+        BodyOfEllipsoid(id, Standing("cup", base, Eigen::Vector3d::Constant(radius)).ellipsoid,
+                        Eigen::Quaterniond::Identity()));
+    for (const ObjectBody& other : bodies_) {
+      views_.joint[{id, other.id}].views = 1;
+      views_.joint[{other.id, id}].views = 1;
+    }
+  }
+  std::vector<Surface> Find() const {
+    std::vector<const ObjectBody*> standing;
+    for (const ObjectBody& body : bodies_) {
+      standing.push_back(&body);
+    }
+    return FindSurfaces(standing, FloorHeight(bodies_), views_);
+  }
+
+  std::vector<ObjectBody> bodies_;
+  ViewStatistics views_;
+};
+
+TEST_F(SurfacesTest, AreTheFloorAndATable) {
+  Add({0.0, 0.0, 0.75}, 0.05);
+  Add({0.2, 0.0, 0.76}, 0.05);
+  Add({2.0, 0.0, 0.0}, 0.2);
+  Add({-3.0, 0.0, 0.01}, 0.2);
+  const std::vector<Surface> surfaces = Find();
+  ASSERT_EQ(surfaces.size(), 2U);
+  EXPECT_TRUE(surfaces[0].is_lowest);
+  EXPECT_EQ(surfaces[0].objects, (std::vector<ObjectId>{ObjectId(2), ObjectId(3)}));
+  EXPECT_FALSE(surfaces[1].is_lowest);
+  EXPECT_NEAR(surfaces[1].height, 0.755, 0.006);
+  EXPECT_EQ(surfaces[1].objects, (std::vector<ObjectId>{ObjectId(0), ObjectId(1)}));
+}
+
+TEST_F(SurfacesTest, TablesThatAreApartAreTwo) {
+  Add({0.0, 0.0, 0.0}, 0.2);
+  for (const double x : {0.0, 0.15, 3.0, 3.15}) {
+    Add({x, 0.0, 0.75}, 0.05);
+  }
+  EXPECT_EQ(Find().size(), 3U);
+}
+
+TEST_F(SurfacesTest, AnObjectWhoseLowerSideWasCutOffReachesTheFloor) {
+  Add({0.0, 0.0, 0.0}, 0.2);
+  Add({1.0, 0.0, 0.01}, 0.2);
+  Add({2.0, 0.0, 0.5}, 0.3);
+  bodies_.back().is_bottom_seen = false;
+  const std::vector<ObjectBody> extended = ExtendToFloor(bodies_);
+  EXPECT_NEAR(extended[2].bottom, FloorHeight(bodies_), 1e-12);
+  EXPECT_EQ(extended[0].bottom, bodies_[0].bottom);
+  EXPECT_EQ(FloorHeight({}), 0.0);
+}
+
+TEST(HeightTolerance, GrowsWithTheSizesAndTheUncertainty) {
+  ObjectBody a;
+  a.size = 0.2;
+  ObjectBody b;
+  b.size = 0.4;
+  EXPECT_NEAR(HeightTolerance(a, b), 0.09, 1e-12);
+  b.height_sigma = 0.1;
+  EXPECT_NEAR(HeightTolerance(a, b), 0.2, 1e-12);
+}
+
+}  // namespace
+}  // namespace hullslam
