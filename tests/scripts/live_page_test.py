@@ -33,15 +33,9 @@ class LivePageTest(unittest.TestCase):
 
     def open(self, url):
         page = browser.Browser(1200, 900)
-        self.addCleanup(self.close, page)
+        self.addCleanup(page.close)
         page.open_url(url)
         return page
-
-    def close(self, page):
-        try:
-            page.close()
-        except Exception:  # it was killed
-            pass
 
     def expect_map(self, page, frame):
         """Waits until the page has drawn a map and a picture of at least this frame."""
@@ -70,7 +64,7 @@ class LivePageTest(unittest.TestCase):
         self.expect_map(first, 15)
         self.expect_map(second, 15)
         self.assertEqual(first.errors() + second.errors(), [])
-        second.driver.service.process.kill()  # and with it the browser
+        second.kill()
         self.step_to(first, 18)
         again = self.open(run.url)
         self.step_to(first, 20)
