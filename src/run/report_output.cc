@@ -103,7 +103,7 @@ std::string ReportOfMap(const fs::path& map) {
   options.features.level_count = stored.settings.level_count;
   options.features.scale_factor = stored.settings.scale_factor;
   ViewModel model = ViewOfMap(stored.map, MakeSensor(options), options.objects);
-  model.up = FindUp(model.trajectory, nullptr);
+  AddUp(std::nullopt, model);
   model.title = map.filename().string();
   model.version = HULLSLAM_VERSION;
   return PageOf(std::move(model));
