@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "hullslam/map/initialisation_failure.h"
@@ -237,11 +238,9 @@ void LiveMessages::Align(Parts& parts) {
       AddGroundtruth(past, run_.sensor.IsMonocular() ? AlignmentKind::kSim3 : AlignmentKind::kSe3,
                      aligned_)
           .empty();
+  AddUp(has_truth ? std::optional(past) : std::nullopt, aligned_);
   aligned_.groundtruth = EveryKth(aligned_.groundtruth, kMostTruth);
   aligned_.trajectory = {};
-  if (!aligned_.up) {
-    aligned_.up = FindUp(path_, nullptr);
-  }
   const Json made = ViewParts(aligned_, run_.start);
   for (const char* part : {"groundtruth", "errors", "up"}) {
     if (made.contains(part) && (has_truth || std::string_view(part) == "up")) {
