@@ -71,6 +71,23 @@ TEST(ObjectBody, OfABoxHasTheExtentsOfTheBoxAndNotOfTheEllipsoid) {
   EXPECT_TRUE(body.is_bottom_seen);
 }
 
+// As of a plant whose pot is behind a couch: its leaves end freely to both sides of the couch.
+TEST(ObjectBody, LinesThatPointMoreSidewaysThanDownDoNotShowTheBottom) {
+  const Sensor sensor = MakeObjectSensor();
+  const MadeObject made = Standing("plant", {0.0, 0.0, 0.0}, {0.2, 0.2, 0.3});
+  const Rigid3 camera = CameraOnCircle(0.3, 2.5, 0.2);
+  Detection detection = Detect(made, sensor, camera);
+  size_t oblique = 0;
+  for (SilhouetteLine& line : detection.lines) {
+    line.is_one_sided = line.line.normal.y() > 0.7;
+    oblique += line.line.normal.y() > 0.55 && !line.is_one_sided ? 1 : 0;
+  }
+  ASSERT_GE(oblique, 3U);
+  const std::vector<ObjectView> views = {{KeyframeId(0), camera, &detection}};
+  EXPECT_FALSE(
+      MeasureBody(ObjectId(1), made.ellipsoid, sensor.camera, views, kUpright).is_bottom_seen);
+}
+
 TEST(ObjectBody, BottomIsNotSeenIfItIsAlwaysCutOff) {
   const Sensor sensor = MakeObjectSensor();
   const MadeObject made = Standing("couch", {0.0, 0.0, 0.0}, {0.2, 0.1, 0.3});
