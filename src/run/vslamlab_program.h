@@ -5,8 +5,9 @@
 
 namespace hullslam {
 
-// A whole program in the contract of VSLAM-LAB (docs/vslamlab.md): takes arguments `key:value`, runs
-// SLAM on the images of a rgb.csv, and writes EXP_ID_KeyFrameTrajectory.csv. Returns the exit code.
+// A whole program in the contract of VSLAM-LAB (docs/vslamlab.md): takes arguments `key:value`,
+// runs SLAM on the images of a rgb.csv, and writes EXP_ID_KeyFrameTrajectory.csv. Returns the exit
+// code.
 int RunVslamlabProgram(SensorKind sensor, int argc, char** argv);
 
 }  // namespace hullslam

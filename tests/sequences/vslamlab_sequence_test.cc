@@ -101,7 +101,7 @@ TEST_F(VslamlabSequenceTest, RefusesACalibrationThatItCannotUse) {
   ExpectBadCamera(ReplaceIn(kCalibration, "[517.3, 516.5]", "[.nan, 516.5]"), {"focal_length"});
   ExpectBadCamera(ReplaceIn(kCalibration, "[640, 480]", "[640.5, 480]"), {"image_dimension"});
   ExpectBadCamera(ReplaceIn(kCalibration, "fps: 30.0,", ""), {"fps"});
-  ExpectBadCamera(ReplaceIn(kCalibration, "1.16]", "]"), {"distortion_coefficients"});
+  ExpectBadCamera(ReplaceIn(kCalibration, ", 1.16]", "]"), {"distortion_coefficients"});
   ExpectBadCamera(ReplaceIn(kCalibration, "depth_factor: 5000.0,", ""), {"depth_factor"});
 }
 
