@@ -39,9 +39,9 @@ class Tracker {
   Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects = {},
           uint64_t seed = 0);
 
-  // From now on no keyframe is requested. To be called before the first frame, which then comes
-  // with a map.
-  void LocaliseOnly() { is_localizing_only_ = true; }
+  // From now on no keyframe is requested, or keyframes are requested again. Localisation needs a
+  // map in all frames that follow.
+  void LocaliseOnly(bool is_on = true) { is_localizing_only_ = is_on; }
 
   struct Result {
     FrameReport report;

@@ -92,6 +92,13 @@ class System {
   BuiltFrame Build(const ImageInput& image);
   TrackedFrame Track(BuiltFrame built);
 
+  // From the next frame on, poses are found in the current map without requesting keyframes, or
+  // keyframes are requested again. Keyframes that were requested before still enter the map. The
+  // poses of frames that were only localised are not computed again in Finish. Throws CheckError if
+  // it is switched on before the map has a keyframe. Reset() returns to the value of the start.
+  void SetLocalizationOnly(bool is_on);
+  bool is_localization_only() const { return is_localization_only_; }
+
   // `callback` is called at the end of every Track, in the thread that called Track. It may call
   // the const functions of this object; frames() contains the frame already. An exception from it
   // is thrown by Track; the frame has been tracked then. Reset() keeps the callback.
@@ -150,6 +157,7 @@ class System {
   const SystemOptions options_;
   const PipelineKind kind_;
   SystemStart start_;
+  bool is_localization_only_ = false;
   const Sensor sensor_;
   std::unique_ptr<FrameBuilder> frame_builder_;
   std::unique_ptr<Pipeline> pipeline_;
