@@ -95,7 +95,7 @@ def main():
     if slam is None:
         sys.exit(f"error: {arguments.video} has no image")
     slam.finish()
-    if slam.map is None:
+    if len(slam.map.keyframes) == 0:
         sys.exit(f"error: no map could be made: {result.reason}")
     slam.trajectory.write(arguments.output)
     print(f"{len(slam.trajectory)} poses, {slam.map}")

@@ -2,9 +2,11 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -118,17 +120,19 @@ std::vector<MapObject> ObjectsOf(const MapView& view, ObjectState state) {
   return objects;
 }
 
+// An array of an object, whose values are NaN if the shape of the object is not known.
+py::array_t<double> IfShaped(const MapObject& object, py::array_t<double> values) {
+  if (!object.object.has_shape) {
+    std::fill_n(values.mutable_data(), values.size(), std::numeric_limits<double>::quiet_NaN());
+  }
+  return values;
+}
+
 py::array_t<double> DualQuadricOf(const MapObject& object) {
   py::array_t<double> matrix({4, 4});
   Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(matrix.mutable_data()) =
       object.object.ellipsoid.DualQuadric();
-  return matrix;
-}
-
-// What an object has only if its shape is known.
-template <typename Value>
-py::object IfShaped(const MapObject& object, const Value& value) {
-  return object.object.has_shape ? py::object(value(object)) : py::object(py::none());
+  return IfShaped(object, std::move(matrix));
 }
 
 std::string DescribeObject(const MapObject& object) {
@@ -153,23 +157,18 @@ void BindObject(py::module_& module) {
           "Whether the shape fits all its views. If not, the object is a candidate.")
       .def_property_readonly(
           "world_from_object",
-          [](const MapObject& object) {
-            return IfShaped(object, [](const MapObject& o) {
-              return ToArray(o.object.ellipsoid.world_from_object);
-            });
+          [](const MapObject& o) {
+            return IfShaped(o, ToArray(o.object.ellipsoid.world_from_object));
           },
-          "(4, 4) pose: the origin is the centre and the axes are those of the ellipsoid. None if\n"
+          "(4, 4) pose: the origin is the centre and the axes are those of the ellipsoid. NaN if\n"
           "the shape is not known.")
       .def_property_readonly(
           "half_axes",
-          [](const MapObject& object) {
-            return IfShaped(
-                object, [](const MapObject& o) { return ToArray(o.object.ellipsoid.half_axes); });
-          },
-          "(3,) half axes of the ellipsoid, m; None if the shape is not known.")
+          [](const MapObject& o) { return IfShaped(o, ToArray(o.object.ellipsoid.half_axes)); },
+          "(3,) half axes of the ellipsoid, m; NaN if the shape is not known.")
       .def_property_readonly(
-          "dual_quadric", [](const MapObject& object) { return IfShaped(object, &DualQuadricOf); },
-          "(4, 4) dual quadric Q* in the world frame: tangent planes satisfy pi^T Q* pi = 0. None\n"
+          "dual_quadric", &DualQuadricOf,
+          "(4, 4) dual quadric Q* in the world frame: tangent planes satisfy pi^T Q* pi = 0. NaN\n"
           "if the shape is not known.")
       .def_property_readonly(
           "keyframes",

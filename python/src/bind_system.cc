@@ -118,9 +118,9 @@ auto Get(const LiveSystem& system, const Read& read) {
   return WithoutGil([&] { return system.Get(read); });
 }
 
-std::optional<MapView> MapOf(const LiveSystem& system) {
+MapView MapOf(const LiveSystem& system) {
   auto map = Get(system, [](const System& s) { return s.map(); });
-  return map != nullptr ? std::optional(MapView{std::move(map)}) : std::nullopt;
+  return {map != nullptr ? std::move(map) : std::make_shared<const Map>()};
 }
 
 py::dict TimesOf(const LiveSystem& system) {
@@ -146,7 +146,7 @@ py::dict CountsOf(const LiveSystem& system) {
 void BindProperties(py::class_<LiveSystem>& system) {
   system
       .def_property_readonly("map", &MapOf,
-                             "A snapshot, Map; None before the first keyframe of a new map.")
+                             "A snapshot: Map. It is empty before the first keyframe.")
       .def_property_readonly(
           "trajectory",
           [](const LiveSystem& s) {

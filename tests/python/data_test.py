@@ -125,3 +125,5 @@ def test_objects_are_mapped_from_known_poses(desk):
                         timestamp=frame.timestamp)
     assert len(mapper.map.keyframes) == 25 and len(empty.keyframes) == 0
     assert len(mapper.map.objects) + len(mapper.map.candidates) >= 2
+    for thing in mapper.map.candidates:
+        assert np.isnan(thing.half_axes).all() or (thing.half_axes > 0.0).all()
