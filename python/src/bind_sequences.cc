@@ -24,6 +24,7 @@ namespace {
 // The frames of a data set and the camera that their images must fit.
 struct FrameList {
   ImageSequence sequence;
+  std::vector<MaskFrame> names;
   PinholeCamera camera;
   std::mutex loading;  // ImageSequence::load is called by one thread at a time
 };
@@ -56,6 +57,7 @@ py::object Iterate(const py::object& list) {
 
 std::unique_ptr<FrameList> MakeList(ImageSequence sequence, const SettingsTable& settings) {
   auto list = std::make_unique<FrameList>();
+  list->names = MaskFrames(sequence);
   list->sequence = std::move(sequence);
   list->camera = settings.options.camera;
   return list;
@@ -83,8 +85,8 @@ SequenceFrame Load(FrameList& list, py::ssize_t index) {
   const size_t i = ToIndex(index, list.sequence.frames.size());
   return WithoutGil([&] {
     const std::lock_guard lock(list.loading);
-    const FramePaths& paths = list.sequence.frames[i];
-    return SequenceFrame{list.sequence.load(paths, list.camera), MaskFrames(list.sequence)[i].stem};
+    return SequenceFrame{list.sequence.load(list.sequence.frames[i], list.camera),
+                         list.names[i].stem};
   });
 }
 
@@ -92,9 +94,7 @@ MaskFiles OpenMaskFiles(const std::filesystem::path& path, const FrameList& list
                         const std::string& format) {
   return WithoutGil([&] {
     const PinholeCamera& camera = list.camera;
-    MaskFiles files{.source = nullptr,
-                    .frames = MaskFrames(list.sequence),
-                    .size = {camera.width, camera.height}};
+    MaskFiles files{.source = nullptr, .frames = list.names, .size = {camera.width, camera.height}};
     files.source = OpenMasks({path, format, camera.width, camera.height}, files.frames);
     return files;
   });
