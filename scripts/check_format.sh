@@ -14,7 +14,7 @@ list_files() {
   if git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
     git ls-files -z -- '*.h' '*.cc'
   else
-    find include src Examples tests bench \( -name '*.h' -o -name '*.cc' \) -print0
+    find include src Examples tests bench python \( -name '*.h' -o -name '*.cc' \) -print0
   fi
 }
 

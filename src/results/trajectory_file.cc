@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "files/atomic_file.h"
 #include "files/plausible.h"
 #include "files/text_rows.h"
 #include "hullslam/util/check.h"
@@ -75,6 +76,10 @@ Trajectory ReadTrajectory(const std::filesystem::path& path) {
 std::string FormatTrajectory(const Trajectory& trajectory) {
   const TrajectoryPart part{.title = {}, .poses = trajectory};
   return FormatTrajectory({&part, 1});
+}
+
+void WriteTrajectory(const std::filesystem::path& path, const Trajectory& trajectory) {
+  WriteFileAtomically(path, FormatTrajectory(trajectory));
 }
 
 std::string FormatTrajectory(std::span<const TrajectoryPart> parts) {

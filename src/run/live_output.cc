@@ -142,7 +142,7 @@ std::chrono::steady_clock::duration LiveOutput::BeforeFrame(FrameSource& frames,
   const bool is_wanted = view_->IsLocalisationWanted();
   const std::shared_ptr<const Map> map = system.map();
   if (is_wanted != is_localising_ && map != nullptr && !map->keyframes().empty()) {
-    system.LocaliseOnly(is_wanted);
+    system.SetLocalizationOnly(is_wanted);
     is_localising_ = is_wanted;
   }
   return waited;

@@ -28,7 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kSet = "--set";  // the origin of overrides
 constexpr std::array kIntrinsics = {"Camera.fx", "Camera.fy", "Camera.cx", "Camera.cy"};
 
 // The text of Camera.fy for the option table. If negative values are allowed, their sign is
@@ -130,10 +129,11 @@ void SettingsInProgress::ApplyOverrides() {
   for (const std::string_view assignment : sources_.overrides) {
     const size_t equals = assignment.find('=');
     if (equals == std::string::npos) {
-      throw InputError(fmt::format("--set: '{}', expected key=value", ShowText(assignment)));
+      throw InputError(fmt::format("{}: '{}', expected key=value", sources_.overrides_origin,
+                                   ShowText(assignment)));
     }
     Set(std::string(Trim(assignment.substr(0, equals))),
-        std::string(Trim(assignment.substr(equals + 1))), kSet);
+        std::string(Trim(assignment.substr(equals + 1))), sources_.overrides_origin);
   }
 }
 
@@ -169,8 +169,9 @@ std::string SettingsInProgress::FollowShutter() {
   }
   options_.readout_time = 0.0;
   const auto origin = origins_.find("Camera.readout_time");
-  return origin != origins_.end() && origin->second == kSet
-             ? "--set: Camera.readout_time has no effect, because tracking.correct_shutter is false"
+  return origin != origins_.end() && origin->second == sources_.overrides_origin
+             ? sources_.overrides_origin +
+                   ": Camera.readout_time has no effect, because tracking.correct_shutter is false"
              : std::string();
 }
 
@@ -180,7 +181,7 @@ void SettingsInProgress::ReportOverrides(SettingsReport& report) const {
   }
   report.preset_overrides = comparison_->FindOverrides(table_, origins_);
   for (const PresetOverride& replaced : report.preset_overrides) {
-    if (replaced.origin != kSet) {
+    if (replaced.origin != sources_.overrides_origin) {
       report.warnings.push_back(Describe(replaced, *sources_.preset));
     }
   }

@@ -60,6 +60,8 @@ void KnownPoseMapper::AddView(double timestamp, const Rigid3& world_from_cam,
 
 const Map& KnownPoseMapper::map() const { return state_->map; }
 
+Map KnownPoseMapper::Snapshot() { return state_->map.Snapshot(); }
+
 ObjectCounts KnownPoseMapper::counts() const {
   return CountObjects(state_->masks, state_->map.keyframes().size(), state_->mapper.rejections());
 }

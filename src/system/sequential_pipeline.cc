@@ -31,7 +31,7 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
     EditMap([&] { mapper_.Begin(std::move(start.map), std::move(start.session)); });
   }
 
-  void LocaliseOnly(bool is_localizing_only) override { tracker_.LocaliseOnly(is_localizing_only); }
+  void SetLocalizationOnly(bool is_on) override { tracker_.LocaliseOnly(is_on); }
 
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(!is_finished_, "Track after Finish");

@@ -117,6 +117,7 @@ std::unique_ptr<Pipeline> System::BeginPipeline() {
   pipeline->Begin({.map = start_.map.Snapshot(),
                    .session = {.name = start_.session_name, .first_frame = start_.map.NextFrame()},
                    .localization_only = start_.localization_only});
+  is_localization_only_ = start_.localization_only;
   return pipeline;
 }
 
@@ -150,7 +151,7 @@ TrackedFrame System::Track(BuiltFrame built) {
                             .count());
   }
   frames_.push_back(report.tracked);
-  if (!start_.localization_only && options_.tracking.refine_at_end) {
+  if (!is_localization_only_ && options_.tracking.refine_at_end) {
     remembered_.push_back(Remember(report, options_.objects));
   }
   if (frame_callback_) {
@@ -159,11 +160,12 @@ TrackedFrame System::Track(BuiltFrame built) {
   return frames_.back();
 }
 
-void System::LocaliseOnly(bool is_localizing_only) {
-  Check(!start_.localization_only, "the run began with localization only");
+void System::SetLocalizationOnly(bool is_on) {
   const std::shared_ptr<const Map> newest = map();
-  Check(newest != nullptr && !newest->keyframes().empty(), "there is no map to localise in yet");
-  pipeline_->LocaliseOnly(is_localizing_only);
+  Check(!is_on || (newest != nullptr && !newest->keyframes().empty()),
+        "localization needs a map with keyframes");
+  pipeline_->SetLocalizationOnly(is_on);
+  is_localization_only_ = is_on;
 }
 
 void System::CheckStamp(double timestamp) const {

@@ -52,7 +52,7 @@ class ThreadedPipeline final : public Pipeline {
     mapper_.Begin(std::move(start.map), std::move(start.session));
   }
 
-  void LocaliseOnly(bool is_localizing_only) override { tracker_.LocaliseOnly(is_localizing_only); }
+  void SetLocalizationOnly(bool is_on) override { tracker_.LocaliseOnly(is_on); }
 
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(mapping_thread_.joinable(), "Track after Finish");

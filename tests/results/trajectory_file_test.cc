@@ -107,6 +107,16 @@ TEST(TrajectoryFile, NonFiniteValuesAreNeverWritten) {
   EXPECT_THROW(FormatTrajectory(trajectory), CheckError);
 }
 
+TEST(TrajectoryFile, AWrittenFileHasTheFormattedText) {
+  const TemporaryFolder folder;
+  const Trajectory trajectory = {{1.0, Rigid3(Eigen::Quaterniond::Identity(), {1.0, 2.0, 3.0})}};
+  WriteTrajectory(folder.path() / "a.txt", trajectory);
+  EXPECT_EQ(FormatTrajectory(ReadTrajectory(folder.path() / "a.txt")),
+            FormatTrajectory(trajectory));
+  ExpectInputError([&] { WriteTrajectory(folder.path() / "none" / "a.txt", trajectory); },
+                   {"none/a.txt"});
+}
+
 TEST(TrajectoryFile, PartsHaveATitle) {
   const StampedPose pose{.timestamp = 1.5, .world_from_cam = {}};
   const Trajectory one = {pose};

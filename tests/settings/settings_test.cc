@@ -187,6 +187,22 @@ TEST_F(Settings, WithoutCorrectionOfTheShutterTheReadoutTimeIsZero) {
   EXPECT_NE(warnings[0].find("Camera.readout_time has no effect"), std::string::npos);
 }
 
+TEST_F(Settings, MessagesNameTheSourceOfOverrides) {
+  const auto file = folder_.Write("camera.yaml", kMinimal);
+  const auto expect = [&](const std::string& assignment, const std::string& message) {
+    const std::vector<std::string> overrides = {assignment};
+    SettingsReport report;
+    ExpectInputError(
+        [&] {
+          ReadSettings(file, {.overrides = overrides, .overrides_origin = "Settings"}, report);
+        },
+        {message});
+  };
+  expect("Camera.fx=a", "Settings: Camera.fx is 'a'");
+  expect("Camera.fx", "Settings: 'Camera.fx', expected key=value");
+  expect("Camera.gx=1", "Settings: unknown key 'Camera.gx'");
+}
+
 TEST_F(Settings, LevelsThatHaveNoRoomAreLeftOutWithAWarning) {
   const auto file = folder_.Write(
       "camera.yaml",

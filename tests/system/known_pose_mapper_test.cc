@@ -109,6 +109,16 @@ TEST_F(KnownPoseMapperTest, MasksWithoutADetectionAreCountedWithTheirReason) {
   EXPECT_EQ(mapper.counts().rejections.at("mask_too_small"), 1U);
 }
 
+TEST_F(KnownPoseMapperTest, LaterViewsDoNotChangeASnapshot) {
+  KnownPoseMapper mapper(options_);
+  AddCircle(mapper, 0.05, false);
+  const Map snapshot = mapper.Snapshot();
+  EXPECT_EQ(snapshot.objects().size(), mapper.map().objects().size());
+  mapper.AddView(10.0, Rigid3(), {});
+  EXPECT_EQ(snapshot.keyframes().size(), 12U);
+  EXPECT_EQ(mapper.map().keyframes().size(), 13U);
+}
+
 TEST_F(KnownPoseMapperTest, BadInputIsRefusedAndChangesNothing) {
   KnownPoseMapper mapper(options_);
   const std::vector<InstanceMask> masks = {Square("cup", 100.0, 100.0, 50.0)};

@@ -20,6 +20,10 @@ Trajectory ReadTrajectory(const std::filesystem::path& path);
 // poses give the same bytes. Throws CheckError for values that are not finite.
 std::string FormatTrajectory(const Trajectory& trajectory);
 
+// Writes the trajectory in TUM's format. The file is complete or not there at all. Throws
+// InputError with `path` and the reason if it cannot be written.
+void WriteTrajectory(const std::filesystem::path& path, const Trajectory& trajectory);
+
 // A part of the poses in a file. Time stamps may begin again from part to part.
 struct TrajectoryPart {
   std::string title;  // written in printable ASCII, and cut if it is long; empty: none

@@ -36,6 +36,7 @@ struct SettingsSources {
   const Preset* preset = nullptr;               // null: none
   std::span<const std::string> overrides = {};  // key=value
   NegativeFy negative_fy = NegativeFy::kError;
+  std::string overrides_origin = "--set";  // names the source of the overrides in messages
 };
 
 // A setting of a preset that another source has replaced.

@@ -43,6 +43,8 @@ class KnownPoseMapper {
   // The views as keyframes, and the objects: those whose state is ObjectState::kMapped have a
   // quadric that fits their views, the others are candidates.
   const Map& map() const;
+  // A copy of map(), which later views do not change. It takes microseconds.
+  Map Snapshot();
   // The numbers of masks that gave detections, and of rejected masks and objects by reason.
   ObjectCounts counts() const;
 

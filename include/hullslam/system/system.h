@@ -92,10 +92,12 @@ class System {
   BuiltFrame Build(const ImageInput& image);
   TrackedFrame Track(BuiltFrame built);
 
-  // Whether the map stays as it is from the next frame on, and poses are only found in it. The
-  // frames still have poses in trajectory(). Throws CheckError if there is no map yet, and after a
-  // start with SystemStart::localization_only, whose map may not be changed. Reset() ends it.
-  void LocaliseOnly(bool is_localizing_only);
+  // From the next frame on, poses are found in the current map without requesting keyframes, or
+  // keyframes are requested again. Keyframes that were requested before still enter the map. The
+  // poses of frames that were only localised are not computed again in Finish. Throws CheckError if
+  // it is switched on before the map has a keyframe. Reset() returns to the value of the start.
+  void SetLocalizationOnly(bool is_on);
+  bool is_localization_only() const { return is_localization_only_; }
 
   // `callback` is called at the end of every Track, in the thread that called Track. It may call
   // the const functions of this object; frames() contains the frame already. An exception from it
@@ -155,6 +157,7 @@ class System {
   const SystemOptions options_;
   const PipelineKind kind_;
   SystemStart start_;
+  bool is_localization_only_ = false;
   const Sensor sensor_;
   std::unique_ptr<FrameBuilder> frame_builder_;
   std::unique_ptr<Pipeline> pipeline_;

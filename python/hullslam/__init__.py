@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Visual SLAM with objects as dual quadrics.
+
+System tracks images and builds a map, KnownPoseMapper maps objects from known poses, Settings has all
+options, and Masks are the objects in one image. docs/python.md explains how they work together.
+
+Poses are 4x4 matrices; `cam_from_world` maps points of the world frame to the camera frame (x right,
+y down, z forward). Lengths are in metres, in monocular runs in units of the map. Time stamps are in
+seconds.
+"""
+
+import os
+import pathlib
+
+from ._core import (ImageSequence, InputError, KnownPoseMapper, Map, MapObject, Masks, MaskFiles,
+                    SeenObject, SequenceFrame, System, TrackResult, Trajectory, TrajectoryErrors,
+                    __version__, default_settings, evaluate_trajectory, open_images, open_masks,
+                    open_tum, preset_names, read_map, read_trajectory)
+from ._settings import Settings
+
+# pip installs the settings of known cameras and the vocabulary beside this file.
+_config = pathlib.Path(__file__).parent / "config"
+if _config.is_dir():
+    os.environ.setdefault("HULLSLAM_CONFIG", str(_config))
+
+InputError.__doc__ = """A file, a setting or an argument is wrong.
+
+The message names the file and line, or the argument and its value, and says what was expected.
+"""
+
+__all__ = ["ImageSequence", "InputError", "KnownPoseMapper", "Map", "MapObject", "MaskFiles", "Masks",
+           "SeenObject", "SequenceFrame", "Settings", "System", "TrackResult", "Trajectory",
+           "TrajectoryErrors", "__version__", "default_settings", "evaluate_trajectory",
+           "open_images", "open_masks", "open_tum", "preset_names", "read_map", "read_trajectory"]

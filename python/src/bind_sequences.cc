@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.h"
+#include "hullslam/masks/open_masks.h"
+#include "hullslam/sequences/image_stream.h"
+#include "hullslam/sequences/tum_sequence.h"
+#include "module.h"
+#include "types.h"
+#include "without_gil.h"
+
+namespace hullslam::python {
+namespace {
+
+// The frames of a data set and the camera that their images must fit.
+struct FrameList {
+  ImageSequence sequence;
+  std::vector<MaskFrame> names;
+  PinholeCamera camera;
+  std::mutex loading;  // ImageSequence::load is called by one thread at a time
+};
+
+struct SequenceFrame {
+  ImageInput input;
+  std::string name;
+};
+
+// The mask files of the frames of a sequence.
+struct MaskFiles {
+  std::unique_ptr<const MaskSource> source;
+  std::vector<MaskFrame> frames;
+  cv::Size size;
+};
+
+// Python's rule for indices: negative ones count from the end.
+size_t ToIndex(py::ssize_t index, size_t count) {
+  const auto size = static_cast<py::ssize_t>(count);
+  if (index < -size || index >= size) {
+    throw py::index_error("there are " + std::to_string(count) + " frames");
+  }
+  return static_cast<size_t>(index < 0 ? index + size : index);
+}
+
+// The iterator that Python makes for every class with indices.
+py::object Iterate(const py::object& list) {
+  return py::reinterpret_steal<py::object>(PySeqIter_New(list.ptr()));
+}
+
+std::unique_ptr<FrameList> MakeList(ImageSequence sequence, const SettingsTable& settings) {
+  auto list = std::make_unique<FrameList>();
+  list->names = MaskFrames(sequence);
+  list->sequence = std::move(sequence);
+  list->camera = settings.options.camera;
+  return list;
+}
+
+std::unique_ptr<FrameList> OpenTum(const std::filesystem::path& folder,
+                                   const SettingsTable& settings, bool depth,
+                                   const std::optional<std::filesystem::path>& associations) {
+  return WithoutGil([&] {
+    return MakeList(
+        OpenTumSequence(folder, {.associations = associations.value_or(std::filesystem::path()),
+                                 .use_depth = depth,
+                                 .frames_per_second = settings.options.frames_per_second}),
+        settings);
+  });
+}
+
+std::unique_ptr<FrameList> OpenImages(const std::filesystem::path& path,
+                                      const SettingsTable& settings, std::optional<double> fps) {
+  return WithoutGil(
+      [&] { return MakeList(OpenImageStream(path, {.frames_per_second = fps}).images, settings); });
+}
+
+SequenceFrame Load(FrameList& list, py::ssize_t index) {
+  const size_t i = ToIndex(index, list.sequence.frames.size());
+  return WithoutGil([&] {
+    const std::lock_guard lock(list.loading);
+    return SequenceFrame{list.sequence.load(list.sequence.frames[i], list.camera),
+                         list.names[i].stem};
+  });
+}
+
+MaskFiles OpenMaskFiles(const std::filesystem::path& path, const FrameList& list,
+                        const std::string& format) {
+  return WithoutGil([&] {
+    const PinholeCamera& camera = list.camera;
+    MaskFiles files{.source = nullptr, .frames = list.names, .size = {camera.width, camera.height}};
+    files.source = OpenMasks({path, format, camera.width, camera.height}, files.frames);
+    return files;
+  });
+}
+
+MaskList ReadMasks(const MaskFiles& files, py::ssize_t index) {
+  const size_t i = ToIndex(index, files.frames.size());
+  return WithoutGil([&] {
+    return MaskList{.masks = files.source->Read(files.frames[i]).masks, .size = files.size};
+  });
+}
+
+void BindFrame(py::module_& module) {
+  py::class_<SequenceFrame>(module, "SequenceFrame", "One decoded frame of a sequence.")
+      .def_property_readonly(
+          "timestamp", [](const SequenceFrame& f) { return f.input.timestamp; }, "Time stamp, s.")
+      .def_readonly("name", &SequenceFrame::name,
+                    "The name of the colour image without folder and extension.")
+      .def_property_readonly(
+          "image", [](const SequenceFrame& f) { return ToArray(f.input.grey); },
+          "(height, width) uint8, grey.")
+      .def_property_readonly(
+          "depth",
+          [](const SequenceFrame& f) -> py::object {
+            return f.input.depth.empty() ? py::object(py::none()) : ToArray(f.input.depth);
+          },
+          "(height, width) uint16 in units of 1 / DepthMapFactor metres, or float32 in metres;\n"
+          "None without depth.");
+}
+
+}  // namespace
+
+void BindSequences(py::module_& module) {
+  BindFrame(module);
+  py::class_<FrameList>(module, "ImageSequence",
+                        "The frames of a data set, which are decoded one by one.")
+      .def("__len__", [](const FrameList& list) { return list.sequence.frames.size(); })
+      .def("__getitem__", &Load, py::arg("index"),
+           "Decodes a frame. Raises InputError for an image that is broken or does not have the\n"
+           "size of the settings.")
+      .def("__iter__", [](const py::object& list) { return Iterate(list); })
+      .def_property_readonly(
+          "timestamps",
+          [](const FrameList& list) {
+            py::array_t<double> stamps(static_cast<py::ssize_t>(list.sequence.frames.size()));
+            for (size_t i = 0; i < list.sequence.frames.size(); ++i) {
+              stamps.mutable_data()[i] = list.sequence.frames[i].timestamp;
+            }
+            return stamps;
+          },
+          "(N,) float64, s.")
+      .def_property_readonly(
+          "groundtruth",
+          [](const FrameList& list) -> std::optional<PoseList> {
+            std::optional<Trajectory> truth = ReadGroundtruth(list.sequence);
+            return truth ? std::optional(PoseList{std::move(*truth)}) : std::nullopt;
+          },
+          "The true Trajectory; None if the data set has none.");
+  module.def("open_tum", &OpenTum, py::arg("folder"), py::arg("settings"), py::kw_only(),
+             py::arg("depth") = true, py::arg("associations") = py::none(),
+             "Opens a sequence in TUM's format (docs/datasets.md).\n\n"
+             "depth: False for a monocular run, whose frames have no depth.\n"
+             "associations: a file of pairs of images; None: they are paired by time.\n"
+             "Raises InputError with file and line for whatever is wrong with the folder.");
+  module.def("open_images", &OpenImages, py::arg("path"), py::arg("settings"), py::kw_only(),
+             py::arg("fps") = py::none(),
+             "Opens a video or a folder of images without depth. Frames of a video must be read\n"
+             "in order.\n\n"
+             "fps: frames per second; None: the time stamps of the video, 30 for a folder.");
+  py::class_<MaskFiles>(module, "MaskFiles", "The mask files of a sequence, read one by one.")
+      .def("__len__", [](const MaskFiles& files) { return files.frames.size(); })
+      .def("__getitem__", &ReadMasks, py::arg("index"),
+           "The Masks of the frame with this index; empty if it has no file or entry.")
+      .def("__iter__", [](const py::object& files) { return Iterate(files); })
+      .def_property_readonly(
+          "format", [](const MaskFiles& files) { return files.source->format(); },
+          "The name of the format, such as 'yolo-seg'.");
+  module.def("open_masks", &OpenMaskFiles, py::arg("path"), py::arg("sequence"), py::kw_only(),
+             py::arg("format") = "",
+             "Opens masks in one of the formats of docs/masks.md: a folder or a JSON file.\n\n"
+             "sequence: the ImageSequence that the masks belong to; their files are found by the\n"
+             "names of its images. format: one of the names of docs/masks.md; detected if empty.");
+}
+
+}  // namespace hullslam::python

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.h"
+#include "hullslam/map_files/map_file.h"
+#include "hullslam/map_files/vocabulary_file.h"
+#include "live_system.h"
+#include "module.h"
+#include "types.h"
+#include "without_gil.h"
+
+namespace hullslam::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+SystemOptions OptionsOf(const SettingsTable& settings, const std::string& mode,
+                        const std::optional<fs::path>& vocabulary, uint64_t seed) {
+  SystemOptions options = settings.options;
+  options.sensor = Choose<SensorKind>(
+      "mode", mode, {{"rgbd", SensorKind::kRgbd}, {"mono", SensorKind::kMonocular}});
+  options.seed = seed;
+  if (vocabulary) {
+    options.vocabulary = std::make_shared<const Vocabulary>(
+        ReadVocabulary(*vocabulary == "default" ? FindDefaultVocabulary() : *vocabulary));
+  }
+  return options;
+}
+
+SystemStart MakeStart(const SystemOptions& options, const std::optional<fs::path>& map,
+                      const std::string& session, bool localization) {
+  SystemStart start{.session_name = session, .localization_only = localization};
+  if (map) {
+    start.map = ReadMap(*map, options, &ExitRequest());
+  }
+  return start;
+}
+
+std::unique_ptr<LiveSystem> MakeSystem(const SettingsTable& settings, const std::string& mode,
+                                       const std::string& pipeline,
+                                       const std::optional<fs::path>& vocabulary,
+                                       const std::optional<fs::path>& map,
+                                       const std::string& session, bool localization,
+                                       uint64_t seed) {
+  const auto kind = Choose<PipelineKind>("pipeline", pipeline,
+                                         {{"sequential", PipelineKind::kSequential},
+                                          {"threaded", PipelineKind::kThreaded},
+                                          {"realtime", PipelineKind::kRealtime}});
+  return WithoutGil([&] {
+    const SystemOptions options = OptionsOf(settings, mode, vocabulary, seed);
+    return std::make_unique<LiveSystem>(options, kind,
+                                        MakeStart(options, map, session, localization));
+  });
+}
+
+std::vector<InstanceMask> MasksOf(const MaskList* masks, const cv::Mat& image) {
+  if (masks == nullptr) {
+    return {};
+  }
+  if (!masks->size.empty() && masks->size != image.size()) {
+    throw InputError("the masks are " + std::to_string(masks->size.width) + "x" +
+                     std::to_string(masks->size.height) + " px, expected the size of the image, " +
+                     std::to_string(image.cols) + "x" + std::to_string(image.rows) + " px");
+  }
+  return masks->masks;
+}
+
+FrameReport Track(LiveSystem& system, const py::object& image, const py::object& depth,
+                  const MaskList* masks, double timestamp) {
+  const PixelView pixels = ViewImage(image, "the image");
+  const PixelView depths = ViewDepth(depth);
+  std::vector<InstanceMask> instances = MasksOf(masks, pixels.image);
+  return WithoutGil(
+      [&] { return system.Track(timestamp, pixels.image, depths.image, std::move(instances)); });
+}
+
+// Signals such as that of Ctrl+C are kept until the call returns, which they make return early.
+void Finish(LiveSystem& system) {
+  bool is_interrupted = false;
+  WithoutGil([&] {
+    system.Finish([&] {
+      const py::gil_scoped_acquire gil;
+      is_interrupted = is_interrupted || PyErr_CheckSignals() != 0;
+      return is_interrupted || ExitRequest().IsRequested();
+    });
+  });
+  if (is_interrupted) {
+    throw py::error_already_set();
+  }
+}
+
+void LoadMap(LiveSystem& system, const fs::path& path, const std::string& session,
+             bool localization) {
+  WithoutGil([&] { system.Restart(MakeStart(system.options(), path, session, localization)); });
+}
+
+void SaveMap(const LiveSystem& system, const fs::path& path) {
+  WithoutGil([&] {
+    const auto map = system.Get([](const System& s) { return s.map(); });
+    if (map == nullptr) {
+      throw InputError(path.string() + ": there is no map yet, because no keyframe was made");
+    }
+    WriteMap(path, *map, MapSettingsOf(system.options()));
+  });
+}
+
+template <typename Read>
+auto Get(const LiveSystem& system, const Read& read) {
+  return WithoutGil([&] { return system.Get(read); });
+}
+
+MapView MapOf(const LiveSystem& system) {
+  auto map = Get(system, [](const System& s) { return s.map(); });
+  return {map != nullptr ? std::move(map) : std::make_shared<const Map>()};
+}
+
+py::dict TimesOf(const LiveSystem& system) {
+  const StageTimes stages = Get(system, [](const System& s) { return s.times(); });
+  py::dict times;
+  for (const auto& [stage, samples] : stages.samples()) {
+    times[py::str(stage)] =
+        py::array_t<double>(static_cast<py::ssize_t>(samples.size()), samples.data());
+  }
+  return times;
+}
+
+py::dict CountsOf(const LiveSystem& system) {
+  const ObjectCounts counts = Get(system, [](const System& s) { return s.object_counts(); });
+  py::dict result;
+  result["detections"] = counts.detections;
+  result["frames_with_masks"] = counts.frames_with_masks;
+  result["frames_without_masks"] = counts.frames_without_masks;
+  result["rejections"] = counts.rejections;
+  return result;
+}
+
+void BindProperties(py::class_<LiveSystem>& system) {
+  system
+      .def_property_readonly("map", &MapOf,
+                             "A snapshot: Map. It is empty before the first keyframe.")
+      .def_property_readonly(
+          "trajectory",
+          [](const LiveSystem& s) {
+            return PoseList{Get(s, [](const System& system) { return system.trajectory(); })};
+          },
+          "The poses of all tracked frames in the current map: Trajectory.")
+      .def_property(
+          "localization",
+          [](const LiveSystem& s) {
+            return Get(s, [](const System& system) { return system.is_localization_only(); });
+          },
+          [](LiveSystem& s, bool is_on) { WithoutGil([&] { s.SetLocalizationOnly(is_on); }); },
+          "Whether poses are found in the map without adding keyframes to it. May be switched\n"
+          "between two frames, once there is a map.")
+      .def_property_readonly(
+          "times", &TimesOf,
+          "The durations of each stage, ms: dict of (calls,) arrays. `frame` is\n"
+          "building a frame, `pose` tracking it, and `track` the sum of the two.")
+      .def_property_readonly("object_counts", &CountsOf,
+                             "Numbers of detections and of frames with and without masks, and the\n"
+                             "numbers of rejected masks and objects by reason: dict.");
+}
+
+}  // namespace
+
+void BindSystem(py::module_& module) {
+  BindTrackResult(module);
+  py::class_<LiveSystem> system(
+      module, "System",
+      "SLAM as one object: images in, poses and map out.\n\n"
+      "Calls from several threads take turns. The global interpreter lock is released while a\n"
+      "call works.");
+  system
+      .def(py::init(&MakeSystem), py::arg("settings"), py::arg("mode") = "rgbd", py::kw_only(),
+           py::arg("pipeline") = "sequential", py::arg("vocabulary") = fs::path("default"),
+           py::arg("map") = py::none(), py::arg("session") = "", py::arg("localization") = false,
+           py::arg("seed") = 0,
+           "settings: Settings. mode: 'rgbd', or 'mono' for a camera without depth.\n"
+           "pipeline: 'sequential' gives the same bits every time; 'threaded' maps in a thread of\n"
+           "its own; 'realtime' never waits for it, for live cameras.\n"
+           "vocabulary: path of a vocabulary of visual words for loops and relocalisation;\n"
+           "'default': the one that comes with HullSLAM; None: none.\n"
+           "map: path of a map of earlier runs to go on with. session: the name of this run in\n"
+           "the map. localization: True to find poses in `map` without changing it.\n"
+           "seed: seed of all random choices.")
+      .def("track", &Track, py::arg("image"), py::arg("depth") = py::none(),
+           py::arg("masks") = py::none(), py::kw_only(), py::arg("timestamp"),
+           "Finds the pose of the camera in the next frame: TrackResult.\n\n"
+           "image: (height, width) uint8, or (height, width, 3 or 4) with blue first, as OpenCV\n"
+           "reads images (red first with the setting Camera.RGB). It is copied only if its rows\n"
+           "are not contiguous, as in image[:, ::-1], and must not be changed meanwhile.\n"
+           "depth: (height, width) uint16 in units of 1 / DepthMapFactor metres, or float32 in\n"
+           "metres, registered to the image; 0 or not finite where it is not known. None in the\n"
+           "mode 'mono'.\n"
+           "masks: Masks of the objects in the image, or None.\n"
+           "timestamp: s, larger than that of the frame before.\n"
+           "Raises InputError for anything else; a refused frame changes nothing.")
+      .def("finish", &Finish,
+           "Waits until all keyframes are in the map, adjusts the whole map, and computes the\n"
+           "poses of all frames again. Ctrl+C ends it early.")
+      .def(
+          "reset", [](LiveSystem& s) { WithoutGil([&] { s.Reset(); }); },
+          "Begins a new run as after construction, also after finish().")
+      .def(
+          "save_map", &SaveMap, py::arg("path"),
+          "Writes the map to a file (docs/maps.md), also during a run. Raises InputError if there\n"
+          "is no keyframe yet or the file cannot be written.")
+      .def("load_map", &LoadMap, py::arg("path"), py::kw_only(), py::arg("session") = "",
+           py::arg("localization") = false,
+           "Ends this run without finishing it and begins a new one that goes on with a map of\n"
+           "earlier runs. Raises InputError if the map was made with other settings; then the\n"
+           "run goes on.");
+  BindProperties(system);
+}
+
+}  // namespace hullslam::python

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arrays.h"
+#include "hullslam/map/messages.h"
+#include "module.h"
+
+namespace hullslam::python {
+namespace {
+
+// A row of the structured array of matches.
+struct MatchRow {
+  int64_t keypoint;
+  int64_t landmark;
+  std::array<float, 2> pixel;
+};
+
+// One object that was seen in a frame.
+struct SeenObject {
+  Detection detection;
+  std::optional<int64_t> object;
+};
+
+std::string StateOf(const FrameReport& report) {
+  switch (report.tracked.state) {
+    case TrackingState::kTracked:
+      return "tracked";
+    case TrackingState::kLost:
+      return "lost";
+    default:
+      return "initialising";
+  }
+}
+
+std::optional<std::string> ReasonOf(const FrameReport& report) {
+  if (report.failure) {
+    return std::string(ToString(*report.failure));
+  }
+  return report.loss ? std::optional(std::string(ToString(*report.loss))) : std::nullopt;
+}
+
+py::object IfTracked(const FrameReport& report, const Rigid3& pose) {
+  return report.tracked.state == TrackingState::kTracked ? py::object(ToArray(pose))
+                                                         : py::object(py::none());
+}
+
+py::array_t<MatchRow> MatchesOf(const FrameReport& report) {
+  std::vector<MatchRow> rows;
+  for (size_t i = 0; i < report.landmarks.size(); ++i) {
+    if (report.landmarks[i].IsValid()) {
+      const Eigen::Vector2f& pixel = report.frame->features.keypoints[i].undistorted;
+      rows.push_back({.keypoint = static_cast<int64_t>(i),
+                      .landmark = ToNumber(report.landmarks[i]),
+                      .pixel = {pixel.x(), pixel.y()}});
+    }
+  }
+  return py::array_t<MatchRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
+}
+
+std::vector<SeenObject> SeenObjectsOf(const FrameReport& report) {
+  std::vector<SeenObject> objects;
+  for (size_t i = 0; i < report.frame->detections.size(); ++i) {
+    const bool is_mapped = i < report.objects.size() && report.objects[i].IsValid();
+    objects.push_back({report.frame->detections[i],
+                       is_mapped ? std::optional(ToNumber(report.objects[i])) : std::nullopt});
+  }
+  return objects;
+}
+
+py::array_t<double> BoxOf(const SeenObject& object) {
+  const Eigen::AlignedBox2d& box = object.detection.box;
+  const std::array<double, 4> values = {box.min().x(), box.min().y(), box.max().x(), box.max().y()};
+  return py::array_t<double>(4, values.data());
+}
+
+}  // namespace
+
+void BindTrackResult(py::module_& module) {
+  PYBIND11_NUMPY_DTYPE(MatchRow, keypoint, landmark, pixel);
+  py::class_<SeenObject>(module, "SeenObject", "An object that a mask shows in one frame.")
+      .def_property_readonly(
+          "label", [](const SeenObject& o) { return o.detection.label; }, "The class of the mask.")
+      .def_property_readonly(
+          "score", [](const SeenObject& o) { return o.detection.score; },
+          "The score of the mask, 0 to 1.")
+      .def_readonly("object", &SeenObject::object,
+                    "The id of the mapped object that it shows (MapObject.id), or None.")
+      .def_property_readonly(
+          "hull", [](const SeenObject& o) { return ToArray(o.detection.hull); },
+          "(points, 2) convex hull of the mask, undistorted pixels.")
+      .def_property_readonly("box", &BoxOf,
+                             "(4,) least x and y and largest x and y of the hull, undistorted px.");
+  py::class_<FrameReport>(module, "TrackResult", "What track() found in one frame.")
+      .def_property_readonly("state", &StateOf,
+                             "'tracked', 'lost', or 'initialising': there is no map yet.")
+      .def_property_readonly(
+          "reason", &ReasonOf,
+          "Why the frame has no pose (docs/my-run-fails.md); None if it has one,\n"
+          "and while the mode 'rgbd' waits for a first image with features.")
+      .def_property_readonly(
+          "cam_from_world",
+          [](const FrameReport& r) { return IfTracked(r, r.tracked.cam_from_world); },
+          "(4, 4): maps points of the world frame to the camera frame (x right, y down, z\n"
+          "forward, m), at the time of tracking. None if the frame is not tracked. The trajectory\n"
+          "of the system has the pose after later corrections.")
+      .def_property_readonly(
+          "world_from_cam",
+          [](const FrameReport& r) { return IfTracked(r, r.tracked.world_from_cam()); },
+          "(4, 4): its inverse, the pose of the camera in the world; or None.")
+      .def_property_readonly(
+          "timestamp", [](const FrameReport& r) { return r.tracked.timestamp; },
+          "Time stamp of the frame, s.")
+      .def_property_readonly(
+          "frame", [](const FrameReport& r) { return ToNumber(r.tracked.frame); },
+          "The number of the frame.")
+      .def_property_readonly(
+          "inliers", [](const FrameReport& r) { return r.tracked.inliers; },
+          "The number of landmarks that agree with the pose.")
+      .def_property_readonly(
+          "matches", &MatchesOf,
+          "Structured array (N,) of the keypoints that show a landmark:\n"
+          "keypoint, its index; landmark, its id in the map before this frame; pixel\n"
+          "(2,), undistorted.")
+      .def_property_readonly("objects", &SeenObjectsOf,
+                             "The objects that masks show in this frame: list of SeenObject.")
+      .def("__repr__", [](const FrameReport& r) {
+        const std::optional<std::string> reason = ReasonOf(r);
+        return "<hullslam.TrackResult at " + std::to_string(r.tracked.timestamp) +
+               " s: " + StateOf(r) + (reason ? ", " + *reason : std::string()) + ">";
+      });
+}
+
+}  // namespace hullslam::python

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "live_system.h"
+
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "hullslam/util/cancellation.h"
+#include "hullslam/util/error.h"
+
+namespace hullslam::python {
+namespace {
+
+// All systems that exist, so that their threads can be ended before the program ends.
+struct Registry {
+  std::mutex mutex;
+  std::set<LiveSystem*> systems;
+};
+
+Registry& TheRegistry() {
+  static Registry registry;
+  return registry;
+}
+
+}  // namespace
+
+LiveSystem::LiveSystem(const SystemOptions& options, PipelineKind kind, SystemStart start)
+    : options_(options), kind_(kind) {
+  Begin(std::move(start));
+  Registry& registry = TheRegistry();
+  const std::lock_guard lock(registry.mutex);
+  registry.systems.insert(this);
+}
+
+LiveSystem::~LiveSystem() {
+  Registry& registry = TheRegistry();
+  const std::lock_guard lock(registry.mutex);
+  registry.systems.erase(this);
+}
+
+void LiveSystem::CloseAll() {
+  Registry& registry = TheRegistry();
+  const std::lock_guard lock(registry.mutex);
+  for (LiveSystem* const live : registry.systems) {
+    const std::lock_guard turn(live->mutex_);
+    live->system_.reset();
+  }
+}
+
+void LiveSystem::Begin(SystemStart start) {
+  if (start.localization_only && start.map.keyframes().empty()) {
+    throw InputError("localization needs a map with keyframes, expected map=PATH");
+  }
+  system_ = std::make_unique<System>(options_, kind_, std::move(start));
+  system_->SetFrameCallback([this](const FrameReport& report) { report_ = report; });
+  last_stamp_.reset();
+  is_finished_ = false;
+}
+
+System& LiveSystem::Open() const {
+  if (system_ == nullptr) {
+    throw InputError("the system was closed at the exit of the interpreter");
+  }
+  return *system_;
+}
+
+FrameReport LiveSystem::Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
+                              std::vector<InstanceMask> masks) {
+  const std::lock_guard lock(mutex_);
+  System& system = Open();
+  if (is_finished_) {
+    throw InputError("track() was called after finish(); reset() begins a new run");
+  }
+  if (!std::isfinite(timestamp)) {
+    throw InputError("timestamp is not finite, expected seconds");
+  }
+  if (last_stamp_ && !(timestamp > *last_stamp_)) {
+    throw InputError("timestamp is " + std::to_string(timestamp) +
+                     " s, expected more than that of the last frame, " +
+                     std::to_string(*last_stamp_) + " s");
+  }
+  const bool has_depth = options_.sensor == SensorKind::kRgbd;
+  if (has_depth && depth.empty()) {
+    throw InputError(
+        "depth is None, expected a depth image; a camera without depth has the mode "
+        "'mono'");
+  }
+  if (!has_depth && !depth.empty()) {
+    throw InputError("there is a depth image, expected None in the mode 'mono'");
+  }
+  system.Track(timestamp, image, depth, std::move(masks));
+  last_stamp_ = timestamp;
+  return std::exchange(report_, {});
+}
+
+void LiveSystem::Finish(const std::function<bool()>& is_over) {
+  const std::lock_guard lock(mutex_);
+  System& system = Open();
+  Cancellation cancellation;
+  const auto ask = [&](int /*done*/, int /*most*/) {
+    if (!cancellation.IsRequested() && is_over()) {
+      cancellation.Request();
+    }
+  };
+  is_finished_ = true;
+  system.Finish(&cancellation, ask, ask);
+}
+
+void LiveSystem::Reset() {
+  const std::lock_guard lock(mutex_);
+  Open().Reset();
+  last_stamp_.reset();
+  is_finished_ = false;
+}
+
+void LiveSystem::Restart(SystemStart start) {
+  const std::lock_guard lock(mutex_);
+  Open();
+  Begin(std::move(start));
+}
+
+void LiveSystem::SetLocalizationOnly(bool is_on) {
+  const std::lock_guard lock(mutex_);
+  System& system = Open();
+  const std::shared_ptr<const Map> map = system.map();
+  if (is_on && (map == nullptr || map->keyframes().empty())) {
+    throw InputError("localization needs a map with keyframes, and there is none yet");
+  }
+  system.SetLocalizationOnly(is_on);
+}
+
+}  // namespace hullslam::python

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hullslam/system/system.h"
+
+namespace hullslam::python {
+
+// A System for callers of any order: threads take turns, and a call that comes at the wrong time is
+// an InputError. All functions are called without the GIL, unless they say otherwise.
+class LiveSystem {
+ public:
+  // Throws as System does.
+  LiveSystem(const SystemOptions& options, PipelineKind kind, SystemStart start);
+  ~LiveSystem();
+  LiveSystem(const LiveSystem&) = delete;
+  LiveSystem& operator=(const LiveSystem&) = delete;
+
+  // Throws InputError after Finish() and for a time stamp that is not after the last one, and
+  // otherwise as System::Track does. A refused frame changes nothing.
+  FrameReport Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
+                    std::vector<InstanceMask> masks);
+  // `is_over` is asked from time to time whether to end early, see System::Finish.
+  void Finish(const std::function<bool()>& is_over);
+  void Reset();
+  // Begins a new run, which goes on with another map.
+  void Restart(SystemStart start);
+  void SetLocalizationOnly(bool is_on);
+
+  // Calls `read(const System&)`.
+  template <typename Read>
+  auto Get(const Read& read) const {
+    const std::lock_guard lock(mutex_);
+    return read(const_cast<const System&>(Open()));
+  }
+  const SystemOptions& options() const { return options_; }
+
+  // Ends the threads of all systems, which cannot be used any more. To be called with the GIL while
+  // no other call runs.
+  static void CloseAll();
+
+ private:
+  System& Open() const;
+  void Begin(SystemStart start);
+
+  const SystemOptions options_;
+  const PipelineKind kind_;
+  mutable std::mutex mutex_;        // guards the members below
+  std::unique_ptr<System> system_;  // null after CloseAll()
+  FrameReport report_;              // of the frame that is being tracked
+  std::optional<double> last_stamp_;
+  bool is_finished_ = false;
+};
+
+}  // namespace hullslam::python
