@@ -44,7 +44,8 @@ import sys
 import threading
 
 from run_errors import InputError
-from run_statistics import compare, lost_percent, read_json, value_at, write
+from run_programs import programs_folder
+from run_statistics import compare, lost_percent, try_read_json, value_at, write
 
 RECORD = "ablation_run.json"  # beside the outputs of a run: the command that made them
 COLUMNS = [  # heading, keys in summary.json, format
@@ -140,7 +141,7 @@ def run_once(command, folder, seconds):
     The error is empty if the run succeeded.
     """
     mark = fingerprint(command)
-    record, summary = read_json(folder / RECORD), read_json(folder / "summary.json")
+    record, summary = try_read_json(folder / RECORD), try_read_json(folder / "summary.json")
     if record and record.get("fingerprint") == mark and summary is not None:
         return summary, ""
     folder.mkdir(parents=True, exist_ok=True)
@@ -155,7 +156,7 @@ def run_once(command, folder, seconds):
             return None, f"not finished after {seconds:.0f} s"
         except OSError as error:
             raise InputError(f"{command[0]}: {error.strerror}") from error
-    summary = read_json(folder / "summary.json")
+    summary = try_read_json(folder / "summary.json")
     if code == 2:  # bad usage or input: all other runs would fail too
         last = (folder / "log.txt").read_text(encoding="utf-8", errors="replace").splitlines()[-1]
         raise InputError(f"{shlex.join(command)}: {last}")
@@ -302,15 +303,6 @@ def run_all(arguments, sequences, variants):
     return results
 
 
-def default_program():
-    """rgbd_tum of the installation, in which this script is in share/hullslam/scripts, or of the
-    build."""
-    top = pathlib.Path(__file__).resolve().parent.parent
-    places = [top.parent.parent / "libexec" / "hullslam" / "rgbd_tum",
-              top / "build" / "release" / "bin" / "rgbd_tum"]
-    return next((place for place in places if place.is_file()), places[-1])
-
-
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -331,7 +323,7 @@ def parse_arguments():
     parser.add_argument("--first-seed", type=int, default=0,
                         help="seed of the first run; the next have the next numbers (default 0)")
     parser.add_argument("--common", default="", help="arguments of every run, as one string")
-    parser.add_argument("--program", type=pathlib.Path, default=default_program(),
+    parser.add_argument("--program", type=pathlib.Path, default=programs_folder() / "rgbd_tum",
                         help="program to run (default: rgbd_tum of this installation or of "
                              "build/release/bin)")
     parser.add_argument("--timeout", type=float, default=3600.0,

@@ -23,7 +23,7 @@ import pathlib
 import sys
 import time
 
-from run_errors import InputError, one_line
+from run_errors import InputError, exit_code, one_line
 
 SETTINGS = "make_masks.json"  # beside the masks: the networks that made them
 MIN_AREA = 100.0  # px^2, of a mask that is written
@@ -249,18 +249,7 @@ def parse_arguments(words):
 
 def main(words=None):
     arguments = parse_arguments(words)
-    try:
-        make_masks(arguments)
-        return 0
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print("error: interrupted; start again to go on", file=sys.stderr)
-        return 1
-    except OSError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
+    return exit_code(make_masks, arguments)
 
 
 if __name__ == "__main__":

@@ -1,25 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes report.html for a finished run or a saved map. The program `view` does the work; it is
-looked for in $HULLSLAM_BIN, in build/release/bin, and as hullslam-view on the PATH."""
+"""Writes report.html for a finished run or a saved map. The program `view` does the work."""
 
 import argparse
-import os
 import pathlib
-import shutil
 import subprocess
 import sys
 
-TOP = pathlib.Path(__file__).resolve().parent.parent
-
-
-def find_program():
-    """The path of the program; None if it is not built and not installed."""
-    folders = [os.environ.get("HULLSLAM_BIN"), TOP / "build" / "release" / "bin"]
-    for folder in folders:
-        if folder and (pathlib.Path(folder) / "view").is_file():
-            return pathlib.Path(folder) / "view"
-    return shutil.which("hullslam-view")
+from run_programs import programs_folder
 
 
 def main():
@@ -27,11 +15,14 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run_dir", metavar="RUN_DIR", help="output folder of a run, or a map file")
     parser.add_argument("--output", help="the file (default: report.html in RUN_DIR)")
+    parser.add_argument("--programs", type=pathlib.Path, default=programs_folder(),
+                        metavar="FOLDER",
+                        help="(default: those of this installation or of build/release/bin)")
     arguments = parser.parse_args()
-    program = find_program()
-    if program is None:
-        print("error: the program view is not found; build it, or set HULLSLAM_BIN to the folder "
-              "of the programs", file=sys.stderr)
+    program = arguments.programs / "view"
+    if not program.is_file():
+        print(f"error: {program}: no such program; build it (cmake --build --preset release) or "
+              "give its folder by --programs", file=sys.stderr)
         return 2
     command = [str(program), arguments.run_dir, "--report"]
     if arguments.output:

@@ -46,22 +46,15 @@ from paper_tables.sequences import (find_sequences, in_order, read_list,  # noqa
 from paper_tables.suite import read_suite, suite_file  # noqa: E402
 from paper_tables.workflow import (make_all, read_results, snakemake_command,  # noqa: E402
                                    table_lock)
-from run_errors import InputError  # noqa: E402
+from run_errors import InputError, exit_code  # noqa: E402
 from run_files import read_json  # noqa: E402
+from run_programs import programs_folder  # noqa: E402
 from run_statistics import write  # noqa: E402
 
 SCRIPTS = pathlib.Path(__file__).resolve().parent
 OWN = SCRIPTS / "paper_tables"
 PLAN = "plan.json"
 QUICK_SEQUENCES, QUICK_FRAMES = 2, 40
-
-
-def default_programs():
-    """The folder of the programs of the installation, in which this script is in
-    share/hullslam/scripts, or of the build."""
-    top = SCRIPTS.parent
-    installed = top.parent.parent / "libexec" / "hullslam"
-    return installed if (installed / "rgbd_tum").is_file() else top / "build" / "release" / "bin"
 
 
 def find_config():
@@ -293,7 +286,7 @@ def parse_arguments(words):
     runs.add_argument("--definitions", type=pathlib.Path, default=OWN / "tables.yaml",
                       metavar="FILE", help="what is run and what the tables show (default: "
                       "paper_tables/tables.yaml beside this script)")
-    runs.add_argument("--programs", type=pathlib.Path, default=default_programs(), metavar="FOLDER",
+    runs.add_argument("--programs", type=pathlib.Path, default=programs_folder(), metavar="FOLDER",
                       help="(default: those of this installation or of build/release/bin)")
     work = parser.add_argument_group("work")
     work.add_argument("--jobs", type=int, metavar="N", help="runs at once (default: one per core)")
@@ -332,18 +325,7 @@ def main(words=None):
     for number in (signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) != signal.SIG_IGN:  # nohup ignores SIGHUP
             signal.signal(number, stop)
-    try:
-        reproduce(arguments)
-        return 0
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print("error: interrupted; start again to go on", file=sys.stderr)
-        return 1
-    except (Stopped, OSError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
+    return exit_code(reproduce, arguments, failures=(Stopped, OSError))
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ def hash_file(path):
     return digest.hexdigest()
 
 
-def read_json(path):
+def try_read_json(path):
     """The JSON object in a file; None if the file cannot be read or contains something else."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))

@@ -16,24 +16,20 @@ import pathlib
 import subprocess
 import sys
 
+from python_packages import require
+
+require("numpy")
+from run_errors import InputError  # noqa: E402
+from run_files import read_json  # noqa: E402
+from run_programs import programs_folder  # noqa: E402
+
 RELATIONS = ("on", "in", "beside")
 NEAREST = 0.5  # of the true size: the largest distance between the centres of matched objects
 
 
-class BadInput(Exception):
-    """A message for the user."""
-
-
-def read_json(path):
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise BadInput(f"{path}: {error}") from error
-
-
 def member(path, value, key):
-    if not isinstance(value, dict) or key not in value:
-        raise BadInput(f"{path}: has no {key}")
+    if key not in value:
+        raise InputError(f"{path}: has no {key}")
     return value[key]
 
 
@@ -153,7 +149,7 @@ def ask(program, run, text):
     if done.returncode == 1:
         return None
     if done.returncode != 0:
-        raise BadInput(f"{program} {run} '{text}': {done.stderr.strip()}")
+        raise InputError(f"{program} {run} '{text}': {done.stderr.strip()}")
     return json.loads(done.stdout)["answers"][0]["object"]
 
 
@@ -203,8 +199,9 @@ def main():
                         "have the world of the ground truth, as those of map_objects")
     parser.add_argument("--questions", type=int, default=0, metavar="N",
                         help="ask N questions per scene")
-    parser.add_argument("--program", default="build/release/bin/query_objects",
-                        help="path of query_objects (default: %(default)s)")
+    parser.add_argument("--program", default=programs_folder() / "query_objects",
+                        help="path of query_objects (default: that of this installation or of "
+                             "build/release/bin)")
     parser.add_argument("--list", action="store_true", help="also list all errors")
     arguments = parser.parse_args()
     if len(arguments.pairs) % 2:
@@ -216,7 +213,7 @@ def main():
     try:
         for run, sequence in zip(arguments.pairs[::2], arguments.pairs[1::2]):
             measure(run, sequence, arguments, totals)
-    except BadInput as error:
+    except InputError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
     print_counts("all", totals["relations"], totals["mapped"], totals["objects"])

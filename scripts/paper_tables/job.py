@@ -18,7 +18,7 @@ import time
 from paper_tables.figures import of_objects, of_true_objects, of_trajectory
 from paper_tables.plan import RESULT_VERSION, folder_output, result_file
 from run_errors import InputError, one_line
-from run_statistics import read_json, value_at, write
+from run_statistics import try_read_json, value_at, write
 
 LOG, ERROR = "log.txt", "error.txt"
 STOPPED = {signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP}
@@ -142,7 +142,7 @@ def make_run(plan, name):
     folder = pathlib.Path("runs") / name
     result = pathlib.Path(result_file(name, run))
     with locked(folder / ".lock"):
-        known = read_json(result)
+        known = try_read_json(result)
         if known is not None and known.get("fingerprint") == run["fingerprint"]:
             return False
         for old in [*folder.glob("result-*"), folder / ERROR]:
@@ -153,7 +153,7 @@ def make_run(plan, name):
                        {"HULLSLAM_CONFIG": plan["config"]})
         message = last_message(log)
         check_stopped(code, message, folder)
-        summary = read_json(folder / "out" / "summary.json") or {}
+        summary = try_read_json(folder / "out" / "summary.json") or {}
         if (summary.get("provenance") or {}).get("interrupted"):
             raise Stopped("the program was interrupted")
         keep_groundtruth(run, folder)

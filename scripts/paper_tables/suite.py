@@ -7,7 +7,7 @@ import tempfile
 
 from paper_tables.sequences import Sequence
 from run_errors import InputError, one_line
-from run_statistics import read_json
+from run_statistics import try_read_json
 
 FRAMES = 300  # of a sequence of the suite, unless --frames says otherwise
 LISTING_FRAMES = "2"  # enough to learn which sequences there are
@@ -16,7 +16,7 @@ LISTING_FRAMES = "2"  # enough to learn which sequences there are
 def suite_file(program, cache):
     """The content of suite.json: that of the file `cache`, else from a rendering of very few
     frames."""
-    known = read_json(cache)
+    known = try_read_json(cache)
     if known is not None:
         return known
     with tempfile.TemporaryDirectory() as folder:
@@ -26,7 +26,7 @@ def suite_file(program, cache):
         if result.returncode != 0:
             raise InputError(f"{program}: cannot render the suite: "
                              f"{one_line(result.stderr.strip() or 'no message')}")
-        content = read_json(target / "suite.json")
+        content = try_read_json(target / "suite.json")
         if content is None:
             raise InputError(f"{program}: has written no valid suite.json")
     return content

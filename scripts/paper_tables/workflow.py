@@ -15,11 +15,13 @@ import time
 from paper_tables.job import Stopped, error_file
 from paper_tables.plan import folder_output, result_file
 from run_errors import InputError, one_line
-from run_statistics import read_json
+from run_statistics import try_read_json
 
 LOG = "snakemake.log"
 SNAKEFILE = pathlib.Path(__file__).resolve().parent / "Snakefile"
 STEP = 0.5  # s, between two looks at what is done
+STARTS = 3  # of Snakemake, which sometimes ends with jobs left
+JOBS_LEFT = "Out of jobs ready to be started, but not all files built yet"
 LINE_EVERY = 20.0  # s, between two lines of progress that go to a file
 RENDERING_WEIGHT = 4.0  # the time of a rendered frame in relation to that of a frame of a run
 DEGRADING_WEIGHT = 1.0
@@ -199,20 +201,33 @@ def raise_error(plan, out):
         lines = (out / LOG).read_text(encoding="utf-8", errors="replace").strip().splitlines()
         if any(line.startswith("Will exit after finishing") for line in lines):
             raise Stopped("Snakemake was ended by a signal; start again to go on")
-        told = [line for line in lines if "Error" in line or "error" in line] or lines[-1:]
+        told = [line for line in lines if "Error" in line or "error" in line or JOBS_LEFT in line]
+        told = told or lines[-1:]
         raise Stopped(f"Snakemake has stopped: {one_line(told[-1], 300) if told else 'no message'} "
                       f"(see {out / LOG})")
     raise Stopped("Snakemake has stopped")
 
 
 def clean(plan, out):
-    """Removes what killed or changed table runs have left: errors and degraded sequences."""
+    """Removes what killed or changed table runs have left: errors and degraded sequences.
+
+    A degraded sequence that is needed is made again, because a kill may have left a part of it.
+    """
     for kind, names in (("run", plan["runs"]), ("folder", plan["folders"])):
         for name in names:
             (out / error_file(kind, name)).unlink(missing_ok=True)
     for path in (out / "degraded").glob("*/seed-*"):
-        if path.is_dir() and str(path.relative_to(out)) not in plan["folders"]:
+        if path.is_dir():
             shutil.rmtree(path, ignore_errors=True)
+
+
+def has_jobs_left(out):
+    """Whether Snakemake has ended without making all jobs and without an error of one.
+
+    Snakemake 7 does this (its issue 823) if outputs appear while it plans, as those of jobs do that
+    a killed Snakemake has left running. A new start goes on.
+    """
+    return JOBS_LEFT in (out / LOG).read_text(encoding="utf-8", errors="replace")
 
 
 def make_all(plan, plan_file, out, jobs, profile, is_quiet):
@@ -222,7 +237,11 @@ def make_all(plan, plan_file, out, jobs, profile, is_quiet):
     reporter = Reporter(progress, is_quiet)
     if not progress.missing:
         return
-    code = run_snakemake(snakemake_command(plan_file, jobs, profile, False), out, reporter)
+    command = snakemake_command(plan_file, jobs, profile, False)
+    for _ in range(STARTS):
+        code = run_snakemake(command, out, reporter)
+        if code == 0 or not has_jobs_left(out):
+            break
     reporter.update(is_last=True)
     missing = [name for name, run in plan["runs"].items()
                if not (out / result_file(name, run)).exists()]
@@ -232,4 +251,4 @@ def make_all(plan, plan_file, out, jobs, profile, is_quiet):
 
 def read_results(plan, out):
     """{name of a run: its result}; None for those that are not there."""
-    return {name: read_json(out / result_file(name, run)) for name, run in plan["runs"].items()}
+    return {name: try_read_json(out / result_file(name, run)) for name, run in plan["runs"].items()}

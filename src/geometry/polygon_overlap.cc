@@ -11,14 +11,10 @@ namespace {
 
 using Corners = std::vector<Eigen::Vector2d>;
 
-// The part of a convex polygon to the left of the directed line through `from` and `to` (Sutherland
-// and Hodgman 1974). The left side of an edge is the inside of a polygon with positive area.
-void ClipToLeft(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& from,
-                const Eigen::Vector2d& to, Corners& clipped) {
-  const Eigen::Vector2d along = to - from;
-  const auto side = [&](const Eigen::Vector2d& p) {
-    return along.x() * (p.y() - from.y()) - along.y() * (p.x() - from.x());
-  };
+// The part of a convex polygon where the linear function `side` is not negative (Sutherland and
+// Hodgman 1974).
+template <typename Side>
+void ClipBySide(std::span<const Eigen::Vector2d> polygon, const Side& side, Corners& clipped) {
   clipped.clear();
   for (size_t i = 0; i < polygon.size(); ++i) {
     const Eigen::Vector2d& a = polygon[i];
@@ -32,6 +28,19 @@ void ClipToLeft(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d&
       clipped.emplace_back(a + side_a / (side_a - side_b) * (b - a));
     }
   }
+}
+
+// The part to the left of the directed line through `from` and `to`. The left side of an edge is
+// the inside of a polygon with positive area.
+void ClipToLeft(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& from,
+                const Eigen::Vector2d& to, Corners& clipped) {
+  const Eigen::Vector2d along = to - from;
+  ClipBySide(
+      polygon,
+      [&](const Eigen::Vector2d& p) {
+        return along.x() * (p.y() - from.y()) - along.y() * (p.x() - from.x());
+      },
+      clipped);
 }
 
 Corners Clip(std::span<const Eigen::Vector2d> polygon, std::span<const Eigen::Vector2d> window) {
@@ -69,6 +78,14 @@ std::vector<Eigen::Vector2d> ClipToBox(std::span<const Eigen::Vector2d> polygon,
   const Eigen::Vector2d& low = box.min();
   const Eigen::Vector2d& high = box.max();
   return Clip(polygon, Corners{low, {high.x(), low.y()}, high, {low.x(), high.y()}});
+}
+
+std::vector<Eigen::Vector2d> ClipToHalfPlane(std::span<const Eigen::Vector2d> polygon,
+                                             const Eigen::Vector2d& normal, double offset) {
+  Corners clipped;
+  ClipBySide(
+      polygon, [&](const Eigen::Vector2d& p) { return offset - normal.dot(p); }, clipped);
+  return clipped;
 }
 
 double IntersectionArea(std::span<const Eigen::Vector2d> a, std::span<const Eigen::Vector2d> b) {

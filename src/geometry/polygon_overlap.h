@@ -13,6 +13,9 @@ namespace hullslam {
 
 std::vector<Eigen::Vector2d> ClipToBox(std::span<const Eigen::Vector2d> polygon,
                                        const Eigen::AlignedBox2d& box);
+// The part with normal . p <= offset. The normal need not have length 1.
+std::vector<Eigen::Vector2d> ClipToHalfPlane(std::span<const Eigen::Vector2d> polygon,
+                                             const Eigen::Vector2d& normal, double offset);
 double IntersectionArea(std::span<const Eigen::Vector2d> a, std::span<const Eigen::Vector2d> b);
 // Area of the intersection over area of the union, 0 to 1; 0 for two empty sets.
 double IntersectionOverUnion(std::span<const Eigen::Vector2d> a,

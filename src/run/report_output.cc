@@ -106,7 +106,7 @@ void WriteReportOfMap(const fs::path& map, const fs::path& file) {
   options.features.level_count = stored.settings.level_count;
   options.features.scale_factor = stored.settings.scale_factor;
   ViewModel model = ViewOfMap(stored.map, MakeSensor(options), options.objects);
-  model.up = FindUp(model.trajectory, nullptr);
+  AddUp(std::nullopt, model);
   model.title = map.filename().string();
   model.version = HULLSLAM_VERSION;
   WriteModel(std::move(model), file);

@@ -183,11 +183,10 @@ void WriteIslands(OutputFolder& output, std::span<const LeftIsland> islands, con
   }
 }
 
-// The files of objects are only written if the run has masks.
 void WriteOutputs(OutputFolder& output, std::string map_ply,
                   const std::vector<TrajectoryPart>& poses,
                   const std::vector<TrajectoryPart>& keyframes, RunSummary summary,
-                  const ObjectReport& objects, const Scene& scene, const ImageSequence& sequence,
+                  const std::vector<FileContent>& object_files, const ImageSequence& sequence,
                   std::span<const LeftIsland> islands, const Sensor& sensor) {
   output.Write({"trajectory.txt", FormatTrajectory(poses)});
   output.Write({"keyframes.txt", FormatTrajectory(keyframes)});
@@ -196,10 +195,8 @@ void WriteOutputs(OutputFolder& output, std::string map_ply,
   if (sequence.converted_groundtruth) {
     output.Write({"groundtruth.txt", FormatTrajectory(*sequence.converted_groundtruth)});
   }
-  if (summary.objects) {
-    for (const FileContent& file : ObjectFiles(objects, scene)) {
-      output.Write(file);
-    }
+  for (const FileContent& file : object_files) {
+    output.Write(file);
   }
   summary.files = output.names();
   output.Write({"summary.json", FormatSummary(summary)});
@@ -242,6 +239,15 @@ void PrintInput(const RunArguments& arguments, const LoadedSettings& settings,
   }
 }
 
+ObjectReport ReportObjects(const RunArguments& arguments, const PinholeCamera& camera,
+                           const Map& map, size_t earlier_sessions, const System& system) {
+  ObjectReport objects = CollectObjects(map, camera, arguments.sequence);
+  if (map.sessions().size() > earlier_sessions && earlier_sessions > 0) {
+    objects.changes = system.object_changes();
+  }
+  return objects;
+}
+
 std::string DescribeInterruption(const RunResult& result, const ImageSequence& sequence) {
   return fmt::format(
       "the run was interrupted after {} of {} frames; the results so far were written",
@@ -282,19 +288,18 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   const Trajectory trajectory = system.trajectory();
   const std::shared_ptr<const Map> map =
       system.map() != nullptr ? system.map() : std::make_shared<const Map>();
-  ObjectReport objects = CollectObjects(*map, options.camera, arguments.sequence);
-  if (map->sessions().size() > earlier_sessions && earlier_sessions > 0) {
-    objects.changes = system.object_changes();
-  }
+  const ObjectReport objects =
+      ReportObjects(arguments, options.camera, *map, earlier_sessions, system);
+  std::vector<FileContent> object_files;
   if (masks.format()) {
     summary.objects = SummarizeObjects(objects, system.object_counts());
+    object_files = ObjectFiles(objects, CollectScene(*map, objects, groundtruth));
   }
-  const Scene scene = masks.format() ? CollectScene(*map, objects, groundtruth) : Scene();
   const LocatedLandmarks landmarks = LocateLandmarks(*map, MakeSensor(options));
   summary.map.landmarks_at_infinity = landmarks.at_infinity;
   WriteOutputs(output, MapPly(landmarks.positions, KeyframeTrajectory(*map)),
                RunParts(arguments, earlier_sessions, trajectory), KeyframeParts(arguments, *map),
-               summary, objects, scene, sequence, KeptIslands(arguments, system),
+               summary, object_files, sequence, KeptIslands(arguments, system),
                MakeSensor(options));
   const std::string unsaved = SaveMap(arguments, options, *map);
   const std::string unsaved_island =

@@ -9,6 +9,7 @@
 
 #include "geometry/polygon_overlap.h"
 #include "geometry/polyline.h"
+#include "geometry/sphere_directions.h"
 #include "objects/misfit.h"
 
 namespace hullslam {
@@ -32,25 +33,6 @@ double SupportOf(const Ellipsoid& ellipsoid, const Eigen::Vector3d& normal) {
 Eigen::Vector2d DirectionOf(int index, int count) {
   const double angle = 2.0 * std::numbers::pi * index / count;
   return {std::cos(angle), std::sin(angle)};
-}
-
-// The part of a convex polygon with normal . x <= offset.
-std::vector<Eigen::Vector2d> CutOff(const std::vector<Eigen::Vector2d>& polygon,
-                                    const Eigen::Vector2d& normal, double offset) {
-  std::vector<Eigen::Vector2d> inside;
-  for (size_t i = 0; i < polygon.size(); ++i) {
-    const Eigen::Vector2d& a = polygon[i];
-    const Eigen::Vector2d& b = polygon[(i + 1) % polygon.size()];
-    const double beyond_a = normal.dot(a) - offset;
-    const double beyond_b = normal.dot(b) - offset;
-    if (beyond_a <= 0.0) {
-      inside.push_back(a);
-    }
-    if ((beyond_a < 0.0) != (beyond_b < 0.0) && beyond_a != beyond_b) {
-      inside.push_back(a + beyond_a / (beyond_a - beyond_b) * (b - a));
-    }
-  }
-  return inside;
 }
 
 // Measures how far an object reaches in a direction of the upright frame.
@@ -78,7 +60,7 @@ std::vector<Eigen::Vector2d> FootprintOf(const Ellipsoid& upright, const Reach& 
       center + Eigen::Vector2d(far, far), center + Eigen::Vector2d(-far, far)};
   for (int i = 0; i < kSides; ++i) {
     const Eigen::Vector2d direction = DirectionOf(i, kSides);
-    polygon = CutOff(polygon, direction, reach.Along({direction.x(), direction.y(), 0.0}));
+    polygon = ClipToHalfPlane(polygon, direction, reach.Along({direction.x(), direction.y(), 0.0}));
   }
   return polygon;
 }
@@ -141,14 +123,6 @@ double ReachOfFootprint(const ObjectBody& body, const Eigen::Vector2d& direction
     reach = std::max(reach, direction.dot(corner));
   }
   return reach;
-}
-
-// Directions that are evenly spread over the sphere (a Fibonacci lattice).
-Eigen::Vector3d SpreadDirection(int index, int count) {
-  const double z = 1.0 - (2.0 * index + 1.0) / count;
-  const double angle = index * std::numbers::pi * (3.0 - std::sqrt(5.0));
-  const double radius = std::sqrt(1.0 - z * z);
-  return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
 void Finish(ObjectBody& body, const Reach& reach) {
@@ -231,7 +205,7 @@ double EllipsoidGap(const Ellipsoid& a, const Ellipsoid& b) {
   double gap =
       between.norm() > 0.0 ? gap_along(between.normalized()) : -std::numeric_limits<double>::max();
   for (int i = 0; i < kGapDirections; ++i) {
-    gap = std::max(gap, gap_along(SpreadDirection(i, kGapDirections)));
+    gap = std::max(gap, gap_along(SphereDirection(i, kGapDirections)));
   }
   return gap;
 }
@@ -245,7 +219,7 @@ double VolumeShare(const Ellipsoid& a, const Ellipsoid& b) {
     // Shells of equal volume.
     const double radius = std::cbrt((shell + 0.5) / kShells);
     for (int i = 0; i < kPerShell; ++i) {
-      const Eigen::Vector3d in_a = radius * a.half_axes.cwiseProduct(SpreadDirection(i, kPerShell));
+      const Eigen::Vector3d in_a = radius * a.half_axes.cwiseProduct(SphereDirection(i, kPerShell));
       const Eigen::Vector3d in_b = b_from_world * (a.world_from_object * in_a);
       inside += in_b.cwiseQuotient(b.half_axes).squaredNorm() <= 1.0 ? 1 : 0;
     }

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "geometry/sphere_directions.h"
 #include "hullslam/objects/object_constraint_options.h"
 #include "objects/misfit.h"
 
@@ -47,15 +48,12 @@ Gradient GradientOf(const Ellipsoid& ellipsoid, const Eigen::Vector3d& normal) {
   return gradient;
 }
 
-// Patches of the sphere, evenly spread: a Fibonacci lattice on the upper half, and its opposite.
+// Patches of the sphere, evenly spread on the upper half, and their opposites.
 const std::array<Eigen::Vector3d, kPatches>& PatchNormals() {
   static const std::array<Eigen::Vector3d, kPatches> normals = [] {
     std::array<Eigen::Vector3d, kPatches> made;
-    for (size_t i = 0; i < kHalf; ++i) {
-      const double z = 1.0 - (static_cast<double>(i) + 0.5) / kHalf;
-      const double angle = static_cast<double>(i) * std::numbers::pi * (3.0 - std::sqrt(5.0));
-      const double radius = std::sqrt(1.0 - z * z);
-      made[i] = {radius * std::cos(angle), radius * std::sin(angle), z};
+    for (int i = 0; i < kHalf; ++i) {
+      made[i] = SphereDirection(i, kPatches);
       made[i + kHalf] = -made[i];
     }
     return made;

@@ -158,6 +158,12 @@ UpDirection UpFromPlanes(std::span<const Eigen::Vector3d> landmarks, const Traje
   return {search.best, "planes"};
 }
 
+std::optional<Eigen::Vector3d> UpFromImages(const Trajectory& poses) {
+  constexpr double kLeastMean = 0.2;  // length of the mean of the unit vectors
+  const Eigen::Vector3d tops = MeanTop(poses);
+  return tops.norm() >= kLeastMean ? std::optional(tops.normalized()) : std::nullopt;
+}
+
 UpDirection FindUp(const std::optional<Trajectory>& groundtruth, const Trajectory& poses,
                    std::span<const Eigen::Vector3d> landmarks) {
   if (groundtruth) {

@@ -29,7 +29,11 @@ UpDirection UpFromGroundtruth(const Trajectory& groundtruth, const Trajectory& p
 // more concentrated than along other directions.
 UpDirection UpFromPlanes(std::span<const Eigen::Vector3d> landmarks, const Trajectory& poses);
 
-// The first of the two that gives a direction.
+// The direction that the tops of the images point to on average. It is only a guess, good enough to
+// draw a map; absent if the camera was held in too many ways.
+std::optional<Eigen::Vector3d> UpFromImages(const Trajectory& poses);
+
+// The first of ground truth and planes that gives a direction.
 UpDirection FindUp(const std::optional<Trajectory>& groundtruth, const Trajectory& poses,
                    std::span<const Eigen::Vector3d> landmarks);
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "view/aligned_truth.h"
 
-#include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "hullslam/eval/ate.h"
+#include "scene/up_direction.h"
 
 namespace hullslam {
 
@@ -30,34 +29,19 @@ std::string AddGroundtruth(const Trajectory& groundtruth, AlignmentKind alignmen
                                    truth_from_map * pose.world_from_cam.translation)
                                       .norm());
   }
-  const Eigen::Matrix3d rotation = truth_from_map.target_from_source.rotation.toRotationMatrix();
-  if (alignment != AlignmentKind::kNone) {
-    model.up = FindUp(model.trajectory, &rotation);
-  }
   return {};
 }
 
-std::optional<Eigen::Vector3d> FindUp(const Trajectory& poses,
-                                      const Eigen::Matrix3d* truth_from_map) {
-  constexpr double kLeastMean = 0.2;  // length of the mean of the unit vectors
-  const double nearest = std::cos(40.0 / 180.0 * std::numbers::pi);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const StampedPose& pose : poses) {
-    sum -= pose.world_from_cam.rotation * Eigen::Vector3d::UnitY();
+void AddUp(const std::optional<Trajectory>& groundtruth, ViewModel& model) {
+  std::vector<Eigen::Vector3d> landmarks;
+  landmarks.reserve(model.landmarks.positions.size());
+  for (const Eigen::Vector3f& position : model.landmarks.positions) {
+    landmarks.push_back(position.cast<double>());
   }
-  if (poses.empty() || sum.norm() < kLeastMean * static_cast<double>(poses.size())) {
-    return std::nullopt;
+  model.up = FindUp(groundtruth, model.trajectory, landmarks).up;
+  if (!model.up) {
+    model.up = UpFromImages(model.trajectory);
   }
-  const Eigen::Vector3d up = sum.normalized();
-  if (truth_from_map == nullptr) {
-    return up;
-  }
-  const Eigen::Vector3d in_truth = *truth_from_map * up;
-  Eigen::Index axis = 0;
-  if (in_truth.cwiseAbs().maxCoeff(&axis) < nearest) {
-    return up;
-  }
-  return std::copysign(1.0, in_truth[axis]) * truth_from_map->row(axis).transpose().normalized();
 }
 
 }  // namespace hullslam

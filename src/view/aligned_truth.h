@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "hullslam/geometry/alignment.h"
@@ -15,10 +16,8 @@ namespace hullslam {
 std::string AddGroundtruth(const Trajectory& groundtruth, AlignmentKind alignment,
                            ViewModel& model);
 
-// The direction that the tops of the images point to on average, in the world of the map. If the
-// ground truth was aligned, the nearest of its axes takes its place, unless they are more than 40
-// degrees apart. Absent if the camera was held in too many ways. `truth_from_map` may be null.
-std::optional<Eigen::Vector3d> FindUp(const Trajectory& poses,
-                                      const Eigen::Matrix3d* truth_from_map);
+// Sets the upward direction, from the trajectory and landmarks of the model (scene/up_direction.h).
+// If neither the ground truth nor planes tell it, it is guessed from the images.
+void AddUp(const std::optional<Trajectory>& groundtruth, ViewModel& model);
 
 }  // namespace hullslam

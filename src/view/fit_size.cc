@@ -122,7 +122,7 @@ size_t FixedBytes(const ViewModel& model) {
   for (const ViewObject& object : model.objects) {
     bytes += kPerObject + 40 * object.object.votes.size();
   }
-  return bytes + 80 * (model.relations.is_array() ? model.relations.size() : 0);
+  return bytes + 80 * model.relations.size();
 }
 
 size_t SumOf(const std::vector<Part>& parts) {

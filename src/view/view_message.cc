@@ -154,6 +154,16 @@ Json PackEdges(const std::vector<ViewEdges::Edge>& edges) {
   return PackArray(ids);
 }
 
+Json RelationsJson(const std::vector<Relation>& relations) {
+  Json list = Json::array();
+  for (const Relation& relation : relations) {
+    list.push_back({{"subject", relation.subject.value},
+                    {"relation", ToString(relation.kind)},
+                    {"object", relation.object.value}});
+  }
+  return list;
+}
+
 Json SettingsJson(const ViewSettings& settings) {
   Json changed = Json::array();
   for (const ViewSetting& setting : settings.changed) {
@@ -255,7 +265,7 @@ std::string FormatViewMessage(const ViewModel& model) {
   parts["images"] = PicturesJson(model.pictures, start);
   parts["losses"] = LossesJson(model.summary, start);
   parts["summary"] = model.summary;
-  parts["relations"] = model.relations;
+  parts["relations"] = RelationsJson(model.relations);
   if (model.settings) {
     parts["settings"] = SettingsJson(*model.settings);
   }

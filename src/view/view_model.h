@@ -14,6 +14,7 @@
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/util/id.h"
 #include "report/object_report.h"
+#include "scene/scene.h"
 
 namespace hullslam {
 
@@ -98,8 +99,8 @@ struct ViewModel {
   ViewEdges edges;
   std::vector<ViewPicture> pictures;  // in order of time
   std::optional<ViewSettings> settings;
-  nlohmann::json summary;    // the content of summary.json, or null
-  nlohmann::json relations;  // the list `relations` of scene.json, or null
+  nlohmann::json summary;  // the content of summary.json, or null
+  std::vector<Relation> relations;
 };
 
 }  // namespace hullslam

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "files/json_file.h"
-#include "files/json_node.h"
 #include "hullslam/results/trajectory_file.h"
 #include "hullslam/util/error.h"
 #include "results/object_file.h"
 #include "results/ply_points.h"
+#include "results/scene_file.h"
 #include "results/summary.h"
 #include "sequences/run_sequence.h"
 #include "view/aligned_truth.h"
@@ -110,28 +110,14 @@ void ReadObjectFiles(const fs::path& folder, ViewModel& model) {
   });
 }
 
-void ReadScene(const fs::path& folder, ViewModel& model) {
+void AddScene(const fs::path& folder, ViewModel& model) {
   if (!fs::exists(folder / "scene.json")) {
     return;
   }
   AddPart("relations", model, [&] {
-    const fs::path file = folder / "scene.json";
-    const Json scene = ReadJson(file);
-    const JsonNode top(file, scene);
-    if (top.Has("up")) {
-      const std::vector<double> up = top.At("up").Numbers(3);
-      const Eigen::Vector3d direction(up[0], up[1], up[2]);
-      if (direction.norm() > 0.5) {
-        model.up = direction.normalized();
-      }
-    }
-    Json relations = Json::array();
-    for (const JsonNode& relation : top.At("relations").Elements()) {
-      relations.push_back({{"subject", relation.At("subject").Count()},
-                           {"relation", relation.At("relation").Text()},
-                           {"object", relation.At("object").Count()}});
-    }
-    model.relations = std::move(relations);
+    Scene scene = ReadScene(folder / "scene.json");
+    model.up = scene.up ? scene.up : model.up;
+    model.relations = std::move(scene.relations);
   });
 }
 
@@ -154,13 +140,13 @@ Trajectory DuringRun(const Trajectory& groundtruth, const Trajectory& run) {
   return part;
 }
 
-void CompareWithTruth(const fs::path& folder, const ImageSequence* sequence, ViewModel& model) {
+void CompareWithTruth(const fs::path& folder, const std::optional<Trajectory>& groundtruth,
+                      ViewModel& model) {
   if (model.trajectory.empty()) {
     return;
   }
   const AlignmentKind alignment = ReadAlignment(folder / "summary.json");
   model.is_metric = alignment != AlignmentKind::kSim3;
-  const auto groundtruth = FindGroundtruth(folder, sequence);
   if (!groundtruth) {
     return;
   }
@@ -245,9 +231,13 @@ ViewModel ViewOfRun(const fs::path& folder, const RunMemory& memory) {
     reopened = ReopenSequence(folder, model);
     sequence = reopened ? &*reopened : nullptr;
   }
-  model.up = FindUp(model.trajectory, nullptr);
-  AddPart("ground truth", model, [&] { CompareWithTruth(folder, sequence, model); });
-  ReadScene(folder, model);
+  std::optional<Trajectory> groundtruth;
+  AddPart("ground truth", model, [&] {
+    groundtruth = FindGroundtruth(folder, sequence);
+    CompareWithTruth(folder, groundtruth, model);
+  });
+  AddUp(groundtruth, model);
+  AddScene(folder, model);
   if (sequence != nullptr && model.camera) {
     AddPictures(*sequence, memory, model);
   }

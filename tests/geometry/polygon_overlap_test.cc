@@ -121,5 +121,14 @@ TEST(ClipToBox, KeepsThePartInsideTheBox) {
   EXPECT_TRUE(ClipToBox(inside, Eigen::AlignedBox2d()).empty());
 }
 
+TEST(ClipToHalfPlane, KeepsThePartBelowTheOffset) {
+  const std::vector<Eigen::Vector2d> square = {{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+  EXPECT_DOUBLE_EQ(SignedArea(ClipToHalfPlane(square, {1.0, 0.0}, 0.5)), 1.0);
+  EXPECT_DOUBLE_EQ(SignedArea(ClipToHalfPlane(square, {-2.0, 0.0}, -1.0)), 3.0);
+  EXPECT_DOUBLE_EQ(SignedArea(ClipToHalfPlane(square, {1.0, 1.0}, 2.0)), 2.0);
+  EXPECT_EQ(ClipToHalfPlane(square, {1.0, 0.0}, 5.0), square);
+  EXPECT_TRUE(ClipToHalfPlane(square, {1.0, 0.0}, -1.0).empty());
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -99,5 +99,14 @@ TEST(FindUp, PrefersTheGroundTruth) {
   EXPECT_EQ(FindUp(std::nullopt, poses, PointsOfRoom()).from, "planes");
 }
 
+TEST(UpFromImages, IsUnknownIfTheCameraWasHeldInAllWays) {
+  const auto up = UpFromImages(Trajectory(3, {0.0, Rigid3()}));
+  ASSERT_TRUE(up);
+  EXPECT_LT((*up + Eigen::Vector3d::UnitY()).norm(), 1e-12);
+  EXPECT_FALSE(UpFromImages({}));
+  const Rigid3 turned(Eigen::Quaterniond(0.0, 0.0, 0.0, 1.0), Eigen::Vector3d::Zero());
+  EXPECT_FALSE(UpFromImages({{0.0, Rigid3()}, {1.0, turned}}));
+}
+
 }  // namespace
 }  // namespace hullslam

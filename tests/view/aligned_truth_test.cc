@@ -50,29 +50,22 @@ TEST(AlignedTruth, TwoPosesCannotBeAligned) {
   EXPECT_TRUE(model.errors.metres.empty());
 }
 
-TEST(FindUp, IsWhereTheTopsOfTheImagesPoint) {
-  const Trajectory level(3, {0.0, Rigid3()});
-  const auto up = FindUp(level, nullptr);
-  ASSERT_TRUE(up);
-  EXPECT_LT((*up + Eigen::Vector3d::UnitY()).norm(), 1e-12);
-  EXPECT_FALSE(FindUp({}, nullptr));
-}
-
-TEST(FindUp, TakesTheNearestAxisOfTheTruth) {
+TEST(AddUp, IsThatOfTheTruthOrOfTheImages) {
   // The camera looks down by 20 degrees, and the true world has z up.
-  const Eigen::Quaterniond world_from_cam(
-      Eigen::AngleAxisd(-20.0 / 57.3, Eigen::Vector3d::UnitX()));
-  const Trajectory poses(5, {0.0, Rigid3(world_from_cam, Eigen::Vector3d::Zero())});
-  const Eigen::Matrix3d truth_from_map =
-      Eigen::AngleAxisd(-M_PI / 2.0, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  const auto up = FindUp(poses, &truth_from_map);
-  ASSERT_TRUE(up);
-  EXPECT_LT((*up + Eigen::Vector3d::UnitY()).norm(), 1e-9) << up->transpose();
-}
-
-TEST(FindUp, IsUnknownIfTheCameraWasHeldInAllWays) {
-  const Rigid3 turned(Eigen::Quaterniond(0.0, 0.0, 0.0, 1.0), Eigen::Vector3d::Zero());
-  EXPECT_FALSE(FindUp({{0.0, Rigid3()}, {1.0, turned}}, nullptr));
+  const Rigid3 tilted(ExpSo3({-20.0 / 57.3, 0.0, 0.0}), Eigen::Vector3d::Zero());
+  ViewModel model;
+  model.trajectory = {{0.0, tilted}, {1.0, tilted}};
+  AddUp(std::nullopt, model);
+  ASSERT_TRUE(model.up);
+  EXPECT_LT((*model.up + tilted.rotation * Eigen::Vector3d::UnitY()).norm(), 1e-9);
+  const Rigid3 truth_from_map(ExpSo3({-M_PI / 2.0, 0.0, 0.0}), Eigen::Vector3d::Zero());
+  Trajectory truth = model.trajectory;
+  for (StampedPose& pose : truth) {
+    pose.world_from_cam = truth_from_map * pose.world_from_cam;
+  }
+  AddUp(truth, model);
+  ASSERT_TRUE(model.up);
+  EXPECT_LT((*model.up + Eigen::Vector3d::UnitY()).norm(), 1e-9) << model.up->transpose();
 }
 
 }  // namespace

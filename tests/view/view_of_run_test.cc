@@ -9,6 +9,7 @@
 #include "hullslam/results/trajectory_file.h"
 #include "results/object_file.h"
 #include "results/ply_file.h"
+#include "results/scene_file.h"
 #include "results/summary.h"
 #include "support/expect_error.h"
 #include "support/made_view.h"
@@ -81,12 +82,22 @@ TEST_F(ViewOfRunTest, AMonocularRunHasAnUnknownUnit) {
 }
 
 TEST_F(ViewOfRunTest, RelationsComeFromTheScene) {
-  folder_.Write("scene.json", R"({"version": 1, "up": [0, 0, 2], "relations": [
-      {"subject": 7, "relation": "on", "object": 8, "evidence": {}}]})");
+  Scene scene;
+  scene.up = Eigen::Vector3d::UnitZ();
+  scene.objects.resize(2);
+  scene.objects[0].id = ObjectId(7);
+  scene.objects[1].id = ObjectId(8);
+  for (SceneObject& object : scene.objects) {
+    object.ellipsoid.half_axes.setConstant(0.1);
+  }
+  scene.relations = {{ObjectId(7), RelationKind::kOn, ObjectId(8), {}}};
+  folder_.Write("scene.json", FormatScene(scene));
   const ViewModel model = ViewOfRun(folder_.path());
+  EXPECT_TRUE(model.notes.size() == 1u) << model.notes.back();
   EXPECT_EQ(*model.up, Eigen::Vector3d::UnitZ());
-  EXPECT_EQ(model.relations[0]["relation"], "on");
-  folder_.Write("scene.json", R"({"up": null, "relations": [{"subject": "x"}]})");
+  ASSERT_EQ(model.relations.size(), 1u);
+  EXPECT_EQ(model.relations[0].kind, RelationKind::kOn);
+  folder_.Write("scene.json", R"({"version": 1, "relations": [{"subject": "x"}]})");
   EXPECT_TRUE(HasNote(ViewOfRun(folder_.path()), "relations left out: "));
 }
 
