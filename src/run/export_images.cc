@@ -111,7 +111,7 @@ std::vector<KeyframeImage> FindImages(ExportInput& input) {
   if (images.empty()) {
     throw InputError(fmt::format(
         "none of the {} keyframes has an image in the sequence '{}': no time stamps are equal; "
-        "expected the sequence of the run (and --fps and --stamp-offset as in the run)",
+        "expected the sequence of the run (runs with --fps or --stamp-offset cannot be exported)",
         keyframes, input.session));
   }
   if (images.size() < keyframes) {

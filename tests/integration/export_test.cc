@@ -28,7 +28,7 @@ using Json = nlohmann::json;
 
 // A run with depth, masks and a saved map, which all tests share.
 struct DeskRun {
-  RenderedDesk desk{40};
+  RenderedDesk desk{20};
   TemporaryFolder folder;
   fs::path run = folder.path() / "run";
   fs::path map = folder.path() / "desk.map";
