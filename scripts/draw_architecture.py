@@ -53,6 +53,7 @@ CONTENTS = {
     "masks": "six formats",
     "view": "data of the report's page",
     "live": "live view in a browser",
+    "exports": "files for other programs",
     "map_files": "maps, vocabularies",
     "run": "what all programs share",
     "synthetic": "renderer of scenes",

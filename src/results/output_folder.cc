@@ -98,27 +98,6 @@ bool IsSameOrInside(const fs::path& inner, const fs::path& outer) {
   return end == outer.end();
 }
 
-void CheckApartFromInputs(const fs::path& folder, std::span<const fs::path> inputs) {
-  const fs::path output = Canonical(folder);
-  for (const fs::path& path : inputs) {
-    std::error_code error;
-    if (path.empty()) {
-      continue;
-    }
-    const fs::path input = Canonical(path);
-    if (IsSameOrInside(input, output)) {
-      throw InputError(
-          fmt::format("{}: cannot be used as output folder: it contains {}, which this run reads",
-                      folder.string(), path.string()));
-    }
-    if (fs::is_directory(input, error) && IsSameOrInside(output, input)) {
-      throw InputError(
-          fmt::format("{}: cannot be used as output folder: it is inside {}, which this run reads",
-                      folder.string(), path.string()));
-    }
-  }
-}
-
 void CreateFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -225,6 +204,27 @@ void CleanUp(const fs::path& folder) {
 }
 
 }  // namespace
+
+void CheckApartFromInputs(const fs::path& folder, std::span<const fs::path> inputs) {
+  const fs::path output = Canonical(folder);
+  for (const fs::path& path : inputs) {
+    std::error_code error;
+    if (path.empty()) {
+      continue;
+    }
+    const fs::path input = Canonical(path);
+    if (IsSameOrInside(input, output)) {
+      throw InputError(
+          fmt::format("{}: cannot be used as output folder: it contains {}, which this run reads",
+                      folder.string(), path.string()));
+    }
+    if (fs::is_directory(input, error) && IsSameOrInside(output, input)) {
+      throw InputError(
+          fmt::format("{}: cannot be used as output folder: it is inside {}, which this run reads",
+                      folder.string(), path.string()));
+    }
+  }
+}
 
 OutputFolder::OutputFolder(const fs::path& folder, std::string index,
                            std::span<const fs::path> inputs, const OutputOwner& owner)

@@ -69,4 +69,9 @@ class OutputFolder {
   std::unique_ptr<StagingFolder> staging_;
 };
 
+// Throws InputError if the folder (or file) is inside an input folder, contains an input or is one.
+// Empty paths are ignored.
+void CheckApartFromInputs(const std::filesystem::path& folder,
+                          std::span<const std::filesystem::path> inputs);
+
 }  // namespace hullslam

@@ -3,21 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
-#include <numbers>
-#include <string_view>
 #include <vector>
+
+#include "results/unit_mesh.h"
 
 namespace hullslam {
 namespace {
-
-using Colour = std::array<uint8_t, 3>;
-
-using Triangle = std::array<uint32_t, 3>;
 
 void AppendBits(std::string& bytes, uint32_t bits) {
   for (int shift = 0; shift < 32; shift += 8) {
@@ -44,62 +37,6 @@ std::string StartPly(size_t vertices) {
       vertices);
 }
 
-// A unit sphere: rings of corners between two poles.
-struct Mesh {
-  std::vector<Eigen::Vector3d> corners;
-  std::vector<Triangle> triangles;
-};
-
-constexpr uint32_t kRings = 9;
-constexpr uint32_t kAround = 12;
-
-std::vector<Eigen::Vector3d> SphereCorners() {
-  std::vector<Eigen::Vector3d> corners = {Eigen::Vector3d::UnitZ()};
-  for (uint32_t ring = 1; ring <= kRings; ++ring) {
-    const double polar = std::numbers::pi * ring / (kRings + 1);
-    for (uint32_t i = 0; i < kAround; ++i) {
-      const double azimuth = 2.0 * std::numbers::pi * i / kAround;
-      corners.emplace_back(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
-                           std::cos(polar));
-    }
-  }
-  corners.emplace_back(-Eigen::Vector3d::UnitZ());
-  return corners;
-}
-
-Mesh MakeSphere() {
-  Mesh mesh{SphereCorners(), {}};
-  const auto corner = [](uint32_t ring, uint32_t i) { return 1 + ring * kAround + i % kAround; };
-  const uint32_t bottom = 1 + kRings * kAround;
-  for (uint32_t i = 0; i < kAround; ++i) {
-    mesh.triangles.push_back({0, corner(0, i), corner(0, i + 1)});
-    for (uint32_t ring = 0; ring + 1 < kRings; ++ring) {
-      mesh.triangles.push_back({corner(ring, i), corner(ring + 1, i), corner(ring + 1, i + 1)});
-      mesh.triangles.push_back({corner(ring, i), corner(ring + 1, i + 1), corner(ring, i + 1)});
-    }
-    mesh.triangles.push_back({bottom, corner(kRings - 1, i + 1), corner(kRings - 1, i)});
-  }
-  return mesh;
-}
-
-// A colour of full saturation. Its hue is a hash (FNV-1a) of the class.
-Colour ColourOf(std::string_view label) {
-  uint32_t hash = 2166136261U;
-  for (const char letter : label) {
-    hash = (hash ^ static_cast<uint8_t>(letter)) * 16777619U;
-  }
-  const double hue = 6.0 * ((hash >> 16) % 360) / 360.0;
-  Colour colour{};
-  for (size_t channel = 0; channel < 3; ++channel) {
-    // As a function of the hue, which goes from 0 to 6, each channel is a trapezoid of width 4
-    // around its own hue (0, 2 or 4).
-    const double away = std::abs(std::remainder(hue - 2.0 * static_cast<double>(channel), 6.0));
-    const double value = std::clamp(2.0 - away, 0.0, 1.0);
-    colour[channel] = static_cast<uint8_t>(std::lround(40.0 + 200.0 * value));
-  }
-  return colour;
-}
-
 }  // namespace
 
 std::string FormatMapPly(std::span<const Eigen::Vector3d> landmarks,
@@ -113,7 +50,7 @@ std::string FormatMapPly(std::span<const Eigen::Vector3d> landmarks,
 }
 
 std::string FormatObjectsPly(std::span<const ReportedObject> objects) {
-  const Mesh sphere = MakeSphere();
+  const TriangleMesh sphere = UnitSphere();
   std::string vertices;
   std::string faces;
   uint32_t first = 0;  // first vertex of the object
@@ -127,8 +64,8 @@ std::string FormatObjectsPly(std::span<const ReportedObject> objects) {
       corners.push_back(object.ellipsoid.world_from_object *
                         corner.cwiseProduct(object.ellipsoid.half_axes));
     }
-    AppendPoints(vertices, corners, ColourOf(object.label));
-    for (const Triangle& triangle : sphere.triangles) {
+    AppendPoints(vertices, corners, ColourOfClass(object.label));
+    for (const TriangleMesh::Triangle& triangle : sphere.triangles) {
       faces += '\x03';
       for (const uint32_t corner : triangle) {
         AppendBits(faces, first + corner);

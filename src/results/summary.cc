@@ -137,8 +137,10 @@ Json ToJson(const ProvenanceSummary& summary) {
           {"preset_overrides", overrides},
           {"seed", summary.seed},
           {"pipeline", summary.pipeline},
+          {"masks", OrNull(summary.masks)},
           {"masks_format", OrNull(summary.masks_format)},
           {"sequence", OrNull(summary.sequence)},
+          {"map", OrNull(summary.map)},
           {"interrupted", summary.interrupted}};
 }
 

@@ -115,10 +115,12 @@ struct ProvenanceSummary {
   std::optional<std::string> preset = std::nullopt;
   std::vector<PresetOverrideSummary> preset_overrides = {};
   uint64_t seed = 0;
-  std::string pipeline = "sequential";  // or "threaded"
+  std::string pipeline = "sequential";              // or "threaded"
+  std::optional<std::string> masks = std::nullopt;  // the path of --masks
   std::optional<std::string> masks_format = std::nullopt;
   std::optional<std::string> sequence = std::nullopt;
-  bool interrupted = false;  // a signal ended the run before its end
+  std::optional<std::string> map = std::nullopt;  // the path of --save-map
+  bool interrupted = false;                       // a signal ended the run before its end
 };
 
 struct RunSummary {

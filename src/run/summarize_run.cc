@@ -134,6 +134,12 @@ void SummarizeProvenance(const RunArguments& arguments, const LoadedSettings& se
   provenance.seed = arguments.seed;
   provenance.pipeline = arguments.threaded ? "threaded" : "sequential";
   provenance.sequence = arguments.sequence.string();
+  if (!arguments.masks.empty()) {
+    provenance.masks = arguments.masks.string();
+  }
+  if (!arguments.save_map.empty()) {
+    provenance.map = arguments.save_map.string();
+  }
   provenance.interrupted = result.was_interrupted;
 }
 

@@ -67,7 +67,7 @@ std::vector<double> VideoFile::ReadStamps() {
   return stamps;
 }
 
-cv::Mat VideoFile::ReadGrey(size_t number) {
+cv::Mat VideoFile::ReadColour(size_t number) {
   if (number < next_) {
     Rewind();
   }
@@ -79,9 +79,13 @@ cv::Mat VideoFile::ReadGrey(size_t number) {
   if (!is_grabbed || !capture_.retrieve(image) || image.empty()) {
     throw InputError(fmt::format("{}: frame {} cannot be decoded", path_.string(), number));
   }
+  return image;
+}
+
+cv::Mat VideoFile::ReadGrey(size_t number) {
   // FFmpeg's images are converted to BGR with 8 bits by OpenCV.
   cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(ReadColour(number), grey, cv::COLOR_BGR2GRAY);
   return grey;
 }
 

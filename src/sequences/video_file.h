@@ -26,6 +26,8 @@ class VideoFile {
   // read and this one are decoded too; to go back, decoding starts again at the first frame. Throws
   // InputError if the frame cannot be decoded.
   cv::Mat ReadGrey(size_t number);
+  // The same in colour; CV_8UC3 with blue first.
+  cv::Mat ReadColour(size_t number);
 
  private:
   void Rewind();

@@ -18,9 +18,9 @@
 #include "results/ply_points.h"
 #include "results/scene_file.h"
 #include "results/summary.h"
+#include "sequences/run_sequence.h"
 #include "view/aligned_truth.h"
 #include "view/run_pictures.h"
-#include "view/run_sequence.h"
 #include "view/view_of_map.h"
 
 namespace hullslam {
@@ -182,7 +182,7 @@ void AddPictures(const ImageSequence& sequence, const RunMemory& memory, ViewMod
 // The sequence of the run, if it is still there.
 std::optional<ImageSequence> ReopenSequence(const fs::path& folder, ViewModel& model) {
   std::optional<ImageSequence> sequence;
-  const std::optional<fs::path> path = FindSequence(model.sequence, folder);
+  const std::optional<fs::path> path = FindRunInput(model.sequence, folder);
   if (!path) {
     model.notes.push_back(fmt::format(
         "images and ground truth left out: the sequence \"{}\" is not found", model.sequence));

@@ -25,7 +25,7 @@ foreach(name IN LISTS programs)
   endif()
   run(${prefix}/bin/${name} --help OUTPUT_QUIET)
 endforeach()
-foreach(name rgbd_tum map_objects evaluate check_masks make_synthetic train_vocabulary convert_vocabulary plot_run ablation plot_ablation
+foreach(name rgbd_tum map_objects export evaluate check_masks make_synthetic train_vocabulary convert_vocabulary plot_run ablation plot_ablation
         object_table)
   if(NOT "hullslam-${name}" IN_LIST programs)
     message(FATAL_ERROR "bin/hullslam-${name} is missing")

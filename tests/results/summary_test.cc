@@ -93,8 +93,8 @@ TEST(Summary, HasTheKeysOfTheFormatInOrder) {
                                       "sessions", "reprojection_px", "known_sizes"}));
   EXPECT_EQ(Keys(json["provenance"]),
             (std::vector<std::string>{"program", "version", "git", "settings_hash", "preset",
-                                      "preset_overrides", "seed", "pipeline", "masks_format",
-                                      "sequence", "interrupted"}));
+                                      "preset_overrides", "seed", "pipeline", "masks",
+                                      "masks_format", "sequence", "map", "interrupted"}));
 }
 
 TEST(Summary, HasTheKeysOfObjectsInOrder) {

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exports/colmap_model.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+
+#include "files/byte_writer.h"
+
+namespace hullslam {
+namespace {
+
+constexpr uint32_t kCameraId = 1;
+constexpr double kHalfPixel = 0.5;  // COLMAP's pixels minus ours
+
+// The index of the keypoint of each landmark in an image.
+using LandmarkKeypoints = std::unordered_map<LandmarkId, uint32_t>;
+
+ColmapImage MakeImage(const KeyframeImage& image, const Keyframe& keyframe, const PinholeView& view,
+                      LandmarkKeypoints& landmarks) {
+  ColmapImage made{image.keyframe.value + 1, image.name + ".png", keyframe.cam_from_world, {}};
+  for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
+    const Eigen::Vector2d pixel =
+        view.FromUndistorted(keyframe.frame->features.keypoints[i].undistorted.cast<double>());
+    if (!view.Contains(pixel)) {
+      continue;
+    }
+    if (keyframe.landmarks[i].IsValid()) {
+      landmarks[keyframe.landmarks[i]] = static_cast<uint32_t>(made.keypoints.size());
+    }
+    made.keypoints.push_back({pixel + Eigen::Vector2d::Constant(kHalfPixel)});
+  }
+  return made;
+}
+
+// Where a landmark is seen: the index of the image in the model, and the keypoint.
+struct Place {
+  size_t image = 0;
+  uint32_t keypoint = 0;
+};
+
+double ErrorAt(const Eigen::Vector3d& position, const Place& place, const ColmapModel& model) {
+  const ColmapImage& image = model.images[place.image];
+  const Eigen::Vector3d point = image.cam_from_world * position;
+  return point.z() > 0.0
+             ? (model.camera.Project(point) - image.keypoints[place.keypoint].pixel).norm()
+             : std::numeric_limits<double>::infinity();
+}
+
+// COLMAP's mapper removes observations with a larger error, px (Mapper.filter_max_reproj_error).
+// The map has some, because keypoints of high pyramid levels are allowed larger errors there.
+constexpr double kMostError = 4.0;
+
+void AddPoint(const Eigen::Vector3d& position, const Colour& colour, std::vector<Place> places,
+              ColmapModel& model) {
+  std::erase_if(places,
+                [&](const Place& place) { return ErrorAt(position, place, model) > kMostError; });
+  if (places.size() < 2) {
+    return;
+  }
+  ColmapPoint point{model.points.size() + 1, position, colour, 0.0, {}};
+  for (const Place& place : places) {
+    point.error += ErrorAt(position, place, model) / static_cast<double>(places.size());
+    ColmapImage& image = model.images[place.image];
+    image.keypoints[place.keypoint].point = point.id;
+    point.track.push_back({image.id, place.keypoint});
+  }
+  model.points.push_back(std::move(point));
+}
+
+}  // namespace
+
+ColmapModel MakeColmapModel(const Map& map, const LocatedLandmarks& located,
+                            std::span<const Colour> colours, std::span<const KeyframeImage> images,
+                            const PinholeView& view) {
+  ColmapModel model{view.camera(), {}, {}};
+  model.camera.cx += kHalfPixel;
+  model.camera.cy += kHalfPixel;
+  std::unordered_map<LandmarkId, std::vector<Place>> places;
+  for (const KeyframeImage& image : images) {
+    LandmarkKeypoints landmarks;
+    model.images.push_back(MakeImage(image, map.keyframes().At(image.keyframe), view, landmarks));
+    for (const auto& [landmark, keypoint] : landmarks) {
+      places[landmark].push_back({model.images.size() - 1, keypoint});
+    }
+  }
+  for (size_t i = 0; i < located.ids.size(); ++i) {
+    const auto seen = places.find(located.ids[i]);
+    if (seen != places.end()) {
+      AddPoint(located.positions[i], colours[i], seen->second, model);
+    }
+  }
+  return model;
+}
+
+std::vector<FileContent> FormatColmapText(const ColmapModel& model) {
+  const PinholeCamera& camera = model.camera;
+  const std::string cameras = fmt::format(
+      "# CAMERA_ID MODEL WIDTH HEIGHT fx fy cx cy\n{} PINHOLE {} {} {} {} {} {}\n", kCameraId,
+      camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
+  std::string images =
+      "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, then X Y POINT3D_ID of each keypoint\n";
+  for (const ColmapImage& image : model.images) {
+    const Eigen::Quaterniond& q = image.cam_from_world.rotation;
+    const Eigen::Vector3d& t = image.cam_from_world.translation;
+    fmt::format_to(std::back_inserter(images), "{} {} {} {} {} {} {} {} {} {}\n", image.id, q.w(),
+                   q.x(), q.y(), q.z(), t.x(), t.y(), t.z(), kCameraId, image.name);
+    for (const ColmapKeypoint& keypoint : image.keypoints) {
+      const bool shows_point = keypoint.point != ColmapKeypoint::kNone;
+      fmt::format_to(std::back_inserter(images), "{:.3f} {:.3f} {} ", keypoint.pixel.x(),
+                     keypoint.pixel.y(), shows_point ? static_cast<int64_t>(keypoint.point) : -1);
+    }
+    images += '\n';
+  }
+  std::string points = "# POINT3D_ID X Y Z R G B ERROR, then IMAGE_ID POINT2D_IDX of its track\n";
+  for (const ColmapPoint& point : model.points) {
+    const Eigen::Vector3d& p = point.position;
+    fmt::format_to(std::back_inserter(points), "{} {} {} {} {} {} {} {}", point.id, p.x(), p.y(),
+                   p.z(), point.colour[0], point.colour[1], point.colour[2], point.error);
+    for (const ColmapSighting& sighting : point.track) {
+      fmt::format_to(std::back_inserter(points), " {} {}", sighting.image, sighting.keypoint);
+    }
+    points += '\n';
+  }
+  return {{"cameras.txt", cameras}, {"images.txt", images}, {"points3D.txt", points}};
+}
+
+namespace {
+
+std::string CamerasInBinary(const PinholeCamera& camera) {
+  constexpr int32_t kPinhole = 1;
+  ByteWriter writer;
+  writer.Put(uint64_t{1});
+  writer.Put(kCameraId);
+  writer.Put(kPinhole);
+  writer.Put(static_cast<uint64_t>(camera.width));
+  writer.Put(static_cast<uint64_t>(camera.height));
+  for (const double value : {camera.fx, camera.fy, camera.cx, camera.cy}) {
+    writer.Put(value);
+  }
+  return writer.bytes();
+}
+
+std::string ImagesInBinary(std::span<const ColmapImage> images) {
+  ByteWriter writer;
+  writer.Put(uint64_t{images.size()});
+  for (const ColmapImage& image : images) {
+    const Eigen::Quaterniond& q = image.cam_from_world.rotation;
+    writer.Put(image.id);
+    for (const double value : {q.w(), q.x(), q.y(), q.z()}) {
+      writer.Put(value);
+    }
+    writer.PutMatrix(image.cam_from_world.translation);
+    writer.Put(kCameraId);
+    for (const char letter : image.name) {
+      writer.Put(letter);
+    }
+    writer.Put('\0');
+    writer.Put(uint64_t{image.keypoints.size()});
+    for (const ColmapKeypoint& keypoint : image.keypoints) {
+      writer.PutMatrix(keypoint.pixel);
+      writer.Put(keypoint.point);
+    }
+  }
+  return writer.bytes();
+}
+
+std::string PointsInBinary(std::span<const ColmapPoint> points) {
+  ByteWriter writer;
+  writer.Put(uint64_t{points.size()});
+  for (const ColmapPoint& point : points) {
+    writer.Put(point.id);
+    writer.PutMatrix(point.position);
+    for (const uint8_t channel : point.colour) {
+      writer.Put(channel);
+    }
+    writer.Put(point.error);
+    writer.Put(uint64_t{point.track.size()});
+    for (const ColmapSighting& sighting : point.track) {
+      writer.Put(sighting.image);
+      writer.Put(sighting.keypoint);
+    }
+  }
+  return writer.bytes();
+}
+
+}  // namespace
+
+std::vector<FileContent> FormatColmapBinary(const ColmapModel& model) {
+  return {{"cameras.bin", CamerasInBinary(model.camera)},
+          {"images.bin", ImagesInBinary(model.images)},
+          {"points3D.bin", PointsInBinary(model.points)}};
+}
+
+}  // namespace hullslam

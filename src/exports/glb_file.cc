@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exports/glb_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <vector>
+
+#include "files/byte_writer.h"
+
+namespace hullslam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Numbers of the specification.
+constexpr int kFloat = 5126;
+constexpr int kUnsignedShort = 5123;
+constexpr int kVertices = 34962;
+constexpr int kIndices = 34963;
+constexpr int kPoints = 0;
+constexpr int kLineStrip = 3;
+constexpr size_t kRoot = 0;  // index of the node "map"
+
+// Colours of glTF are linear, those of images are sRGB (IEC 61966-2-1).
+double Linear(uint8_t channel) {
+  const double value = channel / 255.0;
+  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+Json ToJson(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+Json ToJson(const Eigen::Quaterniond& rotation) {
+  const Eigen::Quaterniond q = rotation.normalized();
+  return {q.x(), q.y(), q.z(), q.w()};
+}
+
+// The JSON and the binary part of a file that is being made.
+struct Gltf {
+  Json json;
+  ByteWriter binary;
+};
+
+// Ends the view of the bytes from `begin` on, and adds an accessor of it. Returns its index.
+size_t AddAccessor(size_t begin, int target, Json accessor, Gltf& gltf) {
+  const size_t end = gltf.binary.bytes().size();
+  while (gltf.binary.bytes().size() % 4 != 0) {
+    gltf.binary.Put(uint8_t{0});
+  }
+  gltf.json["bufferViews"].push_back(
+      {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", end - begin}, {"target", target}});
+  accessor["bufferView"] = gltf.json["bufferViews"].size() - 1;
+  gltf.json["accessors"].push_back(std::move(accessor));
+  return gltf.json["accessors"].size() - 1;
+}
+
+size_t AddPositions(std::span<const Eigen::Vector3d> positions, Gltf& gltf) {
+  const size_t begin = gltf.binary.bytes().size();
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3d& position : positions) {
+    const Eigen::Vector3f rounded = position.cast<float>();
+    gltf.binary.PutMatrix(rounded);
+    box.extend(rounded);
+  }
+  return AddAccessor(begin, kVertices,
+                     {{"componentType", kFloat},
+                      {"count", positions.size()},
+                      {"type", "VEC3"},
+                      {"min", ToJson(box.min().cast<double>())},
+                      {"max", ToJson(box.max().cast<double>())}},
+                     gltf);
+}
+
+size_t AddColours(std::span<const ColouredPoint> points, Gltf& gltf) {
+  constexpr double kMost = 65535.0;
+  const size_t begin = gltf.binary.bytes().size();
+  for (const ColouredPoint& point : points) {
+    for (const uint8_t channel : point.colour) {
+      gltf.binary.Put(static_cast<uint16_t>(std::lround(kMost * Linear(channel))));
+    }
+    gltf.binary.Put(static_cast<uint16_t>(kMost));  // opaque
+  }
+  return AddAccessor(begin, kVertices,
+                     {{"componentType", kUnsignedShort},
+                      {"normalized", true},
+                      {"count", points.size()},
+                      {"type", "VEC4"}},
+                     gltf);
+}
+
+size_t AddIndices(std::span<const TriangleMesh::Triangle> triangles, Gltf& gltf) {
+  const size_t begin = gltf.binary.bytes().size();
+  for (const TriangleMesh::Triangle& triangle : triangles) {
+    for (const uint32_t corner : triangle) {
+      gltf.binary.Put(static_cast<uint16_t>(corner));
+    }
+  }
+  return AddAccessor(
+      begin, kIndices,
+      {{"componentType", kUnsignedShort}, {"count", 3 * triangles.size()}, {"type", "SCALAR"}},
+      gltf);
+}
+
+size_t AddMaterial(const std::string& name, const Colour& colour, double opacity, Gltf& gltf) {
+  gltf.json["materials"].push_back(
+      {{"name", name},
+       {"pbrMetallicRoughness",
+        {{"baseColorFactor", {Linear(colour[0]), Linear(colour[1]), Linear(colour[2]), opacity}},
+         {"metallicFactor", 0.0},
+         {"roughnessFactor", 1.0}}}});
+  if (opacity < 1.0) {
+    gltf.json["materials"].back()["alphaMode"] = "BLEND";
+  }
+  return gltf.json["materials"].size() - 1;
+}
+
+size_t AddMesh(Json primitive, Gltf& gltf) {
+  gltf.json["meshes"].push_back({{"primitives", Json::array({std::move(primitive)})}});
+  return gltf.json["meshes"].size() - 1;
+}
+
+// Adds a node inside of the node "map".
+void AddNode(Json node, Gltf& gltf) {
+  gltf.json["nodes"].push_back(std::move(node));
+  gltf.json["nodes"][kRoot]["children"].push_back(gltf.json["nodes"].size() - 1);
+}
+
+void AddPoints(std::span<const ColouredPoint> points, Gltf& gltf) {
+  if (points.empty()) {
+    return;
+  }
+  std::vector<Eigen::Vector3d> positions;
+  for (const ColouredPoint& point : points) {
+    positions.push_back(point.position);
+  }
+  const size_t position = AddPositions(positions, gltf);
+  const size_t colour = AddColours(points, gltf);
+  const size_t mesh = AddMesh(
+      {{"attributes", {{"POSITION", position}, {"COLOR_0", colour}}}, {"mode", kPoints}}, gltf);
+  AddNode({{"name", "points"}, {"mesh", mesh}}, gltf);
+}
+
+void AddPath(const Trajectory& trajectory, Gltf& gltf) {
+  constexpr Colour kOrange = {255, 128, 0};
+  if (trajectory.size() < 2) {
+    return;
+  }
+  std::vector<Eigen::Vector3d> positions;
+  for (const StampedPose& pose : trajectory) {
+    positions.push_back(pose.world_from_cam.translation);
+  }
+  const size_t position = AddPositions(positions, gltf);
+  const size_t mesh = AddMesh({{"attributes", {{"POSITION", position}}},
+                               {"mode", kLineStrip},
+                               {"material", AddMaterial("path", kOrange, 1.0, gltf)}},
+                              gltf);
+  AddNode({{"name", "path"}, {"mesh", mesh}}, gltf);
+}
+
+// Cameras of glTF look along -z, and y points up in the image. They have no principal point.
+void AddCameras(const ExportModel& model, Gltf& gltf) {
+  if (!model.camera) {
+    return;
+  }
+  const PinholeCamera& camera = *model.camera;
+  const double half_height = camera.height / (2.0 * camera.fy);
+  const double half_width = camera.width / (2.0 * camera.fx);
+  const Eigen::Quaterniond turned(0.0, 1.0, 0.0, 0.0);  // half a turn around x
+  for (const StampedPose& keyframe : model.keyframes) {
+    AddNode({{"name", fmt::format("keyframe {:.6f}", keyframe.timestamp)},
+             {"camera", 0},
+             {"translation", ToJson(keyframe.world_from_cam.translation)},
+             {"rotation", ToJson(keyframe.world_from_cam.rotation * turned)}},
+            gltf);
+  }
+  if (!model.keyframes.empty()) {
+    gltf.json["cameras"].push_back({{"type", "perspective"},
+                                    {"perspective",
+                                     {{"yfov", 2.0 * std::atan(half_height)},
+                                      {"aspectRatio", half_width / half_height},
+                                      {"znear", 0.01}}}});
+  }
+}
+
+void AddObjects(const Scene& scene, ObjectShape shape, Gltf& gltf) {
+  constexpr double kOpacity = 0.5;
+  if (scene.objects.empty()) {
+    return;
+  }
+  const TriangleMesh mesh = MeshOf(shape);
+  const size_t corners = AddPositions(mesh.corners, gltf);
+  const size_t triangles = AddIndices(mesh.triangles, gltf);
+  std::map<std::string, size_t> meshes;  // by class
+  for (const PlacedObject& placed : PlaceObjects(scene, shape)) {
+    const SceneObject& object = *placed.object;
+    if (!meshes.contains(object.label)) {
+      const size_t material =
+          AddMaterial(object.label, ColourOfClass(object.label), kOpacity, gltf);
+      meshes[object.label] = AddMesh(
+          {{"attributes", {{"POSITION", corners}}}, {"indices", triangles}, {"material", material}},
+          gltf);
+    }
+    AddNode({{"name", object.label},
+             {"mesh", meshes[object.label]},
+             {"translation", ToJson(placed.world_from_shape.translation)},
+             {"rotation", ToJson(placed.world_from_shape.rotation)},
+             {"scale", ToJson(placed.half_extents)},
+             {"extras",
+              {{"object", object.id.value},
+               {"class", object.label},
+               {"class_distribution", Json(object.shares)},
+               {"half_extents", ToJson(placed.half_extents)},
+               {"times_seen", object.views},
+               {"quality", object.quality}}}},
+            gltf);
+  }
+}
+
+// The header, the JSON and the binary part, each of a size that four divides.
+std::string JoinChunks(const std::string& json, const std::string& binary) {
+  constexpr uint32_t kMagic = 0x46546C67;   // "glTF"
+  constexpr uint32_t kJson = 0x4E4F534A;    // "JSON"
+  constexpr uint32_t kBinary = 0x004E4942;  // "BIN"
+  constexpr uint32_t kHeaderBytes = 12;
+  constexpr uint32_t kChunkBytes = 8;
+  const auto size = [](const std::string& text) { return static_cast<uint32_t>(text.size()); };
+  ByteWriter writer;
+  writer.Put(kMagic);
+  writer.Put(uint32_t{2});
+  writer.Put(kHeaderBytes + kChunkBytes + size(json) +
+             (binary.empty() ? 0U : kChunkBytes + size(binary)));
+  writer.Put(size(json));
+  writer.Put(kJson);
+  std::string bytes = writer.bytes() + json;
+  if (!binary.empty()) {
+    ByteWriter header;
+    header.Put(size(binary));
+    header.Put(kBinary);
+    bytes += header.bytes() + binary;
+  }
+  return bytes;
+}
+
+}  // namespace
+
+std::string FormatGlb(const ExportModel& model, ObjectShape shape) {
+  const Eigen::Vector3d up = model.scene.up.value_or(-Eigen::Vector3d::UnitY());
+  Gltf gltf;
+  gltf.json["asset"] = {{"version", "2.0"}, {"generator", "HullSLAM"}};
+  gltf.json["scene"] = 0;
+  gltf.json["scenes"][0]["nodes"].push_back(kRoot);
+  gltf.json["nodes"].push_back(
+      {{"name", "map"},
+       {"rotation", ToJson(Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitY()))}});
+  AddPoints(model.points, gltf);
+  AddPath(model.trajectory, gltf);
+  AddCameras(model, gltf);
+  AddObjects(model.scene, shape, gltf);
+  if (!gltf.binary.bytes().empty()) {
+    gltf.json["buffers"].push_back({{"byteLength", gltf.binary.bytes().size()}});
+  }
+  std::string text = gltf.json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  return JoinChunks(text, gltf.binary.bytes());
+}
+
+}  // namespace hullslam

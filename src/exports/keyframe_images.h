@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/map/map.h"
+#include "hullslam/sequences/image_sequence.h"
+#include "sequences/run_sequence.h"
+
+namespace hullslam {
+
+// A keyframe and its image.
+struct KeyframeImage {
+  KeyframeId keyframe;
+  FramePaths frame;
+  // The stem of the image file, without blanks. No two images have the same name.
+  std::string name;
+};
+
+// The keyframes whose images are in the sequence, by increasing id. If the map has several
+// sessions, these are only keyframes of the sessions with the name `session`, because other
+// sequences may have the same time stamps.
+std::vector<KeyframeImage> FindKeyframeImages(const Map& map, const ImageSequence& sequence,
+                                              const std::string& session);
+
+// The raw image in colour: CV_8UC3, blue first. Throws InputError if it cannot be read or does not
+// have the size of the camera.
+cv::Mat LoadKeyframeImage(const ColourLoader& load, const FramePaths& frame,
+                          const PinholeCamera& camera);
+
+}  // namespace hullslam

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exports/scene_ply.h"
+
+#include <gtest/gtest.h>
+
+#include "results/ply_points.h"
+#include "support/made_export.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+TEST(ScenePly, PointsAreReadBackWithTheirColours) {
+  const TemporaryFolder folder;
+  const ExportModel model = MadeExportModel();
+  const PlyPoints read = ReadPlyPoints(folder.Write("points.ply", FormatPointsPly(model.points)));
+  ASSERT_EQ(read.positions.size(), 2U);
+  EXPECT_EQ(read.positions[0], Eigen::Vector3f(1.0f, -2.0f, 3.0f));
+  EXPECT_EQ(read.colours[1], (Colour{0, 64, 255}));
+}
+
+TEST(ScenePly, HasPointsThenCamerasThenObjects) {
+  const TemporaryFolder folder;
+  const ExportModel model = MadeExportModel();
+  const std::string text = FormatScenePly(model, ObjectShape::kBoxes);
+  // Four triangles per camera and twelve per box.
+  EXPECT_NE(text.find("element face 32\n"), std::string::npos);
+  const PlyPoints read = ReadPlyPoints(folder.Write("scene.ply", text));
+  ASSERT_EQ(read.positions.size(), 2U + 2U * 5U + 2U * 8U);
+  EXPECT_EQ(read.positions[2], Eigen::Vector3f::Zero()) << "the first camera";
+  EXPECT_EQ(read.positions[7], Eigen::Vector3f(1.0f, 0.0f, 0.0f)) << "the second camera";
+  for (size_t corner = 3; corner < 7; ++corner) {
+    EXPECT_GT(read.positions[corner].z(), 0.0f) << "the cameras look along z";
+  }
+  EXPECT_EQ(read.colours[12], ColourOfClass("cup"));
+  EXPECT_TRUE(read.positions[12].isApprox(Eigen::Vector3f(0.3f - 0.5f, 0.1f - 0.25f, 1.875f)));
+}
+
+TEST(ScenePly, AnEmptyModelHasNoFaces) {
+  const std::string text = FormatScenePly(ExportModel(), ObjectShape::kEllipsoids);
+  EXPECT_NE(text.find("element vertex 0\n"), std::string::npos);
+  EXPECT_TRUE(text.ends_with("end_header\n"));
+}
+
+}  // namespace
+}  // namespace hullslam

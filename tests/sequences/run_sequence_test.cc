@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sequences/run_sequence.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+#include <string>
+
+#include "support/expect_error.h"
+#include "support/made_view.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+TEST(RunSequence, IsFoundInTheFoldersAboveTheRun) {
+  const TemporaryFolder folder;
+  folder.Write("project/data/desk/rgb.txt", "");
+  folder.Write("project/results/run/summary.json", "{}");
+  const auto run = folder.path() / "project/results/run";
+  EXPECT_EQ(FindRunInput("data/desk", run), folder.path() / "project/data/desk");
+  EXPECT_FALSE(FindRunInput("data/room", run));
+  EXPECT_FALSE(FindRunInput("", run));
+}
+
+TEST(RunSequence, IsOpenedAsTheProgramReadIt) {
+  const TemporaryFolder folder;
+  folder.Write("tum/rgb.txt", "1.5 a.png\n2.5 b.png\n");
+  const cv::Mat image(48, 64, CV_8UC3, cv::Scalar(1, 2, 3));
+  for (const char* const name : {"a.png", "b.png"}) {
+    cv::imwrite(folder.path() / "tum" / name, image);
+  }
+  const ImageSequence tum = OpenRunSequence("rgbd_tum", folder.path() / "tum", MadeCamera());
+  ASSERT_EQ(tum.frames.size(), 2u);
+  EXPECT_EQ(tum.frames[1].timestamp, 2.5);
+  const ImageSequence video = OpenRunSequence("mono_video", folder.path() / "tum", MadeCamera());
+  ASSERT_EQ(video.frames.size(), 2u);
+  EXPECT_EQ(video.frames[0].timestamp, 0.0);
+  ExpectInputError([&] { OpenRunSequence("mono_euroc", folder.path() / "tum", MadeCamera()); },
+                   {"tum"});
+}
+
+TEST(RunSequence, HasDepthImagesIfTheyAreAskedFor) {
+  const TemporaryFolder folder;
+  folder.Write("tum/rgb.txt", "1.5 a.png\n2.5 b.png\n");
+  folder.Write("tum/depth.txt", "1.51 d.png\n");
+  for (const char* const name : {"a.png", "b.png", "d.png"}) {
+    folder.Write(std::string("tum/") + name, "");
+  }
+  const ImageSequence sequence =
+      OpenRunSequence("rgbd_tum", folder.path() / "tum", MadeCamera(), /*use_depth=*/true);
+  ASSERT_EQ(sequence.frames.size(), 1U);
+  EXPECT_EQ(sequence.frames[0].depth, folder.path() / "tum" / "d.png");
+}
+
+TEST(RunSequence, ColourImagesOfFilesAndVideosAreBlueFirst) {
+  const TemporaryFolder folder;
+  const cv::Mat image(48, 64, CV_8UC3, cv::Scalar(200, 100, 50));
+  cv::imwrite(folder.path() / "a.png", image);
+  const cv::Mat of_file = OpenColourImages(folder.path())({0.0, folder.path() / "a.png", {}, 0});
+  EXPECT_EQ(of_file.at<cv::Vec3b>(24, 32), cv::Vec3b(200, 100, 50));
+  const std::string video = folder.path() / "a.avi";
+  cv::VideoWriter writer(video, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0, image.size());
+  writer.write(image);
+  writer.write(image);
+  writer.release();
+  const cv::Mat of_video = OpenColourImages(video)({0.1, "a.avi/000001", {}, 1});
+  ASSERT_EQ(of_video.type(), CV_8UC3);
+  const cv::Vec3b pixel = of_video.at<cv::Vec3b>(24, 32);
+  EXPECT_NEAR(pixel[0], 200, 12);
+  EXPECT_NEAR(pixel[2], 50, 12);
+}
+
+}  // namespace
+}  // namespace hullslam
