@@ -24,6 +24,7 @@
 #include "run/interrupt.h"
 #include "run/map_session.h"
 #include "run/mask_arguments.h"
+#include "run/mcap_output.h"
 #include "run/messages.h"
 #include "run/object_outputs.h"
 #include "run/program.h"
@@ -248,10 +249,15 @@ ObjectReport ReportObjects(const RunArguments& arguments, const PinholeCamera& c
   return objects;
 }
 
-std::string DescribeInterruption(const RunResult& result, const ImageSequence& sequence) {
-  return fmt::format(
-      "the run was interrupted after {} of {} frames; the results so far were written",
-      result.given, sequence.frames.size());
+// Empty if the run counts as done. `selected` frames were asked for.
+std::string DescribeFailure(const RunArguments& arguments, const RunOptions& options,
+                            const RunResult& result, size_t selected, const RunSummary& summary,
+                            const System& system) {
+  return result.was_interrupted
+             ? fmt::format(
+                   "the run was interrupted after {} of {} frames; the results so far were written",
+                   result.given, selected)
+             : DescribeLoss(arguments, options, selected, summary, system.frames());
 }
 
 }  // namespace
@@ -269,7 +275,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
       {arguments.masks, arguments.masks_format, options.camera.width, options.camera.height},
       MaskFrames(sequence));
   CatchInterrupts();
-  CheckSavedMap(arguments);
+  CheckSavedFiles(arguments);
   SystemStart start = LoadStart(arguments, options);
   const size_t earlier_sessions = start.map.sessions().size();
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
@@ -304,16 +310,16 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   const std::string unsaved = SaveMap(arguments, options, *map);
   const std::string unsaved_island =
       SaveIslands(arguments, options, KeptIslands(arguments, system));
+  const std::string unrecorded =
+      WriteMcap(arguments, {&options, map.get(), &sequence, result.given, &trajectory, &objects});
   if (!arguments.quiet) {
     PrintReport(arguments, summary, objects);
   }
   const std::string unreported =
       arguments.report ? WriteReport(output.path(), *map, options, sequence, arguments.quiet) : "";
   const std::string failure =
-      result.was_interrupted
-          ? DescribeInterruption(result, sequence)
-          : DescribeLoss(arguments, options.run, sequence.frames.size(), summary, system.frames());
-  return FailIfAny({failure, unsaved, unsaved_island, unreported});
+      DescribeFailure(arguments, options.run, result, sequence.frames.size(), summary, system);
+  return FailIfAny({failure, unsaved, unsaved_island, unrecorded, unreported});
 }
 
 }  // namespace hullslam

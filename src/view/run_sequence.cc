@@ -3,6 +3,7 @@
 
 #include <system_error>
 
+#include "hullslam/sequences/bag_sequence.h"
 #include "hullslam/sequences/euroc_sequence.h"
 #include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/sequences/image_stream.h"
@@ -39,6 +40,9 @@ ImageSequence OpenRunSequence(const std::string& program, const fs::path& sequen
   }
   if (program.ends_with("_icl")) {
     return OpenIclSequence(sequence, camera, {}, {.use_depth = false}).images;
+  }
+  if (program.ends_with("_bag")) {
+    return OpenBagSequence(sequence, {.use_depth = false, .need_camera = false}).images;
   }
   if (program.ends_with("_video")) {
     return OpenImageStream(sequence).images;
