@@ -52,6 +52,7 @@ CONTENTS = {
     "sequences": "TUM, ICL, EuRoC, video",
     "masks": "six formats",
     "view": "data of the report's page",
+    "live": "live view in a browser",
     "map_files": "maps, vocabularies",
     "run": "what all programs share",
     "synthetic": "renderer of scenes",
