@@ -9,6 +9,10 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(spdlog 1.10 REQUIRED)
 find_package(ZLIB 1.2 REQUIRED)  # checksum of map files
+find_package(BZip2 1.0 REQUIRED)  # this and the next three: recordings of ROS
+find_package(SQLite3 3.40 REQUIRED)
+find_path(LZ4_INCLUDE_DIR lz4frame.h REQUIRED)  # liblz4-dev 1.9; has no package for CMake
+find_path(ZSTD_INCLUDE_DIR zstd.h REQUIRED)     # libzstd-dev 1.5
 find_package(Boost 1.74 REQUIRED)  # headers only: CRC, Student's t-distribution, Beast
 # three.js, for the page of the report: libjs-three (111)
 find_path(HULLSLAM_THREE_DIR examples/js/controls/OrbitControls.js PATHS /usr/share/javascript/three

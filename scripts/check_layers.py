@@ -18,7 +18,7 @@ import sys
 LEVELS = {
     "util": 0,
     "files": 1, "geometry": 1,
-    "camera": 2, "features": 2,
+    "bags": 2, "camera": 2, "features": 2,
     "bow": 3, "estimators": 3,
     "frame": 4,
     "costs": 5, "matching": 5,

@@ -70,6 +70,13 @@ class ByteReader {
     bytes_.remove_prefix(size);
     return text;
   }
+  // The next `count` bytes, which refer to those of the constructor.
+  std::string_view GetRaw(size_t count) {
+    Require(count <= bytes_.size(), "is cut off");
+    const std::string_view raw = bytes_.substr(0, count);
+    bytes_.remove_prefix(count);
+    return raw;
+  }
   size_t left() const { return bytes_.size(); }
   // To be called after the last value.
   void ExpectEnd() const { Require(bytes_.empty(), "has bytes after its end"); }

@@ -31,6 +31,8 @@ class ByteWriter {
     PutCount(text.size());
     bytes_.append(text);
   }
+  // Bytes whose number the reader knows.
+  void PutRaw(std::string_view bytes) { bytes_.append(bytes); }
 
   // The numbers of an Eigen matrix, column by column.
   template <typename Matrix>

@@ -172,7 +172,7 @@ void UseSequence(const ExportSource& source, const RunFacts& facts, bool is_need
   }
   const bool use_depth = !input.map->sensor.IsMonocular();
   input.sequence = OpenRunSequence(facts.program, *path, input.map->sensor.camera, use_depth);
-  input.load_colour = OpenColourImages(*path);
+  input.load_colour = ColourLoaderOf(*input.sequence);
   input.session = SequenceName(source.sequence.empty() ? *path : fs::path(facts.sequence));
   input.read.push_back(*path);
   if (const auto masks = FindRunInput(facts.masks, source.input)) {

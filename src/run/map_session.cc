@@ -42,34 +42,39 @@ bool IsSameOrInside(const fs::path& path, const fs::path& folder) {
   return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 
-}  // namespace
-
-void CheckSavedMap(const RunArguments& arguments) {
-  if (arguments.save_map.empty()) {
+void CheckSavedFile(const char* option, const fs::path& file, const RunArguments& arguments) {
+  if (file.empty()) {
     return;
   }
   for (const fs::path& input : {arguments.sequence, arguments.masks, arguments.settings,
                                 arguments.associations, arguments.vocabulary}) {
-    if (!input.empty() && IsSameOrInside(arguments.save_map, input)) {
+    if (!input.empty() && IsSameOrInside(file, input)) {
       throw InputError(
-          fmt::format("--save-map is '{}', which is or is inside {}, which this run "
+          fmt::format("{} is '{}', which is or is inside {}, which this run "
                       "reads; choose another path",
-                      arguments.save_map.string(), input.string()));
+                      option, file.string(), input.string()));
     }
   }
-  if (IsSameOrInside(arguments.save_map, arguments.output)) {
+  if (IsSameOrInside(file, arguments.output)) {
     throw InputError(
-        fmt::format("--save-map is '{}', which is in the output folder; the next run "
+        fmt::format("{} is '{}', which is in the output folder; the next run "
                     "replaces the files there, so choose another path",
-                    arguments.save_map.string()));
+                    option, file.string()));
   }
-  const fs::path folder = Canonical(arguments.save_map).parent_path();
+  const fs::path folder = Canonical(file).parent_path();
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
-    throw InputError(fmt::format("--save-map is '{}', but there is no folder {}",
-                                 arguments.save_map.string(), folder.string()));
+    throw InputError(fmt::format("{} is '{}', but there is no folder {}", option, file.string(),
+                                 folder.string()));
   }
-  ProbeFile(arguments.save_map);
+  ProbeFile(file);
+}
+
+}  // namespace
+
+void CheckSavedFiles(const RunArguments& arguments) {
+  CheckSavedFile("--save-map", arguments.save_map, arguments);
+  CheckSavedFile("--mcap", arguments.mcap, arguments);
 }
 
 SystemStart LoadStart(const RunArguments& arguments, const SystemOptions& options) {

@@ -14,10 +14,10 @@
 
 namespace hullslam {
 
-// Throws InputError unless --save-map names a file that can be written and that is neither in the
-// output folder, where the next run would remove it, nor one of the other inputs or inside of one.
-// The file of --load-map may be replaced.
-void CheckSavedMap(const RunArguments& arguments);
+// Throws InputError unless the files of --save-map and --mcap, if they are given, can be written
+// and are neither in the output folder, where the next run would remove them, nor one of the inputs
+// or inside of one. The file of --load-map may be replaced.
+void CheckSavedFiles(const RunArguments& arguments);
 
 // What the run begins with: the map of --load-map if it is given. Throws InputError for a map that
 // cannot be read or that was made with another camera or image pyramid, and ReadingCancelled after

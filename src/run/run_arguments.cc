@@ -8,6 +8,7 @@
 #include "run/live_output.h"
 #include "run/load_settings.h"
 #include "run/mask_arguments.h"
+#include "run/mcap_output.h"
 #include "run/report_output.h"
 #include "run/vocabularies.h"
 
@@ -53,6 +54,7 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
                "also write the parts of the map that could not be joined to the rest after the "
                "camera was lost, each with its own trajectory (trajectory_island2.txt and so on) "
                "and, with --save-map, its own map file");
+  AddMcapOption(app, arguments.mcap);
   app.add_flag("--threaded", arguments.threaded,
                "run mapping in its own thread: faster, but results differ a little between runs");
   app.add_flag("--realtime", arguments.realtime,
@@ -79,8 +81,7 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
       app, "done",
       "the run failed, was interrupted (the results up to then are written, and summary.json says "
       "so), lost too many frames (run.max_lost_share, run.max_lost_at_end), or could not save its "
-      "map "
-      "or print its report");
+      "map or its recording or print its report");
 }
 
 void FinishArguments(const std::vector<std::string>& positional, RunArguments& arguments) {

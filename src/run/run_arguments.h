@@ -33,6 +33,7 @@ struct RunArguments {
   bool overwrite = false;
   std::filesystem::path save_map;  // empty: not saved
   std::filesystem::path load_map;  // empty: a new map
+  std::filesystem::path mcap;      // empty: not written
   bool localization = false;
   bool keep_islands = false;
   bool threaded = false;

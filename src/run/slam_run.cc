@@ -26,6 +26,7 @@
 #include "run/live_output.h"
 #include "run/map_session.h"
 #include "run/mask_arguments.h"
+#include "run/mcap_output.h"
 #include "run/messages.h"
 #include "run/object_outputs.h"
 #include "run/program.h"
@@ -294,7 +295,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
       {arguments.masks, arguments.masks_format, options.camera.width, options.camera.height},
       MaskFrames(sequence));
   CatchInterrupts();
-  CheckSavedMap(arguments);
+  CheckSavedFiles(arguments);
   SystemStart start = LoadStart(arguments, options);
   const size_t earlier_sessions = start.map.sessions().size();
   LiveOutput live(arguments, options, sequence, groundtruth);
@@ -330,6 +331,8 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   const std::string unsaved = SaveMap(arguments, options, *map);
   const std::string unsaved_island =
       SaveIslands(arguments, options, KeptIslands(arguments, system));
+  const std::string unrecorded =
+      WriteMcap(arguments, {&options, map.get(), &sequence, result.given, &trajectory, &objects});
   if (!arguments.quiet) {
     PrintReport(arguments, summary, objects);
   }
@@ -337,7 +340,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   const std::string unreported =
       arguments.report ? WriteReport(output.path(), *map, options, sequence, arguments.quiet) : "";
   return FailIfAny({DescribeFailure(arguments, options.run, sequence, result, summary, system),
-                    unsaved, unsaved_island, unreported});
+                    unsaved, unsaved_island, unrecorded, unreported});
 }
 
 }  // namespace hullslam

@@ -138,12 +138,16 @@ void CheckBytes(const std::filesystem::path& path, std::string_view bytes) {
   }
 }
 
-cv::Mat Decode(const std::filesystem::path& path, int flags) {
+std::string ReadImageFile(const std::filesystem::path& path) {
   // An image of 64 million px with 4 channels of 16 bits, not compressed, has 512 MB.
   constexpr size_t kMostBytes = 512'000'000;
-  std::string bytes = ReadFile(path, kMostBytes);
+  return ReadFile(path, kMostBytes);
+}
+
+cv::Mat Decode(const std::filesystem::path& path, std::string_view bytes, int flags) {
   CheckBytes(path, bytes);
-  const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data());
+  const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1,
+                       const_cast<char*>(bytes.data()));  // OpenCV only reads it
   cv::Mat image;
   try {
     image = cv::imdecode(buffer, flags);
@@ -156,8 +160,8 @@ cv::Mat Decode(const std::filesystem::path& path, int flags) {
   return image;
 }
 
-cv::Mat Read16Bit(const std::filesystem::path& path, const char* kind) {
-  cv::Mat image = Decode(path, cv::IMREAD_UNCHANGED);
+cv::Mat Decode16Bit(const std::filesystem::path& path, std::string_view bytes, const char* kind) {
+  cv::Mat image = Decode(path, bytes, cv::IMREAD_UNCHANGED);
   if (image.type() != CV_16UC1) {
     Fail(path, fmt::format("has {} channel(s) of {} bits, expected a {} image with one channel of "
                            "16 bits",
@@ -166,8 +170,8 @@ cv::Mat Read16Bit(const std::filesystem::path& path, const char* kind) {
   return image;
 }
 
-cv::Mat Read8Bit(const std::filesystem::path& path, int flags) {
-  cv::Mat image = Decode(path, flags | cv::IMREAD_ANYDEPTH);
+cv::Mat Decode8Bit(const std::filesystem::path& path, std::string_view bytes, int flags) {
+  cv::Mat image = Decode(path, bytes, flags | cv::IMREAD_ANYDEPTH);
   if (image.depth() != CV_8U) {
     Fail(path,
          fmt::format("has {} bits per channel, expected an image with 8 bits, grey or in colour; "
@@ -179,14 +183,32 @@ cv::Mat Read8Bit(const std::filesystem::path& path, int flags) {
 
 }  // namespace
 
-cv::Mat ReadGreyImage(const std::filesystem::path& path) { return Read8Bit(path, kGreyFlags); }
-
-cv::Mat ReadColourImage(const std::filesystem::path& path) {
-  return Read8Bit(path, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+cv::Mat DecodeGreyImage(const std::filesystem::path& name, std::string_view bytes) {
+  return Decode8Bit(name, bytes, kGreyFlags);
 }
 
-cv::Mat ReadDepthImage(const std::filesystem::path& path) { return Read16Bit(path, "depth"); }
+cv::Mat DecodeColourImage(const std::filesystem::path& name, std::string_view bytes) {
+  return Decode8Bit(name, bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+}
 
-cv::Mat ReadLabelImage(const std::filesystem::path& path) { return Read16Bit(path, "label"); }
+cv::Mat DecodeDepthImage(const std::filesystem::path& name, std::string_view bytes) {
+  return Decode16Bit(name, bytes, "depth");
+}
+
+cv::Mat ReadGreyImage(const std::filesystem::path& path) {
+  return DecodeGreyImage(path, ReadImageFile(path));
+}
+
+cv::Mat ReadColourImage(const std::filesystem::path& path) {
+  return DecodeColourImage(path, ReadImageFile(path));
+}
+
+cv::Mat ReadDepthImage(const std::filesystem::path& path) {
+  return DecodeDepthImage(path, ReadImageFile(path));
+}
+
+cv::Mat ReadLabelImage(const std::filesystem::path& path) {
+  return Decode16Bit(path, ReadImageFile(path), "label");
+}
 
 }  // namespace hullslam

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
+#include <string_view>
 
 namespace hullslam {
 
@@ -29,5 +30,11 @@ cv::Mat ReadDepthImage(const std::filesystem::path& path);
 
 // A label image, with the number of an instance in each pixel. Read and checked like a depth image.
 cv::Mat ReadLabelImage(const std::filesystem::path& path);
+
+// The same for the bytes of an image that is a part of a file, such as a message of a bag. `name`
+// takes the place of the file in messages.
+cv::Mat DecodeGreyImage(const std::filesystem::path& name, std::string_view bytes);
+cv::Mat DecodeColourImage(const std::filesystem::path& name, std::string_view bytes);
+cv::Mat DecodeDepthImage(const std::filesystem::path& name, std::string_view bytes);
 
 }  // namespace hullslam

@@ -4,6 +4,7 @@
 #include <memory>
 #include <system_error>
 
+#include "hullslam/sequences/bag_sequence.h"
 #include "hullslam/sequences/euroc_sequence.h"
 #include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/sequences/image_stream.h"
@@ -43,17 +44,26 @@ ImageSequence OpenRunSequence(const std::string& program, const fs::path& sequen
   if (program.ends_with("_icl")) {
     return OpenIclSequence(sequence, camera, {}, {.use_depth = use_depth}).images;
   }
+  if (program.ends_with("_bag")) {
+    return OpenBagSequence(sequence, {.use_depth = use_depth, .need_camera = false}).images;
+  }
   if (program.ends_with("_video")) {
-    return OpenImageStream(sequence).images;
+    ImageSequence images = OpenImageStream(sequence).images;
+    std::error_code error;
+    if (fs::is_regular_file(sequence, error)) {
+      const auto video = std::make_shared<VideoFile>(sequence);
+      images.load_colour = [video](const FramePaths& frame) {
+        return video->ReadColour(frame.number);
+      };
+    }
+    return images;
   }
   return OpenTumSequence(sequence, {.use_depth = use_depth});
 }
 
-ColourLoader OpenColourImages(const fs::path& sequence) {
-  std::error_code error;
-  if (fs::is_regular_file(sequence, error)) {
-    const auto video = std::make_shared<VideoFile>(sequence);
-    return [video](const FramePaths& frame) { return video->ReadColour(frame.number); };
+ColourLoader ColourLoaderOf(const ImageSequence& sequence) {
+  if (sequence.load_colour != nullptr) {
+    return sequence.load_colour;
   }
   return [](const FramePaths& frame) { return ReadColourImage(frame.image); };
 }

@@ -29,23 +29,6 @@ constexpr int kCutoutSize = 220;      // px, of the longer side
 constexpr size_t kCutouts = 3;        // of each object
 constexpr int kQuality = 78;          // of JPEG
 
-// The image in colour. A frame that is no file of its own, such as one of a video, is grey.
-cv::Mat LoadColour(const ImageSequence& sequence, const FramePaths& frame,
-                   const PinholeCamera& camera) {
-  cv::Mat image;
-  if (std::filesystem::is_regular_file(frame.image)) {
-    image = ReadColourImage(frame.image);
-  } else {
-    FramePaths without_depth = frame;
-    without_depth.depth.clear();
-    cv::cvtColor(sequence.load(without_depth, camera).grey, image, cv::COLOR_GRAY2BGR);
-  }
-  if (image.cols != camera.width || image.rows != camera.height) {
-    throw InputError(frame.image.string() + ": does not have the size of the camera");
-  }
-  return image;
-}
-
 const FramePaths* FindFrame(const ImageSequence& sequence, double timestamp) {
   const auto next = std::lower_bound(
       sequence.frames.begin(), sequence.frames.end(), timestamp - kSameMoment,
@@ -206,6 +189,24 @@ std::vector<double> PictureStamps(const ViewModel& model, size_t most) {
 }
 
 }  // namespace
+
+cv::Mat LoadColour(const ImageSequence& sequence, const FramePaths& frame,
+                   const PinholeCamera& camera) {
+  cv::Mat image;
+  if (sequence.load_colour != nullptr) {
+    image = sequence.load_colour(frame);
+  } else if (std::filesystem::is_regular_file(frame.image)) {
+    image = ReadColourImage(frame.image);
+  } else {
+    FramePaths without_depth = frame;
+    without_depth.depth.clear();
+    cv::cvtColor(sequence.load(without_depth, camera).grey, image, cv::COLOR_GRAY2BGR);
+  }
+  if (image.cols != camera.width || image.rows != camera.height) {
+    throw InputError(frame.image.string() + ": does not have the size of the camera");
+  }
+  return image;
+}
 
 size_t RunImageTasks(const ImageSequence& sequence, const PinholeCamera& camera,
                      std::vector<ImageTask> tasks) {

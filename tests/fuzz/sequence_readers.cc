@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <opencv2/core.hpp>
 
 #include "fuzz/fuzzed_input.h"
 #include "fuzz/readers.h"
+#include "hullslam/sequences/bag_sequence.h"
 #include "hullslam/sequences/euroc_sequence.h"
 #include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/sequences/tum_sequence.h"
@@ -78,6 +80,22 @@ void FuzzEurocStates(std::string_view bytes) {
   });
 }
 
+// The format is recognised by the first bytes, so all formats of recordings have this reader.
+// SQLite opens no file in memory.
+void FuzzBag(std::string_view bytes) {
+  static const InputFolder folder("unused");
+  const fs::path file = folder.path() / "recording";
+  std::ofstream(file, std::ios::binary) << bytes;
+  Try([&] {
+    const BagSequence bag = OpenBagSequence(file);
+    Expect(bag.camera.has_value() && !bag.images.frames.empty(), "no camera or no frames");
+    for (const FramePaths& frame : bag.images.frames) {
+      const ImageInput image = bag.images.load(frame, bag.camera->camera);
+      Expect(image.grey.type() == CV_8UC1 && image.depth.size() == image.grey.size(), "the images");
+    }
+  });
+}
+
 constexpr auto kSequenceReaders =
     std::to_array<FuzzedReader>({{"sequence", FuzzSequence},
                                  {"associations", FuzzAssociations},
@@ -86,7 +104,10 @@ constexpr auto kSequenceReaders =
                                  {"ray_depth", FuzzRayDepth},
                                  {"euroc_sensor", FuzzEurocSensor},
                                  {"euroc_images", FuzzEurocImages},
-                                 {"euroc_states", FuzzEurocStates}});
+                                 {"euroc_states", FuzzEurocStates},
+                                 {"mcap", FuzzBag},
+                                 {"rosbag1", FuzzBag},
+                                 {"rosbag2", FuzzBag}});
 
 }  // namespace
 

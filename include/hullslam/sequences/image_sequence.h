@@ -35,6 +35,7 @@ struct FrameSelection {
 ImageInput LoadFrame(const FramePaths& frame, const PinholeCamera& camera);
 
 using FrameLoader = std::function<ImageInput(const FramePaths& frame, const PinholeCamera& camera)>;
+using ColourLoader = std::function<cv::Mat(const FramePaths& frame)>;
 
 // The frames of a data set of any kind. The function that opens it checks everything that needs no
 // decoding.
@@ -52,6 +53,9 @@ struct ImageSequence {
   std::string stamps_note = {};
   // Decodes a frame. To be called for the frames in order, by one thread at a time.
   FrameLoader load = LoadFrame;
+  // Decodes the image of a frame in colour, CV_8UC3 with blue first. To be called like `load`. Null
+  // if the images are files of their own, or only available in grey.
+  ColourLoader load_colour = nullptr;
 };
 
 // The true trajectory, from the field that is set; absent without ground truth. Throws InputError

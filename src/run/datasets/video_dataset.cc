@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "hullslam/results/trajectory_file.h"
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/settings/settings.h"
 #include "hullslam/util/error.h"
+#include "run/datasets/given_groundtruth.h"
 #include "run/load_settings.h"
 #include "run/messages.h"
 #include "run/settings_choice.h"
@@ -59,7 +59,8 @@ class VideoDataset final : public Dataset {
       PrintInput(stream, loaded.options);
     }
     if (!groundtruth_.empty()) {
-      CheckGroundtruth(stream.images);
+      CheckGivenGroundtruth(groundtruth_, stream.images,
+                            "--stamp-offset SECONDS, which is added to the stamps of the images");
       stream.images.groundtruth = groundtruth_;
     }
     std::vector<std::string> notes;
@@ -83,24 +84,6 @@ class VideoDataset final : public Dataset {
       throw InputError(
           "--settings and --fov are both given, expected only one of them, because both say what "
           "the camera is");
-    }
-  }
-
-  // Throws InputError if no true pose has the time of an image, because the error of the run would
-  // silently be missing.
-  void CheckGroundtruth(const ImageSequence& images) const {
-    const Trajectory truth = ReadTrajectory(groundtruth_);
-    const double first = images.frames.front().timestamp;
-    const double last = images.frames.back().timestamp;
-    if (truth.empty() || truth.back().timestamp < first || truth.front().timestamp > last) {
-      throw InputError(fmt::format(
-          "{}: {}, but the images are from {:.6f} to {:.6f} s; expected --stamp-offset SECONDS, "
-          "which is added to the stamps of the images",
-          groundtruth_.string(),
-          truth.empty() ? std::string("has no poses")
-                        : fmt::format("has poses from {:.6f} to {:.6f} s", truth.front().timestamp,
-                                      truth.back().timestamp),
-          first, last));
     }
   }
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hullslam/sequences/image_sequence.h"
+#include "hullslam/settings/settings.h"
+
+namespace hullslam {
+
+struct BagSequenceOptions {
+  // Names of topics; empty: they are found by type, encoding and name (docs/bags.md).
+  std::string image_topic = {};
+  std::string depth_topic = {};
+  std::string info_topic = {};
+  // False for monocular SLAM: all images are frames, and no frame has depth.
+  bool use_depth = true;
+  // False if the settings of the camera are known: then no CameraInfo is needed.
+  bool need_camera = true;
+  // The time stamps are those at which the messages were recorded, not those in the messages.
+  bool use_recording_times = false;
+  FrameSelection selection = {};
+};
+
+struct BagSequence {
+  // The names of the frames are their time stamps with six decimals, as in TUM's sequences.
+  ImageSequence images;
+  // From CameraInfo, which has no baseline: PinholeCamera::bf is the default. Absent without
+  // `need_camera`.
+  std::optional<CameraCalibration> camera;
+  std::vector<std::string> notes;     // which topics are used
+  std::vector<std::string> warnings;  // what is missing in the file, or odd about its stamps
+};
+
+// Opens a recording of ROS: a file in the format of MCAP (messages of ROS 2), of rosbag2 (SQLite)
+// or of ROS 1 (2.0), or a folder of rosbag2. The file is read once to find its images, of which
+// only the positions are kept; they are decoded when they are loaded. Colour and depth images are
+// paired by time: one to one, closest first, within 0.02 s.
+//
+// Throws InputError with the file and the position of what is broken; with a list of the topics if
+// a topic is missing or if there is a choice; and with the topic and the two stamps if stamps go
+// backwards.
+BagSequence OpenBagSequence(const std::filesystem::path& path,
+                            const BagSequenceOptions& options = {});
+
+}  // namespace hullslam

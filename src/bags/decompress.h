@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace hullslam {
+
+// The compression of the chunks and messages of bags.
+enum class Compression { kNone, kBzip2, kLz4, kZstd };
+
+// The limit for a chunk or a message, decompressed. A few bytes can claim to be any number.
+constexpr uint64_t kMostBagBytes = 256'000'000;
+
+// The compression with this name in a bag: "", "none", "bz2", "lz4" or "zstd". Throws InputError
+// that begins with `place` for another name.
+Compression ParseCompression(std::string_view name, const std::string& place);
+
+// Decompresses all of `bytes`: one stream of bzip2, or frames of LZ4 or Zstandard. Memory grows
+// with what is really there. Throws InputError that begins with `place`, the name of the file and
+// the position in it, if the bytes are broken or cut off or give more than `most_bytes`.
+std::string Decompress(Compression compression, std::string_view bytes, uint64_t most_bytes,
+                       const std::string& place);
+
+// Compresses with Zstandard as one frame. The same bytes and the same library give the same result.
+std::string CompressZstd(std::string_view bytes);
+
+}  // namespace hullslam

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bags/field_reader.h"
+
+namespace hullslam {
+
+// The messages of sensor_msgs that a sequence is made of. Views refer to the bytes of the message.
+
+// A time as ROS has it: seconds and nanoseconds since a beginning that the recorder knows.
+struct BagTime {
+  int64_t seconds = 0;
+  uint32_t nanoseconds = 0;
+  auto operator<=>(const BagTime&) const = default;
+
+  bool IsZero() const { return seconds == 0 && nanoseconds == 0; }
+  // s. The double that is nearest to the decimal number, for stamps of whole microseconds.
+  double Seconds() const { return static_cast<double>(seconds) + nanoseconds / 1e9; }
+};
+
+// sensor_msgs/Image. The rows have `step` bytes each; `data` has at least `height` of them.
+struct RawImageMessage {
+  BagTime stamp;
+  uint32_t height = 0;  // px
+  uint32_t width = 0;
+  std::string_view encoding;  // "bgr8", "16UC1", ...
+  bool is_big_endian = false;
+  uint32_t step = 0;
+  std::string_view data;
+};
+
+// sensor_msgs/CompressedImage.
+struct CompressedImageMessage {
+  BagTime stamp;
+  std::string_view format;  // "jpeg", "bgr8; jpeg compressed bgr8", "16UC1; compressedDepth", ...
+  std::string_view data;
+};
+
+// sensor_msgs/CameraInfo, without what is only used for stereo cameras.
+struct CameraInfoMessage {
+  uint32_t height = 0;  // px
+  uint32_t width = 0;
+  std::string distortion_model;
+  std::vector<double> distortion;
+  std::array<double, 9> k{};  // the calibration matrix, row by row, px
+};
+
+// Read a message. Throw InputError that begins with `name`, the name of the file and the topic, if
+// the bytes are cut off or contradict each other.
+RawImageMessage ReadRawImage(MessageCoding coding, std::string_view bytes, const std::string& name);
+CompressedImageMessage ReadCompressedImage(MessageCoding coding, std::string_view bytes,
+                                           const std::string& name);
+CameraInfoMessage ReadCameraInfo(MessageCoding coding, std::string_view bytes,
+                                 const std::string& name);
+
+}  // namespace hullslam

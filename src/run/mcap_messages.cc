@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/mcap_messages.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "bags/cdr_writer.h"
+#include "hullslam/util/check.h"
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+constexpr const char* kMapFrame = "map";
+constexpr const char* kCameraFrame = "camera";
+
+void PutTime(RosTime time, CdrWriter& message) {
+  message.Put(time.seconds);
+  message.Put(time.nanoseconds);
+}
+
+void PutHeader(RosTime time, const char* frame, CdrWriter& message) {
+  PutTime(time, message);
+  message.PutText(frame);
+}
+
+// A Point or a Vector3.
+void PutVector(const Eigen::Vector3d& vector, CdrWriter& message) {
+  for (const double coordinate : vector) {
+    message.Put(coordinate);
+  }
+}
+
+// A Pose or a Transform: both have the position first, then the quaternion x y z w.
+void PutPose(const Rigid3& pose, CdrWriter& message) {
+  PutVector(pose.translation, message);
+  for (const double coordinate : pose.rotation.coeffs()) {
+    message.Put(coordinate);
+  }
+}
+
+std::vector<const ReportedObject*> MappedObjects(std::span<const ReportedObject> objects) {
+  std::vector<const ReportedObject*> mapped;
+  for (const ReportedObject& object : objects) {
+    if (object.state == ObjectState::kMapped) {
+      mapped.push_back(&object);
+    }
+  }
+  return mapped;
+}
+
+std::string NameOf(const ReportedObject& object) {
+  return fmt::format("{} {}", object.label, object.id.value);
+}
+
+// red, green, blue, alpha
+using Colour = std::array<double, 4>;
+constexpr Colour kTextColour = {1.0, 1.0, 1.0, 1.0};
+
+// A colour that is the same for all objects of a class. (FNV-1a, because std::hash may differ from
+// library to library.)
+Colour ColourOfClass(std::string_view label) {
+  uint32_t hash = 0x811c9dc5;
+  for (const char c : label) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x01000193;
+  }
+  const auto part = [&](int shift) { return 0.25 + 0.75 * ((hash >> shift) % 256) / 255.0; };
+  return {part(0), part(8), part(16), 0.5};
+}
+
+void PutColour(const Colour& colour, CdrWriter& message) {
+  for (const double part : colour) {
+    message.Put(part);
+  }
+}
+
+void PutEntity(RosTime time, const ReportedObject& object, CdrWriter& message) {
+  constexpr double kFontPixels = 14.0;
+  const Rigid3& pose = object.ellipsoid.world_from_object;
+  PutHeader(time, kMapFrame, message);  // the time and the frame
+  message.PutText(NameOf(object));
+  message.Put(int32_t{0});  // lifetime: for ever
+  message.Put(uint32_t{0});
+  message.Put(uint8_t{0});  // it stays in the frame
+  message.PutCount(0);      // metadata
+  message.PutCount(0);      // arrows
+  message.PutCount(0);      // cubes
+  message.PutCount(1);      // spheres
+  PutPose(pose, message);
+  PutVector(2.0 * object.ellipsoid.half_axes, message);
+  PutColour(ColourOfClass(object.label), message);
+  message.PutCount(0);  // cylinders
+  message.PutCount(0);  // lines
+  message.PutCount(0);  // triangles
+  message.PutCount(1);  // texts
+  PutPose({Eigen::Quaterniond::Identity(), pose.translation}, message);
+  message.Put(uint8_t{1});  // it faces the viewer
+  message.Put(kFontPixels);
+  message.Put(uint8_t{1});  // the size is in pixels
+  PutColour(kTextColour, message);
+  message.PutText(NameOf(object));
+  message.PutCount(0);  // models
+}
+
+}  // namespace
+
+RosTime ToRosTime(double stamp) {
+  constexpr double kMost = std::numeric_limits<int32_t>::max();
+  if (!(stamp >= 0.0 && stamp < kMost)) {
+    throw InputError(fmt::format(
+        "the time stamp {:.6f} s cannot be written, because ROS expresses 0 to {:.0f} s", stamp,
+        kMost));
+  }
+  const auto microseconds = static_cast<int64_t>(std::llround((stamp - std::floor(stamp)) * 1e6));
+  return {static_cast<int32_t>(std::floor(stamp)) + static_cast<int32_t>(microseconds / 1'000'000),
+          static_cast<uint32_t>(microseconds % 1'000'000 * 1'000)};
+}
+
+std::string JpegMessage(RosTime time, std::string_view jpeg) {
+  CdrWriter message;
+  PutHeader(time, kCameraFrame, message);
+  message.PutText("jpeg");
+  message.PutBytes(jpeg);
+  return message.Message();
+}
+
+std::string CameraInfoMessageOf(RosTime time, const PinholeCamera& camera) {
+  CdrWriter message;
+  PutHeader(time, kCameraFrame, message);
+  message.Put(static_cast<uint32_t>(camera.height));
+  message.Put(static_cast<uint32_t>(camera.width));
+  message.PutText("plumb_bob");
+  message.PutCount(5);
+  for (const double number : {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}) {
+    message.Put(number);
+  }
+  for (const double number :
+       {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0,       0.0, 1.0,  // K
+        1.0,       0.0, 0.0,       0.0, 1.0,       0.0,       0.0,       0.0, 1.0,  // R
+        camera.fx, 0.0, camera.cx, 0.0, 0.0,       camera.fy, camera.cy, 0.0, 0.0,
+        0.0,       1.0, 0.0}) {  // P
+    message.Put(number);
+  }
+  for (int i = 0; i < 6; ++i) {  // binning and the region of interest: the whole image
+    message.Put(uint32_t{0});
+  }
+  message.Put(uint8_t{0});
+  return message.Message();
+}
+
+std::string TransformMessage(RosTime time, const Rigid3& world_from_cam) {
+  CdrWriter message;
+  message.PutCount(1);
+  PutHeader(time, kMapFrame, message);
+  message.PutText(kCameraFrame);
+  PutPose(world_from_cam, message);
+  return message.Message();
+}
+
+std::string PathMessage(RosTime time, const Trajectory& trajectory) {
+  CdrWriter message;
+  PutHeader(time, kMapFrame, message);
+  message.PutCount(trajectory.size());
+  for (const StampedPose& pose : trajectory) {
+    PutHeader(ToRosTime(pose.timestamp), kMapFrame, message);
+    PutPose(pose.world_from_cam, message);
+  }
+  return message.Message();
+}
+
+std::string PointsMessage(RosTime time, std::span<const Eigen::Vector3f> positions,
+                          std::span<const std::array<uint8_t, 3>> colours) {
+  Check(positions.size() == colours.size(), "each point has a colour");
+  constexpr uint8_t kFloat32 = 7;
+  constexpr uint32_t kPointBytes = 4 * sizeof(float);
+  CdrWriter message;
+  PutHeader(time, kMapFrame, message);
+  message.Put(uint32_t{1});  // height: the points have no rows
+  message.PutCount(positions.size());
+  message.PutCount(4);
+  uint32_t offset = 0;
+  for (const char* const name : {"x", "y", "z", "rgb"}) {
+    message.PutText(name);
+    message.Put(offset);
+    message.Put(kFloat32);
+    message.Put(uint32_t{1});
+    offset += sizeof(float);
+  }
+  message.Put(uint8_t{0});  // little-endian
+  message.Put(kPointBytes);
+  message.Put(static_cast<uint32_t>(kPointBytes * positions.size()));
+  ByteWriter points;
+  for (size_t i = 0; i < positions.size(); ++i) {
+    for (const float coordinate : positions[i]) {
+      points.Put(coordinate);
+    }
+    const auto& [red, green, blue] = colours[i];
+    points.Put(uint32_t{red} << 16U | uint32_t{green} << 8U | blue);
+  }
+  message.PutBytes(points.bytes());
+  message.Put(uint8_t{1});  // all points are finite
+  return message.Message();
+}
+
+std::string DetectionsMessage(RosTime time, std::span<const ReportedObject> objects) {
+  const std::vector<const ReportedObject*> mapped = MappedObjects(objects);
+  CdrWriter message;
+  PutHeader(time, kMapFrame, message);
+  message.PutCount(mapped.size());
+  for (const ReportedObject* const object : mapped) {
+    double votes = 0.0;
+    for (const auto& [label, of_label] : object->votes) {
+      votes += of_label;
+    }
+    const Rigid3& pose = object->ellipsoid.world_from_object;
+    PutHeader(time, kMapFrame, message);
+    message.PutCount(object->votes.size());
+    for (const auto& [label, of_label] : object->votes) {
+      message.PutText(label);
+      message.Put(of_label / votes);
+      PutPose(pose, message);
+      for (int i = 0; i < 36; ++i) {  // the covariance is not known
+        message.Put(0.0);
+      }
+    }
+    PutPose(pose, message);
+    PutVector(2.0 * object->ellipsoid.half_axes, message);
+    message.PutText(NameOf(*object));
+  }
+  return message.Message();
+}
+
+std::string SceneMessage(RosTime time, std::span<const ReportedObject> objects) {
+  const std::vector<const ReportedObject*> mapped = MappedObjects(objects);
+  CdrWriter message;
+  message.PutCount(0);  // deletions
+  message.PutCount(mapped.size());
+  for (const ReportedObject* const object : mapped) {
+    PutEntity(time, *object, message);
+  }
+  return message.Message();
+}
+
+}  // namespace hullslam

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/geometry/trajectory.h"
+#include "report/object_report.h"
+
+namespace hullslam {
+
+// The results of a run as messages of ROS 2, in CDR. The world is the frame "map", the camera (x to
+// the right, y down, z ahead) the frame "camera". Lengths are in the unit of the map.
+
+// A time stamp as ROS has it, rounded to microseconds like those of trajectory.txt.
+struct RosTime {
+  int32_t seconds = 0;
+  uint32_t nanoseconds = 0;
+
+  uint64_t Nanoseconds() const { return uint64_t(seconds) * 1'000'000'000 + nanoseconds; }
+};
+// Throws InputError for a stamp (s) that ROS cannot express: negative, or beyond the year 2038.
+RosTime ToRosTime(double stamp);
+
+// sensor_msgs/msg/CompressedImage of a JPEG.
+std::string JpegMessage(RosTime time, std::string_view jpeg);
+// sensor_msgs/msg/CameraInfo.
+std::string CameraInfoMessageOf(RosTime time, const PinholeCamera& camera);
+// tf2_msgs/msg/TFMessage with the pose of the camera in the map.
+std::string TransformMessage(RosTime time, const Rigid3& world_from_cam);
+// nav_msgs/msg/Path. Poses whose stamps ROS cannot express throw InputError.
+std::string PathMessage(RosTime time, const Trajectory& trajectory);
+// sensor_msgs/msg/PointCloud2 with the fields x, y, z and rgb. There is a colour (red, green, blue)
+// for each point.
+std::string PointsMessage(RosTime time, std::span<const Eigen::Vector3f> positions,
+                          std::span<const std::array<uint8_t, 3>> colours);
+// vision_msgs/msg/Detection3DArray: the mapped objects with their oriented boxes and the share of
+// the votes of each class.
+std::string DetectionsMessage(RosTime time, std::span<const ReportedObject> objects);
+// foxglove_msgs/msg/SceneUpdate: the mapped objects as ellipsoids with their class names.
+std::string SceneMessage(RosTime time, std::span<const ReportedObject> objects);
+
+}  // namespace hullslam

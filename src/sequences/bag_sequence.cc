@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/sequences/bag_sequence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "bags/bag.h"
+#include "hullslam/util/error.h"
+#include "hullslam/util/stamp_pairing.h"
+#include "sequences/bag_image.h"
+#include "sequences/bag_topics.h"
+#include "sequences/image_file.h"
+#include "sequences/image_list.h"
+#include "util/shown_text.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMostApart = 0.02;  // s, as in TUM's associate.py
+constexpr const char* kImageOption = "--image-topic";
+constexpr const char* kDepthOption = "--depth-topic";
+constexpr const char* kInfoOption = "--info-topic";
+
+struct StampedImage {
+  double timestamp = 0.0;  // s
+  BagImage image;
+};
+
+// The images of a topic in order of time.
+struct TopicImages {
+  std::string topic;
+  bool is_compressed = false;
+  std::vector<StampedImage> images;
+};
+
+double SecondsOf(const BagImage& image, bool use_recording_times) {
+  return use_recording_times ? BagTime{image.logged / 1'000'000'000,
+                                       static_cast<uint32_t>(image.logged % 1'000'000'000)}
+                                   .Seconds()
+                             : image.stamp.Seconds();
+}
+
+// Without its stamps, a topic has the times at which its messages were recorded.
+bool NeedsRecordingTimes(const IndexedTopic& topic, bool asked, std::vector<std::string>& notes) {
+  const bool has_none = std::all_of(topic.images.begin(), topic.images.end(),
+                                    [](const BagImage& image) { return image.stamp.IsZero(); });
+  if (!asked && has_none) {
+    notes.push_back(fmt::format(
+        "{}: its images have no time stamps; the times at which they were recorded are used",
+        ShowText(topic.name)));
+  }
+  return asked || has_none;
+}
+
+[[noreturn]] void FailOrder(const fs::path& path, const IndexedTopic& topic, double stamp,
+                            double former) {
+  throw InputError(fmt::format(
+      "{}: {}: the time stamp {:.6f} s comes {:.6f} s before that of the previous image, expected "
+      "increasing stamps; --recording-times uses the times at which the images were recorded",
+      path.string(), ShowText(topic.name), stamp, former - stamp));
+}
+
+TopicImages OrderImages(const fs::path& path, const IndexedTopic& topic, bool use_recording_times,
+                        BagSequence& sequence) {
+  constexpr double kLongGap = 3600.0;  // s
+  const bool by_recording = NeedsRecordingTimes(topic, use_recording_times, sequence.notes);
+  std::vector<BagImage> sorted = topic.images;
+  // Recorders with several threads may write messages a little out of order.
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const BagImage& a, const BagImage& b) { return a.logged < b.logged; });
+  TopicImages ordered{topic.name, topic.IsCompressed(), {}};
+  size_t repeated = 0;
+  for (const BagImage& image : sorted) {
+    const double stamp = SecondsOf(image, by_recording);
+    const double former = ordered.images.empty() ? stamp - 1.0 : ordered.images.back().timestamp;
+    if (stamp < former || stamp < 0.0) {
+      FailOrder(path, topic, stamp, std::max(former, 0.0));
+    }
+    if (stamp - former > kLongGap) {
+      sequence.warnings.push_back(
+          fmt::format("{}: {}: the time stamps jump by {:.1f} hours at {:.6f} s", path.string(),
+                      ShowText(topic.name), (stamp - former) / kLongGap, stamp));
+    }
+    if (stamp == former) {
+      ++repeated;
+    } else {
+      ordered.images.push_back({stamp, image});
+    }
+  }
+  if (repeated > 0) {
+    sequence.warnings.push_back(
+        fmt::format("{}: {}: {} images have the time stamp of the previous one and are not used",
+                    path.string(), ShowText(topic.name), repeated));
+  }
+  return ordered;
+}
+
+std::vector<double> StampsOfTopic(const TopicImages& topic) {
+  std::vector<double> stamps;
+  for (const StampedImage& image : topic.images) {
+    stamps.push_back(image.timestamp);
+  }
+  return stamps;
+}
+
+enum class Decoding { kGrey, kColour, kDepth };
+
+template <typename Message>
+cv::Mat DecodeMessage(const Message& message, Decoding decoding, const std::string& name) {
+  switch (decoding) {
+    case Decoding::kGrey:
+      return GreyOf(message, name);
+    case Decoding::kColour:
+      return ColourOf(message, name);
+    default:
+      return DepthOf(message, name);
+  }
+}
+
+// The images of a recording by the numbers of its frames.
+class BagLoader {
+ public:
+  BagLoader(std::vector<std::unique_ptr<Bag>> bags, TopicImages colour, TopicImages depth)
+      : bags_(std::move(bags)), colour_(std::move(colour)), depth_(std::move(depth)) {}
+
+  // Adds a frame of the images with these indices. `source` is the path of the recording.
+  void AddFrame(const fs::path& source, size_t colour, std::optional<size_t> depth,
+                ImageSequence& sequence) {
+    sequence.frames.push_back({colour_.images[colour].timestamp, NameOf(source, colour_, colour),
+                               depth ? NameOf(source, depth_, *depth) : fs::path(),
+                               frames_.size()});
+    frames_.push_back({colour, depth.value_or(0)});
+  }
+
+  const TopicImages& colour() const { return colour_; }
+  const TopicImages& depth() const { return depth_; }
+
+  ImageInput Load(const FramePaths& frame, const PinholeCamera& camera) {
+    const auto& [colour, depth] = frames_.at(frame.number);
+    const std::string name = frame.image.string();
+    ImageInput image{frame.timestamp, Read(colour_, colour, Decoding::kGrey, name), cv::Mat()};
+    if (!frame.depth.empty()) {
+      image.depth = Read(depth_, depth, Decoding::kDepth, frame.depth.string());
+      CheckImageSize(frame.depth.string(), image.depth, camera);
+    }
+    CheckImageSize(name, image.grey, camera);
+    return image;
+  }
+
+  cv::Mat LoadColour(const FramePaths& frame) {
+    return Read(colour_, frames_.at(frame.number).first, Decoding::kColour, frame.image.string());
+  }
+
+ private:
+  // FILE/TOPIC/STAMP, by which masks are found and which messages show.
+  static fs::path NameOf(const fs::path& source, const TopicImages& topic, size_t i) {
+    return fmt::format("{}/{}/{:.6f}", source.string(),
+                       ShowText(std::string_view(topic.topic).substr(topic.topic[0] == '/')),
+                       topic.images[i].timestamp);
+  }
+
+  cv::Mat Read(const TopicImages& topic, size_t i, Decoding decoding, const std::string& name) {
+    const BagImage& image = topic.images[i].image;
+    Bag& bag = *bags_[image.bag];
+    const std::string bytes = bag.Read(image.place);
+    return topic.is_compressed
+               ? DecodeMessage(ReadCompressedImage(bag.coding(), bytes, name), decoding, name)
+               : DecodeMessage(ReadRawImage(bag.coding(), bytes, name), decoding, name);
+  }
+
+  std::vector<std::unique_ptr<Bag>> bags_;
+  TopicImages colour_;
+  TopicImages depth_;  // without images if there is no depth
+  std::vector<std::pair<size_t, size_t>> frames_;
+};
+
+void PairTopics(const fs::path& path, BagLoader& loader, ImageSequence& sequence) {
+  const std::vector<double> of_colour = StampsOfTopic(loader.colour());
+  const std::vector<double> of_depth = StampsOfTopic(loader.depth());
+  const auto pairs = PairStampsGreedily(of_colour, of_depth, kMostApart);
+  if (pairs.empty()) {
+    throw InputError(fmt::format(
+        "{}: no image of {} has one of {} within {} s, the smallest gap is {:.6f} s; "
+        "--recording-times pairs them by the times at which they were recorded; without depth: "
+        "mono_bag",
+        path.string(), ShowText(loader.colour().topic), ShowText(loader.depth().topic), kMostApart,
+        SmallestGap(of_colour, of_depth)));
+  }
+  sequence.unpaired = of_colour.size() - pairs.size();
+  for (const auto& [i, j] : pairs) {
+    loader.AddFrame(path, i, j, sequence);
+  }
+}
+
+std::string DescribeTopic(const char* what, const TopicImages& topic) {
+  return fmt::format("{}: {}, {} messages", what, ShowText(topic.topic), topic.images.size());
+}
+
+// The camera of a CameraInfo. `frames_per_second` is that of its images.
+CameraCalibration CalibrationOf(const fs::path& path, const IndexedTopic& topic,
+                                double frames_per_second) {
+  const CameraInfoMessage& info = *topic.camera;
+  const std::string place = fmt::format("{}: {}", path.string(), ShowText(topic.name));
+  const auto fail = [&](const std::string& fault) {
+    throw InputError(fmt::format("{}: {}; expected --settings FILE", place, fault));
+  };
+  // plumb_bob has k1 k2 p1 p2 k3; rational_polynomial has three more, which divide.
+  const bool is_known =
+      info.distortion_model == "plumb_bob" || info.distortion_model == "rational_polynomial";
+  const bool has_no_more =
+      info.distortion.size() <= 5 || std::all_of(info.distortion.begin() + 5, info.distortion.end(),
+                                                 [](double number) { return number == 0.0; });
+  if (!info.distortion.empty() && (!is_known || !has_no_more)) {
+    fail(fmt::format("the distortion is '{}' with {} coefficients, expected plumb_bob",
+                     ShowText(info.distortion_model, 40), info.distortion.size()));
+  }
+  if (info.k[0] == 0.0) {
+    fail("the camera is not calibrated, its matrix K is 0");
+  }
+  if (info.width > kMostImagePixels || info.height > kMostImagePixels) {
+    fail(fmt::format("the camera has {}x{} px", info.width, info.height));
+  }
+  const auto coefficient = [&](size_t i) {
+    return i < info.distortion.size() ? info.distortion[i] : 0.0;
+  };
+  return {.camera = {.fx = info.k[0],
+                     .fy = info.k[4],
+                     .cx = info.k[2],
+                     .cy = info.k[5],
+                     .k1 = coefficient(0),
+                     .k2 = coefficient(1),
+                     .p1 = coefficient(2),
+                     .p2 = coefficient(3),
+                     .k3 = coefficient(4),
+                     .width = static_cast<int>(info.width),
+                     .height = static_cast<int>(info.height)},
+          .frames_per_second = frames_per_second};
+}
+
+// The mean over all images.
+double RateOf(const TopicImages& topic) {
+  constexpr double kUsual = 30.0;
+  const double seconds = topic.images.back().timestamp - topic.images.front().timestamp;
+  return topic.images.size() < 2 ? kUsual : static_cast<double>(topic.images.size() - 1) / seconds;
+}
+
+}  // namespace
+
+BagSequence OpenBagSequence(const fs::path& path, const BagSequenceOptions& options) {
+  std::vector<std::unique_ptr<Bag>> bags = OpenBags(path);
+  BagIndex index = IndexBags(path, bags);
+  BagSequence sequence;
+  sequence.warnings = std::move(index.warnings);
+  const IndexedTopic& images =
+      ChooseImageTopic(index, BagImageKind::kColour, options.image_topic, kImageOption);
+  TopicImages colour = OrderImages(path, images, options.use_recording_times, sequence);
+  sequence.notes.push_back(DescribeTopic("images", colour));
+  TopicImages depth;
+  if (options.use_depth) {
+    depth = OrderImages(
+        path, ChooseImageTopic(index, BagImageKind::kDepth, options.depth_topic, kDepthOption),
+        options.use_recording_times, sequence);
+    sequence.notes.push_back(DescribeTopic("depth", depth));
+  }
+  if (options.need_camera) {
+    const IndexedTopic& info = ChooseInfoTopic(index, images, options.info_topic, kInfoOption);
+    sequence.camera = CalibrationOf(path, info, RateOf(colour));
+    sequence.notes.push_back(fmt::format("camera: {}", ShowText(info.name)));
+  }
+  const auto loader =
+      std::make_shared<BagLoader>(std::move(bags), std::move(colour), std::move(depth));
+  if (options.use_depth) {
+    PairTopics(path, *loader, sequence.images);
+  } else {
+    for (size_t i = 0; i < loader->colour().images.size(); ++i) {
+      loader->AddFrame(path, i, std::nullopt, sequence.images);
+    }
+  }
+  sequence.images.load = [loader](const FramePaths& frame, const PinholeCamera& camera) {
+    return loader->Load(frame, camera);
+  };
+  sequence.images.load_colour = [loader](const FramePaths& frame) {
+    return loader->LoadColour(frame);
+  };
+  SelectFrames(path, options.selection, sequence.images);
+  return sequence;
+}
+
+}  // namespace hullslam

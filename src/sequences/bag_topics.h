@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bags/bag.h"
+#include "bags/image_messages.h"
+#include "sequences/bag_image.h"
+
+namespace hullslam {
+
+// Where an image of a recording is.
+struct BagImage {
+  BagTime stamp;       // in the message
+  int64_t logged = 0;  // the time at which it was recorded, ns
+  size_t bag = 0;      // index of the file
+  MessagePlace place;
+};
+
+// A topic of a recording, over all its files.
+struct IndexedTopic {
+  std::string name;
+  std::string type;      // "sensor_msgs/Image"
+  std::string encoding;  // of the first image, or its format if it is compressed
+  size_t messages = 0;
+  BagImageKind kind = BagImageKind::kUnknown;              // of the images
+  std::vector<BagImage> images = {};                       // if the topic has images
+  std::optional<CameraInfoMessage> camera = std::nullopt;  // the first CameraInfo of the topic
+
+  bool IsCompressed() const { return type == "sensor_msgs/CompressedImage"; }
+};
+
+// The topics of a recording, sorted by name.
+struct BagIndex {
+  std::filesystem::path path;
+  std::vector<IndexedTopic> topics = {};
+  std::vector<std::string> warnings = {};
+};
+
+// Scans all files. Throws InputError for broken files and messages.
+BagIndex IndexBags(const std::filesystem::path& path,
+                   const std::vector<std::unique_ptr<Bag>>& bags);
+
+// The topic of colour or depth images. If `name` is given, it is this one. Otherwise it is the only
+// one; or, of several, the only one that is left without the compressed forms of raw topics; or the
+// only one whose name says that it is in colour ("rgb", "color") or that depth is registered
+// ("registered", "aligned"). Throws InputError with all topics and with `option`, by which the user
+// can choose.
+const IndexedTopic& ChooseImageTopic(const BagIndex& index, BagImageKind kind,
+                                     const std::string& name, const char* option);
+
+// The topic with the CameraInfo of an image topic: `name` if it is given, else camera_info beside
+// it, else the only one. Throws InputError like ChooseImageTopic().
+const IndexedTopic& ChooseInfoTopic(const BagIndex& index, const IndexedTopic& images,
+                                    const std::string& name, const char* option);
+
+}  // namespace hullslam

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/mcap_messages.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "bags/image_messages.h"
+#include "support/expect_error.h"
+
+namespace hullslam {
+namespace {
+
+constexpr MessageCoding kCdr = MessageCoding::kCdr;
+
+const Rigid3 kPose(ExpSo3({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0});
+
+// Reads a header and expects this time and the frame.
+void ExpectHeader(FieldReader& reader, RosTime time, const char* frame) {
+  EXPECT_EQ(reader.Get<int32_t>(), time.seconds);
+  EXPECT_EQ(reader.Get<uint32_t>(), time.nanoseconds);
+  EXPECT_EQ(reader.GetText(), frame);
+}
+
+void ExpectNumbers(FieldReader& reader, const std::vector<double>& numbers) {
+  for (const double number : numbers) {
+    EXPECT_EQ(reader.Get<double>(), number);
+  }
+}
+
+std::vector<double> NumbersOf(const Rigid3& pose) {
+  return {pose.translation.x(), pose.translation.y(), pose.translation.z(), pose.rotation.x(),
+          pose.rotation.y(),    pose.rotation.z(),    pose.rotation.w()};
+}
+
+ReportedObject Cup(ObjectState state) {
+  ReportedObject object;
+  object.id = ObjectId(7);
+  object.state = state;
+  object.label = "cup";
+  object.votes = {{"bowl", 1.0}, {"cup", 3.0}};
+  object.ellipsoid = {kPose, {0.1, 0.2, 0.3}};
+  return object;
+}
+
+TEST(McapMessagesTest, TimesAreRoundedToMicroseconds) {
+  EXPECT_EQ(ToRosTime(1305031102.175304).seconds, 1305031102);
+  EXPECT_EQ(ToRosTime(1305031102.175304).nanoseconds, 175304000u);
+  EXPECT_EQ(ToRosTime(1.9999999).seconds, 2);
+  EXPECT_EQ(ToRosTime(1.9999999).nanoseconds, 0u);
+  EXPECT_EQ(ToRosTime(1.5).Nanoseconds(), 1'500'000'000u);
+  for (const double stamp : {-1.0, 3e9, std::nan("")}) {
+    ExpectInputError([&] { ToRosTime(stamp); }, {"cannot be written", "ROS"});
+  }
+}
+
+TEST(McapMessagesTest, OurReaderReadsImagesAndCameras) {
+  const PinholeCamera camera{.fx = 500,
+                             .fy = 510,
+                             .cx = 320,
+                             .cy = 240,
+                             .k1 = 0.1,
+                             .k2 = 0.2,
+                             .p1 = 0.3,
+                             .p2 = 0.4,
+                             .k3 = 0.5};
+  const CameraInfoMessage info = ReadCameraInfo(kCdr, CameraInfoMessageOf({1, 2}, camera), "m");
+  EXPECT_EQ(info.width, 640u);
+  EXPECT_EQ(info.k, (std::array<double, 9>{500, 0, 320, 0, 510, 240, 0, 0, 1}));
+  EXPECT_EQ(info.distortion, (std::vector<double>{0.1, 0.2, 0.3, 0.4, 0.5}));
+  const std::string message = JpegMessage({1, 2}, "jpeg bytes");
+  const CompressedImageMessage image = ReadCompressedImage(kCdr, message, "m");
+  EXPECT_EQ(image.stamp, (BagTime{1, 2}));
+  EXPECT_EQ(image.format, "jpeg");
+  EXPECT_EQ(image.data, "jpeg bytes");
+}
+
+TEST(McapMessagesTest, PosesAreThoseOfTheCameraInTheMap) {
+  const std::string transform = TransformMessage({3, 4}, kPose);
+  FieldReader reader(kCdr, transform, "tf");
+  EXPECT_EQ(reader.Get<uint32_t>(), 1u);
+  ExpectHeader(reader, {3, 4}, "map");
+  EXPECT_EQ(reader.GetText(), "camera");
+  ExpectNumbers(reader, NumbersOf(kPose));
+  const std::string path = PathMessage({3, 4}, {{5.5, kPose}});
+  FieldReader of_path(kCdr, path, "path");
+  ExpectHeader(of_path, {3, 4}, "map");
+  EXPECT_EQ(of_path.Get<uint32_t>(), 1u);
+  ExpectHeader(of_path, {5, 500'000'000}, "map");
+  ExpectNumbers(of_path, NumbersOf(kPose));
+}
+
+TEST(McapMessagesTest, PointsHaveTheirColours) {
+  const std::vector<Eigen::Vector3f> positions = {{1.0f, 2.0f, 3.0f}};
+  const std::vector<std::array<uint8_t, 3>> colours = {{0x11, 0x22, 0x33}};
+  const std::string message = PointsMessage({1, 2}, positions, colours);
+  FieldReader reader(kCdr, message, "points");
+  ExpectHeader(reader, {1, 2}, "map");
+  EXPECT_EQ(reader.Get<uint32_t>(), 1u);
+  EXPECT_EQ(reader.Get<uint32_t>(), 1u);
+  ASSERT_EQ(reader.Get<uint32_t>(), 4u);
+  for (const char* const name : {"x", "y", "z", "rgb"}) {
+    EXPECT_EQ(reader.GetText(), name);
+    reader.Get<uint32_t>();
+    EXPECT_EQ(reader.Get<uint8_t>(), 7);
+    EXPECT_EQ(reader.Get<uint32_t>(), 1u);
+  }
+  EXPECT_EQ(reader.Get<uint8_t>(), 0);
+  EXPECT_EQ(reader.Get<uint32_t>(), 16u);
+  EXPECT_EQ(reader.Get<uint32_t>(), 16u);
+  const std::string_view data = reader.GetBytes();
+  ASSERT_EQ(data.size(), 16u);
+  EXPECT_EQ(data.substr(12), std::string_view("\x33\x22\x11\0", 4));
+}
+
+TEST(McapMessagesTest, OnlyMappedObjectsAreWritten) {
+  const std::vector<ReportedObject> objects = {Cup(ObjectState::kCandidate),
+                                               Cup(ObjectState::kMapped)};
+  const std::string detections = DetectionsMessage({1, 2}, objects);
+  FieldReader reader(kCdr, detections, "objects");
+  ExpectHeader(reader, {1, 2}, "map");
+  ASSERT_EQ(reader.Get<uint32_t>(), 1u);
+  ExpectHeader(reader, {1, 2}, "map");
+  ASSERT_EQ(reader.Get<uint32_t>(), 2u);
+  for (const char* const label : {"bowl", "cup"}) {
+    EXPECT_EQ(reader.GetText(), label);
+    EXPECT_EQ(reader.Get<double>(), label[0] == 'c' ? 0.75 : 0.25);
+    ExpectNumbers(reader, NumbersOf(kPose));
+    ExpectNumbers(reader, std::vector<double>(36, 0.0));
+  }
+  ExpectNumbers(reader, NumbersOf(kPose));
+  ExpectNumbers(reader, {0.2, 0.4, 0.6});
+  EXPECT_EQ(reader.GetText(), "cup 7");
+  const std::string scene = SceneMessage({1, 2}, objects);
+  FieldReader of_scene(kCdr, scene, "scene");
+  EXPECT_EQ(of_scene.Get<uint32_t>(), 0u);
+  ASSERT_EQ(of_scene.Get<uint32_t>(), 1u);
+  ExpectHeader(of_scene, {1, 2}, "map");
+  EXPECT_EQ(of_scene.GetText(), "cup 7");
+}
+
+}  // namespace
+}  // namespace hullslam

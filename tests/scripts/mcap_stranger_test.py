@@ -1,0 +1,127 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tests that the libraries of Foxglove read what --mcap writes. They are npm packages that Debian
+does not have. Without them the test is skipped; docs/bags.md tells how to install them."""
+
+import base64
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import cv2
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BIN = pathlib.Path(os.environ.get("HULLSLAM_BIN", ROOT / "build" / "release" / "bin"))
+MODULES = pathlib.Path(os.environ.get("HULLSLAM_NODE_MODULES", ROOT / "build" / "node_modules"))
+FRAMES = 24
+
+
+def read_with_foxglove(file):
+    output = subprocess.run(["node", ROOT / "tests" / "support" / "read_mcap.cjs", file, MODULES],
+                            check=True, capture_output=True, text=True).stdout
+    return json.loads(output)
+
+
+def read_trajectory(file):
+    lines = [line for line in file.read_text(encoding="utf-8").splitlines() if line[0] != "#"]
+    return np.array([[float(number) for number in line.split()] for line in lines])
+
+
+def row_of(stamp, position, rotation):
+    return [stamp["sec"] + stamp["nsec" if "nsec" in stamp else "nanosec"] / 1e9,
+            *(position[axis] for axis in "xyz"), *(rotation[axis] for axis in "xyzw")]
+
+
+@unittest.skipIf(shutil.which("node") is None, "node is not installed")
+@unittest.skipIf(not (MODULES / "@mcap" / "core").is_dir(), f"no npm packages in {MODULES}")
+class McapStranger(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        folder = pathlib.Path(cls.folder.name)
+        desk = folder / "desk"
+        subprocess.run([BIN / "make_synthetic", desk, "--frames", str(FRAMES), "--quiet"], check=True)
+        cls.out = folder / "out"
+        subprocess.run([BIN / "rgbd_tum", desk, "--masks", desk / "masks", "--output", cls.out,
+                        "--mcap", folder / "run.mcap", "--quiet"], check=True)
+        cls.images = sorted((desk / "rgb").iterdir())
+        cls.read = read_with_foxglove(folder / "run.mcap")
+        cls.topics = cls.read["topics"]
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def one(self, topic, kind):
+        self.assertEqual(self.topics[topic]["type"], kind)
+        self.assertEqual(self.topics[topic]["count"], 1)
+        return self.topics[topic]["messages"][0]
+
+    def test_the_statistics_are_those_of_the_messages(self):
+        self.assertEqual(self.read["profile"], "ros2")
+        counts = {topic: found["count"] for topic, found in self.topics.items()}
+        self.assertEqual(counts, {
+            "/map/path": 1, "/map/points": 1, "/map/objects": 1, "/map/scene": 1, "/tf": FRAMES,
+            "/camera/camera_info": FRAMES, "/camera/image/compressed": FRAMES})
+        self.assertEqual(self.read["messages"], sum(counts.values()))
+        times = [time for found in self.topics.values() for time in found["times"]]
+        self.assertEqual((self.read["start"], self.read["end"]), (min(times), max(times)))
+
+    def test_poses_are_those_of_the_trajectory(self):
+        expected = read_trajectory(self.out / "trajectory.txt")
+        path = self.one("/map/path", "nav_msgs/msg/Path")
+        self.assertEqual(path["header"]["frame_id"], "map")
+        poses = [row_of(pose["header"]["stamp"], pose["pose"]["position"],
+                        pose["pose"]["orientation"]) for pose in path["poses"]]
+        transforms = [message["transforms"][0] for message in self.topics["/tf"]["messages"]]
+        self.assertEqual(transforms[0]["child_frame_id"], "camera")
+        moved = [row_of(each["header"]["stamp"], each["transform"]["translation"],
+                        each["transform"]["rotation"]) for each in transforms]
+        for rows in (np.array(poses), np.array(moved)):
+            rows[:, 4:] *= np.where(rows[:, 7:] < 0, -1, 1)
+            np.testing.assert_allclose(rows, expected, atol=2e-6)
+
+    def test_images_are_those_of_the_sequence(self):
+        message = self.topics["/camera/image/compressed"]["messages"][0]
+        self.assertEqual(message["format"], "jpeg")
+        image = cv2.imdecode(np.frombuffer(base64.b64decode(message["data"]), np.uint8),
+                             cv2.IMREAD_COLOR)
+        original = cv2.imread(str(self.images[0]))
+        self.assertLess(np.abs(image.astype(float) - original).mean(), 5.0)
+        camera = self.topics["/camera/camera_info"]["messages"][0]
+        self.assertEqual((camera["width"], camera["height"]), (640, 480))
+        self.assertGreater(camera["k"][0], 100)
+        self.assertEqual(camera["p"][0], camera["k"][0])
+
+    def test_points_are_those_of_the_map(self):
+        points = self.one("/map/points", "sensor_msgs/msg/PointCloud2")
+        data = np.frombuffer(base64.b64decode(points["data"]), np.float32).reshape(-1, 4)
+        self.assertEqual([field["name"] for field in points["fields"]], ["x", "y", "z", "rgb"])
+        self.assertEqual(len(data), points["width"])
+        summary = json.loads((self.out / "summary.json").read_text(encoding="utf-8"))["map"]
+        self.assertEqual(len(data), summary["landmarks"] - summary["landmarks_at_infinity"])
+        colours = np.ascontiguousarray(data[:, 3]).view(np.uint32)
+        self.assertGreater(len(set(colours)), 20)
+
+    def test_objects_are_those_of_the_map(self):
+        objects = json.loads((self.out / "objects.json").read_text(encoding="utf-8"))["objects"]
+        mapped = [each for each in objects if each["state"] == "mapped"]
+        self.assertGreater(len(mapped), 0)
+        detections = self.one("/map/objects", "vision_msgs/msg/Detection3DArray")["detections"]
+        entities = self.one("/map/scene", "foxglove_msgs/msg/SceneUpdate")["entities"]
+        self.assertEqual(len(detections), len(mapped))
+        for detection, entity in zip(detections, entities):
+            sphere = entity["spheres"][0]
+            self.assertEqual(sphere["size"], detection["bbox"]["size"])
+            self.assertEqual(sphere["pose"], detection["bbox"]["center"])
+            self.assertEqual(entity["texts"][0]["text"], detection["id"])
+            self.assertAlmostEqual(sum(each["hypothesis"]["score"] for each in detection["results"]), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/sequences/bag_sequence.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hullslam/masks/mask_source.h"
+#include "support/expect_error.h"
+#include "support/made_bags.h"
+#include "support/temporary_folder.h"
+
+namespace hullslam {
+namespace {
+
+constexpr MessageCoding kCdr = MessageCoding::kCdr;
+constexpr uint64_t kSecond = 1'000'000'000;  // ns
+constexpr uint64_t kStart = 1'305'031'102 * kSecond;
+constexpr uint32_t kBagWidth = 64;
+constexpr uint32_t kBagHeight = 48;
+
+class BagSequenceTest : public ::testing::Test {
+ protected:
+  // An image of this grey value, `stamp` ns after the start.
+  static MadeMessage Image(int64_t stamp, int grey, MessageCoding coding = kCdr) {
+    const uint64_t time = kStart + static_cast<uint64_t>(stamp);
+    return {"/cam/image", "sensor_msgs/Image", time,
+            MadeImage(coding, time, "mono8", kBagWidth, kBagHeight,
+                      std::string(kBagWidth * kBagHeight, static_cast<char>(grey)))};
+  }
+  // A depth image whose values have two bytes `value`.
+  static MadeMessage Depth(int64_t stamp, char value, MessageCoding coding = kCdr) {
+    const uint64_t time = kStart + static_cast<uint64_t>(stamp);
+    return {"/cam/depth", "sensor_msgs/Image", time,
+            MadeImage(coding, time, "16UC1", kBagWidth, kBagHeight,
+                      std::string(2 * kBagWidth * kBagHeight, value))};
+  }
+  static MadeMessage Camera(MessageCoding coding = kCdr) {
+    return {"/cam/camera_info", "sensor_msgs/CameraInfo", kStart,
+            MadeCameraInfo(coding, kBagWidth, kBagHeight)};
+  }
+  static std::vector<MadeMessage> Usual(MessageCoding coding = kCdr) {
+    return {Camera(coding),
+            Image(0, 10, coding),
+            Depth(1'000'000, 1, coding),
+            Image(33'000'000, 20, coding),
+            Image(66'000'000, 30, coding),
+            Depth(67'000'000, 3, coding)};
+  }
+
+  BagSequence Open(const std::vector<MadeMessage>& messages,
+                   const BagSequenceOptions& options = {}) const {
+    return OpenBagSequence(folder_.Write("a.mcap", MadeMcap(messages, "zstd")), options);
+  }
+
+  void ExpectRefusal(const std::vector<MadeMessage>& messages,
+                     const std::vector<std::string>& parts,
+                     const BagSequenceOptions& options = {}) const {
+    ExpectInputError([&] { Open(messages, options); }, parts);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(BagSequenceTest, AllFormatsGiveTheSameFrames) {
+  const std::vector<std::filesystem::path> files = {
+      folder_.Write("a.mcap", MadeMcap(Usual(), "lz4")),
+      WriteMadeSqlite(folder_.path() / "a.db3", Usual(), "zstd"),
+      folder_.Write("a.bag", MadeRos1(Usual(MessageCoding::kRos1), "bz2"))};
+  for (const auto& file : files) {
+    const BagSequence bag = OpenBagSequence(file);
+    const ImageSequence& images = bag.images;
+    EXPECT_TRUE(bag.warnings.empty());
+    ASSERT_EQ(images.frames.size(), 2u) << file;
+    EXPECT_EQ(images.unpaired, 1u);
+    EXPECT_EQ(images.frames[1].timestamp, 1305031102.066);
+    EXPECT_EQ(MaskFrames(images)[1].stem, "1305031102.066000");
+    ASSERT_TRUE(bag.camera.has_value());
+    const PinholeCamera& camera = bag.camera->camera;
+    EXPECT_EQ(camera.fx, 300.0);
+    EXPECT_EQ(camera.width, 64);
+    EXPECT_NEAR(bag.camera->frames_per_second, 1.0 / 0.033, 1e-3);
+    for (const size_t i : {1, 0}) {
+      const ImageInput frame = images.load(images.frames[i], camera);
+      EXPECT_EQ(frame.grey.at<uint8_t>(9, 9), i == 0 ? 10 : 30);
+      EXPECT_EQ(frame.depth.at<uint16_t>(9, 9), i == 0 ? 0x101 : 0x303);
+      EXPECT_EQ(images.load_colour(images.frames[i]).at<cv::Vec3b>(9, 9)[2], i == 0 ? 10 : 30);
+    }
+  }
+}
+
+TEST_F(BagSequenceTest, WithoutDepthAllImagesAreFrames) {
+  const BagSequence bag = Open(Usual(), {.use_depth = false, .selection = {.first = 1}});
+  EXPECT_EQ(bag.images.available, 3u);
+  ASSERT_EQ(bag.images.frames.size(), 2u);
+  EXPECT_TRUE(bag.images.frames[0].depth.empty());
+  EXPECT_TRUE(bag.images.load(bag.images.frames[0], bag.camera->camera).depth.empty());
+}
+
+TEST_F(BagSequenceTest, AnotherCameraIsRefusedWhenAFrameIsLoaded) {
+  const BagSequence bag = Open(Usual());
+  PinholeCamera other = bag.camera->camera;
+  other.width = 65;
+  ExpectInputError([&] { bag.images.load(bag.images.frames[0], other); },
+                   {"a.mcap/cam/depth/1305031102.001000: 64x48 px", "65x48"});
+}
+
+TEST_F(BagSequenceTest, StampsThatGoBackwardsAreRefusedUnlessRecordingTimesAreUsed) {
+  std::vector<MadeMessage> messages = {Camera(), Image(0, 10), Image(33'000'000, 20)};
+  MadeMessage late = Image(2'000'000, 30);
+  late.time = kStart + 66'000'000;
+  messages.push_back(late);
+  const BagSequenceOptions mono = {.use_depth = false};
+  ExpectRefusal(messages,
+                {"a.mcap: /cam/image: the time stamp 1305031102.002000 s comes 0.031000 s before",
+                 "--recording-times"},
+                mono);
+  const BagSequence bag = Open(messages, {.use_depth = false, .use_recording_times = true});
+  ASSERT_EQ(bag.images.frames.size(), 3u);
+  EXPECT_EQ(bag.images.frames[2].timestamp, 1305031102.066);
+}
+
+TEST_F(BagSequenceTest, RepeatedStampsAndLongGapsAreWarnings) {
+  const BagSequence bag =
+      Open({Camera(), Image(0, 10), Image(0, 20), Image(7200 * kSecond, 30)}, {.use_depth = false});
+  EXPECT_EQ(bag.images.frames.size(), 2u);
+  ASSERT_EQ(bag.warnings.size(), 2u);
+  EXPECT_NE(bag.warnings[0].find("jump by 2.0 hours at 1305038302.0"), std::string::npos)
+      << bag.warnings[0];
+  EXPECT_NE(bag.warnings[1].find("1 images have the time stamp"), std::string::npos);
+}
+
+TEST_F(BagSequenceTest, ImagesWithoutStampsHaveTheTimesOfTheirRecording) {
+  std::vector<MadeMessage> messages = {Camera()};
+  for (int i = 0; i < 3; ++i) {
+    messages.push_back({"/cam/image", "sensor_msgs/Image", kStart + i * kSecond,
+                        MadeImage(kCdr, 0, "mono8", kBagWidth, kBagHeight,
+                                  std::string(kBagWidth * kBagHeight, '\x20'))});
+  }
+  const BagSequence bag = Open(messages, {.use_depth = false});
+  EXPECT_EQ(bag.images.frames[2].timestamp, 1305031104.0);
+  EXPECT_NE(bag.notes[0].find("no time stamps"), std::string::npos);
+}
+
+TEST_F(BagSequenceTest, WithoutPairsTheSmallestGapIsShown) {
+  ExpectRefusal(
+      {Camera(), Image(0, 10), Depth(3600 * kSecond, 1)},
+      {"no image of /cam/image has one of /cam/depth within 0.02 s", "3600.000000", "mono_bag"});
+}
+
+TEST_F(BagSequenceTest, MissingTopicsAreReportedWithAList) {
+  ExpectRefusal({Camera(), Image(0, 10)}, {"a.mcap: has no topic with depth images",
+                                           "/cam/image (sensor_msgs/Image mono8, 1 "
+                                           "message)"});
+  ExpectRefusal({Image(0, 10), Depth(0, 1)},
+                {"0 topics with sensor_msgs/CameraInfo", "--settings"});
+  EXPECT_FALSE(Open({Image(0, 10), Depth(0, 1)}, {.need_camera = false}).camera.has_value());
+}
+
+TEST_F(BagSequenceTest, CamerasThatCannotBeUsedAreRefused) {
+  const auto with_camera = [&](const std::string& camera) {
+    return std::vector<MadeMessage>{{"/cam/camera_info", "sensor_msgs/CameraInfo", kStart, camera},
+                                    Image(0, 10)};
+  };
+  const BagSequenceOptions mono = {.use_depth = false};
+  ExpectRefusal(
+      with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "equidistant", {1, 2, 3, 4})),
+      {"/cam/camera_info", "'equidistant' with 4", "plumb_bob", "--settings"}, mono);
+  ExpectRefusal(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "rational_polynomial",
+                                           {0, 0, 0, 0, 0, 1, 0, 0})),
+                {"'rational_polynomial' with 8"}, mono);
+  ExpectRefusal(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "plumb_bob", {}, 0.0)),
+                {"not calibrated"}, mono);
+  const BagSequence bag =
+      Open(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "rational_polynomial",
+                                      {0.1, 0.2, 0.3, 0.4, 0.5, 0, 0, 0})),
+           mono);
+  EXPECT_EQ(bag.camera->camera.k2, 0.2);
+  EXPECT_EQ(bag.camera->camera.p1, 0.3);
+  EXPECT_EQ(bag.camera->camera.k3, 0.5);
+}
+
+TEST_F(BagSequenceTest, ACutRecordingIsUsedUpToTheCut) {
+  const std::string whole = MadeMcap(Usual(), "none");
+  const auto file = folder_.Write("a.mcap", whole.substr(0, whole.size() - 3000));
+  const BagSequence bag = OpenBagSequence(file);
+  EXPECT_EQ(bag.images.frames.size(), 1u);
+  ASSERT_EQ(bag.warnings.size(), 1u);
+  EXPECT_NE(bag.warnings[0].find("cut off"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hullslam

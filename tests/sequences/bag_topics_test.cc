@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sequences/bag_topics.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "support/expect_error.h"
+
+namespace hullslam {
+namespace {
+
+IndexedTopic Colour(const std::string& name, bool is_compressed = false) {
+  return {name,
+          is_compressed ? "sensor_msgs/CompressedImage" : "sensor_msgs/Image",
+          "bgr8",
+          9,
+          BagImageKind::kColour,
+          std::vector<BagImage>(9)};
+}
+
+IndexedTopic Depth(const std::string& name) {
+  return {name, "sensor_msgs/Image", "16UC1", 9, BagImageKind::kDepth, std::vector<BagImage>(9)};
+}
+
+IndexedTopic Camera(const std::string& name) {
+  IndexedTopic topic{name, "sensor_msgs/CameraInfo", "", 9};
+  topic.camera = CameraInfoMessage();
+  return topic;
+}
+
+std::string ColourOfTopics(std::vector<IndexedTopic> topics, const std::string& name = "") {
+  return ChooseImageTopic({"a.bag", std::move(topics)}, BagImageKind::kColour, name,
+                          "--image-topic")
+      .name;
+}
+
+std::string DepthOfTopics(std::vector<IndexedTopic> topics, const std::string& name = "") {
+  return ChooseImageTopic({"a.bag", std::move(topics)}, BagImageKind::kDepth, name, "--depth-topic")
+      .name;
+}
+
+TEST(BagTopicsTest, TheOnlyTopicOfAKindIsTaken) {
+  EXPECT_EQ(ColourOfTopics({Colour("/cam"), Depth("/d"), Camera("/c")}), "/cam");
+  EXPECT_EQ(DepthOfTopics({Colour("/cam"), Depth("/d")}), "/d");
+}
+
+TEST(BagTopicsTest, OfSeveralTopicsTheRawAndTheNamedOneIsTaken) {
+  EXPECT_EQ(ColourOfTopics({Colour("/cam/image"), Colour("/cam/image/compressed", true)}),
+            "/cam/image");
+  EXPECT_EQ(ColourOfTopics({Colour("/cam/ir"), Colour("/cam/rgb/image")}), "/cam/rgb/image");
+  EXPECT_EQ(DepthOfTopics({Depth("/cam/depth/image"), Depth("/cam/aligned_depth_to_color/image")}),
+            "/cam/aligned_depth_to_color/image");
+  EXPECT_EQ(ColourOfTopics({Colour("/left"), Colour("/right")}, "/right"), "/right");
+}
+
+TEST(BagTopicsTest, WithoutATopicOrWithAChoiceTheTopicsAreListed) {
+  ExpectInputError(
+      [] {
+        ColourOfTopics({Colour("/left"), Colour("/right")});
+      },
+      {"a.bag: has 2 topics with colour images", "--image-topic TOPIC",
+       "/left (sensor_msgs/Image bgr8, 9 messages), /right"});
+  ExpectInputError([] { DepthOfTopics({Colour("/cam")}); },
+                   {"a.bag: has no topic with depth images", "its topics: /cam"});
+  ExpectInputError([] { ColourOfTopics({Colour("/cam")}, "/none"); },
+                   {"--image-topic is '/none', which it does not have", "/cam"});
+  ExpectInputError([] { ColourOfTopics({Depth("/d")}, "/d"); },
+                   {"--image-topic is '/d', which has no colour images"});
+  ExpectInputError([] { ColourOfTopics({}); }, {"it has no topics"});
+  std::vector<IndexedTopic> many(30, Camera("/c"));
+  many.push_back(Depth("/shown/first"));
+  ExpectInputError([&] { ColourOfTopics(many); }, {"and 21 more"});
+}
+
+TEST(BagTopicsTest, TheCameraIsBesideTheImagesOrTheOnlyOne) {
+  const auto choose = [](std::vector<IndexedTopic> topics, const std::string& images,
+                         const std::string& name = "") {
+    return ChooseInfoTopic({"a.bag", std::move(topics)},
+                           Colour(images, images.ends_with("/compressed")), name, "--info-topic")
+        .name;
+  };
+  const std::vector<IndexedTopic> two = {Camera("/l/camera_info"), Camera("/r/camera_info")};
+  EXPECT_EQ(choose(two, "/r/image"), "/r/camera_info");
+  EXPECT_EQ(choose(two, "/r/image/compressed"), "/r/camera_info");
+  EXPECT_EQ(choose(two, "/x/image", "/l/camera_info"), "/l/camera_info");
+  EXPECT_EQ(choose({Camera("/c")}, "/x/image"), "/c");
+  ExpectInputError([&] { choose(two, "/x/image"); },
+                   {"2 topics with sensor_msgs/CameraInfo but no /x/camera_info", "--info-topic",
+                    "--settings FILE"});
+  ExpectInputError([&] { choose({Depth("/d")}, "/x/image", "/d"); },
+                   {"--info-topic is '/d', which has no sensor_msgs/CameraInfo"});
+}
+
+}  // namespace
+}  // namespace hullslam
