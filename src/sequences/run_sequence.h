@@ -2,8 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
-#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
 
