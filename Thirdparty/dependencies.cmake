@@ -9,7 +9,7 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(spdlog 1.10 REQUIRED)
 find_package(ZLIB 1.2 REQUIRED)  # checksum of map files
-find_package(Boost 1.74 REQUIRED)  # headers only: CRC, Student's t-distribution
+find_package(Boost 1.74 REQUIRED)  # headers only: CRC, Student's t-distribution, Beast
 # three.js, for the page of the report: libjs-three (111)
 find_path(HULLSLAM_THREE_DIR examples/js/controls/OrbitControls.js PATHS /usr/share/javascript/three
           NO_DEFAULT_PATH REQUIRED)

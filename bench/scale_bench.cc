@@ -13,9 +13,11 @@
 #include <cstdlib>
 #include <ctime>
 #include <memory>
+#include <opencv2/core/mat.hpp>
 #include <string_view>
 #include <vector>
 
+#include "live/live_view.h"
 #include "made_corridor.h"
 #include "made_map.h"
 #include "map_bytes.h"
@@ -115,12 +117,39 @@ void PrintParts(const Map& map) {
   fmt::print("{:>30}: {:6.2f} kB per keyframe\n", "together", 1e-3 * total / keyframes);
 }
 
-void Run(size_t frames) {
+// The live view of the walk, with an image of noise, at this port; null if the port is negative.
+std::unique_ptr<LiveView> Watch(const Sensor& sensor, size_t frames, int port) {
+  if (port < 0) {
+    return nullptr;
+  }
+  LiveRun run;
+  run.title = "corridor";
+  run.sensor = sensor;
+  run.frame_count = frames;
+  auto view = std::make_unique<LiveView>(ViewAddress{.port = port}, run, LiveCommands());
+  fmt::print("open this address in a browser: {}\n", view->url());
+  std::fflush(stdout);
+  return view;
+}
+
+cv::Mat NoiseImage() {
+  cv::Mat grey(480, 640, CV_8UC1);
+  uint32_t state = 1;
+  for (size_t i = 0; i < grey.total(); ++i) {
+    state = state * 1664525 + 1013904223;
+    grey.data[i] = static_cast<uint8_t>(state >> 24);
+  }
+  return grey;
+}
+
+void Run(size_t frames, int port) {
   const Sensor sensor = BenchSensor();
   SystemOptions options;
   options.camera = sensor.camera;
   const MadeCorridor corridor(frames, sensor);
   const std::unique_ptr<Pipeline> pipeline = MakeSequentialPipeline(sensor, options);
+  const std::unique_ptr<LiveView> view = Watch(sensor, frames, port);
+  const cv::Mat image = NoiseImage();
   const size_t heap_before = HeapBytes();
   size_t lost = 0;
   double total_ms = 0.0;
@@ -134,6 +163,9 @@ void Run(size_t frames) {
     const FrameReport report = pipeline->Track(std::move(frame));
     const double spent = ProcessorMs() - start;
     total_ms += spent;
+    if (view) {
+      view->Show({.report = report, .map = pipeline->map(), .grey = image, .number = done});
+    }
     lost += report.tracked.state == TrackingState::kTracked ? 0 : 1;
     (pipeline->map() == map_before ? times.tracked : times.inserted).push_back(spent);
     for (const size_t percent : {10, 25, 50, 100}) {
@@ -160,15 +192,23 @@ void Run(size_t frames) {
 
 int main(int argc, char** argv) {
   size_t frames = 10000;
-  if (argc == 3 && std::string_view(argv[1]) == "--frames") {
-    frames = static_cast<size_t>(std::strtoul(argv[2], nullptr, 10));
-  } else if (argc != 1) {
-    frames = 0;
+  int port = -1;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    if (std::string_view(argv[i]) == "--frames") {
+      frames = static_cast<size_t>(std::strtoul(argv[i + 1], nullptr, 10));
+    } else if (std::string_view(argv[i]) == "--view") {
+      port = static_cast<int>(std::strtol(argv[i + 1], nullptr, 10));
+    } else {
+      frames = 0;
+    }
   }
+  frames = argc % 2 == 1 ? frames : 0;
   if (frames < 100) {
-    fmt::print(stderr, "usage: scale_bench [--frames N]    N at least 100, 10000 by default\n");
+    fmt::print(
+        stderr,
+        "usage: scale_bench [--frames N] [--view PORT]    N at least 100, 10000 by default\n");
     return 2;
   }
-  hullslam::Run(frames);
+  hullslam::Run(frames, port);
   return 0;
 }

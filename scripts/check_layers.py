@@ -33,8 +33,9 @@ LEVELS = {
     "results": 14,
     "sequences": 15,
     "masks": 16, "view": 16, "exports": 16,
+    "live": 17,
     # The code that the programs share. It is not part of libhullslam and has no public headers.
-    "run": 17,
+    "run": 18,
 }
 PROGRAM_SIDE = {"run"}
 

@@ -53,6 +53,7 @@ CONTENTS = {
     "masks": "six formats",
     "view": "data of the report's page",
     "exports": "files for other programs",
+    "live": "live view in a browser",
     "map_files": "maps, vocabularies",
     "run": "what all programs share",
     "synthetic": "renderer of scenes",

@@ -1,6 +1,7 @@
 # Installs the public headers, the library, the settings of known cameras, the default vocabulary,
-# the scripts that make, draw and compare runs, and a CMake package for find_package(hullslam). Examples/CMakeLists.txt installs the
-# programs.
+# the scripts that make, draw and compare runs, and packages for find_package(hullslam) and
+# pkg-config. Examples/CMakeLists.txt installs the programs. The components are those of
+# packaging/cpack.cmake: library, dev and tools.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(HULLSLAM_INSTALL_CONFIGDIR ${CMAKE_INSTALL_DATADIR}/hullslam/config)
@@ -13,14 +14,19 @@ function(hullslam_install_link name file)
   set(link ${PROJECT_BINARY_DIR}/links/${name})
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/links)
   file(CREATE_LINK ${target} ${link} SYMBOLIC)
-  install(FILES ${link} DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(FILES ${link} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
 endfunction()
 
-install(TARGETS hullslam EXPORT hullslamTargets)
+install(TARGETS hullslam EXPORT hullslamTargets
+        LIBRARY COMPONENT library NAMELINK_COMPONENT dev
+        ARCHIVE COMPONENT dev)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/hullslam TYPE INCLUDE FILES_MATCHING PATTERN *.h)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${HULLSLAM_INSTALL_CONFIGDIR})
+# The library looks for the settings and the vocabulary itself.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${HULLSLAM_INSTALL_CONFIGDIR}
+        COMPONENT library)
 install(FILES ${PROJECT_SOURCE_DIR}/Vocabulary/hullslam.bow ${PROJECT_SOURCE_DIR}/Vocabulary/README.md
-        DESTINATION ${HULLSLAM_INSTALL_VOCABULARYDIR})
+        DESTINATION ${HULLSLAM_INSTALL_VOCABULARYDIR} COMPONENT library)
 file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/plot_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/run_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/object_*.py
@@ -28,16 +34,27 @@ file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/plot_*.py
                                    ${PROJECT_SOURCE_DIR}/scripts/ablation.py)
 # The script for the tables of the paper, what it starts, and what makes masks.
 foreach(script reproduce_tables table_job degrade_sequence disturbances leave_and_return tum_and_icl
-               yolo_masks make_masks report)
+               yolo_masks make_masks)
   list(APPEND scripts ${PROJECT_SOURCE_DIR}/scripts/${script}.py)
 endforeach()
-install(PROGRAMS ${scripts} DESTINATION ${CMAKE_INSTALL_DATADIR}/hullslam/scripts)
+list(APPEND scripts ${PROJECT_SOURCE_DIR}/scripts/run_demo.sh ${PROJECT_SOURCE_DIR}/scripts/common.sh)
+install(PROGRAMS ${scripts} DESTINATION ${CMAKE_INSTALL_DATADIR}/hullslam/scripts COMPONENT tools)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/paper_tables
-        DESTINATION ${CMAKE_INSTALL_DATADIR}/hullslam/scripts PATTERN __pycache__ EXCLUDE)
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/hullslam/scripts COMPONENT tools
+        PATTERN __pycache__ EXCLUDE)
+hullslam_install_link(hullslam-demo ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/run_demo.sh)
 foreach(script plot_run ablation plot_ablation object_table reproduce_tables make_masks)
   hullslam_install_link(hullslam-${script} ${CMAKE_INSTALL_DATADIR}/hullslam/scripts/${script}.py)
 endforeach()
 install(EXPORT hullslamTargets NAMESPACE hullslam:: DESTINATION ${package_dir})
+
+# What a static library needs is only known to its CMake package.
+if(BUILD_SHARED_LIBS)
+  configure_file(${PROJECT_SOURCE_DIR}/packaging/hullslam.pc.in
+                 ${CMAKE_CURRENT_BINARY_DIR}/hullslam.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/hullslam.pc
+          DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endif()
 
 configure_package_config_file(
   ${CMAKE_CURRENT_SOURCE_DIR}/hullslamConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/hullslamConfig.cmake

@@ -3,10 +3,11 @@
 import { Card } from './card.js';
 import { bindTheme, ClassColours } from './colours.js';
 import { Curve } from './curve.js';
+import { Live } from './live.js';
 import { Moment } from './pictures.js';
 import { Player } from './player.js';
 import { sections, tiles } from './sections.js';
-import { embeddedMessage } from './source.js';
+import { embeddedMessage, openStream } from './source.js';
 import { Store } from './store.js';
 import { html } from './text.js';
 import { LAYERS, View } from './view.js';
@@ -31,10 +32,15 @@ class Page {
     this.player = new Player({ play: element('play'), slider: element('slider'),
       clock: element('clock'), speed: element('speed') }, this.store, (index, time) => {
       this.time = time;
-      this.view?.showMoment(index);
       this.curve.mark(time);
-      this.moment.show(time);
+      if (this.isNow(index)) {
+        this.showNow();
+      } else {
+        this.view?.showMoment(index);
+        this.moment.show(time);
+      }
     });
+    this.live = new Live(element('live'), this.store);
     this.bindButtons();
     this.store.listen((changed) => this.update(changed));
   }
@@ -72,7 +78,9 @@ class Page {
       this.card.update();
       this.showSections();
       this.player.update();
-      this.moment.refresh(this.time);
+      if (!this.isNow(this.player.index)) {
+        this.moment.refresh(this.time);
+      }
     }
   }
 
@@ -82,20 +90,67 @@ class Page {
     this.view?.showMoment(this.player.index);
   }
 
+  // Whether a frame of the trajectory is the last one of a run that is going on.
+  isNow(index) {
+    return Boolean(this.store.get('run', {}).live && this.store.get('live'))
+      && index >= this.player.times().length - 1;
+  }
+
+  showNow() {
+    const pose = this.store.get('live', {}).pose;
+    const image = this.store.get('live_image');
+    if (pose) {
+      this.view?.showPose(pose);
+    }
+    if (image) {
+      this.moment.showLive(image);
+    }
+  }
+
+  // Frames come many times a second, and only a few elements show them.
+  updateLive(changed) {
+    this.live.update();
+    if (changed.has('live_image')) {
+      this.store.parts.images = this.live.keepPicture();
+    }
+    if (this.isNow(this.player.index)) {
+      this.showNow();
+    }
+  }
+
+  // Elements that the pointer is on are not replaced during a run, so that clicks are not lost.
+  isBusy(id) {
+    return Boolean(this.store.get('run', {}).live) && element(id).matches(':hover');
+  }
+
   update(changed) {
+    if (changed.has('live')) {
+      this.updateLive(changed);
+    }
+    if ([...changed].some((part) => part !== 'live' && part !== 'live_image')) {
+      this.updateMap(changed);
+    }
+  }
+
+  updateMap(changed) {
     this.colours.update(this.store.get('objects', []));
     this.showHead();
     this.view?.update(changed);
-    this.showLayers();
+    if (!this.isBusy('layers')) {
+      this.showLayers();
+    }
     this.curve.update();
     this.player.update();
-    if (changed.has('images')) {
+    if (changed.has('images') && !this.isNow(this.player.index)) {
       this.moment.refresh(this.time);
     }
-    if (['objects', 'relations', 'summary', 'run'].some((part) => changed.has(part))) {
+    if (['objects', 'relations', 'summary', 'run'].some((part) => changed.has(part))
+        && !this.isBusy('card')) {
       this.card.update();
     }
-    this.showSections();
+    if (!this.isBusy('sections')) {
+      this.showSections();
+    }
   }
 
   showHead() {
@@ -160,6 +215,20 @@ class Page {
 
   apply(message) {
     this.store.apply(message);
+    if (message.stream && !this.closeStream) {
+      this.watch(message.stream);
+    }
+  }
+
+  // Shows the messages of a stream until the run has ended.
+  watch(path) {
+    this.closeStream = openStream(path, (message) => {
+      this.apply(message);
+      if (this.store.get('live', {}).phase === 'ended') {
+        this.closeStream();
+      }
+    }, (isConnected) => this.live.setConnected(isConnected));
+    this.live.update();
   }
 }
 

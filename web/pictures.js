@@ -10,9 +10,23 @@ function pathOf(points) {
   return path === '' ? '' : `${path}Z`;
 }
 
+// Lines without length, which round ends make to dots.
+function dotsOf(points) {
+  let path = '';
+  for (let i = 0; i + 1 < points.length; i += 2) {
+    path += `M${points[i].toFixed(1)} ${points[i + 1].toFixed(1)}h0`;
+  }
+  return path;
+}
+
 export function picture(image, colours) {
   const overlay = svg('svg', { viewBox: `0 0 ${image.width} ${image.height}`,
     preserveAspectRatio: 'none' });
+  for (const name of ['unmatched', 'matched']) {
+    if (image[name] && image[name].length > 0) {
+      overlay.append(svg('path', { class: name, d: dotsOf(image[name]) }));
+    }
+  }
   for (const [name, shapes] of [['ellipse', image.ellipses], ['outline', image.outlines]]) {
     for (const shape of shapes || []) {
       overlay.append(svg('path', { class: name, d: pathOf(shape.points),
@@ -44,6 +58,15 @@ export class Moment {
     this.place.replaceChildren(html('figure', {}, ...picture(image, this.colours)),
       html('figcaption', {}, html('span', {}, `Image of ${seconds(image.time)}`),
         html('span', {}, '— mask   - - ellipsoid')));
+  }
+
+  // The image that came last, of a run that is still going on.
+  showLive(image) {
+    this.shown = image;
+    this.place.hidden = false;
+    this.place.replaceChildren(html('figure', {}, ...picture(image, this.colours)),
+      html('figcaption', {}, html('span', {}, `Now, ${seconds(image.time)}`),
+        html('span', {}, '● matched   — mask   - - ellipsoid')));
   }
 
   refresh(time) {

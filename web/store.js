@@ -29,6 +29,31 @@ function append(old, more) {
   return more;
 }
 
+// Changes rows of a table whose columns are arrays: `at` are the numbers of the changed rows, and
+// `count` is how many rows there are afterwards. The other keys are the columns of these rows.
+function patchTable(old, patch) {
+  const { count, at, ...columns } = patch;
+  const table = { ...old };
+  for (const [name, values] of Object.entries(columns)) {
+    const before = table[name] || new values.constructor(0);
+    const width = at.length > 0 ? values.length / at.length
+      : before.length / Math.max(1, rowCount(old));
+    const column = new values.constructor(count * width);
+    column.set(before.subarray(0, Math.min(before.length, column.length)));
+    at.forEach((row, i) => {
+      column.set(values.subarray(i * width, (i + 1) * width), row * width);
+    });
+    table[name] = column;
+  }
+  return table;
+}
+
+// The rows of a table are counted by its column with one number per row.
+function rowCount(table) {
+  const column = table && (table.age || table.time);
+  return column ? column.length : 0;
+}
+
 export class Store {
   constructor() {
     this.parts = {};
@@ -47,6 +72,10 @@ export class Store {
     const changed = new Set();
     for (const [name, value] of Object.entries(message.set || {})) {
       this.parts[name] = decode(value);
+      changed.add(name);
+    }
+    for (const [name, value] of Object.entries(message.patch || {})) {
+      this.parts[name] = patchTable(this.parts[name], decode(value));
       changed.add(name);
     }
     for (const [name, value] of Object.entries(message.add || {})) {

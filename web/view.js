@@ -50,6 +50,7 @@ export class View {
     this.nodes = {};
     this.shown = Object.fromEntries(LAYERS.map((layer) => [layer.name, layer.on]));
     this.isFollowing = false;
+    this.isUntouched = true;
     this.isDue = false;
     this.moment = -1;
     this.labels = new Map();
@@ -68,10 +69,15 @@ export class View {
     this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
     this.controls.enableKeys = false;
     this.controls.screenSpacePanning = true;
-    this.controls.addEventListener('change', () => this.draw());
+    this.bindControls();
     this.bindPointer();
     new ResizeObserver(() => this.resize()).observe(this.place);
     this.resize();
+  }
+
+  bindControls() {
+    this.controls.addEventListener('change', () => this.draw());
+    this.controls.addEventListener('start', () => { this.isUntouched = false; });
   }
 
   bindPointer() {
@@ -98,18 +104,21 @@ export class View {
 
   // Rebuilds the layers of these parts; all layers without `changed`.
   update(changed) {
-    const isFirst = this.bounds === undefined;
+    const before = this.bounds;
     const up = this.store.get('up');
     this.look.up = up ? new THREE.Vector3(...up).normalize() : new THREE.Vector3(0, -1, 0);
-    if (isFirst || !changed) {
+    if (!before || !changed || (this.store.get('run', {}).live && changed.has('landmarks'))) {
       this.measure();
     }
+    // A map that is still growing is shown in whole, unless the user looks at a part of it.
+    const isResized = this.bounds
+      && !(before && Math.abs(this.bounds.radius / before.radius - 1) < 0.12);
     for (const layer of LAYERS) {
-      if (layer.make && (!changed || isFirst || layer.parts.some((part) => changed.has(part)))) {
+      if (layer.make && (!changed || isResized || layer.parts.some((part) => changed.has(part)))) {
         this.replace(layer.name, layer.make(this.store, this.look));
       }
     }
-    if (isFirst && this.bounds) {
+    if (isResized && (!before || (this.isUntouched && !this.isFollowing))) {
       this.goHome();
     }
     this.moment = -1;
@@ -192,6 +201,7 @@ export class View {
     if (!this.bounds) {
       return;
     }
+    this.isUntouched = true;
     const poses = this.store.get('keyframes') || this.store.get('trajectory');
     const forward = new THREE.Vector3();
     for (let i = 0; poses && i < poses.time.length; ++i) {
@@ -223,7 +233,7 @@ export class View {
       this.controls[key] = old[key];
     }
     old.dispose();
-    this.controls.addEventListener('change', () => this.draw());
+    this.bindControls();
   }
 
   // Shows the camera of the run at frame `index` of the trajectory, and follows it if asked to.
@@ -233,7 +243,10 @@ export class View {
       return;
     }
     this.moment = index;
-    const pose = trajectory.pose.subarray(7 * index, 7 * index + 7);
+    this.showPose(trajectory.pose.subarray(7 * index, 7 * index + 7));
+  }
+
+  showPose(pose) {
     this.replace('now', this.makeNow(pose));
     if (this.isFollowing) {
       this.followPose(pose);

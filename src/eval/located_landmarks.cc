@@ -28,6 +28,8 @@ Eigen::Matrix3d InformationOf(const Map& map, const Landmark& landmark, const Se
   return information;
 }
 
+}  // namespace
+
 bool IsDistanceKnown(const Map& map, const Landmark& landmark, const Sensor& sensor) {
   constexpr double kLeastSigmas = 2.0;
   if (landmark.observations.empty()) {
@@ -42,8 +44,6 @@ bool IsDistanceKnown(const Map& map, const Landmark& landmark, const Sensor& sen
   return information.isPositive() && variance > 0.0 &&
          distance >= kLeastSigmas * std::sqrt(variance);
 }
-
-}  // namespace
 
 LocatedLandmarks LocateLandmarks(const Map& map, const Sensor& sensor) {
   LocatedLandmarks located;

@@ -17,6 +17,9 @@ struct LocatedLandmarks {
   size_t at_infinity = 0;                  // number of the other landmarks
 };
 
+// Whether the observations of a landmark tell it from a point at infinity; see LocateLandmarks().
+bool IsDistanceKnown(const Map& map, const Landmark& landmark, const Sensor& sensor);
+
 // Finds the landmarks that their observations tell from points at infinity. If a landmark is at the
 // distance d from a camera, and s is the standard deviation of d, then the inverse distance 1 / d
 // has the standard deviation s / d^2. It differs from 0 by two standard deviations if d >= 2 s. The

@@ -83,6 +83,7 @@ Detection DetectionOf(const InstanceMask& mask, const Outline& outline, const Fr
   Detection detection;
   detection.label = mask.label;
   detection.score = mask.score;
+  detection.embedding = mask.embedding;
   detection.contour = outline.contour;
   detection.hull = outline.hull;
   detection.box = BoundingBox(outline.hull);

@@ -75,6 +75,10 @@ void WriteDetection(const Detection& detection, ByteWriter& out) {
     out.PutMatrix(detection.ellipse->center);
     out.PutMatrix(detection.ellipse->shape);
   }
+  out.PutCount(detection.embedding.size());
+  for (const float element : detection.embedding) {
+    out.Put(element);
+  }
   out.PutFlag(detection.is_cut);
   out.PutFlag(detection.is_box);
   WritePoints(detection.points, out);
@@ -84,7 +88,7 @@ void WriteDetection(const Detection& detection, ByteWriter& out) {
   }
 }
 
-Detection ReadDetection(size_t keypoints, ByteReader& in) {
+Detection ReadDetection(uint32_t version, size_t keypoints, ByteReader& in) {
   Detection detection;
   detection.label = Printable(in.GetText());
   detection.score = in.GetFinite(kMostMapNumber);
@@ -103,6 +107,12 @@ Detection ReadDetection(size_t keypoints, ByteReader& in) {
     Ellipse& ellipse = detection.ellipse.emplace();
     ellipse.center = in.GetMatrix<Eigen::Vector2d>(kMostMapNumber);
     ellipse.shape = in.GetMatrix<Eigen::Matrix2d>(kMostMapNumber);
+  }
+  if (version >= 3) {
+    detection.embedding.resize(in.GetCount(sizeof(float)));
+    for (float& element : detection.embedding) {
+      element = in.GetFinite(1.0F);
+    }
   }
   detection.is_cut = in.GetFlag();
   detection.is_box = in.GetFlag();

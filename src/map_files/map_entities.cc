@@ -151,7 +151,7 @@ void WriteKeyframe(KeyframeId id, const Keyframe& keyframe, ByteWriter& out) {
 void ReadKeyframe(const MapHeader& header, ByteReader& in, MapTables& tables) {
   const KeyframeId id = ReadKeyframeId(header, tables.keyframes.NextId(), in);
   Keyframe keyframe;
-  keyframe.frame = ReadFrame(header.settings, in);
+  keyframe.frame = ReadFrame(header, in);
   keyframe.cam_from_world = ReadPose(in);
   keyframe.scale = ReadScale(in);
   keyframe.landmarks = ReadIds<LandmarkId>(keyframe.frame->features.size(), in);

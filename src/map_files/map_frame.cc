@@ -98,7 +98,8 @@ void WriteFrame(const Frame& frame, ByteWriter& out) {
   WriteDepth(frame.depth, out);
 }
 
-std::shared_ptr<const Frame> ReadFrame(const MapSettings& settings, ByteReader& in) {
+std::shared_ptr<const Frame> ReadFrame(const MapHeader& header, ByteReader& in) {
+  const MapSettings& settings = header.settings;
   auto frame = std::make_shared<Frame>();
   frame->id = FrameId(in.Get<uint32_t>());
   frame->timestamp = in.GetFinite(kMostSeconds);
@@ -106,7 +107,7 @@ std::shared_ptr<const Frame> ReadFrame(const MapSettings& settings, ByteReader& 
   ReadWords(*frame, in);
   const size_t detections = in.GetCount(sizeof(uint64_t));
   for (size_t i = 0; i < detections; ++i) {
-    frame->detections.push_back(ReadDetection(frame->features.size(), in));
+    frame->detections.push_back(ReadDetection(header.version, frame->features.size(), in));
   }
   frame->depth = ReadDepth(settings.camera, in);
   return frame;

@@ -44,6 +44,7 @@ void AddInstance(InstanceMask instance, FrameMasks& frame) {
   if (instance.outlines.empty()) {
     ++frame.without_area;
   } else {
+    frame.rows.push_back(frame.masks.size() + frame.without_area);
     frame.masks.push_back(std::move(instance));
   }
 }

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
+#include "masks/embedded_masks.h"
 #include "masks/mask_boxes.h"
 #include "masks/mask_checks.h"
 #include "masks/mask_coco.h"
@@ -117,7 +119,7 @@ std::unique_ptr<const MaskSource> OpenMasks(const MaskRequest& request,
       request.format.empty() ? DetectFormat(request.path) : FindFormat(request.format);
   std::unique_ptr<const MaskSource> source = format.open(request);
   CheckSomeFrameHasMasks(request.path, *source, frames);
-  return source;
+  return AddEmbeddings(std::move(source), EmbeddingFolder(request.path), frames);
 }
 
 }  // namespace hullslam

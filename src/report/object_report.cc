@@ -26,7 +26,9 @@ ReportedView MakeView(const Map& map, const ObjectObservation& observation) {
   return view;
 }
 
-ReportedObject MakeObject(const Map& map, ObjectId id, const ObjectLandmark& object) {
+}  // namespace
+
+ReportedObject ReportObject(const Map& map, ObjectId id, const ObjectLandmark& object) {
   ReportedObject reported;
   reported.id = id;
   reported.state = object.state;
@@ -39,8 +41,6 @@ ReportedObject MakeObject(const Map& map, ObjectId id, const ObjectLandmark& obj
   }
   return reported;
 }
-
-}  // namespace
 
 double ParallaxOf(const ReportedObject& object) {
   std::vector<ObjectView> views;
@@ -64,7 +64,7 @@ ObjectReport ReportObjects(const Map& map, const PinholeCamera& camera) {
   map.objects().ForEach([&](ObjectId id, const ObjectLandmark& object) {
     report.candidates += object.state == ObjectState::kCandidate ? 1 : 0;
     if (object.has_shape && !object.observations.empty()) {
-      report.objects.push_back(MakeObject(map, id, object));
+      report.objects.push_back(ReportObject(map, id, object));
     }
   });
   return report;

@@ -70,6 +70,9 @@ struct ObjectReport {
   std::optional<std::vector<ChangedObject>> changes;
 };
 
+// The report of one object of the map, without its fit.
+ReportedObject ReportObject(const Map& map, ObjectId id, const ObjectLandmark& object);
+
 // Fills in everything except `sequence`, `changes` and the fits.
 ObjectReport ReportObjects(const Map& map, const PinholeCamera& camera);
 

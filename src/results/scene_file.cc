@@ -47,19 +47,26 @@ SceneJson SceneObjectJson(const SceneObject& object) {
     shares[label] = Rounded(share, kSceneUnit);
   }
   const auto& covariance = object.covariance;
-  return {{"id", object.id.value},
-          {"class", object.label},
-          {"class_distribution", shares},
-          {"centre", VectorJson(object.ellipsoid.world_from_object.translation)},
-          {"axes", VectorJson(object.ellipsoid.half_axes)},
-          {"rotation", VectorJson(object.ellipsoid.world_from_object.rotation.coeffs())},
-          {"box", BoxJson(object.box)},
-          {"centre_covariance", covariance ? MatrixJson(covariance->center) : SceneJson(nullptr)},
-          {"axes_covariance", covariance ? MatrixJson(covariance->half_axes) : SceneJson(nullptr)},
-          {"times_seen", object.views},
-          {"first_seen", Rounded(object.first_seen, kSceneUnit)},
-          {"last_seen", Rounded(object.last_seen, kSceneUnit)},
-          {"quality", Rounded(object.quality, kSceneUnit)}};
+  SceneJson json = {
+      {"id", object.id.value},
+      {"class", object.label},
+      {"class_distribution", shares},
+      {"centre", VectorJson(object.ellipsoid.world_from_object.translation)},
+      {"axes", VectorJson(object.ellipsoid.half_axes)},
+      {"rotation", VectorJson(object.ellipsoid.world_from_object.rotation.coeffs())},
+      {"box", BoxJson(object.box)},
+      {"centre_covariance", covariance ? MatrixJson(covariance->center) : SceneJson(nullptr)},
+      {"axes_covariance", covariance ? MatrixJson(covariance->half_axes) : SceneJson(nullptr)},
+      {"times_seen", object.views},
+      {"first_seen", Rounded(object.first_seen, kSceneUnit)},
+      {"last_seen", Rounded(object.last_seen, kSceneUnit)},
+      {"quality", Rounded(object.quality, kSceneUnit)}};
+  if (!object.embedding.empty()) {
+    const Eigen::Map<const Eigen::VectorXf> embedding(
+        object.embedding.data(), static_cast<Eigen::Index>(object.embedding.size()));
+    json["vector"] = VectorJson(embedding.cast<double>());
+  }
+  return json;
 }
 
 SceneJson RelationJson(const Relation& relation) {

@@ -77,6 +77,11 @@ SceneObject ReadSceneObject(const JsonNode& node) {
   object.first_seen = node.At("first_seen").Number(kMostSeconds);
   object.last_seen = node.At("last_seen").Number(kMostSeconds);
   object.quality = node.At("quality").Number(1.0);
+  if (node.Has("vector")) {
+    for (const JsonNode& element : node.At("vector").Elements()) {
+      object.embedding.push_back(static_cast<float>(element.Number(1.0)));
+    }
+  }
   return object;
 }
 

@@ -11,12 +11,14 @@
 namespace hullslam {
 
 FrameSource::FrameSource(Pace pace, PrefetchPriority priority, const ImageSequence& sequence,
-                         const PinholeCamera& camera, const SequenceMasks& masks, System& system)
+                         const PinholeCamera& camera, const SequenceMasks& masks, System& system,
+                         bool keeps_images)
     : is_realtime_(pace == Pace::kRealtime),
       sequence_(sequence),
       camera_(camera),
       masks_(masks),
       system_(system),
+      keeps_images_(keeps_images),
       images_([this] { return LoadNext(); }, kImagesAhead, priority),
       frames_([this] { return BuildNext(); }, kFramesAhead, priority) {}
 
@@ -29,7 +31,23 @@ std::optional<LoadedFrame> FrameSource::Next() {
   if (is_realtime_) {
     loads_.release();
   }
-  return frames_.Next();
+  std::optional<LoadedFrame> next = frames_.Next();
+  if (next && next->frame) {
+    next->frame->begin += Delay() - next->delay;
+  }
+  return next;
+}
+
+void FrameSource::Pause() {
+  pause_begin_ = Clock::now();
+  is_paused_ = true;
+}
+
+void FrameSource::Resume() {
+  if (is_paused_) {
+    delay_ += (Clock::now() - pause_begin_).count();
+    is_paused_ = false;
+  }
 }
 
 // An image that cannot be read is reported in LoadedImage, so that the frame can be skipped. Masks
@@ -69,7 +87,14 @@ std::optional<LoadedFrame> FrameSource::BuildNext() {
   if (is_realtime_ && !WaitFor(loaded->image->timestamp)) {
     return std::nullopt;
   }
-  return LoadedFrame{.frame = system_.Build(*loaded->image), .error = {}};
+  const Clock::duration delay = Delay();
+  BuiltFrame built = system_.Build(*loaded->image);
+  const double milliseconds = built.milliseconds;
+  return LoadedFrame{.frame = std::move(built),
+                     .error = {},
+                     .grey = keeps_images_ ? loaded->image->grey : cv::Mat(),
+                     .build_ms = milliseconds,
+                     .delay = delay};
 }
 
 // Waits until the time, counted from the start, at which the camera took the frame. Returns false
@@ -77,10 +102,13 @@ std::optional<LoadedFrame> FrameSource::BuildNext() {
 bool FrameSource::WaitFor(double stamp) const {
   constexpr std::chrono::milliseconds kStep(20);
   const std::chrono::duration<double> after_start(stamp - sequence_.frames.front().timestamp);
-  const auto due = start_ + std::chrono::duration_cast<Clock::duration>(after_start);
+  const auto due = [&] {
+    return start_ + std::chrono::duration_cast<Clock::duration>(after_start) + Delay();
+  };
   const auto is_over = [this] { return IsInterrupted() || end_.IsRequested(); };
-  while (!is_over() && Clock::now() < due) {
-    std::this_thread::sleep_until(std::min(due, Clock::now() + kStep));
+  while (!is_over() && (is_paused_ || Clock::now() < due())) {
+    const Clock::time_point next = Clock::now() + kStep;
+    std::this_thread::sleep_until(is_paused_ ? next : std::min(due(), next));
   }
   return !is_over();
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <semaphore>
 #include <string>
@@ -20,6 +22,9 @@ namespace hullslam {
 struct LoadedFrame {
   std::optional<BuiltFrame> frame;
   std::string error;
+  cv::Mat grey = {};                               // the image; empty unless images are kept
+  double build_ms = 0.0;                           // time of building
+  std::chrono::steady_clock::duration delay = {};  // FrameSource::Pause() up to then, in all
 };
 
 // The pace at which frames become available: as fast as they can be read, or at their time stamps.
@@ -33,8 +38,10 @@ class FrameSource {
  public:
   // The references must outlive this object. With Pace::kRealtime, the clock starts now, at the
   // first time stamp. Both threads have the given priority.
+  // `keeps_images` says whether frames come with their images.
   FrameSource(Pace pace, PrefetchPriority priority, const ImageSequence& sequence,
-              const PinholeCamera& camera, const SequenceMasks& masks, System& system);
+              const PinholeCamera& camera, const SequenceMasks& masks, System& system,
+              bool keeps_images = false);
   ~FrameSource();
   FrameSource(const FrameSource&) = delete;
   FrameSource& operator=(const FrameSource&) = delete;
@@ -42,6 +49,11 @@ class FrameSource {
   // The next frame; null at the end, and in real time also after an interruption. To be called when
   // the frames before have been tracked. Throws InputError if the masks of a frame cannot be read.
   std::optional<LoadedFrame> Next();
+
+  // Stops the clock of a run in real time until Resume(), so that a pause is no delay of the frames
+  // after it. Called by the thread that calls Next(). Resume() without Pause() does nothing.
+  void Pause();
+  void Resume();
 
  private:
   // An image, or the reason why it could not be loaded.
@@ -57,13 +69,19 @@ class FrameSource {
   std::optional<LoadedImage> LoadNext();
   std::optional<LoadedFrame> BuildNext();
   bool WaitFor(double stamp) const;
+  // The sum of all pauses so far.
+  Clock::duration Delay() const { return Clock::duration(delay_.load()); }
 
   const bool is_realtime_;
   const ImageSequence& sequence_;
   const PinholeCamera& camera_;
   const SequenceMasks& masks_;
   System& system_;
+  const bool keeps_images_;
   const Clock::time_point start_ = Clock::now();
+  std::atomic<Clock::rep> delay_ = 0;
+  std::atomic<bool> is_paused_ = false;
+  Clock::time_point pause_begin_;
   Cancellation end_;
   std::counting_semaphore<> loads_{
       kImagesAhead};  // number of images that may be loaded in real time

@@ -17,6 +17,8 @@ class Progress {
   // `done` is the number of frames that are done. `state` returns a text to show after it. It is
   // only called if something is shown.
   void Show(size_t done, const std::function<std::string()>& state = {});
+  // Time that does not count, such as a pause.
+  void Skip(std::chrono::steady_clock::duration time) { start_ += time; }
   // Ends the line of the bar, so that other text can be printed on the next line.
   void Clear();
 

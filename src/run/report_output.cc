@@ -55,13 +55,13 @@ ViewSettings CompareWithDefaults(const SystemOptions& options) {
   return settings;
 }
 
-// Thins the model, writes it, and says what was left out.
-void WriteModel(ViewModel model, const fs::path& file) {
+// Thins the model and says what was left out.
+std::string PageOf(ViewModel model) {
   ThinToFit(kMostReportBytes - FormatPage({}).size(), model);
   for (const std::string& note : model.notes) {
     PrintError("report: {}\n", note);
   }
-  WriteFileAtomically(file, FormatReport(model));
+  return FormatReport(model);
 }
 
 }  // namespace
@@ -78,12 +78,11 @@ std::string WriteReport(const fs::path& folder, const Map& map, const SystemOpti
     const Sensor sensor = MakeSensor(options);
     const ViewSettings settings = CompareWithDefaults(options);
     const fs::path file = folder / kReportFile;
-    WriteModel(ViewOfRun(folder, {.map = &map,
-                                  .sensor = &sensor,
-                                  .options = &options.objects,
-                                  .sequence = &sequence,
-                                  .settings = &settings}),
-               file);
+    WriteFileAtomically(file, PageOf(ViewOfRun(folder, {.map = &map,
+                                                        .sensor = &sensor,
+                                                        .options = &options.objects,
+                                                        .sequence = &sequence,
+                                                        .settings = &settings})));
     if (!is_quiet) {
       Print("the report is in {}\n", file.string());
     }
@@ -94,11 +93,9 @@ std::string WriteReport(const fs::path& folder, const Map& map, const SystemOpti
   return {};
 }
 
-void WriteReportOfRun(const fs::path& folder, const fs::path& file) {
-  WriteModel(ViewOfRun(folder), file);
-}
+std::string ReportOfRun(const fs::path& folder) { return PageOf(ViewOfRun(folder)); }
 
-void WriteReportOfMap(const fs::path& map, const fs::path& file) {
+std::string ReportOfMap(const fs::path& map) {
   const StoredMap stored = ReadMap(map);
   SystemOptions options;
   options.sensor = stored.settings.sensor;
@@ -109,7 +106,7 @@ void WriteReportOfMap(const fs::path& map, const fs::path& file) {
   AddUp(std::nullopt, model);
   model.title = map.filename().string();
   model.version = HULLSLAM_VERSION;
-  WriteModel(std::move(model), file);
+  return PageOf(std::move(model));
 }
 
 }  // namespace hullslam

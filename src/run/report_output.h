@@ -24,10 +24,10 @@ void AddReportFlag(CLI::App& app, bool& report);
 std::string WriteReport(const std::filesystem::path& folder, const Map& map,
                         const SystemOptions& options, const ImageSequence& sequence, bool is_quiet);
 
-// The same for a finished run, of which only the files are left. Throws InputError if they are not
-// those of a run, or if the report cannot be written.
-void WriteReportOfRun(const std::filesystem::path& folder, const std::filesystem::path& file);
+// The report of a finished run, of which only the files are left, as the text of a page. Throws
+// InputError if they are not those of a run. Prints what was left out.
+std::string ReportOfRun(const std::filesystem::path& folder);
 // The same for a file of --save-map.
-void WriteReportOfMap(const std::filesystem::path& map, const std::filesystem::path& file);
+std::string ReportOfMap(const std::filesystem::path& map);
 
 }  // namespace hullslam

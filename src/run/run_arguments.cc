@@ -5,6 +5,7 @@
 
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
+#include "run/live_output.h"
 #include "run/load_settings.h"
 #include "run/mask_arguments.h"
 #include "run/report_output.h"
@@ -71,6 +72,7 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   app.add_flag("--strict", arguments.strict,
                "stop at an image that cannot be read instead of skipping the frame");
   AddReportFlag(app, arguments.report);
+  AddViewArguments(app, arguments);
   AddDebugFlag(app);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
   AddVersionAndExitCodes(

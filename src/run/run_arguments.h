@@ -39,6 +39,8 @@ struct RunArguments {
   bool realtime = false;
   bool strict = false;
   bool report = false;
+  int view_port = -1;  // of --view; -1: no live view
+  std::string view_address = "127.0.0.1";
   bool quiet = false;
   uint64_t seed = 0;
 };

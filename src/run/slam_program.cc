@@ -2,10 +2,12 @@
 #include "run/slam_program.h"
 
 #include <CLI/CLI.hpp>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "run/command_line.h"
+#include "run/live_output.h"
 #include "run/program.h"
 #include "run/slam_run.h"
 
@@ -20,7 +22,12 @@ int Run(const SlamProgram& program, Dataset& dataset, int argc, char** argv) {
   std::vector<std::string> positional;
   AddRunArguments(app, dataset.Help(program.sensor), arguments, positional);
   dataset.AddOptions(app);
-  if (!ParseCommandLine(app, argc, argv)) {
+  std::vector<std::string> words = CompleteViewOption(argc, argv);
+  std::vector<char*> pointers;
+  for (std::string& word : words) {
+    pointers.push_back(word.data());
+  }
+  if (!ParseCommandLine(app, argc, pointers.data())) {
     return kDone;
   }
   FinishArguments(positional, arguments);

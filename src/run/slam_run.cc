@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,6 +23,7 @@
 #include "run/frame_source.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
+#include "run/live_output.h"
 #include "run/map_session.h"
 #include "run/mask_arguments.h"
 #include "run/messages.h"
@@ -103,6 +105,10 @@ void FinishMap(bool is_quiet, System& system) {
       });
 }
 
+double Milliseconds(Clock::duration time) {
+  return std::chrono::duration<double, std::milli>(time).count();
+}
+
 // Notes what tracking tells about a frame that comes so long after the first one, s.
 void NoteFrame(const FrameReport& report, const FrameSelection& selection, double time,
                RunResult& result) {
@@ -117,22 +123,29 @@ void NoteFrame(const FrameReport& report, const FrameSelection& selection, doubl
 }
 
 RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
-                   const PinholeCamera& camera, const SequenceMasks& masks, System& system) {
+                   const PinholeCamera& camera, const SequenceMasks& masks, System& system,
+                   LiveOutput& live) {
   RunResult result;
   Progress progress(sequence.frames.size(), arguments.quiet);
   std::optional<InitialisationFailure> failure;  // failure of the last frame
   system.SetFrameCallback([&](const FrameReport& report) {
     failure = report.failure;
+    live.NoteReport(report);
     NoteFrame(report, arguments.selection,
               report.tracked.timestamp - sequence.frames.front().timestamp, result);
   });
-  const Clock::time_point start = Clock::now();
+  Clock::time_point start = Clock::now();
   // In the sequential pipeline the thread that tracks and maps has more work than the threads that
   // load and build frames, so these get a lower priority.
   FrameSource frames(arguments.realtime ? Pace::kRealtime : Pace::kFast,
                      arguments.threaded ? PrefetchPriority::kNormal : PrefetchPriority::kBackground,
-                     sequence, camera, masks, system);
+                     sequence, camera, masks, system, live.IsOn());
   while (!IsInterrupted()) {
+    // A pause does not count as time of the run.
+    const Clock::duration waited =
+        live.BeforeFrame(frames, system, [&progress] { progress.Clear(); });
+    start += waited;
+    progress.Skip(waited);
     std::optional<LoadedFrame> loaded = frames.Next();
     if (!loaded) {
       break;
@@ -147,11 +160,14 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
       ++result.skipped;
       continue;
     }
+    const Clock::time_point begin = Clock::now();
     const TrackedFrame frame = system.Track(std::move(*loaded->frame));
+    live.AfterFrame(*loaded, result.given, Milliseconds(Clock::now() - begin), system);
     progress.Show(result.given, [&] { return DescribeState(frame.state, failure, system); });
   }
   progress.Clear();
   system.SetFrameCallback({});
+  live.BeginFinishing();
   FinishMap(arguments.quiet, system);
   result.was_interrupted = IsInterrupted();
   result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
@@ -254,6 +270,15 @@ std::string DescribeInterruption(const RunResult& result, const ImageSequence& s
       result.given, sequence.frames.size());
 }
 
+// Why the run failed; empty if it did not.
+std::string DescribeFailure(const RunArguments& arguments, const RunOptions& options,
+                            const ImageSequence& sequence, const RunResult& result,
+                            const RunSummary& summary, const System& system) {
+  return result.was_interrupted
+             ? DescribeInterruption(result, sequence)
+             : DescribeLoss(arguments, options, sequence.frames.size(), summary, system.frames());
+}
+
 }  // namespace
 
 int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageSequence& sequence,
@@ -272,12 +297,13 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   CheckSavedMap(arguments);
   SystemStart start = LoadStart(arguments, options);
   const size_t earlier_sessions = start.map.sessions().size();
+  LiveOutput live(arguments, options, sequence, groundtruth);
   OutputFolder output(arguments.output, "summary.json", InputsOf(arguments),
                       {arguments.program, arguments.overwrite});
   WarnOfInput(arguments, options, sequence, first, masks);
   PrintInput(arguments, settings, notes, masks);
   System system(options, ChoosePipeline(arguments), std::move(start));
-  const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system);
+  const RunResult result = TrackAll(arguments, sequence, options.camera, masks, system, live);
   if (result.was_interrupted && result.given == 0) {
     PrintFailure("the run was interrupted before the first frame; nothing was written");
     return kFailed;
@@ -307,13 +333,11 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   if (!arguments.quiet) {
     PrintReport(arguments, summary, objects);
   }
+  live.End(map, nlohmann::json::parse(FormatSummary(summary)));
   const std::string unreported =
       arguments.report ? WriteReport(output.path(), *map, options, sequence, arguments.quiet) : "";
-  const std::string failure =
-      result.was_interrupted
-          ? DescribeInterruption(result, sequence)
-          : DescribeLoss(arguments, options.run, sequence.frames.size(), summary, system.frames());
-  return FailIfAny({failure, unsaved, unsaved_island, unreported});
+  return FailIfAny({DescribeFailure(arguments, options.run, sequence, result, summary, system),
+                    unsaved, unsaved_island, unreported});
 }
 
 }  // namespace hullslam

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include "hullslam/util/error.h"
@@ -173,8 +175,8 @@ class Answerer {
   const Scene& scene_;
 };
 
-void SortAnswers(std::vector<Answer>& answers) {
-  std::erase_if(answers, [](const Answer& answer) { return !(answer.score >= kLeastScore); });
+void SortAnswers(std::vector<Answer>& answers, double least = kLeastScore) {
+  std::erase_if(answers, [&](const Answer& answer) { return !(answer.score >= least); });
   std::stable_sort(answers.begin(), answers.end(),
                    [](const Answer& a, const Answer& b) { return a.score > b.score; });
 }
@@ -245,6 +247,32 @@ std::vector<Answer> FindLike(const Scene& scene, ObjectId id) {
     }
   }
   SortAnswers(answers);
+  return answers;
+}
+
+std::vector<Answer> FindByEmbedding(const Scene& scene, std::span<const float> embedding) {
+  const auto as_vector = [](std::span<const float> values) -> Eigen::VectorXd {
+    return Eigen::Map<const Eigen::VectorXf>(values.data(), std::ssize(values)).cast<double>();
+  };
+  const Eigen::VectorXd wanted = as_vector(embedding).normalized();
+  std::vector<Answer> answers;
+  for (const SceneObject& object : scene.objects) {
+    if (object.embedding.empty()) {
+      continue;
+    }
+    if (object.embedding.size() != embedding.size()) {
+      throw InputError(fmt::format("a vector of {} number(s), expected {} as those of the objects",
+                                   embedding.size(), object.embedding.size()));
+    }
+    const double cosine = wanted.dot(as_vector(object.embedding));
+    answers.push_back(
+        {object.id, cosine, fmt::format("{}: cosine {:.3f}", NameOf(object), cosine)});
+  }
+  if (answers.empty()) {
+    throw InputError(
+        "no object has a vector: the masks of the run had no .npy files (docs/masks.md)");
+  }
+  SortAnswers(answers, std::numeric_limits<double>::min());
   return answers;
 }
 

@@ -42,4 +42,9 @@ std::vector<Answer> FindWithin(const Scene& scene, const std::set<std::string>& 
 // times exp(-mean difference of the logarithms of their sorted half axes).
 std::vector<Answer> FindLike(const Scene& scene, ObjectId id);
 
+// The objects whose vector has the smallest angle to another vector of the same network. The score
+// is the cosine of the angle; objects with none above 0 are no answers. Throws InputError if no
+// object has a vector, or if the vectors have another length.
+std::vector<Answer> FindByEmbedding(const Scene& scene, std::span<const float> embedding);
+
 }  // namespace hullslam

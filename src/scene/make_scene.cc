@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 #include <utility>
 
 #include "objects/object_view.h"
@@ -39,6 +40,29 @@ SceneObject Describe(const ReportedObject& reported) {
   return object;
 }
 
+std::vector<float> MeanEmbedding(std::span<const ObjectView> views) {
+  Eigen::VectorXd sum;
+  for (const ObjectView& view : views) {
+    const std::vector<float>& embedding = view.detection->embedding;
+    const auto size = static_cast<Eigen::Index>(embedding.size());
+    if (sum.size() == 0) {
+      sum = Eigen::VectorXd::Zero(size);
+    }
+    if (size > 0 && size == sum.size()) {  // sessions may have masks of different networks
+      sum += view.detection->score *
+             Eigen::Map<const Eigen::VectorXf>(embedding.data(), size).cast<double>();
+    }
+  }
+  const double norm = sum.norm();
+  std::vector<float> mean;
+  for (const double value : sum) {
+    if (norm > 0.0) {
+      mean.push_back(static_cast<float>(value / norm));
+    }
+  }
+  return mean;
+}
+
 }  // namespace
 
 Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& up) {
@@ -55,6 +79,7 @@ Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& u
     SceneObject& object = scene.objects.emplace_back(Describe(reported));
     const ObjectLandmark& landmark = map.objects().At(reported.id);
     const std::vector<ObjectView> views = CollectViews(map, landmark);
+    object.embedding = MeanEmbedding(views);
     object.covariance = CovarianceOf(report.camera, object.ellipsoid, landmark.start, views);
     bodies.push_back(
         MeasureBody(object.id, object.ellipsoid, report.camera, views, upright_from_world));

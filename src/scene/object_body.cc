@@ -17,9 +17,9 @@ namespace {
 
 constexpr int kSides = 48;  // sides of a footprint
 constexpr int kGapDirections = 256;
-// A line limits the object downwards if the normal of its plane is at least 30 degrees below the
-// horizon.
-constexpr double kDownwards = 0.5;
+// A line limits the object downwards if the normal of its plane points more downwards than
+// sideways.
+constexpr double kDownwards = 0.5 * std::numbers::sqrt2;
 constexpr size_t kLeastLowerLines = 3;
 constexpr double kLeastLowerShare = 0.25;  // of the lower lines that must not be cut off
 

@@ -23,6 +23,9 @@ class Pipeline {
   // To be called at most once, before the first Track. Without this call the map is new and its
   // keyframes belong to no session.
   virtual void Begin(PipelineStart start) = 0;
+  // Whether the next frames change nothing in the map, which must have a keyframe then. May be
+  // called between two calls of Track.
+  virtual void LocaliseOnly(bool is_localizing_only) = 0;
   // Frames come in order of time. Throws what a stage throws, and CheckError after Finish. After
   // mapping has thrown an exception, its live map may be half edited. So mapping stops, all later
   // calls of Track and Finish throw the same exception, and map() stays the last published map.

@@ -27,11 +27,11 @@ class SequentialPipeline final : public Pipeline, private LoopStages {
         loop_closer_(sensor, options.loop, options.objects, options.seed) {}
 
   void Begin(PipelineStart start) override {
-    if (start.localization_only) {
-      tracker_.LocaliseOnly();
-    }
+    tracker_.LocaliseOnly(start.localization_only);
     EditMap([&] { mapper_.Begin(std::move(start.map), std::move(start.session)); });
   }
+
+  void LocaliseOnly(bool is_localizing_only) override { tracker_.LocaliseOnly(is_localizing_only); }
 
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(!is_finished_, "Track after Finish");

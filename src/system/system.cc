@@ -159,6 +159,13 @@ TrackedFrame System::Track(BuiltFrame built) {
   return frames_.back();
 }
 
+void System::LocaliseOnly(bool is_localizing_only) {
+  Check(!start_.localization_only, "the run began with localization only");
+  const std::shared_ptr<const Map> newest = map();
+  Check(newest != nullptr && !newest->keyframes().empty(), "there is no map to localise in yet");
+  pipeline_->LocaliseOnly(is_localizing_only);
+}
+
 void System::CheckStamp(double timestamp) const {
   Check(std::isfinite(timestamp), "the time stamp is not a number");
   Check(frames_.empty() || timestamp > frames_.back().timestamp, "time stamps must increase");

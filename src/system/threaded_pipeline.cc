@@ -48,11 +48,11 @@ class ThreadedPipeline final : public Pipeline {
 
   // Meanwhile the mapper's thread waits for its first message.
   void Begin(PipelineStart start) override {
-    if (start.localization_only) {
-      tracker_.LocaliseOnly();
-    }
+    tracker_.LocaliseOnly(start.localization_only);
     mapper_.Begin(std::move(start.map), std::move(start.session));
   }
+
+  void LocaliseOnly(bool is_localizing_only) override { tracker_.LocaliseOnly(is_localizing_only); }
 
   FrameReport Track(std::shared_ptr<const Frame> frame) override {
     Check(mapping_thread_.joinable(), "Track after Finish");

@@ -39,9 +39,8 @@ class Tracker {
   Tracker(const Sensor& sensor, const TrackingOptions& options, const ObjectOptions& objects = {},
           uint64_t seed = 0);
 
-  // From now on no keyframe is requested. To be called before the first frame, which then comes
-  // with a map.
-  void LocaliseOnly() { is_localizing_only_ = true; }
+  // Whether no keyframe is requested from now on. If so, the next frame must come with a map.
+  void LocaliseOnly(bool is_localizing_only = true) { is_localizing_only_ = is_localizing_only; }
 
   struct Result {
     FrameReport report;

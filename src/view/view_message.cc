@@ -248,8 +248,7 @@ void SetGeometry(const ViewModel& model, double start, Json& parts) {
 
 }  // namespace
 
-std::string FormatViewMessage(const ViewModel& model) {
-  const double start = StartOf(model);
+nlohmann::json ViewParts(const ViewModel& model, double start) {
   Json parts = {{"run", RunJson(model, start)}};
   SetGeometry(model, start, parts);
   if (!model.errors.timestamps.empty()) {
@@ -269,8 +268,11 @@ std::string FormatViewMessage(const ViewModel& model) {
   if (model.settings) {
     parts["settings"] = SettingsJson(*model.settings);
   }
-  const std::string text = Json{{"view", kViewVersion}, {"set", std::move(parts)}}.dump(
-      -1, ' ', false, Json::error_handler_t::replace);
+  return parts;
+}
+
+std::string DumpViewMessage(const nlohmann::json& message) {
+  const std::string text = message.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string escaped;
   escaped.reserve(text.size());
   for (const char c : text) {
@@ -281,6 +283,10 @@ std::string FormatViewMessage(const ViewModel& model) {
     }
   }
   return escaped;
+}
+
+std::string FormatViewMessage(const ViewModel& model) {
+  return DumpViewMessage({{"view", kViewVersion}, {"set", ViewParts(model, StartOf(model))}});
 }
 
 }  // namespace hullslam

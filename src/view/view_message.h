@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "view/view_model.h"
@@ -8,6 +9,14 @@
 namespace hullslam {
 
 inline constexpr int kViewVersion = 1;
+
+// The parts of the page that the model has, by name (docs/view_data.md). Times are relative to
+// `start`, s.
+nlohmann::json ViewParts(const ViewModel& model, double start);
+
+// A message as JSON in one line, in which every "<" is escaped, so that it may stand inside a
+// script element of HTML. Bytes of texts that are not UTF-8 are replaced.
+std::string DumpViewMessage(const nlohmann::json& message);
 
 // The message that sets all parts of the page (docs/view_data.md): JSON in one line, in which every
 // "<" is escaped, so that it may stand inside a script element of HTML. Times are relative to the

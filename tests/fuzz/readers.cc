@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bow/vocabulary_layout.h"
+#include "files/npy_file.h"
 #include "files/read_file.h"
 #include "frame/detection_builder.h"
 #include "fuzz/fuzzed_input.h"
@@ -127,6 +128,13 @@ void FuzzTrueObjects(std::string_view bytes) {
 
 constexpr int kWidth = 64;
 constexpr int kHeight = 48;
+void FuzzNpy(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const FloatRows rows = ReadNpy(path);
+    Expect(rows.values.size() == rows.rows * rows.columns, "another size than its shape");
+  });
+}
+
 const std::array<MaskFrame, 1> kFrames = {{{"1.5", 0}}};
 
 // Reads the masks of a frame as a run does, and makes detections of them.
@@ -278,6 +286,7 @@ constexpr auto kReaders = std::to_array<FuzzedReader>({{"trajectory", FuzzTrajec
                                                        {"true_objects", FuzzTrueObjects},
                                                        {"summary", FuzzSummary},
                                                        {"scene", FuzzScene},
+                                                       {"npy", FuzzNpy},
                                                        {"mask_probe", FuzzMaskProbe},
                                                        {"classes", FuzzClasses},
                                                        {"yolo_seg", FuzzYoloSeg},

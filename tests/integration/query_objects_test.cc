@@ -2,13 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
 #include "results/scene_file.h"
 #include "scene/made_scene.h"
+#include "support/made_npy.h"
 #include "support/rendered_desk.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
@@ -75,6 +79,10 @@ TEST_F(QueryObjects, RefusesBadQuestionsAndInput) {
   ExpectRefused({run, "--within", "1"}, {"--of"});
   ExpectRefused({run, "--within", "nan", "--of", "3"}, {"--within", "nan"});
   ExpectRefused({run, "--like", "77"}, {"object 77"});
+  ExpectRefused({run, "--vector", run + "/scene.json"}, {"scene.json", "is no array"});
+  ExpectRefused({run, "--vector", folder_.Write("a.npy", NpyHeader("<f4", "(0,)"))}, {"0 rows"});
+  ExpectRefused({run, "cup", "--picture", "cups.gif"}, {"--picture", "'cups.gif'", ".jpg"});
+  ExpectRefused({folder_.Write("a.map", ""), "cup", "--picture", "a.png"}, {"is a map"});
   ExpectRefused({folder_.path() / "none", "cup"}, {"none", "No such file"});
   folder_.Write("empty/notes.txt", "");
   ExpectRefused({folder_.path() / "empty", "cup"}, {"scene.json", "--masks"});
@@ -83,8 +91,40 @@ TEST_F(QueryObjects, RefusesBadQuestionsAndInput) {
   ExpectRefused({folder_.Write("wrong.map", "no map"), "cup"}, {"wrong.map"});
 }
 
+constexpr size_t kClasses = 80;  // of COCO
+
+// The bytes of numpy.save() for vectors that have 1 at the place of their class.
+std::string NpyOfClasses(const std::vector<size_t>& classes) {
+  std::vector<float> values(classes.size() * kClasses);
+  for (size_t i = 0; i < classes.size(); ++i) {
+    values[i * kClasses + classes[i]] = 1.0f;
+  }
+  std::string bytes(values.size() * sizeof(float), '\0');
+  std::memcpy(bytes.data(), values.data(), bytes.size());
+  return NpyHeader("<f4", "(" + std::to_string(classes.size()) + ", 80)") + bytes;
+}
+
+// A vector for each mask, which tells only its class.
+void WriteVectors(const std::filesystem::path& masks) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(masks)) {
+    if (entry.path().extension() == ".txt" && entry.path().stem() != "classes") {
+      files.push_back(entry.path());
+    }
+  }
+  for (std::filesystem::path file : files) {
+    std::ifstream in(file);
+    std::vector<size_t> classes;
+    for (std::string line; std::getline(in, line);) {
+      classes.push_back(std::stoul(line));
+    }
+    std::ofstream(file.replace_extension(".npy"), std::ios::binary) << NpyOfClasses(classes);
+  }
+}
+
 TEST(QueryObjectsOfARun, KnowsWhatStandsOnTheTable) {
   const RenderedDesk desk(60);
+  WriteVectors(desk.path() / "masks");
   const TemporaryFolder folder;
   const std::string run = folder.path() / "run";
   const std::string map = folder.path() / "desk.map";
@@ -102,6 +142,22 @@ TEST(QueryObjectsOfARun, KnowsWhatStandsOnTheTable) {
   ASSERT_EQ(of_map.exit_code, 0) << of_map.errors;
   EXPECT_EQ(Json::parse(of_map.output)["answers"][0]["object"],
             Json::parse(of_run.output)["answers"][0]["object"]);
+
+  constexpr size_t kKeyboard = 66;
+  const std::string vector = folder.Write("keyboard.npy", NpyOfClasses({kKeyboard}));
+  const std::string picture = folder.path() / "answers.jpg";
+  for (const std::string& source : {run, map}) {
+    std::vector<std::string> question = {source, "--vector", vector, "--json"};
+    if (source == run) {
+      question.insert(question.end(), {"--picture", picture});
+    }
+    const ProgramResult by_vector = RunProgram("query_objects", question);
+    ASSERT_EQ(by_vector.exit_code, 0) << by_vector.errors;
+    const Json best = Json::parse(by_vector.output)["answers"][0];
+    EXPECT_EQ(best["class"], "keyboard");
+    EXPECT_GT(best["score"], 0.9);
+  }
+  EXPECT_FALSE(cv::imread(picture).empty());
 }
 
 }  // namespace

@@ -150,6 +150,7 @@ void ExpectSameDetection(const Detection& a, const Detection& b) {
   EXPECT_EQ(a.is_box, b.is_box);
   EXPECT_EQ(a.points, b.points);
   EXPECT_EQ(a.keypoints, b.keypoints);
+  EXPECT_EQ(a.embedding, b.embedding);
 }
 
 TEST_F(MapFileTest, KeepsEveryFieldOfAFrame) {
@@ -160,6 +161,7 @@ TEST_F(MapFileTest, KeepsEveryFieldOfAFrame) {
   samples[7] = 0;
   frame->depth = DepthGrid(columns, samples);
   frame->features.right_u[3] = -1.0f;
+  frame->detections[0].embedding = {0.6f, -0.8f};
   map.AddKeyframe(frame, {});
   const Map read = ReadBack(map);
   const Frame& found = *read.keyframes().At(KeyframeId(0)).frame;
@@ -304,10 +306,10 @@ TEST_F(MapFileTest, OtherFilesAndVersionsAreRefused) {
   ExpectRefusal("", {"is not a map"});
   ExpectRefusal("1.0 0 0 0 0 0 0 1\n", {"is not a map"});
   std::string bytes = Written(SmallMap());
-  bytes[10] = 3;
-  ExpectRefusal(WithChecksum(bytes), {"format version 3", "expected 1 to 2"});
+  bytes[10] = 4;
+  ExpectRefusal(WithChecksum(bytes), {"format version 4", "expected 1 to 3"});
   bytes[10] = 0;
-  ExpectRefusal(WithChecksum(bytes), {"format version 0", "expected 1 to 2"});
+  ExpectRefusal(WithChecksum(bytes), {"format version 0", "expected 1 to 3"});
   ExpectInputError([&] { ReadMap(folder_.path()); }, {folder_.path().string(), "regular file"});
   ExpectInputError([&] { ReadMap("/dev/null"); }, {"/dev/null", "regular file"});
   ExpectInputError([&] { ReadMap(folder_.path() / "none.map"); },

@@ -27,6 +27,7 @@ Scene MakeFileScene() {
   scene.objects[0].first_seen = 1000.25;
   scene.objects[0].last_seen = 1002.5;
   scene.objects[0].quality = 0.75;
+  scene.objects[0].embedding = {0.6f, -0.8f};
   return scene;
 }
 
@@ -44,6 +45,8 @@ TEST(SceneFile, HasTheKeysOfTheFormat) {
   EXPECT_EQ(cup["centre_covariance"][0][0], 1e-4);
   EXPECT_EQ(cup["times_seen"], 7);
   EXPECT_TRUE(json["objects"][1]["box"].is_null());
+  EXPECT_NEAR(cup["vector"][1].get<double>(), -0.8, 1e-6);
+  EXPECT_FALSE(json["objects"][1].contains("vector"));
   EXPECT_EQ(json["relations"][0]["relation"], "on");
   EXPECT_EQ(json["relations"][0]["evidence"]["gap"], 0.001);
   EXPECT_EQ(json["surfaces"][0]["lowest"], true);
@@ -78,6 +81,7 @@ TEST(SceneFile, RefusesBrokenFilesWithTheKey) {
   expect([](Json& json) { json["objects"][0]["centre"][1] = nullptr; }, {"objects[0].centre"});
   expect([](Json& json) { json["objects"][0]["rotation"] = {0, 0, 0, 0}; }, {"rotation"});
   expect([](Json& json) { json["objects"][0]["axes"] = {0.1, -0.1, 0.1}; }, {"axes"});
+  expect([](Json& json) { json["objects"][0]["vector"][1] = "x"; }, {"objects[0].vector[1]"});
   expect([](Json& json) { json["relations"][0]["object"] = 77; }, {"relations[0].object"});
   expect([](Json& json) { json["relations"][0]["relation"] = "above"; }, {"above"});
   expect([](Json& json) { json["surfaces"][0]["objects"][0] = 77; }, {"surfaces[0].objects"});

@@ -76,5 +76,22 @@ TEST(FindLike, GivesTheSameClassAndSizeFirst) {
   EXPECT_NEAR(answers[0].score, 0.8, 1e-9);
 }
 
+TEST(FindByEmbedding, GivesTheSmallestAngleFirst) {
+  Scene scene = MakeQueryScene();
+  EXPECT_THROW(FindByEmbedding(scene, std::vector{1.0f}), InputError) << "no object has a vector";
+  scene.objects[0].embedding = {0.0f, 1.0f};
+  scene.objects[2].embedding = {0.6f, 0.8f};
+  scene.objects[3].embedding = {-1.0f, 0.0f};
+  const std::vector<Answer> answers = FindByEmbedding(scene, std::vector{5.0f, 0.0f});
+  ASSERT_EQ(answers.size(), 1U) << "the others are at right angles or opposite";
+  EXPECT_EQ(answers[0].object, scene.objects[2].id);
+  EXPECT_NEAR(answers[0].score, 0.6, 1e-6);
+  ExpectInputError(
+      [&] {
+        FindByEmbedding(scene, std::vector{1.0f, 0.0f, 0.0f});
+      },
+      {"3 number(s)", "expected 2"});
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
 
 #include "scene/made_scene.h"
 
@@ -37,6 +40,23 @@ TEST_F(MakeSceneTest, DescribesTheObjects) {
   EXPECT_EQ(cup.last_seen, 21.0);
   ASSERT_TRUE(cup.box && cup.covariance);
   EXPECT_NEAR(cup.box->half_extents.z(), 0.06, 0.005);
+}
+
+TEST_F(MakeSceneTest, TheVectorOfAnObjectIsTheMeanOfItsMasksWeightedByTheirScores) {
+  for (uint32_t i = 0; i < 2; ++i) {
+    auto frame = std::make_shared<Frame>(*map_.keyframes().At(KeyframeId(i)).frame);
+    frame->id = FrameId(100 + i);
+    frame->detections[1].score = i == 0 ? 0.9 : 0.3;
+    frame->detections[1].embedding = i == 0 ? std::vector{1.0f, 0.0f} : std::vector{0.0f, 1.0f};
+    const KeyframeId keyframe =
+        map_.AddKeyframe(frame, map_.keyframes().At(KeyframeId(i)).cam_from_world);
+    map_.AddObservation(ObjectId(1), keyframe, 1);
+  }
+  const Scene scene = Make({std::nullopt, "unknown"});
+  EXPECT_TRUE(scene.objects[0].embedding.empty());
+  ASSERT_EQ(scene.objects[1].embedding.size(), 2U);
+  EXPECT_NEAR(scene.objects[1].embedding[0], 3.0 / std::sqrt(10.0), 1e-6);
+  EXPECT_NEAR(scene.objects[1].embedding[1], 1.0 / std::sqrt(10.0), 1e-6);
 }
 
 TEST_F(MakeSceneTest, FindsWhatIsOnWhat) {

@@ -71,6 +71,25 @@ TEST(ObjectBody, OfABoxHasTheExtentsOfTheBoxAndNotOfTheEllipsoid) {
   EXPECT_TRUE(body.is_bottom_seen);
 }
 
+// As of a plant whose pot is behind a couch: its leaves end freely to both sides of the couch.
+TEST(ObjectBody, LinesThatPointMoreSidewaysThanDownDoNotShowTheBottom) {
+  const Sensor sensor = MakeObjectSensor();
+  const MadeObject made = Standing("plant", {0.0, 0.0, 0.0}, {0.2, 0.2, 0.3});
+  std::vector<Detection> detections;
+  std::vector<ObjectView> views;
+  detections.reserve(2);
+  for (uint32_t i = 0; i < 2; ++i) {
+    const Rigid3 camera = CameraOnCircle(0.3 + i, 2.5, 0.8);
+    Detection& detection = detections.emplace_back(Detect(made, sensor, camera));
+    for (SilhouetteLine& line : detection.lines) {
+      line.is_one_sided = line.line.normal.y() > 0.8;  // those at 45 degrees are free
+    }
+    views.push_back({KeyframeId(i), camera, &detection});
+  }
+  EXPECT_FALSE(
+      MeasureBody(ObjectId(1), made.ellipsoid, sensor.camera, views, kUpright).is_bottom_seen);
+}
+
 TEST(ObjectBody, BottomIsNotSeenIfItIsAlwaysCutOff) {
   const Sensor sensor = MakeObjectSensor();
   const MadeObject made = Standing("couch", {0.0, 0.0, 0.0}, {0.2, 0.1, 0.3});

@@ -15,8 +15,17 @@ import numpy as np
 import browser
 
 BIN = pathlib.Path(os.environ.get("HULLSLAM_BIN", "build/release/bin"))
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+CONFIG = SOURCE / "config"
 FRAMES = 60
 NASTY = "<img src=x onerror=alert(1)>\"'&\u2028\U0001F600</script>"
+
+
+def find_data(name):
+    """A recorded sequence in $HULLSLAM_DATA or in shared/data near the source tree, if it is there."""
+    folders = [pathlib.Path(os.environ["HULLSLAM_DATA"])] if "HULLSLAM_DATA" in os.environ else [
+        parent / "shared" / "data" for parent in SOURCE.parents]
+    return next((folder / name for folder in folders if (folder / name).is_dir()), None)
 
 
 def program(name, *arguments):
@@ -144,6 +153,22 @@ class ReportPage(unittest.TestCase):
         for report in (mono / "report.html", objects / "report.html", self.folder / "desk.html"):
             with self.subTest(report=report.name):
                 self.expect_good(self.open(report))
+
+    def test_reports_of_a_room_and_of_a_recorded_sequence_draw(self):
+        room, run = self.folder / "room", self.folder / "room_run"
+        program("make_synthetic", room, "--scene", "room", "--frames", 24, "--quiet")
+        program("map_objects", room, "--poses", room / "groundtruth.txt", "--masks", room / "masks",
+                "--output", run, "--report", "--quiet")
+        self.expect_good(self.open(run / "report.html"))
+        recorded = find_data("fr1_xyz")
+        if recorded is None:
+            self.skipTest("fr1_xyz is not on this machine")
+        run = self.folder / "fr1_xyz"
+        program("rgbd_tum", recorded, "--settings", CONFIG / "TUM1.yaml", "--masks",
+                recorded / "masks-yolo8n-seg", "--last", 100, "--output", run, "--report", "--quiet")
+        page = self.open(run / "report.html")
+        self.expect_good(page)
+        self.assertGreater(page.run("return document.querySelectorAll('#moment img').length"), 0)
 
     def test_a_label_is_only_text_and_messages_can_be_added(self):
         page = self.open(self.run_folder / "report.html")

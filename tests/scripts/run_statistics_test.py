@@ -47,18 +47,18 @@ class FileTest(unittest.TestCase):
         self.path = pathlib.Path(folder.name) / "file.json"
 
     def test_a_broken_file_has_no_content(self):
-        self.assertIsNone(run_statistics.read_json(self.path))
+        self.assertIsNone(run_statistics.try_read_json(self.path))
         for text in ("{", "[1]", '"a"', "[" * 100000):
             self.path.write_text(text)
-            self.assertIsNone(run_statistics.read_json(self.path))
+            self.assertIsNone(run_statistics.try_read_json(self.path))
         self.path.write_bytes(b"\xff\xfe")
-        self.assertIsNone(run_statistics.read_json(self.path))
+        self.assertIsNone(run_statistics.try_read_json(self.path))
 
     def test_written_files_replace_others_and_leave_nothing_else(self):
         for text in ("{}", '{"a": 1}'):
             run_statistics.write(self.path, text)
             self.assertEqual(self.path.read_text(), text)
-        self.assertEqual(run_statistics.read_json(self.path), {"a": 1})
+        self.assertEqual(run_statistics.try_read_json(self.path), {"a": 1})
         self.assertEqual(list(self.path.parent.iterdir()), [self.path])
 
     def test_the_hash_is_that_of_all_bytes(self):

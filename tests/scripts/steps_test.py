@@ -20,7 +20,7 @@ class StepsTest(unittest.TestCase):
         self.top = pathlib.Path(folder.name)
         self.log = self.top / "log"
         (self.top / "scripts").mkdir()
-        for name in ("common.sh", "demo.sh", "test.sh"):
+        for name in ("common.sh", "demo.sh", "run_demo.sh", "test.sh"):
             shutil.copy(SCRIPTS / name, self.top / "scripts")
         for name in ("scripts/setup.sh", "scripts/plot_run.py", "path/cmake", "path/ctest",
                      "build/release/bin/rgbd_tum", "build/release/bin/evaluate"):

@@ -263,6 +263,28 @@ TEST_P(SystemTest, ResetGivesAnEmptySystem) {
   EXPECT_LT(MaxError(system.trajectory()), 0.01);
 }
 
+TEST_P(SystemTest, TheMapStaysAsItIsWhileOnlyPosesAreWanted) {
+  System system(Wall::Options(), GetParam());
+  EXPECT_THROW(system.LocaliseOnly(true), CheckError) << "there is no map";
+  for (int i = 0; i < 6; ++i) {
+    TrackFrame(system, i);
+  }
+  system.LocaliseOnly(true);
+  for (int i = 6; i < 12; ++i) {
+    EXPECT_EQ(TrackFrame(system, i).state, TrackingState::kTracked) << i;
+  }
+  system.LocaliseOnly(false);
+  for (int i = 12; i < 15; ++i) {
+    EXPECT_EQ(TrackFrame(system, i).state, TrackingState::kTracked) << i;
+  }
+  system.Finish();
+  for (uint32_t frame = 6; frame < 12; ++frame) {
+    EXPECT_FALSE(system.map()->KeyframeOfFrame(FrameId(frame))) << frame;
+  }
+  EXPECT_EQ(system.trajectory().size(), 15u);
+  EXPECT_LT(MaxError(system.trajectory()), 0.01);
+}
+
 // No frame can be found in the loaded map yet.
 TEST_P(SystemTest, BeginsWithTheMapOfAnEarlierSession) {
   const TemporaryFolder folder;

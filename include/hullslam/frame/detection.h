@@ -31,6 +31,7 @@ struct Detection {
   bool is_box = false;  // the mask is only a bounding box
   // Points of the depth image inside the eroded mask, m, camera frame; a few hundred at most.
   PackedPoints<3> points;
+  std::vector<float> embedding;     // that of the mask (instance_mask.h); empty if there is none
   std::vector<uint32_t> keypoints;  // indices of the frame's keypoints inside the mask
 };
 

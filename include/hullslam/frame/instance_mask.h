@@ -24,6 +24,9 @@ struct InstanceMask {
   // Closed outlines without holes, one per connected part, the largest first. Each has at least
   // three points. A box has one outline with its four corners; an ellipse has one with 64 points.
   std::vector<std::vector<Eigen::Vector2d>> outlines;
+  // What the object looks like, as a vector of length 1 of any network (CLIP or the like); all of a
+  // run have the same number of elements. Empty if there is none.
+  std::vector<float> embedding = {};
 };
 
 // Throws InputError for a mask without a label, a score that is not between 0 and 1, an outline of

@@ -92,6 +92,11 @@ class System {
   BuiltFrame Build(const ImageInput& image);
   TrackedFrame Track(BuiltFrame built);
 
+  // Whether the map stays as it is from the next frame on, and poses are only found in it. The
+  // frames still have poses in trajectory(). Throws CheckError if there is no map yet, and after a
+  // start with SystemStart::localization_only, whose map may not be changed. Reset() ends it.
+  void LocaliseOnly(bool is_localizing_only);
+
   // `callback` is called at the end of every Track, in the thread that called Track. It may call
   // the const functions of this object; frames() contains the frame already. An exception from it
   // is thrown by Track; the frame has been tracked then. Reset() keeps the callback.

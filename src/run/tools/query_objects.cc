@@ -7,11 +7,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "files/atomic_file.h"
+#include "files/npy_file.h"
 #include "files/plausible.h"
 #include "files/read_file.h"
 #include "hullslam/map_files/map_file.h"
@@ -25,6 +28,8 @@
 #include "scene/question.h"
 #include "util/printable.h"
 #include "util/trim.h"
+#include "view/answer_sheet.h"
+#include "view/view_of_run.h"
 
 namespace hullslam {
 namespace {
@@ -35,11 +40,13 @@ struct QueryArguments {
   fs::path source;
   std::string question;
   std::optional<uint32_t> like;
+  fs::path vector;
   std::string label;
   std::optional<double> within;
   std::optional<uint32_t> of;
   fs::path classes;
   size_t most = 10;
+  fs::path picture;
   bool json = false;
 };
 
@@ -50,6 +57,9 @@ void AddArguments(CLI::App& app, QueryArguments& arguments) {
   app.add_option("QUESTION", arguments.question,
                  "such as \"cup on the book near the laptop\"; docs/queries.md has the grammar");
   app.add_option("--like", arguments.like, "objects like the one with this number");
+  app.add_option("--vector", arguments.vector,
+                 "objects whose masks look like this vector: a .npy file with as many numbers as "
+                 "the vectors beside the masks");
   app.add_option("--class", arguments.label, "objects of this class");
   auto* const within = app.add_option("--within", arguments.within,
                                       "at most this far, in the unit of the map (metres with "
@@ -63,6 +73,9 @@ void AddArguments(CLI::App& app, QueryArguments& arguments) {
   app.add_option("--most", arguments.most, "print at most this many answers")
       ->check(CLI::Range(size_t{1}, size_t{1'000'000}).description(""))
       ->capture_default_str();
+  app.add_option("--picture", arguments.picture,
+                 "draw the answers into this image file (.jpg or .png), each with its best views; "
+                 "needs the folder of a run and its images");
   app.add_flag("--json", arguments.json, "print JSON");
   AddVersionAndExitCodes(app, "an object fits", "no object fits, or the program failed");
 }
@@ -70,12 +83,22 @@ void AddArguments(CLI::App& app, QueryArguments& arguments) {
 // Throws InputError unless exactly one kind of question is asked.
 void CheckArguments(const QueryArguments& arguments) {
   const bool asks_class = !arguments.label.empty() || arguments.within;
-  const int kinds =
-      (arguments.question.empty() ? 0 : 1) + (arguments.like ? 1 : 0) + (asks_class ? 1 : 0);
+  const int kinds = (arguments.question.empty() ? 0 : 1) + (arguments.like ? 1 : 0) +
+                    (arguments.vector.empty() ? 0 : 1) + (asks_class ? 1 : 0);
   if (kinds != 1) {
     throw InputError(
-        "expected one of: a QUESTION in quotes, --like NUMBER, or --class NAME and/or --within "
-        "DISTANCE --of NUMBER");
+        "expected one of: a QUESTION in quotes, --like NUMBER, --vector FILE, or --class NAME "
+        "and/or --within DISTANCE --of NUMBER");
+  }
+  const fs::path extension = arguments.picture.extension();
+  if (!arguments.picture.empty() && extension != ".jpg" && extension != ".png") {
+    throw InputError("--picture: '" + arguments.picture.string() +
+                     "', expected a name that ends "
+                     "with .jpg or .png");
+  }
+  if (!arguments.picture.empty() && !fs::is_directory(arguments.source)) {
+    throw InputError("--picture: " + arguments.source.string() +
+                     " is a map, which has no images, expected the output folder of a run");
   }
 }
 
@@ -121,6 +144,18 @@ std::set<std::string> KnownClasses(const Scene& scene, const fs::path& file) {
   return labels;
 }
 
+std::vector<Answer> AnswerVector(const Scene& scene, const fs::path& file) {
+  const FloatRows vector = ReadNpy(file);
+  if (vector.rows != 1) {
+    throw InputError(fmt::format("{}: {} rows, expected one vector", file.string(), vector.rows));
+  }
+  try {
+    return FindByEmbedding(scene, vector.values);
+  } catch (const InputError& error) {
+    throw InputError(file.string() + ": " + error.what());
+  }
+}
+
 std::vector<Answer> FindAnswers(const Scene& scene, const QueryArguments& arguments) {
   const std::set<std::string> labels = KnownClasses(scene, arguments.classes);
   if (!arguments.question.empty()) {
@@ -128,6 +163,9 @@ std::vector<Answer> FindAnswers(const Scene& scene, const QueryArguments& argume
   }
   if (arguments.like) {
     return FindLike(scene, ObjectId(*arguments.like));
+  }
+  if (!arguments.vector.empty()) {
+    return AnswerVector(scene, arguments.vector);
   }
   AskedThing thing;
   if (!arguments.label.empty()) {
@@ -154,6 +192,23 @@ void PrintAnswersAsJson(const Scene& scene, const std::vector<Answer>& answers) 
   }
   const nlohmann::ordered_json json = {{"answers", list}};
   Print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+// The image file appears complete or not at all.
+void WritePicture(const fs::path& run, const std::vector<Answer>& answers, const fs::path& file) {
+  const ViewModel model = ViewOfRun(run);
+  const bool has_images =
+      std::any_of(model.objects.begin(), model.objects.end(),
+                  [](const ViewObject& object) { return !object.cutouts.empty(); });
+  if (!has_images) {
+    throw InputError(
+        fmt::format("--picture: the images of {} are not found, or the run has no "
+                    "views of its objects",
+                    model.sequence));
+  }
+  std::vector<uchar> bytes;
+  cv::imencode(file.extension(), DrawAnswers(answers, model), bytes);
+  WriteFileAtomically(file, std::string(bytes.begin(), bytes.end()));
 }
 
 void PrintAnswers(const Scene& scene, const std::vector<Answer>& answers) {
@@ -183,6 +238,9 @@ int RunQueryObjects(int argc, char** argv) {
     PrintAnswersAsJson(scene, answers);
   } else if (!answers.empty()) {
     PrintAnswers(scene, answers);
+  }
+  if (!arguments.picture.empty() && !answers.empty()) {
+    WritePicture(arguments.source, answers, arguments.picture);
   }
   if (answers.empty()) {
     PrintError("no object fits\n");

@@ -3,9 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <string>
 
+#include "files/atomic_file.h"
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
+#include "run/live_output.h"
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/report_output.h"
@@ -19,6 +22,8 @@ struct ViewArguments {
   fs::path input;
   bool report = false;
   fs::path output;  // empty: beside the input
+  int port = 0;
+  std::string address = "127.0.0.1";
   bool quiet = false;
 };
 
@@ -32,17 +37,30 @@ fs::path OutputOf(const ViewArguments& arguments) {
                                            : beside.replace_extension(".html");
 }
 
+void WritePage(const ViewArguments& arguments, const std::string& page) {
+  const fs::path output = OutputOf(arguments);
+  WriteFileAtomically(output, page);
+  if (!arguments.quiet) {
+    Print("the report is in {}\n", output.string());
+  }
+}
+
 }  // namespace
 
 int RunView(int argc, char** argv) {
-  CLI::App app("Shows a finished run or a saved map in one HTML file for a browser.", "view");
+  CLI::App app(
+      "Shows a finished run or a saved map in a browser until Ctrl-C, or writes the page to a "
+      "file.",
+      "view");
   ViewArguments arguments;
   app.add_option("RUN_DIR|MAP", arguments.input, "output folder of a run, or a file of --save-map")
       ->required();
-  app.add_flag("--report", arguments.report, "write a file that shows everything without a server")
-      ->required();
+  app.add_flag("--report", arguments.report,
+               "write a file that shows everything without a server, and end");
   app.add_option("--output", arguments.output,
-                 "the file (default: report.html in RUN_DIR, or MAP with the ending .html)");
+                 "the file of --report (default: report.html in RUN_DIR, or MAP with the ending "
+                 ".html)");
+  AddPageArguments(app, arguments.port, arguments.address);
   app.add_flag("--quiet", arguments.quiet, "print nothing but warnings and errors");
   AddVersionAndExitCodes(app, "done", "the program failed");
   if (!ParseCommandLine(app, argc, argv)) {
@@ -52,14 +70,12 @@ int RunView(int argc, char** argv) {
     throw InputError(arguments.input.string() +
                      ": does not exist, expected the output folder of a run or a map file");
   }
-  const fs::path output = OutputOf(arguments);
-  if (fs::is_directory(arguments.input)) {
-    WriteReportOfRun(arguments.input, output);
+  const std::string page = fs::is_directory(arguments.input) ? ReportOfRun(arguments.input)
+                                                             : ReportOfMap(arguments.input);
+  if (arguments.report) {
+    WritePage(arguments, page);
   } else {
-    WriteReportOfMap(arguments.input, output);
-  }
-  if (!arguments.quiet) {
-    Print("the report is in {}\n", output.string());
+    ServePage(page, arguments.port, arguments.address);
   }
   return kDone;
 }

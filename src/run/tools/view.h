@@ -4,8 +4,8 @@
 namespace hullslam {
 
 // The program view, installed as hullslam-view.
-// Writes the report of a finished run or of a map. Parses the command line and returns the exit
-// code. Throws InputError for bad input.
+// Shows a finished run or a map in a browser, or writes its report. Parses the command line and
+// returns the exit code. Throws InputError for bad input.
 int RunView(int argc, char** argv);
 
 }  // namespace hullslam

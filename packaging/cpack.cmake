@@ -1,0 +1,31 @@
+# The Debian packages; scripts/make_packages.sh makes them. Each is a component of the installation:
+#
+#   libhullslam0.1   library: the shared library, settings of known cameras, vocabulary
+#   libhullslam-dev  dev: headers, CMake package, pkg-config
+#   hullslam         tools: programs, scripts, manual pages
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME hullslam)
+set(CPACK_PACKAGE_VENDOR HullSLAM)
+set(CPACK_PACKAGE_CONTACT "the HullSLAM developers <hullslam@example.org>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_PACKAGING_INSTALL_PREFIX ${CMAKE_INSTALL_PREFIX})
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL library dev tools)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/src)
+
+set(soname ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(same "(= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libhullslam${soname})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME libhullslam-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libhullslam${soname} ${same}, libeigen3-dev, libopencv-dev")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME hullslam)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS
+    "libhullslam${soname} ${same}, python3, python3-numpy, python3-matplotlib, python3-opencv, python3-yaml")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS snakemake)
+include(CPack)

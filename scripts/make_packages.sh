@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: scripts/make_packages.sh [FOLDER]
+#
+# Builds HullSLAM as Debian packages: libhullslam0.1, libhullslam-dev and hullslam (the programs).
+# Installs what the build needs, builds in build/package, and copies the packages to FOLDER
+# (build/packages by default).
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+cd "$top"
+
+folder=build/packages
+case "${1:-}" in
+  "") ;;
+  -h | --help)
+    print_help
+    exit 0
+    ;;
+  -*) usage_error "unknown argument \"$1\"" ;;
+  *) folder=$1 ;;
+esac
+
+step "setup"
+scripts/setup.sh
+
+step "build"
+cmake -S . -B build/package -G Ninja -D CMAKE_BUILD_TYPE=Release -D CMAKE_UNITY_BUILD=ON \
+  -D CMAKE_INSTALL_PREFIX=/usr -D BUILD_SHARED_LIBS=ON -D HULLSLAM_MAN_PAGES=ON \
+  -D HULLSLAM_BUILD_TESTS=OFF -D HULLSLAM_BUILD_BENCH=OFF
+cmake --build build/package -j "$(nproc)"
+
+step "package"
+rm -f build/package/*.deb
+(cd build/package && cpack)
+mkdir -p "$folder"
+rm -f "$folder"/*hullslam*.deb
+mv build/package/*.deb "$folder"
+
+step "done"
+ls "$folder"
+printf 'Install them with: apt-get install %s/*.deb\n' "$(readlink -f "$folder")"

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "live/live_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "hullslam/geometry/dual_quadric.h"
+#include "util/thin.h"
+
+namespace hullslam {
+namespace {
+
+constexpr size_t kMostOutlinePoints = 80;
+constexpr size_t kMostKeypoints = 1500;
+constexpr double kLeastWidth = 160.0;  // px
+constexpr double kMostWidth = 640.0;
+constexpr int kLiveQuality = 70;  // of JPEG
+
+std::string EncodeGrey(const cv::Mat& grey, double scale) {
+  cv::Mat scaled;
+  cv::resize(grey, scaled, {}, scale, scale, scale < 1.0 ? cv::INTER_AREA : cv::INTER_LINEAR);
+  std::vector<uchar> bytes;
+  cv::imencode(".jpg", scaled, bytes, {cv::IMWRITE_JPEG_QUALITY, kLiveQuality});
+  return {bytes.begin(), bytes.end()};
+}
+
+// Undistorted px as px of the picture.
+ViewShape ShapeOf(ObjectId object, const std::string& label,
+                  const std::vector<Eigen::Vector2d>& undistorted, const PinholeCamera& camera,
+                  double scale) {
+  ViewShape shape{object, label, {}};
+  for (const Eigen::Vector2d& point : Thin(undistorted, kMostOutlinePoints)) {
+    shape.points.push_back(scale * camera.Distort(point));
+  }
+  return shape;
+}
+
+}  // namespace
+
+LivePicture LivePictures::Make(const LiveFrame& frame) {
+  LivePicture made;
+  made.picture.timestamp = frame.report.tracked.timestamp;
+  if (frame.grey.empty()) {
+    return made;
+  }
+  const double scale = std::min(1.0, width_ / frame.grey.cols);
+  made.picture.jpeg = EncodeGrey(frame.grey, scale);
+  made.picture.width = static_cast<int>(std::lround(scale * frame.grey.cols));
+  made.picture.height = static_cast<int>(std::lround(scale * frame.grey.rows));
+  // The size of a file grows about as the area of the picture does.
+  const double excess =
+      static_cast<double>(made.picture.jpeg.size()) / static_cast<double>(jpeg_bytes_);
+  width_ =
+      std::clamp(width_ * std::clamp(std::pow(excess, -0.25), 0.8, 1.05), kLeastWidth, kMostWidth);
+  AddShapes(frame, scale, made.picture);
+  AddKeypoints(frame, scale, made);
+  return made;
+}
+
+void LivePictures::AddShapes(const LiveFrame& frame, double scale, ViewPicture& picture) const {
+  const FrameReport& report = frame.report;
+  for (size_t i = 0; i < report.frame->detections.size(); ++i) {
+    const Detection& seen = report.frame->detections[i];
+    const ObjectId id = i < report.objects.size() ? report.objects[i] : ObjectId();
+    picture.outlines.push_back(ShapeOf(id, seen.label,
+                                       seen.contour.size() > 0 ? seen.contour.Unpack() : seen.hull,
+                                       camera_, scale));
+    const ObjectLandmark* object =
+        frame.map != nullptr && id.IsValid() ? frame.map->objects().Find(id) : nullptr;
+    if (object == nullptr || object->state != ObjectState::kMapped) {
+      continue;
+    }
+    const auto ellipse =
+        ProjectEllipsoid(camera_.Matrix(), report.tracked.cam_from_world, object->ellipsoid);
+    if (ellipse) {
+      picture.ellipses.push_back(ShapeOf(id, object->Label(), ellipse->Polygon(), camera_, scale));
+    }
+  }
+}
+
+void LivePictures::AddKeypoints(const LiveFrame& frame, double scale, LivePicture& picture) const {
+  const std::vector<Keypoint>& keypoints = frame.report.frame->features.keypoints;
+  const std::vector<LandmarkId>& landmarks = frame.report.landmarks;
+  const size_t step = keypoints.size() / kMostKeypoints + 1;
+  for (size_t i = 0; i < keypoints.size(); i += step) {
+    const Eigen::Vector2d raw = scale * camera_.Distort(keypoints[i].undistorted.cast<double>());
+    const bool is_matched = i < landmarks.size() && landmarks[i].IsValid();
+    std::vector<float>& list = is_matched ? picture.matched : picture.unmatched;
+    list.push_back(static_cast<float>(raw.x()));
+    list.push_back(static_cast<float>(raw.y()));
+  }
+}
+
+}  // namespace hullslam

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/sequences/vslamlab_sequence.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "files/plausible.h"
+#include "files/read_file.h"
+#include "files/text_rows.h"
+#include "hullslam/util/error.h"
+#include "sequences/image_list.h"
+#include "settings/yaml_storage.h"
+#include "util/shown_text.h"
+#include "util/trim.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMostValue = 1e9;  // of a number of a calibration
+
+// The entry of a camera in a calibration.yaml.
+class CameraEntry {
+ public:
+  CameraEntry(const fs::path& file, std::string name, cv::FileNode node)
+      : file_(file), name_(std::move(name)), node_(std::move(node)) {}
+
+  [[noreturn]] void Fail(const char* key, const std::string& what) const {
+    throw InputError(
+        fmt::format("{}: {} of the camera '{}' {}", file_.string(), key, ShowText(name_), what));
+  }
+
+  bool Has(const char* key) const { return !node_[key].empty(); }
+
+  std::string Text(const char* key) const {
+    const cv::FileNode node = node_[key];
+    if (!node.isString()) {
+      Fail(key, "is not given, expected a name");
+    }
+    return node.string();
+  }
+
+  double Number(const char* key) const { return Value(key, node_[key]); }
+
+  std::vector<double> Numbers(const char* key, size_t count) const {
+    const cv::FileNode node = node_[key];
+    if (!node.isSeq() || node.size() != count) {
+      Fail(key, fmt::format("has {} value(s), expected a list of {} numbers",
+                            node.isSeq()   ? node.size()
+                            : node.empty() ? 0
+                                           : 1,
+                            count));
+    }
+    std::vector<double> numbers;
+    for (const cv::FileNode& element : node) {
+      numbers.push_back(Value(key, element));
+    }
+    return numbers;
+  }
+
+ private:
+  double Value(const char* key, const cv::FileNode& node) const {
+    const bool is_number = node.isInt() || node.isReal();
+    const double value = is_number ? static_cast<double>(node) : 0.0;
+    if (!is_number || !std::isfinite(value) || std::abs(value) > kMostValue) {
+      Fail(key, "is not given, or has a value that is no number of reasonable size");
+    }
+    return value;
+  }
+
+  const fs::path& file_;
+  std::string name_;
+  cv::FileNode node_;
+};
+
+CameraEntry FindCamera(const fs::path& file, const std::string& name, const cv::FileNode& cameras) {
+  std::vector<std::string> names;
+  for (const cv::FileNode& node : cameras) {
+    const cv::FileNode found = node.isMap() ? node["cam_name"] : cv::FileNode();
+    if (found.isString() && found.string() == name) {
+      return {file, name, node};
+    }
+    names.push_back(found.isString() ? ShowText(found.string()) : "?");
+  }
+  throw InputError(fmt::format("{}: has no camera '{}', expected one of: {}", file.string(),
+                               ShowText(name), fmt::join(names, ", ")));
+}
+
+void ReadLens(const CameraEntry& entry, PinholeCamera& camera) {
+  const std::string model =
+      entry.Has("distortion_type") ? entry.Text("distortion_type") : entry.Text("cam_model");
+  const bool has_k3 = model == "radtan5";
+  if (model == "pinhole") {
+    return;
+  }
+  if (model != "radtan4" && !has_k3) {
+    entry.Fail("cam_model", fmt::format("is '{}', expected pinhole, radtan4 or radtan5; HullSLAM "
+                                        "has no other model",
+                                        ShowText(model)));
+  }
+  const std::vector<double> lens = entry.Numbers("distortion_coefficients", has_k3 ? 5 : 4);
+  camera.k1 = lens[0];
+  camera.k2 = lens[1];
+  camera.p1 = lens[2];
+  camera.p2 = lens[3];
+  camera.k3 = has_k3 ? lens[4] : 0.0;
+}
+
+int SideOf(const CameraEntry& entry, double value) {
+  if (value != std::floor(value) || value < 1.0 || value > kMostPixels) {
+    entry.Fail("image_dimension", fmt::format("has the value '{:g}', expected pixels", value));
+  }
+  return static_cast<int>(value);
+}
+
+// OpenCV's parser wants a list to be indented, which YAML does not demand.
+std::string IndentLists(std::string_view text) {
+  std::string indented;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+    const std::string_view line = text.substr(begin, end - begin);
+    const bool is_below_key = line.starts_with("- ") || line.starts_with(' ');
+    indented += is_below_key ? "  " : "";
+    indented += line;
+    begin = end;
+  }
+  return indented;
+}
+
+VslamlabCamera ParseCamera(const CameraEntry& entry) {
+  const std::vector<double> focal = entry.Numbers("focal_length", 2);
+  const std::vector<double> center = entry.Numbers("principal_point", 2);
+  const std::vector<double> size = entry.Numbers("image_dimension", 2);
+  VslamlabCamera result;
+  result.is_mirrored = focal[1] < 0.0;
+  PinholeCamera& camera = result.calibration.camera;
+  camera.fx = focal[0];
+  camera.fy = std::abs(focal[1]);
+  camera.cx = center[0];
+  camera.cy = center[1];
+  camera.width = SideOf(entry, size[0]);
+  camera.height = SideOf(entry, size[1]);
+  ReadLens(entry, camera);
+  result.calibration.frames_per_second = entry.Number("fps");
+  if (entry.Has("depth_name")) {
+    result.depth_name = entry.Text("depth_name");
+    result.depth_factor = entry.Number("depth_factor");
+  }
+  return result;
+}
+
+// ---- rgb.csv
+
+std::vector<std::string_view> SplitCsv(std::string_view line) {
+  std::vector<std::string_view> cells;
+  while (true) {
+    const size_t comma = std::min(line.find(','), line.size());
+    cells.push_back(Trim(line.substr(0, comma)));
+    if (comma == line.size()) {
+      return cells;
+    }
+    line.remove_prefix(comma + 1);
+  }
+}
+
+// The two columns of a camera.
+struct ImageColumns {
+  size_t stamp = 0;
+  size_t path = 0;
+};
+
+class CsvReader {
+ public:
+  CsvReader(const fs::path& folder, const fs::path& csv) : folder_(folder), csv_(csv) {}
+
+  ImageColumns Find(const std::vector<std::string_view>& header, const std::string& name) const {
+    const auto find = [&](const std::string& column) {
+      const auto found = std::find(header.begin(), header.end(), column);
+      if (found == header.end()) {
+        throw InputError(fmt::format("{}:1: has no column '{}', expected one of: {}", csv_.string(),
+                                     ShowText(column),
+                                     ShowText(fmt::format("{}", fmt::join(header, ", ")))));
+      }
+      return static_cast<size_t>(found - header.begin());
+    };
+    return {find("ts_" + name + " (ns)"), find("path_" + name)};
+  }
+
+  int64_t Stamp(const TextRow& row, size_t column) const {
+    const std::string_view text = row.columns[column];
+    int64_t stamp = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), stamp);
+    if (error != std::errc() || end != text.data() + text.size() || stamp < 0) {
+      row.Fail(
+          fmt::format("the time stamp is '{}', expected nanoseconds", ShowText(std::string(text))));
+    }
+    return stamp;
+  }
+
+  fs::path Path(const TextRow& row, size_t column) const { return ImageFile(row, column, folder_); }
+
+ private:
+  const fs::path& folder_;
+  const fs::path& csv_;
+};
+
+}  // namespace
+
+VslamlabCamera ReadVslamlabCamera(const fs::path& file, const std::string& name) {
+  const std::string text = IndentLists(ReadFile(file, 1'000'000));
+  const bool has_head = text.starts_with("%YAML");
+  const int added_lines = has_head ? 0 : 1;
+  VslamlabCamera camera;
+  try {
+    const cv::FileStorage storage =
+        ParseYaml(file, has_head ? text : "%YAML:1.0\n" + text, added_lines);
+    const cv::FileNode cameras = storage.root().isMap() ? storage["cameras"] : cv::FileNode();
+    if (!cameras.isSeq()) {
+      throw InputError(file.string() +
+                       ": has no list 'cameras', expected a calibration.yaml of VSLAM-LAB");
+    }
+    camera = ParseCamera(FindCamera(file, name, cameras));
+  } catch (const cv::Exception& error) {
+    FailParsing(file, error, added_lines);
+  }
+  MakeSettings(camera.calibration, file.string());  // checks the numbers
+  return camera;
+}
+
+VslamlabSequence OpenVslamlabSequence(const fs::path& folder, const fs::path& csv,
+                                      const std::string& image_name,
+                                      const std::string& depth_name) {
+  constexpr double kNanosecond = 1e-9;
+  const std::string text = ReadFile(csv);
+  const CsvReader reader(folder, csv);
+  VslamlabSequence sequence;
+  ImageColumns image;
+  ImageColumns depth;
+  size_t columns = 0;
+  TextRow row{csv, 0, {}};
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = Trim(std::string_view(text).substr(begin, end - begin));
+    begin = end + 1;
+    ++row.line;
+    if (line.empty()) {
+      continue;
+    }
+    row.columns = SplitCsv(line);
+    if (columns == 0) {
+      columns = row.columns.size();
+      image = reader.Find(row.columns, image_name);
+      depth = depth_name.empty() ? ImageColumns() : reader.Find(row.columns, depth_name);
+      continue;
+    }
+    CheckColumns(row, columns, "those of the first line");
+    const int64_t stamp = reader.Stamp(row, image.stamp);
+    FramePaths frame{static_cast<double>(stamp) * kNanosecond, reader.Path(row, image.path)};
+    if (!depth_name.empty()) {
+      reader.Stamp(row, depth.stamp);
+      frame.depth = reader.Path(row, depth.path);
+    }
+    AddFrame(row, std::move(frame), sequence.images.frames);
+    sequence.stamps.push_back(stamp);
+  }
+  if (sequence.stamps.empty()) {
+    throw InputError(csv.string() + ": has no images, expected a rgb.csv of VSLAM-LAB");
+  }
+  sequence.images.available = sequence.images.frames.size();
+  CheckImagesExist(sequence.images.frames);
+  return sequence;
+}
+
+}  // namespace hullslam
