@@ -156,7 +156,7 @@ class ReportPage(unittest.TestCase):
 
     def test_reports_of_a_room_and_of_a_recorded_sequence_draw(self):
         room, run = self.folder / "room", self.folder / "room_run"
-        program("make_synthetic", room, "--scene", "room", "--frames", 24, "--quiet")
+        program("make_synthetic", room, "--scene", "room", "--frames", 12, "--quiet")
         program("map_objects", room, "--poses", room / "groundtruth.txt", "--masks", room / "masks",
                 "--output", run, "--report", "--quiet")
         self.expect_good(self.open(run / "report.html"))
@@ -165,7 +165,7 @@ class ReportPage(unittest.TestCase):
             self.skipTest("fr1_xyz is not on this machine")
         run = self.folder / "fr1_xyz"
         program("rgbd_tum", recorded, "--settings", CONFIG / "TUM1.yaml", "--masks",
-                recorded / "masks-yolo8n-seg", "--last", 100, "--output", run, "--report", "--quiet")
+                recorded / "masks-yolo8n-seg", "--last", 60, "--output", run, "--report", "--quiet")
         page = self.open(run / "report.html")
         self.expect_good(page)
         self.assertGreater(page.run("return document.querySelectorAll('#moment img').length"), 0)
