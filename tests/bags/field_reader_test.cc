@@ -16,8 +16,7 @@ using namespace std::string_literals;
 
 // One byte, a gap of three, a number of four bytes, a text, and a double at a multiple of eight.
 const std::string kLittleEndian = "\0\1\0\0\7\0\0\0\1\2\0\0\3\0\0\0ab\0\0\0\0\0\0\0\0\x20\x40"s;
-const std::string kBigEndian =
-    "\0\0\0\0\7\0\0\0\0\0\2\1\0\0\0\3ab\0\0\x40\x20\0\0\0\0\0\0"s;
+const std::string kBigEndian = "\0\0\0\0\7\0\0\0\0\0\2\1\0\0\0\3ab\0\0\x40\x20\0\0\0\0\0\0"s;
 
 TEST(FieldReaderTest, CdrIsReadInBothOrdersOfBytes) {
   for (const std::string& bytes : {kLittleEndian, kBigEndian}) {
