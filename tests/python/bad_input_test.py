@@ -267,5 +267,7 @@ def test_the_interpreter_exits_while_a_run_is_alive(pipeline, call):
     result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True,
                             cwd=ROOT / "tests" / "python", timeout=60, check=False)
     assert result.returncode == 0, result.stderr
-    # After finish() the next track() is refused, which ends the thread with a message.
-    assert result.stderr == "" or (call != "pass" and "after finish()" in result.stderr)
+    # After finish() the next track() is refused, which ends the thread with a message. The exit of the
+    # interpreter may cut it.
+    assert result.stderr == "" or (call != "pass"
+                                   and result.stderr.startswith("Exception in thread"))
