@@ -3,6 +3,7 @@
 #   libhullslam0.1   library: the shared library, settings of known cameras, vocabulary
 #   libhullslam-dev  dev: headers, CMake package, pkg-config
 #   hullslam         tools: programs, scripts, manual pages
+#   python3-hullslam python: the Python module
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME hullslam)
 set(CPACK_PACKAGE_VENDOR HullSLAM)
@@ -11,7 +12,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
 set(CPACK_PACKAGING_INSTALL_PREFIX ${CMAKE_INSTALL_PREFIX})
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL library dev tools)
+set(CPACK_COMPONENTS_ALL library dev tools python)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/src)
@@ -28,4 +29,13 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS
     "libhullslam${soname} ${same}, python3, python3-numpy, python3-matplotlib, python3-opencv, python3-yaml")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS snakemake)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-hullslam)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+# A module is compiled for one minor version of Python.
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "libhullslam${soname} ${same}, python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+foreach(component IN LISTS CPACK_COMPONENTS_ALL)
+  string(TOUPPER ${component} upper)
+  install(FILES packaging/copyright Thirdparty/NOTICE.md COMPONENT ${component}
+          DESTINATION ${CMAKE_INSTALL_DOCDIR}/../${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
+endforeach()
 include(CPack)

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: scripts/check_packages.sh [FOLDER]
 #
-# Installs the packages of FOLDER (build/packages by default) in a bare Debian 12 and runs the demo
-# there, without this source tree. Needs root and mmdebstrap. The root file system is removed at the
-# end.
+# Installs the packages of FOLDER (build/packages by default) in a bare Debian 12. There, without this
+# source tree, it runs the demo, maps the same sequence with the Python module, and compiles a program
+# with pkg-config. Where scripts/make_packages.sh has left its programs, their trajectory must be the
+# same bytes. Needs root and mmdebstrap. The root file system is removed at the end.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -23,18 +24,39 @@ command -v mmdebstrap >/dev/null || fail "mmdebstrap is missing; apt-get install
 
 root=$(mktemp -d)
 trap 'rm -rf "$root"' EXIT
+debian=$root/debian
+in_debian() {
+  chroot "$debian" sh -euc "cd /tmp && $1"
+}
+
 printf '== bare Debian 12 with the packages\n'
-# shellcheck disable=SC2016  # mmdebstrap's own shell expands $1, the root folder
-mmdebstrap --variant=apt --include=ca-certificates \
-  --customize-hook='mkdir -p "$1/packages"' \
-  --customize-hook="copy-in $folder/*.deb /packages" \
+export folder
+# shellcheck disable=SC2016  # mmdebstrap's own shell expands the variables; $1 is the root folder
+mmdebstrap --variant=apt --include=ca-certificates,g++,pkg-config \
+  --customize-hook='mkdir "$1/packages" && cp "$folder"/*hullslam*.deb "$1/packages"' \
   --customize-hook='chroot "$1" sh -c "apt-get update -q && apt-get install -y -q --no-install-recommends /packages/*.deb"' \
-  bookworm "$root/debian"
+  bookworm "$debian"
 
 printf '== demo\n'
-chroot "$root/debian" sh -c 'cd /tmp && hullslam-demo demo'
-for file in run/report.html run/trajectory.txt run/run.png; do
-  [ -s "$root/debian/tmp/demo/$file" ] || fail "the demo has not written $file"
+in_debian "hullslam-demo demo"
+for file in report.html trajectory.txt run.png; do
+  [ -s "$debian/tmp/demo/run/$file" ] || fail "the demo has not written $file"
 done
-sha256sum "$root/debian/tmp/demo/run/trajectory.txt" | cut -d " " -f 1
+
+printf '== Python\n'
+cp "$top/python/examples/sequence.py" "$top/Examples/minimal.cc" "$debian/tmp"
+in_debian "/usr/bin/python3 sequence.py demo/desk --masks demo/desk/masks --output python.txt"
+cmp "$debian/tmp/python.txt" "$debian/tmp/demo/run/trajectory.txt"
+
+printf '== pkg-config\n'
+# shellcheck disable=SC2016  # the shell in Debian runs pkg-config
+in_debian 'g++ minimal.cc $(pkg-config --cflags --libs hullslam) -o minimal && ./minimal | tail -n 1'
+
+bin=$top/build/package/bin
+if [ -x "$bin/rgbd_tum" ]; then
+  printf '== same bytes as outside\n'
+  "$bin/rgbd_tum" "$debian/tmp/demo/desk" --masks "$debian/tmp/demo/desk/masks" \
+    --output "$root/outside" --quiet
+  cmp "$root/outside/trajectory.txt" "$debian/tmp/demo/run/trajectory.txt"
+fi
 printf 'The packages work in a bare Debian 12.\n'

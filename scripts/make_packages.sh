@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: scripts/make_packages.sh [FOLDER]
 #
-# Builds HullSLAM as Debian packages: libhullslam0.1, libhullslam-dev and hullslam (the programs).
+# Builds HullSLAM as Debian packages: libhullslam0.1, libhullslam-dev, python3-hullslam and hullslam
+# (the programs).
 # Installs what the build needs, builds in build/package, and copies the packages to FOLDER
 # (build/packages by default).
 set -euo pipefail
@@ -24,9 +25,8 @@ step "setup"
 scripts/setup.sh
 
 step "build"
-cmake -S . -B build/package -G Ninja -D CMAKE_BUILD_TYPE=Release -D CMAKE_UNITY_BUILD=ON \
-  -D CMAKE_INSTALL_PREFIX=/usr -D BUILD_SHARED_LIBS=ON -D HULLSLAM_MAN_PAGES=ON \
-  -D HULLSLAM_BUILD_TESTS=OFF -D HULLSLAM_BUILD_BENCH=OFF
+cmake --preset release -B build/package -D CMAKE_INSTALL_PREFIX=/usr -D BUILD_SHARED_LIBS=ON \
+  -D HULLSLAM_MAN_PAGES=ON -D HULLSLAM_BUILD_TESTS=OFF -D HULLSLAM_BUILD_BENCH=OFF
 cmake --build build/package -j "$(nproc)"
 
 step "package"

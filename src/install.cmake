@@ -1,7 +1,7 @@
 # Installs the public headers, the library, the settings of known cameras, the default vocabulary,
 # the scripts that make, draw and compare runs, and packages for find_package(hullslam) and
 # pkg-config. Examples/CMakeLists.txt installs the programs. The components are those of
-# packaging/cpack.cmake: library, dev and tools.
+# packaging/cpack.cmake: library, dev, tools and python.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(HULLSLAM_INSTALL_CONFIGDIR ${CMAKE_INSTALL_DATADIR}/hullslam/config)

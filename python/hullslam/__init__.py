@@ -9,19 +9,11 @@ y down, z forward). Lengths are in metres, in monocular runs in units of the map
 seconds.
 """
 
-import os
-import pathlib
-
 from ._core import (ImageSequence, InputError, KnownPoseMapper, Map, MapObject, Masks, MaskFiles,
                     SeenObject, SequenceFrame, System, TrackResult, Trajectory, TrajectoryErrors,
                     __version__, default_settings, evaluate_trajectory, open_images, open_masks,
                     open_tum, preset_names, read_map, read_trajectory)
 from ._settings import Settings
-
-# pip installs the settings of known cameras and the vocabulary beside this file.
-_config = pathlib.Path(__file__).parent / "config"
-if _config.is_dir():
-    os.environ.setdefault("HULLSLAM_CONFIG", str(_config))
 
 InputError.__doc__ = """A file, a setting or an argument is wrong.
 

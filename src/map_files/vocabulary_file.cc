@@ -10,9 +10,9 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "files/atomic_file.h"
+#include "files/data_path.h"
 #include "files/read_file.h"
 #include "hullslam/util/error.h"
 #include "map_files/vocabulary_text.h"
@@ -72,19 +72,16 @@ fs::path FindDefaultVocabulary() {
     }
     return chosen;
   }
-  std::vector<fs::path> paths = {HULLSLAM_INSTALLED_VOCABULARY, HULLSLAM_SOURCE_VOCABULARY};
+  const fs::path name = fs::path("Vocabulary") / "hullslam.bow";
   if (const std::string config = Variable("HULLSLAM_CONFIG"); !config.empty()) {
-    paths.insert(paths.begin(), fs::path(config) / ".." / "Vocabulary" / "hullslam.bow");
-  }
-  for (const fs::path& path : paths) {
-    if (fs::is_regular_file(path, error)) {
-      return path;
+    const fs::path beside = fs::path(config) / ".." / name;
+    if (fs::is_regular_file(beside, error)) {
+      return beside;
     }
   }
-  throw InputError(
-      fmt::format("neither {} nor {} is a file, expected the default vocabulary "
-                  "there; set HULLSLAM_VOCABULARY or give --vocabulary FILE|none",
-                  HULLSLAM_INSTALLED_VOCABULARY, HULLSLAM_SOURCE_VOCABULARY));
+  return FindData(name,
+                  "expected the default vocabulary there; set HULLSLAM_VOCABULARY or give "
+                  "--vocabulary FILE|none");
 }
 
 }  // namespace hullslam

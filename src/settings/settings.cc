@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "files/data_path.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "settings/preset_comparison.h"
@@ -300,15 +301,9 @@ fs::path FindConfigFolder() {
     }
     return chosen;
   }
-  for (const char* const folder : {HULLSLAM_INSTALLED_CONFIG, HULLSLAM_SOURCE_CONFIG}) {
-    if (fs::is_directory(folder, error)) {
-      return folder;
-    }
-  }
-  throw InputError(
-      fmt::format("neither {} nor {} is a folder, expected the settings of known "
-                  "cameras there; set HULLSLAM_CONFIG or give --settings FILE",
-                  HULLSLAM_INSTALLED_CONFIG, HULLSLAM_SOURCE_CONFIG));
+  return FindData("config",
+                  "expected the settings of known cameras there; set HULLSLAM_CONFIG or give "
+                  "--settings FILE");
 }
 
 std::string FormatSettings(SystemOptions options) {

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tests that the libraries of Foxglove read what --mcap writes. They are npm packages that Debian
-does not have. Without them the test is skipped; docs/bags.md tells how to install them."""
+"""Tests that the libraries of Foxglove read what --mcap writes, and that the validator of Khronos
+accepts the glTF of export. Debian does not have them, so npm installs them beside the programs. The
+tests are skipped without npm, or if it cannot reach its registry."""
 
 import base64
 import json
@@ -17,12 +18,25 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = pathlib.Path(os.environ.get("HULLSLAM_BIN", ROOT / "build" / "release" / "bin"))
-MODULES = pathlib.Path(os.environ.get("HULLSLAM_NODE_MODULES", ROOT / "build" / "node_modules"))
+MODULES = BIN.parent / "npm" / "node_modules"
+PACKAGES = ("@mcap/core@2.2.2", "@mcap/support@1.1.0", "@foxglove/rosmsg@5.0.5",
+            "@foxglove/rosmsg2-serialization@3.1.0", "gltf-validator@2.0.0-dev.3.10")
 FRAMES = 24
 
 
-def read_with_foxglove(file):
-    output = subprocess.run(["node", ROOT / "tests" / "support" / "read_mcap.cjs", file, MODULES],
+def setUpModule():
+    if shutil.which("npm") is None:
+        raise unittest.SkipTest("npm is not installed")
+    MODULES.parent.mkdir(exist_ok=True)
+    installed = subprocess.run(["npm", "install", "--prefix", MODULES.parent, "--no-save",
+                                "--prefer-offline", "--no-audit", "--no-fund", *PACKAGES],
+                               capture_output=True, text=True)
+    if installed.returncode != 0:
+        raise unittest.SkipTest(f"npm cannot install the packages: {installed.stderr.strip()}")
+
+
+def run_with_node(script, file):
+    output = subprocess.run(["node", ROOT / "tests" / "support" / script, file, MODULES],
                             check=True, capture_output=True, text=True).stdout
     return json.loads(output)
 
@@ -37,25 +51,21 @@ def row_of(stamp, position, rotation):
             *(position[axis] for axis in "xyz"), *(rotation[axis] for axis in "xyzw")]
 
 
-@unittest.skipIf(shutil.which("node") is None, "node is not installed")
-@unittest.skipIf(not (MODULES / "@mcap" / "core").is_dir(), f"no npm packages in {MODULES}")
-class McapStranger(unittest.TestCase):
+class ForeignReaders(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        folder = pathlib.Path(cls.folder.name)
-        desk = folder / "desk"
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.folder = pathlib.Path(cls.temporary.name)
+        desk = cls.folder / "desk"
         subprocess.run([BIN / "make_synthetic", desk, "--frames", str(FRAMES), "--quiet"], check=True)
-        cls.out = folder / "out"
+        cls.out = cls.folder / "out"
         subprocess.run([BIN / "rgbd_tum", desk, "--masks", desk / "masks", "--output", cls.out,
-                        "--mcap", folder / "run.mcap", "--quiet"], check=True)
+                        "--mcap", cls.folder / "run.mcap", "--save-map", cls.folder / "desk.map",
+                        "--quiet"], check=True)
         cls.images = sorted((desk / "rgb").iterdir())
-        cls.read = read_with_foxglove(folder / "run.mcap")
+        cls.read = run_with_node("read_mcap.cjs", cls.folder / "run.mcap")
         cls.topics = cls.read["topics"]
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
 
     def one(self, topic, kind):
         self.assertEqual(self.topics[topic]["type"], kind)
@@ -121,6 +131,14 @@ class McapStranger(unittest.TestCase):
             self.assertEqual(sphere["pose"], detection["bbox"]["center"])
             self.assertEqual(entity["texts"][0]["text"], detection["id"])
             self.assertAlmostEqual(sum(each["hypothesis"]["score"] for each in detection["results"]), 1)
+
+    def test_gltf_is_valid(self):
+        for source, form in ((self.out, "ellipsoids"), (self.folder / "desk.map", "boxes")):
+            file = self.folder / f"{form}.glb"
+            subprocess.run([BIN / "export", source, "--to", "gltf", "--output", file,
+                            "--objects-as", form], check=True, capture_output=True)
+            issues = run_with_node("validate_gltf.cjs", file)
+            self.assertEqual((issues["numErrors"], issues["numWarnings"]), (0, 0), issues["messages"])
 
 
 if __name__ == "__main__":
