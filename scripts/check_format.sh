@@ -18,14 +18,7 @@ list_files() {
   fi
 }
 
-case "${1:-}" in
-  "") ;;
-  -h | --help)
-    print_help
-    exit 0
-    ;;
-  *) usage_error "unknown argument \"$1\"" ;;
-esac
+read_no_arguments "$@"
 command -v clang-format >/dev/null || fail "clang-format is not installed; run scripts/setup.sh"
 
 files=()

@@ -10,15 +10,7 @@ set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 folder=$top/build/packages
-case "${1:-}" in
-  "") ;;
-  -h | --help)
-    print_help
-    exit 0
-    ;;
-  -*) usage_error "unknown argument \"$1\"" ;;
-  *) folder=$1 ;;
-esac
+read_folder "$@"
 command -v mmdebstrap >/dev/null || fail "mmdebstrap is missing; apt-get install mmdebstrap"
 [ "$(id -u)" -eq 0 ] || fail "needs root, for the root file system of the bare Debian"
 

@@ -22,6 +22,28 @@ print_help() {
   awk 'NR > 2 && !/^#/ {exit} NR > 2 {sub(/^# ?/, ""); print}' "$0"
 }
 
+# Reads the arguments of a script that only has --help.
+read_no_arguments() {
+  case "${1:-}" in
+    "") ;;
+    -h | --help)
+      print_help
+      exit 0
+      ;;
+    *) usage_error "unknown argument \"$1\"" ;;
+  esac
+}
+
+# Reads the arguments "[FOLDER]" of a script. The variable folder has the default before, and FOLDER
+# after it is given.
+# shellcheck disable=SC2034  # the scripts that source this file use it
+read_folder() {
+  case "${1:-}" in
+    "" | -*) read_no_arguments "$@" ;;
+    *) folder=$1 ;;
+  esac
+}
+
 # Announces a step. If the script fails before the next step, the error message names this step.
 step() {
   current_step="$1"

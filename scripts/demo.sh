@@ -10,14 +10,7 @@ set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$top"
 
-case "${1:-}" in
-  "") ;;
-  -h | --help)
-    print_help
-    exit 0
-    ;;
-  *) usage_error "unknown argument \"$1\"" ;;
-esac
+read_no_arguments "$@"
 
 step "setup"
 scripts/setup.sh

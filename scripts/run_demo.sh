@@ -10,15 +10,7 @@ set -euo pipefail
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 folder=hullslam-demo
-case "${1:-}" in
-  "") ;;
-  -h | --help)
-    print_help
-    exit 0
-    ;;
-  -*) usage_error "unknown argument \"$1\"" ;;
-  *) folder=$1 ;;
-esac
+read_folder "$@"
 
 # The programs of the build, or of the installation, in which this script is in
 # share/hullslam/scripts.

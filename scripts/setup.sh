@@ -51,14 +51,7 @@ install_packages() {
     apt-get install -y --no-install-recommends "$@" || fail "apt-get could not install: $*"
 }
 
-case "${1:-}" in
-  "") ;;
-  -h | --help)
-    print_help
-    exit 0
-    ;;
-  *) usage_error "unknown argument \"$1\"" ;;
-esac
+read_no_arguments "$@"
 [ -r "$list" ] || fail "cannot read $list"
 check_system
 mapfile -t missing < <(read_packages | missing_packages)

@@ -27,24 +27,6 @@ struct SeenObject {
   std::optional<int64_t> object;
 };
 
-std::string StateOf(const FrameReport& report) {
-  switch (report.tracked.state) {
-    case TrackingState::kTracked:
-      return "tracked";
-    case TrackingState::kLost:
-      return "lost";
-    default:
-      return "initialising";
-  }
-}
-
-std::optional<std::string> ReasonOf(const FrameReport& report) {
-  if (report.failure) {
-    return std::string(ToString(*report.failure));
-  }
-  return report.loss ? std::optional(std::string(ToString(*report.loss))) : std::nullopt;
-}
-
 py::object IfTracked(const FrameReport& report, const Rigid3& pose) {
   return report.tracked.state == TrackingState::kTracked ? py::object(ToArray(pose))
                                                          : py::object(py::none());
@@ -97,10 +79,11 @@ void BindTrackResult(py::module_& module) {
       .def_property_readonly("box", &BoxOf,
                              "(4,) least x and y and largest x and y of the hull, undistorted px.");
   py::class_<FrameReport>(module, "TrackResult", "What track() found in one frame.")
-      .def_property_readonly("state", &StateOf,
-                             "'tracked', 'lost', or 'initialising': there is no map yet.")
       .def_property_readonly(
-          "reason", &ReasonOf,
+          "state", [](const FrameReport& r) { return ToString(r.tracked.state); },
+          "'tracked', 'lost', or 'initialising': there is no map yet.")
+      .def_property_readonly(
+          "reason", &FrameReport::Reason,
           "Why the frame has no pose (docs/my-run-fails.md); None if it has one,\n"
           "and while the mode 'rgbd' waits for a first image with features.")
       .def_property_readonly(
@@ -130,9 +113,10 @@ void BindTrackResult(py::module_& module) {
       .def_property_readonly("objects", &SeenObjectsOf,
                              "The objects that masks show in this frame: list of SeenObject.")
       .def("__repr__", [](const FrameReport& r) {
-        const std::optional<std::string> reason = ReasonOf(r);
+        const std::string reason(r.Reason().value_or(""));
         return "<hullslam.TrackResult at " + std::to_string(r.tracked.timestamp) +
-               " s: " + StateOf(r) + (reason ? ", " + *reason : std::string()) + ">";
+               " s: " + std::string(ToString(r.tracked.state)) +
+               (reason.empty() ? "" : ", " + reason) + ">";
       });
 }
 

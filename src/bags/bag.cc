@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bags/bag.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <system_error>
 
@@ -8,7 +10,6 @@
 #include "bags/ros1_bag.h"
 #include "bags/sqlite_bag.h"
 #include "files/natural_order.h"
-#include "files/random_access_file.h"
 #include "hullslam/util/error.h"
 
 namespace hullslam {
@@ -74,6 +75,13 @@ size_t Bag::AddTopic(const std::string& name, const std::string& type) {
   }
   topics_.push_back({name, short_type});
   return topics_.size() - 1;
+}
+
+void Bag::WarnOfMissingEnd(const RandomAccessFile& file, uint64_t record) {
+  warnings_.push_back(fmt::format(
+      "{}: ends at byte {} in the middle of the record at byte {}; the recording was not closed or "
+      "is cut off, and is used up to there",
+      file.path().string(), file.size(), record));
 }
 
 std::vector<std::unique_ptr<Bag>> OpenBags(const fs::path& path) {

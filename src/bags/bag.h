@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bags/field_reader.h"
+#include "files/random_access_file.h"
 
 namespace hullslam {
 
@@ -57,6 +58,8 @@ class Bag {
  protected:
   // The index of the topic, which is added if it is new.
   size_t AddTopic(const std::string& name, const std::string& type);
+  // Adds the warning that the file ends within the record that begins at byte `record`.
+  void WarnOfMissingEnd(const RandomAccessFile& file, uint64_t record);
 
   std::vector<BagTopic> topics_;
   std::vector<std::string> warnings_;

@@ -107,10 +107,7 @@ void McapBag::Scan(const std::function<void(const BagMessage& message)>& visit) 
     const RecordHead head = start.size() == kRecordHead ? ReadRecordHead(start) : RecordHead{};
     const uint64_t position = at + kRecordHead;
     if (start.size() < kRecordHead || head.length > file_.size() - position) {
-      warnings_.push_back(fmt::format(
-          "{}: ends at byte {} in the middle of the record at byte {}; the recording was not "
-          "closed or is cut off, and is used up to there",
-          file_.path().string(), file_.size(), at));
+      WarnOfMissingEnd(file_, at);
       return;
     }
     if (head.kind == McapRecord::kDataEnd || head.kind == McapRecord::kFooter) {

@@ -136,10 +136,7 @@ void Ros1Bag::Scan(const std::function<void(const BagMessage& message)>& visit) 
   Record record;
   for (uint64_t at = kRos1Magic.size(); at < file_.size(); at = record.position + record.size) {
     if (!ReadRecord(at, record) || record.size > file_.size() - record.position) {
-      warnings_.push_back(fmt::format(
-          "{}: ends at byte {} in the middle of the record at byte {}; the recording was not "
-          "closed or is cut off, and is used up to there",
-          file_.path().string(), file_.size(), at));
+      WarnOfMissingEnd(file_, at);
       return;
     }
     const auto kind = NumberOf<uint8_t>(record.fields, "op", at);

@@ -6,20 +6,10 @@
 #include <algorithm>
 #include <set>
 
-#include "hullslam/util/error.h"
+#include "sequences/frame_colour.h"
 
 namespace hullslam {
 namespace {
-
-constexpr double kSameMoment = 1e-6;  // s; files have time stamps in microseconds
-
-const FramePaths* FindFrameAt(const ImageSequence& sequence, double timestamp) {
-  const auto next = std::lower_bound(
-      sequence.frames.begin(), sequence.frames.end(), timestamp - kSameMoment,
-      [](const FramePaths& frame, double stamp) { return frame.timestamp < stamp; });
-  return next != sequence.frames.end() && next->timestamp <= timestamp + kSameMoment ? &*next
-                                                                                     : nullptr;
-}
 
 // COLMAP's text files separate their columns by blanks.
 std::string NameOf(const FramePaths& frame) {
@@ -57,17 +47,6 @@ std::vector<KeyframeImage> FindKeyframeImages(const Map& map, const ImageSequenc
     images.push_back({id, *found, name});
   });
   return images;
-}
-
-cv::Mat LoadKeyframeImage(const ColourLoader& load, const FramePaths& frame,
-                          const PinholeCamera& camera) {
-  cv::Mat image = load(frame);
-  if (image.cols != camera.width || image.rows != camera.height) {
-    throw InputError(fmt::format("{}: {}x{} px, expected the size of the run's camera, {}x{}",
-                                 frame.image.string(), image.cols, image.rows, camera.width,
-                                 camera.height));
-  }
-  return image;
 }
 
 }  // namespace hullslam

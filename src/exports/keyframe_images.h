@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
 
-#include "hullslam/camera/pinhole.h"
 #include "hullslam/map/map.h"
 #include "hullslam/sequences/image_sequence.h"
-#include "sequences/run_sequence.h"
 
 namespace hullslam {
 
@@ -25,10 +22,5 @@ struct KeyframeImage {
 // sequences may have the same time stamps.
 std::vector<KeyframeImage> FindKeyframeImages(const Map& map, const ImageSequence& sequence,
                                               const std::string& session);
-
-// The raw image in colour: CV_8UC3, blue first. Throws InputError if it cannot be read or does not
-// have the size of the camera.
-cv::Mat LoadKeyframeImage(const ColourLoader& load, const FramePaths& frame,
-                          const PinholeCamera& camera);
 
 }  // namespace hullslam

@@ -12,6 +12,7 @@
 #include "eval/object_metrics.h"
 #include "map/islands.h"
 #include "util/thin.h"
+#include "view/view_of_map.h"
 
 namespace hullslam {
 namespace {
@@ -40,14 +41,6 @@ uint32_t ThinningOf(size_t total, size_t most) {
 bool IsInIsland(const Map& map, const Landmark& landmark, IslandId island) {
   return !landmark.observations.empty() &&
          map.keyframes().At(landmark.observations.front().keyframe).island == island;
-}
-
-double TimeOf(const Map& map, const Landmark& landmark) {
-  const Keyframe* keyframe = map.keyframes().Find(landmark.created_by);
-  if (keyframe == nullptr) {
-    keyframe = &map.keyframes().At(landmark.observations.front().keyframe);
-  }
-  return keyframe->frame->timestamp;
 }
 
 void WritePose(const Rigid3& pose, float* row) {
@@ -131,7 +124,7 @@ RowChange LiveMap::FollowLandmarks(const Map& map, IslandId island, bool is_limi
         for (int axis = 0; axis < 3; ++axis) {
           row[axis] = static_cast<float>(wanted[i]->position[axis]);
         }
-        row[3] = static_cast<float>(TimeOf(map, *wanted[i]) - start_);
+        row[3] = static_cast<float>(CreationOf(map, *wanted[i]) - start_);
       },
       tolerance_, is_limited ? limits_.changed_landmarks : wanted.size());
 }

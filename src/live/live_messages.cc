@@ -6,8 +6,6 @@
 #include <optional>
 #include <span>
 
-#include "hullslam/map/initialisation_failure.h"
-#include "hullslam/map/tracking_failure.h"
 #include "map/islands.h"
 #include "system/compose_trajectory.h"
 #include "util/printable.h"
@@ -35,24 +33,6 @@ const char* NameOf(LivePhase phase) {
     default:
       return "running";
   }
-}
-
-const char* NameOf(TrackingState state) {
-  switch (state) {
-    case TrackingState::kTracked:
-      return "tracked";
-    case TrackingState::kLost:
-      return "lost";
-    default:
-      return "initialising";
-  }
-}
-
-std::string ReasonOf(const FrameReport& report) {
-  if (report.loss) {
-    return std::string(ToString(*report.loss));
-  }
-  return report.failure ? std::string(ToString(*report.failure)) : std::string();
 }
 
 // Whether the frame was tracked in a part of the map that is not joined to the main one yet.
@@ -131,8 +111,8 @@ std::string LiveMessages::Frame(const LiveFrame* frame, const LiveControls& cont
     live_ = {{"frame", frame->number},
              {"frames", run_.frame_count},
              {"time", tracked.timestamp - run_.start},
-             {"state", NameOf(tracked.state)},
-             {"reason", ReasonOf(frame->report)},
+             {"state", ToString(tracked.state)},
+             {"reason", frame->report.Reason().value_or("")},
              {"inliers", tracked.inliers},
              {"build_ms", Rounded(frame->build_ms)},
              {"track_ms", Rounded(frame->track_ms)}};

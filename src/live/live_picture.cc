@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "hullslam/geometry/dual_quadric.h"
+#include "sequences/image_file.h"
 #include "util/thin.h"
 
 namespace hullslam {
@@ -22,9 +22,7 @@ constexpr int kLiveQuality = 70;  // of JPEG
 std::string EncodeGrey(const cv::Mat& grey, double scale) {
   cv::Mat scaled;
   cv::resize(grey, scaled, {}, scale, scale, scale < 1.0 ? cv::INTER_AREA : cv::INTER_LINEAR);
-  std::vector<uchar> bytes;
-  cv::imencode(".jpg", scaled, bytes, {cv::IMWRITE_JPEG_QUALITY, kLiveQuality});
-  return {bytes.begin(), bytes.end()};
+  return EncodeJpeg(scaled, kLiveQuality);
 }
 
 // Undistorted px as px of the picture.

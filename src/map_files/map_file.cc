@@ -217,6 +217,15 @@ MapSettings MapSettingsOf(const SystemOptions& options) {
           .vocabulary = options.vocabulary != nullptr ? options.vocabulary->hash() : 0};
 }
 
+SystemOptions OptionsOf(const MapSettings& settings) {
+  SystemOptions options;
+  options.sensor = settings.sensor;
+  options.camera = settings.camera;
+  options.features.level_count = settings.level_count;
+  options.features.scale_factor = settings.scale_factor;
+  return options;
+}
+
 void WriteMap(const fs::path& path, const Map& map, const MapSettings& settings) {
   if (map.keyframes().empty()) {
     throw InputError(path.string() + ": cannot be written: the map has no keyframe");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,12 @@ namespace hullslam {
 // Rounds `value` to a multiple of `unit` (1 over a power of ten). Never returns -0. Throws
 // CheckError for a value that is not finite.
 double Rounded(double value, double unit);
+
+// The value in JSON; null if it is absent.
+template <typename Value>
+nlohmann::ordered_json OrNull(const std::optional<Value>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+}
 
 // The JSON on one line. Labels come from the files of users and may contain any bytes; what is not
 // UTF-8 is replaced.

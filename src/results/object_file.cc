@@ -18,8 +18,8 @@ constexpr double kPixel = 1e-2;
 constexpr double kMetre = 1e-9;
 constexpr double kAngle = 1e-4;  // degrees; shares are rounded to the same step
 
-// The value in JSON; null if it is not known.
-Json OrNull(const std::optional<double>& value) {
+// The rounded value; null if it is not known.
+Json RoundedOrNull(const std::optional<double>& value) {
   return value ? Json(Rounded(*value, kMetre)) : Json(nullptr);
 }
 
@@ -67,10 +67,6 @@ Json QuadricJson(const Ellipsoid& ellipsoid) {
   return rows;
 }
 
-const char* ToString(ObjectState state) {
-  return state == ObjectState::kMapped ? "mapped" : "candidate";
-}
-
 Json ToJson(const PinholeCamera& camera) {
   return {{"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx},       {"cy", camera.cy},
           {"k1", camera.k1}, {"k2", camera.k2}, {"p1", camera.p1},       {"p2", camera.p2},
@@ -106,10 +102,10 @@ Json ToJson(const ReportedObject& object) {
           {"half_axes",
            {Rounded(axes.x(), kMetre), Rounded(axes.y(), kMetre), Rounded(axes.z(), kMetre)}},
           {"dual_quadric", QuadricJson(object.ellipsoid)},
-          {"siou", OrNull(object.fit.siou)},
-          {"siou_mask", OrNull(object.fit.siou_mask)},
-          {"mtd_m2", OrNull(object.fit.mtd_m2)},
-          {"tangent_px", OrNull(object.fit.tangent_px)},
+          {"siou", RoundedOrNull(object.fit.siou)},
+          {"siou_mask", RoundedOrNull(object.fit.siou_mask)},
+          {"mtd_m2", RoundedOrNull(object.fit.mtd_m2)},
+          {"tangent_px", RoundedOrNull(object.fit.tangent_px)},
           {"misfit_px", Rounded(object.misfit_px, kMetre)},
           {"parallax_deg", Rounded(ParallaxOf(object), kAngle)},
           {"quality", Rounded(QualityOf(object), kAngle)},

@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "files/canonical_path.h"
 #include "files/staging_folder.h"
 #include "files/synced_file.h"
 #include "hullslam/util/check.h"
@@ -80,22 +81,6 @@ Names NamesOfRun(const fs::path& index) {
     return {};
   }
   return names;
-}
-
-// The canonical path, also of a file or folder that does not exist yet.
-fs::path Canonical(const fs::path& path) {
-  std::error_code error;
-  fs::path canonical = fs::weakly_canonical(fs::absolute(path, error), error);
-  if (error) {
-    canonical = fs::absolute(path, error).lexically_normal();
-  }
-  // A path that ends in a slash has an empty last part.
-  return canonical.has_filename() ? canonical : canonical.parent_path();
-}
-
-bool IsSameOrInside(const fs::path& inner, const fs::path& outer) {
-  const auto [end, unused] = std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end());
-  return end == outer.end();
 }
 
 void CreateFolder(const fs::path& folder) {
@@ -206,19 +191,17 @@ void CleanUp(const fs::path& folder) {
 }  // namespace
 
 void CheckApartFromInputs(const fs::path& folder, std::span<const fs::path> inputs) {
-  const fs::path output = Canonical(folder);
   for (const fs::path& path : inputs) {
     std::error_code error;
     if (path.empty()) {
       continue;
     }
-    const fs::path input = Canonical(path);
-    if (IsSameOrInside(input, output)) {
+    if (IsSameOrInside(path, folder)) {
       throw InputError(
           fmt::format("{}: cannot be used as output folder: it contains {}, which this run reads",
                       folder.string(), path.string()));
     }
-    if (fs::is_directory(input, error) && IsSameOrInside(output, input)) {
+    if (fs::is_directory(path, error) && IsSameOrInside(folder, path)) {
       throw InputError(
           fmt::format("{}: cannot be used as output folder: it is inside {}, which this run reads",
                       folder.string(), path.string()));

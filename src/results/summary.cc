@@ -8,16 +8,12 @@
 #include "files/json_file.h"
 #include "files/json_node.h"
 #include "hullslam/eval/ate.h"
+#include "results/json_text.h"
 
 namespace hullslam {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <typename Value>
-Json OrNull(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 Json ToJson(const LostStretch& stretch) {
   return {{"first_frame", stretch.first_frame},

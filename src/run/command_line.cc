@@ -113,7 +113,10 @@ CLI::Validator WholeNumber(int least) {
       "");
 }
 
-void AddOverwriteFlag(CLI::App& app, bool& overwrite) {
+void AddOutputArguments(CLI::App& app, std::filesystem::path& output, bool& overwrite) {
+  app.add_option("--output", output,
+                 "folder for the result files; replaces the former run of this program in it")
+      ->capture_default_str();
   app.add_flag("--overwrite", overwrite,
                "also replace a run of another program in the folder of --output");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,9 @@ void ExpectNumber(CLI::Option& option, double least, double most);
 // the largest unsigned number.
 CLI::Validator WholeNumber(int least);
 
-// Adds --overwrite, without which a run does not replace one of another program.
-void AddOverwriteFlag(CLI::App& app, bool& overwrite);
+// Adds --output, the folder for the results of a run, and --overwrite, without which the run does
+// not replace one of another program.
+void AddOutputArguments(CLI::App& app, std::filesystem::path& output, bool& overwrite);
 
 // Adds --debug, which sends the library's log to stderr, including its debug messages on what
 // happens to each object.

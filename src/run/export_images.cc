@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <utility>
@@ -14,15 +13,11 @@
 #include "frame/dynamic_mask.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/util/error.h"
+#include "sequences/frame_colour.h"
+#include "sequences/image_file.h"
 
 namespace hullslam {
 namespace {
-
-std::string EncodePng(const cv::Mat& image) {
-  std::vector<uchar> bytes;
-  cv::imencode(".png", image, bytes);
-  return {bytes.begin(), bytes.end()};
-}
 
 void UseColours(const PointColours& colours, ExportModel& model) {
   const std::vector<Colour> list = colours.Colours();
@@ -62,7 +57,8 @@ void WriteDepths(const std::vector<KeyframeImage>& images, const PinholeView& vi
   for (size_t i = 0; i < images.size(); ++i) {
     const ImageInput loaded = input.sequence->load(images[i].frame, input.map->sensor.camera);
     frames[i].depth = "depths/" + images[i].name + ".png";
-    folder.Write({frames[i].depth, EncodePng(MakeDepthImage(loaded.depth, *units, view))});
+    folder.Write(
+        {frames[i].depth, EncodeImage(MakeDepthImage(loaded.depth, *units, view), ".png")});
   }
 }
 
@@ -98,7 +94,7 @@ void WriteMasks(const std::vector<KeyframeImage>& images, const PinholeView& vie
       seen = 255 - view.Undistort(masks[i], cv::INTER_NEAREST);
     }
     frames[i].mask = "masks/" + images[i].name + ".png";
-    folder.Write({frames[i].mask, EncodePng(seen)});
+    folder.Write({frames[i].mask, EncodeImage(seen, ".png")});
   }
 }
 
@@ -129,8 +125,7 @@ void ColourPoints(ExportInput& input) {
   for (const KeyframeImage& image :
        FindKeyframeImages(input.map->map, *input.sequence, input.session)) {
     try {
-      colours.Add(image.keyframe, LoadKeyframeImage(input.load_colour, image.frame, camera),
-                  camera);
+      colours.Add(image.keyframe, LoadColour(*input.sequence, image.frame, camera), camera);
     } catch (const InputError&) {
       ++failed;
     }
@@ -147,10 +142,10 @@ void WriteImages(const std::vector<KeyframeImage>& images, const PinholeView& vi
   PointColours colours(input.map->map, input.map->located.ids);
   const PinholeCamera& camera = input.map->sensor.camera;
   for (const KeyframeImage& image : images) {
-    const cv::Mat raw = LoadKeyframeImage(input.load_colour, image.frame, camera);
+    const cv::Mat raw = LoadColour(*input.sequence, image.frame, camera);
     colours.Add(image.keyframe, raw, camera);
-    folder.Write(
-        {"images/" + image.name + ".png", EncodePng(view.Undistort(raw, cv::INTER_CUBIC))});
+    folder.Write({"images/" + image.name + ".png",
+                  EncodeImage(view.Undistort(raw, cv::INTER_CUBIC), ".png")});
   }
   UseColours(colours, input.model);
 }

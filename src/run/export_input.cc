@@ -15,7 +15,9 @@
 #include "results/object_file.h"
 #include "results/ply_points.h"
 #include "results/scene_file.h"
+#include "run/map_session.h"
 #include "run/object_outputs.h"
+#include "sequences/run_sequence.h"
 #include "system/compose_trajectory.h"
 #include "system/make_sensor.h"
 
@@ -65,12 +67,7 @@ MapOfRun LoadMap(const fs::path& path, std::vector<std::string>& notes) {
     notes.push_back(path.string() +
                     ": has parts that are not joined; only the largest one is exported");
   }
-  SystemOptions options;
-  options.sensor = stored.settings.sensor;
-  options.camera = stored.settings.camera;
-  options.features.level_count = stored.settings.level_count;
-  options.features.scale_factor = stored.settings.scale_factor;
-  const Sensor sensor = MakeSensor(options);
+  const Sensor sensor = MakeSensor(OptionsOf(stored.settings));
   LocatedLandmarks located = LocateLandmarks(stored.map, sensor);
   return {std::move(stored.map), sensor, std::move(located)};
 }
@@ -147,12 +144,6 @@ void ReadSceneOfRun(const fs::path& folder, ExportModel& model) {
   }
 }
 
-// The name that the run gave to its session: that of the folder or file.
-std::string SequenceName(const fs::path& sequence) {
-  const fs::path normal = fs::weakly_canonical(sequence);
-  return (normal.has_filename() ? normal : normal.parent_path()).filename().string();
-}
-
 void UseSequence(const ExportSource& source, const RunFacts& facts, bool is_needed,
                  ExportInput& input) {
   std::optional<fs::path> path = source.sequence;
@@ -172,8 +163,7 @@ void UseSequence(const ExportSource& source, const RunFacts& facts, bool is_need
   }
   const bool use_depth = !input.map->sensor.IsMonocular();
   input.sequence = OpenRunSequence(facts.program, *path, input.map->sensor.camera, use_depth);
-  input.load_colour = ColourLoaderOf(*input.sequence);
-  input.session = SequenceName(source.sequence.empty() ? *path : fs::path(facts.sequence));
+  input.session = SessionName(source.sequence.empty() ? *path : fs::path(facts.sequence));
   input.read.push_back(*path);
   if (const auto masks = FindRunInput(facts.masks, source.input)) {
     input.masks = MasksOfRun{*masks, facts.masks_format};

@@ -11,7 +11,6 @@
 #include "hullslam/frame/sensor.h"
 #include "hullslam/map/map.h"
 #include "hullslam/sequences/image_sequence.h"
-#include "sequences/run_sequence.h"
 
 namespace hullslam {
 
@@ -40,8 +39,7 @@ struct ExportInput {
   ExportModel model;  // `points` are grey
   std::optional<MapOfRun> map;
   std::optional<ImageSequence> sequence;
-  ColourLoader load_colour;  // for the frames of the sequence
-  std::string session;       // the name of the sequence
+  std::string session;  // the name of the sequence
   std::optional<MasksOfRun> masks;
   // The files and folders that an export must not be written to.
   std::vector<std::filesystem::path> read;

@@ -42,6 +42,10 @@ void TakeReport(SettingsReport report, LoadedSettings& settings) {
 
 }  // namespace
 
+void AddSettingsArgument(CLI::App& app, const std::string& rule, std::filesystem::path& settings) {
+  app.add_option("--settings", settings, "settings file (" + rule + ")");
+}
+
 void AddPresetArgument(CLI::App& app, std::string& preset) {
   app.add_option("--preset", preset,
                  "work as a published system does: " + ListPresets() +

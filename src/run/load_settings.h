@@ -25,6 +25,8 @@ struct LoadedSettings {
   std::vector<PresetOverride> preset_overrides = {};
 };
 
+// Adds --settings. `rule` is its default in words.
+void AddSettingsArgument(CLI::App& app, const std::string& rule, std::filesystem::path& settings);
 // Adds --preset.
 void AddPresetArgument(CLI::App& app, std::string& preset);
 

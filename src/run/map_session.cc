@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "files/atomic_file.h"
+#include "files/canonical_path.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
 #include "run/interrupt.h"
@@ -19,27 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The canonical path, also of a file or folder that does not exist yet.
-fs::path Canonical(const fs::path& path) {
-  std::error_code error;
-  const fs::path canonical = fs::weakly_canonical(fs::absolute(path, error), error);
-  const fs::path found = error ? path.lexically_normal() : canonical;
-  return found.has_filename() ? found : found.parent_path();  // without a slash at the end
-}
-
-// The name of the sequence's folder, also if the path ends in a slash.
-std::string SessionName(const fs::path& sequence) {
-  return Canonical(sequence).filename().string();
-}
-
 std::string Title(size_t number, const std::string& name) {
   return fmt::format("session {}: {}", number, name);
-}
-
-bool IsSameOrInside(const fs::path& path, const fs::path& folder) {
-  const fs::path inner = Canonical(path);
-  const fs::path outer = Canonical(folder);
-  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 
 void CheckSavedFile(const char* option, const fs::path& file, const RunArguments& arguments) {
@@ -61,7 +43,7 @@ void CheckSavedFile(const char* option, const fs::path& file, const RunArguments
                     "replaces the files there, so choose another path",
                     option, file.string()));
   }
-  const fs::path folder = Canonical(file).parent_path();
+  const fs::path folder = CanonicalPath(file).parent_path();
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
     throw InputError(fmt::format("{} is '{}', but there is no folder {}", option, file.string(),
@@ -71,6 +53,10 @@ void CheckSavedFile(const char* option, const fs::path& file, const RunArguments
 }
 
 }  // namespace
+
+std::string SessionName(const fs::path& sequence) {
+  return CanonicalPath(sequence).filename().string();
+}
 
 void CheckSavedFiles(const RunArguments& arguments) {
   CheckSavedFile("--save-map", arguments.save_map, arguments);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,10 @@
 #include "run/run_arguments.h"
 
 namespace hullslam {
+
+// The name of the session of a run: that of the folder or file of its sequence, also if the path
+// ends in a slash.
+std::string SessionName(const std::filesystem::path& sequence);
 
 // Throws InputError unless the files of --save-map and --mcap, if they are given, can be written
 // and are neither in the output folder, where the next run would remove them, nor one of the inputs

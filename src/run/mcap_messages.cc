@@ -56,25 +56,14 @@ std::string NameOf(const ReportedObject& object) {
   return fmt::format("{} {}", object.label, object.id.value);
 }
 
-// red, green, blue, alpha
-using Colour = std::array<double, 4>;
-constexpr Colour kTextColour = {1.0, 1.0, 1.0, 1.0};
+constexpr Colour kTextColour = {255, 255, 255};
 
-// A colour that is the same for all objects of a class. (FNV-1a, because std::hash may differ from
-// library to library.)
-Colour ColourOfClass(std::string_view label) {
-  uint32_t hash = 0x811c9dc5;
-  for (const char c : label) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x01000193;
+// A Color: red, green, blue and alpha, from 0 to 1.
+void PutColour(const Colour& colour, double alpha, CdrWriter& message) {
+  for (const uint8_t channel : colour) {
+    message.Put(channel / 255.0);
   }
-  const auto part = [&](int shift) { return 0.25 + 0.75 * ((hash >> shift) % 256) / 255.0; };
-  return {part(0), part(8), part(16), 0.5};
-}
-
-void PutColour(const Colour& colour, CdrWriter& message) {
-  for (const double part : colour) {
-    message.Put(part);
-  }
+  message.Put(alpha);
 }
 
 void PutEntity(RosTime time, const ReportedObject& object, CdrWriter& message) {
@@ -91,7 +80,7 @@ void PutEntity(RosTime time, const ReportedObject& object, CdrWriter& message) {
   message.PutCount(1);      // spheres
   PutPose(pose, message);
   PutVector(2.0 * object.ellipsoid.half_axes, message);
-  PutColour(ColourOfClass(object.label), message);
+  PutColour(ColourOfClass(object.label), 0.5, message);
   message.PutCount(0);  // cylinders
   message.PutCount(0);  // lines
   message.PutCount(0);  // triangles
@@ -100,7 +89,7 @@ void PutEntity(RosTime time, const ReportedObject& object, CdrWriter& message) {
   message.Put(uint8_t{1});  // it faces the viewer
   message.Put(kFontPixels);
   message.Put(uint8_t{1});  // the size is in pixels
-  PutColour(kTextColour, message);
+  PutColour(kTextColour, 1.0, message);
   message.PutText(NameOf(object));
   message.PutCount(0);  // models
 }
@@ -172,7 +161,7 @@ std::string PathMessage(RosTime time, const Trajectory& trajectory) {
 }
 
 std::string PointsMessage(RosTime time, std::span<const Eigen::Vector3f> positions,
-                          std::span<const std::array<uint8_t, 3>> colours) {
+                          std::span<const Colour> colours) {
   Check(positions.size() == colours.size(), "each point has a colour");
   constexpr uint8_t kFloat32 = 7;
   constexpr uint32_t kPointBytes = 4 * sizeof(float);

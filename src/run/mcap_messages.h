@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -11,6 +10,7 @@
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/trajectory.h"
 #include "report/object_report.h"
+#include "results/unit_mesh.h"
 
 namespace hullslam {
 
@@ -35,14 +35,14 @@ std::string CameraInfoMessageOf(RosTime time, const PinholeCamera& camera);
 std::string TransformMessage(RosTime time, const Rigid3& world_from_cam);
 // nav_msgs/msg/Path. Poses whose stamps ROS cannot express throw InputError.
 std::string PathMessage(RosTime time, const Trajectory& trajectory);
-// sensor_msgs/msg/PointCloud2 with the fields x, y, z and rgb. There is a colour (red, green, blue)
-// for each point.
+// sensor_msgs/msg/PointCloud2 with the fields x, y, z and rgb. There is a colour for each point.
 std::string PointsMessage(RosTime time, std::span<const Eigen::Vector3f> positions,
-                          std::span<const std::array<uint8_t, 3>> colours);
+                          std::span<const Colour> colours);
 // vision_msgs/msg/Detection3DArray: the mapped objects with their oriented boxes and the share of
 // the votes of each class.
 std::string DetectionsMessage(RosTime time, std::span<const ReportedObject> objects);
-// foxglove_msgs/msg/SceneUpdate: the mapped objects as ellipsoids with their class names.
+// foxglove_msgs/msg/SceneUpdate: the mapped objects as ellipsoids in the colours of their classes
+// (ColourOfClass()), with their class names.
 std::string SceneMessage(RosTime time, std::span<const ReportedObject> objects);
 
 }  // namespace hullslam

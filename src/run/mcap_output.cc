@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 #include <vector>
 
@@ -14,6 +13,8 @@
 #include "hullslam/util/error.h"
 #include "run/mcap_messages.h"
 #include "run/messages.h"
+#include "sequences/frame_colour.h"
+#include "sequences/image_file.h"
 #include "system/make_sensor.h"
 #include "view/run_pictures.h"
 #include "view/view_of_map.h"
@@ -22,12 +23,6 @@ namespace hullslam {
 namespace {
 
 constexpr int kJpegQuality = 90;
-
-std::string EncodeFrame(const cv::Mat& image) {
-  std::vector<uchar> bytes;
-  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
-  return {bytes.begin(), bytes.end()};
-}
 
 // Writes the messages of a run in the order of their times.
 class RunRecorder {
@@ -86,7 +81,8 @@ class RunRecorder {
         writer_.Write(transforms, time.Nanoseconds(), TransformMessage(time, pose->second));
       }
       try {
-        const std::string jpeg = EncodeFrame(LoadColour(*content_.sequence, frame, camera));
+        const std::string jpeg =
+            EncodeJpeg(LoadColour(*content_.sequence, frame, camera), kJpegQuality);
         writer_.Write(cameras, time.Nanoseconds(), CameraInfoMessageOf(time, camera));
         writer_.Write(images, time.Nanoseconds(), JpegMessage(time, jpeg));
       } catch (const InputError&) {

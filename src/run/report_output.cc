@@ -97,11 +97,7 @@ std::string ReportOfRun(const fs::path& folder) { return PageOf(ViewOfRun(folder
 
 std::string ReportOfMap(const fs::path& map) {
   const StoredMap stored = ReadMap(map);
-  SystemOptions options;
-  options.sensor = stored.settings.sensor;
-  options.camera = stored.settings.camera;
-  options.features.level_count = stored.settings.level_count;
-  options.features.scale_factor = stored.settings.scale_factor;
+  const SystemOptions options = OptionsOf(stored.settings);
   ViewModel model = ViewOfMap(stored.map, MakeSensor(options), options.objects);
   AddUp(std::nullopt, model);
   model.title = map.filename().string();

@@ -28,7 +28,7 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   app.add_option("ARGUMENTS", positional,
                  "SEQUENCE: " + help.sequence + "\nor " + LongForm(arguments.sensor) +
                      ", in the order of ORB-SLAM2");
-  app.add_option("--settings", arguments.settings, "settings file (" + help.settings + ")");
+  AddSettingsArgument(app, help.settings, arguments.settings);
   AddPresetArgument(app, arguments.preset);
   AddVocabularyArgument(app, arguments.vocabulary);
   if (arguments.sensor == SensorKind::kRgbd) {
@@ -37,10 +37,7 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
   }
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
   AddOverrides(app, arguments.overrides);
-  app.add_option("--output", arguments.output,
-                 "folder for the result files; replaces the former run of this program in it")
-      ->capture_default_str();
-  AddOverwriteFlag(app, arguments.overwrite);
+  AddOutputArguments(app, arguments.output, arguments.overwrite);
   app.add_option("--save-map", arguments.save_map,
                  "file for the map at the end of the run; replaces an earlier one");
   auto* const load_map = app.add_option(

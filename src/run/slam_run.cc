@@ -50,17 +50,6 @@ PipelineKind ChoosePipeline(const RunArguments& arguments) {
   return arguments.realtime ? PipelineKind::kRealtime : PipelineKind::kThreaded;
 }
 
-const char* Name(TrackingState state) {
-  switch (state) {
-    case TrackingState::kTracked:
-      return "tracked";
-    case TrackingState::kLost:
-      return "LOST";
-    default:
-      return "initialising";
-  }
-}
-
 // The numbers of islands; empty if the map has only one.
 std::string DescribeIslands(const Map& map) {
   return map.islands_begun() > 1 ? fmt::format("  {} parts of the map, {} joined",
@@ -72,11 +61,12 @@ std::string DescribeState(TrackingState state, std::optional<InitialisationFailu
                           const System& system) {
   const auto map = system.map();
   if (failure) {
-    return fmt::format("{}: {}", Name(state), ToString(*failure));
+    return fmt::format("{}: {}", ToString(state), ToString(*failure));
   }
-  return fmt::format(
-      "{}  {} keyframes  {} landmarks{}", Name(state), map != nullptr ? map->keyframes().size() : 0,
-      map != nullptr ? map->landmarks().size() : 0, map != nullptr ? DescribeIslands(*map) : "");
+  return fmt::format("{}  {} keyframes  {} landmarks{}", ToString(state),
+                     map != nullptr ? map->keyframes().size() : 0,
+                     map != nullptr ? map->landmarks().size() : 0,
+                     map != nullptr ? DescribeIslands(*map) : "");
 }
 
 // The bundle adjustment of a large map and the final poses of many frames take long. So their

@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "files/read_file.h"
 #include "hullslam/util/error.h"
@@ -181,6 +182,13 @@ cv::Mat Decode8Bit(const std::filesystem::path& path, std::string_view bytes, in
   return image;
 }
 
+std::string Encode(const cv::Mat& image, const std::string& extension,
+                   const std::vector<int>& parameters) {
+  std::vector<uchar> bytes;
+  cv::imencode(extension, image, bytes, parameters);
+  return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace
 
 cv::Mat DecodeGreyImage(const std::filesystem::path& name, std::string_view bytes) {
@@ -209,6 +217,14 @@ cv::Mat ReadDepthImage(const std::filesystem::path& path) {
 
 cv::Mat ReadLabelImage(const std::filesystem::path& path) {
   return Decode16Bit(path, ReadImageFile(path), "label");
+}
+
+std::string EncodeImage(const cv::Mat& image, const std::string& extension) {
+  return Encode(image, extension, {});
+}
+
+std::string EncodeJpeg(const cv::Mat& image, int quality) {
+  return Encode(image, ".jpg", {cv::IMWRITE_JPEG_QUALITY, quality});
 }
 
 }  // namespace hullslam

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
+#include <string>
 #include <string_view>
 
 namespace hullslam {
@@ -36,5 +37,10 @@ cv::Mat ReadLabelImage(const std::filesystem::path& path);
 cv::Mat DecodeGreyImage(const std::filesystem::path& name, std::string_view bytes);
 cv::Mat DecodeColourImage(const std::filesystem::path& name, std::string_view bytes);
 cv::Mat DecodeDepthImage(const std::filesystem::path& name, std::string_view bytes);
+
+// The bytes of a file with this image. `extension` tells its format, as in ".png".
+std::string EncodeImage(const cv::Mat& image, const std::string& extension);
+// The bytes of a JPEG file. `quality` is from 0 to 100.
+std::string EncodeJpeg(const cv::Mat& image, int quality);
 
 }  // namespace hullslam

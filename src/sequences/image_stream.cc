@@ -107,6 +107,9 @@ ImageStream OpenVideo(const fs::path& file, const ImageStreamOptions& options) {
     CheckImageSize(frame.image.string(), image.grey, camera);
     return image;
   };
+  stream.images.load_colour = [video](const FramePaths& frame) {
+    return video->ReadColour(frame.number);
+  };
   SelectFrames(file, options.selection, stream.images);
   return stream;
 }

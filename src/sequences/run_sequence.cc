@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sequences/run_sequence.h"
 
-#include <memory>
 #include <system_error>
 
 #include "hullslam/sequences/bag_sequence.h"
@@ -9,8 +8,6 @@
 #include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/sequences/tum_sequence.h"
-#include "sequences/image_file.h"
-#include "sequences/video_file.h"
 
 namespace hullslam {
 
@@ -48,24 +45,9 @@ ImageSequence OpenRunSequence(const std::string& program, const fs::path& sequen
     return OpenBagSequence(sequence, {.use_depth = use_depth, .need_camera = false}).images;
   }
   if (program.ends_with("_video")) {
-    ImageSequence images = OpenImageStream(sequence).images;
-    std::error_code error;
-    if (fs::is_regular_file(sequence, error)) {
-      const auto video = std::make_shared<VideoFile>(sequence);
-      images.load_colour = [video](const FramePaths& frame) {
-        return video->ReadColour(frame.number);
-      };
-    }
-    return images;
+    return OpenImageStream(sequence).images;
   }
   return OpenTumSequence(sequence, {.use_depth = use_depth});
-}
-
-ColourLoader ColourLoaderOf(const ImageSequence& sequence) {
-  if (sequence.load_colour != nullptr) {
-    return sequence.load_colour;
-  }
-  return [](const FramePaths& frame) { return ReadColourImage(frame.image); };
 }
 
 }  // namespace hullslam

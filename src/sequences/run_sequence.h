@@ -24,9 +24,4 @@ std::optional<std::filesystem::path> FindRunInput(const std::string& input,
 ImageSequence OpenRunSequence(const std::string& program, const std::filesystem::path& sequence,
                               const PinholeCamera& camera, bool use_depth = false);
 
-// Decodes the images of the frames of a sequence in colour, which SLAM does not need: CV_8UC3 with
-// blue first, in raw pixels. To be called by one thread at a time; the frames of a video in order.
-// Throws InputError for an image that cannot be read.
-ColourLoader ColourLoaderOf(const ImageSequence& sequence);
-
 }  // namespace hullslam

@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
 #include <map>
 #include <memory>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <string>
@@ -17,31 +15,17 @@
 
 #include "geometry/polyline.h"
 #include "hullslam/util/error.h"
+#include "sequences/frame_colour.h"
 #include "sequences/image_file.h"
 #include "util/thin.h"
 
 namespace hullslam {
 namespace {
 
-constexpr double kSameMoment = 1e-3;  // s
-constexpr int kPictureWidth = 480;    // px
-constexpr int kCutoutSize = 220;      // px, of the longer side
-constexpr size_t kCutouts = 3;        // of each object
-constexpr int kQuality = 78;          // of JPEG
-
-const FramePaths* FindFrame(const ImageSequence& sequence, double timestamp) {
-  const auto next = std::lower_bound(
-      sequence.frames.begin(), sequence.frames.end(), timestamp - kSameMoment,
-      [](const FramePaths& frame, double stamp) { return frame.timestamp < stamp; });
-  return next != sequence.frames.end() && next->timestamp <= timestamp + kSameMoment ? &*next
-                                                                                     : nullptr;
-}
-
-std::string EncodeJpeg(const cv::Mat& image) {
-  std::vector<uchar> bytes;
-  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality});
-  return {bytes.begin(), bytes.end()};
-}
+constexpr int kPictureWidth = 480;  // px
+constexpr int kCutoutSize = 220;    // px, of the longer side
+constexpr size_t kCutouts = 3;      // of each object
+constexpr int kQuality = 78;        // of JPEG
 
 // Undistorted px as raw px.
 std::vector<Eigen::Vector2d> Distorted(const std::vector<Eigen::Vector2d>& points,
@@ -78,7 +62,7 @@ ViewPicture MakePicture(const cv::Mat& image, double timestamp, const cv::Rect& 
   cv::Mat scaled;
   cv::resize(image(part), scaled, {}, scale, scale, cv::INTER_AREA);
   ViewPicture picture{.timestamp = timestamp,
-                      .jpeg = EncodeJpeg(scaled),
+                      .jpeg = EncodeJpeg(scaled, kQuality),
                       .width = scaled.cols,
                       .height = scaled.rows,
                       .outlines = {},
@@ -190,24 +174,6 @@ std::vector<double> PictureStamps(const ViewModel& model, size_t most) {
 
 }  // namespace
 
-cv::Mat LoadColour(const ImageSequence& sequence, const FramePaths& frame,
-                   const PinholeCamera& camera) {
-  cv::Mat image;
-  if (sequence.load_colour != nullptr) {
-    image = sequence.load_colour(frame);
-  } else if (std::filesystem::is_regular_file(frame.image)) {
-    image = ReadColourImage(frame.image);
-  } else {
-    FramePaths without_depth = frame;
-    without_depth.depth.clear();
-    cv::cvtColor(sequence.load(without_depth, camera).grey, image, cv::COLOR_GRAY2BGR);
-  }
-  if (image.cols != camera.width || image.rows != camera.height) {
-    throw InputError(frame.image.string() + ": does not have the size of the camera");
-  }
-  return image;
-}
-
 size_t RunImageTasks(const ImageSequence& sequence, const PinholeCamera& camera,
                      std::vector<ImageTask> tasks) {
   std::stable_sort(tasks.begin(), tasks.end(), [](const ImageTask& a, const ImageTask& b) {
@@ -217,7 +183,7 @@ size_t RunImageTasks(const ImageSequence& sequence, const PinholeCamera& camera,
   const FramePaths* loaded = nullptr;
   cv::Mat image;
   for (const ImageTask& task : tasks) {
-    const FramePaths* const frame = FindFrame(sequence, task.timestamp);
+    const FramePaths* const frame = FindFrameAt(sequence, task.timestamp);
     if (frame != nullptr && frame != loaded) {
       try {
         image = LoadColour(sequence, *frame, camera);

@@ -21,12 +21,6 @@ struct ImageTask {
   std::function<void(const cv::Mat& image)> use;
 };
 
-// The image of a frame in colour, CV_8UC3 with blue first, in raw pixels. If there is only a grey
-// one, as in a video, that one with three equal channels. Throws InputError if it cannot be read or
-// does not have the size of the camera.
-cv::Mat LoadColour(const ImageSequence& sequence, const FramePaths& frame,
-                   const PinholeCamera& camera);
-
 // Loads the images of the tasks, each once, in order of time. Returns the number of tasks whose
 // image is not in the sequence or cannot be read.
 size_t RunImageTasks(const ImageSequence& sequence, const PinholeCamera& camera,

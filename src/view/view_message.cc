@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "results/json_text.h"
 #include "util/printable.h"
 #include "view/base64.h"
 #include "view/packed_array.h"
@@ -117,8 +118,6 @@ Json PicturesJson(const std::vector<ViewPicture>& pictures, double start) {
   return list;
 }
 
-Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
-
 Json ObjectJson(const ViewObject& shown, double start) {
   const ReportedObject& object = shown.object;
   const Eigen::Vector3d& centre = object.ellipsoid.world_from_object.translation;
@@ -130,7 +129,7 @@ Json ObjectJson(const ViewObject& shown, double start) {
   }
   return {{"id", object.id.value},
           {"class", Printable(object.label)},
-          {"state", object.state == ObjectState::kMapped ? "mapped" : "candidate"},
+          {"state", ToString(object.state)},
           {"reason", shown.reason},
           {"votes", std::move(votes)},
           {"centre", std::vector<double>(centre.begin(), centre.end())},

@@ -20,15 +20,6 @@ namespace {
 // Tardos 2017), and they would cover the picture.
 constexpr int kLeastShared = 100;
 
-// The keyframe that made a landmark, or the first one that observes it, if that was culled.
-double CreationOf(const Map& map, const Landmark& landmark) {
-  const Keyframe* keyframe = map.keyframes().Find(landmark.created_by);
-  if (keyframe == nullptr) {
-    keyframe = &map.keyframes().At(landmark.observations.front().keyframe);
-  }
-  return keyframe->frame->timestamp;
-}
-
 void AddLandmarks(const Map& map, const LocatedLandmarks& located, ViewLandmarks& landmarks) {
   landmarks = {.positions = {}, .colours = {}, .created = {}, .total = located.positions.size()};
   for (size_t i = 0; i < located.positions.size(); ++i) {
@@ -79,6 +70,14 @@ const Observation& ShowingObservation(const Landmark& landmark) {
 }
 
 }  // namespace
+
+double CreationOf(const Map& map, const Landmark& landmark) {
+  const Keyframe* keyframe = map.keyframes().Find(landmark.created_by);
+  if (keyframe == nullptr) {
+    keyframe = &map.keyframes().At(landmark.observations.front().keyframe);
+  }
+  return keyframe->frame->timestamp;
+}
 
 void AddMap(const Map& map, const Sensor& sensor, const ObjectOptions& options, ViewModel& model) {
   AddLandmarks(map, LocateLandmarks(map, sensor), model.landmarks);

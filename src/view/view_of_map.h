@@ -19,6 +19,10 @@ void AddMap(const Map& map, const Sensor& sensor, const ObjectOptions& options, 
 // The model of a map without a run. Its trajectory has the poses of the keyframes.
 ViewModel ViewOfMap(const Map& map, const Sensor& sensor, const ObjectOptions& options);
 
+// The time stamp of the keyframe that made a landmark, or of the first one that observes it if that
+// was culled, s.
+double CreationOf(const Map& map, const Landmark& landmark);
+
 // A pixel that shows a landmark of the model.
 struct LandmarkPixel {
   size_t landmark = 0;                              // index into ViewLandmarks::positions

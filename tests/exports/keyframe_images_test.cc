@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "support/expect_error.h"
 #include "support/synthetic_world.h"
 
 namespace hullslam {
@@ -64,16 +63,6 @@ TEST(KeyframeImages, OfTheSameImageHaveDifferentNames) {
   ASSERT_EQ(images.size(), 2U);
   EXPECT_EQ(images[0].name, "frame_10");
   EXPECT_EQ(images[1].name, "frame_10_1");
-}
-
-TEST(KeyframeImages, MustHaveTheSizeOfTheCamera) {
-  PinholeCamera camera;
-  const FramePaths frame{0.0, "a.png", {}, 0};
-  const auto load = [](const FramePaths&) { return cv::Mat(10, 20, CV_8UC3); };
-  ExpectInputError([&] { LoadKeyframeImage(load, frame, camera); }, {"a.png", "20x10", "640x480"});
-  camera.width = 20;
-  camera.height = 10;
-  EXPECT_EQ(LoadKeyframeImage(load, frame, camera).cols, 20);
 }
 
 }  // namespace

@@ -17,6 +17,12 @@ TEST(TrackedFrame, IsNotTrackedAtFirst) {
   EXPECT_EQ(frame.inliers, 0);
 }
 
+TEST(TrackingState, HasANameForMessages) {
+  EXPECT_EQ(ToString(TrackingState::kNotInitialized), "initialising");
+  EXPECT_EQ(ToString(TrackingState::kTracked), "tracked");
+  EXPECT_EQ(ToString(TrackingState::kLost), "lost");
+}
+
 TEST(KeyframeRequest, HasNoReferenceAtFirst) {
   const KeyframeRequest request;
   EXPECT_EQ(request.frame, nullptr);
@@ -55,6 +61,16 @@ TEST(FrameReport, IsEmptyAtFirst) {
   EXPECT_EQ(report.frame, nullptr);
   EXPECT_TRUE(report.landmarks.empty());
   EXPECT_TRUE(report.objects.empty());
+}
+
+TEST(FrameReport, NamesTheReasonWhyThereIsNoPose) {
+  FrameReport report;
+  EXPECT_EQ(report.Reason(), std::nullopt);
+  report.loss = TrackingFailure::kTooFewFeatures;
+  EXPECT_EQ(report.Reason(), ToString(TrackingFailure::kTooFewFeatures));
+  report.loss.reset();
+  report.failure = InitialisationFailure::kTooLittleParallax;
+  EXPECT_EQ(report.Reason(), ToString(InitialisationFailure::kTooLittleParallax));
 }
 
 TEST(Sighting, IsZeroAtFirst) {

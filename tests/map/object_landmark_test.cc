@@ -19,6 +19,11 @@ TEST(ObjectLandmark, IsACandidateWithoutShapeAtFirst) {
   EXPECT_THROW(object.Label(), CheckError);
 }
 
+TEST(ObjectState, HasANameForMessages) {
+  EXPECT_EQ(ToString(ObjectState::kCandidate), "candidate");
+  EXPECT_EQ(ToString(ObjectState::kMapped), "mapped");
+}
+
 TEST(ObjectLandmark, HasTheClassWithMostVotes) {
   ObjectLandmark object;
   object.votes = {{"laptop", 0.9}, {"tv", 1.4}};

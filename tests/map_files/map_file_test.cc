@@ -221,10 +221,7 @@ TEST_F(MapFileTest, KeepsItsSettings) {
   settings.vocabulary = 0x1234567890abcdef;
   WriteMap(path_, SmallMap(), settings);
   EXPECT_EQ(ReadMap(path_).settings, settings);
-  SystemOptions options;
-  options.camera = settings.camera;
-  options.features.level_count = 5;
-  options.features.scale_factor = 1.5;
+  SystemOptions options = OptionsOf(settings);
   settings.vocabulary = 0;
   EXPECT_EQ(MapSettingsOf(options), settings);
   options.readout_time = 0.02;

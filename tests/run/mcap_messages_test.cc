@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -95,7 +94,7 @@ TEST(McapMessagesTest, PosesAreThoseOfTheCameraInTheMap) {
 
 TEST(McapMessagesTest, PointsHaveTheirColours) {
   const std::vector<Eigen::Vector3f> positions = {{1.0f, 2.0f, 3.0f}};
-  const std::vector<std::array<uint8_t, 3>> colours = {{0x11, 0x22, 0x33}};
+  const std::vector<Colour> colours = {{0x11, 0x22, 0x33}};
   const std::string message = PointsMessage({1, 2}, positions, colours);
   FieldReader reader(kCdr, message, "points");
   ExpectHeader(reader, {1, 2}, "map");
@@ -140,6 +139,16 @@ TEST(McapMessagesTest, OnlyMappedObjectsAreWritten) {
   ASSERT_EQ(of_scene.Get<uint32_t>(), 1u);
   ExpectHeader(of_scene, {1, 2}, "map");
   EXPECT_EQ(of_scene.GetText(), "cup 7");
+  EXPECT_EQ(of_scene.Get<int32_t>(), 0);
+  EXPECT_EQ(of_scene.Get<uint32_t>(), 0u);
+  EXPECT_EQ(of_scene.Get<uint8_t>(), 0);
+  for (const uint32_t count : {0, 0, 0, 1}) {  // metadata, arrows, cubes, spheres
+    EXPECT_EQ(of_scene.Get<uint32_t>(), count);
+  }
+  ExpectNumbers(of_scene, NumbersOf(kPose));
+  ExpectNumbers(of_scene, {0.2, 0.4, 0.6});
+  const auto [red, green, blue] = ColourOfClass("cup");
+  ExpectNumbers(of_scene, {red / 255.0, green / 255.0, blue / 255.0, 0.5});
 }
 
 }  // namespace

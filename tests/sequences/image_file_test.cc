@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <string_view>
 
@@ -13,12 +12,6 @@
 
 namespace hullslam {
 namespace {
-
-std::string Encode(const char* extension, const cv::Mat& image) {
-  std::vector<uchar> bytes;
-  cv::imencode(extension, image, bytes);
-  return {bytes.begin(), bytes.end()};
-}
 
 cv::Mat Ramp(int type) {
   cv::Mat image(48, 64, type);
@@ -32,7 +25,7 @@ TEST(ImageFile, DepthIsReadExactly) {
   const TemporaryFolder folder;
   cv::Mat depth = Ramp(CV_16UC1);
   depth.at<uint16_t>(3, 4) = 65535;
-  const cv::Mat read = ReadDepthImage(folder.Write("d.png", Encode(".png", depth)));
+  const cv::Mat read = ReadDepthImage(folder.Write("d.png", EncodeImage(depth, ".png")));
   ASSERT_EQ(read.type(), CV_16UC1);
   EXPECT_EQ(cv::norm(read, depth, cv::NORM_INF), 0.0);
 }
@@ -42,7 +35,7 @@ TEST(ImageFile, ColourBecomesLuma) {
   const cv::Mat green(48, 64, CV_8UC3, cv::Scalar(0, 255, 0));
   for (const char* const extension : {".png", ".jpg"}) {
     const cv::Mat grey =
-        ReadGreyImage(folder.Write(std::string("g") + extension, Encode(extension, green)));
+        ReadGreyImage(folder.Write(std::string("g") + extension, EncodeImage(green, extension)));
     ASSERT_EQ(grey.type(), CV_8UC1);
     EXPECT_NEAR(grey.at<uint8_t>(20, 20), 0.587 * 255.0, 2.0) << extension;
   }
@@ -51,28 +44,29 @@ TEST(ImageFile, ColourBecomesLuma) {
 TEST(ImageFile, ColourIsKept) {
   const TemporaryFolder folder;
   const cv::Mat colour(48, 64, CV_8UC3, cv::Scalar(10, 200, 90));
-  const cv::Mat read = ReadColourImage(folder.Write("c.png", Encode(".png", colour)));
+  const cv::Mat read = ReadColourImage(folder.Write("c.png", EncodeImage(colour, ".png")));
   ASSERT_EQ(read.type(), CV_8UC3);
   EXPECT_EQ(cv::norm(read, colour, cv::NORM_INF), 0.0);
-  const cv::Mat grey = ReadColourImage(folder.Write("g.png", Encode(".png", Ramp(CV_8UC1))));
+  const cv::Mat grey = ReadColourImage(folder.Write("g.png", EncodeImage(Ramp(CV_8UC1), ".png")));
   EXPECT_EQ(grey.at<cv::Vec3b>(10, 5), cv::Vec3b(50, 50, 50));
-  ExpectInputError([&] { ReadColourImage(folder.Write("16.png", Encode(".png", Ramp(CV_16UC3)))); },
-                   {"16.png", "16 bits per channel"});
+  ExpectInputError(
+      [&] { ReadColourImage(folder.Write("16.png", EncodeImage(Ramp(CV_16UC3), ".png"))); },
+      {"16.png", "16 bits per channel"});
 }
 
 TEST(ImageFile, OnlySixteenBitDepthIsAccepted) {
   const TemporaryFolder folder;
-  const auto eight = folder.Write("8.png", Encode(".png", Ramp(CV_8UC1)));
+  const auto eight = folder.Write("8.png", EncodeImage(Ramp(CV_8UC1), ".png"));
   ExpectInputError([&] { ReadDepthImage(eight); },
                    {"8.png", "1 channel(s) of 8 bits", "one channel of 16 bits"});
-  const auto colour = folder.Write("c.png", Encode(".png", Ramp(CV_16UC3)));
+  const auto colour = folder.Write("c.png", EncodeImage(Ramp(CV_16UC3), ".png"));
   ExpectInputError([&] { ReadDepthImage(colour); }, {"c.png", "3 channel(s) of 16 bits"});
 }
 
 TEST(ImageFile, GreyImagesHave8Bits) {
   const TemporaryFolder folder;
   const auto write = [&](int type) {
-    return folder.Write("a.png", Encode(".png", cv::Mat(2, 3, type, cv::Scalar::all(90))));
+    return folder.Write("a.png", EncodeImage(cv::Mat(2, 3, type, cv::Scalar::all(90)), ".png"));
   };
   EXPECT_EQ(ReadGreyImage(write(CV_8UC1)).at<uint8_t>(1, 2), 90);
   EXPECT_EQ(ReadGreyImage(write(CV_8UC3)).at<uint8_t>(1, 2), 90);
@@ -87,7 +81,7 @@ TEST(ImageFile, EveryTruncationIsFound) {
   const cv::Mat noise(48, 64, CV_8UC1);
   cv::randu(noise, 0, 255);
   for (const char* const extension : {".png", ".jpg"}) {
-    const std::string bytes = Encode(extension, noise);
+    const std::string bytes = EncodeImage(noise, extension);
     const std::string_view whole = bytes;
     for (size_t size = 4; size < whole.size(); size += 97) {
       const auto path = folder.Write("cut", whole.substr(0, size));
@@ -105,7 +99,7 @@ TEST(ImageFile, BrokenFilesAreReportedByName) {
   ExpectInputError([&] { ReadGreyImage(folder.Write("text.png", "hello")); },
                    {"text.png", "neither a PNG nor a JPEG"});
   ExpectInputError([&] { ReadDepthImage(folder.path() / "none.png"); }, {"none.png", "No such"});
-  std::string flipped = Encode(".png", Ramp(CV_16UC1));
+  std::string flipped = EncodeImage(Ramp(CV_16UC1), ".png");
   flipped[flipped.size() / 2] = static_cast<char>(~flipped[flipped.size() / 2]);
   ExpectInputError([&] { ReadDepthImage(folder.Write("flipped.png", flipped)); },
                    {"flipped.png", "is broken", "checksum"});
@@ -113,11 +107,11 @@ TEST(ImageFile, BrokenFilesAreReportedByName) {
 
 TEST(ImageFile, AHugeSizeIsRefusedBeforeMemoryIsAllocated) {
   const TemporaryFolder folder;
-  std::string png = Encode(".png", Ramp(CV_8UC1));
+  std::string png = EncodeImage(Ramp(CV_8UC1), ".png");
   png[16] = 0x7f;  // the highest byte of the width
   ExpectInputError([&] { ReadGreyImage(folder.Write("huge.png", png)); },
                    {"huge.png", "million px"});
-  std::string jpeg = Encode(".jpg", Ramp(CV_8UC1));
+  std::string jpeg = EncodeImage(Ramp(CV_8UC1), ".jpg");
   const size_t frame = jpeg.find("\xff\xc0");
   ASSERT_NE(frame, std::string::npos);
   jpeg.replace(frame + 5, 4, "\xff\xff\xff\xff");
@@ -136,7 +130,7 @@ TEST(ImageFile, AHugeFileIsRefusedBeforeItIsRead) {
 
 TEST(ImageFile, FillBytesBeforeTheMarkersOfAJpegAreAccepted) {
   const TemporaryFolder folder;
-  std::string jpeg = Encode(".jpg", Ramp(CV_8UC1));
+  std::string jpeg = EncodeImage(Ramp(CV_8UC1), ".jpg");
   const size_t frame = jpeg.find("\xff\xc0");
   jpeg.insert(frame, 3, '\xff');
   jpeg.insert(2, 2, '\xff');
@@ -146,7 +140,7 @@ TEST(ImageFile, FillBytesBeforeTheMarkersOfAJpegAreAccepted) {
 // A decoder that skips unknown bytes would find a second frame header in them, with another size.
 TEST(ImageFile, OtherBytesBetweenTheSegmentsOfAJpegAreRefused) {
   const TemporaryFolder folder;
-  std::string jpeg = Encode(".jpg", Ramp(CV_8UC1));
+  std::string jpeg = EncodeImage(Ramp(CV_8UC1), ".jpg");
   const size_t frame = jpeg.find("\xff\xc0");
   ASSERT_NE(frame, std::string::npos);
   const std::string decoy("\x01\xc0\x00\x0b\x08\x00\x10\x00\x10\x01\x01\x11\x00", 13);
@@ -161,10 +155,20 @@ TEST(ImageFile, OtherBytesBetweenTheSegmentsOfAJpegAreRefused) {
 
 TEST(ImageFile, APngWithoutHeaderIsRefused) {
   const TemporaryFolder folder;
-  const std::string png = Encode(".png", Ramp(CV_8UC1));
+  const std::string png = EncodeImage(Ramp(CV_8UC1), ".png");
   const std::string end = png.substr(png.size() - 12);
   ExpectInputError([&] { ReadGreyImage(folder.Write("end.png", png.substr(0, 8) + end)); },
                    {"end.png", "the header with the size of the image is missing"});
+}
+
+TEST(ImageFile, AJpegOfHigherQualityIsLargerAndMoreExact) {
+  cv::Mat noise(48, 64, CV_8UC1);
+  cv::randu(noise, 0, 255);
+  const std::string coarse = EncodeJpeg(noise, 30);
+  const std::string fine = EncodeJpeg(noise, 95);
+  EXPECT_LT(coarse.size(), fine.size());
+  EXPECT_LT(cv::norm(DecodeGreyImage("fine", fine), noise),
+            cv::norm(DecodeGreyImage("coarse", coarse), noise));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/videoio.hpp>
 #include <string>
 
 #include "support/expect_error.h"
@@ -53,25 +52,6 @@ TEST(RunSequence, HasDepthImagesIfTheyAreAskedFor) {
       OpenRunSequence("rgbd_tum", folder.path() / "tum", MadeCamera(), /*use_depth=*/true);
   ASSERT_EQ(sequence.frames.size(), 1U);
   EXPECT_EQ(sequence.frames[0].depth, folder.path() / "tum" / "d.png");
-}
-
-TEST(RunSequence, ColourImagesOfFilesAndVideosAreBlueFirst) {
-  const TemporaryFolder folder;
-  const cv::Mat image(48, 64, CV_8UC3, cv::Scalar(200, 100, 50));
-  cv::imwrite(folder.path() / "a.png", image);
-  const cv::Mat of_file = ColourLoaderOf({})({0.0, folder.path() / "a.png", {}, 0});
-  EXPECT_EQ(of_file.at<cv::Vec3b>(24, 32), cv::Vec3b(200, 100, 50));
-  const std::string video = folder.path() / "a.avi";
-  cv::VideoWriter writer(video, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0, image.size());
-  writer.write(image);
-  writer.write(image);
-  writer.release();
-  const ImageSequence sequence = OpenRunSequence("mono_video", video, {});
-  const cv::Mat of_video = ColourLoaderOf(sequence)(sequence.frames.at(1));
-  ASSERT_EQ(of_video.type(), CV_8UC3);
-  const cv::Vec3b pixel = of_video.at<cv::Vec3b>(24, 32);
-  EXPECT_NEAR(pixel[0], 200, 12);
-  EXPECT_NEAR(pixel[2], 50, 12);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <system_error>
 
+#include "files/canonical_path.h"
 #include "files/staging_folder.h"
 #include "hullslam/util/error.h"
 
@@ -12,12 +13,6 @@ namespace hullslam::synthetic {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The absolute path of a folder, without a slash at the end.
-fs::path AbsoluteFolder(const fs::path& folder) {
-  const fs::path path = fs::weakly_canonical(fs::absolute(folder));
-  return path.filename().empty() ? path.parent_path() : path;
-}
 
 void CheckReplaceable(const fs::path& folder, const FormerOutput& former) {
   const fs::file_status status = fs::status(folder);
@@ -74,7 +69,7 @@ void MoveToFolder(const StagingFolder& staging, const fs::path& folder) {
 bool WriteStaged(const fs::path& folder, const FormerOutput& former,
                  const std::function<bool(const fs::path&)>& write) {
   try {
-    const fs::path target = AbsoluteFolder(folder);
+    const fs::path target = CanonicalPath(folder);
     CheckReplaceable(target, former);
     const StagingFolder staging = Stage(target);
     if (!write(staging.content())) {

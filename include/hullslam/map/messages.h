@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -103,6 +104,18 @@ using MapMessage = std::variant<InitialMap, KeyframeRequest, MapCorrection>;
 
 enum class TrackingState { kNotInitialized, kTracked, kLost };
 
+// For messages and files: "initialising", "tracked" or "lost".
+constexpr std::string_view ToString(TrackingState state) {
+  switch (state) {
+    case TrackingState::kTracked:
+      return "tracked";
+    case TrackingState::kLost:
+      return "lost";
+    default:
+      return "initialising";
+  }
+}
+
 // One line of the trajectory.
 struct TrackedFrame {
   FrameId frame;
@@ -130,6 +143,13 @@ struct FrameReport {
   std::optional<InitialisationFailure> failure = std::nullopt;
   // The reason why the frame is lost; absent unless its state is kLost.
   std::optional<TrackingFailure> loss = std::nullopt;
+
+  // The name of `failure` or `loss`, for messages; absent if there is neither.
+  std::optional<std::string_view> Reason() const {
+    return failure ? std::optional(ToString(*failure))
+           : loss  ? std::optional(ToString(*loss))
+                   : std::nullopt;
+  }
 };
 
 }  // namespace hullslam

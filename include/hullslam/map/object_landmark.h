@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hullslam/geometry/dual_quadric.h"
@@ -16,6 +17,11 @@ enum class ObjectState {
   kCandidate,  // its shape is not known or not valid: it constrains nothing
   kMapped,     // its shape is valid in all its keyframes
 };
+
+// For messages and files: "candidate" or "mapped".
+constexpr std::string_view ToString(ObjectState state) {
+  return state == ObjectState::kMapped ? "mapped" : "candidate";
+}
 
 struct ObjectObservation {
   KeyframeId keyframe;

@@ -27,6 +27,8 @@ struct MapSettings {
 
 // The settings of the maps that a run with these options makes.
 MapSettings MapSettingsOf(const SystemOptions& options);
+// Options of runs that make such maps. Options that a map does not tell have their defaults.
+SystemOptions OptionsOf(const MapSettings& settings);
 
 struct StoredMap {
   Map map;

@@ -54,7 +54,7 @@ struct ImageSequence {
   // Decodes a frame. To be called for the frames in order, by one thread at a time.
   FrameLoader load = LoadFrame;
   // Decodes the image of a frame in colour, CV_8UC3 with blue first. To be called like `load`. Null
-  // if the images are files of their own, or only available in grey.
+  // if the images are files of their own.
   ColourLoader load_colour = nullptr;
 };
 

@@ -20,9 +20,7 @@ class TumDataset final : public Dataset {
                                     "depth that are named by numbers or time stamps"
                                   : "folder with rgb.txt, or with images in rgb that are named by "
                                     "numbers or time stamps",
-            .settings =
-                "default: camera.yaml in SEQUENCE; without it, the file in config/ that "
-                "fits the folder's name, such as TUM1.yaml for freiburg1",
+            .settings = kTumSettingsRule,
             .associations =
                 "stamp rgb stamp depth (default: images are paired by their stamps, at "
                 "most 0.02 s apart)"};

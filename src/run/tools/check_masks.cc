@@ -11,7 +11,6 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -20,7 +19,6 @@
 #include "frame/detection_builder.h"
 #include "hullslam/masks/open_masks.h"
 #include "hullslam/sequences/tum_sequence.h"
-#include "hullslam/settings/settings.h"
 #include "results/output_folder.h"
 #include "run/command_line.h"
 #include "run/input_warnings.h"
@@ -30,6 +28,7 @@
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
+#include "run/settings_choice.h"
 #include "run/tools/mask_overlay.h"
 #include "sequences/image_file.h"
 
@@ -88,9 +87,7 @@ void AddOptions(CLI::App& app, CheckMasksArguments& arguments) {
                  "masks of the sequence: a folder or a JSON file (docs/masks.md)")
       ->required();
   AddMaskFormat(app, arguments.format, "--format,--masks-format");
-  app.add_option("--settings", arguments.settings,
-                 "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
-                 "that fits the folder's name, such as TUM1.yaml for freiburg1)");
+  AddSettingsArgument(app, kTumSettingsRule, arguments.settings);
   app.add_option(
       "--associations", arguments.tum.associations,
       "file with one pair of images per line: stamp rgb stamp depth (default: images are "
@@ -141,9 +138,7 @@ cv::Mat Background(const fs::path& image, const PinholeCamera& camera) {
 
 void DrawFrame(const std::string& name, const cv::Mat& grey, const PinholeCamera& camera,
                const FrameMasks& frame, const DetectionResult& result, OutputFolder& output) {
-  std::vector<uchar> bytes;
-  cv::imencode(".png", DrawMasks(grey, camera, frame.masks, result), bytes);
-  output.Write({name, std::string(bytes.begin(), bytes.end())});
+  output.Write({name, EncodeImage(DrawMasks(grey, camera, frame.masks, result), ".png")});
 }
 
 // Counts the masks of one frame and, if `output` is given, draws them. If its masks or images
@@ -256,9 +251,7 @@ int RunCheckMasks(int argc, char** argv) {
   if (!ParseCommandLine(app, argc, argv)) {
     return kDone;
   }
-  const fs::path settings = arguments.settings.empty()
-                                ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
-                                : arguments.settings;
+  const fs::path settings = ChooseTumSettings(arguments.settings, arguments.sequence).file;
   SystemOptions options = LoadSettings(settings, arguments.preset, arguments.overrides).options;
   options.objects.detection.min_keypoints = 0;  // no keypoints are extracted here
   arguments.tum.need_images = false;

@@ -71,15 +71,10 @@ void AddArguments(CLI::App& app, MapObjectsArguments& arguments) {
   app.add_option("--poses", arguments.poses, "trajectory of the camera in TUM format")->required();
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
   app.get_option("--masks")->required();
-  app.add_option("--settings", arguments.settings,
-                 "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
-                 "that fits the folder's name, such as TUM1.yaml for freiburg1)");
+  AddSettingsArgument(app, kTumSettingsRule, arguments.settings);
   AddPresetArgument(app, arguments.preset);
   AddOverrides(app, arguments.overrides);
-  app.add_option("--output", arguments.output,
-                 "folder for the result files; replaces the former run of this program in it")
-      ->capture_default_str();
-  AddOverwriteFlag(app, arguments.overwrite);
+  AddOutputArguments(app, arguments.output, arguments.overwrite);
   auto* const min_distance = app.add_option(
       "--min-distance", arguments.min_distance,
       "a frame is used if the camera has moved this far since the last used frame, m; a "

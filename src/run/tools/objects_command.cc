@@ -12,6 +12,7 @@
 
 #include "eval/object_metrics.h"
 #include "hullslam/util/error.h"
+#include "results/json_text.h"
 #include "results/object_file.h"
 #include "results/summary.h"
 #include "run/messages.h"
@@ -22,12 +23,6 @@ namespace hullslam {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
-const char* ToString(ObjectState state) {
-  return state == ObjectState::kMapped ? "mapped" : "candidate";
-}
 
 Json ToJson(const ReportedObject& object) {
   return {{"id", object.id.value},

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -26,6 +25,7 @@
 #include "run/program.h"
 #include "scene/answer.h"
 #include "scene/question.h"
+#include "sequences/image_file.h"
 #include "util/printable.h"
 #include "util/trim.h"
 #include "view/answer_sheet.h"
@@ -206,9 +206,7 @@ void WritePicture(const fs::path& run, const std::vector<Answer>& answers, const
                     "views of its objects",
                     model.sequence));
   }
-  std::vector<uchar> bytes;
-  cv::imencode(file.extension(), DrawAnswers(answers, model), bytes);
-  WriteFileAtomically(file, std::string(bytes.begin(), bytes.end()));
+  WriteFileAtomically(file, EncodeImage(DrawAnswers(answers, model), file.extension()));
 }
 
 void PrintAnswers(const Scene& scene, const std::vector<Answer>& answers) {

@@ -32,6 +32,7 @@
 #include "run/messages.h"
 #include "run/program.h"
 #include "run/progress.h"
+#include "run/settings_choice.h"
 #include "run/vocabularies.h"
 #include "util/median.h"
 
@@ -65,9 +66,7 @@ void AddArguments(CLI::App& app, RelocaliseArguments& arguments) {
       ->required();
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
   AddVocabularyArgument(app, arguments.vocabulary);
-  app.add_option("--settings", arguments.settings,
-                 "settings file (default: camera.yaml in SEQUENCE; without it, the file in config/ "
-                 "that fits the folder's name, such as TUM1.yaml for freiburg1)");
+  AddSettingsArgument(app, kTumSettingsRule, arguments.settings);
   AddPresetArgument(app, arguments.preset);
   AddOverrides(app, arguments.overrides);
   AddOverrides(app, "--query-set",
@@ -140,8 +139,7 @@ SystemOptions ReadQuietly(const std::filesystem::path& file, const std::string& 
 
 SystemOptions LoadOptions(const RelocaliseArguments& arguments, bool for_queries) {
   const std::filesystem::path settings =
-      arguments.settings.empty() ? FindDefaultSettings(arguments.sequence, FindConfigFolder())
-                                 : arguments.settings;
+      ChooseTumSettings(arguments.settings, arguments.sequence).file;
   std::vector<std::string> overrides = arguments.overrides;
   if (for_queries) {
     overrides.insert(overrides.end(), arguments.query_overrides.begin(),

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+namespace hullslam {
+
+// The absolute path without links, "." and "..", also of a file or folder that does not exist yet.
+// It does not end in a slash.
+std::filesystem::path CanonicalPath(const std::filesystem::path& path);
+
+// Whether `path` is the folder or file `outer`, or inside of this folder. Both paths may be of any
+// form.
+bool IsSameOrInside(const std::filesystem::path& path, const std::filesystem::path& outer);
+
+}  // namespace hullslam
