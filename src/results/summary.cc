@@ -136,6 +136,7 @@ Json ToJson(const ProvenanceSummary& summary) {
           {"masks", OrNull(summary.masks)},
           {"masks_format", OrNull(summary.masks_format)},
           {"sequence", OrNull(summary.sequence)},
+          {"sequence_choices", Json(summary.sequence_choices)},
           {"map", OrNull(summary.map)},
           {"interrupted", summary.interrupted}};
 }

@@ -119,6 +119,7 @@ struct ProvenanceSummary {
   std::optional<std::string> masks = std::nullopt;  // the path of --masks
   std::optional<std::string> masks_format = std::nullopt;
   std::optional<std::string> sequence = std::nullopt;
+  std::map<std::string, std::string> sequence_choices = {};  // ImageSequence::choices
   std::optional<std::string> map = std::nullopt;  // the path of --save-map
   bool interrupted = false;                       // a signal ended the run before its end
 };

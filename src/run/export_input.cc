@@ -30,7 +30,7 @@ constexpr Colour kGreyPoint = {128, 128, 128};
 
 // What summary.json says of a run.
 struct RunFacts {
-  std::string program;
+  RunOpening opening;
   std::string sequence;
   std::string masks;
   std::string masks_format;
@@ -52,7 +52,7 @@ RunFacts ReadRunFacts(const fs::path& folder) {
   const auto text = [&](const char* key) {
     return provenance.Has(key) ? provenance.At(key).Text() : std::string();
   };
-  return {.program = text("program"),
+  return {.opening = ReadRunOpening(json),
           .sequence = text("sequence"),
           .masks = text("masks"),
           .masks_format = text("masks_format"),
@@ -162,7 +162,7 @@ void UseSequence(const ExportSource& source, const RunFacts& facts, bool is_need
     return;
   }
   const bool use_depth = !input.map->sensor.IsMonocular();
-  input.sequence = OpenRunSequence(facts.program, *path, input.map->sensor.camera, use_depth);
+  input.sequence = OpenRunSequence(facts.opening, *path, input.map->sensor.camera, use_depth);
   input.session = SessionName(source.sequence.empty() ? *path : fs::path(facts.sequence));
   input.read.push_back(*path);
   if (const auto masks = FindRunInput(facts.masks, source.input)) {

@@ -125,7 +125,8 @@ size_t CountLoops(const Map& map) {
 }
 
 void SummarizeProvenance(const RunArguments& arguments, const LoadedSettings& settings,
-                         const RunResult& result, ProvenanceSummary& provenance) {
+                         const ImageSequence& sequence, const RunResult& result,
+                         ProvenanceSummary& provenance) {
   provenance.program = arguments.program;
   provenance.version = HULLSLAM_VERSION;
   provenance.git = HULLSLAM_GIT;
@@ -134,6 +135,7 @@ void SummarizeProvenance(const RunArguments& arguments, const LoadedSettings& se
   provenance.seed = arguments.seed;
   provenance.pipeline = arguments.threaded ? "threaded" : "sequential";
   provenance.sequence = arguments.sequence.string();
+  provenance.sequence_choices = sequence.choices;
   if (!arguments.masks.empty()) {
     provenance.masks = arguments.masks.string();
   }
@@ -180,7 +182,7 @@ RunSummary SummarizeRun(const RunArguments& arguments, const LoadedSettings& set
   if (options.sensor == SensorKind::kMonocular && arguments.load_map.empty()) {
     summary.initialisation = result.initialisation;
   }
-  SummarizeProvenance(arguments, settings, result, summary.provenance);
+  SummarizeProvenance(arguments, settings, sequence, result, summary.provenance);
   const Trajectory trajectory = system.trajectory();
   if (groundtruth && !trajectory.empty()) {
     Evaluate(*groundtruth, trajectory, options.sensor, summary.trajectory);

@@ -260,12 +260,17 @@ BagSequence OpenBagSequence(const fs::path& path, const BagSequenceOptions& opti
       ChooseImageTopic(index, BagImageKind::kColour, options.image_topic, kImageOption);
   TopicImages colour = OrderImages(path, images, options.use_recording_times, sequence);
   sequence.notes.push_back(DescribeTopic("images", colour));
+  sequence.images.choices["image_topic"] = images.name;
+  if (options.use_recording_times) {
+    sequence.images.choices["times"] = "recording";
+  }
   TopicImages depth;
   if (options.use_depth) {
-    depth = OrderImages(
-        path, ChooseImageTopic(index, BagImageKind::kDepth, options.depth_topic, kDepthOption),
-        options.use_recording_times, sequence);
+    const IndexedTopic& topic =
+        ChooseImageTopic(index, BagImageKind::kDepth, options.depth_topic, kDepthOption);
+    depth = OrderImages(path, topic, options.use_recording_times, sequence);
     sequence.notes.push_back(DescribeTopic("depth", depth));
+    sequence.images.choices["depth_topic"] = topic.name;
   }
   if (options.need_camera) {
     const IndexedTopic& info = ChooseInfoTopic(index, images, options.info_topic, kInfoOption);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sequences/run_sequence.h"
 
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "hullslam/sequences/bag_sequence.h"
@@ -12,6 +13,22 @@
 namespace hullslam {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+BagSequenceOptions BagOptions(const std::map<std::string, std::string>& choices, bool use_depth) {
+  const auto choice = [&](const char* name) {
+    const auto found = choices.find(name);
+    return found != choices.end() ? found->second : std::string();
+  };
+  return {.image_topic = choice("image_topic"),
+          .depth_topic = choice("depth_topic"),
+          .use_depth = use_depth,
+          .need_camera = false,
+          .use_recording_times = choice("times") == "recording"};
+}
+
+}  // namespace
 
 std::optional<fs::path> FindRunInput(const std::string& input, const fs::path& run_folder) {
   std::error_code error;
@@ -33,8 +50,31 @@ std::optional<fs::path> FindRunInput(const std::string& input, const fs::path& r
   return std::nullopt;
 }
 
-ImageSequence OpenRunSequence(const std::string& program, const fs::path& sequence,
+RunOpening ReadRunOpening(const nlohmann::json& summary) {
+  RunOpening run;
+  const nlohmann::json provenance =
+      summary.is_object() ? summary.value("provenance", nlohmann::json()) : nlohmann::json();
+  if (!provenance.is_object()) {
+    return run;
+  }
+  if (const auto program = provenance.find("program");
+      program != provenance.end() && program->is_string()) {
+    run.program = *program;
+  }
+  const nlohmann::json choices = provenance.value("sequence_choices", nlohmann::json());
+  if (choices.is_object()) {
+    for (const auto& [name, choice] : choices.items()) {
+      if (choice.is_string()) {
+        run.choices[name] = choice;
+      }
+    }
+  }
+  return run;
+}
+
+ImageSequence OpenRunSequence(const RunOpening& run, const fs::path& sequence,
                               const PinholeCamera& camera, bool use_depth) {
+  const std::string& program = run.program;
   if (program.ends_with("_euroc")) {
     return OpenEurocSequence(sequence).images;
   }
@@ -42,7 +82,7 @@ ImageSequence OpenRunSequence(const std::string& program, const fs::path& sequen
     return OpenIclSequence(sequence, camera, {}, {.use_depth = use_depth}).images;
   }
   if (program.ends_with("_bag")) {
-    return OpenBagSequence(sequence, {.use_depth = use_depth, .need_camera = false}).images;
+    return OpenBagSequence(sequence, BagOptions(run.choices, use_depth)).images;
   }
   if (program.ends_with("_video")) {
     return OpenImageStream(sequence).images;

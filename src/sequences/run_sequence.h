@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -17,11 +19,19 @@ namespace hullslam {
 std::optional<std::filesystem::path> FindRunInput(const std::string& input,
                                                   const std::filesystem::path& run_folder);
 
+// How a run opened its sequence, by its summary.json.
+struct RunOpening {
+  std::string program;  // such as "rgbd_tum" or "mono_video"; it tells the format
+  std::map<std::string, std::string> choices = {};  // ImageSequence::choices
+};
+
+// The opening in the content of a summary.json; what is not in it, or of another type, is left out.
+RunOpening ReadRunOpening(const nlohmann::json& summary);
+
 // Opens the sequence for its images and its ground truth. With `use_depth`, the frames of programs
-// for RGB-D have the paths of their depth images. `program` is the one of the run, such as
-// "rgbd_tum" or "mono_video"; it tells the format. Throws InputError as the functions that open
+// for RGB-D have the paths of their depth images. Throws InputError as the functions that open
 // sequences do.
-ImageSequence OpenRunSequence(const std::string& program, const std::filesystem::path& sequence,
+ImageSequence OpenRunSequence(const RunOpening& run, const std::filesystem::path& sequence,
                               const PinholeCamera& camera, bool use_depth = false);
 
 }  // namespace hullslam

@@ -189,7 +189,8 @@ std::optional<ImageSequence> ReopenSequence(const fs::path& folder, ViewModel& m
     return sequence;
   }
   AddPart("images", model, [&] {
-    sequence = OpenRunSequence(model.program, *path, model.camera.value_or(PinholeCamera{}));
+    sequence = OpenRunSequence(ReadRunOpening(model.summary), *path,
+                               model.camera.value_or(PinholeCamera{}));
   });
   return sequence;
 }

@@ -123,6 +123,16 @@ TEST_F(RgbdBag, BadInputIsRefusedWithTheTopics) {
   ExpectRefusal("mono_bag", {bag, "--groundtruth", late}, {"late.txt", "stamps of the same clock"});
 }
 
+TEST_F(RgbdBag, ImagesOfAChosenTopicAreFoundAgain) {
+  const std::string bag = MakeBag("two.mcap", "--second-topic /camera/rgb/second");
+  ExpectRefusal("rgbd_bag", {bag}, {"--image-topic", "/camera/rgb/second"});
+  Run("rgbd_bag", {bag, "--image-topic", "/camera/rgb/second"}, "two", 0);
+  const ProgramResult result =
+      RunProgram("export", {Path("two"), "--to", "nerfstudio", "--output", Path("two_nerf")});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_FALSE(fs::is_empty(Path("two_nerf/images")));
+}
+
 TEST_F(RgbdBag, ACutRecordingIsUsedWithAWarning) {
   const std::string whole = ReadFile(MakeBag("whole.mcap", ""));
   const std::string cut = folder_->Write("cut.mcap", whole.substr(0, whole.size() * 3 / 4));

@@ -91,10 +91,11 @@ TEST(Summary, HasTheKeysOfTheFormatInOrder) {
   EXPECT_EQ(Keys(json["map"]),
             (std::vector<std::string>{"keyframes", "landmarks", "landmarks_at_infinity", "loops",
                                       "sessions", "reprojection_px", "known_sizes"}));
-  EXPECT_EQ(Keys(json["provenance"]),
-            (std::vector<std::string>{"program", "version", "git", "settings_hash", "preset",
-                                      "preset_overrides", "seed", "pipeline", "masks",
-                                      "masks_format", "sequence", "map", "interrupted"}));
+  EXPECT_EQ(
+      Keys(json["provenance"]),
+      (std::vector<std::string>{"program", "version", "git", "settings_hash", "preset",
+                                "preset_overrides", "seed", "pipeline", "masks", "masks_format",
+                                "sequence", "sequence_choices", "map", "interrupted"}));
 }
 
 TEST(Summary, HasTheKeysOfObjectsInOrder) {

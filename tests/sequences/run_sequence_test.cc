@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -31,13 +32,13 @@ TEST(RunSequence, IsOpenedAsTheProgramReadIt) {
   for (const char* const name : {"a.png", "b.png"}) {
     cv::imwrite(folder.path() / "tum" / name, image);
   }
-  const ImageSequence tum = OpenRunSequence("rgbd_tum", folder.path() / "tum", MadeCamera());
+  const ImageSequence tum = OpenRunSequence({"rgbd_tum"}, folder.path() / "tum", MadeCamera());
   ASSERT_EQ(tum.frames.size(), 2u);
   EXPECT_EQ(tum.frames[1].timestamp, 2.5);
-  const ImageSequence video = OpenRunSequence("mono_video", folder.path() / "tum", MadeCamera());
+  const ImageSequence video = OpenRunSequence({"mono_video"}, folder.path() / "tum", MadeCamera());
   ASSERT_EQ(video.frames.size(), 2u);
   EXPECT_EQ(video.frames[0].timestamp, 0.0);
-  ExpectInputError([&] { OpenRunSequence("mono_euroc", folder.path() / "tum", MadeCamera()); },
+  ExpectInputError([&] { OpenRunSequence({"mono_euroc"}, folder.path() / "tum", MadeCamera()); },
                    {"tum"});
 }
 
@@ -49,9 +50,21 @@ TEST(RunSequence, HasDepthImagesIfTheyAreAskedFor) {
     folder.Write(std::string("tum/") + name, "");
   }
   const ImageSequence sequence =
-      OpenRunSequence("rgbd_tum", folder.path() / "tum", MadeCamera(), /*use_depth=*/true);
+      OpenRunSequence({"rgbd_tum"}, folder.path() / "tum", MadeCamera(), /*use_depth=*/true);
   ASSERT_EQ(sequence.frames.size(), 1U);
   EXPECT_EQ(sequence.frames[0].depth, folder.path() / "tum" / "d.png");
+}
+
+TEST(RunSequence, KnowsFromTheSummaryHowItWasOpened) {
+  const RunOpening run = ReadRunOpening(nlohmann::json::parse(
+      R"({"provenance": {"program": "mono_bag",
+                         "sequence_choices": {"image_topic": "/left", "times": 3}}})"));
+  EXPECT_EQ(run.program, "mono_bag");
+  EXPECT_EQ(run.choices, (std::map<std::string, std::string>{{"image_topic", "/left"}}));
+  for (const char* const text : {"[]", "{}", R"({"provenance": 1})",
+                                 R"({"provenance": {"program": 1, "sequence_choices": [2]}})"}) {
+    EXPECT_EQ(ReadRunOpening(nlohmann::json::parse(text)).program, "") << text;
+  }
 }
 
 }  // namespace

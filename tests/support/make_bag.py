@@ -122,7 +122,10 @@ def messages(options, ros1):
         topic = "/camera/depth/image" if is_depth else "/camera/rgb/image_color"
         if options.images == "files":
             form = "/compressedDepth" if is_depth else "/compressed"
-            yield time, topic + form, "compressed", compressed_image(ros1, stamp, path, is_depth)
+            image = compressed_image(ros1, stamp, path, is_depth)
+            yield time, topic + form, "compressed", image
+            if not is_depth and options.second_topic:
+                yield time, options.second_topic, "compressed", image
         else:
             form = "depth" if is_depth else options.images
             yield time, topic, "image", raw_image(ros1, stamp, path, form)
@@ -229,6 +232,8 @@ def main():
     parser.add_argument("--compression", choices=["none", "bz2", "lz4"], default="none",
                         help="of the chunks; bz2 for ROS 1 only")
     parser.add_argument("--settings", type=pathlib.Path, help="for CameraInfo")
+    parser.add_argument("--second-topic", metavar="TOPIC",
+                        help="gets the images too, as those of a second camera; only with files")
     options = parser.parse_args()
     writers = {".mcap": write_mcap, ".db3": write_sqlite, ".bag": write_ros1}
     if options.out.suffix not in writers:
