@@ -201,7 +201,7 @@ void CheckApartFromInputs(const fs::path& folder, std::span<const fs::path> inpu
           fmt::format("{}: cannot be used as output folder: it contains {}, which this run reads",
                       folder.string(), path.string()));
     }
-    if (fs::is_directory(path, error) && IsSameOrInside(folder, path)) {
+    if (fs::is_directory(CanonicalPath(path), error) && IsSameOrInside(folder, path)) {
       throw InputError(
           fmt::format("{}: cannot be used as output folder: it is inside {}, which this run reads",
                       folder.string(), path.string()));
