@@ -11,15 +11,7 @@ set -euo pipefail
 cd "$top"
 
 folder=build/packages
-case "${1:-}" in
-  "") ;;
-  -h | --help)
-    print_help
-    exit 0
-    ;;
-  -*) usage_error "unknown argument \"$1\"" ;;
-  *) folder=$1 ;;
-esac
+read_folder "$@"
 
 step "setup"
 scripts/setup.sh

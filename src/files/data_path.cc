@@ -47,8 +47,8 @@ fs::path OwnShare() {
 
 fs::path FindData(const fs::path& name, std::string_view hint) {
   std::vector<std::string> paths;
-  for (const fs::path& folder : {OwnShare(), fs::path(HULLSLAM_INSTALLED_DATA),
-                                 fs::path(HULLSLAM_SOURCE_FOLDER)}) {
+  for (const fs::path& folder :
+       {OwnShare(), fs::path(HULLSLAM_INSTALLED_DATA), fs::path(HULLSLAM_SOURCE_FOLDER)}) {
     std::error_code error;
     if (!folder.empty() && fs::exists(folder / name, error)) {
       return folder / name;

@@ -120,8 +120,8 @@ struct ProvenanceSummary {
   std::optional<std::string> masks_format = std::nullopt;
   std::optional<std::string> sequence = std::nullopt;
   std::map<std::string, std::string> sequence_choices = {};  // ImageSequence::choices
-  std::optional<std::string> map = std::nullopt;  // the path of --save-map
-  bool interrupted = false;                       // a signal ended the run before its end
+  std::optional<std::string> map = std::nullopt;             // the path of --save-map
+  bool interrupted = false;  // a signal ended the run before its end
 };
 
 struct RunSummary {

@@ -10,17 +10,16 @@
 
 namespace hullslam {
 
-FrameSource::FrameSource(Pace pace, PrefetchPriority priority, const ImageSequence& sequence,
-                         const PinholeCamera& camera, const SequenceMasks& masks, System& system,
-                         bool keeps_images)
+FrameSource::FrameSource(Pace pace, const ImageSequence& sequence, const PinholeCamera& camera,
+                         const SequenceMasks& masks, System& system, bool keeps_images)
     : is_realtime_(pace == Pace::kRealtime),
       sequence_(sequence),
       camera_(camera),
       masks_(masks),
       system_(system),
       keeps_images_(keeps_images),
-      images_([this] { return LoadNext(); }, kImagesAhead, priority),
-      frames_([this] { return BuildNext(); }, kFramesAhead, priority) {}
+      images_([this] { return LoadNext(); }, kImagesAhead),
+      frames_([this] { return BuildNext(); }, kFramesAhead) {}
 
 FrameSource::~FrameSource() {
   end_.Request();

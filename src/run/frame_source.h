@@ -37,11 +37,10 @@ enum class Pace { kFast, kRealtime };
 class FrameSource {
  public:
   // The references must outlive this object. With Pace::kRealtime, the clock starts now, at the
-  // first time stamp. Both threads have the given priority.
+  // first time stamp.
   // `keeps_images` says whether frames come with their images.
-  FrameSource(Pace pace, PrefetchPriority priority, const ImageSequence& sequence,
-              const PinholeCamera& camera, const SequenceMasks& masks, System& system,
-              bool keeps_images = false);
+  FrameSource(Pace pace, const ImageSequence& sequence, const PinholeCamera& camera,
+              const SequenceMasks& masks, System& system, bool keeps_images = false);
   ~FrameSource();
   FrameSource(const FrameSource&) = delete;
   FrameSource& operator=(const FrameSource&) = delete;

@@ -126,11 +126,8 @@ RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,
               report.tracked.timestamp - sequence.frames.front().timestamp, result);
   });
   Clock::time_point start = Clock::now();
-  // In the sequential pipeline the thread that tracks and maps has more work than the threads that
-  // load and build frames, so these get a lower priority.
-  FrameSource frames(arguments.realtime ? Pace::kRealtime : Pace::kFast,
-                     arguments.threaded ? PrefetchPriority::kNormal : PrefetchPriority::kBackground,
-                     sequence, camera, masks, system, live.IsOn());
+  FrameSource frames(arguments.realtime ? Pace::kRealtime : Pace::kFast, sequence, camera, masks,
+                     system, live.IsOn());
   while (!IsInterrupted()) {
     // A pause does not count as time of the run.
     const Clock::duration waited =

@@ -8,29 +8,16 @@
 #include <utility>
 
 #include "util/mailbox.h"
-#include "util/thread_priority.h"
 
 namespace hullslam {
-
-// The priority of the thread of a Prefetcher when other threads need its core.
-enum class PrefetchPriority {
-  kNormal,
-  kBackground,  // low; best if the consumer is slower than the producer
-};
 
 // Runs a producer ahead of its consumer in a thread of its own, by at most `capacity` items.
 template <typename Item>
 class Prefetcher {
  public:
   // `produce` returns the next item, or null at the end. Only the other thread calls it.
-  Prefetcher(std::function<std::optional<Item>()> produce, size_t capacity,
-             PrefetchPriority priority = PrefetchPriority::kNormal)
-      : items_(capacity), thread_([this, priority, produce = std::move(produce)] {
-          if (priority == PrefetchPriority::kBackground) {
-            RunInBackground();
-          }
-          Run(produce);
-        }) {}
+  Prefetcher(std::function<std::optional<Item>()> produce, size_t capacity)
+      : items_(capacity), thread_([this, produce = std::move(produce)] { Run(produce); }) {}
 
   ~Prefetcher() {
     items_.Close();

@@ -16,6 +16,15 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK_DIR}/build -G Ninja
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run(${WORK_DIR}/build/consumer)
 
+# The installed programs find the presets of the moved folder.
+file(COPY_FILE ${prefix}/share/hullslam/config/presets/paper.yaml
+               ${prefix}/share/hullslam/config/presets/moved.yaml)
+execute_process(COMMAND ${prefix}/bin/hullslam-rgbd_tum --help OUTPUT_VARIABLE help
+                COMMAND_ERROR_IS_FATAL ANY)
+if(NOT help MATCHES "moved")
+  message(FATAL_ERROR "the presets in ${prefix} are not found")
+endif()
+
 # The installed programs work from the moved folder, and their names do not collide with those of
 # other programs.
 file(GLOB programs RELATIVE ${prefix}/bin ${prefix}/bin/*)

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 using Json = nlohmann::json;
 
-constexpr int kFrames = 100;
+constexpr int kFrames = 60;
 
 class PresetRuns : public ::testing::Test {
  protected:

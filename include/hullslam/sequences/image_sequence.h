@@ -52,8 +52,8 @@ struct ImageSequence {
   std::optional<Trajectory> converted_groundtruth;
   // Tells the user where the time stamps are from; empty if a list of the data set has them.
   std::string stamps_note = {};
-  // What was chosen among several possibilities, such as "image_topic". OpenRunSequence() needs it to
-  // open the same images again.
+  // What was chosen among several possibilities, such as "image_topic". OpenRunSequence() needs it
+  // to open the same images again.
   std::map<std::string, std::string> choices = {};
   // Decodes a frame. To be called for the frames in order, by one thread at a time.
   FrameLoader load = LoadFrame;
