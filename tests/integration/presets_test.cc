@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 using Json = nlohmann::json;
 
-constexpr int kFrames = 60;
+constexpr int kFrames = 100;
 
 class PresetRuns : public ::testing::Test {
  protected:
@@ -75,7 +75,6 @@ void PresetRuns::RunAllPrograms(const std::string& preset) const {
   }
 }
 
-// One test for all presets, because each test renders the desk again.
 TEST_F(PresetRuns, MapObjectsIfTheSystemDoes) {
   for (const std::string& preset : PresetNames()) {
     SCOPED_TRACE(preset);
