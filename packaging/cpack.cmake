@@ -36,6 +36,6 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "libhullslam${soname} ${same}, python3 (
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} upper)
   install(FILES packaging/copyright Thirdparty/NOTICE.md COMPONENT ${component}
-          DESTINATION ${CMAKE_INSTALL_DOCDIR}/../${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
 endforeach()
 include(CPack)

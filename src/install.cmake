@@ -2,7 +2,6 @@
 # the scripts that make, draw and compare runs, and packages for find_package(hullslam) and
 # pkg-config. Examples/CMakeLists.txt installs the programs. The components are those of
 # packaging/cpack.cmake: library, dev, tools and python.
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(HULLSLAM_INSTALL_CONFIGDIR ${CMAKE_INSTALL_DATADIR}/hullslam/config)
 set(HULLSLAM_INSTALL_VOCABULARYDIR ${CMAKE_INSTALL_DATADIR}/hullslam/Vocabulary)
