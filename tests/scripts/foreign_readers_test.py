@@ -28,11 +28,12 @@ def setUpModule():
     if shutil.which("npm") is None:
         raise unittest.SkipTest("npm is not installed")
     MODULES.parent.mkdir(exist_ok=True)
-    installed = subprocess.run(["npm", "install", "--prefix", MODULES.parent, "--no-save",
-                                "--prefer-offline", "--no-audit", "--no-fund", *PACKAGES],
-                               capture_output=True, text=True)
-    if installed.returncode != 0:
-        raise unittest.SkipTest(f"npm cannot install the packages: {installed.stderr.strip()}")
+    try:
+        subprocess.run(["npm", "install", "--prefix", MODULES.parent, "--no-save", "--prefer-offline",
+                        "--fetch-retries=0", "--no-audit", "--no-fund", *PACKAGES],
+                       check=True, capture_output=True, text=True, timeout=60)
+    except (subprocess.CalledProcessError, subprocess.TimeoutExpired) as error:
+        raise unittest.SkipTest(f"npm cannot install the packages: {error} {error.stderr}")
 
 
 def run_with_node(script, file):
