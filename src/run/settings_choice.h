@@ -18,9 +18,8 @@ SettingsChoice ChooseTumSettings(const std::filesystem::path& given,
                                  const std::filesystem::path& sequence);
 // The rule in words, for --help.
 inline constexpr const char* kTumSettingsRule =
-    "default: camera.yaml in SEQUENCE; without it, the file in config/ that fits the folder's "
-    "name, "
-    "such as TUM1.yaml for freiburg1";
+    "default: camera.yaml in SEQUENCE; without it, the file in config/ that fits the "
+    "folder's name, such as TUM1.yaml for freiburg1";
 // The same for ICL-NUIM: camera.yaml in the folder of the sequence, else config/ICL.yaml.
 SettingsChoice ChooseIclSettings(const std::filesystem::path& given,
                                  const std::filesystem::path& sequence);

@@ -66,17 +66,6 @@ class MapFileTest : public testing::Test {
 // vocabulary, sessions, corrections.
 constexpr size_t kCounts = 14 + 4 + 1 + 88 + 12 + 8 + 4 + (4 + 4 + 4) + (4 + 10 + 4) + 4;
 
-// Options whose maps have the settings MadeSettings().
-SystemOptions MadeOptions() {
-  const MapSettings settings = MadeSettings();
-  SystemOptions options;
-  options.sensor = settings.sensor;
-  options.camera = settings.camera;
-  options.features.level_count = settings.level_count;
-  options.features.scale_factor = settings.scale_factor;
-  return options;
-}
-
 // The bytes with a right checksum at their end.
 std::string WithChecksum(std::string bytes) {
   bytes.resize(bytes.size() - 4);
@@ -252,9 +241,9 @@ TEST_F(MapFileTest, LabelsAreMadePrintable) {
 
 TEST_F(MapFileTest, OtherSettingsAreRefused) {
   WriteMap(path_, SmallMap(), MadeSettings());
-  EXPECT_EQ(ReadMap(path_, MadeOptions()).keyframes().size(), 2u);
+  EXPECT_EQ(ReadMap(path_, OptionsOf(MadeSettings())).keyframes().size(), 2u);
   const auto refuse = [&](const auto& change, const std::vector<std::string>& parts) {
-    SystemOptions other = MadeOptions();
+    SystemOptions other = OptionsOf(MadeSettings());
     change(other);
     ExpectInputError([&] { ReadMap(path_, other); }, parts);
   };
@@ -277,7 +266,8 @@ TEST_F(MapFileTest, AMonocularMapStaysOne) {
   settings.sensor = SensorKind::kMonocular;
   WriteMap(path_, SmallMap(), settings);
   EXPECT_EQ(ReadMap(path_).settings.sensor, SensorKind::kMonocular);
-  ExpectInputError([&] { ReadMap(path_, MadeOptions()); }, {"a monocular camera", "an RGB-D"});
+  ExpectInputError([&] { ReadMap(path_, OptionsOf(MadeSettings())); },
+                   {"a monocular camera", "an RGB-D"});
 }
 
 TEST_F(MapFileTest, EveryFlippedByteIsRefused) {
@@ -414,9 +404,9 @@ TEST_F(MapFileTest, AMapWithoutRoomForLandmarksIsRefused) {
 TEST_F(MapFileTest, ReadingCanBeCancelled) {
   const std::string bytes = Written(SmallMap());
   Cancellation cancellation;
-  EXPECT_NO_THROW(ReadMap(path_, MadeOptions(), &cancellation));
+  EXPECT_NO_THROW(ReadMap(path_, OptionsOf(MadeSettings()), &cancellation));
   cancellation.Request();
-  EXPECT_THROW(ReadMap(path_, MadeOptions(), &cancellation), ReadingCancelled);
+  EXPECT_THROW(ReadMap(path_, OptionsOf(MadeSettings()), &cancellation), ReadingCancelled);
   constexpr size_t kPrefix = 14;
   std::istringstream records(bytes.substr(kPrefix, bytes.size() - kPrefix - 4));
   EXPECT_THROW(
