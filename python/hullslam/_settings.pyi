@@ -82,7 +82,7 @@ class _objects_bundle:
     max_outer_views: int
     min_loss_px: float
     misfit_factor: float
-    residual: Literal["tangent", "algebraic_plane", "algebraic_point", "distribution", "overlap", "bhattacharyya", "box_bounds", "filtered_point"]
+    residual: Literal["tangent", "algebraic_plane", "relative_plane", "algebraic_point", "distribution", "overlap", "bhattacharyya", "box_bounds", "filtered_point"]
     sigma: float
     sigma_unit: Literal["pixels", "residual"]
 
@@ -125,7 +125,7 @@ class _objects_pose:
     loss_scale: float
     max_effective_lines: float
     misfit_factor: float
-    residual: Literal["tangent", "algebraic_plane", "algebraic_point", "distribution", "overlap", "bhattacharyya", "box_bounds", "filtered_point"]
+    residual: Literal["tangent", "algebraic_plane", "relative_plane", "algebraic_point", "distribution", "overlap", "bhattacharyya", "box_bounds", "filtered_point"]
     sigma: float
     sigma_unit: Literal["pixels", "residual"]
 
@@ -138,7 +138,7 @@ class _objects_refinement:
     max_misfit_px: float
     max_views: int
     min_misfit_px: float
-    residual: Literal["tangent", "algebraic_plane", "algebraic_point", "distribution", "overlap", "bhattacharyya", "box_bounds", "filtered_point"]
+    residual: Literal["tangent", "algebraic_plane", "relative_plane", "algebraic_point", "distribution", "overlap", "bhattacharyya", "box_bounds", "filtered_point"]
 
 class _objects_start:
     inflation: float
@@ -198,7 +198,7 @@ class _objects:
     def refinement(self) -> _objects_refinement: ...
     @refinement.setter
     def refinement(self, values: _Values) -> None: ...
-    residual: Literal["tangent", "algebraic_plane", "algebraic_point", "distribution", "overlap", "bhattacharyya", "box_bounds", "filtered_point"]
+    residual: Literal["tangent", "algebraic_plane", "relative_plane", "algebraic_point", "distribution", "overlap", "bhattacharyya", "box_bounds", "filtered_point"]
     sigma: float
     sizes: dict[str, float]
     @property

@@ -12,6 +12,7 @@
 #include "costs/quadric_distribution.h"
 #include "costs/quadric_filtered_point.h"
 #include "costs/quadric_overlap.h"
+#include "costs/quadric_relative_plane.h"
 #include "costs/quadric_tangent.h"
 #include "costs/residual_kind.h"
 
@@ -20,8 +21,9 @@ namespace {
 
 // In the order of the enumerators.
 constexpr std::array kKinds = {
-    &kTangentResidual, &kAlgebraicPlaneResidual, &kAlgebraicPointResidual, &kDistributionResidual,
-    &kOverlapResidual, &kBhattacharyyaResidual,  &kBoxBoundsResidual,      &kFilteredPointResidual};
+    &kTangentResidual,        &kAlgebraicPlaneResidual, &kRelativePlaneResidual,
+    &kAlgebraicPointResidual, &kDistributionResidual,   &kOverlapResidual,
+    &kBhattacharyyaResidual,  &kBoxBoundsResidual,      &kFilteredPointResidual};
 
 }  // namespace
 

@@ -28,9 +28,10 @@ std::optional<double> ResidualOfPixelError(ObjectResidual residual, const Pinhol
     return std::nullopt;
   }
   const double radius = std::pow(ellipse.shape().determinant(), 0.25);
-  const double metres_per_px = quadric.center().z() / std::sqrt(std::abs(camera.fx * camera.fy));
   return KindOf(residual).of_pixel_error(error_px,
-                                         {.radius_px = radius, .metres_per_px = metres_per_px});
+                                         {.radius_px = radius,
+                                          .depth = quadric.center().z(),
+                                          .focal_px = std::sqrt(std::abs(camera.fx * camera.fy))});
 }
 
 }  // namespace hullslam

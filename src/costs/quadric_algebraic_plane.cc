@@ -15,14 +15,44 @@ Eigen::Vector3d PlaneNormal(const PinholeCamera& camera, const Line2& line) {
 
 }  // namespace
 
+LinePlane::LinePlane(const PinholeCamera& camera, const SilhouetteLine& line)
+    : normal_(PlaneNormal(camera, line.line)), is_one_sided_(line.is_one_sided) {}
+
+double LinePlane::Value(const QuadricInCamera& quadric) const {
+  const double distance = normal_.dot(quadric.center());
+  const double value = normal_.dot(quadric.square() * normal_) - distance * distance;
+  return IsMet(value, distance) ? 0.0 : value;
+}
+
+ByObjectInCamera LinePlane::Derivative(const QuadricInCamera& quadric) const {
+  const Eigen::Vector3d square_n = quadric.square() * normal_;
+  const double distance = normal_.dot(quadric.center());
+  ByObjectInCamera derivative = ByObjectInCamera::Zero();
+  if (!IsMet(normal_.dot(square_n) - distance * distance, distance)) {
+    const Eigen::Array3d along_axes = (quadric.axes().transpose() * normal_).array();
+    derivative << 2.0 * square_n.cross(normal_).transpose(), -2.0 * distance * normal_.transpose(),
+        2.0 * along_axes.square().matrix().transpose();
+  }
+  return derivative;
+}
+
+bool LinePlane::IsMet(double value, double distance) const {
+  return is_one_sided_ && (value > 0.0 || distance > 0.0);
+}
+
+std::vector<LinePlane> PlanesOf(const PinholeCamera& camera,
+                                std::span<const SilhouetteLine> lines) {
+  std::vector<LinePlane> planes;
+  planes.reserve(lines.size());
+  for (const SilhouetteLine& line : lines) {
+    planes.emplace_back(camera, line);
+  }
+  return planes;
+}
+
 AlgebraicPlaneCost::AlgebraicPlaneCost(const PinholeCamera& camera,
                                        std::span<const SilhouetteLine> lines, double sigma)
-    : ObjectCost(lines.size()), inverse_sigma_(1.0 / sigma) {
-  planes_.reserve(lines.size());
-  for (const SilhouetteLine& line : lines) {
-    planes_.push_back({PlaneNormal(camera, line.line), line.is_one_sided});
-  }
-}
+    : ObjectCost(lines.size()), planes_(PlanesOf(camera, lines)), inverse_sigma_(1.0 / sigma) {}
 
 bool AlgebraicPlaneCost::Evaluate(double const* const* parameters, double* residuals,
                                   double** jacobians) const {
@@ -31,22 +61,11 @@ bool AlgebraicPlaneCost::Evaluate(double const* const* parameters, double* resid
     return false;
   }
   for (size_t i = 0; i < planes_.size(); ++i) {
-    const Eigen::Vector3d& n = planes_[i].normal;
-    const Eigen::Vector3d square_n = quadric.square() * n;
-    const double distance = n.dot(quadric.center());
-    const double value = n.dot(square_n) - distance * distance;
-    const bool is_met = planes_[i].is_one_sided && (value > 0.0 || distance > 0.0);
-    residuals[i] = is_met ? 0.0 : inverse_sigma_ * value;
-    if (jacobians == nullptr) {
-      continue;
+    residuals[i] = inverse_sigma_ * planes_[i].Value(quadric);
+    if (jacobians != nullptr) {
+      quadric.WriteRow(static_cast<int>(i), inverse_sigma_ * planes_[i].Derivative(quadric),
+                       jacobians);
     }
-    ByObjectInCamera derivative = ByObjectInCamera::Zero();
-    if (!is_met) {
-      const Eigen::Array3d along_axes = (quadric.axes().transpose() * n).array();
-      derivative << 2.0 * square_n.cross(n).transpose(), -2.0 * distance * n.transpose(),
-          2.0 * along_axes.square().matrix().transpose();
-    }
-    quadric.WriteRow(static_cast<int>(i), inverse_sigma_ * derivative, jacobians);
   }
   return true;
 }
@@ -57,7 +76,8 @@ const ResidualKind kAlgebraicPlaneResidual = {
     .takes_lines = true,
     .of_pixel_error =
         [](double error_px, const ProjectedSize& size) {
-          return 2.0 * size.radius_px * error_px * size.metres_per_px * size.metres_per_px;
+          const double metres_per_px = size.depth / size.focal_px;
+          return 2.0 * size.radius_px * error_px * metres_per_px * metres_per_px;
         },
     .make_cost = [](const ObjectCostInput& input) -> std::unique_ptr<ceres::CostFunction> {
       return input.lines.empty()

@@ -11,14 +11,33 @@
 
 namespace hullslam {
 
+// A line of a silhouette as the plane pi = P^T l through the camera's centre and the line, scaled
+// to a unit normal. In the camera frame pi = (n, 0) with n along K^T l.
+class LinePlane {
+ public:
+  LinePlane(const PinholeCamera& camera, const SilhouetteLine& line);
+
+  // pi^T Q* pi, m^2, and its derivative. With B = QuadricInCamera::square() it is h^2 - d^2, where
+  // h^2 = n^T B n is the squared half extent of the ellipsoid along n and d = n.t the signed
+  // distance of its centre from the plane. It is positive if the plane cuts the ellipsoid, and zero
+  // if the plane touches it from either side. For a one-sided line it is also zero if the ellipsoid
+  // reaches the plane or lies beyond it.
+  double Value(const QuadricInCamera& quadric) const;
+  ByObjectInCamera Derivative(const QuadricInCamera& quadric) const;
+
+ private:
+  bool IsMet(double value, double distance) const;
+
+  Eigen::Vector3d normal_;  // camera frame
+  bool is_one_sided_;
+};
+
+std::vector<LinePlane> PlanesOf(const PinholeCamera& camera, std::span<const SilhouetteLine> lines);
+
 // `algebraic_plane` (Yu et al. 2025, Eq. 8): one residual per line, pi^T Q* pi / sigma, with sigma
-// in m^2. The plane pi = P^T l goes through the camera's centre and the line, and is scaled to a
-// unit normal. In the camera frame pi = (n, 0) with n along K^T l. So pi^T Q* pi = h^2 - d^2, where
-// h^2 = n^T B n is the squared half extent of the ellipsoid along n and d = n.t the signed distance
-// of its centre from the plane. It is positive if the plane cuts the ellipsoid, and zero if the
-// plane touches it from either side. For a one-sided line it is also zero if the ellipsoid reaches
-// the plane or lies beyond it. Parameters: those of QuadricInCamera. Not defined unless the quadric
-// is in front of the camera.
+// in m^2. It is h^2 - d^2 of LinePlane and therefore depends on the scale of the world: see
+// RelativePlaneCost, which does not. Parameters: those of QuadricInCamera. Not defined unless the
+// quadric is in front of the camera.
 class AlgebraicPlaneCost final : public ObjectCost {
  public:
   AlgebraicPlaneCost(const PinholeCamera& camera, std::span<const SilhouetteLine> lines,
@@ -28,11 +47,7 @@ class AlgebraicPlaneCost final : public ObjectCost {
                 double** jacobians) const override;
 
  private:
-  struct Plane {
-    Eigen::Vector3d normal;  // camera frame
-    bool is_one_sided = false;
-  };
-  std::vector<Plane> planes_;
+  std::vector<LinePlane> planes_;
   double inverse_sigma_;
 };
 

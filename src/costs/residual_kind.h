@@ -27,8 +27,9 @@ struct ObjectCostInput {
 
 // How large an ellipsoid appears in an image.
 struct ProjectedSize {
-  double radius_px;      // radius of the circle with the area of the projected ellipse
-  double metres_per_px;  // at the depth of the ellipsoid's centre
+  double radius_px;  // radius of the circle with the area of the projected ellipse
+  double depth;      // of the ellipsoid's centre, m
+  double focal_px;   // a pixel is depth / focal_px wide at that depth
 };
 
 // The properties in which the kinds of residuals differ. Each kind has one constant of this type

@@ -80,6 +80,31 @@ TEST_F(MakeObjectCostTest, SigmaDividesTheResidual) {
   }
 }
 
+// A world that is s times as large has the same images, so it must have the same cost. The literal
+// constraint of Yu et al. is the only one that breaks this law: its residual is in m^2, so it grows
+// with s^2.
+TEST_F(MakeObjectCostTest, TheScaleOfTheWorldDoesNotMatter) {
+  SeenEllipsoid moved = state_;
+  moved.ellipsoid.half_axes *= 1.1;
+  moved.cam_from_world.translation.x() += 0.05;
+  for (const ObjectResidual residual : AllResiduals()) {
+    for (const ObjectPrimitive primitive : kAllPrimitives) {
+      const auto cost = Make(residual, primitive, 0.7);
+      if (cost == nullptr) {
+        continue;
+      }
+      const Eigen::VectorXd residuals = ObjectResidualsOf(*cost, moved);
+      ASSERT_GT(residuals.norm(), 0.0);
+      for (const double scale : {0.5, 0.99, 3.0}) {
+        const double factor = residual == ObjectResidual::kAlgebraicPlane ? scale * scale : 1.0;
+        EXPECT_LT((ObjectResidualsOf(*cost, ScaledWorld(moved, scale)) - factor * residuals).norm(),
+                  1e-7 * residuals.norm())
+            << NameOf(residual) << " " << NameOf(primitive) << " " << scale;
+      }
+    }
+  }
+}
+
 TEST_F(MakeObjectCostTest, TakesTheLinesThatAreGiven) {
   const auto cost = MakeObjectCost(ObjectResidual::kTangent, kObjectCamera, detection_,
                                    std::span(detection_.lines).first(3), 1.0);

@@ -50,7 +50,7 @@ inline void ExpectKind(ObjectResidual residual, const std::string& name, bool ta
 // The size of a residual where the outline is 1.5 px outside of a projected ellipse with a radius
 // of 20 px, at whose depth a pixel is 1 cm.
 inline double SizeOfSomeError(ObjectResidual residual) {
-  return KindOf(residual).of_pixel_error(1.5, {.radius_px = 20.0, .metres_per_px = 0.01});
+  return KindOf(residual).of_pixel_error(1.5, {.radius_px = 20.0, .depth = 5.0, .focal_px = 500.0});
 }
 
 // A camera and an ellipsoid, with their parameter blocks.
@@ -240,6 +240,14 @@ inline void ExpectObjectRigidInvariance(const ceres::CostFunction& cost, const S
   moved.ellipsoid.world_from_object = new_from_old_world * state.ellipsoid.world_from_object;
   const Eigen::VectorXd before = ObjectResidualsOf(cost, state);
   EXPECT_LT((ObjectResidualsOf(cost, moved) - before).norm(), 1e-8 * (1.0 + before.norm()));
+}
+
+// The same world, `scale` times as large. Its images are the same.
+inline SeenEllipsoid ScaledWorld(SeenEllipsoid state, double scale) {
+  state.cam_from_world.translation *= scale;
+  state.ellipsoid.world_from_object.translation *= scale;
+  state.ellipsoid.half_axes *= scale;
+  return state;
 }
 
 // An ellipsoid that reaches the camera or is behind it has no projected ellipse.

@@ -31,6 +31,7 @@ double SizeOf(ObjectResidual residual, double error_px) {
 TEST(ResidualOfPixelError, ByHand) {
   const double radius = 100.0 / std::sqrt(25.0 - 0.04);
   EXPECT_NEAR(SizeOf(ObjectResidual::kAlgebraicPlane, 1.5), 2.0 * radius * 1.5 * 1e-4, 1e-12);
+  EXPECT_NEAR(SizeOf(ObjectResidual::kRelativePlane, 1.5), 2.0 * radius * 1.5 / 250000.0, 1e-12);
   EXPECT_NEAR(SizeOf(ObjectResidual::kAlgebraicPoint, 1.5), 3.0 / radius, 1e-12);
 }
 

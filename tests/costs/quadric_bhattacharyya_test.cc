@@ -41,8 +41,9 @@ TEST(BhattacharyyaResidual, KeepsTheLaws) {
 
 TEST(BhattacharyyaResidual, DoesNotDependOnTheSizeInTheImage) {
   const ResidualKind& kind = KindOf(ObjectResidual::kBhattacharyya);
-  const double near = kind.of_pixel_error(4.0, {.radius_px = 80.0, .metres_per_px = 0.01});
-  const double far = kind.of_pixel_error(1.0, {.radius_px = 20.0, .metres_per_px = 0.01});
+  const double near =
+      kind.of_pixel_error(4.0, {.radius_px = 80.0, .depth = 5.0, .focal_px = 500.0});
+  const double far = kind.of_pixel_error(1.0, {.radius_px = 20.0, .depth = 5.0, .focal_px = 500.0});
   EXPECT_NEAR(near, far, 1e-15);
 }
 

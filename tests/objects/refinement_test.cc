@@ -50,8 +50,8 @@ double AxisError(const Ellipsoid& a, const Ellipsoid& b) {
 
 TEST_F(RefinementTest, FindsTheTruthFromManySides) {
   Look(0.3, 12);
-  for (const ObjectResidual residual :
-       {ObjectResidual::kTangent, ObjectResidual::kAlgebraicPlane}) {
+  for (const ObjectResidual residual : {ObjectResidual::kTangent, ObjectResidual::kAlgebraicPlane,
+                                        ObjectResidual::kRelativePlane}) {
     ObjectRefinementOptions options;
     options.constraint.residual = residual;
     options.constraint.prior.log_axes = 10.0;

@@ -133,6 +133,7 @@ TEST_F(JointPose, ObjectsAloneRecoverThePose) {
 TEST_F(JointPose, OtherResidualsRecoverThePoseToo) {
   for (const auto& [residual, primitive] :
        {std::pair(ObjectResidual::kAlgebraicPlane, ObjectPrimitive::kHull),
+        {ObjectResidual::kRelativePlane, ObjectPrimitive::kHull},
         {ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour},
         {ObjectResidual::kOverlap, ObjectPrimitive::kBox}}) {
     ObjectPoseOptions options;

@@ -262,6 +262,7 @@ TEST_F(ObjectBundle, StaysAtTheTruth) {
 TEST_F(ObjectBundle, OtherResidualsImproveShapesToo) {
   for (const auto& [residual, primitive] :
        {std::pair(ObjectResidual::kAlgebraicPlane, ObjectPrimitive::kSupport),
+        {ObjectResidual::kRelativePlane, ObjectPrimitive::kSupport},
         {ObjectResidual::kAlgebraicPoint, ObjectPrimitive::kContour},
         {ObjectResidual::kOverlap, ObjectPrimitive::kHull}}) {
     BundleOptions options = kPrecise;

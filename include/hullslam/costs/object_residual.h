@@ -14,6 +14,7 @@ namespace hullslam {
 enum class ObjectResidual {
   kTangent,
   kAlgebraicPlane,
+  kRelativePlane,
   kAlgebraicPoint,
   kDistribution,
   kOverlap,
