@@ -39,9 +39,9 @@ class Presets : public ::testing::Test {
 // NOLINTEND(concurrency-mt-unsafe)
 
 TEST_F(Presets, AllSystemsOfTheTablesAreThere) {
-  const std::vector<std::string> expected = {"hullslam",    "oa_slam",  "oa_slam_ba",
-                                             "orb_slam2",   "paper",    "qiso_slam",
-                                             "quadricslam", "song2022", "voom"};
+  const std::vector<std::string> expected = {
+      "hullslam",      "oa_slam",   "oa_slam_ba",  "orb_slam2", "paper",
+      "paper_literal", "qiso_slam", "quadricslam", "song2022",  "voom"};
   EXPECT_EQ(PresetNames(), expected);
 }
 
@@ -98,13 +98,21 @@ TEST_F(Presets, UseObjectsAsTheirSystemsDo) {
       {"song2022", false, false, ObjectResidual::kAlgebraicPlane},
       {"qiso_slam", false, true, ObjectResidual::kFilteredPoint},
       {"voom", false, false, ObjectResidual::kBhattacharyya},
-      {"paper", true, true, ObjectResidual::kAlgebraicPlane}};
+      {"paper", true, true, ObjectResidual::kRelativePlane},
+      {"paper_literal", true, true, ObjectResidual::kAlgebraicPlane}};
   for (const auto& [name, joint_pose, bundle_adjustment, residual] : uses) {
     const ObjectOptions objects = Apply(name).objects;
     EXPECT_EQ(objects.joint_pose, joint_pose) << name;
     EXPECT_EQ(objects.bundle_adjustment, bundle_adjustment) << name;
     EXPECT_EQ(objects.refinement.constraint.residual, residual) << name;
   }
+}
+
+TEST_F(Presets, TheLiteralPaperDiffersByItsResidualOnly) {
+  const std::string mine =
+      Write("mine.yaml", "preset.base: paper\nobjects.residual: algebraic_plane\n");
+  EXPECT_EQ(FormatSettings(Apply(mine)), FormatSettings(Apply("paper_literal")));
+  EXPECT_NE(FormatSettings(Apply(mine)), FormatSettings(Apply("paper")));
 }
 
 TEST_F(Presets, AnUnknownNameListsTheKnownOnes) {
