@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 r"""Makes the tables of the paper from many runs: I pose error, II mapping quality, III constraints,
-IV simplification, V integration, and VI robustness, a table of our own.
+IV simplification, V integration, VI robustness and VII weight of the constraint, tables of our own.
 
     scripts/reproduce_tables.py --suite synthetic --out tables
     scripts/reproduce_tables.py --data data --out tables --tables I,III --seeds 5

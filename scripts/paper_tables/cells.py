@@ -24,6 +24,11 @@ def median_run(entry):
                key=lambda seed: abs(entry["values"][seed] - entry["median"]))
 
 
+def level_text(table, definitions, cell):
+    """The level of a cell of a table of degradations; none without a degradation."""
+    return cell["level"] or definitions.degradations[table.degradations[0]].unchanged or "none"
+
+
 def columns_of(table, mode):
     """(key, figure, column) of each column of a table."""
     return [(key, FIGURES[key], column) for key in table.figures

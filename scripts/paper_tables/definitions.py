@@ -40,6 +40,7 @@ class Degradation:
     options: tuple = ()  # of degrade_sequence.py
     only_with_objects: bool = False
     modes: tuple = MODES
+    unchanged: str = None  # the level of runs without it, if it is one of a scale
 
 
 @dataclasses.dataclass(frozen=True)
@@ -151,7 +152,8 @@ def read_variant(name, node):
 
 
 def read_degradation(name, node):
-    keys = node.mapping(("label", "levels", "arguments", "options", "only_with_objects", "modes"))
+    keys = node.mapping(("label", "levels", "arguments", "options", "only_with_objects", "modes",
+                         "unchanged"))
     for needed in ("label", "levels"):
         keys.get(needed) or node.fail(f"the key {needed}")
     if ("arguments" in keys) == ("options" in keys):
@@ -160,7 +162,15 @@ def read_degradation(name, node):
                        keys["arguments"].arguments() if "arguments" in keys else (),
                        keys["options"].arguments() if "options" in keys else (),
                        keys["only_with_objects"].flag() if "only_with_objects" in keys else False,
-                       keys["modes"].texts(MODES) if "modes" in keys else MODES)
+                       keys["modes"].texts(MODES) if "modes" in keys else MODES,
+                       read_unchanged(keys) if "unchanged" in keys else None)
+
+
+def read_unchanged(keys):
+    for node in (keys["unchanged"], *keys["levels"].items()):
+        if not isinstance(node.value, (int, float)) or isinstance(node.value, bool):
+            node.fail("a number, because the key unchanged says that the levels are a scale")
+    return str(keys["unchanged"].value)
 
 
 def read_row(node, variants):
@@ -183,6 +193,9 @@ def read_table(name, node, variants, degradations, paper_sequences):
     names = [row.variant for row in rows]
     if not rows or len(set(names)) != len(names):
         keys["rows"].fail("one row or more, each with another variant")
+    shown = keys["degradations"].texts(tuple(degradations)) if "degradations" in keys else ()
+    if len(shown) > 1 and any(degradations[key].unchanged for key in shown):
+        keys["degradations"].fail("one degradation, if it has the key unchanged")
     return Table(name, keys["title"].text(), rows,
                  keys["modes"].texts(MODES) if "modes" in keys else MODES,
                  keys["figures"].texts(tuple(FIGURES)),
@@ -190,7 +203,7 @@ def read_table(name, node, variants, degradations, paper_sequences):
                  keys["paper"].text() if "paper" in keys else None,
                  keys["only"].texts(tuple(paper_sequences)) if "only" in keys else None,
                  keys["sequences"].count() if "sequences" in keys else None,
-                 keys["degradations"].texts(tuple(degradations)) if "degradations" in keys else ())
+                 shown)
 
 
 def read_claim(node, variants):

@@ -228,13 +228,16 @@ def sequences_of(table, request):
 
 
 def levels_of(table, request, mode):
-    """(degradation, level) of the blocks of rows of a table; (None, None) first."""
+    """(degradation, level) of the blocks of rows of a table; (None, None) first, or at its place
+    in a scale."""
     found = [(None, None)]
     for name in table.degradations:
         degradation = request.definitions.degradations[name]
         if mode in degradation.modes:
             levels = degradation.levels[-1:] if request.is_quick else degradation.levels
             found += [(degradation, level) for level in levels]
+            if degradation.unchanged is not None:
+                found.sort(key=lambda item: float(item[1] or degradation.unchanged))
     return found
 
 

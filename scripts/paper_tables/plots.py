@@ -9,7 +9,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from paper_tables.cells import median_run  # noqa: E402
+from paper_tables.cells import level_text, median_run  # noqa: E402
 from paper_tables.figures import FIGURES  # noqa: E402
 from plot_labels import plain  # noqa: E402
 from run_alignment import align, pair  # noqa: E402
@@ -185,7 +185,8 @@ def curves(report, block, name, out):
 
 
 def level_plot(report, block):
-    """A panel for each degradation: the figure of each row over the levels, from that without it."""
+    """A panel for each sequence and degradation: the figure of each row over the levels, from that
+    without it."""
     table = report.table(block)
     figure_of = FIGURES[table.figures[0]]
     column = figure_of.columns[block["mode"]][0]
@@ -197,27 +198,29 @@ def level_plot(report, block):
     for panel, (sequence, name) in zip(axes, found):
         cells = [cell for cell in block["sequences"][sequence]
                  if cell["degradation"] in (None, name)]
-        levels = list(dict.fromkeys(str(cell["level"] or "none") for cell in cells))
+        levels = list(dict.fromkeys(level_text(table, report.definitions, cell) for cell in cells))
         for row, (colour, _) in zip(table.rows, colours(len(table.rows))):
-            draw_levels(panel, [cell for cell in cells if cell["row"] == row.variant], levels,
+            draw_levels(panel, [(levels.index(level_text(table, report.definitions, cell)), cell)
+                                for cell in cells if cell["row"] == row.variant],
                         column.key, figure_of.factor, colour, row.label)
         panel.set_xticks(range(len(levels)), levels)
         largest = max((cell["figures"][column.key]["max"] for cell in cells
                        if cell["figures"].get(column.key)), default=1.0)
         panel.set_ylim(0.0, 1.05 * largest * figure_of.factor)
         panel.set_ylabel(plain(column.heading))
-        panel.set_title(plain(report.definitions.degradations[name].label))
+        label = report.definitions.degradations[name].label
+        panel.set_title(plain(label if len(block["sequences"]) == 1 else f"{sequence}: {label}"))
     axes[0].legend(frameon=False)
     return svg(figure, f"levels-{block['table']}-{block['mode']}")
 
 
-def draw_levels(panel, cells, levels, key, factor, colour, label):
+def draw_levels(panel, cells, key, factor, colour, label):
+    """Draws a row. `cells`: (place on the axis, cell)."""
     places, medians = [], []
-    for cell in cells:
+    for place, cell in cells:
         entry = cell["figures"].get(key)
         if entry is None:
             continue
-        place = levels.index(str(cell["level"] or "none"))
         places.append(place)
         medians.append(entry["median"] * factor)
         seeds = sorted(entry["values"])

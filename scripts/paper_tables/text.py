@@ -3,7 +3,7 @@
 
 import dataclasses
 
-from paper_tables.cells import columns_of, median_run
+from paper_tables.cells import columns_of, level_text, median_run
 from paper_tables.figures import FIGURES
 
 DASH = "–"
@@ -215,10 +215,9 @@ def degradation_grid(report, block):
         rows.append([Text(sequence_heading(report, name))])
         for start in range(0, len(cells), len(table.rows)):
             group = cells[start:start + len(table.rows)]
-            label, level = "none", ""
-            if group[0]["degradation"]:
-                label = report.definitions.degradations[group[0]["degradation"]].label
-                level = group[0]["level"]
+            level = level_text(table, report.definitions, group[0])
+            label, level = ("none", "") if level == "none" else (report.definitions.degradations[
+                group[0]["degradation"] or table.degradations[0]].label, level)
             texts = [entry_text(cell, column, figure) for cell in group
                      for _, figure, column in columns]
             for cell, first in zip(group, range(0, len(texts), len(columns))):

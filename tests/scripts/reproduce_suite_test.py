@@ -61,7 +61,7 @@ class QuickSuiteTest(unittest.TestCase):
 
     def check_report(self, report):
         self.assertEqual({table["table"] for table in report["tables"]},
-                         {"I", "II", "III", "IV", "V", "VI"})
+                         {"I", "II", "III", "IV", "V", "VI", "VII"})
         self.assertEqual({sequence["dataset"] for sequence in report["sequences"].values()},
                          {"tum", "icl"})
         for name, run in report["runs"].items():

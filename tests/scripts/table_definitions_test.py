@@ -44,7 +44,7 @@ class DefinitionsTest(FolderTest):
 
     def test_the_definitions_of_the_paper(self):
         found = read_definitions(OWN / "tables.yaml")
-        self.assertEqual(list(found.tables), ["I", "II", "III", "IV", "V", "VI"])
+        self.assertEqual(list(found.tables), ["I", "II", "III", "IV", "V", "VI", "VII"])
         self.assertEqual(len(found.paper_sequences), 10)
         self.assertEqual({row.variant for row in found.tables["I"].rows} >= {
             "orb_slam2", "hullslam", "hullslam_global_shutter", "hullslam_objects_off"}, True)
@@ -114,6 +114,12 @@ class DefinitionsTest(FolderTest):
                 ("title: Pose error", "titel: x", ("tables.I: unknown key 'titel'",)),
                 ('options: [--mask-drop, "{level}"]', "level: 1", ("unknown key 'level'",)),
                 ('options: [--mask-drop, "{level}"],', "", ("either arguments or options",)),
+                ("label: features,", "label: features, unchanged: 3,",
+                 ("tables.VI.degradations", "one degradation, if it has the key unchanged")),
+                ("levels: [500, 100]", "unchanged: 3, levels: [500, many]",
+                 ("degradations.features.levels[1]: is 'many', expected a number",)),
+                ("levels: [500, 100]", "unchanged: yes, levels: [500]",
+                 ("degradations.features.unchanged: is 'True', expected a number",)),
                 ("better: good", "better: none", ("claims[0].better: is 'none'",))):
             with self.subTest(new):
                 self.assertIn(old, DEFINITIONS)

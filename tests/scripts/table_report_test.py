@@ -19,13 +19,13 @@ import fake_slam
 from fake_tables import DEFINITIONS, SCRIPT
 
 sys.path.insert(0, str(SCRIPT.parent))
-from paper_tables import cells, latex, markdown, page  # noqa: E402
+from paper_tables import cells, latex, markdown, page, plots  # noqa: E402
 from paper_tables.compare import compare_reports  # noqa: E402
 from paper_tables.definitions import read_definitions  # noqa: E402
 from paper_tables.plan import Request, Tools, make_plan  # noqa: E402
 from paper_tables.report import Report, read_report  # noqa: E402
 from paper_tables.sequences import Sequence  # noqa: E402
-from paper_tables.text import Text, claims_grid, number, ranking_grid, Grid  # noqa: E402
+from paper_tables.text import Text, claims_grid, grids, number, ranking_grid, Grid  # noqa: E402
 from paper_tables.figures import FIGURES, of_true_objects  # noqa: E402
 
 PAPER = {"source": "a paper & its 100 % _tables_",
@@ -214,6 +214,23 @@ class ReportTest(unittest.TestCase):
             if link.startswith("../"):
                 self.assertTrue((self.dir / "tables" / link).resolve().is_dir(), link)
         self.assertTrue(page.page(self.report(), self.dir, None) == text, "the same bytes each time")
+
+    def test_a_scale_has_the_level_of_the_rows_at_its_place(self):
+        path = self.dir / "tables.yaml"
+        path.write_text(DEFINITIONS.replace("[features, mask_drop]", "[features]").replace(
+            "levels: [500, 100]", "levels: [100, 500], unchanged: 300"))
+        self.request.definitions = read_definitions(path)
+        self.request.tables = ("VI",)
+        tools = Tools(self.dir / "bin", SCRIPT.parent, self.dir)
+        self.plan, self.cells = make_plan(self.request, tools)
+        self.results = {name: self.result(name, run) for name, run in self.plan["runs"].items()}
+        report = self.report()
+        grid, = grids(report, report.blocks[0])
+        self.assertEqual([(row[0].text, row[1].text) for row in grid.rows if len(row) > 1],
+                         2 * [("features", "100"), ("features", "300"), ("features", "500")])
+        picture = plots.level_plot(report, report.blocks[0])
+        self.assertIn("desk: features", picture)
+        self.assertNotIn("none<", picture)
 
     def test_texts_are_escaped_in_the_page(self):
         grid = Grid("<a>", ["x"], [[Text("<script>"), Text("&")]], ["failed: a/b: <i>"])
