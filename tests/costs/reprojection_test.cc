@@ -63,6 +63,19 @@ TEST(ReprojectionCost, DoesNotDependOnTheWorldFrame) {
   }
 }
 
+TEST(ReprojectionCost, TheScaleOfTheWorldDoesNotMatter) {
+  RandomGeometry random(3);
+  const ReprojectionCost cost(kReprojectionCamera, Measurement({100.0, 200.0}, 1.2));
+  for (const double scale : {0.5, 0.99, 3.0}) {
+    Rigid3 cam_from_world = random.Pose(1.0, 1.0);
+    const Eigen::Vector3d point =
+        Inverse(cam_from_world) * (random.Vector(1.0) + Eigen::Vector3d(0.0, 0.0, 3.0));
+    const Eigen::Vector2d residual = ResidualOf<2>(cost, cam_from_world, point);
+    cam_from_world.translation *= scale;
+    EXPECT_LT((ResidualOf<2>(cost, cam_from_world, scale * point) - residual).norm(), 1e-9);
+  }
+}
+
 TEST(ReprojectionCost, IsNotDefinedBehindTheCamera) {
   const ReprojectionCost cost(kReprojectionCamera, Measurement({320.0, 240.0}, 1.0));
   const PoseBlock pose = ToBlock(Rigid3());
