@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The card beside the view: the list of objects, or everything about the chosen one.
+import { colourOfClass } from './colours.js';
 import { html, isNumber, number, words } from './text.js';
 import { picture } from './pictures.js';
 
@@ -25,8 +26,8 @@ export function sizeText(object, unit) {
 
 export class Card {
   // `onChoose(id)` chooses an object, `onTime(t)` a moment.
-  constructor(place, store, colours, onChoose, onTime) {
-    Object.assign(this, { place, store, colours, onChoose, onTime, id: null });
+  constructor(place, store, onChoose, onTime) {
+    Object.assign(this, { place, store, onChoose, onTime, id: null });
   }
 
   choose(id) {
@@ -43,7 +44,7 @@ export class Card {
   }
 
   swatch(label) {
-    return html('i', { class: 'swatch', style: `background:${this.colours.of(label)}` });
+    return html('i', { class: 'swatch', style: `background:${colourOfClass(label)}` });
   }
 
   list(objects) {
@@ -72,10 +73,10 @@ export class Card {
     if (object.cutouts && object.cutouts.length > 0) {
       parts.push(html('h3', {}, 'Best views'), html('div', { class: 'cutouts' },
         object.cutouts.map((cutout) => html('figure', {
-          onclick: () => this.onTime(cutout.time) }, ...picture(cutout, this.colours)))));
+          onclick: () => this.onTime(cutout.time) }, ...picture(cutout)))));
     }
     parts.push(html('h3', {}, 'Votes for classes'), bars(votes.slice(0, 8).map(([name, value]) => ({
-      name, value, text: number(value, 1), colour: this.colours.of(object.class) }))));
+      name, value, text: number(value, 1), colour: colourOfClass(object.class) }))));
     return parts.concat(this.relations(object));
   }
 

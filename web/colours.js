@@ -1,30 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One colour per class of the run, and the colours of the theme.
+// The colours of classes, and those of the theme.
 
-// Hues in an order in which neighbours differ a lot; further classes get them with another
-// lightness.
-const HUES = [168, 32, 212, 345, 268, 88, 190, 12, 300, 54, 235, 135];
-
-export class ClassColours {
-  constructor() {
-    this.hues = new Map();
+// The hue of a class in degrees. It depends on the name alone and is that of objects.ply, so a class
+// has the same colour in the live view, in the report and in files. The hash is FNV-1a of 32 bits
+// over the name in UTF-8, as ColourOfClass() of the library computes it.
+function hueOf(label) {
+  let hash = 2166136261;
+  for (const byte of new TextEncoder().encode(label)) {
+    hash = Math.imul(hash ^ byte, 16777619) >>> 0;
   }
+  return (hash >>> 16) % 360;
+}
 
-  update(objects) {
-    for (const label of [...new Set(objects.map((object) => object.class))].sort()) {
-      if (!this.hues.has(label)) {
-        this.hues.set(label, this.hues.size);
-      }
-    }
-  }
-
-  of(label) {
-    const index = this.hues.get(label) || 0;
-    const light = document.documentElement.dataset.theme === 'light';
-    const step = Math.floor(index / HUES.length) % 3;
-    const lightness = (light ? 42 : 64) + (light ? 9 : -11) * step;
-    return `hsl(${HUES[index % HUES.length]}, ${light ? 72 : 68}%, ${lightness}%)`;
-  }
+export function colourOfClass(label) {
+  const light = document.documentElement.dataset.theme === 'light';
+  return `hsl(${hueOf(label)}, ${light ? 72 : 68}%, ${light ? 42 : 64}%)`;
 }
 
 export function themeColour(name) {
@@ -39,6 +29,12 @@ export function ramp(share) {
   const at = Math.min(Math.max(share, 0), 1) * (RAMP.length - 1);
   const low = Math.min(Math.floor(at), RAMP.length - 2);
   return RAMP[low].map((value, i) => value + (RAMP[low + 1][i] - value) * (at - low));
+}
+
+// The ramp as an image of CSS, from left to right.
+export function rampAsCss() {
+  const colours = RAMP.map((colour) => `rgb(${colour.map((c) => Math.round(c * 255)).join(' ')})`);
+  return `linear-gradient(90deg, ${colours.join(', ')})`;
 }
 
 export function bindTheme(button, onChange) {

@@ -2,7 +2,7 @@
 // The layers of the 3D view, each made from parts of the store. A layer is rebuilt when one of its
 // parts has changed.
 import { frustumSegments, pieces } from './geometry.js';
-import { ramp, themeColour } from './colours.js';
+import { colourOfClass, ramp, themeColour } from './colours.js';
 
 const MOST_TUBE_POINTS = 3000;
 
@@ -29,19 +29,33 @@ const POINT_SHADERS = {
     }`,
 };
 
-function tintsByHeight(points, up) {
+// The heights of points over the origin, along `up`.
+function heightsOf(points, up) {
   const heights = new Float32Array(points.length / 3);
   for (let i = 0; i < heights.length; ++i) {
     heights[i] = points[3 * i] * up.x + points[3 * i + 1] * up.y + points[3 * i + 2] * up.z;
   }
-  return tintsByValue(heights);
+  return heights;
 }
 
-// Colours from the 2 % to the 98 % of the values.
-function tintsByValue(values) {
+// The range of the colours: from the 2 % to the 98 % of the values.
+function rangeOf(values) {
   const sorted = Float32Array.from(values).filter(Number.isFinite).sort();
-  const low = sorted[Math.floor(sorted.length * 0.02)] || 0;
-  const high = sorted[Math.floor(sorted.length * 0.98)] || 0;
+  return [0.02, 0.98].map((share) => sorted[Math.floor(sorted.length * share)] || 0);
+}
+
+// What the colours of the landmarks stand for, {name, range}; null for colours of the images.
+export function scaleOfColours(store, look) {
+  const { position, age } = store.get('landmarks', {});
+  if (look.colouring === 'age' && age && age.length > 0) {
+    return { name: 'age', range: rangeOf(age) };
+  }
+  return look.colouring === 'height' && position && position.length > 0
+    ? { name: 'height', range: rangeOf(heightsOf(position, look.up)) } : null;
+}
+
+function tintsByValue(values) {
+  const [low, high] = rangeOf(values);
   const tints = new Float32Array(3 * values.length);
   values.forEach((value, i) => {
     tints.set(ramp(high > low ? (value - low) / (high - low) : 0.5), 3 * i);
@@ -67,7 +81,7 @@ export function landmarksLayer(store, look) {
   } else if (look.colouring === 'age' && landmarks.age && landmarks.age.length === count) {
     tints = tintsByValue(landmarks.age);
   } else {
-    tints = tintsByHeight(landmarks.position, look.up);
+    tints = tintsByValue(heightsOf(landmarks.position, look.up));
   }
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.BufferAttribute(landmarks.position, 3));
@@ -83,6 +97,32 @@ export function landmarksLayer(store, look) {
   return points;
 }
 
+// A tube with the thickness of the scene that is never thicker than a few pixels, so that a path
+// does not hide what is near: the shader moves each point of its surface towards the centre line.
+const TUBE_SHADERS = {
+  vertexShader: `
+    uniform float radius;
+    uniform float perPixel;
+    void main() {
+      vec4 centre = modelViewMatrix * vec4(position - normal * radius, 1.0);
+      float most = 1.6 * perPixel * max(-centre.z, 0.0);
+      gl_Position = projectionMatrix
+        * (centre + vec4(normalize(normalMatrix * normal) * min(radius, most), 0.0));
+    }`,
+  fragmentShader: `
+    uniform vec3 colour;
+    uniform float opacity;
+    void main() {
+      gl_FragColor = vec4(colour, opacity);
+    }`,
+};
+
+function tubeMaterial(radius, colour, opacity) {
+  return new THREE.ShaderMaterial({ ...TUBE_SHADERS, transparent: opacity < 1,
+    uniforms: { radius: { value: radius }, perPixel: { value: 0 }, opacity: { value: opacity },
+      colour: { value: new THREE.Color(colour) } } });
+}
+
 function tube(positions, radius, colour, opacity) {
   const step = Math.max(1, Math.ceil(positions.length / MOST_TUBE_POINTS));
   const kept = positions.filter((_, i) => i % step === 0 || i === positions.length - 1);
@@ -92,9 +132,14 @@ function tube(positions, radius, colour, opacity) {
   curve.getPointAt = curve.getPoint;
   curve.getTangentAt = curve.getTangent;
   const geometry = new THREE.TubeBufferGeometry(curve, Math.max(2, kept.length - 1), radius, 6);
-  const material = new THREE.MeshBasicMaterial({ color: colour, opacity,
-    transparent: opacity < 1 });
-  return new THREE.Mesh(geometry, material);
+  const material = tubeMaterial(radius, colour, opacity);
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.onBeforeRender = (renderer, scene, camera) => {
+    // The height of the view at distance 1, for each pixel of the page.
+    material.uniforms.perPixel.value = 2 * Math.tan(camera.fov / 360 * Math.PI)
+      / Math.max(1, renderer.domElement.clientHeight);
+  };
+  return mesh;
 }
 
 // Equal points in a row have no direction, so the tube takes only those that differ.
@@ -228,7 +273,7 @@ export function objectsLayer(store, look) {
   const group = new THREE.Group();
   for (const object of store.get('objects', [])) {
     if (object.state === 'mapped' || object.id === look.chosen) {
-      group.add(ellipsoid(object, look.colours.of(object.class), object.id === look.chosen));
+      group.add(ellipsoid(object, colourOfClass(object.class), object.id === look.chosen));
     }
   }
   return group;

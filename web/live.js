@@ -82,6 +82,8 @@ export class Live {
   explain(live, isOff) {
     return [isOff && live.phase ? 'The connection to the run is lost; the page tries again and '
         + 'shows what came last.' : '',
+    live.phase === 'ended' ? 'The command "view" with the output folder of the run shows it again.'
+      : '',
     live.reason ? `${live.state}: ${words(live.reason)}` : '',
     live.elsewhere ? 'The camera is in a new part of the map, which is not joined to the shown '
         + 'one yet.' : '',

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Puts the parts of the page together.
 import { Card } from './card.js';
-import { bindTheme, ClassColours } from './colours.js';
+import { bindTheme, rampAsCss } from './colours.js';
 import { Curve } from './curve.js';
 import { Live } from './live.js';
 import { Moment } from './pictures.js';
@@ -9,7 +9,7 @@ import { Player } from './player.js';
 import { sections, tiles } from './sections.js';
 import { embeddedMessage, openStream } from './source.js';
 import { Store } from './store.js';
-import { html } from './text.js';
+import { html, length, seconds } from './text.js';
 import { LAYERS, View } from './view.js';
 
 const COLOURINGS = [['image', 'by image'], ['age', 'by age'], ['height', 'by height']];
@@ -21,11 +21,10 @@ function element(id) {
 class Page {
   constructor() {
     this.store = new Store();
-    this.colours = new ClassColours();
     const choose = (id) => this.choose(id);
     const showTime = (time) => this.player.showTime(time);
-    this.card = new Card(element('card'), this.store, this.colours, choose, showTime);
-    this.moment = new Moment(element('moment'), this.store, this.colours);
+    this.card = new Card(element('card'), this.store, choose, showTime);
+    this.moment = new Moment(element('moment'), this.store);
     this.curve = new Curve(element('curve'), this.store, showTime);
     this.view = this.makeView(choose);
     this.time = 0;
@@ -48,7 +47,7 @@ class Page {
   // A browser without WebGL shows everything else.
   makeView(choose) {
     try {
-      return new View(element('canvas'), this.store, this.colours, choose);
+      return new View(element('canvas'), this.store, choose);
     } catch (error) {
       element('canvas').append(html('p', { class: 'fault' },
         `This browser cannot draw in 3D (WebGL): ${error.message}`));
@@ -133,7 +132,6 @@ class Page {
   }
 
   updateMap(changed) {
-    this.colours.update(this.store.get('objects', []));
     this.showHead();
     this.view?.update(changed);
     if (!this.isBusy('layers')) {
@@ -168,7 +166,7 @@ class Page {
   }
 
   showSections() {
-    element('sections').replaceChildren(...sections(this.store, this.colours,
+    element('sections').replaceChildren(...sections(this.store,
       (id) => {
         this.choose(id);
         this.view?.lookAt(id);
@@ -197,7 +195,19 @@ class Page {
         checked: this.view ? this.view.shown[layer.name] : layer.on,
         onchange: (event) => this.view?.show(layer.name, event.target.checked) }),
       html('i', { style: `--mark:${layer.mark}` }), layer.title));
-    element('layers').replaceChildren(...switches, this.colouring());
+    element('layers').replaceChildren(...switches, this.legend(), this.colouring());
+  }
+
+  // From what to what the colours of the landmarks go.
+  legend() {
+    const scale = this.view?.scaleOfColours();
+    if (!scale || this.colouring() === '') {
+      return '';
+    }
+    const text = (value) => (scale.name === 'age' ? seconds(value)
+      : length(value, this.store.unit()).join(' '));
+    return html('span', { class: 'legend' }, text(scale.range[0]),
+      html('i', { style: `background:${rampAsCss()}` }), text(scale.range[1]));
   }
 
   colouring() {
@@ -208,7 +218,10 @@ class Page {
       return '';
     }
     return html('select', { 'aria-label': 'colour of the landmarks',
-      onchange: (event) => this.view?.colourBy(event.target.value) },
+      onchange: (event) => {
+        this.view?.colourBy(event.target.value);
+        this.showLayers();
+      } },
     able.map(([name, title]) => html('option', { value: name,
       selected: this.view?.look.colouring === name }, title)));
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Images of the run with the outlines of its masks (solid) and the projected ellipsoids (dashed).
+import { colourOfClass } from './colours.js';
 import { html, seconds, svg } from './text.js';
 
 function pathOf(points) {
@@ -19,7 +20,7 @@ function dotsOf(points) {
   return path;
 }
 
-export function picture(image, colours) {
+export function picture(image) {
   const overlay = svg('svg', { viewBox: `0 0 ${image.width} ${image.height}`,
     preserveAspectRatio: 'none' });
   for (const name of ['unmatched', 'matched']) {
@@ -30,7 +31,7 @@ export function picture(image, colours) {
   for (const [name, shapes] of [['ellipse', image.ellipses], ['outline', image.outlines]]) {
     for (const shape of shapes || []) {
       overlay.append(svg('path', { class: name, d: pathOf(shape.points),
-        stroke: colours.of(shape.class) }));
+        stroke: colourOfClass(shape.class) }));
     }
   }
   return [html('img', { src: image.image, alt: 'image of the camera', width: image.width,
@@ -44,8 +45,8 @@ export function imageAt(images, time) {
 }
 
 export class Moment {
-  constructor(place, store, colours) {
-    Object.assign(this, { place, store, colours, shown: null });
+  constructor(place, store) {
+    Object.assign(this, { place, store, shown: null });
   }
 
   show(time) {
@@ -55,7 +56,7 @@ export class Moment {
       return;
     }
     this.shown = image;
-    this.place.replaceChildren(html('figure', {}, ...picture(image, this.colours)),
+    this.place.replaceChildren(html('figure', {}, ...picture(image)),
       html('figcaption', {}, html('span', {}, `Image of ${seconds(image.time)}`),
         html('span', {}, '— mask   - - ellipsoid')));
   }
@@ -64,7 +65,7 @@ export class Moment {
   showLive(image) {
     this.shown = image;
     this.place.hidden = false;
-    this.place.replaceChildren(html('figure', {}, ...picture(image, this.colours)),
+    this.place.replaceChildren(html('figure', {}, ...picture(image)),
       html('figcaption', {}, html('span', {}, `Now, ${seconds(image.time)}`),
         html('span', {}, '● matched   — mask   - - ellipsoid')));
   }
@@ -75,10 +76,20 @@ export class Moment {
   }
 }
 
-export function strip(store, colours, onTime) {
-  const images = store.get('images', []);
+function hasOutline(image) {
+  return (image.outlines || []).length > 0;
+}
+
+// Up to twelve images, evenly chosen: those with outlines, or all if none has any.
+export function strip(store, onTime) {
+  const all = store.get('images', []);
+  const images = all.some(hasOutline) ? all.filter(hasOutline) : all;
   const step = Math.max(1, Math.ceil(images.length / 12));
   return html('div', { class: 'strip' }, images.filter((_, i) => i % step === 0).map((image) =>
-    html('figure', { onclick: () => onTime(image.time) }, ...picture(image, colours),
+    html('figure', { onclick: () => onTime(image.time) }, ...picture(image),
       html('figcaption', {}, seconds(image.time)))));
+}
+
+export function stripTitle(store) {
+  return store.get('images', []).some(hasOutline) ? 'Images with outlines' : 'Images';
 }

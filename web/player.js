@@ -13,7 +13,8 @@ function icon(path) {
 export class Player {
   // `elements` has play, slider, clock and speed; `onFrame(index, time)` shows a frame.
   constructor(elements, store, onFrame) {
-    Object.assign(this, elements, { store, onFrame, isPlaying: false, rate: 1, index: 0 });
+    Object.assign(this, elements, { store, onFrame, isPlaying: false, wasLive: false, rate: 1,
+      index: 0 });
     this.play.addEventListener('click', () => this.setPlaying(!this.isPlaying));
     this.speed.addEventListener('click', () => {
       this.rate = SPEEDS[(SPEEDS.indexOf(this.rate) + 1) % SPEEDS.length];
@@ -33,15 +34,17 @@ export class Player {
     return trajectory ? trajectory.time : new Float32Array(0);
   }
 
+  // A run that is going on, or whose last poses have just come, is followed to its end.
   update() {
     const count = this.times().length;
-    const isAtEnd = this.index === Number(this.slider.max);
+    const isLive = Boolean(this.store.get('run', {}).live);
+    const isFollowed = (isLive || this.wasLive) && this.index === Number(this.slider.max);
+    this.wasLive = isLive;
     this.slider.max = Math.max(0, count - 1);
     this.play.disabled = count < 2;
     this.slider.disabled = count < 2;
     if (count > 0) {
-      this.show(this.store.get('run', {}).live && isAtEnd ? count - 1
-        : Math.min(this.index, count - 1));
+      this.show(isFollowed ? count - 1 : Math.min(this.index, count - 1));
     }
   }
 

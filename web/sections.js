@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parts of the page beside the view: the figures at its top, and the sections below it.
 import { bars, facts, sizeText } from './card.js';
-import { strip } from './pictures.js';
+import { colourOfClass } from './colours.js';
+import { strip, stripTitle } from './pictures.js';
 import { html, isNumber, length, number, seconds, whole, words } from './text.js';
 
 function tile(name, value, unit = '', kind = '') {
@@ -19,6 +20,8 @@ export function tiles(store) {
   const summary = store.get('summary', {});
   const trajectory = summary.trajectory || {};
   const counted = store.get('objects', []).filter((object) => object.state === 'mapped').length;
+  const landmarks = at(summary, 'map', 'landmarks') ?? at(store.get('landmarks'), 'total')
+    ?? (at(store.get('landmarks'), 'position', 'length') || 0) / 3;
   const poses = [trajectory.coverage, isNumber(trajectory.coverage)];
   return [
     isNumber(trajectory.ate_rmse_m) ? tile(`ATE (${trajectory.alignment})`,
@@ -30,8 +33,7 @@ export function tiles(store) {
       number(summary.objects.siou_mean)) : null,
     tile('keyframes', whole(at(summary, 'map', 'keyframes')
       ?? store.get('keyframes', { time: [] }).time.length)),
-    isNumber(at(summary, 'map', 'landmarks')) && summary.map.landmarks > 0
-      ? tile('landmarks', whole(summary.map.landmarks)) : null,
+    landmarks > 0 ? tile('landmarks', whole(landmarks)) : null,
     isNumber(at(summary, 'map', 'loops')) && summary.map.keyframes > 0
       && summary.map.landmarks > 0 ? tile('loops closed', whole(summary.map.loops)) : null,
     at(summary, 'timing', 'frames_per_second') > 0 ? tile('frames/s',
@@ -52,14 +54,14 @@ function table(columns, rows) {
     class: columns[i].isText ? 'text' : '' }, cell)))))));
 }
 
-function objectTable(store, colours, onChoose) {
+function objectTable(store, onChoose) {
   const objects = [...store.get('objects', [])].sort((a, b) => (a.state === b.state
     ? (b.quality || 0) - (a.quality || 0) : a.state === 'mapped' ? -1 : 1));
   const columns = [{ title: 'Object', isText: true }, { title: 'State', isText: true },
     { title: 'Quality' }, { title: 'Size' }, { title: 'Views' }, { title: 'Angle' },
     { title: 'Overlap' }, { title: 'Misfit' }];
   return table(columns, objects.map((object) => ({ onclick: () => onChoose(object.id), cells: [
-    html('span', {}, html('i', { class: 'swatch', style: `background:${colours.of(object.class)};`
+    html('span', {}, html('i', { class: 'swatch', style: `background:${colourOfClass(object.class)};`
       + 'margin-right:8px' }), `${object.class} ${object.id}`),
     object.state === 'mapped' ? 'mapped'
       : `not mapped${object.reason ? `: ${words(object.reason)}` : ''}`,
@@ -77,11 +79,17 @@ function rejections(summary) {
 
 function timing(summary) {
   const stages = Object.entries(at(summary, 'timing', 'stages_ms') || {})
-    .filter((entry) => entry[1] && isNumber(entry[1].median));
+    .filter((entry) => entry[1] && isNumber(entry[1].median))
+    .sort((a, b) => b[1].median - a[1].median);
+  // A final bundle adjustment takes a thousand times as long as a step of tracking, so the bars are
+  // logarithmic. The shortest one has a tenth of the length.
+  const logs = stages.map(([, value]) => Math.log(Math.max(value.median, 1e-3)));
+  const [most, least] = [Math.max(...logs), Math.min(...logs)];
+  const lengthOf = (log) => (most > least ? 0.1 + 0.9 * (log - least) / (most - least) : 1);
   return [html('p', { class: 'hint' }, `${seconds(at(summary, 'timing', 'total_s'))} in all; a frame`
     + ` takes ${number(at(summary, 'timing', 'track_ms', 'median'), 1)} ms (median), `
-    + `${number(at(summary, 'timing', 'track_ms', 'p95'), 1)} ms (95 %). Medians of the stages:`),
-  bars(stages.map(([name, value]) => ({ name: words(name), value: value.median,
+    + `${number(at(summary, 'timing', 'track_ms', 'p95'), 1)} ms (95 %). Medians of the stages, on a logarithmic scale:`),
+  bars(stages.map(([name, value], i) => ({ name: words(name), value: lengthOf(logs[i]),
     text: `${number(value.median, 1)} ms` })), 'var(--accent)')];
 }
 
@@ -105,14 +113,14 @@ function provenance(summary) {
   return facts(rows.map(([key, value]) => [words(key), String(value)]));
 }
 
-export function sections(store, colours, onChoose, onTime) {
+export function sections(store, onChoose, onTime) {
   const summary = store.get('summary', {});
   const list = [];
   if (store.get('images', []).length > 0) {
-    list.push(section('Images with outlines', strip(store, colours, onTime), true));
+    list.push(section(stripTitle(store), strip(store, onTime), true));
   }
   if (store.get('objects', []).length > 0) {
-    list.push(section('Objects', objectTable(store, colours, onChoose), true));
+    list.push(section('Objects', objectTable(store, onChoose), true));
   }
   if (Object.keys(at(summary, 'timing', 'stages_ms') || {}).length > 0) {
     list.push(section('Time', timing(summary)));

@@ -3,9 +3,9 @@
 import { fitPoints, samplePoints } from './fit.js';
 import { frustumCorners, frustumSegments, positionAt, robustBounds, rotationAt }
   from './geometry.js';
-import { themeColour } from './colours.js';
+import { colourOfClass, themeColour } from './colours.js';
 import { covisibilityLayer, gridLayer, groundtruthLayer, keyframesLayer, landmarksLayer, loopsLayer,
-  objectsLayer, trajectoryLayer } from './layers.js';
+  objectsLayer, scaleOfColours, trajectoryLayer } from './layers.js';
 import { html } from './text.js';
 
 export const LAYERS = [
@@ -41,11 +41,11 @@ function dispose(node) {
 
 export class View {
   // `onChoose(id)` is called when an object is clicked; null beside all objects.
-  constructor(place, store, colours, onChoose) {
+  constructor(place, store, onChoose) {
     this.place = place;
     this.store = store;
     this.onChoose = onChoose;
-    this.look = { colouring: 'image', chosen: null, colours, radius: 1, thickness: 0.003,
+    this.look = { colouring: 'image', chosen: null, radius: 1, thickness: 0.003,
       up: new THREE.Vector3(0, -1, 0) };
     this.nodes = {};
     this.shown = Object.fromEntries(LAYERS.map((layer) => [layer.name, layer.on]));
@@ -189,6 +189,10 @@ export class View {
   colourBy(colouring) {
     this.look.colouring = colouring;
     this.update(new Set(['landmarks']));
+  }
+
+  scaleOfColours() {
+    return scaleOfColours(this.store, this.look);
   }
 
   choose(id) {
@@ -367,7 +371,7 @@ export class View {
       if (boxes.every((b) => Math.abs(b.x - x) > (b.w + w) / 2 + 3 || Math.abs(b.y - y) > h + 2)) {
         boxes.push({ x, y, w });
         label.node.style.transform = `translate(${Math.round(x - w / 2)}px, ${Math.round(y - 10)}px)`;
-        label.node.style.borderColor = this.look.colours.of(object.class);
+        label.node.style.borderColor = colourOfClass(object.class);
         label.node.classList.toggle('chosen', object.id === this.look.chosen);
         used.set(object.id, label);
       }

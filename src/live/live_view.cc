@@ -216,9 +216,12 @@ class LiveView::Engine {
   void GiveMap() {
     const LiveClock::time_point begin = LiveClock::now();
     const bool is_whole_needed = hub_.NeedsWhole();
-    if (begin < next_map_ && !(is_whole_needed && begin >= next_whole_)) {
+    // A run that waits needs no processor, so its map may take more of it and is up to date soon.
+    const bool is_due = begin >= (gate_.IsPaused() ? last_map_ + kMapPeriod : next_map_);
+    if (!is_due && !(is_whole_needed && begin >= next_whole_)) {
       return;
     }
+    last_map_ = begin;
     const LiveState state = inbox_.state();
     if (state.map != nullptr) {
       // If all browsers wait for the whole map, it need not grow by small changes.
@@ -305,6 +308,7 @@ class LiveView::Engine {
   std::atomic<bool> is_localising_ = false;
   std::atomic<bool> is_control_changed_ = false;
   std::atomic<bool> has_failed_ = false;
+  LiveClock::time_point last_map_;
   LiveClock::time_point next_map_;
   LiveClock::time_point next_whole_;
   mutable std::mutex mutex_;  // guards the two members below

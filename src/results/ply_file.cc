@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "results/ply_points.h"
 #include "results/unit_mesh.h"
 
 namespace hullslam {
@@ -42,10 +43,9 @@ std::string StartPly(size_t vertices) {
 std::string FormatMapPly(std::span<const Eigen::Vector3d> landmarks,
                          std::span<const Eigen::Vector3d> keyframes) {
   constexpr Colour kGrey = {128, 128, 128};
-  constexpr Colour kOrange = {255, 128, 0};
   std::string bytes = StartPly(landmarks.size() + keyframes.size()) + "end_header\n";
   AppendPoints(bytes, landmarks, kGrey);
-  AppendPoints(bytes, keyframes, kOrange);
+  AppendPoints(bytes, keyframes, kKeyframeColour);
   return bytes;
 }
 

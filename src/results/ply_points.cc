@@ -69,4 +69,13 @@ PlyPoints ReadPlyPoints(const std::filesystem::path& path) {
   return points;
 }
 
+PlyPoints ReadMapLandmarks(const std::filesystem::path& path) {
+  PlyPoints points = ReadPlyPoints(path);
+  while (!points.colours.empty() && points.colours.back() == kKeyframeColour) {
+    points.colours.pop_back();
+    points.positions.pop_back();
+  }
+  return points;
+}
+
 }  // namespace hullslam

@@ -73,6 +73,15 @@ Trajectory ReadTrajectory(const std::filesystem::path& path) {
   return trajectory;
 }
 
+Trajectory ReadKeyframes(const std::filesystem::path& path) {
+  Trajectory keyframes;
+  ForEachRow(path, [&](const TextRow& row) { keyframes.push_back(ParsePose(row)); });
+  if (keyframes.empty()) {
+    throw InputError(path.string() + ": has no poses");
+  }
+  return keyframes;
+}
+
 std::string FormatTrajectory(const Trajectory& trajectory) {
   const TrajectoryPart part{.title = {}, .poses = trajectory};
   return FormatTrajectory({&part, 1});

@@ -121,16 +121,13 @@ void UseMapOfRun(const ExportSource& source, const RunFacts& facts, bool is_need
   input.notes.push_back(reason + ", so the points have no colours");
 }
 
-// The points of map.ply, whose last ones are the centres of the keyframes.
 void ReadPointsOfRun(const fs::path& folder, ExportModel& model) {
   std::error_code error;
   if (!fs::exists(folder / "map.ply", error)) {
     return;
   }
-  const PlyPoints points = ReadPlyPoints(folder / "map.ply");
-  const size_t centers = std::min(points.positions.size(), model.keyframes.size());
-  for (size_t i = 0; i + centers < points.positions.size(); ++i) {
-    model.points.push_back({points.positions[i].cast<double>(), kGreyPoint});
+  for (const Eigen::Vector3f& position : ReadMapLandmarks(folder / "map.ply").positions) {
+    model.points.push_back({position.cast<double>(), kGreyPoint});
   }
 }
 
@@ -178,15 +175,15 @@ ExportInput ReadRun(const ExportSource& source, ExportNeed need) {
   const RunFacts facts = ReadRunFacts(folder);
   std::error_code error;
   const bool has_frames = fs::exists(folder / "trajectory.txt", error);
-  input.model.trajectory =
-      ReadTrajectory(folder / (has_frames ? "trajectory.txt" : "keyframes.txt"));
+  input.model.trajectory = has_frames ? ReadTrajectory(folder / "trajectory.txt")
+                                      : ReadKeyframes(folder / "keyframes.txt");
   if (need == ExportNeed::kPoses) {
     return input;
   }
   ReadSceneOfRun(folder, input.model);
   UseMapOfRun(source, facts, need >= ExportNeed::kMap, input);
   if (!input.map) {
-    input.model.keyframes = ReadTrajectory(folder / "keyframes.txt");
+    input.model.keyframes = ReadKeyframes(folder / "keyframes.txt");
     ReadPointsOfRun(folder, input.model);
   } else if (need != ExportNeed::kMap) {
     UseSequence(source, facts, need == ExportNeed::kImages, input);

@@ -174,12 +174,12 @@ std::vector<double> PictureStamps(const ViewModel& model, size_t most) {
 
 }  // namespace
 
-size_t RunImageTasks(const ImageSequence& sequence, const PinholeCamera& camera,
-                     std::vector<ImageTask> tasks) {
+LeftOutTasks RunImageTasks(const ImageSequence& sequence, const PinholeCamera& camera,
+                           std::vector<ImageTask> tasks) {
   std::stable_sort(tasks.begin(), tasks.end(), [](const ImageTask& a, const ImageTask& b) {
     return a.timestamp < b.timestamp;
   });
-  size_t failed = 0;
+  LeftOutTasks left_out;
   const FramePaths* loaded = nullptr;
   cv::Mat image;
   for (const ImageTask& task : tasks) {
@@ -192,13 +192,15 @@ size_t RunImageTasks(const ImageSequence& sequence, const PinholeCamera& camera,
       }
       loaded = frame;
     }
-    if (frame == nullptr || image.empty()) {
-      ++failed;
+    if (frame == nullptr) {
+      ++left_out.absent;
+    } else if (image.empty()) {
+      ++left_out.unreadable;
     } else {
       task.use(image);
     }
   }
-  return failed;
+  return left_out;
 }
 
 std::vector<ImageTask> ColourTasks(std::span<const KeyframePixels> keyframes, ViewModel& model) {

@@ -21,10 +21,15 @@ struct ImageTask {
   std::function<void(const cv::Mat& image)> use;
 };
 
-// Loads the images of the tasks, each once, in order of time. Returns the number of tasks whose
-// image is not in the sequence or cannot be read.
-size_t RunImageTasks(const ImageSequence& sequence, const PinholeCamera& camera,
-                     std::vector<ImageTask> tasks);
+// The tasks that were left out.
+struct LeftOutTasks {
+  size_t absent = 0;      // the sequence has no image of this moment: it is of another session
+  size_t unreadable = 0;  // the image cannot be read, or has not the size of the camera
+};
+
+// Loads the images of the tasks, each once, in order of time.
+LeftOutTasks RunImageTasks(const ImageSequence& sequence, const PinholeCamera& camera,
+                           std::vector<ImageTask> tasks);
 
 // The tasks that give the landmarks of `model` their colours. A landmark without an image stays
 // grey. `model` must outlive the tasks.

@@ -71,7 +71,7 @@ void ReadPoses(const fs::path& folder, ViewModel& model) {
   AddPart("trajectory", model,
           [&] { model.trajectory = ReadTrajectory(folder / "trajectory.txt"); });
   AddPart("keyframes", model, [&] {
-    model.keyframes.poses = ReadTrajectory(folder / "keyframes.txt");
+    model.keyframes.poses = ReadKeyframes(folder / "keyframes.txt");
     for (uint32_t id = 0; id < model.keyframes.poses.size(); ++id) {
       model.keyframes.ids.push_back(id);
     }
@@ -84,10 +84,7 @@ void ReadLandmarks(const fs::path& folder, ViewModel& model) {
     return;
   }
   AddPart("landmarks", model, [&] {
-    PlyPoints points = ReadPlyPoints(folder / "map.ply");
-    // The centres of the keyframes come last, and have a colour of their own.
-    const size_t centres = std::min(points.positions.size(), model.keyframes.poses.size());
-    points.positions.resize(points.positions.size() - centres);
+    PlyPoints points = ReadMapLandmarks(folder / "map.ply");
     model.landmarks.total = points.positions.size();
     model.landmarks.positions = std::move(points.positions);
     if (points.left_out > 0) {
@@ -166,13 +163,17 @@ void AddPictures(const ImageSequence& sequence, const RunMemory& memory, ViewMod
     }
   }
   const size_t count = tasks.size();
-  const size_t failed = RunImageTasks(sequence, *model.camera, std::move(tasks));
-  if (failed == count) {
+  const LeftOutTasks left_out = RunImageTasks(sequence, *model.camera, std::move(tasks));
+  if (left_out.absent + left_out.unreadable == count) {
     model.landmarks.colours.clear();
   }
-  if (failed > 0) {
-    model.notes.push_back(fmt::format(
-        "{} of {} views of keyframes left out: their images cannot be read", failed, count));
+  if (left_out.absent > 0 && left_out.absent == count) {
+    model.notes.push_back("images left out: the sequence has none of the run's keyframes");
+  }
+  if (left_out.unreadable > 0) {
+    model.notes.push_back(
+        fmt::format("{} of {} pictures of keyframes left out: their images cannot be read",
+                    left_out.unreadable, count));
   }
   for (ViewObject& object : model.objects) {
     std::erase_if(object.cutouts, [](const ViewPicture& cutout) { return cutout.jpeg.empty(); });

@@ -29,6 +29,13 @@ TEST(PlyPoints, AreThoseThatWereWritten) {
   EXPECT_EQ(points.left_out, 0u);
 }
 
+TEST(PlyPoints, LandmarksComeWithoutTheCentresOfKeyframes) {
+  const TemporaryFolder folder;
+  const auto path = folder.Write("map.ply", FormatMapPly(kLandmarks, kCentres));
+  EXPECT_EQ(ReadMapLandmarks(path).positions.size(), kLandmarks.size());
+  EXPECT_EQ(ReadMapLandmarks(folder.Write("b.ply", FormatMapPly({}, kCentres))).colours.size(), 0u);
+}
+
 TEST(PlyPoints, ImplausiblePositionsAreCounted) {
   const TemporaryFolder folder;
   const std::vector<Eigen::Vector3d> landmarks = {

@@ -86,6 +86,18 @@ TEST(TrajectoryFile, BrokenLinesAreReported) {
   expect("2.0 0 0 a 0 0 0 1", {"bad.txt:3:", "tz is 'a'"});
 }
 
+TEST(TrajectoryFile, KeyframesOfAnEarlierSessionMayHaveLaterStamps) {
+  const TemporaryFolder folder;
+  const std::string row = " 0 0 0 0 0 0 1\n";
+  const auto path =
+      folder.Write("keyframes.txt", "# first\n5" + row + "6" + row + "# second\n5" + row);
+  ASSERT_EQ(ReadKeyframes(path).size(), 3u);
+  EXPECT_EQ(ReadKeyframes(path)[2].timestamp, 5.0);
+  ExpectInputError([&] { ReadKeyframes(folder.Write("empty.txt", "# nothing\n")); },
+                   {"empty.txt", "has no poses"});
+  ExpectInputError([&] { ReadKeyframes(folder.Write("bad.txt", "5 0 0\n")); }, {"bad.txt:1"});
+}
+
 TEST(TrajectoryFile, FilesWithoutPosesAreRefused) {
   const TemporaryFolder folder;
   ExpectInputError([&] { ReadTrajectory(folder.Write("empty.txt", "")); },

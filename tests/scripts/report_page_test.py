@@ -3,6 +3,7 @@
 """Tests of report.html in a browser: reports of one rendered sequence, by several programs. The
 programs are in $HULLSLAM_BIN. Skipped without Chromium or Selenium."""
 
+import colorsys
 import json
 import os
 import pathlib
@@ -34,6 +35,14 @@ def program(name, *arguments):
     if result.returncode != 0:
         raise AssertionError(f"{name}: {result.stderr}")
     return result.stdout
+
+
+def hue_of_class(label):
+    """The hue of a class in objects.ply, in degrees: FNV-1a of its name."""
+    value = 2166136261
+    for byte in label.encode():
+        value = (value ^ byte) * 16777619 % 2**32
+    return (value >> 16) % 360
 
 
 @unittest.skipIf(browser.missing(), browser.missing())
@@ -133,6 +142,71 @@ class ReportPage(unittest.TestCase):
         page.run("document.querySelectorAll('[data-layer]:checked').forEach((e) => e.click())")
         after = page.canvas()
         self.assertLess(browser.count_colours(after), browser.count_colours(before) / 2)
+
+    def test_the_row_of_layers_is_whole_and_a_colouring_has_a_legend(self):
+        page = self.open(self.run_folder / "report.html")
+        for width in (1400, 390):
+            page.size(width, 900)
+            cut = page.run("const l = document.getElementById('layers');"
+                           "const right = l.getBoundingClientRect().right;"
+                           "return [...l.children].filter((e) =>"
+                           " e.getBoundingClientRect().right > right).length")
+            self.assertEqual(cut, 0, f"{width} px")
+        page.run("const s = document.querySelector('#layers select'); s.value = 'age';"
+                 "s.dispatchEvent(new Event('change'))")
+        self.assertIn(" s", page.text("#layers .legend"))
+        self.assertEqual(page.errors(), [])
+
+    def test_a_class_has_the_colour_of_its_name(self):
+        page = self.open(self.run_folder / "report.html")
+        shown = page.run("return [...document.querySelectorAll('#sections .swatch')].map((e) =>"
+                         " [e.nextSibling.textContent.replace(/ [0-9]+$/, ''),"
+                         " getComputedStyle(e).backgroundColor.match(/[0-9]+/g).map(Number)])")
+        self.assertGreater(len(shown), 3)
+        for label, colour in shown:
+            hue = 360 * colorsys.rgb_to_hsv(*[channel / 255 for channel in colour])[0]
+            away = (hue - hue_of_class(label) + 180) % 360 - 180
+            self.assertLess(abs(away), 2, label)
+        self.assertEqual(page.errors(), [])
+
+    def test_stages_are_ordered_by_time_and_images_have_outlines(self):
+        page = self.open(self.run_folder / "report.html")
+        times = page.run("return [...document.querySelectorAll('#sections section')].find((s) =>"
+                         " s.innerText.toUpperCase().startsWith('TIME')).querySelectorAll('b')"
+                         ".length && [...[...document.querySelectorAll('#sections section')]"
+                         ".find((s) => s.innerText.toUpperCase().startsWith('TIME'))"
+                         ".querySelectorAll('b')].map((b) => parseFloat(b.innerText))")
+        self.assertEqual(times, sorted(times, reverse=True))
+        without = page.run("return [...document.querySelectorAll('.strip figure')].filter((f) =>"
+                           " !f.querySelector('.outline')).length")
+        self.assertEqual(without, 0)
+
+    def test_a_map_shows_its_landmarks_in_tiles_of_usual_size(self):
+        program("view", self.folder / "desk.map", "--report", "--quiet")
+        page = self.open(self.folder / "desk.html")
+        page.size(1400, 900)
+        self.assertIn("landmarks", page.text("#tiles"))
+        widest = page.run("return Math.max(...[...document.querySelectorAll('.tile')].map((e) =>"
+                          " e.offsetWidth))")
+        self.assertLessEqual(widest, 240)
+
+    def test_a_near_path_is_a_few_pixels_thick(self):
+        page = self.open(self.run_folder / "report.html")
+        # Only the path, seen from so near that its tube would fill a tenth of the view.
+        page.run("const v = window.hullslam.view;"
+                 "Object.keys(v.shown).forEach((name) => v.show(name, name === 'trajectory'));"
+                 "v.replace('now', null);"
+                 "const t = window.hullslam.store.get('trajectory');"
+                 "const at = t.pose.subarray(7 * 20, 7 * 20 + 3);"
+                 "v.controls.target.set(...at);"
+                 "v.camera.position.set(...at).add(new THREE.Vector3(0, 0, -15 * v.look.thickness));"
+                 "v.camera.near = v.look.thickness; v.camera.updateProjectionMatrix();"
+                 "v.controls.update(); v.draw()")
+        page.draw()
+        picture = page.canvas()
+        path = np.abs(picture - np.median(picture, axis=(0, 1))).max(axis=2) > 0.2
+        self.assertGreater(path.sum(), 50)
+        self.assertLess(path.mean(), 0.02)
 
     def test_a_click_on_the_curve_shows_the_image_of_that_moment(self):
         page = self.open(self.run_folder / "report.html")

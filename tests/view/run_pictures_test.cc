@@ -28,7 +28,7 @@ class RunPicturesTest : public ::testing::Test {
     cv::imwrite(file, cv::Mat(48, 64, CV_8UC3, colour));
     sequence_.frames.push_back({.timestamp = timestamp, .image = file});
   }
-  size_t Run(std::vector<ImageTask> tasks) const {
+  LeftOutTasks Run(std::vector<ImageTask> tasks) const {
     return RunImageTasks(sequence_, MadeCamera(), std::move(tasks));
   }
 
@@ -39,21 +39,25 @@ class RunPicturesTest : public ::testing::Test {
 TEST_F(RunPicturesTest, EachTaskGetsTheImageOfItsMoment) {
   std::vector<cv::Vec3b> seen;
   const auto note = [&](const cv::Mat& image) { seen.push_back(image.at<cv::Vec3b>(0, 0)); };
-  EXPECT_EQ(Run({{101.0, note}, {100.5, note}, {100.7, note}, {102.0, note}}), 2u);
+  const LeftOutTasks left_out =
+      Run({{101.0, note}, {100.5, note}, {100.7, note}, {102.0, note}, {9.0, note}});
+  EXPECT_EQ(left_out.absent, 2u);  // at 100.7 and at 9 s
+  EXPECT_EQ(left_out.unreadable, 1u);
   EXPECT_EQ(seen, (std::vector<cv::Vec3b>{{0, 0, 255}, {255, 0, 0}}));
 }
 
 TEST_F(RunPicturesTest, AnImageOfAnotherSizeIsNotUsed) {
   PinholeCamera camera = MadeCamera();
   camera.width = 32;
-  EXPECT_EQ(RunImageTasks(sequence_, camera, {{100.5, [](const cv::Mat&) { FAIL(); }}}), 1u);
+  EXPECT_EQ(RunImageTasks(sequence_, camera, {{100.5, [](const cv::Mat&) { FAIL(); }}}).unreadable,
+            1u);
 }
 
 TEST_F(RunPicturesTest, LandmarksGetTheColourOfTheirPixel) {
   ViewModel model = MadeView(3);
   const std::vector<KeyframePixels> keyframes = {{100.5, {{0, {3.0, 4.0}}}},
                                                  {101.0, {{1, {900.0, -2.0}}}}};
-  EXPECT_EQ(Run(ColourTasks(keyframes, model)), 0u);
+  EXPECT_EQ(Run(ColourTasks(keyframes, model)).unreadable, 0u);
   using Colour = std::array<uint8_t, 3>;
   EXPECT_EQ(model.landmarks.colours[0], (Colour{255, 0, 0}));
   EXPECT_EQ(model.landmarks.colours[1], (Colour{0, 0, 255}));
@@ -64,7 +68,7 @@ TEST_F(RunPicturesTest, PicturesHaveOutlinesAndCutoutsShowTheObject) {
   ViewModel model = MadeView(0);
   model.pictures.clear();
   model.keyframes.poses = {{100.5, Rigid3()}, {101.0, Rigid3()}};
-  EXPECT_EQ(Run(PictureTasks(10, model)), 0u);
+  EXPECT_EQ(Run(PictureTasks(10, model)).unreadable, 0u);
   ASSERT_EQ(model.pictures.size(), 2u);
   const ViewPicture& picture = model.pictures[0];
   EXPECT_EQ(picture.width, 64);

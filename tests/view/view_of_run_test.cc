@@ -74,6 +74,19 @@ TEST_F(ViewOfRunTest, ReadsTheFilesOfTheRun) {
   EXPECT_EQ(model.notes.size(), 1u);
 }
 
+TEST_F(ViewOfRunTest, KeyframesOfTwoSessionsAreNoLandmarks) {
+  const std::vector<TrajectoryPart> sessions = {{"first", {poses_[3], poses_[4]}},
+                                                {"second", {poses_[0], poses_[1]}}};
+  folder_.Write("keyframes.txt", FormatTrajectory(sessions));
+  const std::vector<Eigen::Vector3d> landmarks = {{0.0, 0.0, 1.0}};
+  const std::vector<Eigen::Vector3d> centres(4, Eigen::Vector3d::Zero());
+  folder_.Write("map.ply", FormatMapPly(landmarks, centres));
+  const ViewModel model = ViewOfRun(folder_.path());
+  EXPECT_EQ(model.keyframes.poses.size(), 4u);
+  EXPECT_EQ(model.landmarks.positions.size(), 1u);
+  EXPECT_FALSE(HasNote(model, "keyframes left out"));
+}
+
 TEST_F(ViewOfRunTest, AMonocularRunHasAnUnknownUnit) {
   RunSummary summary;
   summary.trajectory.alignment = "sim3";

@@ -16,6 +16,10 @@ namespace hullslam {
 // own ground truth, the last one is used (as in TUM's tools).
 Trajectory ReadTrajectory(const std::filesystem::path& path);
 
+// The same for keyframes.txt of a run: keyframes of earlier sessions come first, so stamps may
+// begin again, and every row is kept.
+Trajectory ReadKeyframes(const std::filesystem::path& path);
+
 // The trajectory in TUM's format: stamps with 6 decimals, values with 9, qw not negative. The same
 // poses give the same bytes. Throws CheckError for values that are not finite.
 std::string FormatTrajectory(const Trajectory& trajectory);
