@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <optional>
 #include <span>
 
+#include "map/covisibility.h"
 #include "map/islands.h"
 #include "mapping/sensor_rules.h"
 #include "objects/object_view.h"
@@ -23,7 +26,10 @@ constexpr double kRedundantShare = 0.9;
 // this many standard deviations.
 constexpr double kSameViewpointSigmas = 2.0;
 constexpr double kMaxSimilarCos = 0.985;  // about 10 degrees
-constexpr size_t kCenterPoints = 20;      // depth points that are averaged for an object's centre
+// Neighbours in time share at least this part of the landmarks of the one that has fewer. With less
+// in common, tracking requests a keyframe between them at once (KeyframePolicy::abrupt_ratio).
+constexpr double kMinPassageShare = 0.5;
+constexpr size_t kCenterPoints = 20;  // depth points that are averaged for an object's centre
 
 Eigen::Vector3d RayTo(const Rigid3& cam_from_world, const Eigen::Vector3d& point) {
   return (point - Inverse(cam_from_world).translation).normalized();
@@ -133,6 +139,46 @@ bool IsNeededByAnObject(const Map& map, KeyframeId id, size_t min_views) {
   });
 }
 
+// The next keyframe of the island in time after (`step` 1) or before (-1) this one; invalid if
+// there is none.
+KeyframeId NeighbourInTime(const Map& map, KeyframeId id, int step) {
+  const IslandId island = IslandOf(map, id);
+  const auto end = static_cast<int64_t>(map.keyframes().NextId().value);
+  for (int64_t i = static_cast<int64_t>(id.value) + step; i >= 0 && i < end; i += step) {
+    const KeyframeId other(static_cast<uint32_t>(i));
+    if (map.keyframes().Contains(other) && IslandOf(map, other) == island) {
+      return other;
+    }
+  }
+  return {};
+}
+
+// The landmarks of a keyframe that other keyframes see too, by increasing id.
+std::vector<LandmarkId> SharedLandmarks(const Map& map, KeyframeId id) {
+  std::vector<LandmarkId> shared = ObservedLandmarks(map, {&id, 1});
+  std::erase_if(shared, [&](LandmarkId landmark) {
+    return map.landmarks().At(landmark).observations.size() < 2;
+  });
+  return shared;
+}
+
+// Whether the keyframes before and after this one share too few landmarks to do without it. That
+// many others see its landmarks does not prevent this: before a plain wall each landmark is seen
+// for a short time only, so the keyframes that see most of them are all on one side.
+bool HoldsPassage(const Map& map, KeyframeId id) {
+  const KeyframeId before = NeighbourInTime(map, id, -1);
+  const KeyframeId after = NeighbourInTime(map, id, 1);
+  if (!before.IsValid() || !after.IsValid()) {
+    return false;
+  }
+  const std::vector<LandmarkId> a = SharedLandmarks(map, before);
+  const std::vector<LandmarkId> b = SharedLandmarks(map, after);
+  std::vector<LandmarkId> common;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
+  return static_cast<double>(common.size()) <
+         kMinPassageShare * static_cast<double>(std::min(a.size(), b.size()));
+}
+
 }  // namespace
 
 void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
@@ -175,6 +221,7 @@ int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min
     const Keyframe* keyframe = map.keyframes().Find(candidate.keyframe);
     const bool is_root = keyframe == nullptr || !keyframe->parent.IsValid();
     if (!is_root && IsRedundant(map, candidate.keyframe, sensor, rules) &&
+        !(rules.keeps_passages && HoldsPassage(map, candidate.keyframe)) &&
         !(rules.keeps_object_views &&
           IsNeededByAnObject(map, candidate.keyframe, min_object_views))) {
       map.CullKeyframe(candidate.keyframe);

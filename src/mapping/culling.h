@@ -26,9 +26,11 @@ std::vector<LandmarkId> FindRecentLandmarks(const Map& map);
 // one level coarser than by this keyframe (section VI.E). For a monocular sensor four other
 // keyframes are needed, and keyframes between which the landmark has no measurable parallax count
 // as one. If the keyframe has fewer than 100 close landmarks, the same must hold for all of its
-// landmarks. With fewer than 20 landmarks it is not redundant. A keyframe also stays if an object
-// (mapped or candidate) needs its view: because fewer than `min_object_views` views would be left,
-// or because no other keyframe sees the object from a similar direction. With the rule of ORB-SLAM2
+// landmarks. With fewer than 20 landmarks it is not redundant. With depth, a keyframe also stays if
+// without it the keyframes before and after it in time would share less than half of the landmarks
+// of one of them (of those that any other keyframe sees too). And it stays if an object (mapped or
+// candidate) needs its view: because fewer than `min_object_views` views would be left, or because
+// no other keyframe sees the object from a similar direction. With the rule of ORB-SLAM2
 // (CullingRules) fewer conditions hold. Returns how many were removed.
 int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views,
                   MappingRule rule = MappingRule::kHullslam);

@@ -326,6 +326,47 @@ TEST(CullKeyframes, MoreThanNineTenthsMustBeSeenByOthers) {
   EXPECT_FALSE(is_culled_with_share_alone(0.12));
 }
 
+// Nine keyframes at one place. The first four see the landmarks 0 to 199, the fifth sees 100 to
+// 299, and the last four see 200 landmarks, of which the first four see `common`. Thirty more
+// landmarks of each keyframe are seen by no other.
+SyntheticMap MakePassage(const SyntheticWorld& world, uint32_t common) {
+  SyntheticMap made;
+  std::vector<LandmarkId>& landmarks = made.landmarks;
+  for (uint32_t i = 0; i < 9; ++i) {
+    const KeyframeId id = made.map.AddKeyframe(world.Observe(FrameId(i), Rigid3()).frame, Rigid3());
+    const uint32_t first = i < 4 ? 0 : (i == 4 ? 100 : 200 - common);
+    for (uint32_t k = first; k < first + 200; ++k) {
+      landmarks.resize(std::max<size_t>(landmarks.size(), k + 1));
+      if (!landmarks[k].IsValid()) {
+        landmarks[k] = made.map.AddLandmark({0.0, 0.0, 3.0}, id);
+      }
+      EXPECT_TRUE(made.map.AddObservation(landmarks[k], id, k));
+    }
+    for (uint32_t k = 400; k < 430; ++k) {
+      made.map.AddObservation(made.map.AddLandmark({0.0, 0.0, 3.0}, id), id, k);
+    }
+    UpdateCovisibility(made.map, id);
+  }
+  return made;
+}
+
+// Three others see each landmark of the keyframe in the middle, but none of them sees both halves.
+TEST(CullKeyframes, WithDepthNeighboursInTimeKeepSharingHalfOfTheirLandmarks) {
+  const SyntheticWorld world({.points = 1500});
+  const auto is_culled = [&](uint32_t common, SensorKind kind, MappingRule rule) {
+    SyntheticMap made = MakePassage(world, common);
+    Sensor sensor = world.sensor();
+    sensor.kind = kind;
+    CullKeyframes(made.map, KeyframeId(8), sensor, kMinObjectViews, rule);
+    EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
+    EXPECT_FALSE(made.map.keyframes().Contains(KeyframeId(1))) << "its neighbours share all";
+    return !made.map.keyframes().Contains(KeyframeId(4));
+  };
+  EXPECT_FALSE(is_culled(99, SensorKind::kRgbd, MappingRule::kHullslam));
+  EXPECT_TRUE(is_culled(100, SensorKind::kRgbd, MappingRule::kHullslam));
+  EXPECT_TRUE(is_culled(99, SensorKind::kRgbd, MappingRule::kOrbSlam2));
+}
+
 TEST(CullKeyframes, ObserversAtACoarserLevelDoNotCount) {
   const SyntheticWorld world;
   SyntheticMap made;

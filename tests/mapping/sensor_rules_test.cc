@@ -35,6 +35,8 @@ TEST(CullingRules, MonocularKeyframesAreRedundantLater) {
   EXPECT_GT(monocular.other_observers, depth.other_observers);
   EXPECT_TRUE(monocular.observers_need_parallax);
   EXPECT_FALSE(depth.observers_need_parallax);
+  EXPECT_TRUE(depth.keeps_passages);
+  EXPECT_FALSE(CullingRules::ForSensor(SensorKind::kRgbd, MappingRule::kOrbSlam2).keeps_passages);
 }
 
 TEST(CullingRules, NoSensorNeedsMoreObserversThanTheLargestNumber) {
