@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
+#include <map>
 #include <optional>
 #include <span>
 
@@ -26,8 +26,8 @@ constexpr double kRedundantShare = 0.9;
 // this many standard deviations.
 constexpr double kSameViewpointSigmas = 2.0;
 constexpr double kMaxSimilarCos = 0.985;  // about 10 degrees
-// Neighbours in time share at least this part of the landmarks of the one that has fewer. With less
-// in common, tracking requests a keyframe between them at once (KeyframePolicy::abrupt_ratio).
+// Least share of its landmarks by which a keyframe stays connected to the next one in time. With
+// less in common, tracking requests a keyframe between them at once (KeyframePolicy::abrupt_ratio).
 constexpr double kMinPassageShare = 0.5;
 constexpr size_t kCenterPoints = 20;  // depth points that are averaged for an object's centre
 
@@ -153,30 +153,43 @@ KeyframeId NeighbourInTime(const Map& map, KeyframeId id, int step) {
   return {};
 }
 
-// The landmarks of a keyframe that other keyframes see too, by increasing id.
-std::vector<LandmarkId> SharedLandmarks(const Map& map, KeyframeId id) {
-  std::vector<LandmarkId> shared = ObservedLandmarks(map, {&id, 1});
-  std::erase_if(shared, [&](LandmarkId landmark) {
-    return map.landmarks().At(landmark).observations.size() < 2;
-  });
-  return shared;
-}
+// The landmarks that a keyframe shares with others.
+struct SharedLandmarks {
+  int with_any = 0;
+  std::map<KeyframeId, int> with;
 
-// Whether the keyframes before and after this one share too few landmarks to do without it. That
-// many others see its landmarks does not prevent this: before a plain wall each landmark is seen
-// for a short time only, so the keyframes that see most of them are all on one side.
+  SharedLandmarks(const Map& map, KeyframeId id) {
+    for (const LandmarkId seen : ObservedLandmarks(map, {&id, 1})) {
+      const std::vector<Observation>& observations = map.landmarks().At(seen).observations;
+      with_any += observations.size() > 1 ? 1 : 0;
+      for (const Observation& observation : observations) {
+        ++with[observation.keyframe];
+      }
+    }
+  }
+  int With(KeyframeId other) const {
+    const auto found = with.find(other);
+    return found == with.end() ? 0 : found->second;
+  }
+};
+
+// Whether the keyframes before and after this one would share too few landmarks without it, both
+// directly and over a third keyframe. That enough others see its landmarks does not prevent this,
+// because they may all be on the same side: before a plain wall, the keyframe in the middle shares
+// half of its landmarks with those before it and the other half with those after it.
 bool HoldsPassage(const Map& map, KeyframeId id) {
   const KeyframeId before = NeighbourInTime(map, id, -1);
   const KeyframeId after = NeighbourInTime(map, id, 1);
   if (!before.IsValid() || !after.IsValid()) {
     return false;
   }
-  const std::vector<LandmarkId> a = SharedLandmarks(map, before);
-  const std::vector<LandmarkId> b = SharedLandmarks(map, after);
-  std::vector<LandmarkId> common;
-  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
-  return static_cast<double>(common.size()) <
-         kMinPassageShare * static_cast<double>(std::min(a.size(), b.size()));
+  const SharedLandmarks a(map, before);
+  const SharedLandmarks b(map, after);
+  const double enough = kMinPassageShare * std::min(a.with_any, b.with_any);
+  // `before` is one of the keyframes that share landmarks with it, so this looks at both cases.
+  return std::none_of(a.with.begin(), a.with.end(), [&](const auto& other) {
+    return other.first != id && std::min(other.second, b.With(other.first)) >= enough;
+  });
 }
 
 }  // namespace

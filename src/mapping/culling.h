@@ -28,10 +28,10 @@ std::vector<LandmarkId> FindRecentLandmarks(const Map& map);
 // as one. If the keyframe has fewer than 100 close landmarks, the same must hold for all of its
 // landmarks. With fewer than 20 landmarks it is not redundant. With depth, a keyframe also stays if
 // without it the keyframes before and after it in time would share less than half of the landmarks
-// of one of them (of those that any other keyframe sees too). And it stays if an object (mapped or
-// candidate) needs its view: because fewer than `min_object_views` views would be left, or because
-// no other keyframe sees the object from a similar direction. With the rule of ORB-SLAM2
-// (CullingRules) fewer conditions hold. Returns how many were removed.
+// that either shares with any other keyframe, both directly and over a third keyframe. And it stays
+// if an object (mapped or candidate) needs its view: because fewer than `min_object_views` views
+// would be left, or because no other keyframe sees the object from a similar direction. With the
+// rule of ORB-SLAM2 (CullingRules) fewer conditions hold. Returns how many were removed.
 int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views,
                   MappingRule rule = MappingRule::kHullslam);
 

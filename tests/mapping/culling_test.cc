@@ -327,22 +327,23 @@ TEST(CullKeyframes, MoreThanNineTenthsMustBeSeenByOthers) {
 }
 
 // Nine keyframes at one place. The first four see the landmarks 0 to 199, the fifth sees 100 to
-// 299, and the last four see 200 landmarks, of which the first four see `common`. Thirty more
-// landmarks of each keyframe are seen by no other.
-SyntheticMap MakePassage(const SyntheticWorld& world, uint32_t common) {
+// 299, and the last four see 200 landmarks, of which the first four see `common`. Fifteen more
+// landmarks of each keyframe are seen by no other. If there is a bridge, a tenth keyframe sees what
+// the fifth sees.
+SyntheticMap MakePassage(const SyntheticWorld& world, uint32_t common, bool has_bridge) {
   SyntheticMap made;
   std::vector<LandmarkId>& landmarks = made.landmarks;
-  for (uint32_t i = 0; i < 9; ++i) {
+  landmarks.resize(400);
+  for (uint32_t i = 0; i < (has_bridge ? 10U : 9U); ++i) {
     const KeyframeId id = made.map.AddKeyframe(world.Observe(FrameId(i), Rigid3()).frame, Rigid3());
-    const uint32_t first = i < 4 ? 0 : (i == 4 ? 100 : 200 - common);
+    const uint32_t first = i < 4 ? 0 : (i == 4 || i == 9 ? 100 : 200 - common);
     for (uint32_t k = first; k < first + 200; ++k) {
-      landmarks.resize(std::max<size_t>(landmarks.size(), k + 1));
       if (!landmarks[k].IsValid()) {
         landmarks[k] = made.map.AddLandmark({0.0, 0.0, 3.0}, id);
       }
       EXPECT_TRUE(made.map.AddObservation(landmarks[k], id, k));
     }
-    for (uint32_t k = 400; k < 430; ++k) {
+    for (uint32_t k = 400; k < 415; ++k) {
       made.map.AddObservation(made.map.AddLandmark({0.0, 0.0, 3.0}, id), id, k);
     }
     UpdateCovisibility(made.map, id);
@@ -352,19 +353,18 @@ SyntheticMap MakePassage(const SyntheticWorld& world, uint32_t common) {
 
 // Three others see each landmark of the keyframe in the middle, but none of them sees both halves.
 TEST(CullKeyframes, WithDepthNeighboursInTimeKeepSharingHalfOfTheirLandmarks) {
-  const SyntheticWorld world({.points = 1500});
-  const auto is_culled = [&](uint32_t common, SensorKind kind, MappingRule rule) {
-    SyntheticMap made = MakePassage(world, common);
-    Sensor sensor = world.sensor();
-    sensor.kind = kind;
-    CullKeyframes(made.map, KeyframeId(8), sensor, kMinObjectViews, rule);
+  const SyntheticWorld world({.points = 1000});
+  const auto is_culled = [&](uint32_t common, bool has_bridge, MappingRule rule) {
+    SyntheticMap made = MakePassage(world, common, has_bridge);
+    CullKeyframes(made.map, KeyframeId(8), world.sensor(), kMinObjectViews, rule);
     EXPECT_EQ(FindViolations(made.map), std::vector<std::string>());
     EXPECT_FALSE(made.map.keyframes().Contains(KeyframeId(1))) << "its neighbours share all";
     return !made.map.keyframes().Contains(KeyframeId(4));
   };
-  EXPECT_FALSE(is_culled(99, SensorKind::kRgbd, MappingRule::kHullslam));
-  EXPECT_TRUE(is_culled(100, SensorKind::kRgbd, MappingRule::kHullslam));
-  EXPECT_TRUE(is_culled(99, SensorKind::kRgbd, MappingRule::kOrbSlam2));
+  EXPECT_FALSE(is_culled(99, false, MappingRule::kHullslam));
+  EXPECT_TRUE(is_culled(100, false, MappingRule::kHullslam));
+  EXPECT_TRUE(is_culled(99, true, MappingRule::kHullslam)) << "a third keyframe connects them";
+  EXPECT_TRUE(is_culled(99, false, MappingRule::kOrbSlam2));
 }
 
 TEST(CullKeyframes, ObserversAtACoarserLevelDoNotCount) {
