@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 
-#include "map/covisibility.h"
 #include "map/islands.h"
 #include "mapping/sensor_rules.h"
 #include "objects/object_view.h"
@@ -26,10 +23,7 @@ constexpr double kRedundantShare = 0.9;
 // this many standard deviations.
 constexpr double kSameViewpointSigmas = 2.0;
 constexpr double kMaxSimilarCos = 0.985;  // about 10 degrees
-// Least share of its landmarks by which a keyframe stays connected to the next one in time. With
-// less in common, tracking requests a keyframe between them at once (KeyframePolicy::abrupt_ratio).
-constexpr double kMinPassageShare = 0.5;
-constexpr size_t kCenterPoints = 20;  // depth points that are averaged for an object's centre
+constexpr size_t kCenterPoints = 20;      // depth points that are averaged for an object's centre
 
 Eigen::Vector3d RayTo(const Rigid3& cam_from_world, const Eigen::Vector3d& point) {
   return (point - Inverse(cam_from_world).translation).normalized();
@@ -139,59 +133,6 @@ bool IsNeededByAnObject(const Map& map, KeyframeId id, size_t min_views) {
   });
 }
 
-// The next keyframe of the island in time after (`step` 1) or before (-1) this one; invalid if
-// there is none.
-KeyframeId NeighbourInTime(const Map& map, KeyframeId id, int step) {
-  const IslandId island = IslandOf(map, id);
-  const auto end = static_cast<int64_t>(map.keyframes().NextId().value);
-  for (int64_t i = static_cast<int64_t>(id.value) + step; i >= 0 && i < end; i += step) {
-    const KeyframeId other(static_cast<uint32_t>(i));
-    if (map.keyframes().Contains(other) && IslandOf(map, other) == island) {
-      return other;
-    }
-  }
-  return {};
-}
-
-// The landmarks that a keyframe shares with others.
-struct SharedLandmarks {
-  int with_any = 0;
-  std::map<KeyframeId, int> with;
-
-  SharedLandmarks(const Map& map, KeyframeId id) {
-    for (const LandmarkId seen : ObservedLandmarks(map, {&id, 1})) {
-      const std::vector<Observation>& observations = map.landmarks().At(seen).observations;
-      with_any += observations.size() > 1 ? 1 : 0;
-      for (const Observation& observation : observations) {
-        ++with[observation.keyframe];
-      }
-    }
-  }
-  int With(KeyframeId other) const {
-    const auto found = with.find(other);
-    return found == with.end() ? 0 : found->second;
-  }
-};
-
-// Whether the keyframes before and after this one would share too few landmarks without it, both
-// directly and over a third keyframe. That enough others see its landmarks does not prevent this,
-// because they may all be on the same side: before a plain wall, the keyframe in the middle shares
-// half of its landmarks with those before it and the other half with those after it.
-bool HoldsPassage(const Map& map, KeyframeId id) {
-  const KeyframeId before = NeighbourInTime(map, id, -1);
-  const KeyframeId after = NeighbourInTime(map, id, 1);
-  if (!before.IsValid() || !after.IsValid()) {
-    return false;
-  }
-  const SharedLandmarks a(map, before);
-  const SharedLandmarks b(map, after);
-  const double enough = kMinPassageShare * std::min(a.with_any, b.with_any);
-  // `before` is one of the keyframes that share landmarks with it, so this looks at both cases.
-  return std::none_of(a.with.begin(), a.with.end(), [&](const auto& other) {
-    return other.first != id && std::min(other.second, b.With(other.first)) >= enough;
-  });
-}
-
 }  // namespace
 
 void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
@@ -234,7 +175,6 @@ int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min
     const Keyframe* keyframe = map.keyframes().Find(candidate.keyframe);
     const bool is_root = keyframe == nullptr || !keyframe->parent.IsValid();
     if (!is_root && IsRedundant(map, candidate.keyframe, sensor, rules) &&
-        !(rules.keeps_passages && HoldsPassage(map, candidate.keyframe)) &&
         !(rules.keeps_object_views &&
           IsNeededByAnObject(map, candidate.keyframe, min_object_views))) {
       map.CullKeyframe(candidate.keyframe);

@@ -29,8 +29,6 @@ struct CullingRules {
   int min_close_landmarks = 100;
   // Whether only close landmarks count. Then a keyframe without any is not redundant.
   bool only_close_landmarks = false;
-  // Whether a keyframe stays if the keyframes before and after it would share too few landmarks.
-  bool keeps_passages = false;
   // Whether a keyframe stays if an object needs its view.
   bool keeps_object_views = true;
 
