@@ -22,14 +22,14 @@ void CullRecentLandmarks(Map& map, KeyframeId current, const Sensor& sensor,
 std::vector<LandmarkId> FindRecentLandmarks(const Map& map);
 
 // Removes redundant keyframes among those covisible with `current`. A keyframe is redundant if more
-// than nine tenths of its close landmarks are each seen by at least three other keyframes, at most
-// one level coarser than by this keyframe (section VI.E). For a monocular sensor four other
-// keyframes are needed, and keyframes between which the landmark has no measurable parallax count
-// as one. If the keyframe has fewer than 100 close landmarks, the same must hold for all of its
-// landmarks. With fewer than 20 landmarks it is not redundant. A keyframe also stays if an object
-// (mapped or candidate) needs its view: because fewer than `min_object_views` views would be left,
-// or because no other keyframe sees the object from a similar direction. With the rule of ORB-SLAM2
-// (CullingRules) fewer conditions hold. Returns how many were removed.
+// than nine tenths of its close landmarks are each seen by at least four other keyframes, at most
+// one level coarser than by this keyframe (section VI.E). For a monocular sensor,
+// keyframes between which the landmark has no measurable parallax count as one. If the keyframe has
+// fewer than 100 close landmarks, the same must hold for all of its landmarks. With fewer than 20
+// landmarks it is not redundant. A keyframe also stays if an object (mapped or candidate) needs its
+// view: because fewer than `min_object_views` views would be left, or because no other keyframe
+// sees the object from a similar direction. With the rule of ORB-SLAM2 (CullingRules) fewer
+// conditions hold. Returns how many were removed.
 int CullKeyframes(Map& map, KeyframeId current, const Sensor& sensor, size_t min_object_views,
                   MappingRule rule = MappingRule::kHullslam);
 

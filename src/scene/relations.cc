@@ -61,8 +61,8 @@ std::optional<Holder> HolderOf(const ObjectBody& a, const ObjectBody& b,
   return std::nullopt;
 }
 
-// Two objects cannot carry each other, and an object is carried by one other at most: the one whose
-// top is nearest to its lower side.
+// An object is carried by one other at most: the one whose top is nearest to its lower side. Two
+// objects cannot carry each other, because none is on a thing that begins higher up (HolderOf).
 std::vector<std::optional<Holder>> FindHolders(std::span<const ObjectBody> bodies,
                                                const ViewStatistics& views) {
   std::vector<std::optional<Holder>> holders(bodies.size());
@@ -72,9 +72,6 @@ std::vector<std::optional<Holder>> FindHolders(std::span<const ObjectBody> bodie
         continue;
       }
       auto holder = HolderOf(bodies[i], other, views);
-      if (holder && holder->kind == RelationKind::kOn && other.bottom > bodies[i].bottom) {
-        continue;
-      }
       if (holder && (!holders[i] || holder->height_error < holders[i]->height_error)) {
         holders[i] = std::move(holder);
       }

@@ -44,6 +44,20 @@ TEST(ClippedBound, ByHand) {
   EXPECT_NEAR(ClippedBound(circle, box, is_cut, kTop).value, -100.0, 1e-9);
 }
 
+// The circle above, cut at x = -60 on the right and at y = -50 at the top. It crosses the right
+// line at (-60, -80) too, but this point is beyond the line at the top.
+TEST(ClippedBound, CrossingsBeyondAnotherCutSideDoNotCount) {
+  EllipseNumbers circle;
+  circle << 0.0, 0.0, 1e4, 0.0, 1e4;
+  const Eigen::AlignedBox2d box(Eigen::Vector2d(-100.0, -50.0), Eigen::Vector2d(-60.0, 100.0));
+  const std::array<bool, 4> is_cut = {false, true, true, false};
+  ASSERT_TRUE(is_cut[kTop] && is_cut[kRight]);
+  EXPECT_NEAR(ClippedBound(circle, box, is_cut, kTop).value, -50.0, 1e-9);
+  EXPECT_NEAR(ClippedBound(circle, box, is_cut, kRight).value, -60.0, 1e-9);
+  EXPECT_NEAR(ClippedBound(circle, box, is_cut, kBottom).value, 80.0, 1e-9);
+  EXPECT_NEAR(ClippedBound(circle, box, is_cut, kLeft).value, -100.0, 1e-9);
+}
+
 TEST(BoxBoundsCost, IsTheDifferenceOfTheBounds) {
   // The projected ellipse of the sphere has the half axes 375 and 300 px and the centre (320, 240).
   const Eigen::AlignedBox2d box(Eigen::Vector2d(-60.0, -57.0), Eigen::Vector2d(690.0, 545.0));

@@ -69,6 +69,29 @@ TEST_F(Colmap, EveryKeypointWithAPointIsInItsTrack) {
   EXPECT_EQ(sightings, 0U);
 }
 
+// The observations of an image whose pose is turned by an angle have errors of 500 px times it.
+TEST_F(Colmap, ObservationsWithLargeErrorsAreLeftOut) {
+  const LocatedLandmarks located = LocateLandmarks(made_.map, world_.sensor());
+  const std::vector<Colour> colours(located.ids.size());
+  const std::vector<KeyframeImage> images = {
+      {KeyframeId(0), {}, "0"}, {KeyframeId(1), {}, "1"}, {KeyframeId(2), {}, "2"}};
+  const Rigid3 pose = made_.map.CamFromWorld(KeyframeId(2));
+  const auto seen_by_last = [&](double error_px) {
+    made_.map.SetPose(KeyframeId(2),
+                      Rigid3(ExpSo3({error_px / 500.0, 0.0, 0.0}), Eigen::Vector3d::Zero()) * pose);
+    const ColmapModel model = MakeColmapModel(made_.map, located, colours, images, view_);
+    EXPECT_GT(model.points.size(), 100U);
+    size_t seen = 0;
+    for (const ColmapKeypoint& keypoint : model.images[2].keypoints) {
+      seen += keypoint.point != ColmapKeypoint::kNone ? 1 : 0;
+    }
+    return seen;
+  };
+  const size_t before = seen_by_last(0.0);
+  EXPECT_EQ(seen_by_last(2.5), before);  // the errors at the border are larger than in the middle
+  EXPECT_EQ(seen_by_last(4.5), 0U);
+}
+
 TEST_F(Colmap, TheCentreOfTheFirstPixelIsAHalf) {
   EXPECT_EQ(model_.camera.cx, world_.sensor().camera.cx + 0.5);
   EXPECT_EQ(model_.camera.cy, world_.sensor().camera.cy + 0.5);

@@ -392,5 +392,23 @@ TEST_F(PoseHypotheses, BothOfTwoDetectionsNeedDepth) {
   }
 }
 
+// Without depth, three things give the pose. The ball agrees with it only if it is in front of the
+// camera and has the size that its detection shows.
+TEST_F(PoseHypotheses, WithoutDepthAnObjectAgreesOnlyWithItsSizeAndInFront) {
+  const std::vector<MadeObject> four = {room_[2], room_[3], room_[5], room_[4]};
+  std::vector<MadeObject> larger = four;
+  larger[3].ellipsoid.half_axes *= 4.0;
+  Map map;
+  AddRoom(map, sensor_, four);
+  const Frame frame = WithoutDepth(SeeRoom(sensor_, four, truth_));
+  EXPECT_GT(Propose(map, frame).at(0).agreement, 3.8);
+  EXPECT_NEAR(Propose(map, WithoutDepth(SeeRoom(sensor_, larger, truth_))).at(0).agreement, 3.0,
+              0.2);
+
+  Eigen::Vector3d& center = map.MutableObject(ObjectId(3)).ellipsoid.world_from_object.translation;
+  center = Inverse(truth_) * -(truth_ * center);  // on the same line, behind the camera
+  EXPECT_NEAR(Propose(map, frame).at(0).agreement, 3.0, 0.2);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -73,5 +73,38 @@ TEST(StartByBoxPlanes, NeedsThreeViews) {
           .empty());
 }
 
+// The border of the image cuts off half of the box in some views.
+TEST(StartByBoxPlanes, LeavesOutCutBoxesIfThreeOthersRemain) {
+  const MadeObject object = MakeObject("cup", {0.1, -0.05, 0.1}, {0.1, 0.15, 0.25}, 0.4);
+  const SeenByRing seen(object, 12, 0.45);
+  const StartOptions options;
+  const auto largest_error = [&](size_t cut) {
+    std::vector<ObjectView> views = seen.Views();
+    std::vector<Detection> detections;
+    for (const ObjectView& view : views) {
+      detections.push_back(*view.detection);
+    }
+    for (size_t i = 0; i < views.size(); ++i) {
+      if (i < cut) {
+        detections[i].is_cut = true;
+        detections[i].box.max().x() = detections[i].box.center().x();
+      }
+      views[i].detection = &detections[i];
+    }
+    const std::vector<Ellipsoid> starts = StartByBoxPlanes({.camera = seen.camera(),
+                                                            .views = views,
+                                                            .center = {0.0, 0.0, 0.0},
+                                                            .has_depth = true,
+                                                            .options = options});
+    return starts.empty() ? 1.0
+                          : (SortedAxes(starts[0].half_axes) - object.ellipsoid.half_axes)
+                                .cwiseAbs()
+                                .maxCoeff();
+  };
+  EXPECT_LT(largest_error(4), 0.02);
+  EXPECT_LT(largest_error(9), 0.02) << "three whole boxes are enough";
+  EXPECT_GT(largest_error(10), 0.02) << "two are not, so the cut ones are used too";
+}
+
 }  // namespace
 }  // namespace hullslam

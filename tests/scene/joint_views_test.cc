@@ -57,5 +57,31 @@ TEST(ViewStatistics, TellWhatIsBeforeAndWhatIsHidden) {
   EXPECT_EQ(statistics.Joint(ids[0], ObjectId(77)).views, 0U);
 }
 
+// The boxes of the cup and of the screen are 104 and 156 px wide. Half of the cup's box must be
+// before the screen.
+TEST(ViewStatistics, AnObjectAtTheSideIsNotInFront) {
+  const Sensor sensor = MakeObjectSensor();
+  const auto views_in_front = [&](double aside) {
+    const auto at = [](double x, double depth) {
+      return Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, depth));
+    };
+    const std::vector<MadeObject> objects = {{"cup", {at(aside, 1.0), {0.1, 0.1, 0.1}}},
+                                             {"tv", {at(0.0, 2.0), {0.3, 0.3, 0.1}}}};
+    Map map;
+    std::vector<ObjectId> ids;
+    for (const MadeObject& object : objects) {
+      ids.push_back(map.AddObject());
+      map.MutableObject(ids.back()).state = ObjectState::kMapped;
+      map.MutableObject(ids.back()).ellipsoid = object.ellipsoid;
+    }
+    AddFrontView(map, sensor, objects, ids, {true, true});
+    return CollectViewStatistics(map, sensor.camera).Joint(ids[0], ids[1]).in_front;
+  };
+  EXPECT_EQ(views_in_front(0.13), 1U);  // 62 px are common
+  EXPECT_EQ(views_in_front(-0.13), 1U);
+  EXPECT_EQ(views_in_front(0.19), 0U);  // 31 px
+  EXPECT_EQ(views_in_front(-0.19), 0U);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,28 @@ TEST(StandingRelations, APictureAboveABedIsNotOnIt) {
   EXPECT_EQ(Describe({Standing("clock", {0.0, 0.0, 1.5}, {0.1, 0.1, 0.1}),
                       Standing("bed", {0.0, 0.0, 0.0}, {1.0, 0.5, 0.25})}),
             Texts());
+}
+
+// What begins in the lowest third of a thing is not on it, and so no higher thing carries a lower.
+TEST(StandingRelations, NothingIsCarriedByAThingThatBeginsHigherUp) {
+  const auto is_on = [](double bottom) {
+    const Texts texts = Describe({Standing("box", {0.0, 0.0, bottom}, {0.1, 0.1, 0.05}),
+                                  Standing("box", {0.0, 0.0, 0.0}, {0.1, 0.1, 0.05})});
+    return std::find(texts.begin(), texts.end(), "0 on 1") != texts.end();
+  };
+  EXPECT_TRUE(is_on(0.1));
+  EXPECT_TRUE(is_on(0.035));
+  EXPECT_FALSE(is_on(0.031));
+  EXPECT_FALSE(is_on(-0.02));
+  EXPECT_FALSE(is_on(0.2)) << "there is a gap";
+}
+
+TEST(StandingRelations, OfTwoCarriersTheOneWithTheNearestTopCounts) {
+  const Texts texts = Describe({Standing("cup", {0.0, 0.0, 0.08}, {0.05, 0.05, 0.05}),
+                                Standing("box", {0.0, 0.0, 0.0}, {0.1, 0.1, 0.06}),
+                                Standing("book", {0.0, 0.0, 0.041}, {0.1, 0.1, 0.02})});
+  EXPECT_NE(std::find(texts.begin(), texts.end(), "0 on 2"), texts.end());
+  EXPECT_EQ(std::find(texts.begin(), texts.end(), "0 on 1"), texts.end());
 }
 
 TEST(ViewRelations, NeedEnoughViewsAndTellTheirShare) {

@@ -14,7 +14,8 @@ namespace {
 // Views of an object from a part of a circle, whose lines have noise of `noise_px`.
 class NoisyViews {
  public:
-  NoisyViews(const MadeObject& object, double arc, double noise_px) {
+  // Each line is there `copies` times.
+  NoisyViews(const MadeObject& object, double arc, double noise_px, size_t copies = 1) {
     std::mt19937_64 random(5);
     std::normal_distribution<double> noise(0.0, noise_px);
     detections_.reserve(kCount);
@@ -23,6 +24,10 @@ class NoisyViews {
       Detection& detection = detections_.emplace_back(Detect(object, sensor_, camera));
       for (SilhouetteLine& line : detection.lines) {
         line.line.offset += noise(random);
+      }
+      const std::vector<SilhouetteLine> lines = detection.lines;
+      for (size_t k = 1; k < copies; ++k) {
+        detection.lines.insert(detection.lines.end(), lines.begin(), lines.end());
       }
       views_.push_back({KeyframeId(i), camera, &detection});
     }
@@ -71,6 +76,16 @@ TEST(ShapeCovariance, IsSymmetric) {
 
 TEST(ShapeCovariance, IsNotKnownWithoutLines) {
   EXPECT_FALSE(CovarianceOf(MakeObjectSensor().camera, kCup.ellipsoid, kCup.ellipsoid, {}));
+}
+
+// Neighbouring lines of a mask have the same errors, so the lines of a mask together count as a
+// limited number.
+TEST(ShapeCovariance, MoreLinesOfTheSameMaskTellNothingNew) {
+  const auto once = NoisyViews(kCup, 6.0, 1.0, 2).Covariance(kCup);
+  const auto twice = NoisyViews(kCup, 6.0, 1.0, 4).Covariance(kCup);
+  ASSERT_TRUE(once && twice);
+  EXPECT_LT((once->center - twice->center).norm(), 1e-6 * once->center.norm());
+  EXPECT_LT((once->half_axes - twice->half_axes).norm(), 1e-6 * once->half_axes.norm());
 }
 
 }  // namespace

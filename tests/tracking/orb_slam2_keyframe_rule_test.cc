@@ -46,6 +46,15 @@ TEST(OrbSlam2KeyframeRule, WithoutDepthNineTenthsCountAndOneKeyframeIsNoExceptio
   EXPECT_TRUE(NeedsKeyframeByOrbSlam2(evidence, Policy(true)));
 }
 
+TEST(OrbSlam2KeyframeRule, WithDepthTwoKeyframesAreNoException) {
+  KeyframeEvidence evidence = Strong();
+  evidence.inliers = 149;
+  evidence.keyframes = 2;
+  EXPECT_TRUE(NeedsKeyframeByOrbSlam2(evidence, Policy()));
+  evidence.keyframes = 1;
+  EXPECT_FALSE(NeedsKeyframeByOrbSlam2(evidence, Policy()));
+}
+
 TEST(OrbSlam2KeyframeRule, MissingClosePointsAreAReasonOnlyWithDepth) {
   KeyframeEvidence evidence = Strong();
   evidence.close_tracked = 99;
