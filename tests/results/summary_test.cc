@@ -98,7 +98,7 @@ TEST(Summary, HasTheKeysOfTheFormatInOrder) {
       Keys(json["trajectory"]),
       (std::vector<std::string>{"ate_rmse_m", "alignment", "scale", "pairs", "frames", "tracked",
                                 "lost", "poses", "pairing", "coverage", "rpe_rmse_m",
-                                "rpe_rmse_deg", "skipped", "unpaired", "losses"}));
+                                "rpe_rmse_deg", "skipped", "unpaired", "losses", "unsure"}));
   EXPECT_EQ(Keys(json["timing"]),
             (std::vector<std::string>{"track_ms", "stages_ms", "total_s", "frames_per_second"}));
   EXPECT_EQ(Keys(json["timing"]["track_ms"]),
