@@ -31,6 +31,7 @@ struct FrameNote {
   size_t number = 0;  // of the frame in its sequence, counted from 0
   TrackingState state = TrackingState::kNotInitialized;
   std::optional<TrackingFailure> loss = std::nullopt;
+  bool is_unsure = false;  // TrackedFrame::is_unsure
 };
 
 // Frames in a row that have no pose. `reason` is that of the first one: the others are lost because

@@ -24,10 +24,22 @@ Json ToJson(const LostStretch& stretch) {
           {"reason", ToString(stretch.reason)}};
 }
 
+Json ToJson(const UnsureStretch& stretch) {
+  return {{"first_frame", stretch.first_frame},
+          {"last_frame", stretch.last_frame},
+          {"first_timestamp", stretch.first_timestamp},
+          {"last_timestamp", stretch.last_timestamp},
+          {"frames", stretch.frames}};
+}
+
 Json ToJson(const TrajectorySummary& summary) {
   Json losses = Json::array();
   for (const LostStretch& stretch : summary.losses) {
     losses.push_back(ToJson(stretch));
+  }
+  Json unsure = Json::array();
+  for (const UnsureStretch& stretch : summary.unsure) {
+    unsure.push_back(ToJson(stretch));
   }
   return {{"ate_rmse_m", OrNull(summary.ate_rmse_m)},
           {"alignment", summary.alignment},
@@ -43,7 +55,8 @@ Json ToJson(const TrajectorySummary& summary) {
           {"rpe_rmse_deg", OrNull(summary.rpe_rmse_deg)},
           {"skipped", summary.skipped},
           {"unpaired", summary.unpaired},
-          {"losses", losses}};
+          {"losses", losses},
+          {"unsure", unsure}};
 }
 
 Json ToJson(const ObjectsSummary& summary) {

@@ -82,6 +82,27 @@ void PrintLosses(std::span<const LostStretch> losses) {
   }
 }
 
+// Where poses may be wrong although the camera was tracked. Only the longest stretch is named.
+void PrintUnsure(std::span<const UnsureStretch> unsure) {
+  if (unsure.empty()) {
+    return;
+  }
+  size_t frames = 0;
+  for (const UnsureStretch& stretch : unsure) {
+    frames += stretch.frames;
+  }
+  const auto longest = std::max_element(
+      unsure.begin(), unsure.end(),
+      [](const UnsureStretch& a, const UnsureStretch& b) { return a.frames < b.frames; });
+  Print(
+      "warning: the poses of {} frames are unsure, most of them in a row from {:.3f} to {:.3f} s "
+      "(frames {} to {}): they rest on landmarks that only two keyframes see, so the map may have "
+      "another scale and direction from there on (trajectory.unsure in summary.json; "
+      "docs/my-run-fails.md)\n",
+      frames, longest->first_timestamp, longest->last_timestamp, longest->first_frame,
+      longest->last_frame);
+}
+
 }  // namespace
 
 void PrintReport(const RunArguments& arguments, const RunSummary& summary,
@@ -98,6 +119,7 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
   }
   PrintIslands(summary.islands.value_or(IslandsSummary()), arguments.keep_islands);
   PrintLosses(trajectory.losses);
+  PrintUnsure(trajectory.unsure);
   if (trajectory.ate_rmse_m) {
     Print(
         "ATE RMSE {:.4f} m ({} alignment, {} pairs of poses, coverage {:.1f} % of the sequence)\n",

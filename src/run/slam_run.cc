@@ -110,7 +110,8 @@ void NoteFrame(const FrameReport& report, const FrameSelection& selection, doubl
   }
   result.notes.push_back({.number = selection.first + (result.given - 1) * selection.stride,
                           .state = report.tracked.state,
-                          .loss = report.loss});
+                          .loss = report.loss,
+                          .is_unsure = report.tracked.is_unsure});
 }
 
 RunResult TrackAll(const RunArguments& arguments, const ImageSequence& sequence,

@@ -161,6 +161,7 @@ RunSummary SummarizeRun(const RunArguments& arguments, const LoadedSettings& set
   summary.trajectory.coverage =
       static_cast<double>(summary.trajectory.tracked) / static_cast<double>(sequence.frames.size());
   summary.trajectory.losses = FindLostStretches(system.frames(), result.notes);
+  summary.trajectory.unsure = FindUnsureStretches(system.frames(), result.notes);
 
   summary.timing.stages_ms = SummarizeStages(system.times());
   summary.timing.track_ms = summary.timing.stages_ms["track"];

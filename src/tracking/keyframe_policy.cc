@@ -16,7 +16,8 @@ bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
     return false;
   }
   const double time = evidence.time_since_keyframe + time_tolerance;
-  const bool is_abrupt = evidence.inliers < abrupt_ratio * evidence.reference_landmarks;
+  const bool is_abrupt = evidence.inliers < abrupt_ratio * evidence.reference_landmarks &&
+                         evidence.confirmed_inliers >= min_confirmed;
   if (time < min_time_between && !is_abrupt) {
     return false;
   }

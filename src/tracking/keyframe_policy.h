@@ -13,6 +13,7 @@ namespace hullslam {
 struct KeyframeEvidence {
   double time_since_keyframe = 0.0;  // s
   int inliers = 0;                   // landmarks found in the frame
+  int confirmed_inliers = 0;         // those of them with enough observations
   int reference_landmarks = 0;       // landmarks of the reference keyframe with enough observations
   int close_tracked = 0;             // close keypoints (with precise depth) that show a landmark
   int close_untracked = 0;           // close keypoints that show no landmark
@@ -43,6 +44,9 @@ struct KeyframePolicy {
   double min_reference_ratio = 0.9;    // least ratio of inliers to reference landmarks
   double young_reference_ratio = 0.4;  // the same while the map has a single keyframe
   double abrupt_ratio = 0.5;           // below this ratio a keyframe is requested at once
+  // So many landmarks with enough observations are needed for this. Without depth it is the number
+  // that a tracked frame needs, with depth it is 0.
+  int min_confirmed = 0;
   int min_close_tracked = 100;
   int max_close_untracked = 70;
   int max_requests_waiting = 3;
@@ -56,6 +60,12 @@ struct KeyframePolicy {
   // evenly in time: a smaller loss of landmarks is enough, but there is a least time between
   // keyframes (docs/decisions/tracking.md). Objects that are not mapped yet are another, less
   // urgent reason, because objects are mapped from keyframes.
+  //
+  // Without depth, an abrupt loss of landmarks gives a keyframe before its time only if the frame
+  // would be tracked without the landmarks that just two keyframes observe. Nothing but the two
+  // poses says how far away those are: a match that slid along an edge fits the two views as well
+  // as the right one. A pose that needs them agrees with them even if it is wrong, and keyframes
+  // in a row, each of which is held by the landmarks of the one before, would drift away unnoticed.
   //
   // A frame with fewer than `min_landmarks` landmarks is never a keyframe, even if objects give its
   // pose. Covisibility and bundle adjustment could not connect it with the others, and its new

@@ -2,6 +2,7 @@
 #include "tracking/tracker.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "map/islands.h"
@@ -18,6 +19,7 @@ KeyframePolicy MakePolicy(const Sensor& sensor, const TrackingOptions& options) 
   policy.has_depth = !sensor.IsMonocular();
   policy.min_reference_ratio = options.keyframe_ratio;
   policy.min_landmarks = options.min_inliers / 2;
+  policy.min_confirmed = sensor.IsMonocular() ? options.min_inliers : 0;
   policy.min_time_between = options.keyframe_interval;
   policy.time_tolerance = 0.5 / sensor.frames_per_second;
   return policy;
@@ -49,14 +51,21 @@ int CountCloseKeypoints(const Frame& frame, const Sensor& sensor,
   return count;
 }
 
-// The number of the reference keyframe's landmarks with a sufficient observation weight.
-int CountReferenceLandmarks(const Map& map, KeyframeId reference) {
+// The number of those of the landmarks that have a sufficient observation weight. They are in the
+// island of the keyframe `reference`.
+int CountConfirmedLandmarks(const Map& map, KeyframeId reference,
+                            std::span<const LandmarkId> landmarks) {
   const int min_weight = map.IslandSize(IslandOf(map, reference)) <= 2 ? 2 : 3;
-  int count = 0;
-  for (const LandmarkId id : map.keyframes().At(reference).landmarks) {
-    count += id.IsValid() && map.landmarks().At(id).observation_weight >= min_weight ? 1 : 0;
-  }
-  return count;
+  return static_cast<int>(std::count_if(landmarks.begin(), landmarks.end(), [&](LandmarkId id) {
+    return id.IsValid() && map.landmarks().At(id).observation_weight >= min_weight;
+  }));
+}
+
+// The number of landmarks of the estimate that have a sufficient observation weight, with those
+// that its objects stand for.
+int CountConfirmed(const Map& map, KeyframeId reference, const PoseEstimate& estimate) {
+  return CountConfirmedLandmarks(map, reference, estimate.landmarks) + estimate.EffectiveInliers() -
+         estimate.inliers;
 }
 
 KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor& sensor,
@@ -65,7 +74,9 @@ KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor
   const PoseEstimate& estimate = tracking.estimate;
   return {.time_since_keyframe = frame.timestamp - last_request_time,
           .inliers = estimate.inliers,
-          .reference_landmarks = CountReferenceLandmarks(map, tracking.reference),
+          .confirmed_inliers = CountConfirmed(map, tracking.reference, estimate),
+          .reference_landmarks = CountConfirmedLandmarks(
+              map, tracking.reference, map.keyframes().At(tracking.reference).landmarks),
           .close_tracked = CountCloseKeypoints(frame, sensor, estimate.landmarks, true),
           .close_untracked = CountCloseKeypoints(frame, sensor, estimate.landmarks, false),
           .unknown_objects = tracking.unknown_objects,
@@ -212,7 +223,9 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
                                .state = TrackingState::kTracked,
                                .from_keyframe = pose,
                                .cam_from_world = estimate.cam_from_world,
-                               .inliers = estimate.inliers},
+                               .inliers = estimate.inliers,
+                               .is_unsure = CountConfirmed(map, tracking.reference, estimate) <
+                                            policy_.min_confirmed},
                    .frame = frame,
                    .landmarks = estimate.landmarks,
                    .objects = tracking.objects};

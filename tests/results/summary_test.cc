@@ -74,6 +74,22 @@ TEST(Summary, SaysWhereAndWhyFramesWereLost) {
   EXPECT_EQ(losses[0]["reason"], "too few features");
 }
 
+TEST(Summary, SaysWherePosesAreUnsure) {
+  RunSummary summary;
+  summary.trajectory.unsure = {{.first_frame = 4,
+                                .last_frame = 8,
+                                .first_timestamp = 0.5,
+                                .last_timestamp = 0.75,
+                                .frames = 5}};
+  const Json unsure = Json::parse(FormatSummary(summary))["trajectory"]["unsure"];
+  ASSERT_EQ(unsure.size(), 1u);
+  EXPECT_EQ(Keys(unsure[0]),
+            (std::vector<std::string>{"first_frame", "last_frame", "first_timestamp",
+                                      "last_timestamp", "frames"}));
+  EXPECT_EQ(unsure[0]["first_frame"], 4);
+  EXPECT_EQ(unsure[0]["frames"], 5);
+}
+
 TEST(Summary, HasTheKeysOfTheFormatInOrder) {
   const Json json = Json::parse(FormatSummary({}));
   EXPECT_EQ(Keys(json), (std::vector<std::string>{"trajectory", "objects", "timing", "memory",
@@ -82,7 +98,7 @@ TEST(Summary, HasTheKeysOfTheFormatInOrder) {
       Keys(json["trajectory"]),
       (std::vector<std::string>{"ate_rmse_m", "alignment", "scale", "pairs", "frames", "tracked",
                                 "lost", "poses", "pairing", "coverage", "rpe_rmse_m",
-                                "rpe_rmse_deg", "skipped", "unpaired", "losses"}));
+                                "rpe_rmse_deg", "skipped", "unpaired", "losses", "unsure"}));
   EXPECT_EQ(Keys(json["timing"]),
             (std::vector<std::string>{"track_ms", "stages_ms", "total_s", "frames_per_second"}));
   EXPECT_EQ(Keys(json["timing"]["track_ms"]),

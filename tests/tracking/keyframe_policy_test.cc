@@ -116,6 +116,24 @@ TEST(KeyframePolicy, LeavesTimeBetweenKeyframesUnlessTrackingWeakensAbruptly) {
   });
 }
 
+// A pose that needs landmarks of two keyframes is no basis for the next ones.
+TEST(KeyframePolicy, WithoutDepthAnAbruptKeyframeNeedsLandmarksOfMoreThanTwoKeyframes) {
+  KeyframePolicy policy;
+  policy.has_depth = false;
+  policy.min_confirmed = 30;
+  const auto needs = [&](int frames, int confirmed) {
+    return policy.NeedsKeyframe(With([=](auto& e) {
+      e.time_since_keyframe = Frames(frames);
+      e.inliers = 60;
+      e.confirmed_inliers = confirmed;
+    }));
+  };
+  EXPECT_TRUE(needs(1, 30));
+  EXPECT_FALSE(needs(1, 29));
+  EXPECT_FALSE(needs(5, 29));
+  EXPECT_TRUE(needs(6, 29)) << "in its time it is made as before";
+}
+
 TEST(KeyframePolicy, AsksForObjectsThatAreNotMappedYet) {
   const auto after = [](int frames, bool is_idle) {
     return With([=](auto& e) {

@@ -12,6 +12,7 @@
 
 #include "map/covisibility.h"
 #include "map/islands.h"
+#include "map/landmark_edits.h"
 #include "mapping/keyframe_insertion.h"
 #include "objects/made_objects.h"
 #include "support/ring_world.h"
@@ -1209,6 +1210,69 @@ class LostMonocularTracker : public MonocularTracker {
   std::shared_ptr<const Map> map_;
   InitialMap island_;
 };
+
+// A map of three keyframes, in which every third landmark is observed by only two of them. The next
+// frame shows few landmarks.
+class WeakMonocularTracker : public LostMonocularTracker {
+ protected:
+  WeakMonocularTracker() {
+    last_ = WaitForMap();
+    made_ = MakeSyntheticMap(world_, {last_, last_ + 2, last_ + 4});
+    for (size_t point = 0; point < made_.landmarks.size(); point += 3) {
+      if (made_.landmarks[point].IsValid()) {
+        made_.landmarks[point] = ObserveByTwo(made_.landmarks[point]);
+      }
+    }
+    map_ = Publish(made_.map);
+  }
+  // The landmark again, as its two first keyframes would make it.
+  LandmarkId ObserveByTwo(LandmarkId id) {
+    const Landmark old = made_.map.landmarks().At(id);
+    made_.map.EraseLandmark(id);
+    const LandmarkId landmark = made_.map.AddLandmark(old.position, old.created_by);
+    for (size_t i = 0; i < std::min<size_t>(2, old.observations.size()); ++i) {
+      made_.map.AddObservation(landmark, old.observations[i].keyframe,
+                               old.observations[i].keypoint);
+    }
+    UpdateDescriptor(made_.map, landmark);
+    UpdateViewingGeometry(made_.map, landmark, sensor_.levels);
+    return landmark;
+  }
+  // The result for the frame after the initial map, which shows so many landmarks of three
+  // keyframes and of two.
+  Tracker::Result TrackWith(size_t of_three, size_t of_two) {
+    const SyntheticView view = world_.Observe(last_ + 1);
+    std::vector<uint32_t> keypoints;
+    for (uint32_t i = 0; i < view.points.size(); ++i) {
+      const LandmarkId id = made_.landmarks[view.points[i]];
+      const size_t observers = id.IsValid() ? made_.map.landmarks().At(id).observations.size() : 0;
+      size_t* const left = observers == 3 ? &of_three : observers == 2 ? &of_two : nullptr;
+      if (left != nullptr && *left > 0) {
+        --*left;
+        keypoints.push_back(i);
+      }
+    }
+    EXPECT_EQ(of_three + of_two, 0u) << "there are too few";
+    Tracker::Result result = Process(Select(*view.frame, keypoints));
+    EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked);
+    EXPECT_EQ(result.report.tracked.inliers, static_cast<int>(keypoints.size()));
+    return result;
+  }
+
+  uint32_t last_ = 0;
+};
+
+TEST_F(WeakMonocularTracker, IsUnsureOfAPoseThatNeedsLandmarksOfTwoKeyframes) {
+  const Tracker::Result result = TrackWith(29, 36);
+  EXPECT_TRUE(result.report.tracked.is_unsure);
+  EXPECT_EQ(RequestOf(result), nullptr) << "no keyframe may rest on such a pose before its time";
+}
+
+TEST_F(WeakMonocularTracker, AsksForAKeyframeAtOnceWhereThePoseIsSure) {
+  const Tracker::Result result = TrackWith(30, 35);
+  EXPECT_FALSE(result.report.tracked.is_unsure);
+  EXPECT_NE(RequestOf(result), nullptr);
+}
 
 TEST_F(LostMonocularTracker, BeginsAnIslandAndFollowsIt) {
   const uint32_t begin = BeginAndLose(3, 40);

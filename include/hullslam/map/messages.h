@@ -128,6 +128,10 @@ struct TrackedFrame {
   // System::trajectory() has the corrected poses.
   Rigid3 cam_from_world;
   int inliers = 0;  // landmarks found
+  // Without depth: whether the frame would be lost without the landmarks that only two keyframes
+  // observe. Such landmarks agree with their two keyframes even if these are wrong, so the pose,
+  // and the scale from here on, may be wrong too.
+  bool is_unsure = false;
 
   // The pose of the camera in the world, when the frame was tracked.
   Rigid3 world_from_cam() const { return Inverse(cam_from_world); }
