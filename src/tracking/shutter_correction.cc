@@ -31,10 +31,12 @@ constexpr double kMostAge = 4.0;
 // With more, less than half of an image shows what the image before shows, so frames would not have
 // been tracked one after the other.
 constexpr double kMostMotion = 0.5;
-// Largest median change of the motion from one image to the next, px: the motion model searches
-// landmarks at most this far from where they are expected at the velocity until now. A larger
-// change is that of missing or repeated images.
+// Largest median change of the motion from one image to the next, px in an image of this width or
+// less. It grows with the width of larger images, as the windows of the motion model do: twice
+// their radius, which is how far landmarks are always searched from where they are expected at the
+// velocity until now. A larger change is that of missing or repeated images.
 constexpr double kMostChange = 30.0;
+constexpr double kWidthOfChange = 640.0;
 // A correction is kept if it keeps this share of the measurements that agree. The bound of outliers
 // is the 95 % quantile, so 5 % of the measurements may change sides by chance. A wrong velocity
 // costs more than twice as many.
@@ -77,8 +79,9 @@ bool IsKnown(const LastFrame& last, double timestamp) {
 bool IsContinuous(const Sensor& sensor, const FrameFeatures& features, const PointVelocity& before,
                   const PointVelocity& velocity, std::span<const double> inverse_depths) {
   const PointVelocity change{velocity.angular - before.angular, velocity.linear - before.linear};
+  const double most = kMostChange * std::max(1.0, sensor.camera.width / kWidthOfChange);
   return ImageSpeed(features, sensor.camera, change, inverse_depths) <=
-         kMostChange * sensor.frames_per_second;
+         most * sensor.frames_per_second;
 }
 
 // The frame with a global shutter, if the camera moved like this while it took so many frames. Null
@@ -108,17 +111,26 @@ SeenDepths DepthsOf(const FrameFeatures& features, std::span<const LandmarkId> l
   return seen;
 }
 
-// Whether a corrected frame keeps the inliers that it had as it was tracked or, because these were
-// chosen for the frame as tracked, those that the frame as read keeps.
-bool KeepsInliers(const LocalTracking& corrected, const LocalTracking& tracked,
-                  const Frame& as_read, const Map& map, const TrackingContext& context) {
-  const int inliers = corrected.estimate.EffectiveInliers();
-  if (IsCorrectionKept(inliers, tracked.estimate.EffectiveInliers())) {
-    return true;
+// The tracking of a frame that was tracked before its shutter was corrected. The landmarks found
+// then suit the frame as it was. If too few of them agree with the corrected frame, the landmarks
+// of the local map are searched in it, so that both frames are judged by landmarks chosen for
+// themselves. If `is_first`, the frames until now were not corrected, so the map has their errors
+// and cannot judge. Null if the correction is not kept.
+std::optional<LocalTracking> TrackCorrected(const Frame& corrected, const LocalTracking& tracked,
+                                            bool is_first, const Map& map,
+                                            const TrackingContext& context) {
+  const auto is_kept = [&](const LocalTracking& tracking) {
+    const int inliers = tracking.estimate.EffectiveInliers();
+    return inliers >= context.options.min_inliers &&
+           (is_first || IsCorrectionKept(inliers, tracked.estimate.EffectiveInliers()));
+  };
+  LocalTracking tracking = tracked;
+  RefineTracking(corrected, map, context, tracking);
+  if (!is_kept(tracking)) {
+    tracking =
+        TrackLocalMap(corrected, map, context, tracked.reference, std::move(tracking.estimate));
   }
-  LocalTracking uncorrected = tracked;
-  RefineTracking(as_read, map, context, uncorrected);
-  return IsCorrectionKept(inliers, uncorrected.estimate.EffectiveInliers());
+  return is_kept(tracking) ? std::optional(std::move(tracking)) : std::nullopt;
 }
 
 }  // namespace
@@ -172,13 +184,12 @@ CorrectedFrame CorrectShutter(const std::shared_ptr<const Frame>& as_read,
   if (corrected == as_read) {
     return {tracked, last.velocity};
   }
-  LocalTracking refined = tracking;
-  RefineTracking(*corrected, map, context, refined);
-  if (refined.estimate.EffectiveInliers() < context.options.min_inliers ||
-      !KeepsInliers(refined, tracking, *as_read, map, context)) {
+  std::optional<LocalTracking> found =
+      TrackCorrected(*corrected, tracking, !IsKnown(last, as_read->timestamp), map, context);
+  if (!found) {
     return {tracked, last.velocity};
   }
-  tracking = std::move(refined);
+  tracking = *std::move(found);
   const std::optional<CameraMotion> motion =
       MotionSince(last, *as_read, tracking.estimate.cam_from_world);
   return {std::move(corrected),

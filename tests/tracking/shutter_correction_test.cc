@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "support/synthetic_world.h"
@@ -264,17 +264,43 @@ TEST_F(ShutterOfATrackedFrame, StaysAsTrackedIfTheStampIsWrong) {
   ExpectNotCorrected();
 }
 
-// Two landmarks agree with the frame as tracked only. Nearly all are kept, but fewer than tracking
-// needs.
-TEST_F(ShutterOfATrackedFrame, NeedsTheLeastNumberOfInliers) {
+// Landmarks that were chosen for the frame as tracked do not suit the corrected one. There, other
+// landmarks do.
+TEST_F(ShutterOfATrackedFrame, IsJudgedByLandmarksChosenForIt) {
+  const LocalTracking right = tracking_;
   std::vector<LandmarkId>& landmarks = tracking_.estimate.landmarks;
-  std::swap(landmarks.front(), landmarks.back());
-  const LocalTracking before = tracking_;
-  options_.min_inliers = tracking_.estimate.inliers;
+  std::reverse(landmarks.begin(), landmarks.begin() + landmarks.size() / 5);
+  EXPECT_NE(Correct().frame, predicted_);
+  EXPECT_GE(tracking_.estimate.inliers, 0.95 * right.estimate.inliers);
+}
+
+// The map was made of frames as read, so it contradicts the first frame that can be corrected.
+TEST_F(ShutterOfATrackedFrame, TheFirstOneIsNotJudgedByAMapWithoutCorrections) {
+  tracking_.estimate.inliers *= 2;  // as many agree with the frame as read
   ExpectNotCorrected();
+  last_.velocity.reset();
+  EXPECT_NE(Correct().frame, predicted_);
+}
+
+TEST_F(ShutterOfATrackedFrame, NeedsTheLeastNumberOfInliers) {
+  const int inliers = tracking_.estimate.inliers;
+  options_.min_inliers = inliers + 1;
+  ExpectNotCorrected();
+  last_.velocity.reset();
+  EXPECT_EQ(Correct().frame, predicted_);
   options_.min_inliers = 30;
   EXPECT_NE(Correct().frame, predicted_);
-  EXPECT_EQ(tracking_.estimate.inliers, before.estimate.inliers - 2);
+}
+
+// The same change in radians is 60 px in an image of twice the width.
+TEST_P(ShutterCorrection, TheMostChangeOfTheVelocityGrowsWithTheImage) {
+  const SyntheticView view = world_.Observe(kFrame);
+  const Rigid3 turn(ExpSo3(Eigen::Vector3d(0.0, 0.09, 0.0)), Eigen::Vector3d::Zero());
+  const PoseEstimate estimate =
+      EstimateOf(turn * last_.motion->cam_from_last_cam * last_.cam_from_world, view);
+  EXPECT_EQ(MeasureGlobalShutter(view.frame, made_.map, sensor_, last_, estimate), view.frame);
+  sensor_.camera.width *= 2;
+  EXPECT_NE(MeasureGlobalShutter(view.frame, made_.map, sensor_, last_, estimate), view.frame);
 }
 
 // Views of an initial map, four frames apart, and their points.
