@@ -154,8 +154,8 @@ def read_degradation(name, node):
     keys = node.mapping(("label", "levels", "arguments", "options", "only_with_objects", "modes"))
     for needed in ("label", "levels"):
         keys.get(needed) or node.fail(f"the key {needed}")
-    if ("arguments" in keys) == ("options" in keys):
-        node.fail("either arguments or options")
+    if "arguments" not in keys and "options" not in keys:
+        node.fail("arguments or options")
     return Degradation(name, keys["label"].text(), keys["levels"].arguments(),
                        keys["arguments"].arguments() if "arguments" in keys else (),
                        keys["options"].arguments() if "options" in keys else (),
