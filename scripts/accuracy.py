@@ -51,12 +51,17 @@ ESTIMATORS = ("rgbd_tum", "mono_tum", "rgbd_icl", "mono_icl")
 
 
 class BuildTools(Tools):
-    """The programs of the build that is measured. All builds are evaluated, and rendered for, by the
-    same programs: those of this installation, if it has them."""
+    """The programs of the build that is measured. `others` has those that evaluate and render, which
+    should be the same for all builds that are compared."""
+
+    def __init__(self, programs, others, scripts, config):
+        super().__init__(programs, scripts, config)
+        self.others = others
 
     def path(self, name):
-        own = programs_folder() / name
-        return own if name not in ESTIMATORS and own.is_file() else super().path(name)
+        if name in ESTIMATORS or self.others == self.programs:
+            return super().path(name)
+        return Tools(self.others, self.scripts, self.config).path(name)
 
 
 def config_of(programs):
@@ -180,7 +185,7 @@ def rounded(value):
 def gate(arguments):
     """Makes all runs and compares them. Returns whether something got worse."""
     programs = arguments.programs.resolve()
-    tools = BuildTools(programs, SCRIPTS, config_of(programs))
+    tools = BuildTools(programs, arguments.tools.resolve(), SCRIPTS, config_of(programs))
     cases = read_cases(arguments.definitions)
     chosen = [cases.cases[name] for name in chosen_names(arguments.only, list(cases.cases), "--only")]
     old = None
@@ -219,6 +224,9 @@ def parse_arguments(words):
     parser.add_argument("--programs", type=pathlib.Path, default=programs_folder(), metavar="FOLDER",
                         help="the programs of the build that is measured (default: those of this "
                              "installation or of build/release/bin)")
+    parser.add_argument("--tools", type=pathlib.Path, default=programs_folder(), metavar="FOLDER",
+                        help="evaluate and make_synthetic, which should be the same for all builds "
+                             "(default: those of this installation or of build/release/bin)")
     parser.add_argument("--compare", type=pathlib.Path, metavar="FILE",
                         help="compare with this accuracy.json (default: docs/results/accuracy.json)")
     parser.add_argument("--accept", action="store_true",

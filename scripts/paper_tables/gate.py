@@ -7,11 +7,11 @@ keyframe that begins one frame later changes the error of a single run by severa
 difference counts only in one of these ways:
 
     spread    The median difference of the pairs of a case (with its mode and variant) is beyond
-              3 s / sqrt(n), where s is the spread of the differences over its n seeds and first
+              4 s / sqrt(n), where s is the spread of the differences over its n seeds and first
               frames, and beyond the least difference that matters. With few pairs s is uncertain, so
               the usual spread of all cases of the mode counts as PRIOR_PAIRS more pairs.
-    sign      Of all pairs of a mode and variant, or of a case, significantly more are worse than
-              better (sign test).
+    sign      Of the pairs of a mode and variant, over all cases or in one, significantly more are
+              worse than better (sign test).
     disaster  A single run that has become much worse, and is worse than all runs of its case were.
 """
 
@@ -29,11 +29,13 @@ from run_statistics import sign_probability, value_at
 
 WRONG = 0.05  # of the true path: a frame that is farther off is wrong
 LEAST_POSES = 3  # for an alignment
-DEVIATIONS = 3.0  # of the median of a case, until a difference counts
+DEVIATIONS = 4.0  # s / sqrt(n) of a case, until a difference counts. The deviation of a median is up to
+#                   1.25 s / sqrt(n), so this is 3.2 of it: by chance once in 1500, and a comparison
+#                   has some 300 differences of a case, of which most cannot get worse
 PRIOR_PAIRS = 3
-SIGNIFICANT = 0.01  # p of a sign test. There are some 50 of them, so 0.05 would always be somewhere
+SIGNIFICANT = 0.01  # p of a sign test. There are some 20 of them, so 0.05 would always be somewhere
 LEAST_PAIRS = 8  # of a sign test that can be significant: 2 / 2^8 < 0.01
-CASE_WIDE = "all"
+ALL_CASES = "all"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -195,10 +197,9 @@ class Comparison:
         return found
 
     def compare_families(self):
-        """{(case or all, mode or all, variant or all): {measure: (median, p, verdict)}}: sign tests
-        over all pairs of a mode and variant, and of a case."""
-        keys = (lambda name: (CASE_WIDE, *self.case_of(name)[1:]),
-                lambda name: (self.case_of(name)[0], CASE_WIDE, CASE_WIDE))
+        """{(case or all, mode, variant): {measure: (median, p, verdict)}}: sign tests. Modes and
+        variants are apart, because their runs of the same input are not independent."""
+        keys = (lambda name: (ALL_CASES, *self.case_of(name)[1:]), self.case_of)
         found = {}
         for key, measure in MEASURES.items():
             changes = self.changes[key]

@@ -113,7 +113,7 @@ class DefinitionsTest(FolderTest):
                 ("[features, mask_drop]", "[features, rain]", ("degradations[1]: is 'rain'",)),
                 ("title: Pose error", "titel: x", ("tables.I: unknown key 'titel'",)),
                 ('options: [--mask-drop, "{level}"]', "level: 1", ("unknown key 'level'",)),
-                ('options: [--mask-drop, "{level}"],', "", ("either arguments or options",)),
+                ('options: [--mask-drop, "{level}"],', "", ("expected arguments or options",)),
                 ("better: good", "better: none", ("claims[0].better: is 'none'",))):
             with self.subTest(new):
                 self.assertIn(old, DEFINITIONS)
