@@ -115,12 +115,12 @@ def list_runs(plan, out):
 
 
 def make_report(plan, out):
-    """The figures of all runs, in the form of a tables.json."""
-    results = read_results(plan, out)
+    """The figures of the runs that are done, in the form of a tables.json."""
+    results = {name: result for name, result in read_results(plan, out).items() if result}
     runs = {}
-    for name, run in plan["runs"].items():
+    for name, result in results.items():
         summary = try_read_json(out / "runs" / name / "out" / "summary.json") or {}
-        runs[name] = run_report(name, run, results[name], out, summary)
+        runs[name] = run_report(name, plan["runs"][name], result, out, summary)
     builds = sorted({result["git"] for result in results.values() if result.get("git")})
     return {"version": REPORT_VERSION, "git": builds, "runs": runs}
 
@@ -201,7 +201,9 @@ def gate(arguments):
     arguments.out.mkdir(parents=True, exist_ok=True)
     with table_lock(arguments.out):
         write(arguments.out / PLAN, json.dumps(plan, indent=1) + "\n")
-        make_all(plan, PLAN, arguments.out, arguments.jobs or os.cpu_count(), None, arguments.quiet)
+        if not arguments.so_far:
+            jobs = arguments.jobs or os.cpu_count()
+            make_all(plan, PLAN, arguments.out, jobs, None, arguments.quiet)
         report = make_report(plan, arguments.out)
         write(arguments.out / "accuracy.json", json_text(report))
         is_worse = old is not None and compare(old, json.loads(json_text(report)), arguments.out)
@@ -233,6 +235,8 @@ def parse_arguments(words):
                         help="the figures become docs/results/accuracy.json; exit code 0")
     parser.add_argument("--only", metavar="CASE,...", help="only some of the cases")
     parser.add_argument("--quick", action="store_true", help="one run of each case instead of several")
+    parser.add_argument("--so-far", action="store_true",
+                        help="run nothing; compare the runs that are done")
     parser.add_argument("--list", action="store_true", help="print what would be run, and end")
     parser.add_argument("--data", type=pathlib.Path, default=TOP.parent / "shared" / "data",
                         metavar="FOLDER", help="recorded sequences (default: ../shared/data beside "
@@ -252,8 +256,9 @@ def parse_arguments(words):
         parser.error(f"--jobs is {arguments.jobs}, expected 1 or more")
     if not 0.0 < arguments.timeout < 1e9:
         parser.error("--timeout must be a number of seconds")
-    if arguments.accept and (arguments.only or arguments.quick or arguments.list):
-        parser.error("--accept needs all runs, so it excludes --only, --quick and --list")
+    if arguments.accept and (arguments.only or arguments.quick or arguments.list
+                             or arguments.so_far):
+        parser.error("--accept needs all runs, so it excludes --only, --quick, --so-far and --list")
     return arguments
 
 

@@ -28,6 +28,8 @@ from run_files import read_trajectory
 from run_statistics import sign_probability, value_at
 
 WRONG = 0.05  # of the true path: a frame that is farther off is wrong
+OTHER_PART = 10.0  # percent of the frames that only one of two runs knows: a run that loses more frames
+#                    has the error of an easier part, and the loss itself is compared
 LEAST_POSES = 3  # for an alignment
 DEVIATIONS = 4.0  # s / sqrt(n) of a case, until a difference counts. The deviation of a median is up to
 #                   1.25 s / sqrt(n), so this is 3.2 of it: by chance once in 1500, and a comparison
@@ -60,7 +62,8 @@ def both(key):
 MEASURES = {
     "ate": Measure("ATE, mm", {"rgbd": "ate_se3", "mono": "ate_sim3"}, True, True, math.log(1.05),
                    math.log(2.0), 1e3, 2),
-    "lost": Measure("no pose, %", both("lost"), False, True, 2.0, 10.0),
+    # Lost is better than wrong, so a frame that was wrong and is lost now is no frame worse.
+    "unknown": Measure("no right pose, %", both("unknown"), False, True, 2.0, 10.0),
     "wrong": Measure("wrong pose, %", both("wrong"), False, True, 2.0, 5.0),
     "objects": Measure("objects", both("objects"), False, False, 1.0, math.inf),
     "found": Measure("found, %", both("found"), False, False, 0.05, math.inf, 1e2),
@@ -106,6 +109,7 @@ def run_report(name, run, result, out, summary):
     figures |= figures_of_poses(out / "runs" / name, run["mode"], figures["frames"])
     if figures["frames"] is None:  # the run has made nothing
         figures["lost"] = 100.0
+    figures["unknown"] = figures["lost"] + (figures["wrong"] or 0.0)
     if figures["found"] is not None:
         figures["objects"] = None  # more of them may be wrong ones, so those that are found count
     return {"case": run["case"], "sequence": run["sequence"], "mode": run["mode"],
@@ -122,9 +126,12 @@ def value_of(measure, run):
 
 
 def worsening(measure, before, after):
-    """How much worse `after` is; None if one of the two is not known or not positive."""
+    """How much worse `after` is; None if one of the two is not known or not positive, or if they are
+    the errors of different parts of the sequence."""
     old, new = value_of(measure, before), value_of(measure, after)
     if old is None or new is None or (measure.is_relative and min(old, new) <= 0.0):
+        return None
+    if measure.is_relative and abs(after["figures"]["lost"] - before["figures"]["lost"]) > OTHER_PART:
         return None
     change = math.log(new / old) if measure.is_relative else new - old
     return change if measure.is_lower_better else -change

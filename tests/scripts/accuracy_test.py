@@ -137,7 +137,7 @@ class AccuracyTest(unittest.TestCase):
         self.behave("lost")
         self.out = self.dir / "other"
         result = self.run_script("--only", "desk", "--compare", old, code=1)
-        self.assertIn("worse: desk/rgbd/points/seed-0: no pose, % 0.0 -> 100.0", result.stdout)
+        self.assertIn("worse: desk/rgbd/points/seed-0: no right pose, % 0.0 -> 100.0", result.stdout)
         self.assertNotIn("worse: desk/rgbd/points/seed-3", result.stdout)
 
     def test_absent_recordings_are_skipped(self):
@@ -151,6 +151,13 @@ class AccuracyTest(unittest.TestCase):
         self.assertIn("--accept: desk is absent", told)
         self.assertFalse((self.dir / "docs").exists())
         self.assertIn("nothing to run", self.run_script("--only", "desk", code=2).stderr)
+
+    def test_the_runs_so_far(self):
+        self.run_script("--only", "suite")
+        calls = self.calls()
+        self.run_script("--only", "suite,late", "--so-far")
+        self.assertEqual(self.calls(), calls)
+        self.assertEqual({run["case"] for run in self.runs().values()}, {"suite"})
 
     def test_quick_and_list(self):
         result = self.run_script("--list")

@@ -23,7 +23,7 @@ CASES, RUNS = 12, 3
 def make_run(case, mode, variant, seed, **figures):
     return {"case": case, "sequence": case, "mode": mode, "variant": variant, "seed": seed,
             "input": "0", "failure": None, "track_ms": 20.0,
-            "figures": {"ate_se3": 0.010, "ate_sim3": 0.010, "lost": 0.0, "wrong": 0.0,
+            "figures": {"ate_se3": 0.010, "ate_sim3": 0.010, "lost": 0.0, "wrong": 0.0, "unknown": 0.0,
                         "frames": 100.0, "objects": None, "found": 0.8, "siou": 0.8,
                         "scale_error": 0.001, **figures}}
 
@@ -102,7 +102,7 @@ class ComparisonTest(unittest.TestCase):
 
     def test_a_single_disaster_counts(self):
         name = "case3/mono/points/1"
-        for figures in ({"ate_sim3": 0.025}, {"lost": 40.0}, {"wrong": 20.0}):
+        for figures in ({"ate_sim3": 0.025}, {"lost": 40.0, "unknown": 40.0}, {"wrong": 20.0}):
             with self.subTest(figures):
                 self.after = copy.deepcopy(self.before)
                 self.set(name, **figures)
@@ -114,6 +114,22 @@ class ComparisonTest(unittest.TestCase):
         self.after = copy.deepcopy(self.before)
         self.set(name, wrong=20.0)
         self.assertEqual(self.compare().disasters, [])
+
+    def test_lost_is_better_than_wrong(self):
+        self.before["case3/mono/points/0"]["figures"] |= {"wrong": 30.0, "unknown": 30.0}
+        self.set("case3/mono/points/0", lost=30.0, wrong=0.0, unknown=30.0)
+        self.assertFalse(self.compare().is_worse())
+        self.before, self.after = self.after, self.before
+        self.assertTrue(self.compare().is_worse())
+
+    def test_errors_of_different_parts_are_not_compared(self):
+        """A run that now knows the difficult part has a larger error."""
+        name = "case3/mono/points/1"
+        self.before[name]["figures"] |= {"lost": 40.0, "unknown": 40.0}
+        self.set(name, ate_sim3=0.025)
+        self.assertFalse(self.compare().is_worse())
+        self.before[name]["figures"] |= {"lost": 2.0, "unknown": 2.0}
+        self.assertTrue(self.compare().is_worse())
 
     def test_a_crash_counts(self):
         self.after["case1/rgbd/points/0"]["failure"] = "crashed with SIGSEGV"
