@@ -61,6 +61,34 @@ std::function<Rigid3(double)> ByHand(std::function<Rigid3(double)> path, uint64_
   return [path = std::move(path), hand](double time) { return hand.Apply(path(time), time); };
 }
 
+HandTurns::HandTurns(uint64_t seed) {
+  RandomStream random(seed);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int column = 0; column < 2; ++column) {
+      phases_(axis, column) = random.Uniform(0.0, kTwoPi);
+    }
+  }
+}
+
+Rigid3 HandTurns::Apply(const Rigid3& world_from_cam, double time) const {
+  // Two sines per axis (x: nodding, y: to the sides, z: about the optical axis). The speeds are the
+  // largest ones in rad/s; their sum is 2.0 rad/s about y and at most 3.2 rad/s about all axes.
+  // Hands turn to and fro about once a second.
+  constexpr std::array<std::array<double, 2>, 3> kSpeed = {{{1.0, 0.6}, {1.2, 0.8}, {1.1, 0.7}}};
+  constexpr std::array<std::array<double, 2>, 3> kHertz = {
+      {{0.71, 1.33}, {0.62, 1.17}, {0.79, 1.45}}};
+  Eigen::Vector3d angles = Eigen::Vector3d::Zero();
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (size_t i = 0; i < 2; ++i) {
+      const double rate = kTwoPi * kHertz[axis][i];
+      const auto row = static_cast<Eigen::Index>(axis);
+      const double phase = phases_(row, static_cast<Eigen::Index>(i));
+      angles[row] += kSpeed[axis][i] / rate * std::sin(rate * time + phase);
+    }
+  }
+  return world_from_cam * Rigid3(ExpSo3(angles), Eigen::Vector3d::Zero());
+}
+
 Rigid3 OrbitPath::WorldFromCam(double time) const {
   const double angle = start_angle + angular_speed * time;
   const double distance = radius * (1.0 + 0.08 * std::sin(0.8 * time));

@@ -35,6 +35,19 @@ std::function<Rigid3(double)> ByHand(const Path& path, uint64_t visit) {
   return ByHand([path](double time) { return path.WorldFromCam(time); }, visit);
 }
 
+// Fast turns of a hand to and fro about all axes of the camera, which are added to a path. The
+// angular velocity is smooth, usually 1 to 3 rad/s and never above 3.2 rad/s, and its directions
+// come from phases that depend on the seed.
+class HandTurns {
+ public:
+  explicit HandTurns(uint64_t seed);
+  // Turns the camera about its centre by what the hand has turned it at `time` (seconds).
+  Rigid3 Apply(const Rigid3& world_from_cam, double time) const;
+
+ private:
+  Eigen::Matrix<double, 3, 2> phases_;
+};
+
 // A path around a table. The camera looks at the middle of the table from a changing distance and
 // height.
 struct OrbitPath {

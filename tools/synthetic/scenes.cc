@@ -25,7 +25,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::array<std::pair<std::string_view, SceneKind>, 8> kSceneNames = {
+constexpr std::array<std::pair<std::string_view, SceneKind>, 9> kSceneNames = {
     {{"desk", SceneKind::kDesk},
      {"room", SceneKind::kRoom},
      {"lowtexture", SceneKind::kLowTexture},
@@ -33,7 +33,8 @@ constexpr std::array<std::pair<std::string_view, SceneKind>, 8> kSceneNames = {
      {"house", SceneKind::kHouse},
      {"twins", SceneKind::kTwins},
      {"rotation", SceneKind::kRotation},
-     {"wall", SceneKind::kWall}}};
+     {"wall", SceneKind::kWall},
+     {"turns", SceneKind::kTurns}}};
 constexpr double kTableHeight = 0.75;
 constexpr int kHouseFrames = 1800;
 constexpr int kTwinsFrames = 930;
@@ -253,6 +254,16 @@ Scene BuildRotation(uint64_t seed) {
   return scene;
 }
 
+// The scene of the desk, seen by a camera that a hand turns fast in all directions.
+Scene BuildTurns(uint64_t seed) {
+  Scene scene = BuildDesk(seed, seed);
+  const HandTurns turns(HashSeed(seed, 0, "turns"));
+  scene.world_from_cam = [steady = std::move(scene.world_from_cam), turns](double time) {
+    return turns.Apply(steady(time), time);
+  };
+  return scene;
+}
+
 // A wall with posters, seen head on from so near that nothing else is in the image.
 Scene BuildWall(uint64_t seed) {
   SceneBuilder builder(HashSeed(seed, 0, "wall"));
@@ -297,6 +308,8 @@ Scene BuildVisit(SceneKind kind, int frames, uint64_t seed, uint64_t visit) {
       return BuildRotation(seed);
     case SceneKind::kWall:
       return BuildWall(seed);
+    case SceneKind::kTurns:
+      return BuildTurns(seed);
   }
   throw InputError("unknown scene");
 }

@@ -9,7 +9,17 @@
 
 namespace hullslam::synthetic {
 
-enum class SceneKind { kDesk, kRoom, kLowTexture, kDynamic, kHouse, kTwins, kRotation, kWall };
+enum class SceneKind {
+  kDesk,
+  kRoom,
+  kLowTexture,
+  kDynamic,
+  kHouse,
+  kTwins,
+  kRotation,
+  kWall,
+  kTurns
+};
 
 // The kind with a name such as "desk" or "lowtexture". Throws InputError for an unknown name.
 SceneKind ParseSceneKind(std::string_view name);

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr SceneKind kAll[] = {SceneKind::kDesk,     SceneKind::kRoom,  SceneKind::kLowTexture,
                               SceneKind::kDynamic,  SceneKind::kHouse, SceneKind::kTwins,
-                              SceneKind::kRotation, SceneKind::kWall};
+                              SceneKind::kRotation, SceneKind::kWall,  SceneKind::kTurns};
 
 TEST(SceneKind, NamesAreParsedAndPrinted) {
   for (const SceneKind kind : kAll) {
@@ -74,6 +74,30 @@ TEST(Scenes, InRotationTheCameraOnlyTurns) {
     double nearest = 0.0;
     cv::minMaxLoc(frame.depth, &nearest, nullptr);
     EXPECT_GT(nearest, 0.3);
+  }
+}
+
+// The turns are fast, but neighbouring images share most of their view, and the velocity changes
+// smoothly.
+TEST(Scenes, InTurnsTheCameraTurnsFastAboutAllAxes) {
+  constexpr double kStep = 1.0 / kFramesPerSecond;
+  for (uint64_t seed = 0; seed < 3; ++seed) {
+    const Scene scene = BuildScene(SceneKind::kTurns, 300, seed);
+    Vector3d fastest = Vector3d::Zero();
+    int fast = 0;
+    for (int i = 0; i < 300; ++i) {
+      const Rigid3 motion =
+          Inverse(scene.world_from_cam(kStep * i)) * scene.world_from_cam(kStep * (i + 1));
+      const Vector3d velocity = LogSo3(motion.rotation) / kStep;
+      fastest = fastest.cwiseMax(velocity.cwiseAbs());
+      fast += velocity.norm() > 1.0 ? 1 : 0;
+      EXPECT_LT(velocity.norm(), 3.5);
+      EXPECT_LT(motion.translation.norm(), 0.05);
+    }
+    EXPECT_GT(fastest.minCoeff(), 1.2);
+    EXPECT_GT(fast, 200);
+    const RenderedFrame frame = Renderer(scene, SmallCamera()).Render(0.0);
+    EXPECT_LT(LargestMotion(scene, frame, 0.0), 120.0);
   }
 }
 
