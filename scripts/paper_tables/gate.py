@@ -48,27 +48,29 @@ class Measure:
     is_relative: bool  # differences are those of the logarithms
     is_lower_better: bool
     least: float  # difference that matters, for a case of few runs
-    disaster: float  # difference of a single run; inf: none
+    disaster: dict  # mode -> difference of a single run; inf: none
     factor: float = 1.0  # from the unit of a run to that of the tables
     digits: int = 1
 
 
-def both(key):
-    return {"rgbd": key, "mono": key}
+def both(value):
+    return {"rgbd": value, "mono": value}
 
 
 # One keyframe more or less changes the error by some 5 %, loses a frame or two of 100, and shifts an
-# object by a few percent of its size.
+# object by a few percent of its size. Monocular errors vary more: between f922b75 and 87e868e, single
+# runs of cases that are the same differ by at most 5 % with depth and 25 % without.
 MEASURES = {
     "ate": Measure("ATE, mm", {"rgbd": "ate_se3", "mono": "ate_sim3"}, True, True, math.log(1.05),
-                   math.log(2.0), 1e3, 2),
+                   {"rgbd": math.log(1.5), "mono": math.log(2.0)}, 1e3, 2),
     # Lost is better than wrong, so a frame that was wrong and is lost now is no frame worse.
-    "unknown": Measure("no right pose, %", both("unknown"), False, True, 2.0, 10.0),
-    "wrong": Measure("wrong pose, %", both("wrong"), False, True, 2.0, 5.0),
-    "objects": Measure("objects", both("objects"), False, False, 1.0, math.inf),
-    "found": Measure("found, %", both("found"), False, False, 0.05, math.inf, 1e2),
-    "siou": Measure("SIoU", both("siou"), False, False, 0.02, math.inf, 1.0, 3),
-    "scale": Measure("scale error, %", {"rgbd": "scale_error"}, False, True, 0.001, math.inf, 1e2, 2),
+    "unknown": Measure("no right pose, %", both("unknown"), False, True, 2.0, both(10.0)),
+    "wrong": Measure("wrong pose, %", both("wrong"), False, True, 2.0, both(5.0)),
+    "objects": Measure("objects", both("objects"), False, False, 1.0, both(math.inf)),
+    "found": Measure("found, %", both("found"), False, False, 0.05, both(math.inf), 1e2),
+    "siou": Measure("SIoU", both("siou"), False, False, 0.02, both(math.inf), 1.0, 3),
+    "scale": Measure("scale error, %", {"rgbd": "scale_error"}, False, True, 0.001, both(math.inf), 1e2,
+                     2),
 }
 KEPT = ("ate_se3", "ate_sim3", "keyframes_ate_sim3", "lost", "frames", "keyframes", "loops",
         "objects", "siou", "found", "doubles")  # of the figures of a table run
@@ -228,7 +230,7 @@ class Comparison:
             old, new = self.before[name], self.after[name]
             for key, measure in MEASURES.items():
                 change = self.changes[key].get(name)
-                if change is not None and change >= measure.disaster:
+                if change is not None and change >= measure.disaster[new["mode"]]:
                     former = [value_of(measure, self.before[other])
                               for other in groups[self.case_of(name)]]
                     if value_of(measure, new) > max(v for v in former if v is not None):
