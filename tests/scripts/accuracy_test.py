@@ -6,9 +6,9 @@ import contextlib
 import io
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
+import types
 import unittest
 from unittest import mock
 
@@ -49,19 +49,21 @@ class AccuracyTest(unittest.TestCase):
                 "--quiet", "--out", self.out, *arguments]
 
     def run_script(self, *arguments, code=0):
-        result = subprocess.run([SCRIPT, *map(str, self.arguments(*arguments))], capture_output=True,
-                                text=True, check=False, timeout=100)
-        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
-        self.assertNotIn("Traceback", result.stderr)
-        return result
-
-    def call_main(self, *arguments):
-        """In this process, with an accepted file of its own."""
+        """In this process, with an accepted file of its own, so that the one of this project plays
+        no part."""
+        out, err = io.StringIO(), io.StringIO()
         with mock.patch.object(accuracy, "ACCEPTED", self.dir / "docs" / "accuracy.json"), \
-                contextlib.redirect_stdout(io.StringIO()) as out, \
-                contextlib.redirect_stderr(io.StringIO()) as err:
-            code = accuracy.main(list(map(str, self.arguments(*arguments))))
-        return code, out.getvalue() + err.getvalue()
+                contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            try:
+                found = accuracy.main(list(map(str, self.arguments(*arguments))))
+            except SystemExit as end:  # bad usage
+                found = end.code
+        self.assertEqual(found, code, out.getvalue() + err.getvalue())
+        return types.SimpleNamespace(stdout=out.getvalue(), stderr=err.getvalue())
+
+    def call_main(self, *arguments, code=0):
+        result = self.run_script(*arguments, code=code)
+        return code, result.stdout + result.stderr
 
     def calls(self):
         return (self.programs / "calls").read_text().splitlines()
@@ -73,8 +75,7 @@ class AccuracyTest(unittest.TestCase):
         return json.loads((self.out / "accuracy.json").read_text())["runs"]
 
     def test_the_runs_of_the_cases(self):
-        code, told = self.call_main()
-        self.assertEqual(code, 0, told)
+        _, told = self.call_main()
         self.assertIn("does not exist, so nothing is compared", told)
         calls = self.calls()
         self.assertEqual(len(calls), 2 * 2 * 2 + 1 + 2 * 2 + 2)
@@ -100,23 +101,18 @@ class AccuracyTest(unittest.TestCase):
         self.assertEqual(len((self.programs / "renderings").read_text().splitlines()), 3)
 
     def test_accepted_figures_and_worse_ones(self):
-        code, told = self.call_main("--accept")
-        self.assertEqual(code, 0, told)
-        code, told = self.call_main()
-        self.assertEqual(code, 0, told)
+        self.call_main("--accept")
+        _, told = self.call_main()
         self.assertIn("nothing got worse", told)
         self.behave("worse")
         self.out = self.dir / "worse"
-        code, told = self.call_main()
-        self.assertEqual(code, 1, told)
+        _, told = self.call_main(code=1)
         self.assertIn("worse: desk/rgbd/objects/seed-3: ATE, mm 13.00 -> 39.00", told)
         self.assertIn("something got worse", told)
         text = (self.out / "accuracy.md").read_text()
         self.assertIn("| desk | rgbd | objects | 2 | **11.50 -> 34.50 (+200 %, worse)** |", text)
-        code, told = self.call_main("--accept")
-        self.assertEqual(code, 0, "what is accepted is no error")
-        code, told = self.call_main()
-        self.assertEqual(code, 0, told)
+        self.call_main("--accept")  # what is accepted is no error
+        self.call_main()
 
     def test_another_report(self):
         self.run_script("--only", "suite")
@@ -142,12 +138,10 @@ class AccuracyTest(unittest.TestCase):
 
     def test_absent_recordings_are_skipped(self):
         self.desk.rename(self.dir / "elsewhere")
-        code, told = self.call_main("--only", "desk,suite")
-        self.assertEqual(code, 0, told)
+        _, told = self.call_main("--only", "desk,suite")
         self.assertIn("these cases are skipped: desk; --data says where", told)
         self.assertEqual(len(self.calls()), 2)
-        code, told = self.call_main("--accept")
-        self.assertEqual(code, 2, told)
+        _, told = self.call_main("--accept", code=2)
         self.assertIn("--accept: desk is absent", told)
         self.assertFalse((self.dir / "docs").exists())
         self.assertIn("nothing to run", self.run_script("--only", "desk", code=2).stderr)
