@@ -91,6 +91,16 @@ def depth_holes(depth, share, rng, _):
     return depth
 
 
+def resize_image(image, size, *_):
+    import cv2
+    return cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+
+
+def resize_depth(depth, size, *_):
+    import cv2
+    return cv2.resize(depth, size, interpolation=cv2.INTER_NEAREST)  # no mean of two surfaces
+
+
 def turn(image, degrees, *_):
     return np.rot90(image, degrees // 90).copy()
 
@@ -174,6 +184,14 @@ def share_of_images(text):
     return count, period
 
 
+def image_size(text):
+    width, _, height = text.partition("x")
+    if not (width.isdecimal() and height.isdecimal() and 16 <= int(width) <= 9999
+            and 16 <= int(height) <= 9999):
+        raise argparse.ArgumentTypeError(f"'{text}' is not WIDTHxHEIGHT with 16 to 9999 px")
+    return int(width), int(height)
+
+
 def right_angle(text):
     if text not in ("90", "180", "270"):
         raise argparse.ArgumentTypeError(f"'{text}' is not 90, 180 or 270")
@@ -214,6 +232,8 @@ DISTURBANCES = [
                 "noise of so many grey levels is added to images", {"image": noise}),
     Disturbance("depth-holes", SHARE, "SHARE", f"this share of the squares of {HOLE} px of a depth "
                 "image has no depth", {"depth": depth_holes}),
+    Disturbance("resize", image_size, "WxH", "images and depth get this size, in px; the settings of "
+                "the camera must then be others", {"image": resize_image, "depth": resize_depth}),
     Disturbance("turn", right_angle, "DEGREES", "images, depth and masks are turned by 90, 180 or "
                 "270 degrees counterclockwise; the settings of the camera must then be others",
                 {"image": turn, "depth": turn, "masks": turn_masks}),

@@ -26,6 +26,41 @@ def pair(stamps, truth_stamps):
     return np.array(sorted(pairs), dtype=int).reshape(-1, 2)
 
 
+STARTS = 50  # of align_most(). If half of the points are right, so is one of 8 triples, and no triple of
+#              50 is right with a probability of (7/8)^50 = 0.1 %
+
+
+def align_most(source, target, with_scale=False):
+    """align() for the half of the points that agrees best, so that up to half may be wrong.
+
+    Least trimmed squares (Rousseeuw and Van Driessen 2006): from triples of points, the half with
+    the smallest errors is aligned anew until it stays the same, and of all results the one with the
+    smallest sum of squares in its half counts. The triples are always the same.
+    """
+    count = len(source)
+    half, rng = count // 2 + 1, np.random.default_rng(1)
+    best, least = align(source, target, with_scale), np.inf
+    for _ in range(STARTS):
+        chosen, last = rng.choice(count, min(3, count), replace=False), np.inf
+        while True:
+            found = align(source[chosen], target[chosen], with_scale)
+            squares = np.sum((move(found, source) - target) ** 2, axis=1)
+            chosen = np.argpartition(squares, half - 1)[:half]
+            total = squares[chosen].sum()
+            if total >= last * (1.0 - 1e-6):
+                break
+            last = total
+        if last < least:
+            best, least = found, last
+    return best
+
+
+def move(alignment, points):
+    """Points moved by a result of align()."""
+    scale, rotation, shift = alignment
+    return scale * points @ rotation.T + shift
+
+
 def align(source, target, with_scale=False):
     """Returns s, R (3 x 3) and t (3) that minimise |s R source + t - target| (Umeyama 1991).
 

@@ -67,6 +67,15 @@ def flip_probability(differences):
     return (extreme + drawn) / (len(flips) + drawn)
 
 
+def sign_probability(differences):
+    """The two-sided p of the sign test that differences are as often above 0 as below. Zeros do not
+    count."""
+    above, below = (sum(1 for value in differences if sign * value > 0) for sign in (1, -1))
+    count = above + below
+    tail = sum(math.comb(count, k) for k in range(min(above, below) + 1)) / 2.0**count
+    return min(1.0, 2.0 * tail)
+
+
 def compare(base, other):
     """(change, p, pairs) of the positive figures `other` against `base`, both {key of a run:
     figure}; (None, None, 0) without a pair. The change is the ratio of the geometric means minus

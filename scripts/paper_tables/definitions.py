@@ -156,8 +156,8 @@ def read_degradation(name, node):
                          "unchanged"))
     for needed in ("label", "levels"):
         keys.get(needed) or node.fail(f"the key {needed}")
-    if ("arguments" in keys) == ("options" in keys):
-        node.fail("either arguments or options")
+    if "arguments" not in keys and "options" not in keys:
+        node.fail("arguments or options")
     return Degradation(name, keys["label"].text(), keys["levels"].arguments(),
                        keys["arguments"].arguments() if "arguments" in keys else (),
                        keys["options"].arguments() if "options" in keys else (),

@@ -139,7 +139,7 @@ class Planner:
     def make(self, sequence, mode, variant, seed, degradation, level):
         # A degraded sequence is another sequence, whereas other arguments are another variant.
         suffix = f"+{degradation.name}-{level}" if degradation else ""
-        is_other_sequence = bool(degradation and degradation.options)
+        is_other_sequence, settings = bool(degradation and degradation.options), []
         folder, source = sequence.path("folder", seed), self.add_rendering(sequence, seed)
         masks = sequence.path("masks", seed)
         inputs = [sequence.fingerprint, source and self.folders[source]["fingerprint"]]
@@ -147,6 +147,8 @@ class Planner:
             folder = source = self.add_degraded(sequence, seed, folder, masks, degradation, level)
             masks = masks and f"{folder}/masks"
             inputs = [self.folders[source]["fingerprint"]]
+            # The name of the new folder does not tell the camera, as that of the recording may.
+            settings = ["--settings", sequence.settings] if sequence.settings else []
         extra = [item.format(level=level) for item in degradation.arguments] if degradation else []
         arguments = [*variant.arguments, *extra, *self.frame_arguments(sequence, seed),
                      "--seed", str(seed)]
@@ -159,7 +161,7 @@ class Planner:
             "sequence": sequence.name, "mode": mode, "variant": variant.name, "seed": seed,
             "degradation": degradation and degradation.name, "level": level,
             "folder": source, "frames": self.frames(sequence),
-            "command": [str(self.tools.path(program)), folder, *arguments,
+            "command": [str(self.tools.path(program)), folder, *settings, *arguments,
                         *(("--masks", masks) if variant.masks else ()), "--quiet"],
             "groundtruth": f"{folder}/groundtruth.txt" if sequence.dataset == "tum" else None,
             "objects": sequence.path("objects", seed),

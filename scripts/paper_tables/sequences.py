@@ -28,6 +28,7 @@ class Sequence:
     note: str = ""
     modes: tuple = ("rgbd", "mono")
     frames: int = 0
+    settings: str = None  # the file that a run takes; None: the run finds it
     has_rolling_shutter: bool = False
     fingerprint: str = ""  # of all that a run reads but the masks
     masks_fingerprint: str = ""
@@ -218,6 +219,7 @@ def read_sequence(text, masks, paper_sequences, config):
                     str(objects.resolve()) if objects.is_file() else None,
                     modes=("rgbd", "mono") if depth else ("mono",),
                     frames=len(images) // 2 if depth else len(images),
+                    settings=str(settings.resolve()),
                     has_rolling_shutter=has_rolling_shutter(settings),
                     fingerprint=fingerprint(folder, images, settings),
                     masks_fingerprint=hash_masks(path) if path else "")

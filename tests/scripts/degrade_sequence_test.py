@@ -171,6 +171,20 @@ class DegradeSequenceTest(unittest.TestCase):
         np.testing.assert_allclose(yolo_masks.read_masks(self.out / "masks/0.txt")[1][1],
                                    [[0.3, 0.7], [0.3, 0.6], [0.4, 0.6]])
 
+    @unittest.skipUnless(cv2, "needs OpenCV for Python")
+    def test_a_resized_sequence(self):
+        depth = np.full((32, 64), 1000, np.uint16)
+        depth[:, 33:] = 9000
+        cv2.imwrite(str(self.sequence / "depth/d0.png"), depth)
+        self.run_script("--resize", "48x16")
+        self.assertEqual(cv2.imread(str(self.out / "rgb/3.png")).shape, (16, 48, 3))
+        small = cv2.imread(str(self.out / "depth/d0.png"), cv2.IMREAD_UNCHANGED)
+        self.assertEqual(small.shape, (16, 48))
+        self.assertEqual(set(np.unique(small)), {1000, 9000}, "no depth between two surfaces")
+        self.assertEqual(self.masks(0), MASKS, "outlines are shares of the size")
+        for bad in ("48", "48x", "0x16", "48x16x3", "-48x16"):
+            self.assertIn("WIDTHxHEIGHT", self.run_script(f"--resize={bad}", code=2).stderr)
+
     def test_changes_of_images(self):
         image = np.full((32, 32, 3), 100, np.uint8)
         self.assertEqual(disturbances.brightness(image, 1.5, None, 29).max(), 100)

@@ -26,6 +26,8 @@ class RunsTest(TablesTest):
         self.assertTrue(any("--set n=100 --first" in call for call in calls))
         degraded = [call for call in calls if "degraded/" in call]
         self.assertEqual(len(degraded), 2)
+        for call in degraded:  # the name of the degraded folder does not tell the camera
+            self.assertIn(f" --settings {self.desk}/camera.yaml ", call)
         self.assertEqual(sorted(self.files()), ["index.html", "tables.csv", "tables.json",
                                                 "tables.md", "tables.tex"])
         self.assertEqual([path for path in (self.out / "degraded").rglob("seed-*") if path.is_dir()],

@@ -1,0 +1,281 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The accuracy gate: runs SLAM on a varied set of sequences and says what got worse since the last
+accepted commit.
+
+    scripts/accuracy.py
+    scripts/accuracy.py --programs ../other/build/release/bin --out other
+
+The cases are in paper_tables/accuracy.yaml: recorded sequences below --data, whole and disturbed, and
+scenes of make_synthetic, which are rendered once into --renderings; RGB-D and monocular, with and
+without objects. Recordings that are absent are skipped with a message. The figures are compared with
+docs/results/accuracy.json, run by run. docs/reproduce.md says when a difference counts.
+
+OUT gets accuracy.json (the figures of all runs), accuracy.md (all cases beside the accepted ones) and
+runs/ with each run. If it is interrupted in any way, start it again: finished runs are kept, unless
+the program or the input has changed. --accept makes the figures those with which later ones are
+compared.
+
+Exit codes: 0 nothing got worse, 1 something got worse or the runs were stopped, 2 bad usage or input.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import shutil
+import signal
+import sys
+
+from python_packages import require
+
+require("numpy", "yaml")
+from paper_tables.cases import (CasePlanner, find_sequence, needed_renderings,  # noqa: E402
+                                read_cases, render)
+from paper_tables.gate import (Comparison, case_grid, disaster_lines, family_lines,  # noqa: E402
+                               frame_line, run_report)
+from paper_tables.job import Stopped  # noqa: E402
+from paper_tables.markdown import grid_lines  # noqa: E402
+from paper_tables.plan import Tools, result_file  # noqa: E402
+from paper_tables.report import REPORT_VERSION, read_report  # noqa: E402
+from paper_tables.workflow import make_all, read_results, table_lock  # noqa: E402
+from run_errors import InputError, exit_code  # noqa: E402
+from run_programs import programs_folder  # noqa: E402
+from run_statistics import try_read_json, write  # noqa: E402
+
+SCRIPTS = pathlib.Path(__file__).resolve().parent
+TOP = SCRIPTS.parent
+ACCEPTED = TOP / "docs" / "results" / "accuracy.json"
+PLAN = "plan.json"
+ESTIMATORS = ("rgbd_tum", "mono_tum", "rgbd_icl", "mono_icl")
+
+
+class BuildTools(Tools):
+    """The programs of the build that is measured. `others` has those that evaluate and render, which
+    should be the same for all builds that are compared."""
+
+    def __init__(self, programs, others, scripts, config):
+        super().__init__(programs, scripts, config)
+        self.others = others
+
+    def path(self, name):
+        if name in ESTIMATORS or self.others == self.programs:
+            return super().path(name)
+        return Tools(self.others, self.scripts, self.config).path(name)
+
+
+def config_of(programs):
+    """The settings that belong to a build: those of its checkout, else those of this one."""
+    chosen = os.environ.get("HULLSLAM_CONFIG")
+    own = programs.parents[2] / "config" if len(programs.parents) > 2 else None
+    return pathlib.Path(chosen or (own if own and own.is_dir() else TOP / "config")).resolve()
+
+
+def chosen_names(text, known, option):
+    """The names in a text like a,b, in the order of `known`."""
+    names = known if text is None else [name.strip() for name in text.split(",") if name.strip()]
+    for name in names or [""]:
+        if name not in known:
+            raise InputError(f"{option}: '{name}' is unknown, expected some of: {', '.join(known)}")
+    return [name for name in known if name in names]
+
+
+# ---- what is run
+
+
+def make_renderings(cases, chosen, arguments, tools):
+    needed = needed_renderings(cases, chosen, arguments.renderings)
+    for index, (folder, options) in enumerate(needed.items(), 1):
+        print(f"rendering {index} of {len(needed)}: {folder}", file=sys.stderr, flush=True)
+        render(folder, options, tools.path("make_synthetic"))
+
+
+def make_plan(cases, chosen, arguments, tools):
+    """(plan, names of the recordings that are absent). --quick takes one run of each case, mode and
+    variant."""
+    planner, absent = CasePlanner(cases, tools, arguments.timeout), {}
+    for case in chosen:
+        for seed in case.seeds[:1] if arguments.quick else case.seeds:
+            sequence = find_sequence(case, seed, arguments.data, arguments.renderings, tools.config)
+            if sequence is None:
+                absent.setdefault(case.sequence, []).append(case.name)
+                continue
+            planner.add(case, sequence, case.first[:1] if arguments.quick else case.first)
+    for sequence, names in absent.items():
+        print(f"note: {arguments.data / sequence} does not exist, so these cases are skipped: "
+              f"{', '.join(names)}; --data says where recordings are", file=sys.stderr)
+    return planner.plan(), absent
+
+
+def list_runs(plan, out):
+    for name, run in plan["runs"].items():
+        is_done = (out / result_file(name, run)).is_file()
+        print(f"{'done ' if is_done else 'to do'}  {run['case']}: {name}")
+    print(f"{len(plan['runs'])} runs")
+
+
+def make_report(plan, out):
+    """The figures of the runs that are done, in the form of a tables.json."""
+    results = {name: result for name, result in read_results(plan, out).items() if result}
+    runs = {}
+    for name, result in results.items():
+        summary = try_read_json(out / "runs" / name / "out" / "summary.json") or {}
+        runs[name] = run_report(name, plan["runs"][name], result, out, summary)
+    builds = sorted({result["git"] for result in results.values() if result.get("git")})
+    return {"version": REPORT_VERSION, "git": builds, "runs": runs}
+
+
+# ---- what is told
+
+
+def build_name(report):
+    return ", ".join(report.get("git") or ["unknown"])
+
+
+def compare(old, new, out):
+    """Prints and writes the comparison. Returns whether something got worse."""
+    comparison = Comparison({name: run for name, run in old["runs"].items() if "case" in run},
+                            new["runs"])
+    if not comparison.common:
+        raise InputError("no run is in both reports, so there is nothing to compare")
+    told = [*disaster_lines(comparison), *family_lines(comparison)]
+    counts = [frame_line(build_name(report), [report["runs"][name] for name in comparison.common])
+              for report in (old, new)]
+    others = comparison.other_input()
+    if others:
+        counts.append(f"note: the images or settings of {len(others)} runs are others than then, "
+                      f"such as {others[0]}")
+    changed = case_grid(comparison, only_changed=True)
+    head = [f"# Accuracy: {build_name(old)} -> {build_name(new)}", "",
+            *(f"* {line}" for line in [*counts, *told]), ""]
+    write(out / "accuracy.md", "\n".join([*head, *grid_lines(case_grid(comparison), 2)]))
+    lines = [*counts, *told]
+    if changed.rows:
+        changed.title = "What changed by more than its spread"
+        lines += ["", *grid_lines(changed, 2)]
+    print("\n".join(lines))
+    print("something got worse" if comparison.is_worse() else "nothing got worse")
+    return comparison.is_worse()
+
+
+def accept(report, absent, arguments):
+    if absent:
+        raise InputError(f"--accept: {', '.join(absent)} is absent, and the accepted figures must have "
+                         "all cases")
+    ACCEPTED.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(arguments.out / "accuracy.json", ACCEPTED)
+    print(f"{ACCEPTED}: {len(report['runs'])} runs of {build_name(report)} are accepted")
+
+
+def json_text(report):
+    """One line per run, so that a change of the accepted figures can be read as a difference."""
+    runs = ",\n".join(f"  {json.dumps(name)}: {json.dumps(rounded(run))}"
+                      for name, run in report["runs"].items())
+    head = {key: value for key, value in report.items() if key != "runs"}
+    return f"{json.dumps(head)[:-1]}, \"runs\": {{\n{runs}\n}}}}\n"
+
+
+def rounded(value):
+    """Numbers with six digits, which is far more than they mean."""
+    if isinstance(value, dict):
+        return {key: rounded(item) for key, item in value.items()}
+    return float(f"{value:.6g}") if isinstance(value, float) else value
+
+
+def gate(arguments):
+    """Makes all runs and compares them. Returns whether something got worse."""
+    programs = arguments.programs.resolve()
+    tools = BuildTools(programs, arguments.tools.resolve(), SCRIPTS, config_of(programs))
+    cases = read_cases(arguments.definitions)
+    chosen = [cases.cases[name] for name in chosen_names(arguments.only, list(cases.cases), "--only")]
+    old = None
+    if arguments.compare or ACCEPTED.is_file():
+        old = read_report(arguments.compare or ACCEPTED)
+    make_renderings(cases, chosen, arguments, tools)
+    plan, absent = make_plan(cases, chosen, arguments, tools)
+    if not plan["runs"]:
+        raise InputError("there is nothing to run: no sequence of these cases is there")
+    if arguments.list:
+        list_runs(plan, arguments.out)
+        return False
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    with table_lock(arguments.out):
+        write(arguments.out / PLAN, json.dumps(plan, indent=1) + "\n")
+        if not arguments.so_far:
+            jobs = arguments.jobs or os.cpu_count()
+            make_all(plan, PLAN, arguments.out, jobs, None, arguments.quiet)
+        report = make_report(plan, arguments.out)
+        write(arguments.out / "accuracy.json", json_text(report))
+        is_worse = old is not None and compare(old, json.loads(json_text(report)), arguments.out)
+    if old is None:
+        print(f"note: {ACCEPTED} does not exist, so nothing is compared", file=sys.stderr)
+    if arguments.accept:
+        accept(report, absent, arguments)
+        return False
+    return is_worse
+
+
+# ---- arguments
+
+
+def parse_arguments(words):
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=pathlib.Path, default=TOP / "build" / "accuracy",
+                        metavar="FOLDER", help="folder for runs and figures (default: build/accuracy)")
+    parser.add_argument("--programs", type=pathlib.Path, default=programs_folder(), metavar="FOLDER",
+                        help="the programs of the build that is measured (default: those of this "
+                             "installation or of build/release/bin)")
+    parser.add_argument("--tools", type=pathlib.Path, default=programs_folder(), metavar="FOLDER",
+                        help="evaluate and make_synthetic, which should be the same for all builds "
+                             "(default: those of this installation or of build/release/bin)")
+    parser.add_argument("--compare", type=pathlib.Path, metavar="FILE",
+                        help="compare with this accuracy.json (default: docs/results/accuracy.json)")
+    parser.add_argument("--accept", action="store_true",
+                        help="the figures become docs/results/accuracy.json; exit code 0")
+    parser.add_argument("--only", metavar="CASE,...", help="only some of the cases")
+    parser.add_argument("--quick", action="store_true", help="one run of each case instead of several")
+    parser.add_argument("--so-far", action="store_true",
+                        help="run nothing; compare the runs that are done")
+    parser.add_argument("--list", action="store_true", help="print what would be run, and end")
+    parser.add_argument("--data", type=pathlib.Path, default=TOP.parent / "shared" / "data",
+                        metavar="FOLDER", help="recorded sequences (default: ../shared/data beside "
+                                               "this checkout)")
+    parser.add_argument("--renderings", type=pathlib.Path, default=TOP / "build" / "renderings",
+                        metavar="FOLDER", help="rendered sequences, which are kept (default: "
+                                               "build/renderings)")
+    parser.add_argument("--definitions", type=pathlib.Path, metavar="FILE",
+                        default=SCRIPTS / "paper_tables" / "accuracy.yaml",
+                        help="the cases (default: paper_tables/accuracy.yaml beside this script)")
+    parser.add_argument("--jobs", type=int, metavar="N", help="runs at once (default: one per core)")
+    parser.add_argument("--timeout", type=float, default=600.0, metavar="S",
+                        help="longest time of a run (default 600 s)")
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
+    arguments = parser.parse_args(words)
+    if arguments.jobs is not None and arguments.jobs < 1:
+        parser.error(f"--jobs is {arguments.jobs}, expected 1 or more")
+    if not 0.0 < arguments.timeout < 1e9:
+        parser.error("--timeout must be a number of seconds")
+    if arguments.accept and (arguments.only or arguments.quick or arguments.list
+                             or arguments.so_far):
+        parser.error("--accept needs all runs, so it excludes --only, --quick, --so-far and --list")
+    return arguments
+
+
+def stop(number, _):
+    """Ends the jobs, as Ctrl-C does."""
+    raise Stopped(f"ended by {signal.Signals(number).name}; start again to go on")
+
+
+def main(words=None):
+    arguments = parse_arguments(words)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) != signal.SIG_IGN:  # nohup ignores SIGHUP
+            signal.signal(number, stop)
+    worse = []
+    code = exit_code(lambda given: worse.append(gate(given)), arguments, failures=(Stopped, OSError))
+    return 1 if worse == [True] else code
+
+
+if __name__ == "__main__":
+    sys.exit(main())
