@@ -113,8 +113,7 @@ class DefinitionsTest(FolderTest):
                 ("[features, mask_drop]", "[features, rain]", ("degradations[1]: is 'rain'",)),
                 ("title: Pose error", "titel: x", ("tables.I: unknown key 'titel'",)),
                 ('options: [--mask-drop, "{level}"]', "level: 1", ("unknown key 'level'",)),
-<<<<<<< HEAD
-                ('options: [--mask-drop, "{level}"],', "", ("either arguments or options",)),
+                ('options: [--mask-drop, "{level}"],', "", ("expected arguments or options",)),
                 ("label: features,", "label: features, unchanged: 3,",
                  ("tables.VI.degradations", "one degradation, if it has the key unchanged")),
                 ("levels: [500, 100]", "unchanged: 3, levels: [500, many]",
