@@ -19,6 +19,7 @@ struct KeyframeEvidence {
   int unknown_objects = 0;           // detections that show no mapped object
   int fruitless_requests =
       0;  // keyframes requested for objects alone since an object was last mapped
+  double next_overlap = 1.0;  // share of the reference's view in the next image (NextOverlap)
   size_t keyframes = 0;
   // s; absent if the camera was not relocalised.
   std::optional<double> time_since_relocalisation = std::nullopt;
@@ -43,6 +44,9 @@ struct KeyframePolicy {
   double min_reference_ratio = 0.9;    // least ratio of inliers to reference landmarks
   double young_reference_ratio = 0.4;  // the same while the map has a single keyframe
   double abrupt_ratio = 0.5;           // below this ratio a keyframe is requested at once
+  // A frame is needed as a keyframe if the next one could show less than this share of the
+  // reference keyframe's view: then each frame shares half of what it shows with a keyframe.
+  double min_next_overlap = 0.5;
   int min_close_tracked = 100;
   int max_close_untracked = 70;
   int max_requests_waiting = 3;
@@ -55,7 +59,9 @@ struct KeyframePolicy {
   // mapper is idle, or the need is urgent. Two things differ from the paper. Keyframes are spread
   // evenly in time: a smaller loss of landmarks is enough, but there is a least time between
   // keyframes (docs/decisions/tracking.md). Objects that are not mapped yet are another, less
-  // urgent reason, because objects are mapped from keyframes.
+  // urgent reason, because objects are mapped from keyframes. If images are far apart, as in
+  // recordings of one image a second, the next one may leave the view of the reference keyframe
+  // although this one still finds many of its landmarks; so the expected overlap counts too.
   //
   // A frame with fewer than `min_landmarks` landmarks is never a keyframe, even if objects give its
   // pose. Covisibility and bundle adjustment could not connect it with the others, and its new
