@@ -78,12 +78,26 @@ std::vector<uint32_t> KeypointsIn(const MaskRegion& region,
   return inside;
 }
 
+// The vector with length 1, as maps keep it: readers of maps refuse longer ones.
+std::vector<float> Normalized(const std::vector<float>& vector) {
+  double sum = 0.0;
+  for (const float element : vector) {
+    sum += static_cast<double>(element) * element;
+  }
+  std::vector<float> result;
+  result.reserve(vector.size());
+  for (const float element : vector) {
+    result.push_back(static_cast<float>(element / std::sqrt(sum)));
+  }
+  return result;
+}
+
 // Makes the detection without its lines. They are added later, because they depend on other masks.
 Detection DetectionOf(const InstanceMask& mask, const Outline& outline, const FrameView& frame) {
   Detection detection;
   detection.label = mask.label;
   detection.score = mask.score;
-  detection.embedding = mask.embedding;
+  detection.embedding = Normalized(mask.embedding);
   detection.contour = outline.contour;
   detection.hull = outline.hull;
   detection.box = BoundingBox(outline.hull);

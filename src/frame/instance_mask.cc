@@ -3,10 +3,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "hullslam/util/error.h"
 
 namespace hullslam {
 namespace {
+
+bool HasDirection(const std::vector<float>& vector) {
+  const auto is_finite = [](float element) { return std::isfinite(element); };
+  const auto is_zero = [](float element) { return element == 0.0F; };
+  return std::all_of(vector.begin(), vector.end(), is_finite) &&
+         !std::all_of(vector.begin(), vector.end(), is_zero);
+}
 
 // The fault of the mask; empty if it has none.
 std::string FindFault(const InstanceMask& mask, int width, int height) {
@@ -28,6 +38,11 @@ std::string FindFault(const InstanceMask& mask, int width, int height) {
                            point.x(), point.y(), width, height);
       }
     }
+  }
+  if (!mask.embedding.empty() && !HasDirection(mask.embedding)) {
+    return fmt::format(
+        "the embedding of {} numbers is zero or not finite, expected a vector with a direction",
+        mask.embedding.size());
   }
   return {};
 }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <string>
 #include <utility>
@@ -20,19 +19,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kNpyExtension = ".npy";
 
-// The vector with length 1; empty for a vector of zeros.
-std::vector<float> Normalized(std::span<const float> values) {
-  double sum = 0.0;
-  for (const float value : values) {
-    sum += static_cast<double>(value) * value;
-  }
-  std::vector<float> result;
-  for (const float value : values) {
-    if (sum > 0.0) {
-      result.push_back(static_cast<float>(value / std::sqrt(sum)));
-    }
-  }
-  return result;
+bool IsZero(std::span<const float> vector) {
+  return std::all_of(vector.begin(), vector.end(), [](float element) { return element == 0.0F; });
 }
 
 class EmbeddedMasks : public MaskSource {
@@ -63,8 +51,9 @@ class EmbeddedMasks : public MaskSource {
           path.string(), rows.rows, rows.columns, count, length_));
     }
     for (size_t i = 0; i < result.masks.size(); ++i) {
-      result.masks[i].embedding = Normalized(rows.Row(result.rows[i]));
-      if (result.masks[i].embedding.empty()) {
+      const auto row = rows.Row(result.rows[i]);
+      result.masks[i].embedding.assign(row.begin(), row.end());
+      if (IsZero(row)) {
         throw InputError(
             fmt::format("{}: row {} has only zeros, expected a vector with a direction",
                         path.string(), result.rows[i]));

@@ -308,7 +308,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   std::vector<FileContent> object_files;
   if (masks.format()) {
     summary.objects = SummarizeObjects(objects, system.object_counts());
-    object_files = ObjectFiles(objects, CollectScene(*map, objects, groundtruth));
+    object_files = ObjectFiles(objects, CollectScene(*map, objects, groundtruth, options.objects));
   }
   const LocatedLandmarks landmarks = LocateLandmarks(*map, MakeSensor(options));
   summary.map.landmarks_at_infinity = landmarks.at_infinity;

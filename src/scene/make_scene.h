@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hullslam/map/map.h"
+#include "hullslam/objects/object_options.h"
 #include "report/object_report.h"
 #include "scene/scene.h"
 #include "scene/up_direction.h"
@@ -10,7 +11,9 @@ namespace hullslam {
 
 // The scene of a map. `report` has the objects of the same map with their fits; only mapped objects
 // take part. If the upward direction is not known, there are no boxes, no surfaces, and only the
-// relations that follow from the views.
-Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& up);
+// relations that follow from the views. `refinement` has the options with which the shapes were
+// fitted; a map file does not have them, so without a run they are the defaults.
+Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& up,
+                const ObjectRefinementOptions& refinement = {});
 
 }  // namespace hullslam

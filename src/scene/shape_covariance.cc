@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "geometry/sphere_directions.h"
-#include "hullslam/objects/object_constraint_options.h"
 #include "objects/misfit.h"
 
 namespace hullslam {
@@ -79,7 +78,7 @@ double Correlation(size_t a, size_t b) {
 }
 
 void AddLines(const PinholeCamera& camera, const Ellipsoid& ellipsoid, const ObjectView& view,
-              std::vector<LineTerm>& terms) {
+              double max_effective_lines, std::vector<LineTerm>& terms) {
   const size_t first = terms.size();
   for (const SilhouetteLine& line : view.detection->lines) {
     const auto plane = line.is_one_sided
@@ -92,8 +91,8 @@ void AddLines(const PinholeCamera& camera, const Ellipsoid& ellipsoid, const Obj
                        .pixels_per_metre = plane->pixels_per_metre});
     }
   }
-  const double share = std::min(1.0, ObjectConstraintOptions().max_effective_lines /
-                                         static_cast<double>(terms.size() - first));
+  const double share =
+      std::min(1.0, max_effective_lines / static_cast<double>(terms.size() - first));
   std::for_each(terms.begin() + static_cast<std::ptrdiff_t>(first), terms.end(),
                 [&](LineTerm& term) { term.share = share; });
 }
@@ -195,8 +194,8 @@ Information ShapeErrors(const std::vector<LineTerm>& terms, const ShapeVariances
 }
 
 // The information of the prior on the shape (QuadricPriorCost).
-Information PriorOf(const Ellipsoid& start, bool has_depth) {
-  const ObjectConstraintOptions options;
+Information PriorOf(const Ellipsoid& start, bool has_depth,
+                    const ObjectConstraintOptions& options) {
   const QuadricPriorSigmas& sigmas = has_depth ? options.prior : options.prior_without_depth;
   const double center = sigmas.center * std::cbrt(start.half_axes.prod());
   Gradient diagonal;
@@ -210,10 +209,11 @@ Information PriorOf(const Ellipsoid& start, bool has_depth) {
 
 std::optional<ShapeCovariance> CovarianceOf(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
                                             const Ellipsoid& start,
-                                            std::span<const ObjectView> views) {
+                                            std::span<const ObjectView> views,
+                                            const ObjectConstraintOptions& constraint) {
   std::vector<LineTerm> terms;
   for (const ObjectView& view : views) {
-    AddLines(camera, ellipsoid, view, terms);
+    AddLines(camera, ellipsoid, view, constraint.max_effective_lines, terms);
   }
   if (terms.empty()) {
     return std::nullopt;
@@ -222,7 +222,7 @@ std::optional<ShapeCovariance> CovarianceOf(const PinholeCamera& camera, const E
   const ShapeVariances variances = MeasureVariances(patches);
   const double noise_px = MeasureNoise(terms, patches);
   // As in the refinement, the misfit sets the sigma of a line.
-  Information information = PriorOf(start, HasDepth(views));
+  Information information = PriorOf(start, HasDepth(views), constraint);
   Information errors = information;
   for (LineTerm& term : terms) {
     const double noise = noise_px / term.pixels_per_metre;

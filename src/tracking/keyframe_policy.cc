@@ -24,14 +24,15 @@ bool KeyframePolicy::NeedsKeyframe(const KeyframeEvidence& evidence) const {
   const bool lacks_close_points =
       evidence.close_tracked < min_close_tracked && evidence.close_untracked > max_close_untracked;
   const double ratio = evidence.keyframes < 2 ? young_reference_ratio : min_reference_ratio;
+  const bool is_leaving = evidence.next_overlap < min_next_overlap;
   const bool is_weak =
-      lacks_close_points || evidence.inliers < ratio * evidence.reference_landmarks;
+      is_leaving || lacks_close_points || evidence.inliers < ratio * evidence.reference_landmarks;
   const double time_factor =
       std::min(max_time_factor, std::exp2(evidence.fruitless_requests - patient_requests + 1));
   const bool lacks_objects =
       evidence.unknown_objects > 0 && time >= time_for_objects * std::max(1.0, time_factor);
   const bool is_overdue = time >= max_time_between;
-  const bool is_urgent = is_overdue || is_abrupt || lacks_close_points;
+  const bool is_urgent = is_overdue || is_abrupt || is_leaving || lacks_close_points;
   return (is_weak || lacks_objects) && (evidence.mapper_is_idle || is_urgent);
 }
 

@@ -20,6 +20,7 @@ struct KeyframeEvidence {
   int unknown_objects = 0;           // detections that show no mapped object
   int fruitless_requests =
       0;  // keyframes requested for objects alone since an object was last mapped
+  double next_overlap = 1.0;  // share of the reference's view in the next image (NextOverlap)
   size_t keyframes = 0;
   // s; absent if the camera was not relocalised.
   std::optional<double> time_since_relocalisation = std::nullopt;
@@ -47,6 +48,9 @@ struct KeyframePolicy {
   // So many landmarks with enough observations are needed for this. Without depth it is the number
   // that a tracked frame needs, with depth it is 0.
   int min_confirmed = 0;
+  // A frame is needed as a keyframe if the next one could show less than this share of the
+  // reference keyframe's view: then each frame shares half of what it shows with a keyframe.
+  double min_next_overlap = 0.5;
   int min_close_tracked = 100;
   int max_close_untracked = 70;
   int max_requests_waiting = 3;
@@ -59,7 +63,9 @@ struct KeyframePolicy {
   // mapper is idle, or the need is urgent. Two things differ from the paper. Keyframes are spread
   // evenly in time: a smaller loss of landmarks is enough, but there is a least time between
   // keyframes (docs/decisions/tracking.md). Objects that are not mapped yet are another, less
-  // urgent reason, because objects are mapped from keyframes.
+  // urgent reason, because objects are mapped from keyframes. If images are far apart, as in
+  // recordings of one image a second, the next one may leave the view of the reference keyframe
+  // although this one still finds many of its landmarks; so the expected overlap counts too.
   //
   // Without depth, an abrupt loss of landmarks gives a keyframe before its time only if the frame
   // would be tracked without the landmarks that just two keyframes observe. Nothing but the two

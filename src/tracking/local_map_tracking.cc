@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tracking/local_map_tracking.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -135,8 +136,11 @@ void RefineTracking(const Frame& frame, const Map& map, const TrackingContext& c
   if (context.objects.joint_pose) {
     pose_objects = MakePoseObjects(map, context.sensor, frame, tracking.estimate.cam_from_world,
                                    tracking.objects, context.objects);
+  }
+  if (context.options.keyframes_for_objects) {
     tracking.unknown_objects =
-        static_cast<int>(frame.detections.size() - pose_objects.objects.size());
+        static_cast<int>(std::count_if(tracking.objects.begin(), tracking.objects.end(),
+                                       [](ObjectId object) { return !object.IsValid(); }));
   }
   tracking.estimate =
       RefinePose(frame, map, context, pose_objects.objects, std::move(tracking.estimate));

@@ -18,7 +18,7 @@ struct LocalTracking {
   KeyframeId reference;
   std::vector<ObjectId> objects;    // one per detection; invalid where it shows no mapped object
   std::vector<LandmarkId> visible;  // landmarks that should be in the image, found or not
-  // Number of detections that show no mapped object; 0 if objects.joint_pose is off.
+  // Number of detections that show no mapped object; 0 if tracking.keyframes_for_objects is off.
   int unknown_objects = 0;
 };
 

@@ -35,7 +35,9 @@ std::vector<ObjectId> FindMappedObjects(const Frame& frame, const Map& map,
                                         const TrackingContext& context,
                                         const PoseEstimate& estimate, IslandId island) {
   const ObjectOptions& objects = context.objects;
-  const bool is_wanted = objects.enabled && (objects.joint_pose || objects.guided_matching);
+  const bool is_used =
+      objects.joint_pose || objects.guided_matching || context.options.keyframes_for_objects;
+  const bool is_wanted = objects.enabled && is_used;
   if (!is_wanted || frame.detections.empty() || map.objects().empty()) {
     return std::vector<ObjectId>(frame.detections.size());
   }

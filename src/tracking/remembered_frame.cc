@@ -23,6 +23,7 @@ Detection Slim(Detection detection, const ObjectOptions& options) {
     detection.contour = {};
     detection.hull = {};
   }
+  detection.embedding = {};
   detection.points = {};
   detection.keypoints = {};
   return detection;

@@ -6,12 +6,16 @@
 #include <utility>
 
 #include "map/islands.h"
+#include "tracking/view_overlap.h"
 
 namespace hullslam {
 namespace {
 
 constexpr size_t kYoungKeyframes = 10;  // an island with fewer keyframes is young
-constexpr double kPatience = 1.0;       // s without a pose, before a new island may begin
+// So long a camera stays without a pose before a new island may begin: a time (s), and a number of
+// frames, because with few images per second a single lost frame says little.
+constexpr double kPatience = 1.0;
+constexpr int kPatientFrames = 3;
 
 KeyframePolicy MakePolicy(const Sensor& sensor, const TrackingOptions& options) {
   KeyframePolicy policy;
@@ -69,20 +73,22 @@ int CountConfirmed(const Map& map, KeyframeId reference, const PoseEstimate& est
 }
 
 KeyframeEvidence GatherEvidence(const Frame& frame, const Map& map, const Sensor& sensor,
-                                const LocalTracking& tracking, double last_request_time,
-                                const MapperStatus& mapper) {
+                                const LocalTracking& tracking, const LastFrame& last,
+                                double last_request_time, const MapperStatus& mapper) {
   const PoseEstimate& estimate = tracking.estimate;
-  return {.time_since_keyframe = frame.timestamp - last_request_time,
-          .inliers = estimate.inliers,
-          .confirmed_inliers = CountConfirmed(map, tracking.reference, estimate),
-          .reference_landmarks = CountConfirmedLandmarks(
-              map, tracking.reference, map.keyframes().At(tracking.reference).landmarks),
-          .close_tracked = CountCloseKeypoints(frame, sensor, estimate.landmarks, true),
-          .close_untracked = CountCloseKeypoints(frame, sensor, estimate.landmarks, false),
-          .unknown_objects = tracking.unknown_objects,
-          .keyframes = map.IslandSize(IslandOf(map, tracking.reference)),
-          .mapper_is_idle = mapper.is_idle,
-          .requests_waiting = mapper.requests_waiting};
+  return {
+      .time_since_keyframe = frame.timestamp - last_request_time,
+      .inliers = estimate.inliers,
+      .confirmed_inliers = CountConfirmed(map, tracking.reference, estimate),
+      .reference_landmarks = CountConfirmedLandmarks(
+          map, tracking.reference, map.keyframes().At(tracking.reference).landmarks),
+      .close_tracked = CountCloseKeypoints(frame, sensor, estimate.landmarks, true),
+      .close_untracked = CountCloseKeypoints(frame, sensor, estimate.landmarks, false),
+      .unknown_objects = tracking.unknown_objects,
+      .next_overlap = NextOverlap(map, sensor, estimate.cam_from_world, tracking.reference, last),
+      .keyframes = map.IslandSize(IslandOf(map, tracking.reference)),
+      .mapper_is_idle = mapper.is_idle,
+      .requests_waiting = mapper.requests_waiting};
 }
 
 // The result for a frame without a pose or for a frame of the initial map.
@@ -164,6 +170,7 @@ void Tracker::KeepEarly(const std::shared_ptr<const Frame>& frame, bool is_track
 // The frame is the last view of the initial map.
 Tracker::Result Tracker::BeginIsland(std::shared_ptr<const Frame> frame, InitialMap initial) {
   lost_since_.reset();
+  lost_frames_ = 0;
   last_ = LastFrame();
   last_.frame = frame;
   last_request_time_ = frame->timestamp;
@@ -202,6 +209,7 @@ Tracker::Result Tracker::Track(std::shared_ptr<const Frame> frame, const Map& ma
     KeepEarly(frame, true);
   }
   lost_since_.reset();
+  lost_frames_ = 0;
   if (found->is_relocalised) {
     relocalised_at_ = frame->timestamp;
   }
@@ -279,7 +287,7 @@ bool Tracker::NeedsKeyframe(const Frame& frame, const Map& map, const LocalTrack
                             const MapperStatus& mapper) {
   last_request_time_ = last_request_time_.value_or(frame.timestamp);
   KeyframeEvidence evidence =
-      GatherEvidence(frame, map, sensor_, tracking, *last_request_time_, mapper);
+      GatherEvidence(frame, map, sensor_, tracking, last_, *last_request_time_, mapper);
   evidence.fruitless_requests = object_requests_.CountFruitless(map);
   if (relocalised_at_) {
     evidence.time_since_relocalisation = frame.timestamp - *relocalised_at_;
@@ -311,6 +319,7 @@ Tracker::Result Tracker::Lose(std::shared_ptr<const Frame> frame, const Map& map
   last_.motion.reset();
   last_.velocity.reset();
   lost_since_ = lost_since_.value_or(frame->timestamp);
+  ++lost_frames_;
   if (!is_localizing_only_) {
     KeepEarly(frame, false);
   }
@@ -332,7 +341,8 @@ bool Tracker::MayBeginIsland(const Frame& frame, const Map& map) const {
   if (is_localizing_only_ || (!options_.begin_islands && !IsTiny(map))) {
     return false;
   }
-  const bool has_waited = frame.timestamp - *lost_since_ >= kPatience;
+  const bool has_waited =
+      frame.timestamp - *lost_since_ >= kPatience && lost_frames_ >= kPatientFrames;
   const bool was_found = last_.frame != nullptr;
   return was_found && IsYoung(map) ? has_waited || island_rules_.begins_at_once
                                    : has_waited && map.vocabulary() != nullptr;

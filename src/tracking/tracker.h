@@ -104,6 +104,7 @@ class Tracker {
   bool is_localizing_only_ = false;
 
   std::optional<double> lost_since_;  // s, time stamp of the first lost frame; absent if not lost
+  int lost_frames_ = 0;               // since then
   std::optional<double> relocalised_at_;  // s, time stamp of the last relocalised frame
   LastFrame last_;                        // has no frame before the first frame with a pose
   // Time stamp of the frame of the last message, s. If there is no message yet, that of the first

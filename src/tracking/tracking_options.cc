@@ -17,6 +17,8 @@ void TrackingOptions::Bind(OptionTable& options) {
       "keyframe_ratio", &keyframe_ratio, Range::Between(0.1, 1.0),
       "a keyframe is due if a frame finds a smaller share of the reference keyframe's landmarks "
       "(rule hullslam only)");
+  scope.Add("keyframes_for_objects", &keyframes_for_objects,
+            "objects that are not mapped yet are a reason for a keyframe (rule hullslam only)");
   scope.AddText(
       "dynamic_classes", &dynamic_classes,
       "classes of dynamic objects, separated by commas; they are not mapped, and keypoints on "

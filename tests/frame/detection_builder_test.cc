@@ -89,6 +89,16 @@ Ellipse SeenEllipsoid() {
   return ProjectEllipsoid(camera.Matrix(), Rigid3(), ellipsoid).value();
 }
 
+// Readers of maps refuse longer vectors.
+TEST(DetectionBuilder, EmbeddingsGetLengthOne) {
+  InstanceMask mask = MaskOf(SeenEllipsoid(), DistortedCamera());
+  EXPECT_TRUE(BuildOne(mask, DistortedCamera()).embedding.empty());
+  mask.embedding = {3.0F, 0.0F, -4.0F};
+  EXPECT_EQ(BuildOne(mask, DistortedCamera()).embedding, (std::vector<float>{0.6F, 0.0F, -0.8F}));
+  mask.embedding = {-7.3e-20F};
+  EXPECT_EQ(BuildOne(mask, DistortedCamera()).embedding, (std::vector<float>{-1.0F}));
+}
+
 TEST(DetectionBuilder, SupportLinesOfADistortedMaskTouchTheTrueEllipse) {
   const Ellipse truth = SeenEllipsoid();
   const Detection detection = BuildOne(MaskOf(truth, DistortedCamera()), DistortedCamera());

@@ -62,5 +62,18 @@ TEST(InstanceMask, AMaskThatCannotBeUsedIsRefusedWithItsNumber) {
   }
 }
 
+TEST(InstanceMask, AnEmbeddingNeedsADirection) {
+  InstanceMask mask = GoodMask();
+  mask.embedding = {300.0F, -0.5F};
+  EXPECT_NO_THROW(ValidateMasks({&mask, 1}, kMaskWidth, kMaskHeight)) << "any length will do";
+  mask.embedding = {0.0F, 0.0F, 0.0F};
+  ExpectRefusal(mask, {"mask 1 ('cup')", "embedding of 3 numbers", "direction"});
+  for (const float value :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    mask.embedding = {1.0F, value};
+    ExpectRefusal(mask, {"mask 1 ('cup')", "embedding of 2 numbers", "not finite"});
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -109,7 +109,7 @@ TEST_F(RgbdObjects, ThatMoveDoNotMoveTheCamera) {
   fmt::print("ATE RMSE {:.2f} mm, without masks {:.2f} mm\n", 1e3 * with, 1e3 * without);
 }
 
-// If objects are used neither for the pose nor in bundle adjustment, only points determine the
+// If objects are used neither in tracking nor in bundle adjustment, only points determine the
 // poses, so these do not change.
 TEST_F(RgbdObjects, ThatAreOnlyMappedLeavePosesAlone) {
   Render("desk", 60);
@@ -122,8 +122,9 @@ TEST_F(RgbdObjects, ThatAreOnlyMappedLeavePosesAlone) {
     return Run(name, arguments);
   };
   const fs::path off = run("off", {"objects.enabled=0"});
-  const fs::path mapped = run("mapped", {"objects.joint_pose=0", "objects.bundle_adjustment=0",
-                                         "objects.guided_matching=0"});
+  const fs::path mapped =
+      run("mapped", {"objects.joint_pose=0", "objects.bundle_adjustment=0",
+                     "objects.guided_matching=0", "tracking.keyframes_for_objects=0"});
   ExpectSameBytes(off, mapped, {"trajectory.txt", "keyframes.txt", "map.ply"});
   EXPECT_GE(Summary(mapped)["objects"]["count"], 3);
 }

@@ -36,8 +36,8 @@ TEST_F(EmbeddedMasksTest, RowsBelongToTheInstancesOfTheFile) {
   WriteVectors("1.5.npy", "(3, 2)", {3, 0, 7, 7, 0, -2});
   const FrameMasks frame = ReadFrame(0);
   ASSERT_EQ(frame.masks.size(), 2U);
-  EXPECT_EQ(frame.masks[0].embedding, (std::vector<float>{1, 0}));
-  EXPECT_EQ(frame.masks[1].embedding, (std::vector<float>{0, -1}));
+  EXPECT_EQ(frame.masks[0].embedding, (std::vector<float>{3, 0}));
+  EXPECT_EQ(frame.masks[1].embedding, (std::vector<float>{0, -2}));
   EXPECT_TRUE(ReadFrame(1).masks.at(0).embedding.empty()) << "the frame has no file of vectors";
 }
 

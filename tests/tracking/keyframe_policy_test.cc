@@ -134,6 +134,23 @@ TEST(KeyframePolicy, WithoutDepthAnAbruptKeyframeNeedsLandmarksOfMoreThanTwoKeyf
   EXPECT_TRUE(needs(6, 29)) << "in its time it is made as before";
 }
 
+// Images that are far apart: this one finds enough, but the next one may not.
+TEST(KeyframePolicy, AsksBeforeTheViewOfTheReferenceIsLeft) {
+  const auto leaving = [](double overlap, int frames, bool is_idle) {
+    return With([=](auto& e) {
+      e.next_overlap = overlap;
+      e.time_since_keyframe = Frames(frames);
+      e.mapper_is_idle = is_idle;
+    });
+  };
+  ExpectDecisions({
+      {"half of the view remains", leaving(0.5, 10, true), false},
+      {"less remains", leaving(0.49, 10, true), true},
+      {"less remains, the mapper is busy", leaving(0.49, 10, false), true},
+      {"less remains, 5 frames after the last keyframe", leaving(0.49, 5, true), false},
+  });
+}
+
 TEST(KeyframePolicy, AsksForObjectsThatAreNotMappedYet) {
   const auto after = [](int frames, bool is_idle) {
     return With([=](auto& e) {

@@ -207,6 +207,9 @@ TEST_F(RefinePosesTest, KeepsThePoseIfTheLandmarksContradictIt) {
 
 TEST_F(RefinePosesTest, RemembersTheDetectionsOfMappedObjects) {
   AddObjects();
+  auto frame = std::make_shared<Frame>(*report_.frame);
+  frame->detections[1].embedding = {0.6f, 0.8f};
+  report_.frame = frame;
   const RememberedFrame remembered = Remember(report_, objects_);
   ASSERT_EQ(remembered.frame.detections.size(), 3u);
   EXPECT_EQ(remembered.objects.size(), 3u);
@@ -216,6 +219,7 @@ TEST_F(RefinePosesTest, RemembersTheDetectionsOfMappedObjects) {
   EXPECT_TRUE(kept.hull.empty());
   EXPECT_TRUE(kept.contour.empty());
   EXPECT_TRUE(kept.points.empty());
+  EXPECT_TRUE(kept.embedding.empty());
   ObjectOptions options;
   options.pose.constraint.residual = ObjectResidual::kAlgebraicPoint;  // needs the contour
   EXPECT_FALSE(Remember(report_, options).frame.detections[1].contour.empty());

@@ -149,9 +149,20 @@ TEST_F(TrackerTest, LandmarksOfASingleObservationAreNotExpected) {
   EXPECT_EQ(RequestOf(result), nullptr);
 }
 
-// A camera stands still before something that is detected but can never be mapped.
-TEST_F(TrackerTest, AnObjectThatIsNeverMappedCausesFewerAndFewerRequests) {
-  Begin();
+// A camera stands still before something that is detected but can never be mapped. Whether objects
+// constrain poses changes nothing about it, so that uses of objects are compared with the same
+// reasons for keyframes.
+class NeverMappedObject : public TrackerTest {
+ protected:
+  std::vector<uint32_t> Requests(const ObjectOptions& objects, bool are_reasons = true);
+};
+
+std::vector<uint32_t> NeverMappedObject::Requests(const ObjectOptions& objects, bool are_reasons) {
+  TrackingOptions options = options_;
+  options.keyframes_for_objects = are_reasons;
+  Tracker tracker(world_.sensor(), options, objects);
+  tracker.Process(world_.Observe(0).frame, nullptr, kIdle);
+  const auto map = Publish(made_.map);
   const SyntheticView view = world_.Observe(10);
   std::vector<uint32_t> requests;
   for (uint32_t i = 1; i <= 600; ++i) {
@@ -159,13 +170,24 @@ TEST_F(TrackerTest, AnObjectThatIsNeverMappedCausesFewerAndFewerRequests) {
     frame->id = FrameId(100 + i);  // no keyframe has this id
     frame->timestamp = i / 30.0;
     frame->detections.emplace_back().hull = {{10.0, 10.0}, {60.0, 10.0}, {60.0, 60.0}};
-    const Tracker::Result result = Process(frame);
-    ASSERT_EQ(result.report.tracked.state, TrackingState::kTracked) << i;
+    const Tracker::Result result = tracker.Process(frame, map, kIdle);
+    EXPECT_EQ(result.report.tracked.state, TrackingState::kTracked) << i;
     if (result.message) {
       requests.push_back(i);
     }
   }
-  EXPECT_EQ(requests, (std::vector<uint32_t>{10, 20, 30, 40, 60, 100, 180, 340, 500}));
+  return requests;
+}
+
+TEST_F(NeverMappedObject, CausesFewerAndFewerRequests) {
+  const std::vector<uint32_t> expected = {10, 20, 30, 40, 60, 100, 180, 340, 500};
+  EXPECT_EQ(Requests({}), expected);
+  EXPECT_EQ(Requests({.joint_pose = false}), expected);
+  EXPECT_EQ(Requests({.joint_pose = false, .guided_matching = false}), expected);
+}
+
+TEST_F(NeverMappedObject, CausesNoRequestIfObjectsAreNoReasonForKeyframes) {
+  EXPECT_EQ(Requests({}, false), std::vector<uint32_t>());
 }
 
 TEST_F(TrackerTest, TheFirstFrameWithEnoughDepthDefinesTheWorldFrame) {
@@ -1381,6 +1403,18 @@ TEST_F(LostDepthTracker, TheLostFramesGetPosesInTheIslandAtTheEnd) {
   const std::vector<TrackedFrame> found = tracker_.LocaliseEarlyFrames(made_.map);
   ASSERT_GE(found.size(), 25u);
   EXPECT_GE(found.front().frame, FrameId(4));
+}
+
+// With one image a second, one lost frame says little.
+TEST_F(LostDepthTracker, WaitsForSeveralFramesIfThereAreFewPerSecond) {
+  Begin();
+  TrackFrames(1, 3);
+  for (uint32_t i = 4; i < 7; ++i) {
+    auto frame = std::make_shared<Frame>(*other_.Observe(i).frame);
+    frame->timestamp = i;
+    const bool begins = Process(frame).message.has_value();
+    EXPECT_EQ(begins, i == 6) << i;
+  }
 }
 
 TEST_F(LostDepthTracker, WithLocalizationOnlyNoIslandIsBegun) {

@@ -24,14 +24,15 @@ struct InstanceMask {
   // Closed outlines without holes, one per connected part, the largest first. Each has at least
   // three points. A box has one outline with its four corners; an ellipse has one with 64 points.
   std::vector<std::vector<Eigen::Vector2d>> outlines;
-  // What the object looks like, as a vector of length 1 of any network (CLIP or the like); all of a
-  // run have the same number of elements. Empty if there is none.
+  // What the object looks like, as a vector of any network (CLIP or the like), of which only the
+  // direction counts; all of a run have the same number of elements. Empty if there is none.
   std::vector<float> embedding = {};
 };
 
 // Throws InputError for a mask without a label, a score that is not between 0 and 1, an outline of
-// fewer than three points, and a point that is not finite or is farther outside the image (width x
-// height px) than the image is wide or high. The message has the number of the mask and the reason.
+// fewer than three points, a point that is not finite or is farther outside the image (width x
+// height px) than the image is wide or high, and an embedding that has no direction, because it is
+// zero or not finite. The message has the number of the mask and the reason.
 void ValidateMasks(std::span<const InstanceMask> masks, int width, int height);
 
 }  // namespace hullslam

@@ -23,6 +23,9 @@ struct TrackingOptions {
 
   double keyframe_interval =
       0.2;  // s, least time between keyframes, unless tracking weakens abruptly
+  // Whether detections that show no mapped object are a reason for a keyframe. Only for the rule
+  // kHullslam.
+  bool keyframes_for_objects = true;
   // Whether the windows in which landmarks are searched grow with the width of the image and, if
   // needed, up to the motion that is expected. Otherwise they double once if needed.
   bool wide_search = true;
