@@ -15,9 +15,10 @@
 #include "files/atomic_file.h"
 #include "files/npy_file.h"
 #include "files/plausible.h"
-#include "files/read_file.h"
+#include "files/read_text.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
+#include "masks/mask_classes.h"
 #include "results/scene_file.h"
 #include "run/command_line.h"
 #include "run/messages.h"
@@ -122,16 +123,18 @@ Scene LoadScene(const fs::path& source) {
   return ReadScene(file);
 }
 
-// The classes of the objects, and those of the file of --classes.
+// The classes of the objects, those of COCO, which most networks know, and those of the file of
+// --classes. A question about one that the map lacks has the answer that there is none.
 std::set<std::string> KnownClasses(const Scene& scene, const fs::path& file) {
-  std::set<std::string> labels;
+  std::set<std::string> labels(CocoClasses().begin(), CocoClasses().end());
   for (const SceneObject& object : scene.objects) {
     for (const auto& [label, share] : object.shares) {
       labels.insert(label);
     }
   }
   if (!file.empty()) {
-    const std::string text = ReadFile(file);
+    const std::string text = ReadText(file);
+    CheckUtf8(file, text);
     for (size_t begin = 0; begin < text.size();) {
       const size_t end = std::min(text.find('\n', begin), text.size());
       const std::string line(Trim(std::string_view(text).substr(begin, end - begin)));
