@@ -123,10 +123,9 @@ Scene LoadScene(const fs::path& source) {
   return ReadScene(file);
 }
 
-// The classes of the objects, those of COCO, which most networks know, and those of the file of
-// --classes. A question about one that the map lacks has the answer that there is none.
+// The classes of the objects, and those of the file of --classes.
 std::set<std::string> KnownClasses(const Scene& scene, const fs::path& file) {
-  std::set<std::string> labels(CocoClasses().begin(), CocoClasses().end());
+  std::set<std::string> labels;
   for (const SceneObject& object : scene.objects) {
     for (const auto& [label, share] : object.shares) {
       labels.insert(label);
@@ -159,10 +158,22 @@ std::vector<Answer> AnswerVector(const Scene& scene, const fs::path& file) {
   }
 }
 
+// A question about a class of COCO, which most networks know, has the answer that there is none if
+// the map lacks it. The message about an unknown word lists the classes of the map.
+AskedThing ParseKnown(const std::string& question, const std::set<std::string>& labels) {
+  std::set<std::string> known(CocoClasses().begin(), CocoClasses().end());
+  known.insert(labels.begin(), labels.end());
+  try {
+    return ParseQuestion(question, known);
+  } catch (const InputError&) {
+    return ParseQuestion(question, labels);
+  }
+}
+
 std::vector<Answer> FindAnswers(const Scene& scene, const QueryArguments& arguments) {
   const std::set<std::string> labels = KnownClasses(scene, arguments.classes);
   if (!arguments.question.empty()) {
-    return AnswerQuestion(scene, ParseQuestion(arguments.question, labels));
+    return AnswerQuestion(scene, ParseKnown(arguments.question, labels));
   }
   if (arguments.like) {
     return FindLike(scene, ObjectId(*arguments.like));
