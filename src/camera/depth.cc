@@ -31,9 +31,11 @@ void DepthErrorOptions::Bind(OptionTable& options) {
 }
 
 void DepthOptions::Bind(OptionTable& options) {
-  options.Add("DepthMapFactor", &units_per_metre, Range::Positive(),
+  // With less, the largest value of a depth image, 65535, is beyond the largest distance of the
+  // files, 1e8 m; with more, it is nearer than any camera sees.
+  options.Add("DepthMapFactor", &units_per_metre, Range::Between(1e-3, 1e6),
               "units of the 16-bit depth images per metre");
-  options.Add("ThDepth", &close_baselines, Range::Positive(),
+  options.Add("ThDepth", &close_baselines, Range::Between(1e-3, 1e6),
               "largest distance of a close point, in units of the baseline");
   error.Bind(options);
 }

@@ -2,8 +2,11 @@
 #include "hullslam/eval/ate.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iomanip>
 #include <span>
 #include <sstream>
+#include <string>
 #include <vector>
 
 namespace hullslam {
@@ -49,11 +52,31 @@ std::optional<double> ScaleDrift(const PairedPoints& points) {
   return first.ok() && last.ok() ? std::optional(first.scale / last.scale - 1.0) : std::nullopt;
 }
 
-std::string NoPairs(double max_difference) {
+// Why the pairs are too few. The ranges tell stamps of different clocks or units.
+std::string TooFewPairs(const Trajectory& reference, const Trajectory& estimate, size_t paired,
+                        double max_difference) {
   std::ostringstream message;
-  message << "no pose of the estimate has a partner within " << max_difference
-          << " s in the reference";
+  if (paired == 0) {
+    message << "no pose of the estimate has";
+  } else {
+    message << "only " << paired << " of the " << estimate.size() << " poses of the estimate have";
+  }
+  message << " a partner within " << max_difference << " s in the reference";
+  if (!reference.empty() && !estimate.empty()) {
+    message << std::fixed << std::setprecision(3) << "; the estimate is from "
+            << estimate.front().timestamp << " to " << estimate.back().timestamp
+            << " s, the reference from " << reference.front().timestamp << " to "
+            << reference.back().timestamp << " s";
+  }
   return message.str();
+}
+
+size_t CountDuring(const Trajectory& reference, const Trajectory& estimate) {
+  return static_cast<size_t>(
+      std::count_if(estimate.begin(), estimate.end(), [&](const StampedPose& pose) {
+        return !reference.empty() && pose.timestamp >= reference.front().timestamp &&
+               pose.timestamp <= reference.back().timestamp;
+      }));
 }
 
 }  // namespace
@@ -68,11 +91,14 @@ AteReport EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
   report.pairs = pairs.size();
   report.estimate_poses = estimate.size();
   report.reference_poses = reference.size();
-  if (pairs.empty()) {
-    report.failure = NoPairs(max_difference);
+  constexpr double kLeastCoverage = 0.1;
+  const double paired = CountDistinctEstimates(pairs);
+  report.coverage = estimate.empty() ? 0.0 : paired / static_cast<double>(estimate.size());
+  report.poses_during_reference = CountDuring(reference, estimate);
+  if (pairs.empty() || report.coverage < kLeastCoverage) {
+    report.failure = TooFewPairs(reference, estimate, static_cast<size_t>(paired), max_difference);
     return report;
   }
-  report.coverage = CountDistinctEstimates(pairs) / static_cast<double>(estimate.size());
   report.paired_span =
       reference[pairs.back().first].timestamp - reference[pairs.front().first].timestamp;
   const PairedPoints points = Translations(reference, estimate, pairs);
@@ -92,6 +118,20 @@ AteReport EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
   }
   report.errors = SummarizeErrors(std::move(errors));
   return report;
+}
+
+std::string DescribeMissingPairs(const AteReport& report) {
+  constexpr double kEnough = 0.9;
+  const auto paired = static_cast<size_t>(
+      std::lround(report.coverage * static_cast<double>(report.estimate_poses)));
+  const auto during = static_cast<double>(report.poses_during_reference);
+  if (static_cast<double>(paired) >= kEnough * during) {
+    return {};
+  }
+  return "only " + std::to_string(paired) + " of the " +
+         std::to_string(report.poses_during_reference) +
+         " poses during the ground truth have a partner in it; are the rates of both stamps right, "
+         "or does the ground truth have gaps?";
 }
 
 const char* ToString(AlignmentKind kind) {

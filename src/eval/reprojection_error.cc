@@ -11,6 +11,9 @@ namespace hullslam {
 std::optional<double> MedianReprojectionError(const Map& map, const PinholeCamera& camera) {
   std::vector<double> errors;
   map.landmarks().ForEach([&](LandmarkId, const Landmark& landmark) {
+    if (landmark.observations.size() < 2) {
+      return;  // it was made from this observation, so its error is 0
+    }
     for (const Observation& seen : landmark.observations) {
       const Keyframe& keyframe = map.keyframes().At(seen.keyframe);
       const Eigen::Vector3d in_camera = keyframe.cam_from_world * landmark.position;

@@ -18,7 +18,9 @@ void CheckExportPath(const std::filesystem::path& path,
 
 // A folder that an export is written to. Its files are collected in a hidden folder inside of it
 // and moved at the end, so an export that fails leaves nothing. An entry of the folder with the
-// name of a new file or folder is replaced as a whole; other entries stay.
+// name of a new file or folder is replaced as a whole; other entries stay. Of several exports at
+// once, the one that ends last leaves its files. If a process is killed while it moves its files,
+// the next export to the folder moves the others first.
 class ExportFolder {
  public:
   // `path` has passed CheckExportPath(). It is created if it does not exist. Throws InputError if

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string_view>
 
-#include "files/read_file.h"
+#include "files/read_text.h"
 #include "hullslam/util/error.h"
 #include "util/shown_text.h"
 
@@ -80,7 +80,7 @@ class LimitChecker {
 
 Json ReadJson(const std::filesystem::path& path, const JsonLimits& limits,
               const Json::parser_callback_t& callback) {
-  const std::string text = ReadFile(path, limits.most_bytes);
+  const std::string text = ReadText(path, limits.most_bytes);
   LimitChecker checker(path, limits, callback);
   try {
     return Json::parse(text, std::ref(checker));

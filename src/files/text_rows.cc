@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <system_error>
 
 #include "files/plausible.h"
@@ -18,7 +19,7 @@ namespace {
 // find_first_of() is not used: it calls memchr() for each character, which takes a tenth of the
 // time of reading the masks of a frame.
 bool IsSeparator(char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == ',' || c == '\v' || c == '\f';
+  return c == ' ' || c == '\t' || c == '\r' || c == ',' || c == ';' || c == '\v' || c == '\f';
 }
 
 void SplitColumns(std::string_view line, std::vector<std::string_view>& columns) {
@@ -28,6 +29,43 @@ void SplitColumns(std::string_view line, std::vector<std::string_view>& columns)
     const auto* end = std::find_if(begin, line.end(), IsSeparator);
     columns.emplace_back(begin, end);
     begin = std::find_if_not(end, line.end(), IsSeparator);
+  }
+}
+
+// Whether the text begins with a number, as "12px" and "nan" do.
+bool BeginsWithNumber(std::string_view text) {
+  double value = 0.0;
+  text.remove_prefix(text.starts_with('+') ? 1 : 0);
+  return std::from_chars(text.data(), text.data() + text.size(), value).ec !=
+         std::errc::invalid_argument;
+}
+
+bool NamesColumns(const std::vector<std::string_view>& columns) {
+  return columns.size() > 1 && std::none_of(columns.begin(), columns.end(), BeginsWithNumber);
+}
+
+// Spreadsheets of many countries write "0,5;1,5" for the numbers 0.5 and 1.5. As commas separate
+// columns here, such a line would have twice as many numbers.
+bool HasDecimalCommas(std::string_view line) {
+  return line.find(';') != std::string_view::npos && line.find(',') != std::string_view::npos &&
+         line.find('.') == std::string_view::npos;
+}
+
+bool IsComment(const std::vector<std::string_view>& columns) {
+  return !columns.empty() && (columns[0].starts_with('#') || columns[0].starts_with('%'));
+}
+
+// Refuses lines that cannot be split, or that would be split wrongly.
+void CheckLine(const TextRow& row, std::string_view line) {
+  if (line.size() > kMostLineBytes) {
+    row.Fail(fmt::format("a line of {} bytes, expected at most {} MB", line.size(),
+                         kMostLineBytes / 1'000'000));
+  }
+  if (line.find('\0') != std::string_view::npos) {
+    row.Fail("has a byte that is 0, expected text");
+  }
+  if (HasDecimalCommas(line)) {
+    row.Fail("has semicolons and decimal commas, expected numbers with decimal points");
   }
 }
 
@@ -93,24 +131,32 @@ double TextRow::Stamp(size_t column, std::string_view name) const {
 
 void ForEachRow(const std::filesystem::path& path,
                 const std::function<void(const TextRow& row)>& visit, size_t most_bytes) {
-  const std::string bytes = ReadFile(path, most_bytes);
+  const std::string bytes = ReadText(path, most_bytes);
   const std::string_view text = bytes;
   TextRow row{.path = path, .line = 0, .columns = {}};
+  bool is_first = true;      // no line with data or with names has come yet
+  std::optional<int> names;  // the line with the names, until data follow
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    begin = end + 1;
     ++row.line;
-    if (end - begin > kMostLineBytes) {
-      row.Fail(fmt::format("a line of {} bytes, expected at most {} MB", end - begin,
-                           kMostLineBytes / 1'000'000));
-    }
-    if (text.substr(begin, end - begin).find('\0') != std::string_view::npos) {
-      row.Fail("has a byte that is 0, expected text");
-    }
-    SplitColumns(text.substr(begin, end - begin), row.columns);
-    if (!row.columns.empty() && !row.columns[0].starts_with('#')) {
+    CheckLine(row, line);
+    SplitColumns(line, row.columns);
+    const bool is_comment = IsComment(row.columns);
+    if (is_first && (is_comment || NamesColumns(row.columns))) {
+      row.header = line;
+      names = is_comment ? std::nullopt : std::optional(row.line);
+    } else if (!row.columns.empty() && !is_comment) {
+      names.reset();
       visit(row);
     }
-    begin = end + 1;
+    is_first = is_first && (row.columns.empty() || is_comment);
+  }
+  if (names) {  // no data follow, so the line is not what it seems, and the visitor can say why
+    row.line = *names;
+    SplitColumns(row.header, row.columns);
+    visit(row);
   }
 }
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "files/read_file.h"
+#include "files/read_text.h"
 
 namespace hullslam {
 
@@ -23,6 +23,8 @@ struct TextRow {
   const std::filesystem::path& path;
   int line = 0;  // from 1
   std::vector<std::string_view> columns;
+  // The last comment before the first line with data, or the line with the names of the columns.
+  std::string_view header = {};
 
   // Throws InputError "FILE:LINE: what".
   [[noreturn]] void Fail(const std::string& what) const;
@@ -37,10 +39,13 @@ struct TextRow {
   double Stamp(size_t column, std::string_view name = "timestamp") const;
 };
 
-// Visits the lines with data in order. Columns are separated by blanks, tabs or commas. Empty lines
-// and lines that start with '#' are skipped; CRLF line ends are accepted. Throws InputError for a
-// file that ReadFile() refuses, and for a line of more than kMostLineBytes or with a byte 0, which
-// would cut messages.
+// Visits the lines with data in order, of a file in any of the forms of ReadText(). Columns are
+// separated by blanks, tabs, commas or semicolons. Empty lines and lines that start with '#' or '%'
+// are skipped, and so is a first line with several names and no number, which names the columns of
+// the lines that follow.
+// Throws InputError for a file that ReadText() refuses, for a line of more than kMostLineBytes or
+// with a byte 0, which would cut messages, and for semicolons between numbers with decimal
+// commas.
 void ForEachRow(const std::filesystem::path& path,
                 const std::function<void(const TextRow& row)>& visit,
                 size_t most_bytes = kMostTextFileBytes);

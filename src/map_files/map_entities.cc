@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -26,11 +27,18 @@ double ReadScale(ByteReader& in) {
   return scale;
 }
 
-// Reads how many times something was seen.
+constexpr int32_t kMostTimes = 1 << 29;  // the sum of two such numbers does not overflow
+
+// Writes how many times something was seen. A longer count stays at the largest one, so that what
+// is written can be read.
+template <typename Count>
+void PutTimes(Count times, ByteWriter& out) {
+  out.Put(static_cast<int32_t>(std::min<Count>(times, kMostTimes)));
+}
+
 int ReadTimes(ByteReader& in) {
-  constexpr int kMost = 1 << 29;  // the sum of two such numbers does not overflow
   const auto times = in.Get<int32_t>();
-  in.Require(times >= 0 && times <= kMost, "has a count that is out of range");
+  in.Require(times >= 0 && times <= kMostTimes, "has a count that is out of range");
   return times;
 }
 
@@ -140,7 +148,7 @@ void WriteKeyframe(KeyframeId id, const Keyframe& keyframe, ByteWriter& out) {
   out.PutCount(keyframe.covisible.size());
   for (const Covisible& edge : keyframe.covisible) {
     out.Put(edge.keyframe.value);
-    out.Put(static_cast<int32_t>(edge.shared));
+    PutTimes(edge.shared, out);
   }
   out.Put(keyframe.parent.value);
   out.Put(keyframe.island.value);
@@ -198,8 +206,8 @@ void WriteLandmark(LandmarkId id, const Landmark& landmark, ByteWriter& out) {
   }
   out.Put(landmark.reference.value);
   out.Put(landmark.created_by.value);
-  out.Put(static_cast<int32_t>(landmark.visible));
-  out.Put(static_cast<int32_t>(landmark.found));
+  PutTimes(landmark.visible, out);
+  PutTimes(landmark.found, out);
 }
 
 void ReadLandmark(const MapHeader& header, ByteReader& in, MapTables& tables) {
@@ -229,12 +237,12 @@ void WriteObject(ObjectId id, const ObjectLandmark& object, ByteWriter& out) {
   WriteEllipsoid(object.start, out);
   WriteVotes(object.votes, out);
   out.Put(object.reference.value);
-  out.Put(static_cast<int32_t>(object.shaped_views));
+  PutTimes(object.shaped_views, out);
   out.Put(object.misfit_px);
   out.Put(object.compensated_px);
   WriteSamples(object.misfit_samples, out);
-  out.Put(static_cast<int32_t>(object.visible));
-  out.Put(static_cast<int32_t>(object.found));
+  PutTimes(object.visible, out);
+  PutTimes(object.found, out);
 }
 
 void ReadObject(const MapHeader& header, ByteReader& in, MapTables& tables) {

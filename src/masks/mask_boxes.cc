@@ -18,7 +18,8 @@ constexpr size_t kColumns = 6;
 constexpr double kRounding = 0.01;  // how far shares may be beyond 0 to 1, because files round them
 
 bool IsYoloBox(const MaskProbe& probe) {
-  return (probe.columns == kColumns || probe.columns == kColumns - 1) && IsNormalized(probe, 1);
+  return IsTrackedBox(probe) ||
+         ((probe.columns == kColumns || probe.columns == kColumns - 1) && IsNormalized(probe, 1));
 }
 
 class BoxMasks : public TextMasks {
@@ -50,16 +51,20 @@ class BoxMasks : public TextMasks {
   // The numbers are shares of the width and height of the image: the outer edge of the first pixel
   // is at 0, that of the last one at 1.
   InstanceMask ParseYolo(const TextRow& row) const {
-    if (row.columns.size() != kColumns && row.columns.size() != kColumns - 1) {
-      row.Fail(fmt::format("{} column(s), expected {} or {}: class x y width height [confidence]",
-                           row.columns.size(), kColumns - 1, kColumns));
+    // A line of five columns ends in the height, which may be 1 too.
+    const size_t columns =
+        row.columns.size() - (row.columns.size() >= kColumns && HasTrack(row) ? 1 : 0);
+    if (columns != kColumns && columns != kColumns - 1) {
+      row.Fail(fmt::format(
+          "{} column(s), expected {} to {}: class x y width height [confidence] [track]",
+          row.columns.size(), kColumns - 1, kColumns + 1));
     }
     const double x = request().width * Share(row, 1, "x");
     const double y = request().height * Share(row, 2, "y");
     const double half_width = 0.5 * request().width * Share(row, 3, "width");
     const double half_height = 0.5 * request().height * Share(row, 4, "height");
     return {.label = ClassName(row, 0),
-            .score = row.columns.size() == kColumns ? Score(row, 5) : 1.0,
+            .score = columns == kColumns ? Score(row, 5) : 1.0,
             .shape = MaskShape::kBox,
             .outlines = {BoxOutline(x - half_width, y - half_height, x + half_width,
                                     y + half_height, request())}};
@@ -96,6 +101,10 @@ std::unique_ptr<MaskSource> OpenBoxes(const MaskRequest& request) {
 }
 
 }  // namespace
+
+bool IsTrackedBox(const MaskProbe& probe) {
+  return probe.columns == kColumns + 1 && IsTrackNumber(probe.row.back()) && IsNormalized(probe, 1);
+}
 
 const MaskFormat kBoxesFormat = {.name = kBoxesName, .is_meant = IsBoxes, .open = OpenBoxes};
 

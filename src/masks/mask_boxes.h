@@ -11,6 +11,11 @@ namespace hullslam {
 //   these files (Wu et al. 2020).
 // - `class x y width height [confidence]` in shares of the image; x and y are the centre. YOLO
 //   writes these files for detections (Ultralytics, save_txt).
+// In the second form, the number of a track may be the last column (`yolo detect track`).
 extern const MaskFormat kBoxesFormat;
+
+// Whether the first line is one of the second form with both a confidence and a track. It has as
+// many numbers as an outline of three points.
+bool IsTrackedBox(const MaskProbe& probe);
 
 }  // namespace hullslam

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "files/read_file.h"
+#include "files/read_text.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "util/trim.h"
@@ -75,7 +75,9 @@ std::vector<std::string> ReadClasses(const std::filesystem::path& folder) {
   if (!std::filesystem::exists(path, error)) {
     return CocoClasses();
   }
-  std::vector<std::string> names = SplitLines(ReadFile(path, kMostBytes));
+  const std::string text = ReadText(path, kMostBytes);
+  CheckUtf8(path, text);
+  std::vector<std::string> names = SplitLines(text);
   while (!names.empty() && names.back().empty()) {
     names.pop_back();
   }

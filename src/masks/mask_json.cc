@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "files/json_file.h"
+#include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "masks/mask_checks.h"
 
@@ -99,16 +100,33 @@ std::vector<double> Numbers(const JsonRecord& record, const Json& list, const ch
   return list.get<std::vector<double>>();
 }
 
-double ScoreOf(const JsonRecord& record, const Json& object, const char* name) {
-  const auto found = object.find(name);
-  if (found == object.end()) {
-    return 1.0;
+double ScoreOf(const JsonRecord& record, const Json& object) {
+  for (const char* const name : {"score", "detection_score", "confidence", "conf", "probability"}) {
+    const auto found = object.find(name);
+    if (found == object.end() || found->is_null()) {
+      continue;
+    }
+    double score = found->is_number() ? found->get<double>() : -1.0;
+    if (found->is_string()) {
+      ParseFinite(found->get_ref<const std::string&>(), score);
+    }
+    if (!(score >= 0.0 && score <= 1.0)) {
+      record.Fail(fmt::format("{} is {}, expected a number from 0 to 1", name, ShowJson(*found)));
+    }
+    return score;
   }
-  const double score = found->is_number() ? found->get<double>() : -1.0;
-  if (!(score >= 0.0 && score <= 1.0)) {
-    record.Fail(fmt::format("{} is {}, expected a number from 0 to 1", name, ShowJson(*found)));
+  return 1.0;
+}
+
+std::optional<std::string> ClassNameOf(const Json& object) {
+  for (const char* const name : {"label", "class", "class_name", "category_name", "category"}) {
+    const auto found = object.find(name);
+    if (found != object.end() && found->is_string() &&
+        !found->get_ref<const std::string&>().empty()) {
+      return found->get<std::string>();
+    }
   }
-  return score;
+  return std::nullopt;
 }
 
 }  // namespace hullslam

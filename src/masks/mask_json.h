@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,13 @@ const nlohmann::json& Member(const JsonRecord& record, const nlohmann::json& obj
 // Reads a list of numbers. Calls record.Fail() with `name` if the value is anything else.
 std::vector<double> Numbers(const JsonRecord& record, const nlohmann::json& list, const char* name);
 
-// The confidence in a member of an object, from 0 to 1. It is 1 if the member is missing. Calls
-// record.Fail() for any other value.
-double ScoreOf(const JsonRecord& record, const nlohmann::json& object, const char* name);
+// The confidence of an object, from 0 to 1, in any of the members that tools use for it: "score",
+// "detection_score", "confidence", "conf", "probability". It is 1 if there is none, or if it is
+// null. Calls record.Fail() for any other value. As some tools write numbers as text, "0.9" is 0.9.
+double ScoreOf(const JsonRecord& record, const nlohmann::json& object);
+
+// The name of the class of an object in any of the members that tools use for it: "label", "class",
+// "class_name", "category_name", "category". Nothing if there is none that is a text.
+std::optional<std::string> ClassNameOf(const nlohmann::json& object);
 
 }  // namespace hullslam

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cstdint>
 #include <map>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -10,6 +12,7 @@
 #include <utility>
 
 #include "files/json_file.h"
+#include "files/read_file.h"
 #include "files/text_rows.h"
 #include "frame/label_image.h"
 #include "hullslam/frame/mask_image.h"
@@ -98,6 +101,74 @@ class ClassesReader {
   std::filesystem::path path_;
 };
 
+// The type of a PNG image in its first chunk: bytes 24 and 25 of the file.
+struct PngType {
+  int bits = 0;    // per channel
+  int colour = 0;  // 0: grey; 3: a palette
+};
+
+PngType TypeOf(std::string_view bytes) {
+  return bytes.size() < 26 ? PngType() : PngType{bytes[24], bytes[25]};
+}
+
+// The index of each colour of the palette. The chunk PLTE has three bytes per colour. A chunk is
+// its length, its name, its data, and a sum of four bytes. The first one follows eight bytes.
+std::map<std::array<uint8_t, 3>, int> PaletteOf(const std::filesystem::path& path,
+                                                std::string_view bytes) {
+  const auto byte = [&](size_t i) { return static_cast<uint8_t>(bytes[i]); };
+  std::map<std::array<uint8_t, 3>, int> palette;
+  for (size_t at = 8; at + 8 <= bytes.size();) {
+    const size_t length =
+        size_t{byte(at)} << 24 | byte(at + 1) << 16 | byte(at + 2) << 8 | byte(at + 3);
+    if (length > bytes.size() - at - 8) {
+      break;
+    }
+    for (size_t i = 0; bytes.substr(at + 4, 4) == "PLTE" && i + 3 <= length; i += 3) {
+      const size_t colour = at + 8 + i;
+      if (!palette.emplace(std::array{byte(colour + 2), byte(colour + 1), byte(colour)}, i / 3)
+               .second) {
+        throw InputError(
+            fmt::format("{}: two entries of its palette have the same colour, so its "
+                        "numbers are unclear; expected a grey PNG",
+                        path.string()));
+      }
+    }
+    at += length + 12;
+  }
+  return palette;
+}
+
+// The numbers of a palette PNG, which OpenCV can only decode to colours.
+cv::Mat DecodePalette(const std::filesystem::path& path, std::string_view bytes) {
+  const cv::Mat colours = DecodeColourImage(path, bytes);
+  const std::map<std::array<uint8_t, 3>, int> palette = PaletteOf(path, bytes);
+  cv::Mat labels(colours.size(), CV_8UC1);
+  for (int y = 0; y < colours.rows; ++y) {
+    for (int x = 0; x < colours.cols; ++x) {
+      const auto& bgr = colours.at<cv::Vec3b>(y, x);
+      const auto index = palette.find({bgr[0], bgr[1], bgr[2]});
+      if (index == palette.end()) {
+        throw InputError(path.string() + ": has a pixel whose colour is not in its palette");
+      }
+      labels.at<uint8_t>(y, x) = static_cast<uint8_t>(index->second);
+    }
+  }
+  return labels;
+}
+
+cv::Mat ReadLabels(const std::filesystem::path& path) {
+  constexpr size_t kMostBytes = 512'000'000;
+  constexpr int kGrey = 0;
+  constexpr int kPalette = 3;
+  const std::string bytes = ReadFile(path, kMostBytes);
+  const PngType type = TypeOf(bytes);
+  if (type.colour == kPalette) {
+    return DecodePalette(path, bytes);
+  }
+  return type.colour == kGrey && type.bits == 8 ? DecodeGreyImage(path, bytes)
+                                                : ReadLabelImage(path);
+}
+
 class LabelPngMasks : public MaskSource {
  public:
   explicit LabelPngMasks(const MaskRequest& request)
@@ -133,7 +204,7 @@ class LabelPngMasks : public MaskSource {
 
   cv::Mat Load(const MaskFrame& frame) const {
     const std::filesystem::path path = Path(frame);
-    cv::Mat labels = ReadLabelImage(path);
+    cv::Mat labels = ReadLabels(path);
     if (labels.cols != request_.width || labels.rows != request_.height) {
       throw InputError(fmt::format("{}: {}x{} px, expected the size of the images, {}x{}",
                                    path.string(), labels.cols, labels.rows, request_.width,

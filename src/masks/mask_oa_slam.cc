@@ -124,7 +124,7 @@ class OaSlamReader {
   OaSlamDetection ReadDetection(const JsonRecord& record, const Json& json) const {
     OaSlamDetection detection;
     detection.label = Label(record, Member(record, json, "category_id"));
-    detection.score = ScoreOf(record, json, "detection_score");
+    detection.score = ScoreOf(record, json);
     detection.box = Take<4>(record, Member(record, json, "bbox"), "bbox", "x1, y1, x2, y2");
     const auto& [left, top, right, bottom] = detection.box;
     if (!AreUpTo(kMostPixels, detection.box) || left > right || top > bottom) {

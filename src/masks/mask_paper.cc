@@ -28,9 +28,9 @@ class PaperMasks : public TextMasks {
 
   InstanceMask Parse(const TextRow& row) const override {
     const size_t columns = row.columns.size();
-    if (columns < kColumnsBeforePolygon + 6 || columns % 2 != 0) {
+    if (columns < kColumnsBeforePolygon || columns % 2 != 0) {
       row.Fail(
-          fmt::format("{} column(s), expected a polygon of 3 points or more: instance track "
+          fmt::format("{} column(s), expected a polygon: instance track "
                       "label confidence x1 y1 ... xn yn",
                       columns));
     }
@@ -55,7 +55,9 @@ class PaperMasks : public TextMasks {
                              request().height));
       }
     }
-    instance.outlines.push_back(std::move(outline));
+    if (outline.size() >= 3) {  // others have no area
+      instance.outlines.push_back(std::move(outline));
+    }
     return instance;
   }
 };

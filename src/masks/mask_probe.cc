@@ -22,17 +22,22 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMostColumns = 64;  // enough to recognise a format
 
-// Stores the first row of a text file. Returns false if the file has no rows.
+constexpr size_t kEnoughColumns = 5;  // those of a box; fewer do not tell the format
+
+// Stores the first row of a text file, or the first one with enough columns. Returns false if there
+// is no such row.
 bool ProbeRow(const fs::path& path, MaskProbe& probe) {
   CheckFileSize(path, kMostFrameFileBytes);
   ForEachRow(path, [&](const TextRow& row) {
-    if (probe.columns == 0) {
+    if (probe.columns == 0 ||
+        (probe.columns < kEnoughColumns && row.columns.size() >= kEnoughColumns)) {
+      probe.row_file = path.filename().string();
       probe.columns = row.columns.size();
       const size_t shown = std::min(row.columns.size(), kMostColumns);
       probe.row.assign(row.columns.begin(), row.columns.begin() + static_cast<ptrdiff_t>(shown));
     }
   });
-  return probe.columns > 0;
+  return probe.columns >= kEnoughColumns;
 }
 
 void ProbeFolder(MaskProbe& probe) {
@@ -42,16 +47,41 @@ void ProbeFolder(MaskProbe& probe) {
   probe.has_paper_folder = fs::is_directory(probe.path / "segmentation_txt", error);
   std::set<std::string> json = ListFiles(probe.path, ".json");
   json.erase("classes");
-  probe.has_json = !json.empty();
+  probe.jsons = json.size();
   std::set<std::string> texts = ListFiles(probe.path, ".txt");
   texts.erase("classes");
   probe.texts = texts.size();
   for (const std::string& name : texts) {
     if (ProbeRow(probe.path / (name + ".txt"), probe)) {
-      probe.row_file = name + ".txt";
       return;
     }
   }
+}
+
+// Whether the line could be an outline in pixels.
+bool IsInPixels(const MaskProbe& probe) {
+  constexpr size_t kLeastColumns = 7;
+  return probe.columns >= kLeastColumns &&
+         std::all_of(probe.row.begin(), probe.row.end(), [](const std::string& column) {
+           double value = 0.0;
+           return ParseFinite(column, value) && value >= 0.0;
+         });
+}
+
+// "; did you mean FOLDER?" for a folder whose masks are in a subfolder, as Ultralytics writes them.
+std::string SuggestSubfolder(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_directory(ignored) &&
+        (!ListFiles(entry->path(), ".txt").empty() || !ListFiles(entry->path(), ".json").empty())) {
+      found.push_back(entry->path());
+    }
+  }
+  return found.size() == 1 ? fmt::format("; did you mean {}?", found.front().string())
+                           : std::string();
 }
 
 std::string DescribeFolderMisfit(const MaskProbe& probe) {
@@ -63,9 +93,12 @@ std::string DescribeFolderMisfit(const MaskProbe& probe) {
     constexpr size_t kColumnsShown = 8;
     const size_t shown = std::min(probe.row.size(), kColumnsShown);
     return fmt::format(
-        "'{}{}' in {} fits no format of masks, expected one that docs/masks.md shows",
+        "'{}{}' in {} fits no format of masks, expected one that docs/masks.md shows{}",
         fmt::join(probe.row.begin(), probe.row.begin() + static_cast<ptrdiff_t>(shown), " "),
-        probe.columns > shown ? " ..." : "", probe.row_file);
+        probe.columns > shown ? " ..." : "", probe.row_file,
+        IsInPixels(probe)
+            ? "; if these are pixels, divide x by the width and y by the height (yolo-seg)"
+            : "");
   }
   if (probe.texts > 0) {
     return fmt::format(
@@ -73,16 +106,18 @@ std::string DescribeFolderMisfit(const MaskProbe& probe) {
         probe.texts);
   }
   if (probe.has_images) {
-    return "has PNG files but no classes.json, which the format label-png needs";
+    return "has PNG files but no classes.json, which the format label-png needs" +
+           SuggestSubfolder(probe.path);
   }
-  if (probe.has_json) {
-    return "has JSON files but no text files; give the path of the JSON file";
+  if (probe.jsons > 0) {
+    return "has a JSON file but no text files; give the path of the JSON file";
   }
-  return "has neither text files nor PNG files, expected masks";
+  return "has neither text files nor PNG or JSON files, expected masks" +
+         SuggestSubfolder(probe.path);
 }
 
 void ProbeFile(std::span<const std::string_view> json_keys, MaskProbe& probe) {
-  const std::string text = ReadFile(probe.path, kMostJsonFileBytes);
+  const std::string text = ReadText(probe.path, kMostJsonFileBytes);
   size_t first = std::string::npos;
   for (const std::string_view key : json_keys) {
     const size_t at = text.find('"' + std::string(key) + '"');
@@ -126,7 +161,11 @@ std::string DescribeMisfit(const MaskProbe& probe, const std::string& json_keys)
 bool IsNormalized(const MaskProbe& probe, size_t column) {
   constexpr double kRounding = 0.01;
   for (; column < probe.row.size(); ++column) {
+    const bool is_track = column + 1 == probe.columns && IsTrackNumber(probe.row[column]);
     double value = 0.0;
+    if (is_track) {
+      continue;
+    }
     if (!ParseFinite(probe.row[column], value) || value < -kRounding || value > 1.0 + kRounding) {
       return false;
     }

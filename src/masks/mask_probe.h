@@ -15,13 +15,14 @@ struct MaskProbe {
   std::filesystem::path path;
   bool is_folder = false;
   // For a folder: the columns of the first line found in a text file other than classes.txt, and
-  // their number. `row` has only the first columns if there are very many.
+  // their number. Lines with a few columns only, as networks write them for masks without area,
+  // count if there are no others. `row` has only the first columns if there are very many.
   std::vector<std::string> row;
   size_t columns = 0;
   size_t texts = 0;         // text files other than classes.txt
   std::string row_file;     // the name of the text file with that line
   bool has_images = false;  // has PNG files
-  bool has_json = false;    // has JSON files other than classes.json
+  size_t jsons = 0;         // JSON files other than classes.json
   bool has_classes_json = false;
   bool has_paper_folder = false;  // has a folder segmentation_txt
   std::string json_key;           // for a file: that of the given keys that comes first in it
@@ -37,7 +38,7 @@ MaskProbe ProbeMasks(const std::filesystem::path& path,
 std::string DescribeMisfit(const MaskProbe& probe, const std::string& json_keys);
 
 // Whether all numbers of the row, from the column with index `column` on, are between 0 and 1 up to
-// rounding.
+// rounding. The last one may also be the number of a track.
 bool IsNormalized(const MaskProbe& probe, size_t column);
 
 }  // namespace hullslam

@@ -35,11 +35,48 @@ std::set<std::string> ListFiles(const fs::path& folder, std::string_view extensi
   return names;
 }
 
+bool IsTrackNumber(std::string_view text) {
+  return text.find_first_not_of("0123456789") == std::string_view::npos &&
+         text.find_first_not_of('0') != std::string_view::npos;
+}
+
 TextMasks::TextMasks(const MaskRequest& request)
     : request_(request),
       classes_(ReadClasses(request.path)),
       names_(ListFiles(request.path, kExtension)) {
   names_.erase("classes");
+}
+
+std::string TextMasks::FileName(const MaskFrame& frame) const {
+  return names_.contains(frame.stem) || !names_.contains(frame.video_name) ? frame.stem
+                                                                           : frame.video_name;
+}
+
+bool TextMasks::HasTrack(const TextRow& row) const {
+  if (row.columns.size() < 2 || !IsTrackNumber(row.columns.back())) {
+    return false;
+  }
+  const bool is_odd = row.columns.size() % 2 == 1;
+  TrackAnswer& answer = tracks_.at(is_odd ? 1 : 0);
+  std::call_once(answer.once, [&] { answer.has_tracks = HaveTracks(is_odd); });
+  return answer.has_tracks;
+}
+
+bool TextMasks::HaveTracks(bool is_odd) const {
+  for (const std::string& name : names_) {
+    bool have_tracks = true;
+    ForEachRow(
+        request_.path / (name + std::string(kExtension)),
+        [&](const TextRow& row) {
+          const bool is_asked = row.columns.size() > 1 && (row.columns.size() % 2 == 1) == is_odd;
+          have_tracks = have_tracks && (!is_asked || IsTrackNumber(row.columns.back()));
+        },
+        kMostFrameFileBytes);
+    if (!have_tracks) {
+      return false;
+    }
+  }
+  return true;
 }
 
 bool TextMasks::Contains(const MaskFrame& frame) const { return names_.contains(FileName(frame)); }

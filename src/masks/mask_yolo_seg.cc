@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "masks/mask_boxes.h"
 #include "masks/mask_checks.h"
 #include "masks/mask_text.h"
 
@@ -24,15 +25,11 @@ class YoloSegMasks : public TextMasks {
 
  private:
   // Coordinates are pixels with integer centres, divided by width and height. Ultralytics writes
-  // them in this form: it divides the pixels that cv::findContours() returns.
+  // them in this form: it divides the pixels that cv::findContours() returns. It also writes lines
+  // without an outline, or with one of a point or two, for masks without area.
   InstanceMask Parse(const TextRow& row) const override {
-    const size_t points = (row.columns.size() - 1) / 2;
-    if (points < 3) {
-      row.Fail(
-          fmt::format("{} column(s), expected a polygon of 3 points or more: class x1 y1 ... "
-                      "xn yn [confidence]",
-                      row.columns.size()));
-    }
+    const size_t numbers = row.columns.size() - 1 - (HasTrack(row) ? 1 : 0);
+    const size_t points = numbers / 2;
     if (points > kMostOutlinePoints) {
       row.Fail(
           fmt::format("a polygon of {} points, expected at most {}", points, kMostOutlinePoints));
@@ -43,10 +40,12 @@ class YoloSegMasks : public TextMasks {
       outline[i] = {Coordinate(row, 1 + 2 * i, "x", request().width),
                     Coordinate(row, 2 + 2 * i, "y", request().height)};
     }
-    if (row.columns.size() % 2 == 0) {
-      instance.score = Score(row, row.columns.size() - 1);
+    if (numbers % 2 == 1) {
+      instance.score = Score(row, numbers);
     }
-    instance.outlines.push_back(std::move(outline));
+    if (points >= 3) {
+      instance.outlines.push_back(std::move(outline));
+    }
     return instance;
   }
 
@@ -62,7 +61,9 @@ class YoloSegMasks : public TextMasks {
   }
 };
 
-bool IsYoloSeg(const MaskProbe& probe) { return probe.columns >= 7 && IsNormalized(probe, 1); }
+bool IsYoloSeg(const MaskProbe& probe) {
+  return probe.columns >= 7 && !IsTrackedBox(probe) && IsNormalized(probe, 1);
+}
 
 std::unique_ptr<MaskSource> OpenYoloSeg(const MaskRequest& request) {
   return std::make_unique<YoloSegMasks>(request);

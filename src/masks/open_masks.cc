@@ -15,6 +15,7 @@
 #include "masks/mask_boxes.h"
 #include "masks/mask_checks.h"
 #include "masks/mask_coco.h"
+#include "masks/mask_json_folder.h"
 #include "masks/mask_label_png.h"
 #include "masks/mask_oa_slam.h"
 #include "masks/mask_paper.h"
@@ -25,8 +26,9 @@ namespace hullslam {
 namespace {
 
 // The table of all formats. A new format needs a row here.
-constexpr std::array kFormats = {&kYoloSegFormat, &kCocoFormat,   &kLabelPngFormat,
-                                 &kPaperFormat,   &kOaSlamFormat, &kBoxesFormat};
+constexpr std::array kFormats = {&kYoloSegFormat,  &kCocoFormat,  &kJsonFolderFormat,
+                                 &kLabelPngFormat, &kPaperFormat, &kOaSlamFormat,
+                                 &kBoxesFormat};
 
 std::vector<std::string_view> JsonKeys() {
   std::vector<std::string_view> keys;
@@ -95,9 +97,12 @@ void CheckSomeFrameHasMasks(const std::filesystem::path& path, const MaskSource&
   if (!found) {
     const std::string example = source.Example();
     throw InputError(fmt::format(
-        "{}: no masks ({}) for any of the {} frames: there is {}, and a frame is '{}'",
+        "{}: no masks ({}) for any of the {} frames: there is {}, and a frame is '{}'{}",
         path.string(), source.format(), frames.size(),
-        example.empty() ? std::string("nothing") : '\'' + example + '\'', frames.front().stem));
+        example.empty() ? std::string("nothing") : '\'' + example + '\'', frames.front().stem,
+        frames.front().video_name.empty()
+            ? std::string()
+            : fmt::format(" or, in text files, '{}'", frames.front().video_name)));
   }
 }
 

@@ -2,6 +2,7 @@
 #include "run/command_line.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
@@ -32,13 +33,16 @@ class MessageSink final : public spdlog::sinks::base_sink<std::mutex> {
   void flush_() override {}
 };
 
-// The long option that is spelled most like `name`, which is without dashes and a value; empty if
-// none is like it.
+// The long option that begins with `name`, or the one that is spelled most like it; empty if none
+// is like it. The name is without dashes and a value.
 std::string NearestOption(const CLI::App& app, std::string_view name) {
   std::string nearest;
   size_t least = std::max<size_t>(2, name.size() / 3) + 1;
   for (const CLI::Option* const option : app.get_options()) {
     for (const std::string& known : option->get_lnames()) {
+      if (name.size() > 1 && known.starts_with(name)) {
+        return known;
+      }
       if (const size_t distance = EditDistance(name, known); distance < least) {
         least = distance;
         nearest = known;
@@ -46,6 +50,18 @@ std::string NearestOption(const CLI::App& app, std::string_view name) {
     }
   }
   return nearest;
+}
+
+// "; expected first: trajectory or objects" for a program whose subcommand is not given; else
+// empty.
+std::string SuggestSubcommand(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* const command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  return names.empty() || !app.get_subcommands().empty()
+             ? std::string()
+             : fmt::format("; expected first: {}", fmt::join(names, " or "));
 }
 
 // "; did you mean --masks?" for the first argument that is an unknown option; else empty.
@@ -75,9 +91,9 @@ bool ParseCommandLine(CLI::App& app, int argc, char** argv) {
     app.exit(request);
     return false;
   } catch (const CLI::ExtrasError& error) {
-    throw InputError(error.what() + SuggestOption(app));
+    throw InputError(error.what() + SuggestOption(app) + SuggestSubcommand(app));
   } catch (const CLI::ParseError& error) {
-    throw InputError(error.what());
+    throw InputError(error.what() + SuggestSubcommand(app));
   }
 }
 

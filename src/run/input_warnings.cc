@@ -156,4 +156,10 @@ void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& seque
   }
 }
 
+void PrintWarnings(const ImageSequence& sequence) {
+  for (const std::string& warning : sequence.warnings) {
+    PrintError("warning: {}\n", warning);
+  }
+}
+
 }  // namespace hullslam

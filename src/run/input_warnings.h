@@ -35,4 +35,7 @@ void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& 
 // Warns if --last is beyond the end of the sequence.
 void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& sequence);
 
+// Prints the faults of the files of the sequence that do not end a run.
+void PrintWarnings(const ImageSequence& sequence);
+
 }  // namespace hullslam

@@ -28,7 +28,7 @@ SequenceMasks::SequenceMasks(const MaskRequest& request, std::vector<MaskFrame> 
     : path_(request.path.string()), frames_(std::move(frames)) {
   if (!request.path.empty()) {
     source_ = OpenMasks(request, frames_);
-    counts_ = CheckMasks(*source_, frames_);
+    counts_ = CheckMasks(*source_, frames_, request);
   } else if (!request.format.empty()) {
     throw InputError(fmt::format("--masks-format is '{}' without --masks, expected both or neither",
                                  request.format));
@@ -56,9 +56,18 @@ std::optional<std::string> SequenceMasks::format() const {
 std::string SequenceMasks::Describe() const {
   return source_ == nullptr
              ? std::string("no masks")
-             : fmt::format("masks: {} ({}), {} of {} frames have none, {} of them no file or entry",
-                           path_, source_->format(), counts_.without_masks, frames_.size(),
-                           counts_.missing);
+             : fmt::format(
+                   "masks: {} ({}), {} of {} frames have none{}{}", path_, source_->format(),
+                   counts_.without_masks, frames_.size(),
+                   counts_.missing == 0 ? std::string()
+                                        : fmt::format(", {} of them because they have no file or "
+                                                      "entry",
+                                                      counts_.missing),
+                   counts_.without_area == 0
+                       ? std::string()
+                       : fmt::format("; {} instance(s) are left out, because they have no outline "
+                                     "of 1 px^2 or more",
+                                     counts_.without_area));
 }
 
 }  // namespace hullslam

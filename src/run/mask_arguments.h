@@ -37,7 +37,7 @@ class SequenceMasks {
   std::set<std::string> Labels() const;
   std::optional<std::string> format() const;
   size_t without_masks() const { return counts_.without_masks; }  // frames
-  std::string Describe() const;  // "masks: PATH (yolo-seg), 6 of 798 frames have none, ..."
+  std::string Describe() const;  // "masks: PATH (yolo-seg), 6 of 798 frames have none ..."
 
  private:
   std::string path_;

@@ -21,6 +21,14 @@ std::string LongForm(SensorKind sensor) {
                                           : "VOCABULARY SETTINGS SEQUENCE ASSOCIATIONS";
 }
 
+void AddGroundtruth(CLI::App& app, const DatasetHelp& help, RunArguments& arguments) {
+  app.add_option("--groundtruth", arguments.groundtruth,
+                 "true trajectory, for the error of the run, in any form of docs/outputs.md; none: "
+                 "without (" +
+                     help.groundtruth + ")")
+      ->type_name("FILE");
+}
+
 }  // namespace
 
 void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& arguments,
@@ -35,6 +43,7 @@ void AddRunArguments(CLI::App& app, const DatasetHelp& help, RunArguments& argum
     app.add_option("--associations", arguments.associations,
                    "file with one pair of images per line: " + help.associations);
   }
+  AddGroundtruth(app, help, arguments);
   AddMaskArguments(app, arguments.masks, arguments.masks_format);
   AddOverrides(app, arguments.overrides);
   AddOutputArguments(app, arguments.output, arguments.overwrite);

@@ -24,6 +24,7 @@ struct RunArguments {
   std::filesystem::path settings;      // empty: chosen by FindDefaultSettings()
   std::filesystem::path vocabulary;    // empty: the default one; "none": none
   std::filesystem::path associations;  // empty: those of the sequence, or images paired by time
+  std::filesystem::path groundtruth;   // empty: that of the sequence; "none": none
   FrameSelection selection;
   std::string preset;                  // a name or a file; empty: none
   std::filesystem::path masks;         // empty: none
@@ -52,6 +53,8 @@ struct DatasetHelp {
   std::string settings;  // the default of --settings
   // The lines of the file of --associations, and its default; empty for monocular programs.
   std::string associations = {};
+  // The default of --groundtruth.
+  std::string groundtruth = "default: groundtruth.txt in SEQUENCE";
 };
 
 // Adds the options and the positional arguments: SEQUENCE, or ORB-SLAM2's VOCABULARY SETTINGS

@@ -110,8 +110,10 @@ void PrintReport(const RunArguments& arguments, const RunSummary& summary,
   const TrajectorySummary& trajectory = summary.trajectory;
   Print("{} frames: {} tracked, {} lost, {} skipped", trajectory.frames, trajectory.tracked,
         trajectory.lost, trajectory.skipped);
-  if (!summary.initialisation) {
-    Print("; {} images without depth\n", trajectory.unpaired);
+  if (!summary.initialisation) {  // RGB-D, or a loaded map
+    Print("{}\n", arguments.sensor == SensorKind::kMonocular
+                      ? std::string()
+                      : fmt::format("; {} images without depth", trajectory.unpaired));
   } else if (summary.initialisation->seconds) {
     Print("; first map after {:.2f} s\n", *summary.initialisation->seconds);
   } else {

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "run/command_line.h"
+#include "run/datasets/given_groundtruth.h"
+#include "run/input_warnings.h"
 #include "run/live_output.h"
 #include "run/program.h"
 #include "run/slam_run.h"
@@ -33,6 +35,11 @@ int Run(const SlamProgram& program, Dataset& dataset, int argc, char** argv) {
   FinishArguments(positional, arguments);
   DatasetInput input = dataset.Open(arguments);
   input.settings.options.sensor = program.sensor;
+  if (arguments.groundtruth == "none" ||
+      (!arguments.groundtruth.empty() && !dataset.ReadsGroundtruth())) {
+    UseGivenGroundtruth(arguments.groundtruth, dataset.ExpectedStamps(), input.sequence);
+  }
+  PrintWarnings(input.sequence);
   return RunSlam(arguments, std::move(input.settings), input.sequence, input.notes);
 }
 

@@ -20,6 +20,7 @@
 #include "results/output_folder.h"
 #include "results/ply_file.h"
 #include "results/summary.h"
+#include "run/datasets/given_groundtruth.h"
 #include "run/frame_source.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
@@ -209,8 +210,13 @@ void WriteOutputs(OutputFolder& output, std::string map_ply,
 }
 
 std::vector<std::filesystem::path> InputsOf(const RunArguments& arguments) {
-  return {arguments.sequence,     arguments.masks,      arguments.settings,
-          arguments.associations, arguments.vocabulary, arguments.load_map};
+  return {arguments.sequence,
+          arguments.masks,
+          arguments.settings,
+          arguments.associations,
+          arguments.vocabulary,
+          arguments.load_map,
+          arguments.groundtruth == "none" ? std::filesystem::path() : arguments.groundtruth};
 }
 
 void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
@@ -278,7 +284,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   options.seed = arguments.seed;
   // The first image is loaded now, so that a wrong type or size is reported early.
   const ImageInput first = sequence.load(sequence.frames.front(), options.camera);
-  const std::optional<Trajectory> groundtruth = ReadGroundtruth(sequence);
+  const std::optional<Trajectory> groundtruth = FindGroundtruth(sequence);
   const SequenceMasks masks(
       {arguments.masks, arguments.masks_format, options.camera.width, options.camera.height},
       MaskFrames(sequence));

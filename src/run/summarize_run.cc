@@ -54,6 +54,9 @@ void Evaluate(const Trajectory& groundtruth, const Trajectory& trajectory, Senso
     PrintError("warning: the trajectory error cannot be computed: {}\n", ate.failure);
     return;
   }
+  if (const std::string missing = DescribeMissingPairs(ate); !missing.empty()) {
+    PrintError("warning: {}\n", missing);
+  }
   summary.ate_rmse_m = ate.errors.rmse;
   summary.scale = ate.reference_from_estimate.scale;
   summary.pairs = ate.pairs;

@@ -20,6 +20,7 @@
 #include "hullslam/sequences/vslamlab_sequence.h"
 #include "hullslam/util/error.h"
 #include "run/command_line.h"
+#include "run/input_warnings.h"
 #include "run/load_settings.h"
 #include "run/program.h"
 #include "run/slam_run.h"
@@ -235,6 +236,7 @@ int Run(SensorKind sensor, int argc, char** argv) {
   const VslamlabSequence sequence =
       OpenVslamlabSequence(arguments.sequence, Get(values, "rgb_csv", ""), baseline.camera,
                            uses_depth ? camera.depth_name : "");
+  PrintWarnings(sequence.images);
   LoadedSettings settings =
       LoadSettings(camera.calibration, calibration.string(), arguments.preset, overrides);
   settings.options.sensor = sensor;

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/read_file.h"
+#include "files/read_text.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "sequences/euroc_states.h"
@@ -24,22 +24,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kAddedLines =
-    1;  // the line %YAML:1.0, which OpenCV requires and the files do not have
+// OpenCV requires the line %YAML:1.0, which the files of EuRoC do not have.
+std::string WithYamlLine(std::string text) {
+  return text.starts_with("%YAML") ? std::move(text) : "%YAML:1.0\n" + text;
+}
 
 // The values of a sensor.yaml.
 class SensorFile {
  public:
   explicit SensorFile(fs::path file)
       : file_(std::move(file)),
-        text_("%YAML:1.0\n" + ReadFile(file_, 1'000'000)),
-        storage_(ParseYaml(file_, text_, kAddedLines)) {
+        original_(ReadText(file_, 1'000'000)),
+        text_(WithYamlLine(original_)),
+        storage_(ParseYaml(file_, text_, added_lines())) {
     if (!storage_.root().isMap()) {
       throw InputError(file_.string() + ": has no keys, expected a sensor.yaml of EuRoC");
     }
   }
 
   const fs::path& path() const { return file_; }
+  int added_lines() const { return text_.size() > original_.size() ? 1 : 0; }
 
   [[noreturn]] void Fail(const char* key, const std::string& what) const {
     throw InputError(fmt::format("{}: {} {}", Origin(key), key, what));
@@ -89,7 +93,7 @@ class SensorFile {
  private:
   // FILE:LINE of a key of the top level.
   std::string Origin(std::string_view key) const {
-    int line = 1 - kAddedLines;
+    int line = 1 - added_lines();
     for (size_t begin = 0; begin < text_.size(); ++line) {
       const std::string_view rest = std::string_view(text_).substr(begin);
       if (rest.starts_with(key) && rest.substr(key.size()).starts_with(':')) {
@@ -101,6 +105,7 @@ class SensorFile {
   }
 
   fs::path file_;
+  std::string original_;
   std::string text_;
   cv::FileStorage storage_;
 };
@@ -163,17 +168,14 @@ void CheckExactColumns(const TextRow& row, size_t count, const char* names) {
   }
 }
 
-std::vector<FramePaths> ReadImages(const fs::path& camera) {
+std::vector<FramePaths> ReadImages(const fs::path& camera, std::vector<std::string>& warnings) {
   const fs::path list = camera / "data.csv";
-  std::vector<FramePaths> frames;
+  ListedFrames frames;
   ForEachRow(list, [&](const TextRow& row) {
     CheckExactColumns(row, 2, "timestamp [ns], filename");
     AddFrame(row, {EurocSeconds(row), ImageFile(row, 1, camera / "data")}, frames);
   });
-  if (frames.empty()) {
-    throw InputError(list.string() + ": has no images");
-  }
-  return frames;
+  return TakeFrames(list, std::move(frames), warnings);
 }
 
 fs::path FindRoot(const fs::path& folder) {
@@ -199,7 +201,7 @@ EurocCamera ReadEurocCamera(const fs::path& path) {
   try {
     camera = ParseCamera(file);
   } catch (const cv::Exception& error) {
-    FailParsing(path, error, kAddedLines);
+    FailParsing(path, error, file.added_lines());
   }
   MakeSettings(camera.calibration, path.string());  // checks the numbers
   return camera;
@@ -209,13 +211,19 @@ EurocSequence OpenEurocSequence(const fs::path& folder, const FrameSelection& se
   const fs::path root = FindRoot(folder);
   EurocSequence sequence;
   sequence.camera = ReadEurocCamera(root / "cam0" / "sensor.yaml");
-  sequence.images.frames = ReadImages(root / "cam0");
+  sequence.images.frames = ReadImages(root / "cam0", sequence.images.warnings);
   SelectFrames(folder, selection, sequence.images);
-  CheckImagesExist(sequence.images.frames);
+  LeaveOutMissing(sequence.images);
   const fs::path states = root / "state_groundtruth_estimate0" / "data.csv";
   std::error_code error;
   if (fs::exists(states, error)) {
-    sequence.images.converted_groundtruth = ReadEurocStates(states, sequence.camera.body_from_cam);
+    try {
+      sequence.images.converted_groundtruth =
+          ReadEurocStates(states, sequence.camera.body_from_cam);
+    } catch (const InputError& fault) {
+      sequence.images.warnings.push_back(
+          fmt::format("{}; the run goes on without ground truth", fault.what()));
+    }
   }
   return sequence;
 }

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "files/plausible.h"
-#include "files/read_file.h"
+#include "files/read_text.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "sequences/icl_groundtruth.h"
@@ -77,7 +77,7 @@ using Vectors = std::map<std::string, Eigen::Vector3d, std::less<>>;
 // The vectors cam_pos, cam_dir and cam_up of a file.
 Vectors ReadVectors(const fs::path& path) {
   constexpr size_t kMostBytes = 100'000;
-  const std::string bytes = ReadFile(path, kMostBytes);
+  const std::string bytes = ReadText(path, kMostBytes);
   const std::string_view text = bytes;
   Vectors vectors;
   int line = 0;
@@ -185,7 +185,7 @@ std::optional<Trajectory> ReadPovrayTrajectory(const std::vector<FramePaths>& fr
 
 cv::Mat ReadRayDepth(const fs::path& path, const PinholeCamera& camera, double units) {
   constexpr std::string_view kBlanks = " \t\r\n";
-  const std::string bytes = ReadFile(path);
+  const std::string bytes = ReadText(path);
   std::string_view text = bytes;
   cv::Mat depth(camera.height, camera.width, CV_32FC1);
   size_t count = 0;

@@ -70,14 +70,12 @@ FramePaths ParsePair(const TextRow& row, const fs::path& folder) {
   return {index / kIclFramesPerSecond, ImageFile(row, 3, folder), ImageFile(row, 1, folder)};
 }
 
-std::vector<FramePaths> ReadPairs(const fs::path& folder, const fs::path& associations) {
+std::vector<FramePaths> ReadPairs(const fs::path& folder, const fs::path& associations,
+                                  std::vector<std::string>& warnings) {
   const fs::path path = associations.empty() ? folder / "associations.txt" : associations;
-  std::vector<FramePaths> frames;
-  ForEachRow(path, [&](const TextRow& row) { AddFrame(row, ParsePair(row, folder), frames); });
-  if (frames.empty()) {
-    throw InputError(path.string() + ": has no images");
-  }
-  return frames;
+  ListedFrames list;
+  ForEachRow(path, [&](const TextRow& row) { AddFrame(row, ParsePair(row, folder), list); });
+  return TakeFrames(path, std::move(list), warnings);
 }
 
 // ---- ground truth
@@ -158,8 +156,9 @@ IclSequence OpenIclSequence(const fs::path& folder, const PinholeCamera& camera,
   sequence.package =
       options.package == IclPackage::kDetect ? DetectPackage(folder, options) : options.package;
   const bool is_povray = sequence.package == IclPackage::kPovray;
-  sequence.images.frames =
-      is_povray ? ListPovrayFrames(folder) : ReadPairs(folder, options.associations);
+  sequence.images.frames = is_povray
+                               ? ListPovrayFrames(folder)
+                               : ReadPairs(folder, options.associations, sequence.images.warnings);
   std::optional<Trajectory> cameras;
   if (is_povray) {
     const double units = options.povray_units;
@@ -174,9 +173,17 @@ IclSequence OpenIclSequence(const fs::path& folder, const PinholeCamera& camera,
   if (cameras) {
     sequence.images.converted_groundtruth = std::move(cameras);
     sequence.groundtruth_note = "cameras of the .txt files, whose y points up, mirrored";
-  } else if (const auto file = options.groundtruth.empty() ? FindGroundtruth(folder)
-                                                           : std::optional(options.groundtruth)) {
-    AddGroundtruth(*file, camera, depth, options.groundtruth_y, sequence);
+  } else if (!options.groundtruth.empty()) {
+    AddGroundtruth(options.groundtruth, camera, depth, options.groundtruth_y, sequence);
+  } else {
+    try {
+      if (const std::optional<fs::path> file = FindGroundtruth(folder)) {
+        AddGroundtruth(*file, camera, depth, options.groundtruth_y, sequence);
+      }
+    } catch (const InputError& fault) {  // nobody asked for it
+      sequence.images.warnings.push_back(
+          fmt::format("{}; the run goes on without ground truth", fault.what()));
+    }
   }
   if (!options.use_depth) {
     for (FramePaths& frame : sequence.images.frames) {

@@ -14,6 +14,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// At most one of so many rows of a list may be unusable. More are no accident, but another list.
+constexpr size_t kFewOf = 10;
+
+// The first file of a frame that does not exist; empty if all do.
+fs::path MissingImage(const FramePaths& frame) {
+  std::error_code error;
+  for (const fs::path& image : {frame.image, frame.depth}) {
+    const bool is_without_depth = image.empty() && !frame.image.empty();
+    if (!is_without_depth && !fs::is_regular_file(image, error)) {
+      return image;
+    }
+  }
+  return {};
+}
+
 std::vector<FramePaths> Select(const fs::path& source, std::vector<FramePaths> frames,
                                const FrameSelection& selection) {
   if (selection.stride == 0) {
@@ -54,16 +69,39 @@ fs::path ImageFile(const TextRow& row, size_t column, const fs::path& folder) {
   return folder / row.columns[column];
 }
 
-void AddFrame(const TextRow& row, FramePaths frame, std::vector<FramePaths>& frames) {
-  if (!frames.empty() && frame.timestamp <= frames.back().timestamp) {
-    row.Fail(fmt::format("time stamp {:.6f} does not come after the previous one, {:.6f}",
-                         frame.timestamp, frames.back().timestamp));
-  }
-  frame.number = frames.size();
-  frames.push_back(std::move(frame));
-  if (frames.size() > kMostImages) {
+bool AddFrame(const TextRow& row, FramePaths frame, ListedFrames& list) {
+  ++list.rows;
+  if (list.rows > kMostImages) {
     row.Fail(fmt::format("more than {} images", kMostImages));
   }
+  if (!list.frames.empty() && frame.timestamp <= list.frames.back().timestamp) {
+    const double former = list.frames.back().timestamp;
+    if (list.repeated + list.earlier == 0) {
+      list.fault =
+          fmt::format("{}:{}: time stamp {:.6f} does not come after the previous one, {:.6f}",
+                      row.path.string(), row.line, frame.timestamp, former);
+    }
+    ++(frame.timestamp == former ? list.repeated : list.earlier);
+    return false;
+  }
+  frame.number = list.frames.size();
+  list.frames.push_back(std::move(frame));
+  return true;
+}
+
+std::vector<FramePaths> TakeFrames(const fs::path& path, ListedFrames list,
+                                   std::vector<std::string>& warnings) {
+  if (list.frames.empty()) {
+    throw InputError(path.string() + ": has no images");
+  }
+  if (kFewOf * list.earlier > list.rows) {
+    throw InputError(list.fault);
+  }
+  if (const size_t unused = list.repeated + list.earlier; unused > 0) {
+    warnings.push_back(fmt::format("{}; {} of the {} images are not used for this", list.fault,
+                                   unused, list.rows));
+  }
+  return std::move(list.frames);
 }
 
 void SelectFrames(const fs::path& source, const FrameSelection& selection,
@@ -106,14 +144,33 @@ std::string SuggestFolder(const fs::path& folder,
 }
 
 void CheckImagesExist(const std::vector<FramePaths>& frames) {
-  std::error_code error;
   for (const FramePaths& frame : frames) {
-    for (const fs::path& image : {frame.image, frame.depth}) {
-      const bool is_without_depth = image.empty() && !frame.image.empty();
-      if (!is_without_depth && !fs::is_regular_file(image, error)) {
-        throw InputError(image.string() + ": the image is missing");
-      }
+    if (const fs::path missing = MissingImage(frame); !missing.empty()) {
+      throw InputError(missing.string() + ": the image is missing");
     }
+  }
+}
+
+void LeaveOutMissing(ImageSequence& sequence) {
+  std::vector<FramePaths> found;
+  fs::path first;
+  for (const FramePaths& frame : sequence.frames) {
+    const fs::path missing = MissingImage(frame);
+    if (missing.empty()) {
+      found.push_back(frame);
+    } else if (first.empty()) {
+      first = missing;
+    }
+  }
+  const size_t left_out = sequence.frames.size() - found.size();
+  if (kFewOf * left_out > sequence.frames.size()) {
+    throw InputError(first.string() + ": the image is missing");
+  }
+  if (left_out > 0) {
+    sequence.warnings.push_back(
+        fmt::format("{}: the image is missing; {} of the {} frames are left out for this",
+                    first.string(), left_out, sequence.frames.size()));
+    sequence.frames = std::move(found);
   }
 }
 

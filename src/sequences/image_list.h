@@ -24,9 +24,24 @@ void CheckColumns(const TextRow& row, size_t count, const char* names);
 std::filesystem::path ImageFile(const TextRow& row, size_t column,
                                 const std::filesystem::path& folder);
 
-// Appends a frame to `frames` and sets its number to its index. Refuses a stamp that does not come
-// after the previous one, and more than kMostImages frames.
-void AddFrame(const TextRow& row, FramePaths frame, std::vector<FramePaths>& frames);
+// The frames of a list, as far as they are used.
+struct ListedFrames {
+  std::vector<FramePaths> frames;
+  size_t rows = 0;
+  size_t repeated = 0;  // rows with the stamp of the row before
+  size_t earlier = 0;   // rows whose stamp is before that of an earlier row
+  std::string fault;    // describes the first row that is not used
+};
+
+// Appends a frame to `list` and sets its number to its index. A frame whose stamp does not come
+// after the previous one is only counted; returns whether it is used. Refuses more than kMostImages
+// frames.
+bool AddFrame(const TextRow& row, FramePaths frame, ListedFrames& list);
+// The frames of a complete list. Describes the rows that are not used in one warning. Refuses a
+// list without frames, and one with more than a tenth of its rows out of order, because this is no
+// fault of single rows.
+std::vector<FramePaths> TakeFrames(const std::filesystem::path& path, ListedFrames list,
+                                   std::vector<std::string>& warnings);
 
 // Keeps only the selected frames and sets `available` to the number of frames before. The messages
 // name the options --first, --last and --stride.
@@ -44,6 +59,9 @@ std::string SuggestFolder(const std::filesystem::path& folder,
 // Refuses a frame if the file of its image or of its depth image is missing. The path of the depth
 // image may be empty.
 void CheckImagesExist(const std::vector<FramePaths>& frames);
+// Leaves out frames of which a file is missing, with one warning. Refuses the sequence if they are
+// more than a tenth.
+void LeaveOutMissing(ImageSequence& sequence);
 
 // Refuses an image that does not have the size of the camera. `name` names the image in the
 // message.

@@ -3,12 +3,36 @@
 
 #include <fmt/format.h>
 
-#include "hullslam/results/trajectory_file.h"
+#include <utility>
+#include <vector>
+
 #include "hullslam/util/error.h"
+#include "results/pose_file.h"
 #include "sequences/image_file.h"
 #include "sequences/image_list.h"
 
 namespace hullslam {
+namespace {
+
+// Keeps the poses of the selected frames, with their stamps.
+void TakeFrames(const ImageSequence& sequence, PoseFile& file) {
+  Trajectory poses;
+  std::vector<double> stamps;
+  for (const FramePaths& frame : sequence.frames) {
+    if (file.poses.size() == sequence.available) {
+      poses.push_back(file.poses[frame.number]);
+      stamps.push_back(frame.timestamp);
+    }
+  }
+  if (poses.empty()) {
+    stamps.resize(sequence.available);
+  } else {
+    file.poses = std::move(poses);
+  }
+  SetStamps(*sequence.groundtruth, stamps, file);
+}
+
+}  // namespace
 
 ImageInput LoadFrame(const FramePaths& frame, const PinholeCamera& camera) {
   ImageInput image{frame.timestamp, ReadGreyImage(frame.image),
@@ -23,11 +47,22 @@ ImageInput LoadFrame(const FramePaths& frame, const PinholeCamera& camera) {
   return image;
 }
 
-std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence) {
+std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence,
+                                          std::vector<std::string>* notes) {
   if (sequence.converted_groundtruth) {
     return sequence.converted_groundtruth;
   }
-  return sequence.groundtruth ? std::optional(ReadTrajectory(*sequence.groundtruth)) : std::nullopt;
+  if (!sequence.groundtruth) {
+    return std::nullopt;
+  }
+  PoseFile file = ReadPoseFile(*sequence.groundtruth);
+  if (!file.has_stamps) {  // one pose for each image of the whole sequence
+    TakeFrames(sequence, file);
+  }
+  if (notes != nullptr) {
+    notes->insert(notes->end(), file.notes.begin(), file.notes.end());
+  }
+  return std::move(file.poses);
 }
 
 }  // namespace hullslam

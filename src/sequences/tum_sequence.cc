@@ -28,17 +28,15 @@ bool HasColourImages(const fs::path& folder) {
 }
 
 // The images of a list, as frames without depth.
-std::vector<FramePaths> ReadImageList(const fs::path& folder, const std::string& name) {
+std::vector<FramePaths> ReadImageList(const fs::path& folder, const std::string& name,
+                                      std::vector<std::string>& warnings) {
   const fs::path path = folder / name;
-  std::vector<FramePaths> images;
+  ListedFrames images;
   ForEachRow(path, [&](const TextRow& row) {
     CheckColumns(row, 2, "timestamp file");
     AddFrame(row, {row.Stamp(0), ImageFile(row, 1, folder)}, images);
   });
-  if (images.empty()) {
-    throw InputError(path.string() + ": has no images");
-  }
-  return images;
+  return TakeFrames(path, std::move(images), warnings);
 }
 
 std::vector<double> StampsOf(const std::vector<FramePaths>& images) {
@@ -67,11 +65,12 @@ struct ImageList {
 // From NAME.txt or, if the sequence has no lists, from the names of the images in the folder NAME.
 // Null if there is neither.
 std::optional<ImageList> FindImages(const fs::path& folder, const std::string& name,
-                                    bool may_be_unlisted, const TumSequenceOptions& options) {
+                                    bool may_be_unlisted, const TumSequenceOptions& options,
+                                    std::vector<std::string>& warnings) {
   std::error_code error;
   const std::string list = name + ".txt";
   if (fs::exists(folder / list, error)) {
-    return ImageList{.frames = ReadImageList(folder, list), .source = list};
+    return ImageList{.frames = ReadImageList(folder, list, warnings), .source = list};
   }
   if (may_be_unlisted && fs::is_directory(folder / name, error)) {
     NamedImages named = FindNamedImages(folder / name, options.frames_per_second);
@@ -96,15 +95,17 @@ std::string NoteOf(const ImageList& images, const TumSequenceOptions& options) {
              : std::string("no rgb.txt: the names of the images are time stamps");
 }
 
-ImageList FindColourImages(const fs::path& folder, const TumSequenceOptions& options) {
+ImageList FindColourImages(const fs::path& folder, const TumSequenceOptions& options,
+                           std::vector<std::string>& warnings) {
   CheckTumFolder(folder);
-  return FindImages(folder, "rgb", true, options).value();
+  return FindImages(folder, "rgb", true, options, warnings).value();
 }
 
 ImageSequence PairImages(const fs::path& folder, const TumSequenceOptions& options) {
   ImageSequence sequence;
-  ImageList colour = FindColourImages(folder, options);
-  std::optional<ImageList> of_depth = FindImages(folder, "depth", !colour.is_listed, options);
+  ImageList colour = FindColourImages(folder, options, sequence.warnings);
+  std::optional<ImageList> of_depth =
+      FindImages(folder, "depth", !colour.is_listed, options, sequence.warnings);
   sequence.stamps_note = NoteOf(colour, options);
   if (!options.need_images && !of_depth) {
     sequence.unpaired = colour.frames.size();
@@ -141,8 +142,8 @@ ImageSequence PairImages(const fs::path& folder, const TumSequenceOptions& optio
 }
 
 ImageSequence ReadColourImages(const fs::path& folder, const TumSequenceOptions& options) {
-  ImageList images = FindColourImages(folder, options);
   ImageSequence sequence;
+  ImageList images = FindColourImages(folder, options, sequence.warnings);
   sequence.stamps_note = NoteOf(images, options);
   sequence.frames = std::move(images.frames);
   return sequence;
@@ -150,17 +151,16 @@ ImageSequence ReadColourImages(const fs::path& folder, const TumSequenceOptions&
 
 ImageSequence ReadAssociations(const fs::path& folder, const fs::path& path) {
   ImageSequence sequence;
+  ListedFrames list;
   ForEachRow(path, [&](const TextRow& row) {
     CheckColumns(row, 4, "timestamp rgb timestamp depth");
     row.Stamp(2, "timestamp of depth");
     AddFrame(
         row,
         {row.Stamp(0, "timestamp of rgb"), ImageFile(row, 1, folder), ImageFile(row, 3, folder)},
-        sequence.frames);
+        list);
   });
-  if (sequence.frames.empty()) {
-    throw InputError(path.string() + ": has no images");
-  }
+  sequence.frames = TakeFrames(path, std::move(list), sequence.warnings);
   return sequence;
 }
 
@@ -202,7 +202,7 @@ ImageSequence OpenTumSequence(const fs::path& folder, const TumSequenceOptions& 
   ImageSequence sequence = ReadLists(folder, options);
   SelectFrames(folder, options.selection, sequence);
   if (options.need_images) {
-    CheckImagesExist(sequence.frames);
+    LeaveOutMissing(sequence);
   } else {
     DropMissingDepth(sequence.frames);
   }

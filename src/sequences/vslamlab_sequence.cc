@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "files/plausible.h"
-#include "files/read_file.h"
+#include "files/read_text.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
@@ -214,7 +214,7 @@ class CsvReader {
 }  // namespace
 
 VslamlabCamera ReadVslamlabCamera(const fs::path& file, const std::string& name) {
-  const std::string text = IndentLists(ReadFile(file, 1'000'000));
+  const std::string text = IndentLists(ReadText(file, 1'000'000));
   const bool has_head = text.starts_with("%YAML");
   const int added_lines = has_head ? 0 : 1;
   VslamlabCamera camera;
@@ -238,9 +238,10 @@ VslamlabSequence OpenVslamlabSequence(const fs::path& folder, const fs::path& cs
                                       const std::string& image_name,
                                       const std::string& depth_name) {
   constexpr double kNanosecond = 1e-9;
-  const std::string text = ReadFile(csv);
+  const std::string text = ReadText(csv);
   const CsvReader reader(folder, csv);
   VslamlabSequence sequence;
+  ListedFrames list;
   ImageColumns image;
   ImageColumns depth;
   size_t columns = 0;
@@ -267,12 +268,11 @@ VslamlabSequence OpenVslamlabSequence(const fs::path& folder, const fs::path& cs
       reader.Stamp(row, depth.stamp);
       frame.depth = reader.Path(row, depth.path);
     }
-    AddFrame(row, std::move(frame), sequence.images.frames);
-    sequence.stamps.push_back(stamp);
+    if (AddFrame(row, std::move(frame), list)) {
+      sequence.stamps.push_back(stamp);
+    }
   }
-  if (sequence.stamps.empty()) {
-    throw InputError(csv.string() + ": has no images, expected a rgb.csv of VSLAM-LAB");
-  }
+  sequence.images.frames = TakeFrames(csv, std::move(list), sequence.images.warnings);
   sequence.images.available = sequence.images.frames.size();
   CheckImagesExist(sequence.images.frames);
   return sequence;

@@ -9,7 +9,7 @@
 #include <opencv2/core.hpp>
 #include <string_view>
 
-#include "files/read_file.h"
+#include "files/read_text.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "settings/yaml_storage.h"
@@ -85,13 +85,9 @@ std::string WithoutComments(std::string_view text) {
   return kept;
 }
 
-// A byte order mark, which editors on Windows add, is accepted.
 std::string ReadYamlText(const fs::path& file) {
   constexpr size_t kLargest = 1'000'000;
-  std::string text = ReadFile(file, kLargest);
-  if (text.starts_with("\xEF\xBB\xBF")) {
-    text.erase(0, 3);
-  }
+  const std::string text = ReadText(file, kLargest);
   if (!text.starts_with("%YAML")) {
     throw InputError(Origin(file, 1) + ": expected a settings file with '%YAML:1.0' as first line");
   }

@@ -113,6 +113,9 @@ std::unique_ptr<Pipeline> System::BeginPipeline() {
   Check(!start_.localization_only || !start_.map.keyframes().empty(),
         "localization needs a map with keyframes");
   RequireSameVocabulary(start_.map, options_.vocabulary.get());
+  for (const auto& [id, keyframe] : start_.map.keyframes()) {
+    CheckVectors(*keyframe.frame);
+  }
   auto pipeline = MakePipeline(kind_, sensor_, options_);
   pipeline->Begin({.map = start_.map.Snapshot(),
                    .session = {.name = start_.session_name, .first_frame = start_.map.NextFrame()},
@@ -138,6 +141,7 @@ BuiltFrame System::Build(const ImageInput& image) {
 
 TrackedFrame System::Track(BuiltFrame built) {
   CheckStamp(built.frame->timestamp);
+  CheckVectors(*built.frame);
   built.frame->id = FrameId(start_.map.NextFrame().value + static_cast<uint32_t>(frames_.size()));
   times_.Add("frame", built.milliseconds);
   mask_counts_.Add(built.masks);
@@ -171,6 +175,22 @@ void System::SetLocalizationOnly(bool is_on) {
 void System::CheckStamp(double timestamp) const {
   Check(std::isfinite(timestamp), "the time stamp is not a number");
   Check(frames_.empty() || timestamp > frames_.back().timestamp, "time stamps must increase");
+}
+
+// Vectors of different lengths are of different networks, so no question could be asked about the
+// map.
+void System::CheckVectors(const Frame& frame) {
+  for (const Detection& detection : frame.detections) {
+    const size_t length = detection.embedding.size();
+    if (vector_length_ == 0) {
+      vector_length_ = length;
+    } else if (length > 0 && length != vector_length_) {
+      throw InputError(fmt::format(
+          "the vectors of the masks have {} numbers, those of the earlier masks and of the loaded "
+          "map have {}; expected vectors of one network",
+          length, vector_length_));
+    }
+  }
 }
 
 // A second thread for building frames helps only a live camera, which waits for its poses. A run at

@@ -63,4 +63,15 @@ std::string Printable(std::string_view text, std::string_view kept) {
   return printable;
 }
 
+bool IsUtf8(std::string_view text) {
+  while (!text.empty()) {
+    const size_t bytes = FirstOf(text).bytes;
+    if (bytes == 0) {
+      return false;
+    }
+    text.remove_prefix(bytes);
+  }
+  return true;
+}
+
 }  // namespace hullslam

@@ -11,4 +11,7 @@ namespace hullslam {
 // line, and of bytes that are not UTF-8. The characters in `kept`, such as "\n", stay as they are.
 std::string Printable(std::string_view text, std::string_view kept = {});
 
+// Whether all bytes of the text are valid UTF-8.
+bool IsUtf8(std::string_view text);
+
 }  // namespace hullslam

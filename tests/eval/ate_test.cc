@@ -89,6 +89,35 @@ TEST(Ate, SaysWhyThereIsNoError) {
   EXPECT_NE(EvaluateAte(Helix(10), late).failure.find("within 0.02 s"), std::string::npos);
   EXPECT_NE(EvaluateAte(Helix(10), Helix(2)).failure.find("at least 3 pairs"), std::string::npos);
   EXPECT_FALSE(EvaluateAte({}, {}).ok());
+  const std::string failure = EvaluateAte(Helix(10), late).failure;
+  EXPECT_NE(failure.find("from 100.000 to 100.900 s"), std::string::npos) << failure;
+  EXPECT_NE(failure.find("reference from 0.000 to 0.900 s"), std::string::npos) << failure;
+}
+
+// Stamps of the reference that were rounded to seconds hit a few poses by chance.
+TEST(Ate, AFewPairsByChanceAreNoEvaluation) {
+  Trajectory reference;
+  const Trajectory estimate = Helix(100);
+  for (size_t i = 0; i < estimate.size(); i += 11) {
+    reference.push_back(estimate[i]);
+  }
+  EXPECT_TRUE(EvaluateAte(reference, estimate).ok());
+  reference.pop_back();
+  const AteReport few = EvaluateAte(reference, estimate);
+  EXPECT_EQ(few.pairs, 9U);
+  EXPECT_NE(few.failure.find("only 9 of the 100 poses"), std::string::npos) << few.failure;
+}
+
+// 10 in place of 9.6 images per second: four poses of ten have a partner within 0.02 s.
+TEST(Ate, StampsOfAnotherRateAreNoticed) {
+  const Trajectory reference = Helix(100);
+  Trajectory estimate = reference;
+  EXPECT_EQ(DescribeMissingPairs(EvaluateAte(reference, estimate)), "");
+  for (StampedPose& pose : estimate) {
+    pose.timestamp *= 0.96;
+  }
+  const std::string missing = DescribeMissingPairs(EvaluateAte(reference, estimate));
+  EXPECT_NE(missing.find("of the 100 poses during the ground truth"), std::string::npos) << missing;
 }
 
 struct Golden {

@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <iterator>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include "files/read_file.h"
@@ -78,6 +80,48 @@ TEST(ExportFolder, ThatIsAFileIsRefused) {
   const fs::path file = folder.Write("out", "mine");
   ExpectInputError([&] { ExportFolder out(file); }, {"out", "cannot be written"});
   EXPECT_EQ(ReadFile(file), "mine");
+}
+
+// A process was killed when it had moved one of its three entries, and the former folder of
+// another.
+TEST(ExportFolder, EndsWhatAKilledProcessBegan) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "out";
+  const std::string staging = "out/.hullslam-killed/";
+  folder.Write("out/first.txt", "new");
+  folder.Write(staging + "lock", "");
+  folder.Write(staging + "former/images/old.png", "old");
+  folder.Write(staging + "ready/images/new.png", "new");
+  folder.Write(staging + "ready/last.txt", "new");
+  folder.Write("out/last.txt", "old");
+  { ExportFolder out(path); }  // exports nothing itself
+  EXPECT_EQ(ReadFile(path / "first.txt"), "new");
+  EXPECT_EQ(ReadFile(path / "last.txt"), "new");
+  EXPECT_EQ(ReadFile(path / "images/new.png"), "new");
+  EXPECT_FALSE(fs::exists(path / "images/old.png"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(path), {}), 3) << "no staging folder is left";
+}
+
+TEST(ExportFolder, ManyAtOnceLeaveTheFilesOfOne) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "out";
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 8; ++i) {
+    threads.emplace_back([&, i] {
+      ExportFolder out(path);
+      for (const std::string name : {"a/b.txt", "c/d.txt", "e.txt"}) {
+        out.Write({name, std::to_string(i)});
+      }
+      out.Commit();
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  const std::string last = ReadFile(path / "e.txt");
+  EXPECT_EQ(ReadFile(path / "a/b.txt"), last);
+  EXPECT_EQ(ReadFile(path / "c/d.txt"), last);
+  EXPECT_EQ(std::distance(fs::directory_iterator(path), {}), 3);
 }
 
 }  // namespace

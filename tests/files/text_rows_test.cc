@@ -26,6 +26,37 @@ TEST(TextRows, SkipsCommentsAndBlankLinesButCountsThem) {
   EXPECT_EQ(seen, (std::vector<std::string>{"3|1|two|3|4", "5|5", "7|6"}));
 }
 
+std::vector<std::string> RowsOf(const std::filesystem::path& path) {
+  std::vector<std::string> rows;
+  ForEachRow(path, [&](const TextRow& row) {
+    std::string text = std::to_string(row.line);
+    for (const std::string_view column : row.columns) {
+      text += '|' + std::string(column);
+    }
+    rows.push_back(text);
+  });
+  return rows;
+}
+
+// Spreadsheets and scripts write a line with the names of the columns, with or without a mark.
+TEST(TextRows, AFirstLineOfNamesIsNoData) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> rows = {"2|1|a.png", "3|2|b.png"};
+  EXPECT_EQ(RowsOf(folder.Write("a.txt", "timestamp filename\n1 a.png\n2 b.png\n")), rows);
+  EXPECT_EQ(RowsOf(folder.Write("b.txt", "\xef\xbb\xbf# colour\r\n1;a.png\r\n2;b.png\r\n")), rows);
+  EXPECT_EQ(RowsOf(folder.Write("c.txt", "% stamp, file\n1, a.png\n2,\tb.png\n")), rows);
+  // Neither a line with a number nor a later line is a line of names.
+  EXPECT_EQ(RowsOf(folder.Write("d.txt", "nan a\nx y\n")).size(), 2U);
+  ForEachRow(folder.Write("e.txt", "#old\nts (ns),tx (m)\n1,2\n"),
+             [](const TextRow& row) { EXPECT_EQ(row.header, "ts (ns),tx (m)"); });
+}
+
+TEST(TextRows, DecimalCommasAreNamed) {
+  const TemporaryFolder folder;
+  const auto path = folder.Write("gt.txt", "1,5;2,5\n");
+  ExpectInputError([&] { RowsOf(path); }, {"gt.txt:1: ", "decimal commas", "decimal points"});
+}
+
 TEST(TextRows, NumbersAreFiniteAndFillTheirColumn) {
   double value = 0.0;
   EXPECT_TRUE(ParseFinite("-1.5e3", value));

@@ -49,7 +49,8 @@ TEST(InstanceMask, AMaskThatCannotBeUsedIsRefusedWithItsNumber) {
   for (const size_t points : {0U, 1U, 2U}) {
     mask = GoodMask();
     mask.outlines.emplace_back(points, Eigen::Vector2d(1.0, 1.0));
-    ExpectRefusal(mask, {"mask 1 ('cup')", std::to_string(points) + " point", "at least 3"});
+    ExpectRefusal(mask,
+                  {"mask 1 ('cup')", std::to_string(points) + " point", "expected 3 to 100000"});
   }
   for (const double value : {std::numeric_limits<double>::quiet_NaN(),
                              std::numeric_limits<double>::infinity(), 1e9, -641.0, 1281.0}) {
@@ -73,6 +74,24 @@ TEST(InstanceMask, AnEmbeddingNeedsADirection) {
     mask.embedding = {1.0F, value};
     ExpectRefusal(mask, {"mask 1 ('cup')", "embedding of 2 numbers", "not finite"});
   }
+}
+
+// Filling it would take minutes; nothing would interrupt it.
+TEST(InstanceMask, AnOutlineThatGoesUpAndDownForEverIsRefused) {
+  const auto zigzag = [](size_t points) {
+    InstanceMask mask{.label = "cup", .outlines = {{}}};
+    for (size_t i = 0; i < points; ++i) {
+      mask.outlines[0].emplace_back(640.0 * static_cast<double>(i) / static_cast<double>(points),
+                                    i % 2 == 0 ? 0.0 : 479.0);
+    }
+    return mask;
+  };
+  ExpectRefusal(zigzag(16'000), {"mask 1 ('cup')", "16000 points", "up and down"});
+  ExpectRefusal(zigzag(100'001), {"100001 point(s)", "3 to 100000"});
+  const std::vector<InstanceMask> few(20, zigzag(200));
+  EXPECT_NO_THROW(ValidateMasks(few, kMaskWidth, kMaskHeight));
+  const std::vector<InstanceMask> many(1'000, zigzag(200));
+  ExpectInputError([&] { ValidateMasks(many, kMaskWidth, kMaskHeight); }, {"up and down"});
 }
 
 }  // namespace

@@ -31,6 +31,7 @@
 #include "masks/mask_classes.h"
 #include "results/object_file.h"
 #include "results/ply_points.h"
+#include "results/pose_file.h"
 #include "results/scene_file.h"
 #include "results/summary.h"
 #include "results/true_object_file.h"
@@ -47,6 +48,17 @@ void FuzzTrajectory(std::string_view bytes) {
            "a pose that is not finite");
     for (const StampedPose& pose : trajectory) {
       Expect(std::abs(pose.world_from_cam.rotation.norm() - 1.0) < 1e-9, "not normalised");
+    }
+  });
+}
+
+void FuzzPoseFile(std::string_view bytes) {
+  TryFile(bytes, [](const fs::path& path) {
+    const PoseFile file = ReadPoseFile(path);
+    Expect(!file.poses.empty(), "no poses");
+    Expect(FormatTrajectory(file.poses).find("nan") == std::string::npos, "not finite");
+    for (size_t i = 0; i + 1 < file.poses.size(); ++i) {
+      Expect(file.poses[i].timestamp < file.poses[i + 1].timestamp, "stamps out of order");
     }
   });
 }
@@ -184,6 +196,8 @@ void FuzzBoxes(std::string_view bytes) { TryMaskFolder(bytes, "1.5.txt", "boxes"
 void FuzzCoco(std::string_view bytes) { TryMaskFile(bytes, "coco"); }
 void FuzzOaSlam(std::string_view bytes) { TryMaskFile(bytes, "oa-slam"); }
 
+void FuzzJsonFolder(std::string_view bytes) { TryMaskFolder(bytes, "1.5.json", "json"); }
+
 void FuzzLabelPng(std::string_view bytes) {
   static const InputFolder folder("1.5.png", "classes.json");
   folder.Write(bytes);
@@ -277,6 +291,7 @@ void FuzzMap(std::string_view bytes) {
 }
 
 constexpr auto kReaders = std::to_array<FuzzedReader>({{"trajectory", FuzzTrajectory},
+                                                       {"pose_file", FuzzPoseFile},
                                                        {"settings", FuzzSettings},
                                                        {"preset", FuzzPreset},
                                                        {"grey_image", FuzzGreyImage},
@@ -293,6 +308,7 @@ constexpr auto kReaders = std::to_array<FuzzedReader>({{"trajectory", FuzzTrajec
                                                        {"paper", FuzzPaper},
                                                        {"boxes", FuzzBoxes},
                                                        {"coco", FuzzCoco},
+                                                       {"json_folder", FuzzJsonFolder},
                                                        {"oa_slam", FuzzOaSlam},
                                                        {"label_png", FuzzLabelPng},
                                                        {"classes_json", FuzzClassesJson},

@@ -61,6 +61,23 @@ TEST_F(BoxesTest, MalformedLinesAreRefused) {
   ExpectRefusedLine("73 173 138 46 70 50", {"confidence is '50'", "from 0 to 1"});
 }
 
+// `yolo detect track save_txt` adds the number of a track, `save_conf` the confidence before it.
+TEST_F(BoxesTest, NumbersOfTracksAreNoConfidences) {
+  for (const std::string format : {"boxes", ""}) {
+    format_ = format;
+    Write("1.5.txt", "41 0.5 0.5 0.1 0.1 0.75 3\n62 0.5 0.5 0.1 0.1 0.5 1\n");
+    FrameMasks frame = ReadFrame(0);
+    ASSERT_EQ(frame.masks.size(), 2U);
+    EXPECT_EQ(frame.masks[0].score, 0.75);
+    EXPECT_EQ(frame.masks[1].score, 0.5);
+    Write("1.5.txt", "41 0.5 0.5 0.1 0.1 3\n62 0.5 0.5 0.1 1\n");
+    frame = ReadFrame(0);
+    ASSERT_EQ(frame.masks.size(), 2U);
+    EXPECT_EQ(frame.masks[0].score, 1.0);
+    EXPECT_EQ(frame.masks[1].score, 1.0);
+  }
+}
+
 TEST_F(BoxesTest, BothFormsAreDetected) {
   format_ = "";
   Write("1.5.txt", "73 173 138 46 70 0.5789\n");
@@ -101,7 +118,7 @@ TEST_F(BoxesTest, MalformedLinesOfYoloAreRefused) {
   ExpectRefusedLine("41 0.5 0.5 0.1 0.1 nan", {"confidence"});
   Write("1.5.txt", "");
   Write("2.5.txt", "41 0.5 0.5 0.1 0.1\n41 0.5 0.5 0.1\n");
-  ExpectRefusal({"2.5.txt:2: 4 column(s), expected 5 or 6"});
+  ExpectRefusal({"2.5.txt:2: 4 column(s), expected 5 to 7"});
   Write("2.5.txt", "41 0.5 0.5 0.1 0.1\n41 0.5 0.5 -0.1 0.1\n");
   ExpectRefusal({"2.5.txt:2: width is '-0.1'"});
 }

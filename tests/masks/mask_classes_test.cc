@@ -50,5 +50,18 @@ TEST(MaskClasses, AFileReplacesTheNames) {
   ExpectInputError([&] { ReadClasses(folder.path()); }, {path, "1000001 bytes"});
 }
 
+// With a mark, the first class would have another name, so a person would be mapped as an object.
+TEST(MaskClasses, NamesOfFilesOfWindowsAreTheSame) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> names = {"person", "cup"};
+  for (const std::string& text : {std::string("\xef\xbb\xbfperson\r\ncup\r\n"),
+                                  std::string("\xff\xfep\0e\0r\0s\0o\0n\0\n\0c\0u\0p\0", 22)}) {
+    folder.Write("classes.txt", text);
+    EXPECT_EQ(ReadClasses(folder.path()), names);
+  }
+  const std::string path = folder.Write("classes.txt", "person\nm\xfcslischale\n");
+  ExpectInputError([&] { ReadClasses(folder.path()); }, {path + ":2: 'm?slischale' is not UTF-8"});
+}
+
 }  // namespace
 }  // namespace hullslam

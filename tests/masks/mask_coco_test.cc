@@ -139,7 +139,6 @@ TEST_F(CocoTest, BrokenRunsAreRefused) {
 }
 
 TEST_F(CocoTest, BrokenAnnotationsAreRefused) {
-  ExpectRefusedMember(R"("segmentation": [[1, 2, 3, 4]])", {"[0]: ", "has 4 numbers", "3 points"});
   ExpectRefusedMember(R"("segmentation": [[1, 2, 3, 4, 5, 6, 7]])", {"has 7 numbers"});
   ExpectRefusedMember(R"("segmentation": [[1, 2, 3, 4, 5, "6"]])", {"a list of numbers"});
   ExpectRefusedMember(R"("segmentation": [1, 2, 3, 4, 5, 6])", {"a list of numbers"});
@@ -148,7 +147,7 @@ TEST_F(CocoTest, BrokenAnnotationsAreRefused) {
   ExpectRefusedMember(R"("bbox": [1, 2, -3, 4])", {"bbox is [1,2,-3,4]"});
   ExpectRefusedMember(R"("bbox": [1, 2, 3])", {"bbox is [1,2,3]"});
   ExpectRefusedMember(R"("bbox": [1e300, 2, 3, 4])", {"bbox is [1e+300,", "up to 1e+06 px"});
-  ExpectRefusedMember(R"("id": 7)", {"has no 'bbox'"});
+  ExpectRefusedMember(R"("id": 7)", {"has neither 'segmentation' nor 'bbox'"});
   ExpectRefusedMember(R"("bbox": [1, 2, 3, 4], "score": 1.5)", {"score is 1.5", "from 0 to 1"});
   ExpectRefusedMember(R"("bbox": [1, 2, 3, 4], "score": "high")", {"score is \"high\""});
   ExpectRefusedMember(R"("bbox": [1, 2, 3, 4], "category_id": 12)", {"category_id is 12"});
@@ -157,6 +156,35 @@ TEST_F(CocoTest, BrokenAnnotationsAreRefused) {
                       {"category_id is 18446744073709551615", "an integer"});
   ExpectRefusedJson(R"([{"bbox": [1, 2, 3, 4]}])", {"has no 'image_id'"});
   ExpectRefusedJson(R"([{"image_id": 1.5, "bbox": [1, 2, 3, 4]}])", {"image_id is 1.5"});
+}
+
+TEST_F(CocoTest, InstancesWithoutAnOutlineAreLeftOutAndCounted) {
+  const FrameMasks frame = ReadJson(0, R"([
+    {"image_id": "1.5", "segmentation": null},
+    {"image_id": "1.5", "segmentation": [[10, 10, 20, 20]], "bbox": [1, 2, 30, 40]},
+    {"image_id": "1.5", "segmentation": [], "bbox": [0, 0, 0, 0]},
+    {"image_id": "1.5", "segmentation": [[10, 10, 20, 20], [100, 100, 300, 100, 100, 300]]},
+    {"image_id": "1.5", "segmentation": null, "bbox": [1, 2, 30, 40]}])");
+  EXPECT_EQ(frame.without_area, 3U);
+  ASSERT_EQ(frame.masks.size(), 2U);
+  EXPECT_EQ(frame.masks[0].outlines.size(), 1U);
+  EXPECT_EQ(frame.masks[1].shape, MaskShape::kBox);
+}
+
+// Tools name the same values in other ways, or write numbers as text.
+TEST_F(CocoTest, ValuesUnderOtherNamesAreRead) {
+  const FrameMasks frame = ReadJson(0, R"([
+    {"image_id": "1.5", "confidence": 0.5, "label": "mug", "bbox": [1, 2, 30, 40]},
+    {"image_id": "1.5", "score": "0.25", "category_id": "47", "bbox": [1, 2, 30, 40]},
+    {"image_id": "1.5", "score": null, "bbox": [1, 2, 30, 40]}])");
+  ASSERT_EQ(frame.masks.size(), 3U);
+  EXPECT_EQ(frame.masks[0].score, 0.5);
+  EXPECT_EQ(frame.masks[0].label, "mug");
+  EXPECT_EQ(frame.masks[1].score, 0.25);
+  EXPECT_EQ(frame.masks[1].label, "cup");
+  EXPECT_EQ(frame.masks[2].score, 1.0);
+  ExpectRefusedMember(R"("score": "high", "bbox": [1, 2, 3, 4])", {"score is \"high\""});
+  ExpectRefusedMember(R"("confidence": 95, "bbox": [1, 2, 3, 4])", {"confidence is 95"});
 }
 
 TEST_F(CocoTest, BrokenTablesAreRefused) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -16,6 +17,52 @@ std::string EncodePng(const cv::Mat& image) {
   std::vector<uchar> bytes;
   cv::imencode(".png", image, bytes);
   return {bytes.begin(), bytes.end()};
+}
+
+std::string BigEndian(uint32_t value) {
+  return {static_cast<char>(value >> 24), static_cast<char>(value >> 16),
+          static_cast<char>(value >> 8), static_cast<char>(value)};
+}
+
+std::string Chunk(const std::string& name, const std::string& data) {
+  const std::string sealed = name + data;
+  uint32_t sum = 0xffffffff;
+  for (const char c : sealed) {
+    sum ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) {
+      sum = (sum & 1) != 0 ? sum >> 1 ^ 0xedb88320 : sum >> 1;
+    }
+  }
+  return BigEndian(static_cast<uint32_t>(data.size())) + sealed + BigEndian(~sum);
+}
+
+// An image of 640x480 px with two bits per pixel and this palette of three colours. In each row, 8
+// pixels have the number 1, then 8 the number 2, and the others 0. The data are not compressed.
+std::string PalettePng(const char (&palette)[10]) {
+  std::string rows;
+  for (int y = 0; y < 480; ++y) {
+    rows += '\0' + std::string(2, '\x55') + std::string(2, '\xaa') + std::string(156, '\0');
+  }
+  std::string packed = "\x78\x01";
+  uint32_t a = 1;
+  uint32_t b = 0;
+  for (const char c : rows) {
+    a = (a + static_cast<unsigned char>(c)) % 65521;
+    b = (b + a) % 65521;
+  }
+  for (size_t at = 0; at < rows.size(); at += 60000) {
+    const std::string part = rows.substr(at, 60000);
+    const auto size = static_cast<uint32_t>(part.size());
+    packed += at + 60000 >= rows.size() ? '\1' : '\0';
+    for (const uint32_t word : {size, ~size}) {
+      packed += {static_cast<char>(word), static_cast<char>(word >> 8)};
+    }
+    packed += part;
+  }
+  return "\x89PNG\r\n\x1a\n" +
+         Chunk("IHDR", BigEndian(640) + BigEndian(480) + std::string("\2\3\0\0\0", 5)) +
+         Chunk("PLTE", std::string(palette, 9)) + Chunk("IDAT", packed + BigEndian(b << 16 | a)) +
+         Chunk("IEND", "");
 }
 
 class LabelPngTest : public MaskFixture {
@@ -56,6 +103,28 @@ TEST_F(LabelPngTest, InstancesAreOrderedByNumber) {
   EXPECT_TRUE(ReadFrame(1).is_missing);
 }
 
+TEST_F(LabelPngTest, GreyImagesOfEightBitsAreRead) {
+  cv::Mat small = cv::Mat::zeros(480, 640, CV_8UC1);
+  small(cv::Rect(100, 50, 40, 30)).setTo(7);
+  Write("1.5.png", EncodePng(small));
+  ASSERT_EQ(ReadFrame(0).masks.size(), 1U);
+  EXPECT_EQ(ReadFrame(0).masks[0].label, "cup");
+}
+
+// Python writes such images (PIL, mode P), as in the data set DAVIS: the palette is black, red,
+// green, and the image has the numbers 1 and 2.
+TEST_F(LabelPngTest, TheNumbersOfAPaletteAreRead) {
+  Write("classes.json", R"({"1": "cup", "2": "tv"})");
+  Write("1.5.png", PalettePng("\0\0\0\x80\0\0\0\x80\0"));
+  const FrameMasks frame = ReadFrame(0);
+  ASSERT_EQ(frame.masks.size(), 2U);
+  EXPECT_EQ(frame.masks[0].label, "cup");
+  EXPECT_DOUBLE_EQ(Area(frame.masks[0].outlines[0]), 8.0 * 480.0 - 0.5);
+  EXPECT_EQ(frame.masks[1].label, "tv");
+  Write("1.5.png", PalettePng("\0\0\0\x80\0\0\x80\0\0"));
+  ExpectRefusal({"1.5.png: two entries of its palette have the same colour"});
+}
+
 TEST_F(LabelPngTest, IsDetected) {
   format_ = "";
   EXPECT_EQ(Open()->format(), "label-png");
@@ -77,8 +146,8 @@ TEST_F(LabelPngTest, SinglePixelsAreLeftOutAndCounted) {
 
 TEST_F(LabelPngTest, OtherImagesAreRefused) {
   const std::string path = Path("1.5.png");
-  Write("1.5.png", EncodePng(cv::Mat::zeros(480, 640, CV_8UC1)));
-  ExpectRefusal({path, "8 bits", "label image", "16 bits"});
+  Write("1.5.png", EncodePng(cv::Mat::zeros(480, 640, CV_8UC3)));
+  ExpectRefusal({path, "label image", "16 bits"});
   Write("1.5.png", EncodePng(cv::Mat::zeros(240, 320, CV_16UC1)));
   ExpectRefusal({path, "320x240", "640x480"});
   Write("1.5.png", EncodePng(labels_).substr(0, 300));

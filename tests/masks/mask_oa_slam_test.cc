@@ -53,6 +53,15 @@ TEST_F(OaSlamTest, BoxesAreGivenByTheirCorners) {
   EXPECT_TRUE(Open("detections.json")->Read(frames_[1]).is_missing);
 }
 
+// Without this, a detection whose confidence is "score" would count as certain.
+TEST_F(OaSlamTest, TheConfidenceMayHaveTheNamesOfOtherTools) {
+  for (const char* const name : {"score", "confidence"}) {
+    const FrameMasks frame = ReadDetections(
+        fmt::format(R"({{"category_id": 41, "{}": 0.5, "bbox": [100, 50, 140, 80]}})", name));
+    EXPECT_EQ(frame.masks.at(0).score, 0.5) << name;
+  }
+}
+
 // Axes may be half or full axes, and angles may be in radians or degrees. The box tells which.
 TEST_F(OaSlamTest, EllipsesAreReadInAllUnits) {
   const double turn = 30.0 * kDegree;

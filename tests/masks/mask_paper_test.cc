@@ -46,7 +46,7 @@ TEST_F(PaperTest, OuterAndInnerFolderAreAccepted) {
 
 TEST_F(PaperTest, MalformedLinesAreRefused) {
   const std::string triangle = kPixelTriangle;
-  ExpectRefusedLine("0 5 cup 0.5 10 20 30 40", {"8 column(s)", "3 points"});
+  ExpectRefusedLine("0 5 cup", {"3 column(s)", "polygon"});
   ExpectRefusedLine("0 5 cup 0.5 " + triangle + " 7", {"11 column(s)"});
   ExpectRefusedLine("a 5 cup 0.5 " + triangle, {"instance is 'a'"});
   ExpectRefusedLine("0 b cup 0.5 " + triangle, {"track is 'b'"});
@@ -55,6 +55,12 @@ TEST_F(PaperTest, MalformedLinesAreRefused) {
   ExpectRefusedLine("0 5 cup 0.5 10 20 nan 20 10 400", {"x is 'nan'"});
   ExpectRefusedLine("0 5 cup 0.5 10 20 642 20 10 400",
                     {"point (642, 20) in column 7", "outside the image of 640x480 px"});
+}
+
+TEST_F(PaperTest, LinesWithoutAnOutlineAreLeftOutAndCounted) {
+  Write("000000.txt", "0 5 cup 0.5 10 20 30 40\n1 6 cup 0.5\n");
+  EXPECT_TRUE(ReadFrame(0).masks.empty());
+  EXPECT_EQ(ReadFrame(0).without_area, 2U);
 }
 
 }  // namespace

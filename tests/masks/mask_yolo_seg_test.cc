@@ -75,9 +75,6 @@ TEST_F(YoloSegTest, ClassesFileNamesTheClasses) {
 
 TEST_F(YoloSegTest, MalformedLinesAreRefused) {
   const std::string triangle = kShareTriangle;
-  ExpectRefusedLine("41", {"1 column(s)", "3 points"});
-  ExpectRefusedLine("41 0.1 0.1 0.2 0.2", {"5 column(s)", "3 points"});
-  ExpectRefusedLine("41 0.1 0.1 0.2 0.2 0.9", {"6 column(s)", "3 points"});
   ExpectRefusedLine("cup " + triangle, {"class is 'cup'", "a finite number"});
   ExpectRefusedLine("80 " + triangle, {"class is '80'", "from 0 to 79"});
   ExpectRefusedLine("-1 " + triangle, {"class is '-1'", "from 0 to 79"});
@@ -89,6 +86,74 @@ TEST_F(YoloSegTest, MalformedLinesAreRefused) {
   ExpectRefusedLine("41 0.1 -0.1 0.2 0.2 0.3 0.1", {"y is '-0.1' in column 3", "from 0 to 1"});
   ExpectRefusedLine("41 " + triangle + " 1.5", {"confidence is '1.5'", "from 0 to 1"});
   ExpectRefusedLine("41 " + triangle + " high", {"confidence is 'high'"});
+}
+
+// Networks write lines without an outline, or with one of a point or two, for masks without area.
+TEST_F(YoloSegTest, LinesWithoutAnOutlineAreLeftOutAndCounted) {
+  const std::string triangle = kShareTriangle;
+  Write("1.5.txt", "67 0.27\n41 " + triangle + " 0.9\n41\n41 0.1 0.1 0.2 0.2\n" +
+                       "41 0.1 0.1 0.2 0.2 0.9\n41 0.5 0.5 0.7\n");
+  for (const std::string format : {"yolo-seg", ""}) {  // the first line does not hide the format
+    format_ = format;
+    const FrameMasks frame = ReadFrame(0);
+    EXPECT_EQ(frame.masks.size(), 1U);
+    EXPECT_EQ(frame.without_area, 5U);
+    EXPECT_EQ(frame.rows, std::vector<size_t>{1});
+    EXPECT_EQ(CheckMasks(*Open(), frames_).without_area, 5U);
+  }
+}
+
+// `yolo track save_txt` writes the number of the track behind each outline, `save_conf` the
+// confidence between them.
+TEST_F(YoloSegTest, NumbersOfTracksAreNeitherPointsNorConfidences) {
+  const std::string triangle = kShareTriangle;
+  format_ = "";
+  for (const std::string& tracks : {std::string("1 1"), std::string("1 2"), std::string("12 13")}) {
+    const size_t blank = tracks.find(' ');
+    const std::string first = tracks.substr(0, blank);
+    const std::string second = tracks.substr(blank + 1);
+    Write("1.5.txt", "41 " + triangle + " 0.9 " + first + "\n62 " + triangle + " 0.8 " + second +
+                         "\n64 " + triangle + " 0.7\n");  // without a track in this frame
+    FrameMasks frame = ReadFrame(0);
+    ASSERT_EQ(frame.masks.size(), 3U) << tracks;
+    EXPECT_EQ(frame.masks[0].outlines[0].size(), 3U) << tracks;
+    EXPECT_EQ(frame.masks[0].score, 0.9);
+    EXPECT_EQ(frame.masks[1].score, 0.8);
+    EXPECT_EQ(frame.masks[2].score, 0.7);
+    Write("1.5.txt", "41 " + triangle + ' ' + first + "\n62 " + triangle + ' ' + second + '\n');
+    frame = ReadFrame(0);
+    ASSERT_EQ(frame.masks.size(), 2U) << tracks;
+    EXPECT_EQ(frame.masks[1].outlines[0].size(), 3U);
+    EXPECT_EQ(frame.masks[1].score, 1.0);
+  }
+}
+
+// One outline that ends elsewhere shows that the last column is a coordinate.
+TEST_F(YoloSegTest, APointAtTheBorderIsNoTrack) {
+  const std::string triangle = kShareTriangle;
+  Write("1.5.txt", "41 " + triangle + " 0.9 1\n41 " + triangle + "\n");
+  EXPECT_EQ(ReadFrame(0).masks.at(0).outlines[0].size(), 4U);
+  Write("1.5.txt", "41 " + triangle + " 95\n41 " + triangle + " 0.5\n");
+  ExpectRefusal({"1.5.txt:1: confidence is '95'"});
+}
+
+TEST_F(YoloSegTest, LabelsOfAVideoAreFoundByTheNamesOfUltralytics) {
+  const std::string line = std::string("41 ") + kShareTriangle + '\n';
+  Write("kitchen_1.txt", line);
+  Write("kitchen_2.txt", line + line);
+  folder_.Write("kitchen.mp4", "video");
+  ImageSequence video;
+  for (size_t i = 0; i < 3; ++i) {
+    const std::string name = "00000" + std::to_string(i);
+    video.frames.push_back(
+        {0.1 * static_cast<double>(i), folder_.path() / "kitchen.mp4" / name, {}, i});
+  }
+  frames_ = MaskFrames(video);
+  EXPECT_EQ(ReadFrame(0).masks.size(), 1U);
+  EXPECT_EQ(ReadFrame(1).masks.size(), 2U);
+  EXPECT_TRUE(ReadFrame(2).is_missing);
+  Write("000001.txt", line + line + line);
+  EXPECT_EQ(ReadFrame(1).masks.size(), 3U);
 }
 
 TEST_F(YoloSegTest, HugeFilesAreRefused) {

@@ -45,9 +45,9 @@ TEST_F(OpenMasksTest, SeveralFormatsInOneFolderAreRefused) {
 
 TEST_F(OpenMasksTest, AFolderWithoutMasksIsDescribed) {
   Write("notes.md", "");
-  ExpectRefusal({Path().string(), "has neither text files nor PNG files"});
+  ExpectRefusal({Path().string(), "has neither text files nor PNG or JSON files"});
   Write("masks.json", "{}");
-  ExpectRefusal({"has JSON files but no text files", "give the path of the JSON file"});
+  ExpectRefusal({"has a JSON file but no text files", "give the path of the JSON file"});
   Write("1.5.png", "");
   ExpectRefusal({"PNG files but no classes.json", "label-png"});
   Write("classes.txt", "cup");
@@ -104,6 +104,13 @@ TEST_F(OpenMasksTest, MasksOfOtherFramesAreRefusedWithAnExample) {
   Write("0001.txt", kYoloSeg);
   Write("0002.txt", kYoloSeg);
   ExpectRefusal({Path().string(), "any of the 2 frames", "'0001.txt'", "'1.5'"});
+}
+
+TEST_F(OpenMasksTest, TheCauseOfACommonMistakeIsNamed) {
+  Write("labels/1.5.txt", "41 0.5 0.5 0.1 0.1\n");
+  ExpectRefusal({"did you mean " + Path("labels").string() + "?"});
+  Write("1.5.txt", "41 160 120 320 120 160 360\n");
+  ExpectRefusal({"if these are pixels, divide x by the width"});
 }
 
 }  // namespace

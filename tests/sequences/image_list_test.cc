@@ -49,18 +49,22 @@ TEST(ImageList, ASelectionOutsideOfTheSequenceIsRefused) {
 
 TEST(ImageList, FramesAreNumberedAndTheirStampsIncrease) {
   const TemporaryFolder folder;
-  std::vector<FramePaths> frames;
+  ListedFrames list;
   ForEachRow(folder.Write("list.txt", "1 a\n2 b\n2 c\n"), [&](const TextRow& row) {
     CheckColumns(row, 2, "timestamp file");
     ExpectInputError([&] { CheckColumns(row, 3, "x y z"); }, {"list.txt", "x y z"});
     const FramePaths frame{.timestamp = row.Stamp(0), .image = ImageFile(row, 1, "images")};
-    if (row.line < 3) {
-      AddFrame(row, frame, frames);
-    } else {
-      ExpectInputError([&] { AddFrame(row, frame, frames); }, {"list.txt:3"});
-    }
+    EXPECT_EQ(AddFrame(row, frame, list), row.line < 3);
   });
+  EXPECT_EQ(list.repeated, 1U);
+  std::vector<std::string> warnings;
+  const std::vector<FramePaths> frames = TakeFrames("list.txt", list, warnings);
   ASSERT_EQ(frames.size(), 2U);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("list.txt:3: "), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("1 of the 3 images"), std::string::npos) << warnings[0];
+  ++list.earlier;  // of 3 rows, so this is another kind of list
+  ExpectInputError([&] { TakeFrames("list.txt", list, warnings); }, {"list.txt:3: "});
   EXPECT_EQ(frames[1].number, 1U);
   EXPECT_EQ(frames[1].image, fs::path("images/b"));
 }

@@ -120,7 +120,7 @@ TEST_F(VslamlabSequenceTest, RefusesBrokenLists) {
   ExpectBadList("ts_rgb_1 (ns),path_rgb_1\n", {"rgb.csv:1", "ts_rgb_0 (ns)", "ts_rgb_1 (ns)"});
   ExpectBadList(ReplaceIn(kList, ",depth_0/b.png", ""), {"rgb.csv:3", "3 column(s)"});
   ExpectBadList(ReplaceIn(kList, "1305031102211214065", "1.3e9"), {"rgb.csv:3", "1.3e9"});
-  ExpectBadList(ReplaceIn(kList, "1305031102211214065", "1305031102175304031"),
+  ExpectBadList(ReplaceIn(kList, "1305031102211214065", "1305031102165304031"),
                 {"rgb.csv:3", "does not come after"});
   ExpectInputError([&] { Open(ReplaceIn(kList, "rgb_0/b.png", "rgb_0/none.png")); }, {"none.png"});
 }

@@ -303,7 +303,7 @@ TEST_F(Settings, OverridesCanGiveMissingIntrinsics) {
 TEST_F(Settings, BrokenValuesAreReportedWithLineKeyAndExpectation) {
   ExpectLineError("ORBextractor.nFeatures: -5", {"ORBextractor.nFeatures is '-5'", "an integer"});
   ExpectLineError("Camera.width: 99999999999", {"Camera.width is '99999999999'", "an integer"});
-  ExpectLineError("DepthMapFactor: 0", {"DepthMapFactor is '0'", "> 0"});
+  ExpectLineError("DepthMapFactor: 0", {"DepthMapFactor is '0'", "from 0.001 to 1e+06"});
   ExpectLineError("DepthMapFactor: lots", {"DepthMapFactor is 'lots'", "a number"});
   ExpectLineError("DepthMapFactor: \"5000\"", {"DepthMapFactor is '\"5000\"'", "a number"});
   ExpectLineError("DepthMapFactor: .nan", {"DepthMapFactor is '.nan'"});

@@ -28,7 +28,9 @@ struct AteReport {
   size_t pairs = 0;
   size_t estimate_poses = 0;
   size_t reference_poses = 0;
-  double coverage = 0.0;     // share of the estimated poses that are paired, 0 to 1
+  double coverage = 0.0;  // share of the estimated poses that are paired, 0 to 1
+  // Estimated poses whose stamps are between the first and the last one of the reference.
+  size_t poses_during_reference = 0;
   double paired_span = 0.0;  // s, from the first to the last pair
   // Only with kSim3: the growth of lengths in the estimate from the first tenth of the pairs to the
   // last tenth, 0.01 for 1 %. Each tenth is aligned by itself. Absent if a tenth has fewer than
@@ -38,8 +40,15 @@ struct AteReport {
   bool ok() const { return failure.empty(); }
 };
 
+// Fails if fewer than a tenth of the estimated poses are paired: the few pairs of stamps that hit
+// each other by chance say nothing of the trajectory.
 AteReport EvaluateAte(const Trajectory& reference, const Trajectory& estimate,
                       const AteOptions& options = {});
+
+// Describes pairs that are fewer than the stamps allow: less than nine tenths of the estimated
+// poses during the reference. Then the stamps of one side have a wrong rate, or the reference has
+// gaps. Empty if there are enough.
+std::string DescribeMissingPairs(const AteReport& report);
 
 const char* ToString(AlignmentKind kind);
 

@@ -16,6 +16,9 @@ namespace hullslam {
 struct MaskFrame {
   std::string stem;   // stem of the file of the colour image: "1305031102.175304"
   size_t number = 0;  // index of the colour image in the sequence, from 0
+  // For a frame of a video, the name that Ultralytics gives its labels: "kitchen_1" for the first
+  // frame of kitchen.mp4.
+  std::string video_name = {};
 };
 
 // The frames of a sequence, in order.
@@ -56,9 +59,12 @@ struct MaskRequest {
 struct MaskCounts {
   size_t without_masks = 0;  // frames that are missing, or whose file or entry has no mask
   size_t missing = 0;        // frames without a file or entry
+  size_t without_area = 0;   // ignored masks of all frames; see FrameMasks
 };
 
-// Reads the masks of all frames and throws the first error.
-MaskCounts CheckMasks(const MaskSource& source, std::span<const MaskFrame> frames);
+// Reads the masks of all frames and throws the first error, which names the frame.
+// If the size of the images is given, ValidateMasks() checks them too.
+MaskCounts CheckMasks(const MaskSource& source, std::span<const MaskFrame> frames,
+                      const MaskRequest& size = {});
 
 }  // namespace hullslam

@@ -50,6 +50,8 @@ struct ImageSequence {
   // The converted true trajectory, if the stamps, axes or format of its file differ from those of a
   // run.
   std::optional<Trajectory> converted_groundtruth;
+  // What the user should know of faults in the files that do not end a run.
+  std::vector<std::string> warnings = {};
   // Tells the user where the time stamps are from; empty if a list of the data set has them.
   std::string stamps_note = {};
   // What was chosen among several possibilities, such as "image_topic". OpenRunSequence() needs it
@@ -62,8 +64,10 @@ struct ImageSequence {
   ColourLoader load_colour = nullptr;
 };
 
-// The true trajectory, from the field that is set; absent without ground truth. Throws InputError
-// for a file that ReadTrajectory() rejects.
-std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence);
+// The true trajectory, from the field that is set; absent without ground truth. The file may have
+// any of the forms in docs/outputs.md. What was converted or skipped is added to `notes`. Throws
+// InputError for a file that cannot be used.
+std::optional<Trajectory> ReadGroundtruth(const ImageSequence& sequence,
+                                          std::vector<std::string>* notes = nullptr);
 
 }  // namespace hullslam

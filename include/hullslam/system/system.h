@@ -153,11 +153,13 @@ class System {
   std::unique_ptr<Pipeline> BeginPipeline();
   std::unique_ptr<TaskRunner> MakeRunner();
   void CheckStamp(double timestamp) const;
+  void CheckVectors(const Frame& frame);
 
   const SystemOptions options_;
   const PipelineKind kind_;
   SystemStart start_;
   bool is_localization_only_ = false;
+  size_t vector_length_ = 0;  // of InstanceMask::embedding in all masks; 0: not known yet
   const Sensor sensor_;
   std::unique_ptr<FrameBuilder> frame_builder_;
   std::unique_ptr<Pipeline> pipeline_;

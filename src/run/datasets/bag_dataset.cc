@@ -9,7 +9,6 @@
 
 #include "hullslam/sequences/bag_sequence.h"
 #include "hullslam/util/error.h"
-#include "run/datasets/given_groundtruth.h"
 #include "run/load_settings.h"
 #include "run/messages.h"
 #include "run/settings_choice.h"
@@ -27,7 +26,8 @@ class BagDataset final : public Dataset {
                             ? "default: the camera of the recording's CameraInfo, and depth images "
                               "of 16 bits in millimetres"
                             : "default: the camera of the recording's CameraInfo",
-            .associations = "not for recordings, whose images are paired by their stamps"};
+            .associations = "not for recordings, whose images are paired by their stamps",
+            .groundtruth = "default: none"};
   }
 
   void AddOptions(CLI::App& app) override {
@@ -42,9 +42,6 @@ class BagDataset final : public Dataset {
         ->type_name("TOPIC");
     app.add_flag("--recording-times", options_.use_recording_times,
                  "take the times at which the messages were recorded, not the stamps in them");
-    app.add_option("--groundtruth", groundtruth_,
-                   "true trajectory in TUM's format, for the error of the run")
-        ->type_name("FILE");
   }
 
   DatasetInput Open(const RunArguments& arguments) override {
@@ -60,10 +57,6 @@ class BagDataset final : public Dataset {
       PrintError("warning: {}\n", warning);
     }
     LoadedSettings loaded = Load(arguments, bag);
-    if (!groundtruth_.empty()) {
-      CheckGivenGroundtruth(groundtruth_, bag.images, "stamps of the same clock");
-      bag.images.groundtruth = groundtruth_;
-    }
     if (!options_.need_camera) {
       bag.notes.push_back(Describe(GivenSettings(arguments.settings)));
     }
@@ -84,7 +77,6 @@ class BagDataset final : public Dataset {
   }
 
   BagSequenceOptions options_;
-  std::filesystem::path groundtruth_;
 };
 
 }  // namespace

@@ -29,6 +29,10 @@ class Dataset {
   virtual DatasetHelp Help(SensorKind sensor) const = 0;
   // Adds options that only this data set has.
   virtual void AddOptions(CLI::App& /*app*/) {}
+  // What --groundtruth must fit, for a message: its stamps are not those of the images.
+  virtual std::string ExpectedStamps() const { return "stamps of the same clock"; }
+  // Whether Open() reads the file of --groundtruth itself.
+  virtual bool ReadsGroundtruth() const { return false; }
   // Opens the sequence and reads the settings. May print facts about them. Throws InputError for
   // bad input.
   virtual DatasetInput Open(const RunArguments& arguments) = 0;

@@ -14,7 +14,8 @@ class EurocDataset final : public Dataset {
  public:
   DatasetHelp Help(SensorKind /*sensor*/) const override {
     return {.sequence = "folder with mav0, in the format ASL",
-            .settings = "default: the camera of cam0/sensor.yaml in SEQUENCE"};
+            .settings = "default: the camera of cam0/sensor.yaml in SEQUENCE",
+            .groundtruth = "of the camera; default: state_groundtruth_estimate0 in SEQUENCE"};
   }
 
   DatasetInput Open(const RunArguments& arguments) override {

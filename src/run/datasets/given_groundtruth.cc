@@ -3,23 +3,43 @@
 
 #include <fmt/format.h>
 
-#include "hullslam/results/trajectory_file.h"
+#include <vector>
+
 #include "hullslam/util/error.h"
+#include "run/messages.h"
 
 namespace hullslam {
 
-void CheckGivenGroundtruth(const std::filesystem::path& file, const ImageSequence& images,
-                           const std::string& expected) {
-  const Trajectory truth = ReadTrajectory(file);
-  const double first = images.frames.front().timestamp;
-  const double last = images.frames.back().timestamp;
-  if (truth.empty() || truth.back().timestamp < first || truth.front().timestamp > last) {
+void UseGivenGroundtruth(const std::filesystem::path& file, const std::string& expected,
+                         ImageSequence& sequence) {
+  sequence.groundtruth.reset();
+  sequence.converted_groundtruth.reset();
+  if (file == "none") {
+    return;
+  }
+  sequence.groundtruth = file;
+  const Trajectory truth = ReadGroundtruth(sequence).value();
+  const double first = sequence.frames.front().timestamp;
+  const double last = sequence.frames.back().timestamp;
+  if (truth.back().timestamp < first || truth.front().timestamp > last) {
     throw InputError(fmt::format(
-        "{}: {}, but the images are from {:.6f} to {:.6f} s; expected {}", file.string(),
-        truth.empty() ? std::string("has no poses")
-                      : fmt::format("has poses from {:.6f} to {:.6f} s", truth.front().timestamp,
-                                    truth.back().timestamp),
-        first, last, expected));
+        "{}: has poses from {:.6f} to {:.6f} s, but the images are from {:.6f} to "
+        "{:.6f} s; expected {}",
+        file.string(), truth.front().timestamp, truth.back().timestamp, first, last, expected));
+  }
+}
+
+std::optional<Trajectory> FindGroundtruth(const ImageSequence& sequence) {
+  try {
+    std::vector<std::string> notes;
+    std::optional<Trajectory> truth = ReadGroundtruth(sequence, &notes);
+    for (const std::string& note : notes) {
+      PrintError("warning: ground truth: {}\n", note);
+    }
+    return truth;
+  } catch (const InputError& error) {
+    PrintError("warning: {}; the run goes on without ground truth\n", error.what());
+    return std::nullopt;
   }
 }
 

@@ -31,8 +31,14 @@ class IclDataset final : public Dataset {
     return {.sequence = "folder of ICL-NUIM, of either package (--package)",
             .settings = "default: camera.yaml in SEQUENCE; without it, config/ICL.yaml",
             .associations =
-                "index depth index rgb (default: associations.txt in SEQUENCE; package tum only)"};
+                "index depth index rgb (default: associations.txt in SEQUENCE; package tum only)",
+            .groundtruth =
+                "TUM's format with indices of frames as time stamps; default: the .txt "
+                "files of package povray, else *.gt.freiburg or groundtruth.txt in "
+                "SEQUENCE"};
   }
+
+  bool ReadsGroundtruth() const override { return true; }
 
   void AddOptions(CLI::App& app) override {
     AddNamed<IclPackage>(
@@ -40,10 +46,6 @@ class IclDataset final : public Dataset {
         icl_.package,
         "tum: rgb/N.png, depth/N.png and associations.txt; povray: scene_00_NNNN.png, .depth and "
         ".txt (default: by the files in SEQUENCE)");
-    app.add_option("--groundtruth", icl_.groundtruth,
-                   "true trajectory in TUM's format, with indices of frames as time stamps "
-                   "(default: the .txt files of package povray, else *.gt.freiburg or "
-                   "groundtruth.txt in SEQUENCE)");
     AddNamed<CameraYAxis>(
         app, "--groundtruth-y", {{"up", CameraYAxis::kUp}, {"down", CameraYAxis::kDown}},
         icl_.groundtruth_y,
@@ -61,6 +63,7 @@ class IclDataset final : public Dataset {
     LoadedSettings loaded =
         LoadSettings(settings.file, arguments.preset, arguments.overrides, NegativeFy::kPositive);
     icl_.associations = arguments.associations;
+    icl_.groundtruth = arguments.groundtruth == "none" ? "" : arguments.groundtruth;
     icl_.use_depth = arguments.sensor == SensorKind::kRgbd;
     icl_.selection = arguments.selection;
     IclSequence sequence =
@@ -68,7 +71,9 @@ class IclDataset final : public Dataset {
     if (!arguments.quiet) {
       Print("ICL-NUIM, package {}\n", sequence.package == IclPackage::kTum ? "tum" : "povray");
       Print("ground truth: {}\n",
-            sequence.groundtruth_note.empty() ? "none" : sequence.groundtruth_note);
+            sequence.groundtruth_note.empty() || arguments.groundtruth == "none"
+                ? "none"
+                : sequence.groundtruth_note);
     }
     return {.settings = std::move(loaded),
             .sequence = std::move(sequence.images),

@@ -13,7 +13,6 @@
 #include "hullslam/sequences/image_stream.h"
 #include "hullslam/settings/settings.h"
 #include "hullslam/util/error.h"
-#include "run/datasets/given_groundtruth.h"
 #include "run/load_settings.h"
 #include "run/messages.h"
 #include "run/settings_choice.h"
@@ -25,7 +24,14 @@ class VideoDataset final : public Dataset {
  public:
   DatasetHelp Help(SensorKind /*sensor*/) const override {
     return {.sequence = "video file, or folder of PNG or JPEG images in the order of their names",
-            .settings = "must be given unless --fov is"};
+            .settings = "must be given unless --fov is",
+            .groundtruth =
+                "default: none; its time stamps are those of the images, which "
+                "--stamp-offset can move"};
+  }
+
+  std::string ExpectedStamps() const override {
+    return "--stamp-offset SECONDS, which is added to the stamps of the images";
   }
 
   void AddOptions(CLI::App& app) override {
@@ -36,10 +42,6 @@ class VideoDataset final : public Dataset {
                    "horizontal field of view, for a first try with a camera whose calibration is "
                    "unknown: the lens is taken for free of distortion, so the map may be bent")
         ->type_name("DEGREES");
-    app.add_option("--groundtruth", groundtruth_,
-                   "true trajectory in TUM's format, for the error of the run; its time stamps are "
-                   "those of the images, which --stamp-offset can move")
-        ->type_name("FILE");
     app.add_option("--stamp-offset", stream_options_.stamp_offset,
                    "seconds that are added to the time stamps of the images, which begin at 0, for "
                    "example the time at which a recording was started")
@@ -57,11 +59,6 @@ class VideoDataset final : public Dataset {
              : LoadSettings(arguments.settings, arguments.preset, arguments.overrides);
     if (!arguments.quiet) {
       PrintInput(stream, loaded.options);
-    }
-    if (!groundtruth_.empty()) {
-      CheckGivenGroundtruth(groundtruth_, stream.images,
-                            "--stamp-offset SECONDS, which is added to the stamps of the images");
-      stream.images.groundtruth = groundtruth_;
     }
     std::vector<std::string> notes;
     if (!fov_) {
@@ -100,7 +97,6 @@ class VideoDataset final : public Dataset {
 
   ImageStreamOptions stream_options_;
   std::optional<double> fov_;  // degrees, horizontal
-  std::filesystem::path groundtruth_;
 };
 
 }  // namespace

@@ -153,6 +153,11 @@ void CheckFrame(const CheckMasksArguments& arguments, const SystemOptions& optio
   counts.without_depth += paths.depth.empty() ? 1 : 0;
   try {
     const FrameMasks frame = source.Read(names);
+    CheckMasks(source, {&names, 1},
+               {.path = arguments.masks,
+                .format = {},
+                .width = options.camera.width,
+                .height = options.camera.height});
     counts.missing += frame.is_missing ? 1 : 0;
     counts.without_masks += frame.masks.empty() ? 1 : 0;
     counts.instances += frame.masks.size() + frame.without_area + frame.crowds;
@@ -257,6 +262,7 @@ int RunCheckMasks(int argc, char** argv) {
   arguments.tum.need_images = false;
   arguments.tum.frames_per_second = options.frames_per_second;
   const ImageSequence sequence = OpenTumSequence(arguments.sequence, arguments.tum);
+  PrintWarnings(sequence);
   const std::vector<MaskFrame> frames = MaskFrames(sequence);
   const auto source = OpenMasks(
       {arguments.masks, arguments.format, options.camera.width, options.camera.height}, frames);

@@ -24,6 +24,7 @@
 #include "objects/object_view.h"
 #include "results/output_folder.h"
 #include "run/command_line.h"
+#include "run/datasets/given_groundtruth.h"
 #include "run/input_warnings.h"
 #include "run/interrupt.h"
 #include "run/load_settings.h"
@@ -218,7 +219,8 @@ MappingInputs OpenMappingInputs(const MapObjectsArguments& arguments) {
       arguments.sequence,
       {.need_images = false, .frames_per_second = inputs.loaded.options.frames_per_second});
   inputs.poses = ReadTrajectory(arguments.poses);
-  inputs.groundtruth = ReadGroundtruth(inputs.sequence);
+  PrintWarnings(inputs.sequence);
+  inputs.groundtruth = FindGroundtruth(inputs.sequence);
   return inputs;
 }
 

@@ -15,9 +15,10 @@
 #include "files/atomic_file.h"
 #include "files/npy_file.h"
 #include "files/plausible.h"
-#include "files/read_file.h"
+#include "files/read_text.h"
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
+#include "masks/mask_classes.h"
 #include "results/scene_file.h"
 #include "run/command_line.h"
 #include "run/messages.h"
@@ -131,7 +132,8 @@ std::set<std::string> KnownClasses(const Scene& scene, const fs::path& file) {
     }
   }
   if (!file.empty()) {
-    const std::string text = ReadFile(file);
+    const std::string text = ReadText(file);
+    CheckUtf8(file, text);
     for (size_t begin = 0; begin < text.size();) {
       const size_t end = std::min(text.find('\n', begin), text.size());
       const std::string line(Trim(std::string_view(text).substr(begin, end - begin)));
@@ -156,10 +158,22 @@ std::vector<Answer> AnswerVector(const Scene& scene, const fs::path& file) {
   }
 }
 
+// A question about a class of COCO, which most networks know, has the answer that there is none if
+// the map lacks it. The message about an unknown word lists the classes of the map.
+AskedThing ParseKnown(const std::string& question, const std::set<std::string>& labels) {
+  std::set<std::string> known(CocoClasses().begin(), CocoClasses().end());
+  known.insert(labels.begin(), labels.end());
+  try {
+    return ParseQuestion(question, known);
+  } catch (const InputError&) {
+    return ParseQuestion(question, labels);
+  }
+}
+
 std::vector<Answer> FindAnswers(const Scene& scene, const QueryArguments& arguments) {
   const std::set<std::string> labels = KnownClasses(scene, arguments.classes);
   if (!arguments.question.empty()) {
-    return AnswerQuestion(scene, ParseQuestion(arguments.question, labels));
+    return AnswerQuestion(scene, ParseKnown(arguments.question, labels));
   }
   if (arguments.like) {
     return FindLike(scene, ObjectId(*arguments.like));

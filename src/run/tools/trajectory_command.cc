@@ -7,11 +7,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "files/plausible.h"
 #include "hullslam/eval/rpe.h"
-#include "hullslam/results/trajectory_file.h"
 #include "hullslam/util/error.h"
+#include "results/pose_file.h"
 #include "run/command_line.h"
 #include "run/messages.h"
 
@@ -24,15 +26,42 @@ struct Evaluation {
   double max_difference = 0.0;  // s
 };
 
+std::vector<double> StampsOf(const Trajectory& trajectory) {
+  std::vector<double> stamps;
+  for (const StampedPose& pose : trajectory) {
+    stamps.push_back(pose.timestamp);
+  }
+  return stamps;
+}
+
+// A file of KITTI has no stamps: its poses are those of the other file, one for one.
+std::pair<Trajectory, Trajectory> ReadBoth(const TrajectoryArguments& arguments) {
+  PoseFile reference = ReadPoseFile(arguments.groundtruth);
+  PoseFile estimate = ReadPoseFile(arguments.estimate);
+  if (!reference.has_stamps) {
+    SetStamps(arguments.groundtruth, StampsOf(estimate.poses), reference);
+  } else if (!estimate.has_stamps) {
+    SetStamps(arguments.estimate, StampsOf(reference.poses), estimate);
+  }
+  for (const PoseFile* const file : {&reference, &estimate}) {
+    for (const std::string& note : file->notes) {
+      PrintError("warning: {}\n", note);
+    }
+  }
+  return {std::move(reference.poses), std::move(estimate.poses)};
+}
+
 Evaluation Evaluate(const TrajectoryArguments& arguments) {
-  const Trajectory reference = ReadTrajectory(arguments.groundtruth);
-  const Trajectory estimate = ReadTrajectory(arguments.estimate);
+  const auto [reference, estimate] = ReadBoth(arguments);
   Evaluation evaluation;
   evaluation.max_difference =
       arguments.ate.max_difference.value_or(DefaultMaxDifference(arguments.ate.pairing));
   evaluation.ate = EvaluateAte(reference, estimate, arguments.ate);
   if (!evaluation.ate.ok()) {
     throw InputError(arguments.estimate + ": " + evaluation.ate.failure);
+  }
+  if (const std::string missing = DescribeMissingPairs(evaluation.ate); !missing.empty()) {
+    PrintError("warning: {}\n", missing);
   }
   evaluation.rpe = EvaluateRpe(reference, estimate,
                                {.scale = evaluation.ate.reference_from_estimate.scale,
@@ -109,8 +138,8 @@ CLI::App* AddTrajectoryCommand(CLI::App& app, TrajectoryArguments& arguments) {
       {"none", AlignmentKind::kNone}, {"se3", AlignmentKind::kSe3}, {"sim3", AlignmentKind::kSim3}};
   const std::map<std::string, PairingRule> tools = {{"tum", PairingRule::kTum},
                                                     {"evo", PairingRule::kEvo}};
-  CLI::App* const command =
-      app.add_subcommand("trajectory", "absolute and relative error of a trajectory (TUM format)");
+  CLI::App* const command = app.add_subcommand(
+      "trajectory", "absolute and relative error of a trajectory (TUM, EuRoC, VSLAM-LAB or KITTI)");
   command->add_option("GROUNDTRUTH", arguments.groundtruth, "true trajectory")->required();
   command->add_option("ESTIMATE", arguments.estimate, "estimated trajectory")->required();
   command

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "results/pose_file.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "files/plausible.h"
+#include "files/text_rows.h"
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kPoseColumns = 8;     // stamp, position, rotation
+constexpr size_t kMatrixColumns = 12;  // or 16, with the row 0 0 0 1
+constexpr size_t kEurocColumns = 17;   // also velocity and biases
+
+struct Layout {
+  size_t columns = kPoseColumns;  // of each row
+  size_t first = 0;               // column of the stamp
+  bool is_w_first = false;
+  bool is_matrix = false;
+};
+
+// The names of the columns, in small letters and without units, which are in brackets.
+std::vector<std::string> NamesOf(std::string_view header) {
+  std::vector<std::string> names;
+  std::string name;
+  int brackets = 0;
+  for (const char c : std::string(header) + ' ') {
+    brackets += c == '[' || c == '(' ? 1 : c == ']' || c == ')' ? -1 : 0;
+    if (std::string_view(" ,;\t\r#").find(c) == std::string_view::npos) {
+      if (brackets == 0 && c != ']' && c != ')') {
+        name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      }
+    } else if (!name.empty()) {
+      names.push_back(std::exchange(name, {}));
+    }
+  }
+  return names;
+}
+
+Layout LayoutOf(const TextRow& row) {
+  const size_t columns = row.columns.size();
+  const std::vector<std::string> names = NamesOf(row.header);
+  const auto is_rotation = [](const std::string& name) { return name.starts_with('q'); };
+  const auto first = std::find_if(names.begin(), names.end(), is_rotation);
+  const auto before = static_cast<size_t>(first - names.begin());
+  if (names.size() == columns && before >= 4 &&
+      std::count_if(first, names.end(), is_rotation) == 4) {
+    return {columns, before - 4, first->ends_with('w'), false};
+  }
+  if (columns == kMatrixColumns || columns == 16) {
+    return {.columns = columns, .is_matrix = true};
+  }
+  if (columns == kEurocColumns) {
+    return {.columns = columns, .is_w_first = true};
+  }
+  if (columns != kPoseColumns) {
+    row.Fail(fmt::format(
+        "{} columns, expected 8 (timestamp tx ty tz qx qy qz qw), the 12 or 16 of KITTI, or a "
+        "first line with the names of the columns",
+        columns));
+  }
+  return {};
+}
+
+Rigid3 ReadMatrix(const TextRow& row) {
+  Rigid3 pose;
+  Eigen::Matrix3d rotation;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      rotation(i, j) =
+          row.Number(static_cast<size_t>(4 * i + j), "an element of the rotation", 2.0);
+    }
+    pose.translation(i) = row.Number(static_cast<size_t>(4 * i + 3), "a coordinate", kMostMetres);
+  }
+  constexpr double kTolerance = 1e-2;  // files round their numbers to 6 decimals or fewer
+  if (!(rotation * rotation.transpose()).isApprox(Eigen::Matrix3d::Identity(), kTolerance)) {
+    row.Fail("the numbers are no matrix of a pose, expected a rotation and a translation by rows");
+  }
+  pose.rotation = Eigen::Quaterniond(rotation).normalized();
+  return pose;
+}
+
+Rigid3 ReadPose(const TextRow& row, const Layout& layout) {
+  if (row.columns.size() != layout.columns) {
+    row.Fail(fmt::format("{} columns, expected {} as in the first line", row.columns.size(),
+                         layout.columns));
+  }
+  if (layout.is_matrix) {
+    return ReadMatrix(row);
+  }
+  const size_t at = layout.first;
+  const size_t x = at + (layout.is_w_first ? 5 : 4);
+  return {row.Rotation(layout.is_w_first ? at + 4 : at + 7, x, x + 1, x + 2),
+          {row.Number(at + 1, "tx", kMostMetres), row.Number(at + 2, "ty", kMostMetres),
+           row.Number(at + 3, "tz", kMostMetres)}};
+}
+
+struct Unit {
+  double per_second = 1.0;
+  const char* name = "";
+};
+
+// The unit of the stamps. No clock that counts seconds is beyond 1e11, and today's clocks count
+// 1.7e12 ms, 1.7e15 us or 1.7e18 ns. Small stamps in nanoseconds are known by the name alone.
+Unit UnitOf(const TextRow& row, double stamp) {
+  const bool is_named = row.header.find("[ns]") != std::string_view::npos ||
+                        row.header.find("(ns)") != std::string_view::npos;
+  const double size = std::abs(stamp);
+  if (is_named || size > 1e17) {
+    return {1e9, "nanoseconds"};
+  }
+  return size > 1e14           ? Unit{1e6, "microseconds"}
+         : size > kMostSeconds ? Unit{1e3, "milliseconds"}
+                               : Unit{};
+}
+
+bool IsSame(const Rigid3& a, const Rigid3& b) {
+  return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
+}
+
+class Reader {
+ public:
+  explicit Reader(const fs::path& path) : path_(path) {}
+
+  PoseFile Read() {
+    ForEachRow(path_, [&](const TextRow& row) { Add(row); });
+    if (2 * malformed_ > rows_ || file_.poses.empty()) {
+      throw InputError(malformed_ > 0 ? fault_ : path_.string() + ": has no poses");
+    }
+    if (2 * collisions_ > rows_) {
+      throw InputError(fmt::format(
+          "{}: {} poses have only {} different time stamps, expected one for each; were the stamps "
+          "written with too few digits?",
+          path_.string(), rows_ - malformed_, file_.poses.size()));
+    }
+    if (malformed_ > 0) {
+      file_.notes.push_back(fmt::format("{} of {} rows are skipped, the first because of: {}",
+                                        malformed_, rows_, fault_));
+    }
+    if (earlier_ > 0) {
+      file_.notes.push_back(
+          fmt::format("{}: {} of {} rows are skipped, because they go back in time (the first is "
+                      "line {}); does "
+                      "the file have two trajectories?",
+                      path_.string(), earlier_, rows_, first_earlier_));
+    }
+    return std::move(file_);
+  }
+
+ private:
+  void Add(const TextRow& row) {
+    ++rows_;
+    try {
+      if (!layout_) {
+        layout_ = LayoutOf(row);
+        file_.has_stamps = !layout_->is_matrix;
+      }
+      AddPose(row, {StampOf(row), ReadPose(row, *layout_)});
+    } catch (const InputError& error) {
+      fault_ = malformed_ == 0 ? error.what() : fault_;
+      ++malformed_;
+    }
+  }
+
+  double StampOf(const TextRow& row) {
+    if (layout_->is_matrix) {
+      return static_cast<double>(file_.poses.size());
+    }
+    if (row.columns.size() <= layout_->first) {
+      row.Fail("has no time stamp");
+    }
+    const double stamp = row.Number(layout_->first, "timestamp");
+    if (!unit_) {
+      unit_ = UnitOf(row, stamp);
+      if (unit_->per_second != 1.0) {
+        file_.notes.push_back(
+            fmt::format("{}: the time stamps are taken for {}", path_.string(), unit_->name));
+      }
+    }
+    const double seconds = stamp / unit_->per_second;
+    if (std::abs(seconds) > kMostSeconds) {
+      row.Fail(fmt::format("timestamp is {:g} s, expected up to {:g} s", seconds, kMostSeconds));
+    }
+    return seconds;
+  }
+
+  void AddPose(const TextRow& row, const StampedPose& pose) {
+    Trajectory& poses = file_.poses;
+    if (poses.empty() || pose.timestamp > poses.back().timestamp) {
+      poses.push_back(pose);
+    } else if (pose.timestamp == poses.back().timestamp) {
+      collisions_ += IsSame(pose.world_from_cam, poses.back().world_from_cam) ? 0 : 1;
+      poses.back() = pose;
+    } else {
+      first_earlier_ = earlier_ == 0 ? row.line : first_earlier_;
+      ++earlier_;
+    }
+  }
+
+  const fs::path& path_;
+  std::optional<Layout> layout_;
+  std::optional<Unit> unit_;
+  PoseFile file_;
+  size_t rows_ = 0;
+  size_t malformed_ = 0;
+  size_t collisions_ = 0;
+  size_t earlier_ = 0;
+  int first_earlier_ = 0;
+  std::string fault_;
+};
+
+}  // namespace
+
+PoseFile ReadPoseFile(const fs::path& path) {
+  PoseFile file = Reader(path).Read();
+  const fs::path times = path.parent_path() / "times.txt";
+  std::error_code error;
+  if (!file.has_stamps && fs::is_regular_file(times, error)) {
+    std::vector<double> stamps;
+    ForEachRow(times, [&](const TextRow& row) { stamps.push_back(row.Stamp(0)); });
+    const bool increase =
+        std::adjacent_find(stamps.begin(), stamps.end(), std::greater_equal<>()) == stamps.end();
+    if (stamps.size() == file.poses.size() && increase) {
+      SetStamps(path, stamps, file);
+    }
+  }
+  return file;
+}
+
+void SetStamps(const fs::path& path, std::span<const double> stamps, PoseFile& file) {
+  if (stamps.size() != file.poses.size()) {
+    throw InputError(fmt::format(
+        "{}: its {} poses have no time stamps (KITTI), and there are {} to compare with; expected "
+        "as many, or times.txt beside it with one time per line",
+        path.string(), file.poses.size(), stamps.size()));
+  }
+  for (size_t i = 0; i < stamps.size(); ++i) {
+    file.poses[i].timestamp = stamps[i];
+  }
+  file.has_stamps = true;
+}
+
+}  // namespace hullslam

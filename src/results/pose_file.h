@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hullslam/geometry/trajectory.h"
+
+namespace hullslam {
+
+// A trajectory that another program wrote.
+struct PoseFile {
+  Trajectory poses;
+  bool has_stamps = true;          // false: the stamps are the indices of the poses
+  std::vector<std::string> notes;  // what was converted or skipped
+};
+
+// Reads a trajectory in any of these forms, which the first line with data or a line with the names
+// of the columns tells:
+// - TUM: timestamp tx ty tz qx qy qz qw; with other columns or with qw first if they are named, as
+//   in files of EuRoC and VSLAM-LAB and in those that `export` writes;
+// - EuRoC without names: 17 columns;
+// - KITTI: the 12 numbers of the first three rows of the matrix world from camera, or all 16. They
+//   have no stamps, unless times.txt beside the file has one line for each pose.
+// Stamps may be in seconds, milliseconds, microseconds or nanoseconds. Rows that are malformed or
+// go back in time are skipped and counted; of rows with the same stamp, the last one is used.
+// Throws InputError if most rows are malformed, or if most stamps repeat the one before with
+// another pose, as stamps do that were rounded to seconds.
+PoseFile ReadPoseFile(const std::filesystem::path& path);
+
+// Gives the poses of a file without stamps those of as many frames. Throws InputError for another
+// number of frames.
+void SetStamps(const std::filesystem::path& path, std::span<const double> stamps, PoseFile& file);
+
+}  // namespace hullslam
