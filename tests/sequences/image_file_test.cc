@@ -92,6 +92,23 @@ TEST(ImageFile, EveryTruncationIsFound) {
   }
 }
 
+// Motion photos of phones have a film behind the image.
+TEST(ImageFile, AJpegMayHaveAnythingBehindItsEnd) {
+  const TemporaryFolder folder;
+  const std::string jpeg = EncodeImage(Ramp(CV_8UC1), ".jpg");
+  const auto path = folder.Write("film.jpg", jpeg + "\xff ftypmp42" + std::string(200'000, 'x'));
+  EXPECT_EQ(ReadGreyImage(path).size(), cv::Size(64, 48));
+}
+
+// A cut image may have a thumbnail with an end marker of its own.
+TEST(ImageFile, TheEndOfAThumbnailIsNotThatOfTheJpeg) {
+  const TemporaryFolder folder;
+  const std::string jpeg = EncodeImage(Ramp(CV_8UC1), ".jpg");
+  std::string cut = jpeg.substr(0, jpeg.size() - 2);
+  cut.insert(2, "\xff\xe1" + std::string("\0\x08", 2) + "Exi\xff\xd9!");
+  ExpectInputError([&] { ReadGreyImage(folder.Write("cut.jpg", cut)); }, {"cut.jpg: is cut off"});
+}
+
 TEST(ImageFile, BrokenFilesAreReportedByName) {
   const TemporaryFolder folder;
   ExpectInputError([&] { ReadGreyImage(folder.Write("empty.png", "")); },
