@@ -72,6 +72,11 @@ ImageSize PngSize(std::string_view bytes) {
   return {BigEndian(bytes, kWidth, 4), BigEndian(bytes, kWidth + 4, 4)};
 }
 
+bool HasPalette(std::string_view bytes) {
+  constexpr size_t kColourType = 25;  // in the header chunk, after the size and the bits
+  return bytes.starts_with(kPngSignature) && bytes.size() > kColourType && bytes[kColourType] == 3;
+}
+
 // Whether a marker has no length and no data.
 bool IsAlone(unsigned char marker) { return marker == 0x01 || (marker >= 0xd0 && marker <= 0xd7); }
 
@@ -180,6 +185,11 @@ cv::Mat Decode(const std::filesystem::path& path, std::string_view bytes, int fl
 cv::Mat Decode16Bit(const std::filesystem::path& path, std::string_view bytes, const char* kind) {
   cv::Mat image = Decode(path, bytes, cv::IMREAD_UNCHANGED);
   if (image.type() != CV_16UC1) {
+    if (HasPalette(bytes)) {
+      Fail(path, fmt::format("is a PNG with a palette of colours, expected a {} image with one "
+                             "channel of 16 bits",
+                             kind));
+    }
     Fail(path, fmt::format("has {} channel(s) of {} bits, expected a {} image with one channel of "
                            "16 bits",
                            image.channels(), 8 * image.elemSize1(), kind));

@@ -63,6 +63,18 @@ TEST(ImageFile, OnlySixteenBitDepthIsAccepted) {
   ExpectInputError([&] { ReadDepthImage(colour); }, {"c.png", "3 channel(s) of 16 bits"});
 }
 
+TEST(ImageFile, APaletteIsNamed) {
+  const TemporaryFolder folder;
+  const std::string png(
+      "\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x02\x00\x00"
+      "\x00\x01\x01\x03\x00\x00\x00\xce\xec\xed\xc9\x00\x00\x00\x06\x50\x4c\x54\x45\x00\x00\x00"
+      "\xff\x00\x00\x1b\xff\x8d\x22\x00\x00\x00\x0a\x49\x44\x41\x54\x78\x9c\x63\x70\x00\x00\x00"
+      "\x42\x00\x41\x29\x37\xf4\xef\x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82",
+      85);
+  ExpectInputError([&] { ReadDepthImage(folder.Write("p.png", png)); },
+                   {"p.png: is a PNG with a palette of colours, expected a depth image"});
+}
+
 TEST(ImageFile, GreyImagesHave8Bits) {
   const TemporaryFolder folder;
   const auto write = [&](int type) {
