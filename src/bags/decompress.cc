@@ -104,10 +104,9 @@ std::string DecompressZstd(std::string_view bytes, uint64_t most_bytes, const st
 
 ExpansionLimit::ExpansionLimit(std::filesystem::path file) : file_(std::move(file)) {
   constexpr uint64_t kMostExpansion = 100;
-  constexpr uint64_t kAlwaysAllowed = 1'000'000'000;
   std::error_code error;
   const uint64_t size = std::filesystem::file_size(file_, error);
-  most_ = kAlwaysAllowed + (error ? 0 : kMostExpansion * size);
+  most_ = kMostBagBytes + (error ? 0 : kMostExpansion * size);
 }
 
 void ExpansionLimit::Add(uint64_t decompressed) {
@@ -115,8 +114,8 @@ void ExpansionLimit::Add(uint64_t decompressed) {
   if (sum_ > most_) {
     throw InputError(fmt::format(
         "{}: its compressed parts have more than {} bytes, expected at most a hundred times the "
-        "size of the file, and 1 GB more",
-        file_.string(), most_));
+        "size of the file, and {} bytes more",
+        file_.string(), most_, kMostBagBytes));
   }
 }
 

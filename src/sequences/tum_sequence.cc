@@ -32,7 +32,7 @@ struct SharedFolder {
 };
 
 constexpr std::array<SharedFolder, 2> kSharedFolders = {
-    {{"7-Scenes", ".", ".color.", ".depth."}, {"Replica", "results", "frame", "depth"}}};
+    {{"7-Scenes", "", ".color.", ".depth."}, {"Replica", "results", "frame", "depth"}}};
 
 // The data set of a sequence in such a form; null if it has none.
 const SharedFolder* FindSharedFolder(const fs::path& folder) {
