@@ -61,7 +61,7 @@ TEST_F(Ros1BagTest, BrokenRecordsAreRefused) {
   ExpectRefusal(number(4) + number(100) + number(0), {"has more elements than bytes"});
 }
 
-// Each topic was compared with all others, so that reading a small file took minutes.
+// Each topic was compared with all others: 50 000 took 4 s, 100 000 four times as much.
 TEST_F(Ros1BagTest, TooManyTopicsAreRefusedInAMoment) {
   std::string records;
   for (uint32_t i = 0; i < 100'001; ++i) {
