@@ -15,8 +15,8 @@ enum class Compression { kNone, kBzip2, kLz4, kZstd };
 constexpr uint64_t kMostBagBytes = 256'000'000;
 
 // Limits the bytes that all compressed parts of a file become together, because reading them takes
-// time: they may be a hundred times the bytes of the file, and kMostBagBytes more. Images, which are
-// most of a recording, compress by less than that; streams of zeros by a thousand and more.
+// time: they may be a hundred times the bytes of the file, and kMostBagBytes more. Images, which
+// are most of a recording, compress by less than that; streams of zeros by a thousand and more.
 class ExpansionLimit {
  public:
   explicit ExpansionLimit(std::filesystem::path file);
