@@ -139,20 +139,23 @@ Candidates PreferredByName(const Candidates& all, BagImageKind kind) {
   return kept;
 }
 
-// The topics of a kind; if there are none, those that may be of this kind. A topic of grey images
-// with 16 bits whose name has "depth" shows no colour.
+// The topics of a kind. If there are none, those of grey images with 16 bits: for depth those whose
+// names have "depth", or else all; for colour those whose names do not have it.
 Candidates CandidatesOf(const BagIndex& index, BagImageKind kind) {
   Candidates sure;
-  Candidates possible;
+  Candidates named_depth;
+  Candidates others;
   for (const IndexedTopic& topic : index.topics) {
     if (topic.kind == kind) {
       sure.push_back(&topic);
-    } else if (topic.kind == BagImageKind::kEither &&
-               HasAny(topic.name, {"depth"}) == (kind == BagImageKind::kDepth)) {
-      possible.push_back(&topic);
+    } else if (topic.kind == BagImageKind::kEither) {
+      (HasAny(topic.name, {"depth"}) ? named_depth : others).push_back(&topic);
     }
   }
-  return sure.empty() ? possible : sure;
+  if (!sure.empty()) {
+    return sure;
+  }
+  return kind == BagImageKind::kDepth && !named_depth.empty() ? named_depth : others;
 }
 
 std::string Readable(BagImageKind kind) {

@@ -65,6 +65,8 @@ TEST(BagTopicsTest, GreyOf16BitsIsWhatNoOtherTopicIs) {
     return topic;
   };
   EXPECT_EQ(DepthOfTopics({Colour("/cam"), either("/depth")}), "/depth");
+  EXPECT_EQ(DepthOfTopics({Colour("/cam"), either("/range")}), "/range");
+  EXPECT_EQ(DepthOfTopics({either("/cam"), either("/depth")}), "/depth");
   EXPECT_EQ(DepthOfTopics({either("/cam"), Depth("/d")}), "/d");
   EXPECT_EQ(ColourOfTopics({either("/cam"), Depth("/d")}), "/cam");
   EXPECT_EQ(ColourOfTopics({either("/cam"), Colour("/c")}), "/c");
