@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
@@ -131,6 +132,16 @@ class VideoFile::Decoder {
     return static_cast<double>(stamp - begin) * av_q2d(Stream().time_base);
   }
 
+  bool HasOwnStamp() const { return frame_->pts != AV_NOPTS_VALUE; }
+
+  // The time between two frames, s. AVI stores a constant one in place of stamps, so the decoder
+  // has none for the frames that come after the end of the file. Not a number if it is not known.
+  double Interval() const {
+    const AVRational rate = Stream().avg_frame_rate;
+    return rate.num > 0 && rate.den > 0 ? 1.0 / av_q2d(rate)
+                                        : std::numeric_limits<double>::quiet_NaN();
+  }
+
   // The current frame, CV_8UC3 with blue first; empty if it cannot be converted.
   cv::Mat Image() {
     const int width = frame_->width;
@@ -222,8 +233,16 @@ void VideoFile::Rewind() {
 std::vector<double> VideoFile::ReadStamps() {
   Rewind();
   std::vector<double> stamps;
+  double begin = 0.0;  // s; without stamps, the first frame has the time at which it was decoded
   while (decoder_->Next()) {
-    stamps.push_back(decoder_->Seconds());
+    if (stamps.empty() && !decoder_->HasOwnStamp()) {
+      begin = decoder_->Seconds();
+    }
+    double stamp = decoder_->Seconds() - begin;
+    if (std::isnan(stamp) && !stamps.empty()) {
+      stamp = stamps.back() + decoder_->Interval();
+    }
+    stamps.push_back(stamp);
     if (stamps.size() > kMostImages) {
       throw InputError(fmt::format("{}: more than {} frames", path_.string(), kMostImages));
     }

@@ -182,7 +182,7 @@ TEST_F(ImageStreamTest, AVideoHasItsOwnTimeStamps) {
 // The decoder delivers the last frames after the end of the file, and in another order than that of
 // their packets.
 TEST_F(ImageStreamTest, FramesThatAreDecodedLateHaveTheirTimeStamps) {
-  for (const char* const name : {"a.mp4", "a.mkv"}) {
+  for (const char* const name : {"a.mp4", "a.mkv", "a.avi"}) {
     const ImageStream stream = OpenImageStream(WriteVideo(name, 12, "avc1"));
     ASSERT_EQ(stream.images.frames.size(), 12U) << name;
     for (size_t i = 0; i < 12; ++i) {
