@@ -2,7 +2,7 @@
 # here, so that an unsupported system gives an error when CMake configures and not during the build.
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs videoio features2d calib3d)
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs features2d calib3d)
 find_package(Ceres 2.1 REQUIRED)
 find_package(CGAL 5.5 REQUIRED)  # headers only: convex hulls, oriented boxes; needs GMP and MPFR
 find_package(nlohmann_json 3.11 REQUIRED)
@@ -13,6 +13,9 @@ find_package(BZip2 1.0 REQUIRED)  # this and the next three: recordings of ROS
 find_package(SQLite3 3.40 REQUIRED)
 find_path(LZ4_INCLUDE_DIR lz4frame.h REQUIRED)  # liblz4-dev 1.9; has no package for CMake
 find_path(ZSTD_INCLUDE_DIR zstd.h REQUIRED)     # libzstd-dev 1.5
+find_path(AVFORMAT_INCLUDE_DIR libavformat/avformat.h REQUIRED)  # this and the next two: videos
+find_path(AVCODEC_INCLUDE_DIR libavcodec/avcodec.h REQUIRED)     # FFmpeg 5.1
+find_path(SWSCALE_INCLUDE_DIR libswscale/swscale.h REQUIRED)
 find_package(Boost 1.74 REQUIRED)  # headers only: CRC, Student's t-distribution, Beast
 # three.js, for the page of the report: libjs-three (111)
 find_path(HULLSLAM_THREE_DIR examples/js/controls/OrbitControls.js PATHS /usr/share/javascript/three
@@ -24,6 +27,7 @@ if(HULLSLAM_BUILD_EXAMPLES OR HULLSLAM_BUILD_TESTS)
 endif()
 if(HULLSLAM_BUILD_TESTS)
   find_package(GTest 1.12 REQUIRED)
+  find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs videoio features2d calib3d)
 endif()
 if(HULLSLAM_BUILD_PYTHON)
   # Another Python that comes first on the PATH, such as that of pyenv, may lack numpy.

@@ -6,9 +6,12 @@ finds the objects, and SAM (segment anything) refines the mask within each box.
     scripts/make_masks.py SEQUENCE
     check_masks SEQUENCE SEQUENCE/masks --output pictures
 
-SEQUENCE has rgb.txt (TUM RGB-D) or associations.txt (ICL-NUIM). For each image a text file in the
-format yolo-seg is written to SEQUENCE/masks, and classes.txt with the names of the classes. Images
-that have a file already are left out, so an interrupted call goes on where it stopped.
+SEQUENCE is a folder with rgb.txt (TUM RGB-D), associations.txt (ICL-NUIM), a folder rgb, or the images
+themselves; or a video. For each image a text file in the format yolo-seg is written to SEQUENCE/masks
+(VIDEO_masks beside a video), and classes.txt with the names of the classes. Images that have a file
+already are left out, so an interrupted call goes on where it stopped. Images that EXIF data turn are
+shown to the networks as a viewer shows them; their masks are those of the stored pixels, which
+HullSLAM reads.
 
 Both networks are those of the Python package ultralytics (pip install ultralytics), which downloads
 their weights when they are used first. Start this script with the Python that has the package; it
@@ -24,6 +27,7 @@ import sys
 import time
 
 from run_errors import InputError, exit_code, one_line
+from run_frames import VideoFrames, colour_images, orientation_of, turn, turn_back
 
 SETTINGS = "make_masks.json"  # beside the masks: the networks that made them
 MIN_AREA = 100.0  # px^2, of a mask that is written
@@ -39,7 +43,26 @@ def list_images(sequence):
         if path.is_file():
             return [image for line in read_lines(path)
                     for image in [sequence / word_of(path, *line, column)]]
-    raise InputError(f"{sequence}: is no sequence, expected rgb.txt or associations.txt")
+    images = colour_images(sequence)
+    if not images:
+        raise InputError(f"{sequence}: is no sequence, expected a video, or a folder with rgb.txt, "
+                         "associations.txt, a folder rgb, or PNG or JPEG images")
+    return images
+
+
+def frames_of_video(path):
+    """(name, function that gives the image) of each frame; the names are those that mono_video has."""
+    video, number = VideoFrames(path), 0
+    while video.skip():
+        yield f"{number:06d}", video.image
+        number += 1
+    if number == 0:
+        raise InputError(f"{path}: no frame of the video can be decoded")
+
+
+def frames_of_folder(images):
+    for path in images:
+        yield path.stem, lambda path=path: path
 
 
 def read_lines(path):
@@ -128,12 +151,28 @@ def as_array(tensor):
     return tensor.cpu().numpy() if hasattr(tensor, "cpu") else tensor
 
 
+def upright(image):
+    """An image for the networks, and how it was turned: a number of EXIF. `image` is a path or, of a
+    video, the pixels."""
+    orientation = orientation_of(image) if isinstance(image, pathlib.Path) else 1
+    if orientation == 1:
+        return (str(image) if isinstance(image, pathlib.Path) else image), orientation
+    import cv2
+    import numpy as np
+    stored = cv2.imread(str(image), cv2.IMREAD_COLOR | cv2.IMREAD_IGNORE_ORIENTATION)
+    if stored is None:
+        raise InputError(f"{image}: cannot be decoded, expected a PNG or JPEG image")
+    return np.ascontiguousarray(turn(stored, orientation)), orientation
+
+
 def detect(networks, image, arguments):
-    """[(class, confidence, mask)] of an image; masks have its height and width."""
+    """[(class, confidence, mask)] of an image; masks have the height and width of its pixels as
+    stored."""
     detector, refiner = networks
+    shown, orientation = upright(image)
     options = {"verbose": False, **({"device": arguments.device} if arguments.device else {})}
     # retina_masks asks for masks of the size of the image instead of that of the network.
-    found = detector(str(image), conf=arguments.confidence, retina_masks=True, **options)[0]
+    found = detector(shown, conf=arguments.confidence, retina_masks=True, **options)[0]
     boxes = found.boxes
     if boxes is None or len(boxes) == 0:
         return []
@@ -149,7 +188,7 @@ def detect(networks, image, arguments):
     if wrong or len(arrays) != len(boxes):
         raise InputError(f"{image}: the networks gave {len(arrays)} masks of {wrong or size} pixels "
                          f"for {len(boxes)} boxes in an image of {size} pixels")
-    return [(int(number), float(score), array > 0.5) for number, score, array in
+    return [(int(number), float(score), turn_back(array > 0.5, orientation)) for number, score, array in
             zip(as_array(boxes.cls), as_array(boxes.conf), arrays) if array is not None]
 
 
@@ -207,32 +246,50 @@ def show(done, count, begin, at_begin):
               end="" if is_terminal and done < count else "\n", file=sys.stderr, flush=True)
 
 
-def make_masks(arguments):
-    images = list_images(arguments.sequence)
+def find_frames(sequence):
+    """The number of frames, and a function that gives (name, function for the image) of each."""
+    if sequence.is_file():
+        return sum(1 for _ in frames_of_video(sequence)), lambda: frames_of_video(sequence)
+    images = list_images(sequence)
     missing = [image for image in images if not image.is_file()]
     if missing:
         raise InputError(f"{missing[0]}: is missing, as are {len(missing) - 1} other images of the "
                          "sequence; download it again")
-    out = arguments.out or arguments.sequence / "masks"
+    return len(images), lambda: frames_of_folder(images)
+
+
+def default_folder(sequence):
+    return sequence.with_name(sequence.stem + "_masks") if sequence.is_file() else sequence / "masks"
+
+
+def make_masks(arguments):
+    count, frames = find_frames(arguments.sequence)
+    out = arguments.out or default_folder(arguments.sequence)
     prepare(out, arguments)
-    pending = [image for image in images if not (out / f"{image.stem}.txt").exists()]
-    networks = load_networks(arguments) if pending else None
-    if pending:
-        names = networks[0].names
-        write(out / "classes.txt", "".join(f"{names[number]}\n" for number in range(len(names))))
-    begin, at_begin = time.monotonic(), len(images) - len(pending)
-    for done, image in enumerate(pending, at_begin + 1):
-        write(out / f"{image.stem}.txt", yolo_text(detect(networks, image, arguments)))
+    networks, new = None, 0
+    begin = time.monotonic()
+    for done, (name, read) in enumerate(frames(), 1):
+        path = out / f"{name}.txt"
+        if path.exists():
+            continue
+        if networks is None:
+            networks = load_networks(arguments)
+            names = networks[0].names
+            write(out / "classes.txt", "".join(f"{names[number]}\n" for number in range(len(names))))
+            begin = time.monotonic()
+        write(path, yolo_text(detect(networks, read(), arguments)))
+        new += 1
         if not arguments.quiet:
-            show(done, len(images), begin, at_begin)
-    print(f"{out}: masks of {len(images)} images, {len(pending)} of them new")
+            show(done, count, begin, done - new)
+    print(f"{out}: masks of {count} images, {new} of them new")
 
 
 def parse_arguments(words):
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sequence", type=pathlib.Path, metavar="SEQUENCE")
-    parser.add_argument("--out", type=pathlib.Path, help="folder for masks (default: SEQUENCE/masks)")
+    parser.add_argument("--out", type=pathlib.Path,
+                        help="folder for masks (default: SEQUENCE/masks, or VIDEO_masks)")
     parser.add_argument("--model", default="yolov8x-seg.pt",
                         help="weights of YOLO (default yolov8x-seg.pt)")
     parser.add_argument("--refine", default="sam_b.pt", metavar="MODEL",

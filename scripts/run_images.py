@@ -9,10 +9,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from run_files import InputError, one_line
+from run_frames import VideoFrames, list_images
 
 DEFAULT_FPS = 30.0
 CLOCKS = {13: 1e3, 16: 1e6, 19: 1e9}  # digits of a stamp without a point: its units per second
-SUFFIXES = (".png", ".jpg", ".jpeg")
 TOLERANCE = 1e-3  # s
 
 
@@ -36,31 +36,26 @@ class Video:
     """Images of a video file."""
 
     def __init__(self, path, fps, offset):
-        try:
-            import cv2  # only videos need it
-        except ImportError as error:
-            raise InputError(f"{path}: a video needs the Debian package python3-opencv") from error
-        self.path, self.cv2, stamps = path, cv2, []
-        video = self._open()
-        while video.grab():
-            stamps.append(video.get(cv2.CAP_PROP_POS_MSEC) / 1e3)
+        self.path, stamps = path, []
+        video = VideoFrames(path)
+        while video.skip():
+            stamps.append(video.milliseconds() / 1e3)
         if not stamps:
             raise InputError(f"{path}: no frame of the video can be decoded")
-        self.stamps = (np.arange(len(stamps)) / fps if fps else np.array(stamps)) + offset
-
-    def _open(self):
-        video = self.cv2.VideoCapture(str(self.path), self.cv2.CAP_FFMPEG)
-        if not video.isOpened():
-            raise InputError(f"{self.path}: is not a video that can be decoded")
-        return video
+        stamps = np.array(stamps)
+        if not fps and (np.diff(stamps) <= 0).any():
+            # OpenCV 4.6 does not know the stamps of frames that the decoder delivers late. Cameras
+            # take most videos at a constant rate.
+            fps = video.rate()
+        self.stamps = (np.arange(len(stamps)) / fps if fps else stamps) + offset
 
     def at(self, stamp):
         number = nearest(self.path, self.stamps, stamp)
-        video = self._open()
+        video = VideoFrames(self.path)
         for _ in range(number + 1):
-            video.grab()
-        is_good, image = video.retrieve()
-        if not is_good:
+            video.skip()
+        image = video.image()
+        if image is None:
             raise InputError(f"{self.path}: frame {number} cannot be decoded")
         return image[:, :, ::-1]  # OpenCV's images have blue first
 
@@ -92,13 +87,6 @@ def read_list(path):
     except (OSError, ValueError, IndexError) as error:
         raise InputError(f"{path}: not a list of images with one line `stamp file` per image: "
                          f"{one_line(error)}; give the folder of the images by --sequence") from error
-
-
-def list_images(folder):
-    """In natural order: frame2 before frame10."""
-    def key(path):
-        return [int(part) if part.isdecimal() else part for part in re.split(r"(\d+)", path.name)]
-    return sorted((path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES), key=key)
 
 
 def stamp_of_name(path, fps):

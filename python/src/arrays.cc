@@ -73,12 +73,18 @@ bool HasImageLayout(const py::array& array, int channels) {
 }
 
 // `array` has two or three dimensions.
-PixelView View(py::array array, const std::string& name) {
+PixelView View(py::array array, const std::string& name, cv::Size size = {}) {
   for (int axis = 0; axis < 2; ++axis) {
     if (array.shape(axis) < 1 || array.shape(axis) > kLargestSide) {
       throw InputError(name + " has the shape " + ShapeOf(array) +
                        ", expected a height and a width from 1 to 65536 px");
     }
+  }
+  if (!size.empty() && (array.shape(0) != size.height || array.shape(1) != size.width)) {
+    throw InputError(name + " is " + std::to_string(array.shape(1)) + "x" +
+                     std::to_string(array.shape(0)) +
+                     " px, expected Camera.width x Camera.height, " + std::to_string(size.width) +
+                     "x" + std::to_string(size.height) + " px");
   }
   const int channels = array.ndim() == 3 ? static_cast<int>(array.shape(2)) : 1;
   if (!HasImageLayout(array, channels)) {
@@ -99,7 +105,7 @@ PixelView View(py::array array, const std::string& name) {
 
 }  // namespace
 
-PixelView ViewImage(const py::object& pixels, const std::string& name) {
+PixelView ViewImage(const py::object& pixels, const std::string& name, cv::Size size) {
   py::array array = AsArray(pixels, name);
   CheckType(array, name, {"uint8"});
   const bool is_grey = array.ndim() == 2;
@@ -108,22 +114,22 @@ PixelView ViewImage(const py::object& pixels, const std::string& name) {
     throw InputError(name + " has the shape " + ShapeOf(array) +
                      ", expected (height, width) or (height, width, 3 or 4)");
   }
-  return View(std::move(array), name);
+  return View(std::move(array), name, size);
 }
 
-PixelView ViewDepth(const py::object& pixels) {
+PixelView ViewDepth(const py::object& pixels, cv::Size size) {
   return pixels.is_none() ? PixelView()
-                          : ViewPlane(pixels, "the depth image", {"uint16", "float32"});
+                          : ViewPlane(pixels, "the depth image", {"uint16", "float32"}, size);
 }
 
 PixelView ViewPlane(const py::object& pixels, const std::string& name,
-                    const std::vector<std::string>& types) {
+                    const std::vector<std::string>& types, cv::Size size) {
   py::array array = AsArray(pixels, name);
   CheckType(array, name, types);
   if (array.ndim() != 2) {
     throw InputError(name + " has the shape " + ShapeOf(array) + ", expected (height, width)");
   }
-  return View(std::move(array), name);
+  return View(std::move(array), name, size);
 }
 
 StackView ViewStack(const py::object& pixels, const std::string& name) {

@@ -23,15 +23,18 @@ struct PixelView {
   cv::Mat image;
 };
 
+// In the functions below, `size` is that of the camera, which is checked before anything is copied;
+// an empty size is not checked.
+
 // A colour or grey image: uint8, of shape (height, width) or (height, width, 3 or 4). Throws
 // InputError that starts with `name` for anything else.
-PixelView ViewImage(const py::object& pixels, const std::string& name);
+PixelView ViewImage(const py::object& pixels, const std::string& name, cv::Size size);
 // A depth image (height, width): uint16 in units of 1 / DepthMapFactor metres, or float32 in
 // metres. None gives an empty image.
-PixelView ViewDepth(const py::object& pixels);
+PixelView ViewDepth(const py::object& pixels, cv::Size size);
 // An image of one channel (height, width) whose type has one of these names: "bool", "uint8" ...
 PixelView ViewPlane(const py::object& pixels, const std::string& name,
-                    const std::vector<std::string>& types);
+                    const std::vector<std::string>& types, cv::Size size = {});
 // The objects of a stack (count, height, width) of bool or uint8, one image per object.
 struct StackView {
   py::list planes;  // arrays of the pixels of `images`, which they keep alive

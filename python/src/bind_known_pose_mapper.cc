@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <pybind11/stl.h>
 
-#include <cmath>
 #include <memory>
 #include <mutex>
 #include <utility>
 
 #include "arrays.h"
 #include "hullslam/system/known_pose_mapper.h"
+#include "live_system.h"
 #include "module.h"
 #include "types.h"
 #include "without_gil.h"
@@ -16,8 +16,10 @@ namespace hullslam::python {
 namespace {
 
 struct LiveMapper {
-  explicit LiveMapper(const SystemOptions& options) : mapper(options) {}
+  explicit LiveMapper(const SystemOptions& options)
+      : size(options.camera.width, options.camera.height), mapper(options) {}
 
+  const cv::Size size;  // of the camera, px
   std::mutex mutex;
   KnownPoseMapper mapper;
 };
@@ -25,10 +27,8 @@ struct LiveMapper {
 void AddView(LiveMapper& live, const py::object& world_from_cam, const MaskList& masks,
              const py::object& depth, double timestamp) {
   const Rigid3 pose = ToPose(world_from_cam, "world_from_cam");
-  const PixelView depths = ViewDepth(depth);
-  if (!std::isfinite(timestamp)) {
-    throw InputError("timestamp is not finite, expected seconds");
-  }
+  const PixelView depths = ViewDepth(depth, live.size);
+  CheckStamp(timestamp);
   WithoutGil([&] {
     const std::lock_guard lock(live.mutex);
     live.mapper.AddView(timestamp, pose, masks.masks, depths.image);

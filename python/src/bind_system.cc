@@ -76,8 +76,10 @@ std::vector<InstanceMask> MasksOf(const MaskList* masks, const cv::Mat& image) {
 
 FrameReport Track(LiveSystem& system, const py::object& image, const py::object& depth,
                   const MaskList* masks, double timestamp) {
-  const PixelView pixels = ViewImage(image, "the image");
-  const PixelView depths = ViewDepth(depth);
+  const PinholeCamera& camera = system.options().camera;
+  const cv::Size size(camera.width, camera.height);
+  const PixelView pixels = ViewImage(image, "the image", size);
+  const PixelView depths = ViewDepth(depth, size);
   std::vector<InstanceMask> instances = MasksOf(masks, pixels.image);
   return WithoutGil(
       [&] { return system.Track(timestamp, pixels.image, depths.image, std::move(instances)); });

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "live_system.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <set>
 #include <utility>
@@ -10,6 +12,9 @@
 
 namespace hullslam::python {
 namespace {
+
+constexpr double kMostSeconds = 1e11;  // as in files/plausible.h; milliseconds since 1970 are more
+constexpr double kLongestPause = 1e6;  // s, eleven days; no run has such a pause between frames
 
 // All systems that exist, so that their threads can be ended before the program ends.
 struct Registry {
@@ -23,6 +28,18 @@ Registry& TheRegistry() {
 }
 
 }  // namespace
+
+void CheckStamp(double timestamp) {
+  if (!std::isfinite(timestamp)) {
+    throw InputError("timestamp is not finite, expected seconds");
+  }
+  if (std::abs(timestamp) > kMostSeconds) {
+    throw InputError(
+        fmt::format("timestamp is {:g}, expected seconds, up to {:g}; those of other "
+                    "units must be converted, such as nanoseconds / 1e9",
+                    timestamp, kMostSeconds));
+  }
+}
 
 LiveSystem::LiveSystem(const SystemOptions& options, PipelineKind kind, SystemStart start)
     : options_(options), kind_(kind) {
@@ -71,13 +88,15 @@ FrameReport LiveSystem::Track(double timestamp, const cv::Mat& image, const cv::
   if (is_finished_) {
     throw InputError("track() was called after finish(); reset() begins a new run");
   }
-  if (!std::isfinite(timestamp)) {
-    throw InputError("timestamp is not finite, expected seconds");
-  }
+  CheckStamp(timestamp);
   if (last_stamp_ && !(timestamp > *last_stamp_)) {
     throw InputError("timestamp is " + std::to_string(timestamp) +
                      " s, expected more than that of the last frame, " +
                      std::to_string(*last_stamp_) + " s");
+  }
+  if (last_stamp_ && timestamp - *last_stamp_ > kLongestPause) {
+    throw InputError("timestamp is " + std::to_string(timestamp - *last_stamp_) +
+                     " s after that of the last frame, expected seconds, not nanoseconds");
   }
   const bool has_depth = options_.sensor == SensorKind::kRgbd;
   if (has_depth && depth.empty()) {

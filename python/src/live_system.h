@@ -13,6 +13,9 @@
 
 namespace hullslam::python {
 
+// Throws InputError for a time stamp that is not finite, or too large to be in seconds.
+void CheckStamp(double timestamp);
+
 // A System for callers of any order: threads take turns, and a call that comes at the wrong time is
 // an InputError. All functions are called without the GIL, unless they say otherwise.
 class LiveSystem {

@@ -20,6 +20,23 @@ void TranslateCancelled(std::exception_ptr error) {
   }
 }
 
+void* RefuseUninitialised(size_t /*bytes*/) {
+  throw pybind11::type_error("the object was made without __init__ and cannot be used");
+}
+
+// To read a member of an object that was made by __new__ alone, pybind11 makes memory for it whose
+// content is undefined. Refuses that for all classes of the module.
+void RefuseUninitialisedObjects(const pybind11::module_& module) {
+  for (const auto& [name, member] : pybind11::cast<pybind11::dict>(module.attr("__dict__"))) {
+    if (PyType_Check(member.ptr()) != 0) {
+      auto* const type = reinterpret_cast<PyTypeObject*>(member.ptr());
+      if (auto* const info = pybind11::detail::get_type_info(type); info != nullptr) {
+        info->operator_new = &RefuseUninitialised;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_core, module) {
@@ -34,6 +51,7 @@ PYBIND11_MODULE(_core, module) {
   BindMap(module);
   BindSystem(module);
   BindKnownPoseMapper(module);
+  RefuseUninitialisedObjects(module);
   pybind11::module_::import("atexit").attr("register")(pybind11::cpp_function([] {
     EndCallsAtExit();
     LiveSystem::CloseAll();

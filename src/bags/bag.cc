@@ -62,19 +62,20 @@ std::vector<fs::path> ListBags(const fs::path& folder) {
 
 }  // namespace
 
-size_t Bag::AddTopic(const std::string& name, const std::string& type) {
+size_t Bag::AddTopic(const std::string& name, const std::string& type, MessageCoding coding) {
+  constexpr size_t kMost = 100'000;
   std::string short_type = type;
   if (const size_t at = type.find("/msg/"); at != std::string::npos) {
     short_type.erase(at, 4);  // sensor_msgs/msg/Image in ROS 2
   }
-  const auto found = std::find_if(topics_.begin(), topics_.end(), [&](const BagTopic& topic) {
-    return topic.name == name && topic.type == short_type;
-  });
-  if (found != topics_.end()) {
-    return static_cast<size_t>(found - topics_.begin());
+  const auto [entry, is_new] = indices_.try_emplace({name, short_type, coding}, topics_.size());
+  if (is_new) {
+    if (topics_.size() == kMost) {
+      throw InputError(fmt::format("the recording has more than {} topics", kMost));
+    }
+    topics_.push_back({name, short_type, 0, coding});
   }
-  topics_.push_back({name, short_type});
-  return topics_.size() - 1;
+  return entry->second;
 }
 
 void Bag::WarnOfMissingEnd(const RandomAccessFile& file, uint64_t record) {

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "bags/field_reader.h"
@@ -19,6 +21,7 @@ struct BagTopic {
   std::string name;
   std::string type;  // as ROS 1 writes it: "sensor_msgs/Image"
   size_t messages = 0;
+  MessageCoding coding = MessageCoding::kCdr;
 };
 
 // Where a message is in its file. What the numbers mean is known to the reader of the format.
@@ -35,7 +38,7 @@ struct BagMessage {
   std::string_view bytes;  // only valid during the visit
 };
 
-// A file with messages of ROS.
+// A file with messages of ROS or Foxglove.
 class Bag {
  public:
   Bag() = default;
@@ -43,7 +46,6 @@ class Bag {
   Bag(const Bag&) = delete;
   Bag& operator=(const Bag&) = delete;
 
-  virtual MessageCoding coding() const = 0;
   // Visits all messages in the order of the file and fills topics() and warnings(). To be called
   // once. Only one chunk is in memory at a time. Throws InputError with the file and the position
   // of what is broken. A file that ends too early is read up to there, with a warning.
@@ -56,13 +58,16 @@ class Bag {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  protected:
-  // The index of the topic, which is added if it is new.
-  size_t AddTopic(const std::string& name, const std::string& type);
+  // The index of the topic, which is added if it is new. Throws InputError for too many topics.
+  size_t AddTopic(const std::string& name, const std::string& type, MessageCoding coding);
   // Adds the warning that the file ends within the record that begins at byte `record`.
   void WarnOfMissingEnd(const RandomAccessFile& file, uint64_t record);
 
   std::vector<BagTopic> topics_;
   std::vector<std::string> warnings_;
+
+ private:
+  std::map<std::tuple<std::string, std::string, MessageCoding>, size_t> indices_;
 };
 
 // Opens the files of a recording: one file in the format of MCAP, of rosbag2 (SQLite) or of ROS 1

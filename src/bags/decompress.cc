@@ -7,6 +7,8 @@
 #include <zstd.h>
 
 #include <memory>
+#include <system_error>
+#include <utility>
 
 #include "hullslam/util/check.h"
 #include "hullslam/util/error.h"
@@ -99,6 +101,23 @@ std::string DecompressZstd(std::string_view bytes, uint64_t most_bytes, const st
 }
 
 }  // namespace
+
+ExpansionLimit::ExpansionLimit(std::filesystem::path file) : file_(std::move(file)) {
+  constexpr uint64_t kMostExpansion = 100;
+  std::error_code error;
+  const uint64_t size = std::filesystem::file_size(file_, error);
+  most_ = kMostBagBytes + (error ? 0 : kMostExpansion * size);
+}
+
+void ExpansionLimit::Add(uint64_t decompressed) {
+  sum_ += decompressed;
+  if (sum_ > most_) {
+    throw InputError(fmt::format(
+        "{}: its compressed parts have more than {} bytes, expected at most a hundred times the "
+        "size of the file, and {} bytes more",
+        file_.string(), most_, kMostBagBytes));
+  }
+}
 
 Compression ParseCompression(std::string_view name, const std::string& place) {
   if (name.empty() || name == "none") {

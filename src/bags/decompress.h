@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,21 @@ enum class Compression { kNone, kBzip2, kLz4, kZstd };
 
 // The limit for a chunk or a message, decompressed. A few bytes can claim to be any number.
 constexpr uint64_t kMostBagBytes = 256'000'000;
+
+// Limits the bytes that all compressed parts of a file become together, because reading them takes
+// time: they may be a hundred times the bytes of the file, and kMostBagBytes more. Images, which
+// are most of a recording, compress by less than that; streams of zeros by a thousand and more.
+class ExpansionLimit {
+ public:
+  explicit ExpansionLimit(std::filesystem::path file);
+  // Throws InputError with the file if there are too many.
+  void Add(uint64_t decompressed);
+
+ private:
+  std::filesystem::path file_;
+  uint64_t most_ = 0;
+  uint64_t sum_ = 0;
+};
 
 // The compression with this name in a bag: "", "none", "bz2", "lz4" or "zstd". Throws InputError
 // that begins with `place` for another name.

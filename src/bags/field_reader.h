@@ -14,12 +14,13 @@ namespace hullslam {
 
 // How the fields of a message become bytes.
 enum class MessageCoding {
-  kCdr,   // ROS 2: CDR of OMG's RTPS, numbers aligned to their size, in either order of bytes
-  kRos1,  // ROS 1: little-endian, without gaps
+  kCdr,       // ROS 2: CDR of OMG's RTPS, numbers aligned to their size, in either order of bytes
+  kRos1,      // ROS 1: little-endian, without gaps
+  kProtobuf,  // messages of Foxglove; ProtobufReader reads them
 };
 
-// Reads the fields of a message of ROS one after the other. All functions throw InputError that
-// begins with `name` if the bytes end too early.
+// Reads the fields of a message of ROS (kCdr or kRos1) one after the other. All functions throw
+// InputError that begins with `name` if the bytes end too early.
 class FieldReader {
  public:
   // `bytes` must outlive the reader. CDR begins with four bytes that tell its kind; throws

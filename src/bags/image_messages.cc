@@ -3,6 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "bags/protobuf_reader.h"
+#include "files/byte_reader.h"
+#include "hullslam/util/error.h"
+
 namespace hullslam {
 namespace {
 
@@ -24,10 +30,133 @@ BagTime ReadHeader(FieldReader& reader) {
   return stamp;
 }
 
+// google.protobuf.Timestamp.
+BagTime ReadTimestamp(std::string_view bytes, const std::string& name) {
+  BagTime stamp;
+  ProtobufReader reader(bytes, name);
+  while (reader.Next()) {
+    if (reader.field() == 1) {
+      stamp.seconds = static_cast<int64_t>(reader.number());
+    } else if (reader.field() == 2) {
+      stamp.nanoseconds = static_cast<uint32_t>(reader.number());
+    }
+  }
+  if (stamp.nanoseconds >= 1'000'000'000) {
+    throw InputError(
+        fmt::format("{} has a stamp with {} nanoseconds, expected less than 1000000000", name,
+                    stamp.nanoseconds));
+  }
+  return stamp;
+}
+
+// foxglove.RawImage. Its numbers of 16 and 32 bits are little-endian.
+RawImageMessage ReadFoxgloveImage(std::string_view bytes, const std::string& name) {
+  RawImageMessage image;
+  ProtobufReader reader(bytes, name);
+  while (reader.Next()) {
+    switch (reader.field()) {
+      case 1:
+        image.stamp = ReadTimestamp(reader.bytes(), name);
+        break;
+      case 2:
+        image.width = static_cast<uint32_t>(reader.number());
+        break;
+      case 3:
+        image.height = static_cast<uint32_t>(reader.number());
+        break;
+      case 4:
+        image.encoding = reader.bytes();
+        break;
+      case 5:
+        image.step = static_cast<uint32_t>(reader.number());
+        break;
+      case 6:
+        image.data = reader.bytes();
+        break;
+      default:
+        break;
+    }
+  }
+  return image;
+}
+
+// foxglove.CompressedImage.
+CompressedImageMessage ReadFoxgloveCompressedImage(std::string_view bytes,
+                                                   const std::string& name) {
+  CompressedImageMessage image;
+  ProtobufReader reader(bytes, name);
+  while (reader.Next()) {
+    if (reader.field() == 1) {
+      image.stamp = ReadTimestamp(reader.bytes(), name);
+    } else if (reader.field() == 2) {
+      image.data = reader.bytes();
+    } else if (reader.field() == 3) {
+      image.format = reader.bytes();
+    }
+  }
+  return image;
+}
+
+// A packed list of numbers.
+std::vector<double> ReadDoubles(std::string_view bytes, const std::string& name) {
+  std::vector<double> numbers(bytes.size() / sizeof(double));
+  ByteReader reader(bytes, name);
+  for (double& number : numbers) {
+    number = reader.Get<double>();
+  }
+  return numbers;
+}
+
+// foxglove.CameraCalibration.
+CameraInfoMessage ReadFoxgloveCamera(std::string_view bytes, const std::string& name) {
+  CameraInfoMessage camera;
+  ProtobufReader reader(bytes, name);
+  while (reader.Next()) {
+    if (reader.field() == 2) {
+      camera.width = static_cast<uint32_t>(reader.number());
+    } else if (reader.field() == 3) {
+      camera.height = static_cast<uint32_t>(reader.number());
+    } else if (reader.field() == 4) {
+      camera.distortion_model = std::string(reader.bytes());
+    } else if (reader.field() == 5) {
+      camera.distortion = ReadDoubles(reader.bytes(), name);
+    } else if (reader.field() == 6) {
+      const std::vector<double> k = ReadDoubles(reader.bytes(), name);
+      std::copy_n(k.begin(), std::min(k.size(), camera.k.size()), camera.k.begin());
+    }
+  }
+  return camera;
+}
+
+void CheckRows(const RawImageMessage& image, const std::string& name) {
+  if (uint64_t{image.step} * image.height > image.data.size()) {
+    throw InputError(fmt::format("{} has an image of {} rows of {} bytes, but only {} bytes", name,
+                                 image.height, image.step, image.data.size()));
+  }
+}
+
 }  // namespace
+
+BagContent ContentOf(const BagTopic& topic) {
+  const bool is_protobuf = topic.coding == MessageCoding::kProtobuf;
+  if (topic.type == (is_protobuf ? "foxglove.RawImage" : "sensor_msgs/Image")) {
+    return BagContent::kImage;
+  }
+  if (topic.type == (is_protobuf ? "foxglove.CompressedImage" : "sensor_msgs/CompressedImage")) {
+    return BagContent::kCompressedImage;
+  }
+  return topic.type == (is_protobuf ? "foxglove.CameraCalibration" : "sensor_msgs/CameraInfo")
+             ? BagContent::kCamera
+             : BagContent::kOther;
+}
 
 RawImageMessage ReadRawImage(MessageCoding coding, std::string_view bytes,
                              const std::string& name) {
+  if (coding == MessageCoding::kProtobuf) {
+    const RawImageMessage image = ReadFoxgloveImage(bytes, name);
+    CheckRows(image, name);
+    return image;
+  }
   FieldReader reader(coding, bytes, name);
   RawImageMessage image;
   image.stamp = ReadHeader(reader);
@@ -37,15 +166,15 @@ RawImageMessage ReadRawImage(MessageCoding coding, std::string_view bytes,
   image.is_big_endian = reader.Get<uint8_t>() != 0;
   image.step = reader.Get<uint32_t>();
   image.data = reader.GetBytes();
-  if (uint64_t{image.step} * image.height > image.data.size()) {
-    reader.Fail(fmt::format("has an image of {} rows of {} bytes, but only {} bytes", image.height,
-                            image.step, image.data.size()));
-  }
+  CheckRows(image, name);
   return image;
 }
 
 CompressedImageMessage ReadCompressedImage(MessageCoding coding, std::string_view bytes,
                                            const std::string& name) {
+  if (coding == MessageCoding::kProtobuf) {
+    return ReadFoxgloveCompressedImage(bytes, name);
+  }
   FieldReader reader(coding, bytes, name);
   CompressedImageMessage image;
   image.stamp = ReadHeader(reader);
@@ -56,6 +185,9 @@ CompressedImageMessage ReadCompressedImage(MessageCoding coding, std::string_vie
 
 CameraInfoMessage ReadCameraInfo(MessageCoding coding, std::string_view bytes,
                                  const std::string& name) {
+  if (coding == MessageCoding::kProtobuf) {
+    return ReadFoxgloveCamera(bytes, name);
+  }
   FieldReader reader(coding, bytes, name);
   CameraInfoMessage camera;
   ReadHeader(reader);

@@ -7,11 +7,13 @@
 #include <string_view>
 #include <vector>
 
+#include "bags/bag.h"
 #include "bags/field_reader.h"
 
 namespace hullslam {
 
-// The messages of sensor_msgs that a sequence is made of. Views refer to the bytes of the message.
+// The messages that a sequence is made of: those of ROS (sensor_msgs), and those of Foxglove with
+// the same content. Views refer to the bytes of the message.
 
 // A time as ROS has it: seconds and nanoseconds since a beginning that the recorder knows.
 struct BagTime {
@@ -24,7 +26,12 @@ struct BagTime {
   double Seconds() const { return static_cast<double>(seconds) + nanoseconds / 1e9; }
 };
 
-// sensor_msgs/Image. The rows have `step` bytes each; `data` has at least `height` of them.
+// What the messages of a topic are.
+enum class BagContent { kImage, kCompressedImage, kCamera, kOther };
+BagContent ContentOf(const BagTopic& topic);
+
+// sensor_msgs/Image or foxglove.RawImage. The rows have `step` bytes each; `data` has at least
+// `height` of them.
 struct RawImageMessage {
   BagTime stamp;
   uint32_t height = 0;  // px
@@ -35,14 +42,15 @@ struct RawImageMessage {
   std::string_view data;
 };
 
-// sensor_msgs/CompressedImage.
+// sensor_msgs/CompressedImage or foxglove.CompressedImage.
 struct CompressedImageMessage {
   BagTime stamp;
   std::string_view format;  // "jpeg", "bgr8; jpeg compressed bgr8", "16UC1; compressedDepth", ...
   std::string_view data;
 };
 
-// sensor_msgs/CameraInfo, without what is only used for stereo cameras.
+// sensor_msgs/CameraInfo or foxglove.CameraCalibration, without what is only used for stereo
+// cameras.
 struct CameraInfoMessage {
   uint32_t height = 0;  // px
   uint32_t width = 0;

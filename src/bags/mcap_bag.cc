@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include "bags/decompress.h"
+#include <optional>
+
 #include "files/byte_reader.h"
 #include "hullslam/util/error.h"
 
@@ -22,6 +23,17 @@ struct RecordHead {
 RecordHead ReadRecordHead(std::string_view bytes) {
   ByteReader reader(bytes, "the head of a record");
   return {static_cast<McapRecord>(reader.Get<uint8_t>()), reader.Get<uint64_t>()};
+}
+
+// The codings of messages by the names that channels have for them.
+std::optional<MessageCoding> CodingOf(std::string_view encoding) {
+  if (encoding == "cdr") {
+    return MessageCoding::kCdr;
+  }
+  if (encoding == "ros1") {
+    return MessageCoding::kRos1;
+  }
+  return encoding == "protobuf" ? std::optional(MessageCoding::kProtobuf) : std::nullopt;
 }
 
 }  // namespace
@@ -66,10 +78,11 @@ void McapBag::Take(McapRecord kind, std::string_view content, const MessagePlace
     const auto schema = reader.Get<uint16_t>();
     const std::string topic = reader.GetText();
     const std::string encoding = reader.GetText();
-    const bool is_cdr = encoding == "cdr";
     const std::string type = schemas_.contains(schema) ? schemas_.at(schema) : "no type";
-    channels_[id] = {AddTopic(topic, is_cdr ? type : fmt::format("{} ({})", type, encoding)),
-                     is_cdr};
+    const std::optional<MessageCoding> coding = CodingOf(encoding);
+    channels_[id] = {AddTopic(topic, coding ? type : fmt::format("{} ({})", type, encoding),
+                              coding.value_or(MessageCoding::kCdr)),
+                     coding.has_value()};
   } else if (kind == McapRecord::kMessage) {
     const auto channel = channels_.find(reader.Get<uint16_t>());
     reader.Require(channel != channels_.end(), "is a message of a channel that was not declared");
@@ -77,7 +90,7 @@ void McapBag::Take(McapRecord kind, std::string_view content, const MessagePlace
     const auto logged = static_cast<int64_t>(reader.Get<uint64_t>());
     reader.Get<uint64_t>();
     ++topics_[channel->second.topic].messages;
-    if (channel->second.is_cdr) {
+    if (channel->second.is_read) {
       visit({channel->second.topic,
              logged,
              {place.chunk, place.offset + kMessageHead, place.size - kMessageHead},
@@ -89,6 +102,7 @@ void McapBag::Take(McapRecord kind, std::string_view content, const MessagePlace
 void McapBag::TakeChunk(uint64_t position, std::string_view record,
                         const std::function<void(const BagMessage& message)>& visit) {
   const std::string chunk = LoadChunk(position, record);
+  expansion_.Add(chunk.size());
   const std::string_view records = chunk;
   for (size_t at = 0; at < records.size();) {
     ByteReader reader(records.substr(at), Place(position));

@@ -8,6 +8,7 @@
 
 #include "bags/bag.h"
 #include "bags/chunk_cache.h"
+#include "bags/decompress.h"
 #include "files/random_access_file.h"
 
 namespace hullslam {
@@ -30,21 +31,20 @@ enum class McapRecord : uint8_t {
   kDataEnd = 0x0f,
 };
 
-// A file of MCAP with messages of ROS 2, in chunks or not. Its data section is read from the
-// beginning to the end, so a file without an index is read like any other. Channels with other
-// encodings than cdr are only listed.
+// A file of MCAP with messages of ROS 2, of ROS 1 or of Foxglove (protobuf), in chunks or not. Its
+// data section is read from the beginning to the end, so a file without an index is read like any
+// other. Channels with other encodings are only listed.
 class McapBag final : public Bag {
  public:
-  explicit McapBag(const std::filesystem::path& path) : file_(path) {}
+  explicit McapBag(const std::filesystem::path& path) : file_(path), expansion_(path) {}
 
-  MessageCoding coding() const override { return MessageCoding::kCdr; }
   void Scan(const std::function<void(const BagMessage& message)>& visit) override;
   std::string Read(const MessagePlace& place) override;
 
  private:
   struct Channel {
     size_t topic = 0;
-    bool is_cdr = true;
+    bool is_read = true;
   };
 
   std::string Place(uint64_t position) const;
@@ -57,6 +57,7 @@ class McapBag final : public Bag {
                  const std::function<void(const BagMessage& message)>& visit);
 
   RandomAccessFile file_;
+  ExpansionLimit expansion_;
   ChunkCache chunks_;
   std::map<uint16_t, std::string> schemas_;  // the names, by id
   std::map<uint16_t, Channel> channels_;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "bags/decompress.h"
 #include "files/byte_reader.h"
 #include "hullslam/util/error.h"
 
@@ -97,7 +96,7 @@ void Ros1Bag::TakeConnection(const Fields& fields, std::string_view data, uint64
   const auto type = connection.find("type");
   topics_of_connections_[NumberOf<uint32_t>(fields, "conn", position)] =
       AddTopic(topic == fields.end() ? "" : topic->second,
-               type == connection.end() ? "no type" : type->second);
+               type == connection.end() ? "no type" : type->second, MessageCoding::kRos1);
 }
 
 void Ros1Bag::TakeMessage(const Fields& fields, std::string_view data, const MessagePlace& place,
@@ -116,6 +115,7 @@ void Ros1Bag::TakeMessage(const Fields& fields, std::string_view data, const Mes
 
 void Ros1Bag::TakeChunk(const Record& record, const std::function<void(const BagMessage&)>& visit) {
   const std::string chunk = LoadChunk(record);
+  expansion_.Add(chunk.size());
   chunk_records_[record.position] = record;
   ByteReader reader(chunk, Place(record.position));
   while (reader.left() > 0) {

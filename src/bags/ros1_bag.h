@@ -8,6 +8,7 @@
 
 #include "bags/bag.h"
 #include "bags/chunk_cache.h"
+#include "bags/decompress.h"
 #include "files/random_access_file.h"
 
 namespace hullslam {
@@ -19,9 +20,8 @@ inline constexpr std::string_view kRos1Magic = "#ROSBAG V2.0\n";
 // read like any other.
 class Ros1Bag final : public Bag {
  public:
-  explicit Ros1Bag(const std::filesystem::path& path) : file_(path) {}
+  explicit Ros1Bag(const std::filesystem::path& path) : file_(path), expansion_(path) {}
 
-  MessageCoding coding() const override { return MessageCoding::kRos1; }
   void Scan(const std::function<void(const BagMessage& message)>& visit) override;
   std::string Read(const MessagePlace& place) override;
 
@@ -49,6 +49,7 @@ class Ros1Bag final : public Bag {
   void TakeChunk(const Record& record, const std::function<void(const BagMessage&)>& visit);
 
   RandomAccessFile file_;
+  ExpansionLimit expansion_;
   ChunkCache chunks_;
   std::map<uint64_t, Record> chunk_records_;  // by the position of the data
   std::map<uint32_t, size_t> topics_of_connections_;

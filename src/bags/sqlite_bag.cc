@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <algorithm>
+#include <array>
+#include <system_error>
 #include <utility>
 
-#include "bags/decompress.h"
 #include "hullslam/util/error.h"
 #include "util/printable.h"
 
@@ -18,15 +20,44 @@ std::string TextOf(sqlite3_stmt* statement, int column) {
   return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
 }
 
+// The files beside a database with changes that are not in it yet.
+constexpr std::array<const char*, 2> kChanges = {"-wal", "-journal"};
+
+bool HasChanges(const std::filesystem::path& path) {
+  return std::any_of(kChanges.begin(), kChanges.end(), [&](const char* ending) {
+    std::error_code error;
+    const uintmax_t size = std::filesystem::file_size(path.string() + ending, error);
+    return !error && size > 0;
+  });
+}
+
+// An immutable database is read without locks and without files beside it, which SQLite else writes
+// for the mode WAL, even to read.
+std::string UriOf(const std::filesystem::path& path, bool is_immutable) {
+  std::string uri = "file://";
+  for (const char c : std::filesystem::absolute(path).string()) {
+    if (c == '%' || c == '?' || c == '#') {
+      uri += fmt::format("%{:02x}", static_cast<unsigned char>(c));
+    } else {
+      uri += c;
+    }
+  }
+  return uri + (is_immutable ? "?immutable=1" : "");
+}
+
 }  // namespace
 
 void SqliteBag::Close::operator()(sqlite3* database) const { sqlite3_close(database); }
 
 void SqliteBag::Close::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 
-SqliteBag::SqliteBag(std::filesystem::path path) : path_(std::move(path)) {
+SqliteBag::SqliteBag(std::filesystem::path path) : path_(std::move(path)), expansion_(path_) {
+  const bool has_changes = HasChanges(path_);
+  const std::filesystem::path opened = has_changes ? CopyWithChanges() : path_;
   sqlite3* database = nullptr;
-  const int code = sqlite3_open_v2(path_.c_str(), &database, SQLITE_OPEN_READONLY, nullptr);
+  const int code = sqlite3_open_v2(
+      UriOf(opened, !has_changes).c_str(), &database,
+      SQLITE_OPEN_URI | (has_changes ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY), nullptr);
   database_.reset(database);
   if (code != SQLITE_OK) {
     Fail();
@@ -36,6 +67,25 @@ SqliteBag::SqliteBag(std::filesystem::path path) : path_(std::move(path)) {
   sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_limit(database, SQLITE_LIMIT_LENGTH, static_cast<int>(kMostBagBytes));
   CheckTables();
+}
+
+std::filesystem::path SqliteBag::CopyWithChanges() {
+  try {
+    copy_.emplace(std::filesystem::temp_directory_path(), "hullslam_bag_");
+    std::filesystem::path copy = copy_->content() / "bag.db3";
+    std::filesystem::copy_file(path_, copy);
+    for (const char* const ending : kChanges) {
+      if (std::filesystem::exists(path_.string() + ending)) {
+        std::filesystem::copy_file(path_.string() + ending, copy.string() + ending);
+      }
+    }
+    return copy;
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw InputError(fmt::format(
+        "{}: was not closed by its recorder, and cannot be copied to apply the changes beside it: "
+        "{}",
+        path_.string(), error.code().message()));
+  }
 }
 
 void SqliteBag::Fail() const {
@@ -90,7 +140,8 @@ std::map<int64_t, size_t> SqliteBag::ReadTopics() {
     if (format != "cdr") {
       type += fmt::format(" ({})", format);  // no type that is read
     }
-    indices[sqlite3_column_int64(statement.get(), 0)] = AddTopic(TextOf(statement.get(), 1), type);
+    indices[sqlite3_column_int64(statement.get(), 0)] =
+        AddTopic(TextOf(statement.get(), 1), type, MessageCoding::kCdr);
   }
   return indices;
 }
@@ -108,6 +159,7 @@ void SqliteBag::Scan(const std::function<void(const BagMessage& message)>& visit
     }
     ++topics_[topic->second].messages;
     const std::string bytes = Message(statement, 3, id);
+    expansion_.Add(bytes.size());
     visit({topic->second,
            sqlite3_column_int64(statement.get(), 2),
            {0, static_cast<uint64_t>(id), bytes.size()},

@@ -4,9 +4,12 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "bags/bag.h"
+#include "bags/decompress.h"
+#include "files/staging_folder.h"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -15,12 +18,13 @@ namespace hullslam {
 
 // A file of rosbag2 in the format of SQLite: the tables `topics` (id, name, type,
 // serialization_format) and `messages` (id, topic_id, timestamp, data). Messages that rosbag2
-// compressed one by one with zstd are recognised by their first bytes.
+// compressed one by one with zstd are recognised by their first bytes. Nothing is written beside
+// the file. If a recorder has left changes beside it that are not in it yet (-wal or -journal), a
+// copy with these changes is read.
 class SqliteBag final : public Bag {
  public:
   explicit SqliteBag(std::filesystem::path path);
 
-  MessageCoding coding() const override { return MessageCoding::kCdr; }
   void Scan(const std::function<void(const BagMessage& message)>& visit) override;
   // The offset of a place is the id of the message.
   std::string Read(const MessagePlace& place) override;
@@ -33,6 +37,8 @@ class SqliteBag final : public Bag {
   using Statement = std::unique_ptr<sqlite3_stmt, Close>;
 
   [[noreturn]] void Fail() const;
+  // Copies the database and the changes beside it.
+  std::filesystem::path CopyWithChanges();
   void CheckTables() const;
   Statement Prepare(const char* text) const;
   // Goes to the next row; returns false behind the last one.
@@ -43,6 +49,8 @@ class SqliteBag final : public Bag {
   std::map<int64_t, size_t> ReadTopics();
 
   std::filesystem::path path_;
+  std::optional<StagingFolder> copy_;  // of a database that was not closed
+  ExpansionLimit expansion_;
   std::unique_ptr<sqlite3, Close> database_;
   Statement read_;
 };

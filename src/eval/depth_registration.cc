@@ -6,27 +6,13 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "eval/relative_gradient.h"
 #include "hullslam/util/check.h"
 
 namespace hullslam {
 namespace {
 
 constexpr int kShifts = 25;  // per direction; an odd number, so that no shift is the middle one
-
-// Magnitude of the gradient, divided by its mean. Strong edges are limited, so that a few of them
-// do not decide.
-cv::Mat GradientOf(const cv::Mat& grey) {
-  constexpr double kMost = 200.0;
-  cv::Mat dx;
-  cv::Mat dy;
-  cv::Sobel(grey, dx, CV_32F, 1, 0);
-  cv::Sobel(grey, dy, CV_32F, 0, 1);
-  cv::Mat gradient;
-  cv::magnitude(dx, dy, gradient);
-  gradient = cv::min(gradient, kMost);
-  const double mean = cv::mean(gradient)[0];
-  return mean > 0.0 ? cv::Mat(gradient / mean) : gradient;
-}
 
 // The pixels on the near side of a step: something at most two pixels away is farther by a tenth,
 // and nothing there is nearer.
@@ -67,7 +53,7 @@ void DepthRegistration::Add(const cv::Mat& grey, const cv::Mat& depth) {
   const cv::Point margin = kHalf * step;
   const cv::Rect inside(margin.x, margin.y, std::max(0, grey.cols - 2 * margin.x),
                         std::max(0, grey.rows - 2 * margin.y));
-  const cv::Mat gradient = GradientOf(grey);
+  const cv::Mat gradient = RelativeGradient(grey);
   const std::vector<cv::Point> steps = FindSteps(depth, inside);
   edges_ += steps.size();
   gradients_.resize(static_cast<size_t>(kShifts) * kShifts);
@@ -86,7 +72,14 @@ double DepthRegistration::Contrast() const {
   Check(edges_ > 0, "there are no steps of the depth");
   const double mean = std::accumulate(gradients_.begin(), gradients_.end(), 0.0) /
                       static_cast<double>(gradients_.size());
-  return mean > 0.0 ? gradients_[gradients_.size() / 2] / mean : 1.0;
+  double largest = 0.0;
+  for (const int row : {-1, 0, 1}) {
+    for (const int column : {-1, 0, 1}) {
+      const int shift = (kShifts / 2 + row) * kShifts + kShifts / 2 + column;
+      largest = std::max(largest, gradients_[static_cast<size_t>(shift)]);
+    }
+  }
+  return mean > 0.0 ? largest / mean : 1.0;
 }
 
 }  // namespace hullslam

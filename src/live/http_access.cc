@@ -21,13 +21,19 @@ std::string LowerCase(std::string_view text) {
   return lower;
 }
 
-// The name or address in a Host header, without the port and without the brackets of IPv6.
+// The name or address in a Host header, without the port and without the brackets of IPv6. Empty if
+// anything else than a port follows it.
 std::string NameOfHost(std::string_view host) {
-  if (host.starts_with('[')) {
-    const size_t end = host.find(']');
-    return end == std::string_view::npos ? std::string() : LowerCase(host.substr(1, end - 1));
+  const bool has_brackets = host.starts_with('[');
+  const size_t end = has_brackets ? host.find(']') : std::min(host.find(':'), host.size());
+  if (end == std::string_view::npos) {
+    return {};
   }
-  return LowerCase(host.substr(0, host.find(':')));
+  const std::string_view port = host.substr(has_brackets ? end + 1 : end);
+  const bool is_port = port.empty() || (port.size() > 1 && port[0] == ':' &&
+                                        port.find_first_not_of("0123456789", 1) == port.npos);
+  return is_port ? LowerCase(host.substr(has_brackets ? 1 : 0, end - (has_brackets ? 1 : 0)))
+                 : std::string();
 }
 
 bool IsAddress(const std::string& text) {

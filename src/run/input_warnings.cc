@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "eval/depth_registration.h"
+#include "eval/mask_registration.h"
 #include "frame/dynamic_mask.h"
 #include "hullslam/util/error.h"
 #include "run/messages.h"
@@ -70,14 +71,16 @@ void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& de
                                  : std::string("in the units of the file");
   PrintError("warning: {}: the median depth is {:.3g} m {}, expected {} to {} m; is {} right?\n",
              file.string(), metres, reason, kNearest, kFarthest,
-             is_in_units ? "DepthMapFactor" : "its unit (--povray-units)");
+             is_in_units ? "DepthMapFactor"
+                         : "its unit (--float-units of rgbd_bag, --povray-units of rgbd_icl)");
 }
 
 void WarnOfUnregisteredDepth(const ImageSequence& sequence, const PinholeCamera& camera) {
   constexpr size_t kFrames = 7;
   constexpr size_t kLeastEdges = 2000;  // px
-  constexpr double kLeastContrast =
-      1.2;  // 1 if depth and colour have nothing to do with each other
+  // 1 if depth and colour have nothing to do with each other. Parts of freiburg1_xyz have 1.34 or
+  // more; with the depth scaled as by another camera, most have 1.23 or less.
+  constexpr double kLeastContrast = 1.25;
   DepthRegistration registration;
   const size_t step = std::max<size_t>(1, sequence.frames.size() / kFrames);
   for (size_t i = 0; i < sequence.frames.size(); i += step) {
@@ -146,6 +149,51 @@ void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& 
   const std::set<std::string> labels = masks.Labels();
   WarnOfClassesWithoutMasks("tracking.dynamic_classes", dynamic, labels);
   WarnOfClassesWithoutMasks("objects.sizes", sized, labels);
+}
+
+void WarnOfMisplacedMasks(const ImageSequence& sequence, const PinholeCamera& camera,
+                          const SequenceMasks& masks) {
+  constexpr size_t kFrames = 7;
+  constexpr size_t kMostStep = 30;  // so that no video is decoded to its end
+  constexpr size_t kLeastPoints = 2000;
+  // Masks of freiburg1_xyz have 2.2, and 0.9 to 1.0 if images and masks are turned against each
+  // other; 1.5 is the middle of the two factors.
+  constexpr double kLeastOfTurned = 1.5;
+  constexpr double kLeast = 1.1;
+  MaskRegistration registration;
+  const size_t step = std::clamp<size_t>(sequence.frames.size() / kFrames, 1, kMostStep);
+  for (size_t i = 0; i < std::min(sequence.frames.size(), kFrames * step); i += step) {
+    try {
+      const std::vector<InstanceMask> found = masks.Read(i);
+      if (!found.empty()) {
+        registration.Add(sequence.load(sequence.frames[i], camera).grey, found);
+      }
+    } catch (const InputError&) {  // the run will report this image
+      continue;
+    }
+  }
+  if (registration.points() < kLeastPoints) {
+    return;
+  }
+  const double contrast = registration.Contrast(1);
+  int best = 1;
+  for (int orientation = 2; orientation <= 8; ++orientation) {
+    if (registration.Contrast(orientation) > registration.Contrast(best)) {
+      best = orientation;
+    }
+  }
+  if (registration.Contrast(best) > kLeastOfTurned * std::max(contrast, 1.0)) {
+    PrintError(
+        "warning: the masks do not fit the images, but they would if the images were turned as by "
+        "the EXIF orientation {}. cv2.imread and Ultralytics turn images so; HullSLAM reads the "
+        "stored pixels, and scripts/make_masks.py makes masks of them\n",
+        best);
+  } else if (contrast < kLeast) {
+    PrintError(
+        "warning: the outlines of the masks are not where the borders in the images are (contrast "
+        "{:.2f}, expected at least {}); are they the masks of these images?\n",
+        contrast, kLeast);
+  }
 }
 
 void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& sequence) {

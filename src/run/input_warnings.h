@@ -32,6 +32,11 @@ void WarnOfOtherSettings(const std::filesystem::path& given, const PinholeCamera
 // unit.
 void WarnOfUnknownClasses(const TrackingOptions& tracking, const ObjectOptions& objects,
                           const SequenceMasks& masks);
+// Warns if the outlines of masks do not run along borders in the images (MaskRegistration): they
+// may be masks of the images as EXIF data turn them. Uses seven images of the beginning. Prints
+// nothing if there are too few contours.
+void WarnOfMisplacedMasks(const ImageSequence& sequence, const PinholeCamera& camera,
+                          const SequenceMasks& masks);
 // Warns if --last is beyond the end of the sequence.
 void WarnOfLastFrame(const FrameSelection& selection, const ImageSequence& sequence);
 

@@ -226,6 +226,7 @@ void WarnOfInput(const RunArguments& arguments, const SystemOptions& options,
   if (options.sensor == SensorKind::kRgbd) {
     WarnOfUnregisteredDepth(sequence, options.camera);
   }
+  WarnOfMisplacedMasks(sequence, options.camera, masks);
   WarnOfUnknownClasses(options.tracking, options.objects, masks);
   WarnOfLastFrame(arguments.selection, sequence);
 }

@@ -2,6 +2,7 @@
 #include "sequences/bag_image.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -10,10 +11,12 @@
 #include <cstring>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "files/byte_reader.h"
 #include "hullslam/util/error.h"
 #include "sequences/image_file.h"
+#include "sequences/rvl_depth.h"
 #include "util/printable.h"
 
 namespace hullslam {
@@ -39,10 +42,26 @@ constexpr auto kEncodings = std::to_array<Encoding>({
     {"bgra8", CV_8UC4, BagImageKind::kColour, 2, cv::COLOR_BGRA2BGR},
     {"8UC4", CV_8UC4, BagImageKind::kColour, 2, cv::COLOR_BGRA2BGR},
     {"rgba8", CV_8UC4, BagImageKind::kColour, 0, cv::COLOR_RGBA2BGR},
+    {"bayer_rggb8", CV_8UC1, BagImageKind::kColour, kNone, cv::COLOR_BayerRGGB2BGR},
+    {"bayer_bggr8", CV_8UC1, BagImageKind::kColour, kNone, cv::COLOR_BayerBGGR2BGR},
+    {"bayer_gbrg8", CV_8UC1, BagImageKind::kColour, kNone, cv::COLOR_BayerGBRG2BGR},
+    {"bayer_grbg8", CV_8UC1, BagImageKind::kColour, kNone, cv::COLOR_BayerGRBG2BGR},
+    {"bayer_rggb16", CV_16UC1, BagImageKind::kColour, kNone, cv::COLOR_BayerRGGB2BGR},
+    {"bayer_bggr16", CV_16UC1, BagImageKind::kColour, kNone, cv::COLOR_BayerBGGR2BGR},
+    {"bayer_gbrg16", CV_16UC1, BagImageKind::kColour, kNone, cv::COLOR_BayerGBRG2BGR},
+    {"bayer_grbg16", CV_16UC1, BagImageKind::kColour, kNone, cv::COLOR_BayerGRBG2BGR},
+    {"yuv422", CV_8UC2, BagImageKind::kColour, kNone, cv::COLOR_YUV2BGR_UYVY},
+    {"uyvy", CV_8UC2, BagImageKind::kColour, kNone, cv::COLOR_YUV2BGR_UYVY},
+    {"yuv422_yuy2", CV_8UC2, BagImageKind::kColour, kNone, cv::COLOR_YUV2BGR_YUY2},
+    {"yuyv", CV_8UC2, BagImageKind::kColour, kNone, cv::COLOR_YUV2BGR_YUY2},
+    {"mono16", CV_16UC1, BagImageKind::kEither, kNone, cv::COLOR_GRAY2BGR},
     {"16UC1", CV_16UC1},
-    {"mono16", CV_16UC1},
     {"32FC1", CV_32FC1},
 });
+
+bool IsOfKind(const Encoding& encoding, BagImageKind kind) {
+  return encoding.kind == kind || encoding.kind == BagImageKind::kEither;
+}
 
 const Encoding* FindEncoding(std::string_view name) {
   const auto* const found =
@@ -51,18 +70,18 @@ const Encoding* FindEncoding(std::string_view name) {
   return found == kEncodings.end() ? nullptr : found;
 }
 
-[[noreturn]] void FailKind(const std::string& name, std::string_view encoding, const char* kind) {
+[[noreturn]] void FailKind(const std::string& name, std::string_view encoding,
+                           std::string_view kind) {
   throw InputError(fmt::format("{}: the image is '{}', expected {}", name,
                                Printable(encoding.substr(0, 80)), kind));
 }
 
 const Encoding& ExpectKind(std::string_view name, BagImageKind kind, const std::string& place) {
   const Encoding* const encoding = FindEncoding(name);
-  if (encoding == nullptr || encoding->kind != kind) {
+  if (encoding == nullptr || !IsOfKind(*encoding, kind)) {
     FailKind(place, name,
-             kind == BagImageKind::kColour
-                 ? "mono8, bgr8, rgb8, bgra8 or rgba8 (other encodings must be converted)"
-                 : "a depth image: 16UC1, mono16 or 32FC1");
+             fmt::format("one of {}{}", ReadEncodings(kind),
+                         kind == BagImageKind::kDepth ? "" : "; others must be converted"));
   }
   return *encoding;
 }
@@ -114,6 +133,20 @@ cv::Mat GreyLikePng(const cv::Mat& image, int red) {
   return grey;
 }
 
+// Images of 16 bits use as many of them as the camera has: 10, 12, 14 or 16. The highest of these
+// become the 8 bits that are read.
+cv::Mat To8Bits(const cv::Mat& image, uint16_t brightest) {
+  if (image.depth() == CV_8U) {
+    return image;
+  }
+  const int bits = std::max(8, (static_cast<int>(std::bit_width(unsigned{brightest})) + 1) / 2 * 2);
+  cv::Mat scaled;
+  image.convertTo(scaled, CV_8U, 1.0 / (1 << (bits - 8)));
+  return scaled;
+}
+
+bool IsGrey(const Encoding& encoding) { return encoding.to_colour == cv::COLOR_GRAY2BGR; }
+
 // "16UC1" of "16UC1; compressedDepth png".
 std::string_view EncodingOfFormat(std::string_view format) {
   return format.substr(0, format.find(';'));
@@ -157,24 +190,56 @@ BagImageKind KindOfFormat(std::string_view format) {
   return is_image ? BagImageKind::kColour : BagImageKind::kUnknown;
 }
 
-cv::Mat GreyOf(const RawImageMessage& message, const std::string& name) {
+std::string ReadEncodings(BagImageKind kind) {
+  std::vector<std::string_view> names;
+  for (const Encoding& encoding : kEncodings) {
+    if (IsOfKind(encoding, kind)) {
+      names.push_back(encoding.name);
+    }
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+uint16_t BrightestOf(const RawImageMessage& message) {
+  const Encoding* const encoding = FindEncoding(message.encoding);
+  if (encoding == nullptr || encoding->type != CV_16UC1 || encoding->kind == BagImageKind::kDepth) {
+    return 0;
+  }
+  try {
+    double brightest = 0.0;
+    cv::minMaxLoc(PixelsOf(message, encoding->type, {}), nullptr, &brightest);
+    return static_cast<uint16_t>(brightest);
+  } catch (const InputError&) {  // the run will report this image
+    return 0;
+  }
+}
+
+cv::Mat GreyOf(const RawImageMessage& message, const std::string& name, uint16_t brightest) {
   const Encoding& encoding = ExpectKind(message.encoding, BagImageKind::kColour, name);
-  const cv::Mat image = PixelsOf(message, encoding.type, name);
-  return encoding.red == kNone ? image : GreyLikePng(image, encoding.red);
+  if (IsGrey(encoding)) {
+    return To8Bits(PixelsOf(message, encoding.type, name), brightest);
+  }
+  return encoding.red == kNone ? GreyLikePng(ColourOf(message, name, brightest), 2)
+                               : GreyLikePng(PixelsOf(message, encoding.type, name), encoding.red);
 }
 
 cv::Mat GreyOf(const CompressedImageMessage& message, const std::string& name) {
   return DecodeGreyImage(name, message.data);
 }
 
-cv::Mat ColourOf(const RawImageMessage& message, const std::string& name) {
+cv::Mat ColourOf(const RawImageMessage& message, const std::string& name, uint16_t brightest) {
   const Encoding& encoding = ExpectKind(message.encoding, BagImageKind::kColour, name);
-  const cv::Mat image = PixelsOf(message, encoding.type, name);
+  const cv::Mat image = To8Bits(PixelsOf(message, encoding.type, name), brightest);
   if (encoding.to_colour == kNone) {
     return image;
   }
   cv::Mat colour;
-  cv::cvtColor(image, colour, encoding.to_colour);
+  try {
+    cv::cvtColor(image, colour, encoding.to_colour);
+  } catch (const cv::Exception&) {  // such as one with a single row in a Bayer pattern
+    throw InputError(fmt::format("{}: an image of {}x{} px cannot have the encoding '{}'", name,
+                                 image.cols, image.rows, encoding.name));
+  }
   return colour;
 }
 
@@ -190,14 +255,13 @@ cv::Mat DepthOf(const CompressedImageMessage& message, const std::string& name) 
   if (!IsCompressedDepth(message.format)) {
     return DecodeDepthImage(name, message.data);
   }
-  if (message.format.find("rvl") != std::string_view::npos) {
-    FailKind(name, message.format, "a depth image that is compressed as PNG");
-  }
   ByteReader reader(message.data, name + ": the depth image");
   reader.Get<uint32_t>();  // the kind of compression, which the format tells too
   const auto a = reader.Get<float>();
   const auto b = reader.Get<float>();
-  const cv::Mat values = DecodeDepthImage(name, reader.GetRaw(reader.left()));
+  const std::string_view data = reader.GetRaw(reader.left());
+  const bool is_rvl = message.format.find("rvl") != std::string_view::npos;
+  const cv::Mat values = is_rvl ? DecodeRvl(data, name) : DecodeDepthImage(name, data);
   return EncodingOfFormat(message.format) == "32FC1" ? InvertDepth(values, a, b) : values;
 }
 

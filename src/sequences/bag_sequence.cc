@@ -34,7 +34,10 @@ struct StampedImage {
 // The images of a topic in order of time.
 struct TopicImages {
   std::string topic;
+  std::string encoding;
   bool is_compressed = false;
+  uint16_t brightest = 0;
+  MessageCoding coding = MessageCoding::kCdr;
   std::vector<StampedImage> images;
 };
 
@@ -61,26 +64,55 @@ bool NeedsRecordingTimes(const IndexedTopic& topic, bool asked, std::vector<std:
                             double former) {
   throw InputError(fmt::format(
       "{}: {}: the time stamp {:.6f} s comes {:.6f} s before that of the previous image, expected "
-      "increasing stamps; --recording-times uses the times at which the images were recorded",
+      "stamps at most 1 s out of order; --recording-times uses the times at which the images were "
+      "recorded",
       path.string(), ShowText(topic.name), stamp, former - stamp));
+}
+
+// Sorts images by their stamps. Drivers with several threads publish images a little out of order.
+// Stamps that go back by more than a second are refused: then a clock was set.
+std::vector<StampedImage> SortByStamps(const fs::path& path, const IndexedTopic& topic,
+                                       bool by_recording, BagSequence& sequence) {
+  constexpr double kMostDisorder = 1.0;  // s; no queue of a driver is longer
+  std::vector<StampedImage> sorted;
+  for (const BagImage& image : topic.images) {
+    sorted.push_back({SecondsOf(image, by_recording), image});
+  }
+  // Recorders with several threads may write messages a little out of order, too.
+  std::stable_sort(sorted.begin(), sorted.end(), [](const StampedImage& a, const StampedImage& b) {
+    return a.image.logged < b.image.logged;
+  });
+  double latest = 0.0;
+  size_t late = 0;
+  for (const StampedImage& image : sorted) {
+    if (image.timestamp < latest - kMostDisorder || image.timestamp < 0.0) {
+      FailOrder(path, topic, image.timestamp, latest);
+    }
+    late += image.timestamp < latest ? 1 : 0;
+    latest = std::max(latest, image.timestamp);
+  }
+  if (late > 0) {
+    sequence.warnings.push_back(
+        fmt::format("{}: {}: {} images come after images with later time stamps, and are sorted "
+                    "by their stamps",
+                    path.string(), ShowText(topic.name), late));
+  }
+  std::stable_sort(sorted.begin(), sorted.end(), [](const StampedImage& a, const StampedImage& b) {
+    return a.timestamp < b.timestamp;
+  });
+  return sorted;
 }
 
 TopicImages OrderImages(const fs::path& path, const IndexedTopic& topic, bool use_recording_times,
                         BagSequence& sequence) {
   constexpr double kLongGap = 3600.0;  // s
   const bool by_recording = NeedsRecordingTimes(topic, use_recording_times, sequence.notes);
-  std::vector<BagImage> sorted = topic.images;
-  // Recorders with several threads may write messages a little out of order.
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const BagImage& a, const BagImage& b) { return a.logged < b.logged; });
-  TopicImages ordered{topic.name, topic.IsCompressed(), {}};
+  TopicImages ordered{topic.name,      topic.encoding, topic.is_compressed,
+                      topic.brightest, topic.coding,   {}};
   size_t repeated = 0;
-  for (const BagImage& image : sorted) {
-    const double stamp = SecondsOf(image, by_recording);
+  for (const StampedImage& image : SortByStamps(path, topic, by_recording, sequence)) {
+    const double stamp = image.timestamp;
     const double former = ordered.images.empty() ? stamp - 1.0 : ordered.images.back().timestamp;
-    if (stamp < former || stamp < 0.0) {
-      FailOrder(path, topic, stamp, std::max(former, 0.0));
-    }
     if (stamp - former > kLongGap) {
       sequence.warnings.push_back(
           fmt::format("{}: {}: the time stamps jump by {:.1f} hours at {:.6f} s", path.string(),
@@ -89,7 +121,7 @@ TopicImages OrderImages(const fs::path& path, const IndexedTopic& topic, bool us
     if (stamp == former) {
       ++repeated;
     } else {
-      ordered.images.push_back({stamp, image});
+      ordered.images.push_back(image);
     }
   }
   if (repeated > 0) {
@@ -110,13 +142,15 @@ std::vector<double> StampsOfTopic(const TopicImages& topic) {
 
 enum class Decoding { kGrey, kColour, kDepth };
 
-template <typename Message>
-cv::Mat DecodeMessage(const Message& message, Decoding decoding, const std::string& name) {
+// `brightest` is empty for compressed images.
+template <typename Message, typename... Brightest>
+cv::Mat DecodeMessage(const Message& message, Decoding decoding, const std::string& name,
+                      Brightest... brightest) {
   switch (decoding) {
     case Decoding::kGrey:
-      return GreyOf(message, name);
+      return GreyOf(message, name, brightest...);
     case Decoding::kColour:
-      return ColourOf(message, name);
+      return ColourOf(message, name, brightest...);
     default:
       return DepthOf(message, name);
   }
@@ -125,8 +159,12 @@ cv::Mat DecodeMessage(const Message& message, Decoding decoding, const std::stri
 // The images of a recording by the numbers of its frames.
 class BagLoader {
  public:
-  BagLoader(std::vector<std::unique_ptr<Bag>> bags, TopicImages colour, TopicImages depth)
-      : bags_(std::move(bags)), colour_(std::move(colour)), depth_(std::move(depth)) {}
+  BagLoader(std::vector<std::unique_ptr<Bag>> bags, TopicImages colour, TopicImages depth,
+            double float_units)
+      : bags_(std::move(bags)),
+        colour_(std::move(colour)),
+        depth_(std::move(depth)),
+        float_units_(float_units) {}
 
   // Adds a frame of the images with these indices. `source` is the path of the recording.
   void AddFrame(const fs::path& source, size_t colour, std::optional<size_t> depth,
@@ -147,6 +185,9 @@ class BagLoader {
     if (!frame.depth.empty()) {
       image.depth = Read(depth_, depth, Decoding::kDepth, frame.depth.string());
       CheckImageSize(frame.depth.string(), image.depth, camera);
+      if (image.depth.depth() == CV_32F && float_units_ != 1.0) {
+        image.depth /= float_units_;
+      }
     }
     CheckImageSize(name, image.grey, camera);
     return image;
@@ -169,13 +210,15 @@ class BagLoader {
     Bag& bag = *bags_[image.bag];
     const std::string bytes = bag.Read(image.place);
     return topic.is_compressed
-               ? DecodeMessage(ReadCompressedImage(bag.coding(), bytes, name), decoding, name)
-               : DecodeMessage(ReadRawImage(bag.coding(), bytes, name), decoding, name);
+               ? DecodeMessage(ReadCompressedImage(topic.coding, bytes, name), decoding, name)
+               : DecodeMessage(ReadRawImage(topic.coding, bytes, name), decoding, name,
+                               topic.brightest);
   }
 
   std::vector<std::unique_ptr<Bag>> bags_;
   TopicImages colour_;
-  TopicImages depth_;  // without images if there is no depth
+  TopicImages depth_;         // without images if there is no depth
+  double float_units_ = 1.0;  // of 32FC1, per metre
   std::vector<std::pair<size_t, size_t>> frames_;
 };
 
@@ -201,6 +244,16 @@ std::string DescribeTopic(const char* what, const TopicImages& topic) {
   return fmt::format("{}: {}, {} messages", what, ShowText(topic.topic), topic.images.size());
 }
 
+std::string DescribeDepth(const TopicImages& topic, double float_units) {
+  const bool is_float = topic.encoding.starts_with("32FC1");
+  return DescribeTopic("depth", topic) +
+         (is_float
+              ? fmt::format(", 32FC1 with {:g} units per metre (--float-units); DepthMapFactor "
+                            "has no effect on it",
+                            float_units)
+              : std::string());
+}
+
 // The camera of a CameraInfo. `frames_per_second` is that of its images.
 CameraCalibration CalibrationOf(const fs::path& path, const IndexedTopic& topic,
                                 double frames_per_second) {
@@ -209,15 +262,18 @@ CameraCalibration CalibrationOf(const fs::path& path, const IndexedTopic& topic,
   const auto fail = [&](const std::string& fault) {
     throw InputError(fmt::format("{}: {}; expected --settings FILE", place, fault));
   };
-  // plumb_bob has k1 k2 p1 p2 k3; rational_polynomial has three more, which divide.
-  const bool is_known =
-      info.distortion_model == "plumb_bob" || info.distortion_model == "rational_polynomial";
-  const bool has_no_more =
-      info.distortion.size() <= 5 || std::all_of(info.distortion.begin() + 5, info.distortion.end(),
-                                                 [](double number) { return number == 0.0; });
-  if (!info.distortion.empty() && (!is_known || !has_no_more)) {
-    fail(fmt::format("the distortion is '{}' with {} coefficients, expected plumb_bob",
-                     ShowText(info.distortion_model, 40), info.distortion.size()));
+  // plumb_bob has k1 k2 p1 p2 k3; rational_polynomial has three more, which divide. "Brown Conrady"
+  // is librealsense's name of plumb_bob. Without distortion, all models are the same.
+  const std::string& model = info.distortion_model;
+  const bool is_rational = model == "rational_polynomial";
+  const bool is_known = model == "plumb_bob" || is_rational || model == "Brown Conrady";
+  const auto is_zero = [](double number) { return number == 0.0; };
+  const size_t read = is_known ? std::min<size_t>(5, info.distortion.size()) : 0;
+  if (!std::all_of(info.distortion.begin() + static_cast<ptrdiff_t>(read), info.distortion.end(),
+                   is_zero)) {
+    fail(fmt::format("the distortion is '{}' with {} coefficients{}, expected plumb_bob",
+                     ShowText(model, 40), info.distortion.size(),
+                     is_rational ? ", which HullSLAM cannot use yet" : ""));
   }
   if (info.k[0] == 0.0) {
     fail("the camera is not calibrated, its matrix K is 0");
@@ -252,6 +308,11 @@ double RateOf(const TopicImages& topic) {
 }  // namespace
 
 BagSequence OpenBagSequence(const fs::path& path, const BagSequenceOptions& options) {
+  constexpr double kMostFloatUnits = 1e6;  // micrometres
+  if (!(options.float_units > 0.0 && options.float_units <= kMostFloatUnits)) {
+    throw InputError(fmt::format("--float-units is '{:g}', expected a number above 0, up to {:g}",
+                                 options.float_units, kMostFloatUnits));
+  }
   std::vector<std::unique_ptr<Bag>> bags = OpenBags(path);
   BagIndex index = IndexBags(path, bags);
   BagSequence sequence;
@@ -269,16 +330,25 @@ BagSequence OpenBagSequence(const fs::path& path, const BagSequenceOptions& opti
     const IndexedTopic& topic =
         ChooseImageTopic(index, BagImageKind::kDepth, options.depth_topic, kDepthOption);
     depth = OrderImages(path, topic, options.use_recording_times, sequence);
-    sequence.notes.push_back(DescribeTopic("depth", depth));
+    sequence.notes.push_back(DescribeDepth(depth, options.float_units));
+    if (topic.name == images.name) {
+      throw InputError(
+          fmt::format("{}: {} is taken for the images and for the depth, expected {} "
+                      "or {} TOPIC",
+                      path.string(), ShowText(topic.name), kImageOption, kDepthOption));
+    }
     sequence.images.choices["depth_topic"] = topic.name;
+    if (options.float_units != 1.0) {
+      sequence.images.choices["float_units"] = fmt::format("{}", options.float_units);
+    }
   }
   if (options.need_camera) {
     const IndexedTopic& info = ChooseInfoTopic(index, images, options.info_topic, kInfoOption);
     sequence.camera = CalibrationOf(path, info, RateOf(colour));
     sequence.notes.push_back(fmt::format("camera: {}", ShowText(info.name)));
   }
-  const auto loader =
-      std::make_shared<BagLoader>(std::move(bags), std::move(colour), std::move(depth));
+  const auto loader = std::make_shared<BagLoader>(std::move(bags), std::move(colour),
+                                                  std::move(depth), options.float_units);
   if (options.use_depth) {
     PairTopics(path, *loader, sequence.images);
   } else {

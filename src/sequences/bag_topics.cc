@@ -5,8 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <initializer_list>
 #include <iterator>
+#include <map>
 #include <string_view>
 #include <tuple>
 
@@ -19,39 +21,54 @@ namespace {
 
 using Candidates = std::vector<const IndexedTopic*>;
 
-IndexedTopic& FindOrAdd(const BagTopic& topic, std::vector<IndexedTopic>& topics) {
-  const auto found = std::find_if(topics.begin(), topics.end(), [&](const IndexedTopic& indexed) {
-    return indexed.name == topic.name && indexed.type == topic.type;
-  });
-  return found != topics.end() ? *found
-                               : topics.emplace_back(IndexedTopic{topic.name, topic.type, {}});
-}
+// Finds the topics of all files. A file numbers its own topics.
+class TopicTable {
+ public:
+  explicit TopicTable(std::vector<IndexedTopic>& topics) : topics_(topics) {}
 
-void AddImage(const BagMessage& message, BagTime stamp, size_t bag, IndexedTopic& topic) {
-  if (topic.images.size() == kMostImages) {
-    throw InputError(fmt::format("{}: more than {} images", ShowText(topic.name), kMostImages));
+  void BeginFile() { numbers_.clear(); }
+
+  // The topic with this number in the current file.
+  IndexedTopic& At(const Bag& bag, size_t number) {
+    while (numbers_.size() <= number) {
+      const BagTopic& topic = bag.topics()[numbers_.size()];
+      const auto [entry, is_new] =
+          found_.try_emplace({topic.name, topic.type, topic.coding}, topics_.size());
+      if (is_new) {
+        topics_.push_back(
+            {.name = topic.name, .type = topic.type, .encoding = {}, .coding = topic.coding});
+      }
+      numbers_.push_back(entry->second);
+    }
+    return topics_[numbers_[number]];
   }
-  topic.images.push_back({stamp, message.logged, bag, message.place});
-}
 
-void IndexMessage(MessageCoding coding, const BagMessage& message, size_t bag,
+ private:
+  std::vector<IndexedTopic>& topics_;
+  std::map<std::tuple<std::string, std::string, MessageCoding>, size_t> found_;
+  std::vector<size_t> numbers_;  // indices into topics_, by the numbers in the current file
+};
+
+void IndexMessage(const BagMessage& message, BagContent content, size_t bag,
                   const std::string& place, IndexedTopic& topic) {
-  if (topic.type == "sensor_msgs/Image") {
-    const RawImageMessage image = ReadRawImage(coding, message.bytes, place);
+  if (content == BagContent::kImage) {
+    const RawImageMessage image = ReadRawImage(topic.coding, message.bytes, place);
     if (topic.images.empty()) {
       topic.encoding = image.encoding;
       topic.kind = KindOfEncoding(image.encoding);
     }
-    AddImage(message, image.stamp, bag, topic);
-  } else if (topic.type == "sensor_msgs/CompressedImage") {
-    const CompressedImageMessage image = ReadCompressedImage(coding, message.bytes, place);
+    topic.brightest = std::max(topic.brightest, BrightestOf(image));
+    topic.images.push_back({image.stamp, message.logged, bag, message.place});
+  } else if (content == BagContent::kCompressedImage) {
+    const CompressedImageMessage image = ReadCompressedImage(topic.coding, message.bytes, place);
     if (topic.images.empty()) {
+      topic.is_compressed = true;
       topic.encoding = image.format;
       topic.kind = KindOfFormat(image.format);
     }
-    AddImage(message, image.stamp, bag, topic);
-  } else if (topic.type == "sensor_msgs/CameraInfo" && !topic.camera) {
-    topic.camera = ReadCameraInfo(coding, message.bytes, place);
+    topic.images.push_back({image.stamp, message.logged, bag, message.place});
+  } else if (!topic.camera) {
+    topic.camera = ReadCameraInfo(topic.coding, message.bytes, place);
   }
 }
 
@@ -84,16 +101,18 @@ std::string ListTopics(const BagIndex& index) {
   throw InputError(fmt::format("{}: {}; {}", index.path.string(), what, ListTopics(index)));
 }
 
-bool HasAny(std::string_view name, std::initializer_list<std::string_view> words) {
-  return std::any_of(words.begin(), words.end(), [&](std::string_view word) {
-    return name.find(word) != std::string_view::npos;
-  });
+// Whether a name has one of these words, in upper or lower case.
+bool HasAny(std::string name, std::initializer_list<std::string_view> words) {
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::any_of(words.begin(), words.end(),
+                     [&](std::string_view word) { return name.find(word) != std::string::npos; });
 }
 
 // The name without that of a compressed form: /camera/image of /camera/image/compressed.
 std::string BaseName(const IndexedTopic& topic) {
   for (const std::string_view ending : {"/compressedDepth", "/compressed"}) {
-    if (topic.IsCompressed() && topic.name.ends_with(ending)) {
+    if (topic.is_compressed && topic.name.ends_with(ending)) {
       return topic.name.substr(0, topic.name.size() - ending.size());
     }
   }
@@ -120,6 +139,31 @@ Candidates PreferredByName(const Candidates& all, BagImageKind kind) {
   return kept;
 }
 
+// The topics of a kind. If there are none, those of grey images with 16 bits: for depth those whose
+// names have "depth", or else all; for colour those whose names do not have it.
+Candidates CandidatesOf(const BagIndex& index, BagImageKind kind) {
+  Candidates sure;
+  Candidates named_depth;
+  Candidates others;
+  for (const IndexedTopic& topic : index.topics) {
+    if (topic.kind == kind) {
+      sure.push_back(&topic);
+    } else if (topic.kind == BagImageKind::kEither) {
+      (HasAny(topic.name, {"depth"}) ? named_depth : others).push_back(&topic);
+    }
+  }
+  if (!sure.empty()) {
+    return sure;
+  }
+  return kind == BagImageKind::kDepth && !named_depth.empty() ? named_depth : others;
+}
+
+std::string Readable(BagImageKind kind) {
+  return ReadEncodings(kind) + (kind == BagImageKind::kColour
+                                    ? "; JPEG, PNG"
+                                    : "; PNG of 16 bits, compressedDepth with PNG or RVL");
+}
+
 const IndexedTopic& GivenTopic(const BagIndex& index, const std::string& name, const char* option) {
   const auto found = std::find_if(index.topics.begin(), index.topics.end(),
                                   [&](const IndexedTopic& topic) { return topic.name == name; });
@@ -134,18 +178,26 @@ const IndexedTopic& GivenTopic(const BagIndex& index, const std::string& name, c
 BagIndex IndexBags(const std::filesystem::path& path,
                    const std::vector<std::unique_ptr<Bag>>& bags) {
   BagIndex index{.path = path};
+  TopicTable table(index.topics);
+  size_t images = 0;
   for (size_t i = 0; i < bags.size(); ++i) {
     Bag& bag = *bags[i];
+    table.BeginFile();
     bag.Scan([&](const BagMessage& message) {
       const BagTopic& topic = bag.topics()[message.topic];
-      if (topic.type.starts_with("sensor_msgs/")) {
-        const std::string place = fmt::format("{}: message {} of {}", path.string(), topic.messages,
-                                              ShowText(topic.name));
-        IndexMessage(bag.coding(), message, i, place, FindOrAdd(topic, index.topics));
+      const BagContent content = ContentOf(topic);
+      if (content == BagContent::kOther) {
+        return;
       }
+      if (content != BagContent::kCamera && ++images > kMostImages) {
+        throw InputError(fmt::format("{}: more than {} images", path.string(), kMostImages));
+      }
+      const std::string place =
+          fmt::format("{}: message {} of {}", path.string(), topic.messages, ShowText(topic.name));
+      IndexMessage(message, content, i, place, table.At(bag, message.topic));
     });
-    for (const BagTopic& topic : bag.topics()) {
-      FindOrAdd(topic, index.topics).messages += topic.messages;
+    for (size_t number = 0; number < bag.topics().size(); ++number) {
+      table.At(bag, number).messages += bag.topics()[number].messages;
     }
     index.warnings.insert(index.warnings.end(), bag.warnings().begin(), bag.warnings().end());
   }
@@ -161,20 +213,16 @@ const IndexedTopic& ChooseImageTopic(const BagIndex& index, BagImageKind kind,
   const char* const what = kind == BagImageKind::kColour ? "colour" : "depth";
   if (!name.empty()) {
     const IndexedTopic& given = GivenTopic(index, name, option);
-    if (given.kind != kind) {
-      FailTopics(index, fmt::format("{} is '{}', which has no {} images that can be read", option,
-                                    ShowText(name), what));
+    if (given.kind != kind && given.kind != BagImageKind::kEither) {
+      FailTopics(index, fmt::format("{} is '{}', which has no {} images that can be read ({})",
+                                    option, ShowText(name), what, Readable(kind)));
     }
     return given;
   }
-  Candidates candidates;
-  for (const IndexedTopic& topic : index.topics) {
-    if (topic.kind == kind) {
-      candidates.push_back(&topic);
-    }
-  }
+  Candidates candidates = CandidatesOf(index, kind);
   if (candidates.empty()) {
-    FailTopics(index, fmt::format("has no topic with {} images that can be read", what));
+    FailTopics(index, fmt::format("has no topic with {} images that can be read ({})", what,
+                                  Readable(kind)));
   }
   if (candidates.size() > 1) {
     candidates = WithoutCompressedForms(candidates);
@@ -202,9 +250,13 @@ const IndexedTopic& ChooseInfoTopic(const BagIndex& index, const IndexedTopic& i
   }
   const std::string base = BaseName(images);
   const std::string beside = base.substr(0, base.rfind('/') + 1) + "camera_info";
+  constexpr std::string_view kViewer = "/image/data";  // Intel's realsense-viewer
+  const std::string of_viewer =
+      base.ends_with(kViewer) ? base.substr(0, base.size() - kViewer.size()) + "/info/camera_info"
+                              : beside;
   Candidates candidates;
   for (const IndexedTopic& topic : index.topics) {
-    if (topic.camera && topic.name == beside) {
+    if (topic.camera && (topic.name == beside || topic.name == of_viewer)) {
       return topic;
     }
     if (topic.camera) {

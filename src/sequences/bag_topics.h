@@ -32,8 +32,10 @@ struct IndexedTopic {
   BagImageKind kind = BagImageKind::kUnknown;              // of the images
   std::vector<BagImage> images = {};                       // if the topic has images
   std::optional<CameraInfoMessage> camera = std::nullopt;  // the first CameraInfo of the topic
-
-  bool IsCompressed() const { return type == "sensor_msgs/CompressedImage"; }
+  bool is_compressed = false;                              // the images
+  uint16_t brightest =
+      0;  // the largest value of all images, if they are kEither or Bayer of 16 bits
+  MessageCoding coding = MessageCoding::kCdr;
 };
 
 // The topics of a recording, sorted by name.
@@ -47,9 +49,10 @@ struct BagIndex {
 BagIndex IndexBags(const std::filesystem::path& path,
                    const std::vector<std::unique_ptr<Bag>>& bags);
 
-// The topic of colour or depth images. If `name` is given, it is this one. Otherwise it is the only
-// one; or, of several, the only one that is left without the compressed forms of raw topics; or the
-// only one whose name says that it is in colour ("rgb", "color") or that depth is registered
+// The topic of colour or depth images. A topic of kEither counts only if no other is of this kind.
+// If `name` is given, it is this one. Otherwise it is the only one; or, of several, the only one
+// that is left without the compressed forms of raw topics; or the only one whose name says that it
+// is in colour ("rgb", "color") or that depth is registered
 // ("registered", "aligned"). Throws InputError with all topics and with `option`, by which the user
 // can choose.
 const IndexedTopic& ChooseImageTopic(const BagIndex& index, BagImageKind kind,

@@ -72,12 +72,36 @@ ImageSize PngSize(std::string_view bytes) {
   return {BigEndian(bytes, kWidth, 4), BigEndian(bytes, kWidth + 4, 4)};
 }
 
-// Whether the JPEG has its end marker. Padding may follow the marker.
+bool HasPalette(std::string_view bytes) {
+  constexpr size_t kColourType = 25;  // in the header chunk, after the size and the bits
+  return bytes.starts_with(kPngSignature) && bytes.size() > kColourType && bytes[kColourType] == 3;
+}
+
+// Whether a marker has no length and no data.
+bool IsAlone(unsigned char marker) { return marker == 0x01 || (marker >= 0xd0 && marker <= 0xd7); }
+
+// Whether the JPEG has its end marker. Anything may follow: phones append a film (motion photos) or
+// further images. Segments are passed over by their lengths, because a thumbnail inside one has an
+// end marker of its own. Within the data of a scan, a marker follows 0xff, and 0xff itself is
+// followed by 0.
 ImageState CheckJpegEnd(std::string_view bytes) {
-  constexpr size_t kMostPadding = 4096;
-  const size_t tail = bytes.size() > kMostPadding ? bytes.size() - kMostPadding : 0;
-  const bool has_end = bytes.find("\xff\xd9"sv, tail) != std::string_view::npos;
-  return has_end ? ImageState::kGood : ImageState::kCutOff;
+  constexpr unsigned char kEndOfImage = 0xd9;
+  size_t at = 2;
+  while (true) {
+    at = bytes.find('\xff', at);
+    at = at == std::string_view::npos ? at : bytes.find_first_not_of('\xff', at);
+    if (at == std::string_view::npos) {
+      return ImageState::kCutOff;
+    }
+    const auto marker = static_cast<unsigned char>(bytes[at]);
+    ++at;
+    if (marker == kEndOfImage) {
+      return ImageState::kGood;
+    }
+    if (marker != 0 && !IsAlone(marker)) {
+      at += at + 2 <= bytes.size() ? BigEndian(bytes, at, 2) : 0;
+    }
+  }
 }
 
 // The size in the frame header of a JPEG (SOF0 to SOF15; the codes DHT, JPG and DAC between them
@@ -95,16 +119,13 @@ ImageSize JpegSize(std::string_view bytes) {
     }
     const auto marker = static_cast<unsigned char>(bytes[at]);
     const bool is_table = marker == 0xc4 || marker == 0xc8 || marker == 0xcc;
-    const bool is_alone =
-        marker == 0x01 ||
-        (marker >= 0xd0 && marker <= 0xd7);  // the marker has no length and no data
     if (marker >= 0xc0 && marker <= 0xcf && !is_table) {
       return {BigEndian(bytes, at + 6, 2), BigEndian(bytes, at + 4, 2)};
     }
     if (marker == kStartOfScan || marker == kEndOfImage) {
       return {};
     }
-    at += is_alone ? 1 : 1 + BigEndian(bytes, at + 1, 2);
+    at += IsAlone(marker) ? 1 : 1 + BigEndian(bytes, at + 1, 2);
   }
   return {};
 }
@@ -164,6 +185,11 @@ cv::Mat Decode(const std::filesystem::path& path, std::string_view bytes, int fl
 cv::Mat Decode16Bit(const std::filesystem::path& path, std::string_view bytes, const char* kind) {
   cv::Mat image = Decode(path, bytes, cv::IMREAD_UNCHANGED);
   if (image.type() != CV_16UC1) {
+    if (HasPalette(bytes)) {
+      Fail(path, fmt::format("is a PNG with a palette of colours, expected a {} image with one "
+                             "channel of 16 bits",
+                             kind));
+    }
     Fail(path, fmt::format("has {} channel(s) of {} bits, expected a {} image with one channel of "
                            "16 bits",
                            image.channels(), 8 * image.elemSize1(), kind));

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
+#include <string>
 #include <system_error>
 #include <vector>
 
@@ -65,16 +67,38 @@ ImageStream OpenFolder(const fs::path& folder, const ImageStreamOptions& options
   return stream;
 }
 
-void CheckStamps(const fs::path& file, const std::vector<double>& stamps) {
+[[noreturn]] void FailStamp(const fs::path& file, size_t frame, const std::string& fault) {
+  throw InputError(
+      fmt::format("{}: frame {} {}; expected --fps N in place of the time stamps of the video",
+                  file.string(), frame, fault));
+}
+
+// The frames of a video with its own time stamps. A frame that repeats the stamp of the previous
+// one is left out: a container has it when a camera delivered a frame twice.
+void AddFrames(const fs::path& file, const std::vector<double>& stamps, ImageSequence& sequence) {
   for (size_t i = 0; i < stamps.size(); ++i) {
-    const bool is_good = std::isfinite(stamps[i]) && (i == 0 || stamps[i] > stamps[i - 1]);
-    if (!is_good) {
-      throw InputError(fmt::format(
-          "{}: the time stamp of frame {}, {:g} s, does not come after the previous one; expected "
-          "--fps N in place of the time stamps of the video",
-          file.string(), i, stamps[i]));
+    const double former = sequence.frames.empty() ? -std::numeric_limits<double>::infinity()
+                                                  : sequence.frames.back().timestamp;
+    if (!std::isfinite(stamps[i])) {
+      FailStamp(file, i, "has no time stamp");
+    }
+    if (stamps[i] < former) {
+      FailStamp(file, i,
+                fmt::format("has the time stamp {:.6f} s, which comes before the previous "
+                            "one, {:.6f} s",
+                            stamps[i], former));
+    }
+    if (stamps[i] > former) {
+      sequence.frames.push_back({stamps[i], file / fmt::format("{:06}", i), {}, i});
     }
   }
+}
+
+// The mean over all frames, in 1 / s.
+double RateOf(const std::vector<FramePaths>& frames) {
+  return frames.size() < 2 ? kDefaultFramesPerSecond
+                           : static_cast<double>(frames.size() - 1) /
+                                 (frames.back().timestamp - frames.front().timestamp);
 }
 
 ImageStream OpenVideo(const fs::path& file, const ImageStreamOptions& options) {
@@ -82,23 +106,20 @@ ImageStream OpenVideo(const fs::path& file, const ImageStreamOptions& options) {
   std::vector<double> stamps = video->ReadStamps();
   ImageStream stream;
   if (options.frames_per_second) {
-    stream.frames_per_second = *options.frames_per_second;
-    stream.images.stamps_note =
-        fmt::format("time stamps: {:g} images per second (--fps)", stream.frames_per_second);
     for (size_t i = 0; i < stamps.size(); ++i) {
-      stamps[i] = static_cast<double>(i) / stream.frames_per_second;
+      stamps[i] = static_cast<double>(i) / *options.frames_per_second;
     }
-  } else {
-    CheckStamps(file, stamps);
-    stream.frames_per_second =
-        stamps.size() < 2 ? kDefaultFramesPerSecond
-                          : static_cast<double>(stamps.size() - 1) / (stamps.back() - stamps[0]);
-    stream.images.stamps_note = fmt::format(
-        "time stamps: those of the video, {:.4g} images per second", stream.frames_per_second);
   }
-  for (size_t i = 0; i < stamps.size(); ++i) {
-    stream.images.frames.push_back({stamps[i], file / fmt::format("{:06}", i), {}, i});
-  }
+  AddFrames(file, stamps, stream.images);
+  stream.frames_per_second = options.frames_per_second.value_or(RateOf(stream.images.frames));
+  const size_t repeated = stamps.size() - stream.images.frames.size();
+  const std::string turn = video->DescribeTurn();
+  stream.images.stamps_note = fmt::format(
+      "time stamps: {}{:.4g} images per second{}{}{}",
+      options.frames_per_second ? "" : "those of the video, ", stream.frames_per_second,
+      options.frames_per_second ? " (--fps)" : "",
+      repeated > 0 ? fmt::format("; {} repeat the previous stamp and are left out", repeated) : "",
+      turn.empty() ? "" : fmt::format("; the images are {}, as the video asks", turn));
   const cv::Mat first = video->ReadGrey(0);
   stream.width = first.cols;
   stream.height = first.rows;

@@ -108,12 +108,15 @@ void CheckSteps(const fs::path& folder, const NamedImages& images, double frames
 
 }  // namespace
 
-std::vector<fs::path> ListImages(const fs::path& folder) {
+std::vector<fs::path> ListImages(const fs::path& folder, std::string_view part) {
   constexpr std::array<std::string_view, 3> kRead = {".png", ".jpg", ".jpeg"};
   constexpr std::array<std::string_view, 7> kOthers = {".bmp", ".tif", ".tiff", ".webp",
                                                        ".pgm", ".ppm", ".gif"};
   std::vector<fs::path> images;
   for (const fs::path& file : ListFolder(folder)) {
+    if (file.filename().string().find(part) == std::string::npos) {
+      continue;
+    }
     const std::string extension = LowerExtension(file);
     if (std::find(kOthers.begin(), kOthers.end(), extension) != kOthers.end()) {
       throw InputError(file.string() + ": is neither a PNG nor a JPEG image, expected only those");
@@ -134,9 +137,10 @@ std::vector<fs::path> ListImages(const fs::path& folder) {
   return images;
 }
 
-NamedImages FindNamedImages(const fs::path& folder, double frames_per_second) {
+NamedImages FindNamedImages(const fs::path& folder, double frames_per_second,
+                            std::string_view part) {
   std::vector<NamedImage> images;
-  for (const fs::path& file : ListImages(folder)) {
+  for (const fs::path& file : ListImages(folder, part)) {
     images.push_back(ParseNamedImage(file));
     if (images.back().units_per_second != images.front().units_per_second) {
       throw InputError(fmt::format("{}: the number in the name is of another kind than that of {}",

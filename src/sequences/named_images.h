@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "hullslam/sequences/image_sequence.h"
@@ -17,7 +18,9 @@ struct NamedImages {
 // Files that end in .png, .jpg or .jpeg, in upper or lower case, in natural order of their names
 // (frame2 before frame10). Throws InputError for an image in another format, because it would be
 // missing silently.
-std::vector<std::filesystem::path> ListImages(const std::filesystem::path& folder);
+// Only files whose names contain `part` count.
+std::vector<std::filesystem::path> ListImages(const std::filesystem::path& folder,
+                                              std::string_view part = {});
 
 // Finds the time stamps of images by the last number in each name without its extension. A number
 // with a decimal point is in seconds. A whole number of 13, 16 or 19 digits is in milliseconds,
@@ -25,6 +28,7 @@ std::vector<std::filesystem::path> ListImages(const std::filesystem::path& folde
 // number of a frame, whose stamp is number / `frames_per_second`. Throws InputError for a folder
 // without images, names of different kinds, two images with the same number, and numbers with gaps
 // that no camera makes.
-NamedImages FindNamedImages(const std::filesystem::path& folder, double frames_per_second);
+NamedImages FindNamedImages(const std::filesystem::path& folder, double frames_per_second,
+                            std::string_view part = {});
 
 }  // namespace hullslam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sequences/run_sequence.h"
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -21,11 +22,13 @@ BagSequenceOptions BagOptions(const std::map<std::string, std::string>& choices,
     const auto found = choices.find(name);
     return found != choices.end() ? found->second : std::string();
   };
+  const std::string units = choice("float_units");
   return {.image_topic = choice("image_topic"),
           .depth_topic = choice("depth_topic"),
           .use_depth = use_depth,
           .need_camera = false,
-          .use_recording_times = choice("times") == "recording"};
+          .use_recording_times = choice("times") == "recording",
+          .float_units = units.empty() ? 1.0 : std::strtod(units.c_str(), nullptr)};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -22,9 +23,40 @@ namespace fs = std::filesystem;
 
 constexpr double kMaxDifference = 0.02;  // s, as in TUM's associate.py
 
+// How a data set without lists names its images, which are all in one folder.
+struct SharedFolder {
+  const char* data_set;
+  const char* folder;  // in the folder of the sequence
+  const char* colour;  // a part of the names
+  const char* depth;
+};
+
+constexpr std::array<SharedFolder, 2> kSharedFolders = {
+    {{"7-Scenes", "", ".color.", ".depth."}, {"Replica", "results", "frame", "depth"}}};
+
+// The data set of a sequence in such a form; null if it has none.
+const SharedFolder* FindSharedFolder(const fs::path& folder) {
+  for (const SharedFolder& shared : kSharedFolders) {
+    std::error_code error;
+    bool has_colour = false;
+    bool has_depth = false;
+    for (fs::directory_iterator entry(folder / shared.folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+      const std::string name = entry->path().filename().string();
+      has_colour = has_colour || name.find(shared.colour) != std::string::npos;
+      has_depth = has_depth || name.find(shared.depth) != std::string::npos;
+      if (has_colour && has_depth) {
+        return &shared;
+      }
+    }
+  }
+  return nullptr;
+}
+
 bool HasColourImages(const fs::path& folder) {
   std::error_code error;
-  return fs::exists(folder / "rgb.txt", error) || fs::is_directory(folder / "rgb", error);
+  return fs::exists(folder / "rgb.txt", error) || fs::is_directory(folder / "rgb", error) ||
+         FindSharedFolder(folder) != nullptr;
 }
 
 // The images of a list, as frames without depth.
@@ -60,6 +92,7 @@ struct ImageList {
   std::string source;  // for messages
   bool is_listed = true;
   bool are_numbered = false;
+  std::string data_set = {};  // if its name is known by those of the images
 };
 
 // From NAME.txt or, if the sequence has no lists, from the names of the images in the folder NAME.
@@ -72,14 +105,23 @@ std::optional<ImageList> FindImages(const fs::path& folder, const std::string& n
   if (fs::exists(folder / list, error)) {
     return ImageList{.frames = ReadImageList(folder, list, warnings), .source = list};
   }
-  if (may_be_unlisted && fs::is_directory(folder / name, error)) {
-    NamedImages named = FindNamedImages(folder / name, options.frames_per_second);
-    return ImageList{.frames = std::move(named.frames),
-                     .source = "the folder " + name,
-                     .is_listed = false,
-                     .are_numbered = named.are_numbered};
+  if (!may_be_unlisted) {
+    return std::nullopt;
   }
-  return std::nullopt;
+  ImageList images{.frames = {}, .source = "the folder " + name, .is_listed = false};
+  NamedImages named;
+  if (fs::is_directory(folder / name, error)) {
+    named = FindNamedImages(folder / name, options.frames_per_second);
+  } else if (const SharedFolder* const shared = FindSharedFolder(folder); shared != nullptr) {
+    named = FindNamedImages(folder / shared->folder, options.frames_per_second,
+                            name == "rgb" ? shared->colour : shared->depth);
+    images.data_set = shared->data_set;
+  } else {
+    return std::nullopt;
+  }
+  images.frames = std::move(named.frames);
+  images.are_numbered = named.are_numbered;
+  return images;
 }
 
 // How the time stamps were found; empty if a list has them.
@@ -89,8 +131,9 @@ std::string NoteOf(const ImageList& images, const TumSequenceOptions& options) {
   }
   return images.are_numbered
              ? fmt::format(
-                   "no rgb.txt: the names of the images are numbers of frames, {:g} per "
+                   "no rgb.txt: {}the names of the images are numbers of frames, {:g} per "
                    "second (Camera.fps)",
+                   images.data_set.empty() ? "" : "a folder of " + images.data_set + ", ",
                    options.frames_per_second)
              : std::string("no rgb.txt: the names of the images are time stamps");
 }
@@ -192,7 +235,8 @@ void CheckTumFolder(const fs::path& folder) {
   CheckFolder(folder);
   if (!HasColourImages(folder)) {
     throw InputError(fmt::format(
-        "{}: has neither rgb.txt nor a folder rgb, expected a sequence in TUM's format{}",
+        "{}: has neither rgb.txt nor a folder rgb, nor images named as in 7-Scenes or Replica; "
+        "expected a sequence in TUM's format{}",
         folder.string(), SuggestFolder(folder, HasColourImages)));
   }
 }

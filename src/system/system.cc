@@ -174,6 +174,8 @@ void System::SetLocalizationOnly(bool is_on) {
 
 void System::CheckStamp(double timestamp) const {
   Check(std::isfinite(timestamp), "the time stamp is not a number");
+  constexpr double kMost = 1e11;  // s; milliseconds since 1970 are more
+  Check(std::abs(timestamp) <= kMost, "the time stamp is too large to be in seconds");
   Check(frames_.empty() || timestamp > frames_.back().timestamp, "time stamps must increase");
 }
 

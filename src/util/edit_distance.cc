@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,16 @@ size_t EditDistance(std::string_view a, std::string_view b) {
     }
   }
   return row.back();
+}
+
+bool IsMisspelt(std::string_view written, std::string_view known) {
+  const auto without_digits = [](std::string_view text) {
+    std::string rest(text);
+    std::erase_if(rest, [](char c) { return c >= '0' && c <= '9'; });
+    return rest;
+  };
+  return EditDistance(written, known) <= std::max<size_t>(2, written.size() / 4) &&
+         without_digits(written) != without_digits(known);
 }
 
 }  // namespace hullslam

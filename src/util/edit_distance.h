@@ -10,4 +10,8 @@ namespace hullslam {
 // Messages use it to suggest the right name for a misspelt one.
 size_t EditDistance(std::string_view a, std::string_view b);
 
+// Whether `written` may be a misspelt `known`: one character in four is wrong at most, or two in
+// short names. Names that differ in numbers only, as Camera.k4 and Camera.k1, are different things.
+bool IsMisspelt(std::string_view written, std::string_view known);
+
 }  // namespace hullslam

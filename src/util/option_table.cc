@@ -281,14 +281,15 @@ bool OptionTable::IsMap(std::string_view key) const {
 }
 
 // The key that is most similar to a misspelt one. If an old name is most similar, this is its
-// current key. Empty if the table is empty.
+// current key. Empty if no key is similar enough.
 std::string OptionTable::MostSimilarKey(const std::string& key) const {
   constexpr size_t kLongestKey = 100;
   const std::string compared = key.substr(0, kLongestKey);
   std::string most_similar;
   size_t least_distance = std::numeric_limits<size_t>::max();
   const auto compare = [&](const std::string& name, const std::string& current) {
-    if (const size_t distance = EditDistance(compared, name); distance < least_distance) {
+    const size_t distance = EditDistance(compared, name);
+    if (distance < least_distance && IsMisspelt(compared, name)) {
       least_distance = distance;
       most_similar = current;
     }

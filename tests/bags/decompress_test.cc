@@ -8,6 +8,7 @@
 
 #include "support/expect_error.h"
 #include "support/made_bags.h"
+#include "support/temporary_folder.h"
 
 namespace hullslam {
 namespace {
@@ -64,6 +65,18 @@ TEST(DecompressTest, BrokenBytesAreRefused) {
 TEST(DecompressTest, UnknownCompressionsAreNamed) {
   ExpectInputError([] { ParseCompression("xz", "a.mcap: chunk"); },
                    {"a.mcap: chunk", "'xz'", "none, bz2, lz4 or zstd"});
+}
+
+// A chunk of zeros is a thousand times smaller than its content. So a small file must not be read
+// for minutes.
+TEST(ExpansionLimitTest, AFileMayBecomeAHundredTimesItsSizeAndOneChunkMore) {
+  const TemporaryFolder folder;
+  const auto file = folder.Write("a.mcap", std::string(1000, 'x'));
+  ExpansionLimit limit(file);
+  limit.Add(kMostBagBytes);
+  limit.Add(100'000);
+  ExpectInputError([&] { limit.Add(1); },
+                   {"a.mcap: its compressed parts have more than 256100000 bytes"});
 }
 
 }  // namespace

@@ -67,6 +67,54 @@ TEST_P(ImageMessages, AnImageWithFewerBytesThanItsSizeIsRefused) {
 INSTANTIATE_TEST_SUITE_P(Codings, ImageMessages,
                          ::testing::Values(MessageCoding::kCdr, MessageCoding::kRos1));
 
+TEST(FoxgloveMessages, HaveTheContentOfThoseOfRos) {
+  constexpr MessageCoding kProtobuf = MessageCoding::kProtobuf;
+  const std::string stamp = ProtobufStamp(7'000'000'009) + ProtobufField(9, "camera");
+  const std::string raw = stamp + ProtobufNumber(2, uint32_t{3}) + ProtobufNumber(3, uint32_t{2}) +
+                          ProtobufField(4, "mono8") + ProtobufNumber(5, uint32_t{4}) +
+                          ProtobufField(6, "abcdefgh");
+  const RawImageMessage image = ReadRawImage(kProtobuf, raw, "m");
+  EXPECT_EQ(image.stamp, (BagTime{7, 9}));
+  EXPECT_EQ(image.width, 3u);
+  EXPECT_EQ(image.height, 2u);
+  EXPECT_EQ(image.step, 4u);
+  EXPECT_EQ(image.encoding, "mono8");
+  EXPECT_EQ(image.data, "abcdefgh");
+  ExpectInputError([&] { ReadRawImage(kProtobuf, raw + ProtobufField(6, "abc"), "m"); },
+                   {"m has an image of 2 rows of 4 bytes, but only 3 bytes"});
+  const std::string packed = stamp + ProtobufField(2, "bytes") + ProtobufField(3, "jpeg");
+  const CompressedImageMessage compressed = ReadCompressedImage(kProtobuf, packed, "m");
+  EXPECT_EQ(compressed.stamp, (BagTime{7, 9}));
+  EXPECT_EQ(compressed.format, "jpeg");
+  EXPECT_EQ(compressed.data, "bytes");
+  ByteWriter numbers;
+  for (int i = 1; i < 10; ++i) {
+    numbers.Put(10.0 * i);
+  }
+  const std::string info = stamp + ProtobufNumber(2, uint32_t{64}) +
+                           ProtobufNumber(3, uint32_t{48}) + ProtobufField(4, "plumb_bob") +
+                           ProtobufField(5, numbers.bytes().substr(0, 40)) +
+                           ProtobufField(6, numbers.bytes());
+  const CameraInfoMessage camera = ReadCameraInfo(kProtobuf, info, "m");
+  EXPECT_EQ(camera.width, 64u);
+  EXPECT_EQ(camera.height, 48u);
+  EXPECT_EQ(camera.distortion_model, "plumb_bob");
+  EXPECT_EQ(camera.distortion, (std::vector<double>{10, 20, 30, 40, 50}));
+  EXPECT_EQ(camera.k[8], 90.0);
+}
+
+TEST(BagContentTest, DependsOnTheTypeAndTheCoding) {
+  const auto content = [](const char* type, MessageCoding coding) {
+    return ContentOf({"/a", type, 1, coding});
+  };
+  EXPECT_EQ(content("sensor_msgs/Image", MessageCoding::kRos1), BagContent::kImage);
+  EXPECT_EQ(content("foxglove.CompressedImage", MessageCoding::kProtobuf),
+            BagContent::kCompressedImage);
+  EXPECT_EQ(content("foxglove.CameraCalibration", MessageCoding::kProtobuf), BagContent::kCamera);
+  EXPECT_EQ(content("foxglove.CompressedVideo", MessageCoding::kProtobuf), BagContent::kOther);
+  EXPECT_EQ(content("sensor_msgs/Image", MessageCoding::kProtobuf), BagContent::kOther);
+}
+
 TEST(BagTimeTest, MicrosecondsAreThoseOfDecimalNumbers) {
   // The double of a text such as "1305031102.175304", for any microseconds.
   for (uint32_t microseconds = 0; microseconds < 1'000'000; microseconds += 997) {

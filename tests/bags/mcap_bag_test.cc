@@ -87,11 +87,22 @@ TEST_F(McapBagTest, RecordsOfOtherKindsAreSkipped) {
   EXPECT_EQ(Scan(file).messages.size(), 3u);
 }
 
+// `mcap convert` writes the messages of a bag of ROS 1 as they are.
+TEST_F(McapBagTest, MessagesOfRos1AndOfProtobufAreKnown) {
+  const Result ros1 = Scan(MadeMcap(kThreeImages, "", "ros1"));
+  EXPECT_EQ(ros1.messages.size(), 3u);
+  EXPECT_EQ(ros1.topics.at(0).type, "sensor_msgs/Image");
+  EXPECT_EQ(ros1.topics[0].coding, MessageCoding::kRos1);
+  const Result protobuf = Scan(MadeMcap(kThreeImages, "", "protobuf"));
+  EXPECT_EQ(protobuf.messages.size(), 3u);
+  EXPECT_EQ(protobuf.topics.at(0).coding, MessageCoding::kProtobuf);
+}
+
 TEST_F(McapBagTest, OtherEncodingsAreListedOnly) {
-  const Result result = Scan(MadeMcap(kThreeImages, "", "protobuf"));
+  const Result result = Scan(MadeMcap(kThreeImages, "", "json"));
   EXPECT_TRUE(result.messages.empty());
   ASSERT_EQ(result.topics.size(), 1u);
-  EXPECT_EQ(result.topics[0].type, "sensor_msgs/Image (protobuf)");
+  EXPECT_EQ(result.topics[0].type, "sensor_msgs/Image (json)");
   EXPECT_EQ(result.topics[0].messages, 3u);
 }
 

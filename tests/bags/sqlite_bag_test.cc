@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -70,6 +72,44 @@ TEST_F(SqliteBagTest, OtherSerializationsAreListedOnly) {
   bag.Scan([](const BagMessage&) {});
   ASSERT_EQ(bag.topics().size(), 1u);
   EXPECT_EQ(bag.topics()[0].type, "sensor_msgs/Image (json)");
+}
+
+size_t CountMessages(const std::filesystem::path& path) {
+  SqliteBag bag(path);
+  size_t count = 0;
+  bag.Scan([&](const BagMessage&) { ++count; });
+  return count;
+}
+
+// rosbag2 writes in the mode WAL. SQLite then makes two files beside a database to read it.
+TEST_F(SqliteBagTest, NothingIsWrittenBesideAFileInTheModeWal) {
+  RunSql(path_,
+         "PRAGMA journal_mode = WAL; INSERT INTO messages SELECT 9, 1, 3, data FROM messages "
+         "WHERE id = 1");
+  const auto folder = folder_.path() / "read only?#%";
+  std::filesystem::create_directory(folder);
+  std::filesystem::copy_file(path_, folder / "a.db3");
+  EXPECT_EQ(CountMessages(folder / "a.db3"), 3u);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+}
+
+TEST_F(SqliteBagTest, MessagesThatAreOnlyInTheLogOfARecorderAreRead) {
+  sqlite3* recorder = nullptr;  // it has not closed the file
+  sqlite3_open(path_.c_str(), &recorder);
+  sqlite3_exec(recorder,
+               "PRAGMA journal_mode = WAL; INSERT INTO messages SELECT 9, 1, 3, data FROM messages "
+               "WHERE id = 1",
+               nullptr, nullptr, nullptr);
+  const auto crashed = folder_.path() / "crashed";
+  std::filesystem::create_directory(crashed);
+  for (const char* const ending : {"", "-wal"}) {
+    std::filesystem::copy_file(path_.string() + ending, crashed / (std::string("a.db3") + ending));
+  }
+  sqlite3_close(recorder);
+  const std::string log = ReadFile(crashed / "a.db3-wal");
+  EXPECT_EQ(CountMessages(crashed / "a.db3"), 3u);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(crashed), {}), 2);
+  EXPECT_EQ(ReadFile(crashed / "a.db3-wal"), log);
 }
 
 }  // namespace

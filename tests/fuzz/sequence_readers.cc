@@ -12,6 +12,7 @@
 #include "hullslam/sequences/tum_sequence.h"
 #include "sequences/euroc_states.h"
 #include "sequences/icl_povray.h"
+#include "sequences/rvl_depth.h"
 
 namespace hullslam {
 namespace {
@@ -96,6 +97,13 @@ void FuzzBag(std::string_view bytes) {
   });
 }
 
+void FuzzRvl(std::string_view bytes) {
+  Try([&] {
+    const cv::Mat depth = DecodeRvl(bytes, "a message");
+    Expect(depth.type() == CV_16UC1 && !depth.empty(), "the depth");
+  });
+}
+
 constexpr auto kSequenceReaders =
     std::to_array<FuzzedReader>({{"sequence", FuzzSequence},
                                  {"associations", FuzzAssociations},
@@ -107,7 +115,8 @@ constexpr auto kSequenceReaders =
                                  {"euroc_states", FuzzEurocStates},
                                  {"mcap", FuzzBag},
                                  {"rosbag1", FuzzBag},
-                                 {"rosbag2", FuzzBag}});
+                                 {"rosbag2", FuzzBag},
+                                 {"rvl_depth", FuzzRvl}});
 
 }  // namespace
 

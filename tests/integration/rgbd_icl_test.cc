@@ -104,7 +104,7 @@ TEST_F(RgbdIcl, AWrongUnitOfLengthIsNoticed) {
   fs::create_directory(path_);
   room_.WriteIclPovray(path_, 2);
   const ProgramResult result = Run({path_, "--povray-units", "1", "--last", "0"});
-  EXPECT_NE(result.errors.find("is its unit (--povray-units) right?"), std::string::npos)
+  EXPECT_NE(result.errors.find("--povray-units of rgbd_icl) right?"), std::string::npos)
       << result.errors;
 }
 

@@ -38,9 +38,10 @@ TEST(HttpAccess, OnTheLoopbackOnlyItsOwnNamesAreServed) {
        {"127.0.0.1:8320", "localhost", "LOCALHOST:9000", "[::1]:8320", "127.3.2.1"}) {
     EXPECT_EQ(JudgeRequest(kLocal, RequestTo(host), false), HttpAccess::kAllowed) << host;
   }
-  for (const char* host :
-       {"", "evil.example", "evil.example:8320", "192.168.1.7:8320", "localhost.evil.example",
-        "127.0.0.1.evil.example", "desk:8320", "[::1", "[fe80::1]:8320"}) {
+  for (const char* host : {"", "evil.example", "evil.example:8320", "192.168.1.7:8320",
+                           "localhost.evil.example", "127.0.0.1.evil.example", "desk:8320", "[::1",
+                           "[fe80::1]:8320", "[::1].evil.example", "[::1]evil.example:8320",
+                           "localhost:evil.example", "127.0.0.1:", "[::1]:8320.evil.example"}) {
     EXPECT_EQ(JudgeRequest(kLocal, RequestTo(host), false), HttpAccess::kForeignHost) << host;
   }
 }

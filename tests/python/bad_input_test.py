@@ -42,12 +42,39 @@ def test_an_input_error_is_a_value_error():
     (IMAGE[:0], "the image has the shape (0, 320), expected a height and a width"),
     (np.zeros((1, 1 << 17), np.uint8), "expected a height and a width"),
     (np.lib.stride_tricks.as_strided(IMAGE, (HEIGHT, WIDTH), (0, 1))[:10], "320x10 px, expected"),
+    # Before, an image that is no view was copied before its size was looked at: 4 GB.
+    (np.broadcast_to(np.zeros(1, np.uint8), (1 << 16, 1 << 16)), "the image is 65536x65536 px, expected"),
     ("image.png", "the image has the type <U9, expected uint8"),
     (None, "the image has the type object, expected uint8"),
 ])
 def test_images(slam, wall, image, expected):
     refuse(expected, slam.track, image, DEPTH, timestamp=0.0)
     assert wall.track(slam, 0, 1)[0].state == "tracked"
+
+
+# Their members were read from memory without any content, and the interpreter crashed.
+UNINITIALISED = """
+import hullslam
+read = 0
+for kind in vars(hullslam).values():
+    if not isinstance(kind, type) or issubclass(kind, BaseException):
+        continue
+    made = kind.__new__(kind)
+    for name in [n for n in dir(kind) if not n.startswith("_")] + ["__len__", "__repr__"]:
+        try:
+            value = getattr(made, name)
+            value() if name == "__len__" else None
+        except (TypeError, AttributeError, RecursionError) as error:
+            read += "without __init__" in str(error)
+print(read)
+"""
+
+
+def test_objects_without_init_are_refused():
+    result = subprocess.run([sys.executable, "-c", UNINITIALISED], capture_output=True, text=True, check=False,
+                            timeout=60)
+    assert result.returncode == 0, result.stderr
+    assert int(result.stdout) > 20
 
 
 @pytest.mark.parametrize("depth, expected", [
@@ -77,6 +104,9 @@ def test_a_depth_image_without_any_depth_is_waited_out(slam):
     (float("inf"), "timestamp is not finite"),
     (0.5, "timestamp is 0.500000 s, expected more than that of the last frame, 0.500000 s"),
     (-1.0, "expected more than that of the last frame"),
+    (1305031102175304000, "timestamp is 1.30503e+18, expected seconds, up to 1e+11"),
+    (-1e300, "timestamp is -1e+300, expected seconds"),
+    (5e9, "after that of the last frame, expected seconds, not nanoseconds"),
 ])
 def test_time_stamps(slam, timestamp, expected):
     slam.track(IMAGE, DEPTH, timestamp=0.5)

@@ -11,7 +11,9 @@ import sys
 import tempfile
 import unittest
 
+import cv2
 import numpy as np
+import PIL.Image
 
 import fake_slam
 
@@ -68,19 +70,21 @@ class YOLO:
 
     def __call__(self, image, conf, retina_masks, verbose, **options):
         index = len([line for line in (HERE / "calls").read_text().splitlines() if line.startswith("yolo ")])
-        log(f"yolo {pathlib.Path(image).name} {conf} {sorted(options.items())}")
+        size = (40, 60) if isinstance(image, str) else image.shape[:2]
+        name = pathlib.Path(image).name if isinstance(image, str) else f"{size[1]}x{size[0]}"
+        log(f"yolo {name} {conf} {sorted(options.items())}")
         if (HERE / "interrupt").exists() and index == 2:
             raise KeyboardInterrupt
         boxes = np.array([[10, 10, 30, 20], [40, 5, 55, 35]], dtype=float)
         scores, classes = np.array([0.9, 0.4]), np.array([41.0, 0.0])
         if index % 3 == 2:
             boxes, scores, classes = boxes[:0], scores[:0], classes[:0]
-        masks = np.zeros((len(boxes), 40, 60), dtype=np.float32)
+        masks = np.zeros((len(boxes), *size), dtype=np.float32)
         for mask, (x0, y0, x1, y1) in zip(masks, boxes.astype(int)):
             mask[y0:y1, x0:x1] = 1.0
         with_masks = Part(data=Tensor(masks), xyxy=boxes) if "-seg" in self.model else None
         return [Part(boxes=Part(xyxy=Tensor(boxes), cls=Tensor(classes), conf=Tensor(scores)),
-                     masks=with_masks, orig_img=np.zeros((40, 60, 3), dtype=np.uint8))]
+                     masks=with_masks, orig_img=np.zeros((*size, 3), dtype=np.uint8))]
 
 
 class SAM:
@@ -220,6 +224,48 @@ class MakeMasksTest(unittest.TestCase):
         self.assertEqual(self.run_script(sequence=icl).returncode, 0)
         self.assertEqual({path.name for path in (icl / "masks").glob("?.txt")},
                          {"0.txt", "1.txt", "2.txt"})
+
+    def test_a_folder_without_lists(self):
+        (self.sequence / "rgb.txt").unlink()
+        result = self.run_script()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(len(list((self.sequence / "masks").glob("1.*.txt"))), 6)
+
+    def test_a_folder_of_photos(self):
+        photos = self.dir / "photos"
+        shutil.copytree(self.sequence / "rgb", photos)
+        result = self.run_script(sequence=photos)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(len(list((photos / "masks").glob("1.*.txt"))), 6)
+        self.assertIn("0 of them new", self.run_script(sequence=photos).stdout)
+
+    def test_photos_that_are_turned_have_masks_of_their_stored_pixels(self):
+        photos = self.dir / "photos"
+        photos.mkdir()
+        exif = PIL.Image.Exif()
+        exif[0x0112] = 6
+        PIL.Image.new("RGB", (60, 40)).save(photos / "a.jpg", exif=exif)
+        result = self.run_script("--refine", "none", sequence=photos)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("yolo 40x60 0.25 []", self.calls(), "the network sees it upright")
+        _, points, _ = polygon((photos / "masks" / "a.txt").read_text().splitlines()[0])
+        # Upright, the box is from (10, 10) to (29, 19). The stored pixel is (y, 39 - x).
+        np.testing.assert_allclose(points.min(axis=0), [9.5, 9.5], atol=1e-3)
+        np.testing.assert_allclose(points.max(axis=0), [19.5, 29.5], atol=1e-3)
+
+    def test_a_video(self):
+        video = self.dir / "walk.avi"
+        writer = cv2.VideoWriter(str(video), cv2.CAP_FFMPEG, cv2.VideoWriter_fourcc(*"MJPG"), 25.0,
+                                 (60, 40))
+        for grey in (0, 50, 100, 150):
+            writer.write(np.full((40, 60, 3), grey, np.uint8))
+        writer.release()
+        result = self.run_script(sequence=video)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("masks of 4 images, 4 of them new", result.stdout)
+        self.assertEqual(sorted(path.name for path in (self.dir / "walk_masks").glob("0*.txt")),
+                         [f"00000{number}.txt" for number in range(4)])
+        self.assert_refused(self.run_script(sequence=self.package / "__init__.py"), "video")
 
     def test_bad_input(self):
         self.assert_refused(self.run_script(has_package=False), "has no package ultralytics")

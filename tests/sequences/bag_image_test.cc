@@ -112,11 +112,11 @@ TEST(BagImageTest, CompressedDepthIsReadBehindItsTwelveBytes) {
   const cv::Mat metres = DepthOf(CompressedImageMessage{{}, "32FC1; compressedDepth", data}, "m");
   EXPECT_TRUE(std::isnan(metres.at<float>(0, 0)));
   EXPECT_FLOAT_EQ(metres.at<float>(1, 2), 5.0f);
-  ExpectInputError(
-      [&] {
-        DepthOf(CompressedImageMessage{{}, "16UC1; compressedDepth rvl", data}, "m");
-      },
-      {"m: the image is '16UC1; compressedDepth rvl'", "PNG"});
+  // A stream of RVL: two pixels of the depth 0, in one word.
+  const std::string rvl = head + std::string("\x02\0\0\0\x01\0\0\0\0\0\0\x20", 12);
+  const cv::Mat none = DepthOf(CompressedImageMessage{{}, "16UC1; compressedDepth rvl", rvl}, "m");
+  EXPECT_EQ(none.size(), cv::Size(2, 1));
+  EXPECT_EQ(cv::countNonZero(none), 0);
   ExpectInputError(
       [&] {
         DepthOf(CompressedImageMessage{{}, "16UC1; compressedDepth", "short"}, "m");
@@ -124,10 +124,71 @@ TEST(BagImageTest, CompressedDepthIsReadBehindItsTwelveBytes) {
       {"m: the depth image is cut off"});
 }
 
+// Each pixel of a Bayer pattern has one colour. In an image of one colour, each half of the pattern
+// gives it back.
+TEST(BagImageTest, BayerPatternsAreRead) {
+  struct Pattern {
+    const char* name;
+    int red_x, red_y;
+  };
+  const cv::Vec3b bgr(40, 90, 200);
+  for (const Pattern& pattern : {Pattern{"bayer_rggb8", 0, 0}, Pattern{"bayer_grbg8", 1, 0},
+                                 Pattern{"bayer_gbrg8", 0, 1}, Pattern{"bayer_bggr8", 1, 1}}) {
+    cv::Mat image(20, 30, CV_8UC1);
+    for (int y = 0; y < image.rows; ++y) {
+      for (int x = 0; x < image.cols; ++x) {
+        const int reds = (x % 2 == pattern.red_x ? 1 : 0) + (y % 2 == pattern.red_y ? 1 : 0);
+        image.at<uint8_t>(y, x) = bgr[reds];
+      }
+    }
+    std::string bytes;
+    EXPECT_EQ(ColourOf(MessageOf(image, pattern.name, bytes), "m").at<cv::Vec3b>(9, 9), bgr)
+        << pattern.name;
+    cv::Mat wide;
+    image.convertTo(wide, CV_16UC1, 16.0);  // a camera of 12 bits
+    const std::string name = std::string(pattern.name, std::strlen(pattern.name) - 1) + "16";
+    const RawImageMessage message = MessageOf(wide, name.c_str(), bytes);
+    EXPECT_EQ(ColourOf(message, "m", BrightestOf(message)).at<cv::Vec3b>(9, 9), bgr) << name;
+    EXPECT_NEAR(GreyOf(message, "m", BrightestOf(message)).at<uint8_t>(9, 9), 117, 1) << name;
+  }
+}
+
+TEST(BagImageTest, PixelsThatShareTheirColourAreRead) {
+  cv::Mat image(2, 4, CV_8UC2);
+  for (int y = 0; y < 2; ++y) {
+    for (int x = 0; x < 4; ++x) {
+      image.at<cv::Vec2b>(y, x) = {static_cast<uint8_t>(126), static_cast<uint8_t>(128)};
+    }
+  }
+  std::string bytes;
+  for (const char* const name : {"yuv422_yuy2", "yuyv"}) {  // brightness, then colour
+    EXPECT_NEAR(GreyOf(MessageOf(image, name, bytes), "m").at<uint8_t>(1, 2), 128, 1) << name;
+  }
+  for (const char* const name : {"yuv422", "uyvy"}) {  // colour, then brightness
+    const cv::Vec3b bgr = ColourOf(MessageOf(image, name, bytes), "m").at<cv::Vec3b>(1, 2);
+    EXPECT_NEAR(bgr[1], 132, 2) << name;
+  }
+}
+
+// Cameras of 10 or 12 bits leave the highest bits empty.
+TEST(BagImageTest, GreyOf16BitsUsesTheBitsOfItsTopic) {
+  cv::Mat image(4, 4, CV_16UC1, cv::Scalar(1600));
+  std::string bytes;
+  const RawImageMessage message = MessageOf(image, "mono16", bytes);
+  EXPECT_EQ(BrightestOf(message), 1600);
+  EXPECT_EQ(GreyOf(message, "m", 4000).at<uint8_t>(1, 1), 100);
+  EXPECT_EQ(GreyOf(message, "m", 60000).at<uint8_t>(1, 1), 6);
+  EXPECT_EQ(ColourOf(message, "m", 4000).type(), CV_8UC3);
+  EXPECT_EQ(DepthOf(message, "m").at<uint16_t>(1, 1), 1600);
+  EXPECT_EQ(BrightestOf(MessageOf(image, "16UC1", bytes)), 0);
+}
+
 TEST(BagImageTest, KindsFollowTheEncoding) {
   EXPECT_EQ(KindOfEncoding("bgr8"), BagImageKind::kColour);
   EXPECT_EQ(KindOfEncoding("32FC1"), BagImageKind::kDepth);
-  EXPECT_EQ(KindOfEncoding("bayer_rggb8"), BagImageKind::kUnknown);
+  EXPECT_EQ(KindOfEncoding("bayer_rggb8"), BagImageKind::kColour);
+  EXPECT_EQ(KindOfEncoding("mono16"), BagImageKind::kEither);
+  EXPECT_EQ(KindOfEncoding("nv21"), BagImageKind::kUnknown);
   EXPECT_EQ(KindOfFormat("jpeg"), BagImageKind::kColour);
   EXPECT_EQ(KindOfFormat("bgr8; jpeg compressed bgr8"), BagImageKind::kColour);
   EXPECT_EQ(KindOfFormat("16UC1; compressedDepth png"), BagImageKind::kDepth);
@@ -137,9 +198,9 @@ TEST(BagImageTest, KindsFollowTheEncoding) {
 
 TEST(BagImageTest, WrongKindsAndSizesAreRefused) {
   std::string bytes;
-  RawImageMessage message = MessageOf(RandomImage(CV_8UC3), "yuv422", bytes);
+  RawImageMessage message = MessageOf(RandomImage(CV_8UC3), "nv21", bytes);
   ExpectInputError([&] { GreyOf(message, "a.bag/1.5"); },
-                   {"a.bag/1.5: the image is 'yuv422'", "rgb8"});
+                   {"a.bag/1.5: the image is 'nv21'", "rgb8", "bayer_rggb8"});
   message.encoding = "bgr8";
   ExpectInputError([&] { DepthOf(message, "m"); }, {"'bgr8'", "16UC1"});
   message.step = 149;

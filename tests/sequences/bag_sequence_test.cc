@@ -111,17 +111,62 @@ TEST_F(BagSequenceTest, AnotherCameraIsRefusedWhenAFrameIsLoaded) {
 
 TEST_F(BagSequenceTest, StampsThatGoBackwardsAreRefusedUnlessRecordingTimesAreUsed) {
   std::vector<MadeMessage> messages = {Camera(), Image(0, 10), Image(33'000'000, 20)};
-  MadeMessage late = Image(2'000'000, 30);
+  MadeMessage late = Image(-2'000'000'000, 30);
   late.time = kStart + 66'000'000;
   messages.push_back(late);
   const BagSequenceOptions mono = {.use_depth = false};
   ExpectRefusal(messages,
-                {"a.mcap: /cam/image: the time stamp 1305031102.002000 s comes 0.031000 s before",
+                {"a.mcap: /cam/image: the time stamp 1305031100.000000 s comes 2.033000 s before",
                  "--recording-times"},
                 mono);
   const BagSequence bag = Open(messages, {.use_depth = false, .use_recording_times = true});
   ASSERT_EQ(bag.images.frames.size(), 3u);
   EXPECT_EQ(bag.images.frames[2].timestamp, 1305031102.066);
+}
+
+TEST_F(BagSequenceTest, ImagesThatCameALittleLateAreSortedByTheirStamps) {
+  MadeMessage late = Image(33'000'000, 20);
+  late.time = kStart + 99'000'000;
+  const BagSequence bag =
+      Open({Camera(), Image(0, 10), Image(66'000'000, 30), late, Image(100'000'000, 40)},
+           {.use_depth = false});
+  ASSERT_EQ(bag.images.frames.size(), 4u);
+  EXPECT_EQ(bag.images.frames[1].timestamp, 1305031102.033);
+  EXPECT_EQ(bag.images.load(bag.images.frames[1], bag.camera->camera).grey.at<uint8_t>(9, 9), 20);
+  ASSERT_EQ(bag.warnings.size(), 1u);
+  EXPECT_NE(bag.warnings[0].find("1 images come after images with later"), std::string::npos);
+}
+
+TEST_F(BagSequenceTest, DepthInFloatsHasTheGivenUnits) {
+  std::string millimetres;
+  for (uint32_t i = 0; i < kBagWidth * kBagHeight; ++i) {
+    millimetres.append("\0\0\xfa\x44", 4);  // 2000
+  }
+  const std::vector<MadeMessage> messages = {
+      Camera(),
+      Image(0, 10),
+      {"/cam/depth", "sensor_msgs/Image", kStart,
+       MadeImage(kCdr, kStart, "32FC1", kBagWidth, kBagHeight, millimetres)}};
+  const BagSequence bag = Open(messages, {.float_units = 1000.0});
+  const ImageInput frame = bag.images.load(bag.images.frames.at(0), bag.camera->camera);
+  EXPECT_FLOAT_EQ(frame.depth.at<float>(9, 9), 2.0f);
+  EXPECT_EQ(bag.images.choices.at("float_units"), "1000");
+  EXPECT_NE(bag.notes[1].find("DepthMapFactor has no effect"), std::string::npos) << bag.notes[1];
+  ExpectRefusal(messages, {"--float-units is '0'"}, {.float_units = 0.0});
+}
+
+TEST_F(BagSequenceTest, MessagesOfFoxgloveAreRead) {
+  const std::string pixels(kBagWidth * kBagHeight, '\x21');
+  const std::string image = ProtobufStamp(kStart) + ProtobufNumber(2, kBagWidth) +
+                            ProtobufNumber(3, kBagHeight) + ProtobufField(4, "mono8") +
+                            ProtobufNumber(5, kBagWidth) + ProtobufField(6, pixels);
+  const BagSequence bag = OpenBagSequence(
+      folder_.Write("a.mcap",
+                    MadeMcap({{"/image", "foxglove.RawImage", kStart, image}}, "zstd", "protobuf")),
+      {.use_depth = false, .need_camera = false});
+  ASSERT_EQ(bag.images.frames.size(), 1u);
+  EXPECT_EQ(bag.images.frames[0].timestamp, 1305031102.0);
+  EXPECT_EQ(bag.images.load_colour(bag.images.frames[0]).at<cv::Vec3b>(9, 9)[1], 0x21);
 }
 
 TEST_F(BagSequenceTest, RepeatedStampsAndLongGapsAreWarnings) {
@@ -172,7 +217,7 @@ TEST_F(BagSequenceTest, CamerasThatCannotBeUsedAreRefused) {
       {"/cam/camera_info", "'equidistant' with 4", "plumb_bob", "--settings"}, mono);
   ExpectRefusal(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "rational_polynomial",
                                            {0, 0, 0, 0, 0, 1, 0, 0})),
-                {"'rational_polynomial' with 8"}, mono);
+                {"'rational_polynomial' with 8 coefficients, which HullSLAM cannot use yet"}, mono);
   ExpectRefusal(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "plumb_bob", {}, 0.0)),
                 {"not calibrated"}, mono);
   const BagSequence bag =
@@ -182,6 +227,13 @@ TEST_F(BagSequenceTest, CamerasThatCannotBeUsedAreRefused) {
   EXPECT_EQ(bag.camera->camera.k2, 0.2);
   EXPECT_EQ(bag.camera->camera.p1, 0.3);
   EXPECT_EQ(bag.camera->camera.k3, 0.5);
+  // Models that HullSLAM does not have are those of a pinhole if there is no distortion.
+  const BagSequence pinhole =
+      Open(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "Inverse Brown Conrady")), mono);
+  EXPECT_FALSE(pinhole.camera->camera.IsDistorted());
+  ExpectRefusal(with_camera(MadeCameraInfo(kCdr, kBagWidth, kBagHeight, "Inverse Brown Conrady",
+                                           {0.1, 0, 0, 0, 0})),
+                {"'Inverse Brown Conrady' with 5"}, mono);
 }
 
 TEST_F(BagSequenceTest, ACutRecordingIsUsedUpToTheCut) {

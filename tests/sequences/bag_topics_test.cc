@@ -17,7 +17,9 @@ IndexedTopic Colour(const std::string& name, bool is_compressed = false) {
           "bgr8",
           9,
           BagImageKind::kColour,
-          std::vector<BagImage>(9)};
+          std::vector<BagImage>(9),
+          std::nullopt,
+          is_compressed};
 }
 
 IndexedTopic Depth(const std::string& name) {
@@ -53,6 +55,34 @@ TEST(BagTopicsTest, OfSeveralTopicsTheRawAndTheNamedOneIsTaken) {
   EXPECT_EQ(DepthOfTopics({Depth("/cam/depth/image"), Depth("/cam/aligned_depth_to_color/image")}),
             "/cam/aligned_depth_to_color/image");
   EXPECT_EQ(ColourOfTopics({Colour("/left"), Colour("/right")}, "/right"), "/right");
+}
+
+// mono16 is the depth of some cameras, and the image of others.
+TEST(BagTopicsTest, GreyOf16BitsIsWhatNoOtherTopicIs) {
+  const auto either = [](const std::string& name) {
+    IndexedTopic topic = Depth(name);
+    topic.kind = BagImageKind::kEither;
+    return topic;
+  };
+  EXPECT_EQ(DepthOfTopics({Colour("/cam"), either("/depth")}), "/depth");
+  EXPECT_EQ(DepthOfTopics({Colour("/cam"), either("/range")}), "/range");
+  EXPECT_EQ(DepthOfTopics({either("/cam"), either("/depth")}), "/depth");
+  EXPECT_EQ(DepthOfTopics({either("/cam"), Depth("/d")}), "/d");
+  EXPECT_EQ(ColourOfTopics({either("/cam"), Depth("/d")}), "/cam");
+  EXPECT_EQ(ColourOfTopics({either("/cam"), Colour("/c")}), "/c");
+  EXPECT_EQ(ColourOfTopics({either("/cam"), Colour("/c")}, "/cam"), "/cam");
+  ExpectInputError([&] { ColourOfTopics({either("/depth/image")}); },
+                   {"no topic with colour images that can be read (mono8, ", "yuyv, mono16; JPEG"});
+}
+
+TEST(BagTopicsTest, TopicsOfTheRealSenseViewerAreFound) {
+  const std::string device = "/device_0/sensor_";
+  const std::vector<IndexedTopic> topics = {
+      Colour(device + "0/Infrared_1/image/data"), Colour(device + "1/Color_0/image/data"),
+      Camera(device + "0/Depth_0/info/camera_info"), Camera(device + "1/Color_0/info/camera_info")};
+  EXPECT_EQ(ColourOfTopics(topics), device + "1/Color_0/image/data");
+  EXPECT_EQ(ChooseInfoTopic({"a.bag", topics}, topics[1], "", "--info-topic").name,
+            device + "1/Color_0/info/camera_info");
 }
 
 TEST(BagTopicsTest, WithoutATopicOrWithAChoiceTheTopicsAreListed) {

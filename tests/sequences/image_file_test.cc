@@ -63,6 +63,18 @@ TEST(ImageFile, OnlySixteenBitDepthIsAccepted) {
   ExpectInputError([&] { ReadDepthImage(colour); }, {"c.png", "3 channel(s) of 16 bits"});
 }
 
+TEST(ImageFile, APaletteIsNamed) {
+  const TemporaryFolder folder;
+  const std::string png(
+      "\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x02\x00\x00"
+      "\x00\x01\x01\x03\x00\x00\x00\xce\xec\xed\xc9\x00\x00\x00\x06\x50\x4c\x54\x45\x00\x00\x00"
+      "\xff\x00\x00\x1b\xff\x8d\x22\x00\x00\x00\x0a\x49\x44\x41\x54\x78\x9c\x63\x70\x00\x00\x00"
+      "\x42\x00\x41\x29\x37\xf4\xef\x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82",
+      85);
+  ExpectInputError([&] { ReadDepthImage(folder.Write("p.png", png)); },
+                   {"p.png: is a PNG with a palette of colours, expected a depth image"});
+}
+
 TEST(ImageFile, GreyImagesHave8Bits) {
   const TemporaryFolder folder;
   const auto write = [&](int type) {
@@ -90,6 +102,23 @@ TEST(ImageFile, EveryTruncationIsFound) {
     const auto path = folder.Write("cut", whole.substr(0, whole.size() - 1));
     ExpectInputError([&] { ReadGreyImage(path); }, {"cut: is cut off"});
   }
+}
+
+// Motion photos of phones have a film behind the image.
+TEST(ImageFile, AJpegMayHaveAnythingBehindItsEnd) {
+  const TemporaryFolder folder;
+  const std::string jpeg = EncodeImage(Ramp(CV_8UC1), ".jpg");
+  const auto path = folder.Write("film.jpg", jpeg + "\xff ftypmp42" + std::string(200'000, 'x'));
+  EXPECT_EQ(ReadGreyImage(path).size(), cv::Size(64, 48));
+}
+
+// A cut image may have a thumbnail with an end marker of its own.
+TEST(ImageFile, TheEndOfAThumbnailIsNotThatOfTheJpeg) {
+  const TemporaryFolder folder;
+  const std::string jpeg = EncodeImage(Ramp(CV_8UC1), ".jpg");
+  std::string cut = jpeg.substr(0, jpeg.size() - 2);
+  cut.insert(2, "\xff\xe1" + std::string("\0\x08", 2) + "Exi\xff\xd9!");
+  ExpectInputError([&] { ReadGreyImage(folder.Write("cut.jpg", cut)); }, {"cut.jpg: is cut off"});
 }
 
 TEST(ImageFile, BrokenFilesAreReportedByName) {

@@ -21,6 +21,39 @@ namespace {
 constexpr int kWidth = 66;
 constexpr int kHeight = 50;
 
+std::string BigEndian(uint32_t value) {
+  std::string bytes;
+  for (const unsigned shift : {24U, 16U, 8U, 0U}) {
+    bytes += static_cast<char>(value >> shift & 0xffU);
+  }
+  return bytes;
+}
+
+// Replaces `count` bytes at `at` of the box at the end of `path` in an MP4 file, and makes the
+// boxes around them larger. OpenCV writes the images before these boxes, so that no place of them
+// changes.
+void ReplaceInBox(const std::vector<std::string>& path, size_t at, size_t count,
+                  const std::string& text, std::string& file) {
+  size_t box = 0;
+  const auto size_of = [&](size_t place) {
+    uint32_t size = 0;
+    for (size_t i = 0; i < 4; ++i) {
+      size = size << 8U | static_cast<unsigned char>(file[place + i]);
+    }
+    return size;
+  };
+  for (const std::string& name : path) {
+    while (file.compare(box + 4, 4, name) != 0) {
+      box += size_of(box);
+      ASSERT_LT(box + 8, file.size()) << name;
+    }
+    const auto size = static_cast<uint32_t>(size_of(box) + text.size() - count);
+    file.replace(box, 4, BigEndian(size));
+    box += name == path.back() ? 0 : 8;
+  }
+  file.replace(box + at, count, text);
+}
+
 class ImageStreamTest : public ::testing::Test {
  protected:
   std::string Path(const std::string& name) const { return folder_.path() / name; }
@@ -31,12 +64,19 @@ class ImageStreamTest : public ::testing::Test {
     return Path(name);
   }
 
-  // A video of frames with the grey values 0, 20, 40 and so on, with 25 frames per second.
-  std::string WriteVideo(const std::string& name, int frames) const {
-    cv::VideoWriter writer(Path(name), cv::CAP_FFMPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'),
+  // A video of frames with the grey values 0, 20, 40 and so on, with 25 frames per second. The
+  // upper left quarter is white if `has_corner`.
+  std::string WriteVideo(const std::string& name, int frames, const char* coding = "MJPG",
+                         bool has_corner = false) const {
+    cv::VideoWriter writer(Path(name), cv::CAP_FFMPEG,
+                           cv::VideoWriter::fourcc(coding[0], coding[1], coding[2], coding[3]),
                            25.0, cv::Size(kWidth, kHeight));
     for (int i = 0; i < frames; ++i) {
-      writer.write(cv::Mat(kHeight, kWidth, CV_8UC3, cv::Scalar::all(20 * i)));
+      cv::Mat image(kHeight, kWidth, CV_8UC3, cv::Scalar::all(20 * i));
+      if (has_corner) {
+        image(cv::Rect(0, 0, kWidth / 2, kHeight / 2)).setTo(cv::Scalar::all(255));
+      }
+      writer.write(image);
     }
     return Path(name);
   }
@@ -136,6 +176,68 @@ TEST_F(ImageStreamTest, AVideoHasItsOwnTimeStamps) {
     EXPECT_NEAR(stream.images.frames[7].timestamp - stream.images.frames[0].timestamp, 0.28, 1e-3);
     EXPECT_EQ(stream.images.frames[7].image.stem(), "000007");
     EXPECT_NE(stream.images.stamps_note.find("of the video"), std::string::npos);
+  }
+}
+
+// The decoder delivers the last frames after the end of the file, and in another order than that of
+// their packets.
+TEST_F(ImageStreamTest, FramesThatAreDecodedLateHaveTheirTimeStamps) {
+  for (const char* const name : {"a.mp4", "a.mkv", "a.avi"}) {
+    const ImageStream stream = OpenImageStream(WriteVideo(name, 12, "avc1"));
+    ASSERT_EQ(stream.images.frames.size(), 12U) << name;
+    for (size_t i = 0; i < 12; ++i) {
+      EXPECT_NEAR(stream.images.frames[i].timestamp, 0.04 * static_cast<double>(i), 1e-3) << name;
+      EXPECT_NEAR(GreyOf(stream, i), 20 * static_cast<int>(i), 4) << name;
+    }
+  }
+}
+
+TEST_F(ImageStreamTest, IntervalsOfAVideoMayDifferAndRepeatedStampsAreLeftOut) {
+  std::string file = ReadFile(WriteVideo("a.mp4", 6, "mp4v"));
+  constexpr uint32_t kUnit = 512;    // 0.04 s
+  std::string table = BigEndian(6);  // the sum stays, because an edit list tells the end
+  for (const uint32_t units : {1U, 2U, 0U, 1U, 1U, 1U}) {
+    table += BigEndian(1) + BigEndian(units * kUnit);
+  }
+  ReplaceInBox({"moov", "trak", "mdia", "minf", "stbl", "stts"}, 12, 12, table, file);
+  const ImageStream stream = OpenImageStream(folder_.Write("b.mp4", file));
+  ASSERT_EQ(stream.images.frames.size(), 5U);
+  const std::vector<double> stamps = {0.0, 0.04, 0.12, 0.16, 0.2};
+  const std::vector<size_t> numbers = {0, 1, 2, 4, 5};
+  for (size_t i = 0; i < 5; ++i) {
+    EXPECT_NEAR(stream.images.frames[i].timestamp, stamps[i], 1e-3);
+    EXPECT_NEAR(GreyOf(stream, i), 20 * static_cast<int>(numbers[i]), 4);
+  }
+  EXPECT_EQ(stream.images.frames[3].image.stem(), "000004");
+  EXPECT_NE(stream.images.stamps_note.find("1 repeat the previous stamp"), std::string::npos);
+}
+
+// A camera that was held upright stores its images lying, and says so in the matrix of the track.
+TEST_F(ImageStreamTest, AVideoIsTurnedAsItAsks) {
+  struct Case {
+    std::vector<int> matrix;  // a, b, c, d
+    const char* note;
+    int x, y;  // a pixel in the white corner
+  };
+  const std::string stored = ReadFile(WriteVideo("a.mp4", 3, "mp4v", true));
+  for (const Case& turn : {Case{{0, 1, -1, 0}, "turned by 90 degrees clockwise", 40, 9},
+                           Case{{-1, 0, 0, -1}, "turned by 180 degrees", 56, 40},
+                           Case{{0, -1, 1, 0}, "turned by 90 degrees counterclockwise", 9, 56},
+                           Case{{-1, 0, 0, 1}, "mirrored", 56, 9}}) {
+    std::string file = stored;
+    const auto fixed = [&](int i) {
+      return BigEndian(static_cast<uint32_t>(turn.matrix[i]) << 16);
+    };
+    ReplaceInBox({"moov", "trak", "tkhd"}, 48, 20,
+                 fixed(0) + fixed(1) + BigEndian(0) + fixed(2) + fixed(3), file);
+    const ImageStream stream = OpenImageStream(folder_.Write("turned.mp4", file));
+    EXPECT_NE(stream.images.stamps_note.find(std::string("; the images are ") + turn.note),
+              std::string::npos)
+        << stream.images.stamps_note;
+    EXPECT_EQ(stream.width, turn.matrix[0] == 0 ? kHeight : kWidth);
+    const cv::Mat grey = stream.images.load(stream.images.frames[1], CameraOf(stream)).grey;
+    EXPECT_GT(grey.at<uint8_t>(turn.y, turn.x), 200) << turn.note;
+    EXPECT_LT(cv::mean(grey)[0], 120.0) << turn.note;
   }
 }
 

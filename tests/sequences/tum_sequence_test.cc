@@ -254,6 +254,27 @@ TEST_F(UnlistedSequenceTest, AListIsPreferred) {
   ExpectError({"has no depth.txt", "without depth: mono_tum"});
 }
 
+TEST_F(UnlistedSequenceTest, FoldersOf7ScenesAreKnownByTheirNames) {
+  Add({"frame-000000.color.png", "frame-000000.depth.png", "frame-000000.pose.txt",
+       "frame-000001.color.png", "frame-000001.depth.png"});
+  const ImageSequence sequence = Open();
+  ASSERT_EQ(sequence.frames.size(), 2U);
+  EXPECT_EQ(sequence.frames[1].image.filename(), "frame-000001.color.png");
+  EXPECT_EQ(sequence.frames[1].depth.filename(), "frame-000001.depth.png");
+  EXPECT_NE(sequence.stamps_note.find("a folder of 7-Scenes"), std::string::npos);
+  EXPECT_EQ(Open({.use_depth = false}).frames.size(), 2U);
+}
+
+TEST_F(UnlistedSequenceTest, FoldersOfReplicaAreKnownByTheirNames) {
+  Add({"results/frame000000.jpg", "results/depth000000.png", "results/frame000001.jpg",
+       "results/depth000001.png", "traj.txt"});
+  const ImageSequence sequence = Open();
+  ASSERT_EQ(sequence.frames.size(), 2U);
+  EXPECT_EQ(sequence.frames[1].image.filename(), "frame000001.jpg");
+  EXPECT_EQ(sequence.frames[1].depth.filename(), "depth000001.png");
+  EXPECT_EQ(sequence.frames[1].timestamp, 1.0 / 30.0);
+}
+
 TEST_F(UnlistedSequenceTest, OtherNamesAreRefused) {
   Add({"rgb/1.png"});
   ExpectError({"has no depth.txt and no folder depth", "without depth: mono_tum"});

@@ -57,6 +57,31 @@ class MadeFields {
   ByteWriter ros1_;
 };
 
+// A field of a message of protobuf: a text, a list of bytes or a message inside it.
+inline std::string ProtobufField(int field, std::string_view bytes) {
+  std::string written(1, static_cast<char>(field << 3 | 2));
+  size_t size = bytes.size();
+  for (; size > 127; size >>= 7U) {
+    written += static_cast<char>((size & 127U) | 128U);
+  }
+  return written + static_cast<char>(size) + std::string(bytes);
+}
+
+// A field of protobuf with a number of a fixed size.
+template <typename Number>
+std::string ProtobufNumber(int field, Number number) {
+  ByteWriter writer;
+  writer.Put(static_cast<uint8_t>(field << 3 | (sizeof(Number) == 8 ? 1 : 5)));
+  writer.Put(number);
+  return writer.bytes();
+}
+
+// The field 1 of Foxglove's messages, a google.protobuf.Timestamp.
+inline std::string ProtobufStamp(uint64_t time) {
+  return ProtobufField(1, ProtobufNumber(1, static_cast<uint32_t>(time / 1'000'000'000)) +
+                              ProtobufNumber(2, static_cast<uint32_t>(time % 1'000'000'000)));
+}
+
 // A sensor_msgs/Image whose rows have no gaps.
 inline std::string MadeImage(MessageCoding coding, uint64_t time, std::string_view encoding,
                              uint32_t width, uint32_t height, std::string_view pixels) {
@@ -161,7 +186,10 @@ inline std::string MadeMcap(const std::vector<MadeMessage>& messages,
       ByteWriter schema;
       schema.Put(id);
       std::string type = message.type;
-      schema.PutText(type.insert(type.find('/'), "/msg"));
+      if (encoding == "cdr") {
+        type.insert(type.find('/'), "/msg");
+      }
+      schema.PutText(type);
       schema.PutText("ros2msg");
       schema.PutText("");
       ByteWriter channel;

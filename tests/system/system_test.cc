@@ -493,6 +493,7 @@ TEST(System, TimeStampsThatDoNotIncreaseAreRefused) {
   const cv::Mat image = TheWall().Photograph(0);
   const cv::Mat depth = Wall::Depth(0);
   EXPECT_THROW(system.Track(std::numeric_limits<double>::quiet_NaN(), image, depth), CheckError);
+  EXPECT_THROW(system.Track(1305031102175304000.0, image, depth), CheckError) << "nanoseconds";
   system.Track(10.0, image, depth);
   for (const double time : {10.0, 9.9, -10.0, std::numeric_limits<double>::quiet_NaN(),
                             std::numeric_limits<double>::infinity()}) {

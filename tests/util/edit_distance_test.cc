@@ -20,6 +20,15 @@ TEST(EditDistance, TheEmptyTextNeedsAllCharacters) {
   EXPECT_EQ(EditDistance("abc", ""), 3u);
 }
 
+TEST(EditDistance, AMisspeltNameIsSimilarAndDiffersNotOnlyInNumbers) {
+  EXPECT_TRUE(IsMisspelt("Camera.fxx", "Camera.fx"));
+  EXPECT_TRUE(IsMisspelt("objects.start.min_view", "objects.start.min_views"));
+  EXPECT_TRUE(IsMisspelt("lenght", "length"));
+  EXPECT_FALSE(IsMisspelt("PointCloudMapping.Resolution", "objects.start.inflation"));
+  EXPECT_FALSE(IsMisspelt("Camera.k4", "Camera.k1"));
+  EXPECT_FALSE(IsMisspelt("Camera2.fx", "Camera.fx"));
+}
+
 TEST(EditDistance, IsSymmetric) {
   EXPECT_EQ(EditDistance("quadric", "quartic"), EditDistance("quartic", "quadric"));
 }

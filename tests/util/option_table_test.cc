@@ -169,6 +169,12 @@ TEST(OptionTable, AnUnknownKeyGetsASuggestion) {
   OptionTable table = fields.Bind();
   ExpectInputError([&] { table.Set("b.lenght", "1", "--set"); },
                    {"--set: ", "unknown key 'b.lenght'", "did you mean 'b.length'"});
+  try {
+    table.Set("PointCloud.Resolution", "1", "--set");
+    ADD_FAILURE() << "an unknown key was accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()), "--set: unknown key 'PointCloud.Resolution'");
+  }
   EXPECT_TRUE(table.Contains("b.length"));
   EXPECT_TRUE(table.Contains("Viewer.Size"));
   EXPECT_FALSE(table.Contains("b.lenght"));

@@ -22,6 +22,8 @@ struct BagSequenceOptions {
   bool need_camera = true;
   // The time stamps are those at which the messages were recorded, not those in the messages.
   bool use_recording_times = false;
+  // Values of depth images of the encoding 32FC1 per metre; 1000 if they are in millimetres.
+  double float_units = 1.0;
   FrameSelection selection = {};
 };
 
@@ -35,14 +37,14 @@ struct BagSequence {
   std::vector<std::string> warnings;  // what is missing in the file, or odd about its stamps
 };
 
-// Opens a recording of ROS: a file in the format of MCAP (messages of ROS 2), of rosbag2 (SQLite)
-// or of ROS 1 (2.0), or a folder of rosbag2. The file is read once to find its images, of which
-// only the positions are kept; they are decoded when they are loaded. Colour and depth images are
-// paired by time: one to one, closest first, within 0.02 s.
+// Opens a recording: a file in the format of MCAP (messages of ROS or Foxglove), of rosbag2
+// (SQLite) or of ROS 1 (2.0), or a folder of rosbag2. The file is read once to find its images, of
+// which only the positions are kept; they are decoded when they are loaded. Colour and depth images
+// are paired by time: one to one, closest first, within 0.02 s.
 //
 // Throws InputError with the file and the position of what is broken; with a list of the topics if
 // a topic is missing or if there is a choice; and with the topic and the two stamps if stamps go
-// backwards.
+// back by more than a second.
 BagSequence OpenBagSequence(const std::filesystem::path& path,
                             const BagSequenceOptions& options = {});
 

@@ -42,6 +42,10 @@ class BagDataset final : public Dataset {
         ->type_name("TOPIC");
     app.add_flag("--recording-times", options_.use_recording_times,
                  "take the times at which the messages were recorded, not the stamps in them");
+    app.add_option("--float-units", options_.float_units,
+                   "values of depth images of the encoding 32FC1 per metre (default: 1; 1000 if "
+                   "they are in millimetres)")
+        ->type_name("N");
   }
 
   DatasetInput Open(const RunArguments& arguments) override {
