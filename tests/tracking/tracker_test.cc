@@ -181,9 +181,12 @@ std::vector<uint32_t> NeverMappedObject::Requests(const ObjectOptions& objects, 
 
 TEST_F(NeverMappedObject, CausesFewerAndFewerRequests) {
   const std::vector<uint32_t> expected = {10, 20, 30, 40, 60, 100, 180, 340, 500};
-  EXPECT_EQ(Requests({}), expected);
-  EXPECT_EQ(Requests({.joint_pose = false}), expected);
-  EXPECT_EQ(Requests({.joint_pose = false, .guided_matching = false}), expected);
+  ObjectOptions objects;
+  EXPECT_EQ(Requests(objects), expected);
+  objects.joint_pose = false;
+  EXPECT_EQ(Requests(objects), expected);
+  objects.guided_matching = false;
+  EXPECT_EQ(Requests(objects), expected);
 }
 
 TEST_F(NeverMappedObject, CausesNoRequestIfObjectsAreNoReasonForKeyframes) {
