@@ -83,12 +83,11 @@ ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& 
 }
 
 Scene CollectScene(const Map& map, const ObjectReport& report,
-                   const std::optional<Trajectory>& groundtruth, const ObjectOptions& options) {
+                   const std::optional<Trajectory>& groundtruth) {
   std::vector<Eigen::Vector3d> landmarks;
   map.landmarks().ForEach(
       [&](LandmarkId, const Landmark& landmark) { landmarks.push_back(landmark.position); });
-  return MakeScene(map, report, FindUp(groundtruth, KeyframeTrajectory(map), landmarks),
-                   options.refinement);
+  return MakeScene(map, report, FindUp(groundtruth, KeyframeTrajectory(map), landmarks));
 }
 
 std::vector<FileContent> ObjectFiles(const ObjectReport& report, const Scene& scene) {

@@ -28,9 +28,9 @@ ObjectsSummary SummarizeObjects(const ObjectReport& report, const ObjectCounts& 
 
 // The scene of the map that `report` is about. `groundtruth` is that of the sequence, if it has
 // one: it tells which direction is upwards. Without it the horizontal planes of the landmarks tell
-// this. `options` are those of the run that fitted the shapes (MakeScene).
+// this.
 Scene CollectScene(const Map& map, const ObjectReport& report,
-                   const std::optional<Trajectory>& groundtruth, const ObjectOptions& options = {});
+                   const std::optional<Trajectory>& groundtruth);
 
 // The contents of objects.json, objects_observations.json, objects.csv, objects.ply and scene.json,
 // so that they can be written together with the other files of a run.

@@ -315,7 +315,7 @@ int RunSlam(const RunArguments& arguments, LoadedSettings settings, const ImageS
   std::vector<FileContent> object_files;
   if (masks.format()) {
     summary.objects = SummarizeObjects(objects, system.object_counts());
-    object_files = ObjectFiles(objects, CollectScene(*map, objects, groundtruth, options.objects));
+    object_files = ObjectFiles(objects, CollectScene(*map, objects, groundtruth));
   }
   const LocatedLandmarks landmarks = LocateLandmarks(*map, MakeSensor(options));
   summary.map.landmarks_at_infinity = landmarks.at_infinity;

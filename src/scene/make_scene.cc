@@ -65,8 +65,7 @@ std::vector<float> MeanEmbedding(std::span<const ObjectView> views) {
 
 }  // namespace
 
-Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& up,
-                const ObjectRefinementOptions& refinement) {
+Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& up) {
   Scene scene;
   scene.up = up.up;
   scene.up_from = up.from;
@@ -81,8 +80,7 @@ Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& u
     const ObjectLandmark& landmark = map.objects().At(reported.id);
     const std::vector<ObjectView> views = CollectViews(map, landmark);
     object.embedding = MeanEmbedding(views);
-    object.covariance =
-        CovarianceOf(report.camera, object.ellipsoid, landmark.start, views, refinement.constraint);
+    object.covariance = CovarianceOf(report.camera, object.ellipsoid, landmark.start, views);
     bodies.push_back(
         MeasureBody(object.id, object.ellipsoid, report.camera, views, upright_from_world));
     if (up.up && object.covariance) {

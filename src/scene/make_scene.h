@@ -2,7 +2,6 @@
 #pragma once
 
 #include "hullslam/map/map.h"
-#include "hullslam/objects/object_options.h"
 #include "report/object_report.h"
 #include "scene/scene.h"
 #include "scene/up_direction.h"
@@ -11,9 +10,7 @@ namespace hullslam {
 
 // The scene of a map. `report` has the objects of the same map with their fits; only mapped objects
 // take part. If the upward direction is not known, there are no boxes, no surfaces, and only the
-// relations that follow from the views. `refinement` has the options with which the shapes were
-// fitted; a map file does not have them, so without a run they are the defaults.
-Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& up,
-                const ObjectRefinementOptions& refinement = {});
+// relations that follow from the views.
+Scene MakeScene(const Map& map, const ObjectReport& report, const UpDirection& up);
 
 }  // namespace hullslam

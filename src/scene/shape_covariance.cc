@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/sphere_directions.h"
+#include "hullslam/objects/object_constraint_options.h"
 #include "objects/misfit.h"
 
 namespace hullslam {
@@ -78,7 +79,7 @@ double Correlation(size_t a, size_t b) {
 }
 
 void AddLines(const PinholeCamera& camera, const Ellipsoid& ellipsoid, const ObjectView& view,
-              double max_effective_lines, std::vector<LineTerm>& terms) {
+              std::vector<LineTerm>& terms) {
   const size_t first = terms.size();
   for (const SilhouetteLine& line : view.detection->lines) {
     const auto plane = line.is_one_sided
@@ -91,8 +92,8 @@ void AddLines(const PinholeCamera& camera, const Ellipsoid& ellipsoid, const Obj
                        .pixels_per_metre = plane->pixels_per_metre});
     }
   }
-  const double share =
-      std::min(1.0, max_effective_lines / static_cast<double>(terms.size() - first));
+  const double share = std::min(1.0, ObjectConstraintOptions().max_effective_lines /
+                                         static_cast<double>(terms.size() - first));
   std::for_each(terms.begin() + static_cast<std::ptrdiff_t>(first), terms.end(),
                 [&](LineTerm& term) { term.share = share; });
 }
@@ -194,8 +195,8 @@ Information ShapeErrors(const std::vector<LineTerm>& terms, const ShapeVariances
 }
 
 // The information of the prior on the shape (QuadricPriorCost).
-Information PriorOf(const Ellipsoid& start, bool has_depth,
-                    const ObjectConstraintOptions& options) {
+Information PriorOf(const Ellipsoid& start, bool has_depth) {
+  const ObjectConstraintOptions options;
   const QuadricPriorSigmas& sigmas = has_depth ? options.prior : options.prior_without_depth;
   const double center = sigmas.center * std::cbrt(start.half_axes.prod());
   Gradient diagonal;
@@ -209,11 +210,10 @@ Information PriorOf(const Ellipsoid& start, bool has_depth,
 
 std::optional<ShapeCovariance> CovarianceOf(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
                                             const Ellipsoid& start,
-                                            std::span<const ObjectView> views,
-                                            const ObjectConstraintOptions& constraint) {
+                                            std::span<const ObjectView> views) {
   std::vector<LineTerm> terms;
   for (const ObjectView& view : views) {
-    AddLines(camera, ellipsoid, view, constraint.max_effective_lines, terms);
+    AddLines(camera, ellipsoid, view, terms);
   }
   if (terms.empty()) {
     return std::nullopt;
@@ -222,7 +222,7 @@ std::optional<ShapeCovariance> CovarianceOf(const PinholeCamera& camera, const E
   const ShapeVariances variances = MeasureVariances(patches);
   const double noise_px = MeasureNoise(terms, patches);
   // As in the refinement, the misfit sets the sigma of a line.
-  Information information = PriorOf(start, HasDepth(views), constraint);
+  Information information = PriorOf(start, HasDepth(views));
   Information errors = information;
   for (LineTerm& term : terms) {
     const double noise = noise_px / term.pixels_per_metre;

@@ -6,16 +6,14 @@
 
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/geometry/dual_quadric.h"
-#include "hullslam/objects/object_constraint_options.h"
 #include "objects/object_view.h"
 #include "scene/scene.h"
 
 namespace hullslam {
 
 // The covariance of the centre and of the half axes of an ellipsoid that was fitted to the lines of
-// the views, as the refinement of the run fits it (`constraint`: its prior and the limit of a
-// mask's lines). `start` is the shape of its prior. Nothing if no line touches the ellipsoid in
-// front of the camera.
+// the views. `start` is the shape of its prior. Nothing if no line touches the ellipsoid in front
+// of the camera.
 //
 // The errors of lines are not independent. Most of them come from the shape: a real object is no
 // ellipsoid, and where it reaches beyond its ellipsoid, all lines of all views that touch it there
@@ -39,7 +37,6 @@ namespace hullslam {
 // object at nearly the same normal. The error of the camera's poses is not part of it.
 std::optional<ShapeCovariance> CovarianceOf(const PinholeCamera& camera, const Ellipsoid& ellipsoid,
                                             const Ellipsoid& start,
-                                            std::span<const ObjectView> views,
-                                            const ObjectConstraintOptions& constraint);
+                                            std::span<const ObjectView> views);
 
 }  // namespace hullslam

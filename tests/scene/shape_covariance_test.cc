@@ -6,7 +6,6 @@
 #include <Eigen/Eigenvalues>
 #include <random>
 
-#include "hullslam/objects/object_options.h"
 #include "scene/made_scene.h"
 
 namespace hullslam {
@@ -33,10 +32,8 @@ class NoisyViews {
       views_.push_back({KeyframeId(i), camera, &detection});
     }
   }
-  std::optional<ShapeCovariance> Covariance(
-      const MadeObject& object,
-      const ObjectConstraintOptions& constraint = ObjectRefinementOptions().constraint) const {
-    return CovarianceOf(sensor_.camera, object.ellipsoid, object.ellipsoid, views_, constraint);
+  std::optional<ShapeCovariance> Covariance(const MadeObject& object) const {
+    return CovarianceOf(sensor_.camera, object.ellipsoid, object.ellipsoid, views_);
   }
 
  private:
@@ -69,22 +66,6 @@ TEST(ShapeCovariance, IsLargeAlongTheViewsIfTheyAreFromOneSide) {
   EXPECT_GT(LargestSigma(*one_side), 2.0 * LargestSigma(*around));
 }
 
-// Two views from one side: a strong prior keeps the centre along them, and each mask counts as the
-// run lets it count.
-TEST(ShapeCovariance, FollowsThePriorAndTheLineLimitOfTheRun) {
-  const NoisyViews one_side(kCup, 0.2, 1.0);
-  ObjectConstraintOptions strong = ObjectRefinementOptions().constraint;
-  strong.prior_without_depth.center = 0.05;
-  ObjectConstraintOptions few = ObjectRefinementOptions().constraint;
-  few.max_effective_lines = 0.5;
-  const auto usual = one_side.Covariance(kCup);
-  const auto with_prior = one_side.Covariance(kCup, strong);
-  const auto with_few = one_side.Covariance(kCup, few);
-  ASSERT_TRUE(usual && with_prior && with_few);
-  EXPECT_LT(LargestSigma(*with_prior), 0.8 * LargestSigma(*usual));
-  EXPECT_NE(LargestSigma(*with_few), LargestSigma(*usual));
-}
-
 TEST(ShapeCovariance, IsSymmetric) {
   const auto covariance = NoisyViews(kCup, 6.0, 1.0).Covariance(kCup);
   ASSERT_TRUE(covariance);
@@ -94,7 +75,7 @@ TEST(ShapeCovariance, IsSymmetric) {
 }
 
 TEST(ShapeCovariance, IsNotKnownWithoutLines) {
-  EXPECT_FALSE(CovarianceOf(MakeObjectSensor().camera, kCup.ellipsoid, kCup.ellipsoid, {}, {}));
+  EXPECT_FALSE(CovarianceOf(MakeObjectSensor().camera, kCup.ellipsoid, kCup.ellipsoid, {}));
 }
 
 // Neighbouring lines of a mask have the same errors, so the lines of a mask together count as a

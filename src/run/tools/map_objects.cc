@@ -338,7 +338,7 @@ int RunMapObjects(int argc, char** argv) {
   summary.objects = SummarizeObjects(report, counts);
   summary.timing.total_s = seconds.count();
   summary.provenance.interrupted = !is_complete;
-  const Scene scene = CollectScene(run.map(), report, inputs.groundtruth, options.objects);
+  const Scene scene = CollectScene(run.map(), report, inputs.groundtruth);
   WriteOutputs(output, run, report, scene, summary);
   if (!arguments.quiet) {
     PrintTable(run, report);
