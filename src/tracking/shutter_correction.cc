@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "frame/rolling_shutter.h"
+#include "map/islands.h"
 #include "tracking/seen_depths.h"
 #include "util/median.h"
 
@@ -114,8 +115,9 @@ SeenDepths DepthsOf(const FrameFeatures& features, std::span<const LandmarkId> l
 // The tracking of a frame that was tracked before its shutter was corrected. The landmarks found
 // then suit the frame as it was. If too few of them agree with the corrected frame, the landmarks
 // of the local map are searched in it, so that both frames are judged by landmarks chosen for
-// themselves. If `is_first`, the frames until now were not corrected, so the map has their errors
-// and cannot judge. Null if the correction is not kept.
+// themselves. If `is_first`, the map is a single frame that was not corrected, because nothing gave
+// its velocity, so the map has the errors of its shutter and cannot judge. Null if the correction
+// is not kept.
 std::optional<LocalTracking> TrackCorrected(const Frame& corrected, const LocalTracking& tracked,
                                             bool is_first, const Map& map,
                                             const TrackingContext& context) {
@@ -184,8 +186,9 @@ CorrectedFrame CorrectShutter(const std::shared_ptr<const Frame>& as_read,
   if (corrected == as_read) {
     return {tracked, last.velocity};
   }
-  std::optional<LocalTracking> found =
-      TrackCorrected(*corrected, tracking, !IsKnown(last, as_read->timestamp), map, context);
+  const bool is_first =
+      !IsKnown(last, as_read->timestamp) && map.IslandSize(IslandOf(map, tracking.reference)) == 1;
+  std::optional<LocalTracking> found = TrackCorrected(*corrected, tracking, is_first, map, context);
   if (!found) {
     return {tracked, last.velocity};
   }

@@ -79,10 +79,10 @@ TEST_F(Evaluate, JsonHasTheSameNumbers) {
 
 TEST_F(Evaluate, BadInputIsRefusedWithOneLine) {
   const std::string broken =
-      folder_.Write("broken.txt", "1.0 0 0 0 0 0 0 1\n2.0 nan 0 0 0 0 0 1\n");
+      folder_.Write("broken.txt", "1.0 nan 0 0 0 0 0 1\n2.0 nan 0 0 0 0 0 1\n");
   const std::string late = folder_.Write("late.txt", "100 0 0 0 0 0 0 1\n");
-  ExpectRefusal({"trajectory", truth_, broken}, "broken.txt:2: tx is 'nan'");
-  ExpectRefusal({"trajectory", broken, half_}, "broken.txt:2:");
+  ExpectRefusal({"trajectory", truth_, broken}, "broken.txt:1: tx is 'nan'");
+  ExpectRefusal({"trajectory", broken, half_}, "broken.txt:1:");
   ExpectRefusal({"trajectory", truth_, folder_.path() / "none.txt"}, "none.txt: No such file");
   ExpectRefusal({"trajectory", truth_, late}, "no pose of the estimate has a partner");
 }

@@ -73,7 +73,8 @@ TEST_F(QueryObjects, ExitCodeIs1IfNothingFits) {
 
 TEST_F(QueryObjects, RefusesBadQuestionsAndInput) {
   const std::string run = folder_.path() / "run";
-  ExpectRefused({run, "zebra"}, {"'zebra'", "laptop"});
+  ExpectRefused({run, "unicorn"}, {"'unicorn'", "laptop"});
+  EXPECT_EQ(RunProgram("query_objects", {run, "zebra"}).exit_code, 1) << "known, but not there";
   ExpectRefused({run}, {"QUESTION"});
   ExpectRefused({run, "cup", "--like", "0"}, {"expected one of"});
   ExpectRefused({run, "--within", "1"}, {"--of"});

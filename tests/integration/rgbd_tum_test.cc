@@ -417,6 +417,7 @@ TEST_F(RgbdTumRefuses, WhatIsMissing) {
   ExpectRefusal({path_, "--settings", path_ + "/none.yaml"}, {path_ + "/none.yaml"});
   ExpectRefusal({path_, "--associations", path_ + "/none.txt"}, {path_ + "/none.txt"});
   fs::remove(sequence_.path() / "rgb/07.png");
+  fs::remove(sequence_.path() / "rgb/08.png");  // more than a tenth of the images
   ExpectRefusal({path_}, {path_ + "/rgb/07.png", "missing"});
   fs::remove(sequence_.path() / "depth.txt");
   ExpectRefusal({path_}, {path_, "has no depth.txt", "without depth: mono_tum"});
@@ -563,15 +564,11 @@ TEST_F(RgbdTumRefuses, ImagesOfAnotherSizeThanTheSettings) {
 TEST_F(RgbdTumRefuses, BrokenLists) {
   ExpectRefusalOf("rgb.txt", "1.0 rgb/00.png\n2.0 rgb/01.png\n1.5 rgb/02.png\n",
                   {path_ + "/rgb.txt:3: ", "1.5"});
-  ExpectRefusalOf("rgb.txt", "# stamp file\n1.0 rgb/00.png\n1.0 rgb/01.png\n",
-                  {path_ + "/rgb.txt:3: ", "1.0"});
   ExpectRefusalOf("rgb.txt", "1.0\n", {path_ + "/rgb.txt:1: "});
   ExpectRefusalOf("rgb.txt", "soon rgb/00.png\n", {path_ + "/rgb.txt:1: ", "'soon'"});
   ExpectRefusalOf("depth.txt", "", {path_ + "/depth.txt", "no images"});
   // The nearest colour image in time is the one at 1000 s.
   ExpectRefusalOf("depth.txt", "999.97 depth/00.png\n", {path_, "0.02 s", "smallest gap is 0.03"});
-  ExpectRefusalOf("groundtruth.txt", "1 0 0 0 0 0 0 1\n2 0 nan 0 0 0 0 1\n",
-                  {path_ + "/groundtruth.txt:2: ", "'nan'"});
   const std::string pairs = path_ + "/associations.txt";
   const EditedFile edited(pairs, "1.0 rgb/00.png 1.0 depth/00.png\n2.0 rgb/01.png 2.0\n");
   ExpectRefusal({path_, "--associations", pairs}, {pairs + ":2: ", "expected 4"});
