@@ -106,7 +106,9 @@ double FloorHeight(std::span<const ObjectBody> bodies) {
       evidence.push_back(&body);
     }
   }
-  evidence = evidence.empty() ? std::move(all) : std::move(evidence);
+  if (evidence.empty()) {
+    evidence = std::move(all);
+  }
   if (evidence.empty()) {
     return 0.0;
   }

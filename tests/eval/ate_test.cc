@@ -175,5 +175,19 @@ INSTANTIATE_TEST_SUITE_P(
                       Golden{kXyz, kXyzSlam, kTum, 786, 1.007924, 0.013473, 0.013394},
                       Golden{kXyz, kXyzSlam, kEvo, 785, 1.008001, 0.013470, 0.013389}));
 
+// Each hundredth of a second more is a pose without partner, because the reference has a gap there.
+TEST(Ate, NineOfTenPartnersAreEnough) {
+  const auto described = [](size_t first_missing, size_t count) {
+    Trajectory reference = Helix(100);
+    const auto first = reference.begin() + static_cast<std::ptrdiff_t>(first_missing);
+    reference.erase(first, first + static_cast<std::ptrdiff_t>(count));
+    return DescribeMissingPairs(EvaluateAte(reference, Helix(100)));
+  };
+  EXPECT_EQ(described(40, 10), "");
+  EXPECT_NE(described(40, 11).find("only 89 of the 100 poses"), std::string::npos);
+  EXPECT_EQ(described(0, 50), "") << "poses before the ground truth can have no partner";
+  EXPECT_EQ(described(50, 50), "") << "nor can those after it";
+}
+
 }  // namespace
 }  // namespace hullslam

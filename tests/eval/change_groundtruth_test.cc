@@ -112,5 +112,27 @@ TEST(ChangeGroundtruth, ObjectsWithTooFewSightingsAreLeftOut) {
   ExpectCounts(comparison.added, 0, 0, 0);
 }
 
+TEST(ChangeGroundtruth, ThingsThatMoveByThemselvesAreNotChanges) {
+  TrueScene scene = MakeScene();
+  for (TrueObject& object : scene.objects) {
+    object.is_dynamic = true;
+  }
+  const ChangeComparison comparison = CompareChanges(scene, {}, Sim3(), {}, 1);
+  ExpectCounts(comparison.moved, 0, 0, 0);
+  ExpectCounts(comparison.added, 0, 0, 0);
+  ExpectCounts(comparison.gone, 1, 0, 0);
+}
+
+// The objects are 0.2 m large.
+TEST(ChangeGroundtruth, BothPlacesMustBeWithinHalfOfTheSize) {
+  const auto right = [](double former, double now) {
+    const std::vector<ChangedObject> changes = {Changed(ObjectChange::kMoved, former, now)};
+    return CompareChanges(MakeScene(), changes, Sim3(), {}, 1).moved.right;
+  };
+  EXPECT_EQ(right(1.09, 1.91), 1U);
+  EXPECT_EQ(right(1.11, 2.0), 0U);
+  EXPECT_EQ(right(1.0, 1.89), 0U);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -84,5 +84,35 @@ TEST(DepthRegistration, AWallHasNoSteps) {
   EXPECT_THROW(registration.Contrast(), CheckError);
 }
 
+// The steps of the depth at a box before a wall: the three or two rows and columns along its
+// border.
+size_t StepsOf(double near, double far) {
+  cv::Mat depth(480, 640, CV_32FC1, cv::Scalar(far));
+  depth(cv::Rect(300, 200, 40, 20)).setTo(near);
+  DepthRegistration registration;
+  registration.Add(cv::Mat(480, 640, CV_8UC1, cv::Scalar(90)), depth);
+  if (registration.edges() > 0) {
+    EXPECT_EQ(registration.Contrast(), 1.0) << "an image without edges tells nothing";
+  }
+  return registration.edges();
+}
+
+TEST(DepthRegistration, AStepIsATenthAndOnItsNearSide) {
+  EXPECT_EQ(StepsOf(1.0, 1.09), 0u);
+  EXPECT_EQ(StepsOf(1.0, 1.11), 40u * 20u - 36u * 16u) << "two pixels inside the box";
+}
+
+// Along a slope, something nearer is as near as what is farther.
+TEST(DepthRegistration, ASlopeIsNoStep) {
+  cv::Mat depth(480, 640, CV_32FC1);
+  for (int x = 0; x < depth.cols; ++x) {
+    depth.col(x).setTo(0.5 * std::pow(1.06, x % 100));
+  }
+  depth = depth.colRange(200, 300).clone();
+  DepthRegistration registration;
+  registration.Add(cv::Mat(depth.size(), CV_8UC1, cv::Scalar(90)), depth);
+  EXPECT_EQ(registration.edges(), 0u);
+}
+
 }  // namespace
 }  // namespace hullslam

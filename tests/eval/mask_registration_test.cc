@@ -80,5 +80,15 @@ TEST(MaskRegistrationTest, OnlyContoursCount) {
   EXPECT_THROW(registration.Contrast(1), CheckError);
 }
 
+TEST(MaskRegistrationTest, EachContourCountsWithItsLength) {
+  MaskRegistration registration;
+  std::vector<InstanceMask> masks = {MadeMask(1), MadeMask(1)};
+  masks[1].outlines.push_back(masks[1].outlines.front());  // only the first is the outer border
+  registration.Add(MadeImage(), masks);
+  EXPECT_EQ(registration.points(), 2U * 2U * (kWidth + kHeight));
+  EXPECT_THROW(registration.Contrast(0), CheckError);
+  EXPECT_THROW(registration.Contrast(9), CheckError);
+}
+
 }  // namespace
 }  // namespace hullslam

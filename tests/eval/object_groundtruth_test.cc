@@ -197,5 +197,16 @@ TEST(ObjectGroundtruth, SightingsNeedOneCountPerTrueObject) {
                CheckError);
 }
 
+TEST(ObjectGroundtruth, ObjectsWithoutOverlapAreNotInItsMean) {
+  std::vector<TrueObject> truths = {MakeTruth({0, 0, 0}), MakeTruth({1, 0, 0})};
+  ObjectReport report;
+  report.objects = {MakeObject(0, MappedAs(truths[0])), MakeObject(1, MappedAs(truths[1]))};
+  report.objects[1].fit.siou = 0.8;
+  const auto shapes = SummarizeByShape(truths, CompareWithTruth(truths, report, {}));
+  ASSERT_EQ(shapes.size(), 1U);
+  EXPECT_EQ(shapes.begin()->second.objects, 2U);
+  EXPECT_EQ(shapes.begin()->second.siou_mean, 0.8);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -40,5 +40,13 @@ TEST(MedianReprojectionError, IsAbsentWithoutAMap) {
   EXPECT_FALSE(MedianReprojectionError(Map(), SyntheticSensor().camera));
 }
 
+TEST(MedianReprojectionError, ALandmarkWithOneObservationTellsNothing) {
+  const SyntheticWorld world;
+  PinholeCamera shifted = world.sensor().camera;
+  shifted.cy += 2.0;
+  EXPECT_NEAR(*MedianReprojectionError(MakeSyntheticMap(world, {0, 10}).map, shifted), 2.0, 1e-4);
+  EXPECT_FALSE(MedianReprojectionError(MakeSyntheticMap(world, {0}).map, shifted));
+}
+
 }  // namespace
 }  // namespace hullslam

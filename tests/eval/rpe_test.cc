@@ -76,5 +76,23 @@ TEST(Rpe, OptionsAreChecked) {
   EXPECT_FALSE(EvaluateRpe({}, {}).ok());
 }
 
+// Motions of 1 s, where the pose at the end is late. A tenth of the motion is the limit.
+TEST(Rpe, TheEndOfAMotionMayBeATenthOff) {
+  const auto motions = [](double late) {
+    const Trajectory poses = {{0.0, Rigid3()}, {1.0 + late, Rigid3()}};
+    return EvaluateRpe(poses, poses).motions;
+  };
+  EXPECT_EQ(motions(0.09), 1U);
+  EXPECT_EQ(motions(-0.09), 1U);
+  EXPECT_EQ(motions(0.11), 0U);
+  EXPECT_EQ(motions(-0.11), 0U);
+}
+
+TEST(Rpe, LongerMotionsDriftMore) {
+  const RpeReport report = EvaluateRpe(Drive(31, 1.0), Drive(31, 1.1), {.delta = 2.0});
+  EXPECT_NEAR(report.translation.median, 0.2, 1e-9);
+  EXPECT_NEAR(report.translation.max, 0.2, 1e-9);
+}
+
 }  // namespace
 }  // namespace hullslam

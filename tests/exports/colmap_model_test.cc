@@ -200,5 +200,34 @@ TEST_F(Colmap, BinaryHasTheSameValues) {
   point.ExpectEnd();
 }
 
+// The third image is turned by 2.5 px, so that only its observations have an error.
+TEST_F(Colmap, PointsHaveTheirOwnColourAndTheMeanErrorOfTheirTrack) {
+  const LocatedLandmarks located = LocateLandmarks(made_.map, world_.sensor());
+  std::vector<Colour> colours;
+  for (size_t i = 0; i < located.ids.size(); ++i) {
+    colours.push_back({static_cast<uint8_t>(i % 256), static_cast<uint8_t>(i / 256), 0});
+  }
+  const std::vector<KeyframeImage> images = {
+      {KeyframeId(0), {}, "0"}, {KeyframeId(1), {}, "1"}, {KeyframeId(2), {}, "2"}};
+  made_.map.SetPose(KeyframeId(2), Rigid3(ExpSo3({0.005, 0.0, 0.0}), Eigen::Vector3d::Zero()) *
+                                       made_.map.CamFromWorld(KeyframeId(2)));
+  const ColmapModel model = MakeColmapModel(made_.map, located, colours, images, view_);
+  ASSERT_GT(model.points.size(), 100U);
+  double largest = 0.0;
+  for (const ColmapPoint& point : model.points) {
+    const size_t index = point.colour[0] + 256U * point.colour[1];
+    EXPECT_EQ(located.positions.at(index), point.position);
+    double sum = 0.0;
+    for (const ColmapSighting& sighting : point.track) {
+      const ColmapImage& image = model.images.at(sighting.image - 1);
+      const Eigen::Vector2d pixel = model.camera.Project(image.cam_from_world * point.position);
+      sum += (pixel - image.keypoints.at(sighting.keypoint).pixel).norm();
+    }
+    EXPECT_NEAR(point.error, sum / static_cast<double>(point.track.size()), 1e-9);
+    largest = std::max(largest, point.error);
+  }
+  EXPECT_GT(largest, 0.5);
+}
+
 }  // namespace
 }  // namespace hullslam

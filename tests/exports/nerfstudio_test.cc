@@ -93,5 +93,25 @@ TEST(DepthImages, HaveTheUnitsThatTheKeypointsTell) {
   EXPECT_FALSE(MeasureDepthUnits(features, camera, DepthOfPlane(camera, 1.5, 5000.0)));
 }
 
+TEST(DepthImages, TenKeypointsAreNeededForTheUnits) {
+  const PinholeCamera camera = DistortedCamera();
+  const cv::Mat depth = DepthOfPlane(camera, 1.5, 1000.0);
+  FrameFeatures features;
+  for (int i = 0; i < 9; ++i) {
+    features.keypoints.emplace_back().undistorted = {20.0f + 5.0f * static_cast<float>(i), 60.0f};
+    features.depth.push_back(1.5f);
+  }
+  EXPECT_FALSE(MeasureDepthUnits(features, camera, depth));
+  features.keypoints.push_back(features.keypoints.back());
+  features.depth.push_back(1.5f);
+  EXPECT_TRUE(MeasureDepthUnits(features, camera, depth));
+}
+
+TEST(DepthImages, AreRoundedToTheNearestMillimetre) {
+  const PinholeCamera camera = DistortedCamera();
+  const cv::Mat depth = DepthOfPlane(camera, 1.4998, 5000.0);
+  EXPECT_EQ(MakeDepthImage(depth, 5000.0, PinholeView(camera)).at<uint16_t>(50, 50), 1500);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -78,5 +78,18 @@ TEST(PinholeView, WithoutDistortionTheImageStaysAsItIs) {
   EXPECT_EQ(view.Undistort(image, cv::INTER_LINEAR).data, image.data);
 }
 
+// Pixels have whole numbers at their centres, so an image ends half a pixel beyond the last ones.
+TEST(PinholeView, ContainsTheWholePixelsAtTheBorder) {
+  const PinholeView view(DistortedCamera());
+  const double right = view.camera().width - 1.0;
+  const double bottom = view.camera().height - 1.0;
+  EXPECT_TRUE(view.Contains({-0.4, -0.4}));
+  EXPECT_TRUE(view.Contains({right + 0.4, bottom + 0.4}));
+  EXPECT_FALSE(view.Contains({-0.6, 5.0}));
+  EXPECT_FALSE(view.Contains({5.0, -0.6}));
+  EXPECT_FALSE(view.Contains({right + 0.6, 5.0}));
+  EXPECT_FALSE(view.Contains({5.0, bottom + 0.6}));
+}
+
 }  // namespace
 }  // namespace hullslam

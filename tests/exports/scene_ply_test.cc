@@ -42,5 +42,23 @@ TEST(ScenePly, AnEmptyModelHasNoFaces) {
   EXPECT_TRUE(text.ends_with("end_header\n"));
 }
 
+// The point is sqrt(14) m from the first camera; the pyramids are a twentieth of this high, and the
+// corners of their open side are those of the image.
+TEST(ScenePly, CamerasAreATwentiethOfTheDistanceHigh) {
+  const TemporaryFolder folder;
+  ExportModel model = MadeExportModel();
+  model.points.resize(1);
+  const PlyPoints read =
+      ReadPlyPoints(folder.Write("scene.ply", FormatScenePly(model, ObjectShape::kBoxes)));
+  const double height = std::sqrt(14.0) / 20.0;
+  const std::vector<Eigen::Vector2d> corners = {{0, 0}, {160, 0}, {160, 120}, {0, 120}};
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector3d corner = read.positions.at(2 + i).cast<double>();
+    EXPECT_NEAR(corner.z(), height, 1e-6);
+    EXPECT_LT((model.camera->Project(corner) - corners[i]).norm(), 1e-3) << i;
+    EXPECT_EQ(read.colours[2 + i], (Colour{255, 128, 0}));
+  }
+}
+
 }  // namespace
 }  // namespace hullslam

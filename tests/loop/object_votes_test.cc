@@ -119,5 +119,20 @@ TEST(ObjectVotes, SeveralVotesAreNeededAndTheMajorityDecides) {
   }
 }
 
+// Enlarged by half, each must contain the centre of the other.
+TEST(ObjectVotes, ThingsAreAtOneLocationUpToOneAndAHalfOfTheirHalfAxes) {
+  const auto agreeing = [](double half_axes) {
+    RingMap made = MakeRingMap(SharedRing(), {.drift = Rigid3()}, ThreeThings());
+    ObjectLandmark& cup = made.map.MutableObject(ObjectId(3));  // of the last turn
+    const Eigen::Vector3d along =
+        cup.ellipsoid.world_from_object.rotation * Eigen::Vector3d::UnitX();
+    cup.ellipsoid.world_from_object.translation += half_axes * cup.ellipsoid.half_axes.x() * along;
+    return CountObjectVotes(made.map, SharedRing().sensor(), KeyframeId(29), KeyframeId(5), {})
+        .agree;
+  };
+  EXPECT_EQ(agreeing(1.45), 3);
+  EXPECT_EQ(agreeing(1.55), 2);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -72,5 +72,26 @@ TEST_F(ArrangementTest, ClassesMustAgree) {
   EXPECT_EQ(found.matched, 6);
 }
 
+TEST_F(ArrangementTest, OnlyMappedObjectsAreCompared) {
+  map_.MutableObject(ObjectId(0)).state = ObjectState::kCandidate;
+  const Arrangement found = Compare(SeeRoom(sensor_, room_, pose_), pose_);
+  EXPECT_FALSE(found.objects[0].IsValid());
+  EXPECT_EQ(found.matched, 6);
+  EXPECT_EQ(Compare(SeeRoom(sensor_, {}, pose_), pose_).missed, 6);
+}
+
+// A box on the left of the ball's projected ellipse that has this share of its width.
+TEST_F(ArrangementTest, ADetectionMustOverlapByThreeTenths) {
+  const auto matched = [&](double share) {
+    Frame frame = SeeRoom(sensor_, {room_[4]}, pose_);
+    Detection& ball = frame.detections.at(0);
+    ball.is_box = true;
+    ball.box.max().x() = ball.box.min().x() + share * ball.box.sizes().x();
+    return Compare(frame, pose_).matched;
+  };
+  EXPECT_EQ(matched(0.33), 1);
+  EXPECT_EQ(matched(0.27), 0);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -98,5 +98,22 @@ TEST_F(ObjectSightingTest, AFairShareOfVotesIsEnoughForAClass) {
   EXPECT_FALSE(MayHaveClass(object, "chair"));
 }
 
+TEST_F(ObjectSightingTest, SizesMayBeOffByAFactorOfOneAndAHalf) {
+  const ObjectSighting sighting{.ray = Eigen::Vector3d::UnitZ(), .half_axes = {0.1, 0.02}};
+  const Eigen::Vector3d disc(0.02, 0.1, 0.1);
+  EXPECT_TRUE(MayHaveSize(sighting, 1.49, disc));
+  EXPECT_FALSE(MayHaveSize(sighting, 1.51, disc));
+  EXPECT_TRUE(MayHaveSize(sighting, 1.01 / 1.5, disc));
+  EXPECT_FALSE(MayHaveSize(sighting, 0.99 / 1.5, disc));
+}
+
+TEST_F(ObjectSightingTest, AQuarterOfTheVotesIsAFairShare) {
+  ObjectLandmark object;
+  object.votes = {{"cup", 1.0}, {"vase", 3.0}};
+  EXPECT_TRUE(MayHaveClass(object, "cup"));
+  object.votes["vase"] = 3.1;
+  EXPECT_FALSE(MayHaveClass(object, "cup"));
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -101,5 +101,37 @@ TEST(Means, OfTwoSamplesAreOneOrNot) {
   EXPECT_FALSE(MayHaveOneMean(a, std::span(b).first(2), 0.05, 0.02));
 }
 
+TEST(RankSum, TiesBetweenTheSamplesHaveTheMeanOfTheirRanks) {
+  // Ranks of a: 1 and (2 + 3) / 2; sum 3.5; mean 2 * 5 / 2 = 5; variance 2 * 2 * 5 / 12 = 5 / 3.
+  EXPECT_NEAR(RankSumScore(std::vector{1.0, 2.0}, std::vector{2.0, 3.0}),
+              -1.5 / std::sqrt(5.0 / 3.0), 1e-12);
+}
+
+// Student's t of 4 degrees of freedom at 0.1 % is 8.610; the bound is 8.610 * 0.02 * sqrt(6 / 5).
+TEST(Means, TheNoiseOfTheSensorIsAStandardDeviation) {
+  const std::vector<Eigen::Vector3d> equal(5, Eigen::Vector3d::Zero());
+  EXPECT_TRUE(MayBeTheMean({0.0, 0.0, 0.187}, equal, 0.001, 0.02));
+  EXPECT_FALSE(MayBeTheMean({0.0, 0.0, 0.190}, equal, 0.001, 0.02));
+}
+
+// Both samples have the variance 4/3 and four members, so the variance of the difference is 2/3 and
+// the degrees of freedom are 6, for which Student's t at 5 % is 2.447. With the noise 1 each
+// variance is 7/3, that of the difference 7/6.
+TEST(Means, OfTwoSamplesDifferByTheirStandardErrors) {
+  const auto may_be = [](double shift, double noise) {
+    std::vector<Eigen::Vector3d> a;
+    std::vector<Eigen::Vector3d> b;
+    for (const double value : {-1.0, 1.0, -1.0, 1.0}) {
+      a.push_back(Eigen::Vector3d::Constant(value));
+      b.push_back(Eigen::Vector3d(value, value, value + shift));
+    }
+    return MayHaveOneMean(a, b, 0.05, noise);
+  };
+  EXPECT_TRUE(may_be(2.447 * std::sqrt(2.0 / 3.0) - 0.01, 0.0));
+  EXPECT_FALSE(may_be(2.447 * std::sqrt(2.0 / 3.0) + 0.01, 0.0));
+  EXPECT_TRUE(may_be(2.447 * std::sqrt(7.0 / 6.0) - 0.01, 1.0));
+  EXPECT_FALSE(may_be(2.447 * std::sqrt(7.0 / 6.0) + 0.01, 1.0));
+}
+
 }  // namespace
 }  // namespace hullslam

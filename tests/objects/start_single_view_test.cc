@@ -64,5 +64,22 @@ TEST(StartBySingleView, WithoutDepthTheRaysDecide) {
   EXPECT_NEAR(StartBySingleView(input)[0].half_axes.x(), 0.15, 0.02);
 }
 
+// Depths of 1 m to 1.1 m in steps of 1 mm; those of 1.005 m to 1.095 m count.
+TEST(StartBySingleView, TheThicknessIsThatOfNineTenthsOfTheDepths) {
+  const SeenByRing seen(MakeObject("ball", {0.0, 0.0, 0.0}, {0.15, 0.15, 0.15}), 1, 0.3);
+  std::vector<ObjectView> views = seen.Views();
+  Detection detection = *views[0].detection;
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 100; i >= 0; --i) {
+    points.emplace_back(0.0, 0.0, 1.0 + 0.001 * i);
+  }
+  detection.points = points;
+  views[0].detection = &detection;
+  const StartOptions options;
+  const Ellipsoid start = StartBySingleView(InputOf(seen, views, options)).at(0);
+  EXPECT_NEAR(start.half_axes.z(), 0.045, 1e-3);
+  EXPECT_NEAR((views[0].cam_from_world * start.world_from_object).translation.z(), 1.05, 1e-3);
+}
+
 }  // namespace
 }  // namespace hullslam

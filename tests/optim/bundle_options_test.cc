@@ -60,5 +60,21 @@ TEST(BundleRules, OfOrbSlam2AreThoseOfRgbdButForTheScale) {
   EXPECT_EQ(rules.final_loss, PointLoss::kNone);
 }
 
+// Parts of a whole map move with their objects, whose shapes stay as they are held.
+TEST(BundleOptions, ForAWholeMapObjectsMayMoveFarther) {
+  const BundleOptions local;
+  const BundleOptions whole = local.ForWholeMap();
+  const ObjectConstraintOptions& before = local.objects.constraint;
+  const ObjectConstraintOptions& after = whole.objects.constraint;
+  for (const auto prior :
+       {&ObjectConstraintOptions::prior, &ObjectConstraintOptions::prior_without_depth}) {
+    EXPECT_EQ((after.*prior).center, 20.0 * (before.*prior).center);
+    EXPECT_EQ((after.*prior).rotation, 20.0 * (before.*prior).rotation);
+    EXPECT_EQ((after.*prior).log_axes, (before.*prior).log_axes);
+  }
+  EXPECT_GT(whole.final_iterations, local.final_iterations);
+  EXPECT_LE(whole.function_tolerance, local.function_tolerance);
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -38,5 +38,13 @@ TEST(MatchClass, TheLastWordAloneMeansAllLabelsThatEndWithIt) {
   EXPECT_EQ(MatchClass({}, labels).words, 0U);
 }
 
+TEST(MatchClass, KnowsPluralsThatChangeTheWord) {
+  const std::set<std::string> labels = {"shelf", "person", "box"};
+  for (const char* word : {"shelves", "people", "boxes"}) {
+    EXPECT_EQ(MatchClass(Words{word}, labels).words, 1U) << word;
+  }
+  EXPECT_EQ(MatchClass(Words{"boxe"}, labels).words, 0U);
+}
+
 }  // namespace
 }  // namespace hullslam

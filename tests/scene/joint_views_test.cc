@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "scene/made_scene.h"
 
 namespace hullslam {
@@ -81,6 +83,60 @@ TEST(ViewStatistics, AnObjectAtTheSideIsNotInFront) {
   EXPECT_EQ(views_in_front(-0.13), 1U);
   EXPECT_EQ(views_in_front(0.19), 0U);  // 31 px
   EXPECT_EQ(views_in_front(-0.19), 0U);
+}
+
+// What a keyframe at the origin tells about two objects.
+std::pair<JointViews, HiddenViews> StatisticsOf(const Ellipsoid& a, const Ellipsoid& b) {
+  const Sensor sensor = MakeObjectSensor();
+  const std::vector<MadeObject> objects = {{"cup", a}, {"tv", b}};
+  Map map;
+  std::vector<ObjectId> ids;
+  for (const MadeObject& object : objects) {
+    ids.push_back(map.AddObject());
+    map.MutableObject(ids.back()).state = ObjectState::kMapped;
+    map.MutableObject(ids.back()).ellipsoid = object.ellipsoid;
+  }
+  AddFrontView(map, sensor, objects, ids, {true, true});
+  const ViewStatistics statistics = CollectViewStatistics(map, sensor.camera);
+  return {statistics.Joint(ids[0], ids[1]), statistics.hidden.at({ids[1], ids[0]})};
+}
+
+Ellipsoid Ball(double x, double depth, double radius) {
+  return {Rigid3(Eigen::Quaterniond::Identity(), {x, 0.0, depth}),
+          Eigen::Vector3d::Constant(radius)};
+}
+
+// The centre of each is outside of the middle half of the other.
+TEST(ViewStatistics, ObjectsAtTheSameDepthAreNotInFront) {
+  const auto in_front = [](double radius_a, double depth_b, double radius_b) {
+    return StatisticsOf(Ball(0.0, 2.0, radius_a), Ball(0.0, depth_b, radius_b)).first.in_front;
+  };
+  EXPECT_EQ(in_front(0.1, 2.06, 0.1), 1U);
+  EXPECT_EQ(in_front(0.1, 2.04, 0.1), 0U);
+  EXPECT_EQ(in_front(0.3, 2.16, 0.1), 1U);
+  EXPECT_EQ(in_front(0.3, 2.14, 0.1), 0U);
+  EXPECT_EQ(in_front(0.1, 2.16, 0.3), 1U);
+  EXPECT_EQ(in_front(0.1, 2.14, 0.3), 0U);
+}
+
+// A ball of radius r at 1 m covers about (2 r / 0.3)^2 of one of radius 0.3 m at 2 m.
+TEST(ViewStatistics, LessThanAQuarterIsNotHidden) {
+  const auto hidden = [](double radius) {
+    return StatisticsOf(Ball(0.0, 1.0, radius), Ball(0.0, 2.0, 0.3)).second;
+  };
+  EXPECT_EQ(hidden(0.08).hidden, 1U);
+  EXPECT_EQ(hidden(0.07).hidden, 0U);
+  EXPECT_NEAR(hidden(0.07).most, 0.22, 0.02);
+  EXPECT_EQ(hidden(0.5).most, 1.0) << "a share is not above 1";
+}
+
+TEST(ViewStatistics, AMaskIsInsideIfFourFifthsOfItsHullAre) {
+  const auto inside = [](double aside) {
+    return StatisticsOf(Ball(aside, 1.0, 0.1), Ball(0.0, 2.0, 0.6)).first.mask_inside;
+  };
+  EXPECT_EQ(inside(0.2), 1U);
+  EXPECT_EQ(inside(0.23), 1U);  // 87 %
+  EXPECT_EQ(inside(0.27), 0U);  // 70 %
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "geometry/convex_hull.h"
@@ -129,6 +131,45 @@ TEST(VolumeShare, IsTheShareThatIsInside) {
   EXPECT_NEAR(VolumeShare(large, small), 0.008, 0.01);
   const Ellipsoid away = Standing("ball", {2.0, 0.0, 0.0}, {0.1, 0.1, 0.1}).ellipsoid;
   EXPECT_EQ(VolumeShare(small, away), 0.0);
+}
+
+TEST(ObjectBody, TheBoxIsTheOneOfLeastArea) {
+  for (const double degrees : {30.0, 75.0, -30.0}) {
+    const Eigen::Quaterniond turn = ExpSo3({0.0, 0.0, degrees * std::numbers::pi / 180.0});
+    const Eigen::Vector3d center(1.0, 2.0, 0.8);
+    const Ellipsoid ellipsoid = {Rigid3(turn, center), {0.2, 0.1, 0.3}};
+    const UprightBox box = BoxOf(BodyOfEllipsoid(ObjectId(1), ellipsoid, kUpright), kUpright);
+    EXPECT_LT((box.world_from_box.translation - center).norm(), 1e-9) << degrees;
+    // The long side of the box is along the long axis of the ellipsoid.
+    const Eigen::Vector3d in_box =
+        box.world_from_box.rotation.conjugate() * (turn * Eigen::Vector3d::UnitX());
+    EXPECT_NEAR(in_box.cwiseAbs().dot(box.half_extents), 0.2, 1e-9) << degrees;
+    EXPECT_NEAR(box.half_extents.head<2>().sum(), 0.3, 1e-9) << degrees;
+  }
+}
+
+// Whether the lower side was seen if a view has so many lower lines that are cut off and free.
+bool IsBottomSeen(int cut, int free) {
+  const Sensor sensor = MakeObjectSensor();
+  const MadeObject made = Standing("couch", {0.0, 0.0, 0.0}, {0.2, 0.1, 0.3});
+  const Rigid3 camera = CameraOnCircle(0.3, 2.5, 0.3);
+  const auto ellipse = ProjectEllipsoid(sensor.camera.Matrix(), camera, made.ellipsoid);
+  Detection detection;
+  for (int i = 0; i < cut + free; ++i) {
+    const double angle = 0.02 * i;
+    const Eigen::Vector2d normal(std::sin(angle), std::cos(angle));  // downwards in the image
+    const double offset = -normal.dot(ellipse->center) - ellipse->HalfExtent(normal);
+    detection.lines.push_back({{normal, offset}, i < cut});
+  }
+  const std::vector<ObjectView> views = {{KeyframeId(0), camera, &detection}};
+  return MeasureBody(ObjectId(1), made.ellipsoid, sensor.camera, views, kUpright).is_bottom_seen;
+}
+
+TEST(ObjectBody, AQuarterOfTheLowerLinesAndAtLeastThreeShowTheBottom) {
+  EXPECT_TRUE(IsBottomSeen(0, 3));
+  EXPECT_FALSE(IsBottomSeen(0, 2));
+  EXPECT_TRUE(IsBottomSeen(9, 3));
+  EXPECT_FALSE(IsBottomSeen(10, 3));
 }
 
 }  // namespace

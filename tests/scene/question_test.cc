@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "support/expect_error.h"
 
 namespace hullslam {
@@ -55,6 +59,36 @@ TEST(ParseQuestion, UnknownWordsNameTheKnownOnes) {
 
 TEST(ParseQuestion, UnknownWordsAndLabelsAreMadePrintable) {
   ExpectInputError([] { ParseQuestion("x\xff\x1b", {"a\nb<b>"}); }, {"<b>"});
+}
+
+TEST(ParseQuestion, EachWordHasItsRelation) {
+  const std::vector<std::pair<const char*, AskedRelation>> relations = {
+      {"in front of", AskedRelation::kInFrontOf},
+      {"on top of", AskedRelation::kOn},
+      {"standing on", AskedRelation::kOn},
+      {"lying on", AskedRelation::kOn},
+      {"upon", AskedRelation::kOn},
+      {"next to", AskedRelation::kBeside},
+      {"beside", AskedRelation::kBeside},
+      {"close to", AskedRelation::kNear},
+      {"by", AskedRelation::kNear},
+      {"near", AskedRelation::kNear},
+      {"part of", AskedRelation::kPartOf},
+      {"hidden by", AskedRelation::kHiddenBy},
+      {"inside of", AskedRelation::kIn},
+      {"inside", AskedRelation::kIn},
+      {"in", AskedRelation::kIn},
+      {"below", AskedRelation::kUnder},
+      {"beneath", AskedRelation::kUnder},
+      {"supporting", AskedRelation::kUnder},
+      {"supports", AskedRelation::kUnder},
+      {"behind", AskedRelation::kBehind}};
+  for (const auto& [words, relation] : relations) {
+    const AskedThing cup = ParseQuestion(std::string("cup ") + words + " some book", kLabels);
+    ASSERT_EQ(cup.conditions.size(), 1U) << words;
+    EXPECT_EQ(cup.conditions[0].relation, relation) << words;
+    EXPECT_EQ(cup.conditions[0].text, words);
+  }
 }
 
 }  // namespace

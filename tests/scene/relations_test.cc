@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -95,6 +96,88 @@ TEST(ViewRelations, NeedEnoughViewsAndTellTheirShare) {
   EXPECT_EQ(relations[0].evidence, (Evidence{{"views", 10.0}, {"share", 0.6}}));
   EXPECT_EQ(relations[1].kind, RelationKind::kHiddenBy);
   EXPECT_EQ(relations[1].subject, ObjectId(2));
+}
+
+// The relations of a knob and the door that it is in or on, if the knob's mask was inside the
+// door's in so many of the common views.
+Texts RelationsOfAKnob(size_t views, size_t inside) {
+  const std::vector<MadeObject> objects = {Standing("knob", {0.0, 0.0, 0.6}, {0.03, 0.03, 0.03}),
+                                           Standing("door", {0.0, 0.0, 0.0}, {0.4, 0.4, 0.5})};
+  ViewStatistics statistics;
+  statistics.joint[{ObjectId(0), ObjectId(1)}] = {.views = views, .mask_inside = inside};
+  std::vector<ObjectBody> bodies;
+  for (uint32_t i = 0; i < 2; ++i) {
+    bodies.push_back(
+        BodyOfEllipsoid(ObjectId(i), objects[i].ellipsoid, Eigen::Quaterniond::Identity()));
+  }
+  Texts texts;
+  for (const Relation& relation : FindStandingRelations(bodies, statistics).relations) {
+    texts.emplace_back(ToString(relation.kind));
+  }
+  return texts;
+}
+
+TEST(StandingRelations, APartWasSeenInsideInHalfOfAtLeastThreeViews) {
+  EXPECT_EQ(RelationsOfAKnob(4, 2), Texts{"part of"});
+  EXPECT_EQ(RelationsOfAKnob(3, 3), Texts{"part of"});
+  EXPECT_EQ(RelationsOfAKnob(4, 1), (Texts{"on", "supports"})) << "seldom inside";
+  EXPECT_EQ(RelationsOfAKnob(2, 2), (Texts{"on", "supports"})) << "seldom seen";
+}
+
+// Two discs of one radius r whose centres are 0.6 r and r apart have 62 % and 39 % in common.
+TEST(StandingRelations, HalfOfTheFootprintMustBeOnTheCarrier) {
+  const auto is_on = [](double aside) {
+    const Texts texts = Describe({Standing("box", {aside, 0.0, 0.1}, {0.1, 0.1, 0.05}),
+                                  Standing("box", {0.0, 0.0, 0.0}, {0.1, 0.1, 0.05})});
+    return std::find(texts.begin(), texts.end(), "0 on 1") != texts.end();
+  };
+  EXPECT_TRUE(is_on(0.06));
+  EXPECT_FALSE(is_on(0.1));
+}
+
+// Both begin at the height of the bowl. Half of the ball is in the bowl if its centre is on the
+// rim.
+TEST(StandingRelations, HalfOfTheVolumeMustBeInside) {
+  const auto is_in = [](double aside) {
+    const Texts texts = Describe({Standing("ball", {aside, 0.0, 0.3}, {0.05, 0.05, 0.05}),
+                                  Standing("bowl", {0.0, 0.0, 0.0}, {0.5, 0.5, 0.5})});
+    return std::find(texts.begin(), texts.end(), "0 in 1") != texts.end();
+  };
+  // The ball's centre is 0.15 m below that of the bowl, so the rim is at sqrt(0.25 - 0.0225).
+  const double rim = std::sqrt(0.25 - 0.0225);
+  EXPECT_TRUE(is_in(rim - 0.02));
+  EXPECT_FALSE(is_in(rim + 0.01));
+}
+
+TEST(StandingRelations, ThingsOnOneThingAreBesideEachOther) {
+  const Texts texts = Describe({Standing("cup", {0.0, 0.0, 0.2}, {0.05, 0.05, 0.05}),
+                                Standing("cup", {0.15, 0.0, 0.2}, {0.05, 0.05, 0.05}),
+                                Standing("box", {0.0, 0.0, 0.0}, {0.5, 0.5, 0.1}),
+                                Standing("cup", {0.55, 0.0, 0.0}, {0.05, 0.05, 0.05})});
+  const auto has = [&](const char* text) {
+    return std::find(texts.begin(), texts.end(), text) != texts.end();
+  };
+  EXPECT_TRUE(has("0 on 2"));
+  EXPECT_TRUE(has("0 beside 1"));
+  EXPECT_TRUE(has("1 beside 0"));
+  EXPECT_FALSE(has("1 beside 3")) << "one is on the box, the other on the floor";
+}
+
+TEST(ViewRelations, TooFewViewsOrATooSmallShareAreNoRelation) {
+  const auto count = [](const JointViews& joint, const HiddenViews& hidden) {
+    ViewStatistics views;
+    views.joint[{ObjectId(1), ObjectId(2)}] = joint;
+    views.hidden[{ObjectId(1), ObjectId(2)}] = hidden;
+    return FindViewRelations(views).size();
+  };
+  const JointViews no_joint = {.views = 9, .in_front = 0};
+  const HiddenViews no_hidden = {.views = 9, .hidden = 0};
+  EXPECT_EQ(count({.views = 3, .in_front = 2}, no_hidden), 1U);
+  EXPECT_EQ(count({.views = 10, .in_front = 5}, no_hidden), 1U);
+  EXPECT_EQ(count({.views = 10, .in_front = 4}, no_hidden), 0U);
+  EXPECT_EQ(count(no_joint, {.views = 12, .hidden = 3}), 1U);
+  EXPECT_EQ(count(no_joint, {.views = 13, .hidden = 3}), 0U);
+  EXPECT_EQ(count(no_joint, {.views = 2, .hidden = 2}), 0U);
 }
 
 }  // namespace

@@ -75,5 +75,55 @@ TEST(HeightTolerance, GrowsWithTheSizesAndTheUncertainty) {
   EXPECT_NEAR(HeightTolerance(a, b), 0.2, 1e-12);
 }
 
+TEST_F(SurfacesTest, NeighboursAreAtMostOneAndAHalfSumsOfTheirWidthsApart) {
+  const auto surfaces = [&](double gap) {
+    bodies_.clear();
+    Add({5.0, 0.0, 0.0}, 0.2);
+    Add({0.0, 0.0, 0.75}, 0.05);
+    Add({0.1 + gap, 0.0, 0.75}, 0.05);
+    return Find().size();
+  };
+  EXPECT_EQ(surfaces(0.29), 2U);
+  EXPECT_EQ(surfaces(0.31), 1U) << "one thing above the floor is no surface";
+}
+
+TEST_F(SurfacesTest, OthersBetweenThemJoinDistantObjects) {
+  Add({5.0, 0.0, 0.0}, 0.2);
+  for (const double x : {0.0, 0.7, 0.35}) {
+    Add({x, 0.0, 0.75}, 0.05);
+  }
+  const std::vector<Surface> surfaces = Find();
+  ASSERT_EQ(surfaces.size(), 2U);
+  EXPECT_EQ(surfaces[1].objects, (std::vector<ObjectId>{ObjectId(1), ObjectId(2), ObjectId(3)}));
+}
+
+TEST_F(SurfacesTest, ObjectsThatNoKeyframeHasSeenTogetherAreOnNoCommonSurface) {
+  Add({5.0, 0.0, 0.0}, 0.2);
+  Add({0.0, 0.0, 0.75}, 0.05);
+  Add({0.2, 0.0, 0.75}, 0.05);
+  ASSERT_EQ(Find().size(), 2U);
+  views_.joint.clear();
+  EXPECT_EQ(Find().size(), 1U);
+}
+
+// The tolerance is 0.15 (0.4 + 0.4) = 0.12 m. At first the three lowest are on the floor, whose
+// height is then 0.1; so all are, whose median is 0.11.
+TEST_F(SurfacesTest, TheFloorIsTheMedianOfAllThatReachIt) {
+  for (const double bottom : {0.0, 0.1, 0.11, 0.2, 0.21}) {
+    Add({3.0 * bottom, 0.0, bottom}, 0.2);
+  }
+  EXPECT_NEAR(FloorHeight(bodies_), 0.11, 1e-9);
+}
+
+TEST_F(SurfacesTest, OnlyLowerSidesThatWereSeenTellTheFloor) {
+  Add({0.0, 0.0, 0.0}, 0.2);
+  Add({1.0, 0.0, -1.0}, 0.2);
+  bodies_.back().is_bottom_seen = false;
+  EXPECT_NEAR(FloorHeight(bodies_), 0.0, 1e-9);
+  EXPECT_NEAR(ExtendToFloor(bodies_)[1].bottom, -1.0, 1e-9) << "it reaches down farther";
+  bodies_.front().is_bottom_seen = false;
+  EXPECT_NEAR(FloorHeight(bodies_), -1.0, 1e-9) << "there is nothing better";
+}
+
 }  // namespace
 }  // namespace hullslam

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <random>
+#include <string>
 
 #include "objects/made_objects.h"
 
@@ -106,6 +109,40 @@ TEST(UpFromImages, IsUnknownIfTheCameraWasHeldInAllWays) {
   EXPECT_FALSE(UpFromImages({}));
   const Rigid3 turned(Eigen::Quaterniond(0.0, 0.0, 0.0, 1.0), Eigen::Vector3d::Zero());
   EXPECT_FALSE(UpFromImages({{0.0, Rigid3()}, {1.0, turned}}));
+}
+
+// The mean of the tops of cameras that are tilted to all sides by an angle is as long as its
+// cosine, and a quarter is the least length: 75.5 degrees.
+TEST(UpFromGroundtruth, NeedsACameraThatWasHeldUpright) {
+  const auto tilted = [](double degrees) {
+    const Eigen::Quaterniond top_is_z =
+        Eigen::Quaterniond::FromTwoVectors(-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
+    Trajectory poses;
+    for (int i = 0; i < 20; ++i) {
+      const double turn = 0.1 * std::numbers::pi * i;
+      const Eigen::Vector3d axis(std::cos(turn), std::sin(turn), 0.0);
+      const Eigen::Quaterniond tilt = ExpSo3(degrees * std::numbers::pi / 180.0 * axis);
+      poses.push_back({0.05 * i, Rigid3(tilt * top_is_z, Eigen::Vector3d::Zero())});
+    }
+    return poses;
+  };
+  EXPECT_TRUE(UpFromGroundtruth(tilted(74.0), tilted(74.0)).up);
+  const UpDirection found = UpFromGroundtruth(tilted(77.0), tilted(77.0));
+  EXPECT_FALSE(found.up);
+  EXPECT_NE(found.from.find("not held upright"), std::string::npos) << found.from;
+}
+
+TEST(UpFromPlanes, SaysWhyItIsUnknown) {
+  const Trajectory poses = Turned(LookingDown(), kTurn);
+  std::vector<Eigen::Vector3d> few = PointsOfRoom();
+  few.resize(99);
+  EXPECT_NE(UpFromPlanes(few, poses).from.find("too few landmarks"), std::string::npos);
+  Trajectory all_ways = poses;
+  for (const StampedPose& pose : poses) {  // each image once more, upside down
+    const Rigid3 turned(Eigen::Quaterniond(0.0, 0.0, 0.0, 1.0), Eigen::Vector3d::Zero());
+    all_ways.push_back({pose.timestamp, pose.world_from_cam * turned});
+  }
+  EXPECT_NE(UpFromPlanes(PointsOfRoom(), all_ways).from.find("many ways"), std::string::npos);
 }
 
 }  // namespace
