@@ -1,20 +1,26 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes python/hullslam/_settings.pyi: the types of all settings, from the registry of the library.
+"""Writes the type stubs of the Python module with their docstrings, which editors show.
+
+python/hullslam/_settings.pyi has the types and meanings of all settings, from the registry of the
+library. python/hullslam/_core.pyi is written by hand; only its docstrings are those of the module.
 
     PYTHONPATH=build/release/python scripts/generate_python_stubs.py [--check]
 
---check: writes nothing; fails if the file is not the one that would be written.
+--check: writes nothing; fails if a file is not the one that would be written.
 """
 
 import argparse
+import ast
+import inspect
 import pathlib
 import sys
 import textwrap
 
+import hullslam
 from hullslam import _core
 
-STUB = pathlib.Path(__file__).resolve().parents[1] / "python" / "hullslam" / "_settings.pyi"
+PACKAGE = pathlib.Path(__file__).resolve().parents[1] / "python" / "hullslam"
 HEAD = '''# SPDX-License-Identifier: GPL-3.0-or-later
 # Written by scripts/generate_python_stubs.py.
 import os
@@ -52,14 +58,14 @@ def type_of(expected):
 
 
 def tree_of(entries):
-    """The settings as dicts in dicts, whose leaves are types."""
+    """The settings as dicts in dicts, whose leaves are types and docstrings."""
     tree = {}
-    for key, _, _, expected, _, _ in entries:
+    for key, _, default, expected, meaning, _ in entries:
         *groups, name = key.split(".")
         level = tree
         for group in groups:
             level = level.setdefault(group, {})
-        level[name] = type_of(expected)
+        level[name] = (type_of(expected), f"{meaning} ({expected}; default {default})")
     return tree
 
 
@@ -70,7 +76,8 @@ def attributes(tree, path):
             yield f"@property\ndef {name}(self) -> {inner}: ..."
             yield f"@{name}.setter\ndef {name}(self, values: _Values) -> None: ..."
         else:
-            yield f"{name}: {value}"
+            kind, meaning = value
+            yield f"{name}: {kind}\n{docstring(meaning, '')}"
 
 
 def classes(tree, path=()):
@@ -83,21 +90,85 @@ def classes(tree, path=()):
             yield f"class _{'_'.join(inner)}:\n" + textwrap.indent(body, "    ")
 
 
-def stub():
+# ---- docstrings
+
+
+def docstring(text, indent):
+    """The text as a docstring, whose first line is not indented."""
+    text = inspect.cleandoc(text)
+    if "\\" in text or '"""' in text:
+        raise ValueError(f"no text for a docstring: {text}")
+    lines = text.splitlines()
+    end = '"""' if len(lines) == 1 else f'\n{indent}"""'
+    rest = "".join(f"\n{indent}{line}" if line else "\n" for line in lines[1:])
+    return f'"""{lines[0]}{rest}{end}'
+
+
+def text_of(owner, name):
+    """The docstring of a member without the signature, with which pybind11 begins functions."""
+    thing = inspect.getattr_static(owner, name, None)
+    if thing is None or isinstance(thing, property):
+        return (thing and thing.__doc__ or "").strip()
+    text = getattr(owner, name).__doc__ or ""
+    head, _, rest = text.partition("\n")
+    return (rest if head.startswith(f"{name}(") else text).strip()
+
+
+def write_docstrings(owner, nodes, lines):
+    """Puts the docstrings of the members of `owner` into the lines of their definitions. Begins at
+    the end, so that the numbers of the lines before stay right."""
+    for node in reversed(nodes):
+        if not isinstance(node, (ast.ClassDef, ast.FunctionDef)) or not hasattr(owner, node.name):
+            continue
+        if isinstance(node, ast.ClassDef):
+            write_docstrings(getattr(owner, node.name), node.body, lines)
+        is_setter = any(isinstance(item, ast.Attribute) for item in node.decorator_list)
+        is_special = node.name.startswith("__") and node.name != "__init__"
+        text = text_of(owner, node.name)
+        if text and not is_setter and not is_special:
+            write_docstring(node, text, lines)
+
+
+def write_docstring(node, text, lines):
+    """Replaces the docstring of a definition or a body of three dots, else comes before the body."""
+    indent = " " * (node.col_offset + 4)
+    new = (indent + docstring(text, indent)).splitlines()
+    first = node.body[0]
+    begin, end = first.lineno - 1, first.end_lineno
+    constant = first.value.value if isinstance(first, ast.Expr) else None
+    if constant is ...:
+        new.insert(0, lines[begin][:first.col_offset].rstrip())
+    elif not isinstance(constant, str):
+        decorators = getattr(first, "decorator_list", [])
+        begin = end = min(item.lineno for item in (first, *decorators)) - 1
+    lines[begin:end] = new
+
+
+def core_stub():
+    lines = (PACKAGE / "_core.pyi").read_text(encoding="utf-8").splitlines()
+    write_docstrings(_core, ast.parse("\n".join(lines)).body, lines)
+    return "\n".join(lines) + "\n"
+
+
+def settings_stub():
     tree = tree_of(_core.SettingsTable.defaults())
     own = textwrap.indent("\n".join(attributes(tree, [])), "    ")
-    return HEAD + "\n\n".join(classes(tree)) + "\n\n" + SETTINGS + own + "\n"
+    lines = (HEAD + "\n\n".join(classes(tree)) + "\n\n" + SETTINGS + own).splitlines()
+    write_docstrings(hullslam, ast.parse("\n".join(lines)).body, lines)
+    return "\n".join(lines) + "\n"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true")
-    if parser.parse_args().check:
-        if STUB.read_text(encoding="utf-8") != stub():
-            sys.exit(f"{STUB} is not up to date; run scripts/generate_python_stubs.py")
-    else:
-        STUB.write_text(stub(), encoding="utf-8")
+    is_check = parser.parse_args().check
+    for name, text in (("_core.pyi", core_stub()), ("_settings.pyi", settings_stub())):
+        path = PACKAGE / name
+        if not is_check:
+            path.write_text(text, encoding="utf-8")
+        elif path.read_text(encoding="utf-8") != text:
+            sys.exit(f"{path} is not up to date; run scripts/generate_python_stubs.py")
 
 
 if __name__ == "__main__":

@@ -22,6 +22,7 @@ input.
 
 import argparse
 import concurrent.futures
+import dataclasses
 import json
 import os
 import pathlib
@@ -104,10 +105,29 @@ def select(sequences, only):
 
 
 def quick_choice(sequences):
-    """Two sequences, of both data sets if there are both."""
+    """Two sequences, of both data sets if there are both. The second one only with depth: the
+    published systems need more images of the sequences of ICL-NUIM to begin a monocular map."""
     first = sequences[:1]
     others = sorted(sequences[1:], key=lambda sequence: sequence.dataset == first[0].dataset)
-    return first + others[:QUICK_SEQUENCES - 1]
+    return first + [dataclasses.replace(sequence, modes=tuple(
+        mode for mode in sequence.modes if mode == "rgbd") or sequence.modes)
+        for sequence in others[:QUICK_SEQUENCES - 1]]
+
+
+def quick_definitions(definitions):
+    """Of each table the baseline and one other row, and of what gets worse one kind that changes
+    arguments and one that changes images, at its mildest level, at which a few images are enough."""
+    return dataclasses.replace(definitions, tables={
+        name: quick_table(table, definitions.degradations)
+        for name, table in definitions.tables.items()})
+
+
+def quick_table(table, known):
+    other = next((row for row in table.rows if row.variant != table.baseline), None)
+    rows = tuple(row for row in table.rows if row.variant == table.baseline or row is other)
+    by_kind = {bool(known[name].options): name for name in reversed(table.degradations)}
+    degradations = tuple(name for name in table.degradations if name in by_kind.values())
+    return dataclasses.replace(table, rows=rows, degradations=degradations)
 
 
 def suite_cache(arguments, tools):
@@ -118,6 +138,8 @@ def suite_cache(arguments, tools):
 
 def make_request(arguments, tools, suite):
     definitions = read_definitions(arguments.definitions)
+    if arguments.quick:
+        definitions = quick_definitions(definitions)
     frames = arguments.frames or (QUICK_FRAMES if arguments.quick else None)
     sequences = recorded_sequences(arguments, definitions, tools.config)
     if suite:
@@ -221,6 +243,8 @@ def reproduce(arguments):
     old = read_report(arguments.compare) if arguments.compare else None
     viewer = tools.path("view") if arguments.reports else None
     paper = read_json(OWN / "paper_tables.json")
+    if arguments.suite and not arguments.quiet and not suite_cache(arguments, tools).is_file():
+        print("asking make_synthetic for its sequences", file=sys.stderr, flush=True)
     suite = arguments.suite and suite_file(tools.path("make_synthetic"),
                                            suite_cache(arguments, tools))
     request = make_request(arguments, tools, suite)
@@ -280,7 +304,7 @@ def parse_arguments(words):
     runs.add_argument("--frames", type=int, metavar="N", help="only the first N images")
     runs.add_argument("--quick", action="store_true",
                       help=f"see whether everything works: {QUICK_SEQUENCES} sequences, one seed, "
-                           f"{QUICK_FRAMES} images, one level of each degradation")
+                           f"{QUICK_FRAMES} images, two rows of each table and two degradations")
     runs.add_argument("--timeout", type=float, default=3600.0, metavar="S",
                       help="longest time of a run (default 3600 s)")
     runs.add_argument("--definitions", type=pathlib.Path, default=OWN / "tables.yaml",

@@ -15,205 +15,442 @@ _Depth = npt.NDArray[np.uint16] | npt.NDArray[np.float32]
 _Doubles = npt.NDArray[np.float64]
 _Rows = npt.NDArray[np.void]  # a structured array
 
-class InputError(ValueError): ...
+class InputError(ValueError):
+    """A file, a setting or an argument is wrong.
+
+    The message names the file and line, or the argument and its value, and says what was expected.
+    """
 
 class SettingsTable:
+    """The registry of settings. hullslam.Settings is derived from it."""
     def __init__(self, file: _Path | None = None, preset: str | None = None,
                  overrides: Sequence[str] = ...) -> None: ...
     @property
-    def warnings(self) -> list[str]: ...
+    def warnings(self) -> list[str]:
+        """What the reader has to say about the settings: list of str."""
     @property
-    def hash(self) -> str: ...
+    def hash(self) -> str:
+        """16 hexadecimal digits that change with every setting; `summary.json` has them too."""
     @property
-    def image_size(self) -> tuple[int, int]: ...
-    def entries(self) -> list[tuple[str, str, str, str, str, bool]]: ...
+    def image_size(self) -> tuple[int, int]:
+        """Width and height of the images, px."""
+    def entries(self) -> list[tuple[str, str, str, str, str, bool]]:
+        """Key, value, default, expected value, meaning and is_shared of all settings."""
     @staticmethod
-    def defaults() -> list[tuple[str, str, str, str, str, bool]]: ...
-    def set_text(self, key: str, text: str) -> None: ...
-    def format(self) -> str: ...
+    def defaults() -> list[tuple[str, str, str, str, str, bool]]:
+        """entries() with all values at their default."""
+    def set_text(self, key: str, text: str) -> None:
+        """Sets one setting from text, as a settings file has it."""
+    def format(self) -> str:
+        """All settings as the text of a settings file."""
 
 class Trajectory:
-    def __init__(self, timestamps: npt.ArrayLike, world_from_cam: npt.ArrayLike) -> None: ...
+    """Poses of a camera in order of time."""
+    def __init__(self, timestamps: npt.ArrayLike, world_from_cam: npt.ArrayLike) -> None:
+        """timestamps: (N,), s, increasing. world_from_cam: (N, 4, 4) homogeneous matrices."""
     def __len__(self) -> int: ...
     @property
-    def timestamps(self) -> _Doubles: ...
+    def timestamps(self) -> _Doubles:
+        """(N,) float64, s."""
     @property
-    def world_from_cam(self) -> _Doubles: ...
+    def world_from_cam(self) -> _Doubles:
+        """(N, 4, 4) float64: maps points of the camera frame (x right, y down,
+        z forward, m) to the world frame.
+        """
     @property
-    def positions(self) -> _Doubles: ...
-    def format(self) -> str: ...
-    def write(self, path: _Path) -> None: ...
+    def positions(self) -> _Doubles:
+        """(N, 3) float64: centres of the camera in the world frame, m."""
+    def format(self) -> str:
+        """The text of a file in TUM's format: timestamp tx ty tz qx qy qz qw."""
+    def write(self, path: _Path) -> None:
+        """Writes a file in TUM's format. It is complete or not there at all."""
 
 class TrajectoryErrors:
+    """The errors of a trajectory after alignment to the true one
+    (Sturm et al. 2012). Made by evaluate_trajectory().
+    """
     @property
-    def ate_rmse(self) -> float: ...
+    def ate_rmse(self) -> float:
+        """Root mean square of the distances of paired positions, m."""
     @property
-    def ate_mean(self) -> float: ...
+    def ate_mean(self) -> float:
+        """Mean distance, m."""
     @property
-    def ate_median(self) -> float: ...
+    def ate_median(self) -> float:
+        """Median distance, m."""
     @property
-    def ate_max(self) -> float: ...
+    def ate_max(self) -> float:
+        """Largest distance, m."""
     @property
-    def rpe_translation_rmse(self) -> float | None: ...
+    def rpe_translation_rmse(self) -> float | None:
+        """Error of motions of one second, m; None if no two poses are one second apart."""
     @property
-    def rpe_rotation_rmse(self) -> float | None: ...
+    def rpe_rotation_rmse(self) -> float | None:
+        """The same for their rotation, degrees."""
     @property
-    def pairs(self) -> int: ...
+    def pairs(self) -> int:
+        """Number of paired poses."""
     @property
-    def coverage(self) -> float: ...
+    def coverage(self) -> float:
+        """Share of the estimated poses that are paired, 0 to 1."""
     @property
-    def alignment(self) -> Literal["se3", "sim3", "none"]: ...
+    def alignment(self) -> Literal["se3", "sim3", "none"]:
+        """'se3', 'sim3' or 'none'."""
     @property
-    def scale(self) -> float: ...
+    def scale(self) -> float:
+        """Metres per unit of length of the estimate; 1 without 'sim3'."""
     @property
-    def groundtruth_from_estimate(self) -> _Doubles: ...
+    def groundtruth_from_estimate(self) -> _Doubles:
+        """(4, 4) rigid motion of the estimate after its positions were multiplied by `scale`."""
 
 class Masks:
+    """The masks of the objects in one image, in its raw pixels. They are kept as
+    outlines; masks without an area of 1 px^2 are left out.
+    """
     def __init__(self, stack: npt.NDArray[np.bool_] | npt.NDArray[np.uint8],
-                 classes: Sequence[str], scores: Sequence[float] | _Doubles | None = None) -> None: ...
+                 classes: Sequence[str], scores: Sequence[float] | _Doubles | None = None) -> None:
+        """stack: (N, height, width) bool or uint8, not 0 at the pixels of object i.
+        classes: N names. scores: N numbers from 0 to 1, or None for 1.
+        Raises InputError for another type, shape or number of entries.
+        """
     @staticmethod
     def from_labels(labels: npt.NDArray[np.uint8] | npt.NDArray[np.uint16] | npt.NDArray[np.int32],
-                    classes: Mapping[int, str], scores: Mapping[int, float] = ...) -> Masks: ...
+                    classes: Mapping[int, str], scores: Mapping[int, float] = ...) -> Masks:
+        """labels: (height, width) uint8, uint16 or int32: the number of the instance that
+        a pixel shows, or 0. classes: the name of each number. scores: its score.
+        """
     @staticmethod
     def from_outlines(outlines: Sequence[npt.ArrayLike], classes: Sequence[str],
-                      scores: Sequence[float] | _Doubles | None = None) -> Masks: ...
+                      scores: Sequence[float] | _Doubles | None = None) -> Masks:
+        """outlines: N arrays (points, 2) of raw pixels x, y; the centre of the first
+        pixel is (0, 0).
+        """
     def __len__(self) -> int: ...
     @property
-    def classes(self) -> list[str]: ...
+    def classes(self) -> list[str]:
+        """N names."""
     @property
-    def scores(self) -> list[float]: ...
+    def scores(self) -> list[float]:
+        """N numbers from 0 to 1."""
     @property
-    def outlines(self) -> list[list[_Doubles]]: ...
+    def outlines(self) -> list[list[_Doubles]]:
+        """For each mask the outlines of its parts, the largest first: arrays
+        (points, 2) of raw pixels.
+        """
 
 class SequenceFrame:
+    """One decoded frame of a sequence."""
     @property
-    def timestamp(self) -> float: ...
+    def timestamp(self) -> float:
+        """Time stamp, s."""
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """The name of the colour image without folder and extension."""
     @property
-    def image(self) -> _Image: ...
+    def image(self) -> _Image:
+        """(height, width) uint8, grey."""
     @property
-    def depth(self) -> _Depth | None: ...
+    def depth(self) -> _Depth | None:
+        """(height, width) uint16 in units of 1 / DepthMapFactor metres, or float32 in metres;
+        None without depth.
+        """
 
 class ImageSequence:
+    """The frames of a data set, which are decoded one by one."""
     def __len__(self) -> int: ...
     def __getitem__(self, index: int) -> SequenceFrame: ...
     def __iter__(self) -> Iterator[SequenceFrame]: ...
     @property
-    def timestamps(self) -> _Doubles: ...
+    def timestamps(self) -> _Doubles:
+        """(N,) float64, s."""
     @property
-    def groundtruth(self) -> Trajectory | None: ...
+    def groundtruth(self) -> Trajectory | None:
+        """The true Trajectory; None if the data set has none."""
 
 class MaskFiles:
+    """The mask files of a sequence, read one by one."""
     def __len__(self) -> int: ...
     def __getitem__(self, index: int) -> Masks: ...
     def __iter__(self) -> Iterator[Masks]: ...
     @property
-    def format(self) -> str: ...
+    def format(self) -> str:
+        """The name of the format, such as 'yolo-seg'."""
 
 class MapObject:
+    """An object of the map: an ellipsoid with a class. Lengths are in metres, in
+    monocular runs in units of the map.
+    """
     @property
-    def id(self) -> int: ...
+    def id(self) -> int:
+        """The number of the object, as in SeenObject.object."""
     @property
-    def label(self) -> str: ...
+    def label(self) -> str:
+        """The class with most votes."""
     @property
-    def votes(self) -> dict[str, float]: ...
+    def votes(self) -> dict[str, float]:
+        """The sum of the scores of each class."""
     @property
-    def is_mapped(self) -> bool: ...
+    def is_mapped(self) -> bool:
+        """Whether the shape fits all its views. If not, the object is a candidate."""
     @property
-    def world_from_object(self) -> _Doubles: ...
+    def world_from_object(self) -> _Doubles:
+        """(4, 4) pose: the origin is the centre and the axes are those of the ellipsoid. NaN if
+        the shape is not known.
+        """
     @property
-    def half_axes(self) -> _Doubles: ...
+    def half_axes(self) -> _Doubles:
+        """(3,) half axes of the ellipsoid, m; NaN if the shape is not known."""
     @property
-    def dual_quadric(self) -> _Doubles: ...
+    def dual_quadric(self) -> _Doubles:
+        """(4, 4) dual quadric Q* in the world frame: tangent planes satisfy pi^T Q* pi = 0. NaN
+        if the shape is not known.
+        """
     @property
-    def keyframes(self) -> list[int]: ...
+    def keyframes(self) -> list[int]:
+        """The ids of the keyframes that observe it."""
     @property
-    def misfit(self) -> float: ...
+    def misfit(self) -> float:
+        """RMS distance of its lines from its projected ellipses, px."""
+    @property
+    def parallax(self) -> float | None:
+        """The largest angle between the rays from the cameras of its keyframes
+        to its centre, degrees; None if the shape is not known.
+        """
+    @property
+    def siou(self) -> float | None:
+        """Mean intersection over union of its projected ellipses with the hulls
+        of its masks, 0 to 1; None if no keyframe has a value.
+        """
+    @property
+    def quality(self) -> float:
+        """Reliability of the shape, 0 to 1, as in objects.json: siou times
+        min(1, parallax / 20 degrees) times min(1, keyframes / 10); 0 if the
+        shape is not known.
+        """
 
 class Map:
+    """A snapshot of the map, which never changes. Each property makes an array or
+    a list of its own. Lengths are in metres, in monocular runs in units of the
+    map.
+    """
     @property
-    def landmarks(self) -> _Rows: ...
+    def landmarks(self) -> _Rows:
+        """Structured array (N,) of the points: id, in no order; position (3,), world frame;
+        viewing_direction (3,), mean unit vector from the cameras; keyframe, the id of the one
+        that made it; observations, their number.
+        """
     @property
-    def keyframes(self) -> _Rows: ...
+    def keyframes(self) -> _Rows:
+        """Structured array (N,) of the keyframes: id; frame; timestamp, s;
+        cam_from_world (4, 4); parent in the spanning tree, or -1; island.
+        """
     @property
-    def observations(self) -> _Rows: ...
+    def observations(self) -> _Rows:
+        """Structured array (N,) of the observations of points by keyframes:
+        landmark and keyframe, their ids; pixel (2,), undistorted; depth along
+        the optical axis, m, 0 if it is not known.
+        """
     @property
-    def objects(self) -> list[MapObject]: ...
+    def objects(self) -> list[MapObject]:
+        """The mapped objects: list of MapObject."""
     @property
-    def candidates(self) -> list[MapObject]: ...
+    def candidates(self) -> list[MapObject]:
+        """Objects whose shape is not known or does not fit yet: list of MapObject."""
     @property
-    def sessions(self) -> list[str]: ...
+    def sessions(self) -> list[str]:
+        """The names of the runs that added keyframes."""
 
 class SeenObject:
+    """An object that a mask shows in one frame."""
     @property
-    def label(self) -> str: ...
+    def label(self) -> str:
+        """The class of the mask."""
     @property
-    def score(self) -> float: ...
+    def score(self) -> float:
+        """The score of the mask, 0 to 1."""
     @property
-    def object(self) -> int | None: ...
+    def object(self) -> int | None:
+        """The id of the mapped object that it shows (MapObject.id), or None."""
     @property
-    def hull(self) -> _Doubles: ...
+    def hull(self) -> _Doubles:
+        """(points, 2) convex hull of the mask, undistorted pixels."""
     @property
-    def box(self) -> _Doubles: ...
+    def box(self) -> _Doubles:
+        """(4,) least x and y and largest x and y of the hull, undistorted px."""
 
 class TrackResult:
+    """What track() found in one frame."""
     @property
-    def state(self) -> Literal["tracked", "lost", "initialising"]: ...
+    def state(self) -> Literal["tracked", "lost", "initialising"]:
+        """'tracked', 'lost', or 'initialising': there is no map yet."""
     @property
-    def reason(self) -> str | None: ...
+    def reason(self) -> str | None:
+        """Why the frame has no pose (docs/my-run-fails.md); None if it has one,
+        and while the mode 'rgbd' waits for a first image with features.
+        """
     @property
-    def cam_from_world(self) -> _Doubles | None: ...
+    def cam_from_world(self) -> _Doubles | None:
+        """(4, 4): maps points of the world frame to the camera frame (x right, y down, z
+        forward, m), at the time of tracking. None if the frame is not tracked. The trajectory
+        of the system has the pose after later corrections.
+        """
     @property
-    def world_from_cam(self) -> _Doubles | None: ...
+    def world_from_cam(self) -> _Doubles | None:
+        """(4, 4): its inverse, the pose of the camera in the world; or None."""
     @property
-    def timestamp(self) -> float: ...
+    def timestamp(self) -> float:
+        """Time stamp of the frame, s."""
     @property
-    def frame(self) -> int: ...
+    def frame(self) -> int:
+        """The number of the frame."""
     @property
-    def inliers(self) -> int: ...
+    def inliers(self) -> int:
+        """The number of landmarks that agree with the pose."""
     @property
-    def matches(self) -> _Rows: ...
+    def matches(self) -> _Rows:
+        """Structured array (N,) of the keypoints that show a landmark:
+        keypoint, its index; landmark, its id in the map before this frame; pixel
+        (2,), undistorted.
+        """
     @property
-    def objects(self) -> list[SeenObject]: ...
+    def objects(self) -> list[SeenObject]:
+        """The objects that masks show in this frame: list of SeenObject."""
 
 class System:
+    """SLAM as one object: images in, poses and map out.
+
+    Calls from several threads take turns. The global interpreter lock is released while a
+    call works.
+    """
     def __init__(self, settings: SettingsTable, mode: Literal["rgbd", "mono"] = "rgbd", *,
                  pipeline: Literal["sequential", "threaded", "realtime"] = "sequential",
                  vocabulary: _Path | None = "default", map: _Path | None = None,
-                 session: str = "", localization: bool = False, seed: int = 0) -> None: ...
+                 session: str = "", localization: bool = False, seed: int = 0) -> None:
+        """settings: Settings. mode: 'rgbd', or 'mono' for a camera without depth.
+        pipeline: 'sequential' gives the same bits every time; 'threaded' maps in a thread of
+        its own; 'realtime' never waits for it, for live cameras.
+        vocabulary: path of a vocabulary of visual words for loops and relocalisation;
+        'default': the one that comes with HullSLAM; None: none.
+        map: path of a map of earlier runs to go on with. session: the name of this run in
+        the map. localization: True to find poses in `map` without changing it.
+        seed: seed of all random choices.
+        """
     def track(self, image: _Image, depth: _Depth | None = None, masks: Masks | None = None, *,
-              timestamp: float) -> TrackResult: ...
-    def finish(self) -> None: ...
-    def reset(self) -> None: ...
-    def save_map(self, path: _Path) -> None: ...
-    def load_map(self, path: _Path, *, session: str = "", localization: bool = False) -> None: ...
+              timestamp: float) -> TrackResult:
+        """Finds the pose of the camera in the next frame: TrackResult.
+
+        image: (height, width) uint8, or (height, width, 3 or 4) with blue first, as OpenCV
+        reads images (red first with the setting Camera.RGB). It is copied only if its rows
+        are not contiguous, as in image[:, ::-1], and must not be changed meanwhile.
+        depth: (height, width) uint16 in units of 1 / DepthMapFactor metres, or float32 in
+        metres, registered to the image; 0 or not finite where it is not known. None in the
+        mode 'mono'.
+        masks: Masks of the objects in the image, or None.
+        timestamp: s, larger than that of the frame before.
+        Raises InputError for anything else; a refused frame changes nothing.
+        """
+    def finish(self) -> None:
+        """Waits until all keyframes are in the map, adjusts the whole map, and computes the
+        poses of all frames again. Ctrl+C ends it early.
+        """
+    def reset(self) -> None:
+        """Begins a new run as after construction, also after finish()."""
+    def save_map(self, path: _Path) -> None:
+        """Writes the map to a file (docs/maps.md), also during a run. Raises InputError if there
+        is no keyframe yet or the file cannot be written.
+        """
+    def load_map(self, path: _Path, *, session: str = "", localization: bool = False) -> None:
+        """Ends this run without finishing it and begins a new one that goes on with a map of
+        earlier runs. Raises InputError if the map was made with other settings; then the
+        run goes on.
+        """
     @property
-    def map(self) -> Map: ...
+    def map(self) -> Map:
+        """A snapshot: Map. It is empty before the first keyframe."""
     @property
-    def trajectory(self) -> Trajectory: ...
-    localization: bool
+    def trajectory(self) -> Trajectory:
+        """The poses of all tracked frames in the current map: Trajectory."""
     @property
-    def times(self) -> dict[str, _Doubles]: ...
+    def localization(self) -> bool:
+        """Whether poses are found in the map without adding keyframes to it. May be switched
+        between two frames, once there is a map.
+        """
+    @localization.setter
+    def localization(self, arg1: bool) -> None: ...
     @property
-    def object_counts(self) -> dict[str, Any]: ...
+    def times(self) -> dict[str, _Doubles]:
+        """The durations of each stage, ms: dict of (calls,) arrays. `frame` is
+        building a frame, `pose` tracking it, and `track` the sum of the two.
+        """
+    @property
+    def object_counts(self) -> dict[str, Any]:
+        """Numbers of detections and of frames with and without masks, and the
+        numbers of rejected masks and objects by reason: dict.
+        """
 
 class KnownPoseMapper:
+    """Maps objects from masks and known poses, for example of odometry or
+    motion capture. It needs no images.
+    """
     def __init__(self, settings: SettingsTable) -> None: ...
     def add_view(self, world_from_cam: npt.ArrayLike, masks: Masks, depth: _Depth | None = None, *,
-                 timestamp: float) -> None: ...
-    @property
-    def map(self) -> Map: ...
+                 timestamp: float) -> None:
+        """Adds a view; a view should differ from the one before.
 
-def preset_names() -> list[str]: ...
-def default_settings(sequence: _Path) -> os.PathLike[str]: ...
+        world_from_cam: (4, 4) pose of the camera (x right, y down, z forward, m).
+        masks: Masks of the image. depth: as in System.track(), or None.
+        timestamp: s.
+        Raises InputError for a pose that is not finite or no rigid transform, and for masks
+        or depth that do not fit the camera; a refused view changes nothing.
+        """
+    @property
+    def map(self) -> Map:
+        """A snapshot of the views as keyframes, and of the objects: Map."""
+
+def preset_names() -> list[str]:
+    """The names of the presets (docs/presets.md)."""
+def default_settings(sequence: _Path) -> os.PathLike[str]:
+    """The path of the settings file of a sequence: `camera.yaml` in its folder, else the file
+    for the TUM camera that the name of the folder contains (fr1, freiburg2 ...). Raises
+    InputError if there is neither.
+    """
 def evaluate_trajectory(groundtruth: Trajectory | _Path, estimate: Trajectory | _Path, *,
                         align: Literal["se3", "sim3", "none"] = "se3",
                         pairing: Literal["tum", "evo"] = "tum",
-                        max_difference: float | None = None) -> TrajectoryErrors: ...
-def read_trajectory(path: _Path) -> Trajectory: ...
-def read_map(path: _Path) -> Map: ...
+                        max_difference: float | None = None) -> TrajectoryErrors:
+    """Measures the error of a trajectory, as the program `evaluate` does
+    (docs/outputs.md).
+
+    groundtruth, estimate: Trajectory, or path of a file in TUM's format.
+    align: 'se3', 'sim3' (monocular) or 'none'.
+    pairing: 'tum' or 'evo', the rule by which poses are paired by time.
+    max_difference: largest difference of paired time stamps, s; None: that of the
+    rule, 0.02 or 0.01.
+    Raises InputError if there are fewer than three pairs.
+    """
+def read_trajectory(path: _Path) -> Trajectory:
+    """Reads a trajectory in TUM's format. Raises InputError with file and line for bad lines."""
+def read_map(path: _Path) -> Map:
+    """Reads a map to look at it. To go on with a map, give its path to System. Raises InputError
+    if the file is damaged.
+    """
 def open_tum(folder: _Path, settings: SettingsTable, *, depth: bool = True,
-             associations: _Path | None = None) -> ImageSequence: ...
-def open_images(path: _Path, settings: SettingsTable, *, fps: float | None = None) -> ImageSequence: ...
-def open_masks(path: _Path, sequence: ImageSequence, *, format: str = "") -> MaskFiles: ...
+             associations: _Path | None = None) -> ImageSequence:
+    """Opens a sequence in TUM's format (docs/datasets.md).
+
+    depth: False for a monocular run, whose frames have no depth.
+    associations: a file of pairs of images; None: they are paired by time.
+    Raises InputError with file and line for whatever is wrong with the folder.
+    """
+def open_images(path: _Path, settings: SettingsTable, *, fps: float | None = None) -> ImageSequence:
+    """Opens a video or a folder of images without depth. Frames of a video must be read
+    in order.
+
+    fps: frames per second; None: the time stamps of the video, 30 for a folder.
+    """
+def open_masks(path: _Path, sequence: ImageSequence, *, format: str = "") -> MaskFiles:
+    """Opens masks in one of the formats of docs/masks.md: a folder or a JSON file.
+
+    sequence: the ImageSequence that the masks belong to; their files are found by the
+    names of its images. format: one of the names of docs/masks.md; detected if empty.
+    """

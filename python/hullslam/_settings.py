@@ -113,7 +113,15 @@ class Settings(_core.SettingsTable):
             is_group = is_group or entry.startswith(key + ".")
         if is_group:
             return Group(self, key + ".")
-        raise error(f"there is no setting {key}")
+        raise error(self._unknown(key))
+
+    def _unknown(self, key):
+        """What the registry says about a key that it does not have, with the nearest one."""
+        try:
+            self.set_text(key, "")
+        except _core.InputError as error:
+            return str(error)
+        raise AssertionError(f"{key} is a setting")
 
     def _names(self, prefix):
         """The next words of all keys that begin with `prefix`."""
@@ -146,7 +154,7 @@ class Settings(_core.SettingsTable):
         for entry, _, default, expected, meaning, _ in self.entries():
             if entry == key:
                 return f"{key}: {meaning} ({expected}; default {default})"
-        raise KeyError(f"there is no setting {key}")
+        raise KeyError(self._unknown(key))
 
     def summary(self, *, changed_only=False):
         """All settings as text, one line each. Those that differ from the default say so."""

@@ -22,6 +22,11 @@ std::string ShapeOf(const py::array& array) { return py::str(array.attr("shape")
 
 // The caller's object as an array, which is the object itself if it is one.
 py::array AsArray(const py::object& object, const std::string& name) {
+  if (object.is_none()) {
+    throw InputError(name +
+                     " is None, expected a numpy array; cv2.imread gives None for a file that is "
+                     "not there or cannot be read");
+  }
   py::array array = py::array::ensure(object);
   if (!array) {
     PyErr_Clear();

@@ -16,10 +16,9 @@ namespace hullslam::python {
 namespace {
 
 struct LiveMapper {
-  explicit LiveMapper(const SystemOptions& options)
-      : size(options.camera.width, options.camera.height), mapper(options) {}
+  explicit LiveMapper(const SystemOptions& options) : camera(options.camera), mapper(options) {}
 
-  const cv::Size size;  // of the camera, px
+  const PinholeCamera camera;
   std::mutex mutex;
   KnownPoseMapper mapper;
 };
@@ -27,7 +26,7 @@ struct LiveMapper {
 void AddView(LiveMapper& live, const py::object& world_from_cam, const MaskList& masks,
              const py::object& depth, double timestamp) {
   const Rigid3 pose = ToPose(world_from_cam, "world_from_cam");
-  const PixelView depths = ViewDepth(depth, live.size);
+  const PixelView depths = ViewDepth(depth, {live.camera.width, live.camera.height});
   CheckStamp(timestamp);
   WithoutGil([&] {
     const std::lock_guard lock(live.mutex);
@@ -38,7 +37,7 @@ void AddView(LiveMapper& live, const py::object& world_from_cam, const MaskList&
 MapView SnapshotOf(LiveMapper& live) {
   return WithoutGil([&] {
     const std::lock_guard lock(live.mutex);
-    return MapView{std::make_shared<const Map>(live.mapper.Snapshot())};
+    return MapView{std::make_shared<const Map>(live.mapper.Snapshot()), live.camera};
   });
 }
 

@@ -9,13 +9,16 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "arrays.h"
+#include "eval/object_metrics.h"
 #include "hullslam/map_files/map_file.h"
 #include "module.h"
+#include "report/object_report.h"
 #include "types.h"
 #include "without_gil.h"
 
@@ -47,10 +50,11 @@ struct ObservationRow {
   float depth;
 };
 
-// An object of the map, copied out of it.
+// An object of a snapshot of the map.
 struct MapObject {
   int64_t id = -1;
   ObjectLandmark object;
+  MapView view;
 };
 
 Vector3 ToRow(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
@@ -114,7 +118,7 @@ std::vector<MapObject> ObjectsOf(const MapView& view, ObjectState state) {
   std::vector<MapObject> objects;
   for (const auto& [id, object] : view.map->objects()) {
     if (object.state == state) {
-      objects.push_back({ToNumber(id), object});
+      objects.push_back({ToNumber(id), object, view});
     }
   }
   return objects;
@@ -135,17 +139,57 @@ py::array_t<double> DualQuadricOf(const MapObject& object) {
   return IfShaped(object, std::move(matrix));
 }
 
+// The object with its fit, as in objects.json.
+ReportedObject ReportOf(const MapObject& object) {
+  ReportedObject reported =
+      ReportObject(*object.view.map, ObjectId(static_cast<uint32_t>(object.id)), object.object);
+  reported.fit = MeasureObject(reported.ellipsoid, reported.views, object.view.camera);
+  return reported;
+}
+
+std::optional<double> ParallaxOfObject(const MapObject& object) {
+  return object.object.has_shape ? std::optional(ParallaxOf(ReportOf(object))) : std::nullopt;
+}
+
+std::optional<double> SiouOfObject(const MapObject& object) {
+  return object.object.has_shape ? ReportOf(object).fit.siou : std::nullopt;
+}
+
+double QualityOfObject(const MapObject& object) {
+  return object.object.has_shape ? QualityOf(ReportOf(object)) : 0.0;
+}
+
+void BindReliability(py::class_<MapObject>& object) {
+  object
+      .def_property_readonly(
+          "misfit", [](const MapObject& o) { return o.object.misfit_px; },
+          "RMS distance of its lines from its projected ellipses, px.")
+      .def_property_readonly(
+          "parallax", &ParallaxOfObject,
+          "The largest angle between the rays from the cameras of its keyframes\n"
+          "to its centre, degrees; None if the shape is not known.")
+      .def_property_readonly(
+          "siou", &SiouOfObject,
+          "Mean intersection over union of its projected ellipses with the hulls\n"
+          "of its masks, 0 to 1; None if no keyframe has a value.")
+      .def_property_readonly(
+          "quality", &QualityOfObject,
+          "Reliability of the shape, 0 to 1, as in objects.json: siou times\n"
+          "min(1, parallax / 20 degrees) times min(1, keyframes / 10); 0 if the\n"
+          "shape is not known.");
+}
+
 std::string DescribeObject(const MapObject& object) {
   return "<hullslam.MapObject " + std::to_string(object.id) + ": " + object.object.Label() + ", " +
          std::to_string(object.object.observations.size()) + " observations>";
 }
 
 void BindObject(py::module_& module) {
-  py::class_<MapObject>(
+  py::class_<MapObject> object(
       module, "MapObject",
       "An object of the map: an ellipsoid with a class. Lengths are in metres, in\n"
-      "monocular runs in units of the map.")
-      .def_readonly("id", &MapObject::id, "The number of the object, as in SeenObject.object.")
+      "monocular runs in units of the map.");
+  object.def_readonly("id", &MapObject::id, "The number of the object, as in SeenObject.object.")
       .def_property_readonly(
           "label", [](const MapObject& o) { return std::string(o.object.Label()); },
           "The class with most votes.")
@@ -180,10 +224,8 @@ void BindObject(py::module_& module) {
             return keyframes;
           },
           "The ids of the keyframes that observe it.")
-      .def_property_readonly(
-          "misfit", [](const MapObject& o) { return o.object.misfit_px; },
-          "RMS distance of its lines from its projected ellipses, px.")
       .def("__repr__", &DescribeObject);
+  BindReliability(object);
 }
 
 }  // namespace
@@ -236,7 +278,11 @@ void BindMap(py::module_& module) {
   module.def(
       "read_map",
       [](const std::filesystem::path& path) {
-        return WithoutGil([&] { return MapView{std::make_shared<const Map>(ReadMap(path).map)}; });
+        return WithoutGil([&] {
+          StoredMap stored = ReadMap(path);
+          return MapView{std::make_shared<const Map>(std::move(stored.map)),
+                         stored.settings.camera};
+        });
       },
       py::arg("path"),
       "Reads a map to look at it. To go on with a map, give its path to System. Raises InputError\n"

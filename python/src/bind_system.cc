@@ -122,7 +122,8 @@ auto Get(const LiveSystem& system, const Read& read) {
 
 MapView MapOf(const LiveSystem& system) {
   auto map = Get(system, [](const System& s) { return s.map(); });
-  return {map != nullptr ? std::move(map) : std::make_shared<const Map>()};
+  return {.map = map != nullptr ? std::move(map) : std::make_shared<const Map>(),
+          .camera = system.options().camera};
 }
 
 py::dict TimesOf(const LiveSystem& system) {

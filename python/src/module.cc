@@ -1,13 +1,48 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "module.h"
 
+#include <array>
+#include <string>
+#include <utility>
+
 #include "hullslam/map_files/map_file.h"
 #include "hullslam/util/error.h"
 #include "live_system.h"
+#include "short_errors.h"
 #include "without_gil.h"
 
 namespace hullslam::python {
 namespace {
+
+// Messages of the library name the options of the programs. Those of Python name its arguments.
+std::string NameArguments(std::string message) {
+  static constexpr std::array<std::pair<const char*, const char*>, 7> kNames{{
+      {"--settings FILE", "Settings(FILE)"},
+      {"--vocabulary FILE|none", "vocabulary=FILE or None"},
+      {"--fps N", "fps=N"},
+      {"--fps", "fps"},
+      {"--masks-format", "format"},
+      {"--associations", "associations"},
+      {"--preset", "preset"},
+  }};
+  for (const auto& [option, argument] : kNames) {
+    for (size_t at = message.find(option); at != std::string::npos; at = message.find(option)) {
+      message.replace(at, std::string(option).size(), argument);
+    }
+  }
+  return message;
+}
+
+void TranslateInputError(std::exception_ptr error) {
+  try {
+    if (error) {
+      std::rethrow_exception(error);
+    }
+  } catch (const InputError& input_error) {
+    const auto type = pybind11::module_::import("hullslam._core").attr("InputError");
+    PyErr_SetString(type.ptr(), NameArguments(input_error.what()).c_str());
+  }
+}
 
 // Reading a map is only cancelled when the interpreter exits.
 void TranslateCancelled(std::exception_ptr error) {
@@ -43,6 +78,7 @@ PYBIND11_MODULE(_core, module) {
   module.attr("__version__") = HULLSLAM_VERSION;
   // The documentation of this class is set in hullslam/__init__.py.
   pybind11::register_exception<InputError>(module, "InputError", PyExc_ValueError);
+  pybind11::register_exception_translator(TranslateInputError);
   pybind11::register_exception_translator(TranslateCancelled);
   BindSettings(module);
   BindTrajectories(module);
@@ -52,6 +88,7 @@ PYBIND11_MODULE(_core, module) {
   BindSystem(module);
   BindKnownPoseMapper(module);
   RefuseUninitialisedObjects(module);
+  ShortenTypeErrors(module);
   pybind11::module_::import("atexit").attr("register")(pybind11::cpp_function([] {
     EndCallsAtExit();
     LiveSystem::CloseAll();

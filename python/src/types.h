@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "hullslam/camera/pinhole.h"
 #include "hullslam/frame/instance_mask.h"
 #include "hullslam/geometry/trajectory.h"
 #include "hullslam/map/map.h"
@@ -35,6 +36,7 @@ struct PoseList {
 // hullslam.Map: a snapshot, which never changes.
 struct MapView {
   std::shared_ptr<const Map> map;
+  PinholeCamera camera;
 };
 
 // The value that belongs to `text`. Throws InputError that starts with `name` and lists the texts

@@ -125,7 +125,8 @@ class Planner:
         if variant.same_as and not sequence.has_rolling_shutter:
             variant = variants[variant.same_as]
         if mode not in sequence.modes:
-            return None, "the sequence has no depth"
+            return None, ("the sequence has no depth" if mode == "rgbd" else
+                          "a quick run has this sequence only with depth")
         if mode not in variant.modes:
             return None, f"{variant.label} does not run in this mode"
         if variant.masks and sequence.masks is None:
@@ -236,7 +237,7 @@ def levels_of(table, request, mode):
     for name in table.degradations:
         degradation = request.definitions.degradations[name]
         if mode in degradation.modes:
-            levels = degradation.levels[-1:] if request.is_quick else degradation.levels
+            levels = degradation.levels[:1] if request.is_quick else degradation.levels
             found += [(degradation, level) for level in levels]
             if degradation.unchanged is not None:
                 found.sort(key=lambda item: float(item[1] or degradation.unchanged))

@@ -110,6 +110,9 @@ class Progress:
 
     def line(self):
         text = f"{self.done_runs} of {self.count} runs"
+        folders = sum(not path.startswith("runs/") for path in self.missing)
+        if folders and self.done_runs < self.count:
+            text += f", {folders} sequence{'s' if folders > 1 else ''} to make"
         if self.done_weight and self.missing:
             rest = (time.monotonic() - self.begin) * (self.total / self.done_weight - 1.0)
             text += f", about {duration(rest)} left"
@@ -129,7 +132,7 @@ class Reporter:
     def __init__(self, progress, is_quiet):
         self.progress, self.is_quiet = progress, is_quiet
         self.is_terminal = sys.stderr.isatty()
-        self.shown, self.last = "", time.monotonic()
+        self.shown, self.last = "", -LINE_EVERY  # so that the first line comes at once
 
     def update(self, is_last=False):
         self.progress.look()
@@ -140,8 +143,9 @@ class Reporter:
             print(f"\r{text:<60}", end="\n" if is_last else "", file=sys.stderr, flush=True)
         elif is_last or time.monotonic() - self.last > LINE_EVERY:
             print(text, file=sys.stderr, flush=True)
-            self.last = time.monotonic()
-        self.shown = text
+        else:
+            return
+        self.shown, self.last = text, time.monotonic()
 
 
 # ---- the run of Snakemake
@@ -237,6 +241,7 @@ def make_all(plan, plan_file, out, jobs, profile, is_quiet):
     reporter = Reporter(progress, is_quiet)
     if not progress.missing:
         return
+    reporter.update()
     command = snakemake_command(plan_file, jobs, profile, False)
     for _ in range(STARTS):
         code = run_snakemake(command, out, reporter)

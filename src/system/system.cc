@@ -113,6 +113,7 @@ std::unique_ptr<Pipeline> System::BeginPipeline() {
   Check(!start_.localization_only || !start_.map.keyframes().empty(),
         "localization needs a map with keyframes");
   RequireSameVocabulary(start_.map, options_.vocabulary.get());
+  vector_length_ = 0;
   for (const auto& [id, keyframe] : start_.map.keyframes()) {
     CheckVectors(*keyframe.frame);
   }
@@ -182,17 +183,19 @@ void System::CheckStamp(double timestamp) const {
 // Vectors of different lengths are of different networks, so no question could be asked about the
 // map.
 void System::CheckVectors(const Frame& frame) {
+  size_t known = vector_length_;
   for (const Detection& detection : frame.detections) {
     const size_t length = detection.embedding.size();
-    if (vector_length_ == 0) {
-      vector_length_ = length;
-    } else if (length > 0 && length != vector_length_) {
+    if (known == 0) {
+      known = length;
+    } else if (length > 0 && length != known) {
       throw InputError(fmt::format(
           "the vectors of the masks have {} numbers, those of the earlier masks and of the loaded "
           "map have {}; expected vectors of one network",
-          length, vector_length_));
+          length, known));
     }
   }
+  vector_length_ = known;  // a frame that is refused changes nothing
 }
 
 // A second thread for building frames helps only a live camera, which waits for its poses. A run at

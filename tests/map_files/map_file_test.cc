@@ -7,6 +7,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <filesystem>
@@ -184,6 +185,32 @@ TEST_F(MapFileTest, KeepsWhatDumpDoesNotShow) {
   const ObjectLandmark& cup = read.objects().At(ObjectId(1));
   EXPECT_EQ(cup.misfit_px, 1.25);
   EXPECT_EQ(cup.compensated_px, 0.75);
+}
+
+// A map with these counters of everything that is seen.
+Map MapSeenOften(int times) {
+  const Map small = SmallMap();
+  Map map = SmallMap();
+  for (const auto& [id, landmark] : small.landmarks()) {
+    map.MutableLandmark(id).visible = times;
+    map.MutableLandmark(id).found = times;
+  }
+  ObjectLandmark& cup = map.MutableObject(ObjectId(1));
+  cup.visible = cup.found = times;
+  cup.shaped_views = static_cast<size_t>(times);
+  return map;
+}
+
+// Counters of a map that was loaded are counted up and written again.
+TEST_F(MapFileTest, CountersStayAtTheLargestOneThatCanBeRead) {
+  constexpr int kMost = 1 << 29;
+  EXPECT_NE(Dump(MapSeenOften(kMost)), Dump(MapSeenOften(kMost - 1)));
+  for (const int times : {kMost - 1, kMost, kMost + 1, std::numeric_limits<int>::max()}) {
+    const Map read = ReadBack(MapSeenOften(times));
+    EXPECT_EQ(Dump(read), Dump(MapSeenOften(std::min(times, kMost)))) << times;
+    EXPECT_EQ(read.objects().At(ObjectId(1)).shaped_views,
+              static_cast<size_t>(std::min(times, kMost)));
+  }
 }
 
 TEST_F(MapFileTest, KeepsIslandsApart) {

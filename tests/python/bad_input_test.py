@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import hullslam
-from conftest import HEIGHT, ROOT, WIDTH
+from conftest import CAMERA, HEIGHT, ROOT, WIDTH
 
 IMAGE = np.zeros((HEIGHT, WIDTH), np.uint8)
 DEPTH = np.ones((HEIGHT, WIDTH), np.float32)
@@ -45,7 +45,7 @@ def test_an_input_error_is_a_value_error():
     # Before, an image that is no view was copied before its size was looked at: 4 GB.
     (np.broadcast_to(np.zeros(1, np.uint8), (1 << 16, 1 << 16)), "the image is 65536x65536 px, expected"),
     ("image.png", "the image has the type <U9, expected uint8"),
-    (None, "the image has the type object, expected uint8"),
+    (None, "the image is None, expected a numpy array; cv2.imread gives None for a file that is not there"),
 ])
 def test_images(slam, wall, image, expected):
     refuse(expected, slam.track, image, DEPTH, timestamp=0.0)
@@ -120,6 +120,34 @@ def test_arguments_of_another_type_are_type_errors(slam):
             slam.track(IMAGE, DEPTH, **keywords)
     with pytest.raises(TypeError):
         hullslam.System("TUM1.yaml")
+
+
+def test_type_errors_name_types_and_no_values(slam):
+    image = np.full((HEIGHT, WIDTH), 77, np.uint8)
+    calls = ((slam.track, (image, DEPTH, image), {"timestamp": 0.0}, "System, numpy.ndarray, numpy.ndarray, "
+              "numpy.ndarray, timestamp: float"),
+             (slam.track, (image,), {}, "System, numpy.ndarray"),
+             (hullslam.System, (image,), {}, "System, numpy.ndarray"),
+             (hullslam.Masks.from_outlines, (image, 7), {}, "Called with: numpy.ndarray, int"),
+             (hullslam.read_map, (image,), {}, "Called with: numpy.ndarray"))
+    for function, arguments, keywords, expected in calls:
+        with pytest.raises(TypeError) as error:
+            function(*arguments, **keywords)
+        message = str(error.value)
+        assert expected in message and "incompatible" in message, message
+        assert "77" not in message and "Invoked" not in message, message
+
+
+def test_messages_name_arguments_and_no_options_of_programs(settings, tmp_path):
+    refuse("expected Settings(FILE)", hullslam.default_settings, tmp_path)
+    refuse("preset: ", hullslam.Settings, Camera=CAMERA, preset="orb_slam9")
+    (tmp_path / "a.png").write_bytes(b"")
+    for call in (lambda: hullslam.default_settings(tmp_path),
+                 lambda: hullslam.Settings(Camera=CAMERA, preset="orb_slam9"),
+                 lambda: hullslam.open_images(tmp_path, settings, fps=-1.0)):
+        with pytest.raises(hullslam.InputError) as error:
+            call()
+        assert "--" not in str(error.value), str(error.value)
 
 
 STACK = np.zeros((2, HEIGHT, WIDTH), bool)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The package: types, docstrings, examples, notebook, memory, installation."""
 
+import ast
 import inspect
 import os
 import pathlib
@@ -25,7 +26,7 @@ def run(*command, **keywords):
     return result.stdout
 
 
-def test_the_stub_of_the_settings_is_up_to_date():
+def test_the_stubs_are_up_to_date():
     run(ROOT / "scripts" / "generate_python_stubs.py", "--check")
 
 
@@ -61,6 +62,15 @@ def test_everything_public_has_a_docstring():
             for member, value in vars(thing).items():
                 if not member.startswith("_"):
                     assert value.__doc__, f"{name}.{member}"
+
+
+def test_the_stubs_have_docstrings():
+    for name in ("_core.pyi", "_settings.pyi"):
+        tree = ast.parse((PYTHON / "hullslam" / name).read_text(encoding="utf-8"))
+        for node in tree.body:
+            if isinstance(node, ast.ClassDef) and node.name in hullslam.__all__:
+                assert ast.get_docstring(node), node.name
+    assert "Finds the pose of the camera" in (PYTHON / "hullslam" / "_core.pyi").read_text(encoding="utf-8")
 
 
 def blocks_of(document):

@@ -98,7 +98,7 @@ def test_what_the_reader_has_to_say_is_a_warning():
     ({"objects": {"start": {"min_views": -4}}}, "Settings: objects.start.min_views is '-4', expected an integer"),
     ({"objects": {"start": {"min_views": 4.5}}}, "Settings: objects.start.min_views is '4.5', expected an integer"),
     ({"objects": {"enabled": "maybe"}}, "Settings: objects.enabled is 'maybe', expected true or"),
-    ({"DepthMapFactor": math.nan}, "Settings: DepthMapFactor is 'nan', expected a number > 0"),
+    ({"DepthMapFactor": math.nan}, "Settings: DepthMapFactor is 'nan', expected a number from 0.001"),
     ({"DepthMapFactor": [1]}, "Settings: DepthMapFactor is a list, expected a number"),
     ({"DepthMapFactor": None}, "Settings: DepthMapFactor is a NoneType, expected a number"),
     ({"objects": 3}, "Settings: unknown key 'objects'"),
@@ -118,8 +118,10 @@ def test_bad_values_that_are_set_later_change_nothing():
         settings.objects.start.min_view = 3
     with pytest.raises(AttributeError, match="objects.start.min_view"):
         _ = settings.objects.start.min_view
-    with pytest.raises(KeyError):
-        _ = settings["objects.start.min_view"]
+    for read in (settings.__getitem__, settings.describe):
+        with pytest.raises(KeyError, match="unknown key 'objects.start.min_view'; did you mean "
+                           "'objects.start.min_views'"):
+            read("objects.start.min_view")
     assert settings.hash == before
 
 

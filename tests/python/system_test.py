@@ -99,6 +99,17 @@ def test_objects_of_a_sequence(desk):
         expected = pose @ np.diag([*axes**2, -1.0]) @ pose.T
         assert np.allclose(quadric, expected)
         assert set(thing.keyframes) <= set(slam.map.keyframes["id"])
+        # The largest angle between the rays from the cameras to the centre.
+        poses = dict(zip(slam.map.keyframes["id"], slam.map.keyframes["cam_from_world"]))
+        rays = [pose[:3, 3] + np.linalg.inv(poses[k])[:3, 3] * -1.0 for k in thing.keyframes]
+        rays = np.array([ray / np.linalg.norm(ray) for ray in rays])
+        angle = np.degrees(np.arccos(np.clip(rays @ rays.T, -1.0, 1.0).min()))
+        assert thing.parallax == pytest.approx(angle, abs=1e-6)
+        assert 0.5 < thing.siou <= 1.0
+        assert thing.quality == pytest.approx(
+            thing.siou * min(1.0, thing.parallax / 20.0) * min(1.0, len(thing.keyframes) / 10.0))
+    for thing in slam.map.candidates:
+        assert np.isfinite(thing.half_axes).all() or (thing.parallax, thing.siou, thing.quality) == (None, None, 0.0)
 
 
 def test_a_snapshot_never_changes(slam, wall):

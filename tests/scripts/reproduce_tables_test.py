@@ -76,12 +76,17 @@ class RunsTest(TablesTest):
 
     def test_quick_takes_two_sequences_and_one_seed(self):
         shutil.copytree(self.desk, self.dir / "other")
-        self.succeed("--suite", "synthetic", "--sequence", self.dir / "other", "--quick", "--tables",
-                     "I,VI")
+        result = self.succeed("--suite", "synthetic", "--sequence", self.dir / "other", "--quick",
+                              "--tables", "I,VI")
+        # The first lines come before anything is rendered or run.
+        self.assertEqual(result.stderr.splitlines()[:2], ["asking make_synthetic for its sequences",
+                                                          "0 of 12 runs, 3 sequences to make"])
         runs = self.report()["runs"]
+        self.assertEqual({run["variant"] for run in runs.values()}, {"points", "good"})
         self.assertEqual({run["sequence"] for run in runs.values()}, {"desk", "icl0"})
+        self.assertEqual({run["mode"] for run in runs.values() if run["sequence"] == "icl0"}, {"rgbd"})
         self.assertEqual({run["seed"] for run in runs.values()}, {0})
-        self.assertEqual({run["level"] for run in runs.values()}, {None, "100", "0.5"})
+        self.assertEqual({run["level"] for run in runs.values()}, {None, "500", "0.5"})
         self.assertTrue(any("--first 0 --last 39 --seed" in call for call in self.calls()))
 
     def test_only_and_modes(self):

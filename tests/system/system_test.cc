@@ -546,6 +546,53 @@ TEST(System, MasksThatCannotBeUsedAreRefused) {
   EXPECT_EQ(system.Track(1.0, image, depth, {good}).state, TrackingState::kTracked);
 }
 
+TrackedFrame TrackWithVectors(System& system, int index, const std::vector<size_t>& lengths) {
+  std::vector<InstanceMask> masks;
+  for (const size_t length : lengths) {
+    InstanceMask& mask = masks.emplace_back(SquareMask().front());
+    for (Eigen::Vector2d& corner : mask.outlines.front()) {
+      corner.x() += 150.0 * static_cast<double>(masks.size() - 1);
+    }
+    mask.embedding.assign(length, 1.0f);
+  }
+  return system.Track(Time(index), TheWall().Photograph(index), Wall::Depth(index),
+                      std::move(masks));
+}
+
+TEST(System, VectorsOfAnotherLengthThanTheEarlierOnesAreRefused) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  const std::vector<std::string> parts = {"4 numbers", "have 3", "expected vectors of one network"};
+  ExpectInputError([&] { TrackWithVectors(system, 0, {3, 4}); }, parts);
+  EXPECT_TRUE(system.frames().empty());
+  TrackWithVectors(system, 0, {4});  // a refused frame sets no length
+  system.Reset();
+  TrackWithVectors(system, 0, {0, 3});  // nor does an earlier run
+  TrackWithVectors(system, 1, {0});
+  ExpectInputError([&] { TrackWithVectors(system, 2, {4}); }, parts);
+  EXPECT_EQ(system.frames().size(), 2u);
+  EXPECT_EQ(TrackWithVectors(system, 2, {3}).state, TrackingState::kTracked);
+}
+
+TEST(System, VectorsOfAnotherLengthThanThoseOfTheLoadedMapAreRefused) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "map";
+  {
+    System first(Wall::Options(), PipelineKind::kSequential);
+    TrackWithVectors(first, 0, {3});
+    first.Finish();
+    WriteMap(path, *first.map(), MapSettingsOf(Wall::Options()));
+  }
+  System second(Wall::Options(), PipelineKind::kSequential,
+                {.map = ReadMap(path, Wall::Options())});
+  for (int run = 0; run < 2; ++run) {
+    ExpectInputError([&] { TrackWithVectors(second, 0, {4}); }, {"4 numbers", "have 3"});
+    EXPECT_TRUE(second.frames().empty());
+    TrackWithVectors(second, 0, {0, 3});
+    EXPECT_EQ(second.frames().size(), 1u);
+    second.Reset();
+  }
+}
+
 // The features of the first keyframe, which is made from one image.
 FrameFeatures FeaturesOf(const cv::Mat& image, std::optional<bool> rgb_order) {
   SystemOptions options = Wall::Options();
