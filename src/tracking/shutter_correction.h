@@ -46,8 +46,8 @@ struct CorrectedFrame {
 
 // Corrects a tracked frame by MeasureGlobalShutter, and optimises its pose again. `tracked` is the
 // frame for which `tracking` was found: the one as read or the predicted one. The corrected frame
-// and its velocity are only kept if its pose keeps at least tracking.min_inliers and, unless the map
-// is still a single frame as it was read, as many inliers as without the correction
+// and its velocity are only kept if its pose keeps at least tracking.min_inliers and, unless the
+// map is still a single frame as it was read, as many inliers as without the correction
 // (IsCorrectionKept); landmarks are searched in the corrected frame if those found before do not
 // suit it. Otherwise the frame stays as it was tracked. It does not go back from the predicted
 // frame to the one as read, because a keyframe that is not corrected contradicts its neighbours.
