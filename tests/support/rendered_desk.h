@@ -2,13 +2,13 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 
+#include "files/staging_folder.h"
 #include "hullslam/camera/pinhole.h"
 #include "hullslam/sequences/image_sequence.h"
 #include "hullslam/sequences/tum_sequence.h"
@@ -26,6 +26,9 @@ class RenderedDesk {
   explicit RenderedDesk(int frames, double readout_time = 0.0) : path_(folder_.path() / "desk") {
     const std::string name = fmt::format("desk_{}_{}", frames, readout_time);
     const std::filesystem::path shared = ProgramFolder() / ".." / "rendered" / name;
+    const std::filesystem::path turn = shared.string() + ".turn";
+    std::filesystem::create_directories(turn);
+    const FolderLock lock(turn);  // tests that need the same desk wait for it
     if (!IsUpToDate(shared)) {
       const std::filesystem::path rendered = folder_.path() / "rendered";
       const ProgramResult result =
@@ -53,21 +56,15 @@ class RenderedDesk {
     return !error && rendered > std::filesystem::last_write_time(ProgramPath("make_synthetic"));
   }
 
-  // Copies the folder beside its place, and gives it its name when it is complete. Another test may
-  // do the same at the same time; then the first one wins.
+  // Copies the folder beside its place, and gives it its name when it is complete: a test that is
+  // ended leaves no part of a folder there.
   static void Share(const std::filesystem::path& rendered, const std::filesystem::path& shared) {
     namespace fs = std::filesystem;
-    const fs::path copy = fmt::format("{}.{}", shared.string(), getpid());
-    std::error_code error;
-    if (!IsUpToDate(shared)) {
-      fs::remove_all(shared);
-    }
-    fs::create_directories(shared.parent_path());
+    const fs::path copy = shared.string() + ".part";
+    fs::remove_all(copy);
     fs::copy(rendered, copy, fs::copy_options::recursive);
-    fs::rename(copy, shared, error);
-    if (error) {
-      fs::remove_all(copy);
-    }
+    fs::remove_all(shared);
+    fs::rename(copy, shared);
   }
 
   TemporaryFolder folder_;
