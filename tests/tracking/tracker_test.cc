@@ -182,8 +182,11 @@ std::vector<uint32_t> NeverMappedObject::Requests(const ObjectOptions& objects, 
 TEST_F(NeverMappedObject, CausesFewerAndFewerRequests) {
   const std::vector<uint32_t> expected = {10, 20, 30, 40, 60, 100, 180, 340, 500};
   EXPECT_EQ(Requests({}), expected);
-  EXPECT_EQ(Requests({.joint_pose = false}), expected);
-  EXPECT_EQ(Requests({.joint_pose = false, .guided_matching = false}), expected);
+  ObjectOptions options;
+  options.joint_pose = false;
+  EXPECT_EQ(Requests(options), expected);
+  options.guided_matching = false;
+  EXPECT_EQ(Requests(options), expected);
 }
 
 TEST_F(NeverMappedObject, CausesNoRequestIfObjectsAreNoReasonForKeyframes) {
