@@ -20,16 +20,18 @@
 namespace hullslam {
 
 // A long wall of points with objects in front of it, and the frames of a camera that walks along it
-// at 1.2 m/s and looks at it. Frames are made without images. Every frame also has keypoints that
-// no other frame sees, so that landmarks are made and soon removed, as in real images. The same
-// frame always has the same bits.
+// at 1.2 m/s, looks at it, and turns back at the ends. Frames are made without images. Every frame
+// also has keypoints that no other frame sees, so that landmarks are made and soon removed, as in
+// real images. The same frame always has the same bits.
 class MadeCorridor {
  public:
-  MadeCorridor(size_t frames, const Sensor& sensor) : sensor_(sensor) {
+  // `length_in_frames` is the number of frames of one way.
+  MadeCorridor(size_t length_in_frames, const Sensor& sensor)
+      : sensor_(sensor), length_in_frames_(static_cast<uint32_t>(length_in_frames)) {
     constexpr double kPointsPerMetre = 160.0;
     constexpr double kObjectSpacing = 0.4;  // m
     std::mt19937_64 random(1);
-    const double length = kStep * static_cast<double>(frames) + 4.0;
+    const double length = kStep * static_cast<double>(length_in_frames) + 4.0;
     const auto number = [&random](double low, double high) {
       return std::uniform_real_distribution<double>(low, high)(random);
     };
@@ -49,10 +51,12 @@ class MadeCorridor {
   }
 
   // The frame with this number.
-  std::shared_ptr<const Frame> MakeFrame(uint32_t number) const {
+  std::unique_ptr<Frame> MakeFrame(uint32_t number) const {
     std::mt19937_64 random(HashSeed(1, number, "corridor"));
-    const Rigid3 cam_from_world = CamFromWorld(number);
-    auto frame = std::make_shared<Frame>();
+    const uint32_t on_way = number % (2 * length_in_frames_);
+    const Rigid3 cam_from_world =
+        CamFromWorld(on_way < length_in_frames_ ? on_way : 2 * length_in_frames_ - on_way);
+    auto frame = std::make_unique<Frame>();
     frame->id = FrameId(number);
     frame->timestamp = number / sensor_.frames_per_second;
     AddPoints(cam_from_world, random, frame->features);
@@ -205,6 +209,7 @@ class MadeCorridor {
   }
 
   const Sensor& sensor_;
+  const uint32_t length_in_frames_;
   std::vector<Point> points_;  // by x
   std::vector<Ellipsoid> objects_;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What grows with the map: a long walk along a made-up corridor through the whole sequential
-// pipeline. Prints, at 10, 25, 50 and 100 % of the way, what a frame and a keyframe cost at that
-// point and how much memory the map takes.
+// What grows with the map and with the time: a long walk along a made-up corridor, or to and fro in
+// it, through the whole sequential system. Prints, at 10, 20, 50 and 100 % of the way, what a frame
+// and a keyframe cost at that point and how much memory the keyframes and the whole system take.
 #include <fmt/format.h>
 #include <malloc.h>
 
@@ -15,13 +15,14 @@
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "hullslam/system/system.h"
 #include "live/live_view.h"
 #include "made_corridor.h"
 #include "made_map.h"
 #include "map_bytes.h"
-#include "system/sequential_pipeline.h"
 
 namespace hullslam {
 namespace {
@@ -42,14 +43,6 @@ double ProcessorMs() {
 size_t HeapBytes() {
   const struct mallinfo2 info = mallinfo2();
   return info.uordblks + info.hblkhd;
-}
-
-size_t LandmarkBytes(const Map& map) {
-  size_t bytes = 0;
-  for (const auto& [id, landmark] : map.landmarks()) {
-    bytes += sizeof(Landmark) + landmark.observations.capacity() * sizeof(Observation);
-  }
-  return bytes;
 }
 
 // The samples of a stage since `before`.
@@ -94,15 +87,17 @@ void PrintLine(size_t frames, const Map& map, const FrameTimes& times, const Sta
   for (const char* stage : kOtherStages) {
     others += Sum(Since(before, now, stage));
   }
-  const size_t without_landmarks = heap - std::min(heap, LandmarkBytes(map));
-  fmt::print(
-      "{:>7} {:>9} {:>9} {:>7} {:>9.2f} {:>12.1f} {:>12.2f} {:>12.1f} {:>9.1f} {:>9.1f}\n", frames,
-      map.keyframes().size(), map.landmarks().size(), map.objects().size(),
-      Summarize(times.tracked).median, PerKeyframe(times),
-      others / static_cast<double>(std::max<size_t>(1, times.inserted.size())),
-      1e3 * Summarize(Since(before, now, "map_snapshot")).mean,
-      1e-3 * static_cast<double>(without_landmarks) / static_cast<double>(map.keyframes().size()),
-      1e-6 * static_cast<double>(heap));
+  size_t bytes = 0;
+  for (const auto& [part, of_part] : KeyframeBytes(map)) {
+    bytes += of_part;
+  }
+  fmt::print("{:>7} {:>9} {:>9} {:>7} {:>9.2f} {:>12.1f} {:>12.2f} {:>12.1f} {:>9.1f} {:>9.1f}\n",
+             frames, map.keyframes().size(), map.landmarks().size(), map.objects().size(),
+             Summarize(times.tracked).median, PerKeyframe(times),
+             others / static_cast<double>(std::max<size_t>(1, times.inserted.size())),
+             1e3 * Summarize(Since(before, now, "map_snapshot")).mean,
+             1e-3 * static_cast<double>(bytes) / static_cast<double>(map.keyframes().size()),
+             1e-6 * static_cast<double>(heap));
   std::fflush(stdout);
 }
 
@@ -142,12 +137,14 @@ cv::Mat NoiseImage() {
   return grey;
 }
 
-void Run(size_t frames, int port) {
+void Run(size_t frames, size_t turn, int port) {
   const Sensor sensor = BenchSensor();
   SystemOptions options;
   options.camera = sensor.camera;
-  const MadeCorridor corridor(frames, sensor);
-  const std::unique_ptr<Pipeline> pipeline = MakeSequentialPipeline(sensor, options);
+  const MadeCorridor corridor(turn, sensor);
+  System system(options, PipelineKind::kSequential);
+  FrameReport report;
+  system.SetFrameCallback([&report](const FrameReport& newest) { report = newest; });
   const std::unique_ptr<LiveView> view = Watch(sensor, frames, port);
   const cv::Mat image = NoiseImage();
   const size_t heap_before = HeapBytes();
@@ -157,24 +154,25 @@ void Run(size_t frames, int port) {
   StageTimes stages_before;
   PrintHeader();
   for (size_t done = 1; done <= frames; ++done) {
-    std::shared_ptr<const Frame> frame = corridor.MakeFrame(static_cast<uint32_t>(done - 1));
-    const std::shared_ptr<const Map> map_before = pipeline->map();
+    BuiltFrame built;
+    built.frame = corridor.MakeFrame(static_cast<uint32_t>(done - 1));
+    const std::shared_ptr<const Map> map_before = system.map();
     const double start = ProcessorMs();
-    const FrameReport report = pipeline->Track(std::move(frame));
+    system.Track(std::move(built));
     const double spent = ProcessorMs() - start;
     total_ms += spent;
     if (view) {
-      view->Show({.report = report, .map = pipeline->map(), .grey = image, .number = done});
+      view->Show({.report = report, .map = system.map(), .grey = image, .number = done});
     }
     lost += report.tracked.state == TrackingState::kTracked ? 0 : 1;
-    (pipeline->map() == map_before ? times.tracked : times.inserted).push_back(spent);
-    for (const size_t percent : {10, 25, 50, 100}) {
+    (system.map() == map_before ? times.tracked : times.inserted).push_back(spent);
+    for (const size_t percent : {10, 20, 50, 100}) {
       const size_t end = frames * percent / 100;
       if (done == end - frames / kWindowShare) {
         times = {};
-        stages_before = pipeline->times();
+        stages_before = system.times();
       } else if (done == end) {
-        PrintLine(done, *pipeline->map(), times, stages_before, pipeline->times(),
+        PrintLine(done, *system.map(), times, stages_before, system.times(),
                   HeapBytes() - heap_before);
       }
     }
@@ -182,9 +180,9 @@ void Run(size_t frames, int port) {
   fmt::print(
       "{:.1f} s of processor time for {} frames, {} lost; {} keyframes were made; {} replaced "
       "ids are remembered\n",
-      1e-3 * total_ms, frames, lost, pipeline->map()->keyframes().NextId().value,
-      pipeline->map()->replaced_count());
-  PrintParts(*pipeline->map());
+      1e-3 * total_ms, frames, lost, system.map()->keyframes().NextId().value,
+      system.map()->replaced_count());
+  PrintParts(*system.map());
 }
 
 }  // namespace
@@ -192,10 +190,13 @@ void Run(size_t frames, int port) {
 
 int main(int argc, char** argv) {
   size_t frames = 10000;
+  size_t turn = 0;
   int port = -1;
   for (int i = 1; i + 1 < argc; i += 2) {
     if (std::string_view(argv[i]) == "--frames") {
       frames = static_cast<size_t>(std::strtoul(argv[i + 1], nullptr, 10));
+    } else if (std::string_view(argv[i]) == "--turn") {
+      turn = static_cast<size_t>(std::strtoul(argv[i + 1], nullptr, 10));
     } else if (std::string_view(argv[i]) == "--view") {
       port = static_cast<int>(std::strtol(argv[i + 1], nullptr, 10));
     } else {
@@ -206,9 +207,11 @@ int main(int argc, char** argv) {
   if (frames < 100) {
     fmt::print(
         stderr,
-        "usage: scale_bench [--frames N] [--view PORT]    N at least 100, 10000 by default\n");
+        "usage: scale_bench [--frames N] [--turn N] [--view PORT]\n"
+        "frames: at least 100, 10000 by default; the camera turns back each time after --turn "
+        "frames\n");
     return 2;
   }
-  hullslam::Run(frames, port);
+  hullslam::Run(frames, turn > 0 ? turn : frames, port);
   return 0;
 }

@@ -12,7 +12,7 @@ namespace {
 
 // Loses the frames that are not in the map, and computes the poses of the others again.
 void FinishFrames(const Map& map, const Sensor& sensor, const SystemOptions& options,
-                  std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames,
+                  const std::list<RememberedFrame>& remembered, std::span<TrackedFrame> frames,
                   const Cancellation* cancellation, const ProgressCallback& on_progress) {
   LoseFramesElsewhere(map, frames);
   const ObjectIndex object_index(map, sensor.camera);
@@ -33,9 +33,24 @@ void FinishMap(Mapper& mapper, const Cancellation* cancellation,
   mapper.FinishObjects();
 }
 
+void FinishOldest(const Pipeline& pipeline, const Sensor& sensor, const SystemOptions& options,
+                  std::list<RememberedFrame>& remembered, std::span<TrackedFrame> frames) {
+  if (remembered.size() <= kMostRemembered) {
+    return;
+  }
+  const std::shared_ptr<const Map> map = pipeline.map();
+  if (map == nullptr) {  // a monocular camera that has not moved yet has no poses
+    remembered.pop_front();
+    return;
+  }
+  const ObjectIndex unused;  // the objects in a frame were found when it was tracked
+  RefineOldest(*map, {sensor, options.tracking, options.objects, unused, options.seed},
+               kMostRemembered, remembered, frames);
+}
+
 std::vector<LeftIsland> FinishRun(Pipeline& pipeline, const Sensor& sensor,
                                   const SystemOptions& options,
-                                  std::span<const RememberedFrame> remembered,
+                                  const std::list<RememberedFrame>& remembered,
                                   std::span<TrackedFrame> frames, const Cancellation* cancellation,
                                   const ProgressCallback& on_map,
                                   const ProgressCallback& on_poses) {

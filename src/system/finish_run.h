@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <list>
 #include <span>
 #include <vector>
 
@@ -23,12 +24,17 @@ namespace hullslam {
 void FinishMap(Mapper& mapper, const Cancellation* cancellation = nullptr,
                const ProgressCallback& on_progress = {});
 
+// Finishes the poses of the oldest remembered frames in the current map and forgets them, if more
+// than kMostRemembered are remembered.
+void FinishOldest(const Pipeline& pipeline, const Sensor& sensor, const SystemOptions& options,
+                  std::list<RememberedFrame>& remembered, std::span<TrackedFrame> frames);
+
 // Finishes the map, then the poses of the frames. `frames` are all frames of the run in order;
 // `remembered` are those whose poses can be computed again. `on_map` and `on_poses` are told the
 // progress of the two parts. Returns the islands that were not joined to the map.
 std::vector<LeftIsland> FinishRun(Pipeline& pipeline, const Sensor& sensor,
                                   const SystemOptions& options,
-                                  std::span<const RememberedFrame> remembered,
+                                  const std::list<RememberedFrame>& remembered,
                                   std::span<TrackedFrame> frames, const Cancellation* cancellation,
                                   const ProgressCallback& on_map, const ProgressCallback& on_poses);
 

@@ -158,6 +158,7 @@ TrackedFrame System::Track(BuiltFrame built) {
   frames_.push_back(report.tracked);
   if (!is_localization_only_ && options_.tracking.refine_at_end) {
     remembered_.push_back(Remember(report, options_.objects));
+    FinishOldest(*pipeline_, sensor_, options_, remembered_, frames_);
   }
   if (frame_callback_) {
     frame_callback_(report);

@@ -80,6 +80,10 @@ void RefineFrame(const Map& map, const TrackingContext& context, const Remembere
   }
 }
 
+TrackedFrame& FrameOf(const RememberedFrame& seen, std::span<TrackedFrame> frames) {
+  return frames[seen.frame.id.value - frames.front().frame.value];
+}
+
 }  // namespace
 
 RememberedFrame Remember(const FrameReport& report, const ObjectOptions& options) {
@@ -108,17 +112,25 @@ RememberedFrame Remember(const FrameReport& report, const ObjectOptions& options
 }
 
 void RefinePoses(const Map& map, const TrackingContext& context,
-                 std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames,
+                 const std::list<RememberedFrame>& remembered, std::span<TrackedFrame> frames,
                  const Cancellation* cancellation, const ProgressCallback& on_progress) {
   int done = 0;
   for (const RememberedFrame& seen : remembered) {
     if (IsRequested(cancellation)) {
       return;
     }
-    RefineFrame(map, context, seen, frames[seen.frame.id.value - frames.front().frame.value]);
+    RefineFrame(map, context, seen, FrameOf(seen, frames));
     if (on_progress) {
       on_progress(++done, static_cast<int>(remembered.size()));
     }
+  }
+}
+
+void RefineOldest(const Map& map, const TrackingContext& context, size_t most,
+                  std::list<RememberedFrame>& remembered, std::span<TrackedFrame> frames) {
+  while (remembered.size() > most) {
+    RefineFrame(map, context, remembered.front(), FrameOf(remembered.front(), frames));
+    remembered.pop_front();
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+#include <list>
 #include <span>
 #include <vector>
 
@@ -12,9 +14,9 @@
 
 namespace hullslam {
 
-// The parts of a tracked frame that are kept to compute its pose again at the end of the run: at
-// most 400 keypoints that showed a landmark, and the detections that showed a mapped object,
-// without their contours. They take about 8 kB, and 1 kB for each detection.
+// The parts of a tracked frame that are kept to compute its pose again later: at most 400 keypoints
+// that showed a landmark, and the detections that showed a mapped object, without their contours.
+// They take about 8 kB, and 1 kB for each detection.
 struct RememberedFrame {
   Frame frame;                        // its features have only keypoints and right_u
   std::vector<LandmarkId> landmarks;  // one per keypoint
@@ -34,8 +36,19 @@ RememberedFrame Remember(const FrameReport& report, const ObjectOptions& options
 // `frames` are those of the run in order. `on_progress` is called after each frame. Once
 // `cancellation` (may be null) is requested, the other frames keep their poses.
 void RefinePoses(const Map& map, const TrackingContext& context,
-                 std::span<const RememberedFrame> remembered, std::span<TrackedFrame> frames,
+                 const std::list<RememberedFrame>& remembered, std::span<TrackedFrame> frames,
                  const Cancellation* cancellation = nullptr,
                  const ProgressCallback& on_progress = {});
+
+// The most frames that a run remembers, about 70 MB: as much as a walk of 10 000 frames takes for
+// its map. They are the last 2.8 minutes of a camera with 30 Hz. By then the camera has left the
+// place, or has adjusted it with hundreds of later keyframes. Loops that are closed later still
+// move the frame, with its reference.
+inline constexpr size_t kMostRemembered = 5000;
+
+// Gives the oldest frames their last poses (RefinePoses) and forgets them, until `most` are left.
+// So however long a run is, its remembered frames take bounded memory.
+void RefineOldest(const Map& map, const TrackingContext& context, size_t most,
+                  std::list<RememberedFrame>& remembered, std::span<TrackedFrame> frames);
 
 }  // namespace hullslam

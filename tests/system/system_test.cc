@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -374,6 +375,42 @@ TEST(System, TheSameImagesGiveTheSameBits) {
     EXPECT_EQ(a[i].world_from_cam.rotation.coeffs(), b[i].world_from_cam.rotation.coeffs());
     EXPECT_EQ(a[i].world_from_cam.translation, b[i].world_from_cam.translation);
   }
+}
+
+// So the memory that a run needs for its frames does not depend on its length. Lost frames follow,
+// because they take little time.
+TEST(System, OnlyTheLastFramesAreKeptForFinish) {
+  System system(Wall::Options(), PipelineKind::kSequential);
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_EQ(TrackFrame(system, i).state, TrackingState::kTracked);
+  }
+  const auto pose_of = [&](size_t i) {
+    return system.frames()[i].from_keyframe.value().cam_from_reference.translation;
+  };
+  const std::vector<TrackedFrame> before = system.frames();
+  const auto is_refined = [&](size_t i) {
+    return pose_of(i) != before[i].from_keyframe.value().cam_from_reference.translation;
+  };
+  size_t count = before.size();
+  const auto lose_frames = [&](size_t until) {
+    for (; count < until; ++count) {
+      BuiltFrame built;
+      built.frame = std::make_unique<Frame>();
+      built.frame->timestamp = Time(static_cast<int>(count));
+      EXPECT_EQ(system.Track(std::move(built)).state, TrackingState::kLost);
+    }
+  };
+  lose_frames(5000);
+  EXPECT_FALSE(is_refined(8));
+  lose_frames(5009);
+  EXPECT_TRUE(is_refined(8));
+  EXPECT_FALSE(is_refined(9));
+  const Eigen::Vector3d refined = pose_of(8);
+  system.Finish();
+  EXPECT_EQ(pose_of(8), refined);
+  EXPECT_TRUE(is_refined(9));
+  EXPECT_EQ(system.trajectory().size(), 10u);
+  EXPECT_LT(MaxError(system.trajectory()), 0.01);
 }
 
 // A square in front of the wall, so that objects are part of the comparison.

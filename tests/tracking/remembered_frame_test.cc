@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <list>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -39,7 +41,7 @@ class RefinePosesTest : public ::testing::Test {
   void Track(const Rigid3& cam_from_world) {
     report_.tracked.from_keyframe = made_.map.RelativeTo(KeyframeId(0), cam_from_world);
   }
-  void Refine(const std::vector<RememberedFrame>& remembered,
+  void Refine(const std::list<RememberedFrame>& remembered,
               std::vector<TrackedFrame>& frames) const {
     const ObjectIndex index(made_.map, world_->sensor().camera);
     RefinePoses(made_.map, {world_->sensor(), options_, objects_, index}, remembered, frames);
@@ -49,7 +51,7 @@ class RefinePosesTest : public ::testing::Test {
     std::vector<TrackedFrame> frames(1);
     frames[0].frame = FrameId(4);  // ids need not begin with 0
     frames.push_back(report_.tracked);
-    const std::vector<RememberedFrame> remembered = {Remember(report_, objects_)};
+    const std::list<RememberedFrame> remembered = {Remember(report_, objects_)};
     Refine(remembered, frames);
     EXPECT_FALSE(frames[0].from_keyframe.has_value());
     EXPECT_EQ(frames[1].from_keyframe->reference, KeyframeId(0));
@@ -253,7 +255,7 @@ TEST_F(RefinePosesTest, TheFrameOfACulledKeyframeIsRefinedToo) {
   made_.map.CullKeyframe(culled);
   ASSERT_EQ(made_.map.KeyframeOfFrame(report_.tracked.frame), culled);
   std::vector<TrackedFrame> frames = {report_.tracked};
-  const std::vector<RememberedFrame> remembered = {Remember(report_, objects_)};
+  const std::list<RememberedFrame> remembered = {Remember(report_, objects_)};
   Refine(remembered, frames);
   ASSERT_EQ(frames[0].from_keyframe->reference, culled);
   EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[0].from_keyframe), truth_), 1e-4);
@@ -269,8 +271,8 @@ TEST_F(RefinePosesTest, OnceItIsCancelledTheOtherFramesKeepTheirPoses) {
   Track(wrong_);
   std::vector<TrackedFrame> frames(2, report_.tracked);
   frames[1].frame = FrameId(6);
-  std::vector<RememberedFrame> remembered(2, Remember(report_, objects_));
-  remembered[1].frame.id = FrameId(6);
+  std::list<RememberedFrame> remembered(2, Remember(report_, objects_));
+  remembered.back().frame.id = FrameId(6);
   Cancellation cancellation;
   std::vector<int> progress;
   const ObjectIndex index(made_.map, world_->sensor().camera);
@@ -284,10 +286,38 @@ TEST_F(RefinePosesTest, OnceItIsCancelledTheOtherFramesKeepTheirPoses) {
   EXPECT_LT(Distance(made_.map.CamFromWorld(*frames[1].from_keyframe), wrong_), 1e-12);
 }
 
+// The memory of a run is bounded, and every frame is refined once.
+TEST_F(RefinePosesTest, TheOldestFramesAreRefinedAndForgotten) {
+  constexpr size_t kMost = 3;
+  Track(wrong_);
+  const ObjectIndex index(made_.map, world_->sensor().camera);
+  const TrackingContext context{world_->sensor(), options_, objects_, index};
+  std::list<RememberedFrame> remembered;
+  std::vector<TrackedFrame> frames;
+  const auto error_of = [&](const TrackedFrame& frame) {
+    return Distance(made_.map.CamFromWorld(*frame.from_keyframe), truth_);
+  };
+  for (uint32_t i = 0; i < 8; ++i) {
+    report_.tracked.frame = FrameId(20 + i);
+    frames.push_back(report_.tracked);
+    remembered.push_back(Remember(report_, objects_));
+    RefineOldest(made_.map, context, kMost, remembered, frames);
+    ASSERT_EQ(remembered.size(), std::min<size_t>(i + 1, kMost));
+    EXPECT_EQ(remembered.back().frame.id, report_.tracked.frame);
+  }
+  for (size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(error_of(frames[i]) < 1e-4, i < frames.size() - kMost) << i;
+  }
+  Refine(remembered, frames);
+  for (const TrackedFrame& frame : frames) {
+    EXPECT_LT(error_of(frame), 1e-4);
+  }
+}
+
 TEST_F(RefinePosesTest, AFrameWithoutAPoseStaysWithoutOne) {
   report_.tracked.from_keyframe.reset();
   std::vector<TrackedFrame> frames = {report_.tracked};
-  const std::vector<RememberedFrame> remembered = {Remember(report_, objects_)};
+  const std::list<RememberedFrame> remembered = {Remember(report_, objects_)};
   Refine(remembered, frames);
   EXPECT_FALSE(frames[0].from_keyframe.has_value());
 }

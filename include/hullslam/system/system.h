@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <functional>
+#include <list>
 #include <map>
 #include <memory>
 #include <opencv2/core/mat.hpp>
@@ -109,9 +110,10 @@ class System {
   // Waits until all keyframes are in the map. Then it adjusts the whole map if
   // mapping.final_bundle_adjustment is set. If the camera was lost, only the main island of the map
   // stays (Map::BeginIsland), and frames in other islands become lost; left_islands() has these.
-  // Then the poses of all frames are computed again from the final positions of their landmarks,
-  // unless the map was fixed, and lost frames and frames before a monocular map are localised in
-  // it. So frames() may change. Track must not be called after Finish.
+  // Then the poses of the last 5000 frames are computed again from the final positions of their
+  // landmarks, unless the map was fixed (Track does this with older ones, in the map of that time),
+  // and lost frames and frames before a monocular map are localised in it. So frames() may change.
+  // Track must not be called after Finish.
   //
   // If `cancellation` (may be null) is requested, the adjustment ends early with its current
   // result, and the frames that are left keep the poses that they have. `on_map` is called in this
@@ -168,7 +170,7 @@ class System {
   DetectionCounts mask_counts_;         // counts of the tracked frames
   std::function<void(const FrameReport&)> frame_callback_;
   std::vector<TrackedFrame> frames_;
-  std::vector<RememberedFrame> remembered_;  // until Finish
+  std::list<RememberedFrame> remembered_;  // until Finish, but not all frames of a long run
   std::vector<LeftIsland> left_islands_;
   StageTimes times_;
 };
