@@ -7,6 +7,7 @@ find_package(Ceres 2.1 REQUIRED)
 find_package(CGAL 5.5 REQUIRED)  # headers only: convex hulls, oriented boxes; needs GMP and MPFR
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt 9 REQUIRED)
+find_package(yaml-cpp 0.7 REQUIRED)  # settings and calibrations
 find_package(spdlog 1.10 REQUIRED)
 find_package(ZLIB 1.2 REQUIRED)  # checksum of map files
 find_package(BZip2 1.0 REQUIRED)  # this and the next three: recordings of ROS

@@ -4,19 +4,17 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-#include <cmath>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
-#include "files/read_text.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "sequences/euroc_states.h"
 #include "sequences/image_list.h"
-#include "settings/yaml_storage.h"
+#include "settings/yaml_map.h"
 #include "util/shown_text.h"
 
 namespace hullslam {
@@ -24,106 +22,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// OpenCV requires the line %YAML:1.0, which the files of EuRoC do not have.
-std::string WithYamlLine(std::string text) {
-  return text.starts_with("%YAML") ? std::move(text) : "%YAML:1.0\n" + text;
+void ExpectText(const YamlMap& file, std::string_view key, std::string_view expected) {
+  const std::string text = file.Text(key);
+  if (text != expected) {
+    file.Fail(key, fmt::format("is '{}', expected '{}'; HullSLAM has no other model",
+                               ShowText(text), expected));
+  }
 }
 
-// The values of a sensor.yaml.
-class SensorFile {
- public:
-  explicit SensorFile(fs::path file)
-      : file_(std::move(file)),
-        original_(ReadText(file_, 1'000'000)),
-        text_(WithYamlLine(original_)),
-        storage_(ParseYaml(file_, text_, added_lines())) {
-    if (!storage_.root().isMap()) {
-      throw InputError(file_.string() + ": has no keys, expected a sensor.yaml of EuRoC");
-    }
-  }
-
-  const fs::path& path() const { return file_; }
-  int added_lines() const { return text_.size() > original_.size() ? 1 : 0; }
-
-  [[noreturn]] void Fail(const char* key, const std::string& what) const {
-    throw InputError(fmt::format("{}: {} {}", Origin(key), key, what));
-  }
-
-  cv::FileNode Find(const char* key) const {
-    const cv::FileNode node = storage_[key];
-    if (node.empty()) {
-      throw InputError(
-          fmt::format("{}: {} is not given, expected a sensor.yaml of EuRoC", file_.string(), key));
-    }
-    return node;
-  }
-
-  std::vector<double> Numbers(const char* key, const cv::FileNode& node, size_t count,
-                              const char* names) const {
-    if (!node.isSeq() || node.size() != count) {
-      Fail(key, fmt::format("has {} value(s), expected {} numbers: {}",
-                            node.isSeq() ? node.size() : 1, count, names));
-    }
-    std::vector<double> numbers;
-    for (const cv::FileNode& element : node) {
-      numbers.push_back(Number(key, element));
-    }
-    return numbers;
-  }
-
-  double Number(const char* key, const cv::FileNode& node) const {
-    constexpr double kMost = 1e9;
-    const bool is_number = node.isInt() || node.isReal();
-    const double value = is_number ? static_cast<double>(node) : 0.0;
-    if (!is_number || !std::isfinite(value) || std::abs(value) > kMost) {
-      Fail(key, "has a value that is not a number of reasonable size");
-    }
-    return value;
-  }
-
-  void ExpectText(const char* key, std::string_view expected) const {
-    const cv::FileNode node = Find(key);
-    const std::string text = node.isString() ? node.string() : std::string();
-    if (text != expected) {
-      Fail(key, fmt::format("is '{}', expected '{}'; HullSLAM has no other model", ShowText(text),
-                            expected));
-    }
-  }
-
- private:
-  // FILE:LINE of a key of the top level.
-  std::string Origin(std::string_view key) const {
-    int line = 1 - added_lines();
-    for (size_t begin = 0; begin < text_.size(); ++line) {
-      const std::string_view rest = std::string_view(text_).substr(begin);
-      if (rest.starts_with(key) && rest.substr(key.size()).starts_with(':')) {
-        return fmt::format("{}:{}", file_.string(), line);
-      }
-      begin += rest.find('\n') == std::string_view::npos ? rest.size() : rest.find('\n') + 1;
-    }
-    return file_.string();
-  }
-
-  fs::path file_;
-  std::string original_;
-  std::string text_;
-  cv::FileStorage storage_;
-};
-
-int WholeNumber(const SensorFile& file, const char* key, double value) {
-  constexpr double kMost = 1e6;
-  if (value != std::floor(value) || value < 1.0 || value > kMost) {
-    file.Fail(key, fmt::format("has the value '{:g}', expected a number of pixels", value));
-  }
-  return static_cast<int>(value);
-}
-
-Rigid3 ReadPose(const SensorFile& file, const char* key) {
-  const cv::FileNode node = file.Find(key);
-  if (!node.isMap()) {
-    file.Fail(key, "is not a matrix, expected cols, rows and data");
-  }
-  const std::vector<double> data = file.Numbers(key, node["data"], 16, "a 4x4 matrix by rows");
+Rigid3 ReadPose(const YamlMap& file, const char* key) {
+  const std::vector<double> data = file.Map(key).Numbers("data", 16, "a 4x4 matrix by rows");
   const Eigen::Matrix4d matrix =
       Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(data.data());
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
@@ -137,15 +45,12 @@ Rigid3 ReadPose(const SensorFile& file, const char* key) {
   return {Eigen::Quaterniond(rotation).normalized(), matrix.topRightCorner<3, 1>()};
 }
 
-EurocCamera ParseCamera(const SensorFile& file) {
-  file.ExpectText("camera_model", "pinhole");
-  file.ExpectText("distortion_model", "radial-tangential");
-  const std::vector<double> focal =
-      file.Numbers("intrinsics", file.Find("intrinsics"), 4, "fu fv cu cv");
-  const std::vector<double> lens = file.Numbers(
-      "distortion_coefficients", file.Find("distortion_coefficients"), 4, "k1 k2 p1 p2");
-  const std::vector<double> size =
-      file.Numbers("resolution", file.Find("resolution"), 2, "width height");
+EurocCamera ParseCamera(const YamlMap& file) {
+  ExpectText(file, "camera_model", "pinhole");
+  ExpectText(file, "distortion_model", "radial-tangential");
+  const std::vector<double> focal = file.Numbers("intrinsics", 4, "fu fv cu cv");
+  const std::vector<double> lens = file.Numbers("distortion_coefficients", 4, "k1 k2 p1 p2");
+  const std::vector<double> size = file.Numbers("resolution", 2, "width height");
   EurocCamera camera;
   camera.calibration.camera = {.fx = focal[0],
                                .fy = focal[1],
@@ -155,9 +60,9 @@ EurocCamera ParseCamera(const SensorFile& file) {
                                .k2 = lens[1],
                                .p1 = lens[2],
                                .p2 = lens[3],
-                               .width = WholeNumber(file, "resolution", size[0]),
-                               .height = WholeNumber(file, "resolution", size[1])};
-  camera.calibration.frames_per_second = file.Number("rate_hz", file.Find("rate_hz"));
+                               .width = file.Pixels("resolution", size[0]),
+                               .height = file.Pixels("resolution", size[1])};
+  camera.calibration.frames_per_second = file.Number("rate_hz");
   camera.body_from_cam = ReadPose(file, "T_BS");
   return camera;
 }
@@ -196,13 +101,7 @@ fs::path FindRoot(const fs::path& folder) {
 }  // namespace
 
 EurocCamera ReadEurocCamera(const fs::path& path) {
-  const SensorFile file(path);
-  EurocCamera camera;
-  try {
-    camera = ParseCamera(file);
-  } catch (const cv::Exception& error) {
-    FailParsing(path, error, file.added_lines());
-  }
+  const EurocCamera camera = ParseCamera(YamlMap(path, "a sensor.yaml of EuRoC"));
   MakeSettings(camera.calibration, path.string());  // checks the numbers
   return camera;
 }

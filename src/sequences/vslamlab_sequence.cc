@@ -15,7 +15,7 @@
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "sequences/image_list.h"
-#include "settings/yaml_storage.h"
+#include "settings/yaml_map.h"
 #include "util/shown_text.h"
 #include "util/trim.h"
 
@@ -24,76 +24,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMostValue = 1e9;  // of a number of a calibration
-
-// The entry of a camera in a calibration.yaml.
-class CameraEntry {
- public:
-  CameraEntry(const fs::path& file, std::string name, cv::FileNode node)
-      : file_(file), name_(std::move(name)), node_(std::move(node)) {}
-
-  [[noreturn]] void Fail(const char* key, const std::string& what) const {
-    throw InputError(
-        fmt::format("{}: {} of the camera '{}' {}", file_.string(), key, ShowText(name_), what));
-  }
-
-  bool Has(const char* key) const { return !node_[key].empty(); }
-
-  std::string Text(const char* key) const {
-    const cv::FileNode node = node_[key];
-    if (!node.isString()) {
-      Fail(key, "is not given, expected a name");
-    }
-    return node.string();
-  }
-
-  double Number(const char* key) const { return Value(key, node_[key]); }
-
-  std::vector<double> Numbers(const char* key, size_t count) const {
-    const cv::FileNode node = node_[key];
-    if (!node.isSeq() || node.size() != count) {
-      Fail(key, fmt::format("has {} value(s), expected a list of {} numbers",
-                            node.isSeq()   ? node.size()
-                            : node.empty() ? 0
-                                           : 1,
-                            count));
-    }
-    std::vector<double> numbers;
-    for (const cv::FileNode& element : node) {
-      numbers.push_back(Value(key, element));
-    }
-    return numbers;
-  }
-
- private:
-  double Value(const char* key, const cv::FileNode& node) const {
-    const bool is_number = node.isInt() || node.isReal();
-    const double value = is_number ? static_cast<double>(node) : 0.0;
-    if (!is_number || !std::isfinite(value) || std::abs(value) > kMostValue) {
-      Fail(key, "is not given, or has a value that is no number of reasonable size");
-    }
-    return value;
-  }
-
-  const fs::path& file_;
-  std::string name_;
-  cv::FileNode node_;
-};
-
-CameraEntry FindCamera(const fs::path& file, const std::string& name, const cv::FileNode& cameras) {
+// The entry of a camera in the list of a calibration.yaml.
+YamlMap FindCamera(const fs::path& file, const std::string& name) {
   std::vector<std::string> names;
-  for (const cv::FileNode& node : cameras) {
-    const cv::FileNode found = node.isMap() ? node["cam_name"] : cv::FileNode();
-    if (found.isString() && found.string() == name) {
-      return {file, name, node};
+  for (const YamlMap& entry :
+       YamlMap(file, "a calibration.yaml of VSLAM-LAB with a list 'cameras'").Maps("cameras")) {
+    if (entry.Text("cam_name") == name) {
+      return entry;
     }
-    names.push_back(found.isString() ? ShowText(found.string()) : "?");
+    names.push_back(ShowText(entry.Text("cam_name")));
   }
   throw InputError(fmt::format("{}: has no camera '{}', expected one of: {}", file.string(),
                                ShowText(name), fmt::join(names, ", ")));
 }
 
-void ReadLens(const CameraEntry& entry, PinholeCamera& camera) {
+void ReadLens(const YamlMap& entry, PinholeCamera& camera) {
   const std::string model =
       entry.Has("distortion_type") ? entry.Text("distortion_type") : entry.Text("cam_model");
   const bool has_k3 = model == "radtan5";
@@ -105,7 +50,8 @@ void ReadLens(const CameraEntry& entry, PinholeCamera& camera) {
                                         "has no other model",
                                         ShowText(model)));
   }
-  const std::vector<double> lens = entry.Numbers("distortion_coefficients", has_k3 ? 5 : 4);
+  const std::vector<double> lens = entry.Numbers("distortion_coefficients", has_k3 ? 5 : 4,
+                                                 has_k3 ? "k1 k2 p1 p2 k3" : "k1 k2 p1 p2");
   camera.k1 = lens[0];
   camera.k2 = lens[1];
   camera.p1 = lens[2];
@@ -113,31 +59,10 @@ void ReadLens(const CameraEntry& entry, PinholeCamera& camera) {
   camera.k3 = has_k3 ? lens[4] : 0.0;
 }
 
-int SideOf(const CameraEntry& entry, double value) {
-  if (value != std::floor(value) || value < 1.0 || value > kMostPixels) {
-    entry.Fail("image_dimension", fmt::format("has the value '{:g}', expected pixels", value));
-  }
-  return static_cast<int>(value);
-}
-
-// OpenCV's parser wants a list to be indented, which YAML does not demand.
-std::string IndentLists(std::string_view text) {
-  std::string indented;
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
-    const std::string_view line = text.substr(begin, end - begin);
-    const bool is_below_key = line.starts_with("- ") || line.starts_with(' ');
-    indented += is_below_key ? "  " : "";
-    indented += line;
-    begin = end;
-  }
-  return indented;
-}
-
-VslamlabCamera ParseCamera(const CameraEntry& entry) {
-  const std::vector<double> focal = entry.Numbers("focal_length", 2);
-  const std::vector<double> center = entry.Numbers("principal_point", 2);
-  const std::vector<double> size = entry.Numbers("image_dimension", 2);
+VslamlabCamera ParseCamera(const YamlMap& entry) {
+  const std::vector<double> focal = entry.Numbers("focal_length", 2, "fx fy");
+  const std::vector<double> center = entry.Numbers("principal_point", 2, "cx cy");
+  const std::vector<double> size = entry.Numbers("image_dimension", 2, "width height");
   VslamlabCamera result;
   result.is_mirrored = focal[1] < 0.0;
   PinholeCamera& camera = result.calibration.camera;
@@ -145,8 +70,8 @@ VslamlabCamera ParseCamera(const CameraEntry& entry) {
   camera.fy = std::abs(focal[1]);
   camera.cx = center[0];
   camera.cy = center[1];
-  camera.width = SideOf(entry, size[0]);
-  camera.height = SideOf(entry, size[1]);
+  camera.width = entry.Pixels("image_dimension", size[0]);
+  camera.height = entry.Pixels("image_dimension", size[1]);
   ReadLens(entry, camera);
   result.calibration.frames_per_second = entry.Number("fps");
   if (entry.Has("depth_name")) {
@@ -214,22 +139,7 @@ class CsvReader {
 }  // namespace
 
 VslamlabCamera ReadVslamlabCamera(const fs::path& file, const std::string& name) {
-  const std::string text = IndentLists(ReadText(file, 1'000'000));
-  const bool has_head = text.starts_with("%YAML");
-  const int added_lines = has_head ? 0 : 1;
-  VslamlabCamera camera;
-  try {
-    const cv::FileStorage storage =
-        ParseYaml(file, has_head ? text : "%YAML:1.0\n" + text, added_lines);
-    const cv::FileNode cameras = storage.root().isMap() ? storage["cameras"] : cv::FileNode();
-    if (!cameras.isSeq()) {
-      throw InputError(file.string() +
-                       ": has no list 'cameras', expected a calibration.yaml of VSLAM-LAB");
-    }
-    camera = ParseCamera(FindCamera(file, name, cameras));
-  } catch (const cv::Exception& error) {
-    FailParsing(file, error, added_lines);
-  }
+  const VslamlabCamera camera = ParseCamera(FindCamera(file, name));
   MakeSettings(camera.calibration, file.string());  // checks the numbers
   return camera;
 }

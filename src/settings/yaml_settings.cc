@@ -2,174 +2,84 @@
 #include "settings/yaml_settings.h"
 
 #include <fmt/format.h>
+#include <yaml-cpp/node/iterator.h>
+#include <yaml-cpp/node/node.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
-#include <opencv2/core.hpp>
 #include <string_view>
 
-#include "files/read_text.h"
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
-#include "settings/yaml_storage.h"
+#include "settings/yaml_map.h"
 #include "util/shown_text.h"
-#include "util/trim.h"
 
 namespace hullslam {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A `key: value` line as it is written in the file. OpenCV's nodes have no line numbers, do not
-// notice repeated keys, and cannot represent integers above 32 bits.
-struct WrittenValue {
-  int line = 0;
-  std::string text;
-};
-using WrittenValues = std::map<std::string, WrittenValue, std::less<>>;
-
-std::string Origin(const fs::path& file, int line) {
-  return fmt::format("{}:{}", file.string(), line);
-}
-
-bool HoldsKey(std::string_view line) {
-  return !line.empty() && line[0] != ' ' && line[0] != '\t' && line[0] != '\r' && line[0] != '#' &&
-         line[0] != '%' && line.find(':') != std::string_view::npos;
-}
-
-WrittenValues ScanLines(const fs::path& file, std::string_view text) {
-  WrittenValues values;
-  int number = 0;
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
-    begin = end + 1;
-    ++number;
-    if (!HoldsKey(line)) {
-      continue;
-    }
-    const size_t colon = line.find(':');
-    const std::string key(Trim(line.substr(0, colon)));
-    const std::string_view value = line.substr(colon + 1);
-    const auto [it, is_new] = values.try_emplace(
-        key, WrittenValue{number, std::string(Trim(value.substr(0, value.find('#'))))});
-    if (!is_new) {
-      throw InputError(fmt::format("{}: key '{}' was given before, in line {}",
-                                   Origin(file, number), ShowText(key), it->second.line));
-    }
-  }
-  return values;
-}
-
-// The text without comments. OpenCV's parser takes a comment after a text for a part of it. As in
-// YAML, a comment begins after a blank or at the begin of a line. If there is a quote before it, it
-// may be part of a text, so it stays. Lines keep their numbers.
-std::string WithoutComments(std::string_view text) {
-  std::string kept;
-  kept.reserve(text.size());
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
-    size_t comment = line.find('#');
-    while (comment != std::string_view::npos && comment > 0 && line[comment - 1] != ' ' &&
-           line[comment - 1] != '\t') {
-      comment = line.find('#', comment + 1);
-    }
-    const size_t quote = line.find_first_of("\"'");
-    const std::string_view shown = comment < quote ? line.substr(0, comment) : line;
-    kept += shown.substr(0, shown.find_last_not_of(" \t") + 1);
-    kept += end < text.size() ? "\n" : "";
-    begin = end + 1;
-  }
-  return kept;
-}
-
-std::string ReadYamlText(const fs::path& file) {
-  constexpr size_t kLargest = 1'000'000;
-  const std::string text = ReadText(file, kLargest);
-  if (!text.starts_with("%YAML")) {
-    throw InputError(Origin(file, 1) + ": expected a settings file with '%YAML:1.0' as first line");
-  }
-  if (text.find('\0') != std::string::npos) {
-    throw InputError(file.string() + ": is not a text file with settings");
-  }
-  return WithoutComments(text);
-}
-
 // The text of a single value; see WrittenSetting.
-std::string SingleText(const cv::FileNode& node, const WrittenValue& written) {
-  if (node.isString()) {
-    double value = 0.0;
-    const std::string text = node.string();
-    return ParseFinite(text, value) ? '"' + text + '"' : text;
+std::string SingleText(const YAML::Node& node) {
+  const std::optional<double> number = NumberOf(node);
+  double in_quotes = 0.0;
+  if (!number) {
+    return ParseFinite(node.Scalar(), in_quotes) ? '"' + node.Scalar() + '"' : node.Scalar();
   }
-  double value = 0.0;
-  const bool is_plain = ParseFinite(written.text, value);
-  const bool is_whole = is_plain && std::abs(value) < 1e15 && value == std::trunc(value);
-  const bool has_exponent_or_point = written.text.find_first_of(".eE") != std::string::npos;
+  const bool is_whole = std::abs(*number) < 1e15 && *number == std::trunc(*number);
+  const bool has_exponent_or_point = node.Scalar().find_first_of(".eE") != std::string::npos;
   // OpenCV writes a whole number as "1000.".
-  return is_whole && has_exponent_or_point ? fmt::format("{:.0f}", value) : written.text;
+  return is_whole && has_exponent_or_point ? fmt::format("{:.0f}", *number) : node.Scalar();
 }
 
 // The pairs of a map; nothing unless all its values are single.
-std::optional<std::string> MapText(const cv::FileNode& map) {
+std::optional<std::string> MapText(const YAML::Node& map) {
   std::string text;
-  for (const cv::FileNode& node : map) {
-    if (!node.isString() && !node.isReal() && !node.isInt()) {
+  for (const auto& pair : map) {
+    if (!pair.first.IsScalar() || !pair.second.IsScalar()) {
       return std::nullopt;
     }
-    const std::string value = node.isString() ? node.string() : fmt::format("{}", node.real());
-    text += fmt::format("{}{}:{}", text.empty() ? "" : ",", node.name(), value);
+    text +=
+        fmt::format("{}{}:{}", text.empty() ? "" : ",", pair.first.Scalar(), pair.second.Scalar());
   }
   return text;
 }
 
-WrittenSetting ToSetting(const cv::FileNode& node, const WrittenValue& written,
-                         const fs::path& file) {
-  WrittenSetting setting{
-      .key = node.name(), .name = node.name(), .origin = Origin(file, written.line)};
-  // If the last key of a file has no value, OpenCV returns "...", the mark for the end of the file,
-  // as its value.
-  if (written.text.empty() && node.isString() && node.string() == "...") {
+WrittenSetting ToSetting(const YAML::Node& key, const YAML::Node& value, const fs::path& file) {
+  WrittenSetting setting{.key = key.Scalar(), .name = key.Scalar(), .origin = OriginOf(file, key)};
+  if (value.IsNull()) {
     setting.no_value = "empty";
-  } else if (node.isMap() || node.isSeq()) {
-    setting.no_value = node.isMap() ? "a map" : "a list";
-    setting.pairs = node.isMap() ? MapText(node) : std::nullopt;
+  } else if (value.IsMap() || value.IsSequence()) {
+    setting.no_value = value.IsMap() ? "a map" : "a list";
+    setting.pairs = value.IsMap() ? MapText(value) : std::nullopt;
   } else {
-    setting.text = SingleText(node, written);
+    setting.text = SingleText(value);
   }
   return setting;
-}
-
-std::vector<WrittenSetting> CollectSettings(const fs::path& file, const std::string& text,
-                                            const cv::FileNode& root) {
-  if (!root.isMap()) {
-    throw InputError(file.string() + ": has no settings, expected lines of 'key: value'");
-  }
-  const WrittenValues written = ScanLines(file, text);
-  std::vector<WrittenSetting> settings;
-  for (const cv::FileNode& node : root) {
-    const auto it = written.find(node.name());
-    if (it == written.end()) {
-      throw InputError(fmt::format("{}: '{}' is not on a line of its own, expected 'key: value'",
-                                   file.string(), ShowText(node.name())));
-    }
-    settings.push_back(ToSetting(node, it->second, file));
-  }
-  return settings;
 }
 
 }  // namespace
 
 std::vector<WrittenSetting> ReadYamlSettings(const fs::path& file) {
-  const std::string text = ReadYamlText(file);
-  const cv::FileStorage storage = ParseYaml(file, text);
-  try {
-    return CollectSettings(file, text, storage.root());
-  } catch (const cv::Exception& error) {
-    FailParsing(file, error);
+  const YAML::Node root = ReadYaml(file);
+  if (!root.IsMap()) {
+    throw InputError(file.string() + ": has no settings, expected lines of 'key: value'");
   }
+  std::vector<WrittenSetting> settings;
+  std::map<std::string, int> lines;  // of the keys, from 1
+  for (const auto& pair : root) {
+    if (!pair.first.IsScalar()) {
+      throw InputError(OriginOf(file, pair.first) + ": expected 'key: value'");
+    }
+    const std::string& key = pair.first.Scalar();
+    const auto [first, is_new] = lines.try_emplace(key, pair.first.Mark().line + 1);
+    if (!is_new) {
+      throw InputError(fmt::format("{}: key '{}' was given before, in line {}",
+                                   OriginOf(file, pair.first), ShowText(key), first->second));
+    }
+    settings.push_back(ToSetting(pair.first, pair.second, file));
+  }
+  return settings;
 }
 
 const std::string& SingleValue(const WrittenSetting& setting) {

@@ -24,9 +24,8 @@ struct WrittenSetting {
   std::optional<std::string> pairs = std::nullopt;
 };
 
-// Reads a file in OpenCV's YAML: `key: value` lines after a first line `%YAML:1.0`. The settings
-// are in the order of the file. Throws InputError with file and line if the file has another format
-// or gives a key twice.
+// Reads a file of `key: value` lines as ReadYaml() does. The settings are in the order of the file.
+// Throws InputError with file and line if the file has another format or gives a key twice.
 std::vector<WrittenSetting> ReadYamlSettings(const std::filesystem::path& file);
 
 // The text of the setting. Throws InputError if it is not a single value.

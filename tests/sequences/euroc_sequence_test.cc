@@ -186,8 +186,8 @@ TEST_F(EurocSequenceTest, BrokenSensorFilesAreReported) {
   expect("radial-tangential", "equidistant", {"sensor.yaml:18: distortion_model is 'equidistant'"});
   expect("0.0, -1.0, 0.0, 0.1", "0.0, 1.0, 0.0, 0.1", {"sensor.yaml:6: T_BS is not a rigid"});
   expect("0.0, 0.0, 0.0, 1.0]", "0.0, 0.0, 0.0, 2.0]", {"sensor.yaml:6: T_BS is not a rigid"});
-  expect("0.0, 0.0, 0.0, 1.0]", "0.0]", {"sensor.yaml:6: T_BS has 13 value(s), expected 16"});
-  expect("  data:", "  dates:", {"sensor.yaml:6: T_BS has 1 value(s), expected 16"});
+  expect("0.0, 0.0, 0.0, 1.0]", "0.0]", {"sensor.yaml:9: T_BS.data has 13 value(s), expected 16"});
+  expect("  data:", "  dates:", {"T_BS.data is not given"});
   expect("resolution: [752, 480]", "resolution: [752, 480", {"sensor.yaml:"});
   WriteSensor("");
   ExpectError({"sensor.yaml"});

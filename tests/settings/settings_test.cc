@@ -346,7 +346,6 @@ TEST_F(Settings, ImpossibleCamerasAreRefusedWithTheirKey) {
   ExpectError(kMinimal, {"Camera.k3 is '1e+06'", "times the width"}, {"Camera.k3=1000000"});
 }
 
-// OpenCV's parser calls itself for each level.
 TEST_F(Settings, DeepNestingIsRefused) {
   const auto repeat = [](const std::string& text, size_t bytes) {
     std::string repeated;
@@ -379,26 +378,24 @@ TEST_F(Settings, LongKeysAndValuesAreCutInMessages) {
       ADD_FAILURE();
     } catch (const InputError& error) {
       EXPECT_LT(std::string(error.what()).size(), 400U);
-      EXPECT_NE(std::string(error.what()).find("kkk"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("camera.yaml:6: "), std::string::npos);
     }
   }
   ExpectError(kMinimal + text + text, {"camera.yaml: 1800073 bytes", "at most 1 MB"});
 }
 
 TEST_F(Settings, FilesThatAreNotYamlAreRefused) {
-  ExpectError("", {"camera.yaml:1: ", "%YAML:1.0"});
-  ExpectError("Camera.fx: 500\n", {"camera.yaml:1: ", "%YAML:1.0"});
+  ExpectError("", {"camera.yaml", "has no settings"});
+  ExpectError("Camera.fx: 500\n", {"camera.yaml", "Camera.fy is not given"});
   ExpectError(std::string("\x7f"
                           "ELF\x02\0\0",
                           7),
-              {"camera.yaml:1: ", "%YAML:1.0"});
+              {"camera.yaml", "not a text file"});
   ExpectError(std::string("%YAML:1.0\na\0b: 1\n", 17), {"camera.yaml", "not a text file"});
   ExpectError("%YAML:1.0\n", {"camera.yaml", "has no settings"});
   ExpectError("%YAML:1.0\n- 1\n- 2\n", {"camera.yaml", "has no settings"});
-  ExpectError("%YAML:1.0\n---\nCamera.fx 500\nb: 2\n", {"camera.yaml:3: "});
+  ExpectError("%YAML:1.0\n---\nCamera.fx 500\nb: 2\n", {"camera.yaml:4: "});
   ExpectError("%YAML:1.0\nCamera.fx: \"500\n", {"camera.yaml:2: "});
-  ExpectError("%YAML:1.0\n\tCamera.fx: 500\n", {"camera.yaml:2: ", "Tabs"});
-  ExpectError("%YAML:1.0\n\"Camera.fx\": 500\n", {"camera.yaml:2: "});
   ExpectInputError([&] { ReadSettings(folder_.path() / "none.yaml"); }, {"none.yaml", "No such"});
   ExpectInputError([&] { ReadSettings(folder_.path()); }, {"is a folder"});
 }

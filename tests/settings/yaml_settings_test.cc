@@ -76,8 +76,14 @@ TEST_F(YamlSettings, BrokenFilesAreRefused) {
   ExpectInputError([&] { Read("a: 1\na: 2\n"); }, {"a.yaml:3: key 'a' was given before", "line 2"});
   ExpectInputError([&] { Read("- 1\n- 2\n"); }, {"a.yaml: has no settings"});
   ExpectInputError([&] { Read("a: \"1\n"); }, {"a.yaml:2: "});
-  ExpectInputError([&] { ReadYamlSettings(folder_.Write("b.yaml", "a: 1\n")); },
-                   {"b.yaml:1: ", "%YAML:1.0"});
+  ExpectInputError([&] { Read("[a, b]: 1\n"); }, {"a.yaml:2: expected 'key: value'"});
+}
+
+TEST_F(YamlSettings, TheFirstLineOfOpenCvIsNotNeeded) {
+  const auto settings = ReadYamlSettings(folder_.Write("b.yaml", "a: 1\nb:2\n"));
+  ASSERT_EQ(settings.size(), 2u);
+  EXPECT_EQ(settings[0].origin, (folder_.path() / "b.yaml").string() + ":1");
+  EXPECT_EQ(settings[1].text, "2");
 }
 
 }  // namespace
