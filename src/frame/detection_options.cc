@@ -30,8 +30,6 @@ void DetectionOptions::Bind(const OptionScope& scope) {
   scope.Add("duplicate_class_iou", &duplicate_class_iou, Range::Between(0.1, 1.0),
             "two outlines of one class with at least this IoU are the same object, if the depth of "
             "either is not known");
-  scope.Add("fragment_inside", &fragment_inside, Range::Share(),
-            "a mask may be a fragment of another mask if at least this share of it lies inside");
   scope.Add("max_depth_points", &max_depth_points, Range::Between(1, 10000),
             "approximate largest number of depth points per mask");
   scope.Add("max_depth_offset", &max_depth_offset, Range::Between(0.0, 1000.0),

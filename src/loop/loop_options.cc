@@ -17,17 +17,12 @@ void LoopOptions::Bind(OptionTable& options) {
   scope.Add("drift_base", &drift_base, Range::AtLeast(0.0),
             "a loop may always move the camera by this, m; without depth, the median depth of the "
             "scene counts as a metre");
-  scope.Add("drift_per_metre", &drift_per_metre, Range::AtLeast(0.0),
-            "and by this much more for each metre travelled since the candidate, m");
   scope.Add("turn_base", &turn_base, Range::AtLeast(0.0),
             "a loop may always turn the camera by this, radians");
   scope.Add("object_votes", &object_votes,
             "mapped objects at both ends speak for or against a loop");
   scope.Add("global_adjustment", &global_adjustment,
             "adjust the whole map after a loop was closed");
-  scope.AddFixed("drift_per_radian", drift_per_radian);
-  scope.AddFixed("turn_per_metre", turn_per_metre);
-  scope.AddFixed("turn_per_radian", turn_per_radian);
 }
 
 }  // namespace hullslam

@@ -88,7 +88,7 @@ void WriteDetection(const Detection& detection, ByteWriter& out) {
   }
 }
 
-Detection ReadDetection(uint32_t version, size_t keypoints, ByteReader& in) {
+Detection ReadDetection(size_t keypoints, ByteReader& in) {
   Detection detection;
   detection.label = Printable(in.GetText());
   detection.score = in.GetFinite(kMostMapNumber);
@@ -108,11 +108,9 @@ Detection ReadDetection(uint32_t version, size_t keypoints, ByteReader& in) {
     ellipse.center = in.GetMatrix<Eigen::Vector2d>(kMostMapNumber);
     ellipse.shape = in.GetMatrix<Eigen::Matrix2d>(kMostMapNumber);
   }
-  if (version >= 3) {
-    detection.embedding.resize(in.GetCount(sizeof(float)));
-    for (float& element : detection.embedding) {
-      element = in.GetFinite(1.0F);
-    }
+  detection.embedding.resize(in.GetCount(sizeof(float)));
+  for (float& element : detection.embedding) {
+    element = in.GetFinite(1.0F);
   }
   detection.is_cut = in.GetFlag();
   detection.is_box = in.GetFlag();

@@ -170,7 +170,7 @@ void ReadKeyframe(const MapHeader& header, ByteReader& in, MapTables& tables) {
     edge.shared = ReadTimes(in);
   }
   keyframe.parent = KeyframeId(in.Get<uint32_t>());
-  keyframe.island = header.version == 1 ? IslandId() : IslandId(in.Get<uint32_t>());
+  keyframe.island = IslandId(in.Get<uint32_t>());
   keyframe.loops = ReadIds<KeyframeId>(in.GetCount(sizeof(uint32_t)), in);
   tables.keyframes.Put(id, std::move(keyframe));
 }

@@ -36,16 +36,16 @@ uint32_t AddToChecksum(uint32_t checksum, std::string_view bytes) {
       ::crc32_z(checksum, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-std::string Prefix(uint32_t version) {
+std::string Prefix() {
   ByteWriter bytes;
-  bytes.Put(version);
+  bytes.Put(kMapVersion);
   return std::string(kMagic) + bytes.bytes();
 }
 
 // Writes a map file record by record, so that the file is never in memory as a whole.
 class RecordWriter {
  public:
-  explicit RecordWriter(const fs::path& path) : file_(path) { Write(Prefix(kMapVersion)); }
+  explicit RecordWriter(const fs::path& path) : file_(path) { Write(Prefix()); }
 
   ByteWriter& Record() { return record_; }
   // Ends the current record if it has at least this many bytes. Small entities share a record, and
@@ -155,27 +155,25 @@ uint64_t SizeOf(std::istream& in, const fs::path& path) {
   return static_cast<uint64_t>(size);
 }
 
-// Returns the version of the format.
-uint32_t ReadPrefix(std::istream& in, const fs::path& path) {
+void ReadPrefix(std::istream& in, const fs::path& path) {
   const std::string prefix = ReadSome(in, kPrefixBytes);
   if (prefix.size() < kPrefixBytes || !prefix.starts_with(kMagic)) {
     throw InputError(path.string() + ": is not a map of HullSLAM");
   }
   const auto version =
       ByteReader(std::string_view(prefix).substr(kMagic.size()), path.string()).Get<uint32_t>();
-  if (version < kOldestMapVersion || version > kMapVersion) {
-    throw InputError(fmt::format("{}: is a map of format version {}, expected {} to {}",
-                                 path.string(), version, kOldestMapVersion, kMapVersion));
+  if (version != kMapVersion) {
+    throw InputError(fmt::format("{}: is a map of format version {}, expected {}", path.string(),
+                                 version, kMapVersion));
   }
-  return version;
 }
 
 // Compares the checksum of the first `size` bytes with the checksum that follows them. The prefix
 // has already been read.
-void CheckChecksum(std::istream& in, uint64_t size, uint32_t version, const fs::path& path,
+void CheckChecksum(std::istream& in, uint64_t size, const fs::path& path,
                    const Cancellation* cancellation) {
   constexpr uint64_t kBlock = 1 << 20;
-  uint32_t checksum = AddToChecksum(0, Prefix(version));
+  uint32_t checksum = AddToChecksum(0, Prefix());
   for (uint64_t left = size - kPrefixBytes; left > 0;) {
     EndIfCancelled(cancellation, path.string());
     const std::string bytes = ReadSome(in, std::min(left, kBlock));
@@ -194,16 +192,16 @@ void CheckChecksum(std::istream& in, uint64_t size, uint32_t version, const fs::
 StoredMap Read(const fs::path& path, const MapSettings* expected,
                std::shared_ptr<const Vocabulary> vocabulary, const Cancellation* cancellation) {
   std::ifstream in = Open(path);
-  const uint32_t version = ReadPrefix(in, path);
+  ReadPrefix(in, path);
   const uint64_t bytes = SizeOf(in, path);
   if (bytes < kPrefixBytes + kChecksumBytes) {
     throw InputError(path.string() + ": is cut off");
   }
   const uint64_t size = bytes - kChecksumBytes;
-  CheckChecksum(in, size, version, path, cancellation);
+  CheckChecksum(in, size, path, cancellation);
   in.clear();
   in.seekg(kPrefixBytes);
-  return ParseMap(in, size - kPrefixBytes, version, path.string(), expected, std::move(vocabulary),
+  return ParseMap(in, size - kPrefixBytes, path.string(), expected, std::move(vocabulary),
                   cancellation);
 }
 

@@ -107,7 +107,7 @@ std::shared_ptr<const Frame> ReadFrame(const MapHeader& header, ByteReader& in) 
   ReadWords(*frame, in);
   const size_t detections = in.GetCount(sizeof(uint64_t));
   for (size_t i = 0; i < detections; ++i) {
-    frame->detections.push_back(ReadDetection(header.version, frame->features.size(), in));
+    frame->detections.push_back(ReadDetection(frame->features.size(), in));
   }
   frame->depth = ReadDepth(settings.camera, in);
   return frame;

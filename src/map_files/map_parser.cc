@@ -159,13 +159,12 @@ MapTables ReadTables(const MapHeader& header, RecordReader& records) {
 
 }  // namespace
 
-StoredMap ParseMap(std::istream& in, uint64_t size, uint32_t version, const std::string& name,
+StoredMap ParseMap(std::istream& in, uint64_t size, const std::string& name,
                    const MapSettings* expected, std::shared_ptr<const Vocabulary> vocabulary,
                    const Cancellation* cancellation) {
   RecordReader records(in, size, name, cancellation);
   ByteReader& first = records.Record();
   MapHeader header = ReadHeader(first);
-  header.version = version;
   first.ExpectEnd();
   if (expected != nullptr) {
     RequireSettings(header.settings, *expected, name);

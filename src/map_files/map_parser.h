@@ -13,7 +13,7 @@ namespace hullslam {
 // which name the format, and the checksum at the end. They are the next `size` bytes of the stream
 // and may have any values. `name` begins all messages. `expected` are the settings of the run; null
 // if any settings are allowed. Throws InputError and ReadingCancelled like ReadMap().
-StoredMap ParseMap(std::istream& in, uint64_t size, uint32_t version, const std::string& name,
+StoredMap ParseMap(std::istream& in, uint64_t size, const std::string& name,
                    const MapSettings* expected,
                    std::shared_ptr<const Vocabulary> vocabulary = nullptr,
                    const Cancellation* cancellation = nullptr);

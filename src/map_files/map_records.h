@@ -20,13 +20,10 @@ namespace hullslam {
 // (files/plausible.h); a landmark of a camera without depth may be almost at infinity.
 constexpr double kMostMapNumber = 1e15;
 
-// Version 1 has no islands, version 2 no vectors of masks.
-constexpr uint32_t kOldestMapVersion = 1;
 constexpr uint32_t kMapVersion = 3;
 
 // What comes first: the settings, the sessions and how many entities follow.
 struct MapHeader {
-  uint32_t version = kMapVersion;  // of the file; WriteHeader does not write it
   MapSettings settings;
   std::vector<Session> sessions;
   uint32_t correction_count = 0;
@@ -46,10 +43,9 @@ MapHeader ReadHeader(ByteReader& in);
 void WriteFrame(const Frame& frame, ByteWriter& out);
 std::shared_ptr<const Frame> ReadFrame(const MapHeader& header, ByteReader& in);
 
-// In map_detection.cc. `version` is that of the file, `keypoints` the number of keypoints of the
-// frame.
+// In map_detection.cc. `keypoints` is the number of keypoints of the frame.
 void WriteDetection(const Detection& detection, ByteWriter& out);
-Detection ReadDetection(uint32_t version, size_t keypoints, ByteReader& in);
+Detection ReadDetection(size_t keypoints, ByteReader& in);
 
 // In map_words.cc. A frame has one visual word per keypoint, or none at all. Whether they are words
 // of the vocabulary is checked in map/restored_map.h.

@@ -2,7 +2,6 @@
 #include "hullslam/objects/object_options.h"
 
 #include <string>
-#include <utility>
 
 #include "hullslam/util/error.h"
 #include "objects/association_measure.h"
@@ -10,36 +9,6 @@
 
 namespace hullslam {
 namespace {
-
-// Names of earlier versions. New code and new files use the second name.
-constexpr std::pair<const char*, const char*> kOldNames[] = {
-    {"objects.primitive", "objects.detection.primitive"},
-    {"objects.epsilon_px", "objects.detection.epsilon_px"},
-    {"objects.uniform_directions", "objects.detection.uniform_directions"},
-    {"objects.min_line_px", "objects.detection.min_line_px"},
-    {"objects.border_px", "objects.detection.border_px"},
-    {"objects.min_score", "objects.detection.min_score"},
-    {"objects.min_side_px", "objects.detection.min_side_px"},
-    {"objects.max_area_share", "objects.detection.max_area_share"},
-    {"objects.min_keypoints", "objects.detection.min_keypoints"},
-    {"objects.duplicate_iou", "objects.detection.duplicate_iou"},
-    {"objects.duplicate_class_iou", "objects.detection.duplicate_class_iou"},
-    {"objects.fragment_inside", "objects.detection.fragment_inside"},
-    {"objects.max_depth_points", "objects.detection.max_depth_points"},
-    {"objects.max_depth_offset", "objects.detection.max_depth_offset"},
-    {"objects.occlusion_step", "objects.detection.occlusion_step"},
-    {"objects.occlusion_step_share", "objects.detection.occlusion_step_share"},
-    {"objects.min_views", "objects.start.min_views"},
-    {"objects.min_parallax", "objects.start.min_parallax"},
-    {"objects.min_parallax_blind", "objects.start.min_parallax_without_depth"},
-    {"objects.initial_inflation", "objects.start.inflation"},
-    {"objects.min_overlap", "objects.validity.min_overlap"},
-    {"objects.min_points_near", "objects.validity.min_points_near"},
-    {"objects.refinement_sigma", "objects.refinement.max_misfit_px"},
-    {"objects.refinement_huber", "objects.refinement.loss_px"},
-    {"objects.refinement_lines", "objects.refinement.max_effective_lines"},
-    {"objects.prior_sigma_blind", "objects.prior_sigma_without_depth"},
-};
 
 // The keys that refinement, joint pose estimation and bundle adjustment have.
 void BindOutline(const OptionScope& use, Range lines, ObjectConstraintOptions& constraint) {
@@ -80,40 +49,8 @@ void CheckResidual(const std::string& use, ObjectResidual residual, ObjectPrimit
 }  // namespace
 
 void AssociationOptions::Bind(const OptionScope& scope) {
-  const Range share = Range::Share();
   scope.AddEnum("measure", &measure, AssociationMeasureNames(),
-                "how detections and objects are compared (docs/objects.md); the other keys of "
-                "objects.association are those of the measure combined");
-  scope.Add("min_projection_iou", &min_projection_iou, share,
-            "a detection matches an object if the IoU of its hull and the projected ellipse is at "
-            "least this");
-  scope.Add("min_carried_iou", &min_carried_iou, share,
-            "a detection matches an object if the IoU of its hull and the object's last hull, "
-            "moved to the new pose, is at least this");
-  scope.Add("min_depth_iou", &min_depth_iou, share,
-            "if the depth points agree, a detection matches an object if the larger of the two "
-            "IoUs is above this");
-  scope.Add("min_shared_ratio", &min_shared_ratio, share,
-            "a detection matches an object if their share of common landmarks is at least this");
-  scope.Add("iou_weight", &iou_weight, share, "weight of the larger IoU in the similarity");
-  scope.Add("landmark_weight", &landmark_weight, share,
-            "weight of the share of common landmarks in the similarity");
-  scope.Add("cloud_weight", &cloud_weight, share,
-            "weight of agreeing clouds of depth points (rank-sum test) in the similarity");
-  scope.Add("centroid_weight", &centroid_weight, share,
-            "weight of agreeing centroids of depth points (t-test) in the similarity");
-  scope.Add("class_weight", &class_weight, share,
-            "weight of the share of votes for the detection's class in the similarity");
-  scope.Add("min_similarity", &min_similarity, share,
-            "least similarity of a detection and an object that are matched");
-  scope.AddFixed("min_shared_landmarks", min_shared_landmarks);
-  scope.AddFixed("recent_views", recent_views);
-  scope.AddFixed("cloud_points", cloud_points);
-  scope.AddFixed("min_cloud", min_cloud);
-  scope.AddFixed("max_rank_sum", max_rank_sum);
-  scope.AddFixed("alpha", alpha);
-  scope.AddFixed("centroid_noise", centroid_noise);
-  scope.AddFixed("max_offset", max_offset);
+                "how detections and objects are compared (docs/objects.md)");
 }
 
 void StartOptions::Bind(const OptionScope& scope) {
@@ -125,18 +62,11 @@ void StartOptions::Bind(const OptionScope& scope) {
             "least angle between views that an object with depth needs to be mapped, degrees");
   scope.Add("min_parallax_without_depth", &min_parallax_without_depth, Range::Between(0.0, 180.0),
             "least angle between views that an object without depth needs to be mapped, degrees");
-  scope.Add("trimmed", &trimmed, Range::Between(0.0, 0.4),
-            "share of the depth points that is left out at each end of each axis of the start of a "
-            "quadric");
   scope.Add("inflation", &inflation, Range::Between(0.5, 3.0),
             "half axes of the start of a quadric in relation to those of the box of its points");
-  scope.AddFixed("max_points", max_points);
-  scope.AddFixed("min_half_axis", min_half_axis);
 }
 
 void ValidityOptions::Bind(const OptionScope& scope) {
-  scope.Add("max_half_axis", &max_half_axis, Range::Between(0.0, 1000.0),
-            "largest half axis of a mapped object as a share of its distance");
   scope.Add("min_overlap", &min_overlap, Range::Share(),
             "least mean IoU of projected ellipse and hull for a mapped object");
   scope.Add("min_points_near", &min_points_near, Range::Share(),
@@ -150,27 +80,15 @@ void ValidityOptions::Bind(const OptionScope& scope) {
   scope.Add("max_elongation", &max_elongation, Range::Between(1.0, 1000.0),
             "a mapped object that is longer along the view than across it by a larger factor needs "
             "more parallax");
-  scope.AddFixed("min_half_axis", min_half_axis);
-  scope.AddFixed("near_surface", near_surface);
-  scope.AddFixed("near_surface_share", near_surface_share);
-  scope.AddFixed("elongation_parallax", elongation_parallax);
 }
 
 void FusionOptions::Bind(const OptionScope& scope) {
   scope.Add("min_overlap", &min_overlap, Range::Share(),
             "two objects that were never seen together are fused if the IoU of their volumes is at "
             "least this");
-  scope.Add("min_overlap_together", &min_overlap_together, Range::Share(),
-            "two objects that few keyframes see together are fused if the IoU of their volumes is "
-            "at least this");
-  scope.AddFixed("max_shared_keyframes", max_shared_keyframes);
-  scope.AddFixed("alpha", alpha);
-  scope.AddFixed("centroid_noise", centroid_noise);
 }
 
 void CullingOptions::Bind(const OptionScope& scope) {
-  scope.Add("min_visible", &min_visible, Range::Between(1, 1000000),
-            "keyframes that should show a mapped object before it can be removed");
   scope.Add("min_found_ratio", &min_found_ratio, Range::Share(),
             "a mapped object is removed if it is found in a smaller share of the keyframes that "
             "should show it");
@@ -179,7 +97,6 @@ void CullingOptions::Bind(const OptionScope& scope) {
             "which the object was observed");
   scope.Add("max_hidden", &max_hidden, Range::Share(),
             "a keyframe should show an object only if at most this share of it is hidden");
-  scope.AddFixed("candidate_keyframes", candidate_keyframes);
 }
 
 void ChangeOptions::Bind(const OptionScope& scope) {
@@ -190,10 +107,6 @@ void ChangeOptions::Bind(const OptionScope& scope) {
             "should show it");
   scope.Add("max_move", &max_move, Range::Between(0.0, 1e6),
             "an object is taken for one that was moved only up to this distance, m");
-  scope.AddFixed("min_overlap", min_overlap);
-  scope.AddFixed("min_inside", min_inside);
-  scope.AddFixed("min_seen_through", min_seen_through);
-  scope.AddFixed("max_size_ratio", max_size_ratio);
 }
 
 void ObjectRefinementOptions::Bind(const OptionScope& scope) {
@@ -211,15 +124,11 @@ void ObjectRefinementOptions::Bind(const OptionScope& scope) {
   scope.Add("loss_px", &loss_px, Range::Between(0.1, 1000.0),
             "scale of the robust loss, px, for a line with the standard deviation "
             "objects.refinement.max_misfit_px");
-  scope.AddFixed("iterations", iterations);
 }
 
 void ObjectPoseOptions::Bind(const OptionScope& scope) {
   BindOutline(scope, Range::Between(0.0, 1000.0), constraint);
   BindSigma(scope, constraint);
-  scope.AddFixed("prior_rotation", prior_rotation);
-  scope.AddFixed("prior_translation", prior_translation);
-  scope.AddFixed("min_objects", min_objects);
 }
 
 void ObjectBundleOptions::Bind(const OptionScope& scope) {
@@ -230,7 +139,6 @@ void ObjectBundleOptions::Bind(const OptionScope& scope) {
             "least scale of the robust loss, px");
   scope.Add("max_outer_views", &max_outer_views, Range::Between(0, 10000),
             "largest number of keyframes outside the window that constrain an object");
-  scope.AddFixed("max_axis_change", max_axis_change);
 }
 
 // The keys of several uses.
@@ -256,27 +164,6 @@ void ObjectOptions::BindShared(const OptionScope& scope) {
             Range::Between(0.01, 100.0),
             "standard deviation of the log half axes in the prior about a quadric, for an object "
             "without depth");
-}
-
-// What earlier versions had.
-void ObjectOptions::BindOldNames(OptionTable& options) const {
-  for (const auto& [name, key] : kOldNames) {
-    options.AddOldName(name, key);
-  }
-  const OptionScope scope(options, "objects");
-  scope.AddFixed("min_line_angle", detection.min_line_angle);
-  scope.AddFixed("conic_lines", detection.conic_lines);
-  scope.AddFixed("min_part_share", detection.min_part_share);
-  scope.AddFixed("fragment_area", detection.fragment_area);
-  scope.AddFixed("fragment_depth", detection.fragment_depth);
-  scope.AddFixed("misfit.views", misfit.views);
-  scope.AddFixed("misfit.width", misfit.width);
-  scope.AddFixed("guide.views", guide.views);
-  for (const std::string name : {"depth_sigma", "prior_sigma", "prior_sigma_without_depth"}) {
-    const std::string reason = "objects." + name + " sets it";
-    options.AddRetired("objects.refinement." + name, reason);
-    options.AddRetired("objects.bundle." + name, reason);
-  }
 }
 
 void ObjectOptions::Bind(OptionTable& options) {
@@ -305,7 +192,6 @@ void ObjectOptions::Bind(OptionTable& options) {
   pose.Bind(scope.Inner("pose"));
   bundle.Bind(scope.Inner("bundle"));
   BindShared(scope);
-  BindOldNames(options);
 }
 
 void ObjectOptions::Validate() const {

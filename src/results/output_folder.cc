@@ -31,9 +31,6 @@ constexpr const char* kPrefix = ".hullslam-";  // prefix of the names of staging
 constexpr const char* kReady =
     "ready";  // name of the folder with the files of a complete run, inside a staging folder
 constexpr std::array<const char*, 2> kIndexes = {"summary.json", "pictures.json"};
-// The files that earlier versions wrote, whose summary.json had no list of files.
-constexpr std::array<const char*, 6> kNamesWithoutList = {
-    "trajectory.txt", "keyframes.txt", "map.ply", "objects.json", "objects.ply", "summary.json"};
 // The pictures that scripts/plot_run.py draws of a run. They are removed together with the files of
 // the run.
 constexpr std::array<const char*, 3> kDrawnNames = {"run.png", "overlays.png", "report.html"};
@@ -69,16 +66,13 @@ Names NamesOfRun(const fs::path& index) {
   }
   Names names(kDrawnNames.begin(), kDrawnNames.end());
   names.insert(index.filename().string());
-  if (json.contains("files") && json["files"].is_array()) {
-    for (const nlohmann::json& name : json["files"]) {
-      if (name.is_string() && IsPlainName(name.get<std::string>())) {
-        names.insert(name.get<std::string>());
-      }
-    }
-  } else if (json.contains("trajectory") && json.contains("provenance")) {
-    names.insert(kNamesWithoutList.begin(), kNamesWithoutList.end());
-  } else {
+  if (!json.contains("files") || !json["files"].is_array()) {
     return {};
+  }
+  for (const nlohmann::json& name : json["files"]) {
+    if (name.is_string() && IsPlainName(name.get<std::string>())) {
+      names.insert(name.get<std::string>());
+    }
   }
   return names;
 }

@@ -71,8 +71,7 @@ void WarnOfImplausibleDepth(const std::filesystem::path& file, const cv::Mat& de
                                  : std::string("in the units of the file");
   PrintError("warning: {}: the median depth is {:.3g} m {}, expected {} to {} m; is {} right?\n",
              file.string(), metres, reason, kNearest, kFarthest,
-             is_in_units ? "DepthMapFactor"
-                         : "its unit (--float-units of rgbd_bag, --povray-units of rgbd_icl)");
+             is_in_units ? "DepthMapFactor" : "its unit (--float-units of rgbd_bag)");
 }
 
 void WarnOfUnregisteredDepth(const ImageSequence& sequence, const PinholeCamera& camera) {

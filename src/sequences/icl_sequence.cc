@@ -13,7 +13,6 @@
 #include "files/text_rows.h"
 #include "hullslam/util/error.h"
 #include "sequences/icl_groundtruth.h"
-#include "sequences/icl_povray.h"
 #include "sequences/image_list.h"
 
 namespace hullslam {
@@ -21,21 +20,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-IclPackage DetectPackage(const fs::path& folder, const IclSequenceOptions& options) {
-  std::error_code error;
-  const bool is_tum =
-      !options.associations.empty() || fs::exists(folder / "associations.txt", error);
-  const bool is_povray = HasPovrayFrames(folder);
-  if (is_tum != is_povray) {
-    return is_tum ? IclPackage::kTum : IclPackage::kPovray;
-  }
-  throw InputError(fmt::format(
-      "{}: has {} associations.txt {} images scene_NN_NNNN.png, so it is unclear which package of "
-      "ICL-NUIM it is; expected --package tum or --package povray",
-      folder.string(), is_tum ? "both" : "neither", is_tum ? "and" : "nor"));
+// Whether the folder has the package of ICL-NUIM for POV-Ray, whose images are scene_NN_NNNN.png.
+bool HasPovrayImages(const fs::path& folder) {
+  const std::vector<fs::path> files = ListFolder(folder);
+  return std::any_of(files.begin(), files.end(), [](const fs::path& file) {
+    return file.extension() == ".png" && file.filename().string().starts_with("scene_");
+  });
 }
 
-// ---- the package with PNG images
+fs::path FindAssociations(const fs::path& folder) {
+  fs::path path = folder / "associations.txt";
+  std::error_code error;
+  if (!fs::exists(path, error) && HasPovrayImages(folder)) {
+    throw InputError(folder.string() +
+                     ": is ICL-NUIM's package for POV-Ray, expected \"TUM RGB-D compatible PNGs\" "
+                     "of the same sequence: rgb/N.png, depth/N.png and associations.txt");
+  }
+  return path;
+}
 
 double Index(const TextRow& row, size_t column, std::string_view name) {
   const double index = row.Number(column, name);
@@ -72,7 +74,7 @@ FramePaths ParsePair(const TextRow& row, const fs::path& folder) {
 
 std::vector<FramePaths> ReadPairs(const fs::path& folder, const fs::path& associations,
                                   std::vector<std::string>& warnings) {
-  const fs::path path = associations.empty() ? folder / "associations.txt" : associations;
+  const fs::path path = associations.empty() ? FindAssociations(folder) : associations;
   ListedFrames list;
   ForEachRow(path, [&](const TextRow& row) { AddFrame(row, ParsePair(row, folder), list); });
   return TakeFrames(path, std::move(list), warnings);
@@ -153,27 +155,9 @@ IclSequence OpenIclSequence(const fs::path& folder, const PinholeCamera& camera,
     throw InputError(folder.string() + ": no such folder, expected a sequence of ICL-NUIM");
   }
   IclSequence sequence;
-  sequence.package =
-      options.package == IclPackage::kDetect ? DetectPackage(folder, options) : options.package;
-  const bool is_povray = sequence.package == IclPackage::kPovray;
-  sequence.images.frames = is_povray
-                               ? ListPovrayFrames(folder)
-                               : ReadPairs(folder, options.associations, sequence.images.warnings);
-  std::optional<Trajectory> cameras;
-  if (is_povray) {
-    const double units = options.povray_units;
-    sequence.images.load = [units](const FramePaths& frame, const PinholeCamera& of_images) {
-      return LoadPovrayFrame(frame, of_images, units);
-    };
-    if (options.groundtruth.empty()) {
-      cameras = ReadPovrayTrajectory(sequence.images.frames, units);
-    }
-  }
+  sequence.images.frames = ReadPairs(folder, options.associations, sequence.images.warnings);
   SelectFrames(folder, options.selection, sequence.images);
-  if (cameras) {
-    sequence.images.converted_groundtruth = std::move(cameras);
-    sequence.groundtruth_note = "cameras of the .txt files, whose y points up, mirrored";
-  } else if (!options.groundtruth.empty()) {
+  if (!options.groundtruth.empty()) {
     AddGroundtruth(options.groundtruth, camera, depth, options.groundtruth_y, sequence);
   } else {
     try {

@@ -98,9 +98,6 @@ void SettingsInProgress::ApplyFile(const fs::path& file) {
       throw InputError(
           fmt::format("{}: {} was given before under another name", setting.origin, setting.name));
     }
-    if (table_.SkipRetired(setting.key, setting.origin)) {
-      continue;
-    }
     std::string text = TextOf(setting, table_);
     if (setting.key == "Camera.fy") {
       text = FocalLengthInY(setting, std::move(text), sources_.negative_fy);
@@ -192,7 +189,7 @@ SystemOptions SettingsInProgress::Finish(SettingsReport& report) {
   const std::string of_image = FollowImage();
   const std::string of_shutter = FollowShutter();
   options_.Validate();
-  report.warnings = table_.warnings();
+  report.warnings.clear();
   ReportOverrides(report);
   for (const std::string& warning : {of_image, of_shutter}) {
     if (!warning.empty()) {

@@ -13,10 +13,6 @@ void TrackingOptions::Bind(OptionTable& options) {
             "largest number of keyframes whose landmarks form the local map");
   scope.AddEnum("keyframe_rule", &keyframe_rule, {"hullslam", "orb_slam2"},
                 "when a frame becomes a keyframe: evenly in time, or by the rule of ORB-SLAM2");
-  scope.Add(
-      "keyframe_ratio", &keyframe_ratio, Range::Between(0.1, 1.0),
-      "a keyframe is due if a frame finds a smaller share of the reference keyframe's landmarks "
-      "(rule hullslam only)");
   scope.Add("keyframes_for_objects", &keyframes_for_objects,
             "objects that are not mapped yet are a reason for a keyframe (rule hullslam only)");
   scope.AddText(

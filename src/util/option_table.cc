@@ -248,82 +248,38 @@ void OptionTable::AddIgnored(std::string key) {
   AddOption(std::move(key), std::move(option));
 }
 
-void OptionTable::AddOldName(std::string name, std::string key) {
-  Check(options_.contains(key), "an old name refers to a key that is not bound");
-  Check(!options_.contains(name), "an old name is also the key of an option");
-  old_names_.emplace(std::move(name), std::move(key));
-}
-
-void OptionTable::AddRetired(std::string key, std::string reason) {
-  Check(!options_.contains(key), "a retired key is also the key of an option");
-  retired_.emplace(std::move(key), std::move(reason));
-}
-
-std::string_view OptionTable::CurrentName(std::string_view key) const {
-  const auto it = old_names_.find(key);
-  return it != old_names_.end() ? std::string_view(it->second) : key;
-}
-
-bool OptionTable::Contains(std::string_view key) const {
-  return options_.contains(CurrentName(key));
-}
+bool OptionTable::Contains(std::string_view key) const { return options_.contains(key); }
 
 std::vector<std::string> OptionTable::KeysSetBy(std::string_view key) const {
-  const std::string current(CurrentName(key));
-  const auto it = options_.find(current);
-  return it == options_.end() || it->second.members.empty() ? std::vector<std::string>{current}
-                                                            : it->second.members;
+  const auto it = options_.find(key);
+  return it == options_.end() || it->second.members.empty()
+             ? std::vector<std::string>{std::string(key)}
+             : it->second.members;
 }
 
 bool OptionTable::IsMap(std::string_view key) const {
-  const auto it = options_.find(CurrentName(key));
+  const auto it = options_.find(key);
   return it != options_.end() && it->second.is_map;
 }
 
-// The key that is most similar to a misspelt one. If an old name is most similar, this is its
-// current key. Empty if no key is similar enough.
+// The key that is most similar to a misspelt one. Empty if no key is similar enough.
 std::string OptionTable::MostSimilarKey(const std::string& key) const {
   constexpr size_t kLongestKey = 100;
   const std::string compared = key.substr(0, kLongestKey);
   std::string most_similar;
   size_t least_distance = std::numeric_limits<size_t>::max();
-  const auto compare = [&](const std::string& name, const std::string& current) {
+  for (const auto& [name, option] : options_) {
     const size_t distance = EditDistance(compared, name);
     if (distance < least_distance && IsMisspelt(compared, name)) {
       least_distance = distance;
-      most_similar = current;
+      most_similar = name;
     }
-  };
-  for (const auto& [name, option] : options_) {
-    compare(name, name);
-  }
-  for (const auto& [name, current] : old_names_) {
-    compare(name, current);
   }
   return most_similar;
 }
 
-void OptionTable::WarnOnce(const std::string& key, const std::string& warning) {
-  if (warned_keys_.insert(key).second) {
-    warnings_.push_back(warning);
-  }
-}
-
-bool OptionTable::SkipRetired(const std::string& key, const std::string& origin) {
-  const auto it = retired_.find(key);
-  if (it == retired_.end()) {
-    return false;
-  }
-  WarnOnce(key, origin + ": " + key + " is no setting any more and is ignored; " + it->second);
-  return true;
-}
-
 void OptionTable::Set(const std::string& key, const std::string& value, const std::string& origin) {
-  if (const auto retired = retired_.find(key); retired != retired_.end()) {
-    throw InputError(origin + ": " + key + " is no setting any more; " + retired->second);
-  }
-  const std::string current(CurrentName(key));
-  const auto it = options_.find(current);
+  const auto it = options_.find(key);
   if (it == options_.end()) {
     const std::string similar = MostSimilarKey(key);
     throw InputError(origin + ": unknown key '" + ShowText(key) + "'" +
@@ -332,9 +288,6 @@ void OptionTable::Set(const std::string& key, const std::string& value, const st
   if (!it->second.parse(value)) {
     throw InputError(origin + ": " + key + " is '" + ShowText(value) + "', expected " +
                      it->second.expected);
-  }
-  if (current != key) {
-    WarnOnce(key, origin + ": " + key + " is now called " + current);
   }
 }
 
@@ -355,10 +308,6 @@ void OptionScope::AddShared(const std::string& name, std::vector<std::string> me
     member = Key(member);
   }
   table_.AddShared(Key(name), members, std::move(help));
-}
-
-void OptionScope::AddFixed(const std::string& name, double value) const {
-  table_.AddRetired(Key(name), "its value is fixed at " + PrintNumber(value));
 }
 
 }  // namespace hullslam

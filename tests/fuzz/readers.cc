@@ -265,8 +265,8 @@ void UseMap(Map& map) {
   Expect(FindViolations(map).empty(), "an inconsistent map after edits");
 }
 
-// Map files below the checksum: the bytes are those of a map file. Of its first bytes only the
-// version is looked at, and its checksum is not. A map that is accepted must be usable, and give
+// Map files below the checksum: the bytes are those of a map file, whose first bytes and checksum
+// are not looked at. A map that is accepted must be usable, and give
 // the same bytes again.
 void FuzzMap(std::string_view bytes) {
   constexpr size_t kPrefix = 14;
@@ -275,10 +275,9 @@ void FuzzMap(std::string_view bytes) {
     return;
   }
   Try([&] {
-    const uint32_t version = bytes[kPrefix - 4] == 1 ? kOldestMapVersion : kMapVersion;
     const std::string content(bytes.substr(kPrefix, bytes.size() - kPrefix - kChecksum));
     std::istringstream in(content);
-    StoredMap stored = ParseMap(in, content.size(), version, "map", nullptr);
+    StoredMap stored = ParseMap(in, content.size(), "map", nullptr);
     Expect(FindViolations(stored.map).empty(), "an inconsistent map");
     static const InputFolder folder("unused");
     WriteMap(folder.path() / "first", stored.map, stored.settings);

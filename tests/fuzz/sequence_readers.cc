@@ -11,7 +11,6 @@
 #include "hullslam/sequences/icl_sequence.h"
 #include "hullslam/sequences/tum_sequence.h"
 #include "sequences/euroc_states.h"
-#include "sequences/icl_povray.h"
 #include "sequences/rvl_depth.h"
 
 namespace hullslam {
@@ -37,21 +36,6 @@ void FuzzIclAssociations(std::string_view bytes) {
   static const InputFolder folder("associations.txt");
   folder.Write(bytes);
   Try([] { OpenIclSequence(folder.path(), PinholeCamera(), DepthOptions()); });
-}
-
-void FuzzPovrayCamera(std::string_view bytes) {
-  TryFile(bytes, [](const fs::path& path) {
-    const Rigid3 pose = ReadPovrayCamera(path, 1.0);
-    Expect(std::abs(pose.rotation.norm() - 1.0) < 1e-6 && pose.translation.allFinite(), "the pose");
-  });
-}
-
-void FuzzRayDepth(std::string_view bytes) {
-  TryFile(bytes, [](const fs::path& path) {
-    const PinholeCamera camera{.fx = 4.0, .fy = 4.0, .cx = 1.0, .cy = 0.5, .width = 3, .height = 2};
-    const cv::Mat depth = ReadRayDepth(path, camera, 1.0);
-    Expect(cv::countNonZero((depth >= 0.0) & (depth < 2e8)) == 6, "the depth");
-  });
 }
 
 void FuzzEurocSensor(std::string_view bytes) {
@@ -108,8 +92,6 @@ constexpr auto kSequenceReaders =
     std::to_array<FuzzedReader>({{"sequence", FuzzSequence},
                                  {"associations", FuzzAssociations},
                                  {"icl_associations", FuzzIclAssociations},
-                                 {"povray_camera", FuzzPovrayCamera},
-                                 {"ray_depth", FuzzRayDepth},
                                  {"euroc_sensor", FuzzEurocSensor},
                                  {"euroc_images", FuzzEurocImages},
                                  {"euroc_states", FuzzEurocStates},

@@ -26,7 +26,7 @@ class MonoIcl : public MonoProgram {
 TEST_F(MonoIcl, ThePackageWithPngImagesIsTracked) {
   MadeRoom().WriteIclTum(path_, kFrames, true);
   const ProgramResult result = ExpectMap({path_}, kFrames);
-  ExpectParts(result.output, {"package tum", "y up, mirrored"});
+  ExpectParts(result.output, {"y up, mirrored"});
   EXPECT_LE(Ate(), kSmall);
   EXPECT_EQ(Summary()["trajectory"]["pairs"], kFrames - 1) << "the first frame has no true pose";
   EXPECT_EQ(ReadTrajectory(output_ / "groundtruth.txt").size(), kFrames - 1U);
@@ -35,30 +35,9 @@ TEST_F(MonoIcl, ThePackageWithPngImagesIsTracked) {
   EXPECT_GT(Ate(), 2.0 * right);
 }
 
-// The depth files are not read: here they are empty.
-TEST_F(MonoIcl, ThePovrayPackageIsTrackedWithoutDepth) {
+TEST_F(MonoIcl, WrongArgumentsAreRefused) {
   fs::create_directory(path_);
-  const MadeRoom room(2);
-  room.WriteIclPovray(path_, kFrames);
-  for (const fs::directory_entry& entry : fs::directory_iterator(path_)) {
-    if (entry.path().extension() == ".depth") {
-      fs::resize_file(entry.path(), 0);
-    }
-  }
-  const std::string settings =
-      folder_.Write("half.yaml",
-                    "%YAML:1.0\nCamera.fx: 240.6\nCamera.fy: -240.0\nCamera.cx: 159.75\n"
-                    "Camera.cy: 119.75\nCamera.width: 320\nCamera.height: 240\n");
-  const ProgramResult result =
-      ExpectMap({"none", settings, path_, "--povray-units", "100"}, kFrames);
-  ExpectParts(result.output, {"package povray"});
-  EXPECT_LE(Ate(), 1.5 * kSmall) << "the images are half as large";
-  ExpectRefusal({path_}, {"scene_00_0000.png", "320x240", "640x480"});
-}
-
-TEST_F(MonoIcl, AsksForThePackageIfTheFolderDoesNotTell) {
-  fs::create_directory(path_);
-  ExpectRefusal({path_}, {path_, "--package tum or --package povray"});
+  ExpectRefusal({path_}, {path_, "associations.txt", "No such file"});
   ExpectRefusal({path_ + "/none"}, {path_ + "/none: no such folder"});
   ExpectRefusal({path_, "--associations", "pairs.txt"}, {"--associations"});
   ExpectRefusal({"none", "ICL.yaml", path_, "pairs.txt"}, {"4 positional arguments"});

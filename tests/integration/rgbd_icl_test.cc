@@ -59,7 +59,6 @@ TEST_F(RgbdIcl, AGroundTruthWithEitherAxisFitsTheTrajectory) {
   for (const bool is_up : {true, false}) {
     room_.WriteIclTum(path_, kFrames, is_up);
     const ProgramResult result = RunWell({path_});
-    EXPECT_NE(result.output.find("package tum"), std::string::npos) << result.output;
     EXPECT_NE(result.output.find(is_up ? "y up, mirrored" : "y down"), std::string::npos);
     ExpectSmallError(kFrames - 1);  // the first frame has no true pose
   }
@@ -91,23 +90,6 @@ TEST_F(RgbdIcl, TheConvertedGroundTruthIsWrittenForOtherPrograms) {
   EXPECT_FALSE(fs::exists(output_ / "groundtruth.txt"));
 }
 
-TEST_F(RgbdIcl, ThePovrayPackageIsTracked) {
-  fs::create_directory(path_);
-  room_.WriteIclPovray(path_, kFrames);
-  const ProgramResult result = RunWell({path_, "--povray-units", "100"});
-  EXPECT_EQ(result.errors.find("warning"), std::string::npos) << result.errors;
-  EXPECT_NE(result.output.find("package povray"), std::string::npos) << result.output;
-  ExpectSmallError(kFrames);
-}
-
-TEST_F(RgbdIcl, AWrongUnitOfLengthIsNoticed) {
-  fs::create_directory(path_);
-  room_.WriteIclPovray(path_, 2);
-  const ProgramResult result = Run({path_, "--povray-units", "1", "--last", "0"});
-  EXPECT_NE(result.errors.find("--povray-units of rgbd_icl) right?"), std::string::npos)
-      << result.errors;
-}
-
 // The fourth argument is the association file. The settings have fy = -480, as in other programs.
 TEST_F(RgbdIcl, TakesTheFourArgumentsOfOrbSlam2) {
   room_.WriteIclTum(path_, kFrames, true);
@@ -121,16 +103,11 @@ TEST_F(RgbdIcl, TakesTheFourArgumentsOfOrbSlam2) {
   EXPECT_EQ(tum.exit_code, 2);
 }
 
-TEST_F(RgbdIcl, AsksForThePackageIfTheFolderDoesNotTell) {
+TEST_F(RgbdIcl, WrongArgumentsAreRefused) {
   fs::create_directory(path_);
-  ExpectRefusal({path_}, {path_, "--package tum or --package povray"});
+  ExpectRefusal({path_}, {path_, "associations.txt", "No such file"});
   ExpectRefusal({path_ + "/none"}, {path_ + "/none: no such folder"});
-  ExpectRefusal({path_, "--package", "png"}, {"--package", "png"});
-  ExpectRefusal({path_, "--package", "0"}, {"--package", "0"});
   ExpectRefusal({path_, "--groundtruth-y", "left"}, {"--groundtruth-y", "left"});
-  ExpectRefusal({path_, "--povray-units", "0"}, {"--povray-units"});
-  ExpectRefusal({path_, "--povray-units", "nan"}, {"--povray-units", "'nan'"});
-  ExpectRefusal({path_, "--package", "tum"}, {"associations.txt", "No such file"});
 }
 
 }  // namespace

@@ -28,8 +28,6 @@ TEST(LoopOptions, AreSetByName) {
   EXPECT_FALSE(options.enabled);
   table.Set("loop.min_supporters", "0", "test");
   EXPECT_EQ(options.min_supporters, 0);
-  table.Set("loop.drift_per_metre", "0.25", "test");
-  EXPECT_EQ(options.drift_per_metre, 0.25);
   ExpectInputError([&] { table.Set("loop.min_matches", "3", "test"); },
                    {"loop.min_matches", "'3'", "expected"});
   ExpectInputError([&] { table.Set("loop.turn_base", "-0.1", "test"); },

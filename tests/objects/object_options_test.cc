@@ -77,43 +77,6 @@ TEST(ObjectOptions, KeysFollowTheStructs) {
   EXPECT_EQ(options.bundle.constraint.prior_without_depth.log_axes, 0.3);
 }
 
-// Only the last words of most old names are the field; these differ in more than that.
-TEST(ObjectOptions, OldNamesSetTheirFields) {
-  ObjectOptions options;
-  OptionTable table;
-  options.Bind(table);
-  table.Set("objects.initial_inflation", "1.5", "test");
-  table.Set("objects.min_parallax_blind", "20", "test");
-  table.Set("objects.min_overlap", "0.4", "test");
-  table.Set("objects.refinement_sigma", "6", "test");
-  table.Set("objects.refinement_huber", "9", "test");
-  table.Set("objects.refinement_lines", "7", "test");
-  table.Set("objects.prior_sigma_blind", "0.3", "test");
-  EXPECT_EQ(options.start.inflation, 1.5);
-  EXPECT_EQ(options.start.min_parallax_without_depth, 20.0);
-  EXPECT_EQ(options.validity.min_overlap, 0.4);
-  EXPECT_EQ(options.refinement.max_misfit_px, 6.0);
-  EXPECT_EQ(options.refinement.loss_px, 9.0);
-  EXPECT_EQ(options.refinement.constraint.max_effective_lines, 7.0);
-  EXPECT_EQ(options.refinement.constraint.prior_without_depth.log_axes, 0.3);
-  EXPECT_EQ(options.bundle.constraint.prior_without_depth.log_axes, 0.3);
-  EXPECT_EQ(table.warnings().size(), 7u);
-}
-
-TEST(ObjectOptions, RetiredKeysSayWhatHoldsInstead) {
-  ObjectOptions options;
-  OptionTable table;
-  options.Bind(table);
-  const auto expect = [&](const char* key, const char* reason) {
-    ExpectInputError([&] { table.Set(key, "1", "--set"); },
-                     {key, "is no setting any more", reason});
-  };
-  expect("objects.conic_lines", "its value is fixed at 16");
-  expect("objects.misfit.views", "its value is fixed at 40");
-  expect("objects.association.alpha", "its value is fixed at 0.001");
-  expect("objects.bundle.depth_sigma", "objects.depth_sigma sets it");
-}
-
 TEST(ObjectOptions, RefuseWhatIsOutOfRange) {
   ObjectOptions options;
   OptionTable table;
@@ -121,7 +84,6 @@ TEST(ObjectOptions, RefuseWhatIsOutOfRange) {
   EXPECT_THROW(table.Set("objects.residual", "tangents", "test"), InputError);
   EXPECT_THROW(table.Set("objects.sigma", "0", "test"), InputError);
   EXPECT_THROW(table.Set("objects.start.min_views", "0", "test"), InputError);
-  EXPECT_THROW(table.Set("objects.association.iou_weight", "2", "test"), InputError);
   EXPECT_THROW(table.Set("objects.culling.min_found_ratio", "1.5", "test"), InputError);
   EXPECT_THROW(table.Set("objects.fusion.min_overlap", "-1", "test"), InputError);
   EXPECT_THROW(table.Set("objects.validity.max_stretch", "0.5", "test"), InputError);

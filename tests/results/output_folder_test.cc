@@ -91,14 +91,6 @@ TEST_F(OutputFolderTest, AFolderNeverMixesTwoRuns) {
             (Files{{"a.txt", "2"}, {"b.txt", "2"}, {"summary.json", Index({"a.txt", "b.txt"})}}));
 }
 
-TEST_F(OutputFolderTest, FoldersOfVersionsWithoutAListOfFilesAreKnown) {
-  fs::create_directories(out_);
-  folder_.Write("a/out/summary.json", R"({"trajectory": {}, "provenance": {}})");
-  folder_.Write("a/out/objects.ply", "old");
-  Run({{"a.txt", "1"}});
-  EXPECT_FALSE(fs::exists(out_ / "objects.ply"));
-}
-
 TEST_F(OutputFolderTest, FilesOfTheUserAreNeverTouched) {
   folder_.Write("a/out/trajectory.txt", "my ground truth");
   Refuse({out_.string(), "'trajectory.txt'", "not from a former run"});

@@ -51,7 +51,6 @@ TEST_F(IclSequenceTest, BothAxesGiveTheTruePoses) {
   for (const bool is_up : {true, false}) {
     room_.WriteIclTum(folder_.path(), kFrames, is_up);
     const IclSequence sequence = Open();
-    EXPECT_EQ(sequence.package, IclPackage::kTum);
     ASSERT_EQ(sequence.images.frames.size(), 16U);
     EXPECT_EQ(sequence.images.frames[2].timestamp, 2.0 / 30.0);
     EXPECT_EQ(sequence.images.frames[2].image, folder_.path() / "rgb/2.png");
@@ -112,34 +111,12 @@ TEST_F(IclSequenceTest, AMotionThatTheMirrorDoesNotChangeNeedsNoAnswer) {
   EXPECT_EQ(Open().images.converted_groundtruth->front().world_from_cam.translation.y(), -1.0);
 }
 
-TEST_F(IclSequenceTest, PovrayCamerasAreTheGroundTruth) {
-  room_.WriteIclPovray(folder_.path(), kFrames);
-  const IclSequence sequence = Open({.povray_units = 100.0});
-  EXPECT_EQ(sequence.package, IclPackage::kPovray);
-  ExpectTruePoses(sequence, 0);
-  const ImageInput image = sequence.images.load(sequence.images.frames[3], room_.camera());
-  EXPECT_NEAR(image.depth.at<float>(10, 20), room_.Render(3).depth.at<uint16_t>(10, 20) / 5000.0,
-              2e-4);
-}
-
-TEST_F(IclSequenceTest, PovrayImagesMayHaveAFileWithPoses) {
-  room_.WriteIclTum(folder_.path(), kFrames, true);
-  const TemporaryFolder povray;
-  room_.WriteIclPovray(povray.path(), kFrames);
-  const IclSequence sequence =
-      OpenIclSequence(povray.path(), room_.camera(), DepthOptions(),
-                      {.groundtruth = folder_.path() / "made.gt.freiburg", .povray_units = 100.0});
-  ExpectTruePoses(sequence, 1);
-}
-
-TEST_F(IclSequenceTest, ThePackageOfAFolderWithBothOrNoneIsAskedFor) {
-  ExpectError({"neither associations.txt nor", "--package tum or --package povray"});
-  folder_.Write("associations.txt", "0 depth/0.png 0 rgb/0.png\n");
+TEST_F(IclSequenceTest, FoldersOfAnotherKindAreRefused) {
+  ExpectError({"associations.txt", "No such file"});
   folder_.Write("scene_00_0000.png", "");
-  ExpectError({"both associations.txt and", "--package tum or --package povray"});
-  ExpectError({"rgb/0.png: the image is missing"}, {.package = IclPackage::kTum});
-  ExpectError({"scene_00_0000.depth: the image is missing"}, {.package = IclPackage::kPovray});
-  EXPECT_EQ(Open({.package = IclPackage::kPovray, .use_depth = false}).images.frames.size(), 1U);
+  ExpectError({"package for POV-Ray", "TUM RGB-D compatible PNGs"});
+  folder_.Write("associations.txt", "0 depth/0.png 0 rgb/0.png\n");
+  ExpectError({"rgb/0.png: the image is missing"});
   ExpectInputError([&] { OpenIclSequence("/no/such", room_.camera(), DepthOptions()); },
                    {"/no/such", "no such folder"});
 }

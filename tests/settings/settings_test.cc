@@ -467,42 +467,6 @@ TEST_F(Settings, TheSettingsOfKnownCamerasAreFoundAndRead) {
   EXPECT_TRUE(std::filesystem::exists(FindConfigFolder() / "TUM1.yaml"));
 }
 
-TEST_F(Settings, OldNamesWorkInFilesAndOverridesWithWarnings) {
-  const std::vector<std::string> overrides = {"objects.min_views=6", "objects.min_score=0.5"};
-  std::vector<std::string> warnings;
-  const auto file = folder_.Write("camera.yaml", std::string(kMinimal) +
-                                                     "objects.min_views: 4\n"
-                                                     "objects.start.min_parallax: 5\n"
-                                                     "objects.min_parallax: 6\n");
-  const SystemOptions options = ReadSettings(file, overrides, NegativeFy::kError, &warnings);
-  EXPECT_EQ(options.objects.start.min_views, 6);
-  EXPECT_EQ(options.objects.start.min_parallax, 6.0);
-  EXPECT_EQ(options.objects.detection.min_score, 0.5);
-  const std::string path = file.string();
-  EXPECT_EQ(warnings,
-            (std::vector<std::string>{
-                path + ":6: objects.min_views is now called objects.start.min_views",
-                path + ":8: objects.min_parallax is now called objects.start.min_parallax",
-                "--set: objects.min_score is now called objects.detection.min_score"}));
-  const CameraCalibration calibration = {.camera = options.camera};
-  MakeSettings(calibration, "sensor.yaml", overrides, &warnings);
-  EXPECT_EQ(warnings.size(), 2u);
-}
-
-TEST_F(Settings, RetiredKeysOfAFileAreIgnoredWithAWarning) {
-  std::vector<std::string> warnings;
-  const auto file = folder_.Write(
-      "camera.yaml", std::string(kMinimal) + "objects.misfit.views: 10\nloop.turn_per_metre: []\n");
-  const SystemOptions options = ReadSettings(file, {}, NegativeFy::kError, &warnings);
-  EXPECT_EQ(options.objects.misfit.views, 40);
-  ASSERT_EQ(warnings.size(), 2u);
-  EXPECT_EQ(warnings[0], file.string() +
-                             ":6: objects.misfit.views is no setting any more and is ignored; its "
-                             "value is fixed at 40");
-  ExpectError(kMinimal, {"--set: objects.misfit.views is no setting any more", "fixed at 40"},
-              {"objects.misfit.views=10"});
-}
-
 // The rows that the table of docs/settings.md must have.
 std::string SettingsTable() {
   std::string table = "| key | default | allowed | meaning |\n|---|---|---|---|\n";

@@ -91,35 +91,12 @@ class MadeRoom {
     }
   }
 
-  // Writes ICL-NUIM's original package, with lengths in centimetres.
-  void WriteIclPovray(const std::filesystem::path& folder, int frames) const {
-    for (int i = 0; i < frames; ++i) {
-      const Images images = Render(i);
-      const std::filesystem::path stem = folder / fmt::format("scene_00_{:04}", i);
-      cv::imwrite(stem.string() + ".png", images.grey);
-      std::ofstream depth(stem.string() + ".depth");
-      for (const double distance : cv::Mat_<double>(images.distance)) {
-        depth << fmt::format("{:.4f} ", 100.0 * distance);
-      }
-      const Rigid3 pose = PoseWithYUp(i);
-      std::ofstream(stem.string() + ".txt")
-          << FormatVector("cam_pos", 100.0 * pose.translation)
-          << FormatVector("cam_dir", pose.rotation * Eigen::Vector3d::UnitZ())
-          << FormatVector("cam_up", pose.rotation * Eigen::Vector3d::UnitY())
-          << "cam_sky = [0, 1, 0]';\ncam_angle = 90;\n";
-    }
-  }
-
  private:
   static std::string FormatPose(int stamp, const Rigid3& pose) {
     const Eigen::Vector3d& t = pose.translation;
     const Eigen::Quaterniond& q = pose.rotation;
     return fmt::format("{} {:.8f} {:.8f} {:.8f} {:.8f} {:.8f} {:.8f} {:.8f}\n", stamp, t.x(), t.y(),
                        t.z(), q.x(), q.y(), q.z(), q.w());
-  }
-
-  static std::string FormatVector(const char* key, const Eigen::Vector3d& v) {
-    return fmt::format("{:<12} = [{:.8f}, {:.8f}, {:.8f}]';\n", key, v.x(), v.y(), v.z());
   }
 
   // The number d for which `origin` + d * `direction` is on a wall. `origin` is inside the room.

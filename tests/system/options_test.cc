@@ -43,63 +43,6 @@ TEST(SystemOptions, TheShutterMayReadInEachDirection) {
   EXPECT_THROW(table.Set("Camera.readout_direction", "diagonal", "test"), InputError);
 }
 
-std::string ValueOf(SystemOptions& options, const std::string& key) {
-  for (const OptionTable::Entry& entry : options.Bind().Entries()) {
-    if (entry.key == key) {
-      return entry.value;
-    }
-  }
-  return "";
-}
-
-// Sets the key to a value that is not its default. Returns the value.
-std::string Change(const std::string& key) {
-  SystemOptions options;
-  OptionTable table = options.Bind();
-  const std::string before = ValueOf(options, key);
-  for (const char* const value : {"0.3", "0.7", "7", "9", "true", "false", "hull", "columns"}) {
-    try {
-      table.Set(key, value, "test");
-    } catch (const InputError&) {
-      continue;
-    }
-    if (ValueOf(options, key) != before) {
-      return value;
-    }
-  }
-  ADD_FAILURE() << key << ": no value fits";
-  return before;
-}
-
-TEST(SystemOptions, OldNamesSetTheSameAsTheNewOnesAndWarn) {
-  SystemOptions named;
-  const auto old_names = named.Bind().old_names();
-  EXPECT_GE(old_names.size(), 26u);
-  for (const auto& [old_name, key] : old_names) {
-    const std::string value = Change(key);
-    SystemOptions by_old;
-    SystemOptions by_new;
-    OptionTable old_table = by_old.Bind();
-    OptionTable new_table = by_new.Bind();
-    const std::string default_value = ValueOf(by_new, key);
-    old_table.Set(old_name, value, "--set");
-    new_table.Set(key, value, "--set");
-    const auto old_entries = old_table.Entries();
-    const auto new_entries = new_table.Entries();
-    ASSERT_EQ(old_entries.size(), new_entries.size());
-    for (size_t i = 0; i < old_entries.size(); ++i) {
-      EXPECT_EQ(old_entries[i].value, new_entries[i].value) << old_name;
-    }
-    EXPECT_EQ(old_table.warnings(),
-              std::vector<std::string>{"--set: " + old_name + " is now called " + key});
-    EXPECT_TRUE(new_table.warnings().empty()) << key;
-    old_table.Set(key, default_value, "--set");
-    EXPECT_EQ(ValueOf(by_old, key), default_value) << "the later one wins: " << key;
-    old_table.Set(old_name, value, "--set");
-    EXPECT_EQ(ValueOf(by_old, key), value) << "the later one wins: " << old_name;
-  }
-}
-
 TEST(SystemOptions, TheKeysOfOrbSlam2AreKnown) {
   SystemOptions options;
   const OptionTable table = options.Bind();

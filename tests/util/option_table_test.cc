@@ -215,61 +215,6 @@ TEST(OptionTable, OneKeyMaySetSeveralFieldsWithEqualDefaults) {
                CheckError);
 }
 
-class RenamedOption : public ::testing::Test {
- protected:
-  RenamedOption() {
-    table_.Add("start.length", &length_, Range::Positive(), "length, m");
-    table_.AddOldName("length", "start.length");
-    table_.AddRetired("width", "its value is fixed at 2");
-  }
-  double length_ = 1.0;
-  OptionTable table_;
-};
-
-TEST_F(RenamedOption, IsSetByBothNamesAndTheLaterWins) {
-  table_.Set("length", "2", "x.yaml:3");
-  EXPECT_EQ(length_, 2.0);
-  table_.Set("start.length", "3", "test");
-  EXPECT_EQ(length_, 3.0);
-  table_.Set("length", "4", "--set");
-  EXPECT_EQ(length_, 4.0);
-  EXPECT_TRUE(table_.Contains("length"));
-  ASSERT_EQ(table_.Entries().size(), 1u);
-  EXPECT_EQ(table_.Entries().front().key, "start.length");
-}
-
-TEST_F(RenamedOption, WarnsOnceOfItsOldName) {
-  table_.Set("start.length", "2", "test");
-  EXPECT_TRUE(table_.warnings().empty());
-  table_.Set("length", "2", "x.yaml:3");
-  table_.Set("length", "3", "--set");
-  EXPECT_EQ(table_.warnings(),
-            std::vector<std::string>{"x.yaml:3: length is now called start.length"});
-}
-
-TEST_F(RenamedOption, ErrorsUseTheNameThatWasGiven) {
-  ExpectInputError([&] { table_.Set("length", "0", "--set"); }, {"--set: length is '0'", "> 0"});
-  EXPECT_TRUE(table_.warnings().empty());
-  ExpectInputError([&] { table_.Set("lenght", "1", "--set"); }, {"did you mean 'start.length'?"});
-}
-
-TEST_F(RenamedOption, OldNamesReferToBoundKeysAndAreNoKeys) {
-  EXPECT_THROW(table_.AddOldName("breadth", "start.breadth"), CheckError);
-  EXPECT_THROW(table_.AddOldName("start.length", "start.length"), CheckError);
-  EXPECT_THROW(table_.AddRetired("start.length", "it is gone"), CheckError);
-}
-
-TEST_F(RenamedOption, ARetiredKeyIsSkippedWithAWarningOrRefused) {
-  EXPECT_FALSE(table_.SkipRetired("length", "x.yaml:3"));
-  EXPECT_TRUE(table_.SkipRetired("width", "x.yaml:4"));
-  EXPECT_EQ(table_.warnings(),
-            std::vector<std::string>{
-                "x.yaml:4: width is no setting any more and is ignored; its value is fixed at 2"});
-  ExpectInputError([&] { table_.Set("width", "2", "--set"); },
-                   {"--set: width is no setting any more; its value is fixed at 2"});
-  EXPECT_FALSE(table_.Contains("width"));
-}
-
 TEST(OptionScope, NamesItsOptionsByTheirPath) {
   double length = 1.0;
   double width = 1.0;
@@ -288,7 +233,6 @@ TEST(OptionScope, NamesItsOptionsByTheirPath) {
   outer.Add("flag", &flag, "whether");
   outer.AddText("text", &text, "any");
   outer.AddEnum("colour", &colour, {"red", "green"}, "of the wall");
-  outer.AddFixed("height", 2.5);
   std::vector<std::string> keys;
   for (const OptionTable::Entry& entry : table.Entries()) {
     keys.push_back(entry.key);
@@ -298,7 +242,6 @@ TEST(OptionScope, NamesItsOptionsByTheirPath) {
                                             "outer.inner.width", "outer.text"}));
   table.Set("outer.inner.size", "3", "test");
   EXPECT_EQ(width, 3.0);
-  ExpectInputError([&] { table.Set("outer.height", "1", "test"); }, {"fixed at 2.5"});
 }
 
 TEST(OptionTable, TextIsStoredUnchanged) {

@@ -226,7 +226,6 @@ struct ObjectOptions {
 
  private:
   void BindShared(const OptionScope& scope);
-  void BindOldNames(OptionTable& options) const;
 };
 
 }  // namespace hullslam

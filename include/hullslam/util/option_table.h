@@ -6,7 +6,6 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -59,28 +58,17 @@ class OptionTable {
   void AddText(std::string key, std::string* field, std::string help);
   // A key of other programs' settings files that has no meaning here: it is accepted and ignored.
   void AddIgnored(std::string key);
-  // An earlier name of a key that is bound. It sets the same field, and the first use of each such
-  // name adds a warning.
-  void AddOldName(std::string name, std::string key);
-  // A key that earlier versions had. `reason` says what holds instead: "its value is fixed at 4".
-  void AddRetired(std::string key, std::string reason);
 
   // Whether Set() accepts the key.
   bool Contains(std::string_view key) const;
-  // The keys whose values Set() changes: the current name of the key or, if it is a shared key, its
-  // members.
+  // The keys whose values Set() changes: the key or, if it is a shared key, its members.
   std::vector<std::string> KeysSetBy(std::string_view key) const;
   // Whether the option is one of numbers by name.
   bool IsMap(std::string_view key) const;
   // Sets an option from text. Throws InputError that starts with `origin` (a file name or "--set")
   // and names the key, the value and what was expected. For an unknown key the message suggests the
-  // most similar known key; for a retired one it says what holds instead.
+  // most similar known key.
   void Set(const std::string& key, const std::string& value, const std::string& origin);
-  // For files that were written for an earlier version: if the key is retired, adds a warning that
-  // starts with `origin` and returns true.
-  bool SkipRetired(const std::string& key, const std::string& origin);
-  // What the user should be told about the keys that were set, in the order of their first use.
-  const std::vector<std::string>& warnings() const { return warnings_; }
 
   struct Entry {
     std::string key;
@@ -92,8 +80,6 @@ class OptionTable {
   // All options except the ignored ones, sorted by key. The value of a shared key is that of its
   // first member.
   std::vector<Entry> Entries() const;
-  // Earlier names and the keys that they stand for.
-  const std::map<std::string, std::string, std::less<>>& old_names() const { return old_names_; }
 
  private:
   struct Option {
@@ -110,15 +96,9 @@ class OptionTable {
                  std::function<size_t()> get, std::string help);
   template <typename Number>
   void AddNumber(std::string key, std::vector<Number*> fields, Range range, std::string help);
-  std::string_view CurrentName(std::string_view key) const;
   std::string MostSimilarKey(const std::string& key) const;
-  void WarnOnce(const std::string& key, const std::string& warning);
 
   std::map<std::string, Option, std::less<>> options_;
-  std::map<std::string, std::string, std::less<>> old_names_;  // to keys of options_
-  std::map<std::string, std::string, std::less<>> retired_;    // to reasons
-  std::set<std::string> warned_keys_;
-  std::vector<std::string> warnings_;
 };
 
 // Binds the options of one struct. Their keys begin with the path of the struct: in the scope
@@ -151,8 +131,6 @@ class OptionScope {
   }
   // The members are names in this scope too.
   void AddShared(const std::string& name, std::vector<std::string> members, std::string help) const;
-  // Retires the key of a field whose value is now fixed at `value`.
-  void AddFixed(const std::string& name, double value) const;
 
  private:
   std::string Key(const std::string& name) const { return path_ + "." + name; }

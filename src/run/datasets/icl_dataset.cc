@@ -28,33 +28,22 @@ void AddNamed(CLI::App& app, const std::string& option, const std::map<std::stri
 class IclDataset final : public Dataset {
  public:
   DatasetHelp Help(SensorKind /*sensor*/) const override {
-    return {.sequence = "folder of ICL-NUIM, of either package (--package)",
+    return {.sequence = "folder of ICL-NUIM with rgb/N.png, depth/N.png and associations.txt",
             .settings = "default: camera.yaml in SEQUENCE; without it, config/ICL.yaml",
-            .associations =
-                "index depth index rgb (default: associations.txt in SEQUENCE; package tum only)",
+            .associations = "index depth index rgb (default: associations.txt in SEQUENCE)",
             .groundtruth =
-                "TUM's format with indices of frames as time stamps; default: the .txt "
-                "files of package povray, else *.gt.freiburg or groundtruth.txt in "
-                "SEQUENCE"};
+                "TUM's format with indices of frames as time stamps; default: *.gt.freiburg or "
+                "groundtruth.txt in SEQUENCE"};
   }
 
   bool ReadsGroundtruth() const override { return true; }
 
   void AddOptions(CLI::App& app) override {
-    AddNamed<IclPackage>(
-        app, "--package", {{"tum", IclPackage::kTum}, {"povray", IclPackage::kPovray}},
-        icl_.package,
-        "tum: rgb/N.png, depth/N.png and associations.txt; povray: scene_00_NNNN.png, .depth and "
-        ".txt (default: by the files in SEQUENCE)");
     AddNamed<CameraYAxis>(
         app, "--groundtruth-y", {{"up", CameraYAxis::kUp}, {"down", CameraYAxis::kDown}},
         icl_.groundtruth_y,
         "direction of the y axis of the ground truth's cameras; with up (fy < 0) the ground truth "
         "is mirrored (default: the direction that agrees with the depth images)");
-    auto* const units =
-        app.add_option("--povray-units", icl_.povray_units,
-                       "lengths in the .depth and .txt files per metre (100: centimetres)");
-    ExpectNumber(*units->capture_default_str(), 1e-6, 1e6);
   }
 
   // A negative Camera.fy in the settings is replaced by its positive value.
@@ -69,7 +58,6 @@ class IclDataset final : public Dataset {
     IclSequence sequence =
         OpenIclSequence(arguments.sequence, loaded.options.camera, loaded.options.depth, icl_);
     if (!arguments.quiet) {
-      Print("ICL-NUIM, package {}\n", sequence.package == IclPackage::kTum ? "tum" : "povray");
       Print("ground truth: {}\n",
             sequence.groundtruth_note.empty() || arguments.groundtruth == "none"
                 ? "none"

@@ -104,7 +104,6 @@ TEST_F(SuiteWriter, IclNuimComesBackAsItWasPlanned) {
   EXPECT_EQ(ReadFile(folder / "associations.txt").substr(0, 50),
             "0 depth/0.png 0 rgb/0.png\n1 depth/1.png 1 rgb/1.pn");
   const IclSequence sequence = OpenIclSequence(folder, plan.camera, {});
-  EXPECT_EQ(sequence.package, IclPackage::kTum);
   EXPECT_NE(sequence.groundtruth_note.find("y up, mirrored"), std::string::npos)
       << sequence.groundtruth_note;
   ASSERT_EQ(sequence.images.frames.size(), static_cast<size_t>(frames));
