@@ -10,6 +10,7 @@
 #include "bow/vocabulary_builder.h"
 #include "hullslam/util/check.h"
 #include "util/random_seed.h"
+#include "util/sort_unique.h"
 
 namespace hullslam {
 namespace {
@@ -90,8 +91,7 @@ std::vector<float> InverseDocumentFrequencies(const Vocabulary& vocabulary,
   std::vector<std::vector<WordId>> words(images.size());
   runner.Run(images.size(), [&](size_t i) {
     words[i] = vocabulary.WordsOf(images[i]);
-    std::sort(words[i].begin(), words[i].end());
-    words[i].erase(std::unique(words[i].begin(), words[i].end()), words[i].end());
+    SortUnique(words[i]);
   });
   std::vector<uint32_t> counts(vocabulary.word_count(), 0);
   for (const std::vector<WordId>& of_image : words) {

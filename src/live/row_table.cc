@@ -5,6 +5,8 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "util/sort_unique.h"
+
 namespace hullslam {
 
 // Removing goes from the last row to the first, so the row that fills a gap is always wanted.
@@ -67,8 +69,7 @@ RowChange RowTable::Update(const std::vector<uint32_t>& wanted,
     ++taken;
   }
   next_ = wanted.empty() ? 0 : (next_ + visited) % wanted.size();
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  SortUnique(changed);
   RowChange change{.count = ids_.size(),
                    .were_removed = were_removed,
                    .at = std::move(changed),

@@ -9,6 +9,7 @@
 #include "map/islands.h"
 #include "objects/fusion.h"
 #include "optim/pose_graph.h"
+#include "util/sort_unique.h"
 
 namespace hullslam {
 namespace {
@@ -196,8 +197,7 @@ void AddObjectMerges(const Map& map, const std::vector<KeyframeId>& observers,
       }
     }
   }
-  std::sort(objects.begin(), objects.end());
-  objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
+  SortUnique(objects);
   for (const auto& [kept, duplicate] : FindDuplicates(map, objects, fusion)) {
     correction.objects.push_back({.duplicate = duplicate, .kept = kept});
   }

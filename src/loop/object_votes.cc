@@ -7,6 +7,7 @@
 #include "geometry/polygon_overlap.h"
 #include "loop/loop_correction.h"
 #include "objects/visibility.h"
+#include "util/sort_unique.h"
 
 namespace hullslam {
 namespace {
@@ -21,8 +22,7 @@ std::vector<ObjectId> MappedAround(const Map& map, KeyframeId keyframe) {
       }
     }
   }
-  std::sort(objects.begin(), objects.end());
-  objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
+  SortUnique(objects);
   return objects;
 }
 

@@ -13,6 +13,7 @@
 #include "map/islands.h"
 #include "map/landmark_edits.h"
 #include "util/id_set.h"
+#include "util/sort_unique.h"
 
 namespace hullslam {
 namespace {
@@ -190,12 +191,6 @@ void MoveObjects(Map& map, const WorldChanges& changes) {
       sample.excess *= static_cast<float>(change->scale);
     }
   }
-}
-
-template <typename Type>
-void SortUnique(std::vector<Type>& values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
 // The ids that have replaced `ids`, each once.

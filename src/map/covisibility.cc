@@ -5,6 +5,7 @@
 #include <map>
 
 #include "map/spanning_tree.h"
+#include "util/sort_unique.h"
 
 namespace hullslam {
 namespace {
@@ -109,8 +110,7 @@ std::vector<LandmarkId> ObservedLandmarks(const Map& map, std::span<const Keyfra
       }
     }
   }
-  std::sort(landmarks.begin(), landmarks.end());
-  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  SortUnique(landmarks);
   return landmarks;
 }
 

@@ -11,6 +11,7 @@
 #include "map/landmark_edits.h"
 #include "map/landmark_projection.h"
 #include "matching/by_projection.h"
+#include "util/sort_unique.h"
 
 namespace hullslam {
 namespace {
@@ -27,8 +28,7 @@ std::vector<KeyframeId> Neighbourhood(const Map& map, KeyframeId id) {
     const auto second = BestCovisible(map.keyframes().At(neighbour), kSecondNeighbours);
     targets.insert(targets.end(), second.begin(), second.end());
   }
-  std::sort(targets.begin(), targets.end());
-  targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
+  SortUnique(targets);
   std::erase(targets, id);
   return targets;
 }

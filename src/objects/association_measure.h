@@ -27,7 +27,7 @@ struct MatchEvidence {
 // The similarity of a detection and an object; 0 if they do not match.
 using SimilarityFunction = double(const MatchEvidence& evidence);
 
-// The function of a measure; null for kCombined, which is explained in association.h.
+// The function of a measure; null for kCombined: CombinedSimilarity().
 SimilarityFunction* FunctionOf(AssociationMeasure measure);
 
 // The names in settings files, in the order of the enumerators: combined, class_overlap,

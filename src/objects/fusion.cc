@@ -8,6 +8,7 @@
 #include "objects/object_view.h"
 #include "objects/point_statistics.h"
 #include "util/id_set.h"
+#include "util/sort_unique.h"
 
 namespace hullslam {
 namespace {
@@ -144,8 +145,7 @@ std::vector<std::pair<ObjectId, ObjectId>> FindNearPairs(const Map& map,
       }
     }
   }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  SortUnique(pairs);
   return pairs;
 }
 

@@ -21,6 +21,7 @@
 #include "objects/refinement.h"
 #include "objects/start_method.h"
 #include "objects/visibility.h"
+#include "util/sort_unique.h"
 
 namespace hullslam {
 namespace {
@@ -93,9 +94,14 @@ void ObjectMapper::Process(Map& map, KeyframeId keyframe) {
 // new object.
 void ObjectMapper::Observe(Map& map, const ObjectIndex& index, KeyframeId keyframe) {
   const Keyframe& observer = map.keyframes().At(keyframe);
-  std::vector<ObjectId> objects = AssociateDetections(
-      map, index, sensor_, *observer.frame, observer.cam_from_world, observer.island,
-      observer.landmarks, AssociationScope::kAll, options_.association);
+  std::vector<ObjectId> objects = AssociateDetections({.map = map,
+                                                       .index = index,
+                                                       .sensor = sensor_,
+                                                       .frame = *observer.frame,
+                                                       .cam_from_world = observer.cam_from_world,
+                                                       .island = observer.island,
+                                                       .landmarks = observer.landmarks},
+                                                      options_.association);
   for (uint32_t i = 0; i < objects.size(); ++i) {
     if (!objects[i].IsValid()) {
       objects[i] = map.AddObject();
@@ -111,8 +117,7 @@ void ObjectMapper::CountVisible(Map& map, const ObjectIndex& index, KeyframeId k
   std::vector<ObjectId> candidates =
       index.FindVisible(sensor_, observer.cam_from_world, observer.island);
   candidates.insert(candidates.end(), observed.begin(), observed.end());
-  std::sort(candidates.begin(), candidates.end());
-  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+  SortUnique(candidates);
   std::vector<std::pair<ObjectId, bool>> visible;  // and whether it is found
   for (const ObjectId id : candidates) {
     const ObjectLandmark* object = map.objects().Find(id);
@@ -321,8 +326,7 @@ std::vector<ObjectId> ObjectMapper::TakeChanged(const Map& map, KeyframeId keyfr
   for (const Covisible& neighbour : map.keyframes().At(keyframe).covisible) {
     add_objects_of(map.keyframes().At(neighbour.keyframe));
   }
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  SortUnique(changed);
   return changed;
 }
 

@@ -8,6 +8,7 @@
 #include "hullslam/frame/instance_mask.h"
 #include "objects/object_view.h"
 #include "objects/validity.h"
+#include "util/sort_unique.h"
 
 namespace hullslam {
 namespace {
@@ -44,8 +45,7 @@ std::vector<LandmarkId> LandmarksOn(const Map& map, const ObjectLandmark& object
       }
     }
   }
-  std::sort(landmarks.begin(), landmarks.end());
-  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  SortUnique(landmarks);
   const Ellipsoid& ellipsoid = object.ellipsoid;
   const double margin = NearSurface(
       ellipsoid, MeanDistance(views, ellipsoid.world_from_object.translation), options.validity);

@@ -41,9 +41,15 @@ std::vector<ObjectId> FindMappedObjects(const Frame& frame, const Map& map,
   if (!is_wanted || frame.detections.empty() || map.objects().empty()) {
     return std::vector<ObjectId>(frame.detections.size());
   }
-  return AssociateDetections(map, context.object_index, context.sensor, frame,
-                             estimate.cam_from_world, island, estimate.landmarks,
-                             AssociationScope::kMapped, objects.association);
+  return AssociateDetections({.map = map,
+                              .index = context.object_index,
+                              .sensor = context.sensor,
+                              .frame = frame,
+                              .cam_from_world = estimate.cam_from_world,
+                              .island = island,
+                              .landmarks = estimate.landmarks,
+                              .scope = AssociationScope::kMapped},
+                             objects.association);
 }
 
 PoseObjects MakePoseObjects(const Map& map, const Sensor& sensor, const Frame& frame,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 
 #include "geometry/polygon_overlap.h"
 #include "objects/made_objects.h"
@@ -37,8 +38,21 @@ class Association : public ::testing::Test {
     for (const MadeObject& object : seen) {
       frame.detections.push_back(Detect(object, sensor_, cam_from_world));
     }
-    return AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, frame,
-                               cam_from_world, IslandId(0), {}, scope, options);
+    return Associate(frame, cam_from_world, options, {}, scope);
+  }
+  std::vector<ObjectId> Associate(const Frame& frame, const Rigid3& cam_from_world,
+                                  const AssociationOptions& options = {},
+                                  std::span<const LandmarkId> landmarks = {},
+                                  AssociationScope scope = AssociationScope::kAll) {
+    return AssociateDetections({.map = map_,
+                                .index = ObjectIndex(map_, sensor_.camera),
+                                .sensor = sensor_,
+                                .frame = frame,
+                                .cam_from_world = cam_from_world,
+                                .island = IslandId(0),
+                                .landmarks = landmarks,
+                                .scope = scope},
+                               options);
   }
   Sensor sensor_ = MakeObjectSensor();
   Map map_;
@@ -125,8 +139,7 @@ TEST_F(Association, WithoutDepthTheOutlineDecides) {
     frame.detections.push_back(Detect(object, sensor_, cam_from_world));
     frame.detections.back().points.clear();
   }
-  EXPECT_EQ(AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, frame,
-                                cam_from_world, IslandId(0), {}, AssociationScope::kAll, {}),
+  EXPECT_EQ(Associate(frame, cam_from_world),
             (std::vector<ObjectId>{ObjectId(0), ObjectId(1), ObjectId(2)}));
 }
 
@@ -145,9 +158,7 @@ class Beside : public Association {
     Frame frame;
     frame.detections.push_back(Detect(beside_, sensor_, CameraOnCircle(0.0, 1.5, 0.6)));
     frame.detections.back().points.clear();
-    return AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, frame,
-                               CameraOnCircle(0.0, 1.5, 0.6), IslandId(0), {},
-                               AssociationScope::kAll, options);
+    return Associate(frame, CameraOnCircle(0.0, 1.5, 0.6), options);
   }
   double Overlap() const {
     const Rigid3 pose = CameraOnCircle(0.0, 1.5, 0.6);
@@ -210,9 +221,7 @@ TEST_F(Association, AFewCommonLandmarksAreNotEnough) {
   next.detections.back().keypoints = {0, 1, 2};
   next.detections.back().points.clear();
   const auto associate = [&] {
-    return AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, next, pose,
-                               IslandId(0), landmarks, AssociationScope::kAll,
-                               {.min_similarity = 0.01})[0];
+    return Associate(next, pose, {.min_similarity = 0.01}, landmarks)[0];
   };
   EXPECT_EQ(associate(), ObjectId(0));
   landmarks[2] = LandmarkId();
@@ -231,8 +240,7 @@ class UnknownDepth : public Association {
     return frame;
   }
   ObjectId Associate(const MadeObject& object, double x) {
-    return AssociateDetections(map_, ObjectIndex(map_, sensor_.camera), sensor_, See(object, x),
-                               Sideways(x), IslandId(0), {}, AssociationScope::kAll, {})[0];
+    return Association::Associate(See(object, x), Sideways(x))[0];
   }
   void Add(double x) {
     const KeyframeId keyframe =
