@@ -59,7 +59,7 @@ void ReadLens(const YamlMap& entry, PinholeCamera& camera) {
   camera.k3 = has_k3 ? lens[4] : 0.0;
 }
 
-VslamlabCamera ParseCamera(const YamlMap& entry) {
+VslamlabCamera ReadEntry(const YamlMap& entry) {
   const std::vector<double> focal = entry.Numbers("focal_length", 2, "fx fy");
   const std::vector<double> center = entry.Numbers("principal_point", 2, "cx cy");
   const std::vector<double> size = entry.Numbers("image_dimension", 2, "width height");
@@ -139,7 +139,7 @@ class CsvReader {
 }  // namespace
 
 VslamlabCamera ReadVslamlabCamera(const fs::path& file, const std::string& name) {
-  const VslamlabCamera camera = ParseCamera(FindCamera(file, name));
+  const VslamlabCamera camera = ReadEntry(FindCamera(file, name));
   MakeSettings(camera.calibration, file.string());  // checks the numbers
   return camera;
 }
