@@ -29,7 +29,7 @@ FILE_SUFFIXES = {"json", "csv", "ply", "txt", "png", "md", "yaml", "h", "cc", "p
 DOCUMENTS = ("README.md", "docs/**/*.md", "config/**/*.md", "Vocabulary/*.md", "Thirdparty/*.md",
              "Examples/**/*.md", "python/**/*.md", "tools/**/*.md")
 FOLDERS = ("src", "include", "scripts", "config", "docs", "tests", "Examples", "tools", "bench",
-           "python", "web", "Vocabulary", "Thirdparty")
+           "python", "web", "Vocabulary", "Thirdparty", "packaging")
 
 EARLIER_NAME = re.compile(r'\{\s*"([\w.]+)",\s*"([\w.]+)"\s*\}')
 FENCE = re.compile(r"^\s*(```|~~~)")
