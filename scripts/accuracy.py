@@ -9,7 +9,7 @@ accepted commit.
 The cases are in paper_tables/accuracy.yaml: recorded sequences below --data, whole and disturbed, and
 scenes of make_synthetic, which are rendered once into --renderings; RGB-D and monocular, with and
 without objects. Recordings that are absent are skipped with a message. The figures are compared with
-docs/results/accuracy.json, run by run. docs/reproduce.md says when a difference counts.
+docs/results/accuracy.json, run by run. docs/benchmarks.md says when a difference counts.
 
 OUT gets accuracy.json (the figures of all runs), accuracy.md (all cases beside the accepted ones) and
 runs/ with each run. If it is interrupted in any way, start it again: finished runs are kept, unless

@@ -14,6 +14,8 @@
    file. Names with a placeholder, such as `src/<module>` or `tests/MODULE`, are not checked.
 4. A line has at most 140 characters, unless it is a row of a table or a single word.
 5. README.md has at most 120 lines.
+6. docs/programs.md or docs/library.md names in code every program whose source is in Examples.
+7. The pages in docs/ are at most 25, with at most 35000 words together.
 """
 
 import argparse
@@ -23,13 +25,15 @@ import sys
 
 MAX_COLUMNS = 140
 MAX_README_LINES = 120
+MAX_PAGES = 25
+MAX_WORDS = 35000
 # Files whose tables define keys, and the suffixes that tell that a name such as objects.json is a file.
 KEY_TABLES = ("docs/settings.md", "docs/outputs.md")
 FILE_SUFFIXES = {"json", "csv", "ply", "txt", "png", "md", "yaml", "h", "cc", "py", "sh"}
 DOCUMENTS = ("README.md", "docs/**/*.md", "config/**/*.md", "Vocabulary/*.md", "Thirdparty/*.md",
              "Examples/**/*.md", "python/**/*.md", "tools/**/*.md")
 FOLDERS = ("src", "include", "scripts", "config", "docs", "tests", "Examples", "tools", "bench",
-           "python", "web", "Vocabulary", "Thirdparty")
+           "python", "web", "Vocabulary", "Thirdparty", "packaging")
 
 EARLIER_NAME = re.compile(r'\{\s*"([\w.]+)",\s*"([\w.]+)"\s*\}')
 FENCE = re.compile(r"^\s*(```|~~~)")
@@ -224,6 +228,25 @@ def length_faults(document):
         yield len(document.lines), f"{len(document.lines)} lines, at most {MAX_README_LINES}"
 
 
+def program_faults(documents, root):
+    pages = [document for document in documents
+             if document.name in ("docs/programs.md", "docs/library.md")]
+    named = " ".join(code for document in pages
+                     for _, code in document.inline_code() + document.code_lines())
+    for path in sorted((root / "Examples").glob("*.cc")):
+        if not re.search(rf"\b{path.stem}\b", named):
+            yield f"docs/programs.md: lacks the program {path.stem}"
+
+
+def size_faults(documents):
+    pages = [document for document in documents if document.name.startswith("docs/")]
+    words = sum(len(line.split()) for page in pages for line in page.lines)
+    if len(pages) > MAX_PAGES:
+        yield f"docs: {len(pages)} pages, at most {MAX_PAGES}"
+    if words > MAX_WORDS:
+        yield f"docs: {words} words, at most {MAX_WORDS}"
+
+
 def check_tree(root):
     """The faults of the tree at `root`, one line per fault. Finding no documents is a fault too."""
     root = pathlib.Path(root).resolve()
@@ -238,7 +261,7 @@ def check_tree(root):
         found = [*key_faults(document, keys), *link_faults(document, documents, root),
                  *file_faults(document, modules, root), *length_faults(document)]
         faults += [f"{document.name}:{number}: {what}" for number, what in sorted(found)]
-    return faults
+    return [*faults, *program_faults(documents.values(), root), *size_faults(documents.values())]
 
 
 def main():

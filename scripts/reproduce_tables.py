@@ -9,7 +9,7 @@ IV simplification, V integration, VI robustness and VII weight of the constraint
 The first renders its sequences and needs nothing else. The second takes all sequences of TUM RGB-D
 and ICL-NUIM in the folder data. Of each sequence every row of a table is run with several seeds,
 monocular and with depth: recorded sequences begin at another frame for each seed, synthetic ones
-are rendered anew. docs/reproduce.md explains the tables, the masks and how to use a cluster.
+are rendered anew. docs/benchmarks.md explains the tables, the masks and how to use a cluster.
 
 OUT/tables has the tables as index.html, tables.md, tables.tex, tables.csv and tables.json, and
 OUT/runs has each run. If it is interrupted in any way, start it again: finished runs are kept, and

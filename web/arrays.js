@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decodes the values of a message (docs/view_data.md): an object with the only key f32, u32 or u8
+// Decodes the values of a message (docs/live_view.md): an object with the only key f32, u32 or u8
 // is an array of numbers in base64, least significant byte first.
 
 const KINDS = { f32: Float32Array, u32: Uint32Array, u8: Uint8Array };

@@ -40,7 +40,7 @@ struct LiveControls {
   std::string notice = {};     // the result of the last command of a browser
 };
 
-// Makes the messages of the live view (docs/view_data.md) as JSON in one line each.
+// Makes the messages of the live view (docs/live_view.md) as JSON in one line each.
 class LiveMessages {
  public:
   LiveMessages(LiveRun run, const LiveMapLimits& limits);

@@ -27,9 +27,9 @@ struct McapContent {
   const ObjectReport* objects = nullptr;
 };
 
-// Writes the run into the file of --mcap if it is given (docs/bags.md). The same results give the
-// same bytes. Returns why it could not be written, for example because the disk is full; empty if
-// there was no error.
+// Writes the run into the file of --mcap if it is given (docs/datasets.md). The same results give
+// the same bytes. Returns why it could not be written, for example because the disk is full; empty
+// if there was no error.
 std::string WriteMcap(const RunArguments& arguments, const McapContent& content);
 
 }  // namespace hullslam

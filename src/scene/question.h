@@ -45,7 +45,7 @@ struct AskedThing {
   std::vector<AskedCondition> conditions;
 };
 
-// Reads a question in the grammar of docs/queries.md, such as "the cup on the table near the
+// Reads a question in the grammar of docs/scene.md, such as "the cup on the table near the
 // laptop". `labels` are the classes that exist. Throws InputError that names the word that was not
 // understood and lists the words that are known.
 AskedThing ParseQuestion(std::string_view text, const std::set<std::string>& labels);

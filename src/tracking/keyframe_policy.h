@@ -62,7 +62,7 @@ struct KeyframePolicy {
   // finds too few landmarks of the reference keyframe, or close points would be lost; and the
   // mapper is idle, or the need is urgent. Two things differ from the paper. Keyframes are spread
   // evenly in time: a smaller loss of landmarks is enough, but there is a least time between
-  // keyframes (docs/decisions/tracking.md). Objects that are not mapped yet are another, less
+  // keyframes (docs/decisions.md). Objects that are not mapped yet are another, less
   // urgent reason, because objects are mapped from keyframes. If images are far apart, as in
   // recordings of one image a second, the next one may leave the view of the reference keyframe
   // although this one still finds many of its landmarks; so the expected overlap counts too.

@@ -10,7 +10,7 @@ namespace hullslam {
 
 inline constexpr int kViewVersion = 1;
 
-// The parts of the page that the model has, by name (docs/view_data.md). Times are relative to
+// The parts of the page that the model has, by name (docs/live_view.md). Times are relative to
 // `start`, s.
 nlohmann::json ViewParts(const ViewModel& model, double start);
 
@@ -18,7 +18,7 @@ nlohmann::json ViewParts(const ViewModel& model, double start);
 // script element of HTML. Bytes of texts that are not UTF-8 are replaced.
 std::string DumpViewMessage(const nlohmann::json& message);
 
-// The message that sets all parts of the page (docs/view_data.md): JSON in one line, in which every
+// The message that sets all parts of the page (docs/live_view.md): JSON in one line, in which every
 // "<" is escaped, so that it may stand inside a script element of HTML. Times are relative to the
 // first pose.
 std::string FormatViewMessage(const ViewModel& model);

@@ -18,7 +18,7 @@
 
 namespace hullslam {
 
-// The data that the page of the report and of the live view shows (docs/view_data.md). Each part is
+// The data that the page of the report and of the live view shows (docs/live_view.md). Each part is
 // independent of the others, and an empty part is not shown. Positions are in the world frame of
 // the map, in its unit of length. Time stamps are in seconds.
 

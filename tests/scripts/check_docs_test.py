@@ -173,6 +173,23 @@ class LengthsTest(CheckDocsTest):
         self.assert_good("", {"docs/long.md": "a\n" * 200})
 
 
+    def test_number_and_length_of_the_pages(self):
+        pages = {f"docs/{number}.md": "" for number in range(23)}  # beside the two of BASE
+        self.assert_good("", pages)
+        self.assert_fault("", "docs: 26 pages", files={**pages, "docs/more/23.md": ""})
+        self.assert_good("", {"docs/a.md": "a\n" * 34900})
+        self.assert_fault("", "docs: 35", "words", files={"docs/a.md": "a\n" * 35000})
+
+
+class ProgramsTest(CheckDocsTest):
+    def test_every_program_is_named(self):
+        files = {"Examples/rgbd_tum.cc": "", "Examples/minimal.cc": "",
+                 "docs/library.md": "`Examples/minimal.cc`\n"}
+        self.assert_good("", {**files, "docs/programs.md": "`rgbd_tum SEQUENCE`\n"})
+        self.assert_fault("`rgbd_tum`\n", "docs/programs.md: lacks the program rgbd_tum",
+                          files={**files, "docs/programs.md": "rgbd_tum, `rgbd_tum_more`\n"})
+
+
 class TreeTest(unittest.TestCase):
     def test_empty_tree_fails(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -27,7 +27,7 @@ using VocabularyNodeId = Id<struct VocabularyNodeTag>;
 // level follows from the word alone. This replaces a stored direct index: a frame only keeps its
 // words.
 //
-// The memory has the content of the binary file (docs/vocabulary.md). Copies share it. All
+// The memory has the content of the binary file (docs/maps.md). Copies share it. All
 // functions are const and may be called by several threads.
 class Vocabulary {
  public:

@@ -25,7 +25,7 @@ struct DepthErrorOptions {
   double pixel_sigma = 0.7;
   // The same in bundle adjustment. It is larger there because it also sets the weight of points
   // against objects and the bound at which an observation is removed from the map
-  // (docs/decisions/adjustment.md).
+  // (docs/decisions.md).
   double adjustment_pixel_sigma = 1.0;
   // Standard deviation of the disparity bf / z, px, the same at all levels. Sensors are more
   // precise than the default, but the pixel that the depth is taken from need not show the

@@ -9,7 +9,7 @@
 namespace hullslam {
 
 // Reads a vocabulary in the binary form of HullSLAM or in the text format of DBoW2 and ORB-SLAM2
-// (docs/vocabulary.md). The content tells which of the two it is. The file may change afterwards.
+// (docs/maps.md). The content tells which of the two it is. The file may change afterwards.
 // Reading text takes seconds; `on_progress` is told how many MB are done. Throws InputError that
 // names the file, the line, and what was expected.
 Vocabulary ReadVocabulary(const std::filesystem::path& path,

@@ -12,7 +12,7 @@
 namespace hullslam {
 
 struct BagSequenceOptions {
-  // Names of topics; empty: they are found by type, encoding and name (docs/bags.md).
+  // Names of topics; empty: they are found by type, encoding and name (docs/datasets.md).
   std::string image_topic = {};
   std::string depth_topic = {};
   std::string info_topic = {};

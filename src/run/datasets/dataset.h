@@ -18,7 +18,7 @@ struct DatasetInput {
 };
 
 // A data set on the command line: its help, its own options, and its reader. A new data set is a
-// class that implements this interface, and a program in Examples that uses it (docs/changing.md).
+// class that implements this interface, and a program in Examples (docs/architecture.md).
 class Dataset {
  public:
   Dataset() = default;

@@ -56,7 +56,7 @@ void AddArguments(CLI::App& app, QueryArguments& arguments) {
                  "output folder of a run with masks, or a map of --save-map")
       ->required();
   app.add_option("QUESTION", arguments.question,
-                 "such as \"cup on the book near the laptop\"; docs/queries.md has the grammar");
+                 "such as \"cup on the book near the laptop\"; docs/scene.md has the grammar");
   app.add_option("--like", arguments.like, "objects like the one with this number");
   app.add_option("--vector", arguments.vector,
                  "objects whose masks look like this vector: a .npy file with as many numbers as "
