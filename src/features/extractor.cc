@@ -135,6 +135,8 @@ FeatureExtractor& FeatureExtractor::operator=(FeatureExtractor&&) noexcept = def
 
 const ScaleLevels& FeatureExtractor::levels() const { return impl_->levels; }
 
+const ImagePyramid& FeatureExtractor::pyramid() const { return impl_->pyramid; }
+
 ExtractedFeatures FeatureExtractor::Extract(const cv::Mat& grey) {
   SerialRunner runner;
   return Extract(grey, runner);

@@ -5,6 +5,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "features/pyramid.h"
 #include "hullslam/features/feature_options.h"
 #include "hullslam/features/feature_set.h"
 #include "util/task_runner.h"
@@ -26,6 +27,8 @@ class FeatureExtractor {
   FeatureExtractor& operator=(FeatureExtractor&&) noexcept;
 
   const ScaleLevels& levels() const;
+  // The pyramid of the last image, which must still be alive.
+  const ImagePyramid& pyramid() const;
 
   // Throws CheckError unless `grey` is CV_8UC1 and at least 64 x 64 px. Returns about feature_count
   // features, or fewer if the image has fewer corners.

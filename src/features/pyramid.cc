@@ -20,11 +20,18 @@ void ImagePyramid::Build(const cv::Mat& grey) {
   }
 }
 
-Eigen::Vector2f ImagePyramid::ToLevelZero(const Eigen::Vector2f& pixel, int l) const {
+Eigen::Array2f ImagePyramid::Ratio(int l) const {
   const cv::Mat& image = level(l);
-  const float ratio_x = static_cast<float>(images_[0].cols) / static_cast<float>(image.cols);
-  const float ratio_y = static_cast<float>(images_[0].rows) / static_cast<float>(image.rows);
-  return {(pixel.x() + 0.5f) * ratio_x - 0.5f, (pixel.y() + 0.5f) * ratio_y - 0.5f};
+  return {static_cast<float>(images_[0].cols) / static_cast<float>(image.cols),
+          static_cast<float>(images_[0].rows) / static_cast<float>(image.rows)};
+}
+
+Eigen::Vector2f ImagePyramid::ToLevelZero(const Eigen::Vector2f& pixel, int l) const {
+  return (pixel.array() + 0.5f) * Ratio(l) - 0.5f;
+}
+
+Eigen::Vector2f ImagePyramid::FromLevelZero(const Eigen::Vector2f& pixel, int l) const {
+  return (pixel.array() + 0.5f) / Ratio(l) - 0.5f;
 }
 
 }  // namespace hullslam

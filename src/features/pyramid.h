@@ -26,8 +26,12 @@ class ImagePyramid {
   // coordinates, so this is (p + 1/2) size_0 / size_l - 1/2. The formula p scale_l of ORB-SLAM2 is
   // wrong by more than a pixel at the upper levels.
   Eigen::Vector2f ToLevelZero(const Eigen::Vector2f& pixel, int l) const;
+  // Maps a pixel of level 0 to level l.
+  Eigen::Vector2f FromLevelZero(const Eigen::Vector2f& pixel, int l) const;
 
  private:
+  Eigen::Array2f Ratio(int l) const;  // size of level 0 / size of level l
+
   std::vector<float> scale_;
   std::vector<cv::Mat> images_;
   std::vector<ImageShrinker> shrinkers_;  // one per level; the first is not used

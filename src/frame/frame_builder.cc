@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "frame/coarse_depth.h"
 #include "frame/dynamic_mask.h"
 #include "hullslam/util/error.h"
 
@@ -23,25 +24,63 @@ void CheckSize(const char* name, const cv::Mat& image, const cv::Size& size) {
   }
 }
 
-// Adds the undistorted keypoints and their depths, which are unknown without a depth image.
+// Throws InputError unless the images are those of the sensor.
+void CheckImages(const ImageInput& image, const Sensor& sensor) {
+  const cv::Size size(sensor.camera.width, sensor.camera.height);
+  CheckSize("image", image.grey, size);
+  if (image.grey.type() != CV_8UC1) {
+    throw InputError("the image is not CV_8UC1");
+  }
+  if (sensor.kind == SensorKind::kRgbd) {
+    if (image.depth.empty()) {
+      throw InputError(
+          "there is no depth image, expected one of an RGB-D camera; without depth, "
+          "SystemOptions::sensor is SensorKind::kMonocular");
+    }
+    CheckDepthImage(image.depth, sensor.camera);
+  } else if (!image.depth.empty()) {
+    throw InputError(sensor.IsMonocular()
+                         ? "there is a depth image, expected none from a monocular camera"
+                         : "there is a depth image, expected the right image of a stereo camera");
+  }
+  if (sensor.kind == SensorKind::kStereo) {
+    if (image.right.empty()) {
+      throw InputError("there is no right image, expected one of a stereo camera");
+    }
+    CheckSize("right image", image.right, size);
+    if (image.right.type() != CV_8UC1) {
+      throw InputError("the right image is not CV_8UC1");
+    }
+  } else if (!image.right.empty()) {
+    throw InputError("there is a right image, expected none without a stereo camera");
+  }
+}
+
+// The depths of the keypoints, m; 0 where they are unknown.
+std::vector<float> SampleDepths(std::span<const RawKeypoint> keypoints, const cv::Mat& depth,
+                                double units_per_metre) {
+  std::vector<float> depths(keypoints.size(), 0.0f);
+  for (size_t i = 0; i < keypoints.size() && !depth.empty(); ++i) {
+    depths[i] = SampleDepth(depth, keypoints[i].raw, units_per_metre);
+  }
+  return depths;
+}
+
+// Adds the undistorted keypoints and their columns in the right image. The depths are added before.
 void AddKeypoints(std::span<const RawKeypoint> keypoints, const PinholeCamera& camera,
-                  const cv::Mat& depth, double units_per_metre, TaskRunner& runner,
-                  FrameFeatures& features) {
+                  TaskRunner& runner, FrameFeatures& features) {
   constexpr size_t kInTask = 256;
   const size_t count = keypoints.size();
   features.keypoints.resize(count);
-  features.depth.resize(count);
   features.right_u.resize(count);
   runner.Run((count + kInTask - 1) / kInTask, [&](size_t task) {
     for (size_t i = task * kInTask; i < std::min(count, (task + 1) * kInTask); ++i) {
       const RawKeypoint& keypoint = keypoints[i];
       const Eigen::Vector2f undistorted =
           camera.Undistort(keypoint.raw.cast<double>()).cast<float>();
-      const float z = depth.empty() ? 0.0f : SampleDepth(depth, keypoint.raw, units_per_metre);
       features.keypoints[i] = {
           .undistorted = undistorted, .angle = keypoint.angle, .level = keypoint.level};
-      features.depth[i] = z;
-      features.right_u[i] = VirtualRight(undistorted.x(), z, camera.bf);
+      features.right_u[i] = VirtualRight(undistorted.x(), features.depth[i], camera.bf);
     }
   });
 }
@@ -79,6 +118,9 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
       dynamic_classes_(std::move(dynamic_classes)),
       vocabulary_(std::move(vocabulary)),
       remove_dynamic_(remove_dynamic) {
+  if (sensor.kind == SensorKind::kStereo) {
+    stereo_.emplace(features, sensor.camera);
+  }
   if (detection) {
     detector_.emplace(sensor.camera, depth, *detection, dynamic_classes_);
   }
@@ -86,21 +128,7 @@ FrameBuilder::FrameBuilder(const Sensor& sensor, const DepthOptions& depth,
 
 BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
   using Clock = std::chrono::steady_clock;
-  const cv::Size size(sensor_.camera.width, sensor_.camera.height);
-  CheckSize("image", image.grey, size);
-  if (image.grey.type() != CV_8UC1) {
-    throw InputError("the image is not CV_8UC1");
-  }
-  if (sensor_.kind != SensorKind::kMonocular) {
-    if (image.depth.empty()) {
-      throw InputError(
-          "there is no depth image, expected one of an RGB-D camera; without depth, "
-          "SystemOptions::sensor is SensorKind::kMonocular");
-    }
-    CheckDepthImage(image.depth, sensor_.camera);
-  } else if (!image.depth.empty()) {
-    throw InputError("there is a depth image, expected none from a monocular camera");
-  }
+  CheckImages(image, sensor_);
   BuiltFrame built{.frame = std::make_unique<Frame>(), .masks = {}, .begin = Clock::now()};
   built.frame->timestamp = image.timestamp;
   const std::vector<RawKeypoint> keypoints = AddFeatures(image, runner, built.frame->features);
@@ -109,7 +137,11 @@ BuiltFrame FrameBuilder::Build(const ImageInput& image, TaskRunner& runner) {
   }
   built.masks.frames_with_masks = image.masks.empty() ? 0 : 1;
   if (detector_) {
-    detector_->AddDetections(image.masks, image.depth, keypoints, runner, built);
+    // The keypoints on an object are too few to show its surface.
+    const bool needs_depth = stereo_ && !image.masks.empty();
+    const cv::Mat depth =
+        needs_depth ? CoarseDepth(image.grey, image.right, sensor_.camera) : image.depth;
+    detector_->AddDetections(image.masks, depth, keypoints, runner, built);
   }
   built.milliseconds =
       std::chrono::duration<double, std::milli>(Clock::now() - built.begin).count();
@@ -125,9 +157,11 @@ std::vector<RawKeypoint> FrameBuilder::AddFeatures(const ImageInput& image, Task
       RemoveMasked(mask, extracted.keypoints, extracted.descriptors);
     }
   }
+  features.depth = stereo_
+                       ? stereo_->FindDepths(extracted, extractor_.pyramid(), image.right, runner)
+                       : SampleDepths(extracted.keypoints, image.depth, depth_.units_per_metre);
   features.descriptors = std::move(extracted.descriptors);
-  AddKeypoints(extracted.keypoints, sensor_.camera, image.depth, depth_.units_per_metre, runner,
-               features);
+  AddKeypoints(extracted.keypoints, sensor_.camera, runner, features);
   const PinholeCamera::Bounds& bounds = sensor_.bounds;
   features.grid =
       FeatureGrid(features.keypoints, Eigen::Vector2d(bounds.min_x, bounds.min_y).cast<float>(),

@@ -10,6 +10,7 @@
 
 #include "features/extractor.h"
 #include "frame/frame_detector.h"
+#include "frame/stereo_features.h"
 #include "hullslam/bow/vocabulary.h"
 #include "hullslam/camera/depth.h"
 #include "hullslam/frame/built_frame.h"
@@ -37,7 +38,8 @@ class FrameBuilder {
                std::shared_ptr<const Vocabulary> vocabulary = nullptr, bool remove_dynamic = true);
 
   // Throws InputError if an image does not have the size of the camera or a type that ImageInput
-  // allows. The masks must pass ValidateMasks().
+  // allows, or if the sensor has another image than a depth or a right image. The masks must pass
+  // ValidateMasks().
   BuiltFrame Build(const ImageInput& image, TaskRunner& runner);
 
  private:
@@ -48,6 +50,7 @@ class FrameBuilder {
   const Sensor& sensor_;
   DepthOptions depth_;
   FeatureExtractor extractor_;
+  std::optional<StereoFeatures> stereo_;  // only for a stereo camera
   std::optional<FrameDetector> detector_;
   std::set<std::string> dynamic_classes_;
   std::shared_ptr<const Vocabulary> vocabulary_;

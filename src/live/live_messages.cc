@@ -99,7 +99,7 @@ ViewModel LiveMessages::ModelOfRun() const {
   model.program = run_.program;
   model.sequence = run_.sequence;
   model.version = run_.version;
-  model.is_metric = run_.sensor.kind == SensorKind::kRgbd;
+  model.is_metric = !run_.sensor.IsMonocular();
   return model;
 }
 

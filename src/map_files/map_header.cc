@@ -9,6 +9,13 @@ namespace {
 // The numbers of the sensors in the file.
 constexpr uint8_t kRgbd = 1;
 constexpr uint8_t kMonocular = 2;
+constexpr uint8_t kStereo = 3;
+
+uint8_t NumberOf(SensorKind sensor) {
+  return sensor == SensorKind::kMonocular ? kMonocular
+         : sensor == SensorKind::kStereo  ? kStereo
+                                          : kRgbd;
+}
 
 constexpr int kMostLevels = 64;
 constexpr double kMostScaleFactor = 16.0;
@@ -40,7 +47,7 @@ PinholeCamera ReadCamera(ByteReader& in) {
 }  // namespace
 
 void WriteHeader(const MapHeader& header, ByteWriter& out) {
-  out.Put(header.settings.sensor == SensorKind::kMonocular ? kMonocular : kRgbd);
+  out.Put(NumberOf(header.settings.sensor));
   WriteCamera(header.settings.camera, out);
   out.Put(static_cast<int32_t>(header.settings.level_count));
   out.Put(header.settings.scale_factor);
@@ -60,9 +67,11 @@ void WriteHeader(const MapHeader& header, ByteWriter& out) {
 MapHeader ReadHeader(ByteReader& in) {
   MapHeader header;
   const auto sensor = in.Get<uint8_t>();
-  in.Require(sensor == kRgbd || sensor == kMonocular,
+  in.Require(sensor >= kRgbd && sensor <= kStereo,
              "is of a sensor that this version does not know");
-  header.settings.sensor = sensor == kRgbd ? SensorKind::kRgbd : SensorKind::kMonocular;
+  header.settings.sensor = sensor == kRgbd        ? SensorKind::kRgbd
+                           : sensor == kMonocular ? SensorKind::kMonocular
+                                                  : SensorKind::kStereo;
   header.settings.camera = ReadCamera(in);
   header.settings.level_count = in.Get<int32_t>();
   header.settings.scale_factor = in.GetFinite(kMostScaleFactor);

@@ -82,7 +82,9 @@ std::vector<OptionTable::Entry> Describe(MapSettings settings) {
 void RequireSettings(const MapSettings& found, const MapSettings& expected,
                      const std::string& name) {
   const auto kind = [](const MapSettings& settings) {
-    return settings.sensor == SensorKind::kMonocular ? "a monocular" : "an RGB-D";
+    return settings.sensor == SensorKind::kMonocular ? "a monocular"
+           : settings.sensor == SensorKind::kStereo  ? "a stereo"
+                                                     : "an RGB-D";
   };
   if (found.sensor != expected.sensor) {
     throw InputError(fmt::format("{}: was made with {} camera, this run has {} one", name,

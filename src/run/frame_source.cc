@@ -71,6 +71,9 @@ std::optional<FrameSource::LoadedImage> FrameSource::LoadNext() {
   }
   if (loaded.image) {
     loaded.image->masks = masks_.Read(frame);
+    if (sequence_.fit_mask != nullptr) {
+      std::ranges::for_each(loaded.image->masks, sequence_.fit_mask);
+    }
   }
   return loaded;
 }

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -14,6 +17,7 @@
 #include "hullslam/util/error.h"
 #include "sequences/euroc_states.h"
 #include "sequences/image_list.h"
+#include "sequences/stereo_loading.h"
 #include "settings/yaml_map.h"
 #include "util/shown_text.h"
 
@@ -83,6 +87,61 @@ std::vector<FramePaths> ReadImages(const fs::path& camera, std::vector<std::stri
   return TakeFrames(list, std::move(frames), warnings);
 }
 
+// The partners of the left images: the right images with the nearest stamps.
+std::vector<FramePaths> PairImages(const fs::path& root, double frames_per_second,
+                                   std::vector<std::string>& warnings) {
+  // The camera may move by a twentieth of its way between two images, a pixel or two.
+  constexpr double kMostShare = 0.05;
+  const double most = kMostShare / frames_per_second;
+  const std::vector<FramePaths> left = ReadImages(root / "cam0", warnings);
+  const std::vector<FramePaths> right = ReadImages(root / "cam1", warnings);
+  std::vector<FramePaths> pairs;
+  double farthest = 0.0;
+  for (size_t i = 0, k = 0; i < left.size(); ++i) {
+    const auto distance = [&](size_t other) {
+      return std::abs(right[other].timestamp - left[i].timestamp);
+    };
+    while (k + 1 < right.size() && distance(k + 1) <= distance(k)) {
+      ++k;
+    }
+    farthest = std::max(farthest, distance(k));
+    if (distance(k) <= most) {
+      pairs.push_back(left[i]);
+      pairs.back().right = right[k].image;
+    }
+  }
+  if (2 * pairs.size() < left.size()) {
+    throw InputError(fmt::format(
+        "{}: {} of {} images of cam0 have one of cam1 within {:.1f} ms, expected synchronised "
+        "cameras",
+        root.string(), pairs.size(), left.size(), 1e3 * most));
+  }
+  if (pairs.size() < left.size()) {
+    warnings.push_back(fmt::format(
+        "{}: {} of {} images of cam0 have none of cam1 within {:.1f} ms (farthest {:.1f} ms); they "
+        "are left out",
+        root.string(), left.size() - pairs.size(), left.size(), 1e3 * most, 1e3 * farthest));
+  }
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    pairs[i].number = i;
+  }
+  return pairs;
+}
+
+// Adds the ground truth of the camera, if there is one.
+void AddStates(const fs::path& root, const Rigid3& body_from_cam, ImageSequence& sequence) {
+  const fs::path states = root / "state_groundtruth_estimate0" / "data.csv";
+  std::error_code error;
+  if (fs::exists(states, error)) {
+    try {
+      sequence.converted_groundtruth = ReadEurocStates(states, body_from_cam);
+    } catch (const InputError& fault) {
+      sequence.warnings.push_back(
+          fmt::format("{}; the run goes on without ground truth", fault.what()));
+    }
+  }
+}
+
 fs::path FindRoot(const fs::path& folder) {
   std::error_code error;
   for (const fs::path& root : {folder / "mav0", folder}) {
@@ -113,16 +172,31 @@ EurocSequence OpenEurocSequence(const fs::path& folder, const FrameSelection& se
   sequence.images.frames = ReadImages(root / "cam0", sequence.images.warnings);
   SelectFrames(folder, selection, sequence.images);
   LeaveOutMissing(sequence.images);
-  const fs::path states = root / "state_groundtruth_estimate0" / "data.csv";
+  AddStates(root, sequence.camera.body_from_cam, sequence.images);
+  return sequence;
+}
+
+StereoSequence OpenEurocPairs(const fs::path& folder, const FrameSelection& selection) {
+  const fs::path root = FindRoot(folder);
+  const EurocCamera left = ReadEurocCamera(root / "cam0" / "sensor.yaml");
+  const EurocCamera right = ReadEurocCamera(root / "cam1" / "sensor.yaml");
+  const auto rectifier = std::make_shared<const StereoRectifier>(
+      StereoCalibration{.left = left.calibration.camera,
+                        .right = right.calibration.camera,
+                        .right_from_left = Inverse(right.body_from_cam) * left.body_from_cam},
+      root.string());
+  StereoSequence sequence{.images = {}, .calibration = left.calibration};
+  sequence.calibration.camera = rectifier->camera();
+  sequence.images.frames =
+      PairImages(root, left.calibration.frames_per_second, sequence.images.warnings);
+  SelectFrames(folder, selection, sequence.images);
+  LeaveOutMissing(sequence.images);
+  LoadPairs(rectifier, sequence.images);
+  AddStates(root, left.body_from_cam * Inverse(rectifier->rectified_from_left()), sequence.images);
+  const fs::path truth = folder / "groundtruth.txt";
   std::error_code error;
-  if (fs::exists(states, error)) {
-    try {
-      sequence.images.converted_groundtruth =
-          ReadEurocStates(states, sequence.camera.body_from_cam);
-    } catch (const InputError& fault) {
-      sequence.images.warnings.push_back(
-          fmt::format("{}; the run goes on without ground truth", fault.what()));
-    }
+  if (!sequence.images.converted_groundtruth && fs::is_regular_file(truth, error)) {
+    sequence.images.groundtruth = truth;
   }
   return sequence;
 }

@@ -20,9 +20,9 @@ constexpr size_t kFewOf = 10;
 // The first file of a frame that does not exist; empty if all do.
 fs::path MissingImage(const FramePaths& frame) {
   std::error_code error;
-  for (const fs::path& image : {frame.image, frame.depth}) {
-    const bool is_without_depth = image.empty() && !frame.image.empty();
-    if (!is_without_depth && !fs::is_regular_file(image, error)) {
+  for (const fs::path& image : {frame.image, frame.depth, frame.right}) {
+    const bool is_not_wanted = image.empty() && !frame.image.empty();
+    if (!is_not_wanted && !fs::is_regular_file(image, error)) {
       return image;
     }
   }

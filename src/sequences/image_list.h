@@ -56,8 +56,8 @@ std::vector<std::filesystem::path> ListFolder(const std::filesystem::path& folde
 std::string SuggestFolder(const std::filesystem::path& folder,
                           const std::function<bool(const std::filesystem::path&)>& is_sequence);
 
-// Refuses a frame if the file of its image or of its depth image is missing. The path of the depth
-// image may be empty.
+// Refuses a frame if the file of its image, of its depth image or of its right image is missing.
+// The paths of the last two may be empty.
 void CheckImagesExist(const std::vector<FramePaths>& frames);
 // Leaves out frames of which a file is missing, with one warning. Refuses the sequence if they are
 // more than a tenth.

@@ -20,6 +20,7 @@
 #include "hullslam/util/error.h"
 #include "settings/preset_comparison.h"
 #include "settings/settings_orb_slam3.h"
+#include "settings/stereo_settings.h"
 #include "settings/yaml_settings.h"
 #include "util/shown_text.h"
 #include "util/trim.h"
@@ -93,6 +94,9 @@ class SettingsInProgress {
 void SettingsInProgress::ApplyFile(const fs::path& file) {
   std::set<std::string> in_file;
   for (const WrittenSetting& setting : TranslateOrb3Settings(ReadYamlSettings(file))) {
+    if (IsStereoKey(setting.key)) {
+      continue;  // read by MakeRectifier()
+    }
     const bool is_renamed = setting.name != setting.key;
     if (!in_file.insert(setting.key).second) {
       throw InputError(

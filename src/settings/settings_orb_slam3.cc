@@ -36,7 +36,7 @@ struct Entry {
   std::string_view why = {};
 };
 
-constexpr std::array<Entry, 22> kEntries = {{
+constexpr std::array<Entry, 21> kEntries = {{
     {"File.version", Kind::kVersion},
     {"Camera.type", Kind::kModel},
     {"Camera1.fx", Kind::kRenamed, "Camera.fx"},
@@ -53,7 +53,6 @@ constexpr std::array<Entry, 22> kEntries = {{
     {"RGBD.DepthMapFactor", Kind::kRenamed, "DepthMapFactor"},
     {"Stereo.ThDepth", Kind::kRenamed, "ThDepth"},
     {"Stereo.b", Kind::kBaseline},
-    {"Stereo.T_c1_c2", Kind::kRefused, {}, "HullSLAM does not use stereo cameras"},
     {"System.thFarPoints", Kind::kRefused, {}, "HullSLAM has no limit for far points"},
     {"System.LoadAtlasFromFile", Kind::kRefused, {}, "HullSLAM cannot load maps of ORB-SLAM3"},
     {"System.SaveAtlasToFile", Kind::kRefused, {}, "HullSLAM cannot save maps of ORB-SLAM3"},
@@ -61,8 +60,6 @@ constexpr std::array<Entry, 22> kEntries = {{
     {"loopClosing", Kind::kRenamed, "loop.closing"},
 }};
 
-constexpr Entry kSecondCamera = {
-    "Camera2", Kind::kRefused, {}, "HullSLAM does not use stereo cameras"};
 constexpr Entry kImu = {"IMU", Kind::kIgnored};
 
 // Null for a key that needs no translation: ORB-SLAM3 does not have it, or it means the same here.
@@ -72,7 +69,7 @@ const Entry* FindEntry(std::string_view name) {
   if (entry != kEntries.end()) {
     return entry;
   }
-  return name.starts_with("Camera2.") ? &kSecondCamera : name.starts_with("IMU.") ? &kImu : nullptr;
+  return name.starts_with("IMU.") ? &kImu : nullptr;
 }
 
 void ExpectText(const WrittenSetting& setting, std::initializer_list<std::string_view> choices,

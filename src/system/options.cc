@@ -52,6 +52,16 @@ void SystemOptions::Validate() const {
   if (const std::string fault = camera.FindFault(); !fault.empty()) {
     throw InputError("settings: " + fault);
   }
+  if (sensor == SensorKind::kStereo && camera.IsDistorted()) {
+    throw InputError(
+        "settings: Camera.k1 to Camera.k3 are not 0, expected no distortion: the images of a "
+        "stereo camera are rectified");
+  }
+  if (sensor == SensorKind::kStereo && camera.bf <= 0.0) {
+    throw InputError(fmt::format(
+        "settings: Camera.bf is '{:g}', expected the baseline of the stereo camera times Camera.fx",
+        camera.bf));
+  }
   const int most_levels = features.MostLevels(camera.width, camera.height);
   if (most_levels == 0) {
     throw InputError(

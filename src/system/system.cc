@@ -125,9 +125,15 @@ std::unique_ptr<Pipeline> System::BeginPipeline() {
   return pipeline;
 }
 
-TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat& depth,
+TrackedFrame System::Track(double timestamp, const cv::Mat& image, const cv::Mat& second,
                            std::vector<InstanceMask> masks) {
-  return Track(ImageInput{timestamp, ToGrey(image, options_.rgb_order), depth, std::move(masks)});
+  const bool is_stereo = options_.sensor == SensorKind::kStereo;
+  ImageInput input{timestamp, ToGrey(image, options_.rgb_order), cv::Mat(), std::move(masks)};
+  if (!second.empty()) {
+    (is_stereo ? input.right : input.depth) =
+        is_stereo ? ToGrey(second, options_.rgb_order) : second;
+  }
+  return Track(input);
 }
 
 TrackedFrame System::Track(const ImageInput& image) {

@@ -93,7 +93,7 @@ void AddMap(const Map& map, const Sensor& sensor, const ObjectOptions& options, 
 ViewModel ViewOfMap(const Map& map, const Sensor& sensor, const ObjectOptions& options) {
   ViewModel model;
   model.camera = sensor.camera;
-  model.is_metric = sensor.kind == SensorKind::kRgbd;
+  model.is_metric = !sensor.IsMonocular();
   ObjectReport report = ReportObjects(map, sensor.camera);
   MeasureObjects(report);
   for (ReportedObject& object : report.objects) {

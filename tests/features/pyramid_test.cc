@@ -53,6 +53,7 @@ TEST(ImagePyramid, MapsThePositionOfASpot) {
     const Eigen::Vector2f spot(static_cast<float>(moments.m10 / moments.m00),
                                static_cast<float>(moments.m01 / moments.m00));
     EXPECT_LT((pyramid.ToLevelZero(spot, l) - center).norm(), 0.1f) << l;
+    EXPECT_LT((pyramid.FromLevelZero(pyramid.ToLevelZero(spot, l), l) - spot).norm(), 1e-3f) << l;
   }
 }
 

@@ -128,7 +128,6 @@ TEST_F(SettingsOrbSlam3, SettingsThatCannotBeTranslatedAreNamed) {
                "no other camera model"});
   ExpectError("File.version", "File.version: \"2.0\"",
               {"camera.yaml:2: File.version is '2.0'", "\"1.0\""});
-  ExpectError("", "Camera2.fx: 500.0", {"Camera2.fx of ORB-SLAM3 cannot be translated", "stereo"});
   ExpectError("", "System.thFarPoints: 20.0", {"System.thFarPoints", "far points"});
   ExpectError("", "System.LoadAtlasFromFile: \"a\"", {"System.LoadAtlasFromFile", "maps"});
   ExpectError("Camera.newWidth", "Camera.newWidth: 640",

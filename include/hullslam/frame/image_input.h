@@ -13,9 +13,12 @@ struct ImageInput {
   double timestamp = 0.0;  // seconds
   cv::Mat grey;            // CV_8UC1
   // CV_16UC1 in units of 1 / DepthMapFactor metres, or CV_32FC1 in metres. The depth is unknown
-  // where the value is 0 or not finite. Empty for a monocular camera.
+  // where the value is 0 or not finite. Empty for a monocular and for a stereo camera.
   cv::Mat depth;
   std::vector<InstanceMask> masks = {};  // masks of the objects in the image; may be empty
+  // The right image of a stereo camera, CV_8UC1, rectified: a point lies in the same row of both.
+  // Empty for other sensors.
+  cv::Mat right = {};
 };
 
 }  // namespace hullslam

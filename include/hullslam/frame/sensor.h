@@ -14,6 +14,8 @@ enum class SensorKind {
   // A monocular camera. The unit of length of its map is not known in metres; it is the median
   // depth of the first points.
   kMonocular,
+  // Two synchronised cameras. The images are rectified; the camera is the left one.
+  kStereo,
 };
 
 // Whether a rolling shutter exposes an image row after row or column after column.
@@ -35,7 +37,7 @@ struct Sensor {
   ReadoutDirection readout_direction = ReadoutDirection::kRows;
 
   bool IsMonocular() const { return kind == SensorKind::kMonocular; }
-  // Baseline of the virtual stereo pair, m; 0 for a monocular camera.
+  // Baseline of the stereo pair, for RGB-D a virtual one, m; 0 for a monocular camera.
   double baseline() const { return IsMonocular() ? 0.0 : camera.bf / camera.fx; }
 };
 

@@ -5,6 +5,7 @@
 
 #include "hullslam/geometry/rigid3.h"
 #include "hullslam/sequences/image_sequence.h"
+#include "hullslam/sequences/stereo_sequence.h"
 #include "hullslam/settings/settings.h"
 
 namespace hullslam {
@@ -33,5 +34,13 @@ struct EurocSequence {
 // name.
 EurocSequence OpenEurocSequence(const std::filesystem::path& folder,
                                 const FrameSelection& selection = {});
+
+// Opens both cameras of a sequence of EuRoC (OpenEurocSequence() has the format): cam0 is the left
+// one, cam1 the right one. Images are pairs if their stamps differ by at most a twentieth of the
+// time between two images; others are left out with a warning. The ground truth becomes that of the
+// rectified left camera. Throws InputError as OpenEurocSequence() and StereoRectifier do, and if
+// less than half of the images have a partner.
+StereoSequence OpenEurocPairs(const std::filesystem::path& folder,
+                              const FrameSelection& selection = {});
 
 }  // namespace hullslam

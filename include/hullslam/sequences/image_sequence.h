@@ -22,6 +22,7 @@ struct FramePaths {
   std::filesystem::path image;
   std::filesystem::path depth = {};  // empty: no depth
   size_t number = 0;                 // index among all images of the sequence, from 0
+  std::filesystem::path right = {};  // the right image of a stereo camera; empty: none
 };
 
 // Selects the frames `first`, `first + stride`, ... up to and including `last`, counted from 0.
@@ -62,6 +63,8 @@ struct ImageSequence {
   // Decodes the image of a frame in colour, CV_8UC3 with blue first. To be called like `load`. Null
   // if the images are files of their own.
   ColourLoader load_colour = nullptr;
+  // Moves a mask of the image as read into the image that `load` gives. Null if they are the same.
+  std::function<void(InstanceMask&)> fit_mask = nullptr;
 };
 
 // The true trajectory, from the field that is set; absent without ground truth. The file may have

@@ -57,7 +57,7 @@ struct LeftIsland {
 // SLAM as one object: images in, poses and map out.
 //
 //   System system(options, PipelineKind::kSequential);
-//   for each frame: TrackedFrame tracked = system.Track(timestamp, image, depth);
+//   for each frame: TrackedFrame tracked = system.Track(timestamp, image, depth);  // or right
 //   system.Finish();
 //   Trajectory trajectory = system.trajectory();
 //
@@ -74,15 +74,17 @@ class System {
   ~System();
 
   // `image` is CV_8UC1, or CV_8UC3 or CV_8UC4 in the order of cv::imread, blue first, unless
-  // SystemOptions::rgb_order says that red is first. `depth` is as in ImageInput, and empty if and
-  // only if SystemOptions::sensor is monocular. `masks` are those of the objects in the image, in
-  // its raw pixels (hullslam/frame/mask_image.h makes them from images). Throws InputError for
-  // images of another type or size and for masks that ValidateMasks() refuses. Time stamps (s) must
-  // increase; throws CheckError otherwise. A refused frame changes nothing.
+  // SystemOptions::rgb_order says that red is first. `second` is the depth image of an RGB-D
+  // camera, as in ImageInput, or the right image of a stereo camera, which may have colours; a
+  // monocular camera has none. The images of a stereo camera are rectified (StereoRectifier).
+  // `masks` are those of the objects in the image, in its raw pixels (hullslam/frame/mask_image.h
+  // makes them from images). Throws InputError for images of another type or size and for masks
+  // that ValidateMasks() refuses. Time stamps (s) must increase; throws CheckError otherwise. A
+  // refused frame changes nothing.
   //
   // If mapping fails, this call or a later one throws its exception, and so do all calls of Track
   // and Finish after it. map() and trajectory() then give the last published state.
-  TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& depth = {},
+  TrackedFrame Track(double timestamp, const cv::Mat& image, const cv::Mat& second = {},
                      std::vector<InstanceMask> masks = {});
   TrackedFrame Track(const ImageInput& image);
 

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+#include <string>
+
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/frame/instance_mask.h"
+#include "hullslam/geometry/rigid3.h"
+
+namespace hullslam {
+
+// A rigid pair of cameras, as it was calibrated. PinholeCamera::bf is not used.
+struct StereoCalibration {
+  PinholeCamera left;
+  PinholeCamera right;
+  Rigid3 right_from_left;  // m
+};
+
+// Turns the images of a pair so that a point lies in the same row of both (Bouguet's method, by
+// OpenCV). The rectified images have the size of the images as read.
+class StereoRectifier {
+ public:
+  // Throws InputError that begins with `origin` for a pair that cannot be rectified: sizes that
+  // differ, no baseline, one that is not horizontal, or a right camera that is left of the other.
+  StereoRectifier(const StereoCalibration& calibration, const std::string& origin);
+
+  // The camera of the rectified left image, without distortion. bf is the baseline times fx.
+  const PinholeCamera& camera() const { return camera_; }
+  // The left camera as read has the same centre as the rectified one but another rotation.
+  const Rigid3& rectified_from_left() const { return rectified_from_left_; }
+
+  // The images as read must have the size of the cameras. Those of a pair that is rectified already
+  // are returned as they are.
+  cv::Mat RectifyLeft(const cv::Mat& image) const { return Remap(image, left_maps_); }
+  cv::Mat RectifyRight(const cv::Mat& image) const { return Remap(image, right_maps_); }
+  // Moves a mask of the left image as read into the rectified one.
+  void Rectify(InstanceMask& mask) const;
+
+ private:
+  struct Maps {
+    cv::Mat columns;  // empty: the image stays as it is
+    cv::Mat rows;
+  };
+  static Maps MakeMaps(const PinholeCamera& read, const Eigen::Matrix3d& rotation,
+                       const PinholeCamera& rectified);
+  static cv::Mat Remap(const cv::Mat& image, const Maps& maps);
+
+  PinholeCamera read_;  // the left camera
+  PinholeCamera camera_;
+  Rigid3 rectified_from_left_;
+  Maps left_maps_;
+  Maps right_maps_;
+};
+
+}  // namespace hullslam

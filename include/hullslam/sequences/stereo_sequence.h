@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "hullslam/frame/stereo_rectifier.h"
+#include "hullslam/sequences/image_sequence.h"
+#include "hullslam/settings/settings.h"
+
+namespace hullslam {
+
+// The pairs of a stereo camera. The loader of the images rectifies them.
+struct StereoSequence {
+  ImageSequence images;
+  CameraCalibration calibration;  // of the rectified images, with the baseline
+};
+
+// Opens a sequence of KITTI's odometry benchmark (Geiger et al., CVPR 2012): rectified images in
+// `image_0` and `image_1` (or in `image_2` and `image_3`, in colour), `calib.txt` with the 3x4
+// projections P0 to P3, and `times.txt` with seconds. The ground truth is `groundtruth.txt` or
+// `poses.txt` in the folder, or `poses/NAME.txt` of the data set. Throws InputError with file and
+// line.
+StereoSequence OpenKittiPairs(const std::filesystem::path& folder,
+                              const FrameSelection& selection = {});
+
+struct StereoFolderOptions {
+  // The calibration of the images as read. Null: they are rectified.
+  std::shared_ptr<const StereoRectifier> rectifier = nullptr;
+  double frames_per_second = 30.0;  // of a folder without stamps
+  FrameSelection selection = {};
+};
+
+// Opens pairs of two forms: a folder with the subfolders `left` and `right`, whose images have the
+// same names, or are equally many; or a video or a folder of images that show both halves of a pair
+// side by side, the left one first. Stamps are those of the names if they are seconds or
+// nanoseconds, else index / frames_per_second; those of a video are its own. Throws InputError for
+// anything else, and for an image without partner.
+ImageSequence OpenStereoFolder(const std::filesystem::path& path,
+                               const StereoFolderOptions& options = {});
+
+}  // namespace hullslam

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "frame/stereo_matcher.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+
+#include "util/median.h"
+
+namespace hullslam {
+namespace {
+
+// The constants are those of ORB-SLAM2.
+constexpr int kMostBits = 75;      // descriptors that differ in more bits do not match
+constexpr float kRowReach = 2.0F;  // rows at the level of the right keypoint
+constexpr int kHalfPatch = 5;      // px at the level of the left keypoint; the patch has 11 x 11
+constexpr int kReach = 5;          // px; columns to each side in which the patch is shifted
+constexpr double kOutlier = 2.1;   // times the median: 1.5 sigma, with 1.4 medians per sigma
+constexpr int kSide = 2 * kHalfPatch + 1;
+
+using Patch = std::array<float, size_t{kSide} * kSide>;
+
+// The patch about a pixel, less its mean, so that images of different brightness can be compared.
+// Nothing if it does not lie inside the image.
+std::optional<Patch> CutPatch(const cv::Mat& image, int x, int y) {
+  if (x < kHalfPatch || y < kHalfPatch || x + kHalfPatch >= image.cols ||
+      y + kHalfPatch >= image.rows) {
+    return std::nullopt;
+  }
+  Patch patch;
+  float sum = 0.0F;
+  size_t i = 0;
+  for (int row = y - kHalfPatch; row <= y + kHalfPatch; ++row) {
+    const uint8_t* const pixels = image.ptr<uint8_t>(row) + x - kHalfPatch;
+    for (int column = 0; column < kSide; ++column) {
+      patch[i] = static_cast<float>(pixels[column]);
+      sum += patch[i++];
+    }
+  }
+  const float mean = sum / static_cast<float>(patch.size());
+  for (float& value : patch) {
+    value -= mean;
+  }
+  return patch;
+}
+
+float MeanDifference(const Patch& a, const Patch& b) {
+  float sum = 0.0F;
+  for (size_t i = 0; i < a.size(); ++i) {
+    sum += std::abs(a[i] - b[i]);
+  }
+  return sum / static_cast<float>(a.size());
+}
+
+struct Fit {
+  float column = 0.0F;  // px at the level of the patch
+  float difference = 0.0F;
+};
+
+// The column at which the patch fits best, about `column`. Nothing if that is the last one that was
+// tried, because the best one may lie beyond.
+std::optional<Fit> FitPatch(const Patch& patch, const cv::Mat& image, int column, int row) {
+  std::array<float, 2 * kReach + 1> differences;
+  for (int shift = -kReach; shift <= kReach; ++shift) {
+    const std::optional<Patch> other = CutPatch(image, column + shift, row);
+    differences[static_cast<size_t>(shift + kReach)] =
+        other ? MeanDifference(patch, *other) : std::numeric_limits<float>::infinity();
+  }
+  const auto best = std::min_element(differences.begin(), differences.end());
+  const auto at = static_cast<int>(best - differences.begin());
+  if (at == 0 || at == 2 * kReach || !std::isfinite(*(best - 1)) || !std::isfinite(*(best + 1))) {
+    return std::nullopt;
+  }
+  const float before = *(best - 1);
+  const float after = *(best + 1);
+  const float curvature = before + after - 2.0F * *best;
+  const float offset = curvature > 0.0F ? 0.5F * (before - after) / curvature : 0.0F;
+  return Fit{static_cast<float>(column + at - kReach) + offset, *best};
+}
+
+float MedianDifference(std::span<const float> differences) {
+  std::vector<float> found;
+  std::copy_if(differences.begin(), differences.end(), std::back_inserter(found),
+               [](float difference) { return std::isfinite(difference); });
+  return found.empty() ? 0.0F : Median(std::move(found));
+}
+
+}  // namespace
+
+StereoMatcher::StereoMatcher(const ScaleLevels& levels, double largest_disparity)
+    : scale_(levels.scale), largest_disparity_(static_cast<float>(largest_disparity)) {}
+
+void StereoMatcher::SortIntoRows(const StereoImage& right) {
+  const int count = right.pyramid.level(0).rows;
+  rows_.resize(static_cast<size_t>(count));
+  for (std::vector<uint32_t>& row : rows_) {
+    row.clear();
+  }
+  for (uint32_t i = 0; i < right.features.keypoints.size(); ++i) {
+    const RawKeypoint& keypoint = right.features.keypoints[i];
+    const float reach = kRowReach * scale_[static_cast<size_t>(keypoint.level)];
+    const int first = std::max(0, static_cast<int>(std::floor(keypoint.raw.y() - reach)));
+    const int last = std::min(count - 1, static_cast<int>(std::ceil(keypoint.raw.y() + reach)));
+    for (int row = first; row <= last; ++row) {
+      rows_[static_cast<size_t>(row)].push_back(i);
+    }
+  }
+}
+
+StereoMatcher::Found StereoMatcher::MatchOne(const StereoImage& left, const StereoImage& right,
+                                             size_t keypoint) const {
+  const RawKeypoint& seen = left.features.keypoints[keypoint];
+  const auto row = static_cast<size_t>(
+      std::clamp(std::lround(seen.raw.y()), 0L, static_cast<long>(rows_.size()) - 1));
+  int least = kMostBits + 1;
+  const RawKeypoint* best = nullptr;
+  for (const uint32_t i : rows_[row]) {
+    const RawKeypoint& candidate = right.features.keypoints[i];
+    const float disparity = seen.raw.x() - candidate.raw.x();
+    if (std::abs(candidate.level - seen.level) > 1 || disparity < 0.0F ||
+        disparity > largest_disparity_) {
+      continue;
+    }
+    const int bits =
+        HammingDistance(left.features.descriptors[keypoint], right.features.descriptors[i]);
+    if (bits < least) {
+      least = bits;
+      best = &candidate;
+    }
+  }
+  if (best == nullptr) {
+    return {};
+  }
+  const Eigen::Vector2f centre = left.pyramid.FromLevelZero(seen.raw, seen.level);
+  const Eigen::Vector2f other = right.pyramid.FromLevelZero(best->raw, seen.level);
+  const int column = static_cast<int>(std::lround(centre.x()));
+  const int line = static_cast<int>(std::lround(centre.y()));
+  const std::optional<Patch> patch = CutPatch(left.pyramid.level(seen.level), column, line);
+  if (!patch) {
+    return {};
+  }
+  const std::optional<Fit> fit = FitPatch(*patch, right.pyramid.level(seen.level),
+                                          static_cast<int>(std::lround(other.x())), line);
+  if (!fit) {
+    return {};
+  }
+  const Eigen::Vector2f of_patch =
+      left.pyramid.ToLevelZero({static_cast<float>(column), static_cast<float>(line)}, seen.level);
+  const Eigen::Vector2f of_fit =
+      right.pyramid.ToLevelZero({fit->column, static_cast<float>(line)}, seen.level);
+  return {of_patch.x() - of_fit.x(), fit->difference};
+}
+
+std::vector<float> StereoMatcher::Match(const StereoImage& left, const StereoImage& right,
+                                        TaskRunner& runner) {
+  constexpr size_t kInTask = 128;
+  const size_t count = left.features.keypoints.size();
+  std::vector<float> disparities(count, 0.0F);
+  std::vector<float> differences(count, std::numeric_limits<float>::infinity());
+  SortIntoRows(right);
+  runner.Run((count + kInTask - 1) / kInTask, [&](size_t task) {
+    for (size_t i = task * kInTask; i < std::min(count, (task + 1) * kInTask); ++i) {
+      const Found found = MatchOne(left, right, i);
+      if (found.disparity > 0.0F && found.disparity <= largest_disparity_) {
+        disparities[i] = found.disparity;
+        differences[i] = found.difference;
+      }
+    }
+  });
+  const double bound = kOutlier * static_cast<double>(MedianDifference(differences));
+  for (size_t i = 0; i < count; ++i) {
+    if (static_cast<double>(differences[i]) > bound) {
+      disparities[i] = 0.0F;
+    }
+  }
+  return disparities;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "features/extractor.h"
+#include "features/pyramid.h"
+#include "util/task_runner.h"
+
+namespace hullslam {
+
+// The features of one image of a pair, with the pyramid that they are from.
+struct StereoImage {
+  const ExtractedFeatures& features;
+  const ImagePyramid& pyramid;
+};
+
+// Finds the columns of keypoints in the right image of a rectified pair, as ORB-SLAM2 does
+// (Mur-Artal and Tardos 2017, section III.A): the right keypoint with the most similar descriptor
+// in the same rows, at the same or a neighbouring level, to the left by at most `largest_disparity`
+// (px); then the column where the patch of the left keypoint fits best, to a fraction of a pixel by
+// a parabola through three sums of absolute differences. Matches whose sum is much larger than the
+// median of the pair are left out.
+class StereoMatcher {
+ public:
+  StereoMatcher(const ScaleLevels& levels, double largest_disparity);
+
+  // One disparity per left keypoint, px at level 0, > 0; 0 where none was found.
+  std::vector<float> Match(const StereoImage& left, const StereoImage& right, TaskRunner& runner);
+
+ private:
+  struct Found {
+    float disparity = 0.0F;
+    float difference = 0.0F;  // mean absolute difference of the patches, grey levels
+  };
+  void SortIntoRows(const StereoImage& right);
+  Found MatchOne(const StereoImage& left, const StereoImage& right, size_t keypoint) const;
+
+  std::vector<float> scale_;
+  float largest_disparity_;
+  std::vector<std::vector<uint32_t>> rows_;  // the right keypoints that may lie in each row
+};
+
+}  // namespace hullslam

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/frame/stereo_rectifier.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "hullslam/util/error.h"
+
+namespace hullslam {
+namespace {
+
+cv::Matx33d IntrinsicsOf(const PinholeCamera& camera) {
+  return {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
+}
+
+cv::Vec<double, 5> DistortionOf(const PinholeCamera& camera) {
+  return {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
+}
+
+bool HaveSameIntrinsics(const PinholeCamera& a, const PinholeCamera& b) {
+  constexpr double kSame = 1e-6;  // px
+  return std::abs(a.fx - b.fx) < kSame && std::abs(a.fy - b.fy) < kSame &&
+         std::abs(a.cx - b.cx) < kSame && std::abs(a.cy - b.cy) < kSame;
+}
+
+// Whether the images of the pair are rectified as they are.
+bool IsRectified(const StereoCalibration& pair) {
+  constexpr double kAngle = 1e-6;   // radians
+  constexpr double kLength = 1e-6;  // m
+  const Eigen::Vector3d& t = pair.right_from_left.translation;
+  return HaveSameIntrinsics(pair.left, pair.right) && !pair.left.IsDistorted() &&
+         !pair.right.IsDistorted() && std::hypot(t.y(), t.z()) < kLength &&
+         pair.right_from_left.rotation.angularDistance(Eigen::Quaterniond::Identity()) < kAngle;
+}
+
+void CheckPair(const StereoCalibration& pair, const std::string& origin) {
+  constexpr double kLeastBaseline = 1e-4;  // m
+  if (pair.left.width != pair.right.width || pair.left.height != pair.right.height) {
+    throw InputError(fmt::format(
+        "{}: the left camera has images of {}x{} px and the right one of {}x{} px, expected equal "
+        "sizes",
+        origin, pair.left.width, pair.left.height, pair.right.width, pair.right.height));
+  }
+  // The centre of the right camera in the frame of the left one.
+  const Eigen::Vector3d centre = Inverse(pair.right_from_left).translation;
+  if (!(centre.norm() > kLeastBaseline)) {
+    throw InputError(fmt::format("{}: the baseline is {:g} m, expected two cameras that are apart",
+                                 origin, centre.norm()));
+  }
+  if (std::abs(centre.x()) < std::hypot(centre.y(), centre.z())) {
+    throw InputError(fmt::format(
+        "{}: the second camera is at ({:.3f}, {:.3f}, {:.3f}) m from the first one, expected it "
+        "beside the first one, along x",
+        origin, centre.x(), centre.y(), centre.z()));
+  }
+  if (centre.x() < 0.0) {
+    throw InputError(fmt::format(
+        "{}: the second camera is {:.3f} m to the left of the first one: left and right are "
+        "swapped",
+        origin, -centre.x()));
+  }
+}
+
+}  // namespace
+
+StereoRectifier::StereoRectifier(const StereoCalibration& calibration, const std::string& origin)
+    : read_(calibration.left), camera_(calibration.left) {
+  CheckPair(calibration, origin);
+  if (IsRectified(calibration)) {
+    camera_.bf = -calibration.right_from_left.translation.x() * camera_.fx;
+    return;
+  }
+  cv::Mat rotation;
+  cv::eigen2cv(calibration.right_from_left.rotation.toRotationMatrix(), rotation);
+  const Eigen::Vector3d& t = calibration.right_from_left.translation;
+  const cv::Size size(read_.width, read_.height);
+  cv::Matx33d left_rotation;
+  cv::Matx33d right_rotation;
+  cv::Matx34d left_projection;
+  cv::Matx34d right_projection;
+  cv::Matx44d to_depth;
+  cv::stereoRectify(IntrinsicsOf(calibration.left), DistortionOf(calibration.left),
+                    IntrinsicsOf(calibration.right), DistortionOf(calibration.right), size,
+                    rotation, cv::Vec3d(t.x(), t.y(), t.z()), left_rotation, right_rotation,
+                    left_projection, right_projection, to_depth, cv::CALIB_ZERO_DISPARITY, 0.0,
+                    size);
+  camera_ = {.fx = left_projection(0, 0),
+             .fy = left_projection(1, 1),
+             .cx = left_projection(0, 2),
+             .cy = left_projection(1, 2),
+             .width = read_.width,
+             .height = read_.height,
+             .bf = -right_projection(0, 3)};
+  Eigen::Matrix3d left;
+  Eigen::Matrix3d right;
+  cv::cv2eigen(left_rotation, left);
+  cv::cv2eigen(right_rotation, right);
+  rectified_from_left_.rotation = Eigen::Quaterniond(left).normalized();
+  left_maps_ = MakeMaps(calibration.left, left, camera_);
+  right_maps_ = MakeMaps(calibration.right, right, camera_);
+}
+
+StereoRectifier::Maps StereoRectifier::MakeMaps(const PinholeCamera& read,
+                                                const Eigen::Matrix3d& rotation,
+                                                const PinholeCamera& rectified) {
+  Maps maps{cv::Mat(read.height, read.width, CV_32FC1), cv::Mat(read.height, read.width, CV_32FC1)};
+  for (int y = 0; y < read.height; ++y) {
+    for (int x = 0; x < read.width; ++x) {
+      const Eigen::Vector3d ray =
+          rotation.transpose() * rectified.Unproject(Eigen::Vector2d(x, y), 1.0);
+      const Eigen::Vector2d pixel = read.Distort(read.Project(ray));
+      maps.columns.at<float>(y, x) = static_cast<float>(pixel.x());
+      maps.rows.at<float>(y, x) = static_cast<float>(pixel.y());
+    }
+  }
+  return maps;
+}
+
+cv::Mat StereoRectifier::Remap(const cv::Mat& image, const Maps& maps) {
+  if (maps.columns.empty()) {
+    return image;
+  }
+  cv::Mat rectified;
+  cv::remap(image, rectified, maps.columns, maps.rows, cv::INTER_LINEAR);
+  return rectified;
+}
+
+void StereoRectifier::Rectify(InstanceMask& mask) const {
+  if (left_maps_.columns.empty()) {
+    return;
+  }
+  for (std::vector<Eigen::Vector2d>& outline : mask.outlines) {
+    for (Eigen::Vector2d& point : outline) {
+      const Eigen::Vector3d ray =
+          rectified_from_left_.rotation * read_.Unproject(read_.Undistort(point), 1.0);
+      point = camera_.Project(ray);
+    }
+  }
+}
+
+}  // namespace hullslam

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sequences/stereo_loading.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "hullslam/util/error.h"
+#include "sequences/image_file.h"
+#include "sequences/image_list.h"
+
+namespace hullslam {
+namespace {
+
+using Rectifier = std::shared_ptr<const StereoRectifier>;
+
+ImageInput Rectify(const Rectifier& rectifier, double timestamp, const cv::Mat& left,
+                   const cv::Mat& right) {
+  ImageInput pair{timestamp, left, cv::Mat()};
+  pair.right = right;
+  if (rectifier != nullptr) {
+    pair.grey = rectifier->RectifyLeft(left);
+    pair.right = rectifier->RectifyRight(right);
+  }
+  return pair;
+}
+
+void FitMasks(const Rectifier& rectifier, ImageSequence& sequence) {
+  if (rectifier != nullptr) {
+    sequence.fit_mask = [rectifier](InstanceMask& mask) { rectifier->Rectify(mask); };
+  }
+}
+
+cv::Mat Half(const cv::Mat& both, int half) {
+  const int width = both.cols / 2;
+  return both.colRange(half * width, (half + 1) * width).clone();
+}
+
+}  // namespace
+
+void LoadPairs(Rectifier rectifier, ImageSequence& sequence) {
+  sequence.load = [rectifier](const FramePaths& frame, const PinholeCamera& camera) {
+    const cv::Mat left = ReadGreyImage(frame.image);
+    const cv::Mat right = ReadGreyImage(frame.right);
+    CheckImageSize(frame.image.string(), left, camera);
+    CheckImageSize(frame.right.string(), right, camera);
+    return Rectify(rectifier, frame.timestamp, left, right);
+  };
+  if (rectifier != nullptr) {
+    sequence.load_colour = [rectifier](const FramePaths& frame) {
+      return rectifier->RectifyLeft(ReadColourImage(frame.image));
+    };
+  }
+  FitMasks(rectifier, sequence);
+}
+
+void SplitHalves(Rectifier rectifier, ImageSequence& sequence) {
+  sequence.load = [rectifier, load = sequence.load](const FramePaths& frame,
+                                                    const PinholeCamera& camera) {
+    PinholeCamera of_both = camera;
+    of_both.width *= 2;
+    const ImageInput both = load(frame, of_both);
+    return Rectify(rectifier, frame.timestamp, Half(both.grey, 0), Half(both.grey, 1));
+  };
+  sequence.load_colour = [rectifier, load = sequence.load_colour](const FramePaths& frame) {
+    const cv::Mat left = Half(load != nullptr ? load(frame) : ReadColourImage(frame.image), 0);
+    return rectifier != nullptr ? rectifier->RectifyLeft(left) : left;
+  };
+  FitMasks(rectifier, sequence);
+}
+
+}  // namespace hullslam

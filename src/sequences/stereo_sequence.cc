@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hullslam/sequences/stereo_sequence.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "files/text_rows.h"
+#include "hullslam/sequences/image_stream.h"
+#include "hullslam/util/error.h"
+#include "sequences/image_file.h"
+#include "sequences/image_list.h"
+#include "sequences/named_images.h"
+#include "sequences/stereo_loading.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// ---- KITTI
+
+// A row "P0: 12 numbers" of a calib.txt: a 3x4 projection of rectified images, by rows. The fourth
+// column is the focal length times the position of the camera to the left of camera 0.
+using Projection = std::array<double, 12>;
+
+std::map<std::string, Projection> ReadProjections(const fs::path& file) {
+  constexpr double kMost = 1e6;
+  std::map<std::string, Projection> projections;
+  ForEachRow(file, [&](const TextRow& row) {
+    const std::string_view name = row.columns.front();
+    if (!name.starts_with('P') || !name.ends_with(':')) {
+      return;  // the transform to the laser scanner, for example
+    }
+    CheckColumns(row, 13, "name and the 12 numbers of a projection");
+    Projection projection;
+    for (size_t i = 0; i < projection.size(); ++i) {
+      projection[i] = row.Number(i + 1, "number of a projection", kMost);
+    }
+    projections[std::string(name.substr(0, name.size() - 1))] = projection;
+  });
+  return projections;
+}
+
+PinholeCamera CameraOf(const fs::path& file, const std::string& left_name,
+                       const std::string& right_name) {
+  const std::map<std::string, Projection> projections = ReadProjections(file);
+  const auto left = projections.find(left_name);
+  const auto right = projections.find(right_name);
+  if (left == projections.end() || right == projections.end()) {
+    throw InputError(fmt::format("{}: has no rows '{}:' and '{}:', expected a calib.txt of KITTI",
+                                 file.string(), left_name, right_name));
+  }
+  const Projection& p = left->second;
+  const PinholeCamera camera{
+      .fx = p[0], .fy = p[5], .cx = p[2], .cy = p[6], .bf = p[3] - right->second[3]};
+  if (!(camera.bf > 0.0)) {
+    throw InputError(fmt::format(
+        "{}: camera {} is {:g} m to the right of camera {}, expected more than 0: left and right "
+        "are swapped, or are the same",
+        file.string(), right_name, camera.fx != 0.0 ? camera.bf / camera.fx : 0.0, left_name));
+  }
+  return camera;
+}
+
+std::vector<double> ReadTimes(const fs::path& file) {
+  std::vector<double> times;
+  ForEachRow(file, [&](const TextRow& row) { times.push_back(row.Stamp(0)); });
+  return times;
+}
+
+std::vector<FramePaths> ListKittiPairs(const fs::path& folder, const fs::path& left,
+                                       const fs::path& right, std::vector<std::string>& warnings) {
+  const fs::path times_file = folder / "times.txt";
+  const std::vector<double> times = ReadTimes(times_file);
+  const std::vector<fs::path> images = ListImages(left);
+  if (images.size() != times.size()) {
+    throw InputError(fmt::format("{}: has {} times, expected one for each of the {} images in {}",
+                                 times_file.string(), times.size(), images.size(), left.string()));
+  }
+  ListedFrames list;
+  for (size_t i = 0; i < images.size(); ++i) {
+    FramePaths frame{times[i], images[i]};
+    frame.right = right / images[i].filename();
+    const TextRow row{times_file, static_cast<int>(i) + 1, {}};
+    AddFrame(row, std::move(frame), list);
+  }
+  return TakeFrames(times_file, std::move(list), warnings);
+}
+
+std::optional<fs::path> FindKittiTruth(const fs::path& folder) {
+  std::error_code error;
+  const fs::path absolute = fs::weakly_canonical(folder, error);
+  const fs::path name = absolute.filename().string() + ".txt";
+  for (const fs::path& file :
+       {folder / "groundtruth.txt", folder / "poses.txt",
+        absolute.parent_path().parent_path() / "poses" / name, absolute.parent_path() / name}) {
+    if (fs::is_regular_file(file, error)) {
+      return file;
+    }
+  }
+  return std::nullopt;
+}
+
+// The first two of the folders that exist: grey or colour images.
+std::pair<std::string, std::string> FindKittiFolders(const fs::path& folder) {
+  std::error_code error;
+  for (const auto& [left, right] : {std::pair("0", "1"), std::pair("2", "3")}) {
+    if (fs::is_directory(folder / (std::string("image_") + left), error)) {
+      return {left, right};
+    }
+  }
+  const auto is_sequence = [&](const fs::path& other) {
+    return fs::is_directory(other / "image_0", error) || fs::is_directory(other / "image_2", error);
+  };
+  throw InputError(folder.string() +
+                   ": has no folder image_0 or image_2, expected a sequence of KITTI's odometry "
+                   "benchmark" +
+                   SuggestFolder(folder, is_sequence));
+}
+
+double RateOf(const std::vector<FramePaths>& frames) {
+  constexpr double kDefault = 10.0;  // KITTI's
+  const double time = frames.back().timestamp - frames.front().timestamp;
+  return time > 0.0 ? static_cast<double>(frames.size() - 1) / time : kDefault;
+}
+
+void SetSize(const fs::path& image, PinholeCamera& camera) {
+  const cv::Mat first = ReadGreyImage(image);
+  camera.width = first.cols;
+  camera.height = first.rows;
+}
+
+// ---- folders
+
+std::vector<FramePaths> PairByName(const fs::path& left_folder, const fs::path& right_folder,
+                                   double frames_per_second) {
+  const NamedImages left = FindNamedImages(left_folder, frames_per_second);
+  const std::vector<fs::path> right = ListImages(right_folder);
+  std::map<std::string, fs::path> by_name;
+  for (const fs::path& image : right) {
+    by_name[image.stem().string()] = image;
+  }
+  std::vector<FramePaths> frames = left.frames;
+  const bool have_names = by_name.contains(frames.front().image.stem().string());
+  if (!have_names && right.size() != frames.size()) {
+    throw InputError(fmt::format(
+        "{} has {} images and {} has {} with other names, expected pairs with the same names",
+        left_folder.string(), frames.size(), right_folder.string(), right.size()));
+  }
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const auto partner = by_name.find(frames[i].image.stem().string());
+    if (have_names && partner == by_name.end()) {
+      throw InputError(
+          fmt::format("{}: has no partner in {}", frames[i].image.string(), right_folder.string()));
+    }
+    frames[i].right = have_names ? partner->second : right[i];
+  }
+  return frames;
+}
+
+}  // namespace
+
+StereoSequence OpenKittiPairs(const fs::path& folder, const FrameSelection& selection) {
+  const auto [left, right] = FindKittiFolders(folder);
+  StereoSequence sequence;
+  sequence.calibration.camera = CameraOf(folder / "calib.txt", "P" + left, "P" + right);
+  sequence.images.frames = ListKittiPairs(folder, folder / ("image_" + left),
+                                          folder / ("image_" + right), sequence.images.warnings);
+  sequence.calibration.frames_per_second = RateOf(sequence.images.frames);
+  SetSize(sequence.images.frames.front().image, sequence.calibration.camera);
+  sequence.images.groundtruth = FindKittiTruth(folder);
+  SelectFrames(folder, selection, sequence.images);
+  LeaveOutMissing(sequence.images);
+  LoadPairs(nullptr, sequence.images);
+  return sequence;
+}
+
+ImageSequence OpenStereoFolder(const fs::path& path, const StereoFolderOptions& options) {
+  std::error_code error;
+  const bool has_left = fs::is_directory(path / "left", error);
+  const bool has_right = fs::is_directory(path / "right", error);
+  if (has_left != has_right) {
+    throw InputError(fmt::format("{}: has a folder {} but none {}, expected both", path.string(),
+                                 has_left ? "left" : "right", has_left ? "right" : "left"));
+  }
+  if (!has_left) {
+    ImageSequence halves =
+        OpenImageStream(path, {.frames_per_second = fs::is_directory(path, error)
+                                                        ? std::optional(options.frames_per_second)
+                                                        : std::nullopt,
+                               .selection = options.selection})
+            .images;
+    SplitHalves(options.rectifier, halves);
+    return halves;
+  }
+  ImageSequence sequence;
+  sequence.frames = PairByName(path / "left", path / "right", options.frames_per_second);
+  if (fs::is_regular_file(path / "groundtruth.txt", error)) {
+    sequence.groundtruth = path / "groundtruth.txt";
+  }
+  SelectFrames(path, options.selection, sequence);
+  LoadPairs(options.rectifier, sequence);
+  return sequence;
+}
+
+}  // namespace hullslam

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "settings/stereo_settings.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "settings/yaml_map.h"
+
+namespace hullslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPose = "Stereo.T_c1_c2";
+
+// The numbers of a matrix of OpenCV by rows.
+std::vector<double> MatrixOf(const YamlMap& file, const std::string& key, size_t count) {
+  return file.Map(key).Numbers("data", count, "a matrix by rows");
+}
+
+Eigen::Quaterniond RotationOf(const YamlMap& file, const std::string& key,
+                              const Eigen::Matrix3d& matrix) {
+  constexpr double kTolerance = 1e-3;  // files round their numbers
+  const bool is_rotation =
+      (matrix * matrix.transpose()).isApprox(Eigen::Matrix3d::Identity(), kTolerance) &&
+      matrix.determinant() > 0.0;
+  if (!is_rotation) {
+    file.Fail(key, "is no rotation");
+  }
+  return Eigen::Quaterniond(matrix).normalized();
+}
+
+// ---- ORB-SLAM2
+
+PinholeCamera CameraOf(const YamlMap& file, const std::string& side) {
+  const std::vector<double> k = MatrixOf(file, side + ".K", 9);
+  const std::vector<double> d = MatrixOf(file, side + ".D", 5);
+  return {.fx = k[0],
+          .fy = k[4],
+          .cx = k[2],
+          .cy = k[5],
+          .k1 = d[0],
+          .k2 = d[1],
+          .p1 = d[2],
+          .p2 = d[3],
+          .k3 = d[4],
+          .width = file.Pixels(side + ".width", file.Number(side + ".width")),
+          .height = file.Pixels(side + ".height", file.Number(side + ".height"))};
+}
+
+Eigen::Quaterniond RectifyingRotation(const YamlMap& file, const std::string& key) {
+  const std::vector<double> r = MatrixOf(file, key, 9);
+  return RotationOf(file, key,
+                    Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(r.data()));
+}
+
+// Both cameras with the rotations that rectify them. The fourth column of RIGHT.P is minus the
+// baseline times the focal length.
+StereoCalibration PairOfOrb2(const YamlMap& file) {
+  StereoCalibration pair{CameraOf(file, "LEFT"), CameraOf(file, "RIGHT"), {}};
+  const Eigen::Quaterniond left = RectifyingRotation(file, "LEFT.R");
+  const Eigen::Quaterniond right = RectifyingRotation(file, "RIGHT.R");
+  const std::vector<double> p = MatrixOf(file, "RIGHT.P", 12);
+  if (!(p[0] > 0.0)) {
+    file.Fail("RIGHT.P", "has no focal length");
+  }
+  pair.right_from_left.rotation = right.inverse() * left;
+  pair.right_from_left.translation = right.inverse() * Eigen::Vector3d(p[3] / p[0], 0.0, 0.0);
+  return pair;
+}
+
+// ---- ORB-SLAM3
+
+StereoCalibration PairOfOrb3(const YamlMap& file, const PinholeCamera& camera) {
+  StereoCalibration pair{camera, camera, {}};
+  const auto number = [&](const char* name) {
+    const std::string key = std::string("Camera2.") + name;
+    return file.Has(key) ? file.Number(key) : 0.0;
+  };
+  pair.right.fx = file.Number("Camera2.fx");
+  pair.right.fy = file.Number("Camera2.fy");
+  pair.right.cx = file.Number("Camera2.cx");
+  pair.right.cy = file.Number("Camera2.cy");
+  pair.right.k1 = number("k1");
+  pair.right.k2 = number("k2");
+  pair.right.p1 = number("p1");
+  pair.right.p2 = number("p2");
+  pair.right.k3 = number("k3");
+  const std::string key(kPose);
+  const std::vector<double> t = MatrixOf(file, key, 16);
+  const Eigen::Matrix4d left_from_right =
+      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(t.data());
+  pair.right_from_left =
+      Inverse(Rigid3{RotationOf(file, key, left_from_right.topLeftCorner<3, 3>()),
+                     left_from_right.topRightCorner<3, 1>()});
+  return pair;
+}
+
+}  // namespace
+
+bool IsStereoKey(std::string_view key) {
+  return key.starts_with("LEFT.") || key.starts_with("RIGHT.") || key.starts_with("Camera2.") ||
+         key == kPose;
+}
+
+std::shared_ptr<const StereoRectifier> MakeRectifier(const fs::path& file,
+                                                     const PinholeCamera& camera) {
+  const YamlMap settings(file, "settings");
+  const bool is_orb2 = settings.Has("LEFT.K") || settings.Has("RIGHT.K");
+  const bool is_orb3 = settings.Has("Camera2.fx") || settings.Has(kPose);
+  if (!is_orb2 && !is_orb3) {
+    return nullptr;
+  }
+  return std::make_shared<const StereoRectifier>(
+      is_orb2 ? PairOfOrb2(settings) : PairOfOrb3(settings, camera), file.string());
+}
+
+}  // namespace hullslam

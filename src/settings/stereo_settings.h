@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+#include "hullslam/camera/pinhole.h"
+#include "hullslam/frame/stereo_rectifier.h"
+
+namespace hullslam {
+
+// Whether a key of a settings file belongs to the calibration of a pair, which MakeRectifier()
+// reads.
+bool IsStereoKey(std::string_view key);
+
+// The rectifier of a settings file that describes both cameras as they are:
+// - of ORB-SLAM2: LEFT.K, LEFT.D, LEFT.R, LEFT.P, LEFT.width, LEFT.height, and the same for RIGHT;
+// - of ORB-SLAM3: Camera2.fx and so on beside `camera`, the left one, with Stereo.T_c1_c2, the pose
+//   of the second camera in the first one.
+// Null for a file that describes rectified images by one camera with Camera.bf. Throws InputError
+// with file, line and key.
+std::shared_ptr<const StereoRectifier> MakeRectifier(const std::filesystem::path& file,
+                                                     const PinholeCamera& camera);
+
+}  // namespace hullslam

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "frame/stereo_matcher.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "features/test_images.h"
+
+namespace hullslam {
+namespace {
+
+// A slanted plane: its disparity grows from 5 px at the top to 45 px at the bottom of the image.
+float Disparity(float row) { return 5.0F + 40.0F * row / 480.0F; }
+
+class StereoMatcherTest : public ::testing::Test {
+ protected:
+  // The right image of the plane: a column u of the left image is at u - Disparity(v). `down` moves
+  // it, as a pair does that is not rectified.
+  static cv::Mat RightOf(const cv::Mat& left, float down = 0.0F) {
+    cv::Mat columns(left.size(), CV_32FC1);
+    cv::Mat rows(left.size(), CV_32FC1);
+    for (int y = 0; y < left.rows; ++y) {
+      for (int x = 0; x < left.cols; ++x) {
+        columns.at<float>(y, x) = static_cast<float>(x) + Disparity(static_cast<float>(y));
+        rows.at<float>(y, x) = static_cast<float>(y) - down;
+      }
+    }
+    cv::Mat right;
+    cv::remap(left, right, columns, rows, cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+    return right;
+  }
+
+  std::vector<float> Match(const cv::Mat& left, const cv::Mat& right) {
+    features_ = left_.Extract(left);
+    const ExtractedFeatures others = right_.Extract(right);
+    StereoMatcher matcher(left_.levels(), 100.0);
+    SerialRunner runner;
+    return matcher.Match({features_, left_.pyramid()}, {others, right_.pyramid()}, runner);
+  }
+  size_t Found(const std::vector<float>& disparities) const {
+    return static_cast<size_t>(std::count_if(disparities.begin(), disparities.end(),
+                                             [](float disparity) { return disparity > 0.0F; }));
+  }
+
+  FeatureExtractor left_{FeatureOptions()};
+  FeatureExtractor right_{FeatureOptions()};
+  ExtractedFeatures features_;
+};
+
+// Errors are in pixels of the level of the keypoint, where the patches are compared.
+TEST_F(StereoMatcherTest, FindsTheDisparitiesOfAPlaneToAFractionOfAPixel) {
+  const cv::Mat left = MakeCornerImage();
+  const std::vector<float> disparities = Match(left, RightOf(left));
+  ASSERT_EQ(disparities.size(), features_.keypoints.size());
+  std::vector<float> errors;
+  for (size_t i = 0; i < disparities.size(); ++i) {
+    if (disparities[i] > 0.0F) {
+      const RawKeypoint& keypoint = features_.keypoints[i];
+      const float error = std::abs(disparities[i] - Disparity(keypoint.raw.y()));
+      errors.push_back(error / left_.levels().scale[static_cast<size_t>(keypoint.level)]);
+    }
+  }
+  EXPECT_GT(errors.size(), disparities.size() / 2);
+  std::sort(errors.begin(), errors.end());
+  EXPECT_LT(errors[errors.size() / 2], 0.15F);
+  EXPECT_LT(errors[errors.size() * 95 / 100], 1.0F);
+}
+
+TEST_F(StereoMatcherTest, ADarkerRightImageChangesNothing) {
+  const cv::Mat left = MakeCornerImage();
+  const size_t found = Found(Match(left, RightOf(left)));
+  const cv::Mat darker = RightOf(left) * 0.8;
+  EXPECT_GT(Found(Match(left, darker)), found * 8 / 10);
+}
+
+// Points that are to the right of where they are on the left would be behind the camera.
+TEST_F(StereoMatcherTest, SwappedImagesHaveFewMatches) {
+  const cv::Mat left = MakeCornerImage();
+  const cv::Mat right = RightOf(left);
+  const size_t found = Found(Match(left, right));
+  EXPECT_LT(Found(Match(right, left)), found / 4);
+}
+
+TEST_F(StereoMatcherTest, ImagesOfDifferentThingsHaveFewMatches) {
+  const cv::Mat left = MakeCornerImage();
+  const size_t found = Found(Match(left, RightOf(left)));
+  EXPECT_LT(Found(Match(left, MakeCornerImage(640, 480, 8))), found / 4);
+  EXPECT_EQ(Found(Match(left, cv::Mat(480, 640, CV_8UC1, cv::Scalar(90)))), 0u);
+  EXPECT_EQ(Found(Match(cv::Mat(480, 640, CV_8UC1, cv::Scalar(90)), left)), 0u);
+}
+
+TEST_F(StereoMatcherTest, RowsThatAreFarApartAreNotCompared) {
+  const cv::Mat left = MakeCornerImage();
+  const size_t found = Found(Match(left, RightOf(left)));
+  EXPECT_LT(Found(Match(left, RightOf(left, 25.0F))), found / 3);
+}
+
+TEST_F(StereoMatcherTest, TheSameImagesGiveTheSameBits) {
+  const cv::Mat left = MakeCornerImage();
+  const cv::Mat right = RightOf(left);
+  EXPECT_EQ(Match(left, right), Match(left, right));
+}
+
+}  // namespace
+}  // namespace hullslam
